@@ -1,0 +1,31 @@
+# SPDX-FileCopyrightText: 2026 the keepout authors
+# SPDX-License-Identifier: BSD-3-Clause
+#
+# keepout_library(NAME): what every target of ours is compiled with. Nothing is global, so that a
+# project that embeds keepout keeps its own flags.
+
+option(KEEPOUT_WARNINGS_AS_ERRORS "Treat our own warnings as errors" OFF)
+set(KEEPOUT_SANITIZE "" CACHE STRING "Sanitizers to compile with, as -fsanitize= takes them")
+
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "Debug, Release, RelWithDebInfo" FORCE)
+endif()
+
+function(keepout_compile_options target)
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON)
+  # A fused multiply-add rounds differently from one machine to the next; our decisions must not.
+  target_compile_options(${target} PRIVATE -ffp-contract=off -Wall -Wextra -Wpedantic -Wshadow
+                                           -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+    target_compile_options(${target} PRIVATE -Wno-restrict)  # GCC bug 105651: std::string +
+  endif()
+  if(KEEPOUT_WARNINGS_AS_ERRORS)
+    target_compile_options(${target} PRIVATE -Werror)
+  endif()
+  if(KEEPOUT_SANITIZE)
+    target_compile_options(${target} PRIVATE -fsanitize=${KEEPOUT_SANITIZE}
+                                             -fno-sanitize-recover=all -fno-omit-frame-pointer)
+    target_link_options(${target} PUBLIC -fsanitize=${KEEPOUT_SANITIZE})
+  endif()
+endfunction()

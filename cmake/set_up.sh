@@ -1,0 +1,42 @@
+# Sourced by ./run and ./test: installs what is missing, configures and builds.
+# SPDX-FileCopyrightText: 2026 the keepout authors
+# SPDX-License-Identifier: BSD-3-Clause
+
+say() { printf '\033[1m==> %s\033[0m\n' "$*" >&2; }
+fail() { printf 'keepout: %s\n' "$*" >&2; exit 1; }
+
+# Installs the Debian packages of cmake/debian_packages.txt that are missing. Offline when none is.
+install_packages() {
+  command -v apt-get >/dev/null || fail "this needs Debian 12 (apt-get); on another system install
+the counterparts of cmake/debian_packages.txt yourself and use the CMake presets (README, Build)"
+  local package unless command missing=()
+  while read -r package unless command; do
+    [ "$unless" = unless ] && command -v "$command" >/dev/null && continue
+    [ "$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null)" = installed ] ||
+      missing+=("$package")
+  done < <(grep -v '^#' "$root/cmake/debian_packages.txt")
+  [ ${#missing[@]} -eq 0 ] && return
+  say "installing ${missing[*]}"
+  local as_root=()
+  if [ "$(id -u)" -ne 0 ]; then
+    command -v sudo >/dev/null || fail "to install ${missing[*]}, run this as root or install sudo"
+    as_root=(sudo)
+  fi
+  "${as_root[@]}" apt-get update -q >&2 || fail "apt-get update failed: is there a network?"
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
+    apt-get install -q -y --no-install-recommends "${missing[@]}" >&2 ||
+    fail "could not install ${missing[*]}: see apt-get's message above"
+}
+
+# build PRESET [TARGET...]: configures once, then builds what has changed.
+build() {
+  local preset=$1
+  shift
+  if [ ! -f "$root/build/$preset/build.ninja" ]; then
+    say "configuring ($preset)"
+    (cd "$root" && cmake --preset "$preset" >&2) || fail "configuring failed: see above"
+  fi
+  say "building ($preset)"
+  (cd "$root" && cmake --build --preset "$preset" ${1:+--target "$@"} >&2) ||
+    fail "building failed: see above; to start afresh, remove build/$preset"
+}
