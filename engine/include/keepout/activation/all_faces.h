@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+
+#include "keepout/activation/activation.h"
+#include "keepout/mesh/mesh.h"
+
+namespace keepout {
+
+/// Every triangle in reach whose positive side the tip is on becomes a plane: the naive baseline of
+/// Li et al. 2020 (figure 2d), right in valleys and far too strict over ridges. Triangles without
+/// an area have no face and are passed over.
+class AllFaces final : public Activation {
+ public:
+  explicit AllFaces(std::shared_ptr<const Mesh> mesh);
+
+  void start(const Surroundings& around, HalfSpaceBuffer& planes) noexcept override;
+
+ private:
+  std::shared_ptr<const Mesh> mesh_;
+};
+
+}  // namespace keepout

@@ -1,0 +1,21 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "keepout/activation/activation.h"
+
+namespace keepout {
+
+/// The paper's plane {n, p} (eq. 2) with a margin: all motions d that end at least `margin` beyond
+/// the plane through the hit's closest point. `normal` is a unit vector.
+HalfSpace plane_through(const Hit& hit, const Vec3& normal, double margin) noexcept;
+
+/// Whether the tip is on the side of the hit's face to which `normal` points: N^T (x - CP) >= 0,
+/// to within rounding. A tool that slides along a face sits on it to the last bit, now above and
+/// now below; read without tolerance, the face would vanish under it every other cycle.
+bool on_positive_side(const Surroundings& around, const Hit& hit, const Vec3& normal) noexcept;
+
+/// Whether the tip lies on the surface, to within rounding: x - CP has no direction there.
+bool touches(const Surroundings& around, const Hit& hit) noexcept;
+
+}  // namespace keepout

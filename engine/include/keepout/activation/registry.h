@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string_view>
+
+#include "keepout/activation/activation.h"
+#include "keepout/mesh/mesh.h"
+
+namespace keepout {
+
+/// A rule by name.
+struct ActivationEntry {
+  std::string_view name;
+  std::string_view description;
+  std::unique_ptr<Activation> (*make)(std::shared_ptr<const Mesh> mesh);
+};
+
+/// All rules, in the order in which they should be listed.
+std::span<const ActivationEntry> activation_rules() noexcept;
+
+/// Throws Error, listing the known names, for an unknown one.
+std::unique_ptr<Activation> make_activation(std::string_view name,
+                                            std::shared_ptr<const Mesh> mesh);
+
+}  // namespace keepout

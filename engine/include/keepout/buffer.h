@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace keepout {
+
+/// A list with a capacity declared at construction: it never allocates afterwards, and it never
+/// drops an element silently. What does not fit is remembered as an overflow, which the step turns
+/// into a status.
+template <class T>
+class Buffer {
+ public:
+  explicit Buffer(std::size_t capacity) : items_(capacity) {}
+
+  /// Appends, or marks the overflow when full.
+  void push(const T& item) noexcept {
+    if (size_ < items_.size()) {
+      items_[size_++] = item;
+    } else {
+      overflowed_ = true;
+    }
+  }
+
+  void clear() noexcept {
+    size_ = 0;
+    overflowed_ = false;
+  }
+
+  /// True if anything was pushed beyond the capacity since the last clear().
+  bool overflowed() const noexcept { return overflowed_; }
+  bool empty() const noexcept { return size_ == 0; }
+  std::size_t size() const noexcept { return size_; }
+  std::size_t capacity() const noexcept { return items_.size(); }
+
+  T& operator[](std::size_t i) noexcept { return items_[i]; }
+  const T& operator[](std::size_t i) const noexcept { return items_[i]; }
+  T* begin() noexcept { return items_.data(); }
+  T* end() noexcept { return items_.data() + size_; }
+  const T* begin() const noexcept { return items_.data(); }
+  const T* end() const noexcept { return items_.data() + size_; }
+  std::span<const T> view() const noexcept { return {items_.data(), size_}; }
+
+ private:
+  std::vector<T> items_;
+  std::size_t size_ = 0;
+  bool overflowed_ = false;
+};
+
+}  // namespace keepout

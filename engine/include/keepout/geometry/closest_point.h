@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+
+#include "keepout/geometry/triangle.h"
+
+namespace keepout {
+
+/// The part of a triangle on which a point lies. Edge e runs from corner e to corner (e + 1) % 3.
+enum class Feature : std::uint8_t { face, edge_0, edge_1, edge_2, vertex_0, vertex_1, vertex_2 };
+
+constexpr bool is_face(Feature f) noexcept { return f == Feature::face; }
+constexpr bool is_edge(Feature f) noexcept { return f >= Feature::edge_0 && f <= Feature::edge_2; }
+constexpr bool is_vertex(Feature f) noexcept { return f >= Feature::vertex_0; }
+
+/// Number (0, 1, 2) of an edge or a vertex feature. Precondition: not the face.
+constexpr int number_of(Feature f) noexcept {
+  return static_cast<int>(f) - static_cast<int>(is_vertex(f) ? Feature::vertex_0 : Feature::edge_0);
+}
+
+struct ClosestPoint {
+  Vec3 offset;      // from the query to the closest point [length]
+  double distance;  // |offset| [length]
+  Feature feature;  // where on the triangle the closest point lies
+};
+
+/// The point of `triangle` nearest to `query`: the one exact kernel of the engine. Every index is
+/// refined by it, so that accuracy does not depend on the index.
+///
+/// The offset and the distance are the same, bit for bit, in whatever order the corners are given.
+/// All arithmetic is relative to the query, so the error (some 1e-15 of the largest distance from
+/// the query to a corner) does not grow with the distance from the origin. Needles and triangles
+/// without an area are handled as the segments or points that they are.
+ClosestPoint closest_point(const Triangle& triangle, const Vec3& query) noexcept;
+
+}  // namespace keepout

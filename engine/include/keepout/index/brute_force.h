@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+
+#include "keepout/index/spatial_index.h"
+#include "keepout/mesh/mesh.h"
+
+namespace keepout {
+
+/// Asks the exact kernel about every triangle: the oracle to which all other indices are held.
+class BruteForce final : public SpatialIndex {
+ public:
+  explicit BruteForce(std::shared_ptr<const Mesh> mesh);
+
+  void collect(const Ball& ball, TriangleBuffer& candidates) const noexcept override;
+  std::size_t memory() const noexcept override { return 0; }
+
+ private:
+  std::shared_ptr<const Mesh> mesh_;
+};
+
+}  // namespace keepout

@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <concepts>
+#include <cstddef>
+
+#include "keepout/buffer.h"
+#include "keepout/geometry/ball.h"
+#include "keepout/mesh/ids.h"
+
+namespace keepout {
+
+using TriangleBuffer = Buffer<TriangleId>;
+
+/// Finds the triangles near a place. An index proposes candidates; the engine's exact kernel
+/// decides (refine), so every index gives the same hits.
+class SpatialIndex {
+ public:
+  virtual ~SpatialIndex() = default;
+
+  /// Appends, once each and in any order, every triangle that touches the ball. Extra triangles are
+  /// allowed, missing ones never. Thread-safe.
+  virtual void collect(const Ball& ball, TriangleBuffer& candidates) const noexcept = 0;
+
+  /// Memory that the index holds beside the mesh. [bytes]
+  virtual std::size_t memory() const noexcept = 0;
+};
+
+/// What `step` needs of an index; a final class that satisfies it is called without dispatch.
+template <class T>
+concept Index = requires(const T& index, const Ball& ball, TriangleBuffer& candidates) {
+  { index.collect(ball, candidates) } noexcept;
+};
+
+}  // namespace keepout

@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+
+#include "keepout/mesh/mesh.h"
+
+namespace keepout {
+
+/// True if the file is as long as the binary STL that its header declares: 84 + 50 n bytes. What it
+/// begins with does not matter, for many a binary file begins with "solid". False if there is no
+/// such file, or if it cannot be read.
+bool is_binary_stl(const std::filesystem::path& path);
+
+/// Reads a binary STL file as it stands: three vertices for each triangle, not welded; normals and
+/// attributes are ignored. Throws Error when it is not one, has no triangles, or holds a coordinate
+/// that is not finite.
+Surface read_binary_stl(const std::filesystem::path& path);
+
+/// Writes a binary STL file: whole or not at all, for it is renamed into place when complete.
+/// Coordinates are rounded to single precision, which is all that the format holds. Throws Error,
+/// also when a coordinate does not fit.
+void write_binary_stl(const std::filesystem::path& path, const Surface& surface);
+void write_binary_stl(const std::filesystem::path& path, const Mesh& mesh);
+
+}  // namespace keepout

@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <optional>
+
+#include "keepout/geometry/box.h"
+#include "keepout/mesh/mesh.h"
+
+namespace keepout {
+
+/// What there is to know about a mesh before it guards anything. Edges are counted once each,
+/// however many triangles they have. Triangles that name a vertex twice are segments, with neither
+/// edges nor a part in the surface: they are only counted as degenerate.
+struct MeshFindings {
+  std::size_t vertices = 0;         // those that a triangle uses
+  std::size_t unused_vertices = 0;  // none after a weld
+  std::size_t triangles = 0;
+
+  std::size_t edges = 0;
+  std::size_t boundary_edges = 0;      // one triangle: a hole, or a rim
+  std::size_t non_manifold_edges = 0;  // three triangles or more
+  std::size_t inconsistent_edges = 0;  // two triangles, wound against each other
+  std::size_t pinched_vertices = 0;    // fans of triangles that only a point holds together
+
+  std::size_t repeated_vertex_triangles = 0;  // name a vertex twice
+  std::size_t collinear_triangles = 0;        // three vertices on one line, exactly
+  std::size_t duplicate_triangles = 0;        // same three vertices as an earlier one, any winding
+
+  std::size_t components = 0;       // held together by shared vertices
+  std::size_t edge_components = 0;  // held together by shared edges
+
+  Box bounds{Vec3::Zero(), Vec3::Zero()};
+  double area = 0.0;           // [length^2]
+  double signed_volume = 0.0;  // below 0: inside out. Meaningless when not closed. [length^3]
+
+  /// V - E + F, over the triangles that have edges.
+  std::ptrdiff_t euler_characteristic = 0;
+  /// Handles, in all components together. Only a watertight mesh without pinched vertices has one.
+  std::optional<std::ptrdiff_t> genus;
+
+  std::size_t degenerate_triangles() const noexcept {
+    return repeated_vertex_triangles + collinear_triangles;
+  }
+
+  /// No boundary: every edge has two triangles or more.
+  bool is_closed() const noexcept { return edges > 0 && boundary_edges == 0; }
+
+  /// Closed, with two triangles on every edge, wound alike: it has an inside and an outside.
+  bool is_watertight() const noexcept {
+    return is_closed() && non_manifold_edges == 0 && inconsistent_edges == 0;
+  }
+
+  /// Watertight, but its normals point into the solid: the forbidden region and the free space are
+  /// swapped.
+  bool is_inside_out() const noexcept { return is_watertight() && signed_volume < 0.0; }
+
+  /// Smaller than `metres_below` in every direction, where files are in millimetres.
+  bool looks_like_metres() const noexcept { return bounds.size().maxCoeff() < metres_below; }
+
+  // No anatomy that a tool is kept out of is smaller than 3 mm, and none is larger than 3 m. [mm]
+  static constexpr double metres_below = 3.0;
+};
+
+/// Examines a welded mesh: a pure report, nothing is repaired. Time grows with the size of the mesh,
+/// some 0.5 s for a million triangles.
+MeshFindings examine(const Mesh& mesh);
+
+}  // namespace keepout

@@ -1,0 +1,16 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <limits>
+
+namespace keepout {
+
+using VertexId = std::uint32_t;
+using TriangleId = std::uint32_t;
+
+/// Stands where there is no triangle: across a boundary edge, for one.
+inline constexpr TriangleId no_triangle = std::numeric_limits<TriangleId>::max();
+
+}  // namespace keepout

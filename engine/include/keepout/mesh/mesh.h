@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "keepout/geometry/triangle.h"
+#include "keepout/geometry/box.h"
+#include "keepout/mesh/ids.h"
+
+namespace keepout {
+
+/// Three vertices, in the order of the winding: seen from the free side, counter-clockwise.
+using Corners = std::array<VertexId, 3>;
+
+/// An indexed triangle surface as plain data: what readers and generators make, and what a Mesh is
+/// made from. Any one length unit.
+struct Surface {
+  std::vector<Vec3> vertices;
+  std::vector<Corners> triangles;
+};
+
+/// An immutable triangle surface: shared by every index and rule that is built on it. It may be
+/// open, non-manifold or self-intersecting. Triangle ids are the order of the triangles given.
+class Mesh {
+ public:
+  /// Throws Error when there is no triangle, when a coordinate is not finite, when a triangle names
+  /// a vertex that does not exist, or when there are more than 2^32 - 2 triangles.
+  explicit Mesh(Surface surface);
+
+  std::size_t triangle_count() const noexcept { return surface_.triangles.size(); }
+  std::size_t vertex_count() const noexcept { return surface_.vertices.size(); }
+
+  const Corners& corners(TriangleId t) const noexcept { return surface_.triangles[t]; }
+  const Vec3& vertex(VertexId v) const noexcept { return surface_.vertices[v]; }
+
+  Triangle triangle(TriangleId t) const noexcept {
+    const Corners& c = corners(t);
+    return {vertex(c[0]), vertex(c[1]), vertex(c[2])};
+  }
+
+  /// Unit normal from the winding; zero for a triangle without an area.
+  Vec3 normal(TriangleId t) const noexcept { return unit_normal(triangle(t)); }
+
+  std::span<const Vec3> vertices() const noexcept { return surface_.vertices; }
+  std::span<const Corners> triangles() const noexcept { return surface_.triangles; }
+
+  /// The smallest axis-aligned box around the triangles.
+  const Box& bounds() const noexcept { return bounds_; }
+
+ private:
+  Surface surface_;
+  Box bounds_;
+};
+
+}  // namespace keepout

@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+
+#include "keepout/geometry/half_space.h"
+#include "keepout/geometry/vec3.h"
+#include "keepout/step/status.h"
+
+namespace keepout {
+
+/// A view of the tip's Jacobian J, dx = J dq: 3 x n, column by column. [length / unit of the joint]
+class TipJacobian {
+ public:
+  using Matrix = Eigen::Matrix<double, 3, Eigen::Dynamic>;
+
+  /// No joints: the tip itself is what moves, u = dx.
+  TipJacobian() = default;
+
+  /// The matrix must outlive the step.
+  TipJacobian(const Matrix& matrix) noexcept : data_(matrix.data()), joints_(matrix.cols()) {}
+  TipJacobian(Matrix&&) = delete;
+  TipJacobian(const double* data, Eigen::Index joints) noexcept : data_(data), joints_(joints) {}
+
+  Eigen::Index joints() const noexcept { return joints_; }
+  const double* data() const noexcept { return data_; }
+  Eigen::Map<const Matrix> matrix() const noexcept { return {data_, 3, joints_}; }
+
+ private:
+  const double* data_ = nullptr;
+  Eigen::Index joints_ = 0;
+};
+
+/// What is asked of one control cycle.
+struct Motion {
+  Vec3 tip;                   // in the frame of the mesh [length]
+  Vec3 desired;               // increment asked for [length]
+  TipJacobian jacobian = {};  // of the joints that are to move it; none: the tip moves itself
+};
+
+/// What one control cycle may do. Views stay valid until the next step of the same workspace.
+struct Step {
+  Status status = Status::invalid_input;
+  Vec3 motion = Vec3::Zero();        // of the tip; zero unless ok() [length]
+  std::span<const double> increment;  // u: the tip's, or the joints' (n); empty unless ok()
+  std::span<const HalfSpace> planes;  // all that were posed, whatever the status
+  std::span<const std::uint32_t> active;  // the planes that hold the motion back; empty unless ok()
+  std::size_t triangles = 0;              // in reach
+
+  bool ok() const noexcept { return is_ok(status); }
+  std::string_view reason() const noexcept { return keepout::reason(status); }
+};
+
+}  // namespace keepout

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "keepout/step/solver.h"
+
+namespace keepout {
+
+/// How a step ended. Anything but `free` and `limited` comes with zero motion.
+enum class Status : std::uint8_t {
+  free,             // no plane holds the motion back
+  limited,          // the motion is the best one that the planes allow
+  infeasible,       // no motion satisfies all planes: the tip is too close on several sides
+  ill_posed,        // the Jacobian lacks full column rank and there is no damping
+  invalid_input,    // a number is not finite or out of range
+  beyond_reach,     // the motion asked for, or solved, is longer than the motion sphere's radius
+  over_capacity,    // more triangles, planes or variables than room was made for
+  unsolved          // the solver gave up within its budget of work
+};
+
+/// A motion comes with it, which may be carried out.
+constexpr bool is_ok(Status status) noexcept {
+  return status == Status::free || status == Status::limited;
+}
+
+/// The name as it stands in the enumeration, for files and logs.
+std::string_view name(Status status) noexcept;
+
+/// One line on what happened and what to do about it.
+std::string_view reason(Status status) noexcept;
+
+/// What a failed solve means for the step. Precondition: not optimal.
+Status status_of(SolveStatus failure) noexcept;
+
+}  // namespace keepout

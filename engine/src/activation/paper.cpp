@@ -1,0 +1,92 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "keepout/activation/paper.h"
+
+#include <array>
+#include <span>
+#include <utility>
+
+#include "keepout/activation/planes.h"
+
+namespace keepout {
+namespace {
+
+/// The edges of a triangle on which a feature lies: one for an edge, the two that meet for a vertex.
+struct EdgesAt {
+  std::array<int, 2> edges;
+  int count;
+
+  explicit EdgesAt(Feature f) noexcept
+      : edges{number_of(f), (number_of(f) + 2) % 3}, count(is_vertex(f) ? 2 : 1) {}
+
+  const int* begin() const noexcept { return edges.data(); }
+  const int* end() const noexcept { return edges.data() + count; }
+};
+
+}  // namespace
+
+PaperRule::PaperRule(std::shared_ptr<const Mesh> mesh)
+    : mesh_(std::move(mesh)), adjacency_(*mesh_) {}
+
+void PaperRule::start(const Surroundings& around, HalfSpaceBuffer& planes) noexcept {
+  for (const Hit& hit : around.hits) {
+    if (const std::optional<HalfSpace> plane = plane_of(around, hit)) planes.push(*plane);
+  }
+}
+
+std::optional<HalfSpace> PaperRule::plane_of(const Surroundings& around,
+                                             const Hit& hit) const noexcept {
+  const Vec3 normal = mesh_->normal(hit.triangle);
+  const bool positive = on_positive_side(around, hit, normal);
+
+  // Condition 1: the closest point is in the triangle.
+  if (is_face(hit.closest.feature)) {
+    if (!positive) return std::nullopt;
+    return plane_through(hit, normal, around.margin);
+  }
+  // Condition 2: on a ridge, and nearest for the neighbour as well.
+  switch (role_in_condition_2(around, hit)) {
+    case Role::speaks: {
+      if (!touches(around, hit)) {
+        const Vec3 away = -hit.closest.offset / hit.closest.distance;
+        return plane_through(hit, away, around.margin);
+      }
+      if (normal.isZero(0.0)) return std::nullopt;
+      return plane_through(hit, normal, around.margin);
+    }
+    case Role::leaves_it_to_a_neighbor:
+      return std::nullopt;
+    case Role::none:
+      break;
+  }
+  // Condition 3: on a valley.
+  if (positive && !normal.isZero(0.0) && touches_a_valley(hit)) {
+    return plane_through(hit, normal, around.margin);
+  }
+  return std::nullopt;
+}
+
+PaperRule::Role PaperRule::role_in_condition_2(const Surroundings& around,
+                                               const Hit& hit) const noexcept {
+  Role role = Role::none;
+  for (const int edge : EdgesAt(hit.closest.feature)) {
+    const EdgeKind kind = adjacency_.kind(hit.triangle, edge);
+    if (kind != EdgeKind::convex && kind != EdgeKind::coplanar) continue;
+    const TriangleId neighbor = adjacency_.neighbor(hit.triangle, edge);
+    const ClosestPoint theirs = closest_point(mesh_->triangle(neighbor), around.tip);
+    if (is_face(theirs.feature) || theirs.offset != hit.closest.offset) continue;
+    // On the surface each face speaks for itself, as there is no shared plane.
+    if (neighbor < hit.triangle && !touches(around, hit)) return Role::leaves_it_to_a_neighbor;
+    role = Role::speaks;
+  }
+  return role;
+}
+
+bool PaperRule::touches_a_valley(const Hit& hit) const noexcept {
+  for (const int edge : EdgesAt(hit.closest.feature)) {
+    if (adjacency_.kind(hit.triangle, edge) == EdgeKind::concave) return true;
+  }
+  return false;
+}
+
+}  // namespace keepout

@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "keepout/geometry/triangle.h"
+
+#include <Eigen/Geometry>
+
+#include "corner_order.h"
+
+namespace keepout {
+
+Vec3 unit_normal(const Triangle& triangle) noexcept {
+  const CornerOrder order = corner_order(triangle);
+  const Vec3& a = triangle[order.corner[0]];
+  const Vec3 normal =
+      (triangle[order.corner[1]] - a).cross(triangle[order.corner[2]] - a);
+  const double length = normal.norm();
+  if (!(length > 0.0)) return Vec3::Zero();
+  return normal / (order.odd ? -length : length);
+}
+
+}  // namespace keepout

@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "keepout/index/brute_force.h"
+
+#include <utility>
+
+#include "keepout/geometry/closest_point.h"
+
+namespace keepout {
+
+BruteForce::BruteForce(std::shared_ptr<const Mesh> mesh) : mesh_(std::move(mesh)) {}
+
+void BruteForce::collect(const Ball& ball, TriangleBuffer& candidates) const noexcept {
+  for (TriangleId t = 0; t < mesh_->triangle_count(); ++t) {
+    if (closest_point(mesh_->triangle(t), ball.center).distance <= ball.radius) candidates.push(t);
+  }
+}
+
+}  // namespace keepout

@@ -1,0 +1,199 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "keepout/index/self_intersection.h"
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "keepout/geometry/box.h"
+#include "keepout/geometry/orientation.h"
+
+namespace keepout {
+namespace {
+
+using Sides = std::array<int, 3>;
+
+constexpr int next(int corner) noexcept { return (corner + 1) % 3; }
+
+Sides sides_of(const Triangle& plane, const Triangle& points) noexcept {
+  return {side_of_plane(plane[0], plane[1], plane[2], points[0]),
+          side_of_plane(plane[0], plane[1], plane[2], points[1]),
+          side_of_plane(plane[0], plane[1], plane[2], points[2])};
+}
+
+bool all_apart(const Sides& s) noexcept { return s[0] != 0 && s[0] == s[1] && s[1] == s[2]; }
+bool all_on(const Sides& s) noexcept { return s[0] == 0 && s[1] == 0 && s[2] == 0; }
+
+/// True if a side of the flat triangle keeps all the points strictly outside.
+template <std::size_t N>
+bool side_separates(const Triangle& triangle, const std::array<Vec3, N>& points,
+                    int axis) noexcept {
+  const int inside = turn(triangle[0], triangle[1], triangle[2], axis);
+  for (int e = 0; e < 3; ++e) {
+    if (std::all_of(points.begin(), points.end(), [&](const Vec3& p) {
+          return turn(triangle[e], triangle[next(e)], p, axis) == -inside;
+        })) {
+      return true;
+    }
+  }
+  return false;
+}
+
+// In a plane, two convex shapes that are apart are separated by a line along a side of the one or
+// of the other.
+
+bool overlap_in_plane(const Triangle& one, const Triangle& other) noexcept {
+  const int axis = axis_of_sight(one);
+  return !side_separates(one, other, axis) && !side_separates(other, one, axis);
+}
+
+bool overlap_in_plane(const Vec3& p, const Vec3& q, const Triangle& triangle) noexcept {
+  const int axis = axis_of_sight(triangle);
+  if (side_separates(triangle, std::array{p, q}, axis)) return false;
+  const Sides beside{turn(p, q, triangle[0], axis), turn(p, q, triangle[1], axis),
+                     turn(p, q, triangle[2], axis)};
+  return !all_apart(beside);
+}
+
+/// Does the segment touch the triangle? `side_p` and `side_q`: where its ends are by the plane.
+bool touches(const Vec3& p, int side_p, const Vec3& q, int side_q,
+             const Triangle& triangle) noexcept {
+  if (side_p * side_q > 0) return false;
+  if (side_p == 0 && side_q == 0) return overlap_in_plane(p, q, triangle);
+  // The line through p and q pierces the plane once, inside if it passes all sides alike.
+  int seen = 0;
+  for (int e = 0; e < 3; ++e) {
+    const int way = side_of_plane(p, q, triangle[e], triangle[next(e)]);
+    if (way * seen < 0) return false;
+    if (way != 0) seen = way;
+  }
+  return true;
+}
+
+bool any_edge_touches(const Triangle& edges, const Sides& sides,
+                      const Triangle& triangle) noexcept {
+  for (int e = 0; e < 3; ++e) {
+    if (touches(edges[e], sides[e], edges[next(e)], sides[next(e)], triangle)) return true;
+  }
+  return false;
+}
+
+/// Which corners two triangles have in common.
+struct Shared {
+  int count = 0;
+  std::array<bool, 3> of_one{}, of_other{};
+};
+
+Shared shared_corners(const Corners& one, const Corners& other) noexcept {
+  Shared shared;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      if (one[i] != other[j]) continue;
+      ++shared.count;
+      shared.of_one[i] = true;
+      shared.of_other[j] = true;
+    }
+  }
+  return shared;
+}
+
+int only(const std::array<bool, 3>& corners, bool wanted) noexcept {
+  return static_cast<int>(std::find(corners.begin(), corners.end(), wanted) - corners.begin());
+}
+
+bool meet_apart(const Triangle& one, const Triangle& other) noexcept {
+  const Sides other_by_one = sides_of(one, other);
+  if (all_apart(other_by_one)) return false;
+  if (all_on(other_by_one)) return overlap_in_plane(one, other);
+  const Sides one_by_other = sides_of(other, one);
+  if (all_apart(one_by_other)) return false;
+  return any_edge_touches(other, other_by_one, one) || any_edge_touches(one, one_by_other, other);
+}
+
+/// With one corner v in common: a second point in common leads, away from v, to where the ray
+/// leaves the first of the two triangles, which is through the side opposite v.
+bool meet_beyond_corner(const Triangle& one, int corner_one, const Triangle& other,
+                        int corner_other) noexcept {
+  const auto opposite_touches = [](const Triangle& from, int corner, const Triangle& to) {
+    const Vec3& p = from[next(corner)];
+    const Vec3& q = from[next(next(corner))];
+    return touches(p, side_of_plane(to[0], to[1], to[2], p), q,
+                   side_of_plane(to[0], to[1], to[2], q), to);
+  };
+  return opposite_touches(one, corner_one, other) || opposite_touches(other, corner_other, one);
+}
+
+/// With an edge in common: only flat and on the same side of it can they share more.
+bool meet_beyond_edge(const Triangle& one, int apex_one, const Triangle& other,
+                      int apex_other) noexcept {
+  if (side_of_plane(one[0], one[1], one[2], other[apex_other]) != 0) return false;
+  const int axis = axis_of_sight(one);
+  const Vec3& a = one[next(apex_one)];
+  const Vec3& b = one[next(next(apex_one))];
+  return turn(a, b, one[apex_one], axis) == turn(a, b, other[apex_other], axis);
+}
+
+/// meet_improperly, for triangles that are known to have an area.
+bool meet(const Mesh& mesh, TriangleId one, TriangleId other) noexcept {
+  const Shared shared = shared_corners(mesh.corners(one), mesh.corners(other));
+  const Triangle a = mesh.triangle(one);
+  const Triangle b = mesh.triangle(other);
+  switch (shared.count) {
+    case 0: return meet_apart(a, b);
+    case 1: return meet_beyond_corner(a, only(shared.of_one, true), b, only(shared.of_other, true));
+    case 2: return meet_beyond_edge(a, only(shared.of_one, false), b, only(shared.of_other, false));
+    default: return true;
+  }
+}
+
+Box box_of(const Triangle& t) noexcept {
+  return {t[0].cwiseMin(t[1]).cwiseMin(t[2]), t[0].cwiseMax(t[1]).cwiseMax(t[2])};
+}
+
+bool overlap(const Box& one, const Box& other) noexcept {
+  return (one.low.array() <= other.high.array()).all() &&
+         (other.low.array() <= one.high.array()).all();
+}
+
+/// A ball that holds the triangle, with room for the rounding of its own making.
+Ball ball_around(const Triangle& t, const Box& box) noexcept {
+  const Vec3 center = box.center();
+  double radius = 0.0;
+  for (const Vec3& corner : t) radius = std::max(radius, (corner - center).norm());
+  return {center, radius + 1e-12 * (radius + center.cwiseAbs().maxCoeff())};
+}
+
+}  // namespace
+
+bool meet_improperly(const Mesh& mesh, TriangleId one, TriangleId other) noexcept {
+  return axis_of_sight(mesh.triangle(one)) >= 0 && axis_of_sight(mesh.triangle(other)) >= 0 &&
+         meet(mesh, one, other);
+}
+
+std::size_t count_self_intersections(const Mesh& mesh, const SpatialIndex& index) {
+  const auto count = static_cast<TriangleId>(mesh.triangle_count());
+  std::vector<Box> boxes(count);
+  std::vector<bool> flat(count);  // without an area
+  for (TriangleId t = 0; t < count; ++t) {
+    boxes[t] = box_of(mesh.triangle(t));
+    flat[t] = axis_of_sight(mesh.triangle(t)) < 0;
+  }
+
+  std::size_t pairs = 0;
+  TriangleBuffer nearby(count);
+  for (TriangleId t = 0; t < count; ++t) {
+    if (flat[t]) continue;
+    nearby.clear();
+    index.collect(ball_around(mesh.triangle(t), boxes[t]), nearby);
+    for (const TriangleId other : nearby) {
+      if (other > t && !flat[other] && overlap(boxes[t], boxes[other]) && meet(mesh, t, other)) {
+        ++pairs;
+      }
+    }
+  }
+  return pairs;
+}
+
+}  // namespace keepout

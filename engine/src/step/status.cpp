@@ -1,0 +1,71 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "keepout/step/status.h"
+
+namespace keepout {
+
+std::string_view name(Status status) noexcept {
+  switch (status) {
+    case Status::free:
+      return "free";
+    case Status::limited:
+      return "limited";
+    case Status::infeasible:
+      return "infeasible";
+    case Status::ill_posed:
+      return "ill_posed";
+    case Status::invalid_input:
+      return "invalid_input";
+    case Status::beyond_reach:
+      return "beyond_reach";
+    case Status::over_capacity:
+      return "over_capacity";
+    case Status::unsolved:
+      return "unsolved";
+  }
+  return "unknown";
+}
+
+std::string_view reason(Status status) noexcept {
+  switch (status) {
+    case Status::free:
+      return "nothing holds the motion back";
+    case Status::limited:
+      return "planes of nearby triangles hold the motion back";
+    case Status::infeasible:
+      return "no motion satisfies all planes: the tip is closer than the margin on several sides; "
+             "retreat, or lower the margin";
+    case Status::ill_posed:
+      return "the Jacobian lacks full column rank: give a damping above zero";
+    case Status::invalid_input:
+      return "a number is not finite or beyond 1e30: check the tip, the increment and the Jacobian";
+    case Status::beyond_reach:
+      return "the motion is longer than the radius of the motion sphere: ask for less in a cycle, "
+             "or declare a larger radius";
+    case Status::over_capacity:
+      return "more triangles or planes in reach than room was made for: lower the radius or raise "
+             "the capacity";
+    case Status::unsolved:
+      return "the solver gave up within its budget of work";
+  }
+  return "unknown status";
+}
+
+Status status_of(SolveStatus failure) noexcept {
+  switch (failure) {
+    case SolveStatus::infeasible:
+      return Status::infeasible;
+    case SolveStatus::ill_posed:
+      return Status::ill_posed;
+    case SolveStatus::invalid_input:
+      return Status::invalid_input;
+    case SolveStatus::over_capacity:
+      return Status::over_capacity;
+    case SolveStatus::optimal:
+    case SolveStatus::iteration_limit:
+      break;
+  }
+  return Status::unsolved;
+}
+
+}  // namespace keepout
