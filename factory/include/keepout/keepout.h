@@ -1,0 +1,8 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+// All that a program needs which takes keepout as it comes.
+#include "keepout/adapters/load_mesh.h"
+#include "keepout/error.h"
+#include "keepout/factory/make_motion_constraint.h"

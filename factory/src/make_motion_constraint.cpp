@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "keepout/factory/make_motion_constraint.h"
+
+#include <utility>
+
+#include "keepout/activation/registry.h"
+#include "keepout/adapters/index_registry.h"
+#include "keepout/solvers/registry.h"
+
+namespace keepout {
+
+MotionConstraint make_motion_constraint(std::shared_ptr<const Mesh> mesh,
+                                        const MotionConstraintSettings& settings) {
+  auto index = make_index(settings.index, mesh);
+  auto activation = make_activation(settings.activation, mesh);
+  auto solver = make_solver(settings.solver);
+  return {std::move(mesh),   std::move(index),
+          std::move(activation), std::move(solver),
+          {.radius = settings.radius, .margin = settings.margin, .damping = settings.damping},
+          settings.capacity};
+}
+
+}  // namespace keepout
