@@ -11,7 +11,8 @@
 namespace keepout {
 namespace {
 
-/// The edges of a triangle on which a feature lies: one for an edge, the two that meet for a vertex.
+/// The edges of a triangle on which a feature lies: one for an edge, the two that meet for a
+/// vertex.
 struct EdgesAt {
   std::array<int, 2> edges;
   int count;

@@ -12,8 +12,7 @@ namespace keepout {
 Vec3 unit_normal(const Triangle& triangle) noexcept {
   const CornerOrder order = corner_order(triangle);
   const Vec3& a = triangle[order.corner[0]];
-  const Vec3 normal =
-      (triangle[order.corner[1]] - a).cross(triangle[order.corner[2]] - a);
+  const Vec3 normal = (triangle[order.corner[1]] - a).cross(triangle[order.corner[2]] - a);
   const double length = normal.norm();
   if (!(length > 0.0)) return Vec3::Zero();
   return normal / (order.odd ? -length : length);

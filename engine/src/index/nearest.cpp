@@ -33,9 +33,9 @@ Hit NearestTriangle::operator()(const Vec3& point, double guess) {
     for (const TriangleId t : candidates_) {
       const ClosestPoint closest = closest_point(mesh_->triangle(t), point);
       if (closest.distance > radius) continue;
-      const bool nearer =
-          best.triangle == no_triangle || closest.distance < best.closest.distance ||
-          (closest.distance == best.closest.distance && t < best.triangle);
+      const bool nearer = best.triangle == no_triangle ||
+                          closest.distance < best.closest.distance ||
+                          (closest.distance == best.closest.distance && t < best.triangle);
       if (nearer) best = {t, closest};
     }
     if (best.triangle != no_triangle) return best;

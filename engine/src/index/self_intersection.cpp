@@ -141,10 +141,14 @@ bool meet(const Mesh& mesh, TriangleId one, TriangleId other) noexcept {
   const Triangle a = mesh.triangle(one);
   const Triangle b = mesh.triangle(other);
   switch (shared.count) {
-    case 0: return meet_apart(a, b);
-    case 1: return meet_beyond_corner(a, only(shared.of_one, true), b, only(shared.of_other, true));
-    case 2: return meet_beyond_edge(a, only(shared.of_one, false), b, only(shared.of_other, false));
-    default: return true;
+    case 0:
+      return meet_apart(a, b);
+    case 1:
+      return meet_beyond_corner(a, only(shared.of_one, true), b, only(shared.of_other, true));
+    case 2:
+      return meet_beyond_edge(a, only(shared.of_one, false), b, only(shared.of_other, false));
+    default:
+      return true;
   }
 }
 

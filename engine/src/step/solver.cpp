@@ -17,7 +17,7 @@ std::string_view reason(SolveStatus status) noexcept {
     case SolveStatus::over_capacity:
       return "over capacity: the problem has more variables or rows than were reserved";
     case SolveStatus::iteration_limit:
-      return "iteration limit: no answer could be established within the budget of work";
+      return "iteration limit: the budget of work is spent, or rounding hides the answer";
   }
   return "unknown status";
 }

@@ -16,10 +16,10 @@ using HalfSpaceBuffer = Buffer<HalfSpace>;
 
 /// What a rule decides from: the tip, and every triangle in reach of the motion.
 struct Surroundings {
-  Vec3 tip;                    // [length]
-  Vec3 desired;                // increment asked for [length]
-  double margin;               // distance to keep from the mesh [length], >= 0
-  std::span<const Hit> hits;   // sorted by id; closest points are relative to the tip
+  Vec3 tip;                   // [length]
+  Vec3 desired;               // increment asked for [length]
+  double margin;              // distance to keep from the mesh [length], >= 0
+  std::span<const Hit> hits;  // sorted by id; closest points are relative to the tip
 };
 
 /// Decides which planes constrain a motion.
@@ -45,8 +45,9 @@ class Activation {
 template <class T>
 concept ActivationRule = requires(T& rule, const Surroundings& around, const Vec3& trial,
                                   HalfSpaceBuffer& planes) {
-  { rule.start(around, planes) } noexcept;
-  { rule.separate(around, trial) } noexcept -> std::same_as<std::optional<HalfSpace>>;
+  requires noexcept(rule.start(around, planes));
+  requires noexcept(rule.separate(around, trial));
+  { rule.separate(around, trial) } -> std::same_as<std::optional<HalfSpace>>;
 };
 
 }  // namespace keepout

@@ -10,9 +10,9 @@ namespace keepout {
 /// The motions that one plane allows: all d with normal . d >= offset. The plane is placed relative
 /// to the tip, so `offset` <= 0 means that standing still is allowed.
 struct HalfSpace {
-  Vec3 normal;         // unit, towards the free side
-  double offset;       // [length]
-  TriangleId source;   // the triangle that called for it
+  Vec3 normal;        // unit, towards the free side
+  double offset;      // [length]
+  TriangleId source;  // the triangle that called for it
 };
 
 }  // namespace keepout

@@ -28,12 +28,12 @@ class PdTree final : public SpatialIndex {
  private:
   /// An oriented box around the triangles begin .. end of triangles_.
   struct Node {
-    Eigen::Matrix3d axes;       // rows: the principal directions, largest spread first
-    Vec3 center;                // of the box, in the mesh frame [length]
-    Vec3 half;                  // half of the box's size along each axis [length]
+    Eigen::Matrix3d axes;  // rows: the principal directions, largest spread first
+    Vec3 center;           // of the box, in the mesh frame [length]
+    Vec3 half;             // half of the box's size along each axis [length]
     std::uint32_t begin;
     std::uint32_t end;
-    std::uint32_t far_child;    // the near child is the next node; 0 for a leaf
+    std::uint32_t far_child;  // the near child is the next node; 0 for a leaf
   };
 
   std::uint32_t build(std::uint32_t begin, std::uint32_t end, std::span<const Vec3> centroids);

@@ -30,7 +30,7 @@ class SpatialIndex {
 /// What `step` needs of an index; a final class that satisfies it is called without dispatch.
 template <class T>
 concept Index = requires(const T& index, const Ball& ball, TriangleBuffer& candidates) {
-  { index.collect(ball, candidates) } noexcept;
+  requires noexcept(index.collect(ball, candidates));
 };
 
 }  // namespace keepout

@@ -22,9 +22,6 @@ enum class EdgeKind : std::uint8_t {
   inconsistent,  // two triangles whose windings contradict each other
 };
 
-/// True for the kinds across which there is one neighbour with a comparable normal.
-constexpr bool is_regular(EdgeKind kind) noexcept { return kind <= EdgeKind::coplanar; }
-
 /// Which triangle lies across each edge of a welded mesh, and how the surface bends there. Only the
 /// rules that reason about neighbours need it: it is built apart from the mesh.
 class Adjacency {

@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "keepout/geometry/triangle.h"
 #include "keepout/geometry/box.h"
+#include "keepout/geometry/triangle.h"
 #include "keepout/mesh/ids.h"
 
 namespace keepout {

@@ -43,9 +43,9 @@ struct Motion {
 /// What one control cycle may do. Views stay valid until the next step of the same workspace.
 struct Step {
   Status status = Status::invalid_input;
-  Vec3 motion = Vec3::Zero();        // of the tip; zero unless ok() [length]
-  std::span<const double> increment;  // u: the tip's, or the joints' (n); empty unless ok()
-  std::span<const HalfSpace> planes;  // all that were posed, whatever the status
+  Vec3 motion = Vec3::Zero();             // of the tip; zero unless ok() [length]
+  std::span<const double> increment;      // u: the tip's, or the joints' (n); empty unless ok()
+  std::span<const HalfSpace> planes;      // all that were posed, whatever the status
   std::span<const std::uint32_t> active;  // the planes that hold the motion back; empty unless ok()
   std::size_t triangles = 0;              // in reach
 

@@ -17,9 +17,9 @@ enum class SolveStatus : std::uint8_t {
   optimal,         // feasible, and no feasible point is better
   infeasible,      // no u satisfies all rows
   ill_posed,       // the minimiser is not unique: J lacks full column rank and damping is 0
-  invalid_input,   // a number is not finite, or the shapes do not agree
+  invalid_input,   // a number is not finite or out of range, or the shapes do not agree
   over_capacity,   // more variables or rows than reserved
-  iteration_limit  // gave up within the declared budget of work
+  iteration_limit  // gave up: the budget of work is spent, or rounding hides the answer
 };
 
 /// One line on what happened and why.
@@ -27,8 +27,8 @@ std::string_view reason(SolveStatus status) noexcept;
 
 /// What a solver leaves behind. Views into the solver's own memory, valid until its next solve.
 struct Solution {
-  std::span<const double> u;            // (n); meaningful only when optimal
-  std::span<const double> multipliers;  // (active.size()), >= 0, of the active rows: see Solver
+  std::span<const double> u;              // (n); meaningful only when optimal
+  std::span<const double> multipliers;    // (active.size()), >= 0, of the active rows: see Solver
   std::span<const std::uint32_t> active;  // the rows that hold with equality and push
   int iterations = 0;
 };
@@ -49,7 +49,8 @@ class Solver {
 /// What `step` needs of a solver; a final class that satisfies it is called without dispatch.
 template <class T>
 concept QpSolver = requires(T& solver, const StepProblem& problem, Solution& solution) {
-  { solver.solve(problem, solution) } noexcept -> std::same_as<SolveStatus>;
+  requires noexcept(solver.solve(problem, solution));
+  { solver.solve(problem, solution) } -> std::same_as<SolveStatus>;
 };
 
 }  // namespace keepout

@@ -13,7 +13,7 @@ enum class Stage : std::uint8_t { query, activation, solve };
 
 template <class T>
 concept StageObserver = requires(T& observer, Stage stage) {
-  { observer.ended(stage) } noexcept;
+  requires noexcept(observer.ended(stage));
 };
 
 /// Costs nothing.

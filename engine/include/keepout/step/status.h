@@ -11,14 +11,14 @@ namespace keepout {
 
 /// How a step ended. Anything but `free` and `limited` comes with zero motion.
 enum class Status : std::uint8_t {
-  free,             // no plane holds the motion back
-  limited,          // the motion is the best one that the planes allow
-  infeasible,       // no motion satisfies all planes: the tip is too close on several sides
-  ill_posed,        // the Jacobian lacks full column rank and there is no damping
-  invalid_input,    // a number is not finite or out of range
-  beyond_reach,     // the motion asked for, or solved, is longer than the motion sphere's radius
-  over_capacity,    // more triangles, planes or variables than room was made for
-  unsolved          // the solver gave up within its budget of work
+  free,           // no plane holds the motion back
+  limited,        // the motion is the best one that the planes allow
+  infeasible,     // no motion satisfies all planes: the tip is too close on several sides
+  ill_posed,      // the Jacobian lacks full column rank and there is no damping
+  invalid_input,  // a number is not finite or out of range
+  beyond_reach,   // the motion asked for, or solved, is longer than the motion sphere's radius
+  over_capacity,  // more triangles, planes or variables than room was made for
+  unsolved        // the solver gave up within its budget of work
 };
 
 /// A motion comes with it, which may be carried out.

@@ -17,7 +17,7 @@ namespace keepout {
 
 /// What stays the same from cycle to cycle.
 struct StepOptions {
-  double radius;         // of the motion sphere: the farthest the tip may go in a cycle [length], > 0
+  double radius;  // of the motion sphere: the farthest the tip may go in a cycle [length], > 0
   double margin = 0.0;   // distance to keep from the mesh [length], >= 0
   double damping = 0.0;  // weight of |u|^2 beside the task, for Jacobians without full column rank
 };

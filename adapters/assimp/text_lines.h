@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace keepout {
+
+/// What a text format allows in its lines.
+struct LineRules {
+  char comment = '\0';           // starts one, up to the end of the line; '\0': there are none
+  bool backslash_joins = false;  // a backslash at its end carries a line on in the next
+};
+
+/// The lines of a text that hold anything, cut into words; whatever the line ends (LF, CRLF, CR).
+class TextLines {
+ public:
+  /// `file` names the text in errors.
+  TextLines(std::string_view text, std::string file, LineRules rules = {});
+
+  /// Moves on to the next line that has a word; false at the end of the text.
+  bool next();
+
+  std::span<const std::string_view> words() const noexcept { return words_; }
+  std::size_t line() const noexcept { return line_; }
+  /// Where the next line begins in the text.
+  std::size_t position() const noexcept { return position_; }
+  /// True if the text stops in the middle of a line: a sign that it may have been cut short.
+  bool ends_within_a_line() const noexcept;
+
+  /// Throws Error with the file and the current line before `what`.
+  [[noreturn]] void fail(const std::string& what) const;
+
+  /// Throws Error, unless the word is a decimal number that assimp reads as it is meant.
+  void expect_number(std::string_view word) const;
+  /// The word as a whole number without a sign. Throws Error if it is none.
+  std::uint64_t whole_number(std::string_view word) const;
+
+ private:
+  void split_line();
+
+  std::string_view text_;
+  std::string file_;
+  LineRules rules_;
+  std::vector<std::string_view> words_;
+  std::size_t position_ = 0;
+  std::size_t line_ = 0;
+  std::size_t next_line_ = 1;
+};
+
+/// The word in quotes, fit for a message: short, and without control characters.
+std::string quoted(std::string_view word);
+
+}  // namespace keepout

@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "keepout/adapters/index_registry.h"
+
+#include <array>
+#include <string>
+#include <utility>
+
+#include "keepout/error.h"
+#include "keepout/index/brute_force.h"
+#include "keepout/index/pd_tree.h"
+
+namespace keepout {
+namespace {
+
+template <class T>
+std::unique_ptr<SpatialIndex> make(std::shared_ptr<const Mesh> mesh) {
+  return std::make_unique<T>(std::move(mesh));
+}
+
+constexpr std::array backends{
+    IndexBackend{"brute_force", "every triangle, one after the other: the oracle",
+                 make<BruteForce>},
+    IndexBackend{"pd_tree", "principal direction tree of oriented boxes (Williams et al. 1997)",
+                 make<PdTree>},
+};
+
+}  // namespace
+
+std::span<const IndexBackend> index_backends() noexcept { return backends; }
+
+std::unique_ptr<SpatialIndex> make_index(std::string_view name, std::shared_ptr<const Mesh> mesh) {
+  std::string known;
+  for (const IndexBackend& backend : backends) {
+    if (backend.name == name) return backend.make(std::move(mesh));
+    known += known.empty() ? "" : ", ";
+    known += backend.name;
+  }
+  throw Error("there is no index '" + std::string(name) + "'; this build has: " + known);
+}
+
+}  // namespace keepout

@@ -1,0 +1,167 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "keepout/adapters/load_mesh.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <fstream>
+#include <new>
+#include <string_view>
+
+#include "keepout/error.h"
+#include "keepout/mesh/binary_stl.h"
+#include "keepout/mesh/weld.h"
+
+#if KEEPOUT_WITH_ASSIMP
+#include "../assimp/read_with_assimp.h"
+#endif
+
+namespace keepout {
+namespace {
+
+[[noreturn]] void fail(const std::filesystem::path& path, const std::string& what) {
+  throw Error(path.string() + ": " + what);
+}
+
+std::string lower_extension(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  for (char& c : extension) c = (c >= 'A' && c <= 'Z') ? static_cast<char>(c - 'A' + 'a') : c;
+  return extension;
+}
+
+/// Throws unless there is a file with something in it.
+void check_file(const std::filesystem::path& path) {
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status)) fail(path, "there is no such file; check the name");
+  if (std::filesystem::is_directory(status)) fail(path, "is a directory; name a mesh file in it");
+  if (!std::filesystem::is_regular_file(status)) fail(path, "is not a regular file");
+  if (!std::ifstream(path, std::ios::binary)) fail(path, "cannot be read; check its permissions");
+  if (std::filesystem::file_size(path, error) == 0 || error) {
+    fail(path, "is empty; copy or export it again");
+  }
+}
+
+std::string beginning_of(const std::filesystem::path& path) {
+  std::string bytes(512, '\0');
+  std::ifstream file(path, std::ios::binary);
+  file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  bytes.resize(static_cast<std::size_t>(file.gcount()));
+  return bytes;
+}
+
+void refuse_compressed(const std::filesystem::path& path, std::string_view beginning) {
+  constexpr std::array<std::string_view, 5> magics{"\x1f\x8b", "PK\x03\x04", "BZh",
+                                                   "\xfd"
+                                                   "7zXZ",
+                                                   "\x28\xb5\x2f\xfd"};
+  for (const std::string_view magic : magics) {
+    if (beginning.starts_with(magic)) fail(path, "is compressed; unpack it first");
+  }
+}
+
+/// The extension that the content calls for, where it is beyond doubt.
+std::string_view extension_by_content(std::string_view beginning) {
+  if (beginning.starts_with("ply\n") || beginning.starts_with("ply\r")) return ".ply";
+  if (beginning.starts_with("OFF\n") || beginning.starts_with("OFF\r")) return ".off";
+  if (beginning.starts_with("solid") && beginning.find("facet") != std::string_view::npos) {
+    return ".stl";
+  }
+  return {};
+}
+
+/// STL that is neither text nor of the length that its header declares.
+[[noreturn]] void refuse_stl(const std::filesystem::path& path, std::string_view beginning) {
+  constexpr std::size_t preamble = 84;
+  const std::uintmax_t size = std::filesystem::file_size(path);
+  if (beginning.size() < preamble) fail(path, "is too short to be an STL file");
+  std::uint32_t count;
+  std::memcpy(&count, beginning.data() + preamble - sizeof count, sizeof count);
+  const std::uintmax_t needed = preamble + 50 * std::uintmax_t{count};
+  fail(path, "is no text, and as binary STL declares " + std::to_string(count) +
+                 " triangles, which take " + std::to_string(needed) + " bytes, but it has " +
+                 std::to_string(size) +
+                 (size < needed ? ": it was cut short, or is damaged; copy or export it again"
+                                : ": something follows the mesh; export it again"));
+}
+
+bool looks_like_text_stl(std::string_view beginning) {
+  const std::size_t word = beginning.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
+  return word != std::string_view::npos && beginning.find('\0') == std::string_view::npos;
+}
+
+#if KEEPOUT_WITH_ASSIMP
+
+std::string contents_of(const std::filesystem::path& path) {
+  std::string contents(std::filesystem::file_size(path), '\0');
+  std::ifstream file(path, std::ios::binary);
+  if (!file.read(contents.data(), static_cast<std::streamsize>(contents.size()))) {
+    fail(path, "cannot be read to its end; check the disk");
+  }
+  return contents;
+}
+
+MeshFormat format_of(const std::string& extension) noexcept {
+  if (extension == ".ply") return MeshFormat::ply;
+  if (extension == ".obj") return MeshFormat::obj;
+  if (extension == ".off") return MeshFormat::off;
+  return MeshFormat::stl;
+}
+
+Surface read_other(const std::filesystem::path& path, const std::string& extension,
+                   std::vector<std::string>& warnings) {
+  return read_with_assimp(format_of(extension), contents_of(path), path.string(), warnings);
+}
+
+#else
+
+Surface read_other(const std::filesystem::path& path, const std::string&,
+                   std::vector<std::string>&) {
+  fail(path,
+       "only binary STL can be read, for keepout was built without assimp; convert the mesh, or "
+       "build with KEEPOUT_WITH_ASSIMP=ON");
+}
+
+#endif
+
+Surface read(const std::filesystem::path& path, std::vector<std::string>& warnings) {
+  check_file(path);
+  const std::string beginning = beginning_of(path);
+  refuse_compressed(path, beginning);
+  const std::string extension = lower_extension(path);
+  constexpr std::array<std::string_view, 4> known{".stl", ".ply", ".obj", ".off"};
+  if (std::find(known.begin(), known.end(), extension) == known.end()) {
+    fail(path, "its extension is none of .stl, .ply, .obj, .off; convert the mesh to one of them");
+  }
+  if (extension == ".stl" && is_binary_stl(path)) return read_binary_stl(path);
+  const std::string_view expected = extension_by_content(beginning);
+  if (!expected.empty() && expected != extension) {
+    fail(path, "its content is " + std::string(expected) + "; give it that extension");
+  }
+  if (extension == ".stl" && !looks_like_text_stl(beginning)) refuse_stl(path, beginning);
+  return read_other(path, extension, warnings);
+}
+
+}  // namespace
+
+LoadedMesh load_mesh(const std::filesystem::path& path) {
+  LoadedMesh loaded;
+  Surface surface;
+  try {
+    surface = weld(read(path, loaded.warnings));
+  } catch (const std::bad_alloc&) {
+    fail(path, "there is not enough memory to read it; decimate the mesh, or use binary STL");
+  } catch (const std::filesystem::filesystem_error& error) {
+    fail(path, error.code().message());
+  }
+  try {
+    loaded.mesh = std::make_shared<const Mesh>(std::move(surface));
+  } catch (const Error& error) {
+    fail(path, error.what());
+  }
+  return loaded;
+}
+
+}  // namespace keepout
