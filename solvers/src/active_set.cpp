@@ -1,0 +1,105 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "keepout/solvers/active_set.h"
+
+#include <vector>
+
+#include "active_set_method.h"
+
+namespace keepout {
+namespace {
+
+using active_set::Method;
+
+bool shapes_agree(const StepProblem& problem) noexcept {
+  const Eigen::Index n = problem.jacobian.cols();
+  return n >= 1 && problem.desired.size() == problem.jacobian.rows() &&
+         problem.bounds.size() == problem.rows.rows() &&
+         (problem.rows.cols() == n || problem.rows.rows() == 0);
+}
+
+/// Written so that NaN fails. The rows are judged where they are read, in one pass.
+bool cost_in_range(const StepProblem& problem) noexcept {
+  const auto in_range = [](double x) { return std::abs(x) <= active_set::largest; };
+  for (Eigen::Index i = 0; i < problem.jacobian.size(); ++i) {
+    if (!in_range(problem.jacobian.data()[i])) return false;
+  }
+  for (Eigen::Index i = 0; i < problem.desired.size(); ++i) {
+    if (!in_range(problem.desired[i])) return false;
+  }
+  return in_range(problem.damping) && problem.damping >= 0;
+}
+
+}  // namespace
+
+struct ActiveSet::Workspace {
+  int variables = 0;
+  int rows = 0;
+  Method<3> space;         // a point
+  Method<6> six_joints;    // a pose, or most arms
+  Method<7> seven_joints;  // a redundant arm
+  Method<Eigen::Dynamic> any;
+  std::vector<double> multipliers;
+  std::vector<std::uint32_t> active;
+
+  template <int N>
+  SolveStatus solve(Method<N>& method, const StepProblem& problem, Solution& solution) noexcept {
+    const SolveStatus status = method.solve(problem);
+    solution.iterations = method.iterations();
+    if (status != SolveStatus::optimal) return status;
+    std::size_t count = 0;
+    for (int i = 0; i < method.active(); ++i) {
+      if (!(method.multiplier(i) > 0)) continue;
+      std::size_t place = count++;
+      const auto row = static_cast<std::uint32_t>(method.row(i));
+      for (; place > 0 && active[place - 1] > row; --place) {
+        active[place] = active[place - 1];
+        multipliers[place] = multipliers[place - 1];
+      }
+      active[place] = row;
+      multipliers[place] = 2 * method.multiplier(i);  // the method halves the cost
+    }
+    const auto n = static_cast<std::size_t>(problem.jacobian.cols());
+    solution.u = {method.u().data(), n};
+    solution.multipliers = {multipliers.data(), count};
+    solution.active = {active.data(), count};
+    return status;
+  }
+};
+
+ActiveSet::ActiveSet() : work_(std::make_unique<Workspace>()) {}
+ActiveSet::~ActiveSet() = default;
+
+void ActiveSet::reserve(int variables, int rows) {
+  Workspace& work = *work_;
+  work.variables = std::max(variables, 0);
+  work.rows = std::max(rows, 0);
+  work.space.reserve(3, work.rows);
+  work.six_joints.reserve(6, work.rows);
+  work.seven_joints.reserve(7, work.rows);
+  work.any.reserve(work.variables, work.rows);
+  work.multipliers.resize(static_cast<std::size_t>(work.variables));
+  work.active.resize(static_cast<std::size_t>(work.variables));
+}
+
+SolveStatus ActiveSet::solve(const StepProblem& problem, Solution& solution) noexcept {
+  Workspace& work = *work_;
+  solution = {};
+  if (!shapes_agree(problem)) return SolveStatus::invalid_input;
+  if (problem.jacobian.cols() > work.variables || problem.rows.rows() > work.rows) {
+    return SolveStatus::over_capacity;
+  }
+  if (!cost_in_range(problem)) return SolveStatus::invalid_input;
+  switch (problem.jacobian.cols()) {
+    case 3:
+      return work.solve(work.space, problem, solution);
+    case 6:
+      return work.solve(work.six_joints, problem, solution);
+    case 7:
+      return work.solve(work.seven_joints, problem, solution);
+    default:
+      return work.solve(work.any, problem, solution);
+  }
+}
+
+}  // namespace keepout

@@ -1,0 +1,320 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "active_set_basis.h"
+#include "active_set_rows.h"
+#include "active_set_task.h"
+#include "active_set_tolerances.h"
+
+namespace keepout::active_set {
+
+/// Goldfarb and Idnani's method for N variables (Eigen::Dynamic: any number up to the reserve).
+///
+/// Multipliers in here are those of half the cost: J^T (J u - d) + damping u = sum mu_i A_i^T.
+template <int N>
+class Method {
+ public:
+  void reserve(int variables, int rows) {
+    rows_.reserve(rows);
+    task_.reserve(variables);
+    basis_.reserve(variables);
+    for (Vector<N>* v : {&u_, &mu_, &w_, &h_, &r_, &rest_, &step_, &gradient_, &slack_}) {
+      v->resize(variables);
+    }
+  }
+
+  /// The shapes agree and fit the reserve; J, d and damping are in range.
+  SolveStatus solve(const StepProblem& problem) noexcept {
+    n_ = static_cast<int>(problem.jacobian.cols());
+    iterations_ = 0;
+    basis_.clear(n());
+    if (const SolveStatus status = rows_.read(problem); status != SolveStatus::optimal) {
+      return status;
+    }
+    if (!task_.read(problem)) return SolveStatus::ill_posed;
+    start();
+
+    const int budget = 100 + 20 * n();
+    while (iterations_ < budget) {
+      const int row = rows_.most_violated(u_, feasibility * reach_);
+      if (row == Rows<N>::none && corrected_) return SolveStatus::optimal;
+      switch (row != Rows<N>::none ? enter(row) : settle()) {
+        case Outcome::moved:
+          break;
+        case Outcome::settled:
+          return SolveStatus::optimal;
+        case Outcome::infeasible:
+          return SolveStatus::infeasible;
+        case Outcome::lost:
+          return SolveStatus::iteration_limit;
+        case Outcome::blocked:
+          if (corrected_ && negligible(row)) return SolveStatus::optimal;
+          if (corrected_ || settle() == Outcome::lost) return SolveStatus::iteration_limit;
+      }
+    }
+    return SolveStatus::iteration_limit;
+  }
+
+  const Vector<N>& u() const noexcept { return u_; }
+  int active() const noexcept { return basis_.size(); }
+  int row(int i) const noexcept { return basis_.row(i); }
+  double multiplier(int i) const noexcept { return mu_[i]; }
+  int iterations() const noexcept { return iterations_; }
+
+ private:
+  enum class Outcome {
+    moved,       // the rows need another look
+    settled,     // they do not
+    infeasible,  // proven by weights on the active rows
+    blocked,     // the entering row cannot be reached, but rounding may be to blame
+    lost         // the active rows are too close to dependent to solve with, or u too large
+  };
+
+  int n() const noexcept { return N == Eigen::Dynamic ? n_ : N; }
+
+  double norm(const Vector<N>& v) const noexcept {
+    double square = 0;
+    for (int j = 0; j < n(); ++j) square += v[j] * v[j];
+    return std::sqrt(square);
+  }
+
+  /// The unconstrained minimum: optimal for the problem without rows.
+  void start() noexcept {
+    for (int j = 0; j < n(); ++j) u_[j] = task_.target()[j];
+    task_.point_from_task(u_);
+    corrected_ = false;
+    asked_ = task_.desired() / task_.size();
+    reach_ = std::max(norm(u_), asked_);
+  }
+
+  /// True for a violation that rounding explains at a vertex of slanted planes.
+  bool negligible(int row) const noexcept {
+    return rows_.violation(row, u_) <= acceptable * reach_ * rows_.norm(row);
+  }
+
+  /// Step 2 of the paper: raises the multiplier of a violated row until the row holds, letting go
+  /// of active rows whose multiplier reaches zero on the way.
+  Outcome enter(int row) noexcept {
+    double mu = 0;
+    task_.row_to_task(rows_[row], w_);
+    for (;;) {
+      const bool independent = split(row);
+      double squared = 0;
+      for (int j = basis_.size(); j < n(); ++j) squared += h_[j] * h_[j];
+      const double violation = std::max(rows_.violation(row, u_), 0.0);
+      const double full = independent && squared > 0 ? violation / squared : unbounded;
+      const auto [blocking, partial] = longest_dual_step();
+      const double t = std::min(full, partial);
+      if (!(t < unbounded)) {  // so that NaN stops here as well
+        return no_point_satisfies(row) ? Outcome::infeasible : Outcome::blocked;
+      }
+
+      ++iterations_;
+      corrected_ = false;
+      if (full != unbounded) move(t);
+      for (int i = 0; i < basis_.size(); ++i) mu_[i] = std::max(mu_[i] - t * r_[i], 0.0);
+      mu += t;
+      if (full <= partial) {
+        mu_[basis_.size()] = mu;
+        basis_.add(row, h_);
+        return Outcome::moved;
+      }
+      drop(blocking);
+    }
+  }
+
+  /// Writes the row as r on the active rows plus a rest: h = Q^T w and r = T^-1 h1. True if the
+  /// rest is more than rounding. It is measured in u, where it is exact to rounding whatever the
+  /// condition of J.
+  bool split(int row) noexcept {
+    const int active = basis_.size();
+    basis_.project(w_, h_);
+    if (active == 0) return true;
+    for (int i = 0; i < active; ++i) r_[i] = h_[i];
+    basis_.solve(r_);
+    double all = 0;
+    double tail = 0;
+    for (int j = 0; j < n(); ++j) all += h_[j] * h_[j];
+    for (int j = active; j < n(); ++j) tail += h_[j] * h_[j];
+    if (tail <= cancellation * cancellation * all) {
+      find_rest(row);
+      task_.row_to_task(rest_.data(), step_);
+      basis_.project(step_, gradient_);
+      for (int j = 0; j < n(); ++j) h_[j] = j < active ? h_[j] + gradient_[j] : gradient_[j];
+      basis_.solve(gradient_);
+      for (int i = 0; i < active; ++i) r_[i] += gradient_[i];
+    }
+    noise_ = dependence * find_rest(row);
+    return active < n() && norm(rest_) > noise_;
+  }
+
+  /// rest = row - sum r_i (active row i); returns the size of what was summed.
+  double find_rest(int row) noexcept {
+    double size = rows_.norm(row);
+    for (int j = 0; j < n(); ++j) rest_[j] = rows_[row][j];
+    for (int i = 0; i < basis_.size(); ++i) {
+      const double* a = rows_[basis_.row(i)];
+      for (int j = 0; j < n(); ++j) rest_[j] -= r_[i] * a[j];
+      size += std::abs(r_[i]) * rows_.norm(basis_.row(i));
+    }
+    return size;
+  }
+
+  /// How far the dual step may go until an active multiplier reaches zero, and which; the
+  /// first to have entered, of equals.
+  std::pair<int, double> longest_dual_step() const noexcept {
+    std::pair<int, double> first{Rows<N>::none, unbounded};
+    for (int i = 0; i < basis_.size(); ++i) {
+      if (!(r_[i] * rows_.norm(basis_.row(i)) > noise_)) continue;
+      const double t = mu_[i] / r_[i];
+      if (t < first.second) first = {i, t};
+    }
+    return first;
+  }
+
+  /// Moves by t along what is left of the entering row, which keeps the active rows as they are.
+  void move(double t) noexcept {
+    basis_.combine(h_, basis_.size(), step_);
+    task_.point_from_task(step_);
+    for (int j = 0; j < n(); ++j) u_[j] += t * step_[j];
+    reach_ = std::max(reach_, norm(u_));
+  }
+
+  void drop(int position) noexcept {
+    basis_.drop(position);
+    for (int i = position; i < basis_.size(); ++i) mu_[i] = mu_[i + 1];
+  }
+
+  /// Farkas: with weights s >= 0, every point that satisfies the row and the active ones has
+  /// (row + sum s_i a_i) u >= b + sum s_i b_i. The left side is at most rounding, so a right side
+  /// that is clearly positive is out of reach.
+  bool no_point_satisfies(int row) noexcept {
+    double bound = rows_.bound(row);
+    double bound_size = std::abs(bound);
+    for (int i = 0; i < basis_.size(); ++i) {
+      r_[i] = std::min(r_[i], 0.0);
+      bound -= r_[i] * rows_.bound(basis_.row(i));
+      bound_size -= r_[i] * std::abs(rows_.bound(basis_.row(i)));
+    }
+    const double size = find_rest(row);
+    const double left = (norm(rest_) + n() * epsilon * size) * horizon * reach_;
+    return bound > left + 2 * (n() + 1) * epsilon * bound_size;
+  }
+
+  /// With no row violated: corrects u and mu until the active rows hold and the gradient balances
+  /// to rounding, and lets go of rows that turn out to pull. `settled` only if the rows need no
+  /// second look.
+  Outcome settle() noexcept {
+    ++iterations_;
+    for (int j = 0; j < n(); ++j) rest_[j] = u_[j];
+    if (!correct()) return Outcome::lost;
+    bool dropped = false;
+    for (int pulling = most_negative(); pulling != Rows<N>::none; pulling = most_negative()) {
+      drop(pulling);
+      ++iterations_;
+      dropped = true;
+      if (!correct()) return Outcome::lost;
+    }
+    corrected_ = true;
+    for (int i = 0; i < basis_.size(); ++i) mu_[i] = std::max(mu_[i], 0.0);
+    for (int j = 0; j < n(); ++j) rest_[j] -= u_[j];
+    const double scanned = feasibility * reach_ + norm(rest_);
+    reach_ = std::max(norm(u_), asked_);
+    if (!(reach_ <= largest)) return Outcome::lost;
+    return !dropped && scanned <= 2 * feasibility * reach_ ? Outcome::settled : Outcome::moved;
+  }
+
+  /// Newton's correction for the active rows as equations, from residuals taken in u and so free
+  /// of what the updates of the basis have accumulated. False if it does not get there.
+  bool correct() noexcept {
+    Residual left = residual();
+    for (int pass = 0; pass < 4 && left.worst() > rounding; ++pass) {
+      const double before = left.worst();
+      apply_correction();
+      left = residual();
+      if (left.worst() > before / 2) break;
+    }
+    return left.slack <= acceptable && left.imbalance <= acceptable;
+  }
+
+  struct Residual {
+    double slack;      // of the active rows, relative to their norm and the reach
+    double gradient;   // in task space, relative to |d|, |J| |u| and the multipliers
+    double imbalance;  // the same in u; smaller by up to the condition of J
+    double worst() const noexcept { return std::max(slack, gradient); }
+  };
+
+  /// Leaves b - A u of the active rows in slack_, the unbalanced gradient in task space in h_.
+  Residual residual() noexcept {
+    double slack = 0;
+    double forces = task_.desired() + task_.size() * norm(u_);
+    task_.descent(u_, gradient_);
+    const double reach = std::max(norm(u_), asked_);
+    for (int i = 0; i < basis_.size(); ++i) {
+      const double* a = rows_[basis_.row(i)];
+      slack_[i] = rows_.violation(basis_.row(i), u_);
+      slack = std::max(slack, ratio(std::abs(slack_[i]), rows_.norm(basis_.row(i)) * reach));
+      for (int j = 0; j < n(); ++j) gradient_[j] += mu_[i] * a[j];
+      forces += std::abs(mu_[i]) * basis_.length(i);
+    }
+    task_.row_to_task(gradient_.data(), h_);
+    return {slack, ratio(norm(h_), forces), ratio(norm(gradient_), task_.size() * forces)};
+  }
+
+  void apply_correction() noexcept {
+    const int active = basis_.size();
+    basis_.project(h_, step_);
+    basis_.solve_transposed(slack_);
+    for (int i = 0; i < active; ++i) {
+      r_[i] = slack_[i] - step_[i];
+      step_[i] = slack_[i];
+    }
+    basis_.solve(r_);
+    basis_.combine(step_, 0, h_);
+    task_.point_from_task(h_);
+    for (int i = 0; i < active; ++i) mu_[i] += r_[i];
+    for (int j = 0; j < n(); ++j) u_[j] += h_[j];
+  }
+
+  /// The active row with the most negative multiplier, weighed by its length, if more than noise.
+  int most_negative() const noexcept {
+    double forces = task_.desired();
+    for (int i = 0; i < basis_.size(); ++i) forces += std::abs(mu_[i]) * basis_.length(i);
+    int worst = Rows<N>::none;
+    double least = -acceptable * forces;
+    for (int i = 0; i < basis_.size(); ++i) {
+      const double force = mu_[i] * basis_.length(i);
+      if (force < least) {
+        worst = i;
+        least = force;
+      }
+    }
+    return worst;
+  }
+
+  static double ratio(double part, double whole) noexcept { return part == 0 ? 0 : part / whole; }
+
+  static constexpr double unbounded = std::numeric_limits<double>::infinity();
+
+  int n_ = 0;
+  int iterations_ = 0;
+  bool corrected_ = false;  // u and mu are as exact as they get for the active rows
+  double asked_ = 0;        // |d| / |J|
+  double reach_ = 0;        // largest |u| on the way, at least asked_
+  double noise_ = 0;        // rounding of the entering row's split, in the unit of the row
+  Rows<N> rows_;
+  TaskSpace<N> task_;
+  Basis<N> basis_;
+  Vector<N> u_;
+  Vector<N> mu_;                // of the active rows, in the order of the basis
+  Vector<N> w_, h_, r_, rest_;  // the entering row: in task space, in the basis, on active rows
+  Vector<N> step_, gradient_, slack_;
+};
+
+}  // namespace keepout::active_set

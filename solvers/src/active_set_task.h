@@ -1,0 +1,165 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "active_set_rows.h"
+
+namespace keepout::active_set {
+
+/// The coordinates y = R u, with [J; sqrt(damping) I] = Q R, in which the cost is the distance to
+/// one point, |y - c|^2 + constant. R comes from J itself, never from J^T J, whose condition
+/// number is the square.
+template <int N>
+class TaskSpace {
+ public:
+  void reserve(int variables) {
+    r_.resize(variables, variables);
+    block_.resize(variables, variables);
+    target_.resize(variables);
+    tail_.resize(variables);
+  }
+
+  /// False if no unique minimiser exists to working precision.
+  bool read(const StepProblem& problem) noexcept {
+    problem_ = &problem;
+    n_ = static_cast<int>(problem.jacobian.cols());
+    desired_ = problem.desired.norm();
+    identity_ = problem.damping == 0 && is_identity(problem.jacobian);
+    if (identity_) {
+      for (int j = 0; j < n(); ++j) target_[j] = problem.desired[j];
+      size_ = std::sqrt(static_cast<double>(n()));
+      return true;
+    }
+    factor();
+    return condition() <= singular;
+  }
+
+  const Vector<N>& target() const noexcept { return target_; }  // c
+  double desired() const noexcept { return desired_; }          // |d|
+  double size() const noexcept { return size_; }                // |R|, Frobenius
+
+  /// A row in task space: R^T w = a.
+  void row_to_task(const double* a, Vector<N>& w) const noexcept {
+    for (int j = 0; j < n(); ++j) w[j] = a[j];
+    if (identity_) return;
+    for (int j = 0; j < n(); ++j) {
+      for (int i = 0; i < j; ++i) w[j] -= r_(i, j) * w[i];
+      w[j] /= r_(j, j);
+    }
+  }
+
+  /// A point of task space in the variables: R u = y, in place.
+  void point_from_task(Vector<N>& y) const noexcept {
+    if (identity_) return;
+    for (int j = n() - 1; j >= 0; --j) {
+      y[j] /= r_(j, j);
+      for (int i = 0; i < j; ++i) y[i] -= r_(i, j) * y[j];
+    }
+  }
+
+  /// Half of the negative gradient of the cost, J^T (d - J u) - damping u.
+  void descent(const Vector<N>& u, Vector<N>& g) const noexcept {
+    if (identity_) {
+      for (int j = 0; j < n(); ++j) g[j] = target_[j] - u[j];
+      return;
+    }
+    const StepProblem& p = *problem_;
+    for (int j = 0; j < n(); ++j) g[j] = -p.damping * u[j];
+    for (Eigen::Index i = 0; i < p.jacobian.rows(); ++i) {
+      double residual = p.desired[i];
+      for (int j = 0; j < n(); ++j) residual -= p.jacobian(i, j) * u[j];
+      for (int j = 0; j < n(); ++j) g[j] += p.jacobian(i, j) * residual;
+    }
+  }
+
+ private:
+  int n() const noexcept { return N == Eigen::Dynamic ? n_ : N; }
+
+  bool is_identity(const Eigen::Map<const StepProblem::Matrix>& jacobian) const noexcept {
+    if (jacobian.rows() != n()) return false;
+    for (int j = 0; j < n(); ++j) {
+      for (int i = 0; i < n(); ++i) {
+        if (jacobian(i, j) != (i == j ? 1.0 : 0.0)) return false;
+      }
+    }
+    return true;
+  }
+
+  /// Starts from the rows of the damping, which are triangular already, and folds in J by blocks
+  /// of n rows: any number of task rows, in memory that depends on n alone.
+  void factor() noexcept {
+    const StepProblem& p = *problem_;
+    for (int j = 0; j < n(); ++j) {
+      for (int i = 0; i < n(); ++i) r_(i, j) = 0;
+      r_(j, j) = std::sqrt(p.damping);
+      target_[j] = 0;
+    }
+    const int task_rows = static_cast<int>(p.jacobian.rows());
+    for (int first = 0; first < task_rows; first += n()) {
+      const int count = std::min(n(), task_rows - first);
+      for (int j = 0; j < n(); ++j) {
+        for (int i = 0; i < count; ++i) block_(i, j) = p.jacobian(first + i, j);
+      }
+      for (int i = 0; i < count; ++i) tail_[i] = p.desired[first + i];
+      fold_in(count);
+    }
+    double square = 0;
+    for (int j = 0; j < n(); ++j) {
+      for (int i = 0; i <= j; ++i) square += r_(i, j) * r_(i, j);
+    }
+    size_ = std::sqrt(square);
+  }
+
+  /// [R c; block tail] to [R' c'; 0 *] by Householder reflections, each of which touches one row
+  /// of R and the whole block.
+  void fold_in(int count) noexcept {
+    for (int j = 0; j < n(); ++j) {
+      double below = 0;
+      for (int i = 0; i < count; ++i) below += block_(i, j) * block_(i, j);
+      if (below == 0) continue;
+      const double old = r_(j, j);
+      const double length = std::sqrt(old * old + below);
+      const double head = old > 0 ? old + length : old - length;
+      const double scale = 2 / (head * head + below);
+      const auto reflect = [&](double& top, auto&& column) {
+        double along = head * top;
+        for (int i = 0; i < count; ++i) along += block_(i, j) * column(i);
+        along *= scale;
+        top -= along * head;
+        for (int i = 0; i < count; ++i) column(i) -= along * block_(i, j);
+      };
+      for (int l = j + 1; l < n(); ++l) reflect(r_(j, l), block_.col(l));
+      reflect(target_[j], tail_);
+      r_(j, j) = old > 0 ? -length : length;
+    }
+  }
+
+  /// |R| |R^-1|, in Frobenius norms: exact where a look at the diagonal of R can be fooled.
+  double condition() noexcept {
+    double square = 0;
+    for (int l = 0; l < n(); ++l) {
+      for (int i = 0; i <= l; ++i) tail_[i] = i == l ? 1 : 0;
+      for (int j = l; j >= 0; --j) {
+        tail_[j] /= r_(j, j);
+        for (int i = 0; i < j; ++i) tail_[i] -= r_(i, j) * tail_[j];
+        square += tail_[j] * tail_[j];
+      }
+    }
+    return size_ * std::sqrt(square);
+  }
+
+  const StepProblem* problem_ = nullptr;
+  int n_ = 0;
+  bool identity_ = false;
+  double desired_ = 0;
+  double size_ = 0;
+  Matrix<N> r_;       // upper triangle
+  Vector<N> target_;  // c
+  Matrix<N> block_;   // rows of J on their way into R
+  Vector<N> tail_;    // their part of d
+};
+
+}  // namespace keepout::active_set

@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "keepout/solvers/registry.h"
+
+#include <string>
+
+#include "keepout/error.h"
+#include "keepout/solvers/active_set.h"
+
+namespace keepout {
+namespace {
+
+template <class T>
+std::unique_ptr<Solver> make() {
+  return std::make_unique<T>();
+}
+
+constexpr SolverBackend backends[] = {
+    {"active_set", "our own dual active-set method (Goldfarb and Idnani 1983)", make<ActiveSet>},
+};
+
+}  // namespace
+
+std::span<const SolverBackend> solver_backends() noexcept { return backends; }
+
+std::unique_ptr<Solver> make_solver(std::string_view name) {
+  std::string known;
+  for (const SolverBackend& backend : backends) {
+    if (backend.name == name) return backend.make();
+    known += known.empty() ? "" : ", ";
+    known += backend.name;
+  }
+  throw Error("no solver is called \"" + std::string(name) + "\"; there are: " + known);
+}
+
+}  // namespace keepout
