@@ -1,0 +1,214 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "inspect.h"
+
+#include <iomanip>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <ostream>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "keepout/adapters/load_mesh.h"
+#include "keepout/index/pd_tree.h"
+#include "keepout/index/self_intersection.h"
+#include "keepout/mesh/doctor.h"
+
+namespace keepout::app {
+namespace {
+
+/// Something about the mesh that its user should know before trusting it.
+struct Finding {
+  std::string_view key;  // stable, for programs
+  std::size_t count;     // 1 where there is nothing to count
+  std::string_view one;  // what there are `count` of; empty where there is nothing to count
+  std::string_view many;
+  std::string_view meaning;
+  std::string_view advice;
+};
+
+struct Inspection {
+  LoadedMesh loaded;
+  MeshFindings mesh;
+  std::optional<std::size_t> self_intersections;
+};
+
+Inspection examine_file(const InspectOptions& options) {
+  Inspection inspection;
+  inspection.loaded = load_mesh(options.mesh);
+  inspection.mesh = examine(*inspection.loaded.mesh);
+  if (options.self_intersections) {
+    const PdTree tree(inspection.loaded.mesh);
+    inspection.self_intersections = count_self_intersections(*inspection.loaded.mesh, tree);
+  }
+  return inspection;
+}
+
+/// The worst first.
+std::vector<Finding> findings_of(const Inspection& inspection) {
+  const MeshFindings& mesh = inspection.mesh;
+  const std::size_t hints_at_metres = mesh.looks_like_metres() ? 1 : 0;
+  const std::size_t inside_out = mesh.is_inside_out() ? 1 : 0;
+  const std::vector<Finding> all{
+      {"inside_out", inside_out, "", "",
+       "the normals point into the solid: tissue and free space are swapped", "flip all triangles"},
+      {"looks_like_metres", hints_at_metres, "", "",
+       "smaller than 3 in every direction: in millimetres that is tiny, so these may be metres",
+       "scale by 1000 if so; nothing is rescaled here"},
+      {"inconsistent_edges", mesh.inconsistent_edges, "inconsistently wound edge",
+       "inconsistently wound edges", "the two triangles there disagree about which side is free",
+       "orient the surface consistently"},
+      {"boundary_edges", mesh.boundary_edges, "boundary edge", "boundary edges",
+       "the surface is open: nothing guards a hole, and a fixture by the paper's rule can also be "
+       "passed at a rim",
+       "close the holes, or use the certified rule and mind the holes"},
+      {"non_manifold_edges", mesh.non_manifold_edges, "non-manifold edge", "non-manifold edges",
+       "three triangles or more meet there, so no rule can tell ridge from valley",
+       "remove inner walls and duplicates, or use a rule that asks no neighbours"},
+      {"self_intersections", inspection.self_intersections.value_or(0), "self-intersecting pair",
+       "self-intersecting pairs",
+       "triangles cut through or lie on each other; behind such a place a tip may be wedged",
+       "remesh the surface, or take its outer hull"},
+      {"duplicate_triangles", mesh.duplicate_triangles, "duplicate triangle", "duplicate triangles",
+       "the same three vertices again; each calls for its own planes", "remove them"},
+      {"degenerate_triangles", mesh.degenerate_triangles(), "degenerate triangle",
+       "degenerate triangles",
+       "without an area they have no normal; they guard as the segments that they are",
+       "remesh, or collapse their short edges"},
+      {"pinched_vertices", mesh.pinched_vertices, "pinched vertex", "pinched vertices",
+       "parts of the surface hang together by a point there", "split the vertex, or remesh"},
+  };
+  std::vector<Finding> present;
+  for (const Finding& finding : all) {
+    if (finding.count > 0) present.push_back(finding);
+  }
+  return present;
+}
+
+/// Thousands set apart by commas.
+std::string grouped(std::size_t number) {
+  const std::string digits = std::to_string(number);
+  std::string text;
+  for (std::size_t i = 0; i < digits.size(); ++i) {
+    if (i > 0 && (digits.size() - i) % 3 == 0) text += ',';
+    text += digits[i];
+  }
+  return text;
+}
+
+std::string rounded(double value) {
+  std::ostringstream text;
+  text << std::setprecision(6) << value;
+  return text.str();
+}
+
+std::string rounded(const Vec3& v, std::string_view between) {
+  std::string text = rounded(v.x());
+  for (const double value : {v.y(), v.z()}) text.append(between).append(rounded(value));
+  return text;
+}
+
+void print_row(std::ostream& out, std::string_view name, const std::string& value) {
+  out << "  " << std::left << std::setw(14) << name << value << '\n';
+}
+
+void print_text(const InspectOptions& options, const Inspection& inspection, std::ostream& out) {
+  const MeshFindings& mesh = inspection.mesh;
+  out << options.mesh.string() << '\n';
+  print_row(out, "triangles", grouped(mesh.triangles));
+  print_row(out, "vertices", grouped(mesh.vertices));
+  print_row(out, "edges", grouped(mesh.edges));
+  print_row(out, "components", grouped(mesh.components));
+  print_row(out, "size", rounded(mesh.bounds.size(), " x ") + " mm");
+  print_row(out, "from", rounded(mesh.bounds.low, ", ") + " mm");
+  print_row(out, "to", rounded(mesh.bounds.high, ", ") + " mm");
+  print_row(out, "area", rounded(mesh.area) + " mm^2");
+  if (mesh.is_watertight()) {
+    print_row(out, "volume", rounded(mesh.signed_volume) + " mm^3");
+  }
+  print_row(out, "surface",
+            mesh.is_watertight() ? "watertight"
+            : mesh.is_closed()   ? "closed, but not a manifold with one orientation"
+                                 : "open");
+  if (mesh.genus) print_row(out, "handles", grouped(static_cast<std::size_t>(*mesh.genus)));
+  if (inspection.self_intersections) {
+    print_row(out, "intersecting", grouped(*inspection.self_intersections) + " pairs of triangles");
+  }
+
+  out << "\nFindings\n";
+  const std::vector<Finding> findings = findings_of(inspection);
+  if (findings.empty() && inspection.loaded.warnings.empty()) out << "  none\n";
+  for (const Finding& finding : findings) {
+    out << "  - ";
+    if (!finding.many.empty()) {
+      out << grouped(finding.count) << ' ' << (finding.count == 1 ? finding.one : finding.many)
+          << ": ";
+    }
+    out << finding.meaning << ".\n    What to do: " << finding.advice << ".\n";
+  }
+  for (const std::string& warning : inspection.loaded.warnings) {
+    out << "  - in the file: " << warning << ".\n";
+  }
+}
+
+nlohmann::ordered_json to_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+
+template <class T>
+nlohmann::ordered_json to_json(const std::optional<T>& value) {
+  return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
+}
+
+void print_json(const InspectOptions& options, const Inspection& inspection, std::ostream& out) {
+  const MeshFindings& mesh = inspection.mesh;
+  nlohmann::ordered_json json{
+      {"mesh", options.mesh.string()},
+      {"unit", "mm"},
+      {"triangles", mesh.triangles},
+      {"vertices", mesh.vertices},
+      {"edges", mesh.edges},
+      {"components", mesh.components},
+      {"edge_components", mesh.edge_components},
+      {"boundary_edges", mesh.boundary_edges},
+      {"non_manifold_edges", mesh.non_manifold_edges},
+      {"inconsistent_edges", mesh.inconsistent_edges},
+      {"pinched_vertices", mesh.pinched_vertices},
+      {"repeated_vertex_triangles", mesh.repeated_vertex_triangles},
+      {"collinear_triangles", mesh.collinear_triangles},
+      {"duplicate_triangles", mesh.duplicate_triangles},
+      {"closed", mesh.is_closed()},
+      {"watertight", mesh.is_watertight()},
+      {"inside_out", mesh.is_inside_out()},
+      {"looks_like_metres", mesh.looks_like_metres()},
+      {"euler_characteristic", mesh.euler_characteristic},
+      {"genus", to_json(mesh.genus)},
+      {"area", mesh.area},
+      {"signed_volume", mesh.signed_volume},
+      {"bounds", {{"low", to_json(mesh.bounds.low)}, {"high", to_json(mesh.bounds.high)}}},
+      {"self_intersections", to_json(inspection.self_intersections)},
+      {"warnings", inspection.loaded.warnings},
+      {"findings", nlohmann::ordered_json::array()}};
+  for (const Finding& finding : findings_of(inspection)) {
+    json["findings"].push_back({{"key", finding.key},
+                                {"count", finding.count},
+                                {"meaning", finding.meaning},
+                                {"advice", finding.advice}});
+  }
+  // A file name need not be UTF-8, and JSON must.
+  out << json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
+}
+
+}  // namespace
+
+void inspect(const InspectOptions& options, std::ostream& out) {
+  const Inspection inspection = examine_file(options);
+  if (options.json) {
+    print_json(options, inspection, out);
+  } else {
+    print_text(options, inspection, out);
+  }
+}
+
+}  // namespace keepout::app

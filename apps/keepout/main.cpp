@@ -1,0 +1,182 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdlib>
+#include <exception>
+#include <iostream>
+#include <new>
+#include <string>
+#include <vector>
+
+#include "inspect.h"
+#include "keepout/activation/registry.h"
+#include "keepout/adapters/index_registry.h"
+#include "keepout/error.h"
+#include "keepout/solvers/registry.h"
+#include "replay.h"
+#include "simulate.h"
+
+namespace keepout::app {
+namespace {
+
+template <class Table>
+std::vector<std::string> names(const Table& table) {
+  std::vector<std::string> all;
+  for (const auto& entry : table) all.emplace_back(entry.name);
+  return all;
+}
+
+/// A list of what can be chosen, for the foot of a help page.
+template <class Table>
+std::string listing(const std::string& title, const Table& table) {
+  std::string text = title + ":\n";
+  for (const auto& entry : table) {
+    std::string name(entry.name);
+    name.resize(std::max<std::size_t>(name.size() + 1, 14), ' ');
+    text += "  " + name + std::string(entry.description) + "\n";
+  }
+  return text;
+}
+
+/// The options that every command shares which builds a motion constraint.
+void add_constraint_options(CLI::App& command, MotionConstraintSettings& settings) {
+  command.add_option("--index", settings.index, "Spatial index that finds triangles")
+      ->check(CLI::IsMember(names(index_backends())))
+      ->capture_default_str();
+  command.add_option("--solver", settings.solver, "Solver of the step problem")
+      ->check(CLI::IsMember(names(solver_backends())))
+      ->capture_default_str();
+  command
+      .add_option("--radius", settings.radius,
+                  "Radius of the motion sphere: the farthest that the tip may go in one cycle. "
+                  "Triangles within it are considered; the paper uses 5")
+      ->type_name("MM")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command.add_option("--margin", settings.margin, "Distance to keep from the surface")
+      ->type_name("MM")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+}
+
+void add_inspect(CLI::App& app, InspectOptions& options) {
+  CLI::App& command = *app.add_subcommand(
+      "inspect",
+      "Say what a mesh is made of and what is wrong with it: counts, holes, winding, "
+      "degenerate and duplicate triangles, size and unit");
+  command.add_option("MESH", options.mesh, "Mesh file: STL, PLY, OBJ or OFF, in mm")->required();
+  command.add_flag("--json", options.json, "Print JSON instead of text");
+  command.add_flag("--self-intersections", options.self_intersections,
+                   "Also count the pairs of triangles that cut through each other");
+}
+
+void add_replay(CLI::App& app, ReplayOptions& options) {
+  CLI::App& command = *app.add_subcommand(
+      "replay", "Solve one step for each line of a pose file and write every result as CSV");
+  command.add_option("MESH", options.mesh, "Mesh file: STL, PLY, OBJ or OFF, in mm")->required();
+  command
+      .add_option("--poses", options.poses,
+                  "One step a line, 'px py pz dx dy dz': tip and desired increment, in mm")
+      ->type_name("FILE")
+      ->required();
+  command.add_option("--out", options.steps, "Where to write the steps")
+      ->type_name("STEPS.csv")
+      ->required();
+  command.add_option("--planes", options.planes, "Where to write every active plane")
+      ->type_name("PLANES.csv");
+  command.add_option("--activation", options.constraint.activation, "Rule that chooses the planes")
+      ->check(CLI::IsMember(names(activation_rules())))
+      ->capture_default_str();
+  add_constraint_options(command, options.constraint);
+  CLI::Option* closed = command.add_flag_callback(
+      "--closed-loop", [&options] { options.loop = Loop::closed; },
+      "Lines are 'gx gy gz rx ry rz', goal and reset position: the tip starts at the first line's "
+      "r, each step desires goal minus tip, and the tip follows what was solved");
+  command
+      .add_option("--max-step", options.max_step, "Longest increment to desire in a closed loop")
+      ->type_name("MM")
+      ->check(CLI::PositiveNumber)
+      ->needs(closed)
+      ->capture_default_str();
+  command.footer(
+      "STEPS.csv: step, status, tip, desired increment, solved increment (u), triangles in reach,\n"
+      "planes, and what each stage took. PLANES.csv: allowed are all u with normal . u >= "
+      "offset.\n\n" +
+      listing("Rules", activation_rules()) + listing("Indices", index_backends()) +
+      listing("Solvers", solver_backends()));
+}
+
+void add_simulate(CLI::App& app, SimulateOptions& options) {
+  CLI::App& command = *app.add_subcommand(
+      "simulate",
+      "Push a tool over and into the anatomy with a simulated hand, without a fixture "
+      "and with each rule, and write an HTML report with pictures");
+  command.add_option("MESH", options.mesh, "Mesh file: STL, PLY, OBJ or OFF, in mm")->required();
+  command.add_option("--out", options.report, "Where to write the report")
+      ->type_name("REPORT.html")
+      ->capture_default_str();
+  command.add_option("--activation", options.rules, "Rules to run beside the unguarded tool")
+      ->check(CLI::IsMember(names(activation_rules())))
+      ->delimiter(',')
+      ->capture_default_str();
+  add_constraint_options(command, options.constraint);
+  command.add_option("--max-step", options.max_step, "Longest increment to desire in a cycle")
+      ->type_name("MM")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command.add_option("--seed", options.hand.seed, "Seed of the hand: same seed, same motion")
+      ->capture_default_str();
+  command.add_option("--strokes", options.hand.strokes, "How often the hand goes in")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
+  command.add_option("--cycles", options.hand.cycles, "Control cycles of each stroke, at 1 kHz")
+      ->check(CLI::Range(10, 1000000))
+      ->capture_default_str();
+}
+
+int run(int argc, char** argv) {
+  CLI::App app("keepout keeps a tool out of a triangle mesh of anatomy. All lengths are in mm.",
+               "keepout");
+  app.set_version_flag("--version", KEEPOUT_VERSION);
+  app.set_help_all_flag("--help-all", "Help on every command");
+  app.require_subcommand(1);
+
+  InspectOptions inspect_options;
+  ReplayOptions replay_options;
+  SimulateOptions simulate_options;
+  simulate_options.rules = names(activation_rules());
+  add_inspect(app, inspect_options);
+  add_replay(app, replay_options);
+  add_simulate(app, simulate_options);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    // CLI11 would only say that a command is missing.
+    if (app.get_subcommands().empty() && !app.remaining().empty()) {
+      throw Error("there is no command '" + app.remaining().front() + "'; see 'keepout --help'");
+    }
+    return app.exit(error);
+  }
+
+  if (app.got_subcommand("inspect")) inspect(inspect_options, std::cout);
+  if (app.got_subcommand("replay")) replay(replay_options, std::cout);
+  if (app.got_subcommand("simulate")) simulate(simulate_options, std::cout);
+  return EXIT_SUCCESS;
+}
+
+}  // namespace
+}  // namespace keepout::app
+
+int main(int argc, char** argv) {
+  try {
+    return keepout::app::run(argc, argv);
+  } catch (const keepout::Error& error) {
+    std::cerr << "keepout: " << error.what() << '\n';
+  } catch (const std::bad_alloc&) {
+    std::cerr << "keepout: out of memory; is the mesh larger than this machine can hold?\n";
+  } catch (const std::exception& error) {
+    std::cerr << "keepout: unexpected: " << error.what() << '\n';
+  }
+  return EXIT_FAILURE;
+}

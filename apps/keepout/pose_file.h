@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "keepout/geometry/vec3.h"
+
+namespace keepout::app {
+
+/// One line of a pose file: two points, whose meaning is the reader's business. [mm]
+struct PoseLine {
+  Vec3 first;
+  Vec3 second;
+};
+
+/// Reads lines of six numbers, separated by blanks or commas; blank lines and lines that begin with
+/// '#' are passed over. Throws Error naming file and line for anything else, for numbers that are
+/// not finite, and for a file without a pose.
+std::vector<PoseLine> read_poses(const std::filesystem::path& path);
+
+}  // namespace keepout::app

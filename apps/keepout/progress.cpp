@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "progress.h"
+
+#include <unistd.h>
+
+#include <cstdio>
+#include <utility>
+
+namespace keepout::app {
+
+Progress::Progress(std::string what, std::size_t total)
+    : what_(std::move(what)), total_(total), terminal_(::isatty(STDERR_FILENO) == 1) {
+  if (terminal_) show();
+}
+
+Progress::~Progress() {
+  const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
+  std::fprintf(stderr, "%s%s: %.1f s\n", terminal_ ? "\r\033[K" : "", what_.c_str(), seconds);
+}
+
+void Progress::advance(std::size_t by) {
+  done_ += by;
+  const Clock::time_point now = Clock::now();
+  if (terminal_ && now - shown_ > std::chrono::milliseconds(100)) {
+    shown_ = now;
+    show();
+  }
+}
+
+void Progress::show() const {
+  const double percent =
+      total_ == 0 ? 0.0 : 100.0 * static_cast<double>(done_) / static_cast<double>(total_);
+  std::fprintf(stderr, "\r\033[K%s: %3.0f %%", what_.c_str(), percent);
+  std::fflush(stderr);
+}
+
+}  // namespace keepout::app

@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <string>
+
+namespace keepout::app {
+
+/// Tells on stderr how far a long piece of work has come: on a terminal a line that is rewritten,
+/// elsewhere only the line at the end.
+class Progress {
+ public:
+  Progress(std::string what, std::size_t total);
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  void advance(std::size_t by = 1);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  void show() const;
+
+  std::string what_;
+  std::size_t total_;
+  std::size_t done_ = 0;
+  Clock::time_point start_ = Clock::now();
+  Clock::time_point shown_ = start_;
+  bool terminal_;
+};
+
+}  // namespace keepout::app

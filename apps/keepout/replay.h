@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <iosfwd>
+#include <optional>
+
+#include "keepout/factory/make_motion_constraint.h"
+
+namespace keepout::app {
+
+enum class Loop : std::uint8_t {
+  open,   // each line is a tip and a desired increment
+  closed  // each line is a goal and a reset position; the tip follows the solved increments
+};
+
+struct ReplayOptions {
+  std::filesystem::path mesh;
+  std::filesystem::path poses;
+  std::filesystem::path steps;                  // STEPS.csv, to be written
+  std::optional<std::filesystem::path> planes;  // PLANES.csv, to be written
+  MotionConstraintSettings constraint;
+  Loop loop = Loop::open;
+  double max_step = 1.0;  // longest increment asked for in a closed loop [mm]
+};
+
+/// Runs one step for each line of a pose file and writes what came out. Throws Error; then neither
+/// file is written. A summary goes to `out`.
+void replay(const ReplayOptions& options, std::ostream& out);
+
+}  // namespace keepout::app

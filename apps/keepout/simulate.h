@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+#include "hand.h"
+#include "keepout/factory/make_motion_constraint.h"
+
+namespace keepout::app {
+
+struct SimulateOptions {
+  std::filesystem::path mesh;
+  std::filesystem::path report = "keepout-report.html";  // to be written
+  std::vector<std::string> rules;                        // run beside the tool without a fixture
+  MotionConstraintSettings constraint;  // its activation is each of the rules in turn
+  HandSettings hand;
+  double max_step = 0.5;  // longest increment asked for in a cycle [mm]
+};
+
+/// Pushes the tool over and into the anatomy in closed loop, without a fixture and with each rule;
+/// prints a table to `out` and writes a report. Throws Error; then there is no report.
+void simulate(const SimulateOptions& options, std::ostream& out);
+
+}  // namespace keepout::app
