@@ -15,8 +15,10 @@ MotionConstraint make_motion_constraint(std::shared_ptr<const Mesh> mesh,
   auto index = make_index(settings.index, mesh);
   auto activation = make_activation(settings.activation, mesh);
   auto solver = make_solver(settings.solver);
-  return {std::move(mesh),   std::move(index),
-          std::move(activation), std::move(solver),
+  return {std::move(mesh),
+          std::move(index),
+          std::move(activation),
+          std::move(solver),
           {.radius = settings.radius, .margin = settings.margin, .damping = settings.damping},
           settings.capacity};
 }

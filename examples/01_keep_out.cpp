@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+// The whole of it: a mesh, a motion constraint, and one step each control cycle.
+#include <cstdio>
+
+#include "keepout/keepout.h"
+
+int main(int argc, char** argv) try {
+  if (argc != 2) {
+    std::fprintf(stderr, "usage: %s MESH\n", argv[0]);
+    return 2;
+  }
+  const auto mesh = keepout::load_mesh(argv[1]).mesh;
+  auto guard = keepout::make_motion_constraint(mesh, {.index = "pd_tree",
+                                                      .activation = "paper",
+                                                      .solver = "active_set",
+                                                      .radius = 1.0,
+                                                      .margin = 0.5});
+  // A tool that comes from above and wants to go straight through.
+  keepout::Vec3 tip = mesh->bounds().center();
+  tip.z() = mesh->bounds().high.z() + 5.0;
+  for (int cycle = 0; cycle < 1000; ++cycle) {
+    const keepout::Step step = guard.step({.tip = tip, .desired = {0.0, 0.0, -0.1}});
+    if (!step.ok()) std::printf("cycle %d: %s\n", cycle, step.reason().data());
+    tip += step.motion;  // zero unless ok
+  }
+  std::printf("held at %.3f %.3f %.3f\n", tip.x(), tip.y(), tip.z());
+  return 0;
+} catch (const keepout::Error& error) {
+  std::fprintf(stderr, "%s\n", error.what());
+  return 1;
+}

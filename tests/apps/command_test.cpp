@@ -1,0 +1,242 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+// The keepout command as a user meets it: run as a process, judged by what it prints and leaves.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <array>
+#include <cstdio>
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "keepout/fixtures/shapes.h"
+#include "keepout/mesh/binary_stl.h"
+#include "temporary_folder.h"
+
+namespace keepout {
+namespace {
+
+struct Outcome {
+  int status;
+  std::string output;  // stdout and stderr
+};
+
+using Row = std::map<std::string, std::string>;
+
+class Command : public testing::Test {
+ protected:
+  void SetUp() override { write_binary_stl(file("cube.stl"), make_cube(10.0)); }
+
+  std::filesystem::path file(const std::string& name) const { return folder_.path() / name; }
+
+  /// Runs keepout in the folder of the test.
+  Outcome run(const std::string& arguments) const {
+    const std::string line =
+        "cd '" + folder_.path().string() + "' && '" KEEPOUT_COMMAND "' " + arguments + " 2>&1";
+    FILE* pipe = ::popen(line.c_str(), "r");
+    Outcome outcome{-1, {}};
+    std::array<char, 4096> part;
+    while (std::fgets(part.data(), part.size(), pipe) != nullptr) outcome.output += part.data();
+    const int status = ::pclose(pipe);
+    outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    return outcome;
+  }
+
+  /// A CSV file as rows by column name.
+  std::vector<Row> rows(const std::string& name) const {
+    std::ifstream stream(file(name));
+    const auto cells = [](const std::string& line) {
+      std::vector<std::string> all;
+      std::istringstream rest(line);
+      for (std::string cell; std::getline(rest, cell, ',');) all.push_back(cell);
+      return all;
+    };
+    std::string line;
+    std::getline(stream, line);
+    const std::vector<std::string> header = cells(line);
+    std::vector<Row> table;
+    while (std::getline(stream, line)) {
+      const std::vector<std::string> values = cells(line);
+      Row row;
+      for (std::size_t i = 0; i < header.size(); ++i) row[header[i]] = values.at(i);
+      table.push_back(row);
+    }
+    return table;
+  }
+
+  static Vec3 vector(const Row& row, const std::string& prefix) {
+    return {std::stod(row.at(prefix + "x")), std::stod(row.at(prefix + "y")),
+            std::stod(row.at(prefix + "z"))};
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(Command, HelpNamesEveryCommandAndChoice) {
+  const Outcome help = run("--help");
+  EXPECT_EQ(help.status, 0);
+  for (const char* word : {"inspect", "replay", "simulate"}) {
+    EXPECT_NE(help.output.find(word), std::string::npos) << word;
+  }
+  const Outcome replay = run("replay --help");
+  EXPECT_EQ(replay.status, 0);
+  for (const char* word : {"brute_force", "pd_tree", "all_faces", "paper", "active_set",
+                           "--closed-loop", "--radius", "--margin", "--planes", "--max-step"}) {
+    EXPECT_NE(replay.output.find(word), std::string::npos) << word;
+  }
+}
+
+TEST_F(Command, ReplaySolvesOneStepForEachLine) {
+  folder_.write("poses.txt", "0 0 60 1 2 -3\n3 4 51 1 -2 -3\n3 4 51 0 0 -6\n");
+  const Outcome outcome =
+      run("replay cube.stl --poses poses.txt --out steps.csv --planes planes.csv");
+  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  const std::vector<Row> steps = rows("steps.csv");
+  ASSERT_EQ(steps.size(), 3u);
+  EXPECT_EQ(steps[0].at("status"), "free");
+  EXPECT_EQ(vector(steps[0], "u"), Vec3(1, 2, -3));
+  EXPECT_EQ(steps[1].at("status"), "limited");
+  EXPECT_LT((vector(steps[1], "u") - Vec3(1, -2, -1)).norm(), 1e-12);
+  EXPECT_EQ(vector(steps[1], "p"), Vec3(3, 4, 51));
+  EXPECT_EQ(steps[2].at("status"), "beyond_reach");
+  EXPECT_EQ(vector(steps[2], "u"), Vec3(0, 0, 0));
+
+  std::size_t of_step_1 = 0;
+  for (const Row& plane : rows("planes.csv")) {
+    const std::size_t step = std::stoul(plane.at("step"));
+    of_step_1 += step == 1;
+    const double slack =
+        vector(plane, "n").dot(vector(steps[step], "u")) - std::stod(plane.at("offset"));
+    EXPECT_GE(slack, -1e-12);
+  }
+  EXPECT_EQ(of_step_1, std::stoul(steps[1].at("planes")));
+  EXPECT_GT(of_step_1, 0u);
+}
+
+TEST_F(Command, TheHeadersAreThoseAgreedUpon) {
+  folder_.write("poses.txt", "0 0 60 1 2 -3\n");
+  ASSERT_EQ(run("replay cube.stl --poses poses.txt --out s.csv --planes p.csv").status, 0);
+  std::string line;
+  std::ifstream steps(file("s.csv"));
+  std::getline(steps, line);
+  EXPECT_EQ(line,
+            "step,status,px,py,pz,dx,dy,dz,ux,uy,uz,triangles,planes,"
+            "t_query_ns,t_activate_ns,t_solve_ns,t_total_ns");
+  std::ifstream planes(file("p.csv"));
+  std::getline(planes, line);
+  EXPECT_EQ(line, "step,triangle,nx,ny,nz,offset");
+}
+
+TEST_F(Command, EveryNumberReadsBackExactly) {
+  folder_.write("poses.txt", "0.1 0.2 60.3 0.30000000000000004 1e-17 -0.7\n");
+  ASSERT_EQ(run("replay cube.stl --poses poses.txt --out s.csv").status, 0);
+  const Row step = rows("s.csv").at(0);
+  EXPECT_EQ(vector(step, "p"), Vec3(0.1, 0.2, 60.3));
+  EXPECT_EQ(vector(step, "u"), Vec3(0.30000000000000004, 1e-17, -0.7));
+}
+
+TEST_F(Command, AClosedLoopFollowsItsGoalsUpToTheSurface) {
+  std::string poses;
+  for (int i = 0; i < 60; ++i) poses += "3 4 40 3 4 60\n";
+  folder_.write("poses.txt", poses);
+  ASSERT_EQ(run("replay cube.stl --poses poses.txt --out s.csv --closed-loop --max-step 0.5 "
+                "--radius 1 --margin 0.25")
+                .status,
+            0);
+  const std::vector<Row> steps = rows("s.csv");
+  ASSERT_EQ(steps.size(), 60u);
+  Vec3 tip(3, 4, 60);
+  for (const Row& step : steps) {
+    ASSERT_LT((vector(step, "p") - tip).norm(), 1e-12);
+    ASSERT_LE(vector(step, "d").norm(), 0.5 + 1e-12);
+    tip += vector(step, "u");
+  }
+  EXPECT_LT((tip - Vec3(3, 4, 50.25)).norm(), 1e-9);
+}
+
+TEST_F(Command, EveryIndexAndRuleCanBeChosen) {
+  folder_.write("poses.txt", "3 4 51 1 -2 -3\n");
+  for (const char* choice : {"--index brute_force", "--index pd_tree", "--activation all_faces",
+                             "--activation paper", "--solver active_set"}) {
+    const Outcome outcome =
+        run(std::string("replay cube.stl --poses poses.txt --out s.csv ") + choice);
+    ASSERT_EQ(outcome.status, 0) << choice << outcome.output;
+    EXPECT_LT((vector(rows("s.csv").at(0), "u") - Vec3(1, -2, -1)).norm(), 1e-12) << choice;
+  }
+}
+
+TEST_F(Command, MistakesAreToldOfAndLeaveNothingBehind) {
+  folder_.write("poses.txt", "0 0 60 1 2 -3\n");
+  folder_.write("nan.txt", "0 0 60 1 2 -3\n0 0 nan 0 0 0\n");
+  folder_.write("broken.stl", "solid broken\nfacet normal 0 0 1\nouter loop\nvertex 0 0");
+  const std::vector<std::pair<std::string, std::string>> mistakes{
+      {"", "subcommand"},
+      {"replya cube.stl", "replya"},
+      {"replay cube.stl --poses poses.txt --out s.csv --raduis 3", "--raduis"},
+      {"replay cube.stl --poses poses.txt --out s.csv --radius -3", "--radius"},
+      {"replay cube.stl --poses poses.txt --out s.csv --radius three", "--radius"},
+      {"replay cube.stl --poses poses.txt --out s.csv --index pd-tree", "pd_tree"},
+      {"replay cube.stl --poses poses.txt --out s.csv --activation best", "all_faces"},
+      {"replay cube.stl --poses poses.txt --out s.csv --max-step 1", "--closed-loop"},
+      {"replay cube.stl --poses poses.txt --out s.csv --closed-loop --max-step 9", "--max-step"},
+      {"replay cube.stl --out s.csv", "--poses"},
+      {"replay cube.stl --poses none.txt --out s.csv", "none.txt"},
+      {"replay none.stl --poses poses.txt --out s.csv", "none.stl"},
+      {"replay broken.stl --poses poses.txt --out s.csv", "broken.stl"},
+      {"replay cube.stl --poses nan.txt --out s.csv", "nan.txt:2:"},
+      {"replay cube.stl --poses poses.txt --out no/such/folder/s.csv", "no/such/folder/s.csv"},
+      {"inspect none.stl", "none.stl"},
+      {"inspect poses.txt", "poses.txt"},
+      {"simulate none.stl --out s.csv", "none.stl"},
+      {"simulate cube.stl --out s.csv --activation best", "best"},
+  };
+  for (const auto& [arguments, told] : mistakes) {
+    const Outcome outcome = run(arguments);
+    EXPECT_NE(outcome.status, 0) << arguments;
+    EXPECT_NE(outcome.output.find(told), std::string::npos) << arguments << "\n" << outcome.output;
+    EXPECT_EQ(outcome.output.find("terminate"), std::string::npos) << outcome.output;
+    std::size_t files = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_.path())) {
+      files += entry.is_regular_file();
+    }
+    EXPECT_EQ(files, 4u) << "left something behind: " << arguments;
+  }
+}
+
+TEST_F(Command, AFailedRunLeavesAnEarlierResultAsItWas) {
+  folder_.write("nan.txt", "0 0 nan 0 0 0\n");
+  folder_.write("s.csv", "precious\n");
+  EXPECT_NE(run("replay cube.stl --poses nan.txt --out s.csv").status, 0);
+  std::string line;
+  std::ifstream stream(file("s.csv"));
+  std::getline(stream, line);
+  EXPECT_EQ(line, "precious");
+}
+
+TEST_F(Command, SimulatePrintsATableAndWritesAReport) {
+  const Outcome outcome = run("simulate cube.stl --out r.html --strokes 3 --cycles 200 --radius 1");
+  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  for (const char* word : {"none", "all_faces", "paper", "r.html"}) {
+    EXPECT_NE(outcome.output.find(word), std::string::npos) << word;
+  }
+  std::ifstream stream(file("r.html"));
+  const std::string page{std::istreambuf_iterator<char>(stream), {}};
+  EXPECT_NE(page.find("</html>"), std::string::npos);
+}
+
+TEST_F(Command, TheSameSeedMovesTheSameHand) {
+  // All but the times, which stand in the columns kHz, p50 and p99.
+  const auto untimed = [&](const std::string& seed) {
+    const Outcome outcome = run("simulate cube.stl --out r.html --strokes 3 --cycles 200 --seed " +
+                                seed + " | awk '{$3=$4=$5=\"\"; print}'");
+    return outcome.output;
+  };
+  EXPECT_EQ(untimed("7"), untimed("7"));
+  EXPECT_NE(untimed("7"), untimed("8"));
+}
+
+}  // namespace
+}  // namespace keepout

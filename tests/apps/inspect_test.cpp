@@ -1,0 +1,141 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "inspect.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+
+#include "keepout/error.h"
+#include "keepout/mesh/binary_stl.h"
+#include "small_surfaces.h"
+#include "temporary_folder.h"
+
+namespace keepout::app {
+namespace {
+
+class Inspect : public testing::Test {
+ protected:
+  void write(Surface surface, double scale = 100.0) {
+    for (Vec3& v : surface.vertices) v *= scale;
+    write_binary_stl(file, surface);
+  }
+  std::string text(bool self_intersections = false) const {
+    std::ostringstream out;
+    inspect({.mesh = file, .self_intersections = self_intersections}, out);
+    return out.str();
+  }
+  nlohmann::json json(bool self_intersections = false) const {
+    std::ostringstream out;
+    inspect({.mesh = file, .json = true, .self_intersections = self_intersections}, out);
+    return nlohmann::json::parse(out.str());
+  }
+  std::set<std::string> finding_keys() const {
+    std::set<std::string> keys;
+    const nlohmann::json report = json();
+    for (const nlohmann::json& finding : report.at("findings")) keys.insert(finding.at("key"));
+    return keys;
+  }
+
+  TemporaryFolder folder;
+  std::filesystem::path file = folder.path() / "mesh.stl";
+};
+
+bool contains(const std::string& text, std::string_view part) {
+  return text.find(part) != std::string::npos;
+}
+
+TEST_F(Inspect, ASoundMeshHasNoFindings) {
+  write(tetrahedron());
+  EXPECT_TRUE(contains(text(), "Findings\n  none\n")) << text();
+  EXPECT_TRUE(contains(text(), "watertight")) << text();
+  EXPECT_TRUE(json().at("findings").empty());
+}
+
+TEST_F(Inspect, TheNumbersAreThoseOfTheMesh) {
+  write(tetrahedron());
+  const nlohmann::json report = json();
+  EXPECT_EQ(report.at("mesh"), file.string());
+  EXPECT_EQ(report.at("unit"), "mm");
+  EXPECT_EQ(report.at("triangles"), 4);
+  EXPECT_EQ(report.at("vertices"), 4);
+  EXPECT_EQ(report.at("edges"), 6);
+  EXPECT_EQ(report.at("components"), 1);
+  EXPECT_EQ(report.at("watertight"), true);
+  EXPECT_EQ(report.at("genus"), 0);
+  EXPECT_EQ(report.at("bounds").at("high"), nlohmann::json({100.0, 100.0, 100.0}));
+  EXPECT_NEAR(report.at("signed_volume").get<double>(), 1e6 / 6.0, 1e-3);
+  EXPECT_EQ(report.at("self_intersections"), nullptr);
+}
+
+TEST_F(Inspect, LargeNumbersAreGrouped) {
+  write(torus(32));
+  EXPECT_TRUE(contains(text(), "2,048")) << text();
+}
+
+TEST_F(Inspect, EachFindingSaysHowManyWhatItMeansAndWhatToDo) {
+  Surface open = tetrahedron();
+  open.triangles.pop_back();
+  write(open);
+  EXPECT_TRUE(contains(text(), "3 boundary edges: the surface is open")) << text();
+  EXPECT_TRUE(contains(text(), "What to do: close the holes")) << text();
+  const nlohmann::json finding = json().at("findings").at(0);
+  EXPECT_EQ(finding.at("key"), "boundary_edges");
+  EXPECT_EQ(finding.at("count"), 3);
+  EXPECT_FALSE(finding.at("meaning").get<std::string>().empty());
+  EXPECT_FALSE(finding.at("advice").get<std::string>().empty());
+  EXPECT_EQ(json().at("genus"), nullptr);
+}
+
+TEST_F(Inspect, TheUnitAndTheOrientationAreQuestioned) {
+  write(flipped(tetrahedron()), 1.0);
+  EXPECT_EQ(finding_keys(), (std::set<std::string>{"inside_out", "looks_like_metres"}));
+}
+
+TEST_F(Inspect, EveryKindOfFindingIsReported) {
+  Surface surface = tetrahedron();
+  std::swap(surface.triangles[0][0], surface.triangles[0][1]);  // inconsistent
+  surface = together(surface, moved(tetrahedron(), {5, 0, 0}));
+  surface.triangles.push_back(surface.triangles[5]);  // duplicate, non-manifold
+  surface.triangles.push_back({1, 1, 2});             // degenerate
+  surface.vertices.emplace_back(-1, 0, 0);
+  surface.vertices.emplace_back(0, -1, 0);
+  surface.triangles.push_back({0, 8, 9});  // open, pinched
+  write(surface);
+  EXPECT_EQ(finding_keys(), (std::set<std::string>{"inconsistent_edges", "boundary_edges",
+                                                   "non_manifold_edges", "duplicate_triangles",
+                                                   "degenerate_triangles", "pinched_vertices"}));
+  EXPECT_TRUE(contains(text(), "1 duplicate triangle:")) << text();
+}
+
+TEST_F(Inspect, SelfIntersectionsAreCountedOnRequest) {
+  write(together(tetrahedron(), moved(tetrahedron(), {0.25, 0.25, -0.25})));
+  EXPECT_FALSE(contains(text(), "intersecting")) << text();
+  EXPECT_TRUE(contains(text(true), "self-intersecting pairs")) << text(true);
+  EXPECT_GT(json(true).at("self_intersections"), 0);
+}
+
+TEST_F(Inspect, WarningsOfTheReaderAreAmongTheFindings) {
+  file = folder.write("mesh.obj", "v 0 0 0\nv 9 0 0\nv 0 9 0\nf 1 2 3\nl 1 2\n");
+  EXPECT_TRUE(contains(text(), "in the file: left out 1 lines or points")) << text();
+  EXPECT_EQ(json().at("warnings").size(), 1u);
+}
+
+TEST_F(Inspect, AFileThatCannotBeReadIsAnErrorAndPrintsNothing) {
+  file = folder.path() / "absent.stl";
+  std::ostringstream out;
+  EXPECT_THROW(inspect({.mesh = file}, out), Error);
+  EXPECT_TRUE(out.str().empty());
+}
+
+TEST_F(Inspect, AFileNameThatIsNotUtf8StillMakesJson) {
+  file = folder.path() / "m\xfc.stl";
+  write(tetrahedron());
+  EXPECT_EQ(json().at("triangles"), 4);
+}
+
+}  // namespace
+}  // namespace keepout::app

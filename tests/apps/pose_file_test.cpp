@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pose_file.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "keepout/error.h"
+#include "temporary_folder.h"
+
+namespace keepout::app {
+namespace {
+
+class PoseFile : public testing::Test {
+ protected:
+  std::filesystem::path write(const std::string& text) { return folder_.write("poses.txt", text); }
+
+  void expect_error(const std::string& text, const std::string& place, const std::string& what) {
+    try {
+      read_poses(write(text));
+      ADD_FAILURE() << "no error for: " << text;
+    } catch (const Error& error) {
+      const std::string message = error.what();
+      EXPECT_NE(message.find("poses.txt" + place), std::string::npos) << message;
+      EXPECT_NE(message.find(what), std::string::npos) << message;
+    }
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(PoseFile, ReadsSixNumbersALine) {
+  const auto poses = read_poses(write("1 2 3 4 5 6\n-1e-3\t+2.5 0,7, 8 ,9\r\n"));
+  ASSERT_EQ(poses.size(), 2u);
+  EXPECT_EQ(poses[0].first, Vec3(1, 2, 3));
+  EXPECT_EQ(poses[0].second, Vec3(4, 5, 6));
+  EXPECT_EQ(poses[1].first, Vec3(-1e-3, 2.5, 0));
+  EXPECT_EQ(poses[1].second, Vec3(7, 8, 9));
+}
+
+TEST_F(PoseFile, PassesOverBlankLinesAndComments) {
+  const auto poses = read_poses(write("# tip, increment\n\n   \n1 2 3 4 5 6\n  # end"));
+  EXPECT_EQ(poses.size(), 1u);
+}
+
+TEST_F(PoseFile, NamesFileLineAndRemedy) {
+  expect_error("1 2 3 4 5 6\n1 2 3 4 5\n", ":2:", "fewer than six");
+  expect_error("# c\n\n1 2 3 4 5 6 7\n", ":3:", "'7' is too many");
+  expect_error("1 2 x 4 5 6\n", ":1:", "'x' is not a number");
+  expect_error("1 2 3.0.0 4 5 6\n", ":1:", "'3.0.0' is not a number");
+  expect_error("1 2 nan 4 5 6\n", ":1:", "not finite");
+  expect_error("1 2 3 4 5 -inf\n", ":1:", "not finite");
+  expect_error("1 2 3 4 5 1e999\n", ":1:", "not a number");
+  expect_error("\n# nothing\n", "", "no pose");
+}
+
+TEST_F(PoseFile, AMissingFileAndAFolderAreErrors) {
+  EXPECT_THROW(read_poses(folder_.path() / "none.txt"), Error);
+  EXPECT_THROW(read_poses(folder_.path()), Error);
+}
+
+}  // namespace
+}  // namespace keepout::app

@@ -1,0 +1,236 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+// The paper's Table I, corrected as its errata say, case by case; then what it leaves open.
+#include "keepout/activation/paper.h"
+
+#include <gtest/gtest.h>
+
+#include "engine/activation/rule_fixture.h"
+#include "keepout/fixtures/random.h"
+
+namespace keepout {
+namespace {
+
+/// Two triangles that share the edge from (0, -2, 0) to (0, 2, 0): T1 to the left, T2 to the right,
+/// with their apexes at the given heights and the free side above.
+std::shared_ptr<const Mesh> two_triangles(const Vec3& left, const Vec3& right) {
+  return std::make_shared<const Mesh>(
+      Surface{{Vec3(0, -2, 0), Vec3(0, 2, 0), left, right}, {{0, 1, 2}, {1, 0, 3}}});
+}
+
+std::shared_ptr<const Mesh> ridge(double height) {
+  return two_triangles({-2, 0, -height}, {2, 0, -height});
+}
+std::shared_ptr<const Mesh> valley(double height) {
+  return two_triangles({-2, 0, height}, {2, 0, height});
+}
+
+constexpr TriangleId t1 = 0;
+constexpr TriangleId t2 = 1;
+constexpr double far_enough = 20.0;
+
+/// What Table I writes in brackets: {normal, closest point} of a triangle.
+struct Bracket {
+  TriangleId triangle;
+  Vec3 normal;
+};
+
+void expect_planes(const std::shared_ptr<const Mesh>& mesh, const Vec3& tip,
+                   const std::vector<Bracket>& expected) {
+  PaperRule rule(mesh);
+  const std::vector<HalfSpace> planes = planes_at(mesh, rule, tip, far_enough);
+  ASSERT_EQ(planes.size(), expected.size());
+  for (std::size_t i = 0; i < planes.size(); ++i) {
+    const Bracket& bracket = expected[i];
+    const Vec3 to_closest = closest_point(mesh->triangle(bracket.triangle), tip).offset;
+    EXPECT_EQ(planes[i].source, bracket.triangle);
+    EXPECT_LT((planes[i].normal - bracket.normal).norm(), 1e-15);
+    EXPECT_NEAR(planes[i].offset, bracket.normal.dot(to_closest), 1e-15);
+    EXPECT_LE(planes[i].offset, 0.0) << "standing still must be allowed";
+  }
+}
+
+Feature feature_of(const std::shared_ptr<const Mesh>& mesh, TriangleId t, const Vec3& tip) {
+  return closest_point(mesh->triangle(t), tip).feature;
+}
+
+TEST(TableOne, ConvexA_OnlyTheFaceInFrontIsActiveAlthoughBothClosestPointsAreInTriangle) {
+  const auto mesh = ridge(4.0);
+  const Vec3 tip = Vec3(1, 0, -2) + 0.2 * mesh->normal(t2);
+  ASSERT_TRUE(is_face(feature_of(mesh, t1, tip)) && is_face(feature_of(mesh, t2, tip)));
+  expect_planes(mesh, tip, {{t2, mesh->normal(t2)}});
+}
+
+TEST(TableOne, ConvexB_TheFaceBehindTheRidgeIsNotActive) {
+  const auto mesh = ridge(0.5);
+  const Vec3 tip = Vec3(1, 0, -0.25) + 0.3 * mesh->normal(t2);
+  ASSERT_TRUE(is_edge(feature_of(mesh, t1, tip)) && is_face(feature_of(mesh, t2, tip)));
+  expect_planes(mesh, tip, {{t2, mesh->normal(t2)}});
+}
+
+TEST(TableOne, ConvexC_OverTheRidgeOnePlaneFacesTheTip) {
+  const auto mesh = ridge(0.5);
+  const Vec3 tip(0.05, 0.3, 1);
+  ASSERT_TRUE(is_edge(feature_of(mesh, t1, tip)) && is_edge(feature_of(mesh, t2, tip)));
+  expect_planes(mesh, tip, {{t1, Vec3(0.05, 0, 1).normalized()}});
+}
+
+TEST(TableOne, ConcaveA_BothFacesAreActive) {
+  const auto mesh = valley(0.5);
+  const Vec3 tip(0, 0, 1);
+  expect_planes(mesh, tip, {{t1, mesh->normal(t1)}, {t2, mesh->normal(t2)}});
+}
+
+TEST(TableOne, ConcaveB_TheOtherFaceIsKeptThroughTheValley) {
+  const auto mesh = valley(0.5);
+  const Vec3 tip = Vec3(1, 0, 0.25) + 0.1 * mesh->normal(t2);
+  ASSERT_TRUE(is_edge(feature_of(mesh, t1, tip)) && is_face(feature_of(mesh, t2, tip)));
+  expect_planes(mesh, tip, {{t1, mesh->normal(t1)}, {t2, mesh->normal(t2)}});
+}
+
+TEST(TableOne, ConcaveC_BeyondTheRightTriangleOnlyTheLeftIsDecided) {
+  const auto mesh = valley(0.5);
+  const Vec3 tip(3, 0, 1);
+  ASSERT_TRUE(is_edge(feature_of(mesh, t1, tip)) && is_vertex(feature_of(mesh, t2, tip)));
+  expect_planes(mesh, tip, {{t1, mesh->normal(t1)}});
+}
+
+TEST(TableOne, ConcaveD_AboveTheLeftAndBeyondTheRight) {
+  const auto mesh = two_triangles({-2, 0, 4}, {0.5, 0, 1});
+  const Vec3 tip = Vec3(-1.6, 0, 3.2) + 0.2 * mesh->normal(t1);
+  ASSERT_TRUE(is_face(feature_of(mesh, t1, tip)) && is_vertex(feature_of(mesh, t2, tip)));
+  expect_planes(mesh, tip, {{t1, mesh->normal(t1)}});
+}
+
+TEST(TableOne, ConcaveE_BeyondBothNothingIsDecided) {
+  const auto mesh = valley(4.0);
+  const Vec3 tip(0, 0, 10);
+  ASSERT_TRUE(is_vertex(feature_of(mesh, t1, tip)) && is_vertex(feature_of(mesh, t2, tip)));
+  expect_planes(mesh, tip, {});
+}
+
+// What the paper leaves open, as decided in paper.h.
+
+TEST(PaperRule, ACoplanarEdgeCountsAsConvexSoAFlatQuadHasNoGap) {
+  const auto mesh = ridge(0.0);
+  expect_planes(mesh, {0, 0, 0.1}, {{t1, Vec3(0, 0, 1)}});
+}
+
+TEST(PaperRule, OnTheRidgeItselfBothFacesSpeakSinceThereIsNoDirectionToTheTip) {
+  const auto mesh = ridge(1.0);
+  expect_planes(mesh, {0, 0, 0}, {{t1, mesh->normal(t1)}, {t2, mesh->normal(t2)}});
+}
+
+TEST(PaperRule, ABoundaryEdgeActivatesNothing) {
+  const auto mesh = std::make_shared<const Mesh>(
+      Surface{{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)}, {{0, 1, 2}}});
+  expect_planes(mesh, {0.3, -0.01, 0.05}, {});
+}
+
+TEST(PaperRule, ANonManifoldEdgeIsReadAsABoundary) {
+  const auto mesh = std::make_shared<const Mesh>(
+      Surface{{Vec3(0, -2, 0), Vec3(0, 2, 0), Vec3(-2, 0, -1), Vec3(2, 0, -1), Vec3(0, 0, -2)},
+              {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}}});
+  expect_planes(mesh, {0, 0, 1}, {});
+}
+
+TEST(PaperRule, BelowTheSurfaceEveryPlaneVanishes) {
+  // The paper's own weakness, on record: a tool that is inside is not held at all.
+  const auto mesh = ridge(0.0);
+  expect_planes(mesh, {1, 0, -0.5}, {});
+}
+
+TEST(PaperRule, AToolThatSlidesOnAFaceIsHeldAlthoughRoundingPutsItAHairBelow) {
+  const auto mesh = ridge(0.0);
+  PaperRule rule(mesh);
+  const std::vector<HalfSpace> planes = planes_at(mesh, rule, {1, 0, -1e-13}, far_enough);
+  ASSERT_EQ(planes.size(), 1u);
+  EXPECT_EQ(planes[0].source, t2);
+  EXPECT_DOUBLE_EQ(planes[0].offset, 1e-13) << "back up to the face";
+}
+
+/// Four triangles around the origin, as a closed fan: apexes at the given heights on the x and y
+/// axes in turn.
+std::shared_ptr<const Mesh> fan(double at_x, double at_y) {
+  return std::make_shared<const Mesh>(Surface{
+      {Vec3(0, 0, 0), Vec3(2, 0, at_x), Vec3(0, 2, at_y), Vec3(-2, 0, at_x), Vec3(0, -2, at_y)},
+      {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 1}}});
+}
+
+TEST(PaperRuleAtAVertex, OverASummitOneTriangleSpeaksForAll) {
+  const auto mesh = fan(-1, -1);
+  const Vec3 tip(0.01, 0.02, 0.5);
+  for (TriangleId t = 0; t < 4; ++t) ASSERT_EQ(feature_of(mesh, t, tip), Feature::vertex_0);
+  expect_planes(mesh, tip, {{0, tip.normalized()}});
+}
+
+TEST(PaperRuleAtAVertex, ASummitWithValleysKeepsThePlaneOfTheRidge) {
+  // Edges along x are valleys, along y ridges: each triangle has one of either kind here, and
+  // Condition 2 goes first.
+  const auto mesh = fan(0.5, -4);
+  const Vec3 tip(-0.2, 0, 1);
+  PaperRule rule(mesh);
+  const std::vector<HalfSpace> planes = planes_at(mesh, rule, tip, 3.0);
+  ASSERT_FALSE(planes.empty());
+  for (TriangleId t = 0; t < 4; ++t) {
+    const ClosestPoint closest = closest_point(mesh->triangle(t), tip);
+    if (!is_vertex(closest.feature)) continue;
+    // Whichever condition it was, the triangle is behind one of the planes.
+    bool behind = false;
+    for (const HalfSpace& plane : planes) {
+      bool all = true;
+      for (const Vec3& corner : mesh->triangle(t)) {
+        all &= plane.normal.dot(corner - tip) <= plane.offset + 1e-12;
+      }
+      behind |= all;
+    }
+    EXPECT_TRUE(behind) << "triangle " << t;
+  }
+}
+
+TEST(PaperRuleAtAVertex, AValleyAtEitherEdgeKeepsTheFace) {
+  // T1's closest point is its corner on the shared edge, an end of a valley; T2's is elsewhere.
+  const auto mesh = valley(0.5);
+  const Vec3 tip = Vec3(1, -2.5, 0.25) + 0.3 * mesh->normal(t2);
+  ASSERT_TRUE(is_vertex(feature_of(mesh, t1, tip)));
+  ASSERT_NE(closest_point(mesh->triangle(t1), tip).offset,
+            closest_point(mesh->triangle(t2), tip).offset);
+  expect_planes(mesh, tip, {{t1, mesh->normal(t1)}});
+}
+
+TEST(PaperRule, TheMarginSetsEveryPlaneBack) {
+  const auto mesh = ridge(0.5);
+  PaperRule rule(mesh);
+  for (const Vec3& tip : {Vec3(0, 0, 1), Vec3(1, 0, 0.5), Vec3(-1, 0.2, 0.4)}) {
+    const auto near = planes_at(mesh, rule, tip, 3.0, 0.0);
+    const auto far = planes_at(mesh, rule, tip, 3.0, 0.25);
+    ASSERT_EQ(near.size(), far.size());
+    ASSERT_FALSE(near.empty());
+    for (std::size_t i = 0; i < near.size(); ++i) {
+      EXPECT_EQ(near[i].normal, far[i].normal);
+      EXPECT_DOUBLE_EQ(near[i].offset + 0.25, far[i].offset);
+    }
+  }
+}
+
+TEST(PaperRule, DoesNotDependOnHowTrianglesAreRotated) {
+  Random random(7);
+  const auto mesh = fan(0.5, -1);
+  Surface rotated{{mesh->vertices().begin(), mesh->vertices().end()}, {}};
+  for (const Corners& c : mesh->triangles()) rotated.triangles.push_back({c[1], c[2], c[0]});
+  const auto other = std::make_shared<const Mesh>(rotated);
+  PaperRule rule(mesh), other_rule(other);
+  for (int i = 0; i < 1000; ++i) {
+    const Vec3 tip = 2.0 * random.direction() * random.uniform();
+    const auto expected = planes_at(mesh, rule, tip, 3.0);
+    const auto got = planes_at(other, other_rule, tip, 3.0);
+    ASSERT_EQ(got.size(), expected.size());
+    for (std::size_t p = 0; p < got.size(); ++p) {
+      ASSERT_EQ(got[p].normal, expected[p].normal);
+      ASSERT_EQ(got[p].offset, expected[p].offset);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace keepout
