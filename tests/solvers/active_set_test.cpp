@@ -12,7 +12,7 @@
 #include <numbers>
 
 #include "keepout/solvers/kkt.h"
-#include "random_problems.h"
+#include "solvers/random_problems.h"
 
 namespace keepout::test {
 namespace {

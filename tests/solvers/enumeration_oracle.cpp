@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "enumeration_oracle.h"
+#include "solvers/enumeration_oracle.h"
 
 #include <Eigen/LU>
 #include <limits>

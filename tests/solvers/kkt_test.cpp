@@ -11,7 +11,7 @@
 #include <limits>
 #include <vector>
 
-#include "random_problems.h"
+#include "solvers/random_problems.h"
 
 namespace keepout::test {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "random_problems.h"
+#include "solvers/random_problems.h"
 
 #include <Eigen/QR>
 #include <algorithm>

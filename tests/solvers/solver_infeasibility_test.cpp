@@ -1,0 +1,123 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+// Problems without a solution are recognised, and those with one are not mistaken for them.
+#include "solvers/solver_contract.h"
+
+namespace keepout::test {
+namespace {
+
+using SolverInfeasibility = SolverContract;
+
+INSTANTIATE_TEST_SUITE_P(Solvers, SolverInfeasibility, testing::ValuesIn(solver_backends()),
+                         solver_name);
+
+TEST_P(SolverInfeasibility, ContradictionsAreRecognised) {
+  // Some of the rows, made unit rows, add up to 0 u >= margin with weights of order 1. Margins down
+  // to 1e-9, far above rounding; less far for a task of condition 1e6, whose steps go 1e6 times
+  // farther than the planes are apart, and there round to 1e-10.
+  for (const Task task : tasks) {
+    for (const Planes planes : {Planes::scattered, Planes::touching, Planes::uneven}) {
+      for (int i = 0; i < 500; ++i) {
+        Random random(static_cast<std::uint64_t>(i) * 100 + static_cast<std::uint64_t>(task) * 10 +
+                      static_cast<std::uint64_t>(planes));
+        const int n = random.integer(1, 7);
+        Problem problem;
+        make_task(problem, task, n, random);
+        make_planes(problem, planes, random.vector(n), random.integer(2, 60), random);
+        const bool weak = task == Task::slanted || task == Task::uneven_columns;
+        make_infeasible(problem, random.log_uniform(weak ? 1e-3 : 1e-9, 1), random);
+        ASSERT_EQ(solve(problem), SolveStatus::infeasible)
+            << name(task) << ", " << name(planes) << ", seed " << i << ", n = " << n;
+      }
+    }
+  }
+}
+
+TEST_P(SolverInfeasibility, ContradictionsOnlyFarAwayAreNeverSolvedWrongly) {
+  // The weights span twelve decades. Up to the last few digits the planes are parallel, and meet
+  // where the margin is below rounding: to give up is right there, to claim an optimum that
+  // violates a row is not.
+  int recognised = 0;
+  for (int i = 0; i < 2000; ++i) {
+    Random random(static_cast<std::uint64_t>(i) + 7500000);
+    const int n = random.integer(1, 7);
+    Problem problem = make_problem(Task::identity, Planes::scattered, n, 20, random);
+    for (Eigen::Index row = 0; row < 20; ++row) {
+      const double weight = random.log_uniform(1e-6, 1e6);
+      problem.rows.row(row) *= weight;
+      problem.bounds[row] *= weight;
+    }
+    make_infeasible(problem, random.log_uniform(1e-9, 1), random, Weights::as_they_are);
+    const SolveStatus status = solve(problem);
+    recognised += status == SolveStatus::infeasible ? 1 : 0;
+    if (status == SolveStatus::optimal) {
+      ASSERT_TRUE(optimal(problem)) << "seed " << i;
+    } else {
+      ASSERT_TRUE(status == SolveStatus::infeasible || status == SolveStatus::iteration_limit)
+          << "seed " << i << ": " << reason(status);
+    }
+  }
+  EXPECT_GT(recognised, 1900);
+}
+
+TEST_P(SolverInfeasibility, ASlabIsOpenEmptyOrUndecidedByItsWidthAgainstRounding) {
+  // b <= a u <= b + width. Wider than rounding: optimal. Negative beyond rounding: infeasible. In
+  // between the numbers do not tell; what must hold there is that "optimal" satisfies the rows to
+  // the bound, which optimal() checks.
+  for (int i = 0; i < 2000; ++i) {
+    Random random(static_cast<std::uint64_t>(i) + 7000000);
+    const int n = random.integer(1, 7);
+    Problem problem;
+    make_task(problem, tasks[static_cast<std::size_t>(random.integer(0, 3))], n, random);
+    const Eigen::VectorXd a = random.direction(n);
+    const double b = random.uniform(-1, 1);
+    const double size = random.log_uniform(1e-16, 1);
+    for (const double width : {size, 0.0, -size}) {
+      problem.rows.resize(2, n);
+      problem.rows << a.transpose(), -a.transpose();
+      problem.bounds = Eigen::Vector2d(b, -(b + width));
+      const SolveStatus status = solve(problem);
+      if (width >= 0) {
+        ASSERT_TRUE(optimal(problem)) << "seed " << i << ", width " << width;
+      } else if (width < -1e-9) {
+        ASSERT_EQ(status, SolveStatus::infeasible) << "seed " << i << ", width " << width;
+      } else if (status == SolveStatus::optimal) {
+        ASSERT_TRUE(optimal(problem)) << "seed " << i << ", width " << width;
+      } else {
+        ASSERT_TRUE(status == SolveStatus::infeasible || status == SolveStatus::iteration_limit);
+      }
+    }
+  }
+}
+
+TEST_P(SolverInfeasibility, PlanesThatMeetAtATinyAngleStillHaveTheirEdge) {
+  // y >= 0 and -y + angle x >= h meet in a wedge that opens at x = h / angle. Pulled back from
+  // there, the answer is the apex, however slim the wedge.
+  for (const double angle : {1e-1, 1e-4, 1e-8, 1e-10}) {
+    for (const double h : {0.0, 1e-6, 1e-3}) {
+      StepProblem::RowMatrix rows(2, 2);
+      rows << 0, 1, angle, -1;
+      const Problem problem = point_problem(Eigen::Vector2d(-1, 0.5), rows, Eigen::Vector2d(0, h));
+      ASSERT_TRUE(optimal(problem)) << angle << ", " << h;
+      // A row holds to 1e-13 of the motion; along the wedge that is 1 / angle times as much.
+      EXPECT_NEAR(u()[0], h / angle, 2e-13 / angle * (1 + h / angle)) << angle << ", " << h;
+    }
+  }
+}
+
+TEST_P(SolverInfeasibility, ARowOfZerosCountsOnlyByItsBound) {
+  for (const double bound : {-1.0, 0.0, 1e-300, 1.0}) {
+    StepProblem::RowMatrix rows(2, 2);
+    rows << 0, 0, 0, 1;
+    const Problem problem = point_problem(Eigen::Vector2d(1, -1), rows, Eigen::Vector2d(bound, 0));
+    if (bound > 0) {
+      EXPECT_EQ(solve(problem), SolveStatus::infeasible);
+    } else {
+      ASSERT_TRUE(optimal(problem));
+      EXPECT_LT((u() - Eigen::Vector2d(1, 0)).norm(), 1e-15);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace keepout::test

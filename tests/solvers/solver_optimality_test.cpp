@@ -1,0 +1,142 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+// Problems solved by hand, and many that are held to the conditions of optimality.
+#include "solvers/enumeration_oracle.h"
+#include "solvers/solver_contract.h"
+
+namespace keepout::test {
+namespace {
+
+using SolverOptimality = SolverContract;
+
+INSTANTIATE_TEST_SUITE_P(Solvers, SolverOptimality, testing::ValuesIn(solver_backends()),
+                         solver_name);
+
+TEST_P(SolverOptimality, WithoutRowsTheTaskIsMetExactly) {
+  const Problem problem =
+      point_problem(Eigen::Vector3d(1, -2, 3), StepProblem::RowMatrix(0, 3), Eigen::VectorXd(0));
+  ASSERT_TRUE(optimal(problem));
+  EXPECT_EQ(u(), Eigen::VectorXd(Eigen::Vector3d(1, -2, 3)));
+  EXPECT_TRUE(solution_.active.empty());
+}
+
+TEST_P(SolverOptimality, PushIntoTheCornerOfABoxStopsAtTheCorner) {
+  // -1 <= u <= 1, asked for (3, 0.5, -2): stops at (1, 0.5, -1). The gradient 2 (u - d) there is
+  // (-4, 0, 2), held by row 0 (-x >= -1) with 4 and row 5 (z >= -1) with 2.
+  StepProblem::RowMatrix rows(6, 3);
+  rows << -1, 0, 0, 1, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, -1, 0, 0, 1;
+  const Problem problem =
+      point_problem(Eigen::Vector3d(3, 0.5, -2), rows, Eigen::VectorXd::Constant(6, -1));
+  ASSERT_TRUE(optimal(problem));
+  EXPECT_LT((u() - Eigen::Vector3d(1, 0.5, -1)).norm(), 1e-15);
+  ASSERT_EQ(solution_.active.size(), 2U);
+  EXPECT_EQ(solution_.active[0], 0U);
+  EXPECT_EQ(solution_.active[1], 5U);
+  EXPECT_NEAR(solution_.multipliers[0], 4, 1e-14);
+  EXPECT_NEAR(solution_.multipliers[1], 2, 1e-14);
+}
+
+TEST_P(SolverOptimality, PushAcrossAnEdgeSlidesAlongTheEdge) {
+  // A wedge z >= x, z >= -x with its edge along y; a push (0, 1, -1) keeps only its part along y.
+  StepProblem::RowMatrix rows(2, 3);
+  rows << -1, 0, 1, 1, 0, 1;
+  const Problem problem = point_problem(Eigen::Vector3d(0, 1, -1), rows, Eigen::VectorXd::Zero(2));
+  ASSERT_TRUE(optimal(problem));
+  EXPECT_LT((u() - Eigen::Vector3d(0, 1, 0)).norm(), 1e-15);
+  ASSERT_EQ(solution_.multipliers.size(), 2U);
+  EXPECT_NEAR(solution_.multipliers[0], 1, 1e-14);
+  EXPECT_NEAR(solution_.multipliers[1], 1, 1e-14);
+}
+
+TEST_P(SolverOptimality, DampingShortensTheMotion) {
+  // min (u - 1)^2 + 3 u^2 is at 1/4.
+  Problem problem =
+      point_problem(Eigen::VectorXd::Ones(1), StepProblem::RowMatrix(0, 1), Eigen::VectorXd(0));
+  problem.damping = 3;
+  ASSERT_TRUE(optimal(problem));
+  EXPECT_NEAR(u()[0], 0.25, 1e-16);
+}
+
+TEST_P(SolverOptimality, DampingAlonePicksTheShortestFeasibleMotion) {
+  // No task rows at all: the point of x + y >= 2 nearest to 0.
+  Problem problem;
+  problem.jacobian.resize(0, 2);
+  problem.desired.resize(0);
+  problem.rows = StepProblem::RowMatrix::Ones(1, 2);
+  problem.bounds = Eigen::VectorXd::Constant(1, 2);
+  problem.damping = 1e-3;
+  ASSERT_TRUE(optimal(problem));
+  EXPECT_LT((u() - Eigen::Vector2d(1, 1)).norm(), 1e-15);
+}
+
+TEST_P(SolverOptimality, AVertexAtRestWithNothingAskedStaysAtRest) {
+  const Problem problem = point_problem(
+      Eigen::Vector3d::Zero(), StepProblem::RowMatrix::Identity(3, 3), Eigen::VectorXd::Zero(3));
+  ASSERT_TRUE(optimal(problem));
+  EXPECT_EQ(u(), Eigen::VectorXd(Eigen::Vector3d::Zero()));
+}
+
+TEST_P(SolverOptimality, ThousandsOfProblemsOfEveryClassAreOptimal) {
+  // 7 tasks x 9 kinds of planes x 1600: 100800 problems. The planes of every kind have a common
+  // point up to rounding, and so "infeasible" is always wrong. Giving up would be allowed at a
+  // vertex or in a slab that rounding alone may close; none of these problems needs it.
+  for (const Task task : tasks) {
+    for (const Planes planes : plane_kinds) {
+      worst_ = 0;
+      for (int i = 0; i < 1600; ++i) {
+        Random random(static_cast<std::uint64_t>(i) * 100 + static_cast<std::uint64_t>(task) * 10 +
+                      static_cast<std::uint64_t>(planes));
+        const int n = random.integer(1, 7);
+        const int m = i % 10 == 0 ? random.integer(0, 400) : random.integer(0, 60);
+        const Problem problem = make_problem(task, planes, n, m, random);
+        ASSERT_TRUE(optimal(problem)) << name(task) << ", " << name(planes) << ", seed " << i
+                                      << ", n = " << n << ", m = " << m;
+      }
+      RecordProperty(std::string(name(task)) + "/" + std::string(name(planes)),
+                     std::to_string(worst_));
+    }
+  }
+}
+
+TEST_P(SolverOptimality, MixturesOfAllKindsOfPlanesAreOptimal) {
+  // In one of half a million of these, number 397870, rounding lets a row that pulls become active.
+  for (int i = 377871; i <= 397870; ++i) {
+    Random random(static_cast<std::uint64_t>(i) + 4500000);
+    const int n = random.integer(1, 7);
+    const Task task = i % 2 == 0 ? Task::slanted : tasks[static_cast<std::size_t>(i / 2 % 7)];
+    Problem problem;
+    make_task(problem, task, n, random);
+    make_mixed_planes(problem, random.vector(n) * random.log_uniform(1, 1e6), random);
+    ASSERT_TRUE(optimal(problem)) << name(task) << ", seed " << i << ", n = " << n;
+  }
+}
+
+TEST_P(SolverOptimality, ProblemsOfTwoThousandRowsAreOptimal) {
+  for (const Task task : tasks) {
+    for (const Planes planes : plane_kinds) {
+      for (int i = 0; i < 10; ++i) {  // 630 problems
+        Random random(9000000 + static_cast<std::uint64_t>(i) * 100 +
+                      static_cast<std::uint64_t>(task) * 10 + static_cast<std::uint64_t>(planes));
+        const Problem problem = make_problem(task, planes, random.integer(1, 7), 2000, random);
+        ASSERT_TRUE(optimal(problem)) << name(task) << ", " << name(planes) << ", seed " << i;
+      }
+    }
+  }
+}
+
+TEST_P(SolverOptimality, TheMinimumIsTheOneFoundByEnumeration) {
+  for (int i = 0; i < 4000; ++i) {
+    Random random(static_cast<std::uint64_t>(i) + 5000000);
+    const auto task = tasks[static_cast<std::size_t>(random.integer(0, 4))];
+    const auto planes = plane_kinds[static_cast<std::size_t>(random.integer(0, 3))];
+    const Problem problem =
+        make_problem(task, planes, random.integer(1, 3), random.integer(0, 8), random);
+    const auto expected = enumerate_minimum(problem.view());
+    ASSERT_TRUE(expected.has_value()) << "seed " << i;
+    ASSERT_TRUE(optimal(problem)) << "seed " << i;
+    EXPECT_LT((u() - *expected).norm(), 1e-9 * (1 + expected->norm())) << "seed " << i;
+  }
+}
+
+}  // namespace
+}  // namespace keepout::test
