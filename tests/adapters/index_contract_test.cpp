@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <future>
 #include <string>
 
 #include "keepout/adapters/index_registry.h"
@@ -56,6 +57,27 @@ TEST_P(IndexContract, NeverGivesATriangleTwice) {
   ASSERT_EQ(candidates.size(), mesh->triangle_count());
   std::sort(candidates.begin(), candidates.end());
   EXPECT_EQ(std::adjacent_find(candidates.begin(), candidates.end()), candidates.end());
+}
+
+TEST_P(IndexContract, ManyThreadsMayAskAtOnce) {
+  const auto mesh = std::make_shared<const Mesh>(make_shape("star_bumps"));
+  const auto index = GetParam().make(mesh);
+  const auto found = [&](std::uint64_t seed) {
+    TriangleBuffer candidates(mesh->triangle_count());
+    Random random(seed);
+    std::vector<TriangleId> all;
+    for (const Vec3& point : surface_points(*mesh, 50, 1.0, random)) {
+      candidates.clear();
+      index->collect({point, 5.0}, candidates);
+      all.insert(all.end(), candidates.begin(), candidates.end());
+    }
+    return all;
+  };
+  std::vector<std::future<std::vector<TriangleId>>> answers;
+  for (std::uint64_t seed = 0; seed < 4; ++seed) {
+    answers.push_back(std::async(std::launch::async, found, seed));
+  }
+  for (std::uint64_t seed = 0; seed < 4; ++seed) EXPECT_EQ(answers[seed].get(), found(seed));
 }
 
 TEST_P(IndexContract, SaysWhenTheBufferIsTooSmall) {

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "keepout/geometry/vec3.h"
-#include "keepout/mesh/ids.h"
+#include "keepout/ids.h"
 
 namespace keepout {
 

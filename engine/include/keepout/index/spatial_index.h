@@ -7,7 +7,7 @@
 
 #include "keepout/buffer.h"
 #include "keepout/geometry/ball.h"
-#include "keepout/mesh/ids.h"
+#include "keepout/ids.h"
 
 namespace keepout {
 

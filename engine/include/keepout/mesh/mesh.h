@@ -9,7 +9,7 @@
 
 #include "keepout/geometry/box.h"
 #include "keepout/geometry/triangle.h"
-#include "keepout/mesh/ids.h"
+#include "keepout/ids.h"
 
 namespace keepout {
 

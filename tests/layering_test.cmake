@@ -1,0 +1,47 @@
+# SPDX-FileCopyrightText: 2026 the keepout authors
+# SPDX-License-Identifier: BSD-3-Clause
+#
+# Dependencies point one way, and public headers show nobody else's but Eigen's.
+# Run as: cmake -D SOURCE=... -P layering_test.cmake
+
+# Fails for each file of a folder in which a line matches the expression.
+function(forbid folder expression why)
+  file(GLOB_RECURSE files "${SOURCE}/${folder}/*.h" "${SOURCE}/${folder}/*.cpp")
+  list(LENGTH files count)
+  if(count EQUAL 0)
+    message(SEND_ERROR "${folder} has no files: has it moved?")
+  endif()
+  foreach(file IN LISTS files)
+    file(STRINGS "${file}" lines REGEX "${expression}")
+    foreach(line IN LISTS lines)
+      message(SEND_ERROR "${file}: ${line}\n  ${why}")
+    endforeach()
+  endforeach()
+endfunction()
+
+set(include "^ *# *include *[<\"]")
+forbid(engine "${include}keepout/(adapters|solvers|factory|fixtures)/" "the engine knows no other part")
+forbid(adapters "${include}keepout/(solvers|factory|fixtures)/" "adapters know only the engine")
+forbid(solvers "${include}keepout/(adapters|factory|fixtures)/" "solvers know only the engine")
+forbid(fixtures "${include}keepout/(adapters|solvers|factory)/" "fixtures know only the engine")
+
+# In public headers: ours, Eigen's, and the standard library's, whose names have no dot or slash.
+foreach(part engine adapters solvers factory fixtures)
+  file(GLOB_RECURSE headers "${SOURCE}/${part}/include/*.h")
+  foreach(header IN LISTS headers)
+    file(STRINGS "${header}" lines REGEX "${include}")
+    foreach(line IN LISTS lines)
+      if(NOT line MATCHES "include (\"keepout/|<Eigen/|<[a-z_]+>)")
+        message(SEND_ERROR "${header}: ${line}\n  a third-party header in a public one")
+      endif()
+    endforeach()
+  endforeach()
+endforeach()
+
+# Within the engine: geometry below mesh, mesh below index, index below activation, all below step.
+foreach(kind include/keepout src)
+  forbid(engine/${kind}/geometry "${include}keepout/(mesh|index|activation|step)/" "geometry is the ground")
+  forbid(engine/${kind}/mesh "${include}keepout/(index|activation|step)/" "a mesh knows no index")
+  forbid(engine/${kind}/index "${include}keepout/(activation|step)/" "an index knows no rule")
+  forbid(engine/${kind}/activation "${include}keepout/step/" "a rule knows no step")
+endforeach()
