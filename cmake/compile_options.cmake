@@ -1,13 +1,13 @@
 # SPDX-FileCopyrightText: 2026 the keepout authors
 # SPDX-License-Identifier: BSD-3-Clause
 #
-# keepout_library(NAME): what every target of ours is compiled with. Nothing is global, so that a
-# project that embeds keepout keeps its own flags.
+# keepout_compile_options(TARGET): what every target of ours is compiled with. Nothing is global, so
+# that a project that embeds keepout keeps its own flags.
 
 option(KEEPOUT_WARNINGS_AS_ERRORS "Treat our own warnings as errors" OFF)
 set(KEEPOUT_SANITIZE "" CACHE STRING "Sanitizers to compile with, as -fsanitize= takes them")
 
-if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+if(PROJECT_IS_TOP_LEVEL AND NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "Debug, Release, RelWithDebInfo" FORCE)
 endif()
 

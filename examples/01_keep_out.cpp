@@ -11,20 +11,22 @@ int main(int argc, char** argv) try {
     return 2;
   }
   const auto mesh = keepout::load_mesh(argv[1]).mesh;
-  auto guard = keepout::make_motion_constraint(mesh, {.index = "pd_tree",
-                                                      .activation = "paper",
-                                                      .solver = "active_set",
-                                                      .radius = 1.0,
-                                                      .margin = 0.5});
-  // A tool that comes from above and wants to go straight through.
-  keepout::Vec3 tip = mesh->bounds().center();
-  tip.z() = mesh->bounds().high.z() + 5.0;
-  for (int cycle = 0; cycle < 1000; ++cycle) {
-    const keepout::Step step = guard.step({.tip = tip, .desired = {0.0, 0.0, -0.1}});
+  auto guard = keepout::make_motion_constraint(
+      mesh, {.index = "pd_tree", .activation = "paper", .radius = 1.0, .margin = 0.5});
+
+  // A hand that comes from above and wants to go straight through to below.
+  const keepout::Box& box = mesh->bounds();
+  keepout::Vec3 tip(box.center().x(), box.center().y(), box.high.z() + 5.0);
+  const keepout::Vec3 goal(tip.x(), tip.y(), box.low.z());
+  int held = 0;
+  for (int cycle = 0; cycle < 2000; ++cycle) {
+    const keepout::Step step = guard.step({.tip = tip, .desired = 0.2 * (goal - tip).normalized()});
     if (!step.ok()) std::printf("cycle %d: %s\n", cycle, step.reason().data());
+    held += step.status != keepout::Status::free;
     tip += step.motion;  // zero unless ok
   }
-  std::printf("held at %.3f %.3f %.3f\n", tip.x(), tip.y(), tip.z());
+  std::printf("held back in %d of 2000 cycles, ends at %.6f %.6f %.6f\n", held, tip.x(), tip.y(),
+              tip.z());
   return 0;
 } catch (const keepout::Error& error) {
   std::fprintf(stderr, "%s\n", error.what());

@@ -4,12 +4,11 @@
 #include "keepout/adapters/index_registry.h"
 
 #include <array>
-#include <string>
 #include <utility>
 
-#include "keepout/error.h"
 #include "keepout/index/brute_force.h"
 #include "keepout/index/pd_tree.h"
+#include "keepout/registry.h"
 
 namespace keepout {
 namespace {
@@ -31,13 +30,7 @@ constexpr std::array backends{
 std::span<const IndexBackend> index_backends() noexcept { return backends; }
 
 std::unique_ptr<SpatialIndex> make_index(std::string_view name, std::shared_ptr<const Mesh> mesh) {
-  std::string known;
-  for (const IndexBackend& backend : backends) {
-    if (backend.name == name) return backend.make(std::move(mesh));
-    known += known.empty() ? "" : ", ";
-    known += backend.name;
-  }
-  throw Error("there is no index '" + std::string(name) + "'; this build has: " + known);
+  return entry_named(name, backends, "index").make(std::move(mesh));
 }
 
 }  // namespace keepout

@@ -6,12 +6,14 @@
 
 #include "keepout/activation/registry.h"
 #include "keepout/adapters/index_registry.h"
+#include "keepout/error.h"
 #include "keepout/solvers/registry.h"
 
 namespace keepout {
 
 MotionConstraint make_motion_constraint(std::shared_ptr<const Mesh> mesh,
                                         const MotionConstraintSettings& settings) {
+  if (!mesh) throw Error("a motion constraint needs a mesh: none was given");
   auto index = make_index(settings.index, mesh);
   auto activation = make_activation(settings.activation, mesh);
   auto solver = make_solver(settings.solver);

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "keepout/solvers/active_set.h"
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "active_set_method.h"

@@ -2,9 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "keepout/solvers/registry.h"
 
-#include <string>
-
-#include "keepout/error.h"
+#include "keepout/registry.h"
 #include "keepout/solvers/active_set.h"
 
 namespace keepout {
@@ -24,13 +22,7 @@ constexpr SolverBackend backends[] = {
 std::span<const SolverBackend> solver_backends() noexcept { return backends; }
 
 std::unique_ptr<Solver> make_solver(std::string_view name) {
-  std::string known;
-  for (const SolverBackend& backend : backends) {
-    if (backend.name == name) return backend.make();
-    known += known.empty() ? "" : ", ";
-    known += backend.name;
-  }
-  throw Error("no solver is called \"" + std::string(name) + "\"; there are: " + known);
+  return entry_named(name, backends, "solver").make();
 }
 
 }  // namespace keepout

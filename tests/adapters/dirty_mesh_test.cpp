@@ -5,7 +5,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -17,16 +16,14 @@
 #include "keepout/index/pd_tree.h"
 #include "keepout/index/self_intersection.h"
 #include "keepout/mesh/doctor.h"
+#include "keepout/fixtures/real_mesh.h"
 
 namespace keepout {
 namespace {
 
 namespace fs = std::filesystem;
 
-fs::path dirty_folder() {
-  const char* cache = std::getenv("KEEPOUT_CACHE");
-  return fs::path(cache != nullptr && *cache != '\0' ? cache : KEEPOUT_FIXTURE_CACHE) / "dirty";
-}
+fs::path dirty_folder() { return fixture_cache() / "dirty"; }
 
 std::vector<fs::path> dirty_files() {
   std::vector<fs::path> files;

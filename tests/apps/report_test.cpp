@@ -15,6 +15,8 @@
 #include <vector>
 
 #include "keepout/error.h"
+#include "number_text.h"
+#include "report/figures.h"
 #include "report/html_report.h"
 #include "report/plot.h"
 #include "report/png.h"
@@ -161,6 +163,15 @@ TEST(Summary, PastAnOpenSurfaceIsAfterAnOddNumberOfCrossings) {
   EXPECT_EQ(summarize(run).strokes_breached, 1U);
 }
 
+TEST(Summary, ARunThatCrossedAnOpenSurfaceCameAsNearAsCanBe) {
+  app::Run run{.rule = "some", .description = ""};
+  run.strokes = {{std::vector<Cycle>(5, cycle({0, 0, 0}, 0.108))}};
+  EXPECT_EQ(summarize(run).closest_approach, 0.108);
+  run.crossings = {{0, 1}};
+  EXPECT_EQ(summarize(run).closest_approach, 0.0);
+  EXPECT_EQ(summarize(run).deepest_penetration, 0.0);
+}
+
 TEST(Png, DecodesBackToTheSamePixels) {
   Image image({7, 5});
   for (std::size_t i = 0; i < image.rgba.size(); ++i) {
@@ -265,6 +276,105 @@ TEST(Views, TheTellingMomentIsTheDeepestOfARuleNotOfTheFreeHand) {
   EXPECT_EQ(telling_moment(simulation).run, 0U);
 }
 
+/// A flat surface with its free side up, and a tip that slides over it for 40 mm.
+Surface flat_ground() { return square(0, 50); }
+
+Stroke slide(double height) {
+  Stroke stroke;
+  for (int i = 0; i <= 200; ++i) {
+    const double raised = i < 50 ? 0.16 * (50 - i) : 0.0;
+    stroke.cycles.push_back(cycle({0.2 * i - 20.0, 0.0, raised + height}, raised + height));
+  }
+  return stroke;
+}
+
+/// `depth` is that of the rule; the other rule touches, from the middle of the stroke to its end.
+Simulation slides(const Mesh& mesh, double depth, SurfaceKind surface = SurfaceKind::closed) {
+  Simulation simulation{.mesh_name = "ground", .mesh = &mesh, .surface = surface};
+  simulation.runs.push_back({.rule = no_rule, .description = "", .strokes = {slide(-4.0)}});
+  simulation.runs.push_back({.rule = "rule", .description = "", .strokes = {slide(-depth)}});
+  simulation.runs.push_back({.rule = "other", .description = "", .strokes = {slide(0.5)}});
+  simulation.runs.back().strokes[0].cycles.back() = cycle({20, 0, 0}, 0.0);
+  return simulation;
+}
+
+constexpr ImageSize close = {200, 150};
+
+TEST(CloseUps, ShowTheWholeStrokeAndEveryMarkedMoment) {
+  const Mesh mesh(flat_ground());
+  const Simulation simulation = slides(mesh, 0.0);
+  const std::vector<CloseUp> views = close_ups(simulation, telling_moment(simulation), close);
+  ASSERT_EQ(views.size(), 3U);
+  for (const app::Run& run : simulation.runs) {
+    for (const Cycle& c : run.strokes[0].cycles) {
+      const PicturePoint p = project(views[0].camera, close, c.tip);
+      EXPECT_TRUE(p.x > 5.0 && p.x < 195.0 && p.y > 5.0 && p.y < 135.0) << p.x << ", " << p.y;
+    }
+  }
+  EXPECT_EQ(views[2].worst, 200U);
+}
+
+TEST(CloseUps, OfAnOpenSurfaceWithoutAMarginShowMillimetres) {
+  const Mesh mesh(flat_ground());
+  Simulation simulation = slides(mesh, 0.0, SurfaceKind::open);
+  for (app::Run& run : simulation.runs) {
+    for (Cycle& c : run.strokes[0].cycles) c.clearance = std::abs(c.clearance);
+  }
+  simulation.runs[1].crossings = {{0, 100}};
+  const Moment moment = telling_moment(simulation);
+  EXPECT_EQ(moment.run, 1U);
+  EXPECT_EQ(moment.cycle, 100U);
+  const std::vector<CloseUp> views = close_ups(simulation, moment, close);
+  EXPECT_GT(views[1].camera.view_height, 5.0);
+  EXPECT_TRUE(shows(views[1].camera, close, simulation.runs[1].strokes[0].cycles[100].tip));
+}
+
+TEST(CloseUps, OfASmallDepthShowItLargeAndMarkWhatIsInSight) {
+  const Mesh mesh(flat_ground());
+  const Simulation simulation = slides(mesh, 0.1);
+  const Moment moment = telling_moment(simulation);
+  const std::vector<CloseUp> views = close_ups(simulation, moment, close);
+  const double height = views[1].camera.view_height;
+  EXPECT_LE(height, 14.0 * 0.1 + 1e-9);
+  const auto marked = [&](std::size_t run) {
+    return simulation.runs[run].strokes[0].cycles[views[run].worst];
+  };
+  EXPECT_TRUE(shows(views[1].camera, close, marked(1).tip));
+  EXPECT_TRUE(shows(views[2].camera, close, marked(2).tip));
+  EXPECT_EQ(marked(2).clearance, 0.5);
+  EXPECT_EQ(marked(0).clearance, -4.0);  // out of sight, and told for all that
+  EXPECT_NE(close_up_picture(simulation, moment, views[0], 0).find("↓ 4.00\u00a0mm deep"),
+            std::string::npos);
+}
+
+TEST(Plots, AreEnlargedAroundTheSurfaceEvenWhereRulesOnlyTouch) {
+  const Mesh mesh(flat_ground());
+  const Simulation simulation = slides(mesh, 0.0);
+  const std::string all = clearance_plot(simulation, 0), near = near_surface_plot(simulation, 0);
+  EXPECT_NE(all.find(">5</text>"), std::string::npos) << all;
+  EXPECT_EQ(near.find(">5</text>"), std::string::npos);
+  EXPECT_NE(near.find(">0.2</text>"), std::string::npos) << near;
+}
+
+/// The number that follows a text, from the place where a plot writes some words.
+double written_at(const std::string& svg, const std::string& words, const std::string& attribute) {
+  const std::size_t start = svg.rfind("<text", svg.find(">" + words + "<"));
+  return std::stod(svg.substr(svg.find(attribute + "=\"", start) + attribute.size() + 2));
+}
+
+TEST(Plot, ALabelOfABandKeepsClearOfTheCurves) {
+  Plot plot;
+  plot.x = {.label = "x", .low = 0.0, .high = 100.0};
+  plot.y = {.label = "y", .low = -10.0, .high = 10.0};
+  plot.bands = {{-10.0, 0.0, "inside"}};
+  plot.series = {{"one", "rule-0", {{0.0, -9.7}, {50.0, -9.7}, {50.0, -5.0}, {100.0, -5.0}}}};
+  const std::string svg = to_svg(plot);
+  EXPECT_GT(written_at(svg, "inside", "x"), 0.5 * (66.0 + 534.0));
+  EXPECT_GT(svg.find(">inside<"), svg.find("class=\"line"));  // written over what it must cover
+  plot.series[0].points = {{0.0, 5.0}, {100.0, 5.0}};
+  EXPECT_EQ(written_at(to_svg(plot), "inside", "x"), 74.0);
+}
+
 TEST(Plot, ThinningKeepsEveryPeak) {
   std::vector<PlotPoint> points;
   for (int i = 0; i < 24000; ++i) points.push_back({i / 24000.0, std::sin(0.01 * i)});
@@ -297,13 +407,23 @@ TEST(Plot, IsWellFormedAndPutsTheExtremesOnTheFrame) {
   const std::string svg = to_svg(plot);
   EXPECT_EQ(fault_in_xml(svg), "");
   // From the lower left to the upper right of the frame, without the point that has no logarithm.
-  EXPECT_NE(svg.find("d=\"M66.0,348.0L546.0,28.0\""), std::string::npos) << svg;
+  EXPECT_NE(svg.find("d=\"M66.0,348.0L534.0,28.0\""), std::string::npos) << svg;
 }
 
 TEST(Text, NumbersReadWell) {
   EXPECT_EQ(grouped(24000), "24,000");
   EXPECT_EQ(grouped(999), "999");
   EXPECT_EQ(rounded(0.0012345), "0.00123");
+  EXPECT_EQ(rounded(12.0), "12.0");
+  EXPECT_EQ(trimmed(12.0), "12");
+  EXPECT_EQ(trimmed(-0.5), "-0.5");
+  EXPECT_EQ(trimmed(1200.0), "1200");
+  EXPECT_EQ(trimmed(155.6996), "155.7");
+  EXPECT_EQ(trimmed(1234567.8), "1234568");
+  EXPECT_EQ(trimmed(-1e-17), "0");
+  EXPECT_EQ(how_often(1), "once");
+  EXPECT_EQ(how_often(2), "twice");
+  EXPECT_EQ(how_often(1200), "1,200 times");
   EXPECT_EQ(length_text(1.2345), "1.23\u00a0mm");
   EXPECT_EQ(length_text(0.0012345), "1.23\u00a0µm");
   EXPECT_EQ(listed({"a", "b", "c"}), "a, b and c");
@@ -320,6 +440,52 @@ TEST(Verdict, NamesTheRulesThatFailAndHowDeep) {
   EXPECT_NE(text.find("Under “leaky” it went up to 0.0200\u00a0mm deep, in 1 of 1 stroke."),
             std::string::npos)
       << text;
+}
+
+TEST(Verdict, SaysWhetherARuleThatKeptTheToolOutTouched) {
+  const auto outcome = [](double clearance) {
+    app::Run run{.rule = "some", .description = ""};
+    run.strokes = {{{cycle({0, 0, 0}, clearance)}}};
+    return outcome_of(summarize(run), SurfaceKind::open);
+  };
+  EXPECT_EQ(outcome(0.0), "stayed outside but touched the surface");
+  EXPECT_EQ(outcome(9e-7), "stayed outside but touched the surface");
+  EXPECT_EQ(outcome(2e-6), "stayed outside, never nearer than 2.00\u00a0nm");
+}
+
+TEST(Verdict, CountsCrossingsOfAnOpenSurfaceInWords) {
+  app::Run run{.rule = "some", .description = ""};
+  run.strokes = {{std::vector<Cycle>(5, cycle({0, 0, 0}, 1.0))}, {{cycle({0, 0, 0}, 1.0)}}};
+  run.crossings = {{0, 1}};
+  EXPECT_EQ(outcome_of(summarize(run), SurfaceKind::open),
+            "went through the surface once, in 1 of 2 strokes");
+}
+
+std::string page_of(const Simulation& simulation) {
+  std::ostringstream page;
+  print_report(page, simulation);
+  return page.str();
+}
+
+TEST(Report, TellsHowTheCheckDecides) {
+  const Mesh mesh(flat_ground());
+  const std::string closed = page_of(slides(mesh, 0.0));
+  EXPECT_NE(closed.find("a ray from the tip passes"), std::string::npos);
+  EXPECT_NE(closed.find("brute force"), std::string::npos);
+  EXPECT_NE(closed.find("after which, or during which, the tip was on the other side"),
+            std::string::npos);
+  const std::string open = page_of(slides(mesh, 0.0, SurfaceKind::open));
+  EXPECT_EQ(open.find("a ray from the tip passes"), std::string::npos);
+  EXPECT_NE(open.find("pseudonormal"), std::string::npos);
+}
+
+TEST(Report, ALongSettingGetsTheWholeWidth) {
+  const Mesh mesh(flat_ground());
+  Simulation simulation = slides(mesh, 0.0);
+  simulation.settings = {{"seed", "1"}, {"command", "keepout simulate " + std::string(80, 'x')}};
+  const std::string page = page_of(simulation);
+  EXPECT_NE(page.find("<dt>seed</dt><dd>1</dd>"), std::string::npos);
+  EXPECT_NE(page.find("<dt class=\"wide\">command</dt><dd class=\"wide\">"), std::string::npos);
 }
 
 TEST(Report, IsOneWellFormedPageThatNeedsNothingElse) {

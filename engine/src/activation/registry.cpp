@@ -3,12 +3,11 @@
 #include "keepout/activation/registry.h"
 
 #include <array>
-#include <string>
 #include <utility>
 
 #include "keepout/activation/all_faces.h"
 #include "keepout/activation/paper.h"
-#include "keepout/error.h"
+#include "keepout/registry.h"
 
 namespace keepout {
 namespace {
@@ -31,12 +30,7 @@ std::span<const ActivationEntry> activation_rules() noexcept { return rules; }
 
 std::unique_ptr<Activation> make_activation(std::string_view name,
                                             std::shared_ptr<const Mesh> mesh) {
-  std::string known;
-  for (const ActivationEntry& entry : rules) {
-    if (entry.name == name) return entry.make(std::move(mesh));
-    known += (known.empty() ? "" : ", ") + std::string(entry.name);
-  }
-  throw Error("there is no activation rule '" + std::string(name) + "'; known: " + known);
+  return entry_named(name, rules, "activation rule").make(std::move(mesh));
 }
 
 }  // namespace keepout

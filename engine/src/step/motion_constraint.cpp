@@ -3,6 +3,7 @@
 #include "keepout/step/motion_constraint.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "keepout/error.h"
@@ -29,10 +30,14 @@ MotionConstraint::MotionConstraint(std::shared_ptr<const Mesh> mesh,
       solver_(std::move(solver)),
       options_(options),
       work_(fitted(capacity, mesh_.get())) {
+  constexpr std::size_t most = std::numeric_limits<int>::max();
+  if (capacity.planes > most || capacity.variables > most) {
+    throw Error("a capacity of more than 2^31 planes or variables cannot be held");
+  }
   if (!mesh_ || !index_ || !activation_ || !solver_) {
     throw Error("a motion constraint needs a mesh, an index, an activation rule and a solver");
   }
-  if (!is_ok(check({Vec3::Zero(), Vec3::Zero()}, options_))) {
+  if (!is_ok(check({.tip = Vec3::Zero(), .desired = Vec3::Zero()}, options_))) {
     throw Error("the radius must be above zero, margin and damping not below, and all below 1e30");
   }
   solver_->reserve(static_cast<int>(work_.variables()), static_cast<int>(work_.planes.capacity()));

@@ -33,20 +33,25 @@ std::string_view reason(Status status) noexcept {
     case Status::limited:
       return "planes of nearby triangles hold the motion back";
     case Status::infeasible:
-      return "no motion satisfies all planes: the tip is closer than the margin on several sides; "
-             "retreat, or lower the margin";
+      return "no motion satisfies all planes: the tip is closer than the margin on several sides, "
+             "or "
+             "the joints cannot move it away; retreat, or lower the margin";
     case Status::ill_posed:
-      return "the Jacobian lacks full column rank: give a damping above zero";
+      return "the Jacobian lacks full column rank, or all but: give a damping above zero";
     case Status::invalid_input:
-      return "a number is not finite or beyond 1e30: check the tip, the increment and the Jacobian";
+      return "a number is missing, not finite, beyond 1e30, or so far from the origin that the "
+             "step "
+             "is lost in its digits: check the tip, the increment and the Jacobian";
     case Status::beyond_reach:
       return "the motion is longer than the radius of the motion sphere: ask for less in a cycle, "
              "or declare a larger radius";
     case Status::over_capacity:
-      return "more triangles or planes in reach than room was made for: lower the radius or raise "
-             "the capacity";
+      return "more triangles, planes or joints than room was made for: lower the radius or raise "
+             "the "
+             "capacity";
     case Status::unsolved:
-      return "the solver gave up within its budget of work";
+      return "the solver gave up within its budget of work, or its answer did not satisfy the "
+             "planes";
   }
   return "unknown status";
 }

@@ -17,25 +17,24 @@ Workspace::Workspace(const Capacity& capacity)
     : candidates(capacity.triangles),
       hits(capacity.triangles),
       planes(capacity.planes),
-      variables_(std::max<std::size_t>(capacity.variables, 3)),
-      rows_(capacity.planes * variables_),
+      variables_(static_cast<Eigen::Index>(std::max<std::size_t>(capacity.variables, 3))),
+      rows_(capacity.planes * static_cast<std::size_t>(variables_)),
       bounds_(capacity.planes) {}
 
-StepProblem Workspace::pose(const Vec3& desired, const TipJacobian& jacobian,
-                            double damping) noexcept {
-  const bool joints = jacobian.joints() > 0;
-  const Eigen::Index n = joints ? jacobian.joints() : 3;
+StepProblem Workspace::pose(const Motion& motion, double damping) noexcept {
+  const TipJacobian jacobian = motion.jacobian.value_or(TipJacobian(identity.data(), 3));
+  const Eigen::Index n = jacobian.joints();
   const auto m = static_cast<Eigen::Index>(planes.size());
   Eigen::Map<StepProblem::RowMatrix> rows(rows_.data(), m, n);
   for (Eigen::Index p = 0; p < m; ++p) {
     const HalfSpace& plane = planes[p];
     for (Eigen::Index c = 0; c < n; ++c) {
-      rows(p, c) = joints ? plane.normal.dot(jacobian.matrix().col(c)) : plane.normal[c];
+      rows(p, c) = motion.jacobian ? plane.normal.dot(jacobian.matrix().col(c)) : plane.normal[c];
     }
     bounds_[p] = plane.offset;
   }
-  desired_ = desired;
-  return {.jacobian = {joints ? jacobian.data() : identity.data(), 3, n},
+  desired_ = motion.desired;
+  return {.jacobian = {jacobian.data(), 3, n},
           .desired = {desired_.data(), 3},
           .rows = {rows_.data(), m, n},
           .bounds = {bounds_.data(), m},

@@ -9,6 +9,7 @@
 #include "keepout/activation/activation.h"
 #include "keepout/index/brute_force.h"
 #include "keepout/mesh/mesh.h"
+#include "keepout/step/step.h"
 
 namespace keepout {
 
@@ -21,7 +22,8 @@ inline std::vector<HalfSpace> planes_at(const std::shared_ptr<const Mesh>& mesh,
   const Ball ball{tip, radius + margin};
   BruteForce(mesh).collect(ball, candidates);
   refine(*mesh, ball, candidates.view(), hits);
-  rule.start({tip, Vec3::Zero(), margin, hits.view()}, planes);
+  rule.start({tip, Vec3::Zero(), margin, position_rounding(tip, {.radius = radius}), hits.view()},
+             planes);
   return {planes.begin(), planes.end()};
 }
 

@@ -19,6 +19,7 @@ struct Surroundings {
   Vec3 tip;                   // [length]
   Vec3 desired;               // increment asked for [length]
   double margin;              // distance to keep from the mesh [length], >= 0
+  double rounding;            // what the tip may be off by after earlier steps [length]
   std::span<const Hit> hits;  // sorted by id; closest points are relative to the tip
 };
 

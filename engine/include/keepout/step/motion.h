@@ -3,6 +3,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
+#include <optional>
 #include <span>
 
 #include "keepout/geometry/half_space.h"
@@ -16,9 +18,6 @@ class TipJacobian {
  public:
   using Matrix = Eigen::Matrix<double, 3, Eigen::Dynamic>;
 
-  /// No joints: the tip itself is what moves, u = dx.
-  TipJacobian() = default;
-
   /// The matrix must outlive the step.
   TipJacobian(const Matrix& matrix) noexcept : data_(matrix.data()), joints_(matrix.cols()) {}
   TipJacobian(Matrix&&) = delete;
@@ -29,15 +28,19 @@ class TipJacobian {
   Eigen::Map<const Matrix> matrix() const noexcept { return {data_, 3, joints_}; }
 
  private:
-  const double* data_ = nullptr;
-  Eigen::Index joints_ = 0;
+  const double* data_;
+  Eigen::Index joints_;
 };
 
 /// What is asked of one control cycle.
 struct Motion {
-  Vec3 tip;                   // in the frame of the mesh [length]
-  Vec3 desired;               // increment asked for [length]
-  TipJacobian jacobian = {};  // of the joints that are to move it; none: the tip moves itself
+  Vec3 tip = unset;      // in the frame of the mesh [length]
+  Vec3 desired = unset;  // increment asked for [length]
+  /// Of the joints that are to move the tip. Without one, the tip itself is what moves: u = dx.
+  std::optional<TipJacobian> jacobian = std::nullopt;
+
+  /// What was forgotten is refused, not guessed.
+  inline static const Vec3 unset = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
 };
 
 /// What one control cycle may do. Views stay valid until the next step of the same workspace.
@@ -45,8 +48,8 @@ struct Step {
   Status status = Status::invalid_input;
   Vec3 motion = Vec3::Zero();             // of the tip; zero unless ok() [length]
   std::span<const double> increment;      // u: the tip's, or the joints' (n); empty unless ok()
-  std::span<const HalfSpace> planes;      // all that were posed, whatever the status
-  std::span<const std::uint32_t> active;  // the planes that hold the motion back; empty unless ok()
+  std::span<const HalfSpace> planes;      // all that were posed to the solver
+  std::span<const std::uint32_t> active;  // which of them hold the motion back; empty unless ok()
   std::size_t triangles = 0;              // in reach
 
   bool ok() const noexcept { return is_ok(status); }

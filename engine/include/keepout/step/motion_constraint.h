@@ -15,7 +15,8 @@ namespace keepout {
 /// names they were made. Not thread-safe: one for each control loop; the mesh is shared.
 class MotionConstraint {
  public:
-  /// Throws Error when a part is missing or an option is out of range. Makes all memory here.
+  /// Index and rule must be built on `mesh`. Throws Error when a part is missing, or an option or
+  /// capacity is out of range. Makes all memory here.
   MotionConstraint(std::shared_ptr<const Mesh> mesh, std::unique_ptr<SpatialIndex> index,
                    std::unique_ptr<Activation> activation, std::unique_ptr<Solver> solver,
                    const StepOptions& options, const Capacity& capacity = {});
@@ -27,8 +28,6 @@ class MotionConstraint {
   Step step(const Motion& motion, StageTimes& times) noexcept;
 
   const Mesh& mesh() const noexcept { return *mesh_; }
-  const SpatialIndex& index() const noexcept { return *index_; }
-  const StepOptions& options() const noexcept { return options_; }
 
  private:
   std::shared_ptr<const Mesh> mesh_;

@@ -18,7 +18,7 @@ enum class Status : std::uint8_t {
   invalid_input,  // a number is not finite or out of range
   beyond_reach,   // the motion asked for, or solved, is longer than the motion sphere's radius
   over_capacity,  // more triangles, planes or variables than room was made for
-  unsolved        // the solver gave up within its budget of work
+  unsolved        // the solver gave up, or its answer does not satisfy the planes
 };
 
 /// A motion comes with it, which may be carried out.

@@ -25,11 +25,11 @@ class Workspace {
  public:
   explicit Workspace(const Capacity& capacity);
 
-  std::size_t variables() const noexcept { return variables_; }
+  Eigen::Index variables() const noexcept { return variables_; }
 
   /// The problem whose rows are the planes: on the tip's own increment without a Jacobian, on the
-  /// joints' with one, n^T J. Precondition: at most variables() columns.
-  StepProblem pose(const Vec3& desired, const TipJacobian& jacobian, double damping) noexcept;
+  /// joints' with one, n^T J. Precondition: at most variables() joints.
+  StepProblem pose(const Motion& motion, double damping) noexcept;
 
   TriangleBuffer candidates;
   HitBuffer hits;
@@ -37,7 +37,7 @@ class Workspace {
   Solution solution;
 
  private:
-  std::size_t variables_;
+  Eigen::Index variables_;
   std::vector<double> rows_;    // (planes, variables), row by row
   std::vector<double> bounds_;  // (planes)
   Vec3 desired_;

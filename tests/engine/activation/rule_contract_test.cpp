@@ -1,0 +1,113 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+// What every rule of the registry must do, whatever planes it chooses.
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <ostream>
+#include <string>
+
+#include "engine/activation/rule_fixture.h"
+#include "keepout/activation/registry.h"
+#include "keepout/error.h"
+#include "keepout/fixtures/poses.h"
+#include "keepout/fixtures/shapes.h"
+
+namespace keepout {
+
+/// What a test prints of a rule.
+static void PrintTo(const ActivationEntry& rule, std::ostream* out) { *out << rule.name; }
+
+namespace {
+
+class RuleContract : public testing::TestWithParam<ActivationEntry> {
+ protected:
+  /// Calls check(tip, planes) for tips close above every generated shape.
+  template <class Check>
+  void for_each_situation(double margin, Check&& check) const {
+    for (const Shape& shape : shapes()) {
+      SCOPED_TRACE(shape.name);
+      const auto mesh = std::make_shared<const Mesh>(shape.make());
+      const auto rule = GetParam().make(mesh);
+      Random random(1);
+      for (const Vec3& tip : surface_points(*mesh, 20, 0.5, random)) {
+        check(*mesh, tip, planes_at(mesh, *rule, tip, 3.0, margin));
+        if (HasFatalFailure()) return;
+      }
+    }
+  }
+};
+
+/// How far a corner may stick out of a face's own plane: the normal of a triangle with sides l and
+/// height h is known to some epsilon l / h. [length]
+double rounding_of_normal(const Triangle& t) {
+  const double side = std::max({(t[1] - t[0]).norm(), (t[2] - t[1]).norm(), (t[0] - t[2]).norm()});
+  const double height = (t[1] - t[0]).cross(t[2] - t[0]).norm() / side;
+  return 1e-15 * side * side / height;
+}
+
+TEST_P(RuleContract, NormalsAreUnitVectorsAndSourcesAreTrianglesInReach) {
+  std::size_t seen = 0;
+  for_each_situation(0.25, [&](const Mesh& mesh, const Vec3& tip, const auto& planes) {
+    for (const HalfSpace& plane : planes) {
+      ASSERT_NEAR(plane.normal.norm(), 1.0, 1e-14);
+      ASSERT_LT(plane.source, mesh.triangle_count());
+      ASSERT_LE(closest_point(mesh.triangle(plane.source), tip).distance, 3.25);
+      ++seen;
+    }
+  });
+  EXPECT_GT(seen, 1000u);
+}
+
+TEST_P(RuleContract, WithoutAMarginStandingStillIsAlwaysAllowed) {
+  for_each_situation(0.0, [&](const Mesh&, const Vec3& tip, const auto& planes) {
+    for (const HalfSpace& plane : planes) ASSERT_LE(plane.offset, 1e-12 * tip.lpNorm<1>());
+  });
+}
+
+TEST_P(RuleContract, EachPlaneHasItsOwnTriangleBehindIt) {
+  for_each_situation(0.25, [&](const Mesh& mesh, const Vec3& tip, const auto& planes) {
+    for (const HalfSpace& plane : planes) {
+      const Triangle triangle = mesh.triangle(plane.source);
+      for (const Vec3& corner : triangle) {
+        ASSERT_LE(plane.normal.dot(corner - tip) + 0.25,
+                  plane.offset + 1e-12 + rounding_of_normal(triangle));
+      }
+    }
+  });
+}
+
+TEST_P(RuleContract, TheSameQuestionGetsTheSameAnswer) {
+  const auto mesh = std::make_shared<const Mesh>(make_shape("cortex"));
+  const auto rule = GetParam().make(mesh);
+  Random random(2);
+  for (const Vec3& tip : surface_points(*mesh, 50, 0.5, random)) {
+    const auto first = planes_at(mesh, *rule, tip, 4.0);
+    planes_at(mesh, *rule, -tip, 4.0);
+    const auto second = planes_at(mesh, *rule, tip, 4.0);
+    ASSERT_TRUE(std::equal(first.begin(), first.end(), second.begin(), second.end(),
+                           [](const HalfSpace& a, const HalfSpace& b) {
+                             return a.normal == b.normal && a.offset == b.offset &&
+                                    a.source == b.source;
+                           }));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Rules, RuleContract, testing::ValuesIn(activation_rules()),
+                         [](const auto& p) { return std::string(p.param.name); });
+
+TEST(RuleRegistry, AnUnknownNameListsTheKnownOnes) {
+  const auto mesh = std::make_shared<const Mesh>(make_shape("cube"));
+  try {
+    make_activation("papr", mesh);
+    FAIL() << "no error";
+  } catch (const Error& error) {
+    for (const ActivationEntry& rule : activation_rules()) {
+      EXPECT_NE(std::string(error.what()).find(rule.name), std::string::npos);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace keepout

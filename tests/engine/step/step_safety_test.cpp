@@ -1,0 +1,184 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+// No part is taken at its word: whatever a solver, a rule or a caller gets wrong, nothing moves.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "keepout/activation/paper.h"
+#include "keepout/error.h"
+#include "keepout/factory/make_motion_constraint.h"
+#include "keepout/fixtures/random.h"
+#include "keepout/fixtures/shapes.h"
+#include "keepout/index/pd_tree.h"
+#include "keepout/solvers/active_set.h"
+#include "keepout/step/motion_constraint.h"
+
+namespace keepout {
+namespace {
+
+std::shared_ptr<const Mesh> cube() { return std::make_shared<const Mesh>(make_shape("cube")); }
+
+MotionConstraint with(std::unique_ptr<Activation> rule, std::unique_ptr<Solver> solver,
+                      const std::shared_ptr<const Mesh>& mesh) {
+  return {
+      mesh, std::make_unique<PdTree>(mesh), std::move(rule), std::move(solver), {.radius = 5.0}};
+}
+
+MotionConstraint guard(const std::shared_ptr<const Mesh>& mesh) {
+  return with(std::make_unique<PaperRule>(mesh), std::make_unique<ActiveSet>(), mesh);
+}
+
+const Vec3 above_the_cube(3, 4, 50.5);  // its faces are at +-50
+
+TEST(StepSafety, ASolverThatClaimsOptimalityForAMotionIntoTheMeshIsNotBelieved) {
+  class Liar final : public Solver {
+   public:
+    void reserve(int, int) override {}
+    SolveStatus solve(const StepProblem& problem, Solution& solution) noexcept override {
+      solution.u = {problem.desired.data(), 3};
+      return SolveStatus::optimal;
+    }
+  };
+  const auto mesh = cube();
+  auto constraint = with(std::make_unique<PaperRule>(mesh), std::make_unique<Liar>(), mesh);
+  const Step step = constraint.step({.tip = above_the_cube, .desired = {0, 0, -1}});
+  EXPECT_EQ(step.status, Status::unsolved);
+  EXPECT_EQ(step.motion, Vec3::Zero());
+  EXPECT_TRUE(step.increment.empty());
+  // What is no lie goes through.
+  EXPECT_EQ(constraint.step({.tip = above_the_cube, .desired = {0, 0, 1}}).status, Status::free);
+}
+
+TEST(StepSafety, ASolverThatReturnsNoNumberIsNotBelieved) {
+  class Broken final : public Solver {
+   public:
+    void reserve(int, int) override {}
+    SolveStatus solve(const StepProblem&, Solution& solution) noexcept override {
+      solution.u = u_;
+      return SolveStatus::optimal;
+    }
+
+   private:
+    std::array<double, 3> u_{0.0, std::nan(""), 0.0};
+  };
+  const auto mesh = cube();
+  auto constraint = with(std::make_unique<PaperRule>(mesh), std::make_unique<Broken>(), mesh);
+  for (const Vec3& tip : {above_the_cube, Vec3(0, 0, 90)}) {
+    const Step step = constraint.step({.tip = tip, .desired = {0, 0, -1}});
+    EXPECT_FALSE(step.ok());
+    EXPECT_EQ(step.motion, Vec3::Zero());
+  }
+}
+
+TEST(StepSafety, ARuleThatObjectsForEverEndsInAStatus) {
+  class Grumbler final : public Activation {
+   public:
+    void start(const Surroundings&, HalfSpaceBuffer&) noexcept override {}
+    std::optional<HalfSpace> separate(const Surroundings&, const Vec3&) noexcept override {
+      return HalfSpace{Vec3::UnitX(), -1.0, 0};  // which no trial here violates
+    }
+  };
+  const auto mesh = cube();
+  auto constraint = with(std::make_unique<Grumbler>(), std::make_unique<ActiveSet>(), mesh);
+  const Step step = constraint.step({.tip = above_the_cube, .desired = {0, 0, -1}});
+  EXPECT_EQ(step.status, Status::unsolved);
+  EXPECT_EQ(step.motion, Vec3::Zero());
+}
+
+TEST(StepSafety, AlmostSingularJacobiansNeverTakeTheTipIn) {
+  auto constraint = guard(cube());
+  Random random(1);
+  std::size_t moved = 0, refused = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    // The second joint does nearly what the first does.
+    const double difference = std::pow(10.0, random.uniform(-14.0, 0.0));
+    TipJacobian::Matrix jacobian(3, 3);
+    jacobian.col(0) = random.direction();
+    jacobian.col(1) = jacobian.col(0) + difference * random.direction();
+    jacobian.col(2) = random.direction();
+    const Vec3 desired = random.direction();
+    const Step step =
+        constraint.step({.tip = above_the_cube, .desired = desired, .jacobian = jacobian});
+    ASSERT_GE(above_the_cube.z() + step.motion.z(), 50.0 - 1e-9) << "difference " << difference;
+    if (!step.ok()) {
+      ASSERT_EQ(step.motion, Vec3::Zero());
+      ++refused;
+      continue;
+    }
+    // And the joints do what is said of them, in arithmetic of more digits.
+    for (int row = 0; row < 3; ++row) {
+      long double sum = 0.0L;
+      for (int c = 0; c < 3; ++c) {
+        sum += static_cast<long double>(jacobian(row, c)) * step.increment[c];
+      }
+      ASSERT_NEAR(static_cast<double>(sum), step.motion[row], 1e-9);
+    }
+    ++moved;
+  }
+  EXPECT_GT(moved, 5'000u);
+  EXPECT_GT(refused, 100u);
+}
+
+TEST(StepSafety, WhatIsForgottenIsRefused) {
+  auto constraint = guard(cube());
+  EXPECT_EQ(constraint.step({.tip = Vec3(0, 0, 60)}).status, Status::invalid_input);
+  EXPECT_EQ(constraint.step({.desired = Vec3(0, 0, 1)}).status, Status::invalid_input);
+  EXPECT_EQ(constraint.step({}).status, Status::invalid_input);
+  const auto mesh = cube();
+  EXPECT_THROW(
+      MotionConstraint(mesh, std::make_unique<PdTree>(mesh), std::make_unique<PaperRule>(mesh),
+                       std::make_unique<ActiveSet>(), {.margin = 0.5}),
+      Error);
+  EXPECT_THROW(make_motion_constraint(nullptr, {}), Error);
+}
+
+TEST(StepSafety, AJacobianWithoutJointsIsNoFreeTip) {
+  auto constraint = guard(cube());
+  const TipJacobian::Matrix none(3, 0);
+  const Motion motion{.tip = above_the_cube, .desired = {0, 0, 1}, .jacobian = none};
+  EXPECT_EQ(constraint.step(motion).status, Status::invalid_input);
+  const Motion null{
+      .tip = above_the_cube, .desired = {0, 0, 1}, .jacobian = TipJacobian(nullptr, 3)};
+  EXPECT_EQ(constraint.step(null).status, Status::invalid_input);
+  const TipJacobian::Matrix nan = TipJacobian::Matrix::Constant(3, 3, std::nan(""));
+  const Motion broken{.tip = above_the_cube, .desired = {0, 0, 1}, .jacobian = nan};
+  EXPECT_EQ(constraint.step(broken).status, Status::invalid_input);
+}
+
+TEST(StepSafety, AStepClippedToTheRadiusIsNotRefusedForItsRounding) {
+  const auto mesh = cube();
+  MotionConstraint constraint(mesh, std::make_unique<PdTree>(mesh),
+                              std::make_unique<PaperRule>(mesh), std::make_unique<ActiveSet>(),
+                              {.radius = 0.3});
+  Random random(2);
+  for (int i = 0; i < 10'000; ++i) {
+    const Vec3 way = 7.0 * random.direction();
+    const Vec3 clipped = way * (0.3 / way.norm());
+    ASSERT_EQ(constraint.step({.tip = {0, 0, 90}, .desired = clipped}).status, Status::free);
+  }
+}
+
+TEST(StepSafety, ATipSoFarAwayThatAStepIsLostInItsDigitsIsRefused) {
+  auto constraint = guard(cube());
+  EXPECT_EQ(constraint.step({.tip = {1e6, 0, 0}, .desired = {0, 0, 1}}).status, Status::free);
+  EXPECT_EQ(constraint.step({.tip = {1e12, 0, 0}, .desired = {0, 0, 1}}).status,
+            Status::invalid_input);
+}
+
+TEST(StepSafety, AFailedSolveIsTimedAsWell) {
+  const auto mesh = std::make_shared<const Mesh>(make_shape("thin_plates"));
+  MotionConstraint constraint(mesh, std::make_unique<PdTree>(mesh),
+                              std::make_unique<PaperRule>(mesh), std::make_unique<ActiveSet>(),
+                              {.radius = 2.0, .margin = 0.75});
+  StageTimes times;
+  const Vec3 in_the_gap(0, 0, mesh->bounds().low.z() + 1.5);
+  ASSERT_EQ(constraint.step({.tip = in_the_gap, .desired = {0.1, 0, 0}}, times).status,
+            Status::infeasible);
+  EXPECT_GT(times.solve, 0);
+}
+
+}  // namespace
+}  // namespace keepout
