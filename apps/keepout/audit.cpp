@@ -55,10 +55,12 @@ double Audit::clearance(const Vec3& point, double guess) {
   return distance <= touching ? 0.0 : -distance;
 }
 
-bool Audit::is_behind(const Vec3& point) {
-  if (inside_) return clearance(point) < 0.0;
+Side Audit::side(const Vec3& point) {
   const Hit nearest = nearest_(point);
-  return nearest.closest.distance > touching && is_behind_sheet(point, nearest);
+  if (nearest.closest.distance <= touching) return Side::touching;
+  const bool behind =
+      inside_ ? (*inside_)(point) != solid_is_outside_ : is_behind_sheet(point, nearest);
+  return behind ? Side::behind : Side::front;
 }
 
 bool Audit::is_behind_sheet(const Vec3& point, const Hit& nearest) {
@@ -75,8 +77,8 @@ bool Audit::is_behind_sheet(const Vec3& point, const Hit& nearest) {
   return normal.dot(-nearest.closest.offset) < 0.0;
 }
 
-void Audit::find_meetings(const Vec3& from, const Vec3& to) {
-  meetings_.clear();
+std::vector<double> Audit::meetings(const Vec3& from, const Vec3& to) {
+  std::vector<double> shares;
   candidates_.clear();
   index_->collect({0.5 * (from + to), 0.5 * (to - from).norm() + touching}, candidates_);
   for (const TriangleId t : candidates_) {
@@ -85,23 +87,10 @@ void Audit::find_meetings(const Vec3& from, const Vec3& to) {
     const double before = normal.dot(from - triangle[0]);
     const double after = normal.dot(to - triangle[0]);
     if ((before > 0.0) == (after > 0.0) || !line_meets(triangle, from, to)) continue;
-    meetings_.push_back(std::clamp(before / (before - after), 0.0, 1.0));
+    shares.push_back(std::clamp(before / (before - after), 0.0, 1.0));
   }
-  std::sort(meetings_.begin(), meetings_.end());
-}
-
-bool Audit::crosses(const Vec3& from, const Vec3& to) {
-  find_meetings(from, to);
-  const bool behind = is_behind(from);
-  // An open sheet can be walked around: its side changes only where the way meets it.
-  if (!inside_) return !meetings_.empty() && is_behind(to) != behind;
-  if (is_behind(to) != behind) return true;
-  // In and out again: the side can change only at a meeting, so the middles between them tell.
-  for (std::size_t i = 1; i < meetings_.size(); ++i) {
-    const double middle = 0.5 * (meetings_[i - 1] + meetings_[i]);
-    if (is_behind(from + middle * (to - from)) != behind) return true;
-  }
-  return false;
+  std::sort(shares.begin(), shares.end());
+  return shares;
 }
 
 }  // namespace keepout::app

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -12,13 +13,19 @@
 
 namespace keepout::app {
 
-/// Says where a tip really is, whatever the fixture believed: the independent check of a
-/// simulation.
+enum class Side : std::uint8_t { front, behind, touching };
+
+/// Says where a tip really is, whatever the fixture believed: the check of a simulation.
 ///
-/// Of a closed surface, ray parity tells the inside from the outside. An open one has two sides: of
-/// its nearest point, told by the angle-weighted normal there (Baerentzen, Aanaes, "Signed distance
-/// computation using the angle weighted pseudonormal", 2005). Distances come from an index of the
-/// audit's own.
+/// Of a closed surface, ray parity tells the inside from the outside: it shares nothing with the
+/// fixture. An open one has two sides, those of the nearest point, told by the angle-weighted
+/// normal there (Baerentzen, Aanaes, "Signed distance computation using the angle weighted
+/// pseudonormal", 2005), which no fixture uses.
+///
+/// Distances, nearest points, and which triangles a way may meet are not independent: they come
+/// from a PD-tree of the audit's own, but of the same make as the fixture's, and from the same
+/// closest-point kernel. The tests hold the tree to brute force and the kernel to quadruple
+/// precision.
 class Audit {
  public:
   /// Depths up to this are touching, not penetration: a tool that slides on a face is, to the last
@@ -33,23 +40,22 @@ class Audit {
   /// `guess` as for NearestTriangle.
   double clearance(const Vec3& point, double guess = 0.0);
 
-  /// Whether the straight way between two points passes through the surface: whether it comes to be
-  /// on the other side of it, even if only in between.
-  bool crosses(const Vec3& from, const Vec3& to);
+  /// On which side of the surface a point is. An open surface has sides only near it.
+  Side side(const Vec3& point);
+
+  /// Where the straight way between two points meets triangles, as shares of the way, in order.
+  std::vector<double> meetings(const Vec3& from, const Vec3& to);
 
   Hit nearest(const Vec3& point) { return nearest_(point); }
   const Mesh& mesh() const noexcept { return *mesh_; }
 
  private:
-  bool is_behind(const Vec3& point);
   bool is_behind_sheet(const Vec3& point, const Hit& nearest);
-  void find_meetings(const Vec3& from, const Vec3& to);
 
   std::shared_ptr<const Mesh> mesh_;
   std::unique_ptr<SpatialIndex> index_;
   NearestTriangle nearest_;
   TriangleBuffer candidates_;
-  std::vector<double> meetings_;      // of a way with triangles, as shares of it, sorted
   std::optional<InsideTest> inside_;  // only of a watertight mesh
   bool solid_is_outside_ = false;     // wound inwards: the free space is the inside
 };

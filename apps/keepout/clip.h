@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "keepout/error.h"
 #include "keepout/geometry/vec3.h"
 
 namespace keepout::app {
@@ -10,6 +11,15 @@ namespace keepout::app {
 inline Vec3 clipped(const Vec3& increment, double longest) {
   const double length = increment.norm();
   return length > longest ? Vec3(increment * (longest / length)) : increment;
+}
+
+/// Throws Error when increments may be asked for that lead out of the motion sphere. [mm]
+inline void require_within_reach(double max_step, double radius) {
+  if (max_step > radius) {
+    throw Error(
+        "--max-step is longer than --radius: no step may leave the motion sphere; lower the one or "
+        "raise the other");
+  }
 }
 
 }  // namespace keepout::app

@@ -12,6 +12,7 @@
 #include "keepout/error.h"
 #include "keepout/fixtures/poses.h"
 #include "keepout/fixtures/random.h"
+#include "number_text.h"
 
 namespace keepout::app {
 namespace {
@@ -26,27 +27,49 @@ SurfacePoint on_surface(Audit& audit, const Vec3& near) {
   return {near + hit.closest.offset, audit.mesh().normal(hit.triangle)};
 }
 
-/// A place on the surface with free room above it, on the side that faces outwards: strokes deep in
-/// a cavity would be as good a test, but nobody could see them in a picture.
-std::optional<SurfacePoint> place_to_start(Audit& audit, double height, Random& random) {
-  const Vec3 middle = audit.mesh().bounds().center();
-  for (int attempt = 0; attempt < 2000; ++attempt) {
-    const SurfacePoint place =
-        on_surface(audit, surface_points(audit.mesh(), 1, 0.0, random).front());
-    const Vec3 outwards = place.point - middle;
-    if (place.normal.dot(outwards) < 0.3 * outwards.norm()) continue;
-    if (audit.clearance(place.point + height * place.normal) > 0.8 * height) return place;
+/// Places all over the surface, drawn many at a time: each draw goes over all triangles once.
+class Places {
+ public:
+  Places(Audit& audit, Random& random) : audit_(audit), random_(random) {}
+
+  SurfacePoint next() {
+    if (points_.empty()) points_ = surface_points(audit_.mesh(), 1000, 0.0, random_);
+    const Vec3 point = points_.back();
+    points_.pop_back();
+    return on_surface(audit_, point);
   }
-  return std::nullopt;
+
+ private:
+  Audit& audit_;
+  Random& random_;
+  std::vector<Vec3> points_;
+};
+
+/// A place on the surface with free room above it; if there are such, one that faces outwards:
+/// strokes deep in a cavity would be as good a test, but nobody could see them in a picture.
+std::optional<SurfacePoint> place_to_start(Audit& audit, Places& places, double height) {
+  const Vec3 middle = audit.mesh().bounds().center();
+  const auto is_free = [&](const SurfacePoint& place) {
+    return audit.clearance(place.point + height * place.normal) > 0.8 * height;
+  };
+  std::optional<SurfacePoint> facing_elsewhere;
+  for (int attempt = 0; attempt < 2000; ++attempt) {
+    const SurfacePoint place = places.next();
+    const Vec3 outwards = place.point - middle;
+    const bool faces_outwards = place.normal.dot(outwards) >= 0.3 * outwards.norm();
+    if (faces_outwards && is_free(place)) return place;
+    if (!faces_outwards && !facing_elsewhere && is_free(place)) facing_elsewhere = place;
+  }
+  return facing_elsewhere;
 }
 
-/// From 0 to 1 with no jerk at either end.
+/// From 0 to 1, at rest at both ends: the speed is continuous, though the acceleration is not.
 double smooth(double t) {
   t = std::clamp(t, 0.0, 1.0);
   return t * t * (3.0 - 2.0 * t);
 }
 
-/// A smooth shake of three incommensurable waves along each axis.
+/// A smooth shake: the sum of three waves, each along a direction and at a frequency of its own.
 class Tremor {
  public:
   Tremor(double amplitude, Random& random) : amplitude_(amplitude) {
@@ -89,12 +112,13 @@ std::vector<SurfacePoint> slide_over(Audit& audit, const SurfacePoint& start, do
 }
 
 std::vector<Vec3> make_stroke(Audit& audit, const HandSettings& settings, double height,
-                              Random& random) {
-  const std::optional<SurfacePoint> start = place_to_start(audit, height, random);
+                              Places& places, Random& random) {
+  const std::optional<SurfacePoint> start = place_to_start(audit, places, height);
   if (!start) {
-    throw Error(
-        "the mesh offers no free place to start a stroke from; is it inside out? See "
-        "'keepout inspect'");
+    throw Error("no free place to start a stroke from: nowhere is there room for " +
+                trimmed(height) +
+                " mm above the surface, on the side that its normals point to; if they point into "
+                "the solid, flip all triangles ('keepout inspect' tells whether they do)");
   }
   const double depth = random.uniform(0.2, 1.0) * settings.deepest;
   const std::vector<SurfacePoint> way =
@@ -128,9 +152,10 @@ std::vector<std::vector<Vec3>> make_hand(Audit& audit, const HandSettings& setti
   scaled.deepest *= scale;
   scaled.slide_length *= scale;
   scaled.tremor *= scale;
+  Places places(audit, random);
   std::vector<std::vector<Vec3>> strokes;
   while (strokes.size() < settings.strokes) {
-    strokes.push_back(make_stroke(audit, scaled, settings.start_height * scale, random));
+    strokes.push_back(make_stroke(audit, scaled, settings.start_height * scale, places, random));
   }
   return strokes;
 }

@@ -18,7 +18,7 @@ struct HandSettings {
   double start_height = 8.0;   // above the surface at both ends of a stroke
   double deepest = 5.0;        // how far below the surface the hand aims, at most
   double slide_length = 30.0;  // over the surface, at most
-  double tremor = 0.1;         // amplitude; physiological tremor is 8 to 12 Hz
+  double tremor = 0.1;         // root of the sum of the squared amplitudes of its waves
   double cycle_seconds = 0.001;
 };
 
@@ -26,7 +26,9 @@ struct HandSettings {
 /// space to below the surface, along underneath it, and back up, with a tremor. It does not feel
 /// the fixture, so the same hand serves every rule.
 ///
-/// Throws Error when the mesh offers no free place to start from.
+/// Strokes go in where the surface faces outwards, as seen from the middle of the mesh, or, if that
+/// is nowhere free (a flat sheet, a mesh that keeps the tool inside), at any free place. Throws
+/// Error when there is none.
 std::vector<std::vector<Vec3>> make_hand(Audit& audit, const HandSettings& settings);
 
 }  // namespace keepout::app

@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <ostream>
-#include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,6 +15,7 @@
 #include "keepout/index/pd_tree.h"
 #include "keepout/index/self_intersection.h"
 #include "keepout/mesh/doctor.h"
+#include "number_text.h"
 
 namespace keepout::app {
 namespace {
@@ -64,7 +64,7 @@ std::vector<Finding> findings_of(const Inspection& inspection) {
       {"boundary_edges", mesh.boundary_edges, "boundary edge", "boundary edges",
        "the surface is open: nothing guards a hole, and a fixture by the paper's rule can also be "
        "passed at a rim",
-       "close the holes, or use the certified rule and mind the holes"},
+       "close the holes, or keep the tool away from the rims"},
       {"non_manifold_edges", mesh.non_manifold_edges, "non-manifold edge", "non-manifold edges",
        "three triangles or more meet there, so no rule can tell ridge from valley",
        "remove inner walls and duplicates, or use a rule that asks no neighbours"},
@@ -76,7 +76,7 @@ std::vector<Finding> findings_of(const Inspection& inspection) {
        "the same three vertices again; each calls for its own planes", "remove them"},
       {"degenerate_triangles", mesh.degenerate_triangles(), "degenerate triangle",
        "degenerate triangles",
-       "without an area they have no normal; they guard as the segments that they are",
+       "without an area they have no normal, and guard less than a proper triangle or nothing",
        "remesh, or collapse their short edges"},
       {"pinched_vertices", mesh.pinched_vertices, "pinched vertex", "pinched vertices",
        "parts of the surface hang together by a point there", "split the vertex, or remesh"},
@@ -88,26 +88,9 @@ std::vector<Finding> findings_of(const Inspection& inspection) {
   return present;
 }
 
-/// Thousands set apart by commas.
-std::string grouped(std::size_t number) {
-  const std::string digits = std::to_string(number);
-  std::string text;
-  for (std::size_t i = 0; i < digits.size(); ++i) {
-    if (i > 0 && (digits.size() - i) % 3 == 0) text += ',';
-    text += digits[i];
-  }
-  return text;
-}
-
-std::string rounded(double value) {
-  std::ostringstream text;
-  text << std::setprecision(6) << value;
-  return text.str();
-}
-
-std::string rounded(const Vec3& v, std::string_view between) {
-  std::string text = rounded(v.x());
-  for (const double value : {v.y(), v.z()}) text.append(between).append(rounded(value));
+std::string triple(const Vec3& v, std::string_view between) {
+  std::string text = trimmed(v.x());
+  for (const double value : {v.y(), v.z()}) text.append(between).append(trimmed(value));
   return text;
 }
 
@@ -122,12 +105,12 @@ void print_text(const InspectOptions& options, const Inspection& inspection, std
   print_row(out, "vertices", grouped(mesh.vertices));
   print_row(out, "edges", grouped(mesh.edges));
   print_row(out, "components", grouped(mesh.components));
-  print_row(out, "size", rounded(mesh.bounds.size(), " x ") + " mm");
-  print_row(out, "from", rounded(mesh.bounds.low, ", ") + " mm");
-  print_row(out, "to", rounded(mesh.bounds.high, ", ") + " mm");
-  print_row(out, "area", rounded(mesh.area) + " mm^2");
+  print_row(out, "size", triple(mesh.bounds.size(), " x ") + " mm");
+  print_row(out, "from", triple(mesh.bounds.low, ", ") + " mm");
+  print_row(out, "to", triple(mesh.bounds.high, ", ") + " mm");
+  print_row(out, "area", trimmed(mesh.area) + " mm^2");
   if (mesh.is_watertight()) {
-    print_row(out, "volume", rounded(mesh.signed_volume) + " mm^3");
+    print_row(out, "volume", trimmed(mesh.signed_volume) + " mm^3");
   }
   print_row(out, "surface",
             mesh.is_watertight() ? "watertight"
@@ -185,7 +168,8 @@ void print_json(const InspectOptions& options, const Inspection& inspection, std
       {"euler_characteristic", mesh.euler_characteristic},
       {"genus", to_json(mesh.genus)},
       {"area", mesh.area},
-      {"signed_volume", mesh.signed_volume},
+      // Of an open surface it would depend on where the origin is.
+      {"signed_volume", mesh.is_watertight() ? nlohmann::json(mesh.signed_volume) : nullptr},
       {"bounds", {{"low", to_json(mesh.bounds.low)}, {"high", to_json(mesh.bounds.high)}}},
       {"self_intersections", to_json(inspection.self_intersections)},
       {"warnings", inspection.loaded.warnings},

@@ -2,11 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <charconv>
+#include <cstdint>
 #include <cstdlib>
 #include <exception>
+#include <filesystem>
 #include <iostream>
 #include <new>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "inspect.h"
@@ -39,6 +43,48 @@ std::string listing(const std::string& title, const Table& table) {
   return text;
 }
 
+constexpr std::uint64_t largest_seed = (std::uint64_t{1} << 63) - 1;
+
+enum class Zero { allowed, refused };
+
+/// A length in millimetres. CLI11's own checks let 'nan' pass and tell their range in 300 digits.
+/// The limit keeps squares of lengths, and sums of them, far from the end of a double's range.
+CLI::Validator length(Zero zero) {
+  const auto check = [zero](const std::string& text) -> std::string {
+    char* end = nullptr;
+    const double value = std::strtod(text.c_str(), &end);
+    const bool is_number = !text.empty() && *end == '\0';
+    const bool in_range = (zero == Zero::allowed ? value >= 0.0 : value > 0.0) && value <= 1e30;
+    if (is_number && in_range) return {};
+    return "expected a number " +
+           std::string(zero == Zero::allowed ? "from 0 to 1e30" : "above 0 and at most 1e30") +
+           ", not '" + text + "'";
+  };
+  return {check, zero == Zero::allowed ? "NONNEGATIVE" : "POSITIVE"};
+}
+
+/// A whole number in decimal digits. For transform(), which hands on what was read: CLI11 alone
+/// would take '-1' for 2^64 - 1, too many digits for the largest number, and '010' for 8.
+CLI::Validator whole_number(std::uint64_t low, std::uint64_t high) {
+  const auto check = [low, high](std::string& text) -> std::string {
+    std::uint64_t value = 0;
+    const char* const last = text.data() + text.size();
+    const auto [end, error] = std::from_chars(text.data(), last, value);
+    if (error != std::errc{} || end != last || value < low || value > high) {
+      return "expected a whole number from " + std::to_string(low) + " to " + std::to_string(high) +
+             ", not '" + text + "'";
+    }
+    text = std::to_string(value);
+    return {};
+  };
+  return {check, ""};
+}
+
+/// The argument that every command shares.
+void add_mesh(CLI::App& command, std::filesystem::path& mesh) {
+  command.add_option("MESH", mesh, "Mesh file: STL, PLY, OBJ or OFF, in mm")->required();
+}
+
 /// The options that every command shares which builds a motion constraint.
 void add_constraint_options(CLI::App& command, MotionConstraintSettings& settings) {
   command.add_option("--index", settings.index, "Spatial index that finds triangles")
@@ -52,11 +98,11 @@ void add_constraint_options(CLI::App& command, MotionConstraintSettings& setting
                   "Radius of the motion sphere: the farthest that the tip may go in one cycle. "
                   "Triangles within it are considered; the paper uses 5")
       ->type_name("MM")
-      ->check(CLI::PositiveNumber)
+      ->check(length(Zero::refused))
       ->capture_default_str();
   command.add_option("--margin", settings.margin, "Distance to keep from the surface")
       ->type_name("MM")
-      ->check(CLI::NonNegativeNumber)
+      ->check(length(Zero::allowed))
       ->capture_default_str();
 }
 
@@ -65,7 +111,7 @@ void add_inspect(CLI::App& app, InspectOptions& options) {
       "inspect",
       "Say what a mesh is made of and what is wrong with it: counts, holes, winding, "
       "degenerate and duplicate triangles, size and unit");
-  command.add_option("MESH", options.mesh, "Mesh file: STL, PLY, OBJ or OFF, in mm")->required();
+  add_mesh(command, options.mesh);
   command.add_flag("--json", options.json, "Print JSON instead of text");
   command.add_flag("--self-intersections", options.self_intersections,
                    "Also count the pairs of triangles that cut through each other");
@@ -74,7 +120,7 @@ void add_inspect(CLI::App& app, InspectOptions& options) {
 void add_replay(CLI::App& app, ReplayOptions& options) {
   CLI::App& command = *app.add_subcommand(
       "replay", "Solve one step for each line of a pose file and write every result as CSV");
-  command.add_option("MESH", options.mesh, "Mesh file: STL, PLY, OBJ or OFF, in mm")->required();
+  add_mesh(command, options.mesh);
   command
       .add_option("--poses", options.poses,
                   "One step a line, 'px py pz dx dy dz': tip and desired increment, in mm")
@@ -83,7 +129,9 @@ void add_replay(CLI::App& app, ReplayOptions& options) {
   command.add_option("--out", options.steps, "Where to write the steps")
       ->type_name("STEPS.csv")
       ->required();
-  command.add_option("--planes", options.planes, "Where to write every active plane")
+  command
+      .add_option("--planes", options.planes,
+                  "Where to write all planes that were posed, whether or not they limited the step")
       ->type_name("PLANES.csv");
   command.add_option("--activation", options.constraint.activation, "Rule that chooses the planes")
       ->check(CLI::IsMember(names(activation_rules())))
@@ -96,7 +144,7 @@ void add_replay(CLI::App& app, ReplayOptions& options) {
   command
       .add_option("--max-step", options.max_step, "Longest increment to desire in a closed loop")
       ->type_name("MM")
-      ->check(CLI::PositiveNumber)
+      ->check(length(Zero::refused))
       ->needs(closed)
       ->capture_default_str();
   command.footer(
@@ -112,7 +160,7 @@ void add_simulate(CLI::App& app, SimulateOptions& options) {
       "simulate",
       "Push a tool over and into the anatomy with a simulated hand, without a fixture "
       "and with each rule, and write an HTML report with pictures");
-  command.add_option("MESH", options.mesh, "Mesh file: STL, PLY, OBJ or OFF, in mm")->required();
+  add_mesh(command, options.mesh);
   command.add_option("--out", options.report, "Where to write the report")
       ->type_name("REPORT.html")
       ->capture_default_str();
@@ -123,16 +171,26 @@ void add_simulate(CLI::App& app, SimulateOptions& options) {
   add_constraint_options(command, options.constraint);
   command.add_option("--max-step", options.max_step, "Longest increment to desire in a cycle")
       ->type_name("MM")
-      ->check(CLI::PositiveNumber)
+      ->check(length(Zero::refused))
       ->capture_default_str();
   command.add_option("--seed", options.hand.seed, "Seed of the hand: same seed, same motion")
+      ->type_name("NUMBER")
+      ->transform(whole_number(0, largest_seed))
       ->capture_default_str();
   command.add_option("--strokes", options.hand.strokes, "How often the hand goes in")
-      ->check(CLI::Range(1, 100000))
+      ->type_name("NUMBER")
+      ->transform(whole_number(1, 100'000))
       ->capture_default_str();
   command.add_option("--cycles", options.hand.cycles, "Control cycles of each stroke, at 1 kHz")
-      ->check(CLI::Range(10, 1000000))
+      ->type_name("NUMBER")
+      ->transform(whole_number(10, 1'000'000))
       ->capture_default_str();
+}
+
+/// What was printed has to arrive: a full disk shall not look like success.
+void flush_stdout() {
+  std::cout.flush();
+  if (!std::cout) throw Error("stdout: could not be written to the end; is the disk full?");
 }
 
 int run(int argc, char** argv) {
@@ -170,7 +228,9 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
-    return keepout::app::run(argc, argv);
+    const int status = keepout::app::run(argc, argv);
+    keepout::app::flush_stdout();
+    return status;
   } catch (const keepout::Error& error) {
     std::cerr << "keepout: " << error.what() << '\n';
   } catch (const std::bad_alloc&) {

@@ -4,29 +4,49 @@
 
 #include <filesystem>
 #include <fstream>
+#include <span>
+#include <string_view>
 
 namespace keepout::app {
 
 /// A file that appears only when it is whole: written beside its place under another name, and
 /// moved there by commit(). Left without a commit, nothing remains, and what stood there before
-/// still stands.
+/// still stands; so it is, too, when SIGHUP, SIGINT, SIGPIPE or SIGTERM end the process meanwhile.
+///
+/// A link is followed: what it points to is replaced, the link stays. Not thread-safe: one thread
+/// makes and ends all of them.
 class OutputFile {
  public:
-  /// Throws Error when the file cannot be made.
-  explicit OutputFile(std::filesystem::path path);
+  /// Throws Error when the file cannot be made, and when something else than a regular file stands
+  /// there: a folder, a device, a pipe.
+  explicit OutputFile(const std::filesystem::path& path);
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
   std::ostream& stream() noexcept { return stream_; }
 
-  /// Throws Error when something could not be written, a full disk for one.
+  /// Ends the writing. Throws Error when something could not be written, a full disk for one. Of
+  /// several files that belong together, finish() all before the commit() of any.
+  void finish();
+
+  /// Finishes, and moves the file to its place. Throws Error when either cannot be done.
   void commit();
 
  private:
-  std::filesystem::path path_;
+  std::filesystem::path path_;  // where it will stand, links followed
   std::filesystem::path partial_;
   std::ofstream stream_;
 };
+
+/// A path, and what the user calls it: MESH, --out.
+struct NamedPath {
+  std::string_view name;
+  std::filesystem::path path;
+};
+
+/// Throws Error, naming both, when an output is the same file as an input or as another output, by
+/// whatever names and links, and whether or not it exists yet.
+void refuse_shared_files(std::span<const NamedPath> inputs, std::span<const NamedPath> outputs);
 
 }  // namespace keepout::app

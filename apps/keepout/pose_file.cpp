@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pose_file.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <fstream>
@@ -13,46 +14,60 @@
 namespace keepout::app {
 namespace {
 
+constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";  // of UTF-8, as spreadsheets write
+constexpr std::string_view blanks = " \t\r";
 constexpr std::string_view separators = " \t\r,";
-
-/// Takes the next word off the front of `line`; empty at its end.
-std::string_view next_word(std::string_view& line) {
-  const std::size_t begin = line.find_first_not_of(separators);
-  if (begin == std::string_view::npos) return {};
-  line.remove_prefix(begin);
-  const std::string_view word = line.substr(0, line.find_first_of(separators));
-  line.remove_prefix(word.size());
-  return word;
-}
 
 class LineReader {
  public:
   LineReader(const std::filesystem::path& path, std::size_t number, std::string_view line)
       : path_(path), number_(number), rest_(line) {}
 
-  bool is_blank_or_comment() const {
-    std::string_view rest = rest_;
-    const std::string_view word = next_word(rest);
-    return word.empty() || word.front() == '#';
+  bool is_blank_or_comment() {
+    skip_blanks();
+    return rest_.empty() || rest_.front() == '#';
   }
 
   Vec3 point() { return {number(), number(), number()}; }
 
   void expect_end() {
-    if (const std::string_view word = next_word(rest_); !word.empty()) {
+    if (const std::string_view word = next_word(); !word.empty()) {
       fail("has more than six numbers: '" + std::string(word) + "' is too many");
     }
   }
 
  private:
+  void skip_blanks() {
+    rest_.remove_prefix(std::min(rest_.find_first_not_of(blanks), rest_.size()));
+  }
+
+  /// The next word, past the comma that may stand before it; empty at the end of the line.
+  std::string_view next_word() {
+    skip_blanks();
+    if (!at_start_ && rest_.starts_with(',')) {
+      rest_.remove_prefix(1);
+      skip_blanks();
+    }
+    if (rest_.starts_with(',')) fail("has an empty column: no number before a comma");
+    at_start_ = false;
+    const std::string_view word = rest_.substr(0, rest_.find_first_of(separators));
+    rest_.remove_prefix(word.size());
+    return word;
+  }
+
   double number() {
-    const std::string_view word = next_word(rest_);
+    const std::string_view word = next_word();
     if (word.empty()) fail("has fewer than six numbers");
-    const std::string_view digits = word.starts_with('+') ? word.substr(1) : word;
+    // from_chars knows no plus sign, but would take the minus after one.
+    const bool has_plus = word.starts_with('+') && !word.starts_with("+-");
+    const std::string_view digits = has_plus ? word.substr(1) : word;
     double value = 0.0;
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    if (error != std::errc{} || end != digits.data() + digits.size()) {
+    if (error == std::errc::invalid_argument || end != digits.data() + digits.size()) {
       fail("'" + std::string(word) + "' is not a number");
+    }
+    if (error == std::errc::result_out_of_range) {
+      fail("'" + std::string(word) + "' is beyond the range of a double (1e-308 to 1e308)");
     }
     if (!std::isfinite(value)) {
       fail("'" + std::string(word) + "' is not finite: a pose needs six finite numbers");
@@ -69,6 +84,7 @@ class LineReader {
   const std::filesystem::path& path_;
   std::size_t number_;
   std::string_view rest_;
+  bool at_start_ = true;
 };
 
 }  // namespace
@@ -82,7 +98,8 @@ std::vector<PoseLine> read_poses(const std::filesystem::path& path) {
   std::vector<PoseLine> poses;
   std::string line;
   for (std::size_t number = 1; std::getline(file, line); ++number) {
-    LineReader reader(path, number, line);
+    const bool marked = number == 1 && line.starts_with(byte_order_mark);
+    LineReader reader(path, number, std::string_view(line).substr(marked ? 3 : 0));
     if (reader.is_blank_or_comment()) continue;
     PoseLine pose;
     pose.first = reader.point();

@@ -7,10 +7,10 @@
 #include <cstdio>
 #include <map>
 #include <ostream>
+#include <vector>
 
 #include "clip.h"
 #include "keepout/adapters/load_mesh.h"
-#include "keepout/error.h"
 #include "output_file.h"
 #include "pose_file.h"
 #include "progress.h"
@@ -46,19 +46,19 @@ void write_planes(std::ostream& out, std::size_t number, const Step& step) {
   }
 }
 
+void require_files_of_their_own(const ReplayOptions& options) {
+  const std::array inputs{NamedPath{"MESH", options.mesh}, NamedPath{"--poses", options.poses}};
+  std::vector<NamedPath> outputs{{"--out", options.steps}};
+  if (options.planes) outputs.push_back({"--planes", *options.planes});
+  refuse_shared_files(inputs, outputs);
+}
+
 }  // namespace
 
 void replay(const ReplayOptions& options, std::ostream& out) {
   const bool closed_loop = options.loop == Loop::closed;
-  if (closed_loop && options.max_step > options.constraint.radius) {
-    throw Error(
-        "--max-step is longer than --radius: no step may leave the motion sphere; lower "
-        "the one or raise the other");
-  }
-  const std::vector<PoseLine> poses = read_poses(options.poses);
-  const LoadedMesh loaded = load_mesh(options.mesh);
-  MotionConstraint constraint = make_motion_constraint(loaded.mesh, options.constraint);
-
+  if (closed_loop) require_within_reach(options.max_step, options.constraint.radius);
+  require_files_of_their_own(options);
   OutputFile steps(options.steps);
   steps.stream() << "step,status,px,py,pz,dx,dy,dz,ux,uy,uz,triangles,planes,"
                     "t_query_ns,t_activate_ns,t_solve_ns,t_total_ns\n";
@@ -67,6 +67,9 @@ void replay(const ReplayOptions& options, std::ostream& out) {
     planes.emplace(*options.planes);
     planes->stream() << "step,triangle,nx,ny,nz,offset\n";
   }
+  const std::vector<PoseLine> poses = read_poses(options.poses);
+  const LoadedMesh loaded = load_mesh(options.mesh);
+  MotionConstraint constraint = make_motion_constraint(loaded.mesh, options.constraint);
 
   std::map<std::string_view, std::size_t> counts;
   {
@@ -85,8 +88,10 @@ void replay(const ReplayOptions& options, std::ostream& out) {
       ++counts[name(step.status)];
     }
   }
-  if (planes) planes->commit();
+  steps.finish();
+  if (planes) planes->finish();
   steps.commit();
+  if (planes) planes->commit();
 
   for (const std::string& warning : loaded.warnings) out << "note: " << warning << '\n';
   out << poses.size() << " steps -> " << options.steps.string() << '\n';

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <iosfwd>
 #include <optional>
@@ -19,14 +20,14 @@ struct ReplayOptions {
   std::filesystem::path mesh;
   std::filesystem::path poses;
   std::filesystem::path steps;                  // STEPS.csv, to be written
-  std::optional<std::filesystem::path> planes;  // PLANES.csv, to be written
+  std::optional<std::filesystem::path> planes;  // PLANES.csv, to be written: all that were posed
   MotionConstraintSettings constraint;
   Loop loop = Loop::open;
   double max_step = 1.0;  // longest increment asked for in a closed loop [mm]
 };
 
-/// Runs one step for each line of a pose file and writes what came out. Throws Error; then neither
-/// file is written. A summary goes to `out`.
+/// Runs one step for each line of a pose file and writes what came out. A summary goes to `out`.
+/// Throws Error, also when one file would overwrite another; then neither is written.
 void replay(const ReplayOptions& options, std::ostream& out);
 
 }  // namespace keepout::app

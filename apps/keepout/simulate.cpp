@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simulate.h"
 
+#include <algorithm>
 #include <array>
+#include <charconv>
 #include <cstdio>
+#include <ctime>
 #include <fstream>
 #include <ostream>
 #include <utility>
@@ -12,6 +15,8 @@
 #include "keepout/activation/registry.h"
 #include "keepout/adapters/load_mesh.h"
 #include "keepout/error.h"
+#include "output_file.h"
+#include "path_audit.h"
 #include "progress.h"
 #include "report/html_report.h"
 #include "simulation_record.h"
@@ -64,12 +69,13 @@ Run run_strokes(std::string rule, std::string description, Tool& tool,
   for (const std::vector<Vec3>& goals : hand) {
     Vec3 tip = goals.front();
     double clearance = audit.clearance(tip);
+    PathAudit path(audit, tip);
     Stroke& stroke = run.strokes.emplace_back();
     for (const Vec3& goal : goals) {
       const Tool::Move move = tool.move(tip, clipped(goal - tip, max_step));
-      const Vec3 from = std::exchange(tip, tip + move.motion);
+      tip += move.motion;
       clearance = audit.clearance(tip, std::abs(clearance) + move.motion.norm());
-      if (audit.crosses(from, tip)) {
+      if (path.follow(tip)) {
         run.crossings.push_back({run.strokes.size() - 1, stroke.cycles.size()});
       }
       stroke.cycles.push_back({goal, tip, clearance, move.microseconds, move.outcome});
@@ -79,10 +85,42 @@ Run run_strokes(std::string rule, std::string description, Tool& tool,
   return run;
 }
 
+/// The fewest digits that read back exactly.
 std::string number(double value) {
   std::array<char, 32> text;
-  std::snprintf(text.data(), text.size(), "%g", value);
-  return text.data();
+  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
+}
+
+/// The time now in UTC, as ISO 8601 has it.
+std::string date() {
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  ::gmtime_r(&now, &utc);
+  std::array<char, 32> text;
+  return {text.data(), std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &utc)};
+}
+
+/// As a shell needs it to be one word.
+std::string quoted(const std::string& word) {
+  constexpr std::string_view plain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=.,/:@%";
+  if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;
+  std::string text = "'";
+  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
+/// The command line that does all this again.
+std::string command_of(const SimulateOptions& options, const std::vector<std::string>& rules) {
+  std::string listed_rules;
+  for (const std::string& rule : rules) listed_rules += (listed_rules.empty() ? "" : ",") + rule;
+  return "keepout simulate " + quoted(options.mesh.string()) + " --out " +
+         quoted(options.report.string()) + " --activation " + listed_rules + " --index " +
+         options.constraint.index + " --solver " + options.constraint.solver + " --radius " +
+         number(options.constraint.radius) + " --margin " + number(options.constraint.margin) +
+         " --max-step " + number(options.max_step) + " --seed " +
+         std::to_string(options.hand.seed) + " --strokes " + std::to_string(options.hand.strokes) +
+         " --cycles " + std::to_string(options.hand.cycles);
 }
 
 /// The processor's name, as the system tells it.
@@ -95,8 +133,11 @@ std::string processor() {
 }
 
 std::vector<std::pair<std::string, std::string>> settings_of(const SimulateOptions& options,
+                                                             const std::vector<std::string>& rules,
                                                              const Mesh& mesh) {
-  return {{"triangles", std::to_string(mesh.triangle_count())},
+  return {{"date", date()},
+          {"command", command_of(options, rules)},
+          {"triangles", std::to_string(mesh.triangle_count())},
           {"vertices", std::to_string(mesh.vertex_count())},
           {"index", options.constraint.index},
           {"solver", options.constraint.solver},
@@ -119,36 +160,67 @@ std::string description_of(std::string_view rule) {
   return {};
 }
 
+std::string fixed(double value, int decimals) {
+  std::array<char, 64> text;
+  std::snprintf(text.data(), text.size(), "%.*f", decimals, value);
+  return text.data();
+}
+
 void print_table(const Simulation& simulation, std::ostream& out) {
   std::array<char, 256> line;
   std::snprintf(line.data(), line.size(), "%-10s %8s %9s %9s %9s %12s %12s %8s %10s %9s\n", "rule",
                 "cycles", "kHz", "p50 us", "p99 us", "closest mm", "deepest mm", "inside",
                 "crossings", "stopped");
   out << line.data();
+  const bool closed = simulation.surface == SurfaceKind::closed;  // an open one has no inside
   for (const Run& run : simulation.runs) {
     const RunSummary s = summarize(run);
-    std::snprintf(line.data(), line.size(),
-                  "%-10s %8zu %9.1f %9.2f %9.2f %12.4f %12.4f %8zu %10zu %9zu\n", run.rule.c_str(),
-                  s.cycles, s.rate_khz, s.p50_us, s.p99_us, s.closest_approach,
-                  s.deepest_penetration, s.cycles_inside, s.crossings, s.stopped);
+    // Without a fixture there is no step to be timed.
+    const auto time = [&](double value, int decimals) {
+      return s.max_us > 0.0 ? fixed(value, decimals) : "-";
+    };
+    std::snprintf(line.data(), line.size(), "%-10s %8zu %9s %9s %9s %12.4f %12s %8s %10zu %9zu\n",
+                  run.rule.c_str(), s.cycles, time(s.rate_khz, 1).c_str(),
+                  time(s.p50_us, 2).c_str(), time(s.p99_us, 2).c_str(), s.closest_approach,
+                  closed ? fixed(s.deepest_penetration, 4).c_str() : "-",
+                  closed ? std::to_string(s.cycles_inside).c_str() : "-", s.crossings, s.stopped);
     out << line.data();
+  }
+}
+
+/// Each once, in the order of their first mention.
+std::vector<std::string> without_repeats(const std::vector<std::string>& rules) {
+  std::vector<std::string> once;
+  for (const std::string& rule : rules) {
+    if (std::find(once.begin(), once.end(), rule) == once.end()) once.push_back(rule);
+  }
+  return once;
+}
+
+/// The hand over a mesh; an error names its file.
+std::vector<std::vector<Vec3>> hand_over(Audit& audit, const SimulateOptions& options) {
+  try {
+    return make_hand(audit, options.hand);
+  } catch (const Error& error) {
+    throw Error(options.mesh.string() + ": " + error.what());
   }
 }
 
 }  // namespace
 
 void simulate(const SimulateOptions& options, std::ostream& out) {
-  if (options.max_step > options.constraint.radius) {
-    throw Error(
-        "--max-step is longer than --radius: no step may leave the motion sphere; lower "
-        "the one or raise the other");
-  }
+  // Before any work: what cannot be written shall not be told of after minutes.
+  require_within_reach(options.max_step, options.constraint.radius);
+  refuse_shared_files(std::array{NamedPath{"MESH", options.mesh}},
+                      std::array{NamedPath{"--out", options.report}});
+  OutputFile report(options.report);
   const LoadedMesh loaded = load_mesh(options.mesh);
   for (const std::string& warning : loaded.warnings) out << "note: " << warning << '\n';
-  // Before any work: a mistyped name shall not be told of after minutes.
+  // Nor a mistyped name.
+  const std::vector<std::string> rules = without_repeats(options.rules);
   std::vector<std::pair<std::string, std::unique_ptr<Tool>>> tools;
   tools.emplace_back(no_rule, std::make_unique<FreeTool>());
-  for (const std::string& rule : options.rules) {
+  for (const std::string& rule : rules) {
     MotionConstraintSettings settings = options.constraint;
     settings.activation = rule;
     tools.emplace_back(
@@ -161,14 +233,15 @@ void simulate(const SimulateOptions& options, std::ostream& out) {
                         .surface = audit.surface(),
                         .margin = options.constraint.margin,
                         .cycle_seconds = options.hand.cycle_seconds,
-                        .settings = settings_of(options, *loaded.mesh)};
-  const std::vector<std::vector<Vec3>> hand = make_hand(audit, options.hand);
+                        .settings = settings_of(options, rules, *loaded.mesh)};
+  const std::vector<std::vector<Vec3>> hand = hand_over(audit, options);
   for (const auto& [rule, tool] : tools) {
     simulation.runs.push_back(
         run_strokes(rule, description_of(rule), *tool, hand, options.max_step, audit));
   }
   print_table(simulation, out);
-  write_report(options.report, simulation);
+  print_report(report.stream(), simulation);
+  report.commit();
   out << "report: " << options.report.string() << '\n';
 }
 

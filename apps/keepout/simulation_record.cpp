@@ -70,7 +70,7 @@ RunSummary summarize(const Run& run) {
       static_cast<std::size_t>(std::count(breached.begin(), breached.end(), true));
 
   if (summary.cycles > 0) {
-    summary.closest_approach = std::max(lowest, 0.0);
+    summary.closest_approach = summary.kept_out() ? lowest : 0.0;
     summary.deepest_penetration = lowest < 0.0 ? -lowest : 0.0;
   }
   add_step_times(run, summary);

@@ -60,7 +60,7 @@ struct RunSummary {
   double p50_us = 0.0, p99_us = 0.0, p999_us = 0.0, max_us = 0.0;  // of the step time [us]
   double rate_khz = 0.0;  // how often the median step fits into a millisecond; 0: not timed [kHz]
 
-  double closest_approach = 0.0;     // 0 as soon as the tip has been inside [mm]
+  double closest_approach = 0.0;     // 0 as soon as the tip has been inside, or crossed [mm]
   double deepest_penetration = 0.0;  // 0 when the tip never was inside [mm]
   std::size_t cycles_inside = 0;
   std::size_t strokes_inside = 0;  // with at least one cycle inside

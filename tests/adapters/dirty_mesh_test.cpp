@@ -13,10 +13,10 @@
 
 #include "keepout/adapters/load_mesh.h"
 #include "keepout/error.h"
+#include "keepout/fixtures/real_mesh.h"
 #include "keepout/index/pd_tree.h"
 #include "keepout/index/self_intersection.h"
 #include "keepout/mesh/doctor.h"
-#include "keepout/fixtures/real_mesh.h"
 
 namespace keepout {
 namespace {

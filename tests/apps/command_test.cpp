@@ -6,10 +6,15 @@
 
 #include <array>
 #include <cstdio>
+#include <cstdlib>
+#include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <map>
+#include <regex>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "keepout/fixtures/shapes.h"
@@ -214,6 +219,164 @@ TEST_F(Command, AFailedRunLeavesAnEarlierResultAsItWas) {
   std::ifstream stream(file("s.csv"));
   std::getline(stream, line);
   EXPECT_EQ(line, "precious");
+}
+
+TEST_F(Command, NumbersOutOfRangeAreToldOfBriefly) {
+  folder_.write("poses.txt", "0 0 60 1 2 -3\n");
+  const std::string replay = "replay cube.stl --poses poses.txt --out s.csv --closed-loop ";
+  const std::string simulate = "simulate cube.stl --out r.html ";
+  const std::string above_0 = "expected a number above 0 and at most 1e30";
+  const std::vector<std::array<std::string, 3>> mistakes{
+      {replay, "--radius nan", above_0},
+      {replay, "--radius inf", above_0},
+      {replay, "--radius 0", above_0},
+      {replay, "--radius 2e30", above_0},
+      {replay, "--radius 5mm", above_0},
+      {replay, "--max-step nan", above_0},
+      {simulate, "--max-step nan", above_0},
+      {replay, "--margin nan", "expected a number from 0 to 1e30"},
+      {replay, "--margin -1", "expected a number from 0 to 1e30"},
+      {simulate, "--seed -1", "expected a whole number from 0 to 9223372036854775807"},
+      {simulate, "--seed 12345678901234567890", "expected a whole number"},
+      {simulate, "--seed 123456789012345678901", "expected a whole number"},
+      {simulate, "--seed 1.5", "expected a whole number"},
+      {simulate, "--strokes 0", "expected a whole number from 1 to 100000"},
+      {simulate, "--cycles 9", "expected a whole number from 10 to 1000000"},
+  };
+  for (const auto& [command, option, told] : mistakes) {
+    const Outcome outcome = run(command + option);
+    EXPECT_NE(outcome.status, 0) << option;
+    const std::string name = option.substr(0, option.find(' '));
+    EXPECT_NE(outcome.output.find(name + ": " + told), std::string::npos) << option << "\n"
+                                                                          << outcome.output;
+    EXPECT_LT(outcome.output.size(), 200u) << outcome.output;
+  }
+}
+
+TEST_F(Command, OutputThatDoesNotArriveIsAFailure) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full to redirect stdout to";
+  for (const char* arguments : {"--version", "--help", "simulate --help", "inspect cube.stl"}) {
+    const Outcome outcome =
+        run(std::string(arguments) + " >/dev/full 2>told.txt; s=$?; cat told.txt; (exit $s)");
+    EXPECT_EQ(outcome.status, EXIT_FAILURE) << arguments;
+    EXPECT_NE(outcome.output.find("stdout"), std::string::npos) << arguments << outcome.output;
+  }
+}
+
+TEST_F(Command, NoOutputOverwritesAnInputOrAnotherOutput) {
+  folder_.write("poses.txt", "0 0 60 1 2 -3\n");
+  std::filesystem::create_symlink("cube.stl", file("link.stl"));
+  const auto size = std::filesystem::file_size(file("cube.stl"));
+  const std::vector<std::array<std::string, 3>> mistakes{
+      {"replay cube.stl --poses poses.txt --out poses.txt", "--out", "--poses"},
+      {"replay cube.stl --poses poses.txt --out link.stl", "--out", "MESH"},
+      {"replay cube.stl --poses poses.txt --out s.csv --planes cube.stl", "--planes", "MESH"},
+      {"replay cube.stl --poses poses.txt --out s.csv --planes ./s.csv", "--planes", "--out"},
+      {"simulate cube.stl --out cube.stl", "--out", "MESH"},
+  };
+  for (const auto& [arguments, one, other] : mistakes) {
+    const Outcome outcome = run(arguments);
+    EXPECT_NE(outcome.status, 0) << arguments;
+    EXPECT_NE(outcome.output.find("same file"), std::string::npos) << outcome.output;
+    EXPECT_NE(outcome.output.find(one), std::string::npos) << outcome.output;
+    EXPECT_NE(outcome.output.find(other), std::string::npos) << outcome.output;
+  }
+  EXPECT_EQ(std::filesystem::file_size(file("cube.stl")), size);
+  EXPECT_FALSE(std::filesystem::exists(file("s.csv")));
+}
+
+TEST_F(Command, WhenOneOfTwoFilesCannotBeWrittenNeitherAppears) {
+  // In free space, so that the steps are long and the planes are none.
+  std::string poses;
+  for (int i = 0; i < 1000; ++i) poses += "0 0 90 1 2 -3\n";
+  folder_.write("poses.txt", poses);
+  const Outcome outcome = run("--version; trap '' XFSZ; ulimit -f 8; '" KEEPOUT_COMMAND
+                              "' replay cube.stl --poses poses.txt --out s.csv --planes p.csv");
+  EXPECT_EQ(outcome.status, EXIT_FAILURE);
+  EXPECT_NE(outcome.output.find("s.csv"), std::string::npos) << outcome.output;
+  EXPECT_FALSE(std::filesystem::exists(file("s.csv")));
+  EXPECT_FALSE(std::filesystem::exists(file("p.csv")));
+}
+
+TEST_F(Command, ASignalLeavesNoPartialFile) {
+  // Nobody writes into the pipe, so the command waits with its files half made.
+  const Outcome outcome =
+      run("--version; mkfifo poses; '" KEEPOUT_COMMAND
+          "' replay cube.stl --poses poses --out s.csv --planes p.csv & "
+          "for i in $(seq 1000); do ls p.csv.partial-* >/dev/null 2>&1 && break; sleep 0.01; done; "
+          "ls; kill -TERM $!; wait $!; echo \"ended with $?\"");
+  EXPECT_NE(outcome.output.find("p.csv.partial-"), std::string::npos) << outcome.output;
+  EXPECT_NE(outcome.output.find("ended with 143"), std::string::npos) << outcome.output;
+  for (const auto& entry : std::filesystem::directory_iterator(folder_.path())) {
+    EXPECT_EQ(entry.path().string().find("partial"), std::string::npos) << entry.path();
+  }
+}
+
+TEST_F(Command, AReportThatCannotBeWrittenIsToldOfBeforeAnyWork) {
+  std::filesystem::create_directory(file("folder"));
+  for (const char* out : {"no/such/folder/r.html", "folder"}) {
+    // Work would begin with the mesh, which is not there.
+    const Outcome outcome = run(std::string("simulate none.stl --out ") + out);
+    EXPECT_EQ(outcome.status, EXIT_FAILURE);
+    EXPECT_NE(outcome.output.find(out), std::string::npos) << outcome.output;
+    EXPECT_EQ(outcome.output.find("none.stl"), std::string::npos) << outcome.output;
+  }
+}
+
+TEST_F(Command, AnUnfitMeshIsNamed) {
+  Surface plates = make_thin_plates(10.0);
+  for (Corners& corners : plates.triangles) std::swap(corners[0], corners[1]);
+  write_binary_stl(file("plates.stl"), plates);
+  const Outcome outcome = run("simulate plates.stl --out r.html --strokes 1 --cycles 10");
+  EXPECT_EQ(outcome.status, EXIT_FAILURE);
+  EXPECT_NE(outcome.output.find("plates.stl: no free place"), std::string::npos) << outcome.output;
+}
+
+TEST_F(Command, ARuleThatIsNamedTwiceRunsOnce) {
+  const Outcome outcome =
+      run("simulate cube.stl --out r.html --strokes 1 --cycles 20 --activation paper,paper "
+          "2>/dev/null");
+  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  const std::size_t first = outcome.output.find("\npaper ");
+  ASSERT_NE(first, std::string::npos) << outcome.output;
+  EXPECT_EQ(outcome.output.find("\npaper ", first + 1), std::string::npos) << outcome.output;
+}
+
+TEST_F(Command, WithoutAFixtureThereAreNoTimes) {
+  const Outcome outcome = run("simulate cube.stl --out r.html --strokes 1 --cycles 20");
+  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  std::istringstream row(outcome.output.substr(outcome.output.find("\nnone ")));
+  std::string rule, cycles, khz, p50, p99;
+  row >> rule >> cycles >> khz >> p50 >> p99;
+  EXPECT_EQ(cycles, "20");
+  EXPECT_EQ(khz + p50 + p99, "---") << outcome.output;
+}
+
+TEST_F(Command, TheReportTellsTheDateAndTheCommandThatMakesItAgain) {
+  const auto untimed = [&](const std::string& arguments) {
+    return run(arguments + " 2>/dev/null | awk '{$3=$4=$5=\"\"; print}'").output;
+  };
+  const std::string table = untimed(
+      "simulate cube.stl --out r.html --strokes 2 --cycles 50 --margin 0.1 --radius 1.25 --seed "
+      "12");
+  std::ifstream stream(file("r.html"));
+  const std::string page{std::istreambuf_iterator<char>(stream), {}};
+  const std::regex tag("<[^>]*>");
+  const auto setting = [&](const std::string& name) {
+    const std::size_t dt = page.find(">" + name + "</dt>");
+    const std::size_t begin = page.find('>', page.find("<dd", dt)) + 1;
+    if (dt == std::string::npos) return std::string();
+    const std::string value = page.substr(begin, page.find("</dd>", begin) - begin);
+    return std::regex_replace(value, tag, "");
+  };
+  EXPECT_TRUE(
+      std::regex_match(setting("date"), std::regex("20\\d\\d-\\d\\d-\\d\\dT\\d\\d:\\d\\d:\\d\\dZ")))
+      << setting("date");
+  const std::string command = setting("command");
+  ASSERT_TRUE(command.starts_with("keepout simulate ")) << command;
+  EXPECT_NE(command.find("--seed 12 "), std::string::npos) << command;
+  EXPECT_NE(table.find("\nnone "), std::string::npos) << table;
+  EXPECT_EQ(untimed(command.substr(8)), table);
 }
 
 TEST_F(Command, SimulatePrintsATableAndWritesAReport) {

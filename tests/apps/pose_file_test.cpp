@@ -51,8 +51,37 @@ TEST_F(PoseFile, NamesFileLineAndRemedy) {
   expect_error("1 2 3.0.0 4 5 6\n", ":1:", "'3.0.0' is not a number");
   expect_error("1 2 nan 4 5 6\n", ":1:", "not finite");
   expect_error("1 2 3 4 5 -inf\n", ":1:", "not finite");
-  expect_error("1 2 3 4 5 1e999\n", ":1:", "not a number");
+  expect_error("1 2 3 4 5 1e999\n", ":1:", "beyond the range of a double");
+  expect_error("1 2 3 4 5 -1e-999\n", ":1:", "beyond the range of a double");
+  expect_error("1 2 3 4 5 1e999x\n", ":1:", "'1e999x' is not a number");
+  for (const char* word : {"+-.1", "-+.1", "++1", "--1", "+"}) {
+    expect_error("1 2 3 4 5 " + std::string(word), ":1:", "'" + std::string(word) + "' is not");
+  }
   expect_error("\n# nothing\n", "", "no pose");
+}
+
+TEST_F(PoseFile, AnEmptyColumnIsAnErrorAndACommaAtTheEndIsNot) {
+  for (const char* line : {"1,,2,3,4,5,6", "1, ,2,3,4,5,6", ",1,2,3,4,5,6", "1,2,3,4,5,6,,", ","}) {
+    expect_error(line, ":1:", "empty column");
+  }
+  expect_error("1,2,3,4,5,", ":1:", "fewer than six");
+  const auto poses = read_poses(write("1,2,3,4,5,6,\n1 ,2 , 3,4 5\t6\n"));
+  ASSERT_EQ(poses.size(), 2u);
+  EXPECT_EQ(poses[1].second, Vec3(4, 5, 6));
+}
+
+TEST_F(PoseFile, AByteOrderMarkAtTheStartIsPassedOver) {
+  for (const char* text : {"\xEF\xBB\xBF"
+                           "1 2 3 4 5 6\n",
+                           "\xEF\xBB\xBF# tips\n1 2 3 4 5 6\n"}) {
+    const auto poses = read_poses(write(text));
+    ASSERT_EQ(poses.size(), 1u);
+    EXPECT_EQ(poses[0].first, Vec3(1, 2, 3));
+  }
+  expect_error(
+      "1 2 3 4 5 6\n\xEF\xBB\xBF"
+      "1 2 3 4 5 6\n",
+      ":2:", "is not a number");
 }
 
 TEST_F(PoseFile, AMissingFileAndAFolderAreErrors) {

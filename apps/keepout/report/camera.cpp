@@ -49,4 +49,10 @@ PicturePoint project(const Camera& camera, ImageSize size, const Vec3& point) {
           camera.toward.dot(offset)};
 }
 
+bool shows(const Camera& camera, ImageSize size, const Vec3& point) {
+  const PicturePoint p = project(camera, size, point);
+  return p.x >= 0.0 && p.x <= static_cast<double>(size.width) && p.y >= 0.0 &&
+         p.y <= static_cast<double>(size.height);
+}
+
 }  // namespace keepout::app

@@ -48,4 +48,7 @@ struct PicturePoint {
 };
 PicturePoint project(const Camera& camera, ImageSize size, const Vec3& point);
 
+/// Whether a point is within the frame of the picture.
+bool shows(const Camera& camera, ImageSize size, const Vec3& point);
+
 }  // namespace keepout::app

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <limits>
 
+#include "number_text.h"
 #include "report/plot.h"
 #include "report/png.h"
 #include "report/text.h"
@@ -60,18 +61,20 @@ std::string damage(const Cycle& cycle) {
 }
 
 std::string distance(const Cycle& cycle) {
-  return cycle.clearance > 0.0 ? length_text(cycle.clearance) + " away" : "touching";
+  return touches(cycle.clearance) ? "touching" : length_text(cycle.clearance) + " away";
 }
 
-/// Says at the ball how deep the tip is there; an arrow points the way when it is out of sight.
+/// Says at the ball how deep the tip is there; an arrow points the way when it is out of
+/// sight.
 std::string depth_label(const CloseUp& view, ImageSize size, const Cycle& cycle, bool bad) {
   const PicturePoint p = project(view.camera, size, cycle.tip);
   const double width = static_cast<double>(size.width), height = static_cast<double>(size.height);
   std::string words = bad ? damage(cycle) : distance(cycle);
+  if (!shows(view.camera, size, cycle.tip)) {
+    words = (p.y > height ? "↓ " : p.y < 0.0 ? "↑ " : p.x > width ? "→ " : "← ") + words;
+  }
   const double low = 0.93 * height;
-  const bool below = p.y > low;
-  if (below) words = "↓ " + words;
-  const bool to_left = p.x > 0.62 * width;
+  const bool to_left = p.x > 0.55 * width;
   const double x = std::clamp(p.x + (to_left ? -26.0 : 26.0), 0.05 * width, 0.95 * width);
   const double y = std::clamp(p.y + 50.0, 0.08 * height, low);  // below: above, the path goes on
   return "<text class=\"" + std::string(bad ? "bad" : "good") + "\" x=\"" + whole(x) + "\" y=\"" +
@@ -87,7 +90,7 @@ std::string ring(const Simulation& simulation, const Overview& view, std::size_t
   const ImageSize size = view.anatomy.size;
   const Cycle& cycle = one.strokes[worst.stroke].cycles[worst.cycle];
   const PicturePoint p = project(view.camera, size, cycle.tip);
-  const bool to_left = p.x > 0.62 * static_cast<double>(size.width);
+  const bool to_left = p.x > 0.55 * static_cast<double>(size.width);
   const std::string words = damage(cycle);
   return "<circle cx=\"" + whole(p.x) + "\" cy=\"" + whole(p.y) +
          "\" r=\"30\"/><text class=\"bad\" x=\"" + whole(p.x + (to_left ? -44.0 : 44.0)) +
@@ -173,11 +176,11 @@ std::string near_surface_plot(const Simulation& simulation, std::size_t stroke) 
   if (simulation.margin > 0.0) {
     plot.markers.push_back({Marker::Across::at_y, simulation.margin, "margin"});
   }
-  const double room = std::max({-low, nearest, simulation.margin});
-  if (room > 0.0) {
-    plot.y.low = low - 0.5 * room;
-    plot.y.high = 2.5 * room;
-  }
+  double room = std::max({-low, nearest, simulation.margin});
+  // Where no rule failed, no more than a reader cares for: rules that only touch leave no room.
+  if (low == 0.0) room = std::max(room, 0.1);
+  plot.y.low = low - 0.5 * room;
+  plot.y.high = 2.5 * room;
   plot.description = "The same distances, enlarged around the surface.";
   return to_svg(plot);
 }

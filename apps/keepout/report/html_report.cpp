@@ -6,7 +6,7 @@
 #include <ostream>
 
 #include "keepout/error.h"
-#include "output_file.h"
+#include "number_text.h"
 #include "report/figures.h"
 #include "report/page_style.h"
 #include "report/text.h"
@@ -119,17 +119,18 @@ void print_row(std::ostream& out, const Simulation& simulation, const RunSummary
   print_harm(out, closed ? length_text(s.deepest_penetration) : "-", s.deepest_penetration > 0.0);
   print_harm(out, closed ? grouped(s.cycles_inside) : "-", s.cycles_inside > 0);
   print_harm(out, grouped(s.crossings), s.crossings > 0);
-  out << "<td>" << length_text(s.closest_approach) << "</td><td>" << grouped(s.cycles)
-      << "</td><td>" << grouped(s.limited) << "</td><td>" << grouped(s.stopped) << "</td>";
+  out << "<td>" << length_text(touches(s.closest_approach) ? 0.0 : s.closest_approach)
+      << "</td><td>" << grouped(s.cycles) << "</td><td>" << grouped(s.limited) << "</td><td>"
+      << grouped(s.stopped) << "</td>";
   time(s.rate_khz);
   for (const double us : {s.p50_us, s.p99_us, s.p999_us, s.max_us}) time(us);
   out << "</tr>\n";
 }
 
 void print_table(std::ostream& out, const Simulation& simulation, const Summaries& summaries) {
-  out << "<h2>The figures</h2>\n<p class=\"lead\">A crossing is a move of the tip that passed "
-         "through a triangle of the surface. The rate is how often the median step fits into a "
-         "millisecond.</p>\n"
+  out << "<h2>The figures</h2>\n<p class=\"lead\">A crossing is a move after which, or during "
+         "which, the tip was on the other side of the surface. The rate is how often the median "
+         "step fits into a millisecond.</p>\n"
          "<div class=\"scroll\"><table>\n<thead><tr><th scope=\"col\">rule</th>";
   for (const char* name : {"deepest inside", "cycles inside", "crossings", "closest approach",
                            "cycles", "cycles limited", "cycles stopped", "rate [kHz]",
@@ -152,9 +153,12 @@ void print_plots(std::ostream& out, const Simulation& simulation, const Moment& 
 }
 
 void print_settings(std::ostream& out, const Simulation& simulation) {
+  constexpr std::size_t one_line = 56;  // [character]; what is longer gets the whole width
   out << "<dl>";
   for (const auto& [name, value] : simulation.settings) {
-    out << "<dt>" << escape(name) << "</dt><dd>" << escape(value) << "</dd>";
+    const char* wide = value.size() > one_line ? " class=\"wide\"" : "";
+    out << "<dt" << wide << ">" << escape(name) << "</dt><dd" << wide << ">" << escape(value)
+        << "</dd>";
   }
   out << "</dl>";
 }
@@ -173,20 +177,22 @@ void print_times_and_settings(std::ostream& out, const Simulation& simulation) {
 }
 
 void print_method(std::ostream& out, const Simulation& simulation) {
+  const bool closed = simulation.surface == SurfaceKind::closed;
   out << "<h2>How this was measured</h2>\n<p class=\"method\">A seeded random hand moves over the "
          "anatomy and pushes into it, cycle by cycle. Each rule gets the very same hand; it may "
-         "shorten or turn each motion before the tool follows. Afterwards, a check that has no "
-         "part "
-         "in the rules goes over every cycle: it measures the distance from the tip to the whole "
-         "surface"
-      << (simulation.surface == SurfaceKind::closed
-              ? ", tells whether the tip is inside, and tests each move for passing through a "
-                "triangle."
-              : " and tests each move for passing through a triangle. The surface has holes, so it "
-                "has no inside: only crossings count.")
-      << " Times are of the step alone, on the machine named above, with whatever else that "
-         "machine "
-         "did meanwhile.</p>\n";
+         "shorten or turn each motion before the tool follows. In every cycle it is then checked "
+         "where the tip really is. "
+      << (closed ? "Inside or outside is told by counting how often a ray from the tip passes "
+                   "through the surface, which shares nothing with the rules."
+                 : "The surface has holes, so it has no inside: only crossings count. On which "
+                   "side of the surface the tip is, is told by the angle-weighted normal at the "
+                   "nearest point of it (the pseudonormal), which no rule uses. The tip may go "
+                   "around a rim; sliding around one in contact counts as a crossing.")
+      << " Distances come from a search tree (a PD-tree) and a closest-point computation that the "
+         "rules may use too; the tests hold both to brute force and to an independent computation "
+         "in quadruple precision. Depths up to 0.000001 mm count as touching, not as inside.</p>\n"
+         "<p class=\"method\">Times are of the step alone, on the machine named above, with "
+         "whatever else that machine did meanwhile.</p>\n";
 }
 
 }  // namespace
@@ -205,12 +211,6 @@ void print_report(std::ostream& out, const Simulation& simulation) {
   print_times_and_settings(out, simulation);
   print_method(out, simulation);
   out << "</main>\n</body>\n</html>\n";
-}
-
-void write_report(const std::filesystem::path& path, const Simulation& simulation) {
-  OutputFile file(path);
-  print_report(file.stream(), simulation);
-  file.commit();
 }
 
 }  // namespace keepout::app

@@ -81,13 +81,17 @@ td.bad { color: var(--alarm); font-weight: 600; }
 .overlaid .line.rule-3 { stroke-width: 1.6; }
 .plot .legend path { stroke: var(--ink-of-rule); stroke-width: 4; }
 .plot rect.band { fill: var(--alarm-tint); }
-.plot text.band { fill: var(--alarm); }
+.plot text.band { fill: var(--alarm); stroke: var(--card); stroke-width: 4px; paint-order: stroke;
+                  stroke-linejoin: round; }
 .plot path.marker { stroke: var(--soft); stroke-dasharray: 5 4; fill: none; }
 .plot text.marker { fill: var(--soft); }
 dl { display: grid; grid-template-columns: max-content 1fr; gap: 6px 18px; margin: 0;
      padding: 16px 18px; font-size: 15px; }
 dt { color: var(--soft); }
 dd { margin: 0; overflow-wrap: anywhere; }
+dl .wide { grid-column: 1 / -1; }
+dd.wide { margin-top: -4px; padding: 8px 10px; border-radius: 6px; background: var(--page);
+          font: 13.5px/1.5 ui-monospace, "SF Mono", Menlo, Consolas, monospace; }
 .method { max-width: 52em; }
 @container (max-width: 460px) { .picture text { font-size: 40px; } .plot text { font-size: 16px; } }
 @container (max-width: 360px) { .picture text { font-size: 46px; } }

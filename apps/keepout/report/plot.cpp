@@ -14,7 +14,7 @@ namespace {
 
 // The drawing, in units of its view box: the page scales it to the room there is.
 constexpr double width = 560.0, height = 400.0;
-constexpr double left = 66.0, right = 14.0, bottom = 52.0, legend_row = 22.0;
+constexpr double left = 66.0, right = 26.0, bottom = 52.0, legend_row = 22.0;
 
 std::string number(double value) {
   char text[32];
@@ -123,18 +123,71 @@ std::string axes(const Plot& plot, const Ruler& x, const Ruler& y, double top) {
   return svg;
 }
 
-std::string curve(const Series& series, const Plot& plot, const Ruler& x, const Ruler& y) {
+/// The points of a series on the drawing, no more of them than it can show.
+std::vector<PlotPoint> placed(const Series& series, const Plot& plot, const Ruler& x,
+                              const Ruler& y) {
   std::vector<PlotPoint> points;
   for (const PlotPoint& p : series.points) {
     if (drawable(p, plot.x, plot.y)) points.push_back({x.place(p.x), y.place(p.y)});
   }
-  points = thin_out(points, left, width - right, static_cast<std::size_t>(width));
+  return thin_out(points, left, width - right, static_cast<std::size_t>(width));
+}
+
+std::string curve(const Series& series, const std::vector<PlotPoint>& points) {
   std::string path;
   for (const PlotPoint& p : points) {
     path += path.empty() ? 'M' : 'L';
     path += number(p.x) + "," + number(p.y);
   }
   return "<path class=\"line " + series.css_class + "\" d=\"" + path + "\"/>";
+}
+
+/// How much of a curve lies within a box, in units of the drawing.
+double covered(const std::vector<PlotPoint>& curve, const PlotPoint& low, const PlotPoint& high) {
+  double sum = 0.0;
+  for (std::size_t i = 1; i < curve.size(); ++i) {
+    // The part of the piece that is within both ranges.
+    const PlotPoint a = curve[i - 1], b = curve[i];
+    double from = 0.0, to = 1.0;
+    const auto clip = [&](double start, double end, double least, double most) {
+      if (start == end) {
+        if (start < least || start > most) to = -1.0;
+        return;
+      }
+      const double enter = (least - start) / (end - start), leave = (most - start) / (end - start);
+      from = std::max(from, std::min(enter, leave));
+      to = std::min(to, std::max(enter, leave));
+    };
+    clip(a.x, b.x, low.x, high.x);
+    clip(a.y, b.y, low.y, high.y);
+    if (to > from) sum += (to - from) * std::hypot(b.x - a.x, b.y - a.y);
+  }
+  return sum;
+}
+
+/// Writes words where the curves leave them the most room: on one of the lines of writing, at
+/// heights `rows`, the first that will do, and on that as far left as it goes.
+std::string text_in_the_clear(const std::string& css_class, const std::string& words,
+                              const std::vector<double>& rows,
+                              const std::vector<std::vector<PlotPoint>>& curves) {
+  // The larger letters of a small screen fit in as well.
+  const double wide = 8.4 * static_cast<double>(words.size());
+  constexpr double above = 16.0, below = 5.0, step = 8.0;
+  PlotPoint best;
+  double least = std::numeric_limits<double>::infinity();
+  for (const double y : rows) {
+    for (double x = left + 8.0; x + wide < width - right; x += step) {
+      double sum = 0.0;
+      for (const auto& curve : curves) {
+        sum += covered(curve, {x - 6.0, y - above}, {x + wide, y + below});
+      }
+      if (sum < least) {
+        least = sum;
+        best = {x, y};
+      }
+    }
+  }
+  return text(css_class, best.x, best.y, "start", words);
 }
 
 }  // namespace
@@ -156,13 +209,19 @@ std::string to_svg(const Plot& plot) {
 
   std::string svg = "<svg class=\"plot\" viewBox=\"0 0 " + number(width) + " " + number(height) +
                     "\" role=\"img\" aria-label=\"" + escape(plot.description) + "\">";
+  std::vector<std::vector<PlotPoint>> curves;
+  for (const Series& series : plot.series) curves.push_back(placed(series, plot, x, y));
+  std::string labels;  // over the curves
   for (const Band& band : plot.bands) {
     const double from = std::clamp(y.place(band.high), top, floor);
     const double to = std::clamp(y.place(band.low), top, floor);
     if (to <= from) continue;
     svg += "<rect class=\"band\" x=\"" + number(left) + "\" y=\"" + number(from) + "\" width=\"" +
            number(width - right - left) + "\" height=\"" + number(to - from) + "\"/>";
-    if (to - from > 20.0) svg += text("band", left + 8.0, to - 8.0, "start", band.label);
+    if (to - from > 24.0) {
+      const std::vector<double> rows = {to - 8.0, from + 18.0, 0.5 * (from + to) + 5.0};
+      labels += text_in_the_clear("band", band.label, rows, curves);
+    }
   }
   svg += axes(plot, x, y, top);
   for (const Marker& marker : plot.markers) {
@@ -183,8 +242,8 @@ std::string to_svg(const Plot& plot) {
          number(width - right - left) + "\" height=\"" + number(floor - top) + "\" viewBox=\"" +
          number(left) + " " + number(top) + " " + number(width - right - left) + " " +
          number(floor - top) + "\">";
-  for (const Series& series : plot.series) svg += curve(series, plot, x, y);
-  return svg + "</svg>" + names.svg + "</svg>";
+  for (std::size_t i = 0; i < curves.size(); ++i) svg += curve(plot.series[i], curves[i]);
+  return svg + "</svg>" + labels + names.svg + "</svg>";
 }
 
 }  // namespace keepout::app

@@ -3,8 +3,11 @@
 #include "report/verdict.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
+#include "audit.h"
+#include "number_text.h"
 #include "report/text.h"
 
 namespace keepout::app {
@@ -17,7 +20,7 @@ std::string harm(const RunSummary& summary, SurfaceKind surface) {
   const std::string strokes =
       "in " + grouped(summary.strokes_breached) + " of " + counted(summary.strokes, "stroke");
   if (surface == SurfaceKind::open) {
-    return "through the surface " + counted(summary.crossings, "time") + ", " + strokes;
+    return "through the surface " + how_often(summary.crossings) + ", " + strokes;
   }
   if (summary.cycles_inside == 0) {
     return "right through the anatomy within a single cycle, " + strokes;
@@ -25,9 +28,10 @@ std::string harm(const RunSummary& summary, SurfaceKind surface) {
   return "up to " + length_text(summary.deepest_penetration) + " deep, " + strokes;
 }
 
-/// How near a tool came that stayed outside.
+/// How near a tool came that stayed outside; goes on where a sentence has said that it did.
 std::string nearness(double closest) {
-  return closest > 0.0 ? "never nearer than " + length_text(closest) : "at times touching";
+  return touches(closest) ? " but touched the surface"
+                          : ", never nearer than " + length_text(closest);
 }
 
 /// The names of rules are code to us, but odd words in a sentence: they get quotation marks.
@@ -48,6 +52,8 @@ Sorted sort_rules(const Simulation& simulation, const std::vector<RunSummary>& s
 }
 
 }  // namespace
+
+bool touches(double clearance) { return std::abs(clearance) <= Audit::touching; }
 
 std::string display_name(const Run& run) { return has_fixture(run) ? run.rule : "no fixture"; }
 
@@ -101,7 +107,7 @@ std::string account(const Simulation& simulation, const std::vector<RunSummary>&
   }
   if (!kept_out.empty()) {
     text += "Under " + listed(kept_out) + " it stayed outside in all " + counted(cycles, "cycle") +
-            ", " + nearness(closest) + ". ";
+            nearness(closest) + ". ";
   }
   if (!text.empty()) text.pop_back();
   return text;
@@ -109,7 +115,7 @@ std::string account(const Simulation& simulation, const std::vector<RunSummary>&
 
 std::string outcome_of(const RunSummary& summary, SurfaceKind surface) {
   if (!summary.kept_out()) return "went " + harm(summary, surface);
-  std::string text = "stayed outside, " + nearness(summary.closest_approach);
+  std::string text = "stayed outside" + nearness(summary.closest_approach);
   if (summary.stopped > 0) text += "; stood still in " + counted(summary.stopped, "cycle");
   return text;
 }

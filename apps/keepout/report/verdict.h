@@ -20,6 +20,9 @@ std::string account(const Simulation& simulation, const std::vector<RunSummary>&
 /// One run in a few words, for the caption of its picture.
 std::string outcome_of(const RunSummary& summary, SurfaceKind surface);
 
+/// Whether a tip at this distance from the surface touches it: the check tells no less apart. [mm]
+bool touches(double clearance);
+
 /// The name of a run as a reader sees it.
 std::string display_name(const Run& run);
 

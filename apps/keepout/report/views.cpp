@@ -124,20 +124,30 @@ std::size_t entry(const Run& run, const Moment& moment, SurfaceKind surface) {
   return cycle;
 }
 
-/// How much of the scene a close-up shows: enough to see a depth for what it is, and, as far as
-/// that allows, how deep the tool goes without a fixture.
+/// How deep a run went in a stroke; 0 where it did not, or where an open surface tells no depth.
+double depth_in(const Run& run, std::size_t stroke) {
+  return std::max(0.0, -run.strokes[stroke].cycles[worst_cycle(run, stroke)].clearance);
+}
+
+/// Where the tip was in one stroke, under all rules.
+std::vector<Vec3> tips_in(const Simulation& simulation, std::size_t stroke) {
+  std::vector<Vec3> tips;
+  for (const Run& run : simulation.runs) {
+    for (const Cycle& cycle : run.strokes[stroke].cycles) tips.push_back(cycle.tip);
+  }
+  return tips;
+}
+
+/// How much of the scene a close-up of a depth shows: enough to see it for what it is, and, as far
+/// as that allows, how deep the tool goes without a fixture.
 double close_up_height(const Simulation& simulation, const Moment& moment) {
-  const auto depth = [&](const Run& run) {
-    const std::size_t cycle = worst_cycle(run, moment.stroke);
-    return std::max(0.0, -run.strokes[moment.stroke].cycles[cycle].clearance);
-  };
   double deepest = 0.0;
-  for (const Run& run : simulation.runs) deepest = std::max(deepest, depth(run));
-  const double told = depth(simulation.runs[moment.run]);
-  const double height =
-      told > 0.0 ? std::clamp(2.5 * deepest, 5.0 * told, 14.0 * told) : 12.0 * simulation.margin;
-  const double whole_size = simulation.mesh->bounds().size().norm();
-  return std::clamp(height, 1e-3 * whole_size, 0.4 * whole_size);
+  for (const Run& run : simulation.runs) {
+    deepest = std::max(deepest, depth_in(run, moment.stroke));
+  }
+  const double told = depth_in(simulation.runs[moment.run], moment.stroke);
+  return std::max(std::clamp(2.5 * deepest, 5.0 * told, 14.0 * told),
+                  1e-3 * simulation.mesh->bounds().size().norm());
 }
 
 struct CloseCamera {
@@ -145,14 +155,16 @@ struct CloseCamera {
   Vec3 out;  // away from the anatomy
 };
 
-CloseCamera close_camera(const Simulation& simulation, const Moment& moment) {
+/// Looks at the marked place from the side of its stroke. `height` is that of the view. [mm]
+CloseCamera look_at(const Simulation& simulation, const Moment& moment, double height) {
   const Run& run = simulation.runs[moment.run];
   const std::vector<Cycle>& cycles = run.strokes[moment.stroke].cycles;
-  const double height = close_up_height(simulation, moment);
   const Vec3 place = cycles[moment.cycle].tip;
   const Vec3 came_in = cycles[entry(run, moment, simulation.surface)].tip;
 
-  Vec3 out = outward(*simulation.mesh, came_in, 0.3 * height + (came_in - place).norm());
+  constexpr double widest = 4.0;  // [mm]: of a thin branch, not also the far side
+  Vec3 out =
+      outward(*simulation.mesh, came_in, std::min(0.3 * height, widest) + (came_in - place).norm());
   if (out.norm() == 0.0) out = cycles.front().hand - place;
   if (out.norm() == 0.0) out = simulation.up;
   out.normalize();
@@ -176,12 +188,47 @@ CloseCamera close_camera(const Simulation& simulation, const Moment& moment) {
   return {look_from(side + 0.35 * out, out, target, height), out};
 }
 
+/// Shows the whole stroke, or, where a depth would be too small to see in that, the depth alone.
+CloseCamera close_camera(const Simulation& simulation, const Moment& moment, ImageSize size) {
+  const std::vector<Vec3> tips = tips_in(simulation, moment.stroke);
+  Box around{tips.front(), tips.front()};
+  for (const Vec3& tip : tips) {
+    around = {around.low.cwiseMin(tip), around.high.cwiseMax(tip)};
+  }
+  const double least = 0.02 * simulation.mesh->bounds().size().norm();
+  CloseCamera wide = look_at(simulation, moment, std::max(around.size().norm(), least));
+  fit(wide.camera, size, tips);
+  // Leaves room for labels, and for the scale bar below.
+  wide.camera.view_height = std::max(1.22 * wide.camera.view_height, least);
+  wide.camera.target -= 0.06 * wide.camera.view_height * wide.camera.up;
+
+  constexpr double visible = 0.03;  // of the height of the picture
+  const double told = depth_in(simulation.runs[moment.run], moment.stroke);
+  if (told == 0.0 || told >= visible * wide.camera.view_height) return wide;
+  return look_at(simulation, moment, close_up_height(simulation, moment));
+}
+
+/// The cycle that a close-up marks. A run that got in is told at its worst, be that out of sight;
+/// of one that stayed outside, its nearest approach in sight tells more.
+std::size_t marked_cycle(const Simulation& simulation, std::size_t run, const Moment& moment,
+                         const Camera& camera, ImageSize size) {
+  if (run == moment.run) return moment.cycle;
+  const std::size_t worst = worst_cycle(simulation.runs[run], moment.stroke);
+  if (trespass(simulation.runs[run], moment.stroke, simulation.surface)[worst]) return worst;
+  const std::vector<Cycle>& cycles = simulation.runs[run].strokes[moment.stroke].cycles;
+  std::optional<std::size_t> nearest;
+  for (std::size_t i = 0; i < cycles.size(); ++i) {
+    if (!shows(camera, size, cycles[i].tip)) continue;
+    if (!nearest || cycles[i].clearance < cycles[*nearest].clearance) nearest = i;
+  }
+  return nearest.value_or(worst);
+}
+
 CloseUp close_up(const Simulation& simulation, std::size_t run, const Moment& moment, Camera camera,
                  const Vec3& out, ImageSize size) {
   const double radius = 0.005 * static_cast<double>(size.height);
   const Stroke& stroke = simulation.runs[run].strokes[moment.stroke];
-  const std::size_t worst =
-      run == moment.run ? moment.cycle : worst_cycle(simulation.runs[run], moment.stroke);
+  const std::size_t worst = marked_cycle(simulation, run, moment, camera, size);
 
   camera.cut = Cut{{}, worst, out};
   for (const Cycle& cycle : stroke.cycles) camera.cut->path.push_back(cycle.tip);
@@ -267,7 +314,7 @@ Overview overview(const Simulation& simulation, ImageSize size) {
 }
 
 std::vector<CloseUp> close_ups(const Simulation& simulation, const Moment& moment, ImageSize size) {
-  const auto [camera, out] = close_camera(simulation, moment);
+  const auto [camera, out] = close_camera(simulation, moment, size);
   std::vector<CloseUp> result;
   for (std::size_t r = 0; r < simulation.runs.size(); ++r) {
     result.push_back(close_up(simulation, r, moment, camera, out, size));

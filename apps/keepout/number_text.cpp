@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "number_text.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+namespace keepout::app {
+
+std::string grouped(std::size_t count) {
+  std::string digits = std::to_string(count);
+  for (std::size_t i = digits.size(); i > 3; i -= 3) digits.insert(i - 3, 1, ',');
+  return digits;
+}
+
+std::string counted(std::size_t count, std::string_view noun) {
+  std::string result = grouped(count) + ' ';
+  result += noun;
+  if (count != 1) result += noun.ends_with("s") ? "es" : "s";
+  return result;
+}
+
+std::string how_often(std::size_t count) {
+  return count == 1 ? "once" : count == 2 ? "twice" : counted(count, "time");
+}
+
+std::string rounded(double value, int digits) {
+  if (!std::isfinite(value)) return "?";
+  if (value == 0.0) return "0";
+  const int magnitude = static_cast<int>(std::floor(std::log10(std::abs(value))));
+  const int decimals = std::clamp(digits - 1 - magnitude, 0, 9);
+  std::array<char, 512> text;  // the largest double has 309 digits
+  std::snprintf(text.data(), text.size(), "%.*f", decimals, value);
+  return text.data();
+}
+
+std::string trimmed(double value, int digits) {
+  std::string text = rounded(value, digits);
+  if (text.find('.') == std::string::npos) return text;
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.ends_with('.')) text.pop_back();
+  return text == "-0" ? "0" : text;
+}
+
+std::string length_text(double mm) {
+  const double size = std::abs(mm);
+  if (size == 0.0) return "0\u00a0mm";
+  if (size >= 0.01) return rounded(mm) + "\u00a0mm";
+  if (size >= 1e-5) return rounded(1e3 * mm) + "\u00a0µm";
+  if (size >= 1e-6) return rounded(1e6 * mm) + "\u00a0nm";
+  return "under 1\u00a0nm";
+}
+
+}  // namespace keepout::app

@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+namespace keepout::app {
+
+/// A count with its thousands set apart: 24,000.
+std::string grouped(std::size_t count);
+
+/// "1 stroke", "2 strokes".
+std::string counted(std::size_t count, std::string_view noun);
+
+/// "once", "twice", "3 times".
+std::string how_often(std::size_t count);
+
+/// Three significant digits, or as many as asked for, never an exponent: 1230, 12.0, 0.00123.
+std::string rounded(double value, int digits = 3);
+
+/// The same without zeros at the end: 12, 0.5.
+std::string trimmed(double value, int digits = 6);
+
+/// A length in the unit that suits it, mm, um or nm, joined by a space that does not break.
+std::string length_text(double mm);
+
+}  // namespace keepout::app
