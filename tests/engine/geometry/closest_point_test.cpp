@@ -130,7 +130,6 @@ TEST(ClosestPoint, DistanceAgreesWithAnIndependentComputationInQuadruplePrecisio
     }
   }
   EXPECT_LT(worst_relative, 1e-12);
-  RecordProperty("worst_relative_error", std::to_string(worst_relative));
 }
 
 TEST(ClosestPoint, OffsetIsAPointOfTheTriangleAtTheDistanceGiven) {
