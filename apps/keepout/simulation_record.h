@@ -16,7 +16,7 @@ namespace keepout::app {
 enum class Outcome : std::uint8_t {
   moved_freely,  // all of it was allowed
   limited,       // a part of it was
-  stopped        // none of it was
+  stopped        // none of it was, or less than a nanometre
 };
 
 /// One control cycle of a simulated stroke, as it ended.

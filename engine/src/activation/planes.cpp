@@ -3,6 +3,7 @@
 #include "keepout/activation/planes.h"
 
 namespace keepout {
+
 HalfSpace plane_through(const Hit& hit, const Vec3& normal, double margin) noexcept {
   return {normal, normal.dot(hit.closest.offset) + margin, hit.triangle};
 }

@@ -11,8 +11,12 @@
 namespace keepout {
 namespace {
 
-/// No query finds more triangles than there are.
+/// No query finds more triangles than there are. Throws before any memory is asked for.
 Capacity fitted(Capacity capacity, const Mesh* mesh) {
+  constexpr std::size_t most = std::numeric_limits<int>::max();
+  if (capacity.planes > most || capacity.variables > most) {
+    throw Error("a capacity of more than 2^31 - 1 planes or variables cannot be held");
+  }
   if (mesh != nullptr) capacity.triangles = std::min(capacity.triangles, mesh->triangle_count());
   return capacity;
 }
@@ -30,10 +34,6 @@ MotionConstraint::MotionConstraint(std::shared_ptr<const Mesh> mesh,
       solver_(std::move(solver)),
       options_(options),
       work_(fitted(capacity, mesh_.get())) {
-  constexpr std::size_t most = std::numeric_limits<int>::max();
-  if (capacity.planes > most || capacity.variables > most) {
-    throw Error("a capacity of more than 2^31 planes or variables cannot be held");
-  }
   if (!mesh_ || !index_ || !activation_ || !solver_) {
     throw Error("a motion constraint needs a mesh, an index, an activation rule and a solver");
   }

@@ -73,6 +73,29 @@ TEST(StepSafety, ASolverThatReturnsNoNumberIsNotBelieved) {
   }
 }
 
+TEST(StepSafety, ASolverThatClaimsOptimalityAndGivesNothingIsNotBelieved) {
+  class Silent final : public Solver {
+   public:
+    void reserve(int, int) override {}
+    SolveStatus solve(const StepProblem&, Solution&) noexcept override {
+      return SolveStatus::optimal;
+    }
+  };
+  const auto mesh = cube();
+  auto constraint = with(std::make_unique<PaperRule>(mesh), std::make_unique<Silent>(), mesh);
+  const Step step = constraint.step({.tip = above_the_cube, .desired = {0, 0, -1}});
+  EXPECT_EQ(step.status, Status::unsolved);
+  EXPECT_EQ(step.motion, Vec3::Zero());
+}
+
+TEST(StepSafety, AnAbsurdCapacityIsRefusedBeforeMemoryIsAskedFor) {
+  const auto mesh = cube();
+  for (const Capacity& capacity :
+       {Capacity{.planes = ~std::size_t{0}}, Capacity{.variables = ~std::size_t{0}}}) {
+    EXPECT_THROW(make_motion_constraint(mesh, {.capacity = capacity}), Error);
+  }
+}
+
 TEST(StepSafety, ARuleThatObjectsForEverEndsInAStatus) {
   class Grumbler final : public Activation {
    public:

@@ -59,8 +59,11 @@ Settled solve(A& activation, S& solver, const Motion& motion, const StepOptions&
   for (int round = 0; round < most_rounds; ++round) {
     if (work.planes.overflowed()) return {Status::over_capacity, Vec3::Zero()};
     const StepProblem problem = work.pose(motion, options.damping);
+    work.solution = {};
     const SolveStatus solved = solver.solve(problem, work.solution);
     if (solved != SolveStatus::optimal) return {status_of(solved), Vec3::Zero()};
+    const auto variables = static_cast<std::size_t>(problem.jacobian.cols());
+    if (work.solution.u.size() != variables) return {Status::unsolved, Vec3::Zero()};
     const std::optional<Vec3> trial = tip_motion(problem, work.solution, around.rounding);
     if (!trial) return {Status::ill_posed, Vec3::Zero()};
     const std::optional<HalfSpace> objection = activation.separate(around, *trial);
