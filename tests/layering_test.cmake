@@ -25,8 +25,16 @@ forbid(adapters "${include}keepout/(solvers|factory|fixtures)/" "adapters know o
 forbid(solvers "${include}keepout/(adapters|factory|fixtures)/" "solvers know only the engine")
 forbid(fixtures "${include}keepout/(adapters|solvers|factory)/" "fixtures know only the engine")
 
-# In public headers: ours, Eigen's, and the standard library's, whose names have no dot or slash.
+# The oracle believes nobody: of the engine it takes the data, and none of the geometry.
+forbid(oracle "${include}keepout/(adapters|solvers|factory|fixtures)/" "the oracle knows no other part")
+forbid(oracle "${include}keepout/(index|activation|step)/" "the oracle shares no algorithm with the engine")
+forbid(oracle "${include}keepout/geometry/(closest_point|orientation)" "the oracle has a geometry of its own")
 foreach(part engine adapters solvers factory fixtures)
+  forbid(${part} "${include}keepout/oracle/" "the oracle is for tests and the command")
+endforeach()
+
+# In public headers: ours, Eigen's, and the standard library's, whose names have no dot or slash.
+foreach(part engine adapters solvers factory fixtures oracle)
   file(GLOB_RECURSE headers "${SOURCE}/${part}/include/*.h")
   foreach(header IN LISTS headers)
     file(STRINGS "${header}" lines REGEX "${include}")

@@ -3,11 +3,13 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
 #include <iostream>
+#include <map>
 #include <new>
 #include <string>
 #include <system_error>
@@ -20,6 +22,7 @@
 #include "keepout/solvers/registry.h"
 #include "replay.h"
 #include "simulate.h"
+#include "verify/verify.h"
 
 namespace keepout::app {
 namespace {
@@ -80,6 +83,8 @@ CLI::Validator whole_number(std::uint64_t low, std::uint64_t high) {
   return {check, ""};
 }
 
+const std::map<std::string, Query> queries{{"motion", Query::motion}, {"sphere", Query::sphere}};
+
 /// The argument that every command shares.
 void add_mesh(CLI::App& command, std::filesystem::path& mesh) {
   command.add_option("MESH", mesh, "Mesh file: STL, PLY, OBJ or OFF, in mm")->required();
@@ -96,14 +101,40 @@ void add_constraint_options(CLI::App& command, MotionConstraintSettings& setting
   command
       .add_option("--radius", settings.radius,
                   "Radius of the motion sphere: the farthest that the tip may go in one cycle. "
-                  "Triangles within it are considered; the paper uses 5")
+                  "The other rules consider all triangles in it; the paper uses 5")
       ->type_name("MM")
       ->check(length(Zero::refused))
       ->capture_default_str();
-  command.add_option("--margin", settings.margin, "Distance to keep from the surface")
+  command
+      .add_option("--tool-radius", settings.tool_radius,
+                  "Radius of a ball around the tip that shall not touch the surface")
       ->type_name("MM")
       ->check(length(Zero::allowed))
       ->capture_default_str();
+  command
+      .add_option("--margin", settings.margin,
+                  "Distance to keep between tool and surface; the certified rule needs one")
+      ->type_name("MM")
+      ->check(length(Zero::allowed))
+      ->capture_default_str();
+  command
+      .add_option("--refine", settings.refinements,
+                  "How often the certified rule improves upon a motion that it has found")
+      ->type_name("NUMBER")
+      ->transform(whole_number(0, 1000))
+      ->capture_default_str();
+  command
+      .add_option("--branches", settings.nodes,
+                  "Nodes of a search for a better motion still; 0: none, 16 find nearly the best")
+      ->type_name("NUMBER")
+      ->transform(whole_number(0, 4096))
+      ->capture_default_str();
+  command
+      .add_option("--query", settings.query,
+                  "How far around the tip the certified rule looks: as far as the motion asked for "
+                  "can lead, or always the motion sphere")
+      ->transform(CLI::CheckedTransformer(queries))
+      ->default_str("motion");
 }
 
 void add_inspect(CLI::App& app, InspectOptions& options) {
@@ -187,6 +218,55 @@ void add_simulate(CLI::App& app, SimulateOptions& options) {
       ->capture_default_str();
 }
 
+/// A count such as 20000 or 1e8. For transform(), which hands on its digits.
+CLI::Validator large_count() {
+  const auto check = [](std::string& text) -> std::string {
+    double value = 0.0;
+    const char* const last = text.data() + text.size();
+    const auto [end, error] = std::from_chars(text.data(), last, value);
+    if (error != std::errc{} || end != last || !(value >= 1.0 && value <= 1e12) ||
+        value != std::floor(value)) {
+      return "expected a whole number from 1 to 1e12, not '" + text + "'";
+    }
+    text = std::to_string(static_cast<std::uint64_t>(value));
+    return {};
+  };
+  return {check, ""};
+}
+
+void add_verify(CLI::App& app, VerifyOptions& options) {
+  CLI::App& command = *app.add_subcommand(
+      "verify",
+      "Try to break the certified step: adversarial closed-loop motion over many meshes, each step "
+      "judged by an independent, exact oracle");
+  std::vector<CLI::Option*> of_a_run;
+  of_a_run.push_back(command.add_option(
+      "MESH", options.meshes, "Mesh files, in mm; without one, all generated and real fixtures"));
+  of_a_run.push_back(command.add_option("--steps", options.steps, "Steps of the whole campaign")
+                         ->type_name("NUMBER")
+                         ->transform(large_count())
+                         ->capture_default_str());
+  of_a_run.push_back(
+      command.add_option("--seed", options.seed, "Seed: same seed and steps, same campaign")
+          ->type_name("NUMBER")
+          ->transform(whole_number(0, largest_seed))
+          ->capture_default_str());
+  of_a_run.push_back(command.add_option("--shard", options.shard, "Do part I of N of the campaign")
+                         ->type_name("I/N")
+                         ->capture_default_str());
+  of_a_run.push_back(command.add_option("--index", options.index, "Index that finds triangles")
+                         ->check(CLI::IsMember(names(index_backends())))
+                         ->capture_default_str());
+  command.add_option("--json", options.json, "Where to write the results, every breach included")
+      ->type_name("FILE");
+  CLI::Option* merge =
+      command.add_option("--merge", options.merge, "Add up the results of a campaign's shards")
+          ->type_name("FILES");
+  for (CLI::Option* option : of_a_run) merge->excludes(option);
+  command.footer(
+      "The exit status is 0 only if no step broke what docs/certified-step.md promises.");
+}
+
 /// What was printed has to arrive: a full disk shall not look like success.
 void flush_stdout() {
   std::cout.flush();
@@ -203,10 +283,12 @@ int run(int argc, char** argv) {
   InspectOptions inspect_options;
   ReplayOptions replay_options;
   SimulateOptions simulate_options;
+  VerifyOptions verify_options;
   simulate_options.rules = names(activation_rules());
   add_inspect(app, inspect_options);
   add_replay(app, replay_options);
   add_simulate(app, simulate_options);
+  add_verify(app, verify_options);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -220,6 +302,7 @@ int run(int argc, char** argv) {
   if (app.got_subcommand("inspect")) inspect(inspect_options, std::cout);
   if (app.got_subcommand("replay")) replay(replay_options, std::cout);
   if (app.got_subcommand("simulate")) simulate(simulate_options, std::cout);
+  if (app.got_subcommand("verify")) return verify(verify_options, std::cout);
   return EXIT_SUCCESS;
 }
 

@@ -52,9 +52,9 @@ class GuardedTool final : public Tool {
     const Step step = constraint_.step({.tip = tip, .desired = desired}, times);
     // Less than a nanometre when more was asked for is standing still.
     const bool still = step.motion.norm() < 1e-6 && desired.norm() > 1e-3;
-    const Outcome outcome = !step.ok() || still              ? Outcome::stopped
-                            : step.status == Status::limited ? Outcome::limited
-                                                             : Outcome::moved_freely;
+    const Outcome outcome = !step.ok() || still           ? Outcome::stopped
+                            : step.status != Status::free ? Outcome::limited
+                                                          : Outcome::moved_freely;
     return {step.motion, outcome, static_cast<float>(1e-3 * static_cast<double>(times.total()))};
   }
 
@@ -117,10 +117,13 @@ std::string command_of(const SimulateOptions& options, const std::vector<std::st
   return "keepout simulate " + quoted(options.mesh.string()) + " --out " +
          quoted(options.report.string()) + " --activation " + listed_rules + " --index " +
          options.constraint.index + " --solver " + options.constraint.solver + " --radius " +
-         number(options.constraint.radius) + " --margin " + number(options.constraint.margin) +
-         " --max-step " + number(options.max_step) + " --seed " +
-         std::to_string(options.hand.seed) + " --strokes " + std::to_string(options.hand.strokes) +
-         " --cycles " + std::to_string(options.hand.cycles);
+         number(options.constraint.radius) + " --tool-radius " +
+         number(options.constraint.tool_radius) + " --margin " + number(options.constraint.margin) +
+         " --refine " + std::to_string(options.constraint.refinements) + " --branches " +
+         std::to_string(options.constraint.nodes) + " --query " +
+         (options.constraint.query == Query::motion ? "motion" : "sphere") + " --max-step " +
+         number(options.max_step) + " --seed " + std::to_string(options.hand.seed) + " --strokes " +
+         std::to_string(options.hand.strokes) + " --cycles " + std::to_string(options.hand.cycles);
 }
 
 /// The processor's name, as the system tells it.
@@ -142,7 +145,10 @@ std::vector<std::pair<std::string, std::string>> settings_of(const SimulateOptio
           {"index", options.constraint.index},
           {"solver", options.constraint.solver},
           {"motion sphere radius", number(options.constraint.radius) + " mm"},
+          {"tool radius", number(options.constraint.tool_radius) + " mm"},
           {"margin", number(options.constraint.margin) + " mm"},
+          {"refinements", std::to_string(options.constraint.refinements)},
+          {"branches", std::to_string(options.constraint.nodes)},
           {"longest step asked for", number(options.max_step) + " mm"},
           {"seed", std::to_string(options.hand.seed)},
           {"strokes", std::to_string(options.hand.strokes)},
@@ -231,7 +237,7 @@ void simulate(const SimulateOptions& options, std::ostream& out) {
   Simulation simulation{.mesh_name = options.mesh.stem().string(),
                         .mesh = loaded.mesh.get(),
                         .surface = audit.surface(),
-                        .margin = options.constraint.margin,
+                        .margin = options.constraint.tool_radius + options.constraint.margin,
                         .cycle_seconds = options.hand.cycle_seconds,
                         .settings = settings_of(options, rules, *loaded.mesh)};
   const std::vector<std::vector<Vec3>> hand = hand_over(audit, options);

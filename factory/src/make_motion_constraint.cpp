@@ -21,8 +21,15 @@ MotionConstraint make_motion_constraint(std::shared_ptr<const Mesh> mesh,
           std::move(index),
           std::move(activation),
           std::move(solver),
-          {.radius = settings.radius, .margin = settings.margin, .damping = settings.damping},
-          settings.capacity};
+          {.radius = settings.radius,
+           .margin = settings.tool_radius + settings.margin,
+           .damping = settings.damping,
+           .recovery = settings.recovery,
+           .refinements = settings.refinements,
+           .nodes = settings.nodes,
+           .query = settings.query},
+          settings.capacity,
+          settings.activation == "certified" ? settings.inside : Inside::taken_as_is};
 }
 
 }  // namespace keepout

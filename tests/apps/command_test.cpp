@@ -104,7 +104,7 @@ TEST_F(Command, ReplaySolvesOneStepForEachLine) {
   EXPECT_EQ(steps[0].at("status"), "free");
   EXPECT_EQ(vector(steps[0], "u"), Vec3(1, 2, -3));
   EXPECT_EQ(steps[1].at("status"), "limited");
-  EXPECT_LT((vector(steps[1], "u") - Vec3(1, -2, -1)).norm(), 1e-12);
+  EXPECT_LT((vector(steps[1], "u") - Vec3(1, -2, -0.8)).norm(), 1e-12);  // a margin of 0.2
   EXPECT_EQ(vector(steps[1], "p"), Vec3(3, 4, 51));
   EXPECT_EQ(steps[2].at("status"), "beyond_reach");
   EXPECT_EQ(vector(steps[2], "u"), Vec3(0, 0, 0));
@@ -165,12 +165,30 @@ TEST_F(Command, AClosedLoopFollowsItsGoalsUpToTheSurface) {
 TEST_F(Command, EveryIndexAndRuleCanBeChosen) {
   folder_.write("poses.txt", "3 4 51 1 -2 -3\n");
   for (const char* choice : {"--index brute_force", "--index pd_tree", "--activation all_faces",
-                             "--activation paper", "--solver active_set"}) {
+                             "--activation paper", "--activation certified",
+                             "--solver active_set", "--query sphere", "--refine 0",
+                             "--branches 16"}) {
     const Outcome outcome =
         run(std::string("replay cube.stl --poses poses.txt --out s.csv ") + choice);
     ASSERT_EQ(outcome.status, 0) << choice << outcome.output;
-    EXPECT_LT((vector(rows("s.csv").at(0), "u") - Vec3(1, -2, -1)).norm(), 1e-12) << choice;
+    EXPECT_LT((vector(rows("s.csv").at(0), "u") - Vec3(1, -2, -0.8)).norm(), 1e-12) << choice;
   }
+}
+
+TEST_F(Command, AToolWithARadiusIsKeptOffByItAndTheMargin) {
+  folder_.write("poses.txt", "3 4 51 1 -2 -3\n");
+  const Outcome outcome =
+      run("replay cube.stl --poses poses.txt --out s.csv --tool-radius 0.5 --margin 0.1");
+  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  EXPECT_LT((vector(rows("s.csv").at(0), "u") - Vec3(1, -2, -0.4)).norm(), 1e-12);
+}
+
+TEST_F(Command, TheCertifiedRuleWithoutAMarginIsRefused) {
+  folder_.write("poses.txt", "3 4 51 1 -2 -3\n");
+  const Outcome outcome = run("replay cube.stl --poses poses.txt --out s.csv --margin 0");
+  EXPECT_EQ(outcome.status, EXIT_FAILURE);
+  EXPECT_NE(outcome.output.find("margin is too small"), std::string::npos) << outcome.output;
+  EXPECT_FALSE(std::filesystem::exists(file("s.csv")));
 }
 
 TEST_F(Command, MistakesAreToldOfAndLeaveNothingBehind) {
@@ -197,6 +215,10 @@ TEST_F(Command, MistakesAreToldOfAndLeaveNothingBehind) {
       {"inspect poses.txt", "poses.txt"},
       {"simulate none.stl --out s.csv", "none.stl"},
       {"simulate cube.stl --out s.csv --activation best", "best"},
+      {"replay cube.stl --poses poses.txt --out s.csv --refine some", "--refine"},
+      {"replay cube.stl --poses poses.txt --out s.csv --branches -1", "--branches"},
+      {"replay cube.stl --poses poses.txt --out s.csv --query box", "--query"},
+      {"replay cube.stl --poses poses.txt --out s.csv --tool-radius -1", "--tool-radius"},
   };
   for (const auto& [arguments, told] : mistakes) {
     const Outcome outcome = run(arguments);
@@ -382,7 +404,7 @@ TEST_F(Command, TheReportTellsTheDateAndTheCommandThatMakesItAgain) {
 TEST_F(Command, SimulatePrintsATableAndWritesAReport) {
   const Outcome outcome = run("simulate cube.stl --out r.html --strokes 3 --cycles 200 --radius 1");
   ASSERT_EQ(outcome.status, 0) << outcome.output;
-  for (const char* word : {"none", "all_faces", "paper", "r.html"}) {
+  for (const char* word : {"none", "all_faces", "paper", "certified", "r.html"}) {
     EXPECT_NE(outcome.output.find(word), std::string::npos) << word;
   }
   std::ifstream stream(file("r.html"));

@@ -25,6 +25,12 @@ class Buffer {
     }
   }
 
+  /// Replaces the contents. The items must not be in this buffer.
+  void assign(std::span<const T> items) noexcept {
+    clear();
+    for (const T& item : items) push(item);
+  }
+
   void clear() noexcept {
     size_ = 0;
     overflowed_ = false;

@@ -29,10 +29,11 @@ struct EdgesAt {
 PaperRule::PaperRule(std::shared_ptr<const Mesh> mesh)
     : mesh_(std::move(mesh)), adjacency_(*mesh_) {}
 
-void PaperRule::start(const Surroundings& around, HalfSpaceBuffer& planes) noexcept {
+Opening PaperRule::start(const Surroundings& around, HalfSpaceBuffer& planes) noexcept {
   for (const Hit& hit : around.hits) {
     if (const std::optional<HalfSpace> plane = plane_of(around, hit)) planes.push(*plane);
   }
+  return {};
 }
 
 std::optional<HalfSpace> PaperRule::plane_of(const Surroundings& around,

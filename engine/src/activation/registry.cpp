@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "keepout/activation/all_faces.h"
+#include "keepout/activation/certified.h"
 #include "keepout/activation/paper.h"
 #include "keepout/registry.h"
 
@@ -22,6 +23,8 @@ constexpr std::array rules{
                     make<AllFaces>},
     ActivationEntry{"paper", "Algorithm 1 of Li et al. 2020: for comparison, not always safe",
                     make<PaperRule>},
+    ActivationEntry{"certified", "only motions that are proven to keep their distance",
+                    make<CertifiedRule>},
 };
 
 }  // namespace

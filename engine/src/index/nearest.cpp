@@ -4,6 +4,7 @@
 #include "keepout/index/nearest.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace keepout {
 namespace {
@@ -12,33 +13,56 @@ double distance_to(const Box& box, const Vec3& point) noexcept {
   return (point - point.cwiseMax(box.low).cwiseMin(box.high)).norm();
 }
 
+/// Of the candidates within the ball, the one nearest to its centre.
+std::optional<Hit> nearest_of(const Mesh& mesh, const Ball& ball,
+                              std::span<const TriangleId> candidates) noexcept {
+  std::optional<Hit> best;
+  for (const TriangleId t : candidates) {
+    const ClosestPoint closest = closest_point(mesh.triangle(t), ball.center);
+    if (closest.distance > ball.radius) continue;
+    const bool nearer = !best || closest.distance < best->closest.distance ||
+                        (closest.distance == best->closest.distance && t < best->triangle);
+    if (nearer) best = {t, closest};
+  }
+  return best;
+}
+
 }  // namespace
+
+std::optional<Hit> find_nearest(const Mesh& mesh, const SpatialIndex& index, const Vec3& point,
+                                double guess, TriangleBuffer& candidates) noexcept {
+  const Box& bounds = mesh.bounds();
+  const double size = bounds.size().norm() + point.cwiseAbs().maxCoeff() + bounds.low.norm();
+  // No triangle is nearer than the box around them; the floor keeps the growth from starting at 0.
+  double radius = std::max(distance_to(bounds, point) * (1.0 + 1e-12) + 1e-6 * size, guess);
+  double empty = 0.0;  // nothing is within
+  double crowded = std::numeric_limits<double>::infinity();
+  // Doubling ends within some tens of rounds, and so does halving, at neighbouring numbers.
+  constexpr int most_rounds = 200;
+  for (int round = 0; round < most_rounds; ++round) {
+    candidates.clear();
+    index.collect({point, radius}, candidates);
+    if (candidates.overflowed()) {
+      crowded = radius;
+    } else if (const auto best = nearest_of(mesh, {point, radius}, candidates.view())) {
+      return best;
+    } else {
+      empty = radius;
+    }
+    const double next = 2.0 * radius < crowded ? 2.0 * radius : empty + 0.5 * (crowded - empty);
+    if (!(next > empty && next < crowded)) return std::nullopt;
+    radius = next;
+  }
+  return std::nullopt;
+}
 
 NearestTriangle::NearestTriangle(const Mesh& mesh, const SpatialIndex& index)
     : mesh_(&mesh), index_(&index), candidates_(4096) {}
 
 Hit NearestTriangle::operator()(const Vec3& point, double guess) {
-  const Box& bounds = mesh_->bounds();
-  const double size = bounds.size().norm() + point.cwiseAbs().maxCoeff() + bounds.low.norm();
-  // No triangle is nearer than the box around them; the floor keeps the growth from starting at 0.
-  const double least = distance_to(bounds, point) * (1.0 + 1e-12) + 1e-6 * size;
-  for (double radius = std::max(least, guess);; radius *= 2.0) {
-    candidates_.clear();
-    index_->collect({point, radius}, candidates_);
-    while (candidates_.overflowed()) {
-      candidates_ = TriangleBuffer(2 * candidates_.capacity());
-      index_->collect({point, radius}, candidates_);
-    }
-    Hit best{no_triangle, {}};
-    for (const TriangleId t : candidates_) {
-      const ClosestPoint closest = closest_point(mesh_->triangle(t), point);
-      if (closest.distance > radius) continue;
-      const bool nearer = best.triangle == no_triangle ||
-                          closest.distance < best.closest.distance ||
-                          (closest.distance == best.closest.distance && t < best.triangle);
-      if (nearer) best = {t, closest};
-    }
-    if (best.triangle != no_triangle) return best;
+  while (true) {
+    if (const auto hit = find_nearest(*mesh_, *index_, point, guess, candidates_)) return *hit;
+    candidates_ = TriangleBuffer(2 * candidates_.capacity());
   }
 }
 

@@ -10,6 +10,10 @@ std::string_view name(Status status) noexcept {
       return "free";
     case Status::limited:
       return "limited";
+    case Status::recovering:
+      return "recovering";
+    case Status::fallback:
+      return "fallback";
     case Status::infeasible:
       return "infeasible";
     case Status::ill_posed:
@@ -22,6 +26,12 @@ std::string_view name(Status status) noexcept {
       return "over_capacity";
     case Status::unsolved:
       return "unsolved";
+    case Status::inside:
+      return "inside";
+    case Status::touching:
+      return "touching";
+    case Status::margin_too_small:
+      return "margin_too_small";
   }
   return "unknown";
 }
@@ -32,6 +42,11 @@ std::string_view reason(Status status) noexcept {
       return "nothing holds the motion back";
     case Status::limited:
       return "planes of nearby triangles hold the motion back";
+    case Status::recovering:
+      return "the tip was closer than the margin, or inside: the motion leads it out";
+    case Status::fallback:
+      return "the best motion could not be proven within the budget of work: this is a shorter one "
+             "that was";
     case Status::infeasible:
       return "no motion satisfies all planes: the tip is closer than the margin on several sides, "
              "or "
@@ -52,6 +67,16 @@ std::string_view reason(Status status) noexcept {
     case Status::unsolved:
       return "the solver gave up within its budget of work, or its answer did not satisfy the "
              "planes";
+    case Status::inside:
+      return "the tip is on the forbidden side: lead it out by steps without a Jacobian and rows, "
+             "or "
+             "by hand";
+    case Status::touching:
+      return "the tip touches the surface, and which side is free cannot be told: move it off by "
+             "hand";
+    case Status::margin_too_small:
+      return "the margin is lost in the rounding of lengths this large: raise the margin or the "
+             "tool radius, or move the origin closer";
   }
   return "unknown status";
 }

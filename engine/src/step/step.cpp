@@ -2,9 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "keepout/step/step.h"
 
-#include <algorithm>
-#include <cmath>
-
 namespace keepout {
 namespace {
 
@@ -16,19 +13,32 @@ bool are_usable(const Numbers& numbers) noexcept {
   return (numbers.array().abs() <= largest_number).all();  // false for NaN
 }
 
+bool is_usable(double length) noexcept { return length >= 0.0 && length <= largest_number; }
+
+bool are_usable(const ExtraRows& rows, Eigen::Index variables) noexcept {
+  if (rows.count() < 0) return false;
+  if (rows.count() == 0) return true;
+  if (rows.matrix() == nullptr || rows.bounds() == nullptr) return false;
+  using Numbers = Eigen::Map<const StepProblem::Vector>;
+  return are_usable(Numbers(rows.matrix(), rows.count() * variables)) &&
+         are_usable(Numbers(rows.bounds(), rows.count()));
+}
+
 }  // namespace
 
 Status check(const Motion& motion, const StepOptions& options) noexcept {
   const bool usable = are_usable(motion.tip) && are_usable(motion.desired) &&
-                      options.radius > 0.0 && options.radius <= largest_number &&
-                      options.margin >= 0.0 && options.margin <= largest_number &&
-                      options.damping >= 0.0 && options.damping <= largest_number;
+                      options.radius > 0.0 && is_usable(options.radius) &&
+                      is_usable(options.margin) && is_usable(options.damping) &&
+                      is_usable(options.recovery) && options.refinements >= 0 && options.nodes >= 0;
   if (!usable) return Status::invalid_input;
   if (const auto& j = motion.jacobian) {
     if (j->joints() < 1 || j->data() == nullptr || !are_usable(j->matrix())) {
       return Status::invalid_input;
     }
   }
+  const Eigen::Index variables = motion.jacobian ? motion.jacobian->joints() : 3;
+  if (motion.rows && !are_usable(*motion.rows, variables)) return Status::invalid_input;
   // So far from the origin that a step is lost in the digits of the tip.
   if (position_rounding(motion.tip, options) > 1e-3 * options.radius) return Status::invalid_input;
   if (!(motion.desired.norm() <= reach(options))) return Status::beyond_reach;
@@ -39,24 +49,38 @@ double position_rounding(const Vec3& tip, const StepOptions& options) noexcept {
   return 1e-12 * (tip.lpNorm<1>() + options.margin) + 1e-10 * options.radius;
 }
 
-bool satisfies(const Vec3& motion, std::span<const HalfSpace> planes, double rounding) noexcept {
-  return std::all_of(planes.begin(), planes.end(), [&](const HalfSpace& plane) {
-    return plane.normal.dot(motion) >= plane.offset - 0.5 * rounding;
-  });
+Surroundings surroundings_of(const Motion& motion, const StepOptions& options,
+                             Reach projections) noexcept {
+  // With joints or rows of the caller's own the answer need not be a projection of the aim.
+  const Reach reached = motion.jacobian || motion.rows ? Reach::sphere : projections;
+  return {.tip = motion.tip,
+          .aim = motion.desired,
+          .kept = Vec3::Zero(),
+          .radius = options.radius,
+          .longest = reach(options),
+          .margin = options.margin,
+          .recovery = options.recovery,
+          .rounding = position_rounding(motion.tip, options),
+          .reach = reached,
+          .searched = options.query == Query::motion ? reached : Reach::sphere,
+          .ball = {motion.tip, 0.0},
+          .hits = {}};
 }
 
-std::optional<Vec3> tip_motion(const StepProblem& problem, const Solution& solution,
-                               double rounding) noexcept {
-  Vec3 motion = Vec3::Zero();
-  double way = 0.0;  // of the tip, were all joints to move it alike
-  for (Eigen::Index c = 0; c < problem.jacobian.cols(); ++c) {
-    const double u = solution.u[static_cast<std::size_t>(c)];
-    motion += problem.jacobian.col(c) * u;
-    way += problem.jacobian.col(c).norm() * std::abs(u);
+Status status_of(Opening::Stance stance) noexcept {
+  using Stance = Opening::Stance;
+  switch (stance) {
+    case Stance::clear:
+    case Stance::too_close:
+      return Status::free;
+    case Stance::touching:
+      return Status::touching;
+    case Stance::no_margin:
+      return Status::margin_too_small;
+    case Stance::over_capacity:
+      break;
   }
-  constexpr double digits = 5e-16;  // of the sum above, relative to the way
-  if (!(digits * way <= rounding)) return std::nullopt;
-  return motion;
+  return Status::over_capacity;
 }
 
 }  // namespace keepout

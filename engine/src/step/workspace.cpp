@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 namespace keepout {
 namespace {
@@ -11,21 +12,32 @@ namespace {
 // What the tip's increment is to itself.
 constexpr std::array<double, 9> identity{1, 0, 0, 0, 1, 0, 0, 0, 1};
 
+// Ways around one triangle: the plane of the contact, of the face, and of each edge.
+constexpr std::size_t most_ways = 5;
+
 }  // namespace
 
 Workspace::Workspace(const Capacity& capacity)
     : candidates(capacity.triangles),
       hits(capacity.triangles),
       planes(capacity.planes),
+      earlier_planes(capacity.planes),
+      ways(most_ways),
+      branches(most_ways * capacity.nodes + 1),
       variables_(static_cast<Eigen::Index>(std::max<std::size_t>(capacity.variables, 3))),
-      rows_(capacity.planes * static_cast<std::size_t>(variables_)),
-      bounds_(capacity.planes) {}
+      extra_rows_(static_cast<Eigen::Index>(capacity.extra_rows)),
+      rows_((capacity.planes + capacity.extra_rows) * static_cast<std::size_t>(variables_)),
+      bounds_(capacity.planes + capacity.extra_rows),
+      answer_{Buffer<double>(static_cast<std::size_t>(variables_)),
+              Buffer<std::uint32_t>(capacity.planes + capacity.extra_rows)},
+      earlier_answer_(answer_) {}
 
-StepProblem Workspace::pose(const Motion& motion, double damping) noexcept {
+StepProblem Workspace::pose(const Motion& motion, const Vec3& aim, double damping) noexcept {
   const TipJacobian jacobian = motion.jacobian.value_or(TipJacobian(identity.data(), 3));
   const Eigen::Index n = jacobian.joints();
   const auto m = static_cast<Eigen::Index>(planes.size());
-  Eigen::Map<StepProblem::RowMatrix> rows(rows_.data(), m, n);
+  const Eigen::Index extra = motion.rows ? motion.rows->count() : 0;
+  Eigen::Map<StepProblem::RowMatrix> rows(rows_.data(), m + extra, n);
   for (Eigen::Index p = 0; p < m; ++p) {
     const HalfSpace& plane = planes[p];
     for (Eigen::Index c = 0; c < n; ++c) {
@@ -33,12 +45,40 @@ StepProblem Workspace::pose(const Motion& motion, double damping) noexcept {
     }
     bounds_[p] = plane.offset;
   }
-  desired_ = motion.desired;
+  if (extra > 0) {
+    std::copy_n(motion.rows->matrix(), extra * n, rows_.data() + m * n);
+    std::copy_n(motion.rows->bounds(), extra, bounds_.data() + m);
+  }
+  desired_ = aim;
   return {.jacobian = {jacobian.data(), 3, n},
           .desired = {desired_.data(), 3},
-          .rows = {rows_.data(), m, n},
-          .bounds = {bounds_.data(), m},
+          .rows = {rows_.data(), m + extra, n},
+          .bounds = {bounds_.data(), m + extra},
           .damping = damping};
+}
+
+void Workspace::note(const Solution& answer, double share) noexcept {
+  answer_.increment.clear();
+  for (const double u : answer.u) answer_.increment.push(share * u);
+  answer_.active.clear();
+  for (const std::uint32_t row : answer.active) answer_.active.push(row);
+}
+
+void Workspace::note(const Solution& answer, const Vec3& increment) noexcept {
+  note(answer, 0.0);
+  answer_.increment.clear();
+  for (const double u : increment) answer_.increment.push(u);
+}
+
+void Workspace::set_aside() noexcept {
+  std::swap(planes, earlier_planes);
+  std::swap(answer_, earlier_answer_);
+  planes.clear();
+}
+
+void Workspace::take_back() noexcept {
+  std::swap(planes, earlier_planes);
+  std::swap(answer_, earlier_answer_);
 }
 
 }  // namespace keepout

@@ -70,8 +70,10 @@ TEST_P(RuleContract, EachPlaneHasItsOwnTriangleBehindIt) {
   for_each_situation(0.25, [&](const Mesh& mesh, const Vec3& tip, const auto& planes) {
     for (const HalfSpace& plane : planes) {
       const Triangle triangle = mesh.triangle(plane.source);
+      // As far as the margin, or as it is already.
+      const double kept = std::min(0.25, closest_point(triangle, tip).distance);
       for (const Vec3& corner : triangle) {
-        ASSERT_LE(plane.normal.dot(corner - tip) + 0.25,
+        ASSERT_LE(plane.normal.dot(corner - tip) + kept,
                   plane.offset + 1e-12 + rounding_of_normal(triangle));
       }
     }

@@ -13,17 +13,25 @@
 
 namespace keepout {
 
-/// The planes that a rule activates at a tip.
+/// The planes that a rule activates at a tip: those it begins with, and its answers to motions as
+/// long as the radius, along and across the axes.
 inline std::vector<HalfSpace> planes_at(const std::shared_ptr<const Mesh>& mesh, Activation& rule,
                                         const Vec3& tip, double radius, double margin = 0.0) {
   TriangleBuffer candidates(mesh->triangle_count());
   HitBuffer hits(mesh->triangle_count());
   HalfSpaceBuffer planes(mesh->triangle_count());
-  const Ball ball{tip, radius + margin};
-  BruteForce(mesh).collect(ball, candidates);
-  refine(*mesh, ball, candidates.view(), hits);
-  rule.start({tip, Vec3::Zero(), margin, position_rounding(tip, {.radius = radius}), hits.view()},
-             planes);
+  Surroundings around = surroundings_of({.tip = tip, .desired = Vec3::Zero()},
+                                        {.radius = radius, .margin = margin}, Reach::sphere);
+  around.ball = {tip, radius + margin};
+  BruteForce(mesh).collect(around.ball, candidates);
+  refine(*mesh, around.ball, candidates.view(), hits);
+  around.hits = hits.view();
+  rule.reserve(mesh->triangle_count());
+  if (rule.start(around, planes).stance != Opening::Stance::clear) return {};
+  for (int i = 0; i < 27; ++i) {
+    const Vec3 towards(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
+    if (!towards.isZero()) rule.judge(around, radius * towards.normalized(), planes);
+  }
   return {planes.begin(), planes.end()};
 }
 

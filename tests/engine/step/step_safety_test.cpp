@@ -99,9 +99,10 @@ TEST(StepSafety, AnAbsurdCapacityIsRefusedBeforeMemoryIsAskedFor) {
 TEST(StepSafety, ARuleThatObjectsForEverEndsInAStatus) {
   class Grumbler final : public Activation {
    public:
-    void start(const Surroundings&, HalfSpaceBuffer&) noexcept override {}
-    std::optional<HalfSpace> separate(const Surroundings&, const Vec3&) noexcept override {
-      return HalfSpace{Vec3::UnitX(), -1.0, 0};  // which no trial here violates
+    Opening start(const Surroundings&, HalfSpaceBuffer&) noexcept override { return {}; }
+    Judgement judge(const Surroundings&, const Vec3&, HalfSpaceBuffer& planes) noexcept override {
+      planes.push({Vec3::UnitX(), -1.0, 0});  // which no trial here violates
+      return {Judgement::Verdict::objected, 0.0};
     }
   };
   const auto mesh = cube();

@@ -186,12 +186,13 @@ class LazyFaces final : public Activation {
   explicit LazyFaces(std::shared_ptr<const Mesh> mesh)
       : eager_(std::move(mesh)), planes_(100'000) {}
 
-  void start(const Surroundings& around, HalfSpaceBuffer&) noexcept override {
+  Opening start(const Surroundings& around, HalfSpaceBuffer&) noexcept override {
     planes_.clear();
-    eager_.start(around, planes_);
+    return eager_.start(around, planes_);
   }
 
-  std::optional<HalfSpace> separate(const Surroundings&, const Vec3& trial) noexcept override {
+  Judgement judge(const Surroundings&, const Vec3& trial,
+                  HalfSpaceBuffer& planes) noexcept override {
     const HalfSpace* worst = nullptr;
     double shortfall = 1e-12;
     for (const HalfSpace& plane : planes_) {
@@ -201,7 +202,9 @@ class LazyFaces final : public Activation {
         worst = &plane;
       }
     }
-    return worst != nullptr ? std::optional(*worst) : std::nullopt;
+    if (worst == nullptr) return {Judgement::Verdict::accepted};
+    planes.push(*worst);
+    return {Judgement::Verdict::objected, 0.0};
   }
 
  private:

@@ -16,7 +16,7 @@ class AllFaces final : public Activation {
  public:
   explicit AllFaces(std::shared_ptr<const Mesh> mesh);
 
-  void start(const Surroundings& around, HalfSpaceBuffer& planes) noexcept override;
+  Opening start(const Surroundings& around, HalfSpaceBuffer& planes) noexcept override;
 
  private:
   std::shared_ptr<const Mesh> mesh_;

@@ -30,7 +30,7 @@ class PaperRule final : public Activation {
   /// Builds the adjacency of the mesh.
   explicit PaperRule(std::shared_ptr<const Mesh> mesh);
 
-  void start(const Surroundings& around, HalfSpaceBuffer& planes) noexcept override;
+  Opening start(const Surroundings& around, HalfSpaceBuffer& planes) noexcept override;
 
  private:
   enum class Role { none, speaks, leaves_it_to_a_neighbor };

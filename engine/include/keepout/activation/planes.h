@@ -18,4 +18,7 @@ bool on_positive_side(const Surroundings& around, const Hit& hit, const Vec3& no
 /// Whether the tip lies on the surface, to within rounding: x - CP has no direction there.
 bool touches(const Surroundings& around, const Hit& hit) noexcept;
 
+/// Whether a motion satisfies all planes, to within half of the rounding of a position.
+bool satisfies(const Vec3& motion, std::span<const HalfSpace> planes, double rounding) noexcept;
+
 }  // namespace keepout

@@ -32,12 +32,31 @@ class TipJacobian {
   Eigen::Index joints_;
 };
 
+/// A view of rows of the caller's own on the increment u, such as joint limits: A u >= b.
+class ExtraRows {
+ public:
+  /// `matrix`: A (m, n), row by row. `bounds`: b (m). Both must outlive the step.
+  ExtraRows(const double* matrix, const double* bounds, Eigen::Index count) noexcept
+      : matrix_(matrix), bounds_(bounds), count_(count) {}
+
+  Eigen::Index count() const noexcept { return count_; }
+  const double* matrix() const noexcept { return matrix_; }
+  const double* bounds() const noexcept { return bounds_; }
+
+ private:
+  const double* matrix_;
+  const double* bounds_;
+  Eigen::Index count_;
+};
+
 /// What is asked of one control cycle.
 struct Motion {
   Vec3 tip = unset;      // in the frame of the mesh [length]
   Vec3 desired = unset;  // increment asked for [length]
   /// Of the joints that are to move the tip. Without one, the tip itself is what moves: u = dx.
   std::optional<TipJacobian> jacobian = std::nullopt;
+  /// What else the increment must satisfy. Bounds above 0 ask for motion.
+  std::optional<ExtraRows> rows = std::nullopt;
 
   /// What was forgotten is refused, not guessed.
   inline static const Vec3 unset = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
@@ -46,11 +65,12 @@ struct Motion {
 /// What one control cycle may do. Views stay valid until the next step of the same workspace.
 struct Step {
   Status status = Status::invalid_input;
-  Vec3 motion = Vec3::Zero();             // of the tip; zero unless ok() [length]
-  std::span<const double> increment;      // u: the tip's, or the joints' (n); empty unless ok()
-  std::span<const HalfSpace> planes;      // all that were posed to the solver
-  std::span<const std::uint32_t> active;  // which of them hold the motion back; empty unless ok()
-  std::size_t triangles = 0;              // in reach
+  Vec3 motion = Vec3::Zero();         // of the tip; zero unless ok() [length]
+  std::span<const double> increment;  // u: the tip's, or the joints' (n); empty unless ok()
+  std::span<const HalfSpace> planes;  // all that were posed to the solver
+  /// Which of them hold the motion back; empty unless ok(). From planes.size() on, extra rows.
+  std::span<const std::uint32_t> active;
+  std::size_t triangles = 0;  // in reach
 
   bool ok() const noexcept { return is_ok(status); }
   std::string_view reason() const noexcept { return keepout::reason(status); }

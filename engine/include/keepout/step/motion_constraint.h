@@ -2,40 +2,79 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <optional>
+#include <span>
+#include <string_view>
 
 #include "keepout/activation/activation.h"
+#include "keepout/activation/free_polytope.h"
 #include "keepout/index/spatial_index.h"
 #include "keepout/mesh/mesh.h"
 #include "keepout/step/step.h"
 
 namespace keepout {
 
+/// What becomes of a tip that starts on the forbidden side.
+enum class Inside : std::uint8_t {
+  led_out,     // straight through the nearest point of the surface, before it may do anything else
+  taken_as_is  // not asked: the surface is kept from on whichever side the tip is
+};
+
+/// Planes around a tip.
+struct Polytope {
+  PolytopeStatus status = PolytopeStatus::invalid_input;
+  std::span<const HalfSpace> planes;
+
+  bool ok() const noexcept { return status == PolytopeStatus::found; }
+  std::string_view reason() const noexcept { return keepout::reason(status); }
+};
+
 /// Keeps a tool tip out of a mesh: owns an index, a rule, a solver and their memory, by whatever
 /// names they were made. Not thread-safe: one for each control loop; the mesh is shared.
+///
+/// A tip that the last step did not lead to is placed anew: on a watertight mesh its side is found
+/// by the winding. From there on no certified step changes sides.
 class MotionConstraint {
  public:
   /// Index and rule must be built on `mesh`. Throws Error when a part is missing, or an option or
   /// capacity is out of range. Makes all memory here.
   MotionConstraint(std::shared_ptr<const Mesh> mesh, std::unique_ptr<SpatialIndex> index,
                    std::unique_ptr<Activation> activation, std::unique_ptr<Solver> solver,
-                   const StepOptions& options, const Capacity& capacity = {});
+                   const StepOptions& options, const Capacity& capacity = {},
+                   Inside inside = Inside::taken_as_is);
 
-  /// The nearest motion that the planes allow. The result's views stay valid until the next step.
+  /// The nearest motion that the rule allows. The result's views stay valid until the next step.
   Step step(const Motion& motion) noexcept;
 
   /// The same, and what each stage took.
   Step step(const Motion& motion, StageTimes& times) noexcept;
 
+  /// The free space around a tip as one convex polytope, whatever the direction of the motion: for
+  /// a caller's own QP, MPC or sampler. Every motion that stays within all planes and within
+  /// `radius` keeps the margin; guarantee and failures: FreePolytope. The planes stay valid until
+  /// the next call; a failure allows standing still only.
+  Polytope free_polytope(const Vec3& tip, double radius) noexcept;
+
   const Mesh& mesh() const noexcept { return *mesh_; }
 
  private:
+  template <StageObserver O>
+  Step step(const Motion& motion, O&& observer) noexcept;
+
+  std::optional<Step> lead_out_if_inside(const Motion& motion) noexcept;
+
   std::shared_ptr<const Mesh> mesh_;
   std::unique_ptr<SpatialIndex> index_;
   std::unique_ptr<Activation> activation_;
   std::unique_ptr<Solver> solver_;
   StepOptions options_;
   Workspace work_;
+  FreePolytope polytope_;
+  bool has_sides_;            // the tip's side is to be asked for, and the mesh can tell
+  Vec3 free_tip_;             // where the last step ended, on the free side; unset at first
+  double free_around_ = 0.0;  // how far around it all is free as well [length]
 };
 
 }  // namespace keepout

@@ -3,11 +3,14 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "keepout/activation/activation.h"
 #include "keepout/index/refine.h"
 #include "keepout/index/spatial_index.h"
+#include "keepout/step/branches.h"
 #include "keepout/step/motion.h"
 #include "keepout/step/problem.h"
 
@@ -17,7 +20,9 @@ namespace keepout {
 struct Capacity {
   std::size_t triangles = std::size_t{1} << 16;  // candidates of one query
   std::size_t planes = std::size_t{1} << 14;
-  std::size_t variables = 7;  // columns of the Jacobian, or 3 without one
+  std::size_t variables = 7;    // columns of the Jacobian, or 3 without one
+  std::size_t extra_rows = 64;  // of the caller's own
+  std::size_t nodes = 0;        // of the branch and bound
 };
 
 /// All the memory of a step, made once. One for each thread.
@@ -26,21 +31,50 @@ class Workspace {
   explicit Workspace(const Capacity& capacity);
 
   Eigen::Index variables() const noexcept { return variables_; }
+  Eigen::Index extra_rows() const noexcept { return extra_rows_; }
 
-  /// The problem whose rows are the planes: on the tip's own increment without a Jacobian, on the
-  /// joints' with one, n^T J. Precondition: at most variables() joints.
-  StepProblem pose(const Motion& motion, double damping) noexcept;
+  /// The problem whose rows are the planes, then those of the caller: on the tip's own increment
+  /// without a Jacobian, on the joints' with one, n^T J. `aim`: where the tip shall go. [length]
+  /// Precondition: at most variables() joints and extra_rows() rows.
+  StepProblem pose(const Motion& motion, const Vec3& aim, double damping) noexcept;
+
+  /// Takes down an answer, which outlives the solver's next one: `share` of the increment, or the
+  /// tip's own.
+  void note(const Solution& answer, double share) noexcept;
+  void note(const Solution& answer, const Vec3& increment) noexcept;
 
   TriangleBuffer candidates;
   HitBuffer hits;
   HalfSpaceBuffer planes;
+  HalfSpaceBuffer earlier_planes;  // of the motion that is to be improved upon
+  HalfSpaceBuffer ways;            // around one triangle
+  Branches branches;
+  std::optional<StepProblem> problem;
   Solution solution;
 
+  /// Puts planes and answer aside, for a search that may find better ones.
+  void set_aside() noexcept;
+
+  /// It found none.
+  void take_back() noexcept;
+
+  /// What was taken down.
+  std::span<const double> increment() const noexcept { return answer_.increment.view(); }
+  std::span<const std::uint32_t> active() const noexcept { return answer_.active.view(); }
+
  private:
+  struct Answer {
+    Buffer<double> increment;      // (variables)
+    Buffer<std::uint32_t> active;  // (planes + extra rows)
+  };
+
   Eigen::Index variables_;
-  std::vector<double> rows_;    // (planes, variables), row by row
-  std::vector<double> bounds_;  // (planes)
+  Eigen::Index extra_rows_;
+  std::vector<double> rows_;    // (planes + extra rows, variables), row by row
+  std::vector<double> bounds_;  // (planes + extra rows)
   Vec3 desired_;
+  Answer answer_;
+  Answer earlier_answer_;
 };
 
 }  // namespace keepout

@@ -12,11 +12,17 @@ namespace keepout {
 /// Which parts to build a motion constraint from, by name, and how it shall behave.
 struct MotionConstraintSettings {
   std::string index = "pd_tree";
-  std::string activation = "paper";
+  std::string activation = "certified";
   std::string solver = "active_set";
-  double radius = 5.0;   // of the motion sphere [length]; 5 mm is the paper's
-  double margin = 0.0;   // distance to keep from the mesh [length]
-  double damping = 0.0;  // weight of |u|^2 beside the task
+  double radius = 5.0;          // of the motion sphere: the farthest that the tip may go [length]
+  double tool_radius = 0.0;     // of the ball around the tip that shall not touch the mesh [length]
+  double margin = 0.2;          // distance to keep beyond that; certified needs one [length]
+  double damping = 0.0;         // weight of |u|^2 beside the task
+  double recovery = 0.05;       // how far a tip that is too close is led away in a cycle [length]
+  int refinements = 3;          // how often a certified motion is improved upon
+  int nodes = 0;                // of a branch and bound for a better motion still; 0: none
+  Query query = Query::motion;  // how far around the tip triangles are looked for
+  Inside inside = Inside::led_out;  // what becomes of a tip that starts inside; certified only
   Capacity capacity = {};
 };
 

@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "campaign.h"
+
+namespace keepout::app {
+
+/// Each generated shape, where it was made and 1e4 mm away.
+std::vector<Arena> generated_arenas(std::string_view index);
+
+/// The real meshes in the cache; `missing` is told the others.
+std::vector<Arena> real_arenas(std::string_view index, std::vector<std::string>& missing);
+
+/// A file. It is read when it is its turn.
+Arena file_arena(const std::filesystem::path& path, std::string name, std::string_view index);
+
+}  // namespace keepout::app

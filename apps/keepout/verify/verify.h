@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <iosfwd>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace keepout::app {
+
+struct VerifyOptions {
+  std::vector<std::filesystem::path> meshes;  // none: all fixtures
+  std::uint64_t steps = 1'000'000;
+  std::uint64_t seed = 1;
+  std::string shard = "1/1";
+  std::string index = "pd_tree";
+  std::optional<std::filesystem::path> json;  // to be written
+  std::vector<std::filesystem::path> merge;   // results to add up, instead of a campaign
+};
+
+/// Tries by all means to break what docs/certified-step.md promises, or adds up earlier tries, and
+/// prints a table. The exit status: failure when there was any breach. Throws Error.
+int verify(const VerifyOptions& options, std::ostream& out);
+
+}  // namespace keepout::app

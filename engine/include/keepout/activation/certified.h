@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+
+#include "keepout/activation/activation.h"
+#include "keepout/activation/facet.h"
+#include "keepout/mesh/mesh.h"
+
+namespace keepout {
+
+/// The certified rule: no motion is accepted unless each triangle in reach is proven to keep its
+/// distance from the whole of it. Needs no adjacency, winding or convexity: open, non-manifold and
+/// self-intersecting surfaces are all kept from, on both sides.
+///
+/// It starts without planes. To a trial that comes too close it answers with the plane of the first
+/// contact, which has that triangle, grown by the margin, behind it; so each triangle is answered
+/// at most once in a round. Algorithm, proof and tolerances: docs/certified-step.md.
+///
+/// Guarantee: dist(x + s dx, mesh) >= min(margin, dist(x, mesh)) - 3 tolerance for all s in [0, 1].
+class CertifiedRule final : public Activation {
+ public:
+  explicit CertifiedRule(std::shared_ptr<const Mesh> mesh);
+
+  void reserve(std::size_t triangles) override;
+  Reach reach() const noexcept override { return Reach::thales; }
+  Ball region(const Surroundings& around) const noexcept override;
+  Opening start(const Surroundings& around, HalfSpaceBuffer& planes) noexcept override;
+  Judgement judge(const Surroundings& around, const Vec3& trial,
+                  HalfSpaceBuffer& planes) noexcept override;
+  bool relax(HalfSpaceBuffer& planes) const noexcept override;
+  bool turn(const Surroundings& around, std::span<const HalfSpace> planes,
+            HalfSpaceBuffer& turned) noexcept override;
+  void ways_around(const Surroundings& around, TriangleId source,
+                   HalfSpaceBuffer& ways) const noexcept override;
+
+  /// Distances are told apart down to this: some 1e-10 of the largest lengths at hand. It comes
+  /// from the whole mesh, not from the triangles found, so that no index can change it. [length]
+  double tolerance(const Surroundings& around) const noexcept;
+
+ private:
+  /// A triangle in reach, and the distances that it is due. [length]
+  struct Near {
+    Facet facet;
+    double target;  // planes are placed this far off
+    double demand;  // a trial that comes closer is objected to
+    double floor;   // what a trial that its plane allows may come down to
+  };
+
+  const Near& near(TriangleId source) const noexcept;
+  HalfSpace answer(const Surroundings& around, const Near& in_the_way, const Vec3& trial,
+                   const HalfSpace& contact) const noexcept;
+  void turn(const Surroundings& around, const Near& its, const Vec3& towards,
+            HalfSpace& plane) const noexcept;
+
+  std::shared_ptr<const Mesh> mesh_;
+  double longest_edge_;  // [length]
+  Buffer<Near> near_;    // sorted by source
+};
+
+}  // namespace keepout

@@ -1,0 +1,99 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "keepout/activation/activation.h"
+#include "keepout/index/refine.h"
+#include "keepout/mesh/mesh.h"
+
+namespace keepout {
+
+struct TriangleFromTip;
+
+/// What became of a free polytope. Anything but `found` comes with planes that allow standing still
+/// and nothing else.
+enum class PolytopeStatus : std::uint8_t {
+  found,          // the planes are complete
+  touching,       // the tip is on the mesh, to within rounding: no side of it is certain
+  invalid_input,  // a number is not finite or out of range, or a hit is of no triangle of the mesh
+  over_capacity   // more hits or planes than room was made for
+};
+
+/// The name as it stands in the enumeration, for files and logs.
+std::string_view name(PolytopeStatus status) noexcept;
+
+/// One line on what happened and what to do about it.
+std::string_view reason(PolytopeStatus status) noexcept;
+
+/// Replaces planes by six that allow standing still and nothing else.
+void hold_still(HalfSpaceBuffer& planes) noexcept;
+
+/// The free space around the tip as one convex polytope, whatever the direction of the motion: for
+/// callers with a QP, an MPC or a sampler of their own.
+///
+/// Every increment d with |d| <= radius that satisfies all planes keeps
+///   distance(tip + d, mesh) >= min(margin, distance(tip, mesh)) - rounding,
+/// and as planes and ball are convex and hold d = 0, so does every motion that stays within them,
+/// straight or curved. `rounding` is 1e-12 radius + 2e-14 size [length], where size is the largest
+/// distance from the tip to a corner of a hit; it does not grow with the distance from the origin.
+/// It needs no adjacency, no winding and no closed surface: both sides of a triangle are solid.
+///
+/// Greedy separation in order of distance: a triangle becomes a plane unless what the ball can
+/// reach of it is behind an earlier one. Of its face plane, and of the plane across the way to its
+/// closest point, that one is taken which leaves more of what the earlier planes left, counted on
+/// fixed probe points in the ball. Planes stand off by a hundredth of the radius, or by a quarter
+/// of their room if that is less, so that nearly coplanar neighbours are behind them as well: that
+/// costs a hundredth of the volume and saves a quarter of the planes.
+///
+/// Not thread-safe: one for each thread; the mesh is shared.
+class FreePolytope {
+ public:
+  /// Makes all memory here, for up to `triangles` hits in a call. Throws Error without a mesh.
+  FreePolytope(std::shared_ptr<const Mesh> mesh, std::size_t triangles);
+
+  /// Replaces the contents of `planes` by the polytope around `tip`; all offsets are <= 0.
+  ///
+  /// `radius`, `margin` [length], >= 0. `hits`: all triangles within the ball of radius + margin
+  /// around the tip, in any order; closest points relative to the tip (refine). `planes` needs room
+  /// for at least six; with less, a failure leaves it overflowed.
+  ///
+  /// The normals, the offsets and their order are the same, bit for bit, however the triangles are
+  /// numbered, wound and rotated. Allocates nothing.
+  [[nodiscard]] PolytopeStatus around(const Vec3& tip, double radius, double margin,
+                                      std::span<const Hit> hits, HalfSpaceBuffer& planes) noexcept;
+
+ private:
+  /// A hit, and what it is sorted by.
+  struct Turn {
+    double distance;  // [length]
+    std::uint32_t hit;
+  };
+  struct Query;
+
+  PolytopeStatus prepare(Query& query, std::span<const Hit> hits) const noexcept;
+  std::span<const Turn> by_distance(std::span<const Hit> hits) noexcept;
+  PolytopeStatus separate(const Query& query, std::span<const Hit> hits,
+                          HalfSpaceBuffer& planes) noexcept;
+  std::optional<HalfSpace> plane_for(const Query& query, const Hit& hit,
+                                     const TriangleFromTip& seen) const noexcept;
+  std::size_t probes_left_by(const HalfSpace& plane, double radius) const noexcept;
+  void remove_probes(const HalfSpace& plane, double radius) noexcept;
+
+  static constexpr std::size_t probe_count = 256;
+
+  std::shared_ptr<const Mesh> mesh_;
+  std::vector<Turn> turns_;
+  std::array<Vec3, probe_count> probes_;  // in the unit ball
+  std::array<bool, probe_count> is_left_{};
+};
+
+}  // namespace keepout

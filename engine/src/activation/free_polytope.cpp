@@ -1,0 +1,254 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "keepout/activation/free_polytope.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "../geometry/corner_order.h"
+#include "free_polytope_triangle.h"
+#include "keepout/error.h"
+
+namespace keepout {
+namespace {
+
+constexpr double largest_number = 1e30;  // squares and cubes of lengths must stay finite
+
+// How far a plane stands off from what it separates, to have its neighbours behind it as well: a
+// share of the radius, but no more than a share of its room, so that the tip still gets close.
+constexpr double standoff_of_radius = 0.01;
+constexpr double standoff_of_room = 0.25;
+
+bool is_length(double x) noexcept { return x >= 0.0 && x <= largest_number; }  // false for NaN
+
+/// Of two triangles at the same distance, the one whose corners come first, by their coordinates.
+bool comes_first(const Triangle& one, const Triangle& other) noexcept {
+  const CornerOrder mine = corner_order(one);
+  const CornerOrder theirs = corner_order(other);
+  for (int i = 0; i < 3; ++i) {
+    const Vec3& a = one[mine.corner[i]];
+    const Vec3& b = other[theirs.corner[i]];
+    for (int axis = 0; axis < 3; ++axis) {
+      if (a[axis] != b[axis]) return a[axis] < b[axis];
+    }
+  }
+  return false;
+}
+
+/// Points spread evenly in the unit ball. Source: Roberts, "The unreasonable effectiveness of
+/// quasirandom sequences", 2018: multiples of powers of 1 / g, where g^4 = g + 1.
+template <std::size_t count>
+std::array<Vec3, count> points_in_unit_ball() noexcept {
+  constexpr double g = 1.2207440846057596;
+  const Vec3 stride(1.0 / g, 1.0 / (g * g), 1.0 / (g * g * g));
+  std::array<Vec3, count> points;
+  std::size_t n = 0;
+  for (double k = 1.0; n < count; k += 1.0) {
+    const Vec3 multiple = k * stride;
+    const Vec3 point = 2.0 * (multiple - Vec3(multiple.array().floor())) - Vec3::Ones();
+    if (point.squaredNorm() <= 1.0) points[n++] = point;
+  }
+  return points;
+}
+
+/// The direction from the closest point to the tip. The edge it must be perpendicular to is better
+/// known than a short way is: without it, a tip very near to an edge would get no valid plane.
+Vec3 away_from(const ClosestPoint& closest, const Triangle& triangle) noexcept {
+  Vec3 away = -closest.offset / closest.distance;
+  if (is_edge(closest.feature)) {
+    const int e = number_of(closest.feature);
+    const Vec3 edge = triangle[(e + 1) % 3] - triangle[e];
+    away -= edge * (away.dot(edge) / edge.squaredNorm());
+    away.normalize();
+  }
+  return away;
+}
+
+}  // namespace
+
+void hold_still(HalfSpaceBuffer& planes) noexcept {
+  planes.clear();
+  for (int axis = 0; axis < 3; ++axis) {
+    planes.push({Vec3::Unit(axis), 0.0, no_triangle});
+    planes.push({-Vec3::Unit(axis), 0.0, no_triangle});
+  }
+}
+
+/// What is asked, and the lengths that follow from it. All [length].
+struct FreePolytope::Query {
+  Vec3 tip;
+  double radius;
+  double margin;
+  double kept = 0.0;      // the distance that the planes keep
+  double reach = 0.0;     // nothing farther away can come within that distance
+  double rounding = 0.0;  // of the guarantee; half of it is for the arithmetic
+
+  /// The least offset of a plane with this normal that keeps the triangle off; where that is out of
+  /// the ball, the ball's rim.
+  double least_offset(const TriangleFromTip& triangle, const Vec3& normal) const noexcept {
+    return std::max(support_within(triangle, normal, reach, 0.25 * rounding) + kept, -radius);
+  }
+
+  /// The plane of that normal which keeps the triangle off, if it allows standing still.
+  std::optional<HalfSpace> plane(const TriangleFromTip& triangle, const Vec3& normal,
+                                 TriangleId source) const noexcept {
+    const double least = least_offset(triangle, normal);
+    if (!(least <= 0.5 * rounding)) return std::nullopt;
+    const double standoff = std::min(standoff_of_radius * radius, -standoff_of_room * least);
+    return HalfSpace{normal, std::min(least + std::max(standoff, 0.5 * rounding), 0.0), source};
+  }
+
+  /// Whether the plane keeps the triangle off as well. A plane through the tip stands off from
+  /// nothing: there, what is coplanar but for its rounding counts as behind it.
+  bool is_behind(const TriangleFromTip& triangle, const Vec3& closest,
+                 const HalfSpace& plane) const noexcept {
+    const double limit = plane.offset < 0.0 ? plane.offset : 0.5 * rounding;
+    if (plane.normal.dot(closest) + kept > limit) return false;
+    return least_offset(triangle, plane.normal) <= limit;
+  }
+};
+
+FreePolytope::FreePolytope(std::shared_ptr<const Mesh> mesh, std::size_t triangles)
+    : mesh_(std::move(mesh)), probes_(points_in_unit_ball<probe_count>()) {
+  if (mesh_ == nullptr) throw Error("a free polytope needs a mesh");
+  // Never more hits than triangles: an absurd capacity costs nothing.
+  turns_.resize(std::min(triangles, mesh_->triangle_count()));
+}
+
+PolytopeStatus FreePolytope::around(const Vec3& tip, double radius, double margin,
+                                    std::span<const Hit> hits, HalfSpaceBuffer& planes) noexcept {
+  planes.clear();
+  Query query{.tip = tip, .radius = radius, .margin = margin};
+  PolytopeStatus status = prepare(query, hits);
+  if (status == PolytopeStatus::found) status = separate(query, hits, planes);
+  if (status != PolytopeStatus::found) hold_still(planes);
+  return status;
+}
+
+PolytopeStatus FreePolytope::prepare(Query& query, std::span<const Hit> hits) const noexcept {
+  if (!(query.tip.array().abs() <= largest_number).all() || !is_length(query.radius) ||
+      !is_length(query.margin)) {
+    return PolytopeStatus::invalid_input;
+  }
+  if (hits.size() > turns_.size()) return PolytopeStatus::over_capacity;
+  double nearest = largest_number;
+  double size2 = 0.0;
+  for (const Hit& hit : hits) {
+    if (hit.triangle >= mesh_->triangle_count() || !is_length(hit.closest.distance)) {
+      return PolytopeStatus::invalid_input;
+    }
+    nearest = std::min(nearest, hit.closest.distance);
+    for (const VertexId v : mesh_->corners(hit.triangle)) {
+      size2 = std::max(size2, (mesh_->vertex(v) - query.tip).squaredNorm());
+    }
+  }
+  query.rounding = 1e-12 * query.radius + 2e-14 * std::sqrt(size2);
+  if (nearest <= query.rounding) return PolytopeStatus::touching;
+  // At the margin but for rounding, the margin itself is kept, so that step by step nothing adds
+  // up.
+  query.kept = nearest >= query.margin - 0.25 * query.rounding ? query.margin : nearest;
+  query.reach = query.radius + query.kept;
+  return PolytopeStatus::found;
+}
+
+std::span<const FreePolytope::Turn> FreePolytope::by_distance(std::span<const Hit> hits) noexcept {
+  const std::span<Turn> turns(turns_.data(), hits.size());
+  for (std::uint32_t i = 0; i < turns.size(); ++i) turns[i] = {hits[i].closest.distance, i};
+  std::sort(turns.begin(), turns.end(), [&](const Turn& a, const Turn& b) {
+    if (a.distance != b.distance) return a.distance < b.distance;
+    const Triangle one = mesh_->triangle(hits[a.hit].triangle);
+    const Triangle other = mesh_->triangle(hits[b.hit].triangle);
+    if (comes_first(one, other)) return true;
+    return !comes_first(other, one) && a.hit < b.hit;
+  });
+  return turns;
+}
+
+PolytopeStatus FreePolytope::separate(const Query& query, std::span<const Hit> hits,
+                                      HalfSpaceBuffer& planes) noexcept {
+  is_left_.fill(true);
+  std::size_t latest = 0;  // neighbours tend to be behind the same plane
+  for (const Turn& turn : by_distance(hits)) {
+    if (turn.distance > query.reach) break;
+    const Hit& hit = hits[turn.hit];
+    const TriangleFromTip seen = triangle_from_tip(mesh_->triangle(hit.triangle), query.tip);
+    const auto is_behind = [&](const HalfSpace& plane) {
+      return query.is_behind(seen, hit.closest.offset, plane);
+    };
+    if (latest < planes.size() && is_behind(planes[latest])) continue;
+    const HalfSpace* const behind = std::find_if(planes.begin(), planes.end(), is_behind);
+    latest = static_cast<std::size_t>(behind - planes.begin());
+    if (behind != planes.end()) continue;
+
+    const std::optional<HalfSpace> plane = plane_for(query, hit, seen);
+    if (!plane) return PolytopeStatus::touching;
+    if (planes.size() == planes.capacity()) return PolytopeStatus::over_capacity;
+    planes.push(*plane);
+    remove_probes(*plane, query.radius);
+  }
+  return PolytopeStatus::found;
+}
+
+std::optional<HalfSpace> FreePolytope::plane_for(const Query& query, const Hit& hit,
+                                                 const TriangleFromTip& seen) const noexcept {
+  const bool is_behind_it = seen.normal.dot(seen.corners[0]) > 0.0;
+  const Vec3 facing = is_behind_it ? -seen.normal : seen.normal;
+  std::optional<HalfSpace> face;
+  if (!facing.isZero(0.0)) face = query.plane(seen, facing, hit.triangle);
+  if (face && is_face(hit.closest.feature)) return face;  // then the other is the same, less sharp
+
+  const Vec3 away = away_from(hit.closest, mesh_->triangle(hit.triangle));
+  const std::optional<HalfSpace> across = query.plane(seen, away, hit.triangle);
+  if (!face || !across) return face ? face : across;
+  return probes_left_by(*face, query.radius) > probes_left_by(*across, query.radius) ? face
+                                                                                     : across;
+}
+
+std::size_t FreePolytope::probes_left_by(const HalfSpace& plane, double radius) const noexcept {
+  std::size_t left = 0;
+  for (std::size_t i = 0; i < probe_count; ++i) {
+    if (is_left_[i] && plane.normal.dot(probes_[i]) * radius >= plane.offset) ++left;
+  }
+  return left;
+}
+
+void FreePolytope::remove_probes(const HalfSpace& plane, double radius) noexcept {
+  for (std::size_t i = 0; i < probe_count; ++i) {
+    if (plane.normal.dot(probes_[i]) * radius < plane.offset) is_left_[i] = false;
+  }
+}
+
+std::string_view name(PolytopeStatus status) noexcept {
+  switch (status) {
+    case PolytopeStatus::found:
+      return "found";
+    case PolytopeStatus::touching:
+      return "touching";
+    case PolytopeStatus::invalid_input:
+      return "invalid_input";
+    case PolytopeStatus::over_capacity:
+      return "over_capacity";
+  }
+  return "unknown";
+}
+
+std::string_view reason(PolytopeStatus status) noexcept {
+  switch (status) {
+    case PolytopeStatus::found:
+      return "every motion within the planes and the ball keeps its distance";
+    case PolytopeStatus::touching:
+      return "the tip is on the mesh, to within rounding, and no side of it is certain: go back to "
+             "the last place that was free";
+    case PolytopeStatus::invalid_input:
+      return "a number is not finite, negative or beyond 1e30, or a hit is of another mesh";
+    case PolytopeStatus::over_capacity:
+      return "more triangles or planes than room was made for: lower the radius or raise the "
+             "capacity";
+  }
+  return "unknown status";
+}
+
+}  // namespace keepout

@@ -1,0 +1,209 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+// The same motions, bit for bit, whatever finds, numbers or winds the triangles.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "accuracy/certified_loop.h"
+#include "keepout/adapters/index_registry.h"
+#include "keepout/fixtures/shapes.h"
+#include "keepout/index/nearest.h"
+
+namespace keepout::test {
+namespace {
+
+struct Cycle {
+  Status status;
+  Vec3 motion;
+
+  bool operator==(const Cycle&) const = default;
+};
+
+constexpr double margin = 0.3;
+constexpr double radius = 1.0;
+
+MotionConstraintSettings settings() {
+  return {.radius = radius, .margin = margin, .capacity = {.planes = 200}};
+}
+
+struct Start {
+  Vec3 tip;
+  Vec3 press;  // unit vector, towards the surface
+};
+
+/// Closed loops, each from its own place, that press into the surface half of the time.
+std::vector<Cycle> loops(MotionConstraint& guard, const std::vector<Start>& starts, int count) {
+  std::vector<Cycle> out;
+  Random random(5);
+  for (const Start& start : starts) {
+    Vec3 tip = start.tip;
+    Vec3 drift = Vec3::Zero();
+    for (int i = 0; i < count; ++i) {
+      if (i % 10 == 0) drift = i % 20 == 0 ? start.press : random.direction();
+      const Vec3 desired = 0.5 * (drift + 0.7 * random.direction());
+      const Step step = guard.step({.tip = tip, .desired = desired});
+      out.push_back({step.status, step.motion});
+      tip += step.motion;
+    }
+  }
+  return out;
+}
+
+/// For a surface that no tip is placed on: then the winding plays no part.
+std::vector<Cycle> loops(const Surface& surface, MotionConstraintSettings with,
+                         const std::vector<Start>& starts, int count) {
+  auto guard = make_motion_constraint(std::make_shared<const Mesh>(surface), with);
+  return loops(guard, starts, count);
+}
+
+std::vector<Start> starts_on(const Surface& surface, std::size_t count) {
+  Random random(3);
+  const auto mesh = std::make_shared<const Mesh>(surface);
+  const PdTree tree(mesh);
+  NearestTriangle nearest(*mesh, tree);
+  std::vector<Start> out;
+  for (const double offset : {1.2 * margin, 0.4 * margin}) {  // free, and too close
+    for (const Vec3& tip : surface_points(*mesh, count, offset, random)) {
+      out.push_back({tip, nearest(tip).closest.offset.normalized()});
+    }
+  }
+  return out;
+}
+
+std::size_t limited(const std::vector<Cycle>& cycles) {
+  return static_cast<std::size_t>(
+      std::count_if(cycles.begin(), cycles.end(),
+                    [](const Cycle& cycle) { return cycle.status == Status::limited; }));
+}
+
+class CertifiedDeterminism : public testing::TestWithParam<Shape> {};
+
+TEST_P(CertifiedDeterminism, TheIndexDoesNotMatter) {
+  const Surface surface = GetParam().make();
+  const std::vector<Start> starts = starts_on(surface, 2);
+  const std::vector<Cycle> expected = loops(surface, settings(), starts, 40);
+  EXPECT_GT(limited(expected), 5u);
+  for (const IndexBackend& backend : index_backends()) {
+    MotionConstraintSettings other = settings();
+    other.index = backend.name;
+    ASSERT_EQ(loops(surface, other, starts, 40), expected) << backend.name;
+  }
+}
+
+TEST_P(CertifiedDeterminism, TheNumberingDoesNotMatter) {
+  const Surface surface = GetParam().make();
+  const std::vector<Start> starts = starts_on(surface, 10);
+  const std::vector<Cycle> expected = loops(surface, settings(), starts, 100);
+  Random random(1);
+  for (int i = 0; i < 2; ++i) {
+    ASSERT_EQ(loops(renumbered(surface, random), settings(), starts, 100), expected);
+  }
+}
+
+TEST_P(CertifiedDeterminism, TheWindingDoesNotMatter) {
+  const Surface surface = GetParam().make();
+  const std::vector<Start> starts = starts_on(surface, 10);
+  MotionConstraintSettings with = settings();
+  with.inside = Inside::taken_as_is;
+  const std::vector<Cycle> expected = loops(surface, with, starts, 100);
+  Random random(2);
+  for (int i = 0; i < 2; ++i) {
+    ASSERT_EQ(loops(rewound(renumbered(surface, random), random), with, starts, 100), expected);
+  }
+}
+
+TEST_P(CertifiedDeterminism, OneCycleDoesNotDependOnThoseBefore) {
+  const Surface surface = GetParam().make();
+  const std::vector<Start> starts = starts_on(surface, 10);
+  auto guard = make_motion_constraint(std::make_shared<const Mesh>(surface), settings());
+  const std::vector<Cycle> expected = loops(guard, starts, 100);
+  ASSERT_EQ(loops(guard, starts, 100), expected);
+}
+
+TEST_P(CertifiedDeterminism, HowFarIsLookedHardlyMatters) {
+  const Surface surface = GetParam().make();
+  const auto mesh = std::make_shared<const Mesh>(surface);
+  MotionConstraintSettings wide = settings();
+  wide.query = Query::sphere;
+  auto guard = make_motion_constraint(mesh, settings());
+  auto wide_guard = make_motion_constraint(mesh, wide);
+  Random random(4);
+  double largest = 0.0;
+  std::size_t equal = 0, count = 0, other_status = 0;
+  for (const Start& start : starts_on(surface, 10)) {
+    Vec3 tip = start.tip;
+    for (int i = 0; i < 60; ++i) {
+      const Vec3 desired = random.uniform(0.1, 0.5) * (start.press + random.direction());
+      const Step one = guard.step({.tip = tip, .desired = desired});
+      const Step two = wide_guard.step({.tip = tip, .desired = desired});
+      ++count;
+      if (one.motion == two.motion && one.status == two.status) ++equal;
+      if (one.status != two.status) ++other_status;
+      const double difference = (one.motion - two.motion).norm();
+      largest = std::max(largest, difference);
+      EXPECT_LE(difference, 1e-9 * radius)
+          << "cycle " << i << ": " << name(one.status) << ", " << name(two.status);
+      tip += one.motion;
+    }
+  }
+  RecordProperty("cycles", std::to_string(count));
+  RecordProperty("equal_to_the_bit", std::to_string(equal));
+  RecordProperty("other_status", std::to_string(other_status));
+  std::ostringstream text;
+  text << largest;
+  RecordProperty("largest_difference", text.str());
+  EXPECT_EQ(other_status, 0u);
+}
+
+double on_grid(double x) { return std::ldexp(std::round(std::ldexp(x, 20)), -20); }
+
+Vec3 on_grid(const Vec3& p) { return {on_grid(p.x()), on_grid(p.y()), on_grid(p.z())}; }
+
+TEST_P(CertifiedDeterminism, TheOriginHardlyMatters) {
+  // On a grid of a millionth, a mesh can be moved without a change to any difference.
+  Surface surface = GetParam().make();
+  const bool is_far = GetParam().name == "far_cube";
+  for (Vec3& v : surface.vertices) v = on_grid(v);
+  Surface moved = surface;
+  const Vec3 by(8192.0, -16384.0, 4096.0);
+  for (Vec3& v : moved.vertices) v += by;
+  auto guard = make_motion_constraint(std::make_shared<const Mesh>(surface), settings());
+  auto far_guard = make_motion_constraint(std::make_shared<const Mesh>(moved), settings());
+  Random random(6);
+  double largest = 0.0;
+  std::size_t equal = 0, count = 0, other_status = 0;
+  for (const Start& start : starts_on(surface, 20)) {
+    Vec3 tip = on_grid(start.tip);
+    for (int i = 0; i < 30; ++i) {
+      const Vec3 desired = random.uniform(0.1, 0.5) * (start.press + random.direction());
+      const Step one = guard.step({.tip = tip, .desired = desired});
+      const Step two = far_guard.step({.tip = tip + by, .desired = desired});
+      ++count;
+      if (one.motion == two.motion && one.status == two.status) ++equal;
+      if (one.status != two.status) ++other_status;
+      const double difference = (one.motion - two.motion).norm();
+      largest = std::max(largest, difference);
+      EXPECT_LE(difference, 1e-6 * radius) << name(one.status) << ", " << name(two.status);
+      tip = on_grid(tip + one.motion);
+    }
+  }
+  RecordProperty("cycles", std::to_string(count));
+  RecordProperty("equal_to_the_bit", std::to_string(equal));
+  RecordProperty("other_status", std::to_string(other_status));
+  std::ostringstream text;
+  text << largest;
+  RecordProperty("largest_difference", text.str());
+  // To snap a tip at its margin to the grid is to put it too close, now and then by a tolerance.
+  EXPECT_LE(other_status, is_far ? count : count / 100);
+}
+
+INSTANTIATE_TEST_SUITE_P(Shapes, CertifiedDeterminism,
+                         testing::ValuesIn(shapes().begin(), shapes().end()),
+                         [](const auto& p) { return std::string(p.param.name); });
+
+}  // namespace
+}  // namespace keepout::test

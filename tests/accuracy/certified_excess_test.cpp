@@ -1,0 +1,139 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+// How much of the motion asked for the certified step gives away, against the best step there is:
+// excess = (cost - best cost) / length of the increment asked for.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include "accuracy/best_step.h"
+#include "keepout/adapters/load_mesh.h"
+#include "keepout/factory/make_motion_constraint.h"
+#include "keepout/fixtures/poses.h"
+#include "keepout/fixtures/real_mesh.h"
+#include "keepout/fixtures/shapes.h"
+#include "keepout/index/pd_tree.h"
+
+namespace keepout::test {
+namespace {
+
+/// A tip in or near contact, and what it is asked to do there.
+struct State {
+  Vec3 tip;
+  Vec3 desired;
+  double best_cost;
+  double bound;  // no safe step costs less
+};
+
+struct Scene {
+  std::shared_ptr<const Mesh> mesh;
+  double margin;
+  double radius;
+  std::vector<State> states;
+};
+
+double mean_edge(const Mesh& mesh) {
+  double sum = 0.0;
+  const std::size_t count = std::min<std::size_t>(mesh.triangle_count(), 2000);
+  for (TriangleId t = 0; t < count; ++t) {
+    const Triangle triangle = mesh.triangle(t);
+    sum += (triangle[1] - triangle[0]).norm();
+  }
+  return sum / static_cast<double>(count);
+}
+
+MotionConstraint guard(const Scene& scene, int refinements, int nodes) {
+  return make_motion_constraint(scene.mesh, {.radius = scene.radius,
+                                             .margin = scene.margin,
+                                             .refinements = refinements,
+                                             .nodes = nodes,
+                                             .inside = Inside::taken_as_is});
+}
+
+/// Steps from a tenth of an edge to ten edges, two thirds of them from where a hand has pushed the
+/// tip into contact. Only those that something holds back: the others lose nothing.
+Scene make_scene(std::shared_ptr<const Mesh> mesh, std::size_t count) {
+  const double edge = mean_edge(*mesh);
+  Scene scene{.mesh = mesh, .margin = 1e-2 * edge, .radius = 20.0 * edge, .states = {}};
+  MotionConstraint pusher = guard(scene, 3, 0);
+  const PdTree tree(mesh);
+  TriangleBuffer near(mesh->triangle_count());
+  Random random(11);
+  while (scene.states.size() < count) {
+    Vec3 tip = surface_points(*mesh, 1, 2.0 * edge, random).front();
+    if (random.uniform(0.0, 1.0) < 0.67) {
+      const Vec3 push = 3.0 * edge * random.direction();
+      for (int i = 0; i < 3; ++i) tip += pusher.step({.tip = tip, .desired = push}).motion;
+    }
+    const Vec3 desired = edge * std::pow(10.0, random.uniform(-1.0, 1.0)) * random.direction();
+    const Step step = pusher.step({.tip = tip, .desired = desired});
+    if (step.status == Status::free || step.status == Status::recovering) continue;
+    near.clear();
+    tree.collect({tip + 0.5 * desired, 0.5 * desired.norm() + 1.001 * scene.margin}, near);
+    const BestStep best = best_step(*mesh, near.view(), tip, desired, scene.margin);
+    scene.states.push_back({tip, desired, best.cost, best.bound});
+  }
+  return scene;
+}
+
+struct Excess {
+  double mean, p95, worst;
+  std::size_t stuck;  // stood still although a twentieth of the increment or more could be had
+};
+
+Excess excess_of(const Scene& scene, int refinements, int nodes) {
+  MotionConstraint constraint = guard(scene, refinements, nodes);
+  std::vector<double> excess;
+  std::size_t stuck = 0;
+  for (const State& state : scene.states) {
+    const Step step = constraint.step({.tip = state.tip, .desired = state.desired});
+    EXPECT_TRUE(step.ok()) << step.reason();
+    const double length = state.desired.norm();
+    const double cost = (step.motion - state.desired).norm();
+    EXPECT_GE(cost, state.bound - 1e-6 * length) << "better than can be: one of the two is wrong";
+    excess.push_back((cost - state.best_cost) / length);
+    stuck += step.motion.norm() < 1e-6 * length && state.best_cost < 0.95 * length;
+  }
+  std::sort(excess.begin(), excess.end());
+  const double sum = std::accumulate(excess.begin(), excess.end(), 0.0);
+  return {sum / static_cast<double>(excess.size()), excess[excess.size() * 95 / 100], excess.back(),
+          stuck};
+}
+
+class CertifiedExcess : public testing::TestWithParam<std::string> {};
+
+TEST_P(CertifiedExcess, IsSmallAndNoUsefulMotionIsMissed) {
+  const std::string name = GetParam();
+  const std::shared_ptr<const Mesh> mesh = name == "skull"
+                                               ? load_mesh(fixture_path("skull")).mesh
+                                               : std::make_shared<const Mesh>(make_shape(name));
+  const Scene scene = make_scene(mesh, 400);
+  const Excess plain = excess_of(scene, 0, 0);
+  const Excess refined = excess_of(scene, 3, 0);
+  const Excess searched = excess_of(scene, 3, 16);
+  for (const auto& [kind, excess] :
+       {std::pair{"K0", plain}, std::pair{"K3", refined}, std::pair{"K3_nodes16", searched}}) {
+    RecordProperty(std::string(kind) + "_mean", std::to_string(excess.mean));
+    RecordProperty(std::string(kind) + "_p95", std::to_string(excess.p95));
+    RecordProperty(std::string(kind) + "_worst", std::to_string(excess.worst));
+    EXPECT_EQ(excess.stuck, 0u) << kind;
+    std::printf("%-8s %-10s mean %.5f p95 %.4f worst %.3f\n", name.c_str(), kind, excess.mean,
+                excess.p95, excess.worst);
+  }
+  EXPECT_LE(refined.mean, 0.003);
+  EXPECT_LE(refined.p95, 0.01);
+  EXPECT_LE(refined.mean, plain.mean + 1e-9);
+  EXPECT_LE(searched.mean, 0.001);
+  EXPECT_LE(searched.mean, refined.mean + 1e-9);
+}
+
+INSTANTIATE_TEST_SUITE_P(Meshes, CertifiedExcess,
+                         testing::Values("cube", "sphere", "gear", "skull", "cortex"),
+                         [](const auto& p) { return p.param; });
+
+}  // namespace
+}  // namespace keepout::test

@@ -1,0 +1,244 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+// Joints, rows of the caller's own, and too little room: as safe, and honest about it.
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "accuracy/certified_loop.h"
+
+namespace keepout::test {
+namespace {
+
+constexpr double radius = 1.0, margin = 0.25;
+
+MotionConstraintSettings settings() {
+  return {.radius = radius, .margin = margin, .damping = 1e-8, .capacity = {.planes = 200}};
+}
+
+TipJacobian::Matrix random_jacobian(Eigen::Index joints, Random& random) {
+  TipJacobian::Matrix jacobian(3, joints);
+  for (Eigen::Index c = 0; c < joints; ++c) {
+    jacobian.col(c) = random.uniform(0.2, 2.0) * random.direction();
+  }
+  return jacobian;
+}
+
+/// |u_i| <= limit.
+struct JointLimits {
+  JointLimits(Eigen::Index joints, double limit)
+      : matrix(2 * joints, joints), bounds(static_cast<std::size_t>(2 * joints), -limit) {
+    matrix << StepProblem::RowMatrix::Identity(joints, joints),
+        -StepProblem::RowMatrix::Identity(joints, joints);
+  }
+
+  ExtraRows rows() const { return {matrix.data(), bounds.data(), matrix.rows()}; }
+
+  StepProblem::RowMatrix matrix;
+  std::vector<double> bounds;
+};
+
+/// How far the worst row is from being satisfied.
+double violation(const ExtraRows& rows, std::span<const double> u) {
+  double worst = 0.0;
+  const auto n = static_cast<Eigen::Index>(u.size());
+  for (Eigen::Index r = 0; r < rows.count(); ++r) {
+    double sum = 0.0;
+    for (Eigen::Index c = 0; c < n; ++c) sum += rows.matrix()[r * n + c] * u[c];
+    worst = std::max(worst, rows.bounds()[r] - sum);
+  }
+  return worst;
+}
+
+class CertifiedJoints : public testing::TestWithParam<const char*> {
+ protected:
+  CertifiedJoints() : loop(make_shape(GetParam()), settings()) {}
+
+  struct Count {
+    std::size_t cycles = 0, limited = 0, fallback = 0, not_ok = 0;
+    double worst = 0.0, violation = 0.0, joints_off = 0.0;
+  };
+
+  /// Cycles under pressure with joints of all sorts.
+  Count run(double limit) {
+    Count count;
+    Random random(3);
+    for (const Vec3& start : places(loop, 25, 1.2 * margin, random)) {
+      const auto joints = static_cast<Eigen::Index>(3 + random.below(5));
+      const JointLimits limits(joints, limit);
+      const oracle::Finding nearest = loop.oracle().check(start, start, 0.0, 2.0 * margin);
+      const Vec3 press =
+          closest_point(loop.mesh().triangle(nearest.triangle), start).offset.normalized();
+      Vec3 tip = start;
+      for (int cycle = 0; cycle < 40; ++cycle) {
+        const TipJacobian::Matrix jacobian = random_jacobian(joints, random);
+        const Vec3 desired = random.uniform(0.1, 0.5) * (press + random.direction());
+        Motion motion{.tip = tip, .desired = desired, .jacobian = jacobian};
+        if (limit > 0.0) motion.rows = limits.rows();
+        const double before = loop.distance(tip);
+        const Step step = loop.guard().step(motion);
+        ++count.cycles;
+        if (step.status == Status::limited) ++count.limited;
+        if (step.status == Status::fallback) ++count.fallback;
+        if (!step.ok()) ++count.not_ok;
+        count.worst = std::max(count.worst, loop.loss(tip, tip + step.motion, before));
+        EXPECT_LE(step.motion.norm(), radius * (1.0 + 1e-8));
+        if (step.ok()) {
+          const Eigen::Map<const Eigen::VectorXd> u(step.increment.data(), joints);
+          count.joints_off = std::max(count.joints_off, (jacobian * u - step.motion).norm());
+          if (limit > 0.0) {
+            count.violation = std::max(count.violation, violation(limits.rows(), step.increment));
+          }
+        } else {
+          EXPECT_EQ(step.motion, Vec3::Zero());
+        }
+        tip += step.motion;
+      }
+    }
+    return count;
+  }
+
+  void expect(const Count& count) {
+    EXPECT_GT(count.limited, count.cycles / 10);
+    EXPECT_LE(count.worst, 3.0);
+    EXPECT_LE(count.violation, 1e-10);
+    EXPECT_LE(count.joints_off, 1e-10) << "the joints do something else than what is said";
+    EXPECT_LE(count.fallback, count.cycles / 50);
+    EXPECT_LE(count.not_ok, count.cycles / 50);
+    RecordProperty("cycles", std::to_string(count.cycles));
+    RecordProperty("limited", std::to_string(count.limited));
+    RecordProperty("fallback", std::to_string(count.fallback));
+    RecordProperty("not_ok", std::to_string(count.not_ok));
+    RecordProperty("worst_loss_in_tau", std::to_string(count.worst));
+    RecordProperty("worst_row_violation", std::to_string(count.violation));
+  }
+
+  Loop loop;
+};
+
+TEST_P(CertifiedJoints, KeepTheMarginAndTheMotionSphere) { expect(run(0.0)); }
+
+TEST_P(CertifiedJoints, KeepTheirLimitsToo) { expect(run(0.15)); }
+
+INSTANTIATE_TEST_SUITE_P(Shapes, CertifiedJoints,
+                         testing::Values("cube", "gear", "cortex", "thin_plates", "saddle_terrain",
+                                         "star_bumps"),
+                         [](const auto& p) { return std::string(p.param); });
+
+TEST(CertifiedRows, OnTheTipItselfHoldAsWell) {
+  Loop loop(make_shape("cube"), settings());  // its faces are at +-50
+  const std::vector<double> row{1.0, 0.0, 0.0}, bound{-0.1};
+  const Motion motion{.tip = {3, 4, 50.5},
+                      .desired = {-0.5, 0.3, -0.6},
+                      .rows = ExtraRows(row.data(), bound.data(), 1)};
+  const Step step = loop.guard().step(motion);
+  EXPECT_EQ(step.status, Status::limited);
+  EXPECT_LT((step.motion - Vec3(-0.1, 0.3, -0.25)).norm(), 1e-8);
+  ASSERT_EQ(step.active.size(), 2u);
+  EXPECT_EQ(step.active.back(), step.planes.size()) << "the row comes after the planes";
+}
+
+TEST(CertifiedRows, ThatAskForMotionGetItOrAStatus) {
+  Loop loop(make_shape("cube"), settings());
+  const std::vector<double> up{0.0, 0.0, 1.0}, down{0.0, 0.0, -1.0}, bound{0.2};
+  const Vec3 tip(3, 4, 50.0 + margin);
+  const Step away = loop.guard().step(
+      {.tip = tip, .desired = Vec3::Zero(), .rows = ExtraRows(up.data(), bound.data(), 1)});
+  EXPECT_EQ(away.status, Status::limited);
+  EXPECT_LT((away.motion - Vec3(0, 0, 0.2)).norm(), 1e-12);
+  const Step into = loop.guard().step(
+      {.tip = tip, .desired = Vec3::Zero(), .rows = ExtraRows(down.data(), bound.data(), 1)});
+  EXPECT_FALSE(into.ok());
+  EXPECT_EQ(into.status, Status::infeasible);
+  EXPECT_EQ(into.motion, Vec3::Zero());
+}
+
+TEST(CertifiedRows, ThatAskForMoreThanTheMotionSphereGetNothing) {
+  Loop loop(make_shape("cube"), settings());
+  const std::vector<double> row{1.0, 0.0, 0.0}, bound{1.5};
+  const Step step = loop.guard().step(
+      {.tip = {3, 4, 52}, .desired = Vec3::Zero(), .rows = ExtraRows(row.data(), bound.data(), 1)});
+  EXPECT_FALSE(step.ok()) << name(step.status);
+  EXPECT_EQ(step.motion, Vec3::Zero());
+}
+
+TEST(CertifiedRows, MoreThanRoomWasMadeForAreAStatus) {
+  MotionConstraintSettings few = settings();
+  few.capacity.extra_rows = 1;
+  Loop loop(make_shape("cube"), few);
+  const JointLimits limits(3, 1.0);
+  const Step step =
+      loop.guard().step({.tip = {3, 4, 52}, .desired = {0, 0, 0.1}, .rows = limits.rows()});
+  EXPECT_EQ(step.status, Status::over_capacity);
+}
+
+TEST(CertifiedCapacity, WithoutRoomForAllTrianglesAShorterWayIsGone) {
+  MotionConstraintSettings few = settings();
+  few.capacity.triangles = 24;  // a motion of 6 has up to some 100 in reach: the edges are 2.2 long
+  few.radius = 6.0;
+  Loop loop(make_shape("sphere"), few);
+  Random random(5);
+  std::size_t fallbacks = 0, refused = 0, others = 0;
+  for (Vec3 tip : places(loop, 60, 1.1 * margin, random)) {
+    for (int cycle = 0; cycle < 20; ++cycle) {
+      const Vec3 desired = random.uniform(1.0, 6.0) * random.direction();
+      const double before = loop.distance(tip);
+      const Step step = loop.step(tip, desired);
+      ASSERT_LE(loop.loss(tip, tip + step.motion, before), 3.0);
+      if (step.status == Status::fallback) {
+        ++fallbacks;
+        ASSERT_LE(step.motion.norm(), 0.5 * desired.norm() * (1.0 + 1e-9));
+      } else if (step.status == Status::over_capacity) {
+        ++refused;
+        ASSERT_EQ(step.motion, Vec3::Zero());
+      } else {
+        ++others;
+      }
+      tip += step.motion;
+    }
+  }
+  EXPECT_GT(fallbacks, 50u);
+  EXPECT_GT(others, 50u);
+  EXPECT_EQ(refused, 0u);
+  RecordProperty("fallbacks", std::to_string(fallbacks));
+}
+
+TEST(CertifiedCapacity, WithoutRoomForAnyTriangleNothingMoves) {
+  MotionConstraintSettings few = settings();
+  few.capacity.triangles = 1;
+  Loop loop(make_shape("cortex"), few);
+  Random random(6);
+  for (const Vec3& tip : places(loop, 30, 1.01 * margin, random)) {
+    const double before = loop.distance(tip);
+    const Step step = loop.step(tip, 0.9 * random.direction());
+    ASSERT_LE(loop.loss(tip, tip + step.motion, before), 3.0);
+    if (!step.ok()) {
+      ASSERT_EQ(step.status, Status::over_capacity);
+    }
+  }
+}
+
+TEST(CertifiedCapacity, OfTooFewPlanesIsAStatusOrASafeMotion) {
+  MotionConstraintSettings few = settings();
+  few.capacity.planes = 1;
+  Loop loop(make_shape("gear"), few);
+  Random random(7);
+  std::size_t refused = 0;
+  for (Vec3 tip : places(loop, 30, 1.1 * margin, random)) {
+    for (int cycle = 0; cycle < 30; ++cycle) {
+      const double before = loop.distance(tip);
+      const Step step = loop.step(tip, random.uniform(0.2, 1.0) * random.direction());
+      ASSERT_LE(loop.loss(tip, tip + step.motion, before), 3.0);
+      if (step.status == Status::over_capacity) ++refused;
+      tip += step.motion;
+    }
+  }
+  EXPECT_GT(refused, 0u);
+}
+
+}  // namespace
+}  // namespace keepout::test

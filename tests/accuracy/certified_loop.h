@@ -1,0 +1,138 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <numeric>
+#include <ostream>
+#include <utility>
+#include <vector>
+
+#include "keepout/factory/make_motion_constraint.h"
+#include "keepout/fixtures/poses.h"
+#include "keepout/fixtures/random.h"
+#include "keepout/fixtures/shapes.h"
+#include "keepout/geometry/closest_point.h"
+#include "keepout/index/pd_tree.h"
+#include "keepout/oracle/safety_oracle.h"
+
+namespace keepout {
+
+/// What a test prints of one.
+inline void PrintTo(const Shape& shape, std::ostream* out) { *out << shape.name; }
+
+}  // namespace keepout
+
+namespace keepout::test {
+
+/// What the certified step promises to tell distances apart to, as its specification says: taken
+/// from there, not from the engine. [length]
+class Tolerance {
+ public:
+  Tolerance(const Mesh& mesh, const MotionConstraintSettings& settings)
+      : lengths_(settings.radius * (1.0 + 1e-9) + settings.tool_radius + settings.margin) {
+    double longest2 = 0.0;
+    for (TriangleId t = 0; t < mesh.triangle_count(); ++t) {
+      const Triangle corner = mesh.triangle(t);
+      for (int e = 0; e < 3; ++e) {
+        longest2 = std::max(longest2, (corner[(e + 1) % 3] - corner[e]).squaredNorm());
+      }
+    }
+    lengths_ += std::sqrt(longest2);
+  }
+
+  double operator()(const Vec3& tip) const { return 2e-10 * lengths_ + 4e-16 * tip.lpNorm<1>(); }
+
+ private:
+  double lengths_;
+};
+
+/// A mesh and what guards it, judged by the oracle, which shares nothing with the engine.
+class Loop {
+ public:
+  Loop(Surface surface, const MotionConstraintSettings& settings)
+      : mesh_(std::make_shared<const Mesh>(std::move(surface))),
+        guard_(make_motion_constraint(mesh_, settings)),
+        tolerance_(*mesh_, settings),
+        oracle_(mesh_),
+        margin_(settings.tool_radius + settings.margin) {}
+
+  const Mesh& mesh() const { return *mesh_; }
+  const std::shared_ptr<const Mesh>& shared_mesh() const { return mesh_; }
+  oracle::SafetyOracle& oracle() { return oracle_; }
+  MotionConstraint& guard() { return guard_; }
+  double margin() const { return margin_; }
+  double tolerance(const Vec3& tip) const { return tolerance_(tip); }
+
+  Step step(const Vec3& tip, const Vec3& desired) {
+    return guard_.step({.tip = tip, .desired = desired});
+  }
+
+  double distance(const Vec3& tip) const { return oracle_.distance(tip); }
+
+  /// How much nearer than promised the way from `from` to `to` comes: the loss against the margin
+  /// or, if that is less, the distance at the start. In tolerances; no more than 3 are promised.
+  double loss(const Vec3& from, const Vec3& to, double distance_before) {
+    const double due = std::min(margin_, distance_before);
+    const double tau = tolerance_(from);
+    const oracle::Finding finding = oracle_.check(from, to, std::max(due - 3.0 * tau, 0.0), due);
+    return finding.crosses ? std::numeric_limits<double>::infinity()
+                           : (due - finding.distance) / tau;
+  }
+
+ private:
+  std::shared_ptr<const Mesh> mesh_;
+  MotionConstraint guard_;
+  Tolerance tolerance_;
+  oracle::SafetyOracle oracle_;
+  double margin_;
+};
+
+template <class T>
+void shuffle(std::vector<T>& items, Random& random) {
+  for (std::size_t i = items.size(); i > 1; --i) std::swap(items[i - 1], items[random.below(i)]);
+}
+
+/// The same triangles: vertices and triangles in another order, corners begun at another.
+inline Surface renumbered(const Surface& surface, Random& random) {
+  std::vector<VertexId> new_vertex(surface.vertices.size());
+  std::iota(new_vertex.begin(), new_vertex.end(), VertexId{0});
+  shuffle(new_vertex, random);
+  Surface out;
+  out.vertices.resize(surface.vertices.size());
+  for (std::size_t v = 0; v < new_vertex.size(); ++v) {
+    out.vertices[new_vertex[v]] = surface.vertices[v];
+  }
+  for (Corners c : surface.triangles) {
+    std::rotate(c.begin(), c.begin() + static_cast<std::ptrdiff_t>(random.below(3)), c.end());
+    for (VertexId& v : c) v = new_vertex[v];
+    out.triangles.push_back(c);
+  }
+  shuffle(out.triangles, random);
+  return out;
+}
+
+/// The same triangles, each wound one way or the other.
+inline Surface rewound(Surface surface, Random& random) {
+  for (Corners& c : surface.triangles) {
+    if (random.below(2) == 0) std::swap(c[1], c[2]);
+  }
+  return surface;
+}
+
+/// `distance` off the surface, all of it, on the free side: places where a tip may be.
+inline std::vector<Vec3> places(Loop& loop, std::size_t count, double distance, Random& random) {
+  std::vector<Vec3> out;
+  // Narrow places are none: but for those the first attempt does.
+  for (int attempt = 0; attempt < 1'000 && out.size() < count; ++attempt) {
+    for (const Vec3& p : surface_points(loop.mesh(), count, distance, random)) {
+      if (out.size() < count && loop.distance(p) > (1.0 - 1e-9) * distance) out.push_back(p);
+    }
+  }
+  return out;
+}
+
+}  // namespace keepout::test

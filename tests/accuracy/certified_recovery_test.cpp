@@ -1,0 +1,284 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+// A tip that is inside or too close gets out, and no deeper on its way.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <ostream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "accuracy/certified_loop.h"
+
+namespace keepout::test {
+namespace {
+
+enum class Forbidden { inside, outside, nowhere };
+
+struct Scene {
+  const char* name;
+  const char* shape;
+  Forbidden forbidden;
+  double margin;
+  double recovery;
+  std::size_t poses;
+};
+
+void PrintTo(const Scene& scene, std::ostream* out) { *out << scene.name; }
+
+// A tip that all planes leave in its place comes to rest a little closer than where margins count.
+constexpr double almost = 3.0;
+
+/// The best that a motion can do against the directions in which it shall not go back: the most
+/// that the least of their components can be, of all unit vectors. It is the distance of their
+/// convex hull from the origin. (Gilbert's algorithm; the value returned is attained.)
+double best_retreat(const std::vector<Vec3>& away) {
+  Vec3 nearest = away.front();
+  double best = -1.0;
+  for (int i = 0; i < 300; ++i) {
+    const double length = nearest.norm();
+    if (length < 1e-9) break;
+    const auto least = std::min_element(
+        away.begin(), away.end(),
+        [&](const Vec3& a, const Vec3& b) { return a.dot(nearest) < b.dot(nearest); });
+    best = std::max(best, least->dot(nearest) / length);
+    const Vec3 to = *least - nearest;
+    if (to.squaredNorm() < 1e-24) break;
+    nearest += std::clamp(-nearest.dot(to) / to.squaredNorm(), 0.0, 1.0) * to;
+  }
+  return best;
+}
+
+/// Signed distances, by the oracle: the side is asked for anew only when the surface was crossed.
+class Side {
+ public:
+  Side(Loop& loop, const Vec3& tip, Forbidden forbidden) : loop_(&loop), forbidden_(forbidden) {
+    ask(tip);
+  }
+
+  bool wrong() const { return wrong_; }
+
+  void move(const Vec3& from, const Vec3& to) {
+    if (forbidden_ != Forbidden::nowhere && loop_->oracle().check(from, to, 0.0).crosses) ask(to);
+  }
+
+  double signed_distance(const Vec3& tip) const {
+    return wrong_ ? -loop_->distance(tip) : loop_->distance(tip);
+  }
+
+ private:
+  void ask(const Vec3& tip) {
+    if (forbidden_ == Forbidden::nowhere) return;
+    wrong_ = loop_->oracle().inside(tip).value() == (forbidden_ == Forbidden::inside);
+  }
+
+  Loop* loop_;
+  Forbidden forbidden_;
+  bool wrong_ = false;
+};
+
+class CertifiedRecovery : public testing::TestWithParam<Scene> {
+ protected:
+  static MotionConstraintSettings settings() {
+    return {.radius = 1.0,
+            .margin = GetParam().margin,
+            .recovery = GetParam().recovery,
+            .capacity = {.planes = 200}};
+  }
+
+  static std::vector<Vec3> poses(Loop& loop, Random& random) {
+    const Scene& scene = GetParam();
+    std::vector<Vec3> out;
+    while (out.size() < scene.poses) {
+      // Half of them too close, half of them anywhere inside.
+      const double offset =
+          random.uniform(scene.forbidden == Forbidden::nowhere ? -1.0 : -3.0, 1.0) * scene.margin;
+      const Vec3 near = surface_points(loop.mesh(), 1, offset, random)[0];
+      if (loop.distance(near) < 3.0 * scene.margin) out.push_back(near);
+      if (scene.forbidden != Forbidden::inside) continue;
+      const Vec3 place = random_points(loop.mesh(), 1, random)[0];
+      if (loop.oracle().inside(place).value()) out.push_back(place);
+    }
+    return out;
+  }
+
+  /// How well a tip that stays too close could still retreat from all that is within the margin.
+  static double room_left(Loop& loop, const PdTree& tree, TriangleBuffer& near, const Vec3& tip) {
+    near.clear();
+    const double within = loop.margin() + 4.0 * loop.tolerance(tip);
+    tree.collect({tip, within}, near);
+    std::vector<Vec3> away;
+    for (const TriangleId t : near) {
+      const ClosestPoint closest = closest_point(loop.mesh().triangle(t), tip);
+      if (closest.distance < within && closest.distance > 0.0) {
+        away.push_back(-closest.offset.normalized());
+      }
+    }
+    return away.empty() ? 1.0 : best_retreat(away);
+  }
+
+  void recover(double desired_length) {
+    const Scene& scene = GetParam();
+    Loop loop(make_shape(scene.shape), settings());
+    const PdTree tree(loop.shared_mesh());
+    TriangleBuffer near(loop.mesh().triangle_count());
+    Random random(3);
+    double worst = 0.0, slowest = 0.0, slowest_but_last_bit = 0.0;
+    std::size_t stuck = 0, odd = 0, narrow = 0, cycles = 0;
+    double widest_narrow = -1.0;
+    std::ostringstream oddities;
+    for (const Vec3& start : poses(loop, random)) {
+      Vec3 tip = start;
+      Side side(loop, tip, scene.forbidden);
+      double before = side.signed_distance(tip);
+      const double due = (scene.margin - before) / scene.recovery;
+      // The last bit between two walls is gained by a share a cycle.
+      const auto most = static_cast<int>(2.0 * due) + 400;
+      int cycle = 0, all_but_out = 0, idle = 0;
+      for (; cycle < most; ++cycle) {
+        if (before >= scene.margin - almost * loop.tolerance(tip)) break;
+        if (before < 0.999 * scene.margin) all_but_out = cycle + 1;
+        const Vec3 desired = desired_length * random.uniform() * random.direction();
+        const Step step = loop.step(tip, desired);
+        ++cycles;
+        const double tau = loop.tolerance(tip);
+        const bool borderline =
+            before >= scene.margin - 3.01 * tau || std::abs(before) <= 4.01 * tau;
+        if (step.status != Status::recovering && !borderline) {
+          ++odd;
+          if (odd < 4) {
+            oddities << name(step.status) << " at " << tip.transpose() << ", distance " << before
+                     << ", desired " << desired.transpose() << "; ";
+          }
+        }
+        const Vec3 next = tip + step.motion;
+        side.move(tip, next);
+        const double after = side.signed_distance(next);
+        worst = std::max(worst, (std::min(before, scene.margin) - after) / tau);
+        ASSERT_GE(after, std::min(before, scene.margin) - 3.0 * tau)
+            << "from " << tip.transpose() << " by " << step.motion.transpose();
+        const bool still = step.motion.norm() <= loop.tolerance(tip);
+        tip = next;
+        before = after;
+        if (still && desired_length == 0.0 && ++idle > 3) break;
+      }
+      if (before >= scene.margin - almost * loop.tolerance(tip)) {
+        slowest = std::max(slowest, cycle - due);
+        slowest_but_last_bit = std::max(slowest_but_last_bit, all_but_out - due);
+        continue;
+      }
+      // Only where all ways lead nearer to something that is too close already.
+      const double room = side.wrong() ? 1.0 : room_left(loop, tree, near, tip);
+      if (room < 0.05) {
+        ++narrow;
+        widest_narrow = std::max(widest_narrow, room);
+      } else {
+        ++stuck;
+        oddities << "stuck at " << tip.transpose() << " from " << start.transpose() << ", "
+                 << (scene.margin - before) / loop.tolerance(tip) << " tolerances short, room "
+                 << room << "; ";
+      }
+    }
+    EXPECT_EQ(stuck, 0u) << oddities.str();
+    EXPECT_EQ(odd, 0u) << "not recovering: " << oddities.str();
+    // A narrow fold is left along it; between walls too narrow, only the desires lead out.
+    if (scene.margin <= 0.5) {
+      EXPECT_LE(slowest_but_last_bit, 120.0) << "cycles beyond depth by recovery";
+    }
+    EXPECT_EQ(narrow > 0, scene.margin > 0.5) << "gaps narrower than two margins";
+    RecordProperty("cycles", std::to_string(cycles));
+    RecordProperty("too_narrow", std::to_string(narrow));
+    RecordProperty("widest_too_narrow", std::to_string(widest_narrow));
+    RecordProperty("worst_loss_in_tau", std::to_string(worst));
+    RecordProperty("most_cycles_beyond_depth_by_recovery", std::to_string(slowest));
+    RecordProperty("most_to_a_thousandth", std::to_string(slowest_but_last_bit));
+  }
+};
+
+TEST_P(CertifiedRecovery, WithoutADesireTheTipGetsOut) { recover(0.0); }
+
+TEST_P(CertifiedRecovery, AgainstDesiresTheTipGetsOut) { recover(0.6); }
+
+using enum Forbidden;
+
+INSTANTIATE_TEST_SUITE_P(
+    Shapes, CertifiedRecovery,
+    testing::Values(Scene{"cube", "cube", inside, 0.3, 0.5, 600},
+                    Scene{"sphere", "sphere", inside, 0.3, 0.5, 600},
+                    Scene{"gear", "gear", inside, 0.3, 0.2, 600},
+                    Scene{"star_bumps", "star_bumps", inside, 0.3, 0.3, 500},
+                    Scene{"cortex", "cortex", inside, 0.3, 0.3, 600},
+                    Scene{"concave_sphere", "concave_sphere", outside, 0.3, 0.1, 400},
+                    Scene{"thin_plates", "thin_plates", inside, 0.3, 0.1, 400},
+                    Scene{"narrow_gaps", "thin_plates", inside, 0.7, 0.1, 200},
+                    Scene{"saddle_terrain", "saddle_terrain", nowhere, 0.3, 0.1, 400},
+                    Scene{"crown", "crown", nowhere, 0.3, 0.1, 400},
+                    Scene{"flat_plate", "flat_plate", nowhere, 0.3, 0.1, 300},
+                    Scene{"non_manifold", "non_manifold", nowhere, 0.3, 0.1, 300},
+                    Scene{"far_cube", "far_cube", inside, 0.3, 0.5, 300}),
+    [](const auto& p) { return std::string(p.param.name); });
+
+TEST(CertifiedRecoveryInAGap, NarrowerThanTwoMarginsIsHonest) {
+  // Gaps of 1 between plates of 1: with a margin of 0.7 there is no way out but through the sides.
+  Loop loop(make_shape("thin_plates"), {.radius = 1.0, .margin = 0.7, .recovery = 0.1});
+  const Box& bounds = loop.mesh().bounds();
+  Vec3 tip(3.0, 4.0, bounds.low.z() + 1.4);
+  double before = loop.distance(tip);
+  for (int cycle = 0; cycle < 100; ++cycle) {
+    const Step step = loop.step(tip, Vec3::Zero());
+    ASSERT_EQ(step.status, Status::recovering);
+    const Vec3 next = tip + step.motion;
+    const double after = loop.distance(next);
+    ASSERT_GE(after, before - 3.0 * loop.tolerance(tip));
+    tip = next;
+    before = after;
+  }
+  EXPECT_LT(before, 0.7) << "there is no such place";
+}
+
+TEST(CertifiedRecoveryInAGap, OfMoreThanTwoMarginsItsMiddleIsFound) {
+  Loop loop(make_shape("thin_plates"), {.radius = 1.0, .margin = 0.49, .recovery = 0.1});
+  const Box& bounds = loop.mesh().bounds();
+  for (const double height : {1.05, 1.3, 1.5, 1.95}) {
+    Vec3 tip(3.0, 4.0, bounds.low.z() + height);
+    for (int cycle = 0; cycle < 20; ++cycle) tip += loop.step(tip, Vec3::Zero()).motion;
+    EXPECT_GE(loop.distance(tip), 0.49 - 3.0 * loop.tolerance(tip)) << "from " << height;
+  }
+}
+
+TEST(CertifiedRecoverySide, AnInsideOutMeshIsLedOutOfOnItsOwnFreeSide) {
+  // Free within, forbidden without.
+  Loop loop(make_shape("concave_sphere"), {.radius = 1.0, .margin = 0.3, .recovery = 0.5});
+  Vec3 tip(0.0, 0.0, 53.0);
+  for (int cycle = 0; cycle < 12; ++cycle) {
+    const Step step = loop.step(tip, Vec3(0.0, 0.0, 0.5));
+    if (tip.norm() >= 50.0) {
+      ASSERT_EQ(step.status, Status::recovering);
+    } else if (cycle == 11) {
+      ASSERT_EQ(step.status, Status::limited);
+    }
+    tip += step.motion;
+  }
+  EXPECT_TRUE(loop.oracle().inside(tip).value());
+}
+
+TEST(CertifiedRecoverySide, ATipThatIsTakenAsItIsStaysOnItsSide) {
+  Loop loop(make_shape("sphere"),
+            {.radius = 1.0, .margin = 0.3, .recovery = 0.5, .inside = Inside::taken_as_is});
+  Vec3 tip(0.0, 0.0, 45.0);
+  Random random(4);
+  for (int cycle = 0; cycle < 500; ++cycle) {
+    const double before = loop.distance(tip);
+    const Step step = loop.step(tip, Vec3(0.0, 0.0, 0.6) + 0.3 * random.direction());
+    ASSERT_LE(loop.loss(tip, tip + step.motion, before), 3.0);
+    tip += step.motion;
+  }
+  EXPECT_TRUE(loop.oracle().inside(tip).value());
+  EXPECT_LT(loop.distance(tip), 0.4) << "in contact from within";
+}
+
+}  // namespace
+}  // namespace keepout::test

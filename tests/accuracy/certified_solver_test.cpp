@@ -1,0 +1,194 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+// Whatever a solver answers, a certified motion keeps its distance.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "accuracy/certified_loop.h"
+#include "keepout/activation/certified.h"
+#include "keepout/solvers/active_set.h"
+
+namespace keepout::test {
+namespace {
+
+constexpr double radius = 1.0, margin = 0.25;
+
+/// Right but for a relative noise.
+class Sloppy final : public Solver {
+ public:
+  explicit Sloppy(double noise) : noise_(noise), random_(1) {}
+
+  void reserve(int variables, int rows) override {
+    exact_.reserve(variables, rows);
+    u_.resize(static_cast<std::size_t>(variables));
+  }
+
+  SolveStatus solve(const StepProblem& problem, Solution& solution) noexcept override {
+    const SolveStatus status = exact_.solve(problem, solution);
+    if (status != SolveStatus::optimal) return status;
+    double size = 0.0;
+    for (const double u : solution.u) size = std::max(size, std::abs(u));
+    for (std::size_t i = 0; i < solution.u.size(); ++i) {
+      u_[i] = solution.u[i] + noise_ * size * random_.uniform(-1.0, 1.0);
+    }
+    solution.u = {u_.data(), solution.u.size()};
+    return status;
+  }
+
+ private:
+  ActiveSet exact_;
+  double noise_;
+  Random random_;
+  std::vector<double> u_;
+};
+
+/// Says whatever comes to its mind.
+class Liar final : public Solver {
+ public:
+  Liar() : random_(2) {}
+
+  void reserve(int variables, int) override { u_.resize(static_cast<std::size_t>(variables)); }
+
+  SolveStatus solve(const StepProblem& problem, Solution& solution) noexcept override {
+    const auto n = static_cast<std::size_t>(problem.jacobian.cols());
+    const double size = std::pow(10.0, random_.uniform(-12.0, 1.0));
+    for (std::size_t i = 0; i < n; ++i) u_[i] = size * random_.uniform(-1.0, 1.0);
+    switch (random_.below(8)) {
+      case 0:  // what was asked for, whatever the planes say
+        for (std::size_t i = 0; i < std::min<std::size_t>(n, 3); ++i) u_[i] = problem.desired[i];
+        break;
+      case 1:
+        u_[0] = std::numeric_limits<double>::quiet_NaN();
+        break;
+      case 2:
+        u_[n - 1] = 1e300;
+        break;
+      case 3:
+        return SolveStatus::infeasible;
+      default:
+        break;
+    }
+    solution.u = {u_.data(), random_.below(16) == 0 ? n - 1 : n};
+    return SolveStatus::optimal;
+  }
+
+ private:
+  Random random_;
+  std::vector<double> u_;
+};
+
+MotionConstraint guard_of(const std::shared_ptr<const Mesh>& mesh, std::unique_ptr<Solver> solver) {
+  return {mesh,
+          std::make_unique<PdTree>(mesh),
+          std::make_unique<CertifiedRule>(mesh),
+          std::move(solver),
+          {.radius = radius, .margin = margin},
+          {.planes = 200}};
+}
+
+class CertifiedSolver : public testing::TestWithParam<Shape> {
+ protected:
+  CertifiedSolver()
+      : loop(GetParam().make(), {.radius = radius, .margin = margin, .capacity = {.planes = 200}}) {
+  }
+
+  /// Presses into the surface, whatever `guard` does; the worst loss in tolerances.
+  template <class Judge>
+  double run(MotionConstraint& guard, bool joints, int cycles, const Judge& judge) {
+    Random random(7);
+    double worst = 0.0;
+    for (const Vec3& start : surface_points(loop.mesh(), 20, 1.3 * margin, random)) {
+      if (loop.distance(start) < margin) continue;
+      const oracle::Finding nearest = loop.oracle().check(start, start, 0.0, 2.0 * margin);
+      const Vec3 press =
+          closest_point(loop.mesh().triangle(nearest.triangle), start).offset.normalized();
+      TipJacobian::Matrix jacobian(3, 4);
+      for (int c = 0; c < 4; ++c) jacobian.col(c) = random.uniform(0.5, 2.0) * random.direction();
+      Vec3 tip = start;
+      for (int cycle = 0; cycle < cycles; ++cycle) {
+        const Vec3 desired = random.uniform(0.1, 0.5) * (press + random.direction());
+        Motion motion{.tip = tip, .desired = desired};
+        if (joints) motion.jacobian = jacobian;
+        const double before = loop.distance(tip);
+        const Step step = guard.step(motion);
+        if (!step.ok()) {
+          EXPECT_EQ(step.motion, Vec3::Zero());
+        }
+        worst = std::max(worst, loop.loss(tip, tip + step.motion, before));
+        judge(motion, step);
+        tip += step.motion;
+      }
+    }
+    return worst;
+  }
+
+  Loop loop;
+};
+
+TEST_P(CertifiedSolver, ASloppyOneIsSafeAndOfUse) {
+  auto guard = guard_of(loop.shared_mesh(), std::make_unique<Sloppy>(1e-8));
+  auto exact = guard_of(loop.shared_mesh(), std::make_unique<ActiveSet>());
+  std::size_t cycles = 0, worse = 0, not_ok = 0, fallbacks = 0;
+  const double worst = run(guard, false, 30, [&](const Motion& motion, const Step& step) {
+    ++cycles;
+    if (!step.ok()) ++not_ok;
+    if (step.status == Status::fallback) ++fallbacks;
+    const Step best = exact.step(motion);
+    const double cost = (step.motion - motion.desired).norm();
+    if (cost > (best.motion - motion.desired).norm() + 1e-3 * motion.desired.norm()) ++worse;
+  });
+  EXPECT_LE(worst, 3.0);
+  EXPECT_EQ(not_ok, 0u) << "of " << cycles;
+  EXPECT_LE(fallbacks, cycles / 100);
+  EXPECT_LE(worse, cycles / 50) << "of " << cycles;
+  RecordProperty("cycles", std::to_string(cycles));
+  RecordProperty("worst_loss_in_tau", std::to_string(worst));
+  RecordProperty("worse_than_exact", std::to_string(worse));
+  RecordProperty("fallbacks", std::to_string(fallbacks));
+}
+
+TEST_P(CertifiedSolver, ASloppyOneIsSafeWithJoints) {
+  MotionConstraint guard(loop.shared_mesh(), std::make_unique<PdTree>(loop.shared_mesh()),
+                         std::make_unique<CertifiedRule>(loop.shared_mesh()),
+                         std::make_unique<Sloppy>(1e-8),
+                         {.radius = radius, .margin = margin, .damping = 1e-6}, {.planes = 200});
+  std::size_t cycles = 0, not_ok = 0, fallbacks = 0;
+  const double worst = run(guard, true, 30, [&](const Motion&, const Step& step) {
+    ++cycles;
+    if (!step.ok()) ++not_ok;
+    if (step.status == Status::fallback) ++fallbacks;
+  });
+  EXPECT_LE(worst, 3.0);
+  RecordProperty("cycles", std::to_string(cycles));
+  RecordProperty("worst_loss_in_tau", std::to_string(worst));
+  RecordProperty("not_ok", std::to_string(not_ok));
+  RecordProperty("fallbacks", std::to_string(fallbacks));
+}
+
+TEST_P(CertifiedSolver, NoLieMakesAMotionUnsafe) {
+  for (const bool joints : {false, true}) {
+    auto guard = guard_of(loop.shared_mesh(), std::make_unique<Liar>());
+    std::size_t moved = 0;
+    const double worst = run(guard, joints, 40, [&](const Motion&, const Step& step) {
+      if (step.ok()) ++moved;
+      ASSERT_TRUE(step.motion.allFinite());
+      ASSERT_LE(step.motion.norm(), radius * (1.0 + 1e-8));
+    });
+    EXPECT_LE(worst, 3.0);
+    EXPECT_GT(moved, 20u);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Shapes, CertifiedSolver,
+                         testing::ValuesIn(shapes().begin(), shapes().end()),
+                         [](const auto& p) { return std::string(p.param.name); });
+
+}  // namespace
+}  // namespace keepout::test

@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "verify/campaign.h"
+
+#include <gtest/gtest.h>
+
+#include "keepout/factory/make_motion_constraint.h"
+#include "small_campaign.h"
+#include "verify/arenas.h"
+#include "verify/path.h"
+
+namespace keepout::app {
+namespace {
+
+TEST(Campaign, NoStepBreaksTheTheoremOnAnyGeneratedShape) {
+  std::uint64_t told = 0;
+  const std::vector<Arena> arenas = generated_arenas("pd_tree");
+  const Findings findings = run_campaign({.seed = 20261120, .steps = 200'000}, arenas,
+                                         [&](std::uint64_t n) { told += n; });
+  for (const Incident& breach : findings.breaches) ADD_FAILURE() << text(breach);
+  const Tally total = findings.total();
+  EXPECT_EQ(total.breach_count(), 0u);
+  EXPECT_EQ(total.steps, 200'000u);
+  EXPECT_EQ(told, 200'000u);
+  EXPECT_EQ(total.trajectories, 400u);
+  EXPECT_EQ(findings.scenes.size(), shapes().size());
+  // It is no walk in the park.
+  EXPECT_GT(count(findings, Status::limited), 60'000u);
+  EXPECT_GT(count(findings, Status::free), 20'000u);
+  EXPECT_GT(count(findings, Status::recovering), 500u);
+  EXPECT_GT(total.led_out, 50u);
+  EXPECT_LT(total.least_in_tau, -0.5);  // some go to where rounding counts
+}
+
+TEST(Campaign, TheSameSeedGivesTheSameAndAnotherSeedDoesNot) {
+  const auto run = [](std::uint64_t seed) {
+    Tally total = campaign_on("gear", {.seed = seed, .steps = 5'000}).total();
+    total.seconds = 0.0;
+    return total;
+  };
+  const Tally one = run(1);
+  const Tally same = run(1);
+  const Tally other = run(2);
+  EXPECT_EQ(one.statuses, same.statuses);
+  EXPECT_EQ(one.least, same.least);
+  EXPECT_NE(one.statuses, other.statuses);
+}
+
+TEST(Campaign, AnUnevenNumberOfStepsIsDoneToTheLast) {
+  const Findings findings = campaign_on("cube", {.steps = 1'234});
+  EXPECT_EQ(findings.total().steps, 1'234u);
+  EXPECT_EQ(findings.total().trajectories, 3u);
+}
+
+TEST(Campaign, TheGuardMovesAsAMotionConstraintDoes) {
+  Scene scene("star_bumps", make_shape("star_bumps"), "pd_tree");
+  CertifiedGuard guard(scene);
+  Random random(7);
+  std::size_t limited = 0;
+  std::size_t recovering = 0;
+  for (int i = 0; i < 120; ++i) {
+    const app::Setup setup = draw_setup(scene, random);
+    Path path(scene, random, setup);
+    Joints joints(setup, random);
+    guard.begin(setup.options, setup.inside);
+    MotionConstraint constraint =
+        make_motion_constraint(scene.mesh(), {.radius = setup.options.radius,
+                                              .margin = setup.options.margin,
+                                              .damping = setup.options.damping,
+                                              .recovery = setup.options.recovery,
+                                              .refinements = setup.options.refinements,
+                                              .nodes = setup.options.nodes,
+                                              .query = setup.options.query,
+                                              .inside = setup.inside,
+                                              .capacity = {.planes = 256}});
+    Vec3 tip = setup.tip;
+    for (int cycle = 0; cycle < 60; ++cycle) {
+      Motion motion{.tip = tip, .desired = path.next(tip)};
+      joints.attach(motion);
+      const Step own = guard.step(motion);
+      const Step theirs = constraint.step(motion);
+      ASSERT_EQ(own.status, theirs.status);
+      ASSERT_EQ(own.motion, theirs.motion);
+      limited += own.status == Status::limited;
+      recovering += own.status == Status::recovering;
+      tip += own.motion;
+    }
+  }
+  EXPECT_GT(limited, 2'000u);
+  EXPECT_GT(recovering, 20u);
+}
+
+}  // namespace
+}  // namespace keepout::app

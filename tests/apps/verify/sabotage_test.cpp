@@ -1,0 +1,170 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+// The campaign can fail: each guard here is broken in a way of its own, and each is found out.
+#include <gtest/gtest.h>
+
+#include <optional>
+
+#include "keepout/activation/paper.h"
+#include "keepout/index/pd_tree.h"
+#include "keepout/solvers/active_set.h"
+#include "small_campaign.h"
+
+namespace keepout::app {
+namespace {
+
+/// Goes wherever it is asked to.
+class NoGuard final : public Guard {
+ public:
+  void begin(const StepOptions&, Inside) override {}
+  Step step(const Motion& motion) noexcept override {
+    Step step;
+    step.status = Status::free;
+    step.motion = motion.desired;
+    return step;
+  }
+};
+
+/// The paper's rule, which knows of no tolerance.
+class PaperGuard final : public Guard {
+ public:
+  explicit PaperGuard(const Scene& scene) : scene_(&scene) {}
+
+  void begin(const StepOptions& options, Inside) override {
+    StepOptions bare = options;
+    bare.margin = 0.0;
+    constraint_.emplace(scene_->mesh(), std::make_unique<PdTree>(scene_->mesh()),
+                        std::make_unique<PaperRule>(scene_->mesh()), std::make_unique<ActiveSet>(),
+                        bare, Capacity{.triangles = 4096});
+  }
+  Step step(const Motion& motion) noexcept override { return constraint_->step(motion); }
+
+ private:
+  const Scene* scene_;
+  std::optional<MotionConstraint> constraint_;
+};
+
+/// The certified step, spoilt.
+class SpoiltGuard : public Guard {
+ public:
+  explicit SpoiltGuard(const Scene& scene) : scene_(&scene), guard_(scene) {}
+  void begin(const StepOptions& options, Inside inside) override { guard_.begin(options, inside); }
+  Step step(const Motion& motion) noexcept override { return guard_.step(motion); }
+
+ protected:
+  const Scene* scene_;
+  CertifiedGuard guard_;
+};
+
+/// Keeps less than the margin: by so little that only exact distances tell.
+class CarelessGuard final : public SpoiltGuard {
+ public:
+  using SpoiltGuard::SpoiltGuard;
+  void begin(const StepOptions& options, Inside inside) override {
+    StepOptions less = options;
+    less.margin -= 3.5 * tolerance(*scene_, options, Vec3::Zero());
+    guard_.begin(less, inside);
+  }
+};
+
+class OverlongGuard final : public SpoiltGuard {
+ public:
+  using SpoiltGuard::SpoiltGuard;
+  Step step(const Motion& motion) noexcept override {
+    Step step = guard_.step(motion);
+    if (step.status == Status::free) step.motion *= 1.0 + 1e-6;
+    return step;
+  }
+};
+
+class RestlessGuard final : public SpoiltGuard {
+ public:
+  using SpoiltGuard::SpoiltGuard;
+  Step step(const Motion& motion) noexcept override {
+    Step step = guard_.step(motion);
+    if (!step.ok()) step.motion = 1e-12 * motion.desired;
+    return step;
+  }
+};
+
+/// Does not care which side a tip is on.
+class LenientGuard final : public SpoiltGuard {
+ public:
+  using SpoiltGuard::SpoiltGuard;
+  void begin(const StepOptions& options, Inside) override {
+    guard_.begin(options, Inside::taken_as_is);
+  }
+};
+
+/// Leads tips that are inside the wrong way.
+class PerverseGuard final : public SpoiltGuard {
+ public:
+  using SpoiltGuard::SpoiltGuard;
+  Step step(const Motion& motion) noexcept override {
+    Step step = guard_.step(motion);
+    if (step.status == Status::recovering) step.motion = -step.motion;
+    return step;
+  }
+};
+
+template <class Kind>
+std::unique_ptr<Guard> make(const Scene& scene) {
+  return std::make_unique<Kind>(scene);
+}
+
+std::uint64_t caught(std::string_view shape, std::unique_ptr<Guard> (*make_guard)(const Scene&),
+                     Breach breach, std::uint64_t steps = 10'000) {
+  return count(campaign_on(shape, {.steps = steps, .make_guard = make_guard}), breach);
+}
+
+TEST(Sabotage, ATipWithoutAGuardPenetrates) {
+  const auto none = [](const Scene&) -> std::unique_ptr<Guard> {
+    return std::make_unique<NoGuard>();
+  };
+  EXPECT_GT(caught("sphere", none, Breach::penetration), 10u);
+  EXPECT_GT(caught("sphere", none, Breach::too_near), 10u);
+}
+
+TEST(Sabotage, ThePaperWithoutAMarginIsCaught) {
+  EXPECT_GT(caught("triangle_soup", make<PaperGuard>, Breach::penetration), 0u);
+  EXPECT_GT(caught("saddle_terrain", make<PaperGuard>, Breach::too_near), 10u);
+}
+
+TEST(Sabotage, AFewToleranceTooLittleIsCaught) {
+  EXPECT_GT(caught("cube", make<CarelessGuard>, Breach::too_near), 5u);
+  EXPECT_GT(caught("cortex", make<CarelessGuard>, Breach::too_near), 5u);
+}
+
+TEST(Sabotage, AStepLongerThanAskedForIsCaught) {
+  EXPECT_GT(caught("sphere", make<OverlongGuard>, Breach::too_long), 10u);
+}
+
+TEST(Sabotage, AMotionOfAFailedStepIsCaught) {
+  EXPECT_GT(caught("sphere", make<RestlessGuard>, Breach::moved_anyway, 50'000), 0u);
+}
+
+TEST(Sabotage, ATipThatIsLeftInsideIsCaught) {
+  EXPECT_GT(caught("sphere", make<LenientGuard>, Breach::left_inside), 0u);
+}
+
+TEST(Sabotage, ATipThatIsLedDeeperIsCaught) {
+  EXPECT_GT(caught("sphere", make<PerverseGuard>, Breach::led_deeper), 0u);
+}
+
+TEST(Sabotage, ABreachIsNotedWithAllThatIsNeededToRepeatIt) {
+  const Findings findings =
+      campaign_on("cube", {.steps = 20'000, .make_guard = make<CarelessGuard>});
+  ASSERT_FALSE(findings.breaches.empty());
+  Scene scene("cube", make_shape("cube"), "pd_tree");
+  for (const Incident& breach : findings.breaches) {
+    if (breach.setup.joints > 0) continue;
+    CarelessGuard guard(scene);
+    guard.begin(breach.setup.options, Inside::taken_as_is);
+    const Step step = guard.step({.tip = breach.tip, .desired = breach.desired});
+    EXPECT_EQ(step.motion, breach.motion) << text(breach);
+    EXPECT_EQ(step.status, breach.status);
+  }
+}
+
+}  // namespace
+}  // namespace keepout::app

@@ -1,0 +1,159 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+// keepout verify as a user meets it: options, shards, files.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <array>
+#include <cstdio>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "keepout/fixtures/shapes.h"
+#include "keepout/mesh/binary_stl.h"
+#include "temporary_folder.h"
+
+namespace keepout::app {
+namespace {
+
+struct Outcome {
+  int status;
+  std::string output;  // stdout and stderr
+};
+
+class Verify : public testing::Test {
+ protected:
+  void SetUp() override {
+    write_binary_stl(folder_.path() / "cube.stl", make_cube(10.0));
+    write_binary_stl(folder_.path() / "terrain.stl", make_saddle_terrain(5.0));
+  }
+
+  Outcome run(const std::string& arguments, const std::string& environment = {}) const {
+    const std::string line = "cd '" + folder_.path().string() + "' && " + environment +
+                             " '" KEEPOUT_COMMAND "' verify " + arguments + " 2>&1";
+    FILE* pipe = ::popen(line.c_str(), "r");
+    Outcome outcome{-1, {}};
+    std::array<char, 4096> part;
+    while (std::fgets(part.data(), part.size(), pipe) != nullptr) outcome.output += part.data();
+    const int status = ::pclose(pipe);
+    outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    return outcome;
+  }
+
+  nlohmann::json read(const std::string& name) const {
+    std::ifstream file(folder_.path() / name);
+    return nlohmann::json::parse(file);
+  }
+
+  /// What may differ between runs of the same.
+  static nlohmann::json without_times(nlohmann::json result) {
+    result.erase("shards");
+    result.erase("shard_count");
+    result["total"].erase("seconds");
+    for (nlohmann::json& mesh : result["meshes"]) mesh.erase("seconds");
+    return result;
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(Verify, ShardsAddUpToTheWhole) {
+  const std::string both = "cube.stl terrain.stl --steps 5250 --seed 3 ";
+  const Outcome whole = run(both + "--json whole.json");
+  ASSERT_EQ(whole.status, 0) << whole.output;
+  EXPECT_NE(whole.output.find("no breach in 5,250 steps"), std::string::npos) << whole.output;
+  for (const char* shard : {"1", "2", "3"}) {
+    const std::string options = std::string("--shard ") + shard + "/3 --json " + shard + ".json";
+    ASSERT_EQ(run(both + options).status, 0);
+  }
+  const Outcome merged = run("--merge 3.json 1.json 2.json --json merged.json");
+  ASSERT_EQ(merged.status, 0) << merged.output;
+  EXPECT_EQ(merged.output.find("missing"), std::string::npos) << merged.output;
+  EXPECT_EQ(without_times(read("merged.json")), without_times(read("whole.json")));
+  EXPECT_EQ(read("merged.json")["shards"].size(), 3u);
+}
+
+TEST_F(Verify, AMissingShardIsToldOf) {
+  const std::string both = "cube.stl --steps 2000 --shard ";
+  ASSERT_EQ(run(both + "1/3 --json 1.json").status, 0);
+  ASSERT_EQ(run(both + "3/3 --json 3.json").status, 0);
+  const Outcome merged = run("--merge 1.json 3.json");
+  EXPECT_EQ(merged.status, 0);
+  EXPECT_NE(merged.output.find("missing: shard 2/3"), std::string::npos) << merged.output;
+}
+
+TEST_F(Verify, WhatDoesNotBelongTogetherIsNotMerged) {
+  ASSERT_EQ(run("cube.stl --steps 1000 --shard 1/2 --json 1.json").status, 0);
+  ASSERT_EQ(run("cube.stl --steps 1000 --shard 2/2 --seed 9 --json seed.json").status, 0);
+  ASSERT_EQ(run("cube.stl --steps 1001 --shard 2/2 --json steps.json").status, 0);
+  ASSERT_EQ(run("cube.stl --steps 1500 --shard 2/3 --json shards.json").status, 0);
+  ASSERT_EQ(run("terrain.stl --steps 1000 --shard 2/2 --json mesh.json").status, 0);
+  nlohmann::json other = read("1.json");
+  other["version"] = "99.0";
+  folder_.write("version.json", other.dump());
+  other["keepout_verify"] = 99;
+  folder_.write("format.json", other.dump());
+  folder_.write("cut.json", other.dump().substr(0, 100));
+  folder_.write("else.json", "{\"a\": 1}");
+  const std::vector<std::pair<std::string, std::string>> mistakes{
+      {"seed.json", "seeds"},          {"steps.json", "steps"},
+      {"shards.json", "shards"},       {"mesh.json", "meshes"},
+      {"version.json", "versions"},    {"format.json", "format 99"},
+      {"cut.json", "not a whole"},     {"else.json", "not a whole"},
+      {"none.json", "cannot be read"}, {"1.json", "both hold shard 1/2"}};
+  for (const auto& [file, told] : mistakes) {
+    const Outcome outcome = run("--merge 1.json " + file);
+    EXPECT_EQ(outcome.status, 1) << file;
+    EXPECT_NE(outcome.output.find(told), std::string::npos) << file << "\n" << outcome.output;
+    EXPECT_NE(outcome.output.find(file), std::string::npos) << outcome.output;
+  }
+}
+
+TEST_F(Verify, MistakesAreToldOf) {
+  const std::vector<std::pair<std::string, std::string>> mistakes{
+      {"none.stl", "none.stl"},
+      {"cube.stl cube.stl", "named twice"},
+      {"cube.stl --steps 0", "--steps"},
+      {"cube.stl --steps 1.5", "--steps"},
+      {"cube.stl --steps 1e13", "--steps"},
+      {"cube.stl --steps many", "--steps"},
+      {"cube.stl --steps -5", "--steps"},
+      {"cube.stl --seed -1", "--seed"},
+      {"cube.stl --shard 0/2", "--shard"},
+      {"cube.stl --shard 3/2", "--shard"},
+      {"cube.stl --shard 1", "--shard"},
+      {"cube.stl --shard 1/2x", "--shard"},
+      {"cube.stl --shard 1/9 --steps 1000", "only 2 trajectories"},
+      {"cube.stl --index best", "--index"},
+      {"cube.stl --json no/such/folder.json", "no/such/folder.json"},
+      {"cube.stl --json cube.stl", "same file"},
+      {"--merge a.json --steps 10", "--steps"},
+      {"--merge a.json --shard 1/2", "--shard"},
+      {"--merge a.json --json a.json", "same file"},
+      {"cube.stl --stepps 10", "--stepps"}};
+  for (const auto& [arguments, told] : mistakes) {
+    const Outcome outcome = run(arguments);
+    EXPECT_NE(outcome.status, 0) << arguments;
+    EXPECT_NE(outcome.output.find(told), std::string::npos) << arguments << "\n" << outcome.output;
+    EXPECT_EQ(outcome.output.find("least/tau"), std::string::npos) << "did it all the same";
+  }
+}
+
+TEST_F(Verify, StepsMayBeWrittenWithAnExponent) {
+  const Outcome outcome = run("cube.stl --steps 1e3");
+  EXPECT_EQ(outcome.status, 0) << outcome.output;
+  EXPECT_NE(outcome.output.find("no breach in 1,000 steps"), std::string::npos) << outcome.output;
+}
+
+TEST_F(Verify, FixturesThatAreNotThereAreNamed) {
+  const Outcome outcome = run("--steps 500", "KEEPOUT_CACHE=.");
+  EXPECT_EQ(outcome.status, 0) << outcome.output;
+  EXPECT_NE(outcome.output.find("missing: "), std::string::npos) << outcome.output;
+  EXPECT_NE(outcome.output.find("skull.stl"), std::string::npos) << outcome.output;
+}
+
+}  // namespace
+}  // namespace keepout::app

@@ -1,0 +1,281 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "keepout/activation/certified.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "keepout/activation/facet.h"
+#include "keepout/fixtures/poses.h"
+#include "keepout/fixtures/shapes.h"
+#include "keepout/index/brute_force.h"
+#include "keepout/index/refine.h"
+#include "keepout/step/step.h"
+#include "small_surfaces.h"
+
+namespace keepout {
+namespace {
+
+using Stance = Opening::Stance;
+using Verdict = Judgement::Verdict;
+
+/// A rule, and what a step does before it asks it.
+class Scene {
+ public:
+  Scene(Surface surface, const StepOptions& options, std::size_t room = 100'000)
+      : mesh(std::make_shared<const Mesh>(std::move(surface))),
+        rule(mesh),
+        planes(100),
+        turned(100),
+        options_(options),
+        candidates_(mesh->triangle_count()),
+        hits_(mesh->triangle_count()) {
+    rule.reserve(std::min(room, mesh->triangle_count()));
+  }
+
+  Opening open(const Vec3& tip, const Vec3& desired, Reach reach = Reach::thales) {
+    around = surroundings_of({.tip = tip, .desired = desired}, options_, reach);
+    around.ball = rule.region(around);
+    candidates_.clear();
+    hits_.clear();
+    planes.clear();
+    BruteForce(mesh).collect(around.ball, candidates_);
+    refine(*mesh, around.ball, candidates_.view(), hits_);
+    around.hits = hits_.view();
+    return rule.start(around, planes);
+  }
+
+  double tau() const { return rule.tolerance(around); }
+
+  std::shared_ptr<const Mesh> mesh;
+  CertifiedRule rule;
+  Surroundings around;
+  HalfSpaceBuffer planes;
+  HalfSpaceBuffer turned;
+
+ private:
+  StepOptions options_;
+  TriangleBuffer candidates_;
+  HitBuffer hits_;
+};
+
+constexpr StepOptions options{.radius = 1.0, .margin = 0.2, .recovery = 0.05};
+
+/// z = 0; free above.
+Surface table() {
+  return {{Vec3(-5, -5, 0), Vec3(5, -5, 0), Vec3(5, 5, 0), Vec3(-5, 5, 0)}, {{0, 1, 2}, {0, 2, 3}}};
+}
+
+Vec3 above(double height) { return {1.0, 0.5, height}; }
+
+TEST(CertifiedRule, ItsToleranceIsThatOfTheSpecification) {
+  Scene scene(table(), options);
+  const Vec3 far(1e3, -2e3, 0.3);
+  scene.open(far, Vec3::Zero());
+  const double longest = std::sqrt(200.0);
+  EXPECT_NEAR(scene.tau(), 2e-10 * (longest + 1.0 + 0.2) + 4e-16 * 3000.3, 1e-16);
+}
+
+TEST(CertifiedRule, AtItsMarginATipIsClear) {
+  Scene scene(table(), options);
+  for (const double height : {0.2, 0.3, 0.2 - 1e-12}) {
+    const Opening opening = scene.open(above(height), Vec3(0, 0, -0.5));
+    EXPECT_EQ(opening.stance, Stance::clear) << height;
+    EXPECT_TRUE(scene.planes.empty());
+  }
+}
+
+TEST(CertifiedRule, AToleranceDecidesWhereTheMarginIsLost) {
+  Scene scene(table(), options);
+  scene.open(above(1.0), Vec3::Zero());
+  const double tau = scene.tau();
+  EXPECT_EQ(scene.open(above(0.2 - 2.5 * tau), Vec3(0, 0, -0.5)).stance, Stance::clear);
+  EXPECT_EQ(scene.open(above(0.2 - 3.0 * tau), Vec3(0, 0, -0.5)).stance, Stance::too_close);
+}
+
+TEST(CertifiedRule, TooCloseItLeadsStraightAwayByTheRecovery) {
+  Scene scene(table(), options);
+  const Opening opening = scene.open(above(0.1), Vec3::Zero());
+  EXPECT_EQ(opening.stance, Stance::too_close);
+  EXPECT_LT((opening.aim - Vec3(0, 0, 0.05)).norm(), 1e-15);
+  // No farther than the margin.
+  EXPECT_LT((scene.open(above(0.18), Vec3::Zero()).aim - Vec3(0, 0, 0.02)).norm(), 1e-15);
+}
+
+TEST(CertifiedRule, TooCloseWhatLeadsAlongOrAwayIsKept) {
+  Scene scene(table(), options);
+  const Vec3 down = scene.open(above(0.1), Vec3(0.3, -0.4, -0.5)).aim;
+  EXPECT_LT((down - Vec3(0.3, -0.4, 0.05)).norm(), 1e-15);
+  const Vec3 up = scene.open(above(0.1), Vec3(0.3, -0.4, 0.5)).aim;
+  EXPECT_LT((up - Vec3(0.3, -0.4, 0.55)).norm(), 1e-15);
+  Random random(1);
+  for (int i = 0; i < 1'000; ++i) {
+    const Vec3 aim = scene.open(above(0.1), random.direction()).aim;
+    ASSERT_LE(aim.norm(), 1.0 + 1e-8) << "beyond the motion sphere";
+    ASSERT_GE(aim.z(), 0.05 - 1e-12);
+  }
+}
+
+TEST(CertifiedRule, OnTheSurfaceNoSideIsFree) {
+  Scene scene(table(), options);
+  EXPECT_EQ(scene.open(above(0.0), Vec3(0, 0, 0.5)).stance, Stance::touching);
+  const double tau = scene.tau();
+  EXPECT_EQ(scene.open(above(3.0 * tau), Vec3(0, 0, 0.5)).stance, Stance::touching);
+  EXPECT_EQ(scene.open(above(5.0 * tau), Vec3(0, 0, 0.5)).stance, Stance::too_close);
+}
+
+TEST(CertifiedRule, AMarginThatRoundingHidesIsRefused) {
+  for (const double margin : {0.0, 1e-12, 5e-9}) {
+    Scene scene(table(), {.radius = 1.0, .margin = margin});
+    EXPECT_EQ(scene.open(above(1.0), Vec3(0, 0, -0.5)).stance, Stance::no_margin) << margin;
+  }
+  Scene scene(table(), {.radius = 1.0, .margin = 1e-7});
+  EXPECT_EQ(scene.open(above(1.0), Vec3(0, 0, -0.5)).stance, Stance::clear);
+}
+
+TEST(CertifiedRule, MoreTrianglesThanRoomIsAStance) {
+  Scene scene(table(), options, 1);
+  EXPECT_EQ(scene.open(Vec3(0, 0, 0.5), Vec3(0, 0, -0.5)).stance, Stance::over_capacity);
+  EXPECT_EQ(scene.open(Vec3(0, 0, 0.5), Vec3(0, 0, 0.5)).stance, Stance::clear);
+}
+
+TEST(CertifiedRule, LooksWhereMotionsMayLead) {
+  Scene scene(table(), options);
+  const Vec3 tip = above(1.0), desired(0.2, -0.1, -0.6);
+  scene.open(tip, desired);
+  Random random(2);
+  for (int i = 0; i < 1'000; ++i) {
+    // A projection of the aim on a plane that leaves the tip allowed.
+    const Vec3 n = random.direction();
+    const double offset = -random.uniform();
+    const Vec3 motion = desired + std::max(offset - n.dot(desired), 0.0) * n;
+    ASSERT_LE((tip + motion - scene.around.ball.center).norm() + 0.2, scene.around.ball.radius);
+  }
+  scene.open(tip, desired, Reach::sphere);
+  EXPECT_EQ(scene.around.ball.center, tip);
+  EXPECT_GE(scene.around.ball.radius, 1.2);
+}
+
+TEST(CertifiedRule, WhatIsFreeIsAccepted) {
+  Scene scene(table(), options);
+  scene.open(above(0.2), Vec3(0.5, 0.5, 0.0));
+  EXPECT_EQ(scene.rule.judge(scene.around, Vec3(0.5, 0.5, 0.0), scene.planes).verdict,
+            Verdict::accepted);
+  EXPECT_TRUE(scene.planes.empty());
+}
+
+TEST(CertifiedRule, AnObjectionIsAPlaneThatExcludesTheTrialAndNotTheTip) {
+  const Mesh mesh(make_shape("gear"));
+  Scene scene(make_shape("gear"), options);
+  Random random(3);
+  std::size_t objections = 0;
+  for (const Vec3& tip : surface_points(mesh, 400, 0.25, random)) {
+    const Vec3 trial = random.uniform(0.1, 1.0) * random.direction();
+    if (scene.open(tip, trial).stance != Stance::clear) continue;
+    const Judgement judgement = scene.rule.judge(scene.around, trial, scene.planes);
+    if (judgement.verdict == Verdict::accepted) continue;
+    ASSERT_EQ(judgement.verdict, Verdict::objected);
+    ++objections;
+    ASSERT_EQ(scene.planes.size(), 1u);
+    const HalfSpace plane = scene.planes[0];
+    ASSERT_LT(plane.normal.dot(trial), plane.offset);
+    ASSERT_LE(plane.offset, 3.0 * scene.tau());
+    const Facet facet(mesh.triangle(plane.source), tip, plane.source);
+    ASSERT_EQ(facet.support(plane.normal) + 0.2, plane.offset);
+    ASSERT_GE(judgement.free_share, 0.0);
+    ASSERT_LE(judgement.free_share, 1.0);
+    // Up to the contact the way is free.
+    ASSERT_EQ(scene.rule.judge(scene.around, judgement.free_share * trial, scene.planes).verdict,
+              Verdict::accepted);
+  }
+  EXPECT_GT(objections, 50u);
+}
+
+TEST(CertifiedRule, ATrialAgainstItsOwnPlaneIsBlocked) {
+  Scene scene(table(), options);
+  const Vec3 trial(0.1, 0.0, -0.8);
+  scene.open(Vec3(1.0, -3.0, 0.7), trial);
+  EXPECT_EQ(scene.rule.judge(scene.around, trial, scene.planes).verdict, Verdict::objected);
+  const std::size_t planes = scene.planes.size();
+  const Judgement again = scene.rule.judge(scene.around, trial, scene.planes);
+  EXPECT_EQ(again.verdict, Verdict::blocked);
+  EXPECT_NEAR(again.free_share, 0.625, 1e-8);
+  EXPECT_EQ(scene.planes.size(), planes);
+}
+
+TEST(CertifiedRule, StandingStillIsAlwaysAccepted) {
+  for (const char* name : {"cortex", "needles", "triangle_soup", "fan", "thin_plates"}) {
+    Scene scene(make_shape(name), options);
+    Random random(4);
+    for (const Vec3& tip : surface_points(*scene.mesh, 30, random.uniform(0.01, 0.5), random)) {
+      const Opening opening = scene.open(tip, random.direction());
+      if (opening.stance == Stance::touching) continue;
+      ASSERT_EQ(scene.rule.judge(scene.around, Vec3::Zero(), scene.planes).verdict,
+                Verdict::accepted)
+          << name << " " << tip.transpose();
+    }
+  }
+}
+
+TEST(CertifiedRule, OnlyOffsetsThatAskForMotionAreRelaxed) {
+  const CertifiedRule rule(std::make_shared<const Mesh>(table()));
+  HalfSpaceBuffer planes(3);
+  planes.push({Vec3::UnitZ(), -0.5, 0});
+  planes.push({Vec3::UnitX(), 0.0, 1});
+  EXPECT_FALSE(rule.relax(planes));
+  planes.push({Vec3::UnitY(), 1e-9, 1});
+  EXPECT_TRUE(rule.relax(planes));
+  EXPECT_EQ(planes[0].offset, -0.5);
+  EXPECT_EQ(planes[2].offset, 0.0);
+  EXPECT_FALSE(rule.relax(planes));
+}
+
+TEST(CertifiedRule, TurnedPlanesAllowTheTipAndTheMotionAsBefore) {
+  for (const char* name : {"sphere", "gear", "cortex", "saddle_terrain", "star_bumps"}) {
+    const Mesh mesh(make_shape(name));
+    Scene scene(make_shape(name), options);
+    Random random(5);
+    std::size_t changed = 0;
+    for (const Vec3& tip : surface_points(mesh, 150, 0.25, random)) {
+      const Vec3 trial = random.uniform(0.2, 1.0) * random.direction();
+      if (scene.open(tip, trial).stance != Stance::clear) continue;
+      const Judgement judgement = scene.rule.judge(scene.around, trial, scene.planes);
+      if (judgement.verdict != Verdict::objected) continue;
+      const HalfSpace old = scene.planes[0];
+      // Along the plane, which is what a solver would answer.
+      const Vec3 accepted = trial + (old.offset - old.normal.dot(trial)) * old.normal;
+      scene.turned.clear();
+      scene.around.kept = accepted;
+      if (!scene.rule.turn(scene.around, scene.planes.view(), scene.turned)) continue;
+      ++changed;
+      ASSERT_EQ(scene.turned.size(), 1u);
+      const HalfSpace plane = scene.turned[0];
+      const double slack = 0.1 * scene.tau();
+      ASSERT_EQ(plane.source, old.source);
+      ASSERT_NEAR(plane.normal.norm(), 1.0, 1e-15);
+      ASSERT_LE(plane.offset, std::max(old.offset, 0.0) + slack) << "the tip may stay";
+      ASSERT_GE(plane.normal.dot(accepted), plane.offset - slack) << "the motion is allowed";
+      const Facet facet(mesh.triangle(plane.source), tip, plane.source);
+      ASSERT_NEAR(facet.support(plane.normal) + 0.2, plane.offset, 1e-14) << "the facet is behind";
+    }
+    EXPECT_GT(changed, 10u) << name;
+  }
+}
+
+TEST(CertifiedRule, IdlePlanesAreDroppedByATurn) {
+  Scene scene(table(), options);
+  const Vec3 aim(0.5, 0.0, -0.6);
+  scene.open(Vec3(1.0, -3.0, 0.7), aim);
+  scene.planes.push({Vec3::UnitZ(), -0.5, 0});
+  scene.turned.clear();
+  scene.around.kept = Vec3(0.5, 0.0, 0.2);
+  EXPECT_FALSE(scene.rule.turn(scene.around, scene.planes.view(), scene.turned));
+  EXPECT_TRUE(scene.turned.empty());
+}
+
+}  // namespace
+}  // namespace keepout

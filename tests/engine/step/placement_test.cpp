@@ -1,0 +1,267 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "keepout/step/placement.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "keepout/fixtures/poses.h"
+#include "keepout/fixtures/shapes.h"
+#include "keepout/index/pd_tree.h"
+#include "keepout/oracle/safety_oracle.h"
+#include "small_surfaces.h"
+
+namespace keepout {
+namespace {
+
+using Side = Placement::Side;
+
+class Placing {
+ public:
+  explicit Placing(Surface surface)
+      : mesh_(std::make_shared<const Mesh>(std::move(surface))),
+        tree_(mesh_),
+        candidates_(mesh_->triangle_count()),
+        oracle_(mesh_) {}
+
+  const Mesh& mesh() const { return *mesh_; }
+  bool inside(const Vec3& tip) const { return oracle_.inside(tip).value(); }
+  double distance(const Vec3& tip) const { return oracle_.distance(tip); }
+  std::optional<Placement> operator()(const Vec3& tip) {
+    return place(*mesh_, tree_, tip, candidates_);
+  }
+
+ private:
+  std::shared_ptr<const Mesh> mesh_;
+  PdTree tree_;
+  TriangleBuffer candidates_;
+  oracle::SafetyOracle oracle_;
+};
+
+Surface rotated(Surface surface, double angle) {
+  const Eigen::AngleAxisd turn(angle, Vec3(0.3, -0.8, 0.5).normalized());
+  for (Vec3& v : surface.vertices) v = turn * v;
+  return surface;
+}
+
+/// Places off the surface, by `offset` in some direction, on faces, edges and vertices.
+std::vector<Vec3> tips_around(const Mesh& mesh, std::size_t count, Random& random) {
+  std::vector<Vec3> tips = random_points(mesh, count, random);
+  const auto add = [&](const std::vector<Vec3>& points) {
+    for (const Vec3& p : points) {
+      tips.push_back(p + std::pow(10.0, random.uniform(-6.0, 1.0)) * random.direction());
+    }
+  };
+  add(surface_points(mesh, count, 0.0, random));
+  add(edge_points(mesh, count, random));
+  add(vertex_points(mesh, count, random));
+  return tips;
+}
+
+struct Solid {
+  const char* shape;
+  double rotation;
+};
+
+void PrintTo(const Solid& solid, std::ostream* out) { *out << solid.shape; }
+
+class PlacementOnSolid : public testing::TestWithParam<Solid> {};
+
+TEST_P(PlacementOnSolid, AgreesWithAnIndependentInsideTest) {
+  Placing placing(rotated(make_shape(GetParam().shape), GetParam().rotation));
+  const bool inside_out = std::string_view(GetParam().shape) == "concave_sphere";
+  Random random(1);
+  std::size_t inside = 0, outside = 0;
+  for (const Vec3& tip : tips_around(placing.mesh(), 400, random)) {
+    const auto placement = placing(tip);
+    ASSERT_TRUE(placement.has_value());
+    const double distance = placing.distance(tip);
+    ASSERT_NEAR(placement->distance, distance, 1e-13 * (tip.norm() + 100.0));
+    ASSERT_NEAR(placement->way_out.norm(), 1.0, 1e-12);
+    if (distance < 1e-11 * (tip.norm() + 100.0)) continue;  // all but on the surface
+    const bool is_inside = placing.inside(tip);
+    ASSERT_EQ(placement->side == Side::forbidden, is_inside != inside_out)
+        << "at " << tip.transpose() << ", distance " << distance;
+    ++(is_inside ? inside : outside);
+  }
+  EXPECT_GT(inside, 300u);
+  EXPECT_GT(outside, 300u);
+}
+
+TEST_P(PlacementOnSolid, TheWayLeadsToTheSurfaceFromInsideAndOffItFromOutside) {
+  Placing placing(rotated(make_shape(GetParam().shape), GetParam().rotation));
+  Random random(2);
+  for (const Vec3& tip : tips_around(placing.mesh(), 100, random)) {
+    const auto placement = placing(tip);
+    ASSERT_TRUE(placement.has_value());
+    const double distance = placement->distance;
+    if (distance < 1e-5) continue;
+    const double towards = placement->side == Side::forbidden ? 1.0 : -1.0;
+    const Vec3 surface = tip + towards * distance * placement->way_out;
+    ASSERT_LE(placing.distance(surface), 1e-12 * (tip.norm() + 100.0));
+  }
+}
+
+TEST_P(PlacementOnSolid, LeadingOutNeverLeadsDeeper) {
+  Placing placing(rotated(make_shape(GetParam().shape), GetParam().rotation));
+  Random random(3);
+  std::size_t forbidden = 0;
+  for (const Vec3& tip : tips_around(placing.mesh(), 100, random)) {
+    const auto placement = placing(tip);
+    ASSERT_TRUE(placement.has_value());
+    if (placement->side == Side::free || placement->distance < 1e-9) continue;
+    ++forbidden;
+    for (const double recovery : {1e-3, 0.05, 1.0, 30.0}) {
+      const Vec3 way = lead_out(*placement, recovery);
+      ASSERT_LE(way.norm(), recovery * (1.0 + 1e-15));
+      const auto after = placing(tip + way);
+      ASSERT_TRUE(after.has_value());
+      if (after->side == Side::free) continue;
+      // All but on the surface the way is a hundredth of a recovery: that may be another wall.
+      ASSERT_LE(after->distance, std::max(placement->distance * (1.0 + 1e-9), 1e-2 * recovery));
+      if (way.norm() <= placement->distance) {
+        ASSERT_LE(after->distance, placement->distance - way.norm() + 1e-9);
+      }
+    }
+  }
+  EXPECT_GT(forbidden, 50u);
+}
+
+TEST_P(PlacementOnSolid, DoesNotDependOnTheNumbering) {
+  const Surface surface = rotated(make_shape(GetParam().shape), GetParam().rotation);
+  Placing placing(surface);
+  Placing other(shuffled(surface, 5));
+  Random random(4);
+  for (const Vec3& tip : tips_around(placing.mesh(), 100, random)) {
+    const auto one = placing(tip);
+    const auto two = other(tip);
+    ASSERT_EQ(one->side, two->side);
+    ASSERT_EQ(one->distance, two->distance);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Solids, PlacementOnSolid,
+    testing::Values(Solid{"cube", 0.0}, Solid{"cube", 0.7}, Solid{"sphere", 0.0},
+                    Solid{"concave_sphere", 0.0}, Solid{"cylinder", 0.0}, Solid{"pyramid", 0.0},
+                    Solid{"pyramid", 0.7}, Solid{"gear", 0.0}, Solid{"gear", 0.7},
+                    Solid{"thin_plates", 0.0}, Solid{"thin_plates", 0.7}, Solid{"star_bumps", 0.0},
+                    Solid{"cortex", 0.0}),
+    [](const auto& p) {
+      return std::string(p.param.shape) + (p.param.rotation == 0.0 ? "" : "_rotated");
+    });
+
+/// Two faces that meet at an edge, closed by others far away: a wedge of that opening, free
+/// outside. The edge runs along z through the origin. [rad]
+Surface wedge(double opening) {
+  const double s = std::sin(0.5 * opening), c = std::cos(0.5 * opening);
+  // A prism over the triangle of the edge and the far ends of both faces.
+  Surface out;
+  for (const double z : {-10.0, 10.0}) {
+    out.vertices.emplace_back(0, 0, z);
+    out.vertices.emplace_back(-10 * c, 10 * s, z);
+    out.vertices.emplace_back(-10 * c, -10 * s, z);
+  }
+  out.triangles = {{0, 2, 1}, {3, 4, 5}, {0, 1, 4}, {0, 4, 3},
+                   {1, 2, 5}, {1, 5, 4}, {2, 0, 3}, {2, 3, 5}};
+  return out;
+}
+
+TEST(Placement, RightOverTheRimOfAFaceASharpEdgeDoesNotConfuse) {
+  // There one face's closest point is on its edge and the other's may be beside it, but for
+  // rounding: with a sharp edge the two normals contradict each other.
+  Random random(5);
+  for (int i = 0; i < 4'000; ++i) {
+    const double opening = random.uniform(0.05, 2.5);
+    const Eigen::Quaterniond turn(Eigen::AngleAxisd(random.uniform(0.0, 6.0), random.direction()));
+    Surface surface = wedge(opening);
+    for (Vec3& v : surface.vertices) v = turn * v;
+    Placing placing(surface);
+    // Over the edge, along the normal of one of the two faces, and a trifle to each side.
+    const double side = i % 2 == 0 ? 1.0 : -1.0;
+    const Vec3 normal(std::sin(0.5 * opening), side * std::cos(0.5 * opening), 0.0);
+    const Vec3 edge(0.0, 0.0, random.uniform(-8.0, 8.0));
+    for (const double trifle : {0.0, 1e-16, -1e-16, 1e-15, -1e-15, 1e-13, -1e-13}) {
+      const Vec3 along(-std::cos(0.5 * opening), side * std::sin(0.5 * opening), 0.0);
+      const Vec3 tip = turn * (edge + random.uniform(0.1, 2.0) * normal + trifle * along);
+      const auto placement = placing(tip);
+      ASSERT_TRUE(placement.has_value());
+      ASSERT_EQ(placement->side, Side::free)
+          << "opening " << opening << ", trifle " << trifle << ", case " << i;
+    }
+  }
+}
+
+TEST(Placement, ASaddleVertexIsNoTrouble) {
+  // A closed cone over a star: seen from its apex, ridges and valleys in turn.
+  Surface surface;
+  constexpr int rim = 12;
+  for (int i = 0; i < rim; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / rim;
+    surface.vertices.emplace_back(10 * std::cos(angle), 10 * std::sin(angle),
+                                  i % 2 == 0 ? 6.0 : -6.0);
+  }
+  surface.vertices.emplace_back(0, 0, 0);
+  surface.vertices.emplace_back(0, 0, -40);
+  for (VertexId i = 0; i < rim; ++i) {
+    const VertexId next = (i + 1) % rim;
+    surface.triangles.push_back({i, next, rim});
+    surface.triangles.push_back({next, i, rim + 1});
+  }
+  Placing placing(surface);
+  Random random(6);
+  std::size_t inside = 0;
+  for (int i = 0; i < 5'000; ++i) {
+    const Vec3 tip = std::pow(10.0, random.uniform(-8.0, 0.5)) * random.direction();
+    const auto placement = placing(tip);
+    const bool is_inside = placing.inside(tip);
+    ASSERT_EQ(placement->side == Side::forbidden, is_inside) << tip.transpose();
+    if (is_inside) ++inside;
+  }
+  EXPECT_GT(inside, 1'000u);
+  EXPECT_LT(inside, 4'000u);
+}
+
+TEST(Placement, OnTheSurfaceTheNormalLeadsOut) {
+  Placing cube(make_cube(50));
+  for (const Vec3& tip : {Vec3(3, 4, 50), Vec3(50, 0, 50), Vec3(50, 50, 50)}) {
+    const auto placement = cube(tip);
+    ASSERT_TRUE(placement.has_value());
+    EXPECT_EQ(placement->side, Side::forbidden);
+    EXPECT_LT(placement->distance, 1e-14);
+    EXPECT_NEAR(placement->way_out.norm(), 1.0, 1e-15);
+    EXPECT_FALSE(cube.inside(tip + 1e-3 * placement->way_out));
+  }
+}
+
+TEST(Placement, MoreTrianglesThanThereIsRoomForIsNoPlacement) {
+  const auto mesh = std::make_shared<const Mesh>(make_cube(50));
+  const PdTree tree(mesh);
+  TriangleBuffer none(0);
+  EXPECT_FALSE(place(*mesh, tree, Vec3(0, 0, 51), none).has_value());
+}
+
+TEST(LeadOut, GoesNoFartherBeyondTheSurfaceThanItWasDeep) {
+  const Placement deep{Side::forbidden, 3.0, Vec3::UnitZ(), Vec3::UnitZ()};
+  EXPECT_EQ(lead_out(deep, 0.5), Vec3(0, 0, 0.5));
+  EXPECT_EQ(lead_out(deep, 10.0), Vec3(0, 0, 6.0));
+  EXPECT_EQ(lead_out(deep, 0.0), Vec3::Zero());
+}
+
+TEST(LeadOut, LeavesTheSurfaceItself) {
+  const Placement on{Side::forbidden, 0.0, Vec3::UnitX(), Vec3::UnitX()};
+  const Vec3 way = lead_out(on, 0.5);
+  EXPECT_GT(way.x(), 0.0);
+  EXPECT_LE(way.x(), 0.5);
+}
+
+}  // namespace
+}  // namespace keepout

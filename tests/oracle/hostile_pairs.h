@@ -1,0 +1,110 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "keepout/fixtures/random.h"
+#include "keepout/geometry/triangle.h"
+#include "keepout/oracle/segment.h"
+
+namespace keepout::oracle {
+
+struct HostilePair {
+  Segment segment;
+  Triangle triangle;
+};
+
+/// From fair to hopeless, about 1 large: needles and caps down to heights of 1e-18, corners on a
+/// line, segments, points.
+inline Triangle hostile_triangle(Random& random) {
+  const auto point = [&]() -> Vec3 { return random.direction() * random.uniform(); };
+  Triangle t{point(), point(), point()};
+  const double tiny = std::pow(10.0, random.uniform(-18.0, 0.0));
+  switch (random.below(8)) {
+    case 0:
+      t[2] = t[1] + tiny * point();
+      break;
+    case 1:
+      t[2] = t[0] + random.uniform() * (t[1] - t[0]) + tiny * point();
+      break;
+    case 2:
+      t[2] = t[0] + 2.0 * (t[1] - t[0]);
+      break;
+    case 3:
+      t[random.below(3)] = t[random.below(3)];
+      break;
+    case 4:
+      t[1] = t[2] = t[0];
+      break;
+    default:
+      break;
+  }
+  std::swap(t[random.below(3)], t[random.below(3)]);
+  return t;
+}
+
+/// A place on the triangle's face, an edge or a corner, as good as doubles can name it.
+inline Vec3 place_on(const Triangle& t, Random& random) {
+  double b = random.uniform(), c = random.uniform();
+  if (b + c > 1.0) {
+    b = 1.0 - b;
+    c = 1.0 - c;
+  }
+  const auto corner = random.below(3);
+  switch (random.below(3)) {
+    case 0:
+      return t[0] + b * (t[1] - t[0]) + c * (t[2] - t[0]);
+    case 1:
+      return t[corner] + b * (t[(corner + 1) % 3] - t[corner]);
+    default:
+      return t[corner];
+  }
+}
+
+/// A segment next to the triangle: ending on it, grazing it, parallel to an edge or to the face,
+/// through it, a point, or anywhere.
+inline Segment hostile_segment(const Triangle& t, Random& random) {
+  const double near = std::pow(10.0, random.uniform(-16.0, 0.5));
+  const Vec3 place = place_on(t, random) + (random.below(4) == 0 ? 0.0 : near) * random.direction();
+  const double length = std::pow(10.0, random.uniform(-6.0, 1.0));
+  const Vec3 side = t[1] - t[0];
+  switch (random.below(7)) {
+    case 0:
+      return {place, place};
+    case 1:
+      return {place, place + length * random.direction()};
+    case 2: {
+      const Vec3 way = length * random.direction();
+      return {place - random.uniform() * way, place + random.uniform() * way};
+    }
+    case 3:
+      return {place, place + length * side};
+    case 4:
+      return {place, place_on(t, random)};
+    case 5:
+      return {place, place + length * (place_on(t, random) - place)};
+    default:
+      return {place, place_on(t, random) + near * random.direction()};
+  }
+}
+
+/// The same, in some unit from 1e-6 to 1e6, sometimes 1e4 to 1e6 such units from the origin.
+inline HostilePair hostile_pair(Random& random) {
+  HostilePair pair;
+  pair.triangle = hostile_triangle(random);
+  pair.segment = hostile_segment(pair.triangle, random);
+  if (random.below(2) == 0) std::swap(pair.segment.from, pair.segment.to);
+  const double scale = std::pow(10.0, random.uniform(-6.0, 6.0));
+  const Vec3 offset = random.below(3) == 0
+                          ? Vec3(std::pow(10.0, random.uniform(4.0, 6.0)) * random.direction())
+                          : Vec3(Vec3::Zero());
+  for (Vec3* v : {&pair.triangle[0], &pair.triangle[1], &pair.triangle[2], &pair.segment.from,
+                  &pair.segment.to}) {
+    *v = scale * (*v + offset);
+  }
+  return pair;
+}
+
+}  // namespace keepout::oracle
