@@ -38,18 +38,6 @@ Vec3 unit(const Vec3& v) noexcept {
   return length > 0.0 ? Vec3(v / length) : Vec3::Zero();
 }
 
-int longest_edge(const Triangle& triangle) noexcept {
-  int longest = 0;
-  double longest2 = -1.0;
-  for (int e = 0; e < 3; ++e) {
-    const double length2 = (triangle[(e + 1) % 3] - triangle[e]).squaredNorm();
-    if (!(length2 > longest2)) continue;
-    longest = e;
-    longest2 = length2;
-  }
-  return longest;
-}
-
 /// Of all blends of a falling and a rising normal, the one that is level along the motion.
 Vec3 level_blend(const Vec3& falling, double fall, const Vec3& rising, double rise) noexcept {
   return unit(rise * falling - fall * rising);
@@ -68,17 +56,30 @@ Facet::Facet(const Triangle& triangle, const Vec3& tip, TriangleId source) noexc
 Vec3 Facet::normal_at(const Vec3& point, double& distance) const noexcept {
   const ClosestPoint closest = closest_point(corners_, point);
   distance = closest.distance;
-  if (is_vertex(closest.feature)) return unit(-closest.offset);
-  if (is_edge(closest.feature)) {
-    return across(unit(-closest.offset), number_of(closest.feature));
-  }
-  // The offset loses its direction close to the face, and the cross product its own on a needle: of
-  // the two normals the one that proves more.
-  const Vec3 offset_normal = across(unit(-closest.offset), longest_edge(corners_));
-  Vec3 own = unit_normal(corners_);
-  if (own.dot(closest.offset) > 0.0) own = -own;
+  const Vec3 away = unit(-closest.offset);
   const auto proven = [&](const Vec3& n) { return n.dot(point) - support(n); };
-  return proven(own) >= proven(offset_normal) ? own : offset_normal;
+  Vec3 best = is_edge(closest.feature) ? across(away, number_of(closest.feature)) : away;
+  double most = proven(best);
+  const auto consider = [&](const Vec3& n) {
+    const double proves = proven(n);
+    if (!(proves > most)) return;
+    best = n;
+    most = proves;
+  };
+  if (is_face(closest.feature)) consider(facing(closest));
+  // A direction is known only to the root of a rounding where two features are about equally near,
+  // and worse close to the facet and on a needle. Of all that it could be, what proves the most.
+  constexpr double tight = 1.0 - 1e-12;
+  if (most >= tight * distance) return best;
+  consider(facing(closest));
+  for (int edge = 0; edge < 3; ++edge) consider(across(away, edge));
+  return best;
+}
+
+/// The facet's own normal, on the side from which its closest point was found.
+Vec3 Facet::facing(const ClosestPoint& closest) const noexcept {
+  const Vec3 normal = unit_normal(corners_);
+  return normal.dot(closest.offset) <= 0.0 ? normal : Vec3(-normal);
 }
 
 /// A direction made perpendicular to an edge: along it, a rounding would tell over its whole

@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "keepout/geometry/closest_point.h"
 #include "keepout/geometry/half_space.h"
 #include "keepout/geometry/triangle.h"
 #include "keepout/geometry/vec3.h"
@@ -49,6 +50,7 @@ class Facet {
   bool before(const Facet& other) const noexcept;
 
  private:
+  Vec3 facing(const ClosestPoint& closest) const noexcept;
   Vec3 across(const Vec3& n, int edge) const noexcept;
 
   Triangle corners_;     // relative to the tip [length]
