@@ -165,9 +165,8 @@ TEST_F(Command, AClosedLoopFollowsItsGoalsUpToTheSurface) {
 TEST_F(Command, EveryIndexAndRuleCanBeChosen) {
   folder_.write("poses.txt", "3 4 51 1 -2 -3\n");
   for (const char* choice : {"--index brute_force", "--index pd_tree", "--activation all_faces",
-                             "--activation paper", "--activation certified",
-                             "--solver active_set", "--query sphere", "--refine 0",
-                             "--branches 16"}) {
+                             "--activation paper", "--activation certified", "--solver active_set",
+                             "--query sphere", "--refine 0", "--branches 16"}) {
     const Outcome outcome =
         run(std::string("replay cube.stl --poses poses.txt --out s.csv ") + choice);
     ASSERT_EQ(outcome.status, 0) << choice << outcome.output;

@@ -61,15 +61,18 @@ TEST(Step, AllocatesNothingWhateverItsPartsAndItsOutcome) {
                                                 .solver = std::string(solver.name),
                                                 .radius = 4.0,
                                                 .margin = 0.1,
-                                                .damping = 1e-6};
+                                                .damping = 1e-6,
+                                                .nodes = 8};
         MotionConstraint constraint = make_motion_constraint(mesh, settings);
         MotionConstraintSettings ill_posed = settings;
         ill_posed.damping = 0.0;
         ill_posed.capacity.triangles = 1;
+        ill_posed.inside = Inside::taken_as_is;  // there is no room to look
         MotionConstraint small = make_motion_constraint(mesh, ill_posed);
         // Motions are halved until few enough triangles are in reach.
         MotionConstraintSettings narrow = settings;
-        narrow.capacity.triangles = 50;
+        narrow.capacity.triangles = 8;
+        narrow.inside = Inside::taken_as_is;
         MotionConstraint halving = make_motion_constraint(mesh, narrow);
         // Between two plates, closer to both than the margin allows.
         MotionConstraintSettings thick = settings;
@@ -80,6 +83,7 @@ TEST(Step, AllocatesNothingWhateverItsPartsAndItsOutcome) {
         const Vec3 on_the_tunnel = tunnel->vertex(0);
         std::vector<Status> seen;
         seen.reserve(16 * tips.size());
+        std::size_t planes = 0;
         const std::size_t before = allocations();
         for (const Vec3& tip : tips) {
           StageTimes times;
@@ -100,8 +104,10 @@ TEST(Step, AllocatesNothingWhateverItsPartsAndItsOutcome) {
           take(wide, {.tip = in_the_gap, .desired = 0.1 * desired});
           take(wide, {.tip = 2.0 * tip, .desired = 0.1 * desired, .jacobian = jacobian});
           take(open, {.tip = on_the_tunnel, .desired = desired});
+          planes += constraint.free_polytope(tip, 2.0).planes.size();
         }
         EXPECT_EQ(allocations(), before);
+        EXPECT_GT(planes, 0u);
         const std::set<Status> outcomes(seen.begin(), seen.end());
         for (const Status status : outcomes_of(rule.name, index.name)) {
           EXPECT_TRUE(outcomes.contains(status)) << name(status);

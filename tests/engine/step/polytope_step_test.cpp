@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+// The free polytope as MotionConstraint hands it out.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "keepout/factory/make_motion_constraint.h"
+#include "keepout/fixtures/poses.h"
+#include "keepout/fixtures/shapes.h"
+#include "keepout/oracle/safety_oracle.h"
+
+namespace keepout {
+namespace {
+
+bool allows(const Polytope& polytope, const Vec3& motion) {
+  for (const HalfSpace& plane : polytope.planes) {
+    if (plane.normal.dot(motion) < plane.offset) return false;
+  }
+  return true;
+}
+
+TEST(MotionConstraintPolytope, EveryMotionWithinItKeepsTheMargin) {
+  const auto mesh = std::make_shared<const Mesh>(make_shape("cortex"));
+  auto guard = make_motion_constraint(mesh, {.tool_radius = 0.2, .margin = 0.1});
+  oracle::SafetyOracle oracle(mesh);
+  Random random(2);
+  std::size_t free = 0;
+  for (const Vec3& tip : surface_points(*mesh, 100, 0.5, random)) {
+    const Polytope polytope = guard.free_polytope(tip, 2.0);
+    ASSERT_TRUE(polytope.ok()) << polytope.reason();
+    ASSERT_TRUE(allows(polytope, Vec3::Zero()));
+    const double kept = std::min(0.3, oracle.distance(tip));
+    for (int i = 0; i < 50; ++i) {
+      const Vec3 motion = 2.0 * std::cbrt(random.uniform()) * random.direction();
+      if (!allows(polytope, motion)) continue;
+      ++free;
+      ASSERT_FALSE(oracle.check(tip, tip + motion, kept - 1e-10).below);
+    }
+  }
+  EXPECT_GT(free, 500u);
+}
+
+TEST(MotionConstraintPolytope, FarFromTheMeshIsTheWholeBall) {
+  const auto mesh = std::make_shared<const Mesh>(make_shape("cube"));
+  auto guard = make_motion_constraint(mesh, {});
+  const Polytope polytope = guard.free_polytope(Vec3(0, 0, 70), 2.0);
+  EXPECT_TRUE(polytope.ok());
+  EXPECT_TRUE(polytope.planes.empty());
+}
+
+TEST(MotionConstraintPolytope, FailuresAllowStandingStillOnly) {
+  const auto mesh = std::make_shared<const Mesh>(make_shape("sphere"));
+  auto guard = make_motion_constraint(mesh, {});
+  auto small = make_motion_constraint(mesh, {.capacity = {.triangles = 10}});
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const auto expect_still = [](const Polytope& polytope, PolytopeStatus status) {
+    EXPECT_EQ(polytope.status, status);
+    EXPECT_FALSE(polytope.ok());
+    EXPECT_FALSE(polytope.reason().empty());
+    EXPECT_TRUE(allows(polytope, Vec3::Zero()));
+    EXPECT_FALSE(allows(polytope, Vec3(1e-9, 0, 0)));
+    EXPECT_FALSE(allows(polytope, Vec3(0, -1e-9, 0)));
+  };
+  expect_still(guard.free_polytope(Vec3(nan, 0, 0), 1.0), PolytopeStatus::invalid_input);
+  expect_still(guard.free_polytope(Vec3(0, 0, 60), nan), PolytopeStatus::invalid_input);
+  expect_still(guard.free_polytope(Vec3(0, 0, 60), -1.0), PolytopeStatus::invalid_input);
+  expect_still(guard.free_polytope(mesh->vertex(0), 1.0), PolytopeStatus::touching);
+  expect_still(small.free_polytope(Vec3(0, 0, 55), 20.0), PolytopeStatus::over_capacity);
+}
+
+}  // namespace
+}  // namespace keepout
