@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <exception>
@@ -12,7 +10,6 @@
 #include <map>
 #include <new>
 #include <string>
-#include <system_error>
 #include <vector>
 
 #include "inspect.h"
@@ -20,6 +17,7 @@
 #include "keepout/adapters/index_registry.h"
 #include "keepout/error.h"
 #include "keepout/solvers/registry.h"
+#include "number_checks.h"
 #include "replay.h"
 #include "simulate.h"
 #include "verify/verify.h"
@@ -47,41 +45,6 @@ std::string listing(const std::string& title, const Table& table) {
 }
 
 constexpr std::uint64_t largest_seed = (std::uint64_t{1} << 63) - 1;
-
-enum class Zero { allowed, refused };
-
-/// A length in millimetres. CLI11's own checks let 'nan' pass and tell their range in 300 digits.
-/// The limit keeps squares of lengths, and sums of them, far from the end of a double's range.
-CLI::Validator length(Zero zero) {
-  const auto check = [zero](const std::string& text) -> std::string {
-    char* end = nullptr;
-    const double value = std::strtod(text.c_str(), &end);
-    const bool is_number = !text.empty() && *end == '\0';
-    const bool in_range = (zero == Zero::allowed ? value >= 0.0 : value > 0.0) && value <= 1e30;
-    if (is_number && in_range) return {};
-    return "expected a number " +
-           std::string(zero == Zero::allowed ? "from 0 to 1e30" : "above 0 and at most 1e30") +
-           ", not '" + text + "'";
-  };
-  return {check, zero == Zero::allowed ? "NONNEGATIVE" : "POSITIVE"};
-}
-
-/// A whole number in decimal digits. For transform(), which hands on what was read: CLI11 alone
-/// would take '-1' for 2^64 - 1, too many digits for the largest number, and '010' for 8.
-CLI::Validator whole_number(std::uint64_t low, std::uint64_t high) {
-  const auto check = [low, high](std::string& text) -> std::string {
-    std::uint64_t value = 0;
-    const char* const last = text.data() + text.size();
-    const auto [end, error] = std::from_chars(text.data(), last, value);
-    if (error != std::errc{} || end != last || value < low || value > high) {
-      return "expected a whole number from " + std::to_string(low) + " to " + std::to_string(high) +
-             ", not '" + text + "'";
-    }
-    text = std::to_string(value);
-    return {};
-  };
-  return {check, ""};
-}
 
 const std::map<std::string, Query> queries{{"motion", Query::motion}, {"sphere", Query::sphere}};
 
@@ -216,22 +179,6 @@ void add_simulate(CLI::App& app, SimulateOptions& options) {
       ->type_name("NUMBER")
       ->transform(whole_number(10, 1'000'000))
       ->capture_default_str();
-}
-
-/// A count such as 20000 or 1e8. For transform(), which hands on its digits.
-CLI::Validator large_count() {
-  const auto check = [](std::string& text) -> std::string {
-    double value = 0.0;
-    const char* const last = text.data() + text.size();
-    const auto [end, error] = std::from_chars(text.data(), last, value);
-    if (error != std::errc{} || end != last || !(value >= 1.0 && value <= 1e12) ||
-        value != std::floor(value)) {
-      return "expected a whole number from 1 to 1e12, not '" + text + "'";
-    }
-    text = std::to_string(static_cast<std::uint64_t>(value));
-    return {};
-  };
-  return {check, ""};
 }
 
 void add_verify(CLI::App& app, VerifyOptions& options) {

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 
-#include "keepout/step/placement.h"
-
 namespace keepout::app {
 namespace {
 
@@ -29,30 +27,13 @@ CertifiedGuard::CertifiedGuard(const Scene& scene)
 
 void CertifiedGuard::begin(const StepOptions& options, Inside inside) {
   options_ = options;
-  has_sides_ = inside == Inside::led_out && scene_->has_sides();
-  free_tip_ = Motion::unset;
+  const bool asks = inside == Inside::led_out && scene_->has_sides();
+  sides_ = asks ? SideWatch::of_watertight() : SideWatch();
 }
 
 Step CertifiedGuard::step(const Motion& motion) noexcept {
-  const Mesh& mesh = *scene_->mesh();
-  const SpatialIndex& index = scene_->index();
-  const bool is_placed = motion.jacobian || motion.rows || motion.tip == free_tip_;
-  if (has_sides_ && !is_placed && is_ok(check(motion, options_))) {
-    const std::optional<Placement> placement = place(mesh, index, motion.tip, work_.candidates);
-    Step out;
-    if (!placement) {
-      out.status = Status::over_capacity;
-      return out;
-    }
-    if (placement->side == Placement::Side::forbidden) {
-      out.status = Status::recovering;
-      out.motion = lead_out(*placement, options_.recovery);
-      return out;
-    }
-  }
-  const Step result = keepout::step(mesh, index, rule_, solver_, motion, options_, work_);
-  free_tip_ = motion.tip + result.motion;
-  return result;
+  return keepout::step(sides_, *scene_->mesh(), scene_->index(), rule_, solver_, motion, options_,
+                       work_);
 }
 
 std::unique_ptr<Guard> make_certified_guard(const Scene& scene) {

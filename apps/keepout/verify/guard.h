@@ -7,6 +7,7 @@
 #include "keepout/activation/certified.h"
 #include "keepout/solvers/active_set.h"
 #include "keepout/step/motion_constraint.h"
+#include "keepout/step/side_watch.h"
 #include "scene.h"
 
 namespace keepout::app {
@@ -39,8 +40,7 @@ class CertifiedGuard final : public Guard {
   ActiveSet solver_;
   Workspace work_;
   StepOptions options_;
-  bool has_sides_ = false;
-  Vec3 free_tip_ = Motion::unset;
+  SideWatch sides_;
 };
 
 std::unique_ptr<Guard> make_certified_guard(const Scene& scene);

@@ -112,8 +112,7 @@ Setup draw_setup(Scene& scene, Random& random) {
 
   setup.tip = place_tip(scene, setup, random);
   limit_reach(scene, setup);
-  // A tip that is led out from the forbidden side goes as far, whatever the motion sphere.
-  setup.options.recovery = std::min(setup.options.recovery, setup.options.radius);
+  setup.options.deepest = scene.mesh()->bounds().size().norm();
   return setup;
 }
 

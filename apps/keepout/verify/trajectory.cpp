@@ -36,8 +36,9 @@ struct Attempt {
 
 /// Nobody promised these a motion: the tip was put down on the surface, or the joints cannot.
 bool is_expected(Status failure, const Setup& setup) noexcept {
-  return failure == Status::touching ||
-         (setup.joints > 0 && (failure == Status::ill_posed || failure == Status::infeasible));
+  const bool of_joints =
+      failure == Status::ill_posed || failure == Status::infeasible || failure == Status::inside;
+  return failure == Status::touching || (setup.joints > 0 && of_joints);
 }
 
 }  // namespace

@@ -26,6 +26,9 @@ constexpr double contact_slack = 1.0 / 8.0;  // of first_contact: small beside d
 // A plane that an accepted motion is farther from, as a share of it, has not shaped it.
 constexpr double idle_slack = 1e-6;
 
+// How often a cycle may ask for a proof, all told: some tens of milliseconds.
+constexpr std::size_t most_proofs = std::size_t{1} << 18;
+
 // A cycle's planes are few; under the tip of a cone of 400 faces some hundred; more are a loop that
 // does not end.
 constexpr std::size_t most_planes = 192;
@@ -81,6 +84,7 @@ Opening CertifiedRule::start(const Surroundings& around, HalfSpaceBuffer&) noexc
   if (!(around.margin > needed_margin * tau)) return {Stance::no_margin};
 
   near_.clear();
+  proofs_ = 0;
   const Facet* nearest = nullptr;
   for (const Hit& hit : around.hits) {
     near_.push({Facet(mesh_->triangle(hit.triangle), around.tip, hit.triangle), 0.0, 0.0, 0.0});
@@ -95,21 +99,21 @@ Opening CertifiedRule::start(const Surroundings& around, HalfSpaceBuffer&) noexc
 
   const double lost = around.margin - lost_below * tau;
   if (nearest->distance() >= lost) {
-    for (Near& near : near_) {
-      const double distance = near.facet.distance();
-      near.target = around.margin;
-      near.demand = std::min(around.margin - demand_below * tau, distance);
-      near.floor = std::min(around.margin - floor_below * tau, distance);
+    for (Near& one : near_) {
+      const double distance = one.facet.distance();
+      one.target = around.margin;
+      one.demand = std::min(around.margin - demand_below * tau, distance);
+      one.floor = std::min(around.margin - floor_below * tau, distance);
     }
     return {Stance::clear};
   }
   if (nearest->distance() <= touching_within * tau) return {Stance::touching};
   // Too close already: the mesh shall not come closer, and what comes as close is led off as well.
   const double lift = std::min(around.recovery, around.margin - nearest->distance());
-  for (Near& near : near_) {
-    near.target = nearest->distance() + lift;
-    near.demand = nearest->distance();
-    near.floor = nearest->distance();
+  for (Near& one : near_) {
+    one.target = nearest->distance() + lift;
+    one.demand = nearest->distance();
+    one.floor = nearest->distance();
   }
   return {Stance::too_close, way_out(around, nearest->normal(), lift)};
 }
@@ -120,22 +124,26 @@ Judgement CertifiedRule::judge(const Surroundings& around, const Vec3& trial,
   const double tau = tolerance(around);
   Contact first{2.0, {Vec3::Zero(), 0.0, no_triangle}};
   const Near* found = nullptr;
-  for (const Near& near : near_) {
-    const bool answered = has_plane(near.facet.source(), planes.view());
-    const double level = answered ? near.floor : near.demand;
-    if (keeps_clear(near.facet, trial, level, proof_slack * tau)) continue;
+  const double length = trial.norm();
+  for (const Near& one : near_) {
+    if (one.facet.distance() - length > one.demand) continue;
+    ++proofs_;
+    const bool answered = has_plane(one.facet.source(), planes.view());
+    const double level = answered ? one.floor : one.demand;
+    if (keeps_clear(one.facet, trial, level, proof_slack * tau)) continue;
     const Contact contact =
-        first_contact(near.facet, trial, near.target, contact_slack * tau, first.time);
+        first_contact(one.facet, trial, one.target, contact_slack * tau, first.time);
     const bool sooner =
         contact.time < first.time ||
-        (contact.time == first.time && found != nullptr && near.facet.before(found->facet));
+        (contact.time == first.time && found != nullptr && one.facet.before(found->facet));
     if (!sooner) continue;
     first = contact;
-    found = &near;
+    found = &one;
   }
   if (found == nullptr) return {Verdict::accepted};
   const double free_share = std::clamp(first.time, 0.0, 1.0);
-  if (has_plane(first.plane.source, planes.view()) || planes.size() >= most_planes) {
+  if (has_plane(first.plane.source, planes.view()) || planes.size() >= most_planes ||
+      proofs_ > most_proofs) {
     return {Verdict::blocked, free_share};
   }
   planes.push(answer(around, *found, trial, first.plane));

@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-
 #include "keepout/geometry/closest_point.h"
 
 #include <cmath>

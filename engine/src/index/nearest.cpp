@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-
 #include "keepout/index/nearest.h"
 
 #include <algorithm>
@@ -38,7 +37,7 @@ std::optional<Hit> find_nearest(const Mesh& mesh, const SpatialIndex& index, con
   double empty = 0.0;  // nothing is within
   double crowded = std::numeric_limits<double>::infinity();
   // Doubling ends within some tens of rounds, and so does halving, at neighbouring numbers.
-  constexpr int most_rounds = 200;
+  constexpr int most_rounds = 80;
   for (int round = 0; round < most_rounds; ++round) {
     candidates.clear();
     index.collect({point, radius}, candidates);

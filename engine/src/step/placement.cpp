@@ -4,7 +4,9 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "../geometry/corner_order.h"
@@ -23,7 +25,7 @@ double angle_at(const Triangle& triangle, Feature feature) noexcept {
   return std::atan2(one.cross(other).norm(), one.dot(other));
 }
 
-/// By the corners, each triangle's in lexicographic order: so sums do not depend on numbering.
+/// By the corners, each triangle's in lexicographic order: so nothing depends on numbering.
 bool before(const Triangle& a, const Triangle& b) noexcept {
   const CornerOrder order_a = corner_order(a);
   const CornerOrder order_b = corner_order(b);
@@ -37,79 +39,136 @@ bool before(const Triangle& a, const Triangle& b) noexcept {
   return false;
 }
 
-/// Of triangles that are all but equally near, the one that tells the side most surely: a face
-/// tells it alone, an edge with its neighbour, a vertex with all around it. Where the tip is right
-/// over the rim of a face, rounding may make the edge nearer by a last digit, and the other face at
-/// it, alone, tells the wrong side.
-struct Witness {
-  Triangle triangle;
-  ClosestPoint closest;
+/// Too thin to have a side: its normal is made of rounding.
+bool is_sliver(const Triangle& t) noexcept {
+  const double longest2 = std::max(
+      {(t[1] - t[0]).squaredNorm(), (t[2] - t[1]).squaredNorm(), (t[0] - t[2]).squaredNorm()});
+  return !((t[1] - t[0]).cross(t[2] - t[0]).norm() > 1e-9 * longest2);
+}
 
-  int rank() const noexcept {
-    return is_face(closest.feature) ? 0 : is_edge(closest.feature) ? 1 : 2;
-  }
-  bool is_surer_than(const Witness& other) const noexcept {
-    if (rank() != other.rank()) return rank() < other.rank();
-    return before(triangle, other.triangle);
-  }
+/// How far along the way from a point a triangle is met, in ways; infinite if it is not. A way
+/// through an edge meets both triangles there.
+double met_at(const Triangle& triangle, const Vec3& from, const Vec3& way) noexcept {
+  constexpr double never = std::numeric_limits<double>::infinity();
+  constexpr double rim = -1e-14;  // barycentric: so that no way slips through between neighbours
+  const Vec3 one = triangle[1] - triangle[0];
+  const Vec3 other = triangle[2] - triangle[0];
+  const Vec3 across = way.cross(other);
+  const double facing = one.dot(across);
+  const Vec3 start = from - triangle[0];
+  const double u = start.dot(across) / facing;
+  const Vec3 turned = start.cross(one);
+  const double v = way.dot(turned) / facing;
+  const double t = other.dot(turned) / facing;
+  const bool is_met = u >= rim && v >= rim && u + v <= 1.0 - rim && t >= 0.0;  // false for NaN
+  return is_met ? t : never;
+}
+
+/// The surface about the point nearest to a tip.
+struct Nearest {
+  double distance;
+  Vec3 offset;     // from the tip to the nearest point
+  Vec3 normal;     // unit: of all that meets there, by its angles; zero if they cancel
+  Triangle faced;  // of all that meets there, what faces the tip the most
 };
+
+std::optional<Nearest> look_around(const Mesh& mesh, const SpatialIndex& index, const Vec3& tip,
+                                   double rounding, TriangleBuffer& candidates) noexcept {
+  const std::optional<Hit> hit = find_nearest(mesh, index, tip, 0.0, candidates);
+  if (!hit) return std::nullopt;
+  const double near = hit->closest.distance * (1.0 + 1e-13) + rounding;
+  const auto last = std::partition(candidates.begin(), candidates.end(), [&](TriangleId t) {
+    return closest_point(mesh.triangle(t), tip).distance <= near;
+  });
+  std::sort(candidates.begin(), last,
+            [&](TriangleId a, TriangleId b) { return before(mesh.triangle(a), mesh.triangle(b)); });
+  const Vec3 none = Vec3::Zero();
+  Nearest nearest{hit->closest.distance, hit->closest.offset, none, {none, none, none}};
+  double most = -1.0;
+  for (const TriangleId* t = candidates.begin(); t != last; ++t) {
+    const Triangle triangle = mesh.triangle(*t);
+    const ClosestPoint closest = closest_point(triangle, tip);
+    const Vec3 normal = unit_normal(triangle);
+    const double facing = std::abs(normal.dot(closest.offset));
+    nearest.normal += angle_at(triangle, closest.feature) * normal;
+    if (!(facing > most) || is_sliver(triangle)) continue;
+    most = facing;
+    nearest.offset = closest.offset;
+    nearest.faced = triangle;
+  }
+  const double length = nearest.normal.norm();
+  if (length > 0.0) nearest.normal /= length;
+  return nearest;
+}
 
 }  // namespace
 
 std::optional<Placement> place(const Mesh& mesh, const SpatialIndex& index, const Vec3& tip,
                                TriangleBuffer& candidates) noexcept {
-  const std::optional<Hit> nearest = find_nearest(mesh, index, tip, 0.0, candidates);
+  const double size = (mesh.bounds().high - mesh.bounds().low).norm() + tip.lpNorm<1>();
+  const double rounding = 1e-15 * size;
+  const auto nearest = look_around(mesh, index, tip, rounding, candidates);
   if (!nearest) return std::nullopt;
-  const double rounding = 1e-15 * (nearest->closest.offset + tip).lpNorm<1>();
-  const double near = nearest->closest.distance * (1.0 + 1e-13) + rounding;
-  const auto witness = [&](TriangleId t) {
+  Placement placement{Placement::Side::forbidden, 0.0, nearest->normal, nearest->normal};
+  if (nearest->distance <= 1e3 * rounding) return placement;
+  placement.distance = nearest->distance;
+
+  // Nothing is nearer than the nearest point, so what is met is met close to it.
+  const Triangle& faced = nearest->faced;
+  if (faced[0] == faced[1]) return std::nullopt;  // slivers alone
+  const Vec3 middle = (faced[0] + faced[1] + faced[2]) / 3.0 - tip;
+  const Vec3 inwards = middle - nearest->offset;
+  const double share = std::min(1e-3, 0.5 * nearest->distance / inwards.norm());
+  const Vec3 way = nearest->offset + share * inwards;
+  candidates.clear();
+  index.collect({tip, way.norm() * (1.0 + 1e-9)}, candidates);
+  if (candidates.overflowed()) return std::nullopt;
+  double first = std::numeric_limits<double>::infinity();
+  for (const TriangleId t : candidates) {
     const Triangle triangle = mesh.triangle(t);
-    return Witness{triangle, closest_point(triangle, tip)};
-  };
-  const auto last = std::partition(candidates.begin(), candidates.end(), [&](TriangleId t) {
-    return witness(t).closest.distance <= near;
-  });
-  Witness surest = witness(nearest->triangle);
-  for (const TriangleId* t = candidates.begin(); t != last; ++t) {
-    const Witness other = witness(*t);
-    if (other.is_surer_than(surest)) surest = other;
+    if (!is_sliver(triangle)) first = std::min(first, met_at(triangle, tip, way));
   }
-
-  // Neighbours have the same closest point to the last bit, so it tells who meets there.
-  const auto [triangle, closest] = surest;
-  Vec3 normal = unit_normal(triangle);
-  if (!is_face(closest.feature)) {
-    std::sort(candidates.begin(), last, [&](TriangleId a, TriangleId b) {
-      return before(mesh.triangle(a), mesh.triangle(b));
-    });
-    normal.setZero();
-    for (const TriangleId* t = candidates.begin(); t != last; ++t) {
-      const Witness one = witness(*t);
-      if (one.closest.offset != closest.offset) continue;
-      normal += angle_at(one.triangle, one.closest.feature) * unit_normal(one.triangle);
-    }
+  double facing =
+      0.0;  // > 0: the back of what is met first; at an edge, of what faces the tip more
+  for (const TriangleId t : candidates) {
+    const Triangle triangle = mesh.triangle(t);
+    if (is_sliver(triangle) || !(met_at(triangle, tip, way) <= first + 1e-12)) continue;
+    const double side = unit_normal(triangle).dot(way);
+    if (std::abs(side) > std::abs(facing)) facing = side;
   }
-
-  const double length = normal.norm();
-  if (length > 0.0) normal /= length;
-  Placement placement{Placement::Side::free, closest.distance, normal, normal};
-  // On the surface itself only the normal tells where to go.
-  if (closest.distance <= 1e3 * rounding) {
-    placement.side = Placement::Side::forbidden;
-    return placement;
-  }
-  placement.way_out = -closest.offset / closest.distance;
-  if (normal.dot(closest.offset) <= 0.0) return placement;
-  placement.side = Placement::Side::forbidden;
-  placement.way_out = closest.offset / closest.distance;
+  if (facing == 0.0) facing = unit_normal(faced).dot(way);
+  placement.side = facing > 0.0 ? Placement::Side::forbidden : Placement::Side::free;
+  placement.way_out = (facing > 0.0 ? 1.0 : -1.0) * nearest->offset / nearest->distance;
   return placement;
 }
 
-Vec3 lead_out(const Placement& placement, double recovery) noexcept {
-  // Well off the surface. No farther beyond it than it was deep, as another wall may be there.
-  const double least = 1e-4 * recovery;
-  if (2.0 * placement.distance < least) return least * placement.normal;
-  return std::min(recovery, 2.0 * placement.distance) * placement.way_out;
+Vec3 lead_out(const Mesh& mesh, const SpatialIndex& index, const Vec3& tip,
+              const Placement& placement, double longest, double off,
+              TriangleBuffer& candidates) noexcept {
+  // What cannot get through in one go stops short of the surface.
+  if (placement.distance + off > longest) {
+    const double rest = std::max(placement.distance - off, 0.5 * placement.distance);
+    return std::min(longest, rest) * placement.way_out;
+  }
+  // Close to the surface no farther than needed, as another wall may stand there.
+  const double through = placement.distance + off;
+  Vec3 best = placement.distance * placement.way_out;  // on the surface, and on from there
+  double most = 0.0;
+  const auto consider = [&](const Vec3& motion) {
+    if (most >= 0.5 * off) return;
+    const auto there = place(mesh, index, tip + motion, candidates);
+    if (!there || there->side != Placement::Side::free || there->distance <= most) return;
+    most = there->distance;
+    best = motion;
+  };
+  consider(through * placement.way_out);
+  consider(through * placement.normal);
+  // At a saddle neither need lead out.
+  for (int i = 0; i < 27; ++i) {
+    const Vec3 towards(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
+    if (!towards.isZero()) consider(through * towards.normalized());
+  }
+  return best;
 }
 
 }  // namespace keepout

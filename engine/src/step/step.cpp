@@ -8,6 +8,10 @@ namespace {
 // Squares and cubes of lengths must stay finite; the mesh keeps to the same limit.
 constexpr double largest_number = 1e30;
 
+// So that the work of a step stays bounded.
+constexpr int most_refinements = 1000;
+constexpr int most_nodes = 1 << 16;
+
 template <class Numbers>
 bool are_usable(const Numbers& numbers) noexcept {
   return (numbers.array().abs() <= largest_number).all();  // false for NaN
@@ -27,10 +31,11 @@ bool are_usable(const ExtraRows& rows, Eigen::Index variables) noexcept {
 }  // namespace
 
 Status check(const Motion& motion, const StepOptions& options) noexcept {
-  const bool usable = are_usable(motion.tip) && are_usable(motion.desired) &&
-                      options.radius > 0.0 && is_usable(options.radius) &&
-                      is_usable(options.margin) && is_usable(options.damping) &&
-                      is_usable(options.recovery) && options.refinements >= 0 && options.nodes >= 0;
+  const bool usable =
+      are_usable(motion.tip) && are_usable(motion.desired) && options.radius > 0.0 &&
+      is_usable(options.radius) && is_usable(options.margin) && is_usable(options.damping) &&
+      is_usable(options.recovery) && is_usable(options.deepest) && options.refinements >= 0 &&
+      options.refinements <= most_refinements && options.nodes >= 0 && options.nodes <= most_nodes;
   if (!usable) return Status::invalid_input;
   if (const auto& j = motion.jacobian) {
     if (j->joints() < 1 || j->data() == nullptr || !are_usable(j->matrix())) {

@@ -16,6 +16,7 @@
 #include "keepout/fixtures/poses.h"
 #include "keepout/fixtures/shapes.h"
 #include "keepout/index/pd_tree.h"
+#include "keepout/mesh/watertight.h"
 #include "keepout/oracle/safety_oracle.h"
 #include "small_surfaces.h"
 
@@ -37,6 +38,9 @@ class Placing {
   double distance(const Vec3& tip) const { return oracle_.distance(tip); }
   std::optional<Placement> operator()(const Vec3& tip) {
     return place(*mesh_, tree_, tip, candidates_);
+  }
+  Vec3 way_out(const Vec3& tip, double longest, double off) {
+    return lead_out(*mesh_, tree_, tip, (*this)(tip).value(), longest, off, candidates_);
   }
 
  private:
@@ -120,13 +124,12 @@ TEST_P(PlacementOnSolid, LeadingOutNeverLeadsDeeper) {
     if (placement->side == Side::free || placement->distance < 1e-9) continue;
     ++forbidden;
     for (const double recovery : {1e-3, 0.05, 1.0, 30.0}) {
-      const Vec3 way = lead_out(*placement, recovery);
+      const Vec3 way = placing.way_out(tip, recovery, 1e-4 * recovery);
       ASSERT_LE(way.norm(), recovery * (1.0 + 1e-15));
       const auto after = placing(tip + way);
       ASSERT_TRUE(after.has_value());
       if (after->side == Side::free) continue;
-      // All but on the surface the way is a hundredth of a recovery: that may be another wall.
-      ASSERT_LE(after->distance, std::max(placement->distance * (1.0 + 1e-9), 1e-2 * recovery));
+      ASSERT_LE(after->distance, placement->distance * (1.0 + 1e-9) + 1e-12);
       if (way.norm() <= placement->distance) {
         ASSERT_LE(after->distance, placement->distance - way.norm() + 1e-9);
       }
@@ -222,6 +225,7 @@ TEST(Placement, ASaddleVertexIsNoTrouble) {
   for (int i = 0; i < 5'000; ++i) {
     const Vec3 tip = std::pow(10.0, random.uniform(-8.0, 0.5)) * random.direction();
     const auto placement = placing(tip);
+    if (placement->distance == 0.0) continue;  // on the surface to within rounding
     const bool is_inside = placing.inside(tip);
     ASSERT_EQ(placement->side == Side::forbidden, is_inside) << tip.transpose();
     if (is_inside) ++inside;
@@ -249,18 +253,95 @@ TEST(Placement, MoreTrianglesThanThereIsRoomForIsNoPlacement) {
   EXPECT_FALSE(place(*mesh, tree, Vec3(0, 0, 51), none).has_value());
 }
 
-TEST(LeadOut, GoesNoFartherBeyondTheSurfaceThanItWasDeep) {
-  const Placement deep{Side::forbidden, 3.0, Vec3::UnitZ(), Vec3::UnitZ()};
-  EXPECT_EQ(lead_out(deep, 0.5), Vec3(0, 0, 0.5));
-  EXPECT_EQ(lead_out(deep, 10.0), Vec3(0, 0, 6.0));
-  EXPECT_EQ(lead_out(deep, 0.0), Vec3::Zero());
+TEST(LeadOut, GoesJustBeyondTheSurface) {
+  Placing cube(make_shape("cube"));  // whose faces are at +-50
+  EXPECT_LT((cube.way_out({3, 4, 47}, 0.5, 1e-4) - Vec3(0, 0, 0.5)).norm(), 1e-12);
+  EXPECT_LT((cube.way_out({3, 4, 47}, 10.0, 1e-4) - Vec3(0, 0, 3.0001)).norm(), 1e-12);
 }
 
-TEST(LeadOut, LeavesTheSurfaceItself) {
-  const Placement on{Side::forbidden, 0.0, Vec3::UnitX(), Vec3::UnitX()};
-  const Vec3 way = lead_out(on, 0.5);
-  EXPECT_GT(way.x(), 0.0);
-  EXPECT_LE(way.x(), 0.5);
+TEST(LeadOut, LeavesTheSurfaceItselfToTheFreeSide) {
+  for (const char* shape : {"cube", "gear", "cortex", "star_bumps"}) {
+    Placing placing(make_shape(shape));
+    for (VertexId v = 0; v < placing.mesh().vertex_count(); v += 37) {  // saddles among them
+      const Vec3 tip = placing.mesh().vertex(v);
+      const Vec3 way = placing.way_out(tip, 0.5, 1e-4);
+      ASSERT_GT(way.norm(), 0.0) << shape << " vertex " << v;
+      ASSERT_LE(way.norm(), 1.001e-4);
+      ASSERT_FALSE(placing.inside(tip + way)) << shape << " vertex " << v;
+    }
+  }
+}
+
+TEST(LeadOut, DoesNotLeadIntoANeighborThatStandsCloseBy) {
+  // Two boxes, a hundredth apart; a tip two hundredths deep in the one.
+  Surface boxes = make_cube(1);
+  for (Vec3& v : boxes.vertices) v = v / 50.0 - Vec3(1, 0, 0);  // x from -2 to 0
+  const Surface one = boxes;
+  const auto count = static_cast<VertexId>(one.vertices.size());
+  for (const Vec3& v : one.vertices) boxes.vertices.push_back(v + Vec3(2.01, 0, 0));
+  for (const Corners& c : one.triangles) {
+    boxes.triangles.push_back({c[0] + count, c[1] + count, c[2] + count});
+  }
+  Placing placing(boxes);
+  Vec3 tip(-0.02, 0.1, 0.2);
+  for (int cycle = 0; cycle < 20 && placing.inside(tip); ++cycle) {
+    const double depth = placing.distance(tip);
+    tip += placing.way_out(tip, 0.005, 1e-4);
+    ASSERT_TRUE(!placing.inside(tip) || placing.distance(tip) < depth);
+  }
+  EXPECT_NEAR(tip.x(), 1e-4, 1e-9);
+}
+
+TEST(Placement, ASliverAtASharpRidgeDoesNotConfuse) {
+  // A wedge whose ridge has a vertex more on the one side than on the other; a triangle without a
+  // width closes the seam.
+  for (const double half_angle : {0.1, 0.3, 0.8, 1.2}) {
+    const double w = std::sin(half_angle), h = std::cos(half_angle);
+    Surface wedge{{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0.3, 0, 0), Vec3(0, -w, -h), Vec3(1, -w, -h),
+                   Vec3(0, w, -h), Vec3(1, w, -h)},
+                  {{0, 2, 1},  // the sliver
+                   {0, 3, 2},
+                   {2, 3, 4},
+                   {2, 4, 1},  // one side, with the vertex more
+                   {0, 1, 5},
+                   {1, 6, 5},  // the other
+                   {0, 5, 3},
+                   {1, 4, 6},  // the ends
+                   {3, 5, 6},
+                   {3, 6, 4}}};  // the bottom
+    wedge = rotated(wedge, 0.7);
+    Placing placing(wedge);
+    ASSERT_TRUE(is_watertight(placing.mesh()));
+    Random random(2);
+    const Vec3 from = wedge.vertices[0], along = wedge.vertices[1] - from;
+    for (int i = 0; i < 5000; ++i) {
+      const Vec3 tip = from + random.uniform(0.02, 0.98) * along +
+                       std::pow(10.0, random.uniform(-4.0, -0.5)) * random.direction();
+      const auto placement = placing(tip);
+      ASSERT_TRUE(placement.has_value());
+      ASSERT_EQ(placement->side == Side::forbidden, placing.inside(tip)) << half_angle << " " << i;
+    }
+  }
+}
+
+TEST(Placement, OverAVertexBetweenLongAndShortTrianglesIsTheSideItIsOn) {
+  // The corner of a pinion: two needles and a flat face, of which rounding makes one edge nearer
+  // than the vertex. Tips in all directions that the vertex is nearest in.
+  Placing gear(make_shape("gear"));
+  Random random(6);
+  std::size_t free = 0, forbidden = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const Vec3 corner =
+        gear.mesh().vertex(static_cast<VertexId>(random.below(gear.mesh().vertex_count())));
+    const Vec3 tip = corner + std::pow(10.0, random.uniform(-3.0, 0.5)) * random.direction();
+    const auto placement = gear(tip);
+    ASSERT_TRUE(placement.has_value());
+    const bool inside = gear.inside(tip);
+    ASSERT_EQ(placement->side == Side::forbidden, inside) << tip.transpose();
+    ++(inside ? forbidden : free);
+  }
+  EXPECT_GT(free, 300u);
+  EXPECT_GT(forbidden, 300u);
 }
 
 }  // namespace

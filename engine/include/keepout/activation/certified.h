@@ -55,8 +55,9 @@ class CertifiedRule final : public Activation {
             HalfSpace& plane) const noexcept;
 
   std::shared_ptr<const Mesh> mesh_;
-  double longest_edge_;  // [length]
-  Buffer<Near> near_;    // sorted by source
+  double longest_edge_;     // [length]
+  Buffer<Near> near_;       // sorted by source
+  std::size_t proofs_ = 0;  // asked for in this cycle
 };
 
 }  // namespace keepout

@@ -27,9 +27,9 @@ class Facet {
   /// Its distance from the tip. [length]
   double distance() const noexcept { return distance_; }
 
-  /// Unit vector from the closest point to `point`: the facet's own normal, on the point's side,
-  /// where the closest point is inside; zero where the point is on the facet.
-  /// `distance` is set to the distance of the point. [length]
+  /// Unit vector from the closest point to `point`; of all that it could be within rounding, the
+  /// one that proves the largest distance. Zero where the point is on the facet. `distance` is set
+  /// to the distance of the point. [length]
   Vec3 normal_at(const Vec3& point, double& distance) const noexcept;
 
   /// normal_at the tip.

@@ -35,6 +35,7 @@ std::string_view name(PolytopeStatus status) noexcept;
 std::string_view reason(PolytopeStatus status) noexcept;
 
 /// Replaces planes by six that allow standing still and nothing else.
+inline constexpr std::size_t planes_to_hold_still = 6;
 void hold_still(HalfSpaceBuffer& planes) noexcept;
 
 /// The free space around the tip as one convex polytope, whatever the direction of the motion: for

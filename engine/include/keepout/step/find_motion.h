@@ -50,7 +50,7 @@ Settled solve(A& activation, S& solver, const Motion& motion, const StepOptions&
     if (solved != SolveStatus::optimal) return status_of(solved);
     const auto variables = static_cast<std::size_t>(work.problem->jacobian.cols());
     if (work.solution.u.size() != variables) return Status::unsolved;
-    answer = tip_motion(*work.problem, work.solution, around.rounding);
+    answer = tip_motion(*work.problem, work.solution, 1e-10 * options.radius);
     return answer ? Status::free : Status::ill_posed;
   };
   Status solved = attempt();
@@ -83,8 +83,14 @@ Settled find_motion(A& activation, S& solver, const Motion& motion, const StepOp
   // unsound one.
   constexpr int most_rounds = 256;
   for (int round = 0; round < most_rounds; ++round) {
-    trial = solve(activation, solver, motion, options, around, work);
-    if (!is_ok(trial.status)) return trial;
+    const Settled next = solve(activation, solver, motion, options, around, work);
+    if (!is_ok(next.status)) {
+      // Part of the last trial may be made all the same. With joints its increment is gone.
+      if (!(free_share > 0.0) || motion.jacobian) return next;
+      work.solution = {};
+      break;
+    }
+    trial = next;
     // Beyond the sphere nothing was looked at.
     if (trial.motion.norm() > around.longest) {
       work.planes.push(bound_of(trial.motion, around.longest));

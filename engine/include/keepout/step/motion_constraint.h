@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string_view>
 
@@ -12,11 +11,13 @@
 #include "keepout/activation/free_polytope.h"
 #include "keepout/index/spatial_index.h"
 #include "keepout/mesh/mesh.h"
+#include "keepout/step/side_watch.h"
 #include "keepout/step/step.h"
 
 namespace keepout {
 
 /// What becomes of a tip that starts on the forbidden side.
+/// For the certified rule.
 enum class Inside : std::uint8_t {
   led_out,     // straight through the nearest point of the surface, before it may do anything else
   taken_as_is  // not asked: the surface is kept from on whichever side the tip is
@@ -54,17 +55,13 @@ class MotionConstraint {
   /// The free space around a tip as one convex polytope, whatever the direction of the motion: for
   /// a caller's own QP, MPC or sampler. Every motion that stays within all planes and within
   /// `radius` keeps the margin; guarantee and failures: FreePolytope. The planes stay valid until
-  /// the next call; a failure allows standing still only.
+  /// the next call; a failure allows standing still only. Sides are not asked about: around a tip
+  /// inside it is the space inside.
   Polytope free_polytope(const Vec3& tip, double radius) noexcept;
 
   const Mesh& mesh() const noexcept { return *mesh_; }
 
  private:
-  template <StageObserver O>
-  Step step(const Motion& motion, O&& observer) noexcept;
-
-  std::optional<Step> lead_out_if_inside(const Motion& motion) noexcept;
-
   std::shared_ptr<const Mesh> mesh_;
   std::unique_ptr<SpatialIndex> index_;
   std::unique_ptr<Activation> activation_;
@@ -72,9 +69,8 @@ class MotionConstraint {
   StepOptions options_;
   Workspace work_;
   FreePolytope polytope_;
-  bool has_sides_;            // the tip's side is to be asked for, and the mesh can tell
-  Vec3 free_tip_;             // where the last step ended, on the free side; unset at first
-  double free_around_ = 0.0;  // how far around it all is free as well [length]
+  HalfSpaceBuffer polytope_planes_;
+  SideWatch sides_;
 };
 
 }  // namespace keepout

@@ -18,6 +18,7 @@ struct StepOptions {
   double margin = 0.0;   // distance to keep: tool radius and safety offset [length], >= 0
   double damping = 0.0;  // weight of |u|^2 beside the task, for Jacobians without full column rank
   double recovery = 0.05;  // how far a tip that is too close is led away in a cycle [length], >= 0
+  double deepest = 10.0;   // no tip is led out from deeper inside; it is told of instead [length]
   int refinements = 3;     // how often planes are turned towards a better motion, >= 0
   int nodes = 0;           // of a branch and bound for a better motion still; 0: none, >= 0
   Query query = Query::motion;

@@ -14,24 +14,27 @@ namespace keepout {
 struct Placement {
   enum class Side : std::uint8_t { free, forbidden };
   Side side;
-  double distance;  // from the surface [length]
+  double distance;  // from the surface; on it, to within rounding, 0 and forbidden [length]
   Vec3 way_out;     // unit vector: to the surface from the forbidden side, off it from the free one
   Vec3 normal;      // unit vector: of the surface at its nearest point
 };
 
-/// Places a tip by the winding of the nearest triangles: on a watertight mesh that does not cut
-/// through itself, the sum of their normals, weighted by their angles at the closest point, tells
-/// the side (Baerentzen, Aanaes, "Signed distance computation using the angle weighted
-/// pseudonormal", IEEE TVCG 11, 2005). The same whatever the order of triangles and corners.
-/// Nothing when more triangles are about as near than `candidates` has room for. Allocates nothing.
+/// Places a tip by the winding of a watertight mesh that does not cut through itself. It looks from
+/// the tip at a point close to the nearest one, inside of that triangle which faces the tip the
+/// most: the side of the first triangle met on the way is the tip's. So no sum of normals has to be
+/// trusted, and no decision of rounding about which of several triangles is the nearest.
 ///
-/// Precondition: is_watertight(mesh).
+/// The same whatever the order of triangles and corners. Nothing when more triangles are about as
+/// near than `candidates` has room for. Allocates nothing. Precondition: is_watertight(mesh).
 std::optional<Placement> place(const Mesh& mesh, const SpatialIndex& index, const Vec3& tip,
                                TriangleBuffer& candidates) noexcept;
 
-/// A cycle's way from the forbidden side out through the nearest point of the surface, straight.
-/// The depth falls by its length, or the tip ends within that length on the free side.
-/// `recovery`: the longest way of a cycle. [length]
-Vec3 lead_out(const Placement& placement, double recovery) noexcept;
+/// A cycle's way from the forbidden side out through the nearest point of the surface, straight: at
+/// most `longest`, and no farther than to `off` the surface. The depth falls by as much. From the
+/// surface itself, or closer to it than `off`: as short a way to a place that is found to be free,
+/// or none. [length]
+Vec3 lead_out(const Mesh& mesh, const SpatialIndex& index, const Vec3& tip,
+              const Placement& placement, double longest, double off,
+              TriangleBuffer& candidates) noexcept;
 
 }  // namespace keepout

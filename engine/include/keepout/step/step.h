@@ -80,14 +80,21 @@ Step step(const Mesh& mesh, const I& index, A& activation, S& solver, const Moti
   using Stance = Opening::Stance;
   Surroundings around = surroundings_of(motion, options, activation.reach());
   Opening opening = open(mesh, index, activation, around, work, observer);
-  // More triangles than there is room for: a shorter way has fewer.
+  // More triangles than there is room for: a shorter way has fewer. The sphere is not for less than
+  // the motion asked for.
   constexpr int most_halvings = 8;
   int halvings = 0;
-  while (opening.stance == Stance::over_capacity && around.reach == Reach::thales &&
-         halvings < most_halvings) {
-    around.aim *= 0.5;
-    ++halvings;
-    opening = open(mesh, index, activation, around, work, observer);
+  const auto open_shorter = [&] {
+    while (opening.stance == Stance::over_capacity && halvings < most_halvings) {
+      around.aim *= 0.5;
+      if (around.reach == Reach::sphere) around.longest *= 0.5;
+      ++halvings;
+      opening = open(mesh, index, activation, around, work, observer);
+    }
+  };
+  if (around.reach == Reach::thales) {
+    around.searched = opening.stance == Stance::over_capacity ? around.reach : around.searched;
+    open_shorter();
   }
   // Too close: the way out is the aim, and has surroundings of its own.
   const bool recovering = opening.stance == Stance::too_close;
@@ -97,6 +104,7 @@ Step step(const Mesh& mesh, const I& index, A& activation, S& solver, const Moti
     around.reach = around.searched = Reach::sphere;
     around.longest = std::min(around.longest, 2.0 * around.aim.norm());
     opening = open(mesh, index, activation, around, work, observer);
+    open_shorter();
   }
   result.triangles = work.hits.size();
   if (const Status status = status_of(opening.stance); !is_ok(status)) return stop(status);

@@ -19,6 +19,7 @@ struct MotionConstraintSettings {
   double margin = 0.2;          // distance to keep beyond that; certified needs one [length]
   double damping = 0.0;         // weight of |u|^2 beside the task
   double recovery = 0.05;       // how far a tip that is too close is led away in a cycle [length]
+  double deepest = 10.0;        // no tip is led out from deeper inside [length]
   int refinements = 3;          // how often a certified motion is improved upon
   int nodes = 0;                // of a branch and bound for a better motion still; 0: none
   Query query = Query::motion;  // how far around the tip triangles are looked for

@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+// Tips that start on the forbidden side, as MotionConstraint treats them.
+#include "keepout/step/side_watch.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "keepout/factory/make_motion_constraint.h"
+#include "keepout/fixtures/shapes.h"
+
+namespace keepout {
+namespace {
+
+// The cube's faces are at +-50.
+MotionConstraint guard(const MotionConstraintSettings& settings = {}) {
+  return make_motion_constraint(std::make_shared<const Mesh>(make_shape("cube")), settings);
+}
+
+constexpr double recovery = 0.05;
+
+TEST(SideWatch, ATipInsideIsLedOutWhateverItIsAskedFor) {
+  auto constraint = guard();
+  const Step step = constraint.step({.tip = {3, 4, 49}, .desired = {0.1, 0, -0.5}});
+  EXPECT_EQ(step.status, Status::recovering);
+  EXPECT_LT((step.motion - Vec3(0, 0, recovery)).norm(), 1e-12);
+}
+
+TEST(SideWatch, ARefusedCycleDoesNotMakeATipInsideAFreeOne) {
+  auto constraint = guard();
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const Vec3 tip(3, 4, 49);
+  EXPECT_EQ(constraint.step({.tip = tip, .desired = {100, 0, 0}}).status, Status::beyond_reach);
+  EXPECT_EQ(constraint.step({.tip = tip, .desired = {0, 0, 0.1}}).status, Status::recovering);
+  EXPECT_EQ(constraint.step({.tip = tip, .desired = {nan, 0, 0}}).status, Status::invalid_input);
+  EXPECT_EQ(constraint.step({.tip = tip, .desired = {0, 0, 0.1}}).status, Status::recovering);
+}
+
+TEST(SideWatch, ATipThatTheCallerMovesInsideIsFound) {
+  auto constraint = guard();
+  EXPECT_EQ(constraint.step({.tip = {3, 4, 51}, .desired = {0, 0, -0.1}}).status, Status::free);
+  EXPECT_EQ(constraint.step({.tip = {3, 4, 49}, .desired = {0, 0, -0.1}}).status,
+            Status::recovering);
+  EXPECT_EQ(constraint.step({.tip = {3, 4, 50.9}, .desired = {0, 0, -0.1}}).status, Status::free);
+}
+
+TEST(SideWatch, TooDeepInsideNothingMovesByItself) {
+  auto constraint = guard({.deepest = 2.0});
+  const Step deep = constraint.step({.tip = {3, 4, 47}, .desired = {0, 0, 0.1}});
+  EXPECT_EQ(deep.status, Status::inside);
+  EXPECT_EQ(deep.motion, Vec3::Zero());
+  EXPECT_EQ(constraint.step({.tip = {3, 4, 48.5}, .desired = {0, 0, 0.1}}).status,
+            Status::recovering);
+}
+
+TEST(SideWatch, WithJointsOrRowsOrWithoutRecoveryThereIsNoWayOut) {
+  const TipJacobian::Matrix jacobian = TipJacobian::Matrix::Identity(3, 3);
+  const Vec3 tip(3, 4, 49);
+  auto constraint = guard();
+  const Step joints = constraint.step({.tip = tip, .desired = {0, 0, 0.1}, .jacobian = jacobian});
+  EXPECT_EQ(joints.status, Status::inside);
+  EXPECT_EQ(joints.motion, Vec3::Zero());
+  auto resting = guard({.recovery = 0.0});
+  EXPECT_EQ(resting.step({.tip = tip, .desired = {0, 0, 0.1}}).status, Status::inside);
+}
+
+TEST(SideWatch, OnTheSurfaceALargeMeshDoesNotTrapTheTip) {
+  // Where the tolerance is larger than a ten-thousandth of the recovery.
+  Surface huge = make_shape("cube");
+  for (Vec3& v : huge.vertices) v *= 100.0;
+  auto constraint = make_motion_constraint(std::make_shared<const Mesh>(huge), {});
+  Vec3 tip(3, 4, 5000);
+  Status last = Status::unsolved;
+  for (int cycle = 0; cycle < 20; ++cycle) {
+    const Step step = constraint.step({.tip = tip, .desired = {0, 0, 0.01}});
+    tip += step.motion;
+    last = step.status;
+  }
+  EXPECT_EQ(last, Status::free);
+  EXPECT_GT(tip.z(), 5000.2);
+}
+
+TEST(SideWatch, TakenAsItIsATipInsideIsKeptInside) {
+  auto constraint = guard({.inside = Inside::taken_as_is});
+  Vec3 tip(3, 4, 49);
+  for (int cycle = 0; cycle < 20; ++cycle) {
+    tip += constraint.step({.tip = tip, .desired = {0, 0, 0.5}}).motion;
+  }
+  EXPECT_NEAR(tip.z(), 49.8, 1e-7);
+}
+
+}  // namespace
+}  // namespace keepout
