@@ -39,11 +39,12 @@ bool before(const Triangle& a, const Triangle& b) noexcept {
   return false;
 }
 
-/// Too thin to have a side: its normal is made of rounding.
+/// Too thin for its side to be trusted: it closes a seam, and single precision may have turned it
+/// any way.
 bool is_sliver(const Triangle& t) noexcept {
   const double longest2 = std::max(
       {(t[1] - t[0]).squaredNorm(), (t[2] - t[1]).squaredNorm(), (t[0] - t[2]).squaredNorm()});
-  return !((t[1] - t[0]).cross(t[2] - t[0]).norm() > 1e-9 * longest2);
+  return !((t[1] - t[0]).cross(t[2] - t[0]).norm() > 1e-5 * longest2);
 }
 
 /// How far along the way from a point a triangle is met, in ways; infinite if it is not. A way
@@ -89,9 +90,9 @@ std::optional<Nearest> look_around(const Mesh& mesh, const SpatialIndex& index, 
     const Triangle triangle = mesh.triangle(*t);
     const ClosestPoint closest = closest_point(triangle, tip);
     const Vec3 normal = unit_normal(triangle);
-    const double facing = std::abs(normal.dot(closest.offset));
     nearest.normal += angle_at(triangle, closest.feature) * normal;
-    if (!(facing > most) || is_sliver(triangle)) continue;
+    const double facing = is_sliver(triangle) ? 0.0 : std::abs(normal.dot(closest.offset));
+    if (!(facing > most)) continue;
     most = facing;
     nearest.offset = closest.offset;
     nearest.faced = triangle;
@@ -115,7 +116,7 @@ std::optional<Placement> place(const Mesh& mesh, const SpatialIndex& index, cons
 
   // Nothing is nearer than the nearest point, so what is met is met close to it.
   const Triangle& faced = nearest->faced;
-  if (faced[0] == faced[1]) return std::nullopt;  // slivers alone
+  const bool are_slivers_asked = is_sliver(faced);  // there is nothing else
   const Vec3 middle = (faced[0] + faced[1] + faced[2]) / 3.0 - tip;
   const Vec3 inwards = middle - nearest->offset;
   const double share = std::min(1e-3, 0.5 * nearest->distance / inwards.norm());
@@ -126,13 +127,15 @@ std::optional<Placement> place(const Mesh& mesh, const SpatialIndex& index, cons
   double first = std::numeric_limits<double>::infinity();
   for (const TriangleId t : candidates) {
     const Triangle triangle = mesh.triangle(t);
-    if (!is_sliver(triangle)) first = std::min(first, met_at(triangle, tip, way));
+    if (are_slivers_asked || !is_sliver(triangle))
+      first = std::min(first, met_at(triangle, tip, way));
   }
   double facing =
       0.0;  // > 0: the back of what is met first; at an edge, of what faces the tip more
   for (const TriangleId t : candidates) {
     const Triangle triangle = mesh.triangle(t);
-    if (is_sliver(triangle) || !(met_at(triangle, tip, way) <= first + 1e-12)) continue;
+    if (!are_slivers_asked && is_sliver(triangle)) continue;
+    if (!(met_at(triangle, tip, way) <= first + 1e-12)) continue;
     const double side = unit_normal(triangle).dot(way);
     if (std::abs(side) > std::abs(facing)) facing = side;
   }
