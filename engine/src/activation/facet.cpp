@@ -120,14 +120,7 @@ double Facet::support(const Vec3& n) const noexcept {
 }
 
 bool Facet::before(const Facet& other) const noexcept {
-  for (int i = 0; i < 3; ++i) {
-    for (int axis = 0; axis < 3; ++axis) {
-      const double a = corners_[i][axis];
-      const double b = other.corners_[i][axis];
-      if (a != b) return a < b;
-    }
-  }
-  return false;
+  return comes_before(corners_, other.corners_);
 }
 
 bool separates(const Vec3& n, const Facet& facet, const Vec3& z, double level,

@@ -24,20 +24,6 @@ constexpr double standoff_of_room = 0.25;
 
 bool is_length(double x) noexcept { return x >= 0.0 && x <= largest_number; }  // false for NaN
 
-/// Of two triangles at the same distance, the one whose corners come first, by their coordinates.
-bool comes_first(const Triangle& one, const Triangle& other) noexcept {
-  const CornerOrder mine = corner_order(one);
-  const CornerOrder theirs = corner_order(other);
-  for (int i = 0; i < 3; ++i) {
-    const Vec3& a = one[mine.corner[i]];
-    const Vec3& b = other[theirs.corner[i]];
-    for (int axis = 0; axis < 3; ++axis) {
-      if (a[axis] != b[axis]) return a[axis] < b[axis];
-    }
-  }
-  return false;
-}
-
 /// Points spread evenly in the unit ball. Source: Roberts, "The unreasonable effectiveness of
 /// quasirandom sequences", 2018: multiples of powers of 1 / g, where g^4 = g + 1.
 template <std::size_t count>
@@ -161,8 +147,8 @@ std::span<const FreePolytope::Turn> FreePolytope::by_distance(std::span<const Hi
     if (a.distance != b.distance) return a.distance < b.distance;
     const Triangle one = mesh_->triangle(hits[a.hit].triangle);
     const Triangle other = mesh_->triangle(hits[b.hit].triangle);
-    if (comes_first(one, other)) return true;
-    return !comes_first(other, one) && a.hit < b.hit;
+    if (comes_before(one, other)) return true;
+    return !comes_before(other, one) && a.hit < b.hit;
   });
   return turns;
 }

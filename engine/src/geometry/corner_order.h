@@ -37,4 +37,19 @@ inline CornerOrder corner_order(const Triangle& triangle) noexcept {
   return order;
 }
 
+/// By the corners, each triangle's in lexicographic order: a total order, but for duplicates, that
+/// does not depend on numbering or winding.
+inline bool comes_before(const Triangle& one, const Triangle& other) noexcept {
+  const CornerOrder mine = corner_order(one);
+  const CornerOrder theirs = corner_order(other);
+  for (int i = 0; i < 3; ++i) {
+    const Vec3& a = one[mine.corner[i]];
+    const Vec3& b = other[theirs.corner[i]];
+    for (int axis = 0; axis < 3; ++axis) {
+      if (a[axis] != b[axis]) return a[axis] < b[axis];
+    }
+  }
+  return false;
+}
+
 }  // namespace keepout

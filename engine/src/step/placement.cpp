@@ -25,20 +25,6 @@ double angle_at(const Triangle& triangle, Feature feature) noexcept {
   return std::atan2(one.cross(other).norm(), one.dot(other));
 }
 
-/// By the corners, each triangle's in lexicographic order: so nothing depends on numbering.
-bool before(const Triangle& a, const Triangle& b) noexcept {
-  const CornerOrder order_a = corner_order(a);
-  const CornerOrder order_b = corner_order(b);
-  for (int i = 0; i < 3; ++i) {
-    const Vec3& one = a[order_a.corner[i]];
-    const Vec3& other = b[order_b.corner[i]];
-    if (one != other) {
-      return std::lexicographical_compare(one.begin(), one.end(), other.begin(), other.end());
-    }
-  }
-  return false;
-}
-
 /// Too thin for its side to be trusted: it closes a seam, and single precision may have turned it
 /// any way.
 bool is_sliver(const Triangle& t) noexcept {
@@ -81,8 +67,9 @@ std::optional<Nearest> look_around(const Mesh& mesh, const SpatialIndex& index, 
   const auto last = std::partition(candidates.begin(), candidates.end(), [&](TriangleId t) {
     return closest_point(mesh.triangle(t), tip).distance <= near;
   });
-  std::sort(candidates.begin(), last,
-            [&](TriangleId a, TriangleId b) { return before(mesh.triangle(a), mesh.triangle(b)); });
+  std::sort(candidates.begin(), last, [&](TriangleId a, TriangleId b) {
+    return comes_before(mesh.triangle(a), mesh.triangle(b));
+  });
   const Vec3 none = Vec3::Zero();
   Nearest nearest{hit->closest.distance, hit->closest.offset, none, {none, none, none}};
   double most = -1.0;
