@@ -34,11 +34,12 @@ struct Attempt {
   int failures = 0;  // since it last moved
 };
 
-/// Nobody promised these a motion: the tip was put down on the surface, or the joints cannot.
+/// Nobody promised these a motion: the tip was put down on the surface or inside, where the options
+/// allow no way out, or the joints cannot.
 bool is_expected(Status failure, const Setup& setup) noexcept {
-  const bool of_joints =
-      failure == Status::ill_posed || failure == Status::infeasible || failure == Status::inside;
-  return failure == Status::touching || (setup.joints > 0 && of_joints);
+  const bool of_joints = failure == Status::ill_posed || failure == Status::infeasible;
+  return failure == Status::touching || failure == Status::inside ||
+         (setup.joints > 0 && of_joints);
 }
 
 }  // namespace

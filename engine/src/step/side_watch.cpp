@@ -7,6 +7,39 @@
 #include "keepout/step/placement.h"
 
 namespace keepout {
+namespace {
+
+/// Far above the distance at which the certified rule can no longer tell a side. [length]
+double well_off(const Mesh& mesh, const StepOptions& options) noexcept {
+  const double size = mesh.bounds().size().norm() + options.radius + options.margin;
+  return std::max(1e-4 * options.recovery, 1e-8 * size);
+}
+
+double longest_way(const StepOptions& options) noexcept {
+  return std::min(options.recovery, options.radius);
+}
+
+bool may_be_led(const Motion& motion, const StepOptions& options, const Mesh& mesh) noexcept {
+  return !motion.jacobian && !motion.rows && longest_way(options) >= well_off(mesh, options);
+}
+
+Step stopped(Status why) noexcept {
+  Step result;
+  result.status = why;
+  return result;
+}
+
+Step led_out(const Placement& placement, const Mesh& mesh, const SpatialIndex& index,
+             const Motion& motion, const StepOptions& options, Workspace& work) noexcept {
+  Step result = stopped(Status::recovering);
+  result.motion = lead_out(mesh, index, motion.tip, placement, longest_way(options),
+                           well_off(mesh, options), work.candidates);
+  work.note({}, result.motion);
+  result.increment = work.increment();
+  return result;
+}
+
+}  // namespace
 
 SideWatch SideWatch::of_watertight() noexcept {
   SideWatch watch;
@@ -19,23 +52,22 @@ std::optional<Step> SideWatch::before(const Mesh& mesh, const SpatialIndex& inde
                                       Workspace& work) const noexcept {
   if (!is_on_ || (motion.tip - free_tip_).norm() <= free_around_) return std::nullopt;
   const std::optional<Placement> placement = place(mesh, index, motion.tip, work.candidates);
-  Step result;
-  result.status = Status::over_capacity;
-  if (!placement) return result;
-  // Far above the distance at which the certified rule can no longer tell a side.
-  const double size = mesh.bounds().size().norm() + options.radius + options.margin;
-  const double off = std::max(1e-4 * options.recovery, 1e-8 * size);
-  const bool is_free = placement->side == Placement::Side::free;
-  if (is_free && placement->distance >= 0.5 * off) return std::nullopt;
-  const double longest = std::min(options.recovery, options.radius);
-  result.status = Status::inside;
-  if (motion.jacobian || motion.rows || placement->distance > options.deepest || longest < off) {
-    return is_free ? std::nullopt : std::optional(result);
+  if (!placement) return stopped(Status::over_capacity);
+  if (placement->side == Placement::Side::free) return std::nullopt;
+  if (!may_be_led(motion, options, mesh) || placement->distance > options.deepest) {
+    return stopped(Status::inside);
   }
-  result.status = Status::recovering;
-  result.motion = lead_out(mesh, index, motion.tip, *placement, longest, off, work.candidates);
-  work.note({}, result.motion);
-  result.increment = work.increment();
+  return led_out(*placement, mesh, index, motion, options, work);
+}
+
+std::optional<Step> SideWatch::off_surface(const Mesh& mesh, const SpatialIndex& index,
+                                           const Motion& motion, const StepOptions& options,
+                                           Workspace& work) const noexcept {
+  if (!is_on_ || !may_be_led(motion, options, mesh)) return std::nullopt;
+  const std::optional<Placement> placement = place(mesh, index, motion.tip, work.candidates);
+  if (!placement) return std::nullopt;
+  const Step result = led_out(*placement, mesh, index, motion, options, work);
+  if (result.motion.isZero(0.0)) return std::nullopt;
   return result;
 }
 

@@ -5,10 +5,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "keepout/factory/make_motion_constraint.h"
 #include "keepout/fixtures/shapes.h"
+#include "keepout/oracle/safety_oracle.h"
 
 namespace keepout {
 namespace {
@@ -79,6 +81,40 @@ TEST(SideWatch, OnTheSurfaceALargeMeshDoesNotTrapTheTip) {
   }
   EXPECT_EQ(last, Status::free);
   EXPECT_GT(tip.z(), 5000.2);
+}
+
+/// Tips a hair off the surface on the free side, as a campaign met them: too near for a margin, far
+/// enough for a side. What leads them off is the certified recovery, and it comes no nearer.
+TEST(SideWatch, ATipAHairOffTheSurfaceComesNoNearer) {
+  const auto mesh = std::make_shared<const Mesh>(make_shape("cortex"));
+  oracle::SafetyOracle oracle(mesh);
+  struct Case {
+    Vec3 tip, desired;
+    double radius, margin, recovery;
+  };
+  for (const Case& c : {Case{{28.37647126255659, 14.045841952296179, 26.139717798206284},
+                             {0.01400350667982292, 0.023541901544377505, 0.013846586691919223},
+                             0.31421561334628306,
+                             0.3916155792446254,
+                             0.016834889716285564},
+                        Case{{28.37647126255659, 14.045841952296179, 26.139717798206284},
+                             Vec3::Zero(),
+                             5.0,
+                             0.2,
+                             2.5}}) {
+    auto constraint = make_motion_constraint(
+        mesh, {.radius = c.radius, .margin = c.margin, .recovery = c.recovery});
+    Vec3 tip = c.tip;
+    for (int cycle = 0; cycle < 50; ++cycle) {
+      const double before = oracle.distance(tip);
+      const Step step = constraint.step({.tip = tip, .desired = c.desired});
+      ASSERT_TRUE(step.ok()) << step.reason();
+      const auto finding = oracle.check(tip, tip + step.motion, std::min(before, c.margin) - 1e-8);
+      ASSERT_FALSE(finding.crosses || finding.below) << "cycle " << cycle;
+      tip += step.motion;
+    }
+    EXPECT_GT(oracle.distance(tip), 1e-3);
+  }
 }
 
 TEST(SideWatch, TakenAsItIsATipInsideIsKeptInside) {

@@ -27,6 +27,11 @@ class SideWatch {
   std::optional<Step> before(const Mesh& mesh, const SpatialIndex& index, const Motion& motion,
                              const StepOptions& options, Workspace& work) const noexcept;
 
+  /// The step of a tip that touches the surface, so that the rule cannot tell its side: a short way
+  /// to a place that is found to be free. Nothing where none is found, or none may be made.
+  std::optional<Step> off_surface(const Mesh& mesh, const SpatialIndex& index, const Motion& motion,
+                                  const StepOptions& options, Workspace& work) const noexcept;
+
   /// Takes down where a certified step from the free side has led to.
   void after(const Motion& motion, const Step& step, const StepOptions& options) noexcept;
 
@@ -48,7 +53,11 @@ Step step(SideWatch& sides, const Mesh& mesh, const SpatialIndex& index, A& acti
   }
   const Step result =
       step(mesh, index, activation, solver, motion, options, work, std::forward<O>(observer));
-  if (!is_refused) sides.after(motion, result, options);
+  if (is_refused) return result;
+  if (result.status == Status::touching) {
+    if (const auto off = sides.off_surface(mesh, index, motion, options, work)) return *off;
+  }
+  sides.after(motion, result, options);
   return result;
 }
 
