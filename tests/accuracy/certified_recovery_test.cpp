@@ -252,7 +252,8 @@ TEST(CertifiedRecoveryInAGap, OfMoreThanTwoMarginsItsMiddleIsFound) {
 
 TEST(CertifiedRecoverySide, AnInsideOutMeshIsLedOutOfOnItsOwnFreeSide) {
   // Free within, forbidden without.
-  Loop loop(make_shape("concave_sphere"), {.radius = 1.0, .margin = 0.3, .recovery = 0.5, .deepest = 1e3});
+  Loop loop(make_shape("concave_sphere"),
+            {.radius = 1.0, .margin = 0.3, .recovery = 0.5, .deepest = 1e3});
   Vec3 tip(0.0, 0.0, 53.0);
   for (int cycle = 0; cycle < 12; ++cycle) {
     const Step step = loop.step(tip, Vec3(0.0, 0.0, 0.5));
