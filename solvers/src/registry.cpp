@@ -14,15 +14,18 @@ std::unique_ptr<Solver> make() {
 }
 
 constexpr SolverBackend backends[] = {
-    {"active_set", "our own dual active-set method (Goldfarb and Idnani 1983)", make<ActiveSet>},
+    {"active_set", "our own dual active-set method (Goldfarb and Idnani 1983)", make<ActiveSet>,
+     Allocation::never, 1e-9, nullptr},
 };
 
 }  // namespace
 
 std::span<const SolverBackend> solver_backends() noexcept { return backends; }
 
+std::span<const AbsentPart> absent_solver_backends() noexcept { return {}; }
+
 std::unique_ptr<Solver> make_solver(std::string_view name) {
-  return entry_named(name, backends, "solver").make();
+  return entry_named(name, backends, "solver", absent_solver_backends()).make();
 }
 
 }  // namespace keepout

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -9,16 +11,36 @@
 
 namespace keepout {
 
+/// Whether a part takes memory from the heap while it answers.
+enum class Allocation : std::uint8_t {
+  never,  // fit for the control path
+  inside  // the library behind it does: for comparison, not for real time
+};
+
+/// A part that keepout has, but not this build of it.
+struct AbsentPart {
+  std::string_view name;
+  std::string_view needs;  // the library, its Debian package and our option
+};
+
 /// The entry of a table of parts with that name. Throws Error, listing the names there are, when
-/// there is none. `what` says what kind of part it is.
+/// there is none; and saying what it would need, when the part is absent. `what` says what kind of
+/// part it is.
 template <class Table>
-const auto& entry_named(std::string_view name, const Table& table, std::string_view what) {
+const auto& entry_named(std::string_view name, const Table& table, std::string_view what,
+                        std::span<const AbsentPart> absent = {}) {
   std::string known;
   for (const auto& entry : table) {
     if (entry.name == name) return entry;
     known += (known.empty() ? "" : ", ") + std::string(entry.name);
   }
-  throw Error("there is no " + std::string(what) + " '" + std::string(name) + "'; known: " + known);
+  const std::string named = std::string(what) + " '" + std::string(name) + "'";
+  for (const AbsentPart& part : absent) {
+    if (part.name != name) continue;
+    throw Error("this build was made without " + named + ", which needs " +
+                std::string(part.needs) + "; it has: " + known);
+  }
+  throw Error("there is no " + named + "; known: " + known);
 }
 
 }  // namespace keepout

@@ -2,12 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "keepout/index/spatial_index.h"
 #include "keepout/mesh/mesh.h"
+#include "keepout/registry.h"
 
 namespace keepout {
 
@@ -15,13 +18,20 @@ namespace keepout {
 struct IndexBackend {
   std::string_view name;
   std::string_view description;
+  /// Throws Error when the library behind it cannot hold the mesh: no triangle is ever lost.
   std::unique_ptr<SpatialIndex> (*make)(std::shared_ptr<const Mesh> mesh);
+  std::size_t most_triangles;  // what its data structure can hold, were memory no object
+  std::string (*library)();    // name and version of the library behind it; null for our own
 };
 
 /// All that this build has, the oracle first.
 std::span<const IndexBackend> index_backends() noexcept;
 
-/// Builds the index of that name. Throws Error, listing the names there are, if there is none.
+/// Those that this build was made without.
+std::span<const AbsentPart> absent_index_backends() noexcept;
+
+/// Builds the index of that name. Throws Error, listing the names there are, if there is none, and
+/// when it cannot hold the mesh.
 std::unique_ptr<SpatialIndex> make_index(std::string_view name, std::shared_ptr<const Mesh> mesh);
 
 }  // namespace keepout

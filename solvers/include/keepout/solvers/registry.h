@@ -4,8 +4,10 @@
 
 #include <memory>
 #include <span>
+#include <string>
 #include <string_view>
 
+#include "keepout/registry.h"
 #include "keepout/step/solver.h"
 
 namespace keepout {
@@ -15,10 +17,18 @@ struct SolverBackend {
   std::string_view name;
   std::string_view description;
   std::unique_ptr<Solver> (*make)();
+  Allocation allocation;
+  /// How far an `optimal` answer may be from the best one, and from satisfying the KKT conditions:
+  /// relative, as KktResidual is.
+  double accuracy;
+  std::string (*library)();  // name and version of the library behind it; null for our own
 };
 
 /// All solvers of this build, our own first.
 std::span<const SolverBackend> solver_backends() noexcept;
+
+/// Those that this build was made without.
+std::span<const AbsentPart> absent_solver_backends() noexcept;
 
 /// A new solver, without room yet: see Solver::reserve. Throws Error for a name that is not in the
 /// table, listing those that are.

@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace keepout::app {
+
+/// How long something took, over many times. [us] Percentiles are by nearest rank: a time that did
+/// occur. Those that need more samples than there are, are missing.
+struct Timing {
+  double p50 = 0.0;
+  std::optional<double> p99;   // of 100 samples or more
+  std::optional<double> p999;  // of 1000 samples or more
+  double max = 0.0;
+  std::size_t samples = 0;
+};
+
+/// Sorts the samples. [us] Precondition: there is one.
+Timing timing_of(std::vector<double>& samples);
+
+/// One combination of parts on one mesh.
+struct BenchmarkRow {
+  std::string mesh;
+  std::size_t triangles = 0;
+  std::size_t vertices = 0;
+  std::optional<double> radius;  // of the motion sphere [mm]; none: as long as each motion
+  std::string index, activation, solver;
+
+  std::size_t queries = 0;
+  double build_s = 0.0;
+  double bytes_per_triangle = 0.0;
+  double candidates_mean = 0.0;  // that the index proposed
+  double hits_mean = 0.0;        // of them, truly in reach
+  double planes_mean = 0.0;
+  double iterations_mean = 0.0;  // of the solver
+  double unsolved_share = 0.0;   // of the steps: ended in a status that is not ok
+
+  std::optional<Timing> collect;  // candidates only
+  std::optional<Timing> query;    // candidates and the exact kernel
+  std::optional<Timing> activate;
+  std::optional<Timing> solve;
+  std::optional<Timing> step;  // all of it
+
+  std::uint64_t hash = 0;  // of all steps: equal if they are equal, bit for bit
+  bool verified = false;   // what is not, is not timed
+  std::string remark;      // why it was not timed, or anything else worth saying
+};
+
+/// Where it ran.
+struct Machine {
+  std::string processor;
+  unsigned cores = 0;
+  double memory_gib = 0.0;
+  std::string system;
+  std::string compiler;
+  std::string flags;
+  std::string build_type;
+  std::string keepout;                 // version
+  std::vector<std::string> libraries;  // name and version
+  double clock_ns = 0.0;               // what reading the clock adds to each time
+};
+
+struct Benchmark {
+  std::string date;     // ISO 8601, UTC
+  std::string command;  // that does it again
+  std::uint64_t seed = 0;
+  Machine machine;
+  std::vector<BenchmarkRow> rows;
+};
+
+}  // namespace keepout::app
