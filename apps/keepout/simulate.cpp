@@ -6,8 +6,6 @@
 #include <array>
 #include <charconv>
 #include <cstdio>
-#include <ctime>
-#include <fstream>
 #include <ostream>
 #include <utility>
 
@@ -15,10 +13,12 @@
 #include "keepout/activation/registry.h"
 #include "keepout/adapters/load_mesh.h"
 #include "keepout/error.h"
+#include "machine.h"
 #include "output_file.h"
 #include "path_audit.h"
 #include "progress.h"
 #include "report/html_report.h"
+#include "shell_word.h"
 #include "simulation_record.h"
 
 namespace keepout::app {
@@ -91,31 +91,12 @@ std::string number(double value) {
   return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
 }
 
-/// The time now in UTC, as ISO 8601 has it.
-std::string date() {
-  const std::time_t now = std::time(nullptr);
-  std::tm utc{};
-  ::gmtime_r(&now, &utc);
-  std::array<char, 32> text;
-  return {text.data(), std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &utc)};
-}
-
-/// As a shell needs it to be one word.
-std::string quoted(const std::string& word) {
-  constexpr std::string_view plain =
-      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=.,/:@%";
-  if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;
-  std::string text = "'";
-  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return text + "'";
-}
-
 /// The command line that does all this again.
 std::string command_of(const SimulateOptions& options, const std::vector<std::string>& rules) {
   std::string listed_rules;
   for (const std::string& rule : rules) listed_rules += (listed_rules.empty() ? "" : ",") + rule;
-  return "keepout simulate " + quoted(options.mesh.string()) + " --out " +
-         quoted(options.report.string()) + " --activation " + listed_rules + " --index " +
+  return "keepout simulate " + shell_word(options.mesh.string()) + " --out " +
+         shell_word(options.report.string()) + " --activation " + listed_rules + " --index " +
          options.constraint.index + " --solver " + options.constraint.solver + " --radius " +
          number(options.constraint.radius) + " --tool-radius " +
          number(options.constraint.tool_radius) + " --margin " + number(options.constraint.margin) +
@@ -126,19 +107,10 @@ std::string command_of(const SimulateOptions& options, const std::vector<std::st
          std::to_string(options.hand.strokes) + " --cycles " + std::to_string(options.hand.cycles);
 }
 
-/// The processor's name, as the system tells it.
-std::string processor() {
-  std::ifstream info("/proc/cpuinfo");
-  for (std::string line; std::getline(info, line);) {
-    if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
-  }
-  return "unknown";
-}
-
 std::vector<std::pair<std::string, std::string>> settings_of(const SimulateOptions& options,
                                                              const std::vector<std::string>& rules,
                                                              const Mesh& mesh) {
-  return {{"date", date()},
+  return {{"date", date_now()},
           {"command", command_of(options, rules)},
           {"triangles", std::to_string(mesh.triangle_count())},
           {"vertices", std::to_string(mesh.vertex_count())},

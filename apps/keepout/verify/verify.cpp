@@ -6,10 +6,10 @@
 #include <charconv>
 #include <chrono>
 #include <cstdlib>
-#include <fstream>
 #include <memory>
 #include <ostream>
 
+#include "../machine.h"
 #include "../output_file.h"
 #include "../progress.h"
 #include "arenas.h"
@@ -33,14 +33,6 @@ Shard parse_shard(const std::string& text) {
     throw Error("--shard: expected I/N, part I of N, such as 1/2 or 2/2; not '" + text + "'");
   }
   return shard;
-}
-
-std::string processor() {
-  std::ifstream info("/proc/cpuinfo");
-  for (std::string line; std::getline(info, line);) {
-    if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
-  }
-  return "unknown processor";
 }
 
 std::vector<Arena> arenas_of(const VerifyOptions& options, std::vector<std::string>& missing) {
