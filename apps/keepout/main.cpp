@@ -9,9 +9,12 @@
 #include <iostream>
 #include <map>
 #include <new>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "bench/bench.h"
+#include "bench/parts.h"
 #include "inspect.h"
 #include "keepout/activation/registry.h"
 #include "keepout/adapters/index_registry.h"
@@ -19,6 +22,7 @@
 #include "keepout/solvers/registry.h"
 #include "number_checks.h"
 #include "replay.h"
+#include "shell_word.h"
 #include "simulate.h"
 #include "verify/verify.h"
 
@@ -214,10 +218,100 @@ void add_verify(CLI::App& app, VerifyOptions& options) {
       "The exit status is 0 only if no step broke what docs/certified-step.md promises.");
 }
 
+/// "motion", or a length.
+std::optional<double> radius_of(const std::string& text) {
+  if (text == "motion") return std::nullopt;
+  std::string number = text;
+  const std::string problem = length(Zero::refused)(number);
+  if (!problem.empty()) {
+    throw Error("--radius: expected lengths in mm, or 'motion': " + problem);
+  }
+  return std::stod(number);
+}
+
+struct BenchCommand {
+  BenchOptions options;
+  std::vector<std::string> radii;
+  bool list = false;
+};
+
+void add_bench(CLI::App& app, BenchCommand& bench) {
+  BenchOptions& options = bench.options;
+  CLI::App& command = *app.add_subcommand(
+      "bench",
+      "Time every stage of the step, for indices, rules and solvers side by side; each is held to "
+      "brute force and to our own solver before it is timed");
+  command.add_flag("--list", bench.list, "Say what there is to measure, and stop");
+  const auto add_list = [&](const char* name, std::vector<std::string>& list, const auto& table,
+                            const char* text) {
+    command.add_option(name, list, text)
+        ->delimiter(',')
+        ->type_name("NAMES")
+        ->check(CLI::IsMember(names(table)));
+  };
+  add_list("--index", options.selection.indices, indices(), "Indices to measure");
+  add_list("--activation", options.selection.activations, activation_rules(), "Rules to measure");
+  add_list("--solver", options.selection.solvers, solver_backends(), "Solvers to measure");
+  command.add_option("--mesh", options.meshes, "Real fixtures, or mesh files")
+      ->delimiter(',')
+      ->type_name("NAMES");
+  command
+      .add_option("--triangles", options.triangles,
+                  "Sizes to which the bunny is resampled, 150 mm large as in the paper")
+      ->delimiter(',')
+      ->type_name("NUMBERS")
+      ->transform(whole_number(1000, 200'000'000));
+  command
+      .add_option("--radius", bench.radii,
+                  "Radii of the motion sphere, in mm; 'motion': as long as each motion")
+      ->delimiter(',')
+      ->type_name("MM");
+  command.add_flag_callback(
+      "--full", [&options] { options.extent = Extent::full; },
+      "To 18 million triangles, and the skull of a million: some tens of minutes");
+  command.add_option("--queries", options.queries, "Steps of each combination, at most")
+      ->type_name("NUMBER")
+      ->transform(whole_number(5, 10'000'000));
+  command
+      .add_option("--seconds", options.seconds,
+                  "How long a combination is asked, at most, and timed as long again")
+      ->type_name("S")
+      ->check(CLI::Range(0.001, 1e6));
+  command
+      .add_option("--poses", options.poses,
+                  "contact: a tool that slides along the surface; unrelated: as a planner asks")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, Poses>{
+          {"contact", Poses::contact}, {"unrelated", Poses::unrelated}}))
+      ->default_str("contact");
+  command.add_option("--seed", options.seed, "Seed of the motions")
+      ->type_name("NUMBER")
+      ->transform(whole_number(0, largest_seed))
+      ->capture_default_str();
+  command.add_option("--json", options.json, "Where to write all figures")->type_name("FILE");
+  command.add_option("--csv", options.csv, "Where to write them as a table")->type_name("FILE");
+  command.add_option("--out", options.report, "Where to write a report with plots")
+      ->type_name("REPORT.html");
+  command.footer(
+      "Each list is crossed with the others; what is not named is pd_tree, paper and certified,\n"
+      "active_set, and radii of 5, 1, 0.25 and the motion. Without --index, --activation and\n"
+      "--solver: each index, then each solver, with those; and FCL's tree with SLSQP.");
+}
+
 /// What was printed has to arrive: a full disk shall not look like success.
 void flush_stdout() {
   std::cout.flush();
   if (!std::cout) throw Error("stdout: could not be written to the end; is the disk full?");
+}
+
+void run_bench(BenchCommand& bench_command, int argc, char** argv) {
+  if (bench_command.list) return list_parts(std::cout);
+  BenchOptions& options = bench_command.options;
+  for (const std::string& radius : bench_command.radii) {
+    options.selection.radii.push_back(radius_of(radius));
+  }
+  options.command = "keepout";
+  for (int i = 1; i < argc; ++i) options.command += " " + shell_word(argv[i]);
+  bench(options, std::cout);
 }
 
 int run(int argc, char** argv) {
@@ -231,11 +325,13 @@ int run(int argc, char** argv) {
   ReplayOptions replay_options;
   SimulateOptions simulate_options;
   VerifyOptions verify_options;
+  BenchCommand bench_command;
   simulate_options.rules = names(activation_rules());
   add_inspect(app, inspect_options);
   add_replay(app, replay_options);
   add_simulate(app, simulate_options);
   add_verify(app, verify_options);
+  add_bench(app, bench_command);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -249,6 +345,7 @@ int run(int argc, char** argv) {
   if (app.got_subcommand("inspect")) inspect(inspect_options, std::cout);
   if (app.got_subcommand("replay")) replay(replay_options, std::cout);
   if (app.got_subcommand("simulate")) simulate(simulate_options, std::cout);
+  if (app.got_subcommand("bench")) run_bench(bench_command, argc, argv);
   if (app.got_subcommand("verify")) return verify(verify_options, std::cout);
   return EXIT_SUCCESS;
 }

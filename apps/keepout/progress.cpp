@@ -28,10 +28,21 @@ void Progress::advance(std::size_t by) {
   }
 }
 
-void Progress::show() const {
+void Progress::show(const std::string& detail) {
+  detail_ = detail;
+  if (terminal_) show();
+}
+
+void Progress::interrupt() {
+  if (!terminal_) return;
+  std::fputs("\r\033[K", stderr);
+  std::fflush(stderr);
+}
+
+void Progress::show() {
   const double percent =
       total_ == 0 ? 0.0 : 100.0 * static_cast<double>(done_) / static_cast<double>(total_);
-  std::fprintf(stderr, "\r\033[K%s: %3.0f %%", what_.c_str(), percent);
+  std::fprintf(stderr, "\r\033[K%s: %3.0f %% %s", what_.c_str(), percent, detail_.c_str());
   std::fflush(stderr);
 }
 

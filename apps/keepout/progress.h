@@ -10,6 +10,8 @@ namespace keepout::app {
 
 /// Tells on stderr how far a long piece of work has come: on a terminal a line that is rewritten,
 /// elsewhere only the line at the end.
+///
+/// Who prints something else meanwhile calls interrupt() first.
 class Progress {
  public:
   Progress(std::string what, std::size_t total);
@@ -19,13 +21,20 @@ class Progress {
 
   void advance(std::size_t by = 1);
 
+  /// Says at once what is being done.
+  void show(const std::string& detail);
+
+  /// Takes the line off the terminal, until the next change.
+  void interrupt();
+
  private:
   using Clock = std::chrono::steady_clock;
-  void show() const;
+  void show();
 
   std::string what_;
   std::size_t total_;
   std::size_t done_ = 0;
+  std::string detail_ = {};
   Clock::time_point start_ = Clock::now();
   Clock::time_point shown_ = start_;
   bool terminal_;

@@ -15,8 +15,8 @@ namespace keepout::app {
 /// occur. Those that need more samples than there are, are missing.
 struct Timing {
   double p50 = 0.0;
-  std::optional<double> p99;   // of 100 samples or more
-  std::optional<double> p999;  // of 1000 samples or more
+  std::optional<double> p99 = {};   // of 100 samples or more
+  std::optional<double> p999 = {};  // of 1000 samples or more
   double max = 0.0;
   std::size_t samples = 0;
 };
@@ -26,11 +26,11 @@ Timing timing_of(std::vector<double>& samples);
 
 /// One combination of parts on one mesh.
 struct BenchmarkRow {
-  std::string mesh;
+  std::string mesh = {};
   std::size_t triangles = 0;
   std::size_t vertices = 0;
-  std::optional<double> radius;  // of the motion sphere [mm]; none: as long as each motion
-  std::string index, activation, solver;
+  std::optional<double> radius = {};  // of the motion sphere [mm]; none: as long as each motion
+  std::string index = {}, activation = {}, solver = {};
 
   std::size_t queries = 0;
   double build_s = 0.0;
@@ -41,15 +41,15 @@ struct BenchmarkRow {
   double iterations_mean = 0.0;  // of the solver
   double unsolved_share = 0.0;   // of the steps: ended in a status that is not ok
 
-  std::optional<Timing> collect;  // candidates only
-  std::optional<Timing> query;    // candidates and the exact kernel
-  std::optional<Timing> activate;
-  std::optional<Timing> solve;
-  std::optional<Timing> step;  // all of it
+  std::optional<Timing> collect = {};  // candidates only
+  std::optional<Timing> query = {};    // candidates and the exact kernel
+  std::optional<Timing> activate = {};
+  std::optional<Timing> solve = {};
+  std::optional<Timing> step = {};  // all of it
 
-  std::uint64_t hash = 0;  // of all steps: equal if they are equal, bit for bit
-  bool verified = false;   // what is not, is not timed
-  std::string remark;      // why it was not timed, or anything else worth saying
+  std::uint64_t hash = 0;   // of all steps: equal if they are equal, bit for bit
+  bool verified = false;    // what is not, is not timed
+  std::string remark = {};  // why it was not timed, or anything else worth saying
 };
 
 /// Where it ran.
@@ -71,7 +71,7 @@ struct Benchmark {
   std::string command;  // that does it again
   std::uint64_t seed = 0;
   Machine machine;
-  std::vector<BenchmarkRow> rows;
+  std::vector<BenchmarkRow> rows = {};
 };
 
 }  // namespace keepout::app

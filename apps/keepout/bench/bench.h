@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <iosfwd>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bench/combination.h"
+#include "bench/trial.h"
+
+namespace keepout::app {
+
+enum class Extent {
+  standard,  // three sizes of the bunny; some minutes
+  full       // to 18 million triangles, and the skull; some tens of minutes
+};
+
+struct BenchOptions {
+  std::vector<std::string> meshes;     // fixtures or files; empty: up to the extent
+  std::vector<std::size_t> triangles;  // sizes of the bunny; empty: up to the extent
+  Selection selection;
+  Extent extent = Extent::standard;
+  std::optional<std::size_t> queries;
+  std::optional<double> seconds;
+  Poses poses = Poses::contact;
+  std::uint64_t seed = 1;
+  std::optional<std::filesystem::path> json, csv, report;  // to be written
+  std::string command;                                     // that does it again
+};
+
+/// Measures every combination that was asked for on every mesh, prints a table as it goes, and
+/// writes files. Throws Error before any work when one could not be written.
+void bench(const BenchOptions& options, std::ostream& out);
+
+/// Says what there is to measure, and what this build was made without.
+void list_parts(std::ostream& out);
+
+/// The combinations on one mesh; `out` gets the table.
+void run_trial(const Subject& subject, const std::vector<Combination>& combinations,
+               const TrialSettings& settings, MemoryTaken& memory, Benchmark& benchmark,
+               std::ostream& out);
+
+}  // namespace keepout::app

@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <array>
+#include <charconv>
+#include <ostream>
+#include <string>
+
+#include "bench/benchmark_files.h"
+
+namespace keepout::app {
+namespace {
+
+/// The fewest digits that read back exactly.
+std::string number(double value) {
+  std::array<char, 32> text;
+  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
+}
+
+std::string number(const std::optional<double>& value) { return value ? number(*value) : ""; }
+
+/// A name of a file may hold anything.
+std::string quoted(const std::string& text) {
+  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
+  std::string result = "\"";
+  for (const char c : text) result += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return result + "\"";
+}
+
+constexpr std::array stages = {&BenchmarkRow::collect, &BenchmarkRow::query,
+                               &BenchmarkRow::activate, &BenchmarkRow::solve, &BenchmarkRow::step};
+constexpr std::array stage_names = {"collect", "query", "activate", "solve", "step"};
+
+}  // namespace
+
+void write_csv(std::ostream& out, const Benchmark& benchmark) {
+  out << "mesh,triangles,vertices,radius,queries,index,activation,solver,build_s,"
+         "bytes_per_triangle,candidates_mean,hits_mean,planes_mean,iterations_mean,unsolved_share";
+  for (const char* stage : stage_names) {
+    for (const char* which : {"p50", "p99", "p999", "max"}) out << ',' << stage << "_us_" << which;
+  }
+  out << ",hash,verified,remark\n";
+  for (const BenchmarkRow& row : benchmark.rows) {
+    out << quoted(row.mesh) << ',' << row.triangles << ',' << row.vertices << ','
+        << number(row.radius) << ',' << row.queries << ',' << row.index << ',' << row.activation
+        << ',' << row.solver;
+    for (const double value :
+         {row.build_s, row.bytes_per_triangle, row.candidates_mean, row.hits_mean, row.planes_mean,
+          row.iterations_mean, row.unsolved_share}) {
+      out << ',' << number(value);
+    }
+    for (const auto stage : stages) {
+      const std::optional<Timing>& timing = row.*stage;
+      if (!timing) {
+        out << ",,,,";
+        continue;
+      }
+      out << ',' << number(timing->p50) << ',' << number(timing->p99) << ',' << number(timing->p999)
+          << ',' << number(timing->max);
+    }
+    out << ',' << std::hex << row.hash << std::dec << ',' << (row.verified ? "true" : "false")
+        << ',' << quoted(row.remark) << '\n';
+  }
+}
+
+}  // namespace keepout::app

@@ -1,0 +1,18 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <iosfwd>
+
+#include "bench/benchmark.h"
+
+namespace keepout::app {
+
+/// All of it: {"machine": {...}, "rows": [{"mesh": ..., "query_us": {"p50": ..., ...}, ...}, ...]}.
+/// null stands for what was not measured; a radius of null is that of each motion.
+void write_json(std::ostream& out, const Benchmark& benchmark);
+
+/// The rows, one a line, below a line of names; what was not measured is empty.
+void write_csv(std::ostream& out, const Benchmark& benchmark);
+
+}  // namespace keepout::app

@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <array>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <ostream>
+
+#include "bench/benchmark_files.h"
+
+namespace keepout::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+template <class T>
+Json or_null(const std::optional<T>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+Json json_of(const std::optional<Timing>& timing) {
+  if (!timing) return nullptr;
+  return {{"p50", timing->p50},
+          {"p99", or_null(timing->p99)},
+          {"p999", or_null(timing->p999)},
+          {"max", timing->max}};
+}
+
+Json json_of(const Machine& machine) {
+  return {{"processor", machine.processor},   {"cores", machine.cores},
+          {"memory_gib", machine.memory_gib}, {"system", machine.system},
+          {"compiler", machine.compiler},     {"flags", machine.flags},
+          {"build_type", machine.build_type}, {"keepout", machine.keepout},
+          {"libraries", machine.libraries},   {"clock_ns", machine.clock_ns}};
+}
+
+/// JSON has no 64-bit whole numbers that every reader keeps.
+std::string hexadecimal(std::uint64_t value) {
+  std::array<char, 20> text;
+  std::snprintf(text.data(), text.size(), "%016llx", static_cast<unsigned long long>(value));
+  return text.data();
+}
+
+Json json_of(const BenchmarkRow& row) {
+  return {{"mesh", row.mesh},
+          {"triangles", row.triangles},
+          {"vertices", row.vertices},
+          {"radius", or_null(row.radius)},
+          {"queries", row.queries},
+          {"index", row.index},
+          {"activation", row.activation},
+          {"solver", row.solver},
+          {"build_s", row.build_s},
+          {"bytes_per_triangle", row.bytes_per_triangle},
+          {"candidates_mean", row.candidates_mean},
+          {"hits_mean", row.hits_mean},
+          {"planes_mean", row.planes_mean},
+          {"iterations_mean", row.iterations_mean},
+          {"unsolved_share", row.unsolved_share},
+          {"collect_us", json_of(row.collect)},
+          {"query_us", json_of(row.query)},
+          {"activate_us", json_of(row.activate)},
+          {"solve_us", json_of(row.solve)},
+          {"step_us", json_of(row.step)},
+          {"hash", hexadecimal(row.hash)},
+          {"verified", row.verified},
+          {"remark", row.remark}};
+}
+
+}  // namespace
+
+void write_json(std::ostream& out, const Benchmark& benchmark) {
+  Json rows = Json::array();
+  for (const BenchmarkRow& row : benchmark.rows) rows.push_back(json_of(row));
+  const Json all = {{"date", benchmark.date},
+                    {"command", benchmark.command},
+                    {"seed", benchmark.seed},
+                    {"machine", json_of(benchmark.machine)},
+                    {"rows", std::move(rows)}};
+  out << all.dump(2) << '\n';
+}
+
+}  // namespace keepout::app

@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/benchmark_table.h"
+
+#include <array>
+#include <cstdio>
+#include <ostream>
+#include <string>
+
+#include "number_text.h"
+
+namespace keepout::app {
+namespace {
+
+template <class... Values>
+std::string formatted(const char* format, Values... values) {
+  std::array<char, 320> text;
+  std::snprintf(text.data(), text.size(), format, values...);
+  return text.data();
+}
+
+std::string time(const std::optional<double>& microseconds) {
+  return microseconds ? rounded(*microseconds) : "-";
+}
+
+std::string median(const std::optional<Timing>& timing) { return timing ? time(timing->p50) : "-"; }
+
+}  // namespace
+
+void print_table_head(std::ostream& out) {
+  out << formatted("%-11s %-16s %-10s %-13s %6s %7s %6s %7s %7s %9s %9s %9s %9s %9s %9s %9s\n",
+                   "r mm", "index", "rule", "solver", "build", "B/tri", "cand.", "hits", "planes",
+                   "collect", "query", "activate", "solve", "step p50", "p99", "p99.9");
+}
+
+void print_table_row(std::ostream& out, const BenchmarkRow& row) {
+  const std::string radius = row.radius ? trimmed(*row.radius) : "motion";
+  out << formatted("%-11s %-16s %-10s %-13s ", radius.c_str(), row.index.c_str(),
+                   row.activation.c_str(), row.solver.c_str());
+  if (!row.step) {
+    out << row.remark << '\n';
+    return;
+  }
+  out << formatted("%6s %7s %6s %7s %7s %9s %9s %9s %9s %9s %9s %9s",
+                   rounded(row.build_s, 2).c_str(), rounded(row.bytes_per_triangle).c_str(),
+                   rounded(row.candidates_mean, 2).c_str(), rounded(row.hits_mean).c_str(),
+                   rounded(row.planes_mean).c_str(), median(row.collect).c_str(),
+                   median(row.query).c_str(), median(row.activate).c_str(),
+                   median(row.solve).c_str(), median(row.step).c_str(), time(row.step->p99).c_str(),
+                   time(row.step->p999).c_str())
+      << (row.unsolved_share > 0.0
+              ? "  " + rounded(100.0 * row.unsolved_share, 2) + " % without an answer"
+              : "")
+      << '\n';
+}
+
+}  // namespace keepout::app

@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/subject.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "keepout/adapters/load_mesh.h"
+#include "keepout/error.h"
+#include "keepout/fixtures/real_mesh.h"
+#include "keepout/fixtures/refine_mesh.h"
+#include "keepout/fixtures/resample_mesh.h"
+#include "number_text.h"
+
+namespace keepout::app {
+namespace {
+
+std::filesystem::path path_of(const std::string& mesh) {
+  const auto known = real_meshes();
+  const bool is_fixture = std::find(known.begin(), known.end(), mesh) != known.end();
+  return is_fixture ? fixture_path(mesh) : std::filesystem::path(mesh);
+}
+
+}  // namespace
+
+std::vector<Subject> subjects_of(std::span<const std::string> meshes,
+                                 std::span<const std::size_t> sizes) {
+  std::vector<Subject> subjects;
+  bool resampled = false;
+  for (const std::string& mesh : meshes) {
+    const auto is_there = [&](const Subject& subject) { return subject.mesh == mesh; };
+    if (std::any_of(subjects.begin(), subjects.end(), is_there)) continue;
+    if (mesh != resampled_mesh) {
+      subjects.push_back({mesh, 0});
+      continue;
+    }
+    resampled = true;
+    for (const std::size_t size : sizes) subjects.push_back({mesh, size});
+    if (sizes.empty()) subjects.push_back({mesh, 0});
+  }
+  if (!sizes.empty() && !resampled) {
+    throw Error("--triangles is for the mesh that is resampled: name " +
+                std::string(resampled_mesh) + " among the meshes, or leave --triangles out");
+  }
+  return subjects;
+}
+
+std::string title_of(const Subject& subject) {
+  if (subject.triangles == 0) return subject.mesh;
+  return subject.mesh + ", " + counted(subject.triangles, "triangle");
+}
+
+std::shared_ptr<const Mesh> make_mesh(const Subject& subject) {
+  auto mesh = load_mesh(path_of(subject.mesh)).mesh;
+  if (subject.triangles == 0) return mesh;
+  constexpr double largest_extent = 150.0;  // [mm]
+  Surface bunny{{mesh->vertices().begin(), mesh->vertices().end()},
+                {mesh->triangles().begin(), mesh->triangles().end()}};
+  mesh.reset();
+  constexpr std::uint64_t seed = 1;
+  return std::make_shared<const Mesh>(
+      resampled(scaled(std::move(bunny), largest_extent), subject.triangles, seed));
+}
+
+}  // namespace keepout::app

@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "keepout/mesh/mesh.h"
+
+namespace keepout::app {
+
+/// A mesh to be measured on.
+struct Subject {
+  std::string mesh;           // the name of a real fixture, or a file
+  std::size_t triangles = 0;  // the bunny, scaled and resampled to so many; 0: as it is in the file
+};
+
+/// The mesh of which a curve over the number of triangles is made: the paper's.
+inline constexpr std::string_view resampled_mesh = "bunny";
+
+/// Each mesh once, and the bunny once for each of the sizes. Throws Error for sizes of nothing that
+/// can be resampled.
+std::vector<Subject> subjects_of(std::span<const std::string> meshes,
+                                 std::span<const std::size_t> sizes);
+
+/// "bunny, 989,376 triangles".
+std::string title_of(const Subject& subject);
+
+/// Reads or makes it: the bunny 150 mm large, as in the paper. Throws Error.
+std::shared_ptr<const Mesh> make_mesh(const Subject& subject);
+
+}  // namespace keepout::app

@@ -1,0 +1,122 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/trial.h"
+
+#include <chrono>
+
+#include "bench/measure.h"
+#include "bench/parts.h"
+#include "keepout/activation/registry.h"
+#include "keepout/error.h"
+#include "keepout/fixtures/motions.h"
+#include "keepout/index/pd_tree.h"
+#include "machine.h"
+#include "number_text.h"
+
+namespace keepout::app {
+
+/// The index at hand, and what it took.
+struct Trial::Built {
+  std::string name;
+  std::unique_ptr<SpatialIndex> index = nullptr;
+  double seconds = 0.0;
+  std::string refusal = {};  // why there is none
+};
+
+Trial::Trial(const Subject& subject, const TrialSettings& settings, MemoryTaken& memory)
+    : subject_(subject), settings_(settings), memory_(memory), mesh_(make_mesh(subject)) {
+  reference_index_ = std::make_unique<PdTree>(mesh_);
+  Random random(settings_.seed);
+  const MotionKind kind{.clearance = settings_.margin};
+  motions_ = settings_.poses == Poses::contact
+                 ? contact_motions(*mesh_, *reference_index_, settings_.queries, kind, random)
+                 : unrelated_motions(*mesh_, settings_.queries, kind, random);
+  work_ = std::make_unique<Workspace>(
+      Capacity{.triangles = std::size_t{1} << 18, .planes = std::size_t{1} << 16, .variables = 3});
+}
+
+Trial::~Trial() = default;
+
+Activation& Trial::rule(const std::string& activation) {
+  std::unique_ptr<Activation>& made = rules_[activation];
+  if (!made) {
+    made = make_activation(activation, mesh_);
+    made->reserve(work_->candidates.capacity());
+  }
+  return *made;
+}
+
+Solver& Trial::solver(const std::string& name) {
+  std::unique_ptr<Solver>& made = solvers_[name];
+  if (!made) {
+    made = make_solver(name);
+    made->reserve(3, static_cast<int>(work_->planes.capacity()));
+  }
+  return *made;
+}
+
+Reference& Trial::reference(const RuleSetting& setting) {
+  std::unique_ptr<Reference>& made = references_[{setting.activation, setting.radius}];
+  if (!made) {
+    made = std::make_unique<Reference>(mesh_, *reference_index_, rule(setting.activation), *work_,
+                                       setting, motions_);
+  }
+  return *made;
+}
+
+const Trial::Built& Trial::build(const std::string& index) {
+  if (built_ && built_->name == index) return *built_;
+  built_.reset();  // two large ones need not fit
+  built_ = std::make_unique<Built>(Built{.name = index});
+  const IndexBackend& backend = entry_named(index, indices(), "index", absent_indices());
+  const auto count = static_cast<double>(mesh_->triangle_count());
+  constexpr double while_building = 2.0;  // some hold twice as much then
+  if (const auto taken = memory_.find(index); taken != memory_.end()) {
+    const double needed = while_building * taken->second * count;
+    const auto available = static_cast<double>(available_memory());
+    if (needed > available) {
+      built_->refusal = "not built: needs up to " + rounded(1e-9 * needed, 2) + " GB, and " +
+                        rounded(1e-9 * available, 2) + " GB are free";
+      return *built_;
+    }
+  }
+  try {
+    using Clock = std::chrono::steady_clock;
+    const Clock::time_point start = Clock::now();
+    built_->index = backend.make(mesh_);
+    built_->seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    memory_[index] = static_cast<double>(built_->index->memory()) / count;
+  } catch (const Error& error) {
+    built_->refusal = std::string("not built: ") + error.what();
+  }
+  return *built_;
+}
+
+BenchmarkRow Trial::measure(const Combination& combination) {
+  BenchmarkRow row{.mesh = subject_.mesh,
+                   .triangles = mesh_->triangle_count(),
+                   .vertices = mesh_->vertex_count(),
+                   .radius = combination.radius,
+                   .index = combination.index,
+                   .activation = combination.activation,
+                   .solver = combination.solver};
+  const Built& built = build(combination.index);
+  row.remark = built.refusal;
+  if (!built.index) return row;
+  row.build_s = built.seconds;
+  row.bytes_per_triangle =
+      static_cast<double>(built.index->memory()) / static_cast<double>(mesh_->triangle_count());
+
+  const RuleSetting setting{combination.activation, combination.radius, settings_.margin};
+  const Pipeline pipeline{
+      *mesh_, *built.index, rule(combination.activation), solver(combination.solver),
+      *work_, setting};
+  const double accuracy =
+      combination.solver == "active_set"
+          ? 0.0
+          : entry_named(combination.solver, solver_backends(), "solver").accuracy;
+  app::measure(pipeline, motions_, reference(setting), accuracy, settings_.seconds, row);
+  return row;
+}
+
+}  // namespace keepout::app

@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bench/benchmark.h"
+#include "bench/combination.h"
+#include "bench/reference.h"
+#include "bench/subject.h"
+
+namespace keepout::app {
+
+enum class Poses {
+  contact,   // a tool that presses on the surface and slides along it, cycle after cycle
+  unrelated  // all over the surface, as a planner asks
+};
+
+struct TrialSettings {
+  std::size_t queries = 4000;  // of each combination, at most
+  double seconds = 0.4;        // after which a combination is asked no more
+  double margin = 0.2;         // of the certified rule, and from the tip to the surface [mm]
+  Poses poses = Poses::contact;
+  std::uint64_t seed = 1;
+};
+
+/// What an index takes, by its name, as seen on another mesh. [bytes per triangle]
+using MemoryTaken = std::map<std::string, double>;
+
+/// One mesh, and the same motions for every combination.
+class Trial {
+ public:
+  /// `memory` must outlive this, and is added to. Throws Error when there is no such mesh.
+  Trial(const Subject& subject, const TrialSettings& settings, MemoryTaken& memory);
+  ~Trial();
+
+  /// Builds the index unless the combination before had the same. What cannot be built, or gives a
+  /// wrong answer, is not timed, and the row's remark says why.
+  BenchmarkRow measure(const Combination& combination);
+
+  const Mesh& mesh() const noexcept { return *mesh_; }
+
+ private:
+  struct Built;
+
+  const Built& build(const std::string& index);
+  Activation& rule(const std::string& activation);
+  Solver& solver(const std::string& name);
+  Reference& reference(const RuleSetting& setting);
+
+  Subject subject_;
+  TrialSettings settings_;
+  MemoryTaken& memory_;
+  std::shared_ptr<const Mesh> mesh_;
+  std::vector<Motion> motions_;
+  std::unique_ptr<SpatialIndex> reference_index_;
+  std::unique_ptr<Workspace> work_;
+  std::map<std::string, std::unique_ptr<Activation>> rules_;
+  std::map<std::string, std::unique_ptr<Solver>> solvers_;
+  std::map<std::pair<std::string, std::optional<double>>, std::unique_ptr<Reference>> references_;
+  std::unique_ptr<Built> built_;
+};
+
+}  // namespace keepout::app
