@@ -15,6 +15,7 @@
 
 #include "bench/bench.h"
 #include "bench/parts.h"
+#include "compare/compare.h"
 #include "inspect.h"
 #include "keepout/activation/registry.h"
 #include "keepout/adapters/index_registry.h"
@@ -297,6 +298,36 @@ void add_bench(CLI::App& app, BenchCommand& bench) {
       "--solver: each index, then each solver, with those; and FCL's tree with SLSQP.");
 }
 
+void add_compare(CLI::App& app, CompareOptions& options) {
+  CLI::App& command = *app.add_subcommand(
+      "compare",
+      "Hold all parts that can take each other's place to each other and to the truth, on the same "
+      "input: indices, solvers, narrow phases");
+  command.add_option("MESH", options.mesh, "A real fixture, or a mesh file in mm")
+      ->capture_default_str();
+  command.add_option("--poses", options.extent.poses, "Poses for the indices, under each rule")
+      ->type_name("NUMBER")
+      ->transform(whole_number(6, 1'000'000))
+      ->capture_default_str();
+  command.add_option("--problems", options.extent.problems, "Recorded problems for the solvers")
+      ->type_name("NUMBER")
+      ->transform(whole_number(10, 1'000'000))
+      ->capture_default_str();
+  command
+      .add_option("--pairs", options.extent.pairs,
+                  "Pairs of tool and triangle for the narrow phases, of each kind")
+      ->type_name("NUMBER")
+      ->transform(whole_number(10, 1'000'000))
+      ->capture_default_str();
+  command.add_option("--seed", options.extent.seed, "Seed of poses, problems and pairs")
+      ->type_name("NUMBER")
+      ->transform(whole_number(0, largest_seed))
+      ->capture_default_str();
+  command.add_option("--json", options.json, "Where to write the tables")->type_name("FILE");
+  command.footer(
+      "The exit status is 0 only if all indices agree to the bit and no solver is wrong.");
+}
+
 /// What was printed has to arrive: a full disk shall not look like success.
 void flush_stdout() {
   std::cout.flush();
@@ -326,12 +357,14 @@ int run(int argc, char** argv) {
   SimulateOptions simulate_options;
   VerifyOptions verify_options;
   BenchCommand bench_command;
+  CompareOptions compare_options;
   simulate_options.rules = names(activation_rules());
   add_inspect(app, inspect_options);
   add_replay(app, replay_options);
   add_simulate(app, simulate_options);
   add_verify(app, verify_options);
   add_bench(app, bench_command);
+  add_compare(app, compare_options);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -346,6 +379,7 @@ int run(int argc, char** argv) {
   if (app.got_subcommand("replay")) replay(replay_options, std::cout);
   if (app.got_subcommand("simulate")) simulate(simulate_options, std::cout);
   if (app.got_subcommand("bench")) run_bench(bench_command, argc, argv);
+  if (app.got_subcommand("compare")) return compare(compare_options, std::cout);
   if (app.got_subcommand("verify")) return verify(verify_options, std::cout);
   return EXIT_SUCCESS;
 }

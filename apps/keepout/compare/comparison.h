@@ -11,7 +11,7 @@ namespace keepout::app {
 
 /// One index under one rule, on the same poses as all others, held to brute force.
 struct IndexAgreement {
-  std::string mesh, index, activation;
+  std::string mesh = {}, index = {}, activation = {};
   std::size_t poses = 0;
   std::size_t missed = 0;    // triangles in reach that it did not give
   std::size_t invented = 0;  // triangles it gave twice, or that are not in reach, after refining

@@ -1,0 +1,84 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "compare/compare.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <ostream>
+
+#include "bench/parts.h"
+#include "bench/subject.h"
+#include "compare/comparison_files.h"
+#include "compare/index_agreement.h"
+#include "keepout/activation/registry.h"
+#include "output_file.h"
+#include "progress.h"
+
+namespace keepout::app {
+namespace {
+
+template <class Table>
+std::vector<std::string> names(const Table& table) {
+  std::vector<std::string> all;
+  for (const auto& entry : table) all.emplace_back(entry.name);
+  return all;
+}
+
+/// All but brute force, which they are held to.
+std::vector<std::string> indices_to_compare() {
+  std::vector<std::string> all = names(indices());
+  std::erase(all, "brute_force");
+  return all;
+}
+
+/// No index may differ in any bit, no solver be wrong; the narrow phases are not ours.
+bool agree(const Comparison& comparison) {
+  return std::ranges::all_of(comparison.indices,
+                             [](const IndexAgreement& a) {
+                               return a.missed == 0 && a.invented == 0 && a.plane_angle == 0.0 &&
+                                      a.steps_that_differ == 0;
+                             }) &&
+         std::ranges::all_of(comparison.solvers,
+                             [](const SolverAgreement& a) { return a.wrong == 0; });
+}
+
+}  // namespace
+
+Comparison compare_parts(const std::string& mesh_name, const std::shared_ptr<const Mesh>& mesh,
+                         const CompareExtent& extent) {
+  Comparison comparison;
+  const std::vector<std::string> rules = names(activation_rules());
+  {
+    Progress progress("compare indices", extent.poses * rules.size());
+    comparison.indices = compare_indices({.mesh_name = mesh_name,
+                                          .mesh = mesh,
+                                          .indices = indices_to_compare(),
+                                          .activations = rules,
+                                          .poses = extent.poses,
+                                          .seed = extent.seed},
+                                         [&] { progress.advance(); });
+  }
+  return comparison;
+}
+
+int compare(const CompareOptions& options, std::ostream& out) {
+  std::unique_ptr<OutputFile> json;
+  if (options.json) {
+    refuse_shared_files(std::array{NamedPath{"MESH", options.mesh}},
+                        std::array{NamedPath{"--json", *options.json}});
+    json = std::make_unique<OutputFile>(*options.json);
+  }
+  const Comparison comparison =
+      compare_parts(options.mesh, make_mesh({options.mesh, 0}), options.extent);
+  print(out, comparison);
+  if (json) {
+    write_json(json->stream(), comparison);
+    json->commit();
+  }
+  if (agree(comparison)) return EXIT_SUCCESS;
+  out << "\nParts that must not differ do: please report it.\n";
+  return EXIT_FAILURE;
+}
+
+}  // namespace keepout::app

@@ -1,0 +1,16 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <iosfwd>
+
+#include "compare/comparison.h"
+
+namespace keepout::app {
+
+/// Tables for a terminal. Parts that were not compared are left out.
+void print(std::ostream& out, const Comparison& comparison);
+
+void write_json(std::ostream& out, const Comparison& comparison);
+
+}  // namespace keepout::app
