@@ -9,7 +9,7 @@
 #include <future>
 #include <string>
 
-#include "keepout/adapters/index_registry.h"
+#include "keepout/adapters/all_indices.h"
 #include "keepout/error.h"
 #include "keepout/fixtures/shapes.h"
 
@@ -91,7 +91,7 @@ std::string backend_name(const testing::TestParamInfo<IndexBackend>& info) {
   return std::string(info.param.name);
 }
 
-INSTANTIATE_TEST_SUITE_P(Backends, IndexContract, testing::ValuesIn(index_backends()),
+INSTANTIATE_TEST_SUITE_P(Backends, IndexContract, testing::ValuesIn(all_index_backends()),
                          backend_name);
 
 TEST(IndexRegistry, AnUnknownNameListsTheKnownOnes) {
