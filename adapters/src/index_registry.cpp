@@ -3,11 +3,22 @@
 
 #include "keepout/adapters/index_registry.h"
 
+#include <iterator>
 #include <utility>
 
 #include "keepout/index/brute_force.h"
 #include "keepout/index/pd_tree.h"
 #include "keepout/registry.h"
+
+#if KEEPOUT_HAS_FCL
+#include "../fcl/fcl_index.h"
+#endif
+#if KEEPOUT_HAS_BULLET
+#include "../bullet/bullet_index.h"
+#endif
+#if KEEPOUT_HAS_EMBREE
+#include "../embree/embree_index.h"
+#endif
 
 namespace keepout {
 namespace {
@@ -24,13 +35,47 @@ constexpr IndexBackend backends[] = {
      as_many_as_a_mesh, nullptr},
     {"pd_tree", "principal direction tree of oriented boxes (Williams et al. 1997)", make<PdTree>,
      as_many_as_a_mesh, nullptr},
+#if KEEPOUT_HAS_FCL
+    {"fcl_obbrss", "oriented boxes of FCL", make_fcl_obbrss_index, fcl_most_triangles, fcl_library},
+    {"fcl_aabb", "axis-aligned boxes of FCL", make_fcl_aabb_index, fcl_most_triangles, fcl_library},
+#endif
+#if KEEPOUT_HAS_BULLET
+    {"bullet_quantized", "axis-aligned boxes of Bullet, in 16 bits", make_bullet_quantized_index,
+     bullet_quantized_most_triangles, bullet_library},
+    {"bullet", "axis-aligned boxes of Bullet", make_bullet_index, bullet_most_triangles,
+     bullet_library},
+#endif
+#if KEEPOUT_HAS_EMBREE
+    {"embree", "axis-aligned boxes of Embree, in float", make_embree_index, embree_most_triangles,
+     embree_library},
+#endif
+};
+
+// Its last entry is not one of them, for an array cannot be empty.
+constexpr AbsentPart absent[] = {
+#if !KEEPOUT_HAS_FCL
+    {"fcl_obbrss", "FCL (install libfcl-dev, configure with KEEPOUT_WITH_FCL=ON)"},
+    {"fcl_aabb", "FCL (install libfcl-dev, configure with KEEPOUT_WITH_FCL=ON)"},
+#endif
+#if !KEEPOUT_HAS_BULLET
+    {"bullet_quantized",
+     "Bullet (install libbullet-dev and pkg-config, configure with KEEPOUT_WITH_BULLET=ON)"},
+    {"bullet",
+     "Bullet (install libbullet-dev and pkg-config, configure with KEEPOUT_WITH_BULLET=ON)"},
+#endif
+#if !KEEPOUT_HAS_EMBREE
+    {"embree", "Embree 3 (install libembree-dev, configure with KEEPOUT_WITH_EMBREE=ON)"},
+#endif
+    {},
 };
 
 }  // namespace
 
 std::span<const IndexBackend> index_backends() noexcept { return backends; }
 
-std::span<const AbsentPart> absent_index_backends() noexcept { return {}; }
+std::span<const AbsentPart> absent_index_backends() noexcept {
+  return std::span(absent).first(std::size(absent) - 1);
+}
 
 std::unique_ptr<SpatialIndex> make_index(std::string_view name, std::shared_ptr<const Mesh> mesh) {
   return entry_named(name, backends, "index", absent_index_backends()).make(std::move(mesh));

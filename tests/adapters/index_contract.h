@@ -8,11 +8,12 @@
 #include <cmath>
 #include <memory>
 #include <ostream>
+#include <utility>
 #include <vector>
 
 #include "keepout/adapters/index_registry.h"
 #include "keepout/fixtures/poses.h"
-#include "keepout/index/refine.h"
+#include "keepout/geometry/closest_point.h"
 #include "keepout/index/spatial_index.h"
 #include "keepout/mesh/mesh.h"
 
@@ -58,30 +59,48 @@ inline std::vector<double> probing_radii(const Mesh& mesh, const std::vector<dou
           farthest};
 }
 
-/// Fails unless the index finds, at every place and radius, exactly what brute force finds.
-inline void expect_brute_force_sets(const std::shared_ptr<const Mesh>& mesh,
-                                    const SpatialIndex& index, std::size_t of_each_kind) {
-  TriangleBuffer candidates(mesh->triangle_count());
-  HitBuffer hits(mesh->triangle_count());
-  Random random(2);
-  for (const Vec3& point : probing_points(*mesh, of_each_kind)) {
-    const std::vector<double> distance = distances(*mesh, point);
-    for (const double radius : probing_radii(*mesh, distance, random)) {
-      candidates.clear();
-      hits.clear();
-      index.collect({point, radius}, candidates);
-      ASSERT_FALSE(candidates.overflowed()) << "a triangle was given twice";
-      refine(*mesh, {point, radius}, candidates.view(), hits);
+/// A place to ask at, what brute force says there, and the radii to ask for.
+struct Probe {
+  Vec3 point;
+  std::vector<double> distances;  // of every triangle
+  std::vector<double> radii;
+};
 
-      std::size_t next = 0;
-      for (TriangleId t = 0; t < mesh->triangle_count(); ++t) {
-        if (distance[t] > radius) continue;
-        ASSERT_LT(next, hits.size()) << "misses triangle " << t << " of radius " << radius;
-        ASSERT_EQ(hits[next].triangle, t) << "at " << point.transpose() << " radius " << radius;
-        ASSERT_EQ(hits[next].closest.distance, distance[t]);
-        ++next;
+/// Worked out once for all the indices of a mesh.
+inline std::vector<Probe> probes(const Mesh& mesh, std::size_t of_each_kind) {
+  Random random(2);
+  std::vector<Probe> all;
+  for (const Vec3& point : probing_points(mesh, of_each_kind)) {
+    Probe probe{point, distances(mesh, point), {}};
+    probe.radii = probing_radii(mesh, probe.distances, random);
+    all.push_back(std::move(probe));
+  }
+  return all;
+}
+
+/// Fails unless the index finds, at every place and radius, each triangle that brute force finds,
+/// and none twice.
+inline void expect_brute_force_sets(const Mesh& mesh, const SpatialIndex& index,
+                                    const std::vector<Probe>& probes) {
+  TriangleBuffer candidates(mesh.triangle_count());
+  std::vector<std::size_t> found(mesh.triangle_count(), 0);  // in which question
+  std::size_t question = 0;
+  for (const Probe& probe : probes) {
+    for (const double radius : probe.radii) {
+      candidates.clear();
+      index.collect({probe.point, radius}, candidates);
+      ASSERT_FALSE(candidates.overflowed()) << "a triangle was given twice";
+      ++question;
+      for (const TriangleId t : candidates) {
+        ASSERT_LT(t, found.size());
+        ASSERT_NE(found[t], question) << "gives triangle " << t << " twice";
+        found[t] = question;
       }
-      ASSERT_EQ(next, hits.size());
+      for (TriangleId t = 0; t < found.size(); ++t) {
+        if (probe.distances[t] > radius || found[t] == question) continue;
+        FAIL() << "misses triangle " << t << " at " << probe.point.transpose() << " radius "
+               << radius << ", " << radius - probe.distances[t] << " within it";
+      }
     }
   }
 }

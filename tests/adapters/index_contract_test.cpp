@@ -6,10 +6,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <future>
+#include <set>
 #include <string>
+#include <utility>
 
-#include "keepout/adapters/index_registry.h"
+#include "capacity.h"
+#include "keepout/adapters/all_indices.h"
 #include "keepout/error.h"
 #include "keepout/fixtures/shapes.h"
 
@@ -22,31 +26,118 @@ TEST_P(IndexContract, FindsWhatBruteForceFindsOnEveryGeneratedShape) {
   for (const Shape& shape : shapes()) {
     SCOPED_TRACE(shape.name);
     const auto mesh = std::make_shared<const Mesh>(shape.make());
-    expect_brute_force_sets(mesh, *GetParam().make(mesh), 20);
+    expect_brute_force_sets(*mesh, *GetParam().make(mesh), probes(*mesh, 20));
     if (HasFatalFailure()) return;
   }
+}
+
+// Indices in float, or with absolute tolerances, are put to the test by where and how large a mesh
+// is.
+TEST_P(IndexContract, FindsWhatBruteForceFindsWhereverTheMeshIsAndHoweverLarge) {
+  for (const double scale : {1e-6, 1.0, 1e6}) {
+    for (const double offset : {0.0, 1e6}) {
+      SCOPED_TRACE(testing::Message() << "scale " << scale << " offset " << offset);
+      Surface surface = make_shape("gear");
+      for (Vec3& vertex : surface.vertices) {
+        vertex = scale * vertex + offset * Vec3(1.0, -0.7, 0.3);
+      }
+      const auto mesh = std::make_shared<const Mesh>(std::move(surface));
+      expect_brute_force_sets(*mesh, *GetParam().make(mesh), probes(*mesh, 5));
+      if (HasFatalFailure()) return;
+    }
+  }
+}
+
+// Ever smaller towards one point: a tree that splits at the mean is as deep as the list is long.
+TEST_P(IndexContract, FindsWhatBruteForceFindsOnAMeshOfEverySize) {
+  Surface surface;
+  for (int i = 0; i < 900; ++i) {
+    const double size = std::ldexp(1.0, -i);
+    const auto first = static_cast<VertexId>(surface.vertices.size());
+    for (const Vec3& corner : {Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(1, 0, 1)}) {
+      surface.vertices.push_back(size * corner);
+    }
+    surface.triangles.push_back({first, first + 1, first + 2});
+  }
+  const auto mesh = std::make_shared<const Mesh>(std::move(surface));
+  expect_brute_force_sets(*mesh, *GetParam().make(mesh), probes(*mesh, 20));
 }
 
 TEST_P(IndexContract, FindsWhatBruteForceFindsOnOneTriangleAndOnManyInOnePlace) {
   const Surface one{{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)}, {{0, 1, 2}}};
   Surface many = one;
-  many.triangles.assign(100, {0, 1, 2});
-  Surface points{{Vec3(1, 2, 3)}, {{0, 0, 0}, {0, 0, 0}}};
-  for (const Surface& surface : {one, many, points}) {
+  many.triangles.assign(5000, {0, 1, 2});
+  for (const Surface& surface : {one, many}) {
     const auto mesh = std::make_shared<const Mesh>(surface);
-    const auto index = GetParam().make(mesh);
-    HitBuffer hits(mesh->triangle_count());
-    TriangleBuffer candidates(mesh->triangle_count());
-    const Vec3 corner = mesh->vertex(0);
-    index->collect({corner, 0.0}, candidates);
-    refine(*mesh, {corner, 0.0}, candidates.view(), hits);
-    EXPECT_EQ(hits.size(), mesh->triangle_count());
-    candidates.clear();
-    hits.clear();
-    index->collect({corner + Vec3(0, 0, 5), 4.999}, candidates);
-    refine(*mesh, {corner + Vec3(0, 0, 5), 4.999}, candidates.view(), hits);
-    EXPECT_TRUE(hits.empty());
+    expect_brute_force_sets(*mesh, *GetParam().make(mesh), probes(*mesh, 10));
   }
+}
+
+TEST_P(IndexContract, FindsTrianglesThatAreAllOnePoint) {
+  const Vec3 place(1e3, -2e3, 3e3);
+  for (const std::size_t count : {1u, 2u, 1000u}) {
+    Surface points{{place}, {}};
+    points.triangles.assign(count, {0, 0, 0});
+    const auto mesh = std::make_shared<const Mesh>(points);
+    const auto index = GetParam().make(mesh);
+    TriangleBuffer candidates(count);
+    for (const Ball& ball : {Ball{place, 0.0}, Ball{place, 1.0}, Ball{place + Vec3(0, 0, 5), 5.0},
+                             Ball{place + Vec3(3e4, 4e4, 0), 5e4}}) {
+      candidates.clear();
+      index->collect(ball, candidates);
+      EXPECT_EQ(candidates.size(), count) << "radius " << ball.radius;
+      EXPECT_FALSE(candidates.overflowed());
+    }
+  }
+}
+
+TEST_P(IndexContract, ABallThatHoldsTheMeshFindsAllOfIt) {
+  const auto mesh = std::make_shared<const Mesh>(make_shape("cube"));
+  const auto index = GetParam().make(mesh);
+  const double size = mesh->bounds().size().norm();
+  TriangleBuffer candidates(mesh->triangle_count());
+  for (const double away : {0.0, 1.0, 1e4, 1e12, 1e100}) {
+    for (const double farther : {1.001, 1e3, 1e20}) {
+      candidates.clear();
+      index->collect({away * size * Vec3(0.6, 0.8, 0), farther * (away + 1.0) * size}, candidates);
+      EXPECT_EQ(candidates.size(), mesh->triangle_count()) << away << " sizes away";
+      EXPECT_FALSE(candidates.overflowed());
+    }
+  }
+}
+
+TEST_P(IndexContract, ProposesLittleWhereThereIsLittle) {
+  if (GetParam().name == "brute_force") return;  // proposes what is there, and nothing else
+  const auto mesh = std::make_shared<const Mesh>(make_shape("star_bumps"));
+  const auto index = GetParam().make(mesh);
+  TriangleBuffer candidates(mesh->triangle_count());
+  Random random(3);
+  for (const Vec3& point : surface_points(*mesh, 50, 0.0, random)) {
+    candidates.clear();
+    index->collect({point, 1e-3}, candidates);
+    EXPECT_GE(candidates.size(), 1u);
+    EXPECT_LE(candidates.size(), mesh->triangle_count() / 20);
+  }
+}
+
+TEST_P(IndexContract, SaysHowMuchMemoryItHolds) {
+  const auto mesh = std::make_shared<const Mesh>(make_shape("star_bumps"));
+  const double of_each = static_cast<double>(GetParam().make(mesh)->memory()) /
+                         static_cast<double>(mesh->triangle_count());
+  if (GetParam().name == "brute_force") {
+    EXPECT_EQ(of_each, 0.0);
+  } else {
+    EXPECT_GT(of_each, 20.0);
+    EXPECT_LT(of_each, 1000.0);
+  }
+}
+
+TEST_P(IndexContract, SaysWhatItHoldsAtMostAndWhatLibraryIsBehindIt) {
+  EXPECT_GE(GetParam().most_triangles, std::size_t{1} << 26);
+  EXPECT_FALSE(GetParam().description.empty());
+  if (GetParam().library == nullptr) return;  // ours
+  const std::string library = GetParam().library();
+  EXPECT_NE(library.find_first_of("0123456789"), std::string::npos) << library;
 }
 
 TEST_P(IndexContract, NeverGivesATriangleTwice) {
@@ -91,7 +182,7 @@ std::string backend_name(const testing::TestParamInfo<IndexBackend>& info) {
   return std::string(info.param.name);
 }
 
-INSTANTIATE_TEST_SUITE_P(Backends, IndexContract, testing::ValuesIn(index_backends()),
+INSTANTIATE_TEST_SUITE_P(Backends, IndexContract, testing::ValuesIn(all_index_backends()),
                          backend_name);
 
 TEST(IndexRegistry, AnUnknownNameListsTheKnownOnes) {
@@ -104,6 +195,51 @@ TEST(IndexRegistry, AnUnknownNameListsTheKnownOnes) {
     EXPECT_NE(text.find("pd-tree"), std::string::npos);
     for (const IndexBackend& backend : index_backends()) {
       EXPECT_NE(text.find(backend.name), std::string::npos);
+    }
+  }
+}
+
+TEST(IndexRegistry, AnAbsentIndexSaysWhatItNeeds) {
+  struct Part {
+    std::string_view name;
+  };
+  const Part known[] = {{"brute_force"}};
+  const AbsentPart absent[] = {{"bullet", "Bullet (install libbullet-dev)"}};
+  try {
+    entry_named("bullet", known, "index", absent);
+    FAIL() << "no error";
+  } catch (const Error& error) {
+    const std::string text = error.what();
+    for (const std::string_view part : {"bullet", "install libbullet-dev", "brute_force"}) {
+      EXPECT_NE(text.find(part), std::string::npos) << text;
+    }
+  }
+}
+
+TEST(IndexRegistry, EveryIndexOfThisBuildIsEitherThereOrAbsent) {
+  std::set<std::string_view> names;
+  for (const IndexBackend& backend : all_index_backends()) names.insert(backend.name);
+  for (const AbsentPart& part : all_absent_index_backends()) {
+    EXPECT_NE(part.needs.find("install lib"), std::string_view::npos) << part.name;
+    EXPECT_TRUE(names.insert(part.name).second) << part.name << " is both";
+  }
+  EXPECT_EQ(names, (std::set<std::string_view>{"brute_force", "pd_tree", "fcl_obbrss", "fcl_aabb",
+                                               "bullet_quantized", "bullet", "embree", "cgal"}));
+}
+
+TEST(IndexRegistry, WhatIsUnderTheGplIsNoPartOfTheLibrary) {
+  for (const IndexBackend& backend : index_backends()) EXPECT_NE(backend.name, "cgal");
+}
+
+TEST(IndexCapacity, AMeshThatIsTooLargeIsRefusedByTheLimitAndTheWayOut) {
+  EXPECT_NO_THROW(require_at_most(1000, 1000, "triangles", "bullet"));
+  try {
+    require_at_most(1000, 1001, "triangles", "bullet");
+    FAIL() << "no error";
+  } catch (const Error& error) {
+    const std::string text = error.what();
+    for (const std::string_view part : {"'bullet'", "1000 triangles", "1001", "'pd_tree'"}) {
+      EXPECT_NE(text.find(part), std::string::npos) << text;
     }
   }
 }

@@ -1,0 +1,98 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cgal_index.h"
+
+#include <CGAL/AABB_traits.h>
+#include <CGAL/AABB_tree.h>
+#include <CGAL/Simple_cartesian.h>
+#include <CGAL/version.h>
+
+#include <boost/iterator/counting_iterator.hpp>
+#include <utility>
+
+#include "../src/ball_against_box.h"
+
+namespace keepout {
+namespace {
+
+using Kernel = CGAL::Simple_cartesian<double>;
+
+/// A triangle of the mesh, by its id: CGAL's concept AABBPrimitiveWithSharedData.
+class MeshTriangle {
+ public:
+  using Id = TriangleId;
+  using Datum = Kernel::Triangle_3;
+  using Datum_reference = Datum;
+  using Point = Kernel::Point_3;
+  using Point_reference = Point;
+  using Shared_data = const Mesh*;
+
+  MeshTriangle() = default;
+  MeshTriangle(boost::counting_iterator<TriangleId> id, const Mesh*) : id_(*id) {}
+
+  Id id() const { return id_; }
+  Datum datum(const Mesh* mesh) const {
+    const Triangle corners = mesh->triangle(id_);
+    return {point(corners[0]), point(corners[1]), point(corners[2])};
+  }
+  Point reference_point(const Mesh* mesh) const { return point(mesh->triangle(id_)[0]); }
+  static Shared_data construct_shared_data(const Mesh* mesh) { return mesh; }
+
+ private:
+  static Point point(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
+
+  TriangleId id_ = no_triangle;
+};
+
+using Traits = CGAL::AABB_traits<Kernel, MeshTriangle>;
+using Tree = CGAL::AABB_tree<Traits>;
+using Node = CGAL::AABB_node<Traits>;
+
+/// What CGAL's walk asks: enter every node within reach, and take all triangles there.
+struct BallTraversal {
+  double squared_reach;
+  TriangleBuffer& candidates;
+
+  bool go_further() const { return true; }
+  bool do_intersect(const Vec3& center, const Node& node) const {
+    const CGAL::Bbox_3& box = node.bbox();
+    return squared_distance(
+               {Vec3(box.xmin(), box.ymin(), box.zmin()), Vec3(box.xmax(), box.ymax(), box.zmax())},
+               center) <= squared_reach;
+  }
+  void intersection(const Vec3&, const MeshTriangle& triangle) { candidates.push(triangle.id()); }
+};
+
+class CgalIndex final : public SpatialIndex {
+ public:
+  explicit CgalIndex(std::shared_ptr<const Mesh> mesh) : mesh_(std::move(mesh)) {
+    const auto count = static_cast<TriangleId>(mesh_->triangle_count());
+    tree_.insert(boost::counting_iterator<TriangleId>(0),
+                 boost::counting_iterator<TriangleId>(count), mesh_.get());
+    tree_.build();  // now, not in the first query
+  }
+
+  void collect(const Ball& ball, TriangleBuffer& candidates) const noexcept override {
+    const double reach = padded_radius(ball, mesh_->bounds());
+    BallTraversal traversal{reach * reach, candidates};
+    tree_.traversal(ball.center, traversal);
+  }
+
+  std::size_t memory() const noexcept override {
+    return tree_.size() * (sizeof(MeshTriangle) + sizeof(Node));
+  }
+
+ private:
+  std::shared_ptr<const Mesh> mesh_;
+  Tree tree_;
+};
+
+}  // namespace
+
+std::unique_ptr<SpatialIndex> make_cgal_index(std::shared_ptr<const Mesh> mesh) {
+  return std::make_unique<CgalIndex>(std::move(mesh));
+}
+
+std::string cgal_library() { return "CGAL " CGAL_VERSION_STR; }
+
+}  // namespace keepout

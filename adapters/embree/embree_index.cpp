@@ -1,0 +1,147 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "embree_index.h"
+
+#include <embree3/rtcore.h>
+
+#include <array>
+#include <atomic>
+#include <cstdio>
+#include <utility>
+
+#include "../src/ball_against_box.h"
+#include "../src/centered_frame.h"
+#include "keepout/error.h"
+
+namespace keepout {
+namespace {
+
+// In the frame of the scene no coordinate exceeds 1. A vertex is off by half an ulp of a float that
+// is at most 1, a centre by half an ulp of its own coordinates, and Embree's distances by some ulp
+// of themselves: none by more than 2^-22 of 1 + |center| + radius. Eight times that is added.
+constexpr double float_rounding = 0x1p-19;
+
+struct Release {
+  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+  void operator()(RTCGeometry geometry) const { rtcReleaseGeometry(geometry); }
+};
+template <class Handle>
+using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Release>;
+
+[[noreturn]] void fail(RTCError error) {
+  constexpr std::array<const char*, 7> reasons{"no reason given",
+                                               "an unknown error",
+                                               "an invalid argument",
+                                               "an invalid operation",
+                                               "out of memory",
+                                               "this processor lacks what it needs",
+                                               "cancelled"};
+  const auto reason = static_cast<std::size_t>(error);
+  throw Error(std::string("Embree: ") +
+              (reason < reasons.size() ? reasons[reason] : "an error of its own") +
+              "; use the index 'pd_tree', which needs no library");
+}
+
+/// Embree's tree, walked by its point query.
+class EmbreeIndex final : public SpatialIndex {
+ public:
+  explicit EmbreeIndex(std::shared_ptr<const Mesh> mesh)
+      : mesh_(std::move(mesh)), frame_(mesh_->bounds(), 1.0), device_(rtcNewDevice(nullptr)) {
+    if (!device_) fail(rtcGetDeviceError(nullptr));
+    rtcSetDeviceMemoryMonitorFunction(device_.get(), count_memory, &memory_);
+    build();
+  }
+
+  void collect(const Ball& ball, TriangleBuffer& candidates) const noexcept override {
+    const double reach = padded_radius(ball, mesh_->bounds());
+    // Decided in double, before a distance is more than a float can tell from another.
+    if (squared_distance(mesh_->bounds(), ball.center) > reach * reach) return;
+    const Vec3 center = frame_.from_mesh(ball.center);
+    const double radius = frame_.from_mesh(ball.radius);
+    const double pad = float_rounding * (1.0 + center.cwiseAbs().maxCoeff() + radius);
+    // The corner of the frame is farther than the ball need reach to hold every triangle.
+    const bool holds_all = radius >= (center.cwiseAbs() + Vec3::Ones()).norm();
+    // From farther away all triangles are alike to a float. Written so that a NaN is far, too.
+    const bool is_far = !(pad < 1.0);
+    if (holds_all || is_far) {
+      for (TriangleId t = 0; t < mesh_->triangle_count(); ++t) candidates.push(t);
+      return;
+    }
+    RTCPointQuery query;
+    query.x = static_cast<float>(center.x());
+    query.y = static_cast<float>(center.y());
+    query.z = static_cast<float>(center.z());
+    query.time = 0.0f;
+    query.radius = static_cast<float>(radius + pad);
+    RTCPointQueryContext context;
+    rtcInitPointQueryContext(&context);
+    rtcPointQuery(scene_.get(), &query, &context, add, &candidates);
+  }
+
+  std::size_t memory() const noexcept override {
+    return static_cast<std::size_t>(memory_.bytes.load());
+  }
+
+ private:
+  struct Memory {
+    std::atomic<std::ptrdiff_t> bytes{0};  // Embree builds with many threads
+  };
+
+  static bool count_memory(void* memory, ssize_t bytes, bool) {
+    static_cast<Memory*>(memory)->bytes += bytes;
+    return true;
+  }
+
+  static bool add(RTCPointQueryFunctionArguments* arguments) {
+    static_cast<TriangleBuffer*>(arguments->userPtr)->push(arguments->primID);
+    return false;  // the radius stays
+  }
+
+  void build() {
+    const Owned<RTCGeometry> geometry(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE));
+    check();
+    auto* vertices = static_cast<std::array<float, 3>*>(
+        rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                sizeof(std::array<float, 3>), mesh_->vertex_count()));
+    check();
+    for (const Vec3& vertex : mesh_->vertices()) {
+      const Vec3 local = frame_.from_mesh(vertex);
+      *vertices++ = {static_cast<float>(local.x()), static_cast<float>(local.y()),
+                     static_cast<float>(local.z())};
+    }
+    static_assert(sizeof(Corners) == 3 * sizeof(unsigned));
+    rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                               mesh_->triangles().data(), 0, sizeof(Corners),
+                               mesh_->triangle_count());
+    rtcCommitGeometry(geometry.get());
+    check();
+    scene_.reset(rtcNewScene(device_.get()));
+    check();
+    rtcAttachGeometry(scene_.get(), geometry.get());
+    rtcCommitScene(scene_.get());
+    check();
+  }
+
+  void check() const {
+    const RTCError error = rtcGetDeviceError(device_.get());
+    if (error != RTC_ERROR_NONE) fail(error);
+  }
+
+  std::shared_ptr<const Mesh> mesh_;
+  CenteredFrame frame_;
+  Memory memory_;
+  // One of its own for each index: then the memory counted is this index's.
+  Owned<RTCDevice> device_;
+  Owned<RTCScene> scene_;
+};
+
+}  // namespace
+
+std::unique_ptr<SpatialIndex> make_embree_index(std::shared_ptr<const Mesh> mesh) {
+  return std::make_unique<EmbreeIndex>(std::move(mesh));
+}
+
+std::string embree_library() { return "Embree " RTC_VERSION_STRING; }
+
+}  // namespace keepout

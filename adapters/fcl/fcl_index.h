@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+
+#include "keepout/index/spatial_index.h"
+#include "keepout/mesh/mesh.h"
+
+namespace keepout {
+
+/// FCL counts the nodes, of which there are twice as many as triangles, and the vertices by an int.
+inline constexpr std::size_t fcl_most_triangles = std::size_t{1} << 30;
+
+/// FCL's tree of oriented boxes (OBBRSS, of which the box is used).
+std::unique_ptr<SpatialIndex> make_fcl_obbrss_index(std::shared_ptr<const Mesh> mesh);
+
+/// FCL's tree of axis-aligned boxes.
+std::unique_ptr<SpatialIndex> make_fcl_aabb_index(std::shared_ptr<const Mesh> mesh);
+
+std::string fcl_library();
+
+}  // namespace keepout

@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "keepout/geometry/box.h"
+
+namespace keepout {
+
+/// A mesh's own frame: the origin amid its bounds, the unit chosen so that no coordinate exceeds
+/// `reach`. For libraries that are less exact, or less general, away from the origin or from the
+/// size of everyday things.
+///
+/// The unit is a power of two, so that only the shift rounds: by 2^-53 of the coordinate that
+/// results.
+class CenteredFrame {
+ public:
+  /// Precondition: reach is a power of two.
+  CenteredFrame(const Box& bounds, double reach) noexcept;
+
+  Vec3 from_mesh(const Vec3& point) const noexcept { return scale_ * (point - center_); }
+  double from_mesh(double length) const noexcept { return scale_ * length; }
+  Box from_mesh(const Box& box) const noexcept { return {from_mesh(box.low), from_mesh(box.high)}; }
+
+ private:
+  Vec3 center_;   // in the mesh frame [length]
+  double scale_;  // [1 / length], a power of two
+};
+
+}  // namespace keepout
