@@ -3,36 +3,14 @@
 #include "keepout/solvers/active_set.h"
 
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
 #include "active_set_method.h"
+#include "problem_checks.h"
 
 namespace keepout {
-namespace {
 
 using active_set::Method;
-
-bool shapes_agree(const StepProblem& problem) noexcept {
-  const Eigen::Index n = problem.jacobian.cols();
-  return n >= 1 && problem.desired.size() == problem.jacobian.rows() &&
-         problem.bounds.size() == problem.rows.rows() &&
-         (problem.rows.cols() == n || problem.rows.rows() == 0);
-}
-
-/// Written so that NaN fails. The rows are judged where they are read, in one pass.
-bool cost_in_range(const StepProblem& problem) noexcept {
-  const auto in_range = [](double x) { return std::abs(x) <= active_set::largest; };
-  for (Eigen::Index i = 0; i < problem.jacobian.size(); ++i) {
-    if (!in_range(problem.jacobian.data()[i])) return false;
-  }
-  for (Eigen::Index i = 0; i < problem.desired.size(); ++i) {
-    if (!in_range(problem.desired[i])) return false;
-  }
-  return in_range(problem.damping) && problem.damping >= 0;
-}
-
-}  // namespace
 
 struct ActiveSet::Workspace {
   int variables = 0;

@@ -4,6 +4,9 @@
 
 #include "keepout/registry.h"
 #include "keepout/solvers/active_set.h"
+#if KEEPOUT_WITH_NLOPT
+#include "keepout/solvers/nlopt_solver.h"
+#endif
 
 namespace keepout {
 namespace {
@@ -13,16 +16,41 @@ std::unique_ptr<Solver> make() {
   return std::make_unique<T>();
 }
 
-constexpr SolverBackend backends[] = {
+#if KEEPOUT_WITH_NLOPT
+template <NloptMethod method>
+SolverBackend nlopt_backend(std::string_view name, std::string_view description) {
+  return {name,
+          description,
+          []() -> std::unique_ptr<Solver> { return std::make_unique<NloptSolver>(method); },
+          Allocation::inside,
+          NloptSolver::accuracy(method),
+          NloptSolver::library};
+}
+#endif
+
+const SolverBackend backends[] = {
     {"active_set", "our own dual active-set method (Goldfarb and Idnani 1983)", make<ActiveSet>,
      Allocation::never, 1e-9, nullptr},
+#if KEEPOUT_WITH_NLOPT
+    nlopt_backend<NloptMethod::slsqp>("nlopt_slsqp", "NLopt: sequential least squares (Kraft)"),
+    nlopt_backend<NloptMethod::cobyla>("nlopt_cobyla", "NLopt: linear models (Powell)"),
+    nlopt_backend<NloptMethod::mma>("nlopt_mma", "NLopt: moving asymptotes (Svanberg)"),
+#endif
 };
+
+#if KEEPOUT_WITH_NLOPT
+constexpr std::span<const AbsentPart> absent;
+#else
+constexpr std::string_view needs_nlopt = "NLopt (libnlopt-dev, KEEPOUT_WITH_NLOPT=ON)";
+constexpr AbsentPart absent[] = {
+    {"nlopt_slsqp", needs_nlopt}, {"nlopt_cobyla", needs_nlopt}, {"nlopt_mma", needs_nlopt}};
+#endif
 
 }  // namespace
 
 std::span<const SolverBackend> solver_backends() noexcept { return backends; }
 
-std::span<const AbsentPart> absent_solver_backends() noexcept { return {}; }
+std::span<const AbsentPart> absent_solver_backends() noexcept { return absent; }
 
 std::unique_ptr<Solver> make_solver(std::string_view name) {
   return entry_named(name, backends, "solver", absent_solver_backends()).make();

@@ -1,0 +1,143 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The one file that sees NLopt.
+#include "minimize.h"
+
+#include <nlopt.h>
+
+#include <memory>
+#include <string>
+#include <type_traits>
+
+namespace keepout::nlopt {
+namespace {
+
+struct Destroy {
+  void operator()(nlopt_opt opt) const noexcept { nlopt_destroy(opt); }
+};
+using Optimizer = std::unique_ptr<std::remove_pointer_t<nlopt_opt>, Destroy>;
+
+/// How a method is run: when it counts as converged, in multiples of the scale, and what it may
+/// spend.
+struct Schedule {
+  nlopt_algorithm algorithm;
+  double x_tolerance;
+  int most_evaluations;
+};
+
+Schedule schedule_of(NloptMethod method) noexcept {
+  switch (method) {
+    case NloptMethod::slsqp:
+      return {NLOPT_LD_SLSQP, 1e-12, 100};
+    case NloptMethod::cobyla:
+      return {NLOPT_LN_COBYLA, 1e-9, 5000};
+    case NloptMethod::mma:
+      break;
+  }
+  return {NLOPT_LD_MMA, 1e-10, 2000};
+}
+
+NloptClaim claim_of(nlopt_result result) noexcept {
+  switch (result) {
+    case NLOPT_SUCCESS:
+      return NloptClaim::success;
+    case NLOPT_STOPVAL_REACHED:
+      return NloptClaim::stopval_reached;
+    case NLOPT_FTOL_REACHED:
+      return NloptClaim::ftol_reached;
+    case NLOPT_XTOL_REACHED:
+      return NloptClaim::xtol_reached;
+    case NLOPT_MAXEVAL_REACHED:
+      return NloptClaim::maxeval_reached;
+    case NLOPT_MAXTIME_REACHED:
+      return NloptClaim::maxtime_reached;
+    case NLOPT_FAILURE:
+      return NloptClaim::failure;
+    case NLOPT_INVALID_ARGS:
+      return NloptClaim::invalid_args;
+    case NLOPT_OUT_OF_MEMORY:
+      return NloptClaim::out_of_memory;
+    case NLOPT_ROUNDOFF_LIMITED:
+      return NloptClaim::roundoff_limited;
+    case NLOPT_FORCED_STOP:
+      return NloptClaim::forced_stop;
+    default:
+      return NloptClaim::unknown;
+  }
+}
+
+/// What NLopt calls back with. Counts for itself: not every loop of NLopt minds its own limit, nor
+/// stops at what is not a number (its issues 28 and 350).
+struct Callback {
+  const NearestPoint& problem;
+  nlopt_opt optimizer;
+  int most_evaluations;
+  int evaluations = 0;
+
+  static double cost(unsigned n, const double* x, double* gradient, void* data) {
+    Callback& self = *static_cast<Callback*>(data);
+    const Eigen::Map<const Eigen::VectorXd> z(x, n);
+    if (++self.evaluations > self.most_evaluations || !z.allFinite()) {
+      nlopt_force_stop(self.optimizer);
+    }
+    if (gradient != nullptr) Eigen::Map<Eigen::VectorXd>(gradient, n) = z;
+    return 0.5 * z.squaredNorm();
+  }
+
+  static void violations(unsigned m, double* result, unsigned n, const double* x, double* gradient,
+                         void* data) {
+    const NearestPoint& problem = static_cast<Callback*>(data)->problem;
+    const Eigen::Map<const Eigen::VectorXd> z(x, n);
+    Eigen::Map<Eigen::VectorXd>(result, m).noalias() = problem.bounds - problem.normals * z;
+    if (gradient != nullptr) {
+      Eigen::Map<StepProblem::RowMatrix>(gradient, m, n) = -problem.normals;
+    }
+  }
+};
+
+}  // namespace
+
+Attempt minimize(NloptMethod method, const NearestPoint& problem) {
+  const auto n = static_cast<unsigned>(problem.normals.cols());
+  const auto m = static_cast<unsigned>(problem.normals.rows());
+  const Schedule schedule = schedule_of(method);
+  const Optimizer optimizer(nlopt_create(schedule.algorithm, n));
+  Attempt attempt{.z = problem.rest};
+  if (!optimizer) {
+    attempt.claim = NloptClaim::out_of_memory;
+    return attempt;
+  }
+  nlopt_opt opt = optimizer.get();
+  Callback callback{problem, opt, 2 * schedule.most_evaluations};
+  // A row counts as satisfied a little early; the check does not take that from it.
+  const Eigen::VectorXd tolerances = Eigen::VectorXd::Constant(m, 1e-13);
+  bool set = nlopt_set_min_objective(opt, Callback::cost, &callback) == NLOPT_SUCCESS &&
+             nlopt_set_xtol_abs1(opt, schedule.x_tolerance) == NLOPT_SUCCESS &&
+             nlopt_set_maxeval(opt, schedule.most_evaluations) == NLOPT_SUCCESS &&
+             nlopt_set_initial_step1(opt, 0.5) == NLOPT_SUCCESS;
+  if (m > 0) {
+    set = set && nlopt_add_inequality_mconstraint(opt, m, Callback::violations, &callback,
+                                                  tolerances.data()) == NLOPT_SUCCESS;
+  }
+  if (!set) {
+    attempt.claim = NloptClaim::invalid_args;
+    return attempt;
+  }
+  double least = 0;
+  attempt.claim = claim_of(nlopt_optimize(opt, attempt.z.data(), &least));
+  attempt.evaluations = callback.evaluations;
+  return attempt;
+}
+
+}  // namespace keepout::nlopt
+
+namespace keepout {
+
+std::string NloptSolver::library() {
+  int major = 0, minor = 0, fix = 0;
+  nlopt_version(&major, &minor, &fix);
+  return "NLopt " + std::to_string(major) + '.' + std::to_string(minor) + '.' + std::to_string(fix);
+}
+
+}  // namespace keepout
