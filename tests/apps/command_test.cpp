@@ -2,10 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The keepout command as a user meets it: run as a process, judged by what it prints and leaves.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
-#include <array>
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -17,38 +14,22 @@
 #include <utility>
 #include <vector>
 
+#include "apps/command_process.h"
 #include "keepout/fixtures/shapes.h"
 #include "keepout/mesh/binary_stl.h"
-#include "temporary_folder.h"
 
 namespace keepout {
 namespace {
 
-struct Outcome {
-  int status;
-  std::string output;  // stdout and stderr
-};
-
+using Outcome = test::ProcessOutcome;
 using Row = std::map<std::string, std::string>;
 
 class Command : public testing::Test {
  protected:
   void SetUp() override { write_binary_stl(file("cube.stl"), make_cube(10.0)); }
 
-  std::filesystem::path file(const std::string& name) const { return folder_.path() / name; }
-
-  /// Runs keepout in the folder of the test.
-  Outcome run(const std::string& arguments) const {
-    const std::string line =
-        "cd '" + folder_.path().string() + "' && '" KEEPOUT_COMMAND "' " + arguments + " 2>&1";
-    FILE* pipe = ::popen(line.c_str(), "r");
-    Outcome outcome{-1, {}};
-    std::array<char, 4096> part;
-    while (std::fgets(part.data(), part.size(), pipe) != nullptr) outcome.output += part.data();
-    const int status = ::pclose(pipe);
-    outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-    return outcome;
-  }
+  std::filesystem::path file(const std::string& name) const { return folder_.file(name); }
+  Outcome run(const std::string& arguments) const { return folder_.run(arguments); }
 
   /// A CSV file as rows by column name.
   std::vector<Row> rows(const std::string& name) const {
@@ -77,7 +58,7 @@ class Command : public testing::Test {
             std::stod(row.at(prefix + "z"))};
   }
 
-  TemporaryFolder folder_;
+  test::CommandFolder folder_;
 };
 
 TEST_F(Command, HelpNamesEveryCommandAndChoice) {

@@ -41,6 +41,11 @@ struct BenchmarkRow {
   double iterations_mean = 0.0;  // of the solver
   double unsolved_share = 0.0;   // of the steps: ended in a status that is not ok
 
+  /// Of the steps, with a solver other than the reference's, under a rule that accepts a motion for
+  /// its proof alone: right, but farther from what was asked for than the reference's, by more than
+  /// a thousandth of it.
+  double worse_share = 0.0;
+
   std::optional<Timing> collect = {};  // candidates only
   std::optional<Timing> query = {};    // candidates and the exact kernel
   std::optional<Timing> activate = {};

@@ -34,7 +34,8 @@ constexpr std::array stage_names = {"collect", "query", "activate", "solve", "st
 
 void write_csv(std::ostream& out, const Benchmark& benchmark) {
   out << "mesh,triangles,vertices,radius,queries,index,activation,solver,build_s,"
-         "bytes_per_triangle,candidates_mean,hits_mean,planes_mean,iterations_mean,unsolved_share";
+         "bytes_per_triangle,candidates_mean,hits_mean,planes_mean,iterations_mean,unsolved_share,"
+         "worse_share";
   for (const char* stage : stage_names) {
     for (const char* which : {"p50", "p99", "p999", "max"}) out << ',' << stage << "_us_" << which;
   }
@@ -45,7 +46,7 @@ void write_csv(std::ostream& out, const Benchmark& benchmark) {
         << ',' << row.solver;
     for (const double value :
          {row.build_s, row.bytes_per_triangle, row.candidates_mean, row.hits_mean, row.planes_mean,
-          row.iterations_mean, row.unsolved_share}) {
+          row.iterations_mean, row.unsolved_share, row.worse_share}) {
       out << ',' << number(value);
     }
     for (const auto stage : stages) {

@@ -56,6 +56,7 @@ Json json_of(const BenchmarkRow& row) {
           {"planes_mean", row.planes_mean},
           {"iterations_mean", row.iterations_mean},
           {"unsolved_share", row.unsolved_share},
+          {"worse_share", row.worse_share},
           {"collect_us", json_of(row.collect)},
           {"query_us", json_of(row.query)},
           {"activate_us", json_of(row.activate)},

@@ -25,6 +25,11 @@ std::string time(const std::optional<double>& microseconds) {
 
 std::string median(const std::optional<Timing>& timing) { return timing ? time(timing->p50) : "-"; }
 
+/// "  1.2 % worse"; nothing where there are none.
+std::string share(double value, const char* of_what) {
+  return value > 0.0 ? "  " + rounded(100.0 * value, 2) + " % " + of_what : "";
+}
+
 }  // namespace
 
 void print_table_head(std::ostream& out) {
@@ -48,10 +53,7 @@ void print_table_row(std::ostream& out, const BenchmarkRow& row) {
                    median(row.query).c_str(), median(row.activate).c_str(),
                    median(row.solve).c_str(), median(row.step).c_str(), time(row.step->p99).c_str(),
                    time(row.step->p999).c_str())
-      << (row.unsolved_share > 0.0
-              ? "  " + rounded(100.0 * row.unsolved_share, 2) + " % without an answer"
-              : "")
-      << '\n';
+      << share(row.unsolved_share, "without an answer") << share(row.worse_share, "worse") << '\n';
 }
 
 }  // namespace keepout::app

@@ -61,11 +61,19 @@ class AnswerHash {
 };
 
 /// A wrong answer; one that is withheld is not.
-bool is_wrong(const Answer& got, const Answer& expected, double accuracy, const Motion& motion) {
+bool is_wrong(const Answer& got, const Answer& expected, double accuracy, const Motion& motion,
+              const RuleSetting& setting) {
   if (accuracy == 0.0) return !(got == expected);
-  if (!is_ok(got.status)) return false;
+  if (!is_ok(got.status) || setting.proves_motions()) return false;
   if (!is_ok(expected.status)) return true;
   return !((got.motion - expected.motion).norm() <= accuracy * motion.desired.norm());
+}
+
+/// Right, but short of the reference by more than a thousandth of the motion.
+bool is_worse(const Answer& got, const Answer& expected, const Motion& motion) {
+  return is_ok(got.status) && is_ok(expected.status) &&
+         (got.motion - motion.desired).norm() >
+             (expected.motion - motion.desired).norm() + 1e-3 * motion.desired.norm();
 }
 
 /// The number of steps that there was time for; the row says whether they were right.
@@ -75,7 +83,7 @@ std::size_t verify(const Pipeline& pipeline, std::span<const Motion> motions, Re
   const Pipeline watched{pipeline.mesh, pipeline.index, pipeline.rule,
                          solver,        pipeline.work,  pipeline.setting};
   AnswerHash hash;
-  std::size_t candidates = 0, hits = 0, planes = 0, unsolved = 0, wrong = 0, count = 0;
+  std::size_t candidates = 0, hits = 0, planes = 0, unsolved = 0, worse = 0, wrong = 0, count = 0;
   Clock::duration spent{};
   for (; count < motions.size(); ++count) {
     if (count >= fewest_steps && microseconds(spent) > 1e6 * seconds) break;
@@ -87,7 +95,9 @@ std::size_t verify(const Pipeline& pipeline, std::span<const Motion> motions, Re
     planes += pipeline.work.planes.size();
     hash.add(got);
     if (!is_ok(got.status)) ++unsolved;
-    if (is_wrong(got, reference.answer(count), accuracy, motions[count])) ++wrong;
+    const Answer& expected = reference.answer(count);
+    if (is_wrong(got, expected, accuracy, motions[count], pipeline.setting)) ++wrong;
+    if (is_worse(got, expected, motions[count])) ++worse;
   }
   const auto mean = [&](std::size_t sum) {
     return static_cast<double>(sum) / static_cast<double>(count);
@@ -98,6 +108,7 @@ std::size_t verify(const Pipeline& pipeline, std::span<const Motion> motions, Re
   row.planes_mean = mean(planes);
   row.iterations_mean = mean(solver.iterations());
   row.unsolved_share = mean(unsolved);
+  row.worse_share = mean(worse);
   row.hash = hash.value();
   row.verified = wrong == 0;
   if (wrong > 0) {

@@ -15,6 +15,7 @@ namespace keepout::app {
 ///
 /// Steps must be those of the reference bit for bit if the solver is the same, `accuracy` being 0;
 /// else within `accuracy` of the length of the motion. A solver may give up, but not be wrong.
+/// Under a rule that proves each motion, another solver's may be worse, of which the row tells.
 ///
 /// Fills the row from its queries on.
 void measure(const Pipeline& pipeline, std::span<const Motion> motions, Reference& reference,

@@ -7,7 +7,7 @@
 namespace keepout::app {
 
 StepOptions options_of(const RuleSetting& setting, const Motion& motion) {
-  if (setting.activation == "certified") return {.radius = 5.0, .margin = setting.margin};
+  if (setting.proves_motions()) return {.radius = 5.0, .margin = setting.margin};
   return {.radius = setting.radius.value_or(motion.desired.norm())};
 }
 

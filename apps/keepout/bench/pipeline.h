@@ -21,6 +21,9 @@ struct RuleSetting {
   std::string activation;
   std::optional<double> radius;  // of the motion sphere; none: as long as each motion [mm]
   double margin = 0.0;           // that certified keeps; the paper's rules take the tip as is [mm]
+
+  /// Whether a motion is accepted for its proof, and not because a solver says that it is the best.
+  bool proves_motions() const { return activation == "certified"; }
 };
 
 /// The options of one step: the certified rule looks only where the motion leads, within 5 mm.

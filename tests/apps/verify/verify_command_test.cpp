@@ -2,27 +2,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // keepout verify as a user meets it: options, shards, files.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
-#include <array>
-#include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "apps/command_process.h"
 #include "keepout/fixtures/shapes.h"
 #include "keepout/mesh/binary_stl.h"
-#include "temporary_folder.h"
 
 namespace keepout::app {
 namespace {
 
-struct Outcome {
-  int status;
-  std::string output;  // stdout and stderr
-};
+using Outcome = test::ProcessOutcome;
 
 class Verify : public testing::Test {
  protected:
@@ -32,15 +26,7 @@ class Verify : public testing::Test {
   }
 
   Outcome run(const std::string& arguments, const std::string& environment = {}) const {
-    const std::string line = "cd '" + folder_.path().string() + "' && " + environment +
-                             " '" KEEPOUT_COMMAND "' verify " + arguments + " 2>&1";
-    FILE* pipe = ::popen(line.c_str(), "r");
-    Outcome outcome{-1, {}};
-    std::array<char, 4096> part;
-    while (std::fgets(part.data(), part.size(), pipe) != nullptr) outcome.output += part.data();
-    const int status = ::pclose(pipe);
-    outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-    return outcome;
+    return folder_.run("verify " + arguments, environment);
   }
 
   nlohmann::json read(const std::string& name) const {
@@ -57,7 +43,7 @@ class Verify : public testing::Test {
     return result;
   }
 
-  TemporaryFolder folder_;
+  test::CommandFolder folder_;
 };
 
 TEST_F(Verify, ShardsAddUpToTheWhole) {

@@ -1,0 +1,137 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+// keepout bench and compare as a user meets them.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+
+#include "apps/command_process.h"
+#include "keepout/adapters/all_indices.h"
+#include "keepout/fixtures/shapes.h"
+#include "keepout/mesh/binary_stl.h"
+#include "keepout/solvers/registry.h"
+
+namespace keepout::test {
+namespace {
+
+using nlohmann::json;
+
+class BenchCommand : public testing::Test {
+ protected:
+  void SetUp() override { write_binary_stl(folder.file("cube.stl"), make_cube(5.0)); }
+
+  json read(const std::string& name) const {
+    std::ifstream file(folder.file(name));
+    return json::parse(file);
+  }
+
+  void expect_refused(const std::string& arguments, const std::string& why) const {
+    const ProcessOutcome outcome = folder.run(arguments);
+    EXPECT_NE(outcome.status, 0) << arguments;
+    EXPECT_NE(outcome.output.find(why), std::string::npos) << arguments << '\n' << outcome.output;
+  }
+
+  CommandFolder folder;
+};
+
+TEST_F(BenchCommand, ListsEveryPart) {
+  const ProcessOutcome outcome = folder.run("bench --list");
+  EXPECT_EQ(outcome.status, 0);
+  for (const IndexBackend& index : all_index_backends()) {
+    EXPECT_NE(outcome.output.find(index.name), std::string::npos) << index.name;
+  }
+  for (const SolverBackend& solver : solver_backends()) {
+    EXPECT_NE(outcome.output.find(solver.name), std::string::npos) << solver.name;
+  }
+  EXPECT_NE(outcome.output.find("skull_1m"), std::string::npos);
+}
+
+TEST_F(BenchCommand, WritesOneRowForEachCombinationWithAllThatIsAskedOfIt) {
+  const ProcessOutcome outcome = folder.run(
+      "bench --mesh cube.stl --index pd_tree,brute_force --radius 5,motion "
+      "--activation paper,certified --queries 300 --seconds 5 --json b.json --csv b.csv");
+  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  const json benchmark = read("b.json");
+  for (const char* key : {"processor", "cores", "memory_gib", "system", "compiler", "flags",
+                          "build_type", "keepout", "libraries", "clock_ns"}) {
+    EXPECT_TRUE(benchmark["machine"].contains(key)) << key;
+  }
+  ASSERT_EQ(benchmark["rows"].size(), 6u);
+  std::map<std::string, std::set<std::string>> hashes;  // of each rule and radius
+  for (const json& row : benchmark["rows"]) {
+    EXPECT_TRUE(row["verified"]);
+    EXPECT_EQ(row["mesh"], "cube.stl");
+    EXPECT_EQ(row["queries"], 300);
+    for (const char* stage : {"collect_us", "query_us", "activate_us", "solve_us", "step_us"}) {
+      EXPECT_GT(row[stage]["p50"], 0.0) << stage;
+      EXPECT_GE(row[stage]["max"], row[stage]["p99"]) << stage;
+      EXPECT_TRUE(row[stage]["p999"].is_null()) << "300 samples do not tell";
+    }
+    hashes[row["activation"].get<std::string>() + row["radius"].dump()].insert(row["hash"]);
+  }
+  EXPECT_EQ(hashes.size(), 3u);
+  for (const auto& [combination, hash] : hashes) EXPECT_EQ(hash.size(), 1u) << combination;
+
+  std::ifstream csv(folder.file("b.csv"));
+  std::string head, line;
+  std::getline(csv, head);
+  const auto columns = std::count(head.begin(), head.end(), ',');
+  std::size_t lines = 0;
+  for (; std::getline(csv, line); ++lines) {
+    EXPECT_EQ(std::count(line.begin(), line.end(), ','), columns) << line;
+  }
+  EXPECT_EQ(lines, 6u);
+}
+
+TEST_F(BenchCommand, ResamplesTheBunny) {
+  const ProcessOutcome outcome =
+      folder.run("bench --triangles 60000,70000 --index pd_tree --queries 50 --json b.json");
+  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  std::set<int> sizes;
+  const json benchmark = read("b.json");
+  for (const json& row : benchmark["rows"]) sizes.insert(row["triangles"].get<int>());
+  EXPECT_EQ(sizes, (std::set<int>{60000, 70000}));
+}
+
+TEST_F(BenchCommand, SaysWhatIsWrongWithTheArguments) {
+  expect_refused("bench --index pd-tree", "pd_tree");
+  expect_refused("bench --solver nlopt", "active_set");
+  expect_refused("bench --radius -1 --mesh cube.stl", "--radius");
+  expect_refused("bench --radius some --mesh cube.stl", "motion");
+  expect_refused("bench --triangles 12", "--triangles");
+  expect_refused("bench --triangles 2000 --mesh cube.stl", "bunny");
+  expect_refused("bench --mesh nowhere.stl", "nowhere.stl");
+  expect_refused("bench --mesh cube.stl --json no/such/folder.json", "no/such");
+  expect_refused("bench --mesh cube.stl --json a.json --csv a.json", "--csv");
+  expect_refused("bench --mesh cube.stl --csv cube.stl", "cube.stl");
+  expect_refused("bench --poses somewhere", "contact");
+  EXPECT_FALSE(std::filesystem::exists(folder.file("a.json")));
+}
+
+TEST_F(BenchCommand, LeavesNoFileBehindWhenItFails) {
+  expect_refused("bench --mesh nowhere.stl --json b.json", "nowhere.stl");
+  EXPECT_FALSE(std::filesystem::exists(folder.file("b.json")));
+}
+
+TEST_F(BenchCommand, ComparesEveryIndexToBruteForce) {
+  const ProcessOutcome outcome =
+      folder.run("compare cube.stl --poses 30 --problems 60 --pairs 20 --json c.json");
+  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  const json comparison = read("c.json");
+  std::set<std::string> names;
+  for (const json& row : comparison["indices"]) {
+    names.insert(row["index"]);
+    EXPECT_EQ(row["poses"], 30);
+    EXPECT_EQ(row["missed"], 0);
+    EXPECT_EQ(row["invented"], 0);
+    EXPECT_EQ(row["steps_that_differ"], 0);
+    EXPECT_LT(row["closest_point_error_mm"], 1e-12);
+  }
+  EXPECT_EQ(names.size(), all_index_backends().size() - 1);
+}
+
+}  // namespace
+}  // namespace keepout::test
