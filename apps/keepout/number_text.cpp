@@ -53,4 +53,10 @@ std::string length_text(double mm) {
   return "under 1\u00a0nm";
 }
 
+std::string time_text(double us) {
+  return us >= 1e4 ? rounded(1e-3 * us) + "\u00a0ms" : rounded(us) + "\u00a0µs";
+}
+
+std::string ratio_text(double ratio) { return rounded(ratio, 2); }
+
 }  // namespace keepout::app
