@@ -26,6 +26,9 @@ std::string trimmed(double value, int digits = 6);
 /// A length in the unit that suits it, mm, um or nm, joined by a space that does not break.
 std::string length_text(double mm);
 
+/// A mean of counts: 0.130, 26.2, 10,151.
+std::string mean_text(double mean);
+
 /// A time in the unit that suits it, µs or ms, joined in the same way.
 std::string time_text(double us);
 

@@ -19,6 +19,8 @@
 namespace keepout::app {
 namespace {
 
+constexpr auto to_left = TableCell::Look::name;
+
 /// Errors span many powers of ten.
 std::string error_text(double value) {
   if (!std::isfinite(value)) return "?";
@@ -108,7 +110,7 @@ void print_outcomes(std::ostream& out, const std::vector<SolverAgreement>& rows)
                   [](const SolverAgreement& row) { return row.outcomes.empty(); })) {
     return;
   }
-  out << "<h3>What the libraries said, and what was found</h3>\n<figure><dl>";
+  out << "<h3>What the libraries said, and what was found</h3>\n<figure class=\"outcomes\"><dl>";
   for (const SolverAgreement& row : rows) {
     if (row.outcomes.empty()) continue;
     std::vector<std::pair<std::size_t, std::string>> most_first;
@@ -126,16 +128,20 @@ void print_outcomes(std::ostream& out, const std::vector<SolverAgreement>& rows)
   out << "</dl></figure>\n";
 }
 
-std::string error_spans(const std::vector<NarrowPhaseAgreement>& rows) {
+/// Those of one relation; on the same axis as the others, so that panels can be compared.
+std::string error_spans(const std::vector<NarrowPhaseAgreement>& rows,
+                        const std::string& relation) {
   Spans chart;
-  chart.description = "Median and worst error of each narrow phase.";
-  chart.axis = "error of the distance or depth [mm]";
+  chart.description = "Median and worst error of each narrow phase, " + relation + ".";
+  chart.axis = "error [mm]";
   std::vector<std::string> backends;
   for (const NarrowPhaseAgreement& row : rows) {
     const auto known = std::find(backends.begin(), backends.end(), row.backend);
     const auto number = static_cast<std::size_t>(known - backends.begin());
     if (known == backends.end()) backends.push_back(row.backend);
-    Span span{row.backend + ", " + row.tool + ", " + row.relation,
+    chart.in_range.insert(chart.in_range.end(), {row.median_error, row.worst_error});
+    if (row.relation != relation) continue;
+    Span span{row.backend + ", " + row.tool,
               error_text(row.median_error) + " to " + error_text(row.worst_error),
               series_class(number),
               mark_of(number),
@@ -144,6 +150,24 @@ std::string error_spans(const std::vector<NarrowPhaseAgreement>& rows) {
     chart.spans.push_back(std::move(span));
   }
   return to_svg(chart);
+}
+
+void print_errors(std::ostream& out, const std::vector<NarrowPhaseAgreement>& rows) {
+  std::vector<std::string> relations;
+  for (const NarrowPhaseAgreement& row : rows) {
+    if (std::find(relations.begin(), relations.end(), row.relation) == relations.end()) {
+      relations.push_back(row.relation);
+    }
+  }
+  out << "<div class=\"panels\" style=\"--columns:" << std::min<std::size_t>(relations.size(), 3)
+      << "\">\n";
+  for (const std::string& relation : relations) {
+    out << "<figure class=\"measured\"><figcaption><span class=\"name\">" << escape(relation)
+        << "</span><br><span class=\"about\">A mark at the median error, a line to the worst; no "
+           "mark where it is 0.</span></figcaption>"
+        << error_spans(rows, relation) << "</figure>\n";
+  }
+  out << "</div>\n";
 }
 
 }  // namespace
@@ -169,8 +193,8 @@ void print_index_agreement(std::ostream& out, const Comparison& comparison) {
                    "steps that differ"};
   for (const IndexAgreement& row : comparison.indices) {
     table.rows.push_back({{row.index},
-                          {row.activation},
-                          {row.mesh},
+                          {row.activation, to_left},
+                          {row.mesh, to_left},
                           {grouped(row.poses)},
                           harm(row.missed),
                           harm(row.invented),
@@ -199,7 +223,7 @@ void print_solver_agreement(std::ostream& out, const Comparison& comparison) {
                    "99 % [µs]"};
   for (const SolverAgreement& row : comparison.solvers) {
     table.rows.push_back({{row.solver},
-                          {row.activation},
+                          {row.activation, to_left},
                           {grouped(row.problems)},
                           {grouped(row.optimal)},
                           {grouped(row.infeasible)},
@@ -223,8 +247,8 @@ void print_narrow_phase_agreement(std::ostream& out, const Comparison& compariso
                    "median [µs]",  "99 % [µs]"};
   for (const NarrowPhaseAgreement& row : comparison.narrow_phases) {
     table.rows.push_back({{row.backend},
-                          {row.tool},
-                          {row.relation},
+                          {row.tool, to_left},
+                          {row.relation, to_left},
                           {grouped(row.pairs)},
                           harm(row.failed),
                           harm(row.contradicted),
@@ -235,10 +259,7 @@ void print_narrow_phase_agreement(std::ostream& out, const Comparison& compariso
   }
   open_section(out, "Do the narrow phases agree?", narrow_phase_lead(comparison.narrow_phases));
   print_table(out, table);
-  out << "<div class=\"panels\" style=\"--columns:1\"><figure class=\"measured\"><figcaption><span "
-         "class=\"about\">A mark at the median error, a line to the worst; no mark where it is "
-         "0.</span></figcaption>"
-      << error_spans(comparison.narrow_phases) << "</figure></div>\n";
+  print_errors(out, comparison.narrow_phases);
 }
 
 }  // namespace keepout::app

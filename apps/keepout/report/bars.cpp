@@ -13,7 +13,7 @@ namespace keepout::app {
 namespace {
 
 constexpr double width = 560.0, edge = 12.0;
-constexpr double row_height = 41.0, bar_height = 15.0, label_height = 18.0;
+constexpr double row_height = 44.0, bar_height = 15.0, label_height = 21.0;
 
 double sum(const Bar& bar) { return std::accumulate(bar.parts.begin(), bar.parts.end(), 0.0); }
 
@@ -61,8 +61,8 @@ std::string to_svg(const Bars& chart) {
   }
   for (const Bar& bar : chart.bars) {
     const bool shares = chart.length == Bars::Length::of_share;
-    svg += svg_text("", edge, y + label_height - 5.0, "start", bar.label) +
-           svg_text("total", width - edge, y + label_height - 5.0, "end", bar.total) +
+    svg += svg_text("", edge, y + label_height - 6.0, "start", bar.label) +
+           svg_text("total", width - edge, y + label_height - 6.0, "end", bar.total) +
            one_bar(chart, bar, y + label_height, shares ? sum(bar) : longest);
     y += row_height;
   }

@@ -40,6 +40,8 @@ Rows sorted(Rows rows, double BenchmarkRow::*cost) {
   return rows;
 }
 
+double rate_khz(const BenchmarkRow& row) { return 1e3 / median(row, &BenchmarkRow::step); }
+
 }  // namespace
 
 std::string query_plot(const Rows& rows, const std::vector<std::string>& all) {
@@ -92,8 +94,8 @@ std::string rate_plot(const std::vector<Rows>& combinations, Over over) {
   for (const Rows& rows : combinations) {
     Series series = series_named(line_name(*rows.front()), plot.series.size());
     for (const BenchmarkRow* row : rows) {
-      series.points.push_back({static_cast<double>(triangles ? row->triangles : row->vertices),
-                               1e3 / median(*row, &BenchmarkRow::step)});
+      series.points.push_back(
+          {static_cast<double>(triangles ? row->triangles : row->vertices), rate_khz(*row)});
     }
     sort_by_x(series.points);
     plot.series.push_back(std::move(series));
@@ -109,11 +111,34 @@ std::string rate_plot(const std::vector<Rows>& combinations, Over over) {
   return to_svg(plot);
 }
 
-std::string solve_plot(const Rows& rows, const std::vector<std::string>& all) {
+std::string rate_spans(const std::vector<Rows>& combinations) {
+  Spans chart;
+  chart.description =
+      "Rate of the whole step, for each combination, and as published by Li et al. 2020.";
+  chart.axis = "rate of the whole step [kHz]";
+  const auto add = [&](const std::string& label, double khz, const std::string& css, Mark mark) {
+    Span span{label, rounded(khz) + "\u00a0kHz", css, mark};
+    span.value = khz;
+    chart.spans.push_back(std::move(span));
+  };
+  for (const Rows& rows : combinations) {
+    const std::size_t number = chart.spans.size();
+    add(line_name(*rows.front()), rate_khz(*rows.front()), series_class(number), mark_of(number));
+  }
+  for (const PublishedRate& rate : published_rates) {
+    add("Li et al. 2020, their machine, " + counted(rate.triangles, "triangle"), rate.khz,
+        "series-published", Mark::star);
+  }
+  return to_svg(chart);
+}
+
+std::string solve_plot(const Rows& rows, const std::vector<std::string>& all, Percentile told) {
   Plot plot;
-  plot.description = "Median time of the solver against the mean number of planes.";
-  plot.x = logarithmic("planes (mean of the row)");
-  plot.y = logarithmic("solve [µs]");
+  const bool middle_time = told == Percentile::median;
+  plot.description = std::string(middle_time ? "Median" : "99 %") +
+                     " of the time of the solver against the mean number of planes.";
+  plot.x = logarithmic("planes (mean)");
+  plot.y = logarithmic(middle_time ? "solve, median [µs]" : "solve, 99 % [µs]");
   plot.names = Plot::Names::at_line_ends;
   for (const std::string& solver : names(rows, &BenchmarkRow::solver)) {
     Series series = series_named(solver, place_in(all, solver));
@@ -127,12 +152,13 @@ std::string solve_plot(const Rows& rows, const std::vector<std::string>& all) {
         return median(*a, &BenchmarkRow::solve) < median(*b, &BenchmarkRow::solve);
       });
       const BenchmarkRow& middle = *same[same.size() / 2];
-      series.points.push_back({middle.planes_mean, median(middle, &BenchmarkRow::solve)});
+      const std::optional<double> time = middle_time ? middle.solve->p50 : middle.solve->p99;
+      if (time) series.points.push_back({middle.planes_mean, *time});
     }
     sort_by_x(series.points);
-    plot.series.push_back(std::move(series));
+    if (!series.points.empty()) plot.series.push_back(std::move(series));
   }
-  return to_svg(plot);
+  return plot.series.empty() ? "" : to_svg(plot);
 }
 
 std::string stage_bars(const Rows& rows) {

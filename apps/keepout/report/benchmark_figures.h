@@ -24,8 +24,12 @@ std::string query_spans(const Rows& rows, const std::vector<std::string>& all);
 enum class Over { triangles, vertices };
 std::string rate_plot(const std::vector<Rows>& combinations, Over over);
 
-/// Time of the solver against the planes that it was given.
-std::string solve_plot(const Rows& rows, const std::vector<std::string>& all);
+/// The same where each was timed on one mesh alone: an axis of rate, a line of writing for each.
+std::string rate_spans(const std::vector<Rows>& combinations);
+
+/// Time of the solver against the planes that it was given. Empty where no row has that percentile.
+enum class Percentile { median, p99 };
+std::string solve_plot(const Rows& rows, const std::vector<std::string>& all, Percentile told);
 
 /// What the median steps are made of. Precondition: all stages were timed.
 std::string stage_bars(const Rows& rows);

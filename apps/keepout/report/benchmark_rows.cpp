@@ -36,6 +36,12 @@ bool faster(const BenchmarkRow& a, const BenchmarkRow& b, Stage stage) {
   return median(a, stage) < median(b, stage);
 }
 
+/// In how many parts two combinations differ.
+int differences(const BenchmarkRow& a, const BenchmarkRow& b) {
+  return (a.index != b.index ? 1 : 0) + (a.activation != b.activation ? 1 : 0) +
+         (a.solver != b.solver ? 1 : 0);
+}
+
 }  // namespace
 
 Rows timed(const Benchmark& benchmark, Stage stage) {
@@ -135,20 +141,21 @@ Rows comparable_solvers(const Rows& rows) {
   return only(rows, [&](const BenchmarkRow& row) { return row.activation == rule; });
 }
 
-Rows around_fastest(const Rows& rows) {
-  constexpr std::size_t few = 12;
-  if (rows.empty()) return {};
-  const BenchmarkRow& best = fastest(rows, &BenchmarkRow::step);
-  Rows result = only(rows, [&](const BenchmarkRow& row) {
-    const int differences = (row.index != best.index ? 1 : 0) +
-                            (row.activation != best.activation ? 1 : 0) +
-                            (row.solver != best.solver ? 1 : 0);
-    return rows.size() <= few || differences <= 1 || is(row, our_pair) || is(row, peer_pair);
-  });
-  std::stable_sort(result.begin(), result.end(), [](const BenchmarkRow* a, const BenchmarkRow* b) {
+Neighborhood neighborhood(const Rows& rows) {
+  const auto near = [&](const BenchmarkRow& hub) {
+    return std::count_if(rows.begin(), rows.end(),
+                         [&](const BenchmarkRow* row) { return differences(hub, *row) <= 1; });
+  };
+  Rows sorted = rows;
+  std::stable_sort(sorted.begin(), sorted.end(), [](const BenchmarkRow* a, const BenchmarkRow* b) {
     return faster(*a, *b, &BenchmarkRow::step);
   });
-  return result;
+  const BenchmarkRow& hub = **std::max_element(
+      sorted.begin(), sorted.end(),
+      [&](const BenchmarkRow* a, const BenchmarkRow* b) { return near(*a) < near(*b); });
+  return {&hub, only(sorted, [&](const BenchmarkRow& row) {
+            return differences(hub, row) <= 1 || is(row, our_pair) || is(row, peer_pair);
+          })};
 }
 
 std::string combination(const BenchmarkRow& row) {

@@ -50,9 +50,14 @@ Rows comparable_indices(const Rows& rows);
 /// Those of one rule: the one under which most solvers were timed.
 Rows comparable_solvers(const Rows& rows);
 
-/// The fastest of the rows and all that differ from it in one part, and pairs of parts that belong
-/// together; the fastest first. All rows where they are few.
-Rows around_fastest(const Rows& rows);
+/// A combination and all that differ from it in one part, so that one part at a time is compared;
+/// the pairs below besides.
+struct Neighborhood {
+  const BenchmarkRow* hub;  // of all, the one that has most others around it; of these the fastest
+  Rows rows;                // the fastest first
+};
+/// Precondition: there is a row.
+Neighborhood neighborhood(const Rows& rows);
 
 /// "pd_tree, paper, active_set"
 std::string combination(const BenchmarkRow& row);

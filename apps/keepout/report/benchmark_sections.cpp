@@ -128,34 +128,45 @@ std::string rate_lead(const std::vector<Rows>& lines) {
       best = &largest;
     }
   }
-  return "How often the median step fits into a second: " + line_name(*best) + " makes " +
-         rounded(1e3 / median(*best, &BenchmarkRow::step)) + " kHz at " +
-         counted(best->triangles, "triangle") + "; the stars are what Li et al. 2020 published, " +
-         trimmed(published_rates.front().khz) + " kHz at " +
+  return "By its median step " + line_name(*best) + " makes " +
+         rounded(1e3 / median(*best, &BenchmarkRow::step)) + "\u00a0kHz at " +
+         counted(best->triangles, "triangle") +
+         "; the stars are what Li et al. 2020 published for the Stanford bunny, " +
+         trimmed(published_rates.front().khz) + "\u00a0kHz at " +
          grouped(published_rates.front().triangles) + " and " +
-         trimmed(published_rates.back().khz) + " kHz at " +
+         trimmed(published_rates.back().khz) + "\u00a0kHz at " +
          grouped(published_rates.back().triangles) +
-         " triangles on an Intel i7-8700, which is another machine: the slopes compare, the "
-         "heights "
-         "do not.";
+         " triangles on an Intel i7-8700, which is another machine: compare the slopes, not the "
+         "heights.";
+}
+
+/// The rows of the problems that most solvers got; of these those with most planes.
+Rows hardest_problems(const Rows& rows) {
+  const auto alike = [&](const BenchmarkRow& like) {
+    return only(rows, [&](const BenchmarkRow& row) {
+      return row.mesh == like.mesh && row.triangles == like.triangles && row.radius == like.radius;
+    });
+  };
+  const auto rank = [&](const BenchmarkRow& row) {
+    return std::pair(names(alike(row), &BenchmarkRow::solver).size(), row.planes_mean);
+  };
+  return alike(**std::max_element(
+      rows.begin(), rows.end(),
+      [&](const BenchmarkRow* a, const BenchmarkRow* b) { return rank(*a) < rank(*b); }));
 }
 
 std::string solve_lead(const Rows& rows) {
-  const BenchmarkRow& most = **std::max_element(
-      rows.begin(), rows.end(),
-      [](const BenchmarkRow* a, const BenchmarkRow* b) { return a->planes_mean < b->planes_mean; });
-  const Rows there = only(rows, [&](const BenchmarkRow& row) {
-    return row.mesh == most.mesh && row.triangles == most.triangles && row.radius == most.radius;
-  });
+  const Rows there = hardest_problems(rows);
   const BenchmarkRow& quick = fastest(there, &BenchmarkRow::solve);
   const BenchmarkRow& slow = slowest(there, &BenchmarkRow::solve);
-  const std::string text = "Rule " + most.activation + ", a mark for each mesh and radius. With " +
-                           rounded(most.planes_mean) + " planes, the most there were, " +
+  const std::string text = "With " + mean_text(quick.planes_mean) + " planes in the mean, " +
                            quick.solver + " solves in " +
                            time_text(median(quick, &BenchmarkRow::solve));
-  if (quick.solver == slow.solver) return text + ".";
-  return text + " and " + slow.solver + " in " + time_text(median(slow, &BenchmarkRow::solve)) +
-         ".";
+  return text +
+         (quick.solver == slow.solver
+              ? ""
+              : " and " + slow.solver + " in " + time_text(median(slow, &BenchmarkRow::solve))) +
+         "; rule " + quick.activation + ", a mark for each mesh and radius.";
 }
 
 /// The stage that takes most of a step, and how much of it.
@@ -174,7 +185,7 @@ std::string stage_lead(const Rows& rows) {
   const BenchmarkRow& quick = fastest(rows, &BenchmarkRow::step);
   const BenchmarkRow& slow = slowest(rows, &BenchmarkRow::step);
   const std::string text = "On " + mesh_text(quick) + ", with " + sphere_text(quick.radius) +
-                           ": in the fastest combination " + main_stage(quick);
+                           ", in the fastest combination " + main_stage(quick);
   return text + (&quick == &slow ? "." : "; in the slowest " + main_stage(slow) + ".");
 }
 
@@ -204,11 +215,16 @@ void print_rate_section(std::ostream& out, const Benchmark& benchmark) {
   const Rows rows = timed(benchmark, &BenchmarkRow::step);
   if (rows.empty()) return;
   const std::vector<Rows> lines = rate_lines(rows);
-  open_section(out, "The experiment of the paper: rate over the size of the mesh",
+  open_section(out, "The experiment of the paper: how often a step fits into a second",
                rate_lead(lines));
   open_panels(out, 2);
-  print_panel(out, "", "", rate_plot(lines, Over::triangles));
-  print_panel(out, "", "", rate_plot(lines, Over::vertices));
+  if (std::any_of(lines.begin(), lines.end(), [](const Rows& line) { return line.size() > 1; })) {
+    print_panel(out, "", "", rate_plot(lines, Over::triangles));
+    print_panel(out, "", "", rate_plot(lines, Over::vertices));
+  } else {
+    print_panel(out, "On " + mesh_text(*lines.front().front()),
+                "With the published rates, which are of other meshes.", rate_spans(lines));
+  }
   out << "</div>\n";
 }
 
@@ -218,9 +234,11 @@ void print_solve_section(std::ostream& out, const Benchmark& benchmark) {
       comparable_solvers(only(timed(benchmark, &BenchmarkRow::solve),
                               [](const BenchmarkRow& row) { return row.planes_mean > 0.0; }));
   if (rows.empty()) return;
-  open_section(out, "What a solver makes of more planes", solve_lead(rows));
-  open_panels(out, 1);
-  print_panel(out, "", "", solve_plot(rows, all));
+  const std::string slow = solve_plot(rows, all, Percentile::p99);
+  open_section(out, "Which solver copes with many planes", solve_lead(rows));
+  open_panels(out, 2);
+  print_panel(out, "", "", solve_plot(rows, all, Percentile::median));
+  if (!slow.empty()) print_panel(out, "", "", slow);
   out << "</div>\n";
 }
 
@@ -232,17 +250,17 @@ void print_stage_section(std::ostream& out, const Benchmark& benchmark) {
   if (rows.empty()) return;
   const std::vector<std::optional<double>> spheres = radii(rows);
   open_section(out, "Where the time of a step goes",
-               stage_lead(around_fastest(at_radius(rows, spheres.front()))));
+               stage_lead(neighborhood(at_radius(rows, spheres.front())).rows));
   open_panels(out, spheres.size());
   for (const std::optional<double>& sphere : spheres) {
     const Rows there = at_radius(rows, sphere);
-    const Rows shown = around_fastest(there);
+    const Neighborhood shown = neighborhood(there);
     print_panel(out, sphere_title(sphere),
-                (shown.size() < there.size()
-                     ? "The fastest, and those that differ from it in one part; at the right the "
-                       "median of the whole step."
-                     : "The fastest first; at the right the median of the whole step."),
-                stage_bars(shown));
+                (shown.rows.size() < there.size()
+                     ? combination(*shown.hub) + ", and all that differ from it in one part; "
+                     : "The fastest first; ") +
+                    "at the right the median of the whole step.",
+                stage_bars(shown.rows));
   }
   out << "</div>\n";
 }

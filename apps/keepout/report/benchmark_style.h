@@ -52,7 +52,13 @@ h3 { margin: 28px 0 8px; font-size: 17px; }
 .plot .share { fill: var(--card); font-weight: 600; font-size: 11.5px; }
 .plot .total { font-weight: 600; font-variant-numeric: tabular-nums; }
 .plot .span { stroke: var(--ink-of-rule); stroke-width: 2; fill: none; }
-td.words { text-align: left; white-space: normal; min-width: 14em; }
+th.name, td.name, td.words { text-align: left; }
+td.words { white-space: normal; min-width: 24em; }
+@container (max-width: 460px) { .plot .end { font-size: 14.5px; font-weight: 400; } }
+@media (max-width: 640px) {
+  .outcomes dl { grid-template-columns: minmax(0, 1fr); gap: 2px; }
+  .outcomes dd { margin-bottom: 8px; }
+}
 .windowed { max-height: min(36em, 85vh); overflow: auto; }
 .windowed table { font-size: 13.5px; }
 .windowed th, .windowed td { padding: 6px 9px; }

@@ -32,13 +32,13 @@ std::string or_dash(const std::optional<double>& value) { return value ? rounded
 
 /// What was not timed has no counts either, as far as anybody may rely on.
 std::vector<TableCell> cells(const BenchmarkRow& row) {
-  constexpr auto words = TableCell::Look::words;
-  const auto count = [&](double value) { return row.queries > 0 ? rounded(value) : "-"; };
+  constexpr auto name = TableCell::Look::name, words = TableCell::Look::words;
+  const auto count = [&](double value) { return row.queries > 0 ? mean_text(value) : "-"; };
   const auto cost = [](double value) { return value > 0.0 ? rounded(value) : "-"; };
   std::vector<TableCell> result = {{row.index},
-                                   {row.activation},
-                                   {row.solver},
-                                   {row.mesh},
+                                   {row.activation, name},
+                                   {row.solver, name},
+                                   {row.mesh, name},
                                    {grouped(row.triangles)},
                                    {row.radius ? trimmed(*row.radius) : "motion"},
                                    {cost(row.build_s)},

@@ -92,11 +92,14 @@ Legend legend(const Plot& plot) {
   return result;
 }
 
+/// Names at line ends are bold.
+double name_width(const Series& series) { return 1.08 * width_of(series.name); }
+
 /// Room at the right for the names of the series, at most a third of the drawing.
 double right_edge(const Plot& plot) {
   if (plot.names == Plot::Names::above) return width - beside_frame;
   double widest = 0.0;
-  for (const Series& series : plot.series) widest = std::max(widest, width_of(series.name));
+  for (const Series& series : plot.series) widest = std::max(widest, name_width(series));
   return width - std::min(24.0 + widest, 0.36 * width);
 }
 
@@ -122,7 +125,7 @@ std::string names_at_ends(const Plot& plot, const std::vector<std::vector<PlotPo
            coordinate(frame.right + 14.0) + "," + coordinate(places[k]) + "\"/>";
     // A name that is too long is squeezed rather than cut.
     const std::string squeezed =
-        width_of(series.name) > room
+        name_width(series) > room
             ? " textLength=\"" + coordinate(room) + "\" lengthAdjust=\"spacingAndGlyphs\""
             : "";
     svg += "<text class=\"end " + series.css_class + "\" x=\"" + coordinate(frame.right + 18.0) +

@@ -74,7 +74,8 @@ std::vector<PlotPoint> thin_out(std::span<const PlotPoint> points, double low, d
 /// Round numbers (1, 2 or 5 times a power of ten) within a range, about as many as wanted.
 std::vector<double> linear_ticks(double low, double high, int wanted);
 
-/// Powers of ten within a range, with their 2- and 5-fold where the range is short.
+/// Powers of ten within a range, with their 2- and 5-fold where the range is short, and only every
+/// second or third of them where it is long.
 std::vector<double> logarithmic_ticks(double low, double high);
 
 /// A tick in few letters: 0.5, 200, 50k, 2M, 10⁻⁶.

@@ -53,7 +53,10 @@ std::vector<double> logarithmic_ticks(double low, double high) {
   const int first = static_cast<int>(std::floor(std::log10(low)));
   const int last = static_cast<int>(std::ceil(std::log10(high)));
   const bool dense = high / low < 100.0;
+  constexpr int most = 8;  // numbers that fit below an axis
+  const int every = std::max(1, (last - first + most - 1) / most);
   for (int power = first; power <= last; ++power) {
+    if (power % every != 0) continue;
     for (const double times : {1.0, 2.0, 5.0}) {
       if (times > 1.0 && !dense) continue;
       const double tick = times * std::pow(10.0, power);

@@ -13,19 +13,20 @@ namespace keepout::app {
 namespace {
 
 constexpr double width = 560.0, edge = 14.0, top = 8.0;
-constexpr double row_height = 37.0, mark_height = 27.0, label_height = 15.0;
+constexpr double row_height = 42.0, mark_height = 30.0, label_height = 16.0;
 constexpr double bottom = 48.0;
 
 /// Maps values to places, by their logarithms.
 class LogRuler {
  public:
-  explicit LogRuler(const std::vector<Span>& spans) {
+  explicit LogRuler(const Spans& chart) {
     const auto take = [&](double value) {
       if (!(value > 0.0) || !std::isfinite(value)) return;
       low = std::min(low, value);
       high = std::max(high, value);
     };
-    for (const Span& span : spans) {
+    for (const double value : chart.in_range) take(value);
+    for (const Span& span : chart.spans) {
       take(span.value);
       take(span.reach.value_or(0.0));
       take(span.before.value_or(0.0));
@@ -67,7 +68,7 @@ std::string one_span(const Span& span, const LogRuler& ruler, double y) {
 }  // namespace
 
 std::string to_svg(const Spans& chart) {
-  const LogRuler ruler(chart.spans);
+  const LogRuler ruler(chart);
   const double floor = top + row_height * static_cast<double>(chart.spans.size());
   std::string svg = open_svg("plot", width, floor + bottom, chart.description);
   for (const double tick : logarithmic_ticks(ruler.low, ruler.high)) {

@@ -27,6 +27,7 @@ struct Spans {
   std::string description;  // read out in place of the picture
   std::string axis;         // with the unit
   std::vector<Span> spans;
+  std::vector<double> in_range = {};  // values that the axis has even if no span does
 };
 
 /// An <svg> element to be put into a page that defines the classes plot, axis, grid, span, mark and

@@ -14,12 +14,21 @@ const char* open_cell(TableCell::Look look) {
   switch (look) {
     case TableCell::Look::number:
       return "<td>";
+    case TableCell::Look::name:
+      return "<td class=\"name\">";
     case TableCell::Look::words:
       return "<td class=\"words\">";
     case TableCell::Look::bad:
       return "<td class=\"bad\">";
   }
   return "<td>";
+}
+
+/// A head stands where its column does.
+bool to_left(const Table& table, std::size_t column) {
+  if (table.rows.empty() || column >= table.rows.front().size()) return false;
+  const TableCell::Look look = table.rows.front()[column].look;
+  return look == TableCell::Look::name || look == TableCell::Look::words;
 }
 
 }  // namespace
@@ -29,8 +38,9 @@ void print_table(std::ostream& out, const Table& table) {
   // Those who scroll by keyboard must be able to get there.
   out << "<div class=\"scroll" << (windowed ? " windowed" : "")
       << "\" tabindex=\"0\"><table>\n<thead><tr>";
-  for (const std::string& column : table.columns) {
-    out << "<th scope=\"col\">" << escape(column) << "</th>";
+  for (std::size_t i = 0; i < table.columns.size(); ++i) {
+    out << "<th scope=\"col\"" << (to_left(table, i) ? " class=\"name\">" : ">")
+        << escape(table.columns[i]) << "</th>";
   }
   out << "</tr></thead>\n<tbody>\n";
   for (const std::vector<TableCell>& row : table.rows) {

@@ -12,7 +12,8 @@ namespace keepout::app {
 struct TableCell {
   enum class Look {
     number,
-    words,  // to the left, and broken into lines
+    name,   // to the left
+    words,  // the same, and broken into lines
     bad     // a number that ought to be nothing
   };
   std::string text;  // plain; escaped when printed

@@ -194,8 +194,8 @@ TEST(BenchmarkReport, EveryIndexHasALineAndEverySolverToo) {
 TEST(BenchmarkReport, ShowsWhatThePaperPublished) {
   const std::string page = page_of(made_up_benchmark(), {});
   EXPECT_EQ(how_many(page, "<path class=\"mark series-published\""), 6U);  // 2 plots: 2 + legend
-  EXPECT_TRUE(has(page, "7.73 kHz at 51,978"));
-  EXPECT_TRUE(has(page, "0.18 kHz at 989,376"));
+  EXPECT_TRUE(has(page, "7.73\u00a0kHz at 51,978"));
+  EXPECT_TRUE(has(page, "0.18\u00a0kHz at 989,376"));
   EXPECT_TRUE(has(page, "i7-8700"));
   EXPECT_TRUE(has(page, "another machine"));
 }
