@@ -7,8 +7,10 @@
 
 #include "keepout/error.h"
 #include "number_text.h"
+#include "report/benchmark_report.h"
+#include "report/benchmark_style.h"
 #include "report/figures.h"
-#include "report/page_style.h"
+#include "report/page.h"
 #include "report/text.h"
 #include "report/verdict.h"
 #include "report/views.h"
@@ -21,13 +23,6 @@ constexpr ImageSize overview_size = {1200, 900};
 constexpr ImageSize close_up_size = {1000, 750};
 
 using Summaries = std::vector<RunSummary>;
-
-void print_head(std::ostream& out, const Simulation& simulation) {
-  out << "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      << "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-      << "<title>" << escape(simulation.mesh_name) << " - keepout simulate</title>\n"
-      << "<style>" << page_style << "</style>\n</head>\n<body>\n<main>\n";
-}
 
 void print_verdict(std::ostream& out, const Simulation& simulation, const Summaries& summaries) {
   std::size_t strokes = 0;
@@ -195,14 +190,10 @@ void print_method(std::ostream& out, const Simulation& simulation) {
          "whatever else that machine did meanwhile.</p>\n";
 }
 
-}  // namespace
-
-void print_report(std::ostream& out, const Simulation& simulation) {
-  check(simulation);
+void print_content(std::ostream& out, const Simulation& simulation) {
   Summaries summaries;
   for (const Run& run : simulation.runs) summaries.push_back(summarize(run));
   const Moment moment = telling_moment(simulation);
-  print_head(out, simulation);
   print_verdict(out, simulation, summaries);
   print_overview(out, simulation, summaries);
   print_table(out, simulation, summaries);
@@ -210,7 +201,28 @@ void print_report(std::ostream& out, const Simulation& simulation) {
   print_plots(out, simulation, moment);
   print_times_and_settings(out, simulation);
   print_method(out, simulation);
-  out << "</main>\n</body>\n</html>\n";
+}
+
+std::string title_of(const Simulation& simulation) {
+  return simulation.mesh_name + " - keepout simulate";
+}
+
+}  // namespace
+
+void print_report(std::ostream& out, const Simulation& simulation) {
+  check(simulation);
+  open_page(out, title_of(simulation), "");
+  print_content(out, simulation);
+  close_page(out);
+}
+
+void print_report(std::ostream& out, const Simulation& simulation, const Benchmark& benchmark,
+                  const Comparison& comparison) {
+  check(simulation);
+  open_page(out, title_of(simulation), benchmark_style);
+  print_content(out, simulation);
+  print_benchmark_sections(out, benchmark, comparison);
+  close_page(out);
 }
 
 }  // namespace keepout::app

@@ -4,29 +4,25 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
+#include "report/label_places.h"
+#include "report/svg.h"
 #include "report/text.h"
 
 namespace keepout::app {
 namespace {
 
 // The drawing, in units of its view box: the page scales it to the room there is.
-constexpr double width = 560.0, height = 400.0;
-constexpr double left = 66.0, right = 26.0, bottom = 52.0, legend_row = 22.0;
+constexpr double width = 560.0;
+constexpr double left = 66.0, bottom = 52.0, legend_row = 22.0;
+constexpr double beside_frame = 26.0;  // at the right, where no names are
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.1f", value);
-  return text;
-}
-
-std::string tick_text(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", std::abs(value) < 1e-12 ? 0.0 : value);
-  return text;
-}
+/// Where the curves are drawn; its left is the same in every plot.
+struct Frame {
+  double right, top, floor;
+  double wide() const { return right - left; }
+};
 
 bool drawable(const PlotPoint& p, const Axis& x, const Axis& y) {
   const auto fits = [](const Axis& axis, double value) {
@@ -73,73 +69,111 @@ struct Legend {
   double height = 0.0;
 };
 
-Legend legend(const std::vector<Series>& series) {
+Legend legend(const Plot& plot) {
   Legend result;
+  if (plot.names == Plot::Names::at_line_ends) return {"", 14.0};
   double x = left, y = 16.0;
-  for (const Series& one : series) {
+  for (const Series& one : plot.series) {
     // Wide enough for the larger letters of a small screen.
-    const double wide = 34.0 + 9.6 * static_cast<double>(one.name.size());
+    const double wide = 34.0 + 1.15 * width_of(one.name);
     if (x > left && x + wide > width) {
       x = left;
       y += legend_row;
     }
-    result.svg += "<g class=\"legend " + one.css_class + "\"><path d=\"M" + number(x) + "," +
-                  number(y - 4.5) + "h20\"/><text x=\"" + number(x + 26.0) + "\" y=\"" + number(y) +
-                  "\">" + escape(one.name) + "</text></g>";
+    result.svg += "<g class=\"legend " + one.css_class + "\">";
+    if (one.join == Series::Join::line) {
+      result.svg += "<path d=\"M" + coordinate(x) + "," + coordinate(y - 4.5) + "h20\"/>";
+    }
+    result.svg += mark_svg(one.mark, one.css_class, x + 10.0, y - 4.5) +
+                  svg_text("", x + 26.0, y, "start", one.name) + "</g>";
     x += wide;
   }
-  result.height = series.empty() ? 10.0 : y + 12.0;
+  result.height = plot.series.empty() ? 10.0 : y + 12.0;
   return result;
 }
 
-std::string line(const std::string& css_class, double x1, double y1, double x2, double y2) {
-  return "<path class=\"" + css_class + "\" d=\"M" + number(x1) + "," + number(y1) + "L" +
-         number(x2) + "," + number(y2) + "\"/>";
+/// Names at line ends are bold.
+double name_width(const Series& series) { return 1.08 * width_of(series.name); }
+
+/// Room at the right for the names of the series, at most a third of the drawing.
+double right_edge(const Plot& plot) {
+  if (plot.names == Plot::Names::above) return width - beside_frame;
+  double widest = 0.0;
+  for (const Series& series : plot.series) widest = std::max(widest, name_width(series));
+  return width - std::min(24.0 + widest, 0.36 * width);
 }
 
-std::string text(const std::string& css_class, double x, double y, const char* anchor,
-                 const std::string& words) {
-  return "<text class=\"" + css_class + "\" x=\"" + number(x) + "\" y=\"" + number(y) +
-         "\" text-anchor=\"" + anchor + "\">" + escape(words) + "</text>";
-}
-
-std::string axes(const Plot& plot, const Ruler& x, const Ruler& y, double top) {
+/// The names beside the frame, each joined to the end of its curve.
+std::string names_at_ends(const Plot& plot, const std::vector<std::vector<PlotPoint>>& curves,
+                          const Frame& frame) {
+  constexpr double gap = 17.0;  // of the larger letters
+  const double room = width - frame.right - 20.0;
+  std::vector<double> ends;
+  std::vector<std::size_t> named;
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    if (curves[i].empty()) continue;
+    ends.push_back(curves[i].back().y);
+    named.push_back(i);
+  }
+  const std::vector<double> places = label_places(ends, gap, frame.top + 4.0, frame.floor);
   std::string svg;
-  const double floor = height - bottom;
+  for (std::size_t k = 0; k < named.size(); ++k) {
+    const Series& series = plot.series[named[k]];
+    const PlotPoint end = curves[named[k]].back();
+    svg += "<path class=\"leader " + series.css_class + "\" d=\"M" + coordinate(end.x) + "," +
+           coordinate(end.y) + "L" + coordinate(frame.right) + "," + coordinate(end.y) + "L" +
+           coordinate(frame.right + 14.0) + "," + coordinate(places[k]) + "\"/>";
+    // A name that is too long is squeezed rather than cut.
+    const std::string squeezed =
+        name_width(series) > room
+            ? " textLength=\"" + coordinate(room) + "\" lengthAdjust=\"spacingAndGlyphs\""
+            : "";
+    svg += "<text class=\"end " + series.css_class + "\" x=\"" + coordinate(frame.right + 18.0) +
+           "\" y=\"" + coordinate(places[k] + 4.5) + "\"" + squeezed + ">" + escape(series.name) +
+           "</text>";
+  }
+  return svg;
+}
+
+std::string axes(const Plot& plot, const Ruler& x, const Ruler& y, const Frame& frame) {
+  std::string svg;
+  const auto [right, top, floor] = frame;
   for (const double tick : x.ticks(6)) {
-    svg += line("grid", x.place(tick), top, x.place(tick), floor);
-    svg +=
-        text("axis", x.place(tick), floor + 18.0, "middle", tick_text(tick) + plot.x.tick_suffix);
+    svg += svg_line("grid", x.place(tick), top, x.place(tick), floor);
+    svg += svg_text("axis", x.place(tick), floor + 18.0, "middle",
+                    tick_text(tick) + plot.x.tick_suffix);
   }
   for (const double tick : y.ticks(6)) {
-    svg += line("grid", left, y.place(tick), width - right, y.place(tick));
-    svg +=
-        text("axis", left - 7.0, y.place(tick) + 4.5, "end", tick_text(tick) + plot.y.tick_suffix);
+    svg += svg_line("grid", left, y.place(tick), right, y.place(tick));
+    svg += svg_text("axis", left - 7.0, y.place(tick) + 4.5, "end",
+                    tick_text(tick) + plot.y.tick_suffix);
   }
-  svg += text("axis name", 0.5 * (left + width - right), height - 8.0, "middle", plot.x.label);
+  svg += svg_text("axis name", 0.5 * (left + right), floor + bottom - 8.0, "middle", plot.x.label);
   const double middle = 0.5 * (top + floor);
   svg += "<text class=\"axis name\" text-anchor=\"middle\" transform=\"translate(15," +
-         number(middle) + ") rotate(-90)\">" + escape(plot.y.label) + "</text>";
+         coordinate(middle) + ") rotate(-90)\">" + escape(plot.y.label) + "</text>";
   return svg;
 }
 
 /// The points of a series on the drawing, no more of them than it can show.
 std::vector<PlotPoint> placed(const Series& series, const Plot& plot, const Ruler& x,
-                              const Ruler& y) {
+                              const Ruler& y, const Frame& frame) {
   std::vector<PlotPoint> points;
   for (const PlotPoint& p : series.points) {
     if (drawable(p, plot.x, plot.y)) points.push_back({x.place(p.x), y.place(p.y)});
   }
-  return thin_out(points, left, width - right, static_cast<std::size_t>(width));
+  return thin_out(points, left, frame.right, static_cast<std::size_t>(width));
 }
 
 std::string curve(const Series& series, const std::vector<PlotPoint>& points) {
-  std::string path;
+  std::string path, marks;
   for (const PlotPoint& p : points) {
     path += path.empty() ? 'M' : 'L';
-    path += number(p.x) + "," + number(p.y);
+    path += coordinate(p.x) + "," + coordinate(p.y);
+    marks += mark_svg(series.mark, series.css_class, p.x, p.y);
   }
-  return "<path class=\"line " + series.css_class + "\" d=\"" + path + "\"/>";
+  if (series.join == Series::Join::none) return marks;
+  return "<path class=\"line " + series.css_class + "\" d=\"" + path + "\"/>" + marks;
 }
 
 /// How much of a curve lies within a box, in units of the drawing.
@@ -169,14 +203,15 @@ double covered(const std::vector<PlotPoint>& curve, const PlotPoint& low, const 
 /// heights `rows`, the first that will do, and on that as far left as it goes.
 std::string text_in_the_clear(const std::string& css_class, const std::string& words,
                               const std::vector<double>& rows,
-                              const std::vector<std::vector<PlotPoint>>& curves) {
+                              const std::vector<std::vector<PlotPoint>>& curves,
+                              const Frame& frame) {
   // The larger letters of a small screen fit in as well.
-  const double wide = 8.4 * static_cast<double>(words.size());
+  const double wide = width_of(words);
   constexpr double above = 16.0, below = 5.0, step = 8.0;
   PlotPoint best;
   double least = std::numeric_limits<double>::infinity();
   for (const double y : rows) {
-    for (double x = left + 8.0; x + wide < width - right; x += step) {
+    for (double x = left + 8.0; x + wide < frame.right; x += step) {
       double sum = 0.0;
       for (const auto& curve : curves) {
         sum += covered(curve, {x - 6.0, y - above}, {x + wide, y + below});
@@ -187,7 +222,20 @@ std::string text_in_the_clear(const std::string& css_class, const std::string& w
       }
     }
   }
-  return text(css_class, best.x, best.y, "start", words);
+  return svg_text(css_class, best.x, best.y, "start", words);
+}
+
+std::string across(const Marker& marker, const Ruler& x, const Ruler& y, const Frame& frame) {
+  if (marker.across == Marker::Across::at_y) {
+    const double at = y.place(marker.value);
+    if (at < frame.top || at > frame.floor) return {};
+    return svg_line("marker", left, at, frame.right, at) +
+           svg_text("marker", frame.right - 6.0, at - 5.0, "end", marker.label);
+  }
+  const double at = x.place(marker.value);
+  if (at < left || at > frame.right) return {};
+  return svg_line("marker", at, frame.top, at, frame.floor) +
+         svg_text("marker", at - 6.0, frame.top + 14.0, "end", marker.label);
 }
 
 }  // namespace
@@ -202,48 +250,37 @@ std::string to_svg(const Plot& plot) {
       high = {std::max(high.x, p.x), std::max(high.y, p.y)};
     }
   }
-  const Legend names = legend(plot.series);
-  const double top = names.height, floor = height - bottom;
-  const Ruler x(plot.x, low.x, high.x, left, width - right);
-  const Ruler y(plot.y, low.y, high.y, floor, top);
+  const Legend names = legend(plot);
+  const Frame frame{right_edge(plot), names.height, plot.height - bottom};
+  const Ruler x(plot.x, low.x, high.x, left, frame.right);
+  const Ruler y(plot.y, low.y, high.y, frame.floor, frame.top);
 
-  std::string svg = "<svg class=\"plot\" viewBox=\"0 0 " + number(width) + " " + number(height) +
-                    "\" role=\"img\" aria-label=\"" + escape(plot.description) + "\">";
+  std::string svg = open_svg("plot", width, plot.height, plot.description);
   std::vector<std::vector<PlotPoint>> curves;
-  for (const Series& series : plot.series) curves.push_back(placed(series, plot, x, y));
+  for (const Series& series : plot.series) curves.push_back(placed(series, plot, x, y, frame));
   std::string labels;  // over the curves
   for (const Band& band : plot.bands) {
-    const double from = std::clamp(y.place(band.high), top, floor);
-    const double to = std::clamp(y.place(band.low), top, floor);
+    const double from = std::clamp(y.place(band.high), frame.top, frame.floor);
+    const double to = std::clamp(y.place(band.low), frame.top, frame.floor);
     if (to <= from) continue;
-    svg += "<rect class=\"band\" x=\"" + number(left) + "\" y=\"" + number(from) + "\" width=\"" +
-           number(width - right - left) + "\" height=\"" + number(to - from) + "\"/>";
+    svg += svg_box("band", left, from, frame.wide(), to - from);
     if (to - from > 24.0) {
       const std::vector<double> rows = {to - 8.0, from + 18.0, 0.5 * (from + to) + 5.0};
-      labels += text_in_the_clear("band", band.label, rows, curves);
+      labels += text_in_the_clear("band", band.label, rows, curves, frame);
     }
   }
-  svg += axes(plot, x, y, top);
-  for (const Marker& marker : plot.markers) {
-    if (marker.across == Marker::Across::at_y) {
-      const double at = y.place(marker.value);
-      if (at < top || at > floor) continue;
-      svg += line("marker", left, at, width - right, at);
-      svg += text("marker", width - right - 6.0, at - 5.0, "end", marker.label);
-    } else {
-      const double at = x.place(marker.value);
-      if (at < left || at > width - right) continue;
-      svg += line("marker", at, top, at, floor);
-      svg += text("marker", at - 6.0, top + 14.0, "end", marker.label);
-    }
-  }
-  // A nested drawing cuts off what leaves the frame.
-  svg += "<svg x=\"" + number(left) + "\" y=\"" + number(top) + "\" width=\"" +
-         number(width - right - left) + "\" height=\"" + number(floor - top) + "\" viewBox=\"" +
-         number(left) + " " + number(top) + " " + number(width - right - left) + " " +
-         number(floor - top) + "\">";
+  svg += axes(plot, x, y, frame);
+  for (const Marker& marker : plot.markers) svg += across(marker, x, y, frame);
+  // A nested drawing cuts off what leaves the frame, but for half a mark.
+  const double edge = plot.names == Plot::Names::at_line_ends ? 6.0 : 0.0;
+  svg += "<svg x=\"" + coordinate(left) + "\" y=\"" + coordinate(frame.top) + "\" width=\"" +
+         coordinate(frame.wide() + edge) + "\" height=\"" + coordinate(frame.floor - frame.top) +
+         "\" viewBox=\"" + coordinate(left) + " " + coordinate(frame.top) + " " +
+         coordinate(frame.wide() + edge) + " " + coordinate(frame.floor - frame.top) + "\">";
   for (std::size_t i = 0; i < curves.size(); ++i) svg += curve(plot.series[i], curves[i]);
-  return svg + "</svg>" + labels + names.svg + "</svg>";
+  svg += "</svg>";
+  if (plot.names == Plot::Names::at_line_ends) labels += names_at_ends(plot, curves, frame);
+  return svg + labels + names.svg + "</svg>";
 }
 
 }  // namespace keepout::app

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
+#include <string>
 
 #include "report/plot.h"
 
@@ -51,7 +53,10 @@ std::vector<double> logarithmic_ticks(double low, double high) {
   const int first = static_cast<int>(std::floor(std::log10(low)));
   const int last = static_cast<int>(std::ceil(std::log10(high)));
   const bool dense = high / low < 100.0;
+  constexpr int most = 8;  // numbers that fit below an axis
+  const int every = std::max(1, (last - first + most - 1) / most);
   for (int power = first; power <= last; ++power) {
+    if (power % every != 0) continue;
     for (const double times : {1.0, 2.0, 5.0}) {
       if (times > 1.0 && !dense) continue;
       const double tick = times * std::pow(10.0, power);
@@ -59,6 +64,30 @@ std::vector<double> logarithmic_ticks(double low, double high) {
     }
   }
   return ticks;
+}
+
+std::string tick_text(double value) {
+  char text[32];
+  const double size = std::abs(value);
+  if (size >= 1e4) {
+    std::snprintf(text, sizeof text, size >= 1e6 ? "%.6gM" : "%.6gk",
+                  value / (size >= 1e6 ? 1e6 : 1e3));
+    return text;
+  }
+  if (size < 0.9e-4 && size > 1e-300) {
+    const int power = static_cast<int>(std::floor(std::log10(size) + 1e-9));
+    const double times = value / std::pow(10.0, power);
+    std::snprintf(text, sizeof text, "%.3g·", times);
+    std::string result = times > 0.999999 && times < 1.000001 ? "10⁻" : std::string(text) + "10⁻";
+    for (const char digit : std::to_string(-power)) {
+      static constexpr std::array<const char*, 10> raised = {"⁰", "¹", "²", "³", "⁴",
+                                                             "⁵", "⁶", "⁷", "⁸", "⁹"};
+      result += raised[static_cast<std::size_t>(digit - '0')];
+    }
+    return result;
+  }
+  std::snprintf(text, sizeof text, "%.6g", size == 0.0 ? 0.0 : value);
+  return text;
 }
 
 }  // namespace keepout::app

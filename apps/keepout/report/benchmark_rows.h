@@ -1,0 +1,85 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bench/benchmark.h"
+
+namespace keepout::app {
+
+/// Which rows of a benchmark go together in one picture or one sentence.
+
+using Rows = std::vector<const BenchmarkRow*>;  // in their order; they outlive this
+using Stage = std::optional<Timing> BenchmarkRow::*;
+
+/// Those in which the stage was timed.
+Rows timed(const Benchmark& benchmark, Stage stage);
+
+Rows only(const Rows& rows, const std::function<bool(const BenchmarkRow&)>& wanted);
+
+/// Median of a stage that was timed. [us]
+double median(const BenchmarkRow& row, Stage stage);
+
+/// Precondition: there is one, and the stage was timed in all. The first of equals.
+const BenchmarkRow& fastest(const Rows& rows, Stage stage);
+const BenchmarkRow& slowest(const Rows& rows, Stage stage);
+
+/// Without doubles, in the order in which they appear.
+std::vector<std::string> names(const Rows& rows, std::string BenchmarkRow::*part);
+std::vector<std::size_t> sizes(const Rows& rows);  // in triangles, ascending
+
+/// Radii of the motion sphere, the largest first, "as long as each motion" last.
+std::vector<std::optional<double>> radii(const Rows& rows);
+Rows at_radius(const Rows& rows, const std::optional<double>& radius);
+
+/// Those on the mesh that comes in most sizes.
+Rows on_scaled_mesh(const Rows& rows);
+
+/// Those on one mesh: the one on which there are most, and of these the largest.
+Rows on_common_mesh(const Rows& rows);
+
+/// One row for each index and mesh, all of the rule that most of them share, and as far as there
+/// are any of the solver too: what differs is the index alone.
+Rows comparable_indices(const Rows& rows);
+
+/// Those of one rule: the one under which most solvers were timed.
+Rows comparable_solvers(const Rows& rows);
+
+/// A combination and all that differ from it in one part, so that one part at a time is compared;
+/// the pairs below besides.
+struct Neighborhood {
+  const BenchmarkRow* hub;  // of all, the one that has most others around it; of these the fastest
+  Rows rows;                // the fastest first
+};
+/// Precondition: there is a row.
+Neighborhood neighborhood(const Rows& rows);
+
+/// "pd_tree, paper, active_set"
+std::string combination(const BenchmarkRow& row);
+
+/// "5 mm"; "as long as the motion".
+std::string radius_text(const std::optional<double>& radius);
+
+/// "a motion sphere of 5 mm"; "a motion sphere as long as the motion".
+std::string sphere_text(const std::optional<double>& radius);
+
+/// "bunny with 985,856 triangles"
+std::string mesh_text(const BenchmarkRow& row);
+
+/// A pair of an index and a solver that we set side by side wherever both were timed.
+struct Pair {
+  const char* index;
+  const char* solver;
+  const char* words;  // for a reader who does not know the names, within a sentence
+};
+inline constexpr Pair our_pair = {"pd_tree", "active_set",
+                                  "the principal direction tree with our active set"};
+inline constexpr Pair peer_pair = {"fcl_obbrss", "nlopt_slsqp", "FCL's tree with NLopt's SLSQP"};
+bool is(const BenchmarkRow& row, const Pair& pair);
+
+}  // namespace keepout::app

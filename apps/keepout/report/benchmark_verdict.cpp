@@ -1,0 +1,158 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "report/benchmark_verdict.h"
+
+#include <algorithm>
+#include <cctype>
+#include <optional>
+#include <tuple>
+#include <vector>
+
+#include "number_text.h"
+#include "report/benchmark_rows.h"
+
+namespace keepout::app {
+namespace {
+
+constexpr Stage step = &BenchmarkRow::step;
+
+/// Two rows that differ in index and solver, and in nothing else.
+struct Duel {
+  const BenchmarkRow* ours;
+  const BenchmarkRow* peers;
+};
+
+bool same_conditions(const BenchmarkRow& a, const BenchmarkRow& b) {
+  return a.mesh == b.mesh && a.triangles == b.triangles && a.radius == b.radius &&
+         a.activation == b.activation;
+}
+
+std::vector<Duel> duels(const Rows& rows) {
+  std::vector<Duel> result;
+  for (const BenchmarkRow* ours : rows) {
+    if (!is(*ours, our_pair)) continue;
+    for (const BenchmarkRow* peers : rows) {
+      if (is(*peers, peer_pair) && same_conditions(*ours, *peers)) {
+        result.push_back({ours, peers});
+        break;
+      }
+    }
+  }
+  return result;
+}
+
+/// The duel to be told first: under the published rule where there is one, on the largest mesh,
+/// with the largest sphere.
+std::optional<Duel> main_duel(const std::vector<Duel>& all) {
+  const auto rank = [](const Duel& duel) {
+    return std::tuple(duel.ours->activation == "paper", duel.ours->triangles, duel.ours->radius);
+  };
+  const auto best = std::max_element(
+      all.begin(), all.end(), [&](const Duel& a, const Duel& b) { return rank(a) < rank(b); });
+  return best == all.end() ? std::nullopt : std::optional(*best);
+}
+
+double ratio(const BenchmarkRow& quick, const BenchmarkRow& slow) {
+  return median(slow, step) / median(quick, step);
+}
+
+std::string sentence(std::string words) {
+  words.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(words.front())));
+  return words;
+}
+
+std::string told(const Duel& duel) {
+  const bool ahead = median(*duel.ours, step) <= median(*duel.peers, step);
+  const BenchmarkRow& quick = ahead ? *duel.ours : *duel.peers;
+  const BenchmarkRow& slow = ahead ? *duel.peers : *duel.ours;
+  const Pair& first = ahead ? our_pair : peer_pair;
+  const Pair& second = ahead ? peer_pair : our_pair;
+  return sentence(first.words) + " answers a step in " + time_text(median(quick, step)) +
+         ", where " + second.words + " takes " + time_text(median(slow, step)) + ": " +
+         ratio_text(ratio(quick, slow)) + " times as long.";
+}
+
+std::string conditions(const BenchmarkRow& row) {
+  return "That is the median on " + mesh_text(row) + ", rule " + row.activation + ", with " +
+         sphere_text(row.radius) + ". ";
+}
+
+/// The same duel with the other spheres.
+std::string other_radii(const std::vector<Duel>& all, const Duel& main) {
+  std::string text;
+  for (const Duel& duel : all) {
+    if (duel.ours == main.ours || duel.ours->mesh != main.ours->mesh ||
+        duel.ours->triangles != main.ours->triangles ||
+        duel.ours->activation != main.ours->activation) {
+      continue;
+    }
+    const double ours = median(*duel.ours, step), peers = median(*duel.peers, step);
+    text += (text.empty() ? "With a sphere " : "; with one ") +
+            (duel.ours->radius ? "of " + radius_text(duel.ours->radius)
+                               : radius_text(duel.ours->radius)) +
+            " it is " + time_text(ours) + " against " + time_text(peers) + ", " +
+            ratio_text(std::max(ours, peers) / std::min(ours, peers)) + " times as " +
+            (ours <= peers ? "long" : "quick");
+  }
+  return text.empty() ? text : text + ". ";
+}
+
+/// What our pair does there under the other rules, each with the sphere that suits it best.
+std::string other_rules(const Rows& rows, const BenchmarkRow& main) {
+  const Rows ours = only(rows, [&](const BenchmarkRow& row) {
+    return is(row, our_pair) && row.mesh == main.mesh && row.triangles == main.triangles &&
+           row.activation != main.activation;
+  });
+  std::string text;
+  for (const std::string& rule : names(ours, &BenchmarkRow::activation)) {
+    const BenchmarkRow& best =
+        fastest(only(ours, [&](const BenchmarkRow& row) { return row.activation == rule; }), step);
+    text += (text.empty() ? "Under rule " : "; under rule ") + rule +
+            (text.empty() ? ", the same tree and solver take " : ", ") +
+            time_text(median(best, step)) + " with " + sphere_text(best.radius);
+  }
+  return text.empty() ? text : text + ". ";
+}
+
+std::string left_out(const Benchmark& benchmark) {
+  const std::size_t count = benchmark.rows.size() - timed(benchmark, step).size();
+  if (count == 0) return "";
+  return grouped(count) + " of " + counted(benchmark.rows.size(), "row") +
+         (count == 1 ? " was" : " were") + " not timed; the table of all rows says why. ";
+}
+
+}  // namespace
+
+std::string headline(const Benchmark& benchmark) {
+  const Rows rows = timed(benchmark, step);
+  if (rows.empty()) return "No step was timed.";
+  if (const std::optional<Duel> duel = main_duel(duels(rows))) return told(*duel);
+  const Rows common = on_common_mesh(rows);
+  const Rows there = at_radius(common, radii(common).front());
+  const BenchmarkRow& quick = fastest(there, step);
+  const BenchmarkRow& slow = slowest(there, step);
+  const std::string first =
+      "A step takes " + time_text(median(quick, step)) + " with " + combination(quick);
+  if (&quick == &slow || there.size() == 1) return first + ".";
+  return first + ", and " + time_text(median(slow, step)) + " with " + combination(slow) + ": " +
+         ratio_text(ratio(quick, slow)) + " times as long.";
+}
+
+std::string account(const Benchmark& benchmark) {
+  const Rows rows = timed(benchmark, step);
+  std::string text;
+  if (const std::vector<Duel> all = duels(rows); !all.empty()) {
+    const Duel main = *main_duel(all);
+    text = conditions(*main.ours) + other_radii(all, main) + other_rules(rows, *main.ours);
+  } else if (!rows.empty()) {
+    const Rows common = on_common_mesh(rows);
+    const BenchmarkRow& row = *common.front();
+    text = "Those are medians on " + mesh_text(row) + ", with " +
+           sphere_text(radii(common).front()) + ". ";
+  }
+  text += left_out(benchmark);
+  if (!text.empty()) text.pop_back();
+  return text;
+}
+
+}  // namespace keepout::app

@@ -1,0 +1,15 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <iosfwd>
+#include <string_view>
+
+namespace keepout::app {
+
+/// The frame of every page: all up to its content, and all after. The page needs nothing but
+/// itself. `more_style`: CSS after that of all pages.
+void open_page(std::ostream& out, std::string_view title, std::string_view more_style);
+void close_page(std::ostream& out);
+
+}  // namespace keepout::app

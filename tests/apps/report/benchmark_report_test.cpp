@@ -1,0 +1,268 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "report/benchmark_report.h"
+
+#include <gtest/gtest.h>
+
+#include <sstream>
+#include <string>
+
+#include "benchmark_scene.h"
+#include "number_text.h"
+#include "report/benchmark_verdict.h"
+#include "report/html_report.h"
+#include "report_scene.h"
+
+namespace keepout::app {
+namespace {
+
+std::string page_of(const Benchmark& benchmark, const Comparison& comparison) {
+  std::ostringstream page;
+  print_benchmark_report(page, benchmark, comparison);
+  return page.str();
+}
+
+std::string sections_of(const Benchmark& benchmark, const Comparison& comparison) {
+  std::ostringstream sections;
+  print_benchmark_sections(sections, benchmark, comparison);
+  return sections.str();
+}
+
+std::size_t how_many(const std::string& page, const std::string& words) {
+  std::size_t count = 0;
+  for (std::size_t at = page.find(words); at != std::string::npos; at = page.find(words, at + 1)) {
+    ++count;
+  }
+  return count;
+}
+
+bool has(const std::string& page, const std::string& words) {
+  return page.find(words) != std::string::npos;
+}
+
+/// The first table whose section has this title.
+std::string table_below(const std::string& page, const std::string& title) {
+  const std::size_t start = page.find("<table", page.find("<h2>" + title));
+  return page.substr(start, page.find("</table>", start) - start);
+}
+
+/// Our pair takes 4 us and its peer 200 at 5 mm; 1 and 12 at 1 mm.
+Benchmark duel() {
+  Benchmark benchmark;
+  for (const std::size_t triangles : {std::size_t{1000}, std::size_t{64000}}) {
+    for (const double radius : {1.0, 5.0}) {
+      for (const bool ours : {true, false}) {
+        BenchmarkRow row;
+        row.mesh = "ball";
+        row.triangles = triangles;
+        row.radius = radius;
+        row.index = ours ? "pd_tree" : "fcl_obbrss";
+        row.activation = "paper";
+        row.solver = ours ? "active_set" : "nlopt_slsqp";
+        const double us = ours ? radius < 2.0 ? 1.0 : 4.0 : radius < 2.0 ? 12.0 : 200.0;
+        row.step = made_up_timing(triangles < 2000 ? 0.5 * us : us, 10);
+        row.verified = true;
+        benchmark.rows.push_back(row);
+      }
+    }
+  }
+  return benchmark;
+}
+
+TEST(BenchmarkVerdict, SetsOurPairAgainstItsPeersOnTheLargestMesh) {
+  Benchmark benchmark = duel();
+  EXPECT_EQ(
+      headline(benchmark),
+      "The principal direction tree with our active set answers a step in 4.00\u00a0µs, where "
+      "FCL's tree with NLopt's SLSQP takes 200\u00a0µs: 50 times as long.");
+  EXPECT_EQ(
+      account(benchmark),
+      "That is the median on ball with 64,000 triangles, rule paper, with a motion sphere of "
+      "5\u00a0mm. With a sphere of 1\u00a0mm it is 1.00\u00a0µs against 12.0\u00a0µs, 12 times "
+      "as long.");
+}
+
+TEST(BenchmarkVerdict, SaysSoWhereThePeerIsFaster) {
+  Benchmark benchmark = duel();
+  for (BenchmarkRow& row : benchmark.rows) {
+    if (row.index == "pd_tree") row.step->p50 *= 1000.0;
+  }
+  EXPECT_EQ(headline(benchmark),
+            "FCL's tree with NLopt's SLSQP answers a step in 200\u00a0µs, where the principal "
+            "direction tree with our active set takes 4000\u00a0µs: 20 times as long.");
+}
+
+TEST(BenchmarkVerdict, ComparesOnlyWhatMetTheSameConditions) {
+  Benchmark benchmark = duel();
+  for (BenchmarkRow& row : benchmark.rows) {
+    if (row.index == "pd_tree") row.activation = "all_faces";
+  }
+  EXPECT_EQ(headline(benchmark),
+            "A step takes 4.00\u00a0µs with pd_tree, all_faces, active_set, and 200\u00a0µs with "
+            "fcl_obbrss, paper, nlopt_slsqp: 50 times as long.");
+  benchmark.rows.resize(1);
+  EXPECT_EQ(headline(benchmark), "A step takes 0.500\u00a0µs with pd_tree, all_faces, active_set.");
+  benchmark.rows[0].step.reset();
+  EXPECT_EQ(headline(benchmark), "No step was timed.");
+  EXPECT_EQ(account(benchmark), "1 of 1 row was not timed; the table of all rows says why.");
+}
+
+TEST(BenchmarkReport, IsOneWellFormedPageThatNeedsNothingElse) {
+  const std::string page = page_of(made_up_benchmark(), made_up_comparison());
+  EXPECT_EQ(fault_in_html(page), "");
+  for (const char* reference : {"http:", "https:", "src=", "url(", "@import", "<script", "<link"}) {
+    EXPECT_FALSE(has(page, reference)) << reference;
+  }
+  EXPECT_TRUE(has(page, "&lt;lost&gt; &quot;them&quot;"));
+  EXPECT_TRUE(has(page, "AMD EPYC &lt;9R14&gt; &amp; &quot;friends&quot;"));
+  EXPECT_TRUE(has(page, "XTOL_REACHED, &lt;wrong&gt; &amp; &quot;so&quot;"));
+}
+
+TEST(BenchmarkReport, EscapesEveryName) {
+  const std::string hostile = "<i>&\"'";
+  Benchmark benchmark = made_up_benchmark({51978, 985856});
+  for (BenchmarkRow& row : benchmark.rows) {
+    for (std::string* text : {&row.mesh, &row.index, &row.activation, &row.solver, &row.remark}) {
+      *text += hostile;
+    }
+  }
+  for (std::string* text :
+       {&benchmark.date, &benchmark.command, &benchmark.machine.system, &benchmark.machine.compiler,
+        &benchmark.machine.flags, &benchmark.machine.build_type, &benchmark.machine.keepout,
+        &benchmark.machine.libraries.front()}) {
+    *text += hostile;
+  }
+  Comparison comparison = made_up_comparison();
+  for (IndexAgreement& row : comparison.indices) {
+    for (std::string* text : {&row.mesh, &row.index, &row.activation}) *text += hostile;
+  }
+  for (SolverAgreement& row : comparison.solvers) {
+    for (std::string* text : {&row.solver, &row.activation}) *text += hostile;
+  }
+  for (NarrowPhaseAgreement& row : comparison.narrow_phases) {
+    for (std::string* text : {&row.backend, &row.tool, &row.relation}) *text += hostile;
+  }
+  const std::string page = page_of(benchmark, comparison);
+  EXPECT_EQ(fault_in_html(page), "");
+  EXPECT_FALSE(has(page, "<i>"));
+  EXPECT_TRUE(has(page, "pd_tree&lt;i&gt;&amp;&quot;&#39;"));
+}
+
+TEST(BenchmarkReport, ShowsEveryRow) {
+  const Benchmark benchmark = made_up_benchmark();
+  const std::string table = table_below(page_of(benchmark, {}), "Every row");
+  EXPECT_EQ(how_many(table, "<tr>"), benchmark.rows.size() + 1);
+  for (const MadeUpIndex& index : made_up_indices()) {
+    EXPECT_TRUE(has(table, std::string(">") + index.name + "<")) << index.name;
+  }
+  for (const MadeUpSolver& solver : made_up_solvers()) {
+    EXPECT_TRUE(has(table, std::string(">") + solver.name + "<")) << solver.name;
+  }
+}
+
+TEST(BenchmarkReport, ADashStandsForWhatIsMissing) {
+  Benchmark benchmark = made_up_benchmark({985856});
+  benchmark.rows.resize(2);
+  benchmark.rows[0].step = made_up_timing(4.0, 50);  // too few for percentiles
+  benchmark.rows[1].step = made_up_timing(5.0, 500);
+  const std::string table = table_below(page_of(benchmark, {}), "Every row");
+  EXPECT_TRUE(has(table, "<td>4.00</td><td>-</td><td>-</td><td>460</td>")) << table;
+  EXPECT_TRUE(has(table, "<td>5.00</td><td>12.0</td><td>-</td><td>500</td>")) << table;
+}
+
+TEST(BenchmarkReport, RowsThatWereNotTimedSayWhy) {
+  Benchmark benchmark = made_up_benchmark({3943424});
+  const std::string page = page_of(benchmark, {});
+  const std::string table = table_below(page, "Every row");
+  EXPECT_TRUE(has(table,
+                  "<td>-</td><td>-</td><td>-</td><td>-</td><td>-</td><td>-</td><td>-</td>"
+                  "<td>-</td><td>-</td><td class=\"words\">missed 3 triangles"));
+  EXPECT_TRUE(has(page, "rows were not timed; the table of all rows says why."));
+}
+
+TEST(BenchmarkReport, EveryIndexHasALineAndEverySolverToo) {
+  const std::string page = page_of(made_up_benchmark(), {});
+  for (const MadeUpIndex& index : made_up_indices()) {
+    // One in each of the four panels of a radius.
+    EXPECT_GE(how_many(page, ">" + std::string(index.name) + "</text>"), 4U) << index.name;
+  }
+  for (const MadeUpSolver& solver : made_up_solvers()) {
+    EXPECT_TRUE(has(page, ">" + std::string(solver.name) + "</text>")) << solver.name;
+  }
+}
+
+TEST(BenchmarkReport, ShowsWhatThePaperPublished) {
+  const std::string page = page_of(made_up_benchmark(), {});
+  EXPECT_EQ(how_many(page, "<path class=\"mark series-published\""), 6U);  // 2 plots: 2 + legend
+  EXPECT_TRUE(has(page, "7.73\u00a0kHz at 51,978"));
+  EXPECT_TRUE(has(page, "0.18\u00a0kHz at 989,376"));
+  EXPECT_TRUE(has(page, "i7-8700"));
+  EXPECT_TRUE(has(page, "another machine"));
+}
+
+TEST(BenchmarkReport, OneSizeOfMeshIsShownWithoutLines) {
+  const std::string page = page_of(made_up_benchmark({985856}), {});
+  EXPECT_EQ(fault_in_html(page), "");
+  EXPECT_FALSE(has(page, "class=\"leader series-0\" d=\"M66"));
+  EXPECT_TRUE(has(page, "class=\"span "));
+  EXPECT_TRUE(has(page, "Fastest at 985,856 triangles: pd_tree, 7.73\u00a0µs."));
+}
+
+TEST(BenchmarkReport, LeavesOutWhatHasNoRows) {
+  EXPECT_EQ(sections_of({}, {}), "");
+  const std::string nothing = page_of({}, {});
+  EXPECT_EQ(fault_in_html(nothing), "");
+  EXPECT_TRUE(has(nothing, "<h1>Nothing was measured.</h1>"));
+  EXPECT_FALSE(has(nothing, "<h2"));
+
+  const std::string speed = page_of(made_up_benchmark({51978}), {});
+  EXPECT_FALSE(has(speed, "agree?"));
+  const std::string agreement = page_of({}, made_up_comparison());
+  EXPECT_EQ(fault_in_html(agreement), "");
+  EXPECT_TRUE(has(agreement,
+                  "<h1>Of 80,000 queries, held to brute force one by one, "
+                  "bullet_quantised missed 3 triangles; 2 steps differ"));
+  EXPECT_FALSE(has(agreement, "Every row"));
+  EXPECT_EQ(how_many(agreement, "agree?</h2>"), 3U);
+
+  Benchmark untimed = made_up_benchmark({51978});
+  for (BenchmarkRow& row : untimed.rows) {
+    row.collect = row.query = row.activate = row.solve = row.step = std::nullopt;
+    row.build_s = 0.0;
+  }
+  const std::string rows = page_of(untimed, {});
+  EXPECT_EQ(fault_in_html(rows), "");
+  EXPECT_EQ(how_many(rows, "<svg"), 0U);
+  EXPECT_TRUE(has(rows, "No step was timed."));
+}
+
+TEST(BenchmarkReport, AgreementIsToldByName) {
+  const std::string page = page_of({}, made_up_comparison());
+  EXPECT_TRUE(has(page,
+                  "nlopt_slsqp, nlopt_cobyla and nlopt_mma gave 21 answers that are wrong, and "
+                  "nlopt_slsqp, nlopt_cobyla and nlopt_mma gave up 36 times."));
+  EXPECT_TRUE(has(page, "libccd_gjk, fcl_gjk and bullet_gjk took apart for overlapping"));
+  EXPECT_TRUE(has(page, "4,700\u00a0× XTOL_REACHED, optimal; 181\u00a0× ROUNDOFF_LIMITED"));
+}
+
+TEST(BenchmarkReport, FollowsASimulationOnItsPage) {
+  const Mesh mesh(tetrahedron());
+  const Simulation simulation = tetrahedron_simulation(mesh);
+  const auto with = [&](const Benchmark& benchmark, const Comparison& comparison) {
+    std::ostringstream page;
+    print_report(page, simulation, benchmark, comparison);
+    return page.str();
+  };
+  const std::string page = with(made_up_benchmark({985856}), made_up_comparison());
+  EXPECT_EQ(fault_in_html(page), "");
+  EXPECT_LT(page.find("How this was measured"), page.find("<h2 class=\"part\">"));
+  EXPECT_EQ(how_many(page, "<h1>"), 1U);
+  std::ostringstream alone;
+  print_report(alone, simulation);
+  const std::string empty = with({}, {});
+  const auto body = [](const std::string& text) { return text.substr(text.find("<body>")); };
+  EXPECT_EQ(body(empty), body(alone.str()));
+}
+
+}  // namespace
+}  // namespace keepout::app
