@@ -167,6 +167,10 @@ void add_simulate(CLI::App& app, SimulateOptions& options) {
       ->check(CLI::IsMember(names(activation_rules())))
       ->delimiter(',')
       ->capture_default_str();
+  command.add_flag_callback(
+      "--bench", [&options] { options.timings = Timings::of_every_part; },
+      "Then time indices, rules and solvers side by side on this mesh, into the same report: a "
+      "quick 'keepout bench'");
   add_constraint_options(command, options.constraint);
   command.add_option("--max-step", options.max_step, "Longest increment to desire in a cycle")
       ->type_name("MM")
@@ -291,7 +295,8 @@ void add_bench(CLI::App& app, BenchCommand& bench) {
   command.add_option("--json", options.json, "Where to write all figures")->type_name("FILE");
   command.add_option("--csv", options.csv, "Where to write them as a table")->type_name("FILE");
   command.add_option("--out", options.report, "Where to write a report with plots")
-      ->type_name("REPORT.html");
+      ->type_name("REPORT.html")
+      ->capture_default_str();
   command.footer(
       "Each list is crossed with the others; what is not named is pd_tree, paper and certified,\n"
       "active_set, and radii of 5, 1, 0.25 and the motion. Without --index, --activation and\n"

@@ -9,7 +9,11 @@
 #include <ostream>
 #include <utility>
 
+#include "bench/bench.h"
+#include "bench/machine_record.h"
 #include "clip.h"
+#include "compare/compare.h"
+#include "compare/comparison_files.h"
 #include "keepout/activation/registry.h"
 #include "keepout/adapters/load_mesh.h"
 #include "keepout/error.h"
@@ -104,7 +108,8 @@ std::string command_of(const SimulateOptions& options, const std::vector<std::st
          std::to_string(options.constraint.nodes) + " --query " +
          (options.constraint.query == Query::motion ? "motion" : "sphere") + " --max-step " +
          number(options.max_step) + " --seed " + std::to_string(options.hand.seed) + " --strokes " +
-         std::to_string(options.hand.strokes) + " --cycles " + std::to_string(options.hand.cycles);
+         std::to_string(options.hand.strokes) + " --cycles " + std::to_string(options.hand.cycles) +
+         (options.timings == Timings::of_every_part ? " --bench" : "");
 }
 
 std::vector<std::pair<std::string, std::string>> settings_of(const SimulateOptions& options,
@@ -184,6 +189,30 @@ std::vector<std::vector<Vec3>> hand_over(Audit& audit, const SimulateOptions& op
   }
 }
 
+struct Measured {
+  Benchmark benchmark;
+  Comparison comparison;
+};
+
+/// A quick benchmark on the same mesh; nothing, unless it was asked for.
+Measured timings_of(const SimulateOptions& options, const std::shared_ptr<const Mesh>& mesh,
+                    std::ostream& out) {
+  Measured measured;
+  if (options.timings == Timings::of_the_run) return measured;
+  const Subject subject{.mesh = options.mesh.string()};
+  measured.benchmark = {.date = date_now(),
+                        .command = "keepout bench --mesh " + shell_word(subject.mesh),
+                        .seed = 1,
+                        .machine = this_machine()};
+  MemoryTaken memory;
+  run_trial(subject, quick_combinations(), {.queries = 1500, .seconds = 0.15}, memory,
+            measured.benchmark, out);
+  measured.comparison = compare_parts(options.mesh.stem().string(), mesh,
+                                      {.poses = 12, .problems = 400, .pairs = 100});
+  print(out, measured.comparison);
+  return measured;
+}
+
 }  // namespace
 
 void simulate(const SimulateOptions& options, std::ostream& out) {
@@ -218,7 +247,8 @@ void simulate(const SimulateOptions& options, std::ostream& out) {
         run_strokes(rule, description_of(rule), *tool, hand, options.max_step, audit));
   }
   print_table(simulation, out);
-  print_report(report.stream(), simulation);
+  const auto [benchmark, comparison] = timings_of(options, loaded.mesh, out);
+  print_report(report.stream(), simulation, benchmark, comparison);
   report.commit();
   out << "report: " << options.report.string() << '\n';
 }

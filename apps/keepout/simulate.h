@@ -12,6 +12,11 @@
 
 namespace keepout::app {
 
+enum class Timings {
+  of_the_run,    // what its own steps took
+  of_every_part  // and a quick benchmark of everything that could take its parts' place
+};
+
 struct SimulateOptions {
   std::filesystem::path mesh;
   std::filesystem::path report = "keepout-report.html";  // to be written
@@ -19,6 +24,7 @@ struct SimulateOptions {
   MotionConstraintSettings constraint;  // its activation is each of the rules in turn
   HandSettings hand;
   double max_step = 0.5;  // longest increment asked for in a cycle [mm]
+  Timings timings = Timings::of_the_run;
 };
 
 /// Pushes the tool over and into the anatomy in closed loop, without a fixture and with each rule;

@@ -9,6 +9,8 @@
 #include "bench/benchmark_table.h"
 #include "bench/machine_record.h"
 #include "bench/parts.h"
+#include "compare/compare.h"
+#include "compare/comparison_files.h"
 #include "keepout/activation/registry.h"
 #include "keepout/error.h"
 #include "keepout/fixtures/real_mesh.h"
@@ -16,6 +18,7 @@
 #include "number_text.h"
 #include "output_file.h"
 #include "progress.h"
+#include "report/benchmark_report.h"
 
 namespace keepout::app {
 namespace {
@@ -48,25 +51,16 @@ TrialSettings settings_of(const BenchOptions& options) {
           .seed = options.seed};
 }
 
-/// A file that is asked for; null if it is not.
-class Files {
- public:
-  explicit Files(const BenchOptions& options) : json(open(options.json)), csv(open(options.csv)) {}
-
-  std::unique_ptr<OutputFile> json, csv;
-
- private:
-  static std::unique_ptr<OutputFile> open(const std::optional<std::filesystem::path>& path) {
-    return path ? std::make_unique<OutputFile>(*path) : nullptr;
-  }
-};
+std::unique_ptr<OutputFile> open(const std::optional<std::filesystem::path>& path) {
+  return path ? std::make_unique<OutputFile>(*path) : nullptr;
+}
 
 void refuse_overwriting(const BenchOptions& options) {
   std::vector<NamedPath> inputs, outputs;
   for (const std::string& mesh : options.meshes) inputs.push_back({"--mesh", mesh});
   if (options.json) outputs.push_back({"--json", *options.json});
   if (options.csv) outputs.push_back({"--csv", *options.csv});
-  if (options.report) outputs.push_back({"--out", *options.report});
+  outputs.push_back({"--out", options.report});
   refuse_shared_files(inputs, outputs);
 }
 
@@ -125,7 +119,9 @@ void bench(const BenchOptions& options, std::ostream& out) {
   const std::vector<Combination> combinations = combinations_of(options.selection);
   if (combinations.empty()) throw Error("there is nothing to measure: see 'keepout bench --list'");
   refuse_overwriting(options);
-  Files files(options);
+  OutputFile report(options.report);
+  const std::unique_ptr<OutputFile> json = open(options.json), csv = open(options.csv);
+
   Benchmark benchmark{.date = date_now(),
                       .command = options.command,
                       .seed = options.seed,
@@ -134,17 +130,22 @@ void bench(const BenchOptions& options, std::ostream& out) {
   for (const Subject& subject : subjects) {
     run_trial(subject, combinations, settings_of(options), memory, benchmark, out);
   }
-  if (files.json) {
-    write_json(files.json->stream(), benchmark);
-    files.json->finish();
+  out << "\ncomparing answers on " << title_of(subjects.front()) << '\n';
+  const Comparison comparison =
+      compare_parts(subjects.front().mesh, make_mesh(subjects.front()), {.seed = options.seed});
+  print(out, comparison);
+
+  print_benchmark_report(report.stream(), benchmark, comparison);
+  report.finish();
+  if (json) write_json(json->stream(), benchmark);
+  if (csv) write_csv(csv->stream(), benchmark);
+  for (OutputFile* file : {json.get(), csv.get()}) {
+    if (file != nullptr) file->finish();
   }
-  if (files.csv) {
-    write_csv(files.csv->stream(), benchmark);
-    files.csv->finish();
-  }
-  for (OutputFile* file : {files.json.get(), files.csv.get()}) {
+  for (OutputFile* file : {&report, json.get(), csv.get()}) {
     if (file != nullptr) file->commit();
   }
+  out << "report: " << options.report.string() << '\n';
 }
 
 }  // namespace keepout::app

@@ -27,12 +27,14 @@ struct BenchOptions {
   std::optional<double> seconds;
   Poses poses = Poses::contact;
   std::uint64_t seed = 1;
-  std::optional<std::filesystem::path> json, csv, report;  // to be written
-  std::string command;                                     // that does it again
+  std::filesystem::path report = "keepout-bench.html";  // to be written
+  std::optional<std::filesystem::path> json, csv;       // to be written
+  std::string command;                                  // that does it again
 };
 
-/// Measures every combination that was asked for on every mesh, prints a table as it goes, and
-/// writes files. Throws Error before any work when one could not be written.
+/// Measures every combination that was asked for on every mesh, prints a table as it goes, compares
+/// the parts' answers on the first mesh, and writes a report and files. Throws Error before any
+/// work when one could not be written.
 void bench(const BenchOptions& options, std::ostream& out);
 
 /// Says what there is to measure, and what this build was made without.
