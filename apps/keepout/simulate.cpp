@@ -205,7 +205,7 @@ Measured timings_of(const SimulateOptions& options, const std::shared_ptr<const 
                         .seed = 1,
                         .machine = this_machine()};
   MemoryTaken memory;
-  run_trial(subject, quick_combinations(), {.queries = 1500, .seconds = 0.15}, memory,
+  run_trial(subject, quick_combinations(), {.queries = 1500, .seconds = 0.3}, memory,
             measured.benchmark, out);
   measured.comparison = compare_parts(options.mesh.stem().string(), mesh,
                                       {.poses = 12, .problems = 400, .pairs = 100});

@@ -45,8 +45,8 @@ std::vector<Subject> chosen_subjects(const BenchOptions& options) {
 
 TrialSettings settings_of(const BenchOptions& options) {
   const bool full = options.extent == Extent::full;
-  return {.queries = options.queries.value_or(full ? 10'000 : 4'000),
-          .seconds = options.seconds.value_or(full ? 2.0 : 0.4),
+  return {.queries = options.queries.value_or(full ? 10'000 : 2'500),
+          .seconds = options.seconds.value_or(full ? 4.0 : 1.0),
           .poses = options.poses,
           .seed = options.seed};
 }
@@ -100,7 +100,7 @@ void run_trial(const Subject& subject, const std::vector<Combination>& combinati
   Trial trial(subject, settings, memory);
   progress.interrupt();
   out << '\n'
-      << subject.mesh << ", " << counted(trial.mesh().triangle_count(), "triangle") << ", "
+      << label_of(subject) << ", " << counted(trial.mesh().triangle_count(), "triangle") << ", "
       << grouped(trial.mesh().vertex_count()) << " vertices (build in s; times in us, medians "
       << "unless said)\n";
   print_table_head(out);
@@ -131,8 +131,8 @@ void bench(const BenchOptions& options, std::ostream& out) {
     run_trial(subject, combinations, settings_of(options), memory, benchmark, out);
   }
   out << "\ncomparing answers on " << title_of(subjects.front()) << '\n';
-  const Comparison comparison =
-      compare_parts(subjects.front().mesh, make_mesh(subjects.front()), {.seed = options.seed});
+  const Comparison comparison = compare_parts(label_of(subjects.front()),
+                                              make_mesh(subjects.front()), {.seed = options.seed});
   print(out, comparison);
 
   print_benchmark_report(report.stream(), benchmark, comparison);

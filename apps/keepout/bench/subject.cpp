@@ -45,8 +45,12 @@ std::vector<Subject> subjects_of(std::span<const std::string> meshes,
   return subjects;
 }
 
+std::string label_of(const Subject& subject) {
+  return std::filesystem::path(subject.mesh).filename().string();
+}
+
 std::string title_of(const Subject& subject) {
-  if (subject.triangles == 0) return subject.mesh;
+  if (subject.triangles == 0) return label_of(subject);
   return subject.mesh + ", " + counted(subject.triangles, "triangle");
 }
 

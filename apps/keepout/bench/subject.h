@@ -26,6 +26,9 @@ inline constexpr std::string_view resampled_mesh = "bunny";
 std::vector<Subject> subjects_of(std::span<const std::string> meshes,
                                  std::span<const std::size_t> sizes);
 
+/// What to call its mesh: a file without its folder.
+std::string label_of(const Subject& subject);
+
 /// "bunny, 989,376 triangles".
 std::string title_of(const Subject& subject);
 

@@ -93,7 +93,7 @@ const Trial::Built& Trial::build(const std::string& index) {
 }
 
 BenchmarkRow Trial::measure(const Combination& combination) {
-  BenchmarkRow row{.mesh = subject_.mesh,
+  BenchmarkRow row{.mesh = label_of(subject_),
                    .triangles = mesh_->triangle_count(),
                    .vertices = mesh_->vertex_count(),
                    .radius = combination.radius,

@@ -22,8 +22,8 @@ enum class Poses {
 };
 
 struct TrialSettings {
-  std::size_t queries = 4000;  // of each combination, at most
-  double seconds = 0.4;        // after which a combination is asked no more
+  std::size_t queries = 2500;  // of each combination, at most
+  double seconds = 1.0;        // after which a combination is asked no more
   double margin = 0.2;         // of the certified rule, and from the tip to the surface [mm]
   Poses poses = Poses::contact;
   std::uint64_t seed = 1;

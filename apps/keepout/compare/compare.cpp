@@ -69,8 +69,9 @@ int compare(const CompareOptions& options, std::ostream& out) {
                         std::array{NamedPath{"--json", *options.json}});
     json = std::make_unique<OutputFile>(*options.json);
   }
+  const Subject subject{.mesh = options.mesh};
   const Comparison comparison =
-      compare_parts(options.mesh, make_mesh({options.mesh, 0}), options.extent);
+      compare_parts(label_of(subject), make_mesh(subject), options.extent);
   print(out, comparison);
   if (json) {
     write_json(json->stream(), comparison);
