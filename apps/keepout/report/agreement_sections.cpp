@@ -159,8 +159,8 @@ void print_errors(std::ostream& out, const std::vector<NarrowPhaseAgreement>& ro
       relations.push_back(row.relation);
     }
   }
-  out << "<div class=\"panels\" style=\"--columns:" << std::min<std::size_t>(relations.size(), 3)
-      << "\">\n";
+  out << "<div class=\"panels charts\" style=\"--columns:"
+      << std::min<std::size_t>(relations.size(), 3) << "\">\n";
   for (const std::string& relation : relations) {
     out << "<figure class=\"measured\"><figcaption><span class=\"name\">" << escape(relation)
         << "</span><br><span class=\"about\">A mark at the median error, a line to the worst; no "

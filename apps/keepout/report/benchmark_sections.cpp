@@ -27,7 +27,7 @@ void open_section(std::ostream& out, const char* title, const std::string& lead)
 }
 
 void open_panels(std::ostream& out, std::size_t count) {
-  out << "<div class=\"panels wide\" style=\"--columns:" << std::min<std::size_t>(count, 2)
+  out << "<div class=\"panels wide charts\" style=\"--columns:" << std::min<std::size_t>(count, 2)
       << "\">\n";
 }
 

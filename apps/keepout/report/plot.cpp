@@ -75,7 +75,7 @@ Legend legend(const Plot& plot) {
   double x = left, y = 16.0;
   for (const Series& one : plot.series) {
     // Wide enough for the larger letters of a small screen.
-    const double wide = 34.0 + 1.15 * width_of(one.name);
+    const double wide = 34.0 + 9.6 / 8.4 * width_of(one.name);
     if (x > left && x + wide > width) {
       x = left;
       y += legend_row;
