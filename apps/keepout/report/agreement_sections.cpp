@@ -11,6 +11,7 @@
 
 #include "number_text.h"
 #include "report/mark.h"
+#include "report/page.h"
 #include "report/plot.h"
 #include "report/spans.h"
 #include "report/table.h"
@@ -98,10 +99,6 @@ std::string narrow_phase_lead(const std::vector<NarrowPhaseAgreement>& rows) {
   return text + (failing.empty() ? ", and all gave an answer."
                                  : ", and " + failing + " gave no answer " +
                                        how_often(sum(rows, &NarrowPhaseAgreement::failed)) + ".");
-}
-
-void open_section(std::ostream& out, const char* title, const std::string& lead) {
-  out << "<h2>" << title << "</h2>\n<p class=\"lead\">" << escape(lead) << "</p>\n";
 }
 
 /// What the libraries said, in their words: a line for each solver.

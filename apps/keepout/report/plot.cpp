@@ -85,7 +85,7 @@ Legend legend(const Plot& plot) {
       result.svg += "<path d=\"M" + coordinate(x) + "," + coordinate(y - 4.5) + "h20\"/>";
     }
     result.svg += mark_svg(one.mark, one.css_class, x + 10.0, y - 4.5) +
-                  svg_text("", x + 26.0, y, "start", one.name) + "</g>";
+                  svg_text("label", x + 26.0, y, "start", one.name) + "</g>";
     x += wide;
   }
   result.height = plot.series.empty() ? 10.0 : y + 12.0;
