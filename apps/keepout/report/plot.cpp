@@ -150,7 +150,7 @@ std::string axes(const Plot& plot, const Ruler& x, const Ruler& y, const Frame& 
   }
   svg += svg_text("axis name", 0.5 * (left + right), floor + bottom - 8.0, "middle", plot.x.label);
   const double middle = 0.5 * (top + floor);
-  svg += "<text class=\"axis name\" text-anchor=\"middle\" transform=\"translate(15," +
+  svg += "<text class=\"axis name\" text-anchor=\"middle\" transform=\"translate(13," +
          coordinate(middle) + ") rotate(-90)\">" + escape(plot.y.label) + "</text>";
   return svg;
 }
