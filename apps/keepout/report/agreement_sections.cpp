@@ -11,6 +11,7 @@
 
 #include "number_text.h"
 #include "report/mark.h"
+#include "report/page.h"
 #include "report/plot.h"
 #include "report/spans.h"
 #include "report/table.h"
@@ -100,10 +101,6 @@ std::string narrow_phase_lead(const std::vector<NarrowPhaseAgreement>& rows) {
                                        how_often(sum(rows, &NarrowPhaseAgreement::failed)) + ".");
 }
 
-void open_section(std::ostream& out, const char* title, const std::string& lead) {
-  out << "<h2>" << title << "</h2>\n<p class=\"lead\">" << escape(lead) << "</p>\n";
-}
-
 /// What the libraries said, in their words: a line for each solver.
 void print_outcomes(std::ostream& out, const std::vector<SolverAgreement>& rows) {
   if (std::all_of(rows.begin(), rows.end(),
@@ -159,8 +156,8 @@ void print_errors(std::ostream& out, const std::vector<NarrowPhaseAgreement>& ro
       relations.push_back(row.relation);
     }
   }
-  out << "<div class=\"panels\" style=\"--columns:" << std::min<std::size_t>(relations.size(), 3)
-      << "\">\n";
+  out << "<div class=\"panels charts\" style=\"--columns:"
+      << std::min<std::size_t>(relations.size(), 3) << "\">\n";
   for (const std::string& relation : relations) {
     out << "<figure class=\"measured\"><figcaption><span class=\"name\">" << escape(relation)
         << "</span><br><span class=\"about\">A mark at the median error, a line to the worst; no "

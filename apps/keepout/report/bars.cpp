@@ -22,7 +22,7 @@ std::string legend(const Bars& chart, double y) {
   double x = edge;
   for (const Bars::Part& part : chart.parts) {
     svg += svg_box("bar " + part.css_class, x, y - 11.0, 14.0, 11.0) +
-           svg_text("", x + 20.0, y, "start", part.name);
+           svg_text("label", x + 20.0, y, "start", part.name);
     x += 44.0 + width_of(part.name);
   }
   return svg;
@@ -61,7 +61,7 @@ std::string to_svg(const Bars& chart) {
   }
   for (const Bar& bar : chart.bars) {
     const bool shares = chart.length == Bars::Length::of_share;
-    svg += svg_text("", edge, y + label_height - 6.0, "start", bar.label) +
+    svg += svg_text("label", edge, y + label_height - 6.0, "start", bar.label) +
            svg_text("total", width - edge, y + label_height - 6.0, "end", bar.total) +
            one_bar(chart, bar, y + label_height, shares ? sum(bar) : longest);
     y += row_height;

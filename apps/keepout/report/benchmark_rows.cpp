@@ -158,6 +158,41 @@ Neighborhood neighborhood(const Rows& rows) {
           })};
 }
 
+std::vector<Rows> rate_lines(const Rows& rows) {
+  const Rows scaled = on_scaled_mesh(rows);
+  std::vector<Rows> lines;
+  const auto add = [&](const BenchmarkRow& like) {
+    lines.push_back(only(scaled, [&](const BenchmarkRow& row) {
+      return combination(row) == combination(like) && row.radius == like.radius;
+    }));
+  };
+  for (const char* rule : {"certified", "paper"}) {
+    for (const Pair& pair : {our_pair, peer_pair}) {
+      const Rows own = only(
+          scaled, [&](const BenchmarkRow& row) { return is(row, pair) && row.activation == rule; });
+      if (own.empty()) continue;
+      const std::vector<std::optional<double>> spheres = radii(own);
+      for (const Rows& sphere : {at_radius(own, std::nullopt), at_radius(own, spheres.front())}) {
+        const bool ours = std::string(pair.index) == our_pair.index;
+        if (sphere.empty() || (!sphere.front()->radius && spheres.size() > 1 && !ours)) continue;
+        if (!lines.empty() && lines.back().front() == sphere.front()) continue;
+        add(*sphere.front());
+      }
+    }
+  }
+  if (lines.empty()) {
+    const Rows there = on_common_mesh(scaled);
+    const Rows widest = at_radius(there, radii(there).front());
+    add(fastest(widest, &BenchmarkRow::step));
+    if (widest.size() > 1) add(slowest(widest, &BenchmarkRow::step));
+  }
+  return lines;
+}
+
+bool one_size(const std::vector<Rows>& lines) {
+  return std::all_of(lines.begin(), lines.end(), [](const Rows& line) { return line.size() == 1; });
+}
+
 std::string combination(const BenchmarkRow& row) {
   return row.index + ", " + row.activation + ", " + row.solver;
 }

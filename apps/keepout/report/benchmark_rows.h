@@ -59,6 +59,14 @@ struct Neighborhood {
 /// Precondition: there is a row.
 Neighborhood neighborhood(const Rows& rows);
 
+/// The combinations whose rate over the size of the mesh is worth a line, one each: ours and its
+/// peer's with the largest sphere, and ours with the sphere as long as the motion; or else the
+/// fastest and the slowest there are.
+std::vector<Rows> rate_lines(const Rows& rows);
+
+/// Whether no line has more than a point.
+bool one_size(const std::vector<Rows>& lines);
+
 /// "pd_tree, paper, active_set"
 std::string combination(const BenchmarkRow& row);
 

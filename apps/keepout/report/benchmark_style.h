@@ -70,10 +70,14 @@ td.words { white-space: normal; min-width: 24em; }
   .part { break-before: page; border-top: 0; margin-top: 0; padding-top: 0; }
   .everything { page: wide; }
   .windowed { max-height: none; overflow: visible; border: 0; }
-  .windowed table { font-size: 6.2pt; }
-  .windowed th, .windowed td { padding: 2px 3px; overflow-wrap: anywhere; }
-  .windowed thead th { position: static; font-size: 6pt; }
-  td.words { min-width: 0; }
+  .windowed table { font-size: 5.3pt; }
+  .windowed th, .windowed td { padding: 2px 3px; white-space: nowrap; }
+  .windowed thead th { position: static; font-size: 5pt; white-space: normal; }
+  tr { break-inside: avoid; }
+  .windowed td.words { white-space: normal; min-width: 8em; }
+  .panels.charts { grid-template-columns: repeat(var(--columns), minmax(0, 1fr)); gap: 10px; }
+  .measured figcaption, .measured figcaption .about { font-size: 9pt; }
+  .lead { break-after: avoid; break-inside: avoid; }
 }
 )css";
 

@@ -3,8 +3,11 @@
 #include "report/benchmark_table.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <cstdio>
+#include <map>
 #include <ostream>
+#include <set>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -80,6 +83,33 @@ Rows in_order(const Benchmark& benchmark) {
   return rows;
 }
 
+/// In how many comparisons of indices, all else being equal, they all led to the same steps.
+std::string same_steps(const Benchmark& benchmark) {
+  using Problem = std::tuple<std::string, std::size_t, std::optional<double>, std::string,
+                             std::string, std::size_t>;
+  struct Group {
+    std::size_t rows = 0;
+    std::set<std::uint64_t> hashes;
+  };
+  std::map<Problem, Group> groups;
+  for (const BenchmarkRow& row : benchmark.rows) {
+    if (!row.verified) continue;
+    Group& group =
+        groups[{row.mesh, row.triangles, row.radius, row.activation, row.solver, row.queries}];
+    ++group.rows;
+    group.hashes.insert(row.hash);
+  }
+  std::size_t compared = 0, same = 0;
+  for (const auto& [problem, group] : groups) {
+    if (group.rows < 2) continue;
+    ++compared;
+    if (group.hashes.size() == 1) ++same;
+  }
+  if (compared == 0) return {};
+  return ": all indices did in " + grouped(same) + " of the " + counted(compared, "group") +
+         " that differ in the index alone";
+}
+
 }  // namespace
 
 void print_row_section(std::ostream& out, const Benchmark& benchmark) {
@@ -117,7 +147,8 @@ void print_row_section(std::ostream& out, const Benchmark& benchmark) {
       << (untimed == 0 ? "all of them timed" : grouped(untimed) + " of them not timed")
       << ": the largest mesh first, then the largest sphere, then the fastest step. Times are "
          "medians unless they say otherwise; counts are means. Rows with the same hash made the "
-         "same steps, bit for bit.</p>\n";
+         "same steps, bit for bit"
+      << same_steps(benchmark) << ".</p>\n";
   print_table(out, table);
   out << "</section>\n";
 }

@@ -18,4 +18,8 @@ void open_page(std::ostream& out, std::string_view title, std::string_view more_
 
 void close_page(std::ostream& out) { out << "</main>\n</body>\n</html>\n"; }
 
+void open_section(std::ostream& out, std::string_view title, std::string_view lead) {
+  out << "<h2>" << title << "</h2>\n<p class=\"lead\">" << escape(lead) << "</p>\n";
+}
+
 }  // namespace keepout::app

@@ -12,4 +12,7 @@ namespace keepout::app {
 void open_page(std::ostream& out, std::string_view title, std::string_view more_style);
 void close_page(std::ostream& out);
 
+/// The title of a section, and what to see in it. The title is HTML, the lead plain text.
+void open_section(std::ostream& out, std::string_view title, std::string_view lead);
+
 }  // namespace keepout::app

@@ -75,7 +75,7 @@ Legend legend(const Plot& plot) {
   double x = left, y = 16.0;
   for (const Series& one : plot.series) {
     // Wide enough for the larger letters of a small screen.
-    const double wide = 34.0 + 1.15 * width_of(one.name);
+    const double wide = 34.0 + 9.6 / 8.4 * width_of(one.name);
     if (x > left && x + wide > width) {
       x = left;
       y += legend_row;
@@ -85,7 +85,7 @@ Legend legend(const Plot& plot) {
       result.svg += "<path d=\"M" + coordinate(x) + "," + coordinate(y - 4.5) + "h20\"/>";
     }
     result.svg += mark_svg(one.mark, one.css_class, x + 10.0, y - 4.5) +
-                  svg_text("", x + 26.0, y, "start", one.name) + "</g>";
+                  svg_text("label", x + 26.0, y, "start", one.name) + "</g>";
     x += wide;
   }
   result.height = plot.series.empty() ? 10.0 : y + 12.0;
@@ -150,7 +150,7 @@ std::string axes(const Plot& plot, const Ruler& x, const Ruler& y, const Frame& 
   }
   svg += svg_text("axis name", 0.5 * (left + right), floor + bottom - 8.0, "middle", plot.x.label);
   const double middle = 0.5 * (top + floor);
-  svg += "<text class=\"axis name\" text-anchor=\"middle\" transform=\"translate(15," +
+  svg += "<text class=\"axis name\" text-anchor=\"middle\" transform=\"translate(13," +
          coordinate(middle) + ") rotate(-90)\">" + escape(plot.y.label) + "</text>";
   return svg;
 }

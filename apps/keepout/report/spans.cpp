@@ -47,7 +47,7 @@ class LogRuler {
 };
 
 std::string one_span(const Span& span, const LogRuler& ruler, double y) {
-  std::string svg = svg_text("", edge, y + label_height - 2.0, "start", span.label) +
+  std::string svg = svg_text("label", edge, y + label_height - 2.0, "start", span.label) +
                     svg_text("total", width - edge, y + label_height - 2.0, "end", span.value_text);
   const double at = y + mark_height - 3.0;
   const bool marked = ruler.has(span.value);

@@ -160,6 +160,13 @@ TEST(BenchmarkReport, ShowsEveryRow) {
   }
 }
 
+TEST(BenchmarkReport, TellsWhereAllIndicesMadeTheSameSteps) {
+  Benchmark benchmark = made_up_benchmark({51978});
+  EXPECT_TRUE(has(page_of(benchmark, {}), "all indices did in 8 of the 8 groups that differ in"));
+  benchmark.rows[1].hash ^= 1U;
+  EXPECT_TRUE(has(page_of(benchmark, {}), "all indices did in 7 of the 8 groups that differ in"));
+}
+
 TEST(BenchmarkReport, ADashStandsForWhatIsMissing) {
   Benchmark benchmark = made_up_benchmark({985856});
   benchmark.rows.resize(2);

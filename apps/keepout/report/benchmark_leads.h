@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "report/benchmark_rows.h"
+
+namespace keepout::app {
+
+/// What to see in each section of a benchmark, in a sentence made of its figures. Plain text, not
+/// yet escaped. Precondition of all: there are rows, with the stages that the section is about.
+
+/// `rows`: those of one radius, comparable.
+std::string query_lead(const Rows& rows);
+
+/// The same in a few words, for the caption of a panel.
+std::string query_about(const Rows& rows);
+
+/// `lines`: as rate_lines() gives them.
+std::string rate_lead(const std::vector<Rows>& lines);
+
+/// `rows`: those of one rule.
+std::string solve_lead(const Rows& rows);
+
+/// `rows`: those of one mesh and radius.
+std::string stage_lead(const Rows& rows);
+
+/// `rows`: one an index, on one mesh.
+std::string cost_lead(const Rows& rows);
+
+}  // namespace keepout::app
