@@ -171,6 +171,20 @@ TEST_P(IndexContract, ManyThreadsMayAskAtOnce) {
   for (std::uint64_t seed = 0; seed < 4; ++seed) EXPECT_EQ(answers[seed].get(), found(seed));
 }
 
+TEST_P(IndexContract, ManyThreadsMayBuildAtOnce) {
+  const auto mesh = std::make_shared<const Mesh>(make_shape("cube"));
+  const auto found = [&] {
+    TriangleBuffer candidates(mesh->triangle_count());
+    GetParam().make(mesh)->collect({mesh->bounds().high, 10.0}, candidates);
+    std::sort(candidates.begin(), candidates.end());
+    return std::vector<TriangleId>(candidates.begin(), candidates.end());
+  };
+  std::vector<std::future<std::vector<TriangleId>>> answers;
+  for (int i = 0; i < 4; ++i) answers.push_back(std::async(std::launch::async, found));
+  const std::vector<TriangleId> alone = found();
+  for (auto& answer : answers) EXPECT_EQ(answer.get(), alone);
+}
+
 TEST_P(IndexContract, SaysWhenTheBufferIsTooSmall) {
   const auto mesh = std::make_shared<const Mesh>(make_shape("cube"));
   TriangleBuffer candidates(3);
