@@ -35,7 +35,7 @@ Schedule schedule_of(NloptMethod method) noexcept {
     case NloptMethod::mma:
       break;
   }
-  return {NLOPT_LD_MMA, 1e-8, 300};
+  return {NLOPT_LD_MMA, 1e-9, 300};
 }
 
 NloptClaim claim_of(nlopt_result result) noexcept {
@@ -98,6 +98,22 @@ struct Callback {
   }
 };
 
+/// Rest, or somewhere inside of all rows that is reached from there by projecting on one violated
+/// row after the other, if it is soon: MMA rarely recovers from a start that violates a row, were
+/// it by the last digit.
+Eigen::VectorXd start_of(const NearestPoint& problem) {
+  constexpr int most_projections = 64;
+  constexpr double inside = 1e-3;
+  Eigen::VectorXd z = problem.rest;
+  for (int i = 0; i < most_projections && problem.bounds.size() > 0; ++i) {
+    Eigen::Index row = 0;
+    const double violation = (problem.bounds - problem.normals * z).maxCoeff(&row);
+    if (!(violation > 0)) break;
+    z += (violation + inside) * problem.normals.row(row).transpose();
+  }
+  return z;
+}
+
 }  // namespace
 
 Attempt minimize(NloptMethod method, const NearestPoint& problem) {
@@ -105,7 +121,7 @@ Attempt minimize(NloptMethod method, const NearestPoint& problem) {
   const auto m = static_cast<unsigned>(problem.normals.rows());
   const Schedule schedule = schedule_of(method);
   const Optimizer optimizer(nlopt_create(schedule.algorithm, n));
-  Attempt attempt{.z = problem.rest};
+  Attempt attempt{.z = start_of(problem)};
   if (!optimizer) {
     attempt.claim = NloptClaim::out_of_memory;
     return attempt;
