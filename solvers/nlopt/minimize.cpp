@@ -35,7 +35,7 @@ Schedule schedule_of(NloptMethod method) noexcept {
     case NloptMethod::mma:
       break;
   }
-  return {NLOPT_LD_MMA, 1e-10, 2000};
+  return {NLOPT_LD_MMA, 1e-9, 300};
 }
 
 NloptClaim claim_of(nlopt_result result) noexcept {
@@ -89,12 +89,30 @@ struct Callback {
                          void* data) {
     const NearestPoint& problem = static_cast<Callback*>(data)->problem;
     const Eigen::Map<const Eigen::VectorXd> z(x, n);
-    Eigen::Map<Eigen::VectorXd>(result, m).noalias() = problem.bounds - problem.normals * z;
+    Eigen::Map<Eigen::VectorXd> violations(result, m);  // no temporary: C cannot be thrown through
+    violations = problem.bounds;
+    violations.noalias() -= problem.normals * z;
     if (gradient != nullptr) {
       Eigen::Map<StepProblem::RowMatrix>(gradient, m, n) = -problem.normals;
     }
   }
 };
+
+/// Rest, or somewhere inside of all rows that is reached from there by projecting on one violated
+/// row after the other, if it is soon: MMA rarely recovers from a start that violates a row, were
+/// it by the last digit.
+Eigen::VectorXd start_of(const NearestPoint& problem) {
+  constexpr int most_projections = 64;
+  constexpr double inside = 1e-3;
+  Eigen::VectorXd z = problem.rest;
+  for (int i = 0; i < most_projections && problem.bounds.size() > 0; ++i) {
+    Eigen::Index row = 0;
+    const double violation = (problem.bounds - problem.normals * z).maxCoeff(&row);
+    if (!(violation > 0)) break;
+    z += (violation + inside) * problem.normals.row(row).transpose();
+  }
+  return z;
+}
 
 }  // namespace
 
@@ -103,7 +121,7 @@ Attempt minimize(NloptMethod method, const NearestPoint& problem) {
   const auto m = static_cast<unsigned>(problem.normals.rows());
   const Schedule schedule = schedule_of(method);
   const Optimizer optimizer(nlopt_create(schedule.algorithm, n));
-  Attempt attempt{.z = problem.rest};
+  Attempt attempt{.z = start_of(problem)};
   if (!optimizer) {
     attempt.claim = NloptClaim::out_of_memory;
     return attempt;
@@ -115,7 +133,10 @@ Attempt minimize(NloptMethod method, const NearestPoint& problem) {
   bool set = nlopt_set_min_objective(opt, Callback::cost, &callback) == NLOPT_SUCCESS &&
              nlopt_set_xtol_abs1(opt, schedule.x_tolerance) == NLOPT_SUCCESS &&
              nlopt_set_maxeval(opt, schedule.most_evaluations) == NLOPT_SUCCESS &&
-             nlopt_set_initial_step1(opt, 0.5) == NLOPT_SUCCESS;
+             nlopt_set_initial_step1(opt, 0.5) == NLOPT_SUCCESS &&
+             // Of the problem in the multipliers that MMA solves in each of its steps, by default
+             // 100000: seconds.
+             nlopt_set_param(opt, "dual_maxeval", 500) == NLOPT_SUCCESS;
   if (m > 0) {
     set = set && nlopt_add_inequality_mconstraint(opt, m, Callback::violations, &callback,
                                                   tolerances.data()) == NLOPT_SUCCESS;

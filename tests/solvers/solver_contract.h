@@ -5,12 +5,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
 #include <ostream>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "keepout/solvers/kkt.h"
 #include "keepout/solvers/registry.h"
@@ -25,7 +27,6 @@ inline void PrintTo(const SolverBackend& backend, std::ostream* out) { *out << b
 
 namespace keepout::test {
 
-inline constexpr double kkt_bound = 1e-9;
 inline constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 inline constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -57,6 +58,31 @@ inline Problem point_problem(const Eigen::VectorXd& desired, const StepProblem::
           .bounds = bounds};
 }
 
+/// How hard a problem is for a solver that does not work exactly.
+enum class Difficulty { plain, tangled, weak };
+
+/// tangled: planes that are all but parallel, and slabs that rounding may close. weak: a task of
+/// condition 1e6.
+inline Difficulty difficulty_of(Task task, Planes planes) {
+  if (task == Task::slanted || task == Task::uneven_columns) return Difficulty::weak;
+  return planes == Planes::near_parallel || planes == Planes::slabs ? Difficulty::tangled
+                                                                    : Difficulty::plain;
+}
+
+/// What is granted to solvers of libraries, as measured. Nothing is to our own.
+struct Allowance {
+  int stride = 1;                              // of many problems one in so many: they are slow
+  int most_rows = 2000;                        // of a problem
+  std::array<double, 3> gives_up = {0, 0, 0};  // share of the problems, by Difficulty
+};
+
+inline Allowance allowance_of(std::string_view solver) {
+  if (solver == "nlopt_slsqp") return {7, 2000, {0.01, 0.02, 0.35}};
+  if (solver == "nlopt_cobyla") return {163, 400, {0.15, 0.4, 0.7}};
+  if (solver == "nlopt_mma") return {797, 20, {0.3, 0.7, 0.9}};
+  return {};
+}
+
 /// What every solver of the registry must do. A solver's own claim of optimality is never trusted:
 /// the conditions of Karush, Kuhn and Tucker are checked from the problem.
 class SolverContract : public testing::TestWithParam<SolverBackend> {
@@ -64,27 +90,78 @@ class SolverContract : public testing::TestWithParam<SolverBackend> {
   void SetUp() override {
     solver_ = GetParam().make();
     solver_->reserve(7, 2000);
+    allowance_ = allowance_of(GetParam().name);
+  }
+
+  /// What was given up is within what is granted; of a handful no share is told.
+  void TearDown() override {
+    for (std::size_t i = 0; i < posed_.size(); ++i) {
+      if (posed_[i] < 12) continue;
+      EXPECT_LE(given_up_[i], allowance_.gives_up[i] * posed_[i])
+          << "of " << posed_[i] << " of difficulty " << i;
+      RecordProperty("given_up_" + std::to_string(i), std::to_string(given_up_[i] / posed_[i]));
+    }
   }
 
   SolveStatus solve(const Problem& problem) { return solver_->solve(problem.view(), solution_); }
 
   /// Optimal, and the conditions of optimality hold.
   testing::AssertionResult optimal(const Problem& problem) {
-    const SolveStatus status = solve(problem);
+    return checked(problem, solve(problem));
+  }
+
+  testing::AssertionResult checked(const Problem& problem, SolveStatus status) {
     if (status != SolveStatus::optimal) return testing::AssertionFailure() << reason(status);
     const KktResidual residual = kkt_residual(problem.view(), solution_);
     worst_ = std::max(worst_, residual.worst());
-    if (residual.worst() <= kkt_bound) return testing::AssertionSuccess();
+    if (residual.worst() <= GetParam().accuracy) return testing::AssertionSuccess();
     return testing::AssertionFailure()
            << "stationarity " << residual.stationarity << " primal " << residual.primal << " dual "
            << residual.dual << " complementarity " << residual.complementarity;
   }
 
+  /// The same, or given up as often as the solver may; never anything else. For feasible problems.
+  testing::AssertionResult optimal_or_given_up(const Problem& problem,
+                                               Difficulty difficulty = Difficulty::plain) {
+    const auto kind = static_cast<std::size_t>(difficulty);
+    ++posed_[kind];
+    const SolveStatus status = solve(problem);
+    gave_up_ = allowance_.gives_up[kind] > 0 && status == SolveStatus::iteration_limit;
+    if (!gave_up_) return checked(problem, status);
+    ++given_up_[kind];
+    return testing::AssertionSuccess();
+  }
+
+  /// Infeasible, or given up as often as the solver may.
+  testing::AssertionResult infeasible_or_given_up(const Problem& problem, Difficulty difficulty) {
+    const auto kind = static_cast<std::size_t>(difficulty);
+    ++posed_[kind];
+    const SolveStatus status = solve(problem);
+    if (status == SolveStatus::infeasible) return testing::AssertionSuccess();
+    if (status != SolveStatus::iteration_limit || allowance_.gives_up[kind] == 0) {
+      return testing::AssertionFailure() << reason(status);
+    }
+    ++given_up_[kind];
+    return testing::AssertionSuccess();
+  }
+
+  /// Digits that are expected of an exact solver; of another, twenty times its accuracy, for what
+  /// the condition of the problem adds.
+  double digits(double exact) const {
+    return GetParam().library == nullptr ? exact : std::max(exact, 20 * GetParam().accuracy);
+  }
+
+  /// One in `stride` of the problems that an exact solver is tried with.
+  int stride() const { return allowance_.stride; }
+
   Eigen::VectorXd u() const { return vector(solution_.u); }
 
   std::unique_ptr<Solver> solver_;
   Solution solution_;
+  Allowance allowance_;
+  bool gave_up_ = false;  // the last problem
   double worst_ = 0;
+  std::array<double, 3> posed_{}, given_up_{};  // by Difficulty
 };
 
 inline std::string solver_name(const testing::TestParamInfo<SolverBackend>& backend) {

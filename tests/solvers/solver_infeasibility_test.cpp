@@ -17,7 +17,7 @@ TEST_P(SolverInfeasibility, ContradictionsAreRecognised) {
   // farther than the planes are apart, and there round to 1e-10.
   for (const Task task : tasks) {
     for (const Planes planes : {Planes::scattered, Planes::touching, Planes::uneven}) {
-      for (int i = 0; i < 500; ++i) {
+      for (int i = 0; i < 500; i += stride()) {
         Random random(static_cast<std::uint64_t>(i) * 100 + static_cast<std::uint64_t>(task) * 10 +
                       static_cast<std::uint64_t>(planes));
         const int n = random.integer(1, 7);
@@ -26,7 +26,7 @@ TEST_P(SolverInfeasibility, ContradictionsAreRecognised) {
         make_planes(problem, planes, random.vector(n), random.integer(2, 60), random);
         const bool weak = task == Task::slanted || task == Task::uneven_columns;
         make_infeasible(problem, random.log_uniform(weak ? 1e-3 : 1e-9, 1), random);
-        ASSERT_EQ(solve(problem), SolveStatus::infeasible)
+        ASSERT_TRUE(infeasible_or_given_up(problem, difficulty_of(task, planes)))
             << name(task) << ", " << name(planes) << ", seed " << i << ", n = " << n;
       }
     }
@@ -37,8 +37,8 @@ TEST_P(SolverInfeasibility, ContradictionsOnlyFarAwayAreNeverSolvedWrongly) {
   // The weights span twelve decades. Up to the last few digits the planes are parallel, and meet
   // where the margin is below rounding: to give up is right there, to claim an optimum that
   // violates a row is not.
-  int recognised = 0;
-  for (int i = 0; i < 2000; ++i) {
+  int recognised = 0, posed = 0;
+  for (int i = 0; i < 2000; i += stride()) {
     Random random(static_cast<std::uint64_t>(i) + 7500000);
     const int n = random.integer(1, 7);
     Problem problem = make_problem(Task::identity, Planes::scattered, n, 20, random);
@@ -49,6 +49,7 @@ TEST_P(SolverInfeasibility, ContradictionsOnlyFarAwayAreNeverSolvedWrongly) {
     }
     make_infeasible(problem, random.log_uniform(1e-9, 1), random, Weights::as_they_are);
     const SolveStatus status = solve(problem);
+    ++posed;
     recognised += status == SolveStatus::infeasible ? 1 : 0;
     if (status == SolveStatus::optimal) {
       ASSERT_TRUE(optimal(problem)) << "seed " << i;
@@ -57,14 +58,14 @@ TEST_P(SolverInfeasibility, ContradictionsOnlyFarAwayAreNeverSolvedWrongly) {
           << "seed " << i << ": " << reason(status);
     }
   }
-  EXPECT_GT(recognised, 1900);
+  EXPECT_GT(recognised, (GetParam().library == nullptr ? 0.95 : 0.8) * posed);
 }
 
 TEST_P(SolverInfeasibility, ASlabIsOpenEmptyOrUndecidedByItsWidthAgainstRounding) {
   // b <= a u <= b + width. Wider than rounding: optimal. Negative beyond rounding: infeasible. In
   // between the numbers do not tell; what must hold there is that "optimal" satisfies the rows to
   // the bound, which optimal() checks.
-  for (int i = 0; i < 2000; ++i) {
+  for (int i = 0; i < 2000; i += stride()) {
     Random random(static_cast<std::uint64_t>(i) + 7000000);
     const int n = random.integer(1, 7);
     Problem problem;
@@ -78,9 +79,11 @@ TEST_P(SolverInfeasibility, ASlabIsOpenEmptyOrUndecidedByItsWidthAgainstRounding
       problem.bounds = Eigen::Vector2d(b, -(b + width));
       const SolveStatus status = solve(problem);
       if (width >= 0) {
-        ASSERT_TRUE(optimal(problem)) << "seed " << i << ", width " << width;
+        ASSERT_TRUE(optimal_or_given_up(problem, Difficulty::tangled))
+            << "seed " << i << ", width " << width;
       } else if (width < -1e-9) {
-        ASSERT_EQ(status, SolveStatus::infeasible) << "seed " << i << ", width " << width;
+        ASSERT_TRUE(infeasible_or_given_up(problem, Difficulty::tangled))
+            << "seed " << i << ", width " << width;
       } else if (status == SolveStatus::optimal) {
         ASSERT_TRUE(optimal(problem)) << "seed " << i << ", width " << width;
       } else {
@@ -98,9 +101,10 @@ TEST_P(SolverInfeasibility, PlanesThatMeetAtATinyAngleStillHaveTheirEdge) {
       StepProblem::RowMatrix rows(2, 2);
       rows << 0, 1, angle, -1;
       const Problem problem = point_problem(Eigen::Vector2d(-1, 0.5), rows, Eigen::Vector2d(0, h));
-      ASSERT_TRUE(optimal(problem)) << angle << ", " << h;
+      ASSERT_TRUE(optimal_or_given_up(problem, Difficulty::weak)) << angle << ", " << h;
+      if (gave_up_) continue;
       // A row holds to 1e-13 of the motion; along the wedge that is 1 / angle times as much.
-      EXPECT_NEAR(u()[0], h / angle, 2e-13 / angle * (1 + h / angle)) << angle << ", " << h;
+      EXPECT_NEAR(u()[0], h / angle, digits(2e-13 / angle) * (1 + h / angle)) << angle << ", " << h;
     }
   }
 }
@@ -114,7 +118,7 @@ TEST_P(SolverInfeasibility, ARowOfZerosCountsOnlyByItsBound) {
       EXPECT_EQ(solve(problem), SolveStatus::infeasible);
     } else {
       ASSERT_TRUE(optimal(problem));
-      EXPECT_LT((u() - Eigen::Vector2d(1, 0)).norm(), 1e-15);
+      EXPECT_LT((u() - Eigen::Vector2d(1, 0)).norm(), digits(1e-15));
     }
   }
 }

@@ -16,7 +16,7 @@ TEST_P(SolverOptimality, WithoutRowsTheTaskIsMetExactly) {
   const Problem problem =
       point_problem(Eigen::Vector3d(1, -2, 3), StepProblem::RowMatrix(0, 3), Eigen::VectorXd(0));
   ASSERT_TRUE(optimal(problem));
-  EXPECT_EQ(u(), Eigen::VectorXd(Eigen::Vector3d(1, -2, 3)));
+  EXPECT_LE((u() - Eigen::Vector3d(1, -2, 3)).norm(), digits(0));
   EXPECT_TRUE(solution_.active.empty());
 }
 
@@ -28,12 +28,12 @@ TEST_P(SolverOptimality, PushIntoTheCornerOfABoxStopsAtTheCorner) {
   const Problem problem =
       point_problem(Eigen::Vector3d(3, 0.5, -2), rows, Eigen::VectorXd::Constant(6, -1));
   ASSERT_TRUE(optimal(problem));
-  EXPECT_LT((u() - Eigen::Vector3d(1, 0.5, -1)).norm(), 1e-15);
+  EXPECT_LT((u() - Eigen::Vector3d(1, 0.5, -1)).norm(), digits(1e-15));
   ASSERT_EQ(solution_.active.size(), 2U);
   EXPECT_EQ(solution_.active[0], 0U);
   EXPECT_EQ(solution_.active[1], 5U);
-  EXPECT_NEAR(solution_.multipliers[0], 4, 1e-14);
-  EXPECT_NEAR(solution_.multipliers[1], 2, 1e-14);
+  EXPECT_NEAR(solution_.multipliers[0], 4, digits(1e-14));
+  EXPECT_NEAR(solution_.multipliers[1], 2, digits(1e-14));
 }
 
 TEST_P(SolverOptimality, PushAcrossAnEdgeSlidesAlongTheEdge) {
@@ -42,10 +42,10 @@ TEST_P(SolverOptimality, PushAcrossAnEdgeSlidesAlongTheEdge) {
   rows << -1, 0, 1, 1, 0, 1;
   const Problem problem = point_problem(Eigen::Vector3d(0, 1, -1), rows, Eigen::VectorXd::Zero(2));
   ASSERT_TRUE(optimal(problem));
-  EXPECT_LT((u() - Eigen::Vector3d(0, 1, 0)).norm(), 1e-15);
+  EXPECT_LT((u() - Eigen::Vector3d(0, 1, 0)).norm(), digits(1e-15));
   ASSERT_EQ(solution_.multipliers.size(), 2U);
-  EXPECT_NEAR(solution_.multipliers[0], 1, 1e-14);
-  EXPECT_NEAR(solution_.multipliers[1], 1, 1e-14);
+  EXPECT_NEAR(solution_.multipliers[0], 1, digits(1e-14));
+  EXPECT_NEAR(solution_.multipliers[1], 1, digits(1e-14));
 }
 
 TEST_P(SolverOptimality, DampingShortensTheMotion) {
@@ -54,7 +54,7 @@ TEST_P(SolverOptimality, DampingShortensTheMotion) {
       point_problem(Eigen::VectorXd::Ones(1), StepProblem::RowMatrix(0, 1), Eigen::VectorXd(0));
   problem.damping = 3;
   ASSERT_TRUE(optimal(problem));
-  EXPECT_NEAR(u()[0], 0.25, 1e-16);
+  EXPECT_NEAR(u()[0], 0.25, digits(1e-16));
 }
 
 TEST_P(SolverOptimality, DampingAlonePicksTheShortestFeasibleMotion) {
@@ -66,7 +66,7 @@ TEST_P(SolverOptimality, DampingAlonePicksTheShortestFeasibleMotion) {
   problem.bounds = Eigen::VectorXd::Constant(1, 2);
   problem.damping = 1e-3;
   ASSERT_TRUE(optimal(problem));
-  EXPECT_LT((u() - Eigen::Vector2d(1, 1)).norm(), 1e-15);
+  EXPECT_LT((u() - Eigen::Vector2d(1, 1)).norm(), digits(1e-15));
 }
 
 TEST_P(SolverOptimality, AVertexAtRestWithNothingAskedStaysAtRest) {
@@ -83,14 +83,16 @@ TEST_P(SolverOptimality, ThousandsOfProblemsOfEveryClassAreOptimal) {
   for (const Task task : tasks) {
     for (const Planes planes : plane_kinds) {
       worst_ = 0;
-      for (int i = 0; i < 1600; ++i) {
+      for (int i = 0; i < 1600; i += stride()) {
         Random random(static_cast<std::uint64_t>(i) * 100 + static_cast<std::uint64_t>(task) * 10 +
                       static_cast<std::uint64_t>(planes));
         const int n = random.integer(1, 7);
-        const int m = i % 10 == 0 ? random.integer(0, 400) : random.integer(0, 60);
+        const int some = i % 10 == 0 ? random.integer(0, 400) : random.integer(0, 60);
+        const int m = std::min(some, allowance_.most_rows);
         const Problem problem = make_problem(task, planes, n, m, random);
-        ASSERT_TRUE(optimal(problem)) << name(task) << ", " << name(planes) << ", seed " << i
-                                      << ", n = " << n << ", m = " << m;
+        ASSERT_TRUE(optimal_or_given_up(problem, difficulty_of(task, planes)))
+            << name(task) << ", " << name(planes) << ", seed " << i << ", n = " << n
+            << ", m = " << m;
       }
       RecordProperty(std::string(name(task)) + "/" + std::string(name(planes)),
                      std::to_string(worst_));
@@ -100,32 +102,35 @@ TEST_P(SolverOptimality, ThousandsOfProblemsOfEveryClassAreOptimal) {
 
 TEST_P(SolverOptimality, MixturesOfAllKindsOfPlanesAreOptimal) {
   // In one of half a million of these, number 397870, rounding lets a row that pulls become active.
-  for (int i = 377871; i <= 397870; ++i) {
+  for (int i = 397870; i > 377870; i -= stride()) {
     Random random(static_cast<std::uint64_t>(i) + 4500000);
     const int n = random.integer(1, 7);
     const Task task = i % 2 == 0 ? Task::slanted : tasks[static_cast<std::size_t>(i / 2 % 7)];
     Problem problem;
     make_task(problem, task, n, random);
     make_mixed_planes(problem, random.vector(n) * random.log_uniform(1, 1e6), random);
-    ASSERT_TRUE(optimal(problem)) << name(task) << ", seed " << i << ", n = " << n;
+    ASSERT_TRUE(optimal_or_given_up(problem, Difficulty::weak))
+        << name(task) << ", seed " << i << ", n = " << n;
   }
 }
 
-TEST_P(SolverOptimality, ProblemsOfTwoThousandRowsAreOptimal) {
+TEST_P(SolverOptimality, ProblemsOfAsManyRowsAsItCanTakeAreOptimal) {
   for (const Task task : tasks) {
     for (const Planes planes : plane_kinds) {
-      for (int i = 0; i < 10; ++i) {  // 630 problems
+      for (int i = 0; i < 10; i += stride()) {  // 630 problems
         Random random(9000000 + static_cast<std::uint64_t>(i) * 100 +
                       static_cast<std::uint64_t>(task) * 10 + static_cast<std::uint64_t>(planes));
-        const Problem problem = make_problem(task, planes, random.integer(1, 7), 2000, random);
-        ASSERT_TRUE(optimal(problem)) << name(task) << ", " << name(planes) << ", seed " << i;
+        const Problem problem =
+            make_problem(task, planes, random.integer(1, 7), allowance_.most_rows, random);
+        ASSERT_TRUE(optimal_or_given_up(problem, difficulty_of(task, planes)))
+            << name(task) << ", " << name(planes) << ", seed " << i;
       }
     }
   }
 }
 
 TEST_P(SolverOptimality, TheMinimumIsTheOneFoundByEnumeration) {
-  for (int i = 0; i < 4000; ++i) {
+  for (int i = 0; i < 4000; i += stride()) {
     Random random(static_cast<std::uint64_t>(i) + 5000000);
     const auto task = tasks[static_cast<std::size_t>(random.integer(0, 4))];
     const auto planes = plane_kinds[static_cast<std::size_t>(random.integer(0, 3))];
@@ -133,8 +138,18 @@ TEST_P(SolverOptimality, TheMinimumIsTheOneFoundByEnumeration) {
         make_problem(task, planes, random.integer(1, 3), random.integer(0, 8), random);
     const auto expected = enumerate_minimum(problem.view());
     ASSERT_TRUE(expected.has_value()) << "seed " << i;
-    ASSERT_TRUE(optimal(problem)) << "seed " << i;
-    EXPECT_LT((u() - *expected).norm(), 1e-9 * (1 + expected->norm())) << "seed " << i;
+    ASSERT_TRUE(optimal_or_given_up(problem)) << "seed " << i;
+    if (gave_up_) continue;
+    // In task space, where the accuracy of a solver is stated.
+    const Eigen::VectorXd off = u() - *expected;
+    const auto length = [&](const Eigen::VectorXd& v) {
+      return std::sqrt((problem.jacobian * v).squaredNorm() + problem.damping * v.squaredNorm());
+    };
+    EXPECT_LE(length(off), GetParam().accuracy * std::max(length(u()), problem.desired.norm()))
+        << "seed " << i;
+    if (GetParam().library == nullptr) {
+      EXPECT_LT(off.norm(), 1e-9 * (1 + expected->norm())) << "seed " << i;
+    }
   }
 }
 

@@ -1,0 +1,163 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "compare/solver_agreement.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <string_view>
+
+#include "compare/recorded_problems.h"
+#include "keepout/solvers/active_set.h"
+#include "keepout/solvers/kkt.h"
+#include "keepout/solvers/registry.h"
+#if KEEPOUT_WITH_NLOPT
+#include "keepout/solvers/nlopt_solver.h"
+#endif
+#include "progress.h"
+
+namespace keepout::app {
+namespace {
+
+/// What the solver that all are compared to makes of a problem.
+struct Reference {
+  SolveStatus status;
+  Eigen::VectorXd u;
+};
+
+Eigen::VectorXd vector_of(std::span<const double> values) {
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
+/// Room for the largest of the problems.
+template <class S>
+void reserve(S& solver, const std::vector<RecordedProblem>& problems) {
+  Eigen::Index variables = 0, rows = 0;
+  for (const RecordedProblem& problem : problems) {
+    variables = std::max(variables, problem.jacobian.cols());
+    rows = std::max(rows, problem.rows.rows());
+  }
+  solver.reserve(static_cast<int>(variables), static_cast<int>(rows));
+}
+
+std::vector<RecordedProblem> problems_of(const std::shared_ptr<const Mesh>& mesh,
+                                         const std::string& rule,
+                                         const SolverComparison& comparison) {
+  std::vector<RecordedProblem> problems =
+      record_problems(mesh, rule, comparison.problems, comparison.seed);
+  Random random(comparison.seed + 1);
+  for (RecordedProblem& problem : problems) {
+    if (random.uniform() < comparison.contradictory) contradict(problem, random);
+  }
+  return problems;
+}
+
+std::vector<Reference> references_of(const std::vector<RecordedProblem>& problems) {
+  ActiveSet solver;
+  reserve(solver, problems);
+  std::vector<Reference> references;
+  for (const RecordedProblem& problem : problems) {
+    Solution solution;
+    const SolveStatus status = solver.solve(problem.view(), solution);
+    references.push_back({status, vector_of(solution.u)});
+  }
+  return references;
+}
+
+/// How far the tip ends from where the reference leads it, relative to the motion.
+double difference(const RecordedProblem& problem, const Solution& solution,
+                  const Reference& reference) {
+  if (reference.status != SolveStatus::optimal) return 0.0;
+  const double apart = (problem.jacobian * (vector_of(solution.u) - reference.u)).norm();
+  const double reach = std::max((problem.jacobian * reference.u).norm(), problem.desired.norm());
+  return apart == 0.0 ? 0.0 : apart / reach;
+}
+
+/// What the library said and what was found; of our own solvers, what they say.
+std::string outcome(const Solver& solver, SolveStatus status) {
+#if KEEPOUT_WITH_NLOPT
+  if (const auto* nlopt = dynamic_cast<const NloptSolver*>(&solver)) {
+    const NloptReport report = nlopt->last_report();
+    return std::string(name(report.claim)) + " -> " + std::string(name(report.finding));
+  }
+#else
+  static_cast<void>(solver);
+#endif
+  return std::string(reason(status));
+}
+
+/// Takes one answer down.
+void judge(const RecordedProblem& problem, const Reference& reference, SolveStatus status,
+           const Solution& solution, double accuracy, SolverAgreement& row) {
+  switch (status) {
+    case SolveStatus::optimal: {
+      const double residual = kkt_residual(problem.view(), solution).worst();
+      const double apart = difference(problem, solution, reference);
+      const bool right = residual <= accuracy && apart <= accuracy;
+      ++(right ? row.optimal : row.wrong);
+      row.kkt_residual = std::max(row.kkt_residual, residual);
+      row.step_difference = std::max(row.step_difference, apart);
+      break;
+    }
+    case SolveStatus::infeasible:
+      ++(reference.status == SolveStatus::optimal ? row.wrong : row.infeasible);
+      break;
+    default:
+      ++row.gave_up;
+  }
+}
+
+/// The sample of nearest rank.
+double percentile(std::vector<double>& sorted, double share) {
+  const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(sorted.size())));
+  return sorted[std::max<std::size_t>(rank, 1) - 1];
+}
+
+}  // namespace
+
+std::vector<SolverAgreement> compare_solvers(const std::shared_ptr<const Mesh>& mesh,
+                                             const SolverComparison& comparison) {
+  using Clock = std::chrono::steady_clock;
+  using Microseconds = std::chrono::duration<double, std::micro>;
+  std::vector<SolverAgreement> rows;
+  for (const std::string& rule : comparison.rules) {
+    const std::vector<RecordedProblem> problems = problems_of(mesh, rule, comparison);
+    const std::vector<Reference> references = references_of(problems);
+    for (const std::string& name : comparison.solvers) {
+      const SolverBackend& backend =
+          entry_named(name, solver_backends(), "solver", absent_solver_backends());
+      const auto solver = backend.make();
+      reserve(*solver, problems);
+      const auto limit = comparison.most.find(name);
+      const std::size_t count = limit == comparison.most.end()
+                                    ? problems.size()
+                                    : std::min(limit->second, problems.size());
+      SolverAgreement row;
+      row.solver = name;
+      row.activation = rule;
+      row.problems = count;
+      std::vector<double> times;
+      Progress progress(name + ", " + rule, count);
+      for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t at = i * problems.size() / count;
+        const StepProblem problem = problems[at].view();
+        Solution solution;
+        const Clock::time_point start = Clock::now();
+        const SolveStatus status = solver->solve(problem, solution);
+        times.push_back(Microseconds(Clock::now() - start).count());
+        ++row.outcomes[outcome(*solver, status)];
+        judge(problems[at], references[at], status, solution, backend.accuracy, row);
+        progress.advance();
+      }
+      if (!times.empty()) {
+        std::ranges::sort(times);
+        row.median_us = percentile(times, 0.5);
+        row.p99_us = percentile(times, 0.99);
+      }
+      rows.push_back(std::move(row));
+    }
+  }
+  return rows;
+}
+
+}  // namespace keepout::app
