@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "keepout/activation/planes.h"
@@ -12,14 +13,24 @@
 namespace keepout {
 namespace {
 
-// In tolerances. Triangles are looked for a little beyond the reach of motions.
+// In tolerances, as for the certified rule: each step of the ladder is more than what rounding, and
+// a solver, may take.
+constexpr double demand_below = 1.0;
+constexpr double floor_below = 2.0;
+constexpr double lost_below = 2.75;
+constexpr double touching_within = 4.0;
+constexpr double needed_margin = 8.0;
 constexpr double region_beyond = 8.0;
-// Nearer than the margin by less than this is at the margin: solvers and positions are rounded.
-constexpr double lost_below = 8.0;
-// Nearer than this the tool is on the surface: the normal is rounding.
-constexpr double touching_within = 2.0;
-// Below this a margin cannot be told from nothing.
-constexpr double needed_margin = 32.0;
+// Contacts are this sharp.
+constexpr double contact_slack = 0.125;
+
+// A cycle's planes are few; more are a loop that does not end.
+constexpr std::size_t most_planes = 192;
+
+// An approach to a contact takes a few strides with true normals. With proposed ones it may take
+// more, so that they are asked for only so often.
+constexpr int most_strides = 64;
+constexpr int most_proposed_strides = 8;
 
 std::unique_ptr<NarrowPhase> or_exact(std::unique_ptr<NarrowPhase> given, const ConvexTool& tool) {
   if (given) return given;
@@ -58,64 +69,125 @@ Ball ConvexToolRule::region(const Surroundings& around) const noexcept {
   return {center + 0.5 * around.aim, 0.5 * around.aim.norm() + beyond};
 }
 
-/// By the normal that is proposed, if it proves `enough`; else by the exact one.
-ConvexToolRule::Near ConvexToolRule::separated(const Surroundings& around, TriangleId triangle,
-                                               double enough) noexcept {
-  const Triangle corners = mesh_->triangle(triangle);
-  const auto along = [&](const Vec3& n) {
-    return Near{n, separation_along(n, tool_, around.tip, corners), triangle};
-  };
-  const NarrowPhaseAnswer proposed = narrow_phase_->separation(around.tip, corners);
-  if (proposed.answered()) {
-    const Vec3 n = proposed.separation.normal.normalized();
-    const bool is_direction = std::abs(n.squaredNorm() - 1.0) < 1e-12;  // false for NaN
-    const Near near = along(n);
-    if (is_direction && near.distance >= enough) return near;
-  }
-  return along(separation(tool_, around.tip, corners).normal);
+ConvexToolRule::Proof ConvexToolRule::proof_along(const Vec3& normal, const Vec3& position,
+                                                  TriangleId triangle) const noexcept {
+  return {normal, separation_along(normal, tool_, position, mesh_->triangle(triangle))};
 }
 
-Opening ConvexToolRule::start(const Surroundings& around, HalfSpaceBuffer& planes) noexcept {
+/// By the normal that is proposed, if it proves more than `enough`; else by the exact one.
+ConvexToolRule::Proof ConvexToolRule::proof_of(double enough, const Vec3& position,
+                                               TriangleId triangle) noexcept {
+  const Triangle corners = mesh_->triangle(triangle);
+  const NarrowPhaseAnswer proposed = narrow_phase_->separation(position, corners);
+  if (proposed.answered()) {
+    const Vec3 n = proposed.separation.normal.normalized();
+    const Proof proof = proof_along(n, position, triangle);
+    const bool is_direction = std::abs(n.squaredNorm() - 1.0) < 1e-12;  // false for NaN
+    if (is_direction && proof.distance > enough) return proof;
+  }
+  return proof_along(separation(tool_, position, corners).normal, position, triangle);
+}
+
+Opening ConvexToolRule::start(const Surroundings& around, HalfSpaceBuffer&) noexcept {
   using Stance = Opening::Stance;
   const double tau = tolerance(around);
   if (!(around.margin > needed_margin * tau)) return {Stance::no_margin};
-  const double lost = around.margin - lost_below * tau;
 
   near_.clear();
   const Near* nearest = nullptr;
   for (const Hit& hit : around.hits) {
-    near_.push(separated(around, hit.triangle, lost));
+    near_.push({hit.triangle, proof_of(around.margin, around.tip, hit.triangle), 0.0, 0.0, 0.0});
     if (near_.overflowed()) return {Stance::over_capacity};
     const Near& last = near_[near_.size() - 1];
-    if (nearest == nullptr || last.distance < nearest->distance) nearest = &last;
+    if (nearest == nullptr || last.at_start.distance < nearest->at_start.distance) nearest = &last;
   }
   if (nearest == nullptr) return {Stance::clear};
-  if (!(nearest->distance > touching_within * tau)) return {Stance::touching};
 
-  const bool too_close = nearest->distance < lost;
-  const double lift =
-      too_close ? std::min(around.recovery, around.margin - nearest->distance) : 0.0;
-  const double level = too_close ? nearest->distance + lift : around.margin;
-  const double longest = around.reach == Reach::thales ? around.aim.norm() : around.longest;
-  for (const Near& near : near_) {
-    if (near.distance - longest > level + tau) continue;  // no motion gets there
-    double offset = level - near.distance;
-    if (!too_close) offset = std::min(offset, 0.0);  // to stand still is always allowed
-    planes.push({near.normal, offset, near.triangle});
+  const Proof closest = nearest->at_start;
+  if (closest.distance >= around.margin - lost_below * tau) {
+    for (Near& near : near_) {
+      near.target = around.margin;
+      near.demand = std::min(around.margin - demand_below * tau, near.at_start.distance);
+      near.floor = std::min(around.margin - floor_below * tau, near.at_start.distance);
+    }
+    return {Stance::clear};
   }
-  if (!too_close) return {Stance::clear};
-  return {Stance::too_close, way_out(around, nearest->normal, lift)};
+  // Not above for NaN.
+  if (!(closest.distance > touching_within * tau)) return {Stance::touching};
+  // Too close already: the mesh shall not come closer, and what comes as close is led off as well.
+  const double lift = std::min(around.recovery, around.margin - closest.distance);
+  for (Near& near : near_) {
+    near.target = closest.distance + lift;
+    near.demand = closest.distance;
+    near.floor = closest.distance;
+  }
+  return {Stance::too_close, way_out(around, closest.normal, lift)};
+}
+
+/// Whether a plane that there is already proves that a trial keeps the level.
+bool ConvexToolRule::keeps_clear(const Near& near, const Surroundings& around, const Vec3& trial,
+                                 double level, std::span<const HalfSpace> planes) const noexcept {
+  const auto proves = [&](const Proof& proof) {
+    return proof.distance >= level && proof.distance + proof.normal.dot(trial) >= level;
+  };
+  if (proves(near.at_start)) return true;
+  return std::any_of(planes.begin(), planes.end(), [&](const HalfSpace& plane) {
+    return plane.source == near.triangle &&
+           proves(proof_along(plane.normal, around.tip, near.triangle));
+  });
+}
+
+/// Where a trial first comes down to the level; nothing if it does not. Newton's method from the
+/// left on the distance, which is convex in time: each plane proves the way up to the next stride.
+std::optional<ConvexToolRule::Contact> ConvexToolRule::first_contact(const Near& near,
+                                                                     const Surroundings& around,
+                                                                     const Vec3& trial,
+                                                                     double level) noexcept {
+  const double slack = contact_slack * tolerance(around);
+  double time = 0.0;
+  Proof proof = near.at_start;
+  for (int stride = 0; stride < most_strides; ++stride) {
+    const double slope = proof.normal.dot(trial);
+    if (proof.distance >= level && proof.distance + (1.0 - time) * slope >= level) return {};
+    if (!(proof.distance - level > slack)) break;
+    time = std::min(time + (proof.distance - level) / -slope, 1.0);
+    const double enough = stride < most_proposed_strides
+                              ? level + slack
+                              : std::numeric_limits<double>::infinity();
+    proof = proof_of(enough, around.tip + time * trial, near.triangle);
+  }
+  const Proof from_start = proof_along(proof.normal, around.tip, near.triangle);
+  return Contact{time, {proof.normal, near.target - from_start.distance, near.triangle}};
 }
 
 Judgement ConvexToolRule::judge(const Surroundings& around, const Vec3& trial,
                                 HalfSpaceBuffer& planes) noexcept {
+  using Verdict = Judgement::Verdict;
   // Where nothing was looked at, nothing is known.
   const Ball& bounds = tool_.bounding_ball();
   const double from_center = (around.tip + bounds.center + trial - around.ball.center).norm();
   if (!(from_center + bounds.radius + around.margin <= around.ball.radius)) {
-    return {Judgement::Verdict::blocked, 0.0};
+    return {Verdict::blocked, 0.0};
   }
-  return Activation::judge(around, trial, planes);
+  std::optional<Contact> first;
+  bool is_answered = false;
+  const double length = trial.norm();
+  for (const Near& near : near_) {
+    if (near.at_start.distance - length >= near.demand) continue;
+    const bool answered =
+        std::any_of(planes.begin(), planes.end(),
+                    [&](const HalfSpace& plane) { return plane.source == near.triangle; });
+    const double level = answered ? near.floor : near.demand;
+    if (keeps_clear(near, around, trial, level, planes.view())) continue;
+    const std::optional<Contact> contact = first_contact(near, around, trial, level);
+    if (!contact || (first && contact->time >= first->time)) continue;
+    first = contact;
+    is_answered = answered;
+  }
+  if (!first) return {Verdict::accepted};
+  if (is_answered || planes.size() >= most_planes) return {Verdict::blocked, first->time};
+  planes.push(first->plane);
+  return {Verdict::objected, first->time};
 }
 
 bool ConvexToolRule::relax(HalfSpaceBuffer& planes) const noexcept {

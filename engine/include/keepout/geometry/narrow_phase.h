@@ -32,6 +32,9 @@ class NarrowPhase {
   virtual NarrowPhaseAnswer separation(const Vec3& position, const Triangle& triangle) noexcept = 0;
 };
 
+/// Whether all numbers are within 1e30 of the origin: what is not, libraries are not asked about.
+bool is_in_range(const Vec3& position, const Triangle& triangle) noexcept;
+
 /// The exact kernel: never fails, allocates nothing.
 class ExactNarrowPhase final : public NarrowPhase {
  public:
