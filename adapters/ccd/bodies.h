@@ -10,8 +10,9 @@
 namespace keepout {
 
 /// How many more questions a pair of bodies answers. EPA has no bound of its own, in libccd and in
-/// FCL: it ends when a support point is no better than the last, and near a touch that may be never.
-/// So when the budget is spent both bodies answer with the origin, which is no better than anything.
+/// FCL: it ends when a support point is no better than the last, and near a touch that may be
+/// never. So when the budget is spent both bodies answer with the origin, which is no better than
+/// anything.
 struct CcdBudget {
   int left;
 

@@ -66,7 +66,8 @@ class FclGjkLibccd final : public NarrowPhase {
     ccd_vec3_t second{};
     try {
       // What GJKSignedDistance calls, which itself is the library's.
-      distance = fcl::detail::libccd_extension::ccdGJKSignedDist(&core, &other, &ccd, &first, &second);
+      distance =
+          fcl::detail::libccd_extension::ccdGJKSignedDist(&core, &other, &ccd, &first, &second);
     } catch (const std::exception&) {
       return NarrowPhaseAnswer::failed("FCL threw: its polytope was not what it expects");
     } catch (...) {

@@ -70,8 +70,7 @@ TEST_P(NarrowPhaseContract, ComesBackFromTouchesAndDegenerateTriangles) {
       const Vec3 off = 4.0 * random.direction();
       const Separation start = separation(named.tool, off, triangle);
       const double tiny = std::pow(10.0, random.uniform(-18.0, -6.0)) * (i % 2 == 0 ? 1.0 : -1.0);
-      expect_sane(
-          narrow_phase->separation(off - (start.distance + tiny) * start.normal, triangle));
+      expect_sane(narrow_phase->separation(off - (start.distance + tiny) * start.normal, triangle));
     }
   }
 }

@@ -151,9 +151,8 @@ std::optional<ConvexToolRule::Contact> ConvexToolRule::first_contact(const Near&
     if (proof.distance >= level && proof.distance + (1.0 - time) * slope >= level) return {};
     if (!(proof.distance - level > slack)) break;
     time = std::min(time + (proof.distance - level) / -slope, 1.0);
-    const double enough = stride < most_proposed_strides
-                              ? level + slack
-                              : std::numeric_limits<double>::infinity();
+    const double enough =
+        stride < most_proposed_strides ? level + slack : std::numeric_limits<double>::infinity();
     proof = proof_of(enough, around.tip + time * trial, near.triangle);
   }
   const Proof from_start = proof_along(proof.normal, around.tip, near.triangle);
@@ -174,9 +173,9 @@ Judgement ConvexToolRule::judge(const Surroundings& around, const Vec3& trial,
   const double length = trial.norm();
   for (const Near& near : near_) {
     if (near.at_start.distance - length >= near.demand) continue;
-    const bool answered =
-        std::any_of(planes.begin(), planes.end(),
-                    [&](const HalfSpace& plane) { return plane.source == near.triangle; });
+    const bool answered = std::any_of(planes.begin(), planes.end(), [&](const HalfSpace& plane) {
+      return plane.source == near.triangle;
+    });
     const double level = answered ? near.floor : near.demand;
     if (keeps_clear(near, around, trial, level, planes.view())) continue;
     const std::optional<Contact> contact = first_contact(near, around, trial, level);

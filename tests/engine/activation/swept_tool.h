@@ -22,8 +22,8 @@ inline std::vector<Vec3> swept_core(const ConvexTool& tool, const Vec3& from, co
   return points;
 }
 
-/// How far a plane keeps a core from a triangle, in arithmetic of 64 bits. Whatever the normal, they
-/// are no nearer than that.
+/// How far a plane keeps a core from a triangle, in arithmetic of 64 bits. Whatever the normal,
+/// they are no nearer than that.
 inline double proven_by(const Vec3& normal, std::span<const Vec3> core, const Triangle& triangle) {
   using Real = long double;
   const auto along = [&](const Vec3& p) {

@@ -17,9 +17,9 @@ namespace keepout {
 /// origin. No motion is accepted unless planes prove that all of it keeps its distance. Needs no
 /// winding: every surface is kept from on the side where the tool is.
 ///
-/// Why a plane is proof of a whole straight motion d: let n . p - n . v >= s for all points p of the
-/// tool and v of the triangle. At a share t of d their distance is at least s + t n . d, which is
-/// linear in t and so nowhere less than at both ends: s, and s + n . d.
+/// Why a plane is proof of a whole straight motion d: let n . p - n . v >= s for all points p of
+/// the tool and v of the triangle. At a share t of d their distance is at least s + t n . d, which
+/// is linear in t and so nowhere less than at both ends: s, and s + n . d.
 ///
 /// It starts without planes. To a trial that comes too close it answers with the plane of the first
 /// contact: it has the triangle behind it, grown by tool and margin, and allows the motion up to
@@ -27,8 +27,8 @@ namespace keepout {
 /// that slides over a flat mesh would stumble over its inner edges.
 ///
 /// That holds for any n, and s is computed from the tool and the triangle themselves. So the narrow
-/// phase only proposes normals; where a proposal proves too little, or there is none, and at contacts,
-/// the exact kernel is asked.
+/// phase only proposes normals; where a proposal proves too little, or there is none, and at
+/// contacts, the exact kernel is asked.
 ///
 /// Guarantee: dist(tool + t d, mesh) >= min(margin, dist(tool, mesh)) - 3 tolerance, t in [0, 1]. A
 /// tool that is too close is led off; one that touches the surface stands still.
@@ -47,8 +47,8 @@ class ConvexToolRule final : public Activation {
                   HalfSpaceBuffer& planes) noexcept override;
   bool relax(HalfSpaceBuffer& planes) const noexcept override;
 
-  /// Distances are told apart down to this: some 1e-12 of the lengths at hand, and the rounding of a
-  /// position. [length]
+  /// Distances are told apart down to this: some 1e-12 of the lengths at hand, and the rounding of
+  /// a position. [length]
   double tolerance(const Surroundings& around) const noexcept;
 
   const ConvexTool& tool() const noexcept { return tool_; }
