@@ -11,7 +11,7 @@
 namespace keepout {
 namespace {
 
-constexpr int budget_of_a_pair = 300;  // support points; tens are usual
+constexpr int budget_of_a_pair = 800;  // support points; tens are usual
 constexpr unsigned long most_iterations = 200;
 // EPA holds squares of lengths against it as well. With less it may never end.
 constexpr double tolerance = 1e-16;
