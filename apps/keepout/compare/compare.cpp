@@ -11,6 +11,8 @@
 #include "bench/subject.h"
 #include "compare/comparison_files.h"
 #include "compare/index_agreement.h"
+#include "compare/narrow_phase_agreement.h"
+#include "compare/solver_agreement.h"
 #include "keepout/activation/registry.h"
 #include "output_file.h"
 #include "progress.h"
@@ -59,6 +61,14 @@ Comparison compare_parts(const std::string& mesh_name, const std::shared_ptr<con
                                           .seed = extent.seed},
                                          [&] { progress.advance(); });
   }
+  comparison.solvers = compare_solvers(mesh, {.rules = rules,
+                                              .solvers = names(solver_backends()),
+                                              .problems = extent.problems / rules.size(),
+                                              .seed = extent.seed,
+                                              .most = {{"nlopt_cobyla", extent.problems / 10},
+                                                       {"nlopt_mma", extent.problems / 10}}});
+  Progress progress("compare narrow phases", narrow_phase_rows());
+  comparison.narrow_phases = compare_narrow_phases(*mesh, extent.pairs, extent.seed, progress);
   return comparison;
 }
 

@@ -39,12 +39,13 @@ struct SolverAgreement {
 /// One way to tell the distance between a convex tool and a triangle.
 struct NarrowPhaseAgreement {
   std::string backend, tool;
-  std::string relation;  // "apart", "touching", "overlapping"
+  std::string relation;  // "apart", "touching" (within 1e-6 mm), "overlapping"
   std::size_t pairs = 0;
   std::size_t failed = 0;        // no answer, or one that is no number
   std::size_t contradicted = 0;  // apart called overlapping, or the reverse
   double median_error = 0.0;     // of distance or depth, against the exact kernel [mm]
   double worst_error = 0.0;      // [mm]
+  double worst_unproven = 0.0;   // of the exact distance, by a plane with its normal [mm]
   double median_us = 0.0;
   double p99_us = 0.0;
 };

@@ -47,6 +47,7 @@ Json json_of(const NarrowPhaseAgreement& a) {
           {"contradicted", a.contradicted},
           {"median_error_mm", a.median_error},
           {"worst_error_mm", a.worst_error},
+          {"worst_unproven_mm", a.worst_unproven},
           {"p50_us", a.median_us},
           {"p99_us", a.p99_us}};
 }

@@ -54,14 +54,15 @@ void print_solvers(std::ostream& out, const std::vector<SolverAgreement>& solver
 
 void print_narrow_phases(std::ostream& out, const std::vector<NarrowPhaseAgreement>& phases) {
   out << "\nNarrow phases, held to our exact kernel\n"
-      << line("%-16s %-9s %-12s %7s %7s %13s %12s %12s %9s %9s\n", "narrow phase", "tool",
-              "relation", "pairs", "failed", "contradicted", "median mm", "worst mm", "p50 us",
-              "p99 us");
+      << line("%-16s %-9s %-12s %7s %7s %13s %12s %12s %12s %9s %9s\n", "narrow phase", "tool",
+              "relation", "pairs", "failed", "contradicted", "median mm", "worst mm", "unproven mm",
+              "p50 us", "p99 us");
   for (const NarrowPhaseAgreement& a : phases) {
-    out << line("%-16s %-9s %-12s %7zu %7zu %13zu %12s %12s %9s %9s\n", a.backend.c_str(),
+    out << line("%-16s %-9s %-12s %7zu %7zu %13zu %12s %12s %12s %9s %9s\n", a.backend.c_str(),
                 a.tool.c_str(), a.relation.c_str(), a.pairs, a.failed, a.contradicted,
                 small(a.median_error).c_str(), small(a.worst_error).c_str(),
-                rounded(a.median_us).c_str(), rounded(a.p99_us).c_str());
+                small(a.worst_unproven).c_str(), rounded(a.median_us).c_str(),
+                rounded(a.p99_us).c_str());
   }
 }
 

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "keepout/activation/planes.h"
+
 namespace keepout {
 namespace {
 
@@ -32,28 +34,6 @@ constexpr std::size_t most_proofs = std::size_t{1} << 18;
 // A cycle's planes are few; under the tip of a cone of 400 faces some hundred; more are a loop that
 // does not end.
 constexpr std::size_t most_planes = 192;
-
-double longest_edge(const Mesh& mesh) noexcept {
-  double longest2 = 0.0;
-  for (const Corners& c : mesh.triangles()) {
-    for (int e = 0; e < 3; ++e) {
-      const Vec3 edge = mesh.vertex(c[(e + 1) % 3]) - mesh.vertex(c[e]);
-      longest2 = std::max(longest2, edge.squaredNorm());
-    }
-  }
-  return std::sqrt(longest2);
-}
-
-/// The increment asked for without what leads closer to the surface, and some way straight off it.
-Vec3 way_out(const Surroundings& around, const Vec3& off, double lift) noexcept {
-  const double climb = std::max(off.dot(around.aim), 0.0);
-  Vec3 along = around.aim - off.dot(around.aim) * off;
-  const double up = std::min(climb + lift, around.radius);
-  const double room = std::sqrt(std::max(around.radius * around.radius - up * up, 0.0));
-  const double length = along.norm();
-  if (length > room) along *= room / length;
-  return along + up * off;
-}
 
 bool has_plane(TriangleId source, std::span<const HalfSpace> planes) noexcept {
   return std::any_of(planes.begin(), planes.end(),
@@ -152,13 +132,7 @@ Judgement CertifiedRule::judge(const Surroundings& around, const Vec3& trial,
 
 bool CertifiedRule::relax(HalfSpaceBuffer& planes) const noexcept {
   // Offsets above 0 lead back to the full margin. Standing still is always allowed.
-  bool changed = false;
-  for (HalfSpace& plane : planes) {
-    if (!(plane.offset > 0.0)) continue;
-    plane.offset = 0.0;
-    changed = true;
-  }
-  return changed;
+  return let_stand_still(planes);
 }
 
 /// The plane for a triangle in the way: that of the contact, which allows standing still. Where a

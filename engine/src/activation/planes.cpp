@@ -3,6 +3,7 @@
 #include "keepout/activation/planes.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace keepout {
 
@@ -16,6 +17,26 @@ bool on_positive_side(const Surroundings& around, const Hit& hit, const Vec3& no
 
 bool touches(const Surroundings& around, const Hit& hit) noexcept {
   return hit.closest.distance <= around.rounding;
+}
+
+Vec3 way_out(const Surroundings& around, const Vec3& off, double lift) noexcept {
+  const double climb = std::max(off.dot(around.aim), 0.0);
+  Vec3 along = around.aim - off.dot(around.aim) * off;
+  const double up = std::min(climb + lift, around.radius);
+  const double room = std::sqrt(std::max(around.radius * around.radius - up * up, 0.0));
+  const double length = along.norm();
+  if (length > room) along *= room / length;
+  return along + up * off;
+}
+
+bool let_stand_still(HalfSpaceBuffer& planes) noexcept {
+  bool changed = false;
+  for (HalfSpace& plane : planes) {
+    if (!(plane.offset > 0.0)) continue;
+    plane.offset = 0.0;
+    changed = true;
+  }
+  return changed;
 }
 
 bool satisfies(const Vec3& motion, std::span<const HalfSpace> planes, double rounding) noexcept {

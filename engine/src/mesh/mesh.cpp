@@ -63,4 +63,15 @@ Mesh::Mesh(Surface surface) : surface_(std::move(surface)) {
   bounds_ = bounds_of(surface_);
 }
 
+double longest_edge(const Mesh& mesh) noexcept {
+  double longest2 = 0.0;
+  for (const Corners& c : mesh.triangles()) {
+    for (int e = 0; e < 3; ++e) {
+      const Vec3 edge = mesh.vertex(c[(e + 1) % 3]) - mesh.vertex(c[e]);
+      longest2 = std::max(longest2, edge.squaredNorm());
+    }
+  }
+  return std::sqrt(longest2);
+}
+
 }  // namespace keepout

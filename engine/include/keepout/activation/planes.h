@@ -18,6 +18,13 @@ bool on_positive_side(const Surroundings& around, const Hit& hit, const Vec3& no
 /// Whether the tip lies on the surface, to within rounding: x - CP has no direction there.
 bool touches(const Surroundings& around, const Hit& hit) noexcept;
 
+/// The increment asked for without what leads closer to the surface, and some way straight off it:
+/// `lift` along the unit vector `off`. No longer than the motion sphere's radius. [length]
+Vec3 way_out(const Surroundings& around, const Vec3& off, double lift) noexcept;
+
+/// Sets back the planes that ask for motion, so that standing still is allowed. Whether any did.
+bool let_stand_still(HalfSpaceBuffer& planes) noexcept;
+
 /// Whether a motion satisfies all planes, to within half of the rounding of a position.
 bool satisfies(const Vec3& motion, std::span<const HalfSpace> planes, double rounding) noexcept;
 

@@ -56,4 +56,7 @@ class Mesh {
   Box bounds_;
 };
 
+/// Of all triangles. O(n). [length]
+double longest_edge(const Mesh& mesh) noexcept;
+
 }  // namespace keepout

@@ -1,0 +1,148 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+// FCL is full of assertions that fail near a touch, and Debian's library was built with them: it
+// ends the process. So the templates are compiled here, without.
+#ifndef NDEBUG
+#define NDEBUG
+#endif
+
+#include "narrow_phase.h"
+
+#include <fcl/config.h>
+#include <fcl/geometry/shape/convex.h>
+#include <fcl/narrowphase/detail/convexity_based_algorithm/gjk_libccd.h>
+#include <fcl/narrowphase/detail/gjk_solver_indep.h>
+
+#include <cmath>
+#include <exception>
+#include <vector>
+
+#include "../ccd/bodies.h"
+
+namespace keepout {
+namespace {
+
+constexpr int budget_of_a_pair = 400;  // support points; tens are usual
+constexpr unsigned int most_iterations = 200;
+constexpr double tolerance = 1e-12;
+// Between the bounds of a depth. At corners EPA is exact as soon as it ends, and with less it may
+// never end.
+constexpr double tolerance_of_depth = 1e-6;
+
+Triangle relative(const Triangle& triangle, const Vec3& position) {
+  return {triangle[0] - position, triangle[1] - position, triangle[2] - position};
+}
+
+/// From what both solvers give: the signed distance of the cores, and the way from the triangle's
+/// point to the core's, or the reverse where they overlap.
+NarrowPhaseAnswer answer(double distance, const Vec3& direction, const Vec3& on_triangle,
+                         const ConvexTool& tool, const Vec3& position) noexcept {
+  const double length = direction.norm();
+  const bool usable = std::isfinite(distance) && on_triangle.allFinite() && std::isfinite(length);
+  if (!usable) return NarrowPhaseAnswer::failed("FCL gave what is no number");
+  if (!(length > 0.0)) return NarrowPhaseAnswer::failed("FCL gave no direction");
+  return {{distance - tool.radius(), direction / length, position + on_triangle}, {}};
+}
+
+class FclGjkLibccd final : public NarrowPhase {
+ public:
+  explicit FclGjkLibccd(const ConvexTool& tool) : tool_(tool) {}
+
+  NarrowPhaseAnswer separation(const Vec3& position, const Triangle& triangle) noexcept override {
+    if (!is_in_range(position, triangle)) return NarrowPhaseAnswer::failed("out of range");
+    const Triangle local = relative(triangle, position);
+    CcdBudget budget{budget_of_a_pair};
+    CcdTool core{&tool_, 0.0, &budget};
+    CcdTriangle other{&local, &budget};
+    ccd_t ccd;
+    CCD_INIT(&ccd);
+    ccd.support1 = ccd_tool_support;
+    ccd.support2 = ccd_triangle_support;
+    ccd.max_iterations = most_iterations;
+    ccd.dist_tolerance = tolerance;
+    ccd.epa_tolerance = tolerance_of_depth;
+    double distance = 0.0;
+    ccd_vec3_t first{};
+    ccd_vec3_t second{};
+    try {
+      // What GJKSignedDistance calls, which itself is the library's.
+      distance =
+          fcl::detail::libccd_extension::ccdGJKSignedDist(&core, &other, &ccd, &first, &second);
+    } catch (const std::exception&) {
+      return NarrowPhaseAnswer::failed("FCL threw: its polytope was not what it expects");
+    } catch (...) {
+      return NarrowPhaseAnswer::failed("FCL threw");
+    }
+    if (budget.spent()) return NarrowPhaseAnswer::failed("FCL did not converge");
+    const Vec3 on_core = from_ccd(first);
+    const Vec3 on_triangle = from_ccd(second);
+    // Its failure is a distance of -1, which may be a depth as well: the points tell.
+    const Vec3 between = distance < 0.0 ? on_triangle - on_core : on_core - on_triangle;
+    if (distance == -1.0 && between.isZero(0.0)) {
+      return NarrowPhaseAnswer::failed("FCL did not converge");
+    }
+    return answer(distance, between, on_triangle, tool_, position);
+  }
+
+ private:
+  ConvexTool tool_;
+};
+
+class FclGjkIndep final : public NarrowPhase {
+ public:
+  explicit FclGjkIndep(const ConvexTool& tool)
+      : tool_(tool),
+        core_(std::make_shared<const std::vector<Vec3>>(tool.points().begin(), tool.points().end()),
+              0, std::make_shared<const std::vector<int>>()) {
+    solver_.gjk_max_iterations = most_iterations;
+    solver_.epa_max_iterations = most_iterations;
+    solver_.gjk_tolerance = tolerance;
+    solver_.epa_tolerance = tolerance;
+  }
+
+  NarrowPhaseAnswer separation(const Vec3& position, const Triangle& triangle) noexcept override {
+    if (!is_in_range(position, triangle)) return NarrowPhaseAnswer::failed("out of range");
+    // Points are given in the frame of the shape, whatever is said: so that frame is the only one.
+    const Triangle local = relative(triangle, position);
+    const fcl::Transform3d here = fcl::Transform3d::Identity();
+    double distance = 0.0;
+    Vec3 on_core = Vec3::Zero();
+    Vec3 on_triangle = Vec3::Zero();
+    try {
+      if (solver_.shapeTriangleDistance(core_, here, local[0], local[1], local[2], &distance,
+                                        &on_core, &on_triangle)) {
+        return answer(distance, on_core - on_triangle, on_triangle, tool_, position);
+      }
+      Vec3 normal = Vec3::Zero();
+      if (!solver_.shapeTriangleIntersect(core_, here, local[0], local[1], local[2], &on_triangle,
+                                          &distance, &normal)) {
+        return NarrowPhaseAnswer::failed("FCL found neither a distance nor an overlap");
+      }
+      // The depth comes with either sign.
+      return answer(-std::abs(distance), normal, on_triangle, tool_, position);
+    } catch (const std::exception&) {
+      return NarrowPhaseAnswer::failed("FCL threw");
+    } catch (...) {
+      return NarrowPhaseAnswer::failed("FCL threw");
+    }
+  }
+
+ private:
+  ConvexTool tool_;
+  fcl::Convexd core_;  // without faces, which only volumes need
+  fcl::detail::GJKSolver_indep<double> solver_;
+};
+
+}  // namespace
+
+std::unique_ptr<NarrowPhase> make_fcl_gjk_libccd(const ConvexTool& tool) {
+  return std::make_unique<FclGjkLibccd>(tool);
+}
+
+std::unique_ptr<NarrowPhase> make_fcl_gjk_indep(const ConvexTool& tool) {
+  return std::make_unique<FclGjkIndep>(tool);
+}
+
+std::string fcl_narrow_phase_library() { return "FCL " FCL_VERSION; }
+
+}  // namespace keepout

@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "keepout/geometry/narrow_phase.h"
+#include "keepout/registry.h"
+
+namespace keepout {
+
+/// One way to tell the distance between a convex tool and a triangle.
+struct NarrowPhaseBackend {
+  std::string_view name;
+  std::string_view description;
+  std::unique_ptr<NarrowPhase> (*make)(const ConvexTool& tool);
+  Allocation allocation;
+  std::string (*library)();  // name and version of the library behind it; null for our own
+};
+
+/// All that this build has, the exact kernel first. Those of libraries are for comparison: see
+/// docs/convex_tools.md.
+std::span<const NarrowPhaseBackend> narrow_phase_backends() noexcept;
+
+/// Those that this build was made without.
+std::span<const AbsentPart> absent_narrow_phase_backends() noexcept;
+
+/// The narrow phase of that name for a tool. Throws Error, listing the names there are, if there is
+/// none.
+std::unique_ptr<NarrowPhase> make_narrow_phase(std::string_view name, const ConvexTool& tool);
+
+}  // namespace keepout

@@ -1,0 +1,172 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "compare/narrow_phase_agreement.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <iterator>
+#include <memory>
+#include <string_view>
+
+#include "keepout/adapters/narrow_phase_registry.h"
+#include "keepout/fixtures/random.h"
+
+namespace keepout::app {
+namespace {
+
+struct Kind {
+  std::string_view name;
+  ConvexTool (*make)();
+};
+
+ConvexTool burr() { return ConvexTool::sphere(2.0); }
+ConvexTool shaft() { return ConvexTool::capsule({0, 0, 0}, {0, 0, 5}, 1.0); }
+ConvexTool blade() { return ConvexTool::box({Vec3(-1.5, -0.25, 0), Vec3(1.5, 0.25, 4)}); }
+
+/// The tip of a drill: a cone of twelve sides on a prism of twelve.
+ConvexTool drill() {
+  std::vector<Vec3> points{Vec3(0, 0, -1.5)};
+  for (int i = 0; i < 12; ++i) {
+    const double angle = i * (3.14159265358979323846 / 6.0);
+    for (const double height : {0.0, 3.0}) {
+      points.emplace_back(1.5 * std::cos(angle), 1.5 * std::sin(angle), height);
+    }
+  }
+  return ConvexTool::hull(points);
+}
+
+constexpr Kind kinds[] = {{"sphere", burr}, {"capsule", shaft}, {"box", blade}, {"hull", drill}};
+
+constexpr double touching = 1e-6;       // [mm]
+constexpr double overlapping = 1e-3;    // at least [mm]
+constexpr double farthest = 5.0;        // [mm]
+constexpr double deepest_wanted = 1.5;  // what is asked for; what comes of it may be less [mm]
+constexpr std::size_t orientations = 16;
+
+/// The signed distance to look for, of each relation.
+struct Relation {
+  std::string_view name;
+  double (*wanted)(Random&);
+  bool (*holds)(double distance);
+};
+
+constexpr Relation relations[] = {
+    {"apart", [](Random& r) { return r.uniform(2.0 * overlapping, farthest); },
+     [](double d) { return d >= overlapping; }},
+    {"touching",
+     [](Random& r) {
+       const double size = std::pow(10.0, r.uniform(-12.0, -6.0));
+       return 0.9 * (r.below(2) == 0 ? size : -size);
+     },
+     [](double d) { return std::abs(d) <= touching; }},
+    {"overlapping", [](Random& r) { return -r.uniform(2.0 * overlapping, deepest_wanted); },
+     [](double d) { return d <= -overlapping; }},
+};
+
+struct Pair {
+  std::size_t tool;  // which of the orientations
+  Vec3 position;
+  Triangle triangle;
+  Separation exact;
+};
+
+std::vector<ConvexTool> turned(const Kind& kind, Random& random) {
+  std::vector<ConvexTool> tools;
+  for (std::size_t i = 0; i < orientations; ++i) {
+    const Eigen::AngleAxisd turn(random.uniform(0.0, 6.28), random.direction());
+    tools.push_back(kind.make().rotated(turn.toRotationMatrix()));
+  }
+  return tools;
+}
+
+/// From somewhere off the triangle along the normal there, to the distance wanted.
+std::vector<Pair> make_pairs(const Mesh& mesh, const std::vector<ConvexTool>& tools,
+                             const Relation& relation, std::size_t count, Random& random) {
+  std::vector<Pair> pairs;
+  for (std::size_t attempt = 0; pairs.size() < count && attempt < 100 * count; ++attempt) {
+    Pair pair;
+    pair.tool = pairs.size() % tools.size();
+    const ConvexTool& tool = tools[pair.tool];
+    pair.triangle = mesh.triangle(static_cast<TriangleId>(random.below(mesh.triangle_count())));
+    const Vec3 off = pair.triangle[0] + 20.0 * random.direction();
+    const Separation there = separation(tool, off, pair.triangle);
+    pair.position = off - (there.distance - relation.wanted(random)) * there.normal;
+    pair.exact = separation(tool, pair.position, pair.triangle);
+    if (relation.holds(pair.exact.distance)) pairs.push_back(pair);
+  }
+  return pairs;
+}
+
+/// By nearest rank. Sorts.
+double percentile(std::vector<double>& samples, double share) {
+  if (samples.empty()) return 0.0;
+  std::sort(samples.begin(), samples.end());
+  const auto rank =
+      static_cast<std::size_t>(std::ceil(share * static_cast<double>(samples.size())));
+  return samples[std::max<std::size_t>(rank, 1) - 1];
+}
+
+NarrowPhaseAgreement agreement_of(const NarrowPhaseBackend& backend,
+                                  const std::vector<ConvexTool>& tools,
+                                  const std::vector<Pair>& pairs) {
+  using Clock = std::chrono::steady_clock;
+  std::vector<std::unique_ptr<NarrowPhase>> narrow_phases;
+  for (const ConvexTool& tool : tools) narrow_phases.push_back(backend.make(tool));
+
+  NarrowPhaseAgreement row;
+  row.pairs = pairs.size();
+  std::vector<double> errors;
+  std::vector<double> times;
+  for (const Pair& pair : pairs) {
+    const Clock::time_point start = Clock::now();
+    const NarrowPhaseAnswer answer =
+        narrow_phases[pair.tool]->separation(pair.position, pair.triangle);
+    times.push_back(std::chrono::duration<double, std::micro>(Clock::now() - start).count());
+    if (!answer.answered()) {
+      ++row.failed;
+      continue;
+    }
+    const Separation& told = answer.separation;
+    row.contradicted += (told.distance > 0.0) != (pair.exact.distance > 0.0);
+    errors.push_back(std::abs(told.distance - pair.exact.distance));
+    const double proven =
+        separation_along(told.normal, tools[pair.tool], pair.position, pair.triangle);
+    row.worst_unproven = std::max(row.worst_unproven, pair.exact.distance - proven);
+  }
+  row.median_error = percentile(errors, 0.5);
+  row.worst_error = percentile(errors, 1.0);
+  row.median_us = percentile(times, 0.5);
+  row.p99_us = percentile(times, 0.99);
+  return row;
+}
+
+}  // namespace
+
+std::size_t narrow_phase_rows() noexcept {
+  return std::size(kinds) * std::size(relations) * narrow_phase_backends().size();
+}
+
+std::vector<NarrowPhaseAgreement> compare_narrow_phases(const Mesh& mesh, std::size_t pairs,
+                                                        std::uint64_t seed, Progress& progress) {
+  std::vector<NarrowPhaseAgreement> rows;
+  Random random(seed);
+  for (const Kind& kind : kinds) {
+    const std::vector<ConvexTool> tools = turned(kind, random);
+    for (const Relation& relation : relations) {
+      const std::vector<Pair> same = make_pairs(mesh, tools, relation, pairs, random);
+      for (const NarrowPhaseBackend& backend : narrow_phase_backends()) {
+        NarrowPhaseAgreement row = agreement_of(backend, tools, same);
+        row.backend = backend.name;
+        row.tool = kind.name;
+        row.relation = relation.name;
+        rows.push_back(std::move(row));
+        progress.advance();
+      }
+    }
+  }
+  return rows;
+}
+
+}  // namespace keepout::app

@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "keepout/geometry/ball.h"
+#include "keepout/geometry/box.h"
+#include "keepout/geometry/vec3.h"
+
+namespace keepout {
+
+/// A rigid convex tool: the convex hull of some points, its core, grown by a radius. One point is a
+/// sphere, two are a capsule, eight a box, any others a hull with edges as round as the radius.
+///
+/// The frame is the tool's: its origin goes where the tip is, its axes are the mesh's. A tool that
+/// stands otherwise is turned once, when it is made.
+class ConvexTool {
+ public:
+  static constexpr std::size_t most_points = 64;
+
+  // All throw Error when a length is not finite or above 1e30, a radius is below 0, or there is no
+  // point or more than most_points.
+  static ConvexTool sphere(double radius);
+  static ConvexTool capsule(const Vec3& from, const Vec3& to, double radius);
+  static ConvexTool box(const Box& box);
+  static ConvexTool hull(std::span<const Vec3> points, double radius = 0.0);
+
+  /// The same tool, turned about its origin. Throws Error unless the matrix is a rotation.
+  ConvexTool rotated(const Eigen::Matrix3d& rotation) const;
+
+  std::span<const Vec3> points() const noexcept { return points_; }
+  double radius() const noexcept { return radius_; }  // [length]
+
+  /// Holds the whole tool, radius and all.
+  const Ball& bounding_ball() const noexcept { return bounding_ball_; }
+
+  /// The point of the core farthest along n; of equally far ones the first given.
+  const Vec3& support(const Vec3& n) const noexcept;
+
+  /// Unit vectors, one of each opposite pair: at least the normals of the core's faces, and at
+  /// least the directions of its edges. What separates a core from another convex body with the
+  /// least motion is among them and the cross products of edges.
+  std::span<const Vec3> face_normals() const noexcept { return face_normals_; }
+  std::span<const Vec3> edge_directions() const noexcept { return edge_directions_; }
+
+ private:
+  ConvexTool(std::vector<Vec3> points, double radius);
+
+  std::vector<Vec3> points_;
+  double radius_;
+  Ball bounding_ball_;
+  std::vector<Vec3> face_normals_;
+  std::vector<Vec3> edge_directions_;
+};
+
+}  // namespace keepout

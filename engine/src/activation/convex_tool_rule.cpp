@@ -1,0 +1,196 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "keepout/activation/convex_tool_rule.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "keepout/activation/planes.h"
+#include "keepout/error.h"
+
+namespace keepout {
+namespace {
+
+// In tolerances, as for the certified rule: each step of the ladder is more than what rounding, and
+// a solver, may take.
+constexpr double demand_below = 1.0;
+constexpr double floor_below = 2.0;
+constexpr double lost_below = 2.75;
+constexpr double touching_within = 4.0;
+constexpr double needed_margin = 8.0;
+constexpr double region_beyond = 8.0;
+// Contacts are this sharp.
+constexpr double contact_slack = 0.125;
+
+// A cycle's planes are few; more are a loop that does not end.
+constexpr std::size_t most_planes = 192;
+
+// An approach to a contact takes a few strides with true normals. With proposed ones it may take
+// more, so that they are asked for only so often.
+constexpr int most_strides = 64;
+constexpr int most_proposed_strides = 8;
+
+std::unique_ptr<NarrowPhase> or_exact(std::unique_ptr<NarrowPhase> given, const ConvexTool& tool) {
+  if (given) return given;
+  return std::make_unique<ExactNarrowPhase>(tool);
+}
+
+double longest_edge_of(const Mesh* mesh) {
+  if (mesh == nullptr) throw Error("a rule for a convex tool needs a mesh");
+  return longest_edge(*mesh);
+}
+
+}  // namespace
+
+ConvexToolRule::ConvexToolRule(std::shared_ptr<const Mesh> mesh, ConvexTool tool,
+                               std::unique_ptr<NarrowPhase> narrow_phase)
+    : mesh_(std::move(mesh)),
+      tool_(std::move(tool)),
+      narrow_phase_(or_exact(std::move(narrow_phase), tool_)),
+      longest_edge_(longest_edge_of(mesh_.get())),
+      near_(0) {}
+
+void ConvexToolRule::reserve(std::size_t triangles) { near_ = Buffer<Near>(triangles); }
+
+double ConvexToolRule::tolerance(const Surroundings& around) const noexcept {
+  const Ball& bounds = tool_.bounding_ball();
+  return around.rounding +
+         1e-12 * (longest_edge_ + bounds.center.norm() + bounds.radius + around.margin);
+}
+
+Ball ConvexToolRule::region(const Surroundings& around) const noexcept {
+  const Ball& bounds = tool_.bounding_ball();
+  const Vec3 center = around.tip + bounds.center;
+  const double beyond = bounds.radius + around.margin + region_beyond * tolerance(around);
+  if (around.searched == Reach::sphere) return {center, around.longest + beyond};
+  // Projections of the aim on a convex set that holds 0 lie in the ball over it (Thales).
+  return {center + 0.5 * around.aim, 0.5 * around.aim.norm() + beyond};
+}
+
+ConvexToolRule::Proof ConvexToolRule::proof_along(const Vec3& normal, const Vec3& position,
+                                                  TriangleId triangle) const noexcept {
+  return {normal, separation_along(normal, tool_, position, mesh_->triangle(triangle))};
+}
+
+/// By the normal that is proposed, if it proves more than `enough`; else by the exact one.
+ConvexToolRule::Proof ConvexToolRule::proof_of(double enough, const Vec3& position,
+                                               TriangleId triangle) noexcept {
+  const Triangle corners = mesh_->triangle(triangle);
+  const NarrowPhaseAnswer proposed = narrow_phase_->separation(position, corners);
+  if (proposed.answered()) {
+    const Vec3 n = proposed.separation.normal.normalized();
+    const Proof proof = proof_along(n, position, triangle);
+    const bool is_direction = std::abs(n.squaredNorm() - 1.0) < 1e-12;  // false for NaN
+    if (is_direction && proof.distance > enough) return proof;
+  }
+  return proof_along(separation(tool_, position, corners).normal, position, triangle);
+}
+
+Opening ConvexToolRule::start(const Surroundings& around, HalfSpaceBuffer&) noexcept {
+  using Stance = Opening::Stance;
+  const double tau = tolerance(around);
+  if (!(around.margin > needed_margin * tau)) return {Stance::no_margin};
+
+  near_.clear();
+  const Near* nearest = nullptr;
+  for (const Hit& hit : around.hits) {
+    near_.push({hit.triangle, proof_of(around.margin, around.tip, hit.triangle), 0.0, 0.0, 0.0});
+    if (near_.overflowed()) return {Stance::over_capacity};
+    const Near& last = near_[near_.size() - 1];
+    if (nearest == nullptr || last.at_start.distance < nearest->at_start.distance) nearest = &last;
+  }
+  if (nearest == nullptr) return {Stance::clear};
+
+  const Proof closest = nearest->at_start;
+  if (closest.distance >= around.margin - lost_below * tau) {
+    for (Near& near : near_) {
+      near.target = around.margin;
+      near.demand = std::min(around.margin - demand_below * tau, near.at_start.distance);
+      near.floor = std::min(around.margin - floor_below * tau, near.at_start.distance);
+    }
+    return {Stance::clear};
+  }
+  // Not above for NaN.
+  if (!(closest.distance > touching_within * tau)) return {Stance::touching};
+  // Too close already: the mesh shall not come closer, and what comes as close is led off as well.
+  const double lift = std::min(around.recovery, around.margin - closest.distance);
+  for (Near& near : near_) {
+    near.target = closest.distance + lift;
+    near.demand = closest.distance;
+    near.floor = closest.distance;
+  }
+  return {Stance::too_close, way_out(around, closest.normal, lift)};
+}
+
+/// Whether a plane that there is already proves that a trial keeps the level.
+bool ConvexToolRule::keeps_clear(const Near& near, const Surroundings& around, const Vec3& trial,
+                                 double level, std::span<const HalfSpace> planes) const noexcept {
+  const auto proves = [&](const Proof& proof) {
+    return proof.distance >= level && proof.distance + proof.normal.dot(trial) >= level;
+  };
+  if (proves(near.at_start)) return true;
+  return std::any_of(planes.begin(), planes.end(), [&](const HalfSpace& plane) {
+    return plane.source == near.triangle &&
+           proves(proof_along(plane.normal, around.tip, near.triangle));
+  });
+}
+
+/// Where a trial first comes down to the level; nothing if it does not. Newton's method from the
+/// left on the distance, which is convex in time: each plane proves the way up to the next stride.
+std::optional<ConvexToolRule::Contact> ConvexToolRule::first_contact(const Near& near,
+                                                                     const Surroundings& around,
+                                                                     const Vec3& trial,
+                                                                     double level) noexcept {
+  const double slack = contact_slack * tolerance(around);
+  double time = 0.0;
+  Proof proof = near.at_start;
+  for (int stride = 0; stride < most_strides; ++stride) {
+    const double slope = proof.normal.dot(trial);
+    if (proof.distance >= level && proof.distance + (1.0 - time) * slope >= level) return {};
+    if (!(proof.distance - level > slack)) break;
+    time = std::min(time + (proof.distance - level) / -slope, 1.0);
+    const double enough =
+        stride < most_proposed_strides ? level + slack : std::numeric_limits<double>::infinity();
+    proof = proof_of(enough, around.tip + time * trial, near.triangle);
+  }
+  const Proof from_start = proof_along(proof.normal, around.tip, near.triangle);
+  return Contact{time, {proof.normal, near.target - from_start.distance, near.triangle}};
+}
+
+Judgement ConvexToolRule::judge(const Surroundings& around, const Vec3& trial,
+                                HalfSpaceBuffer& planes) noexcept {
+  using Verdict = Judgement::Verdict;
+  // Where nothing was looked at, nothing is known.
+  const Ball& bounds = tool_.bounding_ball();
+  const double from_center = (around.tip + bounds.center + trial - around.ball.center).norm();
+  if (!(from_center + bounds.radius + around.margin <= around.ball.radius)) {
+    return {Verdict::blocked, 0.0};
+  }
+  std::optional<Contact> first;
+  bool is_answered = false;
+  const double length = trial.norm();
+  for (const Near& near : near_) {
+    if (near.at_start.distance - length >= near.demand) continue;
+    const bool answered = std::any_of(planes.begin(), planes.end(), [&](const HalfSpace& plane) {
+      return plane.source == near.triangle;
+    });
+    const double level = answered ? near.floor : near.demand;
+    if (keeps_clear(near, around, trial, level, planes.view())) continue;
+    const std::optional<Contact> contact = first_contact(near, around, trial, level);
+    if (!contact || (first && contact->time >= first->time)) continue;
+    first = contact;
+    is_answered = answered;
+  }
+  if (!first) return {Verdict::accepted};
+  if (is_answered || planes.size() >= most_planes) return {Verdict::blocked, first->time};
+  planes.push(first->plane);
+  return {Verdict::objected, first->time};
+}
+
+bool ConvexToolRule::relax(HalfSpaceBuffer& planes) const noexcept {
+  return let_stand_still(planes);
+}
+
+}  // namespace keepout

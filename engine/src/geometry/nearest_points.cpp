@@ -1,0 +1,198 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "nearest_points.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "keepout/geometry/closest_point.h"
+#include "keepout/geometry/orientation.h"
+
+namespace keepout {
+namespace {
+
+/// A corner of the Minkowski difference core - triangle, whose point nearest to the origin is
+/// looked for.
+struct Vertex {
+  Vec3 at;
+  const Vec3* point;
+  const Vec3* corner;
+
+  bool operator==(const Vertex& o) const noexcept { return point == o.point && corner == o.corner; }
+};
+
+/// Up to four of them.
+struct Simplex {
+  std::array<Vertex, 4> vertices;
+  int size = 0;
+
+  void add(const Vertex& v) noexcept { vertices[size++] = v; }
+  bool holds(const Vertex& v) const noexcept {
+    return std::find(vertices.begin(), vertices.begin() + size, v) != vertices.begin() + size;
+  }
+};
+
+/// A simplex with the origin's nearest point inside of it.
+struct Nearest {
+  Simplex simplex;
+  Vec3 at;
+  double distance;
+};
+
+class Difference {
+ public:
+  Difference(std::span<const Vec3> points, const Triangle& triangle) noexcept
+      : points_(points), triangle_(triangle) {}
+
+  Vertex vertex(const Vec3& point, const Vec3& corner) const noexcept {
+    return {point - corner, &point, &corner};
+  }
+
+  /// The vertex that is least far along n.
+  Vertex lowest(const Vec3& n) const noexcept {
+    const auto less = [&](const Vec3& a, const Vec3& b) { return n.dot(a) < n.dot(b); };
+    return vertex(*std::min_element(points_.begin(), points_.end(), less),
+                  *std::max_element(triangle_.begin(), triangle_.end(), less));
+  }
+
+  /// To begin with: the nearest point of the triangle to the first point. Of a core of one point it
+  /// is the answer, to the bit that of closest_point.
+  Nearest first() const noexcept {
+    const Vec3& point = points_.front();
+    const ClosestPoint closest = closest_point(triangle_, point);
+    Nearest nearest{{}, -closest.offset, closest.distance};
+    for (int i = 0; i < 3; ++i) {
+      if (on_feature(closest.feature, i)) nearest.simplex.add(vertex(point, triangle_[i]));
+    }
+    return nearest;
+  }
+
+  /// Of the simplex of three vertices, of which some may be the same.
+  static Nearest of(const Vertex& a, const Vertex& b, const Vertex& c) noexcept {
+    const ClosestPoint closest = closest_point({a.at, b.at, c.at}, Vec3::Zero());
+    Nearest nearest{{}, closest.offset, closest.distance};
+    const std::array<const Vertex*, 3> vertices{&a, &b, &c};
+    for (int i = 0; i < 3; ++i) {
+      if (on_feature(closest.feature, i)) nearest.simplex.add(*vertices[i]);
+    }
+    return nearest;
+  }
+
+ private:
+  static bool on_feature(Feature feature, int corner) noexcept {
+    if (is_face(feature)) return true;
+    const int number = number_of(feature);
+    if (is_vertex(feature)) return corner == number;
+    return corner == number || corner == (number + 1) % 3;
+  }
+
+  std::span<const Vec3> points_;
+  const Triangle& triangle_;
+};
+
+/// Whether a tetrahedron has the origin inside of it, decided exactly.
+bool holds_origin(const Simplex& s) noexcept {
+  const auto& v = s.vertices;
+  const Vec3 origin = Vec3::Zero();
+  constexpr int faces[4][4] = {{0, 1, 2, 3}, {0, 1, 3, 2}, {0, 2, 3, 1}, {1, 2, 3, 0}};
+  for (const auto& f : faces) {
+    const int apex = side_of_plane(v[f[0]].at, v[f[1]].at, v[f[2]].at, v[f[3]].at);
+    const int here = side_of_plane(v[f[0]].at, v[f[1]].at, v[f[2]].at, origin);
+    if (apex == 0 || apex != here) return false;
+  }
+  return true;
+}
+
+/// The nearest point after a vertex has joined. Only the sides that have the new vertex can have
+/// come nearer.
+Nearest joined(const Simplex& old, const Vertex& added) noexcept {
+  const auto& v = old.vertices;
+  if (old.size == 1) return Difference::of(v[0], added, added);
+  if (old.size == 2) return Difference::of(v[0], v[1], added);
+  Nearest best = Difference::of(v[0], v[1], added);
+  for (const Nearest& other :
+       {Difference::of(v[1], v[2], added), Difference::of(v[0], v[2], added)}) {
+    if (other.distance < best.distance) best = other;
+  }
+  return best;
+}
+
+/// The nearest point as a convex combination of the simplex's vertices, whose corners are combined
+/// alike.
+Vec3 on_triangle(const Nearest& nearest) noexcept {
+  const auto& v = nearest.simplex.vertices;
+  if (nearest.simplex.size == 1) return *v[0].corner;
+  const Vec3 from_first = nearest.at - v[0].at;
+  const Vec3 a = v[1].at - v[0].at;
+  if (nearest.simplex.size == 2) {
+    const double share = std::clamp(from_first.dot(a) / a.squaredNorm(), 0.0, 1.0);
+    return *v[0].corner + share * (*v[1].corner - *v[0].corner);
+  }
+  const Vec3 b = v[2].at - v[0].at;
+  const Vec3 n = a.cross(b);
+  const double n2 = n.squaredNorm();
+  const double of_a = std::clamp(n.dot(from_first.cross(b)) / n2, 0.0, 1.0);
+  const double of_b = std::clamp(n.dot(a.cross(from_first)) / n2, 0.0, 1.0 - of_a);
+  return *v[0].corner + of_a * (*v[1].corner - *v[0].corner) + of_b * (*v[2].corner - *v[0].corner);
+}
+
+/// Close to the origin the nearest point is mostly rounding; its simplex knows its normal better.
+Vec3 sharpened(const Nearest& nearest) noexcept {
+  const auto& v = nearest.simplex.vertices;
+  if (nearest.simplex.size == 3) {
+    const Vec3 n = unit_normal({v[0].at, v[1].at, v[2].at});
+    return n.dot(nearest.at) < 0.0 ? Vec3(-n) : n;
+  }
+  Vec3 n = nearest.at;
+  if (nearest.simplex.size == 2) {
+    const Vec3 edge = (v[1].at - v[0].at).normalized();
+    for (int i = 0; i < 2; ++i) n -= n.dot(edge) * edge;
+  }
+  return n.normalized();
+}
+
+}  // namespace
+
+NearestPoints nearest_points(std::span<const Vec3> points, const Triangle& triangle) noexcept {
+  const Difference difference(points, triangle);
+  Nearest nearest = difference.first();
+  bool overlap = !(nearest.distance > 0.0);
+  // Some ten rounds are usual. The distance hardly tells of a point that is off sideways, by the
+  // root of a rounding; the plane that proves it does. So a few rounds that come no nearer are
+  // made.
+  constexpr int most_rounds = 256;
+  constexpr double rounding = 1e-15;
+  int rounds_to_settle = 8;
+  for (int round = 0; round < most_rounds && points.size() > 1 && !overlap; ++round) {
+    const Vertex added = difference.lowest(nearest.at);
+    const double unproven = nearest.distance - nearest.at.dot(added.at) / nearest.distance;
+    if (nearest.simplex.holds(added) || unproven <= rounding * added.at.norm()) break;
+    if (nearest.simplex.size == 3) {
+      Simplex tetrahedron = nearest.simplex;
+      tetrahedron.add(added);
+      overlap = holds_origin(tetrahedron);
+      if (overlap) break;
+    }
+    const Nearest next = joined(nearest.simplex, added);
+    if (!(next.distance < nearest.distance) && --rounds_to_settle < 0) break;
+    if (!(next.distance <= nearest.distance * (1.0 + rounding))) break;
+    nearest = next;
+    overlap = !(nearest.distance > 0.0);
+  }
+  NearestPoints result{on_triangle(nearest), nearest.at,
+                       nearest.distance,     overlap,
+                       Vec3::Zero(),         -std::numeric_limits<double>::infinity()};
+  if (overlap) return result;
+  for (const Vec3& n : {sharpened(nearest), Vec3(nearest.at / nearest.distance)}) {
+    if (!(n.squaredNorm() > 0.5)) continue;  // a simplex without an area has no normal
+    const double proven = difference.lowest(n).at.dot(n);
+    if (!(proven > result.proven)) continue;
+    result.normal = n;
+    result.proven = proven;
+  }
+  return result;
+}
+
+}  // namespace keepout

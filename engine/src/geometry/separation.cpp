@@ -1,0 +1,123 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "keepout/geometry/separation.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <limits>
+
+#include "nearest_points.h"
+
+namespace keepout {
+namespace {
+
+/// The extent of points along a direction.
+struct Extent {
+  double low = std::numeric_limits<double>::infinity();
+  double high = -std::numeric_limits<double>::infinity();
+
+  Extent(std::span<const Vec3> points, const Vec3& n) noexcept {
+    for (const Vec3& p : points) {
+      const double far = n.dot(p);
+      low = std::min(low, far);
+      high = std::max(high, far);
+    }
+  }
+};
+
+/// The best of the directions tried so far.
+class BestDirection {
+ public:
+  BestDirection(const ConvexTool& tool, const Triangle& triangle) noexcept
+      : points_(tool.points()), triangle_(triangle) {}
+
+  /// Tries n and -n. Whatever is tried is sound: no direction parts two bodies further than they
+  /// are apart.
+  void consider(const Vec3& n) noexcept {
+    const Extent core(points_, n);
+    const Extent other(triangle_, n);
+    take(n, core.low - other.high);
+    take(-n, other.low - core.high);
+  }
+
+  void take(const Vec3& n, double apart) noexcept {
+    if (!(apart > separation_)) return;
+    normal_ = n;
+    separation_ = apart;
+  }
+
+  bool found() const noexcept { return separation_ > -std::numeric_limits<double>::infinity(); }
+  const Vec3& normal() const noexcept { return normal_; }
+  double separation() const noexcept { return separation_; }
+
+ private:
+  std::span<const Vec3> points_;
+  const Triangle& triangle_;
+  Vec3 normal_ = Vec3::UnitX();
+  double separation_ = -std::numeric_limits<double>::infinity();
+};
+
+/// All directions that can part two overlapping cores with the least motion: the normals of the
+/// faces of their difference.
+void consider_all(const ConvexTool& tool, const Triangle& triangle, BestDirection& best) noexcept {
+  const Vec3 n = unit_normal(triangle);
+  if (!n.isZero(0.0)) best.consider(n);
+  for (const Vec3& normal : tool.face_normals()) best.consider(normal);
+  Vec3 some_edge = Vec3::Zero();
+  for (const Vec3& edge : tool.edge_directions()) some_edge = edge;
+  for (int e = 0; e < 3; ++e) {
+    const Vec3 side = triangle[(e + 1) % 3] - triangle[e];
+    const double length = side.norm();
+    if (!(length > 0.0)) continue;
+    some_edge = side / length;
+    for (const Vec3& edge : tool.edge_directions()) {
+      const Vec3 cross = edge.cross(some_edge);
+      const double sine = cross.norm();
+      if (sine > 0.0) best.consider(cross / sine);
+    }
+  }
+  // Where all is on a line, any direction across will do; where all is a point, any at all.
+  if (!best.found())
+    best.consider(some_edge.isZero(0.0) ? Vec3::UnitX() : some_edge.unitOrthogonal());
+}
+
+Triangle moved(const Triangle& triangle, const Vec3& by) noexcept {
+  return {triangle[0] + by, triangle[1] + by, triangle[2] + by};
+}
+
+}  // namespace
+
+double separation_along(const Vec3& n, const ConvexTool& tool, const Vec3& position,
+                        const Triangle& triangle) noexcept {
+  const Triangle local = moved(triangle, -position);
+  return Extent(tool.points(), n).low - Extent(local, n).high - tool.radius();
+}
+
+Separation separation(const ConvexTool& tool, const Vec3& position,
+                      const Triangle& triangle) noexcept {
+  const Triangle local = moved(triangle, -position);
+  double size = 0.0;
+  for (const Vec3& corner : local) size = std::max(size, corner.norm());
+  for (const Vec3& point : tool.points()) size = std::max(size, point.norm());
+
+  const NearestPoints nearest = nearest_points(tool.points(), local);
+  // Proven by a plane to all but some roundings; else all directions are asked.
+  constexpr double roundings = 4e-15;
+  if (!nearest.overlap && nearest.distance - nearest.proven <= roundings * size) {
+    return {nearest.distance - tool.radius(), nearest.normal, position + nearest.on_triangle};
+  }
+  BestDirection best(tool, local);
+  consider_all(tool, local, best);
+  if (!nearest.overlap) best.take(nearest.normal, nearest.proven);
+  if (!nearest.overlap && best.separation() > 0.0) {
+    return {nearest.distance - tool.radius(), best.normal(), position + nearest.on_triangle};
+  }
+
+  // Taken apart along the normal by more than the depth, the deepest points are the nearest ones.
+  const Vec3 way = (size - best.separation()) * best.normal();
+  const NearestPoints parted = nearest_points(tool.points(), moved(local, -way));
+  return {std::min(best.separation(), 0.0) - tool.radius(), best.normal(),
+          position + (parted.on_triangle + way)};
+}
+
+}  // namespace keepout

@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+// A tool that is more than a tip: a burr and its shaft, kept out of a mesh with the parts of a
+// motion constraint put together by hand.
+#include <cstdio>
+#include <memory>
+
+#include "keepout/activation/convex_tool_rule.h"
+#include "keepout/adapters/index_registry.h"
+#include "keepout/adapters/load_mesh.h"
+#include "keepout/error.h"
+#include "keepout/solvers/registry.h"
+#include "keepout/step/motion_constraint.h"
+
+int main(int argc, char** argv) try {
+  if (argc != 2) {
+    std::fprintf(stderr, "usage: %s MESH\n", argv[0]);
+    return 2;
+  }
+  const auto mesh = keepout::load_mesh(argv[1]).mesh;
+
+  // 12 mm of a shaft 3 mm thick, leaning by 45 degrees; the tip is the centre of its lower end.
+  const auto shaft = keepout::ConvexTool::capsule({0, 0, 0}, {8.5, 0, 8.5}, 1.5);
+  keepout::MotionConstraint guard(mesh, keepout::make_index("pd_tree", mesh),
+                                  std::make_unique<keepout::ConvexToolRule>(mesh, shaft),
+                                  keepout::make_solver("active_set"),
+                                  {.radius = 5.0, .margin = 0.2});
+
+  // A hand that comes from above and wants to go straight through to below.
+  const keepout::Box& box = mesh->bounds();
+  keepout::Vec3 tip(box.center().x(), box.center().y(), box.high.z() + 5.0);
+  const keepout::Vec3 goal(tip.x(), tip.y(), box.low.z());
+  int held = 0;
+  for (int cycle = 0; cycle < 2000; ++cycle) {
+    const keepout::Step step = guard.step({.tip = tip, .desired = 0.2 * (goal - tip).normalized()});
+    if (!step.ok()) std::printf("cycle %d: %s\n", cycle, step.reason().data());
+    held += step.status != keepout::Status::free;
+    tip += step.motion;  // zero unless ok
+  }
+  std::printf("held back in %d of 2000 cycles, ends at %.6f %.6f %.6f\n", held, tip.x(), tip.y(),
+              tip.z());
+  return 0;
+} catch (const keepout::Error& error) {
+  std::fprintf(stderr, "%s\n", error.what());
+  return 1;
+}
