@@ -25,6 +25,13 @@ forbid(adapters "${include}keepout/(solvers|factory|fixtures)/" "adapters know o
 forbid(solvers "${include}keepout/(adapters|factory|fixtures)/" "solvers know only the engine")
 forbid(fixtures "${include}keepout/(adapters|solvers|factory)/" "fixtures know only the engine")
 
+# What is under the GPL stays in its own folder, and in the target that gathers all indices.
+foreach(part engine solvers factory fixtures oracle adapters/include adapters/src adapters/assimp
+        adapters/bullet adapters/embree adapters/fcl)
+  forbid(${part} "${include}(CGAL/|keepout/adapters/(gpl_index_registry|all_indices))"
+         "the library is not to depend on the GPL")
+endforeach()
+
 # The oracle believes nobody: of the engine it takes the data, and none of the geometry.
 forbid(oracle "${include}keepout/(adapters|solvers|factory|fixtures)/" "the oracle knows no other part")
 forbid(oracle "${include}keepout/(index|activation|step)/" "the oracle shares no algorithm with the engine")

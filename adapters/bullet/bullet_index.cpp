@@ -51,7 +51,7 @@ class BulletIndex final : public SpatialIndex {
     return Tree(for_bullet);
   }
 
-  /// Bullet asserts its limits in debug builds only, and loses triangles silently beyond them. So
+  /// Bullet asserts its limits in debug builds only, and beyond them confuses triangles silently. So
   /// each must be there once, within the boxes of all nodes above it.
   void check(const Mesh& mesh) const {
     struct Subtree {
@@ -63,19 +63,20 @@ class BulletIndex final : public SpatialIndex {
     for (int n = 0; n < tree_.node_count(); ++n) {
       while (!above.empty() && above.back().end == n) above.pop_back();
       const Box box = tree_.box(n);
-      if (!above.empty()) require(holds(above.back().box, box));
-      if (tree_.is_leaf(n)) {
-        const TriangleId t = tree_.triangle(n);
-        require(t < found.size() && found[t] == 0);
-        found[t] = 1;
-        for (const Vec3& corner : mesh.triangle(t)) {
-          require(holds(box, {frame_.from_mesh(corner), frame_.from_mesh(corner)}));
-        }
-      } else {
+      if (!above.empty() && !holds(above.back().box, box)) fail();
+      if (!tree_.is_leaf(n)) {
         above.push_back({n + tree_.subtree_size(n), box});
+        continue;
+      }
+      const TriangleId t = tree_.triangle(n);
+      if (t >= found.size() || found[t] != 0) fail();
+      found[t] = 1;
+      for (const Vec3& corner : mesh.triangle(t)) {
+        const Vec3 local = frame_.from_mesh(corner);
+        if (!holds(box, {local, local})) fail();
       }
     }
-    require(std::find(found.begin(), found.end(), 0) == found.end());
+    if (std::find(found.begin(), found.end(), 0) != found.end()) fail();
   }
 
   /// To a tenth of the rounding that the radius is padded by.
@@ -85,8 +86,8 @@ class BulletIndex final : public SpatialIndex {
            ((outer.high - inner.high).array() >= -slack).all();
   }
 
-  static void require(bool held) {
-    if (!held) throw Error("Bullet's tree does not hold the mesh; use the index 'pd_tree'");
+  [[noreturn]] static void fail() {
+    throw Error("Bullet's tree does not hold the mesh; use the index 'pd_tree'");
   }
 
   CenteredFrame frame_;

@@ -16,7 +16,7 @@ namespace keepout {
 
 inline Vec3 from_bullet(const btVector3& v) { return {v.x(), v.y(), v.z()}; }
 
-/// Nodes of 112 bytes: a box in double, the size of the subtree, the triangle.
+/// Nodes of 96 bytes: a box in double, the size of the subtree, the triangle.
 class BulletTree final : public btOptimizedBvh {
  public:
   explicit BulletTree(BulletMesh& mesh) { build(&mesh, false, mesh.low(), mesh.high()); }

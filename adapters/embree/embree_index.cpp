@@ -6,7 +6,7 @@
 
 #include <array>
 #include <atomic>
-#include <cstdio>
+#include <type_traits>
 #include <utility>
 
 #include "../src/ball_against_box.h"

@@ -32,7 +32,7 @@ inline void start_anew(fcl::OBBRSSd& volume, const Vec3& vertex) {
 inline bool is_sound(const fcl::AABBd& box) { return box.min_.allFinite() && box.max_.allFinite(); }
 
 /// Lengths in the frame of the box are those of the mesh, to the rounding that the radius is padded
-/// by. FCL's axes are a NaN for a triangle without an area.
+/// by. FCL's axes are, unless the squares of the coordinates overflow.
 inline bool is_sound(const fcl::OBBRSSd& volume) {
   const fcl::OBBd& box = volume.obb;
   const Eigen::Matrix3d gram = box.axis.transpose() * box.axis;
