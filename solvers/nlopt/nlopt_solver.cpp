@@ -52,12 +52,6 @@ NloptSolver::NloptSolver(NloptMethod method) : work_(std::make_unique<Workspace>
 }
 NloptSolver::~NloptSolver() = default;
 
-double NloptSolver::accuracy(NloptMethod method) noexcept {
-  // What each was seen to reach on most problems that are well-conditioned; the check sees to it
-  // that no answer is worse. MMA converges too slowly for more.
-  return method == NloptMethod::mma ? 1e-5 : 1e-6;
-}
-
 void NloptSolver::reserve(int variables, int rows) {
   work_->variables = std::max(variables, 0);
   work_->most_rows = std::max(rows, 0);

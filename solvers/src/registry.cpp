@@ -18,7 +18,7 @@ std::unique_ptr<Solver> make() {
 
 #if KEEPOUT_WITH_NLOPT
 template <NloptMethod method>
-SolverBackend nlopt_backend(std::string_view name, std::string_view description) {
+constexpr SolverBackend nlopt_backend(std::string_view name, std::string_view description) {
   return {name,
           description,
           []() -> std::unique_ptr<Solver> { return std::make_unique<NloptSolver>(method); },
@@ -28,7 +28,7 @@ SolverBackend nlopt_backend(std::string_view name, std::string_view description)
 }
 #endif
 
-const SolverBackend backends[] = {
+constexpr SolverBackend backends[] = {
     {"active_set", "our own dual active-set method (Goldfarb and Idnani 1983)", make<ActiveSet>,
      Allocation::never, 1e-9, nullptr},
 #if KEEPOUT_WITH_NLOPT

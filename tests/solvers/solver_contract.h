@@ -78,8 +78,8 @@ struct Allowance {
 
 inline Allowance allowance_of(std::string_view solver) {
   if (solver == "nlopt_slsqp") return {7, 2000, {0.01, 0.02, 0.35}};
-  if (solver == "nlopt_cobyla") return {163, 400, {0.15, 0.4, 0.7}};
-  if (solver == "nlopt_mma") return {797, 20, {0.3, 0.7, 0.9}};
+  if (solver == "nlopt_cobyla") return {163, 400, {0.1, 0.3, 0.6}};
+  if (solver == "nlopt_mma") return {797, 20, {0.3, 0.5, 0.9}};
   return {};
 }
 
