@@ -4,189 +4,20 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
-#include <cmath>
-#include <string>
-
-#include "engine/activation/rule_fixture.h"
-#include "engine/activation/swept_tool.h"
-#include "engine/geometry/tools.h"
+#include "engine/activation/convex_tool_loop.h"
 #include "keepout/activation/certified.h"
-#include "keepout/adapters/narrow_phase_registry.h"
 #include "keepout/error.h"
 #include "keepout/fixtures/random.h"
-#include "keepout/fixtures/shapes.h"
-#include "keepout/index/pd_tree.h"
-#include "keepout/solvers/active_set.h"
-#include "keepout/step/motion_constraint.h"
 
 namespace keepout {
 namespace {
 
-constexpr double margin = 0.2;
-constexpr double radius = 2.0;
-constexpr double tiny = 1e-8;  // far above the rule's tolerance, far below the margin
-
-std::shared_ptr<const Mesh> shape(std::string_view name) {
-  return std::make_shared<const Mesh>(make_shape(name));
-}
-
-MotionConstraint guard(const std::shared_ptr<const Mesh>& mesh, const ConvexTool& tool,
-                       std::unique_ptr<NarrowPhase> narrow_phase = nullptr,
-                       StepOptions options = {.radius = radius, .margin = margin}) {
-  return {mesh, std::make_unique<PdTree>(mesh),
-          std::make_unique<ConvexToolRule>(mesh, tool, std::move(narrow_phase)),
-          std::make_unique<ActiveSet>(), options};
-}
-
-/// Holds each motion to all triangles that it could reach.
-class Judge {
- public:
-  Judge(std::shared_ptr<const Mesh> mesh, const ConvexTool& tool)
-      : mesh_(mesh), tool_(tool), index_(mesh), candidates_(mesh->triangle_count()) {}
-
-  /// The least clearance on the way, or what is enough. [length]
-  double clearance(const Vec3& from, const Vec3& to, double enough) {
-    const Ball& bounds = tool_.bounding_ball();
-    candidates_.clear();
-    index_.collect({0.5 * (from + to) + bounds.center,
-                    0.5 * (to - from).norm() + bounds.radius + enough + 1e-6},
-                   candidates_);
-    const std::vector<Vec3> core = test::swept_core(tool_, from, to);
-    double least = std::numeric_limits<double>::infinity();
-    const ConvexTool swept = ConvexTool::hull(core);
-    for (const TriangleId t : candidates_) {
-      const Triangle triangle = mesh_->triangle(t);
-      const std::array proposals{separation(swept, Vec3::Zero(), triangle).normal};
-      least = std::min(least, test::swept_clearance(tool_, core, triangle, proposals, enough));
-    }
-    return least;
-  }
-
- private:
-  std::shared_ptr<const Mesh> mesh_;
-  ConvexTool tool_;
-  PdTree index_;
-  TriangleBuffer candidates_;
-};
-
-struct Pushed {
-  int held = 0;     // steps that were not free
-  int refused = 0;  // that ended without a motion
-  double way = 0.0;
-};
-
-/// Pushes a tool at the shape from all sides; every motion keeps the margin.
-Pushed push(const std::shared_ptr<const Mesh>& mesh, MotionConstraint& constraint,
-            const ConvexTool& tool, int cycles, std::uint64_t seed) {
-  Judge judge(mesh, tool);
-  Random random(seed);
-  Pushed pushed;
-  const Box& box = mesh->bounds();
-  const double far = 0.5 * box.size().norm() + tool.bounding_ball().radius +
-                     tool.bounding_ball().center.norm() + 1.0;
-  Vec3 tip = Vec3::Zero();
-  Vec3 goal = Vec3::Zero();
-  for (int cycle = 0; cycle < cycles; ++cycle) {
-    if (cycle % 80 == 0) tip = box.center() + far * random.direction();
-    if (cycle % 40 == 0) {
-      goal = box.low +
-             box.size().cwiseProduct(Vec3(random.uniform(), random.uniform(), random.uniform()));
-    }
-    Vec3 desired = goal - tip + random.uniform(0.0, 2.0) * random.direction();
-    if (desired.norm() > radius) desired *= radius / desired.norm();
-    const Step step = constraint.step({.tip = tip, .desired = desired});
-    pushed.held += step.status != Status::free;
-    pushed.refused += !step.ok();
-    const Vec3 next = tip + step.motion;
-    if (!step.motion.isZero(0.0)) {
-      EXPECT_GE(judge.clearance(tip, next, margin - tiny), margin - tiny)
-          << "cycle " << cycle << ", " << step.reason();
-    }
-    pushed.way += step.motion.norm();
-    tip = next;
-  }
-  return pushed;
-}
-
-TEST(ConvexToolRule, NoToolComesNearerThanTheMarginOnAnyShape) {
-  Random random(1);
-  for (const std::string name :
-       {"cube", "gear", "cortex", "thin_plates", "needles", "star_bumps"}) {
-    const auto mesh = shape(name);
-    for (const test::NamedTool& named : test::tools_of_each_kind(4.0, random)) {
-      SCOPED_TRACE(name + " " + named.name);
-      MotionConstraint constraint = guard(mesh, named.tool);
-      const Pushed pushed = push(mesh, constraint, named.tool, 160, 2);
-      EXPECT_GT(pushed.held, 10);
-      EXPECT_EQ(pushed.refused, 0);
-      EXPECT_GT(pushed.way, 40.0);
-    }
-  }
-}
-
-TEST(ConvexToolRule, NoNarrowPhaseCanTakeTheToolIn) {
-  const auto mesh = shape("gear");
-  for (const NarrowPhaseBackend& backend : narrow_phase_backends()) {
-    Random random(3);
-    for (const test::NamedTool& named : test::tools_of_each_kind(4.0, random)) {
-      SCOPED_TRACE(std::string(backend.name) + " " + named.name);
-      MotionConstraint constraint = guard(mesh, named.tool, backend.make(named.tool));
-      const Pushed pushed = push(mesh, constraint, named.tool, 120, 4);
-      EXPECT_GT(pushed.way, 20.0);
-    }
-  }
-}
-
-/// Says anything but the truth.
-class Liar final : public NarrowPhase {
- public:
-  NarrowPhaseAnswer separation(const Vec3& position, const Triangle& triangle) noexcept override {
-    const double nan = std::nan("");
-    Separation s{1000.0, random_.direction(), position};
-    switch (random_.below(8)) {
-      case 0:
-        s.normal = Vec3(nan, 0, 0);
-        break;
-      case 1:
-        s.normal = Vec3::Zero();
-        break;
-      case 2:
-        s.normal *= 1e200;
-        break;
-      case 3:
-        s.normal *= 1e-200;
-        break;
-      case 4:
-        s.distance = nan;
-        break;
-      case 5:
-        s.normal = (triangle[0] - position).normalized();
-        break;
-      case 6:
-        return NarrowPhaseAnswer::failed("of course");
-      default:
-        break;
-    }
-    return {s, {}};
-  }
-
- private:
-  Random random_{5};
-};
-
-TEST(ConvexToolRule, ALyingNarrowPhaseCostsMotionAndNotSafety) {
-  Random random(6);
-  for (const std::string name : {"cube", "gear"}) {
-    const auto mesh = shape(name);
-    for (const test::NamedTool& named : test::tools_of_each_kind(4.0, random)) {
-      SCOPED_TRACE(name + " " + named.name);
-      MotionConstraint constraint = guard(mesh, named.tool, std::make_unique<Liar>());
-      const Pushed pushed = push(mesh, constraint, named.tool, 160, 7);
-      EXPECT_GT(pushed.way, 10.0);
-    }
-  }
-}
+using test::guard;
+using test::margin;
+using test::radius;
+using test::shape;
+using test::tiny;
+using test::ToolJudge;
 
 TEST(ConvexToolRule, ASphereMovesAsAPointWithAsMuchMoreMargin) {
   for (const std::string name : {"star_bumps", "gear", "saddle_terrain"}) {
@@ -271,7 +102,7 @@ TEST(ConvexToolRule, AToolThatIsTooCloseIsLedOffAndComesNoNearer) {
   const auto mesh = shape("cube");
   const ConvexTool box = ConvexTool::box({Vec3(-1, -1, -1), Vec3(1, 1, 1)});
   MotionConstraint constraint = guard(mesh, box);
-  Judge judge(mesh, box);
+  ToolJudge judge(mesh, box);
   Vec3 tip(0, 0, 50 + 1 + 0.01);
   double clearance = 0.01;
   for (int cycle = 0; cycle < 10; ++cycle) {
@@ -293,7 +124,7 @@ TEST(ConvexToolRule, AToolTooCloseOnBothSidesStandsStill) {
   const Vec3 in_the_gap(0, 0, mesh->bounds().low.z() + 1.5);
   const ConvexTool box = ConvexTool::box({Vec3(-1, -1, -0.4), Vec3(1, 1, 0.4)});
   MotionConstraint constraint = guard(mesh, box);
-  Judge judge(mesh, box);
+  ToolJudge judge(mesh, box);
   const Step step = constraint.step({.tip = in_the_gap, .desired = Vec3(0.5, 0, -0.5)});
   ASSERT_TRUE(step.ok()) << step.reason();
   const double least = 0.1 - tiny;
@@ -308,30 +139,6 @@ TEST(ConvexToolRule, AToolThatTouchesOrOverlapsStandsStill) {
     const Step step = constraint.step({.tip = Vec3(0, 0, height), .desired = Vec3(0, 0, 0.5)});
     EXPECT_EQ(step.status, Status::touching) << height;
     EXPECT_EQ(step.motion, Vec3::Zero());
-  }
-}
-
-TEST(ConvexToolRule, JointsAreHeldToTheSamePlanes) {
-  const auto mesh = shape("gear");
-  Random random(8);
-  Eigen::Matrix<double, 3, Eigen::Dynamic> jacobian(3, 7);
-  for (int i = 0; i < jacobian.size(); ++i) jacobian.data()[i] = random.normal();
-  for (const test::NamedTool& named : test::tools_of_each_kind(3.0, random)) {
-    SCOPED_TRACE(named.name);
-    MotionConstraint constraint =
-        guard(mesh, named.tool, nullptr, {.radius = radius, .margin = margin, .damping = 1e-6});
-    Judge judge(mesh, named.tool);
-    Vec3 tip(30, 0, 40);
-    int held = 0;
-    for (int cycle = 0; cycle < 100; ++cycle) {
-      const Vec3 desired = Vec3(0, 0, -1) + 0.5 * random.direction();
-      const Step step = constraint.step({.tip = tip, .desired = desired, .jacobian = jacobian});
-      held += step.status != Status::free;
-      if (step.motion.isZero(0.0)) continue;
-      ASSERT_GE(judge.clearance(tip, tip + step.motion, margin - tiny), margin - tiny);
-      tip += step.motion;
-    }
-    EXPECT_GT(held, 10);
   }
 }
 
