@@ -51,7 +51,7 @@ class BulletIndex final : public SpatialIndex {
     return Tree(for_bullet);
   }
 
-  /// Bullet asserts its limits in debug builds only, and beyond them confuses triangles silently. So
+  /// Bullet asserts its limits in debug builds only, and beyond them confuses triangles. So
   /// each must be there once, within the boxes of all nodes above it.
   void check(const Mesh& mesh) const {
     struct Subtree {
@@ -103,6 +103,8 @@ std::unique_ptr<SpatialIndex> make(const Mesh& mesh, std::size_t most, std::stri
 
 }  // namespace
 
+// Of the one form that the registry knows; once built, a tree needs the mesh no more.
+// NOLINTBEGIN(performance-unnecessary-value-param)
 std::unique_ptr<SpatialIndex> make_bullet_index(std::shared_ptr<const Mesh> mesh) {
   return make<BulletTree>(*mesh, bullet_most_triangles, "bullet");
 }
@@ -110,6 +112,7 @@ std::unique_ptr<SpatialIndex> make_bullet_index(std::shared_ptr<const Mesh> mesh
 std::unique_ptr<SpatialIndex> make_bullet_quantized_index(std::shared_ptr<const Mesh> mesh) {
   return make<BulletQuantizedTree>(*mesh, bullet_quantized_most_triangles, "bullet_quantized");
 }
+// NOLINTEND(performance-unnecessary-value-param)
 
 std::string bullet_library() {
   return "Bullet " + std::to_string(BT_BULLET_VERSION / 100) + "." +

@@ -23,6 +23,7 @@ namespace {
 class IndexContract : public testing::TestWithParam<IndexBackend> {};
 
 TEST_P(IndexContract, FindsWhatBruteForceFindsOnEveryGeneratedShape) {
+  if (GetParam().name == "brute_force") return;  // is what the others are held to
   for (const Shape& shape : shapes()) {
     SCOPED_TRACE(shape.name);
     const auto mesh = std::make_shared<const Mesh>(shape.make());
@@ -34,6 +35,7 @@ TEST_P(IndexContract, FindsWhatBruteForceFindsOnEveryGeneratedShape) {
 // Indices in float, or with absolute tolerances, are put to the test by where and how large a mesh
 // is.
 TEST_P(IndexContract, FindsWhatBruteForceFindsWhereverTheMeshIsAndHoweverLarge) {
+  if (GetParam().name == "brute_force") return;  // is what the others are held to
   for (const double scale : {1e-6, 1.0, 1e6}) {
     for (const double offset : {0.0, 1e6}) {
       SCOPED_TRACE(testing::Message() << "scale " << scale << " offset " << offset);
@@ -50,6 +52,7 @@ TEST_P(IndexContract, FindsWhatBruteForceFindsWhereverTheMeshIsAndHoweverLarge) 
 
 // Ever smaller towards one point: a tree that splits at the mean is as deep as the list is long.
 TEST_P(IndexContract, FindsWhatBruteForceFindsOnAMeshOfEverySize) {
+  if (GetParam().name == "brute_force") return;  // is what the others are held to
   Surface surface;
   for (int i = 0; i < 900; ++i) {
     const double size = std::ldexp(1.0, -i);
