@@ -69,10 +69,10 @@ TEST(ConvexToolLoop, NoToolComesNearerThanTheMarginOnAnyShape) {
     for (const test::NamedTool& named : test::tools_of_each_kind(4.0, random)) {
       SCOPED_TRACE(name + " " + named.name);
       MotionConstraint constraint = guard(mesh, named.tool);
-      const Pushed pushed = push(mesh, constraint, named.tool, 160, 2);
+      const Pushed pushed = push(mesh, constraint, named.tool, 100, 2);
       EXPECT_GT(pushed.held, 10);
       EXPECT_EQ(pushed.refused, 0);
-      EXPECT_GT(pushed.way, 40.0);
+      EXPECT_GT(pushed.way, 25.0);
     }
   }
 }

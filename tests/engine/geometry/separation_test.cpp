@@ -74,7 +74,7 @@ void expect_consistent(const Separation& s, const ConvexTool& tool, const Triang
 TEST(Separation, IsThatOfBruteForceInMoreDigits) {
   Random random(1);
   int apart = 0, cores_overlap = 0, shallow = 0;
-  for (int i = 0; i < 250; ++i) {
+  for (int i = 0; i < 150; ++i) {
     for (const NamedTool& named : tools_of_each_kind(1.0, random)) {
       SCOPED_TRACE(named.name + " " + std::to_string(i));
       Triangle triangle = random_triangle(random, 2.0);
@@ -88,14 +88,14 @@ TEST(Separation, IsThatOfBruteForceInMoreDigits) {
       (expected > 0.0 ? apart : expected > -named.tool.radius() ? shallow : cores_overlap) += 1;
     }
   }
-  EXPECT_GT(apart, 150);
-  EXPECT_GT(cores_overlap, 100);
-  EXPECT_GT(shallow, 100);
+  EXPECT_GT(apart, 80);
+  EXPECT_GT(cores_overlap, 50);
+  EXPECT_GT(shallow, 50);
 }
 
 TEST(Separation, NeedlesSegmentsAndPointsAreWhatTheyAre) {
   Random random(2);
-  for (int i = 0; i < 300; ++i) {
+  for (int i = 0; i < 150; ++i) {
     for (const NamedTool& named : tools_of_each_kind(1.0, random)) {
       SCOPED_TRACE(named.name + " " + std::to_string(i));
       Triangle triangle = hostile_triangle(random, 2.0);
@@ -110,7 +110,7 @@ TEST(Separation, NeedlesSegmentsAndPointsAreWhatTheyAre) {
 
 TEST(Separation, IsRightAllTheWayThroughATouch) {
   Random random(3);
-  for (int i = 0; i < 150; ++i) {
+  for (int i = 0; i < 100; ++i) {
     for (const NamedTool& named : tools_of_each_kind(1.0, random)) {
       const Triangle triangle = random_triangle(random, 2.0);
       const Vec3 off = 1.5 * random.direction();
@@ -136,7 +136,7 @@ TEST(Separation, ParallelEdgesAndFacesAreNoExceptions) {
   const ConvexTool capsule = ConvexTool::capsule({0, 0, -1}, {0, 0, 1}, 0.5);
   const std::vector<Vec3> square{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}, {0, 0, 0}};
   const ConvexTool flat = ConvexTool::hull(square);
-  for (int i = 0; i < 700; ++i) {
+  for (int i = 0; i < 400; ++i) {
     Triangle triangle;
     for (Vec3& corner : triangle) {
       for (int axis = 0; axis < 3; ++axis) {
