@@ -19,14 +19,14 @@ struct ProcessOutcome {
   std::string output;  // stdout and stderr
 };
 
-/// The keepout command as a user meets it: run as a process in a folder of its own.
-class CommandFolder {
+/// The keepout command as a user meets it: run as a process, in a folder of its own.
+class CommandFolder : public TemporaryFolder {
  public:
-  std::filesystem::path file(const std::string& name) const { return folder_.path() / name; }
+  std::filesystem::path file(const std::string& name) const { return path() / name; }
 
   /// `environment`: assignments that precede the command.
   ProcessOutcome run(const std::string& arguments, const std::string& environment = {}) const {
-    const std::string line = "cd '" + folder_.path().string() + "' && " + environment +
+    const std::string line = "cd '" + path().string() + "' && " + environment +
                              " '" KEEPOUT_COMMAND "' " + arguments + " 2>&1";
     FILE* pipe = ::popen(line.c_str(), "r");
     ProcessOutcome outcome{-1, {}};
@@ -36,11 +36,6 @@ class CommandFolder {
     outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
     return outcome;
   }
-
-  const std::filesystem::path& path() const { return folder_.path(); }
-
- private:
-  TemporaryFolder folder_;
 };
 
 }  // namespace keepout::test

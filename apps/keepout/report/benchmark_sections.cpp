@@ -127,7 +127,9 @@ void print_cost_section(std::ostream& out, const Benchmark& benchmark) {
   const Rows one_radius = comparable_indices(at_radius(rows, radii(rows).front()));
   open_section(out, "What an index costs before the first query", cost_lead(one_radius));
   open_panels(out, 2);
-  print_panel(out, "Time to build", "Once for each mesh, one thread.", build_bars(one_radius));
+  print_panel(out, "Time to build",
+              "Once for each mesh. Embree builds with all cores, the others with one.",
+              build_bars(one_radius));
   print_panel(out, "Memory for a triangle", "What the index holds beside the mesh.",
               memory_bars(one_radius));
   out << "</div>\n";
