@@ -80,6 +80,16 @@ void list_absent(std::ostream& out, std::span<const AbsentPart> parts) {
   }
 }
 
+/// How well all parts agree; nothing, where the user wants to know about some only.
+Comparison comparison_for(const BenchOptions& options, const Subject& subject, std::ostream& out) {
+  if (names_parts(options.selection)) return {};
+  out << "\ncomparing answers on " << title_of(subject) << '\n';
+  const Comparison comparison =
+      compare_parts(label_of(subject), make_mesh(subject), {.seed = options.seed});
+  print(out, comparison);
+  return comparison;
+}
+
 }  // namespace
 
 void list_parts(std::ostream& out) {
@@ -130,10 +140,7 @@ void bench(const BenchOptions& options, std::ostream& out) {
   for (const Subject& subject : subjects) {
     run_trial(subject, combinations, settings_of(options), memory, benchmark, out);
   }
-  out << "\ncomparing answers on " << title_of(subjects.front()) << '\n';
-  const Comparison comparison = compare_parts(label_of(subjects.front()),
-                                              make_mesh(subjects.front()), {.seed = options.seed});
-  print(out, comparison);
+  const Comparison comparison = comparison_for(options, subjects.front(), out);
 
   print_benchmark_report(report.stream(), benchmark, comparison);
   report.finish();

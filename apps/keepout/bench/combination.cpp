@@ -94,12 +94,14 @@ std::vector<Combination> default_matrix(const Radii& radii) {
 
 }  // namespace
 
+bool names_parts(const Selection& selection) {
+  return !(selection.indices.empty() && selection.activations.empty() && selection.solvers.empty());
+}
+
 std::vector<Combination> combinations_of(const Selection& selection) {
   const Radii radii =
       selection.radii.empty() ? Radii{5.0, 1.0, 0.25, std::nullopt} : selection.radii;
-  if (selection.indices.empty() && selection.activations.empty() && selection.solvers.empty()) {
-    return default_matrix(radii);
-  }
+  if (!names_parts(selection)) return default_matrix(radii);
   Matrix matrix;
   matrix.add(or_else(selection.indices, {reference_index}),
              or_else(selection.activations, {"paper", certified}),

@@ -22,6 +22,9 @@ struct Selection {
   std::vector<std::optional<double>> radii;
 };
 
+/// Whether any part was asked for by name.
+bool names_parts(const Selection& selection);
+
 /// Every combination of what was asked for, and where nothing was, of the reference: pd_tree, the
 /// rules paper and certified, active_set. If no part was asked for at all: each index with the
 /// reference, each rule and solver with the reference, and what a user of the usual libraries would
