@@ -54,7 +54,7 @@ TEST(AnswerCheck, AcceptsTheOptimum) {
 TEST(AnswerCheck, AcceptsNothingThatIsFartherFromTheOptimumThanItSays) {
   // From last digits to wild guesses, in any direction; of every kind of problem.
   int accepted = 0, rejected = 0;
-  for (std::uint64_t seed = 0; seed < 20000; ++seed) {
+  for (std::uint64_t seed = 0; seed < 6000; ++seed) {
     Posed posed(tasks[seed % tasks.size()], plane_kinds[seed / tasks.size() % plane_kinds.size()],
                 seed);
     const double far = posed.random.log_uniform(1e-12, 10) * (1e-3 + posed.best.norm());
@@ -72,8 +72,8 @@ TEST(AnswerCheck, AcceptsNothingThatIsFartherFromTheOptimumThanItSays) {
                             .active = answer.active};
     EXPECT_LE(kkt_residual(posed.problem.view(), solution).worst(), accuracy) << "seed " << seed;
   }
-  EXPECT_GT(accepted, 4000);
-  EXPECT_GT(rejected, 4000);
+  EXPECT_GT(accepted, 1200);
+  EXPECT_GT(rejected, 1200);
 }
 
 TEST(AnswerCheck, SaysWhatIsWrong) {
