@@ -45,8 +45,8 @@ std::vector<Subject> chosen_subjects(const BenchOptions& options) {
 
 TrialSettings settings_of(const BenchOptions& options) {
   const bool full = options.extent == Extent::full;
-  return {.queries = options.queries.value_or(full ? 10'000 : 2'500),
-          .seconds = options.seconds.value_or(full ? 4.0 : 1.0),
+  return {.queries = options.queries.value_or(full ? 5'000 : 2'500),
+          .seconds = options.seconds.value_or(full ? 1.5 : 1.0),
           .poses = options.poses,
           .seed = options.seed};
 }

@@ -70,7 +70,7 @@ const Trial::Built& Trial::build(const std::string& index) {
   built_ = std::make_unique<Built>(Built{.name = index});
   const IndexBackend& backend = entry_named(index, indices(), "index", absent_indices());
   const auto count = static_cast<double>(mesh_->triangle_count());
-  constexpr double while_building = 2.0;  // some hold twice as much then
+  constexpr double while_building = 1.5;  // some hold more then
   if (const auto taken = memory_.find(index); taken != memory_.end()) {
     const double needed = while_building * taken->second * count;
     const auto available = static_cast<double>(available_memory());

@@ -44,18 +44,17 @@ double rate_khz(const BenchmarkRow& row) { return 1e3 / median(row, &BenchmarkRo
 
 }  // namespace
 
-std::string query_plot(const Rows& rows, const std::vector<std::string>& all) {
+std::string query_plot(const Rows& rows, Stage stage, const std::vector<std::string>& all) {
   Plot plot;
   plot.description = "Median time of a query against the number of triangles, for each index.";
   plot.x = logarithmic("triangles");
-  plot.y = logarithmic("query [µs]");
+  plot.y = logarithmic(stage == &BenchmarkRow::query ? "query [µs]" : "candidates only [µs]");
   plot.names = Plot::Names::at_line_ends;
   for (const std::string& index : names(rows, &BenchmarkRow::index)) {
     Series series = series_named(index, place_in(all, index));
     for (const BenchmarkRow* row : rows) {
       if (row->index != index) continue;
-      series.points.push_back(
-          {static_cast<double>(row->triangles), median(*row, &BenchmarkRow::query)});
+      series.points.push_back({static_cast<double>(row->triangles), median(*row, stage)});
     }
     sort_by_x(series.points);
     plot.series.push_back(std::move(series));

@@ -12,9 +12,9 @@ namespace keepout::app {
 /// The pictures of a benchmark, each as an <svg> element. Names keep their colour and their mark in
 /// all of them: those of their place in `all`.
 
-/// Time of a query against the size of the mesh, a line for each index. Precondition, as below:
-/// the rows are those of one radius, and the query was timed.
-std::string query_plot(const Rows& rows, const std::vector<std::string>& all);
+/// Time of a query, or of its candidates alone, against the size of the mesh, a line for each
+/// index. Precondition, as below: the rows are those of one radius, and the stage was timed.
+std::string query_plot(const Rows& rows, Stage stage, const std::vector<std::string>& all);
 
 /// The same on one mesh: an axis of time, a line of writing for each index.
 std::string query_spans(const Rows& rows, const std::vector<std::string>& all);

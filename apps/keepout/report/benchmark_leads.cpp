@@ -13,7 +13,7 @@ namespace keepout::app {
 namespace {
 
 /// How much slower an index gets from its smallest mesh to its largest.
-std::string growth(const Rows& rows, const std::string& index) {
+std::string growth(const Rows& rows, const std::string& index, Stage stage) {
   const Rows own = only(rows, [&](const BenchmarkRow& row) { return row.index == index; });
   const auto [small, large] = std::minmax_element(
       own.begin(), own.end(),
@@ -22,8 +22,7 @@ std::string growth(const Rows& rows, const std::string& index) {
   const double more =
       static_cast<double>((*large)->triangles) / static_cast<double>((*small)->triangles);
   return ratio_text(more) + " times the triangles make " + index + " take " +
-         ratio_text(median(**large, &BenchmarkRow::query) / median(**small, &BenchmarkRow::query)) +
-         " times as long";
+         ratio_text(median(**large, stage) / median(**small, stage)) + " times as long";
 }
 
 /// The rows of the problems that most solvers got; of these those with most planes.
@@ -65,17 +64,17 @@ std::string query_lead(const Rows& rows) {
   if (&quick != &slow) {
     text += " and " + slow.index + " in " + time_text(median(slow, &BenchmarkRow::query));
   }
-  const std::string grows = growth(rows, quick.index);
+  const std::string grows = growth(rows, quick.index, &BenchmarkRow::query);
   return text + (grows.empty() ? "." : "; the flatter a line, the less a finer mesh costs.");
 }
 
-std::string query_about(const Rows& rows) {
+std::string query_about(const Rows& rows, Stage stage) {
   const Rows there = on_common_mesh(rows);
-  const BenchmarkRow& quick = fastest(there, &BenchmarkRow::query);
+  const BenchmarkRow& quick = fastest(there, stage);
   std::string text = "Rule " + quick.activation + ". Fastest at " +
                      counted(quick.triangles, "triangle") + ": " + quick.index + ", " +
-                     time_text(median(quick, &BenchmarkRow::query)) + ".";
-  const std::string grows = growth(rows, quick.index);
+                     time_text(median(quick, stage)) + ".";
+  const std::string grows = growth(rows, quick.index, stage);
   return grows.empty() ? text : text + " " + grows + ".";
 }
 

@@ -16,7 +16,7 @@ namespace keepout::app {
 std::string query_lead(const Rows& rows);
 
 /// The same in a few words, for the caption of a panel.
-std::string query_about(const Rows& rows);
+std::string query_about(const Rows& rows, Stage stage);
 
 /// `lines`: as rate_lines() gives them.
 std::string rate_lead(const std::vector<Rows>& lines);

@@ -48,17 +48,27 @@ void print_query_section(std::ostream& out, const Benchmark& benchmark) {
   const Rows rows = on_scaled_mesh(timed(benchmark, &BenchmarkRow::query));
   if (rows.empty()) return;
   const std::vector<std::optional<double>> spheres = radii(rows);
-  open_section(out, "Which index finds the triangles fastest",
-               query_lead(comparable_indices(at_radius(rows, spheres.front()))) +
-                   (sizes(rows).size() > 1
-                        ? ""
-                        : " Filled: the median of the whole query, and a line to its 99 %; open: "
-                          "the median without the exact test of each candidate."));
-  open_panels(out, spheres.size());
+  const bool is_curve = sizes(rows).size() > 1;
+  open_section(
+      out, "Which index finds the triangles fastest",
+      query_lead(comparable_indices(at_radius(rows, spheres.front()))) +
+          (is_curve ? " The candidates only are the index's own work; the rest of the query is "
+                      "the exact test of each, which is the same for all."
+                    : " Filled: the median of the whole query, and a line to its 99 %; open: "
+                      "the median without the exact test of each candidate."));
+  open_panels(out, is_curve ? 2 : spheres.size());
   for (const std::optional<double>& sphere : spheres) {
     const Rows panel = comparable_indices(at_radius(rows, sphere));
-    print_panel(out, sphere_title(sphere), query_about(panel),
-                sizes(rows).size() > 1 ? query_plot(panel, all) : query_spans(panel, all));
+    const auto print = [&](const std::string& title, Stage stage) {
+      print_panel(out, title, query_about(panel, stage),
+                  is_curve ? query_plot(panel, stage, all) : query_spans(panel, all));
+    };
+    print(sphere_title(sphere), &BenchmarkRow::query);
+    const bool has_both = std::ranges::all_of(
+        panel, [](const BenchmarkRow* row) { return row->collect.has_value(); });
+    if (is_curve && has_both) {
+      print(sphere_title(sphere) + ": candidates only", &BenchmarkRow::collect);
+    }
   }
   out << "</div>\n";
 }
