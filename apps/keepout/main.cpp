@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <cstdint>
 #include <cstdlib>
 #include <exception>
@@ -9,47 +8,24 @@
 #include <iostream>
 #include <map>
 #include <new>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "bench/bench.h"
-#include "bench/parts.h"
-#include "compare/compare.h"
+#include "bench/bench_command.h"
+#include "compare/compare_command.h"
 #include "inspect.h"
 #include "keepout/activation/registry.h"
 #include "keepout/adapters/index_registry.h"
 #include "keepout/error.h"
 #include "keepout/solvers/registry.h"
 #include "number_checks.h"
+#include "part_lists.h"
 #include "replay.h"
-#include "shell_word.h"
 #include "simulate.h"
 #include "verify/verify.h"
 
 namespace keepout::app {
 namespace {
-
-template <class Table>
-std::vector<std::string> names(const Table& table) {
-  std::vector<std::string> all;
-  for (const auto& entry : table) all.emplace_back(entry.name);
-  return all;
-}
-
-/// A list of what can be chosen, for the foot of a help page.
-template <class Table>
-std::string listing(const std::string& title, const Table& table) {
-  std::string text = title + ":\n";
-  for (const auto& entry : table) {
-    std::string name(entry.name);
-    name.resize(std::max<std::size_t>(name.size() + 1, 14), ' ');
-    text += "  " + name + std::string(entry.description) + "\n";
-  }
-  return text;
-}
-
-constexpr std::uint64_t largest_seed = (std::uint64_t{1} << 63) - 1;
 
 const std::map<std::string, Query> queries{{"motion", Query::motion}, {"sphere", Query::sphere}};
 
@@ -223,131 +199,10 @@ void add_verify(CLI::App& app, VerifyOptions& options) {
       "The exit status is 0 only if no step broke what docs/certified-step.md promises.");
 }
 
-/// "motion", or a length.
-std::optional<double> radius_of(const std::string& text) {
-  if (text == "motion") return std::nullopt;
-  std::string number = text;
-  const std::string problem = length(Zero::refused)(number);
-  if (!problem.empty()) {
-    throw Error("--radius: expected lengths in mm, or 'motion': " + problem);
-  }
-  return std::stod(number);
-}
-
-struct BenchCommand {
-  BenchOptions options;
-  std::vector<std::string> radii;
-  bool list = false;
-};
-
-void add_bench(CLI::App& app, BenchCommand& bench) {
-  BenchOptions& options = bench.options;
-  CLI::App& command = *app.add_subcommand(
-      "bench",
-      "Time every stage of the step, for indices, rules and solvers side by side; each is held to "
-      "brute force and to our own solver before it is timed");
-  command.add_flag("--list", bench.list, "Say what there is to measure, and stop");
-  const auto add_list = [&](const char* name, std::vector<std::string>& list, const auto& table,
-                            const char* text) {
-    command.add_option(name, list, text)
-        ->delimiter(',')
-        ->type_name("NAMES")
-        ->check(CLI::IsMember(names(table)));
-  };
-  add_list("--index", options.selection.indices, indices(), "Indices to measure");
-  add_list("--activation", options.selection.activations, activation_rules(), "Rules to measure");
-  add_list("--solver", options.selection.solvers, solver_backends(), "Solvers to measure");
-  command.add_option("--mesh", options.meshes, "Real fixtures, or mesh files")
-      ->delimiter(',')
-      ->type_name("NAMES");
-  command
-      .add_option("--triangles", options.triangles,
-                  "Sizes to which the bunny is resampled, 150 mm large as in the paper")
-      ->delimiter(',')
-      ->type_name("NUMBERS")
-      ->transform(whole_number(1000, 200'000'000));
-  command
-      .add_option("--radius", bench.radii,
-                  "Radii of the motion sphere, in mm; 'motion': as long as each motion")
-      ->delimiter(',')
-      ->type_name("MM");
-  command.add_flag_callback(
-      "--full", [&options] { options.extent = Extent::full; },
-      "To 18 million triangles, and the skull of a million: some tens of minutes");
-  command.add_option("--queries", options.queries, "Steps of each combination, at most")
-      ->type_name("NUMBER")
-      ->transform(whole_number(5, 10'000'000));
-  command
-      .add_option("--seconds", options.seconds,
-                  "How long a combination is asked, at most, and timed as long again")
-      ->type_name("S")
-      ->check(CLI::Range(0.001, 1e6));
-  command
-      .add_option("--poses", options.poses,
-                  "contact: a tool that slides along the surface; unrelated: as a planner asks")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, Poses>{
-          {"contact", Poses::contact}, {"unrelated", Poses::unrelated}}))
-      ->default_str("contact");
-  command.add_option("--seed", options.seed, "Seed of the motions")
-      ->type_name("NUMBER")
-      ->transform(whole_number(0, largest_seed))
-      ->capture_default_str();
-  command.add_option("--json", options.json, "Where to write all figures")->type_name("FILE");
-  command.add_option("--csv", options.csv, "Where to write them as a table")->type_name("FILE");
-  command.add_option("--out", options.report, "Where to write a report with plots")
-      ->type_name("REPORT.html")
-      ->capture_default_str();
-  command.footer(
-      "Each list is crossed with the others; what is not named is pd_tree, paper and certified,\n"
-      "active_set, and radii of 5, 1, 0.25 and the motion. Without --index, --activation and\n"
-      "--solver: each index, then each solver, with those; and FCL's tree with SLSQP.");
-}
-
-void add_compare(CLI::App& app, CompareOptions& options) {
-  CLI::App& command = *app.add_subcommand(
-      "compare",
-      "Hold all parts that can take each other's place to each other and to the truth, on the same "
-      "input: indices, solvers, narrow phases");
-  command.add_option("MESH", options.mesh, "A real fixture, or a mesh file in mm")
-      ->capture_default_str();
-  command.add_option("--poses", options.extent.poses, "Poses for the indices, under each rule")
-      ->type_name("NUMBER")
-      ->transform(whole_number(6, 1'000'000))
-      ->capture_default_str();
-  command.add_option("--problems", options.extent.problems, "Recorded problems for the solvers")
-      ->type_name("NUMBER")
-      ->transform(whole_number(10, 1'000'000))
-      ->capture_default_str();
-  command
-      .add_option("--pairs", options.extent.pairs,
-                  "Pairs of tool and triangle for the narrow phases, of each kind")
-      ->type_name("NUMBER")
-      ->transform(whole_number(10, 1'000'000))
-      ->capture_default_str();
-  command.add_option("--seed", options.extent.seed, "Seed of poses, problems and pairs")
-      ->type_name("NUMBER")
-      ->transform(whole_number(0, largest_seed))
-      ->capture_default_str();
-  command.add_option("--json", options.json, "Where to write the tables")->type_name("FILE");
-  command.footer(
-      "The exit status is 0 only if all indices agree to the bit and no solver is wrong.");
-}
-
 /// What was printed has to arrive: a full disk shall not look like success.
 void flush_stdout() {
   std::cout.flush();
   if (!std::cout) throw Error("stdout: could not be written to the end; is the disk full?");
-}
-
-void run_bench(BenchCommand& bench_command, int argc, char** argv) {
-  if (bench_command.list) return list_parts(std::cout);
-  BenchOptions& options = bench_command.options;
-  for (const std::string& radius : bench_command.radii) {
-    options.selection.radii.push_back(radius_of(radius));
-  }
-  options.command = "keepout";
-  for (int i = 1; i < argc; ++i) options.command += " " + shell_word(argv[i]);
-  bench(options, std::cout);
 }
 
 int run(int argc, char** argv) {
@@ -361,15 +216,13 @@ int run(int argc, char** argv) {
   ReplayOptions replay_options;
   SimulateOptions simulate_options;
   VerifyOptions verify_options;
-  BenchCommand bench_command;
-  CompareOptions compare_options;
   simulate_options.rules = names(activation_rules());
   add_inspect(app, inspect_options);
   add_replay(app, replay_options);
   add_simulate(app, simulate_options);
   add_verify(app, verify_options);
-  add_bench(app, bench_command);
-  add_compare(app, compare_options);
+  BenchCommand bench_command(app);
+  CompareCommand compare_command(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -383,8 +236,8 @@ int run(int argc, char** argv) {
   if (app.got_subcommand("inspect")) inspect(inspect_options, std::cout);
   if (app.got_subcommand("replay")) replay(replay_options, std::cout);
   if (app.got_subcommand("simulate")) simulate(simulate_options, std::cout);
-  if (app.got_subcommand("bench")) run_bench(bench_command, argc, argv);
-  if (app.got_subcommand("compare")) return compare(compare_options, std::cout);
+  if (app.got_subcommand("bench")) bench_command.run({argv + 1, argv + argc}, std::cout);
+  if (app.got_subcommand("compare")) return compare_command.run(std::cout);
   if (app.got_subcommand("verify")) return verify(verify_options, std::cout);
   return EXIT_SUCCESS;
 }

@@ -7,6 +7,9 @@
 
 namespace keepout::app {
 
+/// Above it, whole numbers are not read back as they were written.
+inline constexpr std::uint64_t largest_seed = (std::uint64_t{1} << 63) - 1;
+
 enum class Zero { allowed, refused };
 
 /// A length in millimetres. CLI11's own checks let 'nan' pass and tell their range in 300 digits.

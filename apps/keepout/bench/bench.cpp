@@ -17,6 +17,7 @@
 #include "machine.h"
 #include "number_text.h"
 #include "output_file.h"
+#include "part_lists.h"
 #include "progress.h"
 #include "report/benchmark_report.h"
 
@@ -64,16 +65,6 @@ void refuse_overwriting(const BenchOptions& options) {
   refuse_shared_files(inputs, outputs);
 }
 
-template <class Table>
-void list(std::ostream& out, std::string_view title, const Table& table) {
-  out << title << ":\n";
-  for (const auto& entry : table) {
-    std::string name(entry.name);
-    name.resize(std::max<std::size_t>(name.size() + 1, 18), ' ');
-    out << "  " << name << entry.description << '\n';
-  }
-}
-
 void list_absent(std::ostream& out, std::span<const AbsentPart> parts) {
   for (const AbsentPart& part : parts) {
     out << "  " << part.name << " is not in this build: needs " << part.needs << '\n';
@@ -93,10 +84,10 @@ Comparison comparison_for(const BenchOptions& options, const Subject& subject, s
 }  // namespace
 
 void list_parts(std::ostream& out) {
-  list(out, "Indices (--index)", indices());
+  out << listing("Indices (--index)", indices());
   list_absent(out, absent_indices());
-  list(out, "Rules (--activation)", activation_rules());
-  list(out, "Solvers (--solver)", solver_backends());
+  out << listing("Rules (--activation)", activation_rules());
+  out << listing("Solvers (--solver)", solver_backends());
   list_absent(out, absent_solver_backends());
   out << "Meshes (--mesh; a file will do as well):\n ";
   for (const std::string_view mesh : real_meshes()) out << ' ' << mesh;

@@ -15,17 +15,11 @@
 #include "compare/solver_agreement.h"
 #include "keepout/activation/registry.h"
 #include "output_file.h"
+#include "part_lists.h"
 #include "progress.h"
 
 namespace keepout::app {
 namespace {
-
-template <class Table>
-std::vector<std::string> names(const Table& table) {
-  std::vector<std::string> all;
-  for (const auto& entry : table) all.emplace_back(entry.name);
-  return all;
-}
 
 /// All but brute force, which they are held to.
 std::vector<std::string> indices_to_compare() {

@@ -1,0 +1,106 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/bench_command.h"
+
+#include <map>
+#include <optional>
+#include <ostream>
+
+#include "bench/parts.h"
+#include "keepout/activation/registry.h"
+#include "keepout/error.h"
+#include "number_checks.h"
+#include "part_lists.h"
+#include "shell_word.h"
+
+namespace keepout::app {
+namespace {
+
+/// "motion", or a length.
+std::optional<double> radius_of(const std::string& text) {
+  if (text == "motion") return std::nullopt;
+  std::string number = text;
+  const std::string problem = length(Zero::refused)(number);
+  if (!problem.empty()) {
+    throw Error("--radius: expected lengths in mm, or 'motion': " + problem);
+  }
+  return std::stod(number);
+}
+
+}  // namespace
+
+BenchCommand::BenchCommand(CLI::App& app) {
+  BenchOptions& options = options_;
+  CLI::App& command = *app.add_subcommand(
+      "bench",
+      "Time every stage of the step, for indices, rules and solvers side by side; each is held to "
+      "brute force and to our own solver before it is timed");
+  command.add_flag("--list", list_, "Say what there is to measure, and stop");
+  const auto add_list = [&](const char* name, std::vector<std::string>& list, const auto& table,
+                            const char* text) {
+    command.add_option(name, list, text)
+        ->delimiter(',')
+        ->type_name("NAMES")
+        ->check(CLI::IsMember(names(table)));
+  };
+  add_list("--index", options.selection.indices, indices(), "Indices to measure");
+  add_list("--activation", options.selection.activations, activation_rules(), "Rules to measure");
+  add_list("--solver", options.selection.solvers, solver_backends(), "Solvers to measure");
+  command.add_option("--mesh", options.meshes, "Real fixtures, or mesh files")
+      ->delimiter(',')
+      ->type_name("NAMES");
+  command
+      .add_option("--triangles", options.triangles,
+                  "Sizes to which the bunny is resampled, 150 mm large as in the paper")
+      ->delimiter(',')
+      ->type_name("NUMBERS")
+      ->transform(whole_number(1000, 200'000'000));
+  command
+      .add_option("--radius", radii_,
+                  "Radii of the motion sphere, in mm; 'motion': as long as each motion")
+      ->delimiter(',')
+      ->type_name("MM");
+  command.add_flag_callback(
+      "--full", [&options] { options.extent = Extent::full; },
+      "To 18 million triangles, and the skull of a million: some tens of minutes");
+  command.add_option("--queries", options.queries, "Steps of each combination, at most")
+      ->type_name("NUMBER")
+      ->transform(whole_number(5, 10'000'000));
+  command
+      .add_option("--seconds", options.seconds,
+                  "How long a combination is asked, at most, and timed as long again")
+      ->type_name("S")
+      ->check(CLI::Range(0.001, 1e6));
+  command
+      .add_option("--poses", options.poses,
+                  "contact: a tool that slides along the surface; unrelated: as a planner asks")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, Poses>{
+          {"contact", Poses::contact}, {"unrelated", Poses::unrelated}}))
+      ->default_str("contact");
+  command.add_option("--seed", options.seed, "Seed of the motions")
+      ->type_name("NUMBER")
+      ->transform(whole_number(0, largest_seed))
+      ->capture_default_str();
+  command.add_option("--json", options.json, "Where to write all figures")->type_name("FILE");
+  command.add_option("--csv", options.csv, "Where to write them as a table")->type_name("FILE");
+  command.add_option("--out", options.report, "Where to write a report with plots")
+      ->type_name("REPORT.html")
+      ->capture_default_str();
+  command.footer(
+      "Each list is crossed with the others; what is not named is pd_tree, paper and certified,\n"
+      "active_set, and radii of 5, 1, 0.25 and the motion. Without --index, --activation and\n"
+      "--solver: each index, then each solver, with those; and FCL's tree with SLSQP.");
+}
+
+void BenchCommand::run(const std::vector<std::string>& arguments, std::ostream& out) {
+  if (list_) {
+    list_parts(out);
+    return;
+  }
+  for (const std::string& radius : radii_) options_.selection.radii.push_back(radius_of(radius));
+  options_.command = "keepout";
+  for (const std::string& argument : arguments) options_.command += " " + shell_word(argument);
+  bench(options_, out);
+}
+
+}  // namespace keepout::app

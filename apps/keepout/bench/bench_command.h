@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+#include "bench/bench.h"
+
+namespace keepout::app {
+
+/// keepout bench: its options, and what they lead to. Stays where it is once made.
+class BenchCommand {
+ public:
+  explicit BenchCommand(CLI::App& app);
+  BenchCommand(const BenchCommand&) = delete;
+  BenchCommand& operator=(const BenchCommand&) = delete;
+
+  /// After parsing. `arguments`: of the command line, for the record.
+  void run(const std::vector<std::string>& arguments, std::ostream& out);
+
+ private:
+  BenchOptions options_;
+  std::vector<std::string> radii_;
+  bool list_ = false;
+};
+
+}  // namespace keepout::app

@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace keepout::app {
+
+/// The names in a table of parts.
+template <class Table>
+std::vector<std::string> names(const Table& table) {
+  std::vector<std::string> all;
+  for (const auto& entry : table) all.emplace_back(entry.name);
+  return all;
+}
+
+/// A table of parts as text, a line each below the title.
+template <class Table>
+std::string listing(std::string_view title, const Table& table) {
+  constexpr std::size_t name_width = 18;
+  std::string text = std::string(title) + ":\n";
+  for (const auto& entry : table) {
+    std::string name(entry.name);
+    name.resize(std::max<std::size_t>(name.size() + 1, name_width), ' ');
+    text += "  " + name + std::string(entry.description) + "\n";
+  }
+  return text;
+}
+
+}  // namespace keepout::app
