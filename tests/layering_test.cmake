@@ -25,9 +25,19 @@ forbid(adapters "${include}keepout/(solvers|factory|fixtures)/" "adapters know o
 forbid(solvers "${include}keepout/(adapters|factory|fixtures)/" "solvers know only the engine")
 forbid(fixtures "${include}keepout/(adapters|solvers|factory)/" "fixtures know only the engine")
 
+# One folder a library: what two of them share is in adapters/src.
+set(libraries assimp bullet ccd cgal embree fcl)
+foreach(library IN LISTS libraries)
+  set(others ${libraries})
+  list(REMOVE_ITEM others ${library})
+  list(JOIN others "|" others)
+  forbid(adapters/${library} "${include}([^\"]*/)?\\.\\./([^\"]*/)?(${others})/"
+         "one library's adapter knows no other's")
+endforeach()
+
 # What is under the GPL stays in its own folder, and in the target that gathers all indices.
 foreach(part engine solvers factory fixtures oracle adapters/include adapters/src adapters/assimp
-        adapters/bullet adapters/embree adapters/fcl)
+        adapters/bullet adapters/ccd adapters/embree adapters/fcl)
   forbid(${part} "${include}(CGAL/|keepout/adapters/(gpl_index_registry|all_indices))"
          "the library is not to depend on the GPL")
 endforeach()

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bodies.h"
+#include "../src/ccd_bodies.h"
 #include "keepout/geometry/closest_point.h"
 
 namespace keepout {

@@ -11,8 +11,8 @@
 
 namespace keepout {
 
-/// FCL counts the nodes, of which there are twice as many as triangles, and the vertices by an int.
-inline constexpr std::size_t fcl_most_triangles = std::size_t{1} << 30;
+/// FCL counts the nodes by an int, as 2 n - 1 of n triangles, of which 2 n must not overflow.
+inline constexpr std::size_t fcl_most_triangles = (std::size_t{1} << 30) - 1;
 
 /// FCL's tree of oriented boxes (OBBRSS, of which the box is used).
 std::unique_ptr<SpatialIndex> make_fcl_obbrss_index(std::shared_ptr<const Mesh> mesh);

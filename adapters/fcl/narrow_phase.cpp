@@ -1,7 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-// FCL is full of assertions that fail near a touch, and Debian's library was built with them: it
-// ends the process. So the templates are compiled here, without.
+// FCL's GJK after libccd is full of assertions that fail near a touch, and Debian's library was
+// built with them: they end the process. Its functions are static ones of a header, so that they
+// are compiled here, without. GJK, EPA and GJKSolver_indep<double> are extern templates: their code
+// is the library's, and only what calls them for a shape and a triangle is compiled here.
 #ifndef NDEBUG
 #define NDEBUG
 #endif
@@ -17,7 +19,7 @@
 #include <exception>
 #include <vector>
 
-#include "../ccd/bodies.h"
+#include "../src/ccd_bodies.h"
 
 namespace keepout {
 namespace {

@@ -201,7 +201,7 @@ Measured timings_of(const SimulateOptions& options, const std::shared_ptr<const 
   if (options.timings == Timings::of_the_run) return measured;
   const Subject subject{.mesh = options.mesh.string()};
   measured.benchmark = {.date = date_now(),
-                        .command = "keepout bench --mesh " + shell_word(subject.mesh),
+                        .command = command_of(options, options.rules),
                         .seed = 1,
                         .machine = this_machine()};
   MemoryTaken memory;

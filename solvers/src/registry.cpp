@@ -4,7 +4,7 @@
 
 #include "keepout/registry.h"
 #include "keepout/solvers/active_set.h"
-#if KEEPOUT_WITH_NLOPT
+#if KEEPOUT_HAS_NLOPT
 #include "keepout/solvers/nlopt_solver.h"
 #endif
 
@@ -16,7 +16,7 @@ std::unique_ptr<Solver> make() {
   return std::make_unique<T>();
 }
 
-#if KEEPOUT_WITH_NLOPT
+#if KEEPOUT_HAS_NLOPT
 template <NloptMethod method>
 constexpr SolverBackend nlopt_backend(std::string_view name, std::string_view description) {
   return {name,
@@ -31,17 +31,18 @@ constexpr SolverBackend nlopt_backend(std::string_view name, std::string_view de
 constexpr SolverBackend backends[] = {
     {"active_set", "our own dual active-set method (Goldfarb and Idnani 1983)", make<ActiveSet>,
      Allocation::never, 1e-9, nullptr},
-#if KEEPOUT_WITH_NLOPT
+#if KEEPOUT_HAS_NLOPT
     nlopt_backend<NloptMethod::slsqp>("nlopt_slsqp", "NLopt: sequential least squares (Kraft)"),
     nlopt_backend<NloptMethod::cobyla>("nlopt_cobyla", "NLopt: linear models (Powell)"),
     nlopt_backend<NloptMethod::mma>("nlopt_mma", "NLopt: moving asymptotes (Svanberg)"),
 #endif
 };
 
-#if KEEPOUT_WITH_NLOPT
+#if KEEPOUT_HAS_NLOPT
 constexpr std::span<const AbsentPart> absent;
 #else
-constexpr std::string_view needs_nlopt = "NLopt (libnlopt-dev, KEEPOUT_WITH_NLOPT=ON)";
+constexpr std::string_view needs_nlopt =
+    "NLopt (install libnlopt-dev, configure with KEEPOUT_WITH_NLOPT=ON)";
 constexpr AbsentPart absent[] = {
     {"nlopt_slsqp", needs_nlopt}, {"nlopt_cobyla", needs_nlopt}, {"nlopt_mma", needs_nlopt}};
 #endif

@@ -240,8 +240,11 @@ TEST(IndexRegistry, EveryIndexOfThisBuildIsEitherThereOrAbsent) {
     EXPECT_NE(part.needs.find("install lib"), std::string_view::npos) << part.name;
     EXPECT_TRUE(names.insert(part.name).second) << part.name << " is both";
   }
-  EXPECT_EQ(names, (std::set<std::string_view>{"brute_force", "pd_tree", "fcl_obbrss", "fcl_aabb",
-                                               "bullet_quantized", "bullet", "embree", "cgal"}));
+  // And whatever else has a row.
+  for (const std::string_view ours : {"brute_force", "pd_tree", "fcl_obbrss", "fcl_aabb",
+                                      "bullet_quantized", "bullet", "embree", "cgal"}) {
+    EXPECT_TRUE(names.contains(ours)) << ours;
+  }
 }
 
 TEST(IndexRegistry, WhatIsUnderTheGplIsNoPartOfTheLibrary) {

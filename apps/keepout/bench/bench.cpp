@@ -3,6 +3,7 @@
 #include "bench/bench.h"
 
 #include <memory>
+#include <new>
 #include <ostream>
 
 #include "bench/benchmark_files.h"
@@ -75,10 +76,17 @@ void list_absent(std::ostream& out, std::span<const AbsentPart> parts) {
 Comparison comparison_for(const BenchOptions& options, const Subject& subject, std::ostream& out) {
   if (names_parts(options.selection)) return {};
   out << "\ncomparing answers on " << title_of(subject) << '\n';
-  const Comparison comparison =
-      compare_parts(label_of(subject), make_mesh(subject), {.seed = options.seed});
-  print(out, comparison);
-  return comparison;
+  try {
+    const Comparison comparison =
+        compare_parts(label_of(subject), make_mesh(subject), {.seed = options.seed});
+    print(out, comparison);
+    return comparison;
+  } catch (const Error& error) {
+    out << "left out: " << error.what() << '\n';
+  } catch (const std::bad_alloc&) {
+    out << "left out: not enough memory\n";
+  }
+  return {};
 }
 
 }  // namespace
@@ -131,18 +139,18 @@ void bench(const BenchOptions& options, std::ostream& out) {
   for (const Subject& subject : subjects) {
     run_trial(subject, combinations, settings_of(options), memory, benchmark, out);
   }
-  const Comparison comparison = comparison_for(options, subjects.front(), out);
-
-  print_benchmark_report(report.stream(), benchmark, comparison);
-  report.finish();
+  // What has been measured is safe before anything else is tried.
   if (json) write_json(json->stream(), benchmark);
   if (csv) write_csv(csv->stream(), benchmark);
   for (OutputFile* file : {json.get(), csv.get()}) {
     if (file != nullptr) file->finish();
   }
-  for (OutputFile* file : {&report, json.get(), csv.get()}) {
+  for (OutputFile* file : {json.get(), csv.get()}) {
     if (file != nullptr) file->commit();
   }
+  print_benchmark_report(report.stream(), benchmark,
+                         comparison_for(options, subjects.front(), out));
+  report.commit();
   out << "report: " << options.report.string() << '\n';
 }
 

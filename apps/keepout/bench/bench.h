@@ -15,7 +15,7 @@ namespace keepout::app {
 
 enum class Extent {
   standard,  // three sizes of the bunny; some minutes
-  full       // to 18 million triangles, and the skull; some tens of minutes
+  full       // to 18 million triangles, and the skull; a third of an hour
 };
 
 struct BenchOptions {

@@ -34,7 +34,7 @@ bool names_parts(const Selection& selection);
 /// Only parts that this build has; sorted by index, so that each is built once.
 std::vector<Combination> combinations_of(const Selection& selection);
 
-/// Without the slow ones, for a quick look: radii of 5 and 1 mm and of the motion.
+/// The same for a quick look: with motion spheres of 5 and 1 mm only.
 std::vector<Combination> quick_combinations();
 
 }  // namespace keepout::app

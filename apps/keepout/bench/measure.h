@@ -10,8 +10,9 @@
 
 namespace keepout::app {
 
-/// First asks the pipeline for the motions, in order and for so many seconds, holds each step to
-/// the reference and counts what went into it; then, if all were right, times the same steps.
+/// First asks the pipeline for the motions, in order and for so many seconds (or up to four times
+/// as many, to come to 1000 steps), holds each step to the reference and counts what went into it;
+/// then, if all were right, times the same steps.
 ///
 /// Steps must be those of the reference bit for bit if the solver is the same, `accuracy` being 0;
 /// else within `accuracy` of the length of the motion. A solver may give up, but not be wrong.

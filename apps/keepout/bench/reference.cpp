@@ -38,6 +38,8 @@ Reference::Reference(std::shared_ptr<const Mesh> mesh, const SpatialIndex& index
   for (std::size_t s = 0; s < sample_count; ++s) {
     const std::size_t motion = s * motions_.size() / sample_count;
     samples_.push_back({motion, hits_of(brute_force, balls_[motion])});
+    fits_ = fits_ && !work_.candidates.overflowed();
+    if (!fits_) return;
     if (pipeline_.ask(motions_[motion]) != exhaustive.ask(motions_[motion])) {
       throw Error(
           "the steps of the reference are not those of brute force: this is a fault in "

@@ -15,10 +15,14 @@ namespace keepout::app {
 /// sample of the places; everywhere, pd_tree and active_set, which are held to brute force too.
 class Reference {
  public:
-  /// All must outlive this. Throws Error when the reference's own parts are not right.
+  /// All must outlive this. Throws Error when the reference's own parts are not right: a fault of
+  /// ours.
   Reference(std::shared_ptr<const Mesh> mesh, const SpatialIndex& index, Activation& rule,
             Workspace& work, const RuleSetting& setting, std::span<const Motion> motions);
   ~Reference();
+
+  /// Whether the workspace has room for all triangles in reach. If not, ask no more of it.
+  bool fits() const noexcept { return fits_; }
 
   /// The step that is expected for a motion.
   const Answer& answer(std::size_t motion);
@@ -46,6 +50,7 @@ class Reference {
   std::vector<Ball> balls_;
   std::vector<Sample> samples_;
   std::vector<Answer> answers_;  // as far as they have been asked for
+  bool fits_ = true;
 };
 
 }  // namespace keepout::app

@@ -3,6 +3,7 @@
 #include "bench/trial.h"
 
 #include <chrono>
+#include <new>
 
 #include "bench/measure.h"
 #include "bench/parts.h"
@@ -88,6 +89,8 @@ const Trial::Built& Trial::build(const std::string& index) {
     memory_[index] = static_cast<double>(built_->index->memory()) / count;
   } catch (const Error& error) {
     built_->refusal = std::string("not built: ") + error.what();
+  } catch (const std::bad_alloc&) {
+    built_->refusal = "not built: out of memory";
   }
   return *built_;
 }
@@ -115,7 +118,13 @@ BenchmarkRow Trial::measure(const Combination& combination) {
       combination.solver == "active_set"
           ? 0.0
           : entry_named(combination.solver, solver_backends(), "solver").accuracy;
-  app::measure(pipeline, motions_, reference(setting), accuracy, settings_.seconds, row);
+  Reference& expected = reference(setting);
+  if (!expected.fits()) {
+    row.remark = "not timed: more than " + grouped(work_->candidates.capacity()) +
+                 " triangles are in reach; ask for a smaller radius";
+    return row;
+  }
+  app::measure(pipeline, motions_, expected, accuracy, settings_.seconds, row);
   return row;
 }
 

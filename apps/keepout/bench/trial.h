@@ -23,7 +23,7 @@ enum class Poses {
 
 struct TrialSettings {
   std::size_t queries = 2500;  // of each combination, at most
-  double seconds = 1.0;        // after which a combination is asked no more
+  double seconds = 1.0;        // after which a combination is asked no more: see measure()
   double margin = 0.2;         // of the certified rule, and from the tip to the surface [mm]
   Poses poses = Poses::contact;
   std::uint64_t seed = 1;

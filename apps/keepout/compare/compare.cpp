@@ -46,10 +46,11 @@ Comparison compare_parts(const std::string& mesh_name, const std::shared_ptr<con
   Comparison comparison;
   const std::vector<std::string> rules = names(activation_rules());
   {
-    Progress progress("compare indices", extent.poses * rules.size());
+    const std::vector<std::string> compared = indices_to_compare();
+    Progress progress("compare indices", extent.poses * rules.size() * (compared.size() + 1));
     comparison.indices = compare_indices({.mesh_name = mesh_name,
                                           .mesh = mesh,
-                                          .indices = indices_to_compare(),
+                                          .indices = compared,
                                           .activations = rules,
                                           .poses = extent.poses,
                                           .seed = extent.seed},

@@ -18,7 +18,7 @@ struct IndexAgreement {
   double closest_point_error = 0.0;   // against exact arithmetic, the worst [mm]
   double plane_angle = 0.0;           // against brute force, the worst [rad]
   double step_difference = 0.0;       // against brute force, the worst [mm]
-  std::size_t steps_that_differ = 0;  // in any bit
+  std::size_t steps_that_differ = 0;  // in any bit, of the motion or of a plane
 };
 
 /// One solver on recorded problems.

@@ -10,6 +10,7 @@
 #include <memory>
 #include <string_view>
 
+#include "bench/benchmark.h"
 #include "keepout/adapters/narrow_phase_registry.h"
 #include "keepout/fixtures/random.h"
 
@@ -99,15 +100,6 @@ std::vector<Pair> make_pairs(const Mesh& mesh, const std::vector<ConvexTool>& to
   return pairs;
 }
 
-/// By nearest rank. Sorts.
-double percentile(std::vector<double>& samples, double share) {
-  if (samples.empty()) return 0.0;
-  std::sort(samples.begin(), samples.end());
-  const auto rank =
-      static_cast<std::size_t>(std::ceil(share * static_cast<double>(samples.size())));
-  return samples[std::max<std::size_t>(rank, 1) - 1];
-}
-
 NarrowPhaseAgreement agreement_of(const NarrowPhaseBackend& backend,
                                   const std::vector<ConvexTool>& tools,
                                   const std::vector<Pair>& pairs) {
@@ -124,7 +116,7 @@ NarrowPhaseAgreement agreement_of(const NarrowPhaseBackend& backend,
     const NarrowPhaseAnswer answer =
         narrow_phases[pair.tool]->separation(pair.position, pair.triangle);
     times.push_back(std::chrono::duration<double, std::micro>(Clock::now() - start).count());
-    if (!answer.answered()) {
+    if (!answer.answered() || !std::isfinite(answer.separation.distance)) {
       ++row.failed;
       continue;
     }
@@ -135,10 +127,16 @@ NarrowPhaseAgreement agreement_of(const NarrowPhaseBackend& backend,
         separation_along(told.normal, tools[pair.tool], pair.position, pair.triangle);
     row.worst_unproven = std::max(row.worst_unproven, pair.exact.distance - proven);
   }
-  row.median_error = percentile(errors, 0.5);
-  row.worst_error = percentile(errors, 1.0);
-  row.median_us = percentile(times, 0.5);
-  row.p99_us = percentile(times, 0.99);
+  if (!errors.empty()) {
+    const Timing spread = timing_of(errors);  // errors have ranks as times do
+    row.median_error = spread.p50;
+    row.worst_error = spread.max;
+  }
+  if (!times.empty()) {
+    const Timing timing = timing_of(times);
+    row.median_us = timing.p50;
+    row.p99_us = timing.p99.value_or(timing.max);
+  }
   return row;
 }
 

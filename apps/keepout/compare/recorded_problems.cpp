@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "keepout/activation/registry.h"
+#include "keepout/error.h"
 #include "keepout/fixtures/poses.h"
 #include "keepout/index/nearest.h"
 #include "keepout/index/pd_tree.h"
@@ -34,6 +35,8 @@ std::vector<RecordedProblem> record_problems(const std::shared_ptr<const Mesh>& 
                                              const std::string& rule, std::size_t count,
                                              std::uint64_t seed) {
   constexpr int approach = 10, strokes_at_once = 64, cycles = 30;
+  // A hundred times what it takes if every cycle in contact poses one.
+  const std::size_t most_strokes = 100 * (count / (cycles - approach) + 1);
   std::vector<RecordedProblem> posed, kept;
   // Both record into one: damped for the joints, not so for the tip.
   const auto guard_of = [&](double damping) {
@@ -48,6 +51,12 @@ std::vector<RecordedProblem> record_problems(const std::shared_ptr<const Mesh>& 
   Random random(seed);
 
   for (std::size_t stroke = 0; kept.size() < count;) {
+    if (stroke >= most_strokes) {
+      throw Error("of " + std::to_string(count) + " problems in contact only " +
+                  std::to_string(kept.size()) + " were posed, under " + rule +
+                  ", by motions of 0.05 to 0.2 mm half a millimetre off the mesh: is it in another "
+                  "unit, or too large or too narrow for them? Scale it to millimetres");
+    }
     for (const Vec3& start : surface_points(*mesh, strokes_at_once, 0.5, random)) {
       const bool joints = stroke++ % 3 == 2;
       const TipJacobian::Matrix jacobian = random_jacobian(random);

@@ -16,7 +16,8 @@ namespace keepout::app {
 
 /// The problems that closed-loop steps in contact pose: a hand presses the tip against the mesh and
 /// drags it along, motions of 0.05 to 0.2 mm, a sphere of 5 mm, a margin of 0.2 mm. In every third
-/// stroke seven joints move the tip, damped. Throws Error for an unknown rule.
+/// stroke seven joints move the tip, damped. Throws Error for an unknown rule, and where such
+/// motions pose too few problems, as on a mesh in another unit.
 std::vector<RecordedProblem> record_problems(const std::shared_ptr<const Mesh>& mesh,
                                              const std::string& rule, std::size_t count,
                                              std::uint64_t seed);

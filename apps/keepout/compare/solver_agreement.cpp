@@ -4,14 +4,14 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <string_view>
 
+#include "bench/benchmark.h"
 #include "compare/recorded_problems.h"
 #include "keepout/solvers/active_set.h"
 #include "keepout/solvers/kkt.h"
 #include "keepout/solvers/registry.h"
-#if KEEPOUT_WITH_NLOPT
+#if KEEPOUT_HAS_NLOPT
 #include "keepout/solvers/nlopt_solver.h"
 #endif
 #include "progress.h"
@@ -75,7 +75,7 @@ double difference(const RecordedProblem& problem, const Solution& solution,
 
 /// What the library said and what was found; of our own solvers, what they say.
 std::string outcome(const Solver& solver, SolveStatus status) {
-#if KEEPOUT_WITH_NLOPT
+#if KEEPOUT_HAS_NLOPT
   if (const auto* nlopt = dynamic_cast<const NloptSolver*>(&solver)) {
     const NloptReport report = nlopt->last_report();
     return std::string(name(report.claim)) + " -> " + std::string(name(report.finding));
@@ -105,12 +105,6 @@ void judge(const RecordedProblem& problem, const Reference& reference, SolveStat
     default:
       ++row.gave_up;
   }
-}
-
-/// The sample of nearest rank.
-double percentile(std::vector<double>& sorted, double share) {
-  const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(sorted.size())));
-  return sorted[std::max<std::size_t>(rank, 1) - 1];
 }
 
 }  // namespace
@@ -150,9 +144,9 @@ std::vector<SolverAgreement> compare_solvers(const std::shared_ptr<const Mesh>& 
         progress.advance();
       }
       if (!times.empty()) {
-        std::ranges::sort(times);
-        row.median_us = percentile(times, 0.5);
-        row.p99_us = percentile(times, 0.99);
+        const Timing timing = timing_of(times);
+        row.median_us = timing.p50;
+        row.p99_us = timing.p99.value_or(timing.max);
       }
       rows.push_back(std::move(row));
     }

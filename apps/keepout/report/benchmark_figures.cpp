@@ -135,7 +135,7 @@ std::string solve_plot(const Rows& rows, const std::vector<std::string>& all, Pe
   Plot plot;
   const bool middle_time = told == Percentile::median;
   plot.description = std::string(middle_time ? "Median" : "99 %") +
-                     " of the time of the solver against the mean number of planes.";
+                     " of the time of the search for the motion against the mean number of planes.";
   plot.x = logarithmic("planes (mean)");
   plot.y = logarithmic(middle_time ? "solve, median [µs]" : "solve, 99 % [µs]");
   plot.names = Plot::Names::at_line_ends;

@@ -8,6 +8,7 @@
 #include "number_text.h"
 #include "report/benchmark_figures.h"
 #include "report/published_rate.h"
+#include "report/text.h"
 
 namespace keepout::app {
 namespace {
@@ -40,10 +41,24 @@ Rows hardest_problems(const Rows& rows) {
       [&](const BenchmarkRow* a, const BenchmarkRow* b) { return rank(*a) < rank(*b); }));
 }
 
+/// Instead of a ranking, where no row is fit for one.
+constexpr const char* nobody_ranked =
+    "No row is ranked: none has an answer to 99 % of its steps in a time that can be measured";
+
+/// The solvers that are shown, but not ranked.
+std::string given_up(const Rows& rows) {
+  const Rows some = only(rows, [](const BenchmarkRow& row) { return !answers(row); });
+  if (some.empty()) return {};
+  return " Not ranked where more than 1 % of the steps are without an answer: " +
+         listed(names(some, &BenchmarkRow::solver)) + ".";
+}
+
 /// The stage that takes most of a step, and how much of it.
 std::string main_stage(const BenchmarkRow& row) {
   const std::vector<std::pair<double, const char*>> stages = {
-      {row.query->p50, "query"}, {row.activate->p50, "activation"}, {row.solve->p50, "solver"}};
+      {row.query->p50, "query"},
+      {row.activate->p50, "activation"},
+      {row.solve->p50, "search for the motion"}};
   double sum = 0.0;
   for (const auto& stage : stages) sum += stage.first;
   const auto& most = *std::max_element(stages.begin(), stages.end());
@@ -55,7 +70,9 @@ std::string main_stage(const BenchmarkRow& row) {
 }  // namespace
 
 std::string query_lead(const Rows& rows) {
-  const Rows there = on_common_mesh(rows);
+  const Rows eligible = ranked(rows, &BenchmarkRow::query);
+  if (eligible.empty()) return std::string(nobody_ranked) + ".";
+  const Rows there = on_common_mesh(eligible);
   const BenchmarkRow& quick = fastest(there, &BenchmarkRow::query);
   const BenchmarkRow& slow = slowest(there, &BenchmarkRow::query);
   std::string text = "On " + mesh_text(quick) + ", with " + sphere_text(quick.radius) + ", " +
@@ -64,17 +81,19 @@ std::string query_lead(const Rows& rows) {
   if (&quick != &slow) {
     text += " and " + slow.index + " in " + time_text(median(slow, &BenchmarkRow::query));
   }
-  const std::string grows = growth(rows, quick.index, &BenchmarkRow::query);
+  const std::string grows = growth(eligible, quick.index, &BenchmarkRow::query);
   return text + (grows.empty() ? "." : "; the flatter a line, the less a finer mesh costs.");
 }
 
 std::string query_about(const Rows& rows, Stage stage) {
-  const Rows there = on_common_mesh(rows);
+  const Rows eligible = ranked(rows, stage);
+  if (eligible.empty()) return std::string(nobody_ranked) + ".";
+  const Rows there = on_common_mesh(eligible);
   const BenchmarkRow& quick = fastest(there, stage);
   std::string text = "Rule " + quick.activation + ". Fastest at " +
                      counted(quick.triangles, "triangle") + ": " + quick.index + ", " +
                      time_text(median(quick, stage)) + ".";
-  const std::string grows = growth(rows, quick.index, stage);
+  const std::string grows = growth(eligible, quick.index, stage);
   return grows.empty() ? text : text + " " + grows + ".";
 }
 
@@ -102,17 +121,21 @@ std::string rate_lead(const std::vector<Rows>& lines) {
 }
 
 std::string solve_lead(const Rows& rows) {
-  const Rows there = hardest_problems(rows);
+  const Rows eligible = ranked(rows, &BenchmarkRow::solve);
+  const std::string marks =
+      "; rule " + rows.front()->activation + ", a mark for each mesh and radius." + given_up(rows);
+  if (eligible.empty()) return std::string(nobody_ranked) + marks;
+  const Rows there = hardest_problems(eligible);
   const BenchmarkRow& quick = fastest(there, &BenchmarkRow::solve);
   const BenchmarkRow& slow = slowest(there, &BenchmarkRow::solve);
   const std::string text = "With " + mean_text(quick.planes_mean) + " planes in the mean, " +
-                           quick.solver + " solves in " +
+                           quick.solver + " finds the motion in " +
                            time_text(median(quick, &BenchmarkRow::solve));
   return text +
          (quick.solver == slow.solver
               ? ""
               : " and " + slow.solver + " in " + time_text(median(slow, &BenchmarkRow::solve))) +
-         "; rule " + quick.activation + ", a mark for each mesh and radius.";
+         marks;
 }
 
 std::string stage_lead(const Rows& rows) {
@@ -120,7 +143,9 @@ std::string stage_lead(const Rows& rows) {
   const BenchmarkRow& slow = slowest(rows, &BenchmarkRow::step);
   const std::string text = "On " + mesh_text(quick) + ", with " + sphere_text(quick.radius) +
                            ", in the fastest combination " + main_stage(quick);
-  return text + (&quick == &slow ? "." : "; in the slowest " + main_stage(slow) + ".");
+  return text + (&quick == &slow ? "." : "; in the slowest " + main_stage(slow) + ".") +
+         " Solve is the search for the motion: the solver's work and, under certified, the rule's "
+         "proofs.";
 }
 
 std::string cost_lead(const Rows& rows) {

@@ -10,7 +10,8 @@
 namespace keepout::app {
 
 /// What to see in each section of a benchmark, in a sentence made of its figures. Plain text, not
-/// yet escaped. Precondition of all: there are rows, with the stages that the section is about.
+/// yet escaped. Only ranked() rows are set against each other; of rates and stages there must be no
+/// others. Precondition of all: there are rows, with the stages that the section is about.
 
 /// `rows`: those of one radius, comparable.
 std::string query_lead(const Rows& rows);

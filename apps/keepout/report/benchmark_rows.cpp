@@ -52,6 +52,13 @@ Rows timed(const Benchmark& benchmark, Stage stage) {
   return rows;
 }
 
+bool answers(const BenchmarkRow& row) { return row.unsolved_share <= 0.01; }
+
+Rows ranked(const Rows& rows, Stage stage) {
+  return only(rows,
+              [&](const BenchmarkRow& row) { return answers(row) && median(row, stage) > 0.0; });
+}
+
 Rows only(const Rows& rows, const std::function<bool(const BenchmarkRow&)>& wanted) {
   Rows result;
   std::copy_if(rows.begin(), rows.end(), std::back_inserter(result),
@@ -131,6 +138,8 @@ Rows comparable_indices(const Rows& rows) {
   const std::string solver = most_common(candidates, &solver_of, place);
   std::stable_partition(candidates.begin(), candidates.end(),
                         [&](const BenchmarkRow* row) { return row->solver == solver; });
+  std::stable_partition(candidates.begin(), candidates.end(),
+                        [](const BenchmarkRow* row) { return answers(*row); });
   std::set<decltype(place(*rows.front()))> taken;
   return only(candidates, [&](const BenchmarkRow& row) { return taken.insert(place(row)).second; });
 }

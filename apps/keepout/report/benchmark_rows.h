@@ -20,6 +20,14 @@ using Stage = std::optional<Timing> BenchmarkRow::*;
 /// Those in which the stage was timed.
 Rows timed(const Benchmark& benchmark, Stage stage);
 
+/// Whether all steps but one in a hundred at most have an answer: a solver that gives up may be
+/// quick, but is not fast.
+bool answers(const BenchmarkRow& row);
+
+/// Those that may be set against each other by their median time of a stage: their steps have
+/// answers, and the clock saw the stage take time. Precondition: the stage was timed in all.
+Rows ranked(const Rows& rows, Stage stage);
+
 Rows only(const Rows& rows, const std::function<bool(const BenchmarkRow&)>& wanted);
 
 /// Median of a stage that was timed. [us]
@@ -44,7 +52,8 @@ Rows on_scaled_mesh(const Rows& rows);
 Rows on_common_mesh(const Rows& rows);
 
 /// One row for each index and mesh, all of the rule that most of them share, and as far as there
-/// are any of the solver too: what differs is the index alone.
+/// are any of the solver too: what differs is the index alone. Of a solver that answers, wherever
+/// there is one.
 Rows comparable_indices(const Rows& rows);
 
 /// Those of one rule: the one under which most solvers were timed.

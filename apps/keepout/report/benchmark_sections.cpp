@@ -74,7 +74,7 @@ void print_query_section(std::ostream& out, const Benchmark& benchmark) {
 }
 
 void print_rate_section(std::ostream& out, const Benchmark& benchmark) {
-  const Rows rows = timed(benchmark, &BenchmarkRow::step);
+  const Rows rows = ranked(timed(benchmark, &BenchmarkRow::step), &BenchmarkRow::step);
   if (rows.empty()) return;
   const std::vector<Rows> lines = rate_lines(rows);
   open_section(out, "The experiment of the paper: how often a step fits into a second",
@@ -105,10 +105,9 @@ void print_solve_section(std::ostream& out, const Benchmark& benchmark) {
 }
 
 void print_stage_section(std::ostream& out, const Benchmark& benchmark) {
-  const Rows rows =
-      on_common_mesh(only(timed(benchmark, &BenchmarkRow::step), [](const BenchmarkRow& row) {
-        return row.query && row.activate && row.solve;
-      }));
+  const Rows eligible = ranked(timed(benchmark, &BenchmarkRow::step), &BenchmarkRow::step);
+  const Rows rows = on_common_mesh(only(
+      eligible, [](const BenchmarkRow& row) { return row.query && row.activate && row.solve; }));
   if (rows.empty()) return;
   const std::vector<std::optional<double>> spheres = radii(rows);
   open_section(out, "Where the time of a step goes",

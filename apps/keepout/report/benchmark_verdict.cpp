@@ -27,12 +27,16 @@ bool same_conditions(const BenchmarkRow& a, const BenchmarkRow& b) {
          a.activation == b.activation;
 }
 
+/// Slow parts are asked few steps; a headline wants at least so many of both.
+constexpr std::size_t enough_steps = 100;
+
 std::vector<Duel> duels(const Rows& rows) {
   std::vector<Duel> result;
   for (const BenchmarkRow* ours : rows) {
-    if (!is(*ours, our_pair)) continue;
+    if (!is(*ours, our_pair) || ours->queries < enough_steps) continue;
     for (const BenchmarkRow* peers : rows) {
-      if (is(*peers, peer_pair) && same_conditions(*ours, *peers)) {
+      if (is(*peers, peer_pair) && peers->queries >= enough_steps &&
+          same_conditions(*ours, *peers)) {
         result.push_back({ours, peers});
         break;
       }
@@ -61,19 +65,31 @@ std::string sentence(std::string words) {
   return words;
 }
 
+bool ahead(const Duel& duel) { return median(*duel.ours, step) <= median(*duel.peers, step); }
+const BenchmarkRow& quick_of(const Duel& duel) { return ahead(duel) ? *duel.ours : *duel.peers; }
+const BenchmarkRow& slow_of(const Duel& duel) { return ahead(duel) ? *duel.peers : *duel.ours; }
+
 std::string told(const Duel& duel) {
-  const bool ahead = median(*duel.ours, step) <= median(*duel.peers, step);
-  const BenchmarkRow& quick = ahead ? *duel.ours : *duel.peers;
-  const BenchmarkRow& slow = ahead ? *duel.peers : *duel.ours;
-  const Pair& first = ahead ? our_pair : peer_pair;
-  const Pair& second = ahead ? peer_pair : our_pair;
+  const BenchmarkRow& quick = quick_of(duel);
+  const BenchmarkRow& slow = slow_of(duel);
+  const Pair& first = ahead(duel) ? our_pair : peer_pair;
+  const Pair& second = ahead(duel) ? peer_pair : our_pair;
   return sentence(first.words) + " answers a step in " + time_text(median(quick, step)) +
          ", where " + second.words + " takes " + time_text(median(slow, step)) + ": " +
          ratio_text(ratio(quick, slow)) + " times as long.";
 }
 
-std::string conditions(const BenchmarkRow& row) {
-  return "That is the median on " + mesh_text(row) + ", rule " + row.activation + ", with " +
+/// "Those are medians of 2,500 and 120 steps on bunny with 51,978 triangles"
+std::string medians(const BenchmarkRow& quick, const BenchmarkRow& slow) {
+  const std::string where = " on " + mesh_text(quick);
+  if (&quick == &slow) return "That is the median of " + counted(quick.queries, "step") + where;
+  return "Those are medians of " + grouped(quick.queries) + " and " +
+         counted(slow.queries, "step") + where;
+}
+
+std::string conditions(const Duel& duel) {
+  const BenchmarkRow& row = *duel.ours;
+  return medians(quick_of(duel), slow_of(duel)) + ", rule " + row.activation + ", with " +
          sphere_text(row.radius) + ". ";
 }
 
@@ -115,40 +131,63 @@ std::string other_rules(const Rows& rows, const BenchmarkRow& main) {
 }
 
 std::string left_out(const Benchmark& benchmark) {
-  const std::size_t count = benchmark.rows.size() - timed(benchmark, step).size();
-  if (count == 0) return "";
-  return grouped(count) + " of " + counted(benchmark.rows.size(), "row") +
-         (count == 1 ? " was" : " were") + " not timed; the table of all rows says why. ";
+  const std::size_t all = benchmark.rows.size();
+  const Rows rows = timed(benchmark, step);
+  const auto of_all = [&](std::size_t count) {
+    return grouped(count) + " of " + counted(all, "row") + (count == 1 ? " was" : " were");
+  };
+  std::string text;
+  if (rows.size() < all) {
+    text += of_all(all - rows.size()) + " not timed; the table of all rows says why. ";
+  }
+  const Rows given_up = only(rows, [](const BenchmarkRow& row) { return !answers(row); });
+  if (!given_up.empty()) {
+    text +=
+        of_all(given_up.size()) + " not ranked: more than 1 % of the steps are without an answer. ";
+  }
+  return text;
+}
+
+/// The fastest and the slowest combination on the mesh and with the sphere that tell most.
+struct Extremes {
+  const BenchmarkRow* quick;
+  const BenchmarkRow* slow;
+};
+
+/// Precondition: there is a row.
+Extremes extremes(const Rows& rows) {
+  const Rows common = on_common_mesh(rows);
+  const Rows there = at_radius(common, radii(common).front());
+  return {&fastest(there, step), &slowest(there, step)};
 }
 
 }  // namespace
 
 std::string headline(const Benchmark& benchmark) {
-  const Rows rows = timed(benchmark, step);
-  if (rows.empty()) return "No step was timed.";
+  const Rows all = timed(benchmark, step);
+  if (all.empty()) return "No step was timed.";
+  const Rows rows = ranked(all, step);
+  if (rows.empty()) {
+    return "No combination answered 99 % of its steps in a time that can be measured.";
+  }
   if (const std::optional<Duel> duel = main_duel(duels(rows))) return told(*duel);
-  const Rows common = on_common_mesh(rows);
-  const Rows there = at_radius(common, radii(common).front());
-  const BenchmarkRow& quick = fastest(there, step);
-  const BenchmarkRow& slow = slowest(there, step);
+  const auto [quick, slow] = extremes(rows);
   const std::string first =
-      "A step takes " + time_text(median(quick, step)) + " with " + combination(quick);
-  if (&quick == &slow || there.size() == 1) return first + ".";
-  return first + ", and " + time_text(median(slow, step)) + " with " + combination(slow) + ": " +
-         ratio_text(ratio(quick, slow)) + " times as long.";
+      "A step takes " + time_text(median(*quick, step)) + " with " + combination(*quick);
+  if (quick == slow) return first + ".";
+  return first + ", and " + time_text(median(*slow, step)) + " with " + combination(*slow) + ": " +
+         ratio_text(ratio(*quick, *slow)) + " times as long.";
 }
 
 std::string account(const Benchmark& benchmark) {
-  const Rows rows = timed(benchmark, step);
+  const Rows rows = ranked(timed(benchmark, step), step);
   std::string text;
   if (const std::vector<Duel> all = duels(rows); !all.empty()) {
     const Duel main = *main_duel(all);
-    text = conditions(*main.ours) + other_radii(all, main) + other_rules(rows, *main.ours);
+    text = conditions(main) + other_radii(all, main) + other_rules(rows, *main.ours);
   } else if (!rows.empty()) {
-    const Rows common = on_common_mesh(rows);
-    const BenchmarkRow& row = *common.front();
-    text = "Those are medians on " + mesh_text(row) + ", with " +
-           sphere_text(radii(common).front()) + ". ";
+    const auto [quick, slow] = extremes(rows);
+    text = medians(*quick, *slow) + ", with " + sphere_text(quick->radius) + ". ";
   }
   text += left_out(benchmark);
   if (!text.empty()) text.pop_back();

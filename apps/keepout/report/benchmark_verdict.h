@@ -11,8 +11,8 @@ namespace keepout::app {
 /// What the benchmark found, in words for a reader who knows nothing of us. Plain text, not yet
 /// escaped. All of it follows from the rows; nothing presumes who is the faster.
 
-/// The one sentence at the top: our pair of parts against its peer's where both were timed under
-/// the same conditions, or else the fastest combination against the slowest.
+/// The one sentence at the top: our pair of parts against its peer's where both made enough steps
+/// under the same conditions, or else the fastest combination against the slowest.
 std::string headline(const Benchmark& benchmark);
 
 /// The sentences below it: where that holds, and what it is at the other radii.

@@ -217,6 +217,8 @@ std::string_view name(PolytopeStatus status) noexcept {
       return "invalid_input";
     case PolytopeStatus::over_capacity:
       return "over_capacity";
+    case PolytopeStatus::whole_tool:
+      return "whole_tool";
   }
   return "unknown";
 }
@@ -233,6 +235,9 @@ std::string_view reason(PolytopeStatus status) noexcept {
     case PolytopeStatus::over_capacity:
       return "more triangles or planes than room was made for: lower the radius or raise the "
              "capacity";
+    case PolytopeStatus::whole_tool:
+      return "the rule guards a whole tool, and planes around its tip would say nothing of the "
+             "rest";
   }
   return "unknown status";
 }

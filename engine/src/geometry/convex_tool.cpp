@@ -16,10 +16,12 @@ namespace {
 // Squares and cubes of lengths must stay finite; a step keeps to the same limit.
 constexpr double largest_length = 1e30;
 
-/// Each place once: two points in the same place span no edge.
+/// Each place once: two points in the same place span no edge. Ends where there are too many, for
+/// its time grows with the square of what it keeps.
 std::vector<Vec3> distinct(std::vector<Vec3> points) {
   std::vector<Vec3> kept;
   for (const Vec3& p : points) {
+    if (kept.size() > ConvexTool::most_points) break;
     if (std::find(kept.begin(), kept.end(), p) == kept.end()) kept.push_back(p);
   }
   return kept;
@@ -28,7 +30,7 @@ std::vector<Vec3> distinct(std::vector<Vec3> points) {
 void check(const std::vector<Vec3>& points, double radius) {
   if (points.empty() || points.size() > ConvexTool::most_points) {
     throw Error("a convex tool has 1 to " + std::to_string(ConvexTool::most_points) +
-                " points, not " + std::to_string(points.size()) +
+                " points in different places, not " + (points.empty() ? "none" : "more") +
                 ": leave out those inside of the hull of the others");
   }
   if (!(radius >= 0.0 && radius <= largest_length)) {

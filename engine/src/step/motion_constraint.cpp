@@ -51,6 +51,12 @@ MotionConstraint::MotionConstraint(std::shared_ptr<const Mesh> mesh,
   if (!index_ || !activation_ || !solver_) {
     throw Error("a motion constraint needs a mesh, an index, an activation rule and a solver");
   }
+  if (inside == Inside::led_out && activation_->guarded() != Guarded::tip) {
+    throw Error(
+        "a tip that starts inside is led out without regard to the rest of a tool: with a rule "
+        "that "
+        "guards a whole tool, ask for Inside::taken_as_is");
+  }
   // At the tip nearest to the origin that there can be, where rounding is least.
   const Vec3 tip = mesh_->bounds().low.cwiseMax(Vec3::Zero()).cwiseMin(mesh_->bounds().high);
   const Surroundings around =
@@ -77,6 +83,10 @@ Step MotionConstraint::step(const Motion& motion, StageTimes& times) noexcept {
 }
 
 Polytope MotionConstraint::free_polytope(const Vec3& tip, double radius) noexcept {
+  if (activation_->guarded() != Guarded::tip) {
+    hold_still(polytope_planes_);
+    return {PolytopeStatus::whole_tool, polytope_planes_.view()};
+  }
   const Ball ball{tip, radius + options_.margin};
   work_.candidates.clear();
   work_.hits.clear();

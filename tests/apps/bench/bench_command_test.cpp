@@ -111,6 +111,21 @@ TEST_F(BenchCommand, SaysWhatIsWrongWithTheArguments) {
   EXPECT_FALSE(std::filesystem::exists(folder.file("a.json")));
 }
 
+TEST_F(BenchCommand, SaysWhenMoreTrianglesAreInReachThanItHasRoomFor) {
+  Surface crowd{{Vec3(0, 0, 0), Vec3(90, 0, 0), Vec3(0, 90, 0)}, {}};
+  crowd.triangles.assign(300'000, {0, 1, 2});
+  write_binary_stl(folder.file("crowd.stl"), crowd);
+  const ProcessOutcome outcome = folder.run(
+      "bench --mesh crowd.stl --index pd_tree --activation paper --radius 5,0.01 "
+      "--queries 20 --json b.json");
+  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  const json benchmark = read("b.json");
+  ASSERT_EQ(benchmark["rows"].size(), 2u);
+  EXPECT_FALSE(benchmark["rows"][0]["verified"]);
+  EXPECT_NE(benchmark["rows"][0]["remark"].get<std::string>().find("in reach"), std::string::npos);
+  EXPECT_TRUE(benchmark["rows"][1]["verified"]) << "the others are measured all the same";
+}
+
 TEST_F(BenchCommand, LeavesNoFileBehindWhenItFails) {
   expect_refused("bench --mesh nowhere.stl --json b.json", "nowhere.stl");
   EXPECT_FALSE(std::filesystem::exists(folder.file("b.json")));

@@ -9,6 +9,7 @@
 
 #include "benchmark_scene.h"
 #include "number_text.h"
+#include "report/benchmark_rows.h"
 #include "report/benchmark_verdict.h"
 #include "report/html_report.h"
 #include "report_scene.h"
@@ -60,7 +61,8 @@ Benchmark duel() {
         row.activation = "paper";
         row.solver = ours ? "active_set" : "nlopt_slsqp";
         const double us = ours ? radius < 2.0 ? 1.0 : 4.0 : radius < 2.0 ? 12.0 : 200.0;
-        row.step = made_up_timing(triangles < 2000 ? 0.5 * us : us, 10);
+        row.queries = ours ? 2500 : 120;
+        row.step = made_up_timing(triangles < 2000 ? 0.5 * us : us, row.queries);
         row.verified = true;
         benchmark.rows.push_back(row);
       }
@@ -77,9 +79,9 @@ TEST(BenchmarkVerdict, SetsOurPairAgainstItsPeersOnTheLargestMesh) {
       "FCL's tree with NLopt's SLSQP takes 200\u00a0µs: 50 times as long.");
   EXPECT_EQ(
       account(benchmark),
-      "That is the median on ball with 64,000 triangles, rule paper, with a motion sphere of "
-      "5\u00a0mm. With a sphere of 1\u00a0mm it is 1.00\u00a0µs against 12.0\u00a0µs, 12 times "
-      "as long.");
+      "Those are medians of 2,500 and 120 steps on ball with 64,000 triangles, rule paper, with a "
+      "motion sphere of 5\u00a0mm. With a sphere of 1\u00a0mm it is 1.00\u00a0µs against "
+      "12.0\u00a0µs, 12 times as long.");
 }
 
 TEST(BenchmarkVerdict, SaysSoWhereThePeerIsFaster) {
@@ -90,6 +92,7 @@ TEST(BenchmarkVerdict, SaysSoWhereThePeerIsFaster) {
   EXPECT_EQ(headline(benchmark),
             "FCL's tree with NLopt's SLSQP answers a step in 200\u00a0µs, where the principal "
             "direction tree with our active set takes 4000\u00a0µs: 20 times as long.");
+  EXPECT_TRUE(has(account(benchmark), "Those are medians of 120 and 2,500 steps on ball with"));
 }
 
 TEST(BenchmarkVerdict, ComparesOnlyWhatMetTheSameConditions) {
@@ -105,6 +108,41 @@ TEST(BenchmarkVerdict, ComparesOnlyWhatMetTheSameConditions) {
   benchmark.rows[0].step.reset();
   EXPECT_EQ(headline(benchmark), "No step was timed.");
   EXPECT_EQ(account(benchmark), "1 of 1 row was not timed; the table of all rows says why.");
+}
+
+TEST(BenchmarkVerdict, TakesTooFewStepsForNoDuel) {
+  Benchmark benchmark = duel();
+  benchmark.rows.back().queries = 99;  // with the largest sphere on the largest mesh
+  EXPECT_EQ(
+      headline(benchmark),
+      "The principal direction tree with our active set answers a step in 1.00\u00a0µs, where "
+      "FCL's tree with NLopt's SLSQP takes 12.0\u00a0µs: 12 times as long.");
+  for (BenchmarkRow& row : benchmark.rows) {
+    if (row.index == "fcl_obbrss") row.queries = 99;
+  }
+  EXPECT_EQ(headline(benchmark),
+            "A step takes 4.00\u00a0µs with pd_tree, paper, active_set, and 200\u00a0µs with "
+            "fcl_obbrss, paper, nlopt_slsqp: 50 times as long.");
+  EXPECT_EQ(account(benchmark),
+            "Those are medians of 2,500 and 99 steps on ball with 64,000 triangles, with a motion "
+            "sphere of 5\u00a0mm.");
+}
+
+TEST(BenchmarkVerdict, RanksNothingThatGivesUpOrTakesNoTime) {
+  Benchmark benchmark = duel();
+  benchmark.rows.back().unsolved_share = 0.4;
+  benchmark.rows[4].step->p50 = 0.0;  // ours with the other sphere
+  EXPECT_EQ(
+      headline(benchmark),
+      "The principal direction tree with our active set answers a step in 2.00\u00a0µs, where "
+      "FCL's tree with NLopt's SLSQP takes 100\u00a0µs: 50 times as long.");
+  EXPECT_TRUE(has(account(benchmark),
+                  "1 of 8 rows was not ranked: more than 1 % of the steps are without an answer."));
+  for (BenchmarkRow& row : benchmark.rows) row.unsolved_share = 0.4;
+  EXPECT_EQ(headline(benchmark),
+            "No combination answered 99 % of its steps in a time that can be measured.");
+  EXPECT_EQ(account(benchmark),
+            "8 of 8 rows were not ranked: more than 1 % of the steps are without an answer.");
 }
 
 TEST(BenchmarkReport, IsOneWellFormedPageThatNeedsNothingElse) {
@@ -175,6 +213,92 @@ TEST(BenchmarkReport, ADashStandsForWhatIsMissing) {
   const std::string table = table_below(page_of(benchmark, {}), "Every row");
   EXPECT_TRUE(has(table, "<td>4.00</td><td>-</td><td>-</td><td>460</td>")) << table;
   EXPECT_TRUE(has(table, "<td>5.00</td><td>12.0</td><td>-</td><td>500</td>")) << table;
+}
+
+TEST(BenchmarkReport, TellsHowManyStepsWereWorse) {
+  Benchmark benchmark = made_up_benchmark({985856});
+  benchmark.rows.resize(2);
+  benchmark.rows[0].worse_share = 0.125;
+  benchmark.rows[1].queries = 0;
+  const std::string table = table_below(page_of(benchmark, {}), "Every row");
+  EXPECT_TRUE(has(table, ">worse [%]<")) << table;
+  EXPECT_TRUE(has(table, "<td>" + mean_text(0.13) + "</td><td>" + mean_text(12.5) + "</td>"))
+      << table;
+  EXPECT_TRUE(has(table, "<td>0</td><td>-</td><td>-</td><td>-</td><td>-</td><td>-</td><td>-</td>"))
+      << table;
+}
+
+/// Faster than any, for it gives up.
+BenchmarkRow quitter(const Benchmark& benchmark) {
+  BenchmarkRow row = benchmark.rows[1];
+  row.index = "quick_index";
+  row.solver = "quitter";
+  for (Stage stage : {&BenchmarkRow::collect, &BenchmarkRow::query, &BenchmarkRow::activate,
+                      &BenchmarkRow::solve, &BenchmarkRow::step}) {
+    row.*stage = made_up_timing(1e-3, row.queries);
+  }
+  row.unsolved_share = 0.4;
+  return row;
+}
+
+/// All that is said on a page, without pictures and tables.
+std::string words_of(std::string page) {
+  const auto drop = [&](const std::string& from, const std::string& to) {
+    for (std::size_t at; (at = page.find(from)) != std::string::npos;) {
+      page.erase(at, page.find(to, at) + to.size() - at);
+    }
+  };
+  drop("<svg", "</figure>");  // a picture may have others within
+  drop("<table", "</table>");
+  return page;
+}
+
+TEST(BenchmarkReport, PraisesNoRowThatGivesUp) {
+  Benchmark benchmark = made_up_benchmark({985856});
+  benchmark.rows.push_back(quitter(benchmark));
+  const std::string page = sections_of(benchmark, {});
+  EXPECT_EQ(fault_in_html(page_of(benchmark, {})), "");
+  const std::string words = words_of(page);
+  EXPECT_FALSE(has(words, "quick_index"));
+  EXPECT_EQ(how_many(words, "quitter"), 1U);
+  EXPECT_TRUE(
+      has(words, "Not ranked where more than 1 % of the steps are without an answer: quit"));
+  EXPECT_TRUE(has(words, "active_set finds the motion in"));
+  EXPECT_FALSE(has(page, "quick_index, paper, quitter"));  // neither rates nor stages
+  EXPECT_TRUE(has(page, ">quitter</text>"));               // the plot of solvers
+  EXPECT_TRUE(has(table_below(page, "Every row"), ">quitter<"));
+
+  benchmark.rows.back().unsolved_share = 0.01;
+  EXPECT_TRUE(has(words_of(sections_of(benchmark, {})), "quitter finds the motion in"));
+}
+
+TEST(BenchmarkReport, LeavesOutRatesOfStepsThatTookNoTime) {
+  Benchmark benchmark = made_up_benchmark({51978, 985856});
+  for (BenchmarkRow& row : benchmark.rows) {
+    if (row.index != "pd_tree" || row.triangles > 100000) continue;
+    row.collect->p50 = row.query->p50 = row.solve->p50 = row.step->p50 = 0.0;
+  }
+  const std::string page = page_of(benchmark, {});
+  EXPECT_EQ(fault_in_html(page), "");
+  EXPECT_FALSE(has(words_of(page), "inf"));
+  EXPECT_FALSE(has(words_of(page), "nan"));
+  for (BenchmarkRow& row : benchmark.rows) row.unsolved_share = 1.0;
+  const std::string unranked = page_of(benchmark, {});
+  EXPECT_EQ(fault_in_html(unranked), "");
+  EXPECT_FALSE(has(unranked, "The experiment of the paper"));
+  EXPECT_FALSE(has(unranked, "Where the time of a step goes"));
+  EXPECT_TRUE(has(unranked, "No row is ranked: none has an answer to 99 % of its steps"));
+}
+
+TEST(BenchmarkReport, SaysHowItWasMeasured) {
+  const std::string page = page_of(made_up_benchmark({985856}), {});
+  EXPECT_TRUE(has(page, "a slow one is asked the first of them only"));
+  EXPECT_TRUE(has(page, "bit for bit, to those of pd_tree with active_set"));
+  EXPECT_TRUE(has(page, "NLopt's times include"));
+  EXPECT_TRUE(has(page, "Solve is the search for the motion: the solver&#39;s work"));
+  Benchmark ours = made_up_benchmark({985856});
+  ours.rows.resize(1);
+  EXPECT_FALSE(has(page_of(ours, {}), "NLopt's times include"));
 }
 
 TEST(BenchmarkReport, RowsThatWereNotTimedSayWhy) {

@@ -46,6 +46,29 @@ TEST(ConvexToolRule, ASphereMovesAsAPointWithAsMuchMoreMargin) {
   }
 }
 
+TEST(ConvexToolRule, AsksForNoPolytopeAroundTheTipAlone) {
+  // A shaft below the tip: free space around the tip says nothing of it.
+  MotionConstraint shaft = guard(shape("cube"), ConvexTool::capsule({0, 0, 0}, {0, 0, -10}, 0.5),
+                                 nullptr, {.radius = radius, .margin = margin});
+  const Polytope polytope = shaft.free_polytope(Vec3(0, 0, 61), 5.0);
+  EXPECT_EQ(polytope.status, PolytopeStatus::whole_tool);
+  EXPECT_FALSE(polytope.ok());
+  // What is returned all the same allows standing still only.
+  EXPECT_EQ(polytope.planes.size(), planes_to_hold_still);
+}
+
+TEST(ConvexToolRule, IsNotLedOutByItsTip) {
+  const auto mesh = shape("cube");
+  const auto make = [&](Inside inside) {
+    return MotionConstraint(mesh, std::make_unique<PdTree>(mesh),
+                            std::make_unique<ConvexToolRule>(mesh, ConvexTool::sphere(1.0)),
+                            std::make_unique<ActiveSet>(), {.radius = radius, .margin = margin}, {},
+                            inside);
+  };
+  EXPECT_THROW(make(Inside::led_out), Error);
+  EXPECT_NO_THROW(make(Inside::taken_as_is));
+}
+
 TEST(ConvexToolRule, ASpheresPlanesAreThoseThroughTheClosestPoints) {
   const auto mesh = shape("star_bumps");
   const double r = 1.5;

@@ -496,7 +496,7 @@ TEST(FreePolytope, WhatIsNoNumberIsRefused) {
 TEST(FreePolytope, EveryStatusHasANameAndAReason) {
   for (const PolytopeStatus status :
        {PolytopeStatus::found, PolytopeStatus::touching, PolytopeStatus::invalid_input,
-        PolytopeStatus::over_capacity}) {
+        PolytopeStatus::over_capacity, PolytopeStatus::whole_tool}) {
     EXPECT_NE(name(status), "unknown");
     EXPECT_NE(reason(status), "unknown status");
   }

@@ -61,6 +61,12 @@ struct Judgement {
   double free_share = 1.0;  // how much of the trial nothing speaks against, unless accepted
 };
 
+/// What a rule keeps off the surface.
+enum class Guarded : std::uint8_t {
+  tip,  // the tip, and the ball around it that the margin makes
+  tool  // a body of its own, of which the tip is but a point
+};
+
 /// Decides which planes constrain a motion.
 ///
 /// An eager rule hands over all of its planes in `start`. A lazy one is a separation oracle, as in
@@ -73,6 +79,10 @@ class Activation {
 
   /// Makes room. Allocates; everything after it does not.
   virtual void reserve(std::size_t /*triangles*/) {}
+
+  /// What else can be said of the tip alone, such as its side or free space around it, holds for
+  /// what is guarded only if that is the tip.
+  virtual Guarded guarded() const noexcept { return Guarded::tip; }
 
   /// How far its motions can lead when they are projections of the aim: with neither joints nor
   /// rows of the caller's own.

@@ -40,6 +40,7 @@ class ConvexToolRule final : public Activation {
                  std::unique_ptr<NarrowPhase> narrow_phase = nullptr);
 
   void reserve(std::size_t triangles) override;
+  Guarded guarded() const noexcept override { return Guarded::tool; }
   Reach reach() const noexcept override { return Reach::thales; }
   Ball region(const Surroundings& around) const noexcept override;
   Opening start(const Surroundings& around, HalfSpaceBuffer& planes) noexcept override;

@@ -25,7 +25,8 @@ enum class PolytopeStatus : std::uint8_t {
   found,          // the planes are complete
   touching,       // the tip is on the mesh, to within rounding: no side of it is certain
   invalid_input,  // a number is not finite or out of range, or a hit is of no triangle of the mesh
-  over_capacity   // more hits or planes than room was made for
+  over_capacity,  // more hits or planes than room was made for
+  whole_tool      // the rule guards more than the tip, which is all that the planes are for
 };
 
 /// The name as it stands in the enumeration, for files and logs.

@@ -40,7 +40,8 @@ struct Polytope {
 class MotionConstraint {
  public:
   /// Index and rule must be built on `mesh`. Throws Error when a part is missing, or an option or
-  /// capacity is out of range. Makes all memory here.
+  /// capacity is out of range, and when tips are to be led out under a rule that guards a whole
+  /// tool. Makes all memory here.
   MotionConstraint(std::shared_ptr<const Mesh> mesh, std::unique_ptr<SpatialIndex> index,
                    std::unique_ptr<Activation> activation, std::unique_ptr<Solver> solver,
                    const StepOptions& options, const Capacity& capacity = {},
@@ -56,7 +57,7 @@ class MotionConstraint {
   /// a caller's own QP, MPC or sampler. Every motion that stays within all planes and within
   /// `radius` keeps the margin; guarantee and failures: FreePolytope. The planes stay valid until
   /// the next call; a failure allows standing still only. Sides are not asked about: around a tip
-  /// inside it is the space inside.
+  /// inside it is the space inside. With a rule that guards a whole tool it is refused.
   Polytope free_polytope(const Vec3& tip, double radius) noexcept;
 
   const Mesh& mesh() const noexcept { return *mesh_; }
