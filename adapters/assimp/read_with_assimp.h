@@ -14,9 +14,9 @@ namespace keepout {
 /// Reads the contents of a file through assimp, screened beforehand; polygons are triangulated, and
 /// nothing is welded. `file` names the file in errors. Appends to `warnings`. Throws Error.
 ///
-/// Assimp holds coordinates in single precision: those of a binary or text PLY file are the nearest
-/// to the number in the file; those of the other text formats are within 1 unit in the last place
-/// of it, or 2 when written with an exponent (measured). Equal numerals give equal coordinates, so
+/// Assimp holds coordinates in single precision: those of a PLY file are the nearest to the number
+/// in the file; those of the other formats are within 1 unit in the last place of it, or 2 when
+/// written with an exponent (measured). Equal numerals give equal coordinates, so
 /// what was connected in the file is after an exact weld.
 ///
 /// One file is read at a time, whatever the number of threads: assimp's logger is global. For the

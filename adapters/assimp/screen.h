@@ -9,18 +9,15 @@
 
 namespace keepout {
 
-/// The formats read through assimp; STL here is the text form.
+/// The formats read through assimp; STL and PLY here are their text forms.
 enum class MeshFormat { stl, ply, obj, off };
 
 /// A file that was looked through before assimp gets to see it.
 ///
 /// Assimp 5.2.5 goes on in silence after much that would leave a hole in a guarded surface. Debian
 /// ships it with its assertions on, so other damage aborts the process: fed with small files that
-/// had bytes changed or missing, it aborted for a third of the OFF and binary PLY files, and was
-/// busy for seconds with a third of the PLY files. Found by reading and by test:
-/// - PLY, binary: a file cut short is read on into old memory; a first byte of 10 is taken for a
-///   line end, and all coordinates shift by a byte; a list length in the file is allocated as it
-///   stands, up to 32 GB; elements of unknown name are not skipped.
+/// had bytes changed or missing, it aborted for a third of the OFF files, and was busy for seconds
+/// with a third of the PLY files. Found by reading and by test:
 /// - PLY, text: a missing value becomes a zero. Strips keep one triangle.
 /// - OFF: a missing or negative index becomes vertex 0; comments among the numbers are an error;
 ///   lines of 4096 characters overflow the stack.

@@ -8,6 +8,7 @@
 
 #include "keepout/index/brute_force.h"
 #include "keepout/index/pd_tree.h"
+#include "keepout/index/wide_bvh.h"
 #include "keepout/registry.h"
 
 #if KEEPOUT_HAS_FCL
@@ -33,8 +34,10 @@ constexpr std::size_t as_many_as_a_mesh = no_triangle;
 constexpr IndexBackend backends[] = {
     {"brute_force", "every triangle, one after the other: the oracle", make<BruteForce>,
      as_many_as_a_mesh, nullptr},
+    {"wide_bvh", "axis-aligned boxes and triangles sixteen at a time", make<WideBvh>,
+     WideBvh::most_triangles, nullptr},
     {"pd_tree", "principal direction tree of oriented boxes (Williams et al. 1997)", make<PdTree>,
-     as_many_as_a_mesh, nullptr},
+     PdTree::most_triangles, nullptr},
 #if KEEPOUT_HAS_FCL
     {"fcl_obbrss", "oriented boxes of FCL", make_fcl_obbrss_index, fcl_most_triangles, fcl_library},
     {"fcl_aabb", "axis-aligned boxes of FCL", make_fcl_aabb_index, fcl_most_triangles, fcl_library},

@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "keepout/error.h"
+#include "keepout/mesh/binary_ply.h"
 #include "keepout/mesh/binary_stl.h"
 #include "keepout/mesh/weld.h"
 
@@ -120,13 +121,22 @@ Surface read_other(const std::filesystem::path& path, const std::string& extensi
 Surface read_other(const std::filesystem::path& path, const std::string&,
                    std::vector<std::string>&) {
   fail(path,
-       "only binary STL can be read, for keepout was built without assimp; convert the mesh, or "
-       "build with KEEPOUT_WITH_ASSIMP=ON");
+       "only binary STL and PLY can be read, for keepout was built without assimp; convert the "
+       "mesh, "
+       "or build with KEEPOUT_WITH_ASSIMP=ON");
 }
 
 #endif
 
-Surface read(const std::filesystem::path& path, std::vector<std::string>& warnings) {
+/// A binary PLY file's surface, welded.
+Surface read_ply(const std::filesystem::path& path, const PlyHeader& header,
+                 std::vector<std::string>& warnings) {
+  PlySurface read = read_binary_ply(path, header);
+  warnings.insert(warnings.end(), read.warnings.begin(), read.warnings.end());
+  return weld(std::move(read.surface));
+}
+
+Surface read_welded(const std::filesystem::path& path, std::vector<std::string>& warnings) {
   check_file(path);
   const std::string beginning = beginning_of(path);
   refuse_compressed(path, beginning);
@@ -135,13 +145,17 @@ Surface read(const std::filesystem::path& path, std::vector<std::string>& warnin
   if (std::find(known.begin(), known.end(), extension) == known.end()) {
     fail(path, "its extension is none of .stl, .ply, .obj, .off; convert the mesh to one of them");
   }
-  if (extension == ".stl" && is_binary_stl(path)) return read_binary_stl(path);
+  if (extension == ".stl" && is_binary_stl(path)) return read_welded_stl(path);
   const std::string_view expected = extension_by_content(beginning);
   if (!expected.empty() && expected != extension) {
     fail(path, "its content is " + std::string(expected) + "; give it that extension");
   }
   if (extension == ".stl" && !looks_like_text_stl(beginning)) refuse_stl(path, beginning);
-  return read_other(path, extension, warnings);
+  if (extension == ".ply") {
+    const PlyHeader header = read_ply_header(path);
+    if (header.encoding != PlyEncoding::text) return read_ply(path, header, warnings);
+  }
+  return weld(read_other(path, extension, warnings));
 }
 
 }  // namespace
@@ -150,7 +164,7 @@ LoadedMesh load_mesh(const std::filesystem::path& path) {
   LoadedMesh loaded;
   Surface surface;
   try {
-    surface = weld(read(path, loaded.warnings));
+    surface = read_welded(path, loaded.warnings);
   } catch (const std::bad_alloc&) {
     fail(path, "there is not enough memory to read it; decimate the mesh, or use binary STL");
   } catch (const std::filesystem::filesystem_error& error) {

@@ -39,6 +39,10 @@ void add_constraint_options(CLI::App& command, MotionConstraintSettings& setting
   command.add_option("--index", settings.index, "Spatial index that finds triangles")
       ->check(CLI::IsMember(names(index_backends())))
       ->capture_default_str();
+  command
+      .add_option("--index-cache", settings.index_cache,
+                  "Keep what --index wide_bvh builds in this folder, for the next run")
+      ->type_name("FOLDER");
   command.add_option("--solver", settings.solver, "Solver of the step problem")
       ->check(CLI::IsMember(names(solver_backends())))
       ->capture_default_str();

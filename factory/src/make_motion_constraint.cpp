@@ -7,14 +7,27 @@
 #include "keepout/activation/registry.h"
 #include "keepout/adapters/index_registry.h"
 #include "keepout/error.h"
+#include "keepout/index/index_cache.h"
 #include "keepout/solvers/registry.h"
 
 namespace keepout {
 
+namespace {
+
+std::unique_ptr<SpatialIndex> make_or_load_index(std::shared_ptr<const Mesh> mesh,
+                                                 const MotionConstraintSettings& settings) {
+  if (settings.index == "wide_bvh" && !settings.index_cache.empty()) {
+    return load_or_build(std::move(mesh), settings.index_cache);
+  }
+  return make_index(settings.index, std::move(mesh));
+}
+
+}  // namespace
+
 MotionConstraint make_motion_constraint(std::shared_ptr<const Mesh> mesh,
                                         const MotionConstraintSettings& settings) {
   if (!mesh) throw Error("a motion constraint needs a mesh: none was given");
-  auto index = make_index(settings.index, mesh);
+  auto index = make_or_load_index(mesh, settings);
   auto activation = make_activation(settings.activation, mesh);
   auto solver = make_solver(settings.solver);
   return {std::move(mesh),

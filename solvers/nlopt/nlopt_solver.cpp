@@ -6,7 +6,6 @@
 #include <new>
 #include <utility>
 
-#include "active_set_rows.h"
 #include "answer_check.h"
 #include "contradiction.h"
 #include "minimize.h"
@@ -18,7 +17,6 @@ struct NloptSolver::Workspace {
   NloptMethod method;
   int variables = 0;
   int most_rows = 0;
-  active_set::Rows<Eigen::Dynamic> rows;
   nlopt::Task task;
   nlopt::CheckedAnswer answer;
   NloptReport report;
@@ -55,7 +53,6 @@ NloptSolver::~NloptSolver() = default;
 void NloptSolver::reserve(int variables, int rows) {
   work_->variables = std::max(variables, 0);
   work_->most_rows = std::max(rows, 0);
-  work_->rows.reserve(work_->most_rows);
   work_->task.reserve(work_->variables);
 }
 
@@ -68,7 +65,7 @@ SolveStatus NloptSolver::solve(const StepProblem& problem, Solution& solution) n
     return SolveStatus::over_capacity;
   }
   if (!cost_in_range(problem)) return SolveStatus::invalid_input;
-  const SolveStatus read = work.rows.read(problem);
+  const SolveStatus read = check_rows(problem);
   if (read == SolveStatus::infeasible) work.report.finding = NloptFinding::infeasible;
   if (read != SolveStatus::optimal) return read;
   if (!work.task.read(problem)) return SolveStatus::ill_posed;

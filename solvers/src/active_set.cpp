@@ -6,16 +6,21 @@
 #include <vector>
 
 #include "active_set_method.h"
+#include "point_method.h"
 #include "problem_checks.h"
 
 namespace keepout {
 
 using active_set::Method;
+using active_set::PointMethod;
+using active_set::RowStore;
 
 struct ActiveSet::Workspace {
   int variables = 0;
   int rows = 0;
-  Method<3> space;         // a point
+  RowStore store;
+  PointMethod point;       // the tip itself
+  Method<3> space;         // what is left of it, and three joints
   Method<6> six_joints;    // a pose, or most arms
   Method<7> seven_joints;  // a redundant arm
   Method<Eigen::Dynamic> any;
@@ -25,8 +30,13 @@ struct ActiveSet::Workspace {
   template <int N>
   SolveStatus solve(Method<N>& method, const StepProblem& problem, Solution& solution) noexcept {
     const SolveStatus status = method.solve(problem);
-    solution.iterations = method.iterations();
-    if (status != SolveStatus::optimal) return status;
+    solution.iterations += method.iterations();
+    if (status == SolveStatus::optimal) take_down(method, problem, solution);
+    return status;
+  }
+
+  template <class M>
+  void take_down(const M& method, const StepProblem& problem, Solution& solution) noexcept {
     std::size_t count = 0;
     for (int i = 0; i < method.active(); ++i) {
       if (!(method.multiplier(i) > 0)) continue;
@@ -43,7 +53,6 @@ struct ActiveSet::Workspace {
     solution.u = {method.u().data(), n};
     solution.multipliers = {multipliers.data(), count};
     solution.active = {active.data(), count};
-    return status;
   }
 };
 
@@ -54,10 +63,12 @@ void ActiveSet::reserve(int variables, int rows) {
   Workspace& work = *work_;
   work.variables = std::max(variables, 0);
   work.rows = std::max(rows, 0);
-  work.space.reserve(3, work.rows);
-  work.six_joints.reserve(6, work.rows);
-  work.seven_joints.reserve(7, work.rows);
-  work.any.reserve(work.variables, work.rows);
+  work.store.reserve(std::max(work.variables, 3), work.rows);
+  work.point.reserve(work.rows);
+  work.space.reserve(3, work.store);
+  work.six_joints.reserve(6, work.store);
+  work.seven_joints.reserve(7, work.store);
+  work.any.reserve(work.variables, work.store);
   work.multipliers.resize(static_cast<std::size_t>(work.variables));
   work.active.resize(static_cast<std::size_t>(work.variables));
 }
@@ -68,6 +79,14 @@ SolveStatus ActiveSet::solve(const StepProblem& problem, Solution& solution) noe
   if (!shapes_agree(problem)) return SolveStatus::invalid_input;
   if (problem.jacobian.cols() > work.variables || problem.rows.rows() > work.rows) {
     return SolveStatus::over_capacity;
+  }
+  if (moves_a_point(problem)) {
+    const bool solved = work.point.solve(problem);
+    solution.iterations = work.point.iterations();
+    if (solved) {
+      work.take_down(work.point, problem, solution);
+      return SolveStatus::optimal;
+    }
   }
   if (!cost_in_range(problem)) return SolveStatus::invalid_input;
   switch (problem.jacobian.cols()) {

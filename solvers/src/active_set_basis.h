@@ -18,6 +18,7 @@ class Basis {
   void reserve(int variables) {
     q_.resize(variables, variables);
     t_.resize(variables, variables);
+    along_.resize(variables);
     active_.resize(variables);
   }
 
@@ -81,11 +82,10 @@ class Basis {
     if (below > 0) {
       h[size_] = old - diagonal;
       const double scale = 2 / (h[size_] * h[size_] + below);
-      for (int i = 0; i < n(); ++i) {
-        double along = 0;
-        for (int j = size_; j < n(); ++j) along += q_(i, j) * h[j];
-        along *= scale;
-        for (int j = size_; j < n(); ++j) q_(i, j) -= along * h[j];
+      combine(h, size_, along_);
+      for (int i = 0; i < n(); ++i) along_[i] *= scale;
+      for (int j = size_; j < n(); ++j) {
+        for (int i = 0; i < n(); ++i) q_(i, j) -= along_[i] * h[j];
       }
     }
     for (int i = 0; i < size_; ++i) t_(i, size_) = h[i];
@@ -123,6 +123,7 @@ class Basis {
   int size_ = 0;
   Matrix<N> q_;
   Matrix<N> t_;
+  Vector<N> along_;  // Q h, on the way
   Eigen::Matrix<int, N, 1> active_;
 };
 

@@ -20,8 +20,8 @@ namespace keepout::active_set {
 template <int N>
 class Method {
  public:
-  void reserve(int variables, int rows) {
-    rows_.reserve(rows);
+  void reserve(int variables, RowStore& store) {
+    rows_.reserve(store);
     task_.reserve(variables);
     basis_.reserve(variables);
     for (Vector<N>* v : {&u_, &mu_, &w_, &h_, &r_, &rest_, &step_, &gradient_, &slack_}) {

@@ -3,11 +3,15 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <vector>
 
 #include "active_set_tolerances.h"
 #include "keepout/step/problem.h"
 #include "keepout/step/solver.h"
+#include "unit_planes.h"
 
 namespace keepout::active_set {
 
@@ -19,46 +23,76 @@ using Vector = Eigen::Matrix<double, N, 1>;
 template <int N>
 using Matrix = Eigen::Matrix<double, N, N>;
 
+/// What is wrong with a row, a (n) with a . a = square: a number out of range, or a row of zeros
+/// that no u satisfies. Such a row has no length to measure b against, hence b > 0 is infeasible
+/// however small.
+inline SolveStatus row_status(const double* a, Eigen::Index n, double square, double b) noexcept {
+  if (square >= smallest * smallest && square <= largest * largest && std::abs(b) <= largest)
+      [[likely]] {
+    return SolveStatus::optimal;
+  }
+  const bool zero = std::all_of(a, a + n, [](double x) { return x == 0; });
+  if (!zero || !(std::abs(b) <= largest)) return SolveStatus::invalid_input;
+  return b > 0 ? SolveStatus::infeasible : SolveStatus::optimal;
+}
+
+/// Memory for the rows of a problem, whatever their number of variables.
+struct RowStore {
+  void reserve(int variables, int rows) {
+    const auto count = static_cast<std::size_t>(rows);
+    written.resize(count * static_cast<std::size_t>(variables));
+    squares.resize(count);
+    planes.reserve(count);
+  }
+
+  std::vector<double> written;  // rows that come from planes, n^T J
+  std::vector<double> squares;  // of the norms
+  UnitPlanes planes;            // to look for the one violated most
+};
+
 /// The constraints A u >= b, and the squared norm of each row of A.
+///
+/// Rows that come from planes are looked through where the planes are: violations are measured at
+/// the tip, J u, and only rows that enter are written out, provided that no direction of the tip is
+/// all but out of reach of the joints.
 template <int N>
 class Rows {
  public:
   static constexpr int none = -1;
 
-  void reserve(int rows) { squares_.resize(rows); }
+  void reserve(RowStore& store) { store_ = &store; }
 
-  /// Takes the rows in. Anything but `optimal` ends the solve: a number out of range, or a row
-  /// of zeros that no u satisfies. Such a row has no length to measure b against, hence b > 0
-  /// is infeasible however small.
+  /// Takes the rows in. Anything but `optimal` ends the solve: see row_status.
   SolveStatus read(const StepProblem& problem) noexcept {
-    coefficients_ = problem.rows.data();
-    bounds_ = problem.bounds.data();
+    problem_ = &problem;
+    planes_ = static_cast<int>(problem.planes.size());
     size_ = static_cast<int>(problem.rows.rows());
     variables_ = static_cast<int>(problem.jacobian.cols());
+    first_read_ = planes_ > 0 && list_planes() ? planes_ : 0;
+    for (int i = 0; i < planes_ && first_read_ == 0; ++i) write(i);
     SolveStatus status = SolveStatus::optimal;
-    for (int i = 0; i < size_; ++i) {
+    for (int i = first_read_; i < size_; ++i) {
       const double square = dot((*this)[i], (*this)[i]);
-      squares_[i] = square;
-      const bool usual = square >= smallest * smallest && square <= largest * largest &&
-                         std::abs(bounds_[i]) <= largest;
-      if (!usual) [[unlikely]] {
-        if (!is_zero(i) || !(std::abs(bounds_[i]) <= largest)) return SolveStatus::invalid_input;
-        if (bounds_[i] > 0) status = SolveStatus::infeasible;
-      }
+      squares()[i] = square;
+      const SolveStatus its = row_status((*this)[i], n(), square, bound(i));
+      if (its == SolveStatus::invalid_input) return its;
+      if (its != SolveStatus::optimal) status = its;
     }
     return status;
   }
 
   /// The row violated most, in units of u, of those violated by more than the tolerance; the
   /// lowest of equals. Compares squares: a root and a division a row would cost more than the rest.
-  int most_violated(const Vector<N>& u, double tolerance) const noexcept {
+  /// Of the planes, the one that the tip violates most.
+  int most_violated(const Vector<N>& u, double tolerance) noexcept {
     int worst = none;
     double worst_square = tolerance * tolerance;
-    for (int i = 0; i < size_; ++i) {
-      const double violation = bounds_[i] - dot((*this)[i], u.data());
-      if (violation > 0 && violation * violation > worst_square * squares_[i]) [[unlikely]] {
+    if (first_read_ > 0) worst = most_violated_plane(u, tolerance, worst_square);
+    for (int i = first_read_; i < size_; ++i) {
+      const double missing = violation(i, u);
+      if (missing > 0 && missing * missing > worst_square * squares()[i]) [[unlikely]] {
         worst = i;
-        worst_square = violation * violation / squares_[i];
+        worst_square = missing * missing / squares()[i];
       }
     }
     return worst;
@@ -66,16 +100,21 @@ class Rows {
 
   int size() const noexcept { return size_; }
   const double* operator[](int row) const noexcept {
-    return coefficients_ + static_cast<std::ptrdiff_t>(row) * n();
+    const double* rows = row < planes_ ? store_->written.data() : problem_->rows.data();
+    return rows + static_cast<std::ptrdiff_t>(row) * n();
   }
-  double bound(int row) const noexcept { return bounds_[row]; }
-  double norm(int row) const noexcept { return std::sqrt(squares_[row]); }
+  double bound(int row) const noexcept {
+    return row < planes_ ? problem_->planes[static_cast<std::size_t>(row)].offset
+                         : problem_->bounds[row];
+  }
+  double norm(int row) const noexcept { return std::sqrt(squares()[row]); }
   double violation(int row, const Vector<N>& u) const noexcept {
-    return bounds_[row] - dot((*this)[row], u.data());
+    return bound(row) - dot((*this)[row], u.data());
   }
 
  private:
   int n() const noexcept { return N == Eigen::Dynamic ? variables_ : N; }
+  double* squares() const noexcept { return store_->squares.data(); }
 
   double dot(const double* a, const double* b) const noexcept {
     double sum = 0;
@@ -83,18 +122,79 @@ class Rows {
     return sum;
   }
 
-  bool is_zero(int row) const noexcept {
-    for (int j = 0; j < n(); ++j) {
-      if ((*this)[row][j] != 0) return false;
-    }
-    return true;
+  void write(int row) noexcept {
+    write_row(problem_->planes[static_cast<std::size_t>(row)].normal, problem_->jacobian.data(),
+              n(), store_->written.data() + static_cast<std::ptrdiff_t>(row) * n());
   }
 
-  const double* coefficients_ = nullptr;
-  const double* bounds_ = nullptr;
+  /// False if the planes must be looked through as rows.
+  bool list_planes() noexcept {
+    if (!measure_jacobian()) return false;
+    bool usual = true;
+    store_->planes.clear();
+    for (const HalfSpace& plane : problem_->planes) {
+      usual &=
+          is_unit(active_set::dot(plane.normal, plane.normal)) && std::abs(plane.offset) <= largest;
+      store_->planes.push(plane.normal.data(), plane.offset);
+    }
+    store_->planes.close();
+    return usual;
+  }
+
+  /// Bounds |n^T J| for unit vectors n: not below `shortest_`, the root of the smallest eigenvalue
+  /// of J J^T, of which the other two have a product of at most (trace / 2)^2. False if the
+  /// Jacobian is so uneven that rounding at the tip counts for a row.
+  bool measure_jacobian() noexcept {
+    double g[6] = {};  // J J^T: xx, yy, zz, xy, xz, yz
+    const double* j = problem_->jacobian.data();
+    for (int c = 0; c < n(); ++c, j += 3) {
+      g[0] += j[0] * j[0];
+      g[1] += j[1] * j[1];
+      g[2] += j[2] * j[2];
+      g[3] += j[0] * j[1];
+      g[4] += j[0] * j[2];
+      g[5] += j[1] * j[2];
+    }
+    const double trace = g[0] + g[1] + g[2];
+    const double determinant = g[0] * (g[1] * g[2] - g[5] * g[5]) -
+                               g[3] * (g[3] * g[2] - g[5] * g[4]) +
+                               g[4] * (g[3] * g[5] - g[1] * g[4]);
+    const double least = 4 * determinant / (trace * trace);
+    shortest_ = std::sqrt(std::max(least, 0.0));
+    size_of_jacobian_ = std::sqrt(trace);
+    return trace <= largest * largest && least >= trace * (uneven * uneven) &&
+           least >= smallest * smallest;
+  }
+
+  /// None but a row that is violated beyond the tolerance: what the tip is told to miss is less
+  /// exact than the row, and counts from beyond its rounding on.
+  int most_violated_plane(const Vector<N>& u, double tolerance, double& worst_square) noexcept {
+    double tip[3] = {};
+    double length2 = 0;
+    const double* j = problem_->jacobian.data();
+    for (int c = 0; c < n(); ++c, j += 3) {
+      for (int i = 0; i < 3; ++i) tip[i] += j[i] * u[c];
+      length2 += u[c] * u[c];
+    }
+    const Violated worst = store_->planes.most_violated(tip);
+    const double noise = 4 * (n() + 8) * epsilon * size_of_jacobian_ * std::sqrt(length2);
+    if (!(worst.by > tolerance * shortest_ + noise)) return none;
+    write(worst.plane);
+    squares()[worst.plane] = dot((*this)[worst.plane], (*this)[worst.plane]);
+    const double missing = violation(worst.plane, u);
+    if (!(missing > 0)) return none;
+    worst_square = missing * missing / squares()[worst.plane];
+    return worst.plane;
+  }
+
+  const StepProblem* problem_ = nullptr;
+  RowStore* store_ = nullptr;
+  int planes_ = 0;      // the first rows
+  int first_read_ = 0;  // row that is looked at one by one
   int size_ = 0;
   int variables_ = 0;
-  Eigen::VectorXd squares_;
+  double shortest_ = 0;          // |n^T J|, at least
+  double size_of_jacobian_ = 0;  // Frobenius
 };
 
 }  // namespace keepout::active_set

@@ -18,6 +18,7 @@ class TaskSpace {
   void reserve(int variables) {
     r_.resize(variables, variables);
     block_.resize(variables, variables);
+    inverse_.resize(variables);
     target_.resize(variables);
     tail_.resize(variables);
   }
@@ -45,9 +46,9 @@ class TaskSpace {
   void row_to_task(const double* a, Vector<N>& w) const noexcept {
     for (int j = 0; j < n(); ++j) w[j] = a[j];
     if (identity_) return;
-    for (int j = 0; j < n(); ++j) {
-      for (int i = 0; i < j; ++i) w[j] -= r_(i, j) * w[i];
-      w[j] /= r_(j, j);
+    for (int i = 0; i < n(); ++i) {
+      w[i] *= inverse_[i];
+      for (int j = i + 1; j < n(); ++j) w[j] -= r_(i, j) * w[i];
     }
   }
 
@@ -55,7 +56,7 @@ class TaskSpace {
   void point_from_task(Vector<N>& y) const noexcept {
     if (identity_) return;
     for (int j = n() - 1; j >= 0; --j) {
-      y[j] /= r_(j, j);
+      y[j] *= inverse_[j];
       for (int i = 0; i < j; ++i) y[i] -= r_(i, j) * y[j];
     }
   }
@@ -109,6 +110,7 @@ class TaskSpace {
     double square = 0;
     for (int j = 0; j < n(); ++j) {
       for (int i = 0; i <= j; ++i) square += r_(i, j) * r_(i, j);
+      inverse_[j] = 1 / r_(j, j);
     }
     size_ = std::sqrt(square);
   }
@@ -143,7 +145,7 @@ class TaskSpace {
     for (int l = 0; l < n(); ++l) {
       for (int i = 0; i <= l; ++i) tail_[i] = i == l ? 1 : 0;
       for (int j = l; j >= 0; --j) {
-        tail_[j] /= r_(j, j);
+        tail_[j] *= inverse_[j];
         for (int i = 0; i < j; ++i) tail_[i] -= r_(i, j) * tail_[j];
         square += tail_[j] * tail_[j];
       }
@@ -156,10 +158,11 @@ class TaskSpace {
   bool identity_ = false;
   double desired_ = 0;
   double size_ = 0;
-  Matrix<N> r_;       // upper triangle
-  Vector<N> target_;  // c
-  Matrix<N> block_;   // rows of J on their way into R
-  Vector<N> tail_;    // their part of d
+  Matrix<N> r_;        // upper triangle
+  Vector<N> inverse_;  // 1 / r_jj: a division waits longer than all else in a substitution
+  Vector<N> target_;   // c
+  Matrix<N> block_;    // rows of J on their way into R
+  Vector<N> tail_;     // their part of d
 };
 
 }  // namespace keepout::active_set

@@ -37,6 +37,10 @@ inline constexpr double acceptable = 1e-11;
 /// Beyond this condition number of [J; sqrt(damping) I] the last digits of J decide the answer.
 inline constexpr double singular = 1e13;
 
+/// A Jacobian that gives some direction less than this share of its norm does not serve to look
+/// through planes at the tip: rounding there would count for the joints.
+inline constexpr double uneven = 1.0 / 16;
+
 /// The range of numbers: squares of products must stay in the range of a double. Larger ones, and
 /// rows that are shorter without being zero, are refused; lengths so small that their square
 /// vanishes count as zero.

@@ -11,6 +11,8 @@ const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelis
 
 }  // namespace
 
-// And Embree's own allocations, which it guards by spin locks of its own, are not looked at. What
+// And the allocations of both, which they guard by spin locks of their own, are not looked at. What
 // it calls of ours, and all that we do, is.
-extern "C" const char* __tsan_default_suppressions() { return "called_from_lib:libembree3.so\n"; }
+extern "C" const char* __tsan_default_suppressions() {
+  return "called_from_lib:libembree3.so\ncalled_from_lib:libtbb.so\n";
+}

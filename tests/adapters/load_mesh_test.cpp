@@ -216,15 +216,28 @@ TEST_F(LoadMesh, BinaryCoordinatesAreExact) {
   }
 }
 
-TEST_F(LoadMesh, DoublesInPlyAreRoundedToTheNearestSingle) {
+TEST_F(LoadMesh, DoublesInBinaryPlyAreExact) {
   Surface surface = single_triangle();
   surface.vertices[1].x() = 0.1;
-  const LoadedMesh loaded = load("mesh.ply", as_binary_ply<double>(surface, false));
-  EXPECT_EQ(loaded.mesh->vertex(1).x(), double{0.1F});
+  surface.vertices[2].y() = 1e-300;
+  for (const bool big_endian : {false, true}) {
+    const LoadedMesh loaded = load("mesh.ply", as_binary_ply<double>(surface, big_endian));
+    EXPECT_EQ(loaded.mesh->vertex(1).x(), 0.1);
+    EXPECT_EQ(loaded.mesh->vertex(2).y(), 1e-300);
+  }
+}
+
+TEST_F(LoadMesh, ABinaryPlyWithACoordinateThatIsNotFiniteIsAnErrorNamingTheVertex) {
+  for (const double bad : {std::nan(""), -HUGE_VAL}) {
+    Surface surface = tetrahedron();
+    surface.vertices[2].z() = bad;
+    EXPECT_CONTAINS(complaint("mesh.ply", as_binary_ply<double>(surface, false)), "vertex 2");
+    EXPECT_CONTAINS(complaint("mesh.ply", as_binary_ply<float>(surface, true)), "not finite");
+  }
 }
 
 TEST_F(LoadMesh, ABinaryPlyWhoseFirstByteIsALineFeedIsReadInPlace) {
-  // Assimp 5.2.5 by itself takes that byte for the end of the header.
+  // The header ends with the line feed before it.
   Surface surface = single_triangle();
   surface.vertices[0].x() = double{std::bit_cast<float>(0x3F80000Au)};
   const LoadedMesh loaded = load("mesh.ply", as_binary_ply<float>(surface, false));

@@ -27,12 +27,15 @@ TEST(Allocations, AreCounted) {
 
 /// What a rule must have come to for its paths to count as covered.
 std::set<Status> outcomes_of(std::string_view rule, std::string_view index) {
-  std::set<Status> all{Status::free,          Status::limited,      Status::ill_posed,
-                       Status::invalid_input, Status::beyond_reach, Status::over_capacity};
+  std::set<Status> all{Status::free, Status::limited, Status::ill_posed, Status::invalid_input,
+                       Status::beyond_reach};
+  // On a wide_bvh this rule searches by itself, and needs no room for all triangles in reach.
+  const bool searches = rule == "certified" && index == "wide_bvh";
+  if (!searches) all.insert(Status::over_capacity);
   if (rule == "certified") {
     all.insert({Status::recovering, Status::touching});
     // Of brute force all triangles are candidates, however short the motion.
-    if (index != "brute_force") all.insert(Status::fallback);
+    if (!searches && index != "brute_force") all.insert(Status::fallback);
   } else {
     all.insert(Status::infeasible);
   }

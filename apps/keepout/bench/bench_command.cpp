@@ -86,10 +86,55 @@ BenchCommand::BenchCommand(CLI::App& app) {
   command.add_option("--out", options.report, "Where to write a report with plots")
       ->type_name("REPORT.html")
       ->capture_default_str();
+  add_speed_options(command);
   command.footer(
-      "Each list is crossed with the others; what is not named is pd_tree, paper and certified,\n"
+      "Each list is crossed with the others; what is not named is wide_bvh, paper and certified,\n"
       "active_set, and radii of 5, 1, 0.25 and the motion. Without --index, --activation and\n"
       "--solver: each index, then each solver, with those; and FCL's tree with SLSQP.");
+}
+
+void BenchCommand::add_speed_options(CLI::App& command) {
+  CLI::Option* speed = command.add_flag(
+      "--speed", is_speed_,
+      "Measure the table of ratios that keepout is held to, in one process on one core; about five "
+      "minutes. With --triangles: one size, for meshes of about a million");
+  for (const char* name : {"--list", "--index", "--activation", "--solver", "--mesh", "--radius",
+                           "--full", "--queries", "--seconds", "--poses", "--csv"}) {
+    speed->excludes(name);
+  }
+  command.add_option("--steps", speed_.histogram_steps, "Of --speed: steps of the histogram")
+      ->type_name("NUMBER")
+      ->transform(large_count())
+      ->needs(speed)
+      ->capture_default_str();
+  command
+      .add_option(
+          "--largest", speed_.largest,
+          "Of --speed: also a mesh of so many triangles. 100000000 need 14 GiB, 5 GB of the "
+          "disk, and some minutes")
+      ->type_name("NUMBER")
+      ->transform(whole_number(1000, 200'000'000))
+      ->needs(speed);
+  command
+      .add_flag_callback(
+          "--quick",
+          [this] {
+            speed_.effort = quick;
+            speed_.file = "bunny";
+          },
+          "Of --speed: few of everything, to see that it works")
+      ->needs(speed);
+}
+
+void BenchCommand::run_speed(std::ostream& out) {
+  if (options_.triangles.size() > 1) throw Error("--speed: give --triangles one size");
+  if (!options_.triangles.empty()) speed_.triangles = options_.triangles.front();
+  speed_.seed = options_.seed;
+  bench_speed({.settings = speed_,
+               .report = options_.report,
+               .json = options_.json,
+               .command = options_.command},
+              out);
 }
 
 void BenchCommand::run(const std::vector<std::string>& arguments, std::ostream& out) {
@@ -97,9 +142,13 @@ void BenchCommand::run(const std::vector<std::string>& arguments, std::ostream& 
     list_parts(out);
     return;
   }
-  for (const std::string& radius : radii_) options_.selection.radii.push_back(radius_of(radius));
   options_.command = "keepout";
   for (const std::string& argument : arguments) options_.command += " " + shell_word(argument);
+  if (is_speed_) {
+    run_speed(out);
+    return;
+  }
+  for (const std::string& radius : radii_) options_.selection.radii.push_back(radius_of(radius));
   bench(options_, out);
 }
 

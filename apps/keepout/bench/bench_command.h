@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bench/bench.h"
+#include "bench/speed/speed.h"
 
 namespace keepout::app {
 
@@ -22,7 +23,13 @@ class BenchCommand {
   void run(const std::vector<std::string>& arguments, std::ostream& out);
 
  private:
+  /// To be called last: it has no use for most of the others.
+  void add_speed_options(CLI::App& command);
+  void run_speed(std::ostream& out);
+
   BenchOptions options_;
+  SpeedSettings speed_;
+  bool is_speed_ = false;
   std::vector<std::string> radii_;
   bool list_ = false;
 };

@@ -2,35 +2,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <array>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 #include <ostream>
 
 #include "bench/benchmark_files.h"
+#include "bench/json_parts.h"
 
 namespace keepout::app {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-template <class T>
-Json or_null(const std::optional<T>& value) {
-  return value ? Json(*value) : Json(nullptr);
-}
-
 Json json_of(const std::optional<Timing>& timing) {
-  if (!timing) return nullptr;
-  return {{"p50", timing->p50},
-          {"p99", or_null(timing->p99)},
-          {"p999", or_null(timing->p999)},
-          {"max", timing->max}};
-}
-
-Json json_of(const Machine& machine) {
-  return {{"processor", machine.processor},   {"cores", machine.cores},
-          {"memory_gib", machine.memory_gib}, {"system", machine.system},
-          {"compiler", machine.compiler},     {"flags", machine.flags},
-          {"build_type", machine.build_type}, {"keepout", machine.keepout},
-          {"libraries", machine.libraries},   {"clock_ns", machine.clock_ns}};
+  return timing ? app::json_of(*timing) : Json(nullptr);
 }
 
 /// JSON has no 64-bit whole numbers that every reader keeps.

@@ -10,7 +10,7 @@
 namespace keepout::app {
 namespace {
 
-constexpr const char* reference_index = "pd_tree";
+constexpr const char* reference_index = "wide_bvh";
 constexpr const char* reference_solver = "active_set";
 constexpr const char* certified = "certified";
 constexpr const char* usual_index = "fcl_obbrss";

@@ -25,7 +25,7 @@ struct Selection {
 /// Whether any part was asked for by name.
 bool names_parts(const Selection& selection);
 
-/// Every combination of what was asked for, and where nothing was, of the reference: pd_tree, the
+/// Every combination of what was asked for, and where nothing was, of the reference: wide_bvh, the
 /// rules paper and certified, active_set. If no part was asked for at all: each index with the
 /// reference, each rule and solver with the reference, and what a user of the usual libraries would
 /// put together, FCL's tree with SLSQP.

@@ -111,8 +111,12 @@ BenchmarkRow Trial::measure(const Combination& combination) {
       static_cast<double>(built.index->memory()) / static_cast<double>(mesh_->triangle_count());
 
   const RuleSetting setting{combination.activation, combination.radius, settings_.margin};
+  // As MotionConstraint does it.
+  Activation& plain = rule(combination.activation);
+  const std::unique_ptr<Activation> searching = plain.searching(*built.index);
+  if (searching) searching->reserve(work_->candidates.capacity());
   const Pipeline pipeline{
-      *mesh_, *built.index, rule(combination.activation), solver(combination.solver),
+      *mesh_, *built.index, searching ? *searching : plain, solver(combination.solver),
       *work_, setting};
   const double accuracy =
       combination.solver == "active_set"

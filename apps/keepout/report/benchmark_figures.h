@@ -38,7 +38,7 @@ std::string stage_bars(const Rows& rows);
 std::string build_bars(Rows rows);
 std::string memory_bars(Rows rows);
 
-/// "pd_tree, paper, active_set, r = 5 mm"
+/// "wide_bvh, paper, active_set, r = 5 mm"
 std::string line_name(const BenchmarkRow& row);
 
 }  // namespace keepout::app

@@ -76,7 +76,7 @@ std::vector<Rows> rate_lines(const Rows& rows);
 /// Whether no line has more than a point.
 bool one_size(const std::vector<Rows>& lines);
 
-/// "pd_tree, paper, active_set"
+/// "wide_bvh, paper, active_set"
 std::string combination(const BenchmarkRow& row);
 
 /// "5 mm"; "as long as the motion".
@@ -94,7 +94,7 @@ struct Pair {
   const char* solver;
   const char* words;  // for a reader who does not know the names, within a sentence
 };
-inline constexpr Pair our_pair = {"pd_tree", "active_set",
+inline constexpr Pair our_pair = {"wide_bvh", "active_set",
                                   "the principal direction tree with our active set"};
 inline constexpr Pair peer_pair = {"fcl_obbrss", "nlopt_slsqp", "FCL's tree with NLopt's SLSQP"};
 bool is(const BenchmarkRow& row, const Pair& pair);

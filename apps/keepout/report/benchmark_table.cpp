@@ -15,6 +15,7 @@
 
 #include "number_text.h"
 #include "report/benchmark_rows.h"
+#include "report/machine_facts.h"
 #include "report/table.h"
 #include "report/text.h"
 
@@ -162,29 +163,10 @@ void print_row_section(std::ostream& out, const Benchmark& benchmark) {
 
 void print_machine_section(std::ostream& out, const Benchmark& benchmark) {
   if (benchmark.rows.empty()) return;
-  const Machine& machine = benchmark.machine;
-  std::vector<std::pair<std::string, std::string>> facts = {
-      {"date", benchmark.date},
-      {"processor", machine.processor},
-      {"cores", machine.cores > 0 ? std::to_string(machine.cores) : ""},
-      {"memory", machine.memory_gib > 0.0 ? rounded(machine.memory_gib) + " GiB" : ""},
-      {"system", machine.system},
-      {"compiler", machine.compiler},
-      {"flags", machine.flags},
-      {"build type", machine.build_type},
-      {"keepout", machine.keepout},
-      {"libraries", listed(machine.libraries)},
-      {"seed", std::to_string(benchmark.seed)}};
   out << "<h2>The machine, and how it was measured</h2>\n"
-      << "<div class=\"panels wide\" style=\"--columns:2\">\n<figure><dl>";
-  for (const auto& [name, value] : facts) {
-    if (!value.empty()) out << "<dt>" << name << "</dt><dd>" << escape(value) << "</dd>";
-  }
-  if (!benchmark.command.empty()) {
-    out << "<dt class=\"wide\">command</dt><dd class=\"wide\">" << escape(benchmark.command)
-        << "</dd>";
-  }
-  out << "</dl></figure>\n<div>\n<p class=\"method\">All combinations draw on the same seeded "
+      << "<div class=\"panels wide\" style=\"--columns:2\">\n<figure>";
+  print_machine_facts(out, benchmark.machine, benchmark.date, benchmark.command, benchmark.seed);
+  out << "</figure>\n<div>\n<p class=\"method\">All combinations draw on the same seeded "
          "motions; a slow one is asked the first of them only, and the table says how many: rows "
          "of "
          "few queries compare by their order of magnitude. What is wrong is not timed. An index is "
@@ -213,8 +195,8 @@ void print_machine_section(std::ostream& out, const Benchmark& benchmark) {
          "needs "
          "100 samples, the 99.9 % a thousand. The slowest step tells more of the machine than of "
          "the method.";
-  if (machine.clock_ns > 0.0) {
-    out << " Reading the clock adds " << rounded(machine.clock_ns)
+  if (benchmark.machine.clock_ns > 0.0) {
+    out << " Reading the clock adds " << rounded(benchmark.machine.clock_ns)
         << " ns to each time, which is not taken off.";
   }
   out << "</p>\n<p class=\"method\">Absolute times do not carry over to another machine; ratios "

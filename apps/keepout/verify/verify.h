@@ -16,7 +16,7 @@ struct VerifyOptions {
   std::uint64_t steps = 1'000'000;
   std::uint64_t seed = 1;
   std::string shard = "1/1";
-  std::string index = "pd_tree";
+  std::string index = "wide_bvh";
   std::optional<std::filesystem::path> json;  // to be written
   std::vector<std::filesystem::path> merge;   // results to add up, instead of a campaign
 };

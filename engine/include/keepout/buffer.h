@@ -25,6 +25,10 @@ class Buffer {
     }
   }
 
+  /// Takes in the first `count` items of those that the caller wrote at end(): a way to append many
+  /// at once. Precondition: there is room, size() + count <= capacity().
+  void grow(std::size_t count) noexcept { size_ += count; }
+
   /// Replaces the contents. The items must not be in this buffer.
   void assign(std::span<const T> items) noexcept {
     clear();
@@ -33,6 +37,14 @@ class Buffer {
 
   void clear() noexcept {
     size_ = 0;
+    overflowed_ = false;
+  }
+
+  /// Lets go of all but the first ones, `size` or fewer. An overflow is forgotten with what
+  /// overflowed.
+  void truncate(std::size_t size) noexcept {
+    if (size >= size_) return;
+    size_ = size;
     overflowed_ = false;
   }
 

@@ -9,23 +9,10 @@
 
 #include "keepout/activation/planes.h"
 #include "keepout/error.h"
+#include "tolerance_ladder.h"
 
 namespace keepout {
 namespace {
-
-// In tolerances, as for the certified rule: each step of the ladder is more than what rounding, and
-// a solver, may take.
-constexpr double demand_below = 1.0;
-constexpr double floor_below = 2.0;
-constexpr double lost_below = 2.75;
-constexpr double touching_within = 4.0;
-constexpr double needed_margin = 8.0;
-constexpr double region_beyond = 8.0;
-// Contacts are this sharp.
-constexpr double contact_slack = 0.125;
-
-// A cycle's planes are few; more are a loop that does not end.
-constexpr std::size_t most_planes = 192;
 
 // An approach to a contact takes a few strides with true normals. With proposed ones it may take
 // more, so that they are asked for only so often.
@@ -39,7 +26,7 @@ std::unique_ptr<NarrowPhase> or_exact(std::unique_ptr<NarrowPhase> given, const 
 
 double longest_edge_of(const Mesh* mesh) {
   if (mesh == nullptr) throw Error("a rule for a convex tool needs a mesh");
-  return longest_edge(*mesh);
+  return mesh->longest_edge();
 }
 
 }  // namespace
@@ -173,9 +160,7 @@ Judgement ConvexToolRule::judge(const Surroundings& around, const Vec3& trial,
   const double length = trial.norm();
   for (const Near& near : near_) {
     if (near.at_start.distance - length >= near.demand) continue;
-    const bool answered = std::any_of(planes.begin(), planes.end(), [&](const HalfSpace& plane) {
-      return plane.source == near.triangle;
-    });
+    const bool answered = has_plane(near.triangle, planes.view());
     const double level = answered ? near.floor : near.demand;
     if (keeps_clear(near, around, trial, level, planes.view())) continue;
     const std::optional<Contact> contact = first_contact(near, around, trial, level);

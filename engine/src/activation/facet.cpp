@@ -38,6 +38,45 @@ Vec3 unit(const Vec3& v) noexcept {
   return length > 0.0 ? Vec3(v / length) : Vec3::Zero();
 }
 
+HalfSpace plane_along(const Vec3& n, const Facet& facet, double level) noexcept {
+  return {n, facet.support(n) + level, facet.source()};
+}
+
+/// How long until a motion along z comes within `level` of what it is `away` from; 0 if it does
+/// not.
+double time_until(const Vec3& away, const Vec3& z, double level) noexcept {
+  // |away + t z| = level, the earlier of the two.
+  const double falling = -away.dot(z);
+  const double missing = away.squaredNorm() - level * level;
+  const double square = falling * falling - z.squaredNorm() * missing;
+  if (!(falling > 0.0 && missing > 0.0 && square >= 0.0)) return 0.0;
+  return missing / (falling + std::sqrt(square));
+}
+
+/// What of v is across an edge: as of an edge of any other facet that shares it, bit for bit.
+Vec3 across_edge(const Vec3& v, const Vec3& along) noexcept {
+  return v - along * (along.dot(v) / along.squaredNorm());
+}
+
+/// The same from a point that is `away` from the closest corner, or the closest side's line.
+double time_until(const Vec3& away, const Vec3& z, const Facet& facet, Feature feature,
+                  double level) noexcept {
+  if (is_face(feature)) return 0.0;
+  if (is_vertex(feature)) return time_until(away, z, level);
+  return time_until(away, across_edge(z, facet.edge(number_of(feature))), level);
+}
+
+/// The same from the tip, by the corner or side alone, so that all facets that share it agree to
+/// the last bit on when it is met: then their corners decide which was first, and not rounding.
+double time_from_tip(const Vec3& z, const Facet& facet, Feature feature, double level) noexcept {
+  if (is_face(feature)) return 0.0;
+  const int number = number_of(feature);
+  if (is_vertex(feature)) return time_until(-facet.corners()[number], z, level);
+  const Vec3 along = facet.edge(number);
+  const Vec3& first = facet.corners()[number == 2 ? 0 : number];
+  return time_until(-across_edge(first, along), across_edge(z, along), level);
+}
+
 /// Of all blends of a falling and a rising normal, the one that is level along the motion.
 Vec3 level_blend(const Vec3& falling, double fall, const Vec3& rising, double rise) noexcept {
   return unit(rise * falling - fall * rising);
@@ -45,17 +84,24 @@ Vec3 level_blend(const Vec3& falling, double fall, const Vec3& rising, double ri
 
 }  // namespace
 
-Facet::Facet(const Triangle& triangle, const Vec3& tip, TriangleId source) noexcept
-    : source_(source) {
-  const Triangle relative{triangle[0] - tip, triangle[1] - tip, triangle[2] - tip};
-  const CornerOrder order = corner_order(relative);
-  for (int i = 0; i < 3; ++i) corners_[i] = relative[order.corner[i]];
-  normal_ = normal_at(Vec3::Zero(), distance_);
+Triangle ordered_relative(const Triangle& triangle, const Vec3& tip) noexcept {
+  const CornerOrder order = corner_order(triangle);
+  return {triangle[order.corner[0]] - tip, triangle[order.corner[1]] - tip,
+          triangle[order.corner[2]] - tip};
 }
 
-Vec3 Facet::normal_at(const Vec3& point, double& distance) const noexcept {
-  const ClosestPoint closest = closest_point(corners_, point);
+Facet::Facet(const Triangle& triangle, const Vec3& tip, TriangleId source) noexcept
+    : Facet(ordered_relative(triangle, tip), source) {}
+
+Facet::Facet(const Triangle& ordered, TriangleId source) noexcept
+    : corners_(ordered), source_(source) {
+  normal_ = normal_at(Vec3::Zero(), distance_, feature_);
+}
+
+Vec3 Facet::normal_at(const Vec3& point, double& distance, Feature& feature) const noexcept {
+  const ClosestPoint closest = closest_point_of_ordered(corners_, point);
   distance = closest.distance;
+  feature = closest.feature;
   const Vec3 away = unit(-closest.offset);
   const auto proven = [&](const Vec3& n) { return n.dot(point) - support(n); };
   Vec3 best = is_edge(closest.feature) ? across(away, number_of(closest.feature)) : away;
@@ -76,23 +122,28 @@ Vec3 Facet::normal_at(const Vec3& point, double& distance) const noexcept {
   return best;
 }
 
+/// On either side, for the order of the corners does not tell; zero without an area.
+Vec3 Facet::plane_normal() const noexcept {
+  return unit((corners_[1] - corners_[0]).cross(corners_[2] - corners_[0]));
+}
+
 /// The facet's own normal, on the side from which its closest point was found.
 Vec3 Facet::facing(const ClosestPoint& closest) const noexcept {
-  const Vec3 normal = unit_normal(corners_);
+  const Vec3 normal = plane_normal();
   return normal.dot(closest.offset) <= 0.0 ? normal : Vec3(-normal);
 }
 
 /// A direction made perpendicular to an edge: along it, a rounding would tell over its whole
 /// length.
 Vec3 Facet::across(const Vec3& n, int edge) const noexcept {
-  const Vec3 along = corners_[(edge + 1) % 3] - corners_[edge];
+  const Vec3 along = this->edge(edge);
   const double length2 = along.squaredNorm();
   if (!(length2 > 0.0)) return n;
   return unit(n - along * (n.dot(along) / length2));
 }
 
 Vec3 Facet::face_normal() const noexcept {
-  const Vec3 normal = unit_normal(corners_);
+  const Vec3 normal = plane_normal();
   return normal.dot(corners_[0]) <= 0.0 ? normal : Vec3(-normal);
 }
 
@@ -115,17 +166,8 @@ Vec3 Facet::normal_around(int edge, double level) const noexcept {
   return Vec3::Zero();
 }
 
-double Facet::support(const Vec3& n) const noexcept {
-  return std::max({n.dot(corners_[0]), n.dot(corners_[1]), n.dot(corners_[2])});
-}
-
 bool Facet::before(const Facet& other) const noexcept {
   return comes_before(corners_, other.corners_);
-}
-
-bool separates(const Vec3& n, const Facet& facet, const Vec3& z, double level,
-               double slack) noexcept {
-  return holds(line_of(n, facet, z, level), slack);
 }
 
 std::optional<Vec3> proof_of_clearance(const Facet& facet, const Vec3& z, double level,
@@ -147,7 +189,7 @@ std::optional<Vec3> proof_of_clearance(const Facet& facet, const Vec3& z, double
   // blend of their normals, and better; it is exact where both look at the same corner or edge.
   for (int cut = 0; cut < most_cuts; ++cut) {
     const Vec3 blend = level_blend(n_left, left.slope, n_right, right.slope);
-    if (separates(blend, facet, z, level, slack)) return blend;
+    if (separates(blend, facet.corners(), z, level, slack)) return blend;
     const double t = (left.at_0 - right.at_0) / (right.slope - left.slope);
     const Vec3 n = facet.normal_at(t * z, distance);
     if (!(distance - level >= -slack)) return std::nullopt;
@@ -168,7 +210,11 @@ Contact first_contact(const Facet& facet, const Vec3& z, double level, double sl
                       double latest) noexcept {
   Vec3 n = facet.normal();
   double distance = facet.distance();
+  Feature feature = facet.feature();
   double time = 0.0;
+  // What is given up is later than `latest` by more than the last digits can make up for.
+  const double digits = slack / z.norm();
+  const double too_late = latest + digits;
   for (int i = 0; i < most_newton_steps; ++i) {
     const Line line = line_of(n, facet, z, level);
     if (!(line.slope < 0.0)) break;
@@ -176,11 +222,29 @@ Contact first_contact(const Facet& facet, const Vec3& z, double level, double sl
     time = -line.at_0 / line.slope;
     // Later than `latest` shall mean later at the end as well, whatever rounding does.
     if (i > 0) time = std::max(time, last);
-    // Close enough, too late, or as far as numbers go.
-    if (distance - level <= slack || time > latest || !(time > last && time < 1.0)) break;
-    n = facet.normal_at(time * z, distance);
+    if (distance - level <= slack) {
+      const double direct = time_from_tip(z, facet, feature, level);
+      if (direct > 0.0 && std::abs(direct - time) <= digits) time = direct;
+      return {time, plane_along(n, facet, level), true, last * z - distance * n};
+    }
+    // Too late, or as far as numbers go.
+    if (time > too_late || !(time > last && time < 1.0)) break;
+    const double leap = last + time_until(distance * n, z, facet, feature, level + 0.5 * slack);
+    if (leap > time && leap < 1.0) {
+      double there = 0.0;
+      Feature at_leap;
+      const Vec3 normal = facet.normal_at(leap * z, there, at_leap);
+      if (there >= level && normal.dot(z) < 0.0) {
+        n = normal;
+        distance = there;
+        feature = at_leap;
+        time = leap;
+        continue;
+      }
+    }
+    n = facet.normal_at(time * z, distance, feature);
   }
-  return {time, {n, facet.support(n) + level, facet.source()}};
+  return {time, plane_along(n, facet, level)};
 }
 
 }  // namespace keepout

@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "keepout/activation/planes.h"
+#include "keepout/index/wide_bvh.h"
+#include "paper_search.h"
 
 namespace keepout {
 namespace {
@@ -27,7 +29,12 @@ struct EdgesAt {
 }  // namespace
 
 PaperRule::PaperRule(std::shared_ptr<const Mesh> mesh)
-    : mesh_(std::move(mesh)), adjacency_(*mesh_) {}
+    : mesh_(std::move(mesh)), adjacency_(std::make_shared<const Adjacency>(*mesh_)) {}
+
+std::unique_ptr<Activation> PaperRule::searching(const SpatialIndex& index) const {
+  const auto* const tree = dynamic_cast<const WideBvh*>(&index);
+  return tree != nullptr ? std::make_unique<PaperSearch>(*this, *tree) : nullptr;
+}
 
 Opening PaperRule::start(const Surroundings& around, HalfSpaceBuffer& planes) noexcept {
   for (const Hit& hit : around.hits) {
@@ -49,10 +56,7 @@ std::optional<HalfSpace> PaperRule::plane_of(const Surroundings& around,
   // Condition 2: on a ridge, and nearest for the neighbour as well.
   switch (role_in_condition_2(around, hit)) {
     case Role::speaks: {
-      if (!touches(around, hit)) {
-        const Vec3 away = -hit.closest.offset / hit.closest.distance;
-        return plane_through(hit, away, around.margin);
-      }
+      if (!touches(around, hit)) return plane_through(hit, away_from(hit), around.margin);
       if (normal.isZero(0.0)) return std::nullopt;
       return plane_through(hit, normal, around.margin);
     }
@@ -72,9 +76,9 @@ PaperRule::Role PaperRule::role_in_condition_2(const Surroundings& around,
                                                const Hit& hit) const noexcept {
   Role role = Role::none;
   for (const int edge : EdgesAt(hit.closest.feature)) {
-    const EdgeKind kind = adjacency_.kind(hit.triangle, edge);
+    const EdgeKind kind = adjacency_->kind(hit.triangle, edge);
     if (kind != EdgeKind::convex && kind != EdgeKind::coplanar) continue;
-    const TriangleId neighbor = adjacency_.neighbor(hit.triangle, edge);
+    const TriangleId neighbor = adjacency_->neighbor(hit.triangle, edge);
     const ClosestPoint theirs = closest_point(mesh_->triangle(neighbor), around.tip);
     if (is_face(theirs.feature) || theirs.offset != hit.closest.offset) continue;
     // On the surface each face speaks for itself, as there is no shared plane.
@@ -86,7 +90,7 @@ PaperRule::Role PaperRule::role_in_condition_2(const Surroundings& around,
 
 bool PaperRule::touches_a_valley(const Hit& hit) const noexcept {
   for (const int edge : EdgesAt(hit.closest.feature)) {
-    if (adjacency_.kind(hit.triangle, edge) == EdgeKind::concave) return true;
+    if (adjacency_->kind(hit.triangle, edge) == EdgeKind::concave) return true;
   }
   return false;
 }

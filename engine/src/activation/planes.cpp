@@ -7,10 +7,6 @@
 
 namespace keepout {
 
-HalfSpace plane_through(const Hit& hit, const Vec3& normal, double margin) noexcept {
-  return {normal, normal.dot(hit.closest.offset) + margin, hit.triangle};
-}
-
 bool on_positive_side(const Surroundings& around, const Hit& hit, const Vec3& normal) noexcept {
   return -normal.dot(hit.closest.offset) >= -around.rounding;
 }
@@ -43,6 +39,11 @@ bool satisfies(const Vec3& motion, std::span<const HalfSpace> planes, double rou
   return std::all_of(planes.begin(), planes.end(), [&](const HalfSpace& plane) {
     return plane.normal.dot(motion) >= plane.offset - 0.5 * rounding;
   });
+}
+
+bool has_plane(TriangleId source, std::span<const HalfSpace> planes) noexcept {
+  return std::any_of(planes.begin(), planes.end(),
+                     [&](const HalfSpace& plane) { return plane.source == source; });
 }
 
 }  // namespace keepout

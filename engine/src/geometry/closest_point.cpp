@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "closest_on_segment.h"
 #include "corner_order.h"
 
 namespace keepout {
@@ -12,37 +13,20 @@ namespace {
 // A height below this share of the longest side is rounding: such a triangle is its longest edge.
 constexpr double needle = 1e-14;
 
-/// Where on the segment from a to b the origin's nearest point lies.
-struct OnSegment {
-  Vec3 point;
-  int end;  // 0: at a, 1: at b, -1: in between
-};
-
-OnSegment closest_on_segment(const Vec3& a, const Vec3& b) noexcept {
-  const Vec3 along = b - a;
-  const double from_a = -a.dot(along);
-  const double from_b = b.dot(along);
-  if (!(from_a > 0.0)) return {a, 0};
-  if (!(from_b > 0.0)) return {b, 1};
-  // Measured from the nearer end, where the rounding of the parameter matters least.
-  const double length2 = along.squaredNorm();
-  if (from_a <= from_b) return {a + along * (from_a / length2), -1};
-  return {b - along * (from_b / length2), -1};
-}
-
 /// The origin's projection on the plane of a triangle, if it falls inside. The plane's frame is the
 /// longest side and the height upon it, orthogonalised twice, so that even needles lose no digits.
 bool project_inside(const Vec3& a, const Vec3& b, const Vec3& apex, Vec3& projection) noexcept {
   const Vec3 base = b - a;
   const double base2 = base.squaredNorm();
+  const double per_base2 = 1.0 / base2;
   const Vec3 side = apex - a;
-  const double foot = side.dot(base) / base2;
+  const double foot = side.dot(base) * per_base2;
   Vec3 height = side - foot * base;
-  height -= (height.dot(base) / base2) * base;
+  height -= (height.dot(base) * per_base2) * base;
   const double height2 = height.squaredNorm();
   if (!(height2 > needle * needle * base2)) return false;
 
-  const double along = -a.dot(base) / base2;
+  const double along = -a.dot(base) * per_base2;
   const double up = -a.dot(height) / height2;  // barycentric coordinate of the apex
   const double at_b = along - up * foot;
   if (!(up > 0.0 && at_b > 0.0 && up + at_b < 1.0)) return false;
@@ -64,8 +48,28 @@ constexpr Feature vertex_feature(int i) noexcept {
 
 ClosestPoint closest_point(const Triangle& triangle, const Vec3& query) noexcept {
   const CornerOrder order = corner_order(triangle);
-  std::array<Vec3, 3> p;
-  for (int i = 0; i < 3; ++i) p[i] = triangle[order.corner[i]] - query;
+  Triangle ordered;
+  for (int i = 0; i < 3; ++i) ordered[i] = triangle[order.corner[i]];
+  ClosestPoint closest = closest_point_of_ordered(ordered, query);
+  if (is_edge(closest.feature)) {
+    const int from = number_of(closest.feature);
+    closest.feature = edge_between(order.corner[from], order.corner[(from + 1) % 3]);
+  } else if (is_vertex(closest.feature)) {
+    closest.feature = vertex_feature(order.corner[number_of(closest.feature)]);
+  }
+  return closest;
+}
+
+ClosestPoint closest_point_of_ordered(const Triangle& triangle, const Vec3& query) noexcept {
+  const std::array<Vec3, 3> p{triangle[0] - query, triangle[1] - query, triangle[2] - query};
+  for (int corner = 0; corner < 3; ++corner) {
+    const Vec3& its = p[corner];
+    // Beyond both sides that meet there.
+    const auto is_beyond = [&](const Vec3& other) { return !(-its.dot(other - its) > 0.0); };
+    if (is_beyond(p[(corner + 1) % 3]) && is_beyond(p[(corner + 2) % 3])) {
+      return {its, its.norm(), vertex_feature(corner)};
+    }
+  }
 
   constexpr std::array<std::array<int, 2>, 3> sides{{{0, 1}, {1, 2}, {0, 2}}};
   int longest = 0;
@@ -94,9 +98,8 @@ ClosestPoint closest_point(const Triangle& triangle, const Vec3& query) noexcept
     if (best2 >= 0.0 && !(distance2 < best2)) continue;
     best2 = distance2;
     best.offset = on.point;
-    const int i = order.corner[side[0]];
-    const int j = order.corner[side[1]];
-    best.feature = on.end < 0 ? edge_between(i, j) : vertex_feature(on.end == 0 ? i : j);
+    best.feature = on.end < 0 ? edge_between(side[0], side[1])
+                              : vertex_feature(on.end == 0 ? side[0] : side[1]);
   }
   best.distance = std::sqrt(best2);
   return best;

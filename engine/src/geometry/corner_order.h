@@ -3,7 +3,7 @@
 #pragma once
 
 #include <array>
-#include <utility>
+#include <cstddef>
 
 #include "keepout/geometry/triangle.h"
 
@@ -16,24 +16,24 @@ struct CornerOrder {
   bool odd;  // an odd permutation of the winding
 };
 
+/// Of corners at the same place, the earlier in the winding comes first.
 inline CornerOrder corner_order(const Triangle& triangle) noexcept {
+  // Without branches, which no processor could foresee: each corner's place is the number of those
+  // before it, and equal ones keep their order.
   const auto before = [&](int i, int j) {
     const Vec3& a = triangle[i];
     const Vec3& b = triangle[j];
-    if (a.x() != b.x()) return a.x() < b.x();
-    if (a.y() != b.y()) return a.y() < b.y();
-    return a.z() < b.z();
+    const int in_plane = int{a.y() < b.y()} | (int{a.y() == b.y()} & int{a.z() < b.z()});
+    return int{a.x() < b.x()} | (int{a.x() == b.x()} & in_plane);
   };
-  CornerOrder order{{0, 1, 2}, false};
-  const auto sort_pair = [&](int i, int j) {
-    if (before(order.corner[j], order.corner[i])) {
-      std::swap(order.corner[i], order.corner[j]);
-      order.odd = !order.odd;
-    }
-  };
-  sort_pair(0, 1);
-  sort_pair(1, 2);
-  sort_pair(0, 1);
+  const int one_before_zero = before(1, 0);
+  const int two_before_zero = before(2, 0);
+  const int two_before_one = before(2, 1);
+  CornerOrder order;
+  order.corner[one_before_zero + two_before_zero] = 0;
+  order.corner[1 - one_before_zero + two_before_one] = 1;
+  order.corner[2 - two_before_zero - two_before_one] = 2;
+  order.odd = ((one_before_zero ^ two_before_zero ^ two_before_one) & 1) != 0;
   return order;
 }
 

@@ -6,122 +6,199 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
-#include <numeric>
+#include <cmath>
 #include <utility>
+
+#include "keepout/error.h"
+#include "leaf_fill.h"
+#include "median_split.h"
+#include "oriented_extent.h"
+#include "threads.h"
 
 namespace keepout {
 namespace {
 
-constexpr std::uint32_t leaf_size = 6;
-
-// The exact kernel and the box test round differently, each by some 1e-15 of the lengths involved.
-// A box is passed over only when it is farther away than the radius by clearly more than that.
-constexpr double rounding = 1e-13;
-
 /// Orthonormal rows, the direction of largest spread first. The eigenvectors only choose the frame;
 /// the cross products make it orthonormal to rounding, which the box test relies on.
 Eigen::Matrix3d principal_axes(const Eigen::Matrix3d& covariance) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
-  if (solver.info() == Eigen::Success && solver.eigenvectors().allFinite()) {
-    const Vec3 first = solver.eigenvectors().col(2).normalized();
-    const Vec3 second = first.cross(solver.eigenvectors().col(1)).cross(first).normalized();
-    axes.row(0) = first;
-    axes.row(1) = second;
-    axes.row(2) = first.cross(second);
-  }
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
+  solver.computeDirect(covariance);
+  if (!solver.eigenvectors().allFinite()) return axes;
+  const Vec3 first = solver.eigenvectors().col(2).normalized();
+  if (!(std::abs(first.squaredNorm() - 1.0) < 1e-6)) return axes;
+  Vec3 second = first.cross(solver.eigenvectors().col(1)).cross(first).normalized();
+  if (!(std::abs(second.squaredNorm() - 1.0) < 1e-6)) second = first.unitOrthogonal();
+  axes.row(0) = first;
+  axes.row(1) = second;
+  axes.row(2) = first.cross(second);
   return axes;
 }
 
+/// The middle of the triangles, from the middle of the mesh, and how they spread.
+struct Spread {
+  Vec3 mean;                   // [length]
+  Eigen::Matrix3d covariance;  // times their number [length^2]
+};
+
+/// In one pass, from the first of them: what is subtracted in the end is of the size of the rest.
+Spread spread_of(std::span<const Center> centers) {
+  const std::array<float, 3> from = centers.front().position;
+  double x = 0, y = 0, z = 0, xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
+  for (const Center& center : centers) {
+    const double dx = static_cast<double>(center.position[0]) - static_cast<double>(from[0]);
+    const double dy = static_cast<double>(center.position[1]) - static_cast<double>(from[1]);
+    const double dz = static_cast<double>(center.position[2]) - static_cast<double>(from[2]);
+    x += dx;
+    y += dy;
+    z += dz;
+    xx += dx * dx;
+    xy += dx * dy;
+    xz += dx * dz;
+    yy += dy * dy;
+    yz += dy * dz;
+    zz += dz * dz;
+  }
+  const auto count = static_cast<double>(centers.size());
+  const Vec3 mean = Vec3(x, y, z) / count;
+  Eigen::Matrix3d about_first;
+  about_first << xx, xy, xz, xy, yy, yz, xz, yz, zz;
+  return {mean + Vec3(static_cast<double>(from[0]), static_cast<double>(from[1]),
+                      static_cast<double>(from[2])),
+          about_first - count * mean * mean.transpose()};
+}
+
+constexpr std::size_t worth_a_thread = 4096;  // triangles
+
+class Builder {
+ public:
+  Builder(const Mesh& mesh, std::span<PdNode> nodes, std::span<LeafBlock> leaves, double error)
+      : mesh_(mesh),
+        middle_(0.5 * (mesh.bounds().low + mesh.bounds().high)),
+        coordinate_error_(error),
+        nodes_(nodes),
+        leaves_(leaves) {}
+
+  void build(unsigned threads) {
+    {
+      BlockVector<Center> centers = centers_of(mesh_, threads);
+      BlockVector<Center> spare(centers.size());
+      divide(centers, spare, 0, 0, threads);
+    }
+    for_ranges(threads, 0, leaves_.size(), [this](std::size_t begin, std::size_t end) {
+      fill_leaves(mesh_, leaves_.subspan(begin, end - begin), [](std::size_t, const FloatBox&) {});
+    });
+    enclose(0, 0, threads);
+  }
+
+ private:
+  using Centers = std::span<Center>;
+
+  /// Orients the box of a node, and of all below it, and leaves their triangles in leaves.
+  void divide(Centers centers, Centers spare, std::size_t self, std::size_t first_leaf,
+              unsigned threads) {
+    PdNode& node = nodes_[self];
+    const Spread spread = spread_of(centers);
+    const Eigen::Matrix3d axes = principal_axes(spread.covariance);
+    for (int axis = 0; axis < 3; ++axis) {
+      node.center[axis] = static_cast<float>(middle_[axis] + spread.mean[axis]);
+      for (int k = 0; k < 3; ++k) node.across[axis][k] = static_cast<float>(axes(k, axis));
+    }
+    const std::size_t leaves = (centers.size() + LeafBlock::lanes - 1) / LeafBlock::lanes;
+    node.leaves = static_cast<std::uint32_t>(leaves);
+    if (leaves == 1) return name_triangles(centers, leaves_[first_leaf]);
+
+    const std::size_t near = leaves / 2;
+    const std::size_t middle = near * LeafBlock::lanes;
+    split(centers, spare, middle, node);
+    run_both(
+        centers.size() >= worth_a_thread ? threads : 1,
+        [&] {
+          divide(spare.first(middle), centers.first(middle), self + 1, first_leaf, threads / 2);
+        },
+        [&] {
+          divide(spare.subspan(middle), centers.subspan(middle), self + 2 * near, first_leaf + near,
+                 threads - threads / 2);
+        });
+  }
+
+  /// Along the direction of the largest spread.
+  static void split(Centers from, Centers to, std::size_t middle, const PdNode& node) {
+    const auto along = [x = node.across[0][0], y = node.across[1][0],
+                        z = node.across[2][0]](const Center& center) {
+      return x * center.position[0] + y * center.position[1] + z * center.position[2];
+    };
+    float low = along(from.front());
+    float high = low;
+    for (const Center& center : from) {
+      const float at = along(center);
+      low = std::min(low, at);
+      high = std::max(high, at);
+    }
+    split_at(from, to, middle, low, high, along);
+  }
+
+  /// Sizes the box of a node, and of all below it.
+  void enclose(std::size_t self, std::size_t first_leaf, unsigned threads) {
+    PdNode& node = nodes_[self];
+    const std::span inside = leaves_.subspan(first_leaf, node.leaves);
+    const OrientedExtent extent = oriented_extent(node, inside);
+    // The middle of the extents is the better centre, to the rounding of its coordinates; how much
+    // that shifts the extents is known exactly.
+    Vec3 shift = Vec3::Zero();  // along the mesh's axes, then along the directions
+    for (int axis = 0; axis < 3; ++axis) {
+      double to_middle = 0.0;
+      for (int k = 0; k < 3; ++k) {
+        to_middle +=
+            0.5 * (double{extent.low[k]} + double{extent.high[k]}) * double{node.across[axis][k]};
+      }
+      const auto moved = static_cast<float>(double{node.center[axis]} + to_middle);
+      shift[axis] = double{moved} - double{node.center[axis]};
+      node.center[axis] = moved;
+    }
+    double reach = 0.0;
+    for (int k = 0; k < 3; ++k) reach += std::max(double{extent.high[k]}, -double{extent.low[k]});
+    for (int k = 0; k < 3; ++k) {
+      double along = 0.0;
+      for (int axis = 0; axis < 3; ++axis) along += shift[axis] * double{node.across[axis][k]};
+      const double half = std::max(double{extent.high[k]} - along, along - double{extent.low[k]});
+      node.half[k] = static_cast<float>(half + outward * reach + 2.0 * coordinate_error_) + 1e-36f;
+    }
+    if (node.leaves == 1) return;
+    const std::size_t near = node.leaves / 2;
+    run_both(
+        node.leaves * LeafBlock::lanes >= worth_a_thread ? threads : 1,
+        [&] { enclose(self + 1, first_leaf, threads / 2); },
+        [&] { enclose(self + 2 * near, first_leaf + near, threads - threads / 2); });
+  }
+
+  // The extents are off by 6 roundings of the farthest corner's distance, a query's place in the
+  // box by 8 of the box's size.
+  static constexpr double outward = 64 * 0x1p-24;
+
+  const Mesh& mesh_;
+  const Vec3 middle_;  // of the mesh's bounds: where centers are measured from [length]
+  const double coordinate_error_;
+  std::span<PdNode> nodes_;
+  std::span<LeafBlock> leaves_;
+};
+
 }  // namespace
 
-PdTree::PdTree(std::shared_ptr<const Mesh> mesh) : mesh_(std::move(mesh)) {
-  const auto count = static_cast<std::uint32_t>(mesh_->triangle_count());
-  triangles_.resize(count);
-  std::iota(triangles_.begin(), triangles_.end(), TriangleId{0});
-  std::vector<Vec3> centroids(count);
-  for (TriangleId t = 0; t < count; ++t) {
-    const Triangle corners = mesh_->triangle(t);
-    centroids[t] = (corners[0] + corners[1] + corners[2]) / 3.0;
+PdTree::PdTree(std::shared_ptr<const Mesh> mesh, unsigned threads) : mesh_(std::move(mesh)) {
+  const std::size_t count = mesh_->triangle_count();
+  if (count > most_triangles) {
+    throw Error("a pd_tree holds at most 2^31 - 1 triangles: split or decimate the mesh");
   }
-  nodes_.reserve(count / 2 + 1);
-  build(0, count, centroids);
-  nodes_.shrink_to_fit();
-}
-
-std::uint32_t PdTree::build(std::uint32_t begin, std::uint32_t end,
-                            std::span<const Vec3> centroids) {
-  const auto self = static_cast<std::uint32_t>(nodes_.size());
-  nodes_.push_back(enclose(begin, end, centroids));
-  if (end - begin <= leaf_size) return self;
-
-  const Vec3 direction = nodes_[self].axes.row(0);
-  const std::uint32_t middle = begin + (end - begin) / 2;
-  std::nth_element(triangles_.begin() + begin, triangles_.begin() + middle,
-                   triangles_.begin() + end, [&](TriangleId a, TriangleId b) {
-                     return direction.dot(centroids[a]) < direction.dot(centroids[b]);
-                   });
-  build(begin, middle, centroids);
-  const std::uint32_t far_child = build(middle, end, centroids);
-  nodes_[self].far_child = far_child;
-  return self;
-}
-
-PdTree::Node PdTree::enclose(std::uint32_t begin, std::uint32_t end,
-                             std::span<const Vec3> centroids) const {
-  const std::span inside(triangles_.data() + begin, end - begin);
-  Vec3 mean = Vec3::Zero();
-  for (const TriangleId t : inside) mean += centroids[t];
-  mean /= static_cast<double>(inside.size());
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-  for (const TriangleId t : inside) {
-    const Vec3 from_mean = centroids[t] - mean;
-    covariance += from_mean * from_mean.transpose();
-  }
-
-  Node node{principal_axes(covariance), mean, Vec3::Zero(), begin, end, 0};
-  Vec3 low = Vec3::Zero();
-  Vec3 high = Vec3::Zero();
-  for (const TriangleId t : inside) {
-    for (const VertexId v : mesh_->corners(t)) {
-      const Vec3 local = node.axes * (mesh_->vertex(v) - mean);
-      low = low.cwiseMin(local);
-      high = high.cwiseMax(local);
-    }
-  }
-  node.center += node.axes.transpose() * (0.5 * (low + high));
-  node.half = 0.5 * (high - low);
-  // Rounding of the centre, which is that of the mesh's own coordinates, goes into the box.
-  node.half.array() += rounding * (node.half.maxCoeff() + mean.cwiseAbs().maxCoeff());
-  return node;
-}
-
-void PdTree::collect(const Ball& ball, TriangleBuffer& candidates) const noexcept {
-  // Twice as deep as the tree can be: the split at the median halves 2^32 triangles 32 times.
-  std::array<std::uint32_t, 64> stack;
-  int waiting = 0;
-  std::uint32_t n = 0;
-  for (;;) {
-    const Node& node = nodes_[n];
-    const Vec3 local = node.axes * (ball.center - node.center);
-    const Vec3 beyond = (local.cwiseAbs() - node.half).cwiseMax(0.0);
-    const double slack = rounding * (local.cwiseAbs().sum() + node.half.sum() + ball.radius);
-    const double reach = ball.radius + slack;
-    if (beyond.squaredNorm() <= reach * reach) {
-      if (node.far_child != 0) {
-        stack[waiting++] = node.far_child;
-        ++n;
-        continue;
-      }
-      for (std::uint32_t i = node.begin; i < node.end; ++i) candidates.push(triangles_[i]);
-    }
-    if (waiting == 0) return;
-    n = stack[--waiting];
-  }
+  threads = thread_count(threads);
+  coordinate_error_ = float_error(*mesh_, threads);
+  leaves_.resize((count + LeafBlock::lanes - 1) / LeafBlock::lanes);
+  nodes_.resize(2 * leaves_.size() - 1);
+  Builder(*mesh_, nodes_, leaves_, coordinate_error_).build(threads);
 }
 
 std::size_t PdTree::memory() const noexcept {
-  return nodes_.capacity() * sizeof(Node) + triangles_.capacity() * sizeof(TriangleId);
+  return nodes_.capacity() * sizeof(PdNode) + leaves_.capacity() * sizeof(LeafBlock);
 }
 
 }  // namespace keepout

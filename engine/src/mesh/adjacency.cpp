@@ -5,7 +5,10 @@
 
 #include <Eigen/Geometry>
 #include <span>
+#include <vector>
 
+#include "../huge_pages.h"
+#include "../parallel.h"
 #include "half_edges.h"
 
 namespace keepout {
@@ -16,11 +19,9 @@ constexpr double flat = 1e-12;
 
 constexpr int next(int corner) noexcept { return (corner + 1) % 3; }
 
-}  // namespace
-
-EdgeKind bend(const Triangle& one, int edge, const Triangle& other, int other_edge) noexcept {
-  const Vec3 normal_one = unit_normal(one);
-  const Vec3 normal_other = unit_normal(other);
+/// As `bend`, of triangles whose unit normals are known.
+EdgeKind bend(const Triangle& one, const Vec3& normal_one, int edge, const Triangle& other,
+              const Vec3& normal_other, int other_edge) noexcept {
   // The sine of the turn from the one normal to the other about the edge has the sign of -N_a . v,
   // and is the same whichever of the two comes first.
   const Vec3 along = one[next(edge)] - one[edge];
@@ -32,22 +33,43 @@ EdgeKind bend(const Triangle& one, int edge, const Triangle& other, int other_ed
   return EdgeKind::coplanar;
 }
 
+std::vector<Vec3> normals_of(const Mesh& mesh) {
+  auto normals = vector_in_huge_pages<Vec3>(mesh.triangle_count());
+  share_ranges(normals.size(), processors(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) normals[t] = mesh.normal(static_cast<TriangleId>(t));
+  });
+  return normals;
+}
+
+}  // namespace
+
+EdgeKind bend(const Triangle& one, int edge, const Triangle& other, int other_edge) noexcept {
+  return bend(one, unit_normal(one), edge, other, unit_normal(other), other_edge);
+}
+
 Adjacency::Adjacency(const Mesh& mesh)
     : neighbors_(mesh.triangle_count(), {no_triangle, no_triangle, no_triangle}),
       kinds_(mesh.triangle_count(), {EdgeKind::boundary, EdgeKind::boundary, EdgeKind::boundary}) {
+  const HalfEdges half_edges(mesh);
+  const std::vector<Vec3> normals = normals_of(mesh);
   const auto set_kind = [&](std::span<const HalfEdge> sides, EdgeKind kind) {
     for (const HalfEdge& side : sides) kinds_[side.triangle][side.edge] = kind;
   };
-  for_each_edge(mesh, [&](VertexId, std::span<const HalfEdge> sides) {
+  const auto join = [&](VertexId, std::span<const HalfEdge> sides) {
     if (sides.size() > 2) set_kind(sides, EdgeKind::non_manifold);
     if (sides.size() != 2) return;
     const HalfEdge& a = sides[0];
     const HalfEdge& b = sides[1];
     neighbors_[a.triangle][a.edge] = b.triangle;
     neighbors_[b.triangle][b.edge] = a.triangle;
-    set_kind(sides, a.upwards == b.upwards ? EdgeKind::inconsistent
-                                           : bend(mesh.triangle(a.triangle), a.edge,
-                                                  mesh.triangle(b.triangle), b.edge));
+    set_kind(sides, a.upwards == b.upwards
+                        ? EdgeKind::inconsistent
+                        : bend(mesh.triangle(a.triangle), normals[a.triangle], a.edge,
+                               mesh.triangle(b.triangle), normals[b.triangle], b.edge));
+  };
+  // Each side is on one edge only, so no two threads write to the same place.
+  share_ranges(half_edges.vertex_count(), processors(), [&](std::size_t first, std::size_t last) {
+    half_edges.for_each_edge(first, last, join);
   });
 }
 

@@ -5,69 +5,36 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
-#include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <fstream>
 #include <limits>
-#include <memory>
-#include <optional>
-#include <random>
 #include <span>
 #include <string>
+#include <vector>
 
+#include "../file_replacement.h"
+#include "../huge_pages.h"
 #include "keepout/error.h"
+#include "stl_records.h"
+#include "weld_blocks.h"
 
 namespace keepout {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "STL files are little-endian");
-
-constexpr std::size_t header_size = 80;
-constexpr std::size_t preamble_size = header_size + sizeof(std::uint32_t);
-
-// A record is a normal, three corners and two bytes of attributes, without padding.
-constexpr std::size_t record_size = 50;
-constexpr std::size_t corners_offset = 12;
 constexpr std::size_t records_at_once = 20'000;  // one megabyte
-
-using RecordCorners = std::array<float, 9>;
-
-/// The triangles that the header declares, if the length of the file agrees.
-std::optional<std::uint32_t> declared_triangles(std::ifstream& file, std::uintmax_t size) {
-  std::array<char, preamble_size> preamble;
-  if (!file.read(preamble.data(), preamble.size())) return std::nullopt;
-  std::uint32_t count;
-  std::memcpy(&count, preamble.data() + header_size, sizeof count);
-  if (size != preamble_size + record_size * std::uintmax_t{count}) return std::nullopt;
-  return count;
-}
 
 /// Appends the triangle of one record; false if a coordinate is not finite.
 bool append(const char* record, Surface& surface) {
-  RecordCorners c;
-  std::memcpy(c.data(), record + corners_offset, sizeof c);
-  bool finite = true;
-  for (const float x : c) finite &= std::isfinite(x);
+  const StlCorners c = stl_corners(record);
   const auto first = static_cast<VertexId>(surface.vertices.size());
   surface.vertices.emplace_back(c[0], c[1], c[2]);
   surface.vertices.emplace_back(c[3], c[4], c[5]);
   surface.vertices.emplace_back(c[6], c[7], c[8]);
   surface.triangles.push_back({first, first + 1, first + 2});
-  return finite;
+  return is_finite(c);
 }
 
-/// A name beside the file that no other writer will choose.
-std::filesystem::path temporary_beside(const std::filesystem::path& path) {
-  std::random_device random;
-  std::filesystem::path temporary = path;
-  temporary += std::to_string(random());
-  temporary += ".part";
-  return temporary;
-}
-
-void write_records(std::ofstream& file, std::span<const Vec3> vertices,
+void write_records(FileReplacement& file, std::span<const Vec3> vertices,
                    std::span<const Corners> triangles) {
   for (const Corners& corners : triangles) {
     Triangle t;
@@ -78,7 +45,7 @@ void write_records(std::ofstream& file, std::span<const Vec3> vertices,
     for (const Vec3& v : {normal, t[0], t[1], t[2]}) {
       for (int axis = 0; axis < 3; ++axis) values[n++] = static_cast<float>(v[axis]);
     }
-    std::array<char, record_size> record{};
+    std::array<char, stl_record_size> record{};
     std::memcpy(record.data(), values.data(), sizeof values);
     file.write(record.data(), record.size());
   }
@@ -95,21 +62,15 @@ void write(const std::filesystem::path& path, std::span<const Vec3> vertices,
       fail("a coordinate does not fit single precision, so STL cannot hold it");
     }
   }
-  const std::filesystem::path temporary = temporary_beside(path);
-  std::ofstream file(temporary, std::ios::binary | std::ios::trunc);
-  std::array<char, header_size> header{};
+  std::array<char, stl_header_size> header{};
   constexpr char text[] = "binary STL written by keepout";  // must not begin with "solid"
   std::memcpy(header.data(), text, sizeof text - 1);
   const auto count = static_cast<std::uint32_t>(triangles.size());
+  FileReplacement file(path);
   file.write(header.data(), header.size());
-  file.write(reinterpret_cast<const char*>(&count), sizeof count);
+  file.write(&count, sizeof count);
   write_records(file, vertices, triangles);
-  file.close();
-  std::error_code error;
-  if (file) std::filesystem::rename(temporary, path, error);
-  if (!file || error) {
-    std::error_code ignored;
-    std::filesystem::remove(temporary, ignored);
+  if (!file.commit()) {
     fail("cannot be written; check the directory, its permissions and the space on the disk");
   }
 }
@@ -117,45 +78,44 @@ void write(const std::filesystem::path& path, std::span<const Vec3> vertices,
 }  // namespace
 
 bool is_binary_stl(const std::filesystem::path& path) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) return false;
-  const std::uintmax_t size = std::filesystem::file_size(path, error);
-  if (error) return false;
-  std::ifstream file(path, std::ios::binary);
-  return declared_triangles(file, size).has_value();
+  const ReadOnlyFile file(path);
+  return file.is_open() && declared_triangles(file).has_value();
 }
 
 Surface read_binary_stl(const std::filesystem::path& path) {
-  const auto fail = [&](const std::string& what) { throw Error(path.string() + ": " + what); };
-  std::error_code error;
-  const std::uintmax_t size = std::filesystem::file_size(path, error);
-  std::ifstream file(path, std::ios::binary);
-  if (error || !file) fail("cannot be opened; check the name and the permissions");
-  const std::optional<std::uint32_t> count = declared_triangles(file, size);
-  if (!count) {
-    fail("not a binary STL file, or cut short: its length does not agree with its header");
-  }
-  if (*count == 0) fail("has no triangles; check the export");
-  // Three vertices for each triangle must be countable.
-  if (*count > no_triangle / 3) fail("has too many triangles to read; split or decimate it");
-
+  const StlRecords records(path);
   Surface surface;
-  surface.vertices.reserve(3 * std::size_t{*count});
-  surface.triangles.reserve(*count);
-  const auto buffer = std::make_unique_for_overwrite<char[]>(records_at_once * record_size);
-  for (std::size_t done = 0; done < *count;) {
-    const std::size_t records = std::min(records_at_once, *count - done);
-    if (!file.read(buffer.get(), static_cast<std::streamsize>(records * record_size))) {
-      fail("cannot be read to its end; check the disk");
-    }
-    for (std::size_t i = 0; i < records; ++i, ++done) {
-      if (!append(buffer.get() + i * record_size, surface)) {
-        fail("triangle " + std::to_string(done) +
-             " has a coordinate that is not finite; repair the mesh and export it again");
-      }
+  surface.vertices.reserve(3 * records.count());
+  surface.triangles.reserve(records.count());
+  std::vector<char> buffer;
+  for (std::size_t done = 0; done < records.count();) {
+    const std::size_t now = std::min(records_at_once, records.count() - done);
+    records.read(done, now, buffer);
+    for (std::size_t i = 0; i < now; ++i, ++done) {
+      if (!append(buffer.data() + i * stl_record_size, surface)) records.refuse(done);
     }
   }
   return surface;
+}
+
+Surface read_welded_stl(const std::filesystem::path& path, unsigned threads) {
+  const StlRecords records(path);
+  const auto make_reader = [&] {
+    return [&, buffer = std::vector<char>()](std::size_t first, std::span<Corners> triangles,
+                                             auto&& number) mutable {
+      records.read(first, triangles.size(), buffer);
+      for (std::size_t i = 0; i < triangles.size(); ++i) {
+        const StlCorners c = stl_corners(buffer.data() + i * stl_record_size);
+        if (!is_finite(c)) records.refuse(first + i);
+        // -0 becomes 0
+        triangles[i] = {number(ExactPoint<float>{c[0] + 0.0F, c[1] + 0.0F, c[2] + 0.0F}),
+                        number(ExactPoint<float>{c[3] + 0.0F, c[4] + 0.0F, c[5] + 0.0F}),
+                        number(ExactPoint<float>{c[6] + 0.0F, c[7] + 0.0F, c[8] + 0.0F})};
+      }
+    };
+  };
+  return weld_blocks<float>(vector_in_huge_pages<Corners>(records.count()),
+                            threads == 0 ? processors() : threads, make_reader);
 }
 
 void write_binary_stl(const std::filesystem::path& path, const Surface& surface) {

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -19,8 +18,6 @@ struct HalfEdge {
   TriangleId triangle;
   std::uint8_t edge;
   bool upwards;  // runs from the lower vertex to the higher
-
-  auto operator<=>(const HalfEdge&) const = default;
 };
 
 /// A triangle that names a vertex twice is a segment: it has no sides, and the triangles beside it
@@ -29,39 +26,39 @@ inline bool repeats_a_vertex(const Corners& c) noexcept {
   return c[0] == c[1] || c[1] == c[2] || c[2] == c[0];
 }
 
-/// Calls visit(low, half_edges) for each edge of the mesh, with all the sides that lie on it, in
-/// the order of low vertex, high vertex, triangle.
-template <class Visit>
-void for_each_edge(const Mesh& mesh, Visit&& visit) {
-  const auto for_each_side = [&](auto&& file) {
-    for (TriangleId t = 0; t < mesh.triangle_count(); ++t) {
-      const Corners& c = mesh.corners(t);
-      if (repeats_a_vertex(c)) continue;
-      for (std::uint8_t e = 0; e < 3; ++e) file(t, e, c[e], c[(e + 1) % 3]);
-    }
-  };
-  // A counting sort by lower vertex, then a small sort for each: faster than one sort of all.
-  std::vector<std::size_t> begin(mesh.vertex_count() + 1, 0);
-  for_each_side(
-      [&](TriangleId, std::uint8_t, VertexId a, VertexId b) { ++begin[std::min(a, b) + 1]; });
-  for (std::size_t v = 1; v < begin.size(); ++v) begin[v] += begin[v - 1];
-  std::vector<HalfEdge> sides(begin.back());
-  std::vector<std::size_t> fill(begin.begin(), begin.end() - 1);
-  for_each_side([&](TriangleId t, std::uint8_t e, VertexId a, VertexId b) {
-    sides[fill[std::min(a, b)]++] = {std::max(a, b), t, e, a < b};
-  });
+/// The sides of all triangles of a mesh, in the order of low vertex, high vertex, triangle.
+class HalfEdges {
+ public:
+  /// Built on as many threads as there are processors.
+  explicit HalfEdges(const Mesh& mesh);
 
-  for (VertexId low = 0; low < mesh.vertex_count(); ++low) {
-    const auto last = sides.begin() + begin[low + 1];
-    auto first = sides.begin() + begin[low];
-    std::sort(first, last);
-    while (first != last) {
-      const auto next =
-          std::find_if(first, last, [&](const HalfEdge& h) { return h.high != first->high; });
-      visit(low, std::span<const HalfEdge>(first, next));
-      first = next;
+  std::size_t vertex_count() const noexcept { return begin_.size() - 1; }
+
+  /// Calls visit(low, half_edges) for each edge whose lower vertex is one of first to last - 1,
+  /// with all the sides that lie on it, in order.
+  template <class Visit>
+  void for_each_edge(std::size_t first, std::size_t last, Visit&& visit) const {
+    for (std::size_t low = first; low < last; ++low) {
+      const std::span all(sides_.data() + begin_[low], sides_.data() + begin_[low + 1]);
+      for (auto side = all.begin(); side != all.end();) {
+        const auto next =
+            std::find_if(side, all.end(), [&](const HalfEdge& h) { return h.high != side->high; });
+        visit(static_cast<VertexId>(low), std::span<const HalfEdge>(side, next));
+        side = next;
+      }
     }
   }
+
+ private:
+  std::vector<std::size_t> begin_;  // of each low vertex's sides
+  std::vector<HalfEdge> sides_;
+};
+
+/// Calls visit(low, half_edges) for each edge of the mesh, one after the other.
+template <class Visit>
+void for_each_edge(const Mesh& mesh, Visit&& visit) {
+  const HalfEdges sides(mesh);
+  sides.for_each_edge(0, sides.vertex_count(), visit);
 }
 
 }  // namespace keepout

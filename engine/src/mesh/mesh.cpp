@@ -3,10 +3,13 @@
 
 #include "keepout/mesh/mesh.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 
+#include "../parallel.h"
 #include "keepout/error.h"
 
 namespace keepout {
@@ -15,63 +18,78 @@ namespace {
 // Fourth powers of lengths must stay finite and in range; no anatomy comes near.
 constexpr double largest_coordinate = 1e30;
 
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
 bool is_valid(const Vec3& v) noexcept {
   return std::abs(v.x()) <= largest_coordinate && std::abs(v.y()) <= largest_coordinate &&
          std::abs(v.z()) <= largest_coordinate;
 }
 
-void check(const Surface& surface) {
+void check_size(const Surface& surface) {
   if (surface.triangles.empty()) {
     throw Error("the mesh has no triangles: there is nothing to keep out of; check the export");
   }
   if (surface.triangles.size() >= no_triangle || surface.vertices.size() >= no_triangle) {
     throw Error("the mesh has more than 2^32 - 2 triangles or vertices: split or decimate it");
   }
-  for (std::size_t v = 0; v < surface.vertices.size(); ++v) {
+}
+
+void check_vertices(const Surface& surface, std::size_t begin, std::size_t end) {
+  for (std::size_t v = begin; v < end; ++v) {
     if (!is_valid(surface.vertices[v])) {
       throw Error("vertex " + std::to_string(v) +
                   " has a coordinate that is not finite, or beyond 1e30: the file is damaged");
     }
   }
-  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
-    for (const VertexId v : surface.triangles[t]) {
+}
+
+/// What is measured of some triangles.
+struct Extent {
+  Box bounds{Vec3::Constant(infinity), Vec3::Constant(-infinity)};
+  double longest2 = 0.0;  // the longest edge's square
+};
+
+Extent extent_of(const Surface& surface, std::size_t begin, std::size_t end) {
+  Extent extent;
+  for (std::size_t t = begin; t < end; ++t) {
+    Triangle corners;
+    for (int i = 0; i < 3; ++i) {
+      const VertexId v = surface.triangles[t][i];
       if (v >= surface.vertices.size()) {
         throw Error("triangle " + std::to_string(t) + " names vertex " + std::to_string(v) +
                     ", but there are only " + std::to_string(surface.vertices.size()) +
                     ": the file is damaged");
       }
+      corners[i] = surface.vertices[v];
+      extent.bounds.low = extent.bounds.low.cwiseMin(corners[i]);
+      extent.bounds.high = extent.bounds.high.cwiseMax(corners[i]);
+    }
+    for (int e = 0; e < 3; ++e) {
+      const Vec3 edge = corners[(e + 1) % 3] - corners[e];
+      extent.longest2 = std::max(extent.longest2, edge.squaredNorm());
     }
   }
-}
-
-Box bounds_of(const Surface& surface) {
-  const Vec3& first = surface.vertices[surface.triangles.front().front()];
-  Box box{first, first};
-  for (const Corners& corners : surface.triangles) {
-    for (const VertexId v : corners) {
-      box.low = box.low.cwiseMin(surface.vertices[v]);
-      box.high = box.high.cwiseMax(surface.vertices[v]);
-    }
-  }
-  return box;
+  return extent;
 }
 
 }  // namespace
 
 Mesh::Mesh(Surface surface) : surface_(std::move(surface)) {
-  check(surface_);
-  bounds_ = bounds_of(surface_);
-}
-
-double longest_edge(const Mesh& mesh) noexcept {
-  double longest2 = 0.0;
-  for (const Corners& c : mesh.triangles()) {
-    for (int e = 0; e < 3; ++e) {
-      const Vec3 edge = mesh.vertex(c[(e + 1) % 3]) - mesh.vertex(c[e]);
-      longest2 = std::max(longest2, edge.squaredNorm());
-    }
+  check_size(surface_);
+  share_ranges(vertex_count(), processors(),
+               [&](std::size_t begin, std::size_t end) { check_vertices(surface_, begin, end); });
+  std::vector<Extent> extents(triangle_count() / share_size + 1);
+  share_ranges(triangle_count(), processors(), [&](std::size_t begin, std::size_t end) {
+    extents[begin / share_size] = extent_of(surface_, begin, end);
+  });
+  Extent all;
+  for (const Extent& extent : extents) {
+    all.bounds.low = all.bounds.low.cwiseMin(extent.bounds.low);
+    all.bounds.high = all.bounds.high.cwiseMax(extent.bounds.high);
+    all.longest2 = std::max(all.longest2, extent.longest2);
   }
-  return std::sqrt(longest2);
+  bounds_ = all.bounds;
+  longest_edge_ = std::sqrt(all.longest2);
 }
 
 }  // namespace keepout

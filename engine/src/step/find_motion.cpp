@@ -9,6 +9,13 @@ namespace keepout {
 
 std::optional<Vec3> tip_motion(const StepProblem& problem, const Solution& solution,
                                double rounding) noexcept {
+  constexpr double digits = 5e-16;  // of the sum below, relative to the way
+  if (moves_a_point(problem)) {
+    const double* u = solution.u.data();
+    const double way = std::abs(u[0]) + std::abs(u[1]) + std::abs(u[2]);
+    if (!(digits * way <= rounding)) return std::nullopt;
+    return std::optional<Vec3>(std::in_place, Eigen::Map<const Vec3>(u));
+  }
   Vec3 motion = Vec3::Zero();
   double way = 0.0;  // of the tip, were all joints to move it alike
   for (Eigen::Index c = 0; c < problem.jacobian.cols(); ++c) {
@@ -16,7 +23,6 @@ std::optional<Vec3> tip_motion(const StepProblem& problem, const Solution& solut
     motion += problem.jacobian.col(c) * u;
     way += problem.jacobian.col(c).norm() * std::abs(u);
   }
-  constexpr double digits = 5e-16;  // of the sum above, relative to the way
   if (!(digits * way <= rounding)) return std::nullopt;
   return motion;
 }
@@ -26,17 +32,17 @@ Vec3 sharpened(const Vec3& motion, const Vec3& aim, std::span<const HalfSpace> p
   // settle them. Each is at most a last digit for an exact solver.
   constexpr int most_corrections = 32;
   Vec3 z = motion;
-  const double digits = 1e-15 * aim.norm();
+  const double digits2 = 1e-30 * aim.squaredNorm();
   for (int i = 0; i < most_corrections; ++i) {
     const HalfSpace* worst = nullptr;
-    double violation = digits;
+    double violation = 0.0;
     for (const HalfSpace& plane : planes) {
       const double missing = plane.offset - plane.normal.dot(z);
       if (!(missing > violation)) continue;
       violation = missing;
       worst = &plane;
     }
-    if (worst == nullptr) break;
+    if (worst == nullptr || !(violation * violation > digits2)) break;
     z += violation * worst->normal;
   }
   const double along = aim.dot(z);

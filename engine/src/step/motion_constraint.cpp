@@ -51,6 +51,9 @@ MotionConstraint::MotionConstraint(std::shared_ptr<const Mesh> mesh,
   if (!index_ || !activation_ || !solver_) {
     throw Error("a motion constraint needs a mesh, an index, an activation rule and a solver");
   }
+  if (options_.searching) {
+    if (auto faster = activation_->searching(*index_)) activation_ = std::move(faster);
+  }
   if (inside == Inside::led_out && activation_->guarded() != Guarded::tip) {
     throw Error(
         "a tip that starts inside is led out without regard to the rest of a tool: with a rule "

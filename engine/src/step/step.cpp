@@ -68,6 +68,7 @@ Surroundings surroundings_of(const Motion& motion, const StepOptions& options,
           .rounding = position_rounding(motion.tip, options),
           .reach = reached,
           .searched = options.query == Query::motion ? reached : Reach::sphere,
+          .needed = NeededPlanes::all,
           .ball = {motion.tip, 0.0},
           .hits = {}};
 }

@@ -32,18 +32,23 @@ Workspace::Workspace(const Capacity& capacity)
               Buffer<std::uint32_t>(capacity.planes + capacity.extra_rows)},
       earlier_answer_(answer_) {}
 
-StepProblem Workspace::pose(const Motion& motion, const Vec3& aim, double damping) noexcept {
+StepProblem Workspace::pose(const Motion& motion, const Vec3& aim, double damping,
+                            PlaneRows plane_rows) noexcept {
   const TipJacobian jacobian = motion.jacobian.value_or(TipJacobian(identity.data(), 3));
   const Eigen::Index n = jacobian.joints();
   const auto m = static_cast<Eigen::Index>(planes.size());
   const Eigen::Index extra = motion.rows ? motion.rows->count() : 0;
-  Eigen::Map<StepProblem::RowMatrix> rows(rows_.data(), m + extra, n);
-  for (Eigen::Index p = 0; p < m; ++p) {
-    const HalfSpace& plane = planes[p];
-    for (Eigen::Index c = 0; c < n; ++c) {
-      rows(p, c) = motion.jacobian ? plane.normal.dot(jacobian.matrix().col(c)) : plane.normal[c];
+  if (plane_rows == PlaneRows::written) {
+    for (Eigen::Index p = 0; p < m; ++p) {
+      const HalfSpace& plane = planes[static_cast<std::size_t>(p)];
+      double* row = rows_.data() + p * n;
+      if (motion.jacobian) {
+        write_row(plane.normal, jacobian.data(), n, row);
+      } else {
+        std::copy_n(plane.normal.data(), 3, row);
+      }
+      bounds_[static_cast<std::size_t>(p)] = plane.offset;
     }
-    bounds_[p] = plane.offset;
   }
   if (extra > 0) {
     std::copy_n(motion.rows->matrix(), extra * n, rows_.data() + m * n);
@@ -54,7 +59,8 @@ StepProblem Workspace::pose(const Motion& motion, const Vec3& aim, double dampin
           .desired = {desired_.data(), 3},
           .rows = {rows_.data(), m + extra, n},
           .bounds = {bounds_.data(), m + extra},
-          .damping = damping};
+          .damping = damping,
+          .planes = planes.view()};
 }
 
 void Workspace::note(const Solution& answer, double share) noexcept {

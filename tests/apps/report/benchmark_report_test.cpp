@@ -57,7 +57,7 @@ Benchmark duel() {
         row.mesh = "ball";
         row.triangles = triangles;
         row.radius = radius;
-        row.index = ours ? "pd_tree" : "fcl_obbrss";
+        row.index = ours ? "wide_bvh" : "fcl_obbrss";
         row.activation = "paper";
         row.solver = ours ? "active_set" : "nlopt_slsqp";
         const double us = ours ? radius < 2.0 ? 1.0 : 4.0 : radius < 2.0 ? 12.0 : 200.0;
@@ -87,7 +87,7 @@ TEST(BenchmarkVerdict, SetsOurPairAgainstItsPeersOnTheLargestMesh) {
 TEST(BenchmarkVerdict, SaysSoWhereThePeerIsFaster) {
   Benchmark benchmark = duel();
   for (BenchmarkRow& row : benchmark.rows) {
-    if (row.index == "pd_tree") row.step->p50 *= 1000.0;
+    if (row.index == "wide_bvh") row.step->p50 *= 1000.0;
   }
   EXPECT_EQ(headline(benchmark),
             "FCL's tree with NLopt's SLSQP answers a step in 200\u00a0µs, where the principal "
@@ -98,13 +98,14 @@ TEST(BenchmarkVerdict, SaysSoWhereThePeerIsFaster) {
 TEST(BenchmarkVerdict, ComparesOnlyWhatMetTheSameConditions) {
   Benchmark benchmark = duel();
   for (BenchmarkRow& row : benchmark.rows) {
-    if (row.index == "pd_tree") row.activation = "all_faces";
+    if (row.index == "wide_bvh") row.activation = "all_faces";
   }
   EXPECT_EQ(headline(benchmark),
-            "A step takes 4.00\u00a0µs with pd_tree, all_faces, active_set, and 200\u00a0µs with "
+            "A step takes 4.00\u00a0µs with wide_bvh, all_faces, active_set, and 200\u00a0µs with "
             "fcl_obbrss, paper, nlopt_slsqp: 50 times as long.");
   benchmark.rows.resize(1);
-  EXPECT_EQ(headline(benchmark), "A step takes 0.500\u00a0µs with pd_tree, all_faces, active_set.");
+  EXPECT_EQ(headline(benchmark),
+            "A step takes 0.500\u00a0µs with wide_bvh, all_faces, active_set.");
   benchmark.rows[0].step.reset();
   EXPECT_EQ(headline(benchmark), "No step was timed.");
   EXPECT_EQ(account(benchmark), "1 of 1 row was not timed; the table of all rows says why.");
@@ -121,7 +122,7 @@ TEST(BenchmarkVerdict, TakesTooFewStepsForNoDuel) {
     if (row.index == "fcl_obbrss") row.queries = 99;
   }
   EXPECT_EQ(headline(benchmark),
-            "A step takes 4.00\u00a0µs with pd_tree, paper, active_set, and 200\u00a0µs with "
+            "A step takes 4.00\u00a0µs with wide_bvh, paper, active_set, and 200\u00a0µs with "
             "fcl_obbrss, paper, nlopt_slsqp: 50 times as long.");
   EXPECT_EQ(account(benchmark),
             "Those are medians of 2,500 and 99 steps on ball with 64,000 triangles, with a motion "
@@ -183,7 +184,7 @@ TEST(BenchmarkReport, EscapesEveryName) {
   const std::string page = page_of(benchmark, comparison);
   EXPECT_EQ(fault_in_html(page), "");
   EXPECT_FALSE(has(page, "<i>"));
-  EXPECT_TRUE(has(page, "pd_tree&lt;i&gt;&amp;&quot;&#39;"));
+  EXPECT_TRUE(has(page, "wide_bvh&lt;i&gt;&amp;&quot;&#39;"));
 }
 
 TEST(BenchmarkReport, ShowsEveryRow) {
@@ -275,7 +276,7 @@ TEST(BenchmarkReport, PraisesNoRowThatGivesUp) {
 TEST(BenchmarkReport, LeavesOutRatesOfStepsThatTookNoTime) {
   Benchmark benchmark = made_up_benchmark({51978, 985856});
   for (BenchmarkRow& row : benchmark.rows) {
-    if (row.index != "pd_tree" || row.triangles > 100000) continue;
+    if (row.index != "wide_bvh" || row.triangles > 100000) continue;
     row.collect->p50 = row.query->p50 = row.solve->p50 = row.step->p50 = 0.0;
   }
   const std::string page = page_of(benchmark, {});
@@ -336,7 +337,7 @@ TEST(BenchmarkReport, OneSizeOfMeshIsShownWithoutLines) {
   EXPECT_EQ(fault_in_html(page), "");
   EXPECT_FALSE(has(page, "class=\"leader series-0\" d=\"M66"));
   EXPECT_TRUE(has(page, "class=\"span "));
-  EXPECT_TRUE(has(page, "Fastest at 985,856 triangles: pd_tree, 7.73\u00a0µs."));
+  EXPECT_TRUE(has(page, "Fastest at 985,856 triangles: wide_bvh, 7.73\u00a0µs."));
 }
 
 TEST(BenchmarkReport, LeavesOutWhatHasNoRows) {

@@ -26,7 +26,7 @@ struct MadeUpIndex {
 inline const std::vector<MadeUpIndex>& made_up_indices() {
   static const std::vector<MadeUpIndex> indices = {
       {"brute_force", {1264, 1250, 1240, 1238}, 1.0, 0.03, 44},
-      {"pd_tree", {7.7, 0.72, 0.09, 0.05}, 0.6, 0.32, 52},
+      {"wide_bvh", {7.7, 0.72, 0.09, 0.05}, 0.6, 0.32, 52},
       {"embree", {21, 1.8, 0.10, 0.07}, 0.65, 0.43, 68},
       {"bullet_quantised", {25, 1.8, 0.14, 0.11}, 0.65, 0.56, 51},
       {"fcl_obbrss", {45, 2.8, 0.14, 0.12}, 0.7, 2.7, 552},
@@ -120,7 +120,7 @@ inline Benchmark made_up_benchmark(const std::vector<std::size_t>& sizes = {5197
   benchmark.seed = 7;
   benchmark.machine = made_up_machine();
   const std::vector<MadeUpSolver>& solvers = made_up_solvers();
-  const MadeUpIndex& pd_tree = made_up_indices()[1];
+  const MadeUpIndex& wide_bvh = made_up_indices()[1];
   for (const std::size_t triangles : sizes) {
     for (std::size_t radius = 0; radius < made_up_radii().size(); ++radius) {
       const auto add = [&](const MadeUpIndex& index, const char* rule, const MadeUpSolver& solver) {
@@ -128,10 +128,10 @@ inline Benchmark made_up_benchmark(const std::vector<std::size_t>& sizes = {5197
       };
       for (const MadeUpIndex& index : made_up_indices()) add(index, "paper", solvers[0]);
       if (triangles < 4000000) {
-        for (std::size_t s = 1; s < solvers.size(); ++s) add(pd_tree, "paper", solvers[s]);
+        for (std::size_t s = 1; s < solvers.size(); ++s) add(wide_bvh, "paper", solvers[s]);
       }
       add(made_up_indices()[4], "paper", solvers[2]);
-      add(pd_tree, "certified", solvers[0]);
+      add(wide_bvh, "certified", solvers[0]);
     }
   }
   for (BenchmarkRow& row : benchmark.rows) {

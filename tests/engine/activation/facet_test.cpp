@@ -323,7 +323,7 @@ TEST(Facet, WhatSeparatesKeepsClear) {
   for (int i = 0; i < 100'000; ++i) {
     const Case c = random_case(random, 1.0);
     const Facet facet(c.triangle, Vec3::Zero(), 0);
-    if (!separates(random.direction(), facet, c.z, c.level, c.slack)) continue;
+    if (!separates(random.direction(), facet.corners(), c.z, c.level, c.slack)) continue;
     ++separated;
     ASSERT_GE(c.distance, c.level - c.slack - 1e-13 * c.size);
     ASSERT_TRUE(keeps_clear(facet, c.z, c.level, 2.0 * c.slack));

@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "keepout/error.h"
+#include "keepout/mesh/weld.h"
 #include "small_surfaces.h"
 #include "temporary_folder.h"
 
@@ -149,6 +150,80 @@ TEST_F(BinaryStl, WritingOverAFolderIsAnErrorAndLeavesNothingElse) {
   fs::create_directories(file / "occupied");
   EXPECT_THROW(write_binary_stl(file, tetrahedron()), Error);
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 1);
+}
+
+// Read and welded at once.
+
+bool are_equal(const Surface& one, const Surface& other) {
+  return one.triangles == other.triangles && one.vertices.size() == other.vertices.size() &&
+         std::memcmp(one.vertices.data(), other.vertices.data(),
+                     one.vertices.size() * sizeof(Vec3)) == 0;
+}
+
+std::string message_of_welding(const fs::path& path, unsigned threads) {
+  try {
+    read_welded_stl(path, threads);
+    return "no error";
+  } catch (const Error& error) {
+    return error.what();
+  }
+}
+
+TEST_F(BinaryStl, ReadAndWeldedAtOnceIsTheSameOnAnyNumberOfThreads) {
+  // Several blocks, whose vertices are shared with near ones, or with any.
+  for (const Surface& surface : {torus(160), shuffled(torus(160), 1), single_triangle()}) {
+    write_binary_stl(file, surface);
+    const Surface expected = weld(read_binary_stl(file), 1);
+    for (const unsigned threads : {0u, 1u, 2u, 3u, 8u}) {
+      ASSERT_TRUE(are_equal(read_welded_stl(file, threads), expected)) << threads;
+      ASSERT_TRUE(are_equal(weld(read_binary_stl(file), threads), expected)) << threads;
+    }
+  }
+}
+
+TEST_F(BinaryStl, ReadAndWeldedAtOnceHoldsMoreVerticesThanAClosedSurfaceHas) {
+  Surface apart;
+  for (VertexId t = 0; t < 40'000; ++t) {
+    for (int i = 0; i < 3; ++i) apart.vertices.emplace_back(t, i, 0.5 * i * i - i);
+    apart.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
+  }
+  write_binary_stl(file, apart);
+  const Surface read = read_welded_stl(file, 2);
+  EXPECT_TRUE(are_equal(read, apart));
+}
+
+TEST_F(BinaryStl, ReadAndWeldedAtOnceTakesMinusZeroForZero) {
+  Surface surface = single_triangle();
+  surface.vertices.emplace_back(-0.0, 0.0, -0.0);
+  surface.triangles.push_back({3, 2, 1});
+  write_binary_stl(file, surface);
+  EXPECT_TRUE(are_equal(read_welded_stl(file), weld(surface)));
+}
+
+TEST_F(BinaryStl, ReadAndWeldedAtOnceHasTheErrorsOfReading) {
+  const auto expect_same = [&] {
+    const std::string expected = message_of_reading(file);
+    EXPECT_NE(expected, "no error");
+    for (const unsigned threads : {1u, 2u, 8u})
+      EXPECT_EQ(message_of_welding(file, threads), expected);
+  };
+  expect_same();  // there is no file
+  folder.write("mesh.stl", std::string(84, '\0'));
+  expect_same();
+  write_binary_stl(file, torus(160));
+  const std::string good = bytes_of(file);
+  folder.write("mesh.stl", good.substr(0, good.size() - 1));
+  expect_same();
+  // Of several that are bad it is the first, in whichever block.
+  std::string bad = good;
+  for (const std::size_t triangle : {51'000u, 40'003u, 40'001u, 33'000u, 16'383u}) {
+    const float value = std::numeric_limits<float>::infinity();
+    std::memcpy(bad.data() + 84 + triangle * 50 + 12, &value, sizeof value);
+    folder.write("mesh.stl", bad);
+    expect_same();
+    EXPECT_NE(message_of_welding(file, 2).find("triangle " + std::to_string(triangle) + " "),
+              std::string::npos);
+  }
 }
 
 }  // namespace

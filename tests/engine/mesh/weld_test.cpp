@@ -110,7 +110,7 @@ TEST(Weld, AgreesWithASortedMapOnPointsThatOftenCoincide) {
     given.vertices.emplace_back(random() % 32, random() % 32, static_cast<int>(random() % 32) - 16);
     if (i % 3 == 2) given.triangles.push_back({i - 2, i - 1, i});
   }
-  const Surface welded = weld(given);
+  const Surface welded = weld(given, 2);
   std::map<std::array<double, 3>, VertexId> numbers;
   for (std::size_t t = 0; t < given.triangles.size(); ++t) {
     for (int i = 0; i < 3; ++i) {

@@ -20,10 +20,10 @@ struct LoadedMesh {
 /// extension in any case; and welds it exactly. Polygons are triangulated. Nothing is rescaled, and
 /// nothing repaired: see doctor.h.
 ///
-/// Coordinates arrive in single precision, which all but text files and PLY are limited to. Those
-/// of binary files are exact, those of text PLY the nearest, and those of the other text formats
-/// within 1 unit in the last place, or 2 when written with an exponent: the same mesh may differ by
-/// that much from one format to another.
+/// Coordinates of binary files are exact, also doubles of PLY. Those of text files arrive in single
+/// precision: those of PLY are the nearest, and those of the others within 1 unit in the last
+/// place, or 2 when written with an exponent. The same mesh may differ by that much from one format
+/// to another.
 ///
 /// Throws Error, naming the file, the line where there is one, what is wrong and what to do. A file
 /// that was cut short is an error, except that an OBJ file cut at the end of a line cannot be told.

@@ -4,12 +4,14 @@
 
 #include <concepts>
 #include <cstdint>
+#include <memory>
 #include <span>
 
 #include "keepout/buffer.h"
 #include "keepout/geometry/ball.h"
 #include "keepout/geometry/half_space.h"
 #include "keepout/index/refine.h"
+#include "keepout/index/spatial_index.h"
 
 namespace keepout {
 
@@ -19,6 +21,12 @@ using HalfSpaceBuffer = Buffer<HalfSpace>;
 enum class Reach : std::uint8_t {
   thales,  // in the ball whose diameter runs from the tip to the aim: projections of the aim
   sphere   // anywhere in the motion sphere: with joints, or rows of the caller's own
+};
+
+/// Which of its planes a rule is to hand over.
+enum class NeededPlanes : std::uint8_t {
+  all,
+  in_the_way  // those idle may be left out that no projection of the aim can violate
 };
 
 /// What a rule decides from: the tip, where it shall go, and every triangle in reach of the motion.
@@ -33,7 +41,8 @@ struct Surroundings {
   double rounding;  // what the tip may be off by after earlier steps [length]
   Reach reach;      // where motions may end
   Reach searched;   // what the region is to cover: as much, or more
-  Ball ball;        // what the rule asked for: see Activation::region
+  NeededPlanes needed;
+  Ball ball;                  // what the rule asked for: see Activation::region
   std::span<const Hit> hits;  // in that ball, sorted by id; relative to the ball's centre
 };
 
@@ -71,14 +80,28 @@ enum class Guarded : std::uint8_t {
 ///
 /// An eager rule hands over all of its planes in `start`. A lazy one is a separation oracle, as in
 /// a cutting-plane method: `judge` is asked about each trial motion, and answers with a plane that
-/// the trial violates until it has no objection left. One loop in `step` serves both. A rule holds
-/// nothing over from one cycle to the next.
+/// the trial violates until it has no objection left. One loop in `step` serves both. Nothing that
+/// a rule holds over from one cycle to the next changes an answer.
 class Activation {
  public:
   virtual ~Activation() = default;
 
   /// Makes room. Allocates; everything after it does not.
   virtual void reserve(std::size_t /*triangles*/) {}
+
+  /// The same rule in a form that searches this index by itself, and faster: its answers are the
+  /// same bit for bit. Null if there is none. The index must outlive it, and stay as it is.
+  virtual std::unique_ptr<Activation> searching(const SpatialIndex& /*index*/) const {
+    return nullptr;
+  }
+
+  /// Whether it is such a form: the surroundings it is asked about need no hits.
+  virtual bool searches() const noexcept { return false; }
+
+  /// How many triangles its last answers rest on: all hits, or those that it found by itself.
+  virtual std::size_t triangles(const Surroundings& around) const noexcept {
+    return around.hits.size();
+  }
 
   /// What else can be said of the tip alone, such as its side or free space around it, holds for
   /// what is guarded only if that is the tip.
@@ -120,6 +143,10 @@ class Activation {
 template <class T>
 concept ActivationRule = requires(T& rule, const Surroundings& around, const Vec3& trial,
                                   HalfSpaceBuffer& planes) {
+  { rule.searches() }
+  noexcept->std::same_as<bool>;
+  { rule.triangles(around) }
+  noexcept->std::same_as<std::size_t>;
   { rule.reach() }
   noexcept->std::same_as<Reach>;
   { rule.region(around) }

@@ -10,6 +10,8 @@
 
 namespace keepout {
 
+struct CertifiedTerms;
+
 /// The certified rule: no motion is accepted unless each triangle in reach is proven to keep its
 /// distance from the whole of it. Needs no adjacency, winding or convexity: open, non-manifold and
 /// self-intersecting surfaces are all kept from, on both sides.
@@ -22,6 +24,10 @@ namespace keepout {
 class CertifiedRule final : public Activation {
  public:
   explicit CertifiedRule(std::shared_ptr<const Mesh> mesh);
+  ~CertifiedRule() override;
+
+  /// On a WideBvh: CertifiedSearch.
+  std::unique_ptr<Activation> searching(const SpatialIndex& index) const override;
 
   void reserve(std::size_t triangles) override;
   Reach reach() const noexcept override { return Reach::thales; }
@@ -40,24 +46,13 @@ class CertifiedRule final : public Activation {
   double tolerance(const Surroundings& around) const noexcept;
 
  private:
-  /// A triangle in reach, and the distances that it is due. [length]
-  struct Near {
-    Facet facet;
-    double target;  // planes are placed this far off
-    double demand;  // a trial that comes closer is objected to
-    double floor;   // what a trial that its plane allows may come down to
-  };
-
-  const Near& near(TriangleId source) const noexcept;
-  HalfSpace answer(const Surroundings& around, const Near& in_the_way, const Vec3& trial,
-                   const HalfSpace& contact) const noexcept;
-  void turn(const Surroundings& around, const Near& its, const Vec3& towards,
-            HalfSpace& plane) const noexcept;
+  const Facet& facet(TriangleId source) const noexcept;
 
   std::shared_ptr<const Mesh> mesh_;
-  double longest_edge_;     // [length]
-  Buffer<Near> near_;       // sorted by source
-  std::size_t proofs_ = 0;  // asked for in this cycle
+  double longest_edge_;                    // [length]
+  std::unique_ptr<CertifiedTerms> terms_;  // of this cycle
+  Buffer<Facet> facets_;                   // in reach, sorted by source
+  std::size_t proofs_ = 0;                 // asked for in this cycle
 };
 
 }  // namespace keepout

@@ -30,17 +30,25 @@ class PaperRule final : public Activation {
   /// Builds the adjacency of the mesh.
   explicit PaperRule(std::shared_ptr<const Mesh> mesh);
 
+  const std::shared_ptr<const Mesh>& mesh() const noexcept { return mesh_; }
+  const Adjacency& adjacency() const noexcept { return *adjacency_; }
+
+  /// For a WideBvh.
+  std::unique_ptr<Activation> searching(const SpatialIndex& index) const override;
+
   Opening start(const Surroundings& around, HalfSpaceBuffer& planes) noexcept override;
+
+  /// The plane that one triangle calls for, if it does. Does not ask around.hits.
+  std::optional<HalfSpace> plane_of(const Surroundings& around, const Hit& hit) const noexcept;
 
  private:
   enum class Role { none, speaks, leaves_it_to_a_neighbor };
 
   Role role_in_condition_2(const Surroundings& around, const Hit& hit) const noexcept;
   bool touches_a_valley(const Hit& hit) const noexcept;
-  std::optional<HalfSpace> plane_of(const Surroundings& around, const Hit& hit) const noexcept;
 
   std::shared_ptr<const Mesh> mesh_;
-  Adjacency adjacency_;
+  std::shared_ptr<const Adjacency> adjacency_;
 };
 
 }  // namespace keepout

@@ -8,7 +8,14 @@ namespace keepout {
 
 /// The paper's plane {n, p} (eq. 2) with a margin: all motions d that end at least `margin` beyond
 /// the plane through the hit's closest point. `normal` is a unit vector.
-HalfSpace plane_through(const Hit& hit, const Vec3& normal, double margin) noexcept;
+inline HalfSpace plane_through(const Hit& hit, const Vec3& normal, double margin) noexcept {
+  return {normal, normal.dot(hit.closest.offset) + margin, hit.triangle};
+}
+
+/// The unit vector from the hit's closest point to the tip. Precondition: they are apart.
+inline Vec3 away_from(const Hit& hit) noexcept {
+  return -hit.closest.offset / hit.closest.distance;
+}
 
 /// Whether the tip is on the side of the hit's face to which `normal` points: N^T (x - CP) >= 0,
 /// to within rounding. A tool that slides along a face sits on it to the last bit, now above and
@@ -27,5 +34,8 @@ bool let_stand_still(HalfSpaceBuffer& planes) noexcept;
 
 /// Whether a motion satisfies all planes, to within half of the rounding of a position.
 bool satisfies(const Vec3& motion, std::span<const HalfSpace> planes, double rounding) noexcept;
+
+/// Whether a triangle has called for one of the planes.
+bool has_plane(TriangleId source, std::span<const HalfSpace> planes) noexcept;
 
 }  // namespace keepout

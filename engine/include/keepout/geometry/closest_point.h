@@ -35,4 +35,7 @@ struct ClosestPoint {
 /// without an area are handled as the segments or points that they are.
 ClosestPoint closest_point(const Triangle& triangle, const Vec3& query) noexcept;
 
+/// The same for a triangle whose corners are in lexicographic order already.
+ClosestPoint closest_point_of_ordered(const Triangle& triangle, const Vec3& query) noexcept;
+
 }  // namespace keepout

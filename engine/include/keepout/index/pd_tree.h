@@ -5,43 +5,67 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <vector>
 
+#include "keepout/index/block_memory.h"
+#include "keepout/index/leaf_block.h"
+#include "keepout/index/query_counts.h"
 #include "keepout/index/spatial_index.h"
 #include "keepout/mesh/mesh.h"
 
 namespace keepout {
 
+/// An oriented box around consecutive leaves, in one cache line.
+struct alignas(64) PdNode {
+  /// The principal directions of what is in the box, largest spread first: orthonormal to the
+  /// rounding of floats. across[axis][direction], so that the three directions are together.
+  float across[3][3];
+
+  float center[3];  // of the box, in the mesh frame [length]
+  float half[3];    // half of the box's size along each direction, rounded outward [length]
+
+  /// How many leaves are in the box. Where more than one, the first half of them, rounded down, is
+  /// in the next node, and the others in the one behind that node's subtree.
+  std::uint32_t leaves;
+};
+
 /// The principal direction tree: a binary tree of oriented boxes, the frame of each being the
-/// principal axes of its triangles, split along the first of them.
+/// principal axes of its triangles, split along the first of them. Its leaves are those of WideBvh,
+/// and tested as they are: `collect` answers with the triangles that touch the ball and no others.
 ///
 /// Source: Williams, Taylor, Wolff, "Augmented k-d techniques for accelerated registration and
 /// distance measurement of surfaces", 1997. Split at the median of the triangle centroids instead
-/// of at their mean, so that the depth is bounded by the logarithm of the size, whatever the mesh.
+/// of at their mean, so that the depth is bounded by the logarithm of the size, whatever the mesh,
+/// and all leaves but the last are full.
 class PdTree final : public SpatialIndex {
  public:
-  explicit PdTree(std::shared_ptr<const Mesh> mesh);
+  static constexpr std::size_t most_triangles = LeafBlock::most_triangles;
+
+  /// Builds with so many threads, 0 being all there are: the tree is the same. Throws Error for a
+  /// mesh of more than most_triangles.
+  explicit PdTree(std::shared_ptr<const Mesh> mesh, unsigned threads = 0);
 
   void collect(const Ball& ball, TriangleBuffer& candidates) const noexcept override;
+
+  /// The same, and adds to `counts` what it had to look at.
+  void collect(const Ball& ball, TriangleBuffer& candidates, QueryCounts& counts) const noexcept;
+
+  bool is_exact() const noexcept override { return true; }
   std::size_t memory() const noexcept override;
 
+  const Mesh& mesh() const noexcept { return *mesh_; }
+
+  /// A parent stands before its children; the first is the root.
+  std::span<const PdNode> nodes() const noexcept { return nodes_; }
+  std::span<const LeafBlock> leaves() const noexcept { return leaves_; }
+
+  /// How far a corner in a leaf may be from the mesh's, in each coordinate. [length]
+  double coordinate_error() const noexcept { return coordinate_error_; }
+
  private:
-  /// An oriented box around the triangles begin .. end of triangles_.
-  struct Node {
-    Eigen::Matrix3d axes;  // rows: the principal directions, largest spread first
-    Vec3 center;           // of the box, in the mesh frame [length]
-    Vec3 half;             // half of the box's size along each axis [length]
-    std::uint32_t begin;
-    std::uint32_t end;
-    std::uint32_t far_child;  // the near child is the next node; 0 for a leaf
-  };
-
-  std::uint32_t build(std::uint32_t begin, std::uint32_t end, std::span<const Vec3> centroids);
-  Node enclose(std::uint32_t begin, std::uint32_t end, std::span<const Vec3> centroids) const;
-
   std::shared_ptr<const Mesh> mesh_;
-  std::vector<TriangleId> triangles_;  // each subtree's are consecutive
-  std::vector<Node> nodes_;            // a parent stands before its children
+  BlockVector<PdNode> nodes_;
+  BlockVector<LeafBlock> leaves_;
+  double coordinate_error_ = 0.0;
 };
 
 }  // namespace keepout

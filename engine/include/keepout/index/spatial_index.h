@@ -23,6 +23,10 @@ class SpatialIndex {
   /// allowed, missing ones never. Thread-safe.
   virtual void collect(const Ball& ball, TriangleBuffer& candidates) const noexcept = 0;
 
+  /// Whether the candidates are exactly the triangles that touch the ball by the engine's kernel,
+  /// none extra.
+  virtual bool is_exact() const noexcept { return false; }
+
   /// Memory that the index holds beside the mesh. [bytes]
   virtual std::size_t memory() const noexcept = 0;
 };

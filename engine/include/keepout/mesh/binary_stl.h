@@ -18,6 +18,11 @@ bool is_binary_stl(const std::filesystem::path& path);
 /// that is not finite.
 Surface read_binary_stl(const std::filesystem::path& path);
 
+/// weld(read_binary_stl(path)), at once: faster, and in little more memory than the result takes.
+///
+/// `threads`: at most; 0 for as many as there are processors. The result is the same.
+Surface read_welded_stl(const std::filesystem::path& path, unsigned threads = 0);
+
 /// Writes a binary STL file: whole or not at all, for it is renamed into place when complete.
 /// Coordinates are rounded to single precision, which is all that the format holds. Throws Error,
 /// also when a coordinate does not fit.

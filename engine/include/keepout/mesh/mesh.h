@@ -51,12 +51,13 @@ class Mesh {
   /// The smallest axis-aligned box around the triangles.
   const Box& bounds() const noexcept { return bounds_; }
 
+  /// Of all triangles. [length]
+  double longest_edge() const noexcept { return longest_edge_; }
+
  private:
   Surface surface_;
   Box bounds_;
+  double longest_edge_ = 0.0;
 };
-
-/// Of all triangles. O(n). [length]
-double longest_edge(const Mesh& mesh) noexcept;
 
 }  // namespace keepout

@@ -42,9 +42,10 @@ template <ActivationRule A, QpSolver S>
 Settled solve(A& activation, S& solver, const Motion& motion, const StepOptions& options,
               const Surroundings& around, Workspace& work) noexcept {
   if (work.planes.overflowed()) return Settled::stopped(Status::over_capacity);
+  const PlaneRows rows = reads_planes(solver) ? PlaneRows::left_out : PlaneRows::written;
   std::optional<Vec3> answer;
   const auto attempt = [&] {
-    work.problem.emplace(work.pose(motion, around.aim, options.damping));
+    work.problem.emplace(work.pose(motion, around.aim, options.damping, rows));
     work.solution = {};
     const SolveStatus solved = solver.solve(*work.problem, work.solution);
     if (solved != SolveStatus::optimal) return status_of(solved);

@@ -67,10 +67,12 @@ struct Step {
   Status status = Status::invalid_input;
   Vec3 motion = Vec3::Zero();         // of the tip; zero unless ok() [length]
   std::span<const double> increment;  // u: the tip's, or the joints' (n); empty unless ok()
-  std::span<const HalfSpace> planes;  // all that were posed to the solver
+  /// All that were posed to the solver. A rule that searches an index by itself may leave out those
+  /// that no motion in question comes near: see NeededPlanes.
+  std::span<const HalfSpace> planes;
   /// Which of them hold the motion back; empty unless ok(). From planes.size() on, extra rows.
   std::span<const std::uint32_t> active;
-  std::size_t triangles = 0;  // in reach
+  std::size_t triangles = 0;  // that it rests on: see Activation::triangles
 
   bool ok() const noexcept { return is_ok(status); }
   std::string_view reason() const noexcept { return keepout::reason(status); }

@@ -22,6 +22,7 @@ struct StepOptions {
   int refinements = 3;     // how often planes are turned towards a better motion, >= 0
   int nodes = 0;           // of a branch and bound for a better motion still; 0: none, >= 0
   Query query = Query::motion;
+  bool searching = true;  // whether a rule may search the index by itself: the same, but faster
 };
 
 /// How far the tip may go, all told: a step clipped to the radius may be longer by its rounding.

@@ -43,7 +43,15 @@ class Solver {
   /// Makes room. Allocates; everything after it does not.
   virtual void reserve(int variables, int rows) = 0;
 
+  /// Whether rows that no iterate violates have no bearing on the answer, not even on its last bit,
+  /// and all iterates for the nearest point to d are projections of d on some of the rows: so it is
+  /// with a dual active-set method.
+  virtual bool skips_idle_rows() const noexcept { return false; }
+
   virtual SolveStatus solve(const StepProblem& problem, Solution& solution) noexcept = 0;
+
+  /// Whether it takes rows that come from planes from the planes, so that they need not be written.
+  virtual bool reads_planes() const noexcept { return false; }
 };
 
 /// What `step` needs of a solver; a final class that satisfies it is called without dispatch.
@@ -52,5 +60,19 @@ concept QpSolver = requires(T& solver, const StepProblem& problem, Solution& sol
   requires noexcept(solver.solve(problem, solution));
   { solver.solve(problem, solution) } -> std::same_as<SolveStatus>;
 };
+
+/// The same of any solver; one that does not say reads rows.
+template <QpSolver S>
+bool reads_planes(const S& solver) noexcept {
+  if constexpr (requires { solver.reads_planes(); }) return solver.reads_planes();
+  return false;
+}
+
+/// The same of any solver; one that does not say does not skip them.
+template <QpSolver S>
+bool skips_idle_rows(const S& solver) noexcept {
+  if constexpr (requires { solver.skips_idle_rows(); }) return solver.skips_idle_rows();
+  return false;
+}
 
 }  // namespace keepout

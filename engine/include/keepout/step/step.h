@@ -42,10 +42,12 @@ Opening open(const Mesh& mesh, const I& index, A& activation, Surroundings& arou
   work.hits.clear();
   work.planes.clear();
   around.ball = activation.region(around);
-  index.collect(around.ball, work.candidates);
-  if (work.candidates.overflowed()) return {Opening::Stance::over_capacity};
-  refine(mesh, around.ball, work.candidates.view(), work.hits);
-  around.hits = work.hits.view();
+  if (!activation.searches()) {
+    index.collect(around.ball, work.candidates);
+    if (work.candidates.overflowed()) return {Opening::Stance::over_capacity};
+    refine(mesh, around.ball, work.candidates.view(), work.hits);
+    around.hits = work.hits.view();
+  }
   observer.ended(Stage::query);
   const Opening opening = activation.start(around, work.planes);
   observer.ended(Stage::activation);
@@ -79,6 +81,8 @@ Step step(const Mesh& mesh, const I& index, A& activation, S& solver, const Moti
 
   using Stance = Opening::Stance;
   Surroundings around = surroundings_of(motion, options, activation.reach());
+  const bool projects = !motion.jacobian && !motion.rows;
+  if (projects && skips_idle_rows(solver)) around.needed = NeededPlanes::in_the_way;
   Opening opening = open(mesh, index, activation, around, work, observer);
   // More triangles than there is room for: a shorter way has fewer. The sphere is not for less than
   // the motion asked for.
@@ -106,10 +110,11 @@ Step step(const Mesh& mesh, const I& index, A& activation, S& solver, const Moti
     opening = open(mesh, index, activation, around, work, observer);
     open_shorter();
   }
-  result.triangles = work.hits.size();
+  result.triangles = activation.triangles(around);
   if (const Status status = status_of(opening.stance); !is_ok(status)) return stop(status);
 
   const Settled settled = settle(activation, solver, motion, options, around, work);
+  result.triangles = activation.triangles(around);
   observer.ended(Stage::solve);
   result.planes = work.planes.view();
   if (!is_ok(settled.status)) return stop(settled.status);

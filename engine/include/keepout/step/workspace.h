@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -25,6 +26,9 @@ struct Capacity {
   std::size_t nodes = 0;        // of the branch and bound
 };
 
+/// Whether a problem has rows for its planes, or leaves them to a solver that reads planes.
+enum class PlaneRows : std::uint8_t { written, left_out };
+
 /// All the memory of a step, made once. One for each thread.
 class Workspace {
  public:
@@ -36,7 +40,8 @@ class Workspace {
   /// The problem whose rows are the planes, then those of the caller: on the tip's own increment
   /// without a Jacobian, on the joints' with one, n^T J. `aim`: where the tip shall go. [length]
   /// Precondition: at most variables() joints and extra_rows() rows.
-  StepProblem pose(const Motion& motion, const Vec3& aim, double damping) noexcept;
+  StepProblem pose(const Motion& motion, const Vec3& aim, double damping,
+                   PlaneRows plane_rows = PlaneRows::written) noexcept;
 
   /// Takes down an answer, which outlives the solver's next one: `share` of the increment, or the
   /// tip's own.

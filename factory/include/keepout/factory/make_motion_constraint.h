@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <string>
 
@@ -11,7 +12,9 @@ namespace keepout {
 
 /// Which parts to build a motion constraint from, by name, and how it shall behave.
 struct MotionConstraintSettings {
-  std::string index = "pd_tree";
+  std::string index = "wide_bvh";
+  std::filesystem::path index_cache =
+      {};  // where built indices are kept; only wide_bvh is; empty: none
   std::string activation = "certified";
   std::string solver = "active_set";
   double radius = 5.0;          // of the motion sphere: the farthest that the tip may go [length]

@@ -1,0 +1,99 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/speed/counted_calls.h"
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+
+bool keepout::app::counts_calls() noexcept { return false; }
+keepout::app::CallCounts keepout::app::calls_of_this_thread() noexcept { return {}; }
+
+#else
+
+#include <dlfcn.h>
+#include <pthread.h>
+
+#include <atomic>
+#include <cerrno>
+
+namespace {
+
+// Of the thread, and so without a cost worth speaking of to those who are timed.
+constinit thread_local keepout::app::CallCounts counts;
+
+/// A function of the C library that is stood in for here, found when it is first called.
+template <class Argument>
+class Original {
+ public:
+  explicit constexpr Original(const char* name) : name_(name) {}
+
+  int operator()(Argument* argument) {
+    Function* found = found_.load(std::memory_order_relaxed);
+    if (found == nullptr) {
+      found = reinterpret_cast<Function*>(dlsym(RTLD_NEXT, name_));
+      found_.store(found, std::memory_order_relaxed);  // the same, whoever finds it
+    }
+    return found(argument);
+  }
+
+ private:
+  using Function = int(Argument*);
+  const char* name_;
+  std::atomic<Function*> found_ = nullptr;
+};
+
+constinit Original<pthread_mutex_t> lock_mutex("pthread_mutex_lock");
+constinit Original<pthread_rwlock_t> lock_to_read("pthread_rwlock_rdlock");
+constinit Original<pthread_rwlock_t> lock_to_write("pthread_rwlock_wrlock");
+
+}  // namespace
+
+bool keepout::app::counts_calls() noexcept { return true; }
+keepout::app::CallCounts keepout::app::calls_of_this_thread() noexcept { return counts; }
+
+// The GNU C library keeps its own allocation under these names for those who stand in for it.
+// Operator new, and Eigen, come through here as well.
+extern "C" {
+void* __libc_malloc(std::size_t);
+void* __libc_calloc(std::size_t, std::size_t);
+void* __libc_realloc(void*, std::size_t);
+void* __libc_memalign(std::size_t, std::size_t);
+void __libc_free(void*);
+
+void* malloc(std::size_t size) {
+  ++counts.allocations;
+  return __libc_malloc(size);
+}
+void* calloc(std::size_t number, std::size_t size) {
+  ++counts.allocations;
+  return __libc_calloc(number, size);
+}
+void* realloc(void* old, std::size_t size) {
+  ++counts.allocations;
+  return __libc_realloc(old, size);
+}
+void* memalign(std::size_t alignment, std::size_t size) {
+  ++counts.allocations;
+  return __libc_memalign(alignment, size);
+}
+void* aligned_alloc(std::size_t alignment, std::size_t size) { return memalign(alignment, size); }
+int posix_memalign(void** memory, std::size_t alignment, std::size_t size) {
+  *memory = memalign(alignment, size);
+  return *memory != nullptr ? 0 : ENOMEM;
+}
+void free(void* memory) { __libc_free(memory); }  // of one kind with the others
+
+int pthread_mutex_lock(pthread_mutex_t* mutex) {
+  ++counts.locks;
+  return lock_mutex(mutex);
+}
+int pthread_rwlock_rdlock(pthread_rwlock_t* lock) {
+  ++counts.locks;
+  return lock_to_read(lock);
+}
+int pthread_rwlock_wrlock(pthread_rwlock_t* lock) {
+  ++counts.locks;
+  return lock_to_write(lock);
+}
+}
+
+#endif

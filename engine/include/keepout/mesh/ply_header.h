@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace keepout {
+
+// What a PLY file says of itself before its data. Source: Turk, "The PLY polygon file format",
+// 1994.
+
+enum class PlyEncoding { text, little_endian, big_endian };
+
+/// A type of numbers.
+struct PlyScalar {
+  std::string_view name;     // as the source has it
+  std::string_view synonym;  // as others write it
+  std::size_t size;          // [bytes]
+  bool whole, is_signed;
+};
+
+struct PlyProperty {
+  std::string name;
+  const PlyScalar* type = nullptr;
+  const PlyScalar* count_type = nullptr;  // of a list; nullptr: a single value
+
+  bool is_list() const noexcept { return count_type != nullptr; }
+};
+
+struct PlyElement {
+  std::string name;
+  std::uint64_t count = 0;
+  std::vector<PlyProperty> properties;
+};
+
+struct PlyHeader {
+  PlyEncoding encoding = PlyEncoding::text;
+  std::vector<PlyElement> elements;
+  std::size_t size = 0;  // where the data begin [bytes]
+};
+
+/// Where the surface is among the elements of a header, which must outlive this.
+struct PlyLayout {
+  const PlyElement* vertex = nullptr;
+  std::array<const PlyProperty*, 3> coordinates{};
+  const PlyElement* face = nullptr;      // nullptr: there are none
+  const PlyProperty* corners = nullptr;  // nullptr: there are no faces
+};
+
+/// Reads the header of a file. Throws Error, with the line, for what is malformed or not
+/// understood, and where more elements are declared than the file has bytes.
+PlyHeader read_ply_header(const std::filesystem::path& path);
+
+/// The same of a whole file in memory. `file` names it in errors.
+PlyHeader read_ply_header(std::string_view contents, const std::string& file);
+
+/// Throws Error where the vertices or corners of a surface are missing, or where it has strips.
+PlyLayout find_ply_layout(const PlyHeader& header, const std::string& file);
+
+}  // namespace keepout

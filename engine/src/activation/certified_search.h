@@ -1,0 +1,90 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "certified_terms.h"
+#include "frontier.h"
+#include "keepout/activation/certified.h"
+#include "keepout/index/wide_bvh.h"
+#include "segment_screen.h"
+
+namespace keepout {
+
+/// The certified rule on a tree of its own: walks it along each trial motion, the nearest triangles
+/// first, and stops at the first contact. Floats clear what is surely clear; what they leave over
+/// is decided by the terms that all forms of the rule share, in double. So its answers are those of
+/// CertifiedRule, bit for bit, and no screen, width of lanes, order or memory of earlier cycles can
+/// change them.
+class CertifiedSearch final : public Activation {
+ public:
+  /// `tree` must outlive this, and be over `mesh`.
+  CertifiedSearch(std::shared_ptr<const Mesh> mesh, const WideBvh& tree);
+
+  bool searches() const noexcept override { return true; }
+  std::size_t triangles(const Surroundings& around) const noexcept override;
+  Reach reach() const noexcept override { return Reach::thales; }
+  Ball region(const Surroundings& around) const noexcept override;
+  Opening start(const Surroundings& around, HalfSpaceBuffer& planes) noexcept override;
+  Judgement judge(const Surroundings& around, const Vec3& trial,
+                  HalfSpaceBuffer& planes) noexcept override;
+  bool relax(HalfSpaceBuffer& planes) const noexcept override;
+  bool turn(const Surroundings& around, std::span<const HalfSpace> planes,
+            HalfSpaceBuffer& turned) noexcept override;
+  void ways_around(const Surroundings& around, TriangleId source,
+                   HalfSpaceBuffer& ways) const noexcept override;
+
+ private:
+  /// What is known of a leaf in this cycle.
+  struct LeafMemory {
+    LeafScreen screen;
+    std::array<std::uint32_t, LeafBlock::lanes> facet;  // in facets_, or none
+    std::uint32_t leaf = 0;
+    std::uint32_t cycle = 0;  // 0: none yet
+  };
+
+  /// A part of the tree, or a triangle, that the motion may meet at some time.
+  struct Waiting {
+    float time;
+    std::uint32_t lane;  // of the leaf `what`; LeafBlock::lanes for a box
+    std::uint32_t what;  // as NodeBlock::child
+  };
+
+  void begin(const Surroundings& around, const CertifiedTerms& terms) noexcept;
+  void locate(const Surroundings& around) noexcept;
+  template <class Visit>
+  void walk(const Vec3& trial, const double& latest, Visit&& visit) noexcept;
+  LeafMemory& memory_of(std::uint32_t leaf) noexcept;
+  const Facet* known(const LeafMemory& memory, std::size_t lane) const noexcept;
+  Triangle corners(std::uint32_t leaf, std::size_t lane) const noexcept;
+  const Facet& make_facet(LeafMemory& memory, std::size_t lane, const Triangle& corners) noexcept;
+  const Facet* nearest() const noexcept;
+  const Facet& facet(TriangleId source) const noexcept;
+
+  std::shared_ptr<const Mesh> mesh_;
+  const WideBvh& tree_;
+  double longest_edge_;  // [length]
+
+  Frontier frontier_;
+  double farther_ = 0.0;  // than needed the next one is gathered [length]
+
+  // Of this cycle.
+  CertifiedTerms terms_{};
+  Vec3 tip_ = Vec3::Zero();
+  FloatTip float_tip_{};
+  FloatReach reach_{};
+  bool is_free_ = false;  // nothing is in reach
+  bool is_long_ = false;  // motions lead far beyond the margin
+  std::uint32_t cycle_ = 0;
+  std::size_t looks_ = 0;  // at leaves
+  Buffer<Facet> facets_;   // that were asked about in double
+  std::vector<LeafMemory> memory_;
+  std::vector<Waiting> waiting_;  // a heap, the earliest first
+  std::size_t waiting_size_ = 0;
+};
+
+}  // namespace keepout

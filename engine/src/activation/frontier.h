@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+
+#include "keepout/geometry/ball.h"
+#include "keepout/index/wide_bvh.h"
+
+namespace keepout {
+
+/// The parts of a tree that come near a place, as blocks of boxes like its nodes: a root of its own
+/// for searches near there. A tip moves little from cycle to cycle, so one gathering serves many;
+/// up to the nearest box it is a ball of free space. What is in it never changes an answer.
+class Frontier {
+ public:
+  /// Whether all that is in the ball is under the boxes.
+  bool covers(const Ball& ball) const noexcept {
+    return (ball.center - around_.center).norm() + ball.radius <= around_.radius;
+  }
+
+  /// Whether nothing at all is in the ball.
+  bool is_free(const Ball& ball) const noexcept {
+    return (ball.center - around_.center).norm() + ball.radius <= free_radius_;
+  }
+
+  /// Makes it cover the ball. The work is bounded: what is left over stays unopened, as large
+  /// boxes. Returns the number of nodes that were looked at.
+  std::size_t gather(const WideBvh& tree, const Ball& ball) noexcept;
+
+  std::span<const NodeBlock> blocks() const noexcept {
+    return {blocks_.data(), (size_ + NodeBlock::lanes - 1) / NodeBlock::lanes};
+  }
+  std::size_t size() const noexcept { return size_; }
+
+ private:
+  static constexpr std::size_t most_boxes = 4 * NodeBlock::lanes;
+
+  void add(const NodeBlock& from, std::size_t lane) noexcept;
+
+  double distance_to_boxes() const noexcept;
+
+  Ball around_{Vec3::Zero(), -1.0};
+  double free_radius_ = -1.0;  // around the same centre there are no boxes [length]
+  std::size_t size_ = 0;       // boxes
+  std::array<NodeBlock, most_boxes / NodeBlock::lanes> blocks_;
+};
+
+}  // namespace keepout

@@ -1,0 +1,264 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Which triangles of a leaf touch a ball, sixteen at a time or as many as the processor can. Every
+// lane does the same operations whatever the processor, so the answer is the same, too, and its
+// order. Compiled once for each kind of processor: see foreach_target.h of Highway.
+#if defined(KEEPOUT_INDEX_LEAF_TEST_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef KEEPOUT_INDEX_LEAF_TEST_INL_H
+#undef KEEPOUT_INDEX_LEAF_TEST_INL_H
+#else
+#define KEEPOUT_INDEX_LEAF_TEST_INL_H
+#endif
+
+#include <hwy/cache_control.h>
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "ball_screen.h"
+#include "keepout/buffer.h"
+#include "keepout/geometry/closest_point.h"
+#include "keepout/index/leaf_block.h"
+#include "keepout/index/query_counts.h"
+#include "keepout/mesh/mesh.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace keepout::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Floats = hn::CappedTag<float, LeafBlock::lanes>;
+using Ids = hn::RebindToUnsigned<Floats>;
+using Lanes = hn::Vec<Floats>;
+using Mask = hn::Mask<Floats>;
+
+struct Point {
+  Lanes x, y, z;
+};
+
+HWY_INLINE Point operator+(const Point& a, const Point& b) {
+  return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
+}
+HWY_INLINE Point operator-(const Point& a, const Point& b) {
+  return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
+}
+HWY_INLINE Point operator*(const Point& a, Lanes s) {
+  return {hn::Mul(a.x, s), hn::Mul(a.y, s), hn::Mul(a.z, s)};
+}
+HWY_INLINE Lanes dot(const Point& a, const Point& b) {
+  return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
+}
+HWY_INLINE Point choose(Mask first, const Point& a, const Point& b) {
+  return {hn::IfThenElse(first, a.x, b.x), hn::IfThenElse(first, a.y, b.y),
+          hn::IfThenElse(first, a.z, b.z)};
+}
+HWY_INLINE Lanes least(Lanes a, Lanes b, Lanes c) { return hn::Min(hn::Min(a, b), c); }
+HWY_INLINE Lanes most(Lanes a, Lanes b, Lanes c) { return hn::Max(hn::Max(a, b), c); }
+
+HWY_INLINE std::uint32_t bits_of(Mask mask) {
+  alignas(8) std::uint8_t bytes[8] = {};
+  hn::StoreMaskBits(Floats(), mask, bytes);
+  return bytes[0] | std::uint32_t{bytes[1]} << 8;
+}
+
+/// The corners of some triangles, relative to the centre of the ball.
+struct Corners3 {
+  Point a, b, c;
+};
+
+HWY_INLINE Point relative_to_center(const float (&corner)[3][LeafBlock::lanes], std::size_t first,
+                                    const BallScreen& ball) {
+  const Floats d;
+  const auto part = [&](int axis) HWY_ATTR {
+    const Lanes from_high =
+        hn::Sub(hn::Load(d, corner[axis] + first), hn::Set(d, ball.high_part[axis]));
+    return hn::Sub(from_high, hn::Set(d, ball.low_part[axis]));
+  };
+  return {part(0), part(1), part(2)};
+}
+
+/// The point of each triangle nearest to the origin, give or take what leaves it in the triangle.
+HWY_INLINE Point nearest_point(const Corners3& t) {
+  const Floats d;
+  const Lanes zero = hn::Zero(d);
+  const Lanes one = hn::Set(d, 1.0f);
+  const Lanes tiny = hn::Set(d, BallScreen::least2);
+  const auto on_edge = [&](const Point& from, const Point& along, Lanes forward, Lanes length2)
+                           HWY_ATTR {
+                             const Lanes share = hn::Div(forward, hn::Max(length2, tiny));
+                             return from + along * hn::Min(hn::Max(share, zero), one);
+                           };
+  const Point ab = t.b - t.a;
+  const Point ac = t.c - t.a;
+  const Point bc = t.c - t.b;
+  const Lanes ab2 = dot(ab, ab);
+  const Lanes ac2 = dot(ac, ac);
+  const Lanes to_b = hn::Neg(dot(ab, t.a));
+  const Lanes to_c = hn::Neg(dot(ac, t.a));
+
+  Point best = on_edge(t.a, ab, to_b, ab2);
+  Lanes best2 = dot(best, best);
+  const auto offer = [&](const Point& other) HWY_ATTR {
+    const Lanes other2 = dot(other, other);
+    best = choose(hn::Lt(other2, best2), other, best);
+    best2 = hn::Min(other2, best2);
+  };
+  offer(on_edge(t.a, ac, to_c, ac2));
+  offer(on_edge(t.b, bc, hn::Neg(dot(bc, t.b)), dot(bc, bc)));
+
+  // In the middle, where both barycentric coordinates and their rest are positive.
+  const Lanes across = dot(ab, ac);
+  const Lanes area2 = hn::Sub(hn::Mul(ab2, ac2), hn::Mul(across, across));
+  const Lanes at_b = hn::Sub(hn::Mul(ac2, to_b), hn::Mul(across, to_c));
+  const Lanes at_c = hn::Sub(hn::Mul(ab2, to_c), hn::Mul(across, to_b));
+  const Mask inside =
+      hn::And(hn::And(hn::Gt(at_b, zero), hn::Gt(at_c, zero)), hn::Lt(hn::Add(at_b, at_c), area2));
+  const Lanes scale = hn::Div(one, hn::Max(area2, tiny));
+  const Point middle = t.a + ab * hn::Mul(at_b, scale) + ac * hn::Mul(at_c, scale);
+  return choose(inside, middle, best);
+}
+
+/// Whether no point of each triangle is within the ball: by the plane through the corner nearest
+/// along `direction`, across it.
+HWY_INLINE Mask surely_out(const Corners3& t, const Point& direction, Lanes outside2_and_band) {
+  const Floats d;
+  const Lanes along = least(dot(direction, t.a), dot(direction, t.b), dot(direction, t.c));
+  const Lanes length2 = dot(direction, direction);
+  const Lanes needed = hn::Add(hn::Mul(length2, outside2_and_band), hn::Set(d, 1e-30f));
+  return hn::And(hn::And(hn::Gt(along, hn::Zero(d)), hn::Gt(hn::Mul(along, along), needed)),
+                 hn::Gt(length2, hn::Set(d, 1e-25f)));
+}
+
+/// Of the triangles from lane `first` on, those that surely touch the ball, and those of which the
+/// exact kernel has to say.
+HWY_INLINE void compare(const LeafBlock& leaf, std::size_t first, const BallScreen& ball, Mask& in,
+                        Mask& in_doubt) {
+  const Floats d;
+  const Corners3 t{relative_to_center(leaf.corner[0], first, ball),
+                   relative_to_center(leaf.corner[1], first, ball),
+                   relative_to_center(leaf.corner[2], first, ball)};
+  const Lanes a2 = dot(t.a, t.a);
+  const Lanes b2 = dot(t.b, t.b);
+  const Lanes c2 = dot(t.c, t.c);
+  const Lanes farthest2 = most(a2, b2, c2);
+  const Lanes band = hn::Set(d, BallScreen::band);
+  const Lanes inside2 = hn::Set(d, ball.inside2);
+  const Lanes outside2 = hn::Set(d, ball.outside2);
+  const Lanes spread = hn::Mul(band, hn::Add(farthest2, outside2));
+  const Lanes beyond2 = hn::Add(outside2, spread);
+
+  // A corner within the ball, or all of them beyond a plane before it, settle nearly all.
+  in = hn::Le(hn::Add(least(a2, b2, c2), spread), inside2);
+  const Mask out = surely_out(t, t.a + t.b + t.c, beyond2);
+  in_doubt = hn::Not(hn::Or(in, out));
+  if (hn::AllFalse(d, in_doubt)) return;
+
+  const Point nearest = nearest_point(t);
+  const Mask near = hn::Le(hn::Add(dot(nearest, nearest), spread), inside2);
+  in = hn::Or(in, near);
+  in_doubt = hn::AndNot(hn::Or(in, surely_out(t, nearest, beyond2)), in_doubt);
+}
+
+/// Appends those of a block's ids whose lanes are chosen.
+HWY_INLINE void append(hn::Vec<Ids> source, Mask chosen, TriangleBuffer& out) {
+  const Ids ids;
+  const auto used = hn::Ne(source, hn::Set(ids, no_triangle));
+  const auto taken = hn::And(hn::RebindMask(ids, chosen), used);
+  const auto triangles = hn::AndNot(hn::Set(ids, LeafBlock::odd), source);
+  const auto packed = hn::Compress(triangles, taken);
+  const std::size_t count = hn::CountTrue(ids, taken);
+  if (out.capacity() - out.size() >= hn::Lanes(ids)) {
+    hn::StoreU(packed, ids, out.end());
+    out.grow(count);
+    return;
+  }
+  HWY_ALIGN TriangleId last[LeafBlock::lanes];
+  hn::Store(packed, ids, last);
+  for (std::size_t i = 0; i < count; ++i) out.push(last[i]);
+}
+
+/// Appends all triangles of a leaf.
+HWY_INLINE void append_all(const LeafBlock& leaf, TriangleBuffer& out) {
+  const Floats d;
+  const Mask all = hn::Eq(hn::Zero(d), hn::Zero(d));
+  for (std::size_t first = 0; first < LeafBlock::lanes; first += hn::Lanes(d)) {
+    append(hn::Load(Ids(), leaf.source + first), all, out);
+  }
+}
+
+/// Appends the triangles of a leaf that touch the ball.
+template <bool counting>
+HWY_INLINE void append_touching(const LeafBlock& leaf, const BallScreen& ball, const Mesh& mesh,
+                                TriangleBuffer& out, QueryCounts* counts) {
+  const Floats d;
+  std::uint32_t doubts = 0;
+  for (std::size_t first = 0; first < LeafBlock::lanes; first += hn::Lanes(d)) {
+    Mask in, in_doubt;
+    compare(leaf, first, ball, in, in_doubt);
+    append(hn::Load(Ids(), leaf.source + first), in, out);
+    if (HWY_UNLIKELY(!hn::AllFalse(d, in_doubt))) doubts |= bits_of(in_doubt) << first;
+  }
+  if constexpr (counting) ++counts->blocks;
+  for (; HWY_UNLIKELY(doubts != 0); doubts &= doubts - 1) {
+    const auto lane = static_cast<std::size_t>(std::countr_zero(doubts));
+    if (!leaf.is_used(lane)) break;
+    if constexpr (counting) ++counts->triangles;
+    const TriangleId t = leaf.triangle(lane);
+    if (closest_point(mesh.triangle(t), ball.ball.center).distance <= ball.ball.radius) {
+      out.push(t);
+    }
+  }
+}
+
+/// Leaves to look at, gathered first so that their memory is on its way when their turn comes.
+class LeafList {
+ public:
+  static constexpr std::size_t capacity = 128;
+  static constexpr std::uint32_t whole = std::uint32_t{1} << 30;  // all of the leaf is in the ball
+  static constexpr std::uint32_t number = whole - 1;              // which leaf
+
+  std::uint32_t* end() { return leaves_ + size_; }
+  void grow(std::size_t count) { size_ += count; }
+  std::size_t room() const { return capacity - size_; }
+
+  /// Appends what of them touches the ball, and forgets them.
+  template <bool counting>
+  HWY_INLINE void look(const LeafBlock* leaves, const BallScreen& ball, const Mesh& mesh,
+                       TriangleBuffer& out, QueryCounts* counts) {
+    constexpr std::size_t ahead = 4;
+    for (std::size_t i = 0; i < std::min(ahead, size_); ++i) fetch(leaves, leaves_[i]);
+    for (std::size_t i = 0; i < size_; ++i) {
+      if (i + ahead < size_) fetch(leaves, leaves_[i + ahead]);
+      const LeafBlock& leaf = leaves[leaves_[i] & number];
+      if ((leaves_[i] & whole) != 0) {
+        append_all(leaf, out);
+      } else {
+        append_touching<counting>(leaf, ball, mesh, out, counts);
+      }
+    }
+    size_ = 0;
+  }
+
+ private:
+  static HWY_INLINE void fetch(const LeafBlock* leaves, std::uint32_t at) {
+    const LeafBlock& leaf = leaves[at & number];
+    hwy::Prefetch(leaf.source);
+    if ((at & whole) != 0) return;
+    for (const auto& corner : leaf.corner) {
+      for (const auto& axis : corner) hwy::Prefetch(axis);
+    }
+  }
+
+  std::uint32_t leaves_[capacity + LeafBlock::lanes];  // stores may go beyond what they add
+  std::size_t size_ = 0;
+};
+
+}  // namespace keepout::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // include guard, one for each target

@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "keepout/index/block_memory.h"
+#include "keepout/mesh/mesh.h"
+
+namespace keepout {
+
+/// Where a triangle is, for the building of a tree: it decides how good the tree is, and never
+/// whether its answers are right.
+struct Center {
+  std::array<float, 3> position;  // from the middle of the mesh's bounds [length]
+  TriangleId triangle;
+};
+
+/// The middle of each triangle's bounds, in the order of the triangles.
+BlockVector<Center> centers_of(const Mesh& mesh, unsigned threads);
+
+/// Moves the centers to `to`, the `middle` ones with the smallest keys to its front. Ties go by
+/// triangle, so that each half is a set that nothing but the mesh decides.
+///
+/// A histogram of the keys, which are in low .. high, tells in which bin the middle is: the other
+/// bins go where they belong in one pass, without a branch that the processor could not foresee.
+template <class Key>
+void split_at(std::span<const Center> from, std::span<Center> to, std::size_t middle, float low,
+              float high, const Key& key) noexcept {
+  constexpr std::size_t most_bins = 1024;
+  const std::size_t bins = std::clamp(from.size(), std::size_t{16}, most_bins);
+  const auto settle = [&](std::span<Center> part, std::size_t rank) {
+    std::nth_element(part.begin(), part.begin() + static_cast<std::ptrdiff_t>(rank), part.end(),
+                     [&](const Center& a, const Center& b) {
+                       const float at_a = key(a);
+                       const float at_b = key(b);
+                       return at_a != at_b ? at_a < at_b : a.triangle < b.triangle;
+                     });
+  };
+  const float scale = static_cast<float>(bins) / (high - low);
+  if (!(std::isfinite(scale) && scale > 0.0f)) {
+    std::copy(from.begin(), from.end(), to.begin());
+    settle(to, middle);
+    return;
+  }
+  const auto last_bin = static_cast<std::int32_t>(bins) - 1;
+  const auto bin_of = [&](const Center& center) {
+    return std::min(static_cast<std::int32_t>((key(center) - low) * scale), last_bin);
+  };
+  std::array<std::uint32_t, most_bins> counts;
+  std::fill_n(counts.begin(), bins, 0u);
+  for (const Center& center : from) ++counts[static_cast<std::size_t>(bin_of(center))];
+  std::int32_t split_bin = 0;
+  std::size_t before = 0;
+  while (before + counts[static_cast<std::size_t>(split_bin)] <= middle) {
+    before += counts[static_cast<std::size_t>(split_bin++)];
+  }
+
+  Center* left = to.data();
+  Center* here = to.data() + before;
+  Center* right = here + counts[static_cast<std::size_t>(split_bin)];
+  for (const Center& center : from) {
+    const std::int32_t bin = bin_of(center);
+    if (bin == split_bin) [[unlikely]] {
+      *here++ = center;
+      continue;
+    }
+    const bool is_left = bin < split_bin;
+    *(is_left ? left : right) = center;
+    left += is_left;
+    right += !is_left;
+  }
+  settle(to.subspan(before, counts[static_cast<std::size_t>(split_bin)]), middle - before);
+}
+
+}  // namespace keepout

@@ -1,0 +1,147 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+
+#include "keepout/index/brute_force.h"
+#include "keepout/index/pd_tree.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "index/pd_tree_query.cpp"
+#include <hwy/foreach_target.h>
+// After it, for it tells for whom to compile.
+#include <hwy/highway.h>
+
+#include "leaf_test-inl.h"
+#include "oriented_screen.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace keepout::HWY_NAMESPACE {
+
+/// How much of a box is in the ball.
+enum class Overlap { none, some, all };
+
+/// The squares of how far the ball's centre is beyond a box along each of its directions, and of
+/// how far from the box's other side.
+struct Squares {
+  alignas(16) float beyond[4];  // the last is of no meaning
+  alignas(16) float across[4];
+};
+
+HWY_INLINE Squares squares(const PdNode& node, const float (&from_center)[3]) {
+  Squares of;
+#if HWY_TARGET == HWY_SCALAR
+  for (int k = 0; k < 3; ++k) {
+    const float along =
+        std::abs((node.across[0][k] * from_center[0] + node.across[1][k] * from_center[1]) +
+                 node.across[2][k] * from_center[2]);
+    const float beyond = std::max(along - node.half[k], 0.0f);
+    const float across = along + node.half[k];
+    of.beyond[k] = beyond * beyond;
+    of.across[k] = across * across;
+  }
+#else
+  // All three directions at once; a load of four takes in the number behind them.
+  const hn::FixedTag<float, 4> d;
+  const auto x = hn::Mul(hn::LoadU(d, node.across[0]), hn::Set(d, from_center[0]));
+  const auto y = hn::Mul(hn::LoadU(d, node.across[1]), hn::Set(d, from_center[1]));
+  const auto z = hn::Mul(hn::LoadU(d, node.across[2]), hn::Set(d, from_center[2]));
+  const auto along = hn::Abs(hn::Add(hn::Add(x, y), z));
+  const auto half = hn::LoadU(d, node.half);
+  const auto beyond = hn::Max(hn::Sub(along, half), hn::Zero(d));
+  const auto across = hn::Add(along, half);
+  hn::Store(hn::Mul(beyond, beyond), d, of.beyond);
+  hn::Store(hn::Mul(across, across), d, of.across);
+#endif
+  return of;
+}
+
+HWY_INLINE Overlap overlap(const PdNode& node, const OrientedScreen& screen) {
+  const float from_center[3] = {(screen.high_part[0] - node.center[0]) + screen.low_part[0],
+                                (screen.high_part[1] - node.center[1]) + screen.low_part[1],
+                                (screen.high_part[2] - node.center[2]) + screen.low_part[2]};
+  const Squares of = squares(node, from_center);
+  if ((of.beyond[0] + of.beyond[1]) + of.beyond[2] > screen.reach2) return Overlap::none;
+  const bool all = (of.across[0] + of.across[1]) + of.across[2] <= screen.inside2;
+  return all ? Overlap::all : Overlap::some;
+}
+
+template <bool counting>
+HWY_INLINE void walk(const PdNode* nodes, const LeafBlock* leaves, const Mesh& mesh,
+                     const BallScreen& ball, const OrientedScreen& screen, TriangleBuffer& out,
+                     QueryCounts* counts) {
+  struct Subtree {
+    std::uint32_t node;
+    std::uint32_t first_leaf;
+  };
+  // Deeper than the tree can be: its halves of at most 2^27 leaves differ by one.
+  Subtree stack[64];
+  std::size_t waiting = 0;
+  LeafList list;
+  stack[waiting++] = {0, 0};
+  while (waiting > 0) {
+    Subtree at = stack[--waiting];
+    while (true) {
+      const PdNode& node = nodes[at.node];
+      if constexpr (counting) ++counts->nodes;
+      const Overlap found = overlap(node, screen);
+      if (found == Overlap::none) break;
+      if (found == Overlap::some && node.leaves > 1) {
+        const std::uint32_t near = node.leaves / 2;
+        stack[waiting++] = {at.node + 2 * near, at.first_leaf + near};
+        hwy::Prefetch(nodes + at.node + 2 * near);
+        ++at.node;
+        continue;
+      }
+      const std::uint32_t mark = found == Overlap::all ? LeafList::whole : 0;
+      for (std::uint32_t i = 0; i < node.leaves; ++i) {
+        if (list.room() == 0) list.look<counting>(leaves, ball, mesh, out, counts);
+        *list.end() = (at.first_leaf + i) | mark;
+        list.grow(1);
+      }
+      break;
+    }
+  }
+  list.look<counting>(leaves, ball, mesh, out, counts);
+}
+
+void walk_pd_tree(const PdNode* nodes, const LeafBlock* leaves, const Mesh& mesh,
+                  const BallScreen& ball, TriangleBuffer& out) {
+  walk<false>(nodes, leaves, mesh, ball, OrientedScreen(ball), out, nullptr);
+}
+
+void walk_pd_tree_counting(const PdNode* nodes, const LeafBlock* leaves, const Mesh& mesh,
+                           const BallScreen& ball, TriangleBuffer& out, QueryCounts& counts) {
+  walk<true>(nodes, leaves, mesh, ball, OrientedScreen(ball), out, &counts);
+}
+
+}  // namespace keepout::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+
+namespace keepout {
+
+HWY_EXPORT(walk_pd_tree);
+HWY_EXPORT(walk_pd_tree_counting);
+
+void PdTree::collect(const Ball& ball, TriangleBuffer& candidates) const noexcept {
+  const BallScreen screen(ball, mesh_->bounds(), coordinate_error_);
+  if (!screen.fits) return BruteForce(mesh_).collect(ball, candidates);
+  HWY_DYNAMIC_DISPATCH(walk_pd_tree)(nodes_.data(), leaves_.data(), *mesh_, screen, candidates);
+}
+
+void PdTree::collect(const Ball& ball, TriangleBuffer& candidates,
+                     QueryCounts& counts) const noexcept {
+  const BallScreen screen(ball, mesh_->bounds(), coordinate_error_);
+  if (!screen.fits) {
+    counts.triangles += mesh_->triangle_count();
+    return BruteForce(mesh_).collect(ball, candidates);
+  }
+  HWY_DYNAMIC_DISPATCH(walk_pd_tree_counting)
+  (nodes_.data(), leaves_.data(), *mesh_, screen, candidates, counts);
+}
+
+}  // namespace keepout
+
+#endif  // HWY_ONCE

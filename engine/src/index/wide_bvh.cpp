@@ -1,0 +1,210 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "keepout/index/wide_bvh.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "keepout/error.h"
+#include "leaf_fill.h"
+#include "median_split.h"
+#include "threads.h"
+
+namespace keepout {
+namespace {
+
+constexpr float infinity = std::numeric_limits<float>::infinity();
+
+constexpr std::size_t rounded_up_quotient(std::size_t a, std::size_t b) { return (a + b - 1) / b; }
+
+/// How many triangles a node, each of its children and so on down to the leaves may hold: all of a
+/// level the same, so that all leaves but the last are full, and what is where follows from the
+/// triangle's rank alone.
+std::vector<std::size_t> capacities(std::size_t count) {
+  std::vector<std::size_t> all{LeafBlock::lanes};
+  do {
+    all.push_back(all.back() * NodeBlock::lanes);
+  } while (all.back() < count);
+  std::reverse(all.begin(), all.end());
+  return all;
+}
+
+/// Brings triangles into the order of the leaves, by splitting them at the median along the axis of
+/// their largest spread, again and again.
+class Division {
+ public:
+  Division(const Mesh& mesh, unsigned threads, std::span<LeafBlock> leaves)
+      : leaves_(leaves), centers_(centers_of(mesh, threads)), spare_(centers_.size()) {
+    divide(centers_, spare_, 0, capacities(centers_.size()).front(), threads);
+  }
+
+ private:
+  using Centers = std::span<Center>;
+
+  /// Leaves the triangles of rank `begin` on in leaves. `capacity`: of the child of a node to be
+  /// filled; `spare` has room for the centers and is overwritten.
+  void divide(Centers centers, Centers spare, std::size_t begin, std::size_t capacity,
+              unsigned threads) {
+    while (capacity > LeafBlock::lanes && centers.size() <= capacity) capacity /= NodeBlock::lanes;
+    if (centers.size() <= capacity) {
+      return name_triangles(centers, leaves_[begin / LeafBlock::lanes]);
+    }
+    const std::size_t parts = rounded_up_quotient(centers.size(), capacity);
+    const std::size_t middle = parts / 2 * capacity;
+    split(centers, spare, middle);
+    const auto front = [&] {
+      divide(spare.first(middle), centers.first(middle), begin, capacity, threads / 2);
+    };
+    const auto back = [&] {
+      divide(spare.subspan(middle), centers.subspan(middle), begin + middle, capacity,
+             threads - threads / 2);
+    };
+    constexpr std::size_t worth_a_thread = 4096;
+    run_both(centers.size() >= worth_a_thread ? threads : 1, front, back);
+  }
+
+  static void split(Centers from, Centers to, std::size_t middle) {
+    std::array<float, 3> low = from.front().position;
+    std::array<float, 3> high = low;
+    for (const Center& center : from) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        low[axis] = std::min(low[axis], center.position[axis]);
+        high[axis] = std::max(high[axis], center.position[axis]);
+      }
+    }
+    std::size_t axis = 0;
+    for (const std::size_t other : {1u, 2u}) {
+      if (high[other] - low[other] > high[axis] - low[axis]) axis = other;
+    }
+    split_at(from, to, middle, low[axis], high[axis],
+             [axis](const Center& center) { return center.position[axis]; });
+  }
+
+  std::span<LeafBlock> leaves_;
+  BlockVector<Center> centers_;
+  BlockVector<Center> spare_;
+};
+
+/// The greatest float below.
+float previous(float x) noexcept {
+  if (x == 0.0f) return -std::numeric_limits<float>::denorm_min();
+  const auto bits = std::bit_cast<std::uint32_t>(x);
+  if (x == -infinity) return x;
+  return std::bit_cast<float>(x > 0.0f ? bits - 1 : bits + 1);
+}
+
+float next(float x) noexcept { return -previous(-x); }
+
+/// Puts the box around a leaf's floats in a lane of the node above it; outward by what the mesh
+/// may be off them.
+void enclose(const FloatBox& box, bool exact, NodeBlock& parent, std::size_t lane) noexcept {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    // Rounding keeps the order: the mesh's extreme is within one float of the floats' extreme.
+    parent.low[axis][lane] = exact ? box.low[axis] : previous(box.low[axis]);
+    parent.high[axis][lane] = exact ? box.high[axis] : next(box.high[axis]);
+  }
+}
+
+/// Puts the boxes of a node in a lane of the node above it.
+void enclose(const NodeBlock& node, NodeBlock& parent, std::size_t lane) noexcept {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    float low = node.low[axis][0];
+    float high = node.high[axis][0];
+    for (std::size_t i = 1; i < NodeBlock::lanes && node.is_used(i); ++i) {
+      low = std::min(low, node.low[axis][i]);
+      high = std::max(high, node.high[axis][i]);
+    }
+    parent.low[axis][lane] = low;
+    parent.high[axis][lane] = high;
+  }
+}
+
+/// Puts boxes at infinity, which nothing reaches, in the lanes from the first unused one on.
+void close_lanes(NodeBlock& node, std::size_t first) noexcept {
+  for (std::size_t lane = first; lane < NodeBlock::lanes; ++lane) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      node.low[axis][lane] = infinity;
+      node.high[axis][lane] = infinity;
+    }
+    node.child[lane] = 0;
+  }
+}
+
+}  // namespace
+
+WideBvh::WideBvh(std::shared_ptr<const Mesh> mesh, unsigned threads) : mesh_(std::move(mesh)) {
+  const std::size_t count = mesh_->triangle_count();
+  if (count > most_triangles) {
+    throw Error("a wide_bvh holds at most 2^31 - 1 triangles: split or decimate the mesh");
+  }
+  threads = thread_count(threads);
+  leaves_.resize(rounded_up_quotient(count, LeafBlock::lanes));
+  Division(*mesh_, threads, leaves_);
+  std::size_t nodes = 0;
+  for (const std::size_t capacity : capacities(count)) {
+    if (capacity > LeafBlock::lanes) nodes += rounded_up_quotient(count, capacity);
+  }
+  nodes_.resize(nodes);
+  fit(threads);
+}
+
+void WideBvh::refit(std::shared_ptr<const Mesh> moved, unsigned threads) {
+  threads = thread_count(threads);
+  const auto corners = mesh_->triangles();
+  std::atomic<bool> same =
+      corners.size() == moved->triangle_count() && mesh_->vertex_count() == moved->vertex_count();
+  for_ranges(threads, 0, same ? corners.size() : 0, [&](std::size_t begin, std::size_t end) {
+    const auto first = [begin](const auto& all) {
+      return all.begin() + static_cast<std::ptrdiff_t>(begin);
+    };
+    const auto size = static_cast<std::ptrdiff_t>(end - begin);
+    if (!std::equal(first(corners), first(corners) + size, first(moved->triangles()))) same = false;
+  });
+  if (!same) throw Error("a refit is for moved vertices: the triangles are to be the same");
+  mesh_ = std::move(moved);
+  fit(threads);
+}
+
+void WideBvh::fit(unsigned threads) {
+  coordinate_error_ = float_error(*mesh_, threads);
+  const bool exact = coordinate_error_ == 0.0;
+
+  // Each level stands behind the one above it: the lowest is the last.
+  std::size_t size = rounded_up_quotient(leaves_.size(), NodeBlock::lanes);
+  std::size_t begin = nodes_.size() - size;
+  for_ranges(threads, 0, size, [&](std::size_t from, std::size_t to) {
+    const std::size_t first = from * NodeBlock::lanes;
+    const std::size_t last = std::min(to * NodeBlock::lanes, leaves_.size());
+    const std::span leaves = std::span(leaves_).subspan(first, last - first);
+    fill_leaves(*mesh_, leaves, [&](std::size_t i, const FloatBox& box) {
+      const std::size_t leaf = first + i;
+      NodeBlock& node = nodes_[begin + leaf / NodeBlock::lanes];
+      enclose(box, exact, node, leaf % NodeBlock::lanes);
+      node.child[leaf % NodeBlock::lanes] = static_cast<std::uint32_t>(leaf) | NodeBlock::leaf;
+    });
+  });
+  close_lanes(nodes_.back(), leaves_.size() - (size - 1) * NodeBlock::lanes);
+  while (size > 1) {
+    const std::size_t children = size;
+    const std::size_t first_child = begin;
+    size = rounded_up_quotient(children, NodeBlock::lanes);
+    begin -= size;
+    for (std::size_t i = 0; i < children; ++i) {
+      NodeBlock& node = nodes_[begin + i / NodeBlock::lanes];
+      enclose(nodes_[first_child + i], node, i % NodeBlock::lanes);
+      node.child[i % NodeBlock::lanes] = static_cast<std::uint32_t>(first_child + i);
+    }
+    close_lanes(nodes_[first_child - 1], children - (size - 1) * NodeBlock::lanes);
+  }
+}
+
+std::size_t WideBvh::memory() const noexcept {
+  return nodes_.capacity() * sizeof(NodeBlock) + leaves_.capacity() * sizeof(LeafBlock);
+}
+
+}  // namespace keepout

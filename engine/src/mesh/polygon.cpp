@@ -1,0 +1,105 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "polygon.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+
+namespace keepout {
+namespace {
+
+using Vec2 = Eigen::Vector2d;
+
+/// The corners as seen against their mean normal (Newell's), so that they run counter-clockwise.
+std::vector<Vec2> projected(std::span<const VertexId> polygon, std::span<const Vec3> vertices) {
+  const Vec3& origin = vertices[polygon[0]];
+  Vec3 normal = Vec3::Zero();
+  for (std::size_t i = 1; i + 1 < polygon.size(); ++i) {
+    const Vec3 one = vertices[polygon[i]] - origin;
+    const Vec3 other = vertices[polygon[i + 1]] - origin;
+    normal += one.cross(other);
+  }
+  int axis = 0;
+  normal.cwiseAbs().maxCoeff(&axis);
+  const int u = (axis + 1) % 3;
+  const int v = (axis + 2) % 3;
+  std::vector<Vec2> points;
+  points.reserve(polygon.size());
+  for (const VertexId corner : polygon) {
+    const Vec3 from_origin = vertices[corner] - origin;
+    const double sideways = normal[axis] < 0.0 ? -from_origin[v] : from_origin[v];
+    points.emplace_back(from_origin[u], sideways);
+  }
+  return points;
+}
+
+/// Twice the area of a triangle, above 0 if it runs counter-clockwise.
+double doubled_area(const Vec2& a, const Vec2& b, const Vec2& c) {
+  return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
+}
+
+/// Turns left at every corner, and around once: it goes to and fro along each axis no more than
+/// once.
+bool is_convex(const std::vector<Vec2>& points) {
+  const std::size_t n = points.size();
+  int turns[2] = {0, 0};
+  double last[2] = {0.0, 0.0};
+  for (std::size_t i = 0; i < 2 * n; ++i) {
+    const Vec2& a = points[i % n];
+    const Vec2& b = points[(i + 1) % n];
+    if (doubled_area(a, b, points[(i + 2) % n]) < 0.0) return false;
+    for (int axis = 0; axis < 2; ++axis) {
+      const double along = b[axis] - a[axis];
+      if (along == 0.0) continue;
+      if (i >= n && along * last[axis] < 0.0) ++turns[axis];
+      last[axis] = along > 0.0 ? 1.0 : -1.0;
+    }
+  }
+  return turns[0] <= 2 && turns[1] <= 2;
+}
+
+/// Whether the corner at place i of those left is an ear: convex, and none of the others in it.
+bool is_ear(const std::vector<Vec2>& points, const std::vector<std::size_t>& left, std::size_t i) {
+  const std::size_t n = left.size();
+  const Vec2& a = points[left[(i + n - 1) % n]];
+  const Vec2& b = points[left[i]];
+  const Vec2& c = points[left[(i + 1) % n]];
+  if (!(doubled_area(a, b, c) > 0.0)) return false;
+  return std::none_of(left.begin(), left.end(), [&](std::size_t other) {
+    const Vec2& p = points[other];
+    if (p == a || p == b || p == c) return false;
+    return doubled_area(a, b, p) >= 0.0 && doubled_area(b, c, p) >= 0.0 &&
+           doubled_area(c, a, p) >= 0.0;
+  });
+}
+
+}  // namespace
+
+bool cut_polygon(std::span<const VertexId> polygon, std::span<const Vec3> vertices,
+                 std::vector<Corners>& triangles) {
+  if (polygon.size() == 3) {
+    triangles.push_back({polygon[0], polygon[1], polygon[2]});
+    return true;
+  }
+  const std::vector<Vec2> points = projected(polygon, vertices);
+  std::vector<std::size_t> left(polygon.size());
+  for (std::size_t i = 0; i < left.size(); ++i) left[i] = i;
+  if (!is_convex(points)) {
+    if (polygon.size() > most_ear_corners) return false;
+    while (left.size() > 3) {
+      std::size_t i = 0;
+      while (i < left.size() && !is_ear(points, left, i)) ++i;
+      if (i == left.size()) break;
+      const std::size_t n = left.size();
+      triangles.push_back(
+          {polygon[left[(i + n - 1) % n]], polygon[left[i]], polygon[left[(i + 1) % n]]});
+      left.erase(left.begin() + static_cast<std::ptrdiff_t>(i));
+    }
+  }
+  for (std::size_t i = 1; i + 1 < left.size(); ++i) {
+    triangles.push_back({polygon[left[0]], polygon[left[i]], polygon[left[i + 1]]});
+  }
+  return true;
+}
+
+}  // namespace keepout

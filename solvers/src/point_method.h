@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "keepout/geometry/half_space.h"
+#include "keepout/step/problem.h"
+#include "unit_planes.h"
+
+namespace keepout::active_set {
+
+/// The dual method for three variables with J = I and no damping: the point nearest to d that
+/// satisfies every row. There the pieces have a closed form, by cross products, and at most three
+/// rows are active.
+///
+/// It guards against nothing and takes nothing for granted: u is d + sum mu_i a_i with mu >= 0 by
+/// construction, and is an answer only if the active rows hold with equality and no row is
+/// violated, which together prove it the minimum however it was come by. Whatever it cannot prove,
+/// infeasible problems among them, it leaves to the general method.
+class PointMethod {
+ public:
+  void reserve(int rows) { unit_.reserve(static_cast<std::size_t>(rows)); }
+
+  /// True if it found the minimum. Precondition: moves_a_point(problem), and the shapes agree and
+  /// fit the reserve.
+  bool solve(const StepProblem& problem) noexcept;
+
+  const Vec3& u() const noexcept { return u_; }
+  int active() const noexcept { return active_; }
+  int row(int i) const noexcept { return face_[at(i)].row; }
+  double multiplier(int i) const noexcept { return face_[at(i)].mu; }
+  int iterations() const noexcept { return iterations_; }
+
+ private:
+  struct Face {
+    Vec3 normal;
+    double square;  // of the normal
+    double bound;
+    double mu;  // of half the cost
+    int row;
+  };
+
+  /// A row as a sum of the active ones and a rest that is normal to them.
+  struct Split {
+    std::array<double, 3> weight{};
+    double rest = 0;  // squared
+  };
+
+  static std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
+
+  bool list_rows(const StepProblem& problem) noexcept;
+  template <class Scan>
+  bool run(const StepProblem& problem, const Scan& scan) noexcept;
+  void take_in(const StepProblem& problem, int row) noexcept;
+  bool enter() noexcept;
+  Split split() const noexcept;
+  bool settle() noexcept;
+  void correct(const std::array<double, 3>& slack) noexcept;
+  void place(int faces) noexcept;
+  void drop(int position) noexcept;
+
+  UnitPlanes unit_;
+  Vec3 desired_ = Vec3::Zero();
+  Vec3 u_ = Vec3::Zero();
+  double asked_ = 0;            // |d|^2
+  std::array<Face, 4> face_{};  // the active rows, then the one that is to enter
+  int active_ = 0;
+  int iterations_ = 0;
+};
+
+}  // namespace keepout::active_set

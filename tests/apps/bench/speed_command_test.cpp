@@ -1,0 +1,160 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+// keepout bench --speed as a user meets it, on small meshes.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+#include <string>
+
+#include "apps/command_process.h"
+#include "bench/speed/counted_calls.h"
+#include "keepout/adapters/all_indices.h"
+#include "keepout/fixtures/real_mesh.h"
+
+namespace keepout::test {
+namespace {
+
+using nlohmann::json;
+
+class SpeedCommand : public testing::Test {
+ protected:
+  /// The fixtures as they are, and what is made of them in this folder.
+  void SetUp() override {
+    std::filesystem::create_directory_symlink(fixture_cache() / "fixtures",
+                                              folder.file("fixtures"));
+  }
+
+  ProcessOutcome run(const std::string& arguments) const {
+    return folder.run(arguments, "KEEPOUT_CACHE='" + folder.path().string() + "'");
+  }
+
+  json read(const std::string& name) const {
+    std::ifstream file(folder.file(name));
+    return json::parse(file);
+  }
+
+  std::string text_of(const std::string& name) const {
+    std::ostringstream text;
+    text << std::ifstream(folder.file(name)).rdbuf();
+    return text.str();
+  }
+
+  void expect_refused(const std::string& arguments, const std::string& why) const {
+    const ProcessOutcome outcome = run(arguments);
+    EXPECT_NE(outcome.status, 0) << arguments;
+    EXPECT_NE(outcome.output.find(why), std::string::npos) << arguments << '\n' << outcome.output;
+  }
+
+  CommandFolder folder;
+};
+
+/// What a row demands, as a word and a number.
+std::string demand_of(const json& row) {
+  const json& demanded = row["demanded"];
+  const auto first = demanded.begin();
+  std::ostringstream text;
+  text << first.key() << ' ' << first->get<double>();
+  return text.str();
+}
+
+TEST_F(SpeedCommand, MeasuresEveryRowAndSaysWhatFallsShort) {
+  const ProcessOutcome outcome =
+      run("bench --speed --quick --triangles 4000 --steps 3000 --largest 80000 --json s.json "
+          "--out s.html");
+  ASSERT_EQ(outcome.status, 0) << "falling short is no failure: " << outcome.output;
+  const json record = read("s.json");
+  EXPECT_EQ(record["mesh"], "bunny, 4,000 triangles");
+
+  std::map<std::string, std::set<std::string>> demands;  // of each kind of work
+  for (const json& row : record["rows"]) {
+    const std::string name = row["work"].get<std::string>() + ": " + row["compared"].dump();
+    const std::string work = row["work"];
+    demands[work.substr(0, work.find(','))].insert(demand_of(row));
+    if (row["figure"].is_null()) {
+      EXPECT_TRUE(row["met"].is_null()) << name;
+      EXPECT_FALSE(row["remark"].get<std::string>().empty()) << name;
+      EXPECT_EQ(row["remark"].get<std::string>().find("not timed"), std::string::npos)
+          << name << row["remark"] << ": answers must agree";
+      continue;
+    }
+    const bool at_least = row["demanded"].contains("at_least");
+    const double figure = row["figure"];
+    const double demanded = row["demanded"][at_least ? "at_least" : "at_most"];
+    EXPECT_EQ(row["met"], at_least ? figure >= demanded : figure <= demanded) << name;
+    for (const json& side : row["sides"]) EXPECT_GT(side["us"]["p50"], 0.0) << name;
+  }
+  EXPECT_EQ(demands["sphere query r = 5 mm"],
+            (std::set<std::string>{"at_least 38", "at_least 10"}));
+  EXPECT_EQ(demands["sphere query r = 1 mm"], (std::set<std::string>{"at_least 10", "at_least 5"}));
+  EXPECT_EQ(demands["whole step"], (std::set<std::string>{"at_least 60", "at_least 25"}));
+  EXPECT_EQ(demands["certified step in contact"], std::set<std::string>{"at_least 500"});
+  EXPECT_EQ(demands["certified step in free space"], std::set<std::string>{"at_least 5000"});
+  EXPECT_EQ(demands["build of the index"], (std::set<std::string>{"at_least 15", "at_least 3"}));
+  EXPECT_EQ(demands["memory"], (std::set<std::string>{"at_most 45", "at_most 100"}));
+  EXPECT_EQ(demands["file to index"], (std::set<std::string>{"at_most 7", "at_most 14"}));
+
+  std::size_t at_5_mm = 0;
+  for (const json& query : record["queries"]) at_5_mm += query["radius"] == 5.0 ? 1 : 0;
+  EXPECT_EQ(at_5_mm, all_index_backends().size() - 1) << "all but brute force";
+
+  for (const char* words : {"at least 500x", "demanded", "Short of what is demanded:"}) {
+    EXPECT_NE(outcome.output.find(words), std::string::npos) << words;
+  }
+}
+
+TEST_F(SpeedCommand, CountsWhatEveryStepTakesFromTheSystem) {
+  const ProcessOutcome outcome =
+      run("bench --speed --quick --triangles 4000 --steps 3000 --json s.json --out s.html");
+  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  const json record = read("s.json");
+  std::set<std::string> counted;
+  for (const json& row : record["rows"]) {
+    for (const char* what : {"page faults", "allocations", "locks"}) {
+      if (row["compared"] != what) continue;
+      counted.insert(what);
+      EXPECT_EQ(row["figure"], 0.0) << what;
+    }
+  }
+  EXPECT_EQ(counted.size(), app::counts_calls() ? 3u : 1u);
+
+  for (const char* which : {"steps", "nothing"}) {
+    const json& times = record["histogram"][which];
+    EXPECT_EQ(times["total"], 3000);
+    std::size_t sum = 0;
+    for (const json& bin : times["bins"]) sum += bin[1].get<std::size_t>();
+    EXPECT_EQ(sum, 3000u) << which;
+    EXPECT_GE(times["at_most_ns"]["p999"], times["at_most_ns"]["p50"]) << which;
+  }
+  const std::string page = text_of("s.html");
+  for (const char* words : {"What is demanded, and what was measured", "Cycle after cycle",
+                            "Sphere queries at random places", "empty loop"}) {
+    EXPECT_NE(page.find(words), std::string::npos) << words;
+  }
+}
+
+TEST_F(SpeedCommand, RefusesWhatItHasNoUseFor) {
+  expect_refused("bench --speed --index pd_tree", "--index");
+  expect_refused("bench --speed --mesh cube.stl", "--mesh");
+  expect_refused("bench --speed --csv s.csv", "--csv");
+  expect_refused("bench --speed --fast", "--fast");
+  expect_refused("bench --speed --steps 0", "--steps");
+  expect_refused("bench --speed --triangles 4000,5000", "--triangles");
+  expect_refused("bench --speed --json no/such/folder.json", "no/such");
+  expect_refused("bench --speed --json s.html --out s.html", "--json");
+  expect_refused("bench --quick", "--speed");
+  expect_refused("bench --largest 20000", "--speed");
+}
+
+TEST_F(SpeedCommand, SaysWhichFixtureIsMissing) {
+  std::filesystem::remove(folder.file("fixtures"));
+  expect_refused("bench --speed --quick", "bunny");
+  EXPECT_FALSE(std::filesystem::exists(folder.file("keepout-bench.html")));
+}
+
+}  // namespace
+}  // namespace keepout::test

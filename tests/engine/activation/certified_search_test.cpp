@@ -1,0 +1,239 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+// The certified rule on a tree of its own, held to the plain rule bit for bit.
+#include <gtest/gtest.h>
+#include <hwy/targets.h>
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "keepout/activation/certified.h"
+#include "keepout/fixtures/poses.h"
+#include "keepout/fixtures/random.h"
+#include "keepout/fixtures/shapes.h"
+#include "keepout/index/nearest.h"
+#include "keepout/index/pd_tree.h"
+#include "keepout/index/wide_bvh.h"
+#include "keepout/solvers/active_set.h"
+#include "keepout/step/step.h"
+#include "only_target.h"
+
+namespace keepout {
+namespace {
+
+std::vector<std::string> names_of_shapes() {
+  std::vector<std::string> names;
+  for (const Shape& shape : shapes()) names.emplace_back(shape.name);
+  return names;
+}
+
+/// All that a step comes to.
+struct Outcome {
+  Status status;
+  Vec3 motion;
+  std::vector<double> increment;
+  std::vector<HalfSpace> planes;
+
+  explicit Outcome(const Step& step)
+      : status(step.status),
+        motion(step.motion),
+        increment(step.increment.begin(), step.increment.end()),
+        planes(step.planes.begin(), step.planes.end()) {}
+
+  /// The sources of planes count too, but for triangles that are one on top of the other.
+  friend bool operator==(const Outcome& a, const Outcome& b) {
+    return a.status == b.status && a.motion == b.motion && a.increment == b.increment &&
+           std::equal(a.planes.begin(), a.planes.end(), b.planes.begin(), b.planes.end(),
+                      [](const HalfSpace& p, const HalfSpace& q) {
+                        return p.normal == q.normal && p.offset == q.offset;
+                      });
+  }
+};
+
+/// Both forms of the rule on one mesh, each with an index of its own.
+class BothForms {
+ public:
+  explicit BothForms(Surface surface)
+      : mesh(std::make_shared<const Mesh>(std::move(surface))),
+        tree(mesh),
+        other_tree(mesh),
+        plain(mesh),
+        searching(plain.searching(tree)),
+        work({.nodes = 16}),
+        plain_work({.nodes = 16}) {
+    plain.reserve(plain_work.candidates.capacity());
+    solver.reserve(7, static_cast<int>(work.planes.capacity()) + 8);
+  }
+
+  Outcome step(const Motion& motion, const StepOptions& options) {
+    return Outcome(keepout::step(*mesh, tree, *searching, solver, motion, options, work));
+  }
+  Outcome plain_step(const Motion& motion, const StepOptions& options) {
+    return Outcome(keepout::step(*mesh, other_tree, plain, solver, motion, options, plain_work));
+  }
+
+  std::shared_ptr<const Mesh> mesh;
+  WideBvh tree;
+  PdTree other_tree;
+  CertifiedRule plain;
+  std::unique_ptr<Activation> searching;
+  ActiveSet solver;
+  Workspace work;
+  Workspace plain_work;
+};
+
+/// Lengths as shares of the mesh's size.
+struct Scale {
+  double margin;
+  double motion;
+};
+constexpr Scale scales[] = {{0.005, 0.003}, {0.001, 0.02}, {0.03, 0.002}, {0.02, 0.1}};
+
+/// What a hand does that presses and drags, from tips that keep the margin, are too close, touch,
+/// or are inside; the tip goes where the plain rule lets it.
+template <class Ask>
+void drag(BothForms& forms, const Scale& scale, std::size_t strokes, Ask&& ask) {
+  const double size = forms.mesh->bounds().size().norm();
+  const double margin = scale.margin * size;
+  const double motion = scale.motion * size;
+  const PdTree nearby(forms.mesh);
+  NearestTriangle nearest(*forms.mesh, nearby);
+  Random random(7);
+  for (const double offset : {1.5 * margin, 0.3 * margin, 0.0, -0.5 * margin}) {
+    for (const Vec3& start : surface_points(*forms.mesh, strokes, offset, random)) {
+      Vec3 tip = start;
+      Vec3 press = random.direction();
+      for (int cycle = 0; cycle < 12; ++cycle) {
+        if (cycle % 4 == 0) {
+          const Vec3 way = nearest(tip).closest.offset;
+          press = way.norm() > 0.0 ? Vec3(way.normalized()) : random.direction();
+        }
+        const Vec3 desired =
+            random.uniform(0.2, 1.0) * motion * (press + random.direction()).normalized();
+        tip += ask(Motion{.tip = tip, .desired = desired}, margin, motion);
+        if (::testing::Test::HasFatalFailure()) return;
+      }
+    }
+  }
+}
+
+class CertifiedSearch : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(CertifiedSearch, StepsAsThePlainRuleDoes) {
+  BothForms forms(make_shape(GetParam()));
+  ASSERT_NE(forms.searching, nullptr);
+  ASSERT_TRUE(forms.searching->searches());
+  std::size_t limited = 0, recovering = 0;
+  for (const Scale& scale : scales) {
+    drag(forms, scale, 8, [&](const Motion& motion, double margin, double length) {
+      const StepOptions options{.radius = 1.1 * length, .margin = margin, .recovery = 0.2 * margin};
+      const Outcome expected = forms.plain_step(motion, options);
+      EXPECT_EQ(forms.step(motion, options), expected)
+          << motion.tip.transpose() << " by " << motion.desired.transpose();
+      limited += expected.status == Status::limited;
+      recovering += expected.status == Status::recovering;
+      return expected.motion;
+    });
+  }
+  EXPECT_GT(limited, 50u);
+  EXPECT_GT(recovering, 20u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Shapes, CertifiedSearch, ::testing::ValuesIn(names_of_shapes()),
+                         [](const auto& shape) { return shape.param; });
+
+TEST(CertifiedSearchOptions, StepsAsThePlainRuleDoesWithOptionsJointsAndRows) {
+  BothForms forms(make_shape("cortex"));
+  const TipJacobian::Matrix jacobian = [] {
+    TipJacobian::Matrix j(3, 5);
+    j << 1, 0, 0, 0.5, -0.3, 0, 1, 0, 0.2, 0.7, 0, 0, 1, -0.4, 0.1;
+    return j;
+  }();
+  const std::vector<double> matrix{1, 0, 0, -1, 0, 0}, bounds{-0.001, -0.5};
+  std::size_t limited = 0;
+  for (const Scale& scale : {scales[0], scales[1]}) {
+    drag(forms, scale, 6, [&](const Motion& motion, double margin, double length) {
+      StepOptions options{.radius = 1.5 * length, .margin = margin};
+      Vec3 way = Vec3::Zero();
+      for (int variant = 0; variant < 5; ++variant) {
+        Motion asked = motion;
+        options.refinements = variant == 1 ? 0 : 3;
+        options.nodes = variant == 2 ? 12 : 0;
+        options.query = variant == 3 ? Query::sphere : Query::motion;
+        options.damping = 0.0;
+        if (variant == 3) asked.rows = ExtraRows(matrix.data(), bounds.data(), 2);
+        if (variant == 4) {
+          asked.jacobian = TipJacobian(jacobian);
+          options.damping = 1e-3;
+        }
+        const Outcome expected = forms.plain_step(asked, options);
+        EXPECT_EQ(forms.step(asked, options), expected) << "variant " << variant;
+        limited += expected.status == Status::limited;
+        if (variant == 0) way = expected.motion;
+      }
+      return way;
+    });
+  }
+  EXPECT_GT(limited, 100u);
+}
+
+TEST(CertifiedSearchMemory, DoesNotChangeAnswers) {
+  BothForms forms(make_shape("star_bumps"));
+  std::size_t limited = 0;
+  drag(forms, scales[0], 10, [&](const Motion& motion, double margin, double length) {
+    const StepOptions options{.radius = 1.1 * length, .margin = margin};
+    const Outcome remembered = forms.step(motion, options);
+    const auto fresh = forms.plain.searching(forms.tree);
+    EXPECT_EQ(Outcome(step(*forms.mesh, forms.tree, *fresh, forms.solver, motion, options,
+                           forms.plain_work)),
+              remembered);
+    limited += remembered.status == Status::limited;
+    return remembered.motion;
+  });
+  EXPECT_GT(limited, 50u);
+}
+
+TEST(CertifiedSearchTargets, AnswerAlike) {
+  BothForms forms(make_shape("gear"));
+  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+    const OnlyTarget only(target);
+    std::size_t limited = 0;
+    for (const Scale& scale : {scales[0], scales[3]}) {
+      drag(forms, scale, 5, [&](const Motion& motion, double margin, double length) {
+        const StepOptions options{.radius = 1.1 * length, .margin = margin};
+        const Outcome expected = forms.plain_step(motion, options);
+        EXPECT_EQ(forms.step(motion, options), expected) << hwy::TargetName(target);
+        limited += expected.status == Status::limited;
+        return expected.motion;
+      });
+    }
+    EXPECT_GT(limited, 20u);
+  }
+}
+
+TEST(CertifiedSearchIndex, IsForWideBvhOnly) {
+  const auto mesh = std::make_shared<const Mesh>(make_cube(0.5));
+  EXPECT_EQ(CertifiedRule(mesh).searching(PdTree(mesh)), nullptr);
+}
+
+/// Far from the origin, where a tip's second float matters, and coordinates are no floats.
+TEST(CertifiedSearchPrecision, StepsAsThePlainRuleDoesFarFromTheOrigin) {
+  Surface surface = make_shape("cortex");
+  for (Vec3& v : surface.vertices) v = 1.1 * v + Vec3(1234.5678, -987.654321, 3456.789);
+  BothForms forms(std::move(surface));
+  ASSERT_GT(forms.tree.coordinate_error(), 0.0);
+  std::size_t limited = 0;
+  drag(forms, scales[0], 10, [&](const Motion& motion, double margin, double length) {
+    const StepOptions options{.radius = 1.1 * length, .margin = margin};
+    const Outcome expected = forms.plain_step(motion, options);
+    EXPECT_EQ(forms.step(motion, options), expected);
+    limited += expected.status == Status::limited;
+    return expected.motion;
+  });
+  EXPECT_GT(limited, 50u);
+}
+
+}  // namespace
+}  // namespace keepout

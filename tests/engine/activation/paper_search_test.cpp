@@ -1,0 +1,279 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+// The paper's rule on a tree of its own, held to the plain rule bit for bit.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "keepout/activation/paper.h"
+#include "keepout/fixtures/poses.h"
+#include "keepout/fixtures/shapes.h"
+#include "keepout/index/pd_tree.h"
+#include "keepout/index/wide_bvh.h"
+#include "keepout/solvers/active_set.h"
+#include "keepout/step/step.h"
+#include "only_target.h"
+
+namespace keepout {
+namespace {
+
+std::vector<std::string> names_of_shapes() {
+  std::vector<std::string> names;
+  for (const Shape& shape : shapes()) names.emplace_back(shape.name);
+  return names;
+}
+
+bool operator==(const HalfSpace& one, const HalfSpace& other) {
+  return one.normal == other.normal && one.offset == other.offset && one.source == other.source;
+}
+
+bool are_equal(std::span<const HalfSpace> one, std::span<const HalfSpace> other) {
+  return std::equal(one.begin(), one.end(), other.begin(), other.end(),
+                    [](const HalfSpace& a, const HalfSpace& b) { return a == b; });
+}
+
+/// Both forms of the rule on one mesh.
+class BothForms {
+ public:
+  explicit BothForms(const Surface& surface, const Capacity& capacity = {})
+      : mesh(std::make_shared<const Mesh>(surface)),
+        tree(mesh),
+        other_tree(mesh),
+        plain(mesh),
+        searching(plain.searching(tree)),
+        work(capacity),
+        plain_work(capacity) {
+    searching->reserve(capacity.triangles);
+    const auto rows = static_cast<int>(capacity.planes + capacity.extra_rows);
+    solver.reserve(7, rows);
+  }
+
+  /// What start() comes to, and the planes, in `work` and `plain_work`.
+  std::array<Opening, 2> start(const Vec3& tip, double radius, double margin) {
+    Surroundings around = surroundings_of({.tip = tip, .desired = Vec3::Zero()},
+                                          {.radius = radius, .margin = margin}, plain.reach());
+    Unobserved nobody;
+    const Opening expected = open(*mesh, other_tree, plain, around, plain_work, nobody);
+    triangles = plain.triangles(around);
+    return {open(*mesh, tree, *searching, around, work, nobody), expected};
+  }
+
+  Step step(const Motion& motion, const StepOptions& options) {
+    return keepout::step(*mesh, tree, *searching, solver, motion, options, work);
+  }
+  Step plain_step(const Motion& motion, const StepOptions& options) {
+    return keepout::step(*mesh, other_tree, plain, solver, motion, options, plain_work);
+  }
+
+  std::shared_ptr<const Mesh> mesh;
+  WideBvh tree;
+  PdTree other_tree;
+  PaperRule plain;
+  std::unique_ptr<Activation> searching;
+  ActiveSet solver;
+  Workspace work;
+  Workspace plain_work;
+  std::size_t triangles = 0;  // that the plain rule saw
+};
+
+/// Above, on and below faces, edges and corners, and farther off.
+std::vector<Vec3> tips_around(const Mesh& mesh, std::size_t count) {
+  const double size = mesh.bounds().size().norm();
+  Random random(3);
+  std::vector<Vec3> tips = vertex_points(mesh, count, random);
+  const auto add = [&](const std::vector<Vec3>& more) {
+    tips.insert(tips.end(), more.begin(), more.end());
+  };
+  add(edge_points(mesh, count, random));
+  for (const double offset : {0.0, 1e-12, 1e-6, 2e-3, 0.03, -1e-4, -0.02}) {
+    add(surface_points(mesh, count, offset * size, random));
+  }
+  add(random_points(mesh, count, random));
+  // Right above a corner or an edge: the neighbours' nearest points are the same.
+  for (std::size_t i = 0; i < 2 * count; ++i) tips.push_back(tips[i] + Vec3(0, 0, 1e-3 * size));
+  return tips;
+}
+
+void expect_same_planes(BothForms& forms, std::size_t tips, std::size_t& planes) {
+  const double size = forms.mesh->bounds().size().norm();
+  for (const Vec3& tip : tips_around(*forms.mesh, tips)) {
+    for (const double radius : {1e-3 * size, 0.02 * size, 0.1 * size}) {
+      for (const double margin : {0.0, 4e-3 * size}) {
+        const auto [got, expected] = forms.start(tip, radius, margin);
+        ASSERT_EQ(got.stance, expected.stance);
+        ASSERT_EQ(forms.searching->triangles({}), forms.triangles);
+        ASSERT_TRUE(are_equal(forms.work.planes.view(), forms.plain_work.planes.view()))
+            << tip.transpose() << " radius " << radius << " margin " << margin;
+        planes += forms.plain_work.planes.size();
+      }
+    }
+  }
+}
+
+class PaperSearchOn : public testing::TestWithParam<std::string> {};
+
+TEST_P(PaperSearchOn, ThePlanesAreThoseOfThePlainRule) {
+  BothForms forms(make_shape(GetParam()));
+  std::size_t planes = 0;
+  expect_same_planes(forms, 12, planes);
+  EXPECT_GT(planes, GetParam() == "needles" ? 0u : 100u);
+}
+
+/// Increments towards the surface, along it and away from it, up to the radius.
+std::vector<Motion> motions_around(const Mesh& mesh, double radius) {
+  Random random(5);
+  std::vector<Motion> motions;
+  for (const Vec3& tip : tips_around(mesh, 6)) {
+    for (const double length : {0.02, 0.3, 1.0}) {
+      motions.push_back({.tip = tip, .desired = length * radius * random.direction()});
+    }
+  }
+  motions.push_back({.tip = motions.front().tip, .desired = Vec3::Zero()});
+  return motions;
+}
+
+TEST_P(PaperSearchOn, TheStepsAreThoseOfThePlainRule) {
+  BothForms forms(make_shape(GetParam()));
+  const double size = forms.mesh->bounds().size().norm();
+  for (const double radius : {2e-3 * size, 0.05 * size}) {
+    for (const double margin : {0.0, 2e-3 * size}) {
+      for (const Motion& motion : motions_around(*forms.mesh, radius)) {
+        const StepOptions options{.radius = radius, .margin = margin};
+        const Step expected = forms.plain_step(motion, options);
+        const Step got = forms.step(motion, options);
+        ASSERT_EQ(got.status, expected.status);
+        ASSERT_EQ(got.motion, expected.motion);
+        ASSERT_EQ(got.triangles, expected.triangles);
+        ASSERT_EQ(got.active.size(), expected.active.size());
+        for (std::size_t i = 0; i < got.active.size(); ++i) {
+          ASSERT_TRUE(got.planes[got.active[i]] == expected.planes[expected.active[i]]);
+        }
+        // The planes that were left out leave the others in their order.
+        ASSERT_TRUE(std::includes(
+            expected.planes.begin(), expected.planes.end(), got.planes.begin(), got.planes.end(),
+            [](const HalfSpace& a, const HalfSpace& b) { return a.source < b.source; }));
+      }
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Shapes, PaperSearchOn, testing::ValuesIn(names_of_shapes()),
+                         [](const auto& p) { return p.param; });
+
+/// The shape with coordinates that are floats, as those of STL files are.
+Surface as_floats(Surface surface) {
+  for (Vec3& v : surface.vertices) v = v.cast<float>().cast<double>();
+  return surface;
+}
+
+TEST(PaperSearch, ThePlanesAreThoseOfThePlainRuleWhereTheFloatsAreExact) {
+  BothForms forms(as_floats(make_gear(1.0)));
+  ASSERT_EQ(forms.tree.coordinate_error(), 0.0);
+  std::size_t planes = 0;
+  expect_same_planes(forms, 12, planes);
+  EXPECT_GT(planes, 1000u);
+}
+
+TEST(PaperSearch, ThePlanesAreThoseOfThePlainRuleFarFromTheOriginAndAtEveryScale) {
+  for (const double scale : {1e-25, 1e-9, 1e9, 1e25}) {
+    Surface surface = make_cortex(6.0, 1);
+    for (Vec3& v : surface.vertices) v *= scale;
+    BothForms forms(surface);
+    std::size_t planes = 0;
+    expect_same_planes(forms, 4, planes);
+    EXPECT_GT(planes, 1000u) << scale;
+  }
+  Surface surface = make_cortex(6.0, 1);
+  for (Vec3& v : surface.vertices) v += Vec3(1e6, -2e6, 3e5);
+  BothForms forms(surface);
+  std::size_t planes = 0;
+  expect_same_planes(forms, 4, planes);
+  EXPECT_GT(planes, 1000u);
+}
+
+TEST(PaperSearch, EveryProcessorGivesTheSamePlanes) {
+  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+    SCOPED_TRACE(hwy::TargetName(target));
+    const OnlyTarget only(target);
+    for (const char* name : {"cortex", "gear", "needles", "triangle_soup", "non_manifold"}) {
+      SCOPED_TRACE(name);
+      BothForms forms(make_shape(name));
+      std::size_t planes = 0;
+      expect_same_planes(forms, 4, planes);
+      EXPECT_GT(planes, 0u);
+    }
+  }
+}
+
+TEST(PaperSearch, MostPlanesOfAShortMotionAreIdleAndLeftOut) {
+  BothForms forms(make_shape("cortex"));
+  Random random(1);
+  std::size_t got = 0, expected = 0;
+  for (const Vec3& tip : surface_points(*forms.mesh, 50, 0.2, random)) {
+    const Motion motion{.tip = tip, .desired = 0.1 * random.direction()};
+    got += forms.step(motion, {.radius = 10.0}).planes.size();
+    expected += forms.plain_step(motion, {.radius = 10.0}).planes.size();
+  }
+  EXPECT_GT(got, 0u);
+  EXPECT_LT(2 * got, expected);
+}
+
+TEST(PaperSearch, WithJointsOrRowsAllPlanesArePosed) {
+  BothForms forms(make_shape("cortex"));
+  Random random(1);
+  Eigen::Matrix<double, 3, Eigen::Dynamic> jacobian(3, 6);
+  for (int i = 0; i < jacobian.size(); ++i) jacobian.data()[i] = random.normal();
+  const std::array<double, 3> row{1.0, 0.0, 0.0};
+  const double bound = -0.01;
+  for (const Vec3& tip : surface_points(*forms.mesh, 20, 0.2, random)) {
+    Motion motion{.tip = tip, .desired = 0.1 * random.direction()};
+    motion.jacobian.emplace(jacobian);
+    Step got = forms.step(motion, {.radius = 5.0, .damping = 1e-6});
+    EXPECT_TRUE(
+        are_equal(got.planes, forms.plain_step(motion, {.radius = 5.0, .damping = 1e-6}).planes));
+    EXPECT_FALSE(got.planes.empty());
+    motion.jacobian.reset();
+    motion.rows.emplace(row.data(), &bound, 1);
+    got = forms.step(motion, {.radius = 5.0});
+    const Step expected = forms.plain_step(motion, {.radius = 5.0});
+    EXPECT_TRUE(are_equal(got.planes, expected.planes));
+    EXPECT_EQ(got.motion, expected.motion);
+  }
+}
+
+TEST(PaperSearch, WhatIsBeyondTheCapacityEndsAsWithThePlainRule) {
+  const Surface surface = make_shape("cortex");
+  Random random(1);
+  const std::vector<Vec3> tips = surface_points(Mesh(surface), 30, 0.2, random);
+  std::size_t over = 0;
+  for (const Capacity& capacity : {Capacity{.triangles = 40}, Capacity{.planes = 10}}) {
+    BothForms forms(surface, capacity);
+    for (const Vec3& tip : tips) {
+      for (const double radius : {1.0, 3.0, 9.0}) {
+        const Motion motion{.tip = tip, .desired = Vec3(0.05, 0, 0)};
+        const Step got = forms.step(motion, {.radius = radius});
+        // From the same tree, as others find more candidates.
+        const Step expected = keepout::step(*forms.mesh, forms.tree, forms.plain, forms.solver,
+                                            motion, {.radius = radius}, forms.plain_work);
+        ASSERT_EQ(got.status, expected.status);
+        ASSERT_EQ(got.motion, expected.motion);
+        ASSERT_EQ(got.triangles, expected.triangles);
+        if (got.status == Status::over_capacity) ++over;
+      }
+    }
+  }
+  EXPECT_GT(over, 30u);
+}
+
+TEST(PaperSearch, OnlyForATreeItKnows) {
+  const auto mesh = std::make_shared<const Mesh>(make_cube(20.0));
+  EXPECT_EQ(PaperRule(mesh).searching(PdTree(mesh)), nullptr);
+  EXPECT_FALSE(PaperRule(mesh).searches());
+  const WideBvh tree(mesh);
+  EXPECT_TRUE(PaperRule(mesh).searching(tree)->searches());
+}
+
+}  // namespace
+}  // namespace keepout

@@ -1,0 +1,98 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "adapters/index_contract.h"
+#include "keepout/fixtures/shapes.h"
+
+namespace keepout {
+
+/// Fails unless the index gives what brute force does, no triangle more and none less.
+inline void expect_exact(const Mesh& mesh, const SpatialIndex& index, std::size_t of_each_kind) {
+  TriangleBuffer found(mesh.triangle_count());
+  for (const Probe& probe : probes(mesh, of_each_kind)) {
+    for (const double radius : probe.radii) {
+      found.clear();
+      index.collect({probe.point, radius}, found);
+      ASSERT_FALSE(found.overflowed()) << "a triangle was given twice";
+      std::sort(found.begin(), found.end());
+      std::vector<TriangleId> expected;
+      for (TriangleId t = 0; t < mesh.triangle_count(); ++t) {
+        if (probe.distances[t] <= radius) expected.push_back(t);
+      }
+      ASSERT_TRUE(std::equal(found.begin(), found.end(), expected.begin(), expected.end()))
+          << found.size() << " triangles instead of " << expected.size() << " at "
+          << probe.point.transpose() << " radius " << radius;
+    }
+  }
+}
+
+inline std::shared_ptr<const Mesh> shared_shape(std::string_view name) {
+  return std::make_shared<const Mesh>(make_shape(name));
+}
+
+/// The first triangles of a shape.
+inline std::shared_ptr<const Mesh> beginning_of(std::string_view name, std::size_t triangles) {
+  Surface surface = make_shape(name);
+  EXPECT_LE(triangles, surface.triangles.size());
+  surface.triangles.resize(triangles);
+  return std::make_shared<const Mesh>(std::move(surface));
+}
+
+/// The same triangles elsewhere, and bent: `vertex` gives each its new place.
+template <class Move>
+std::shared_ptr<const Mesh> moved(const Mesh& mesh, const Move& vertex) {
+  Surface surface{{}, {mesh.triangles().begin(), mesh.triangles().end()}};
+  for (const Vec3& v : mesh.vertices()) surface.vertices.push_back(vertex(v));
+  return std::make_shared<const Mesh>(std::move(surface));
+}
+
+/// Fails unless each triangle of the mesh is in one lane of one leaf, with its corners in
+/// lexicographic order and its parity, no farther off than `error`; full leaves but for the last.
+inline void expect_leaves_hold(const Mesh& mesh, std::span<const LeafBlock> leaves, double error) {
+  std::vector<int> times(mesh.triangle_count(), 0);
+  ASSERT_EQ(leaves.size(), (mesh.triangle_count() + LeafBlock::lanes - 1) / LeafBlock::lanes);
+  for (std::size_t i = 0; i < leaves.size(); ++i) {
+    const LeafBlock& leaf = leaves[i];
+    for (std::size_t lane = 0; lane < LeafBlock::lanes; ++lane) {
+      if (!leaf.is_used(lane)) {
+        ASSERT_EQ(i, leaves.size() - 1) << "a leaf that is not full";
+        for (int c = 0; c < 3; ++c) {
+          for (int axis = 0; axis < 3; ++axis) {
+            ASSERT_EQ(leaf.corner[c][axis][lane], leaf.corner[c][axis][0]);
+          }
+        }
+        continue;
+      }
+      const TriangleId t = leaf.triangle(lane);
+      ASSERT_LT(t, mesh.triangle_count());
+      ++times[t];
+      std::array<std::pair<std::array<double, 3>, int>, 3> corners;
+      for (int c = 0; c < 3; ++c) {
+        const Vec3 v = mesh.triangle(t)[static_cast<std::size_t>(c)];
+        corners[static_cast<std::size_t>(c)] = {{v.x(), v.y(), v.z()}, c};
+      }
+      std::sort(corners.begin(), corners.end());
+      const int inversions = int{corners[0].second > corners[1].second} +
+                             int{corners[0].second > corners[2].second} +
+                             int{corners[1].second > corners[2].second};
+      ASSERT_EQ((leaf.source[lane] & LeafBlock::odd) != 0, inversions % 2 == 1) << t;
+      for (std::size_t c = 0; c < 3; ++c) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          const double there = leaf.corner[c][axis][lane];
+          ASSERT_LE(std::abs(there - corners[c].first[axis]), error);
+        }
+      }
+    }
+  }
+  EXPECT_EQ(std::count(times.begin(), times.end(), 1), std::ssize(times));
+}
+
+}  // namespace keepout
