@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "box_screen.h"
 #include "keepout/activation/planes.h"
 #include "tolerance_ladder.h"
 
@@ -128,9 +129,9 @@ void CertifiedSearch::walk(const Vec3& trial, const double& latest, Visit&& visi
                    later);
     return true;
   };
-  const auto enter = [&](const NodeBlock& node) {
+  const auto enter = [&](const NodeBlock& node, const CylinderBlock& cylinders) {
     BoxEntries entries;
-    enter_boxes(node, float_tip_, motion.data(), reach_, is_long_, entries);
+    enter_boxes(node, cylinders, float_tip_, motion.data(), reach_, entries);
     for (std::uint32_t reached = entries.reached; reached != 0; reached &= reached - 1) {
       const auto lane = static_cast<std::size_t>(std::countr_zero(reached));
       const std::uint32_t child = node.child[lane];
@@ -167,11 +168,13 @@ void CertifiedSearch::walk(const Vec3& trial, const double& latest, Visit&& visi
     if ((box & NodeBlock::leaf) != 0) {
       look_at(box & ~NodeBlock::leaf);
     } else {
-      enter(tree_.nodes()[box]);
+      enter(tree_.nodes()[box], tree_.cylinders()[box]);
     }
   };
 
-  for (const NodeBlock& block : frontier_.blocks()) enter(block);
+  for (std::size_t i = 0; i < frontier_.blocks().size(); ++i) {
+    enter(frontier_.blocks()[i], frontier_.cylinders()[i]);
+  }
   while (looks_ <= most_looks) {
     if (begun_size > 0) {
       open(begun[--begun_size]);

@@ -11,7 +11,7 @@
 #include "frontier.h"
 #include "keepout/activation/certified.h"
 #include "keepout/index/wide_bvh.h"
-#include "segment_screen.h"
+#include "leaf_screen.h"
 
 namespace keepout {
 

@@ -33,12 +33,15 @@ class Frontier {
   std::span<const NodeBlock> blocks() const noexcept {
     return {blocks_.data(), (size_ + NodeBlock::lanes - 1) / NodeBlock::lanes};
   }
+  std::span<const CylinderBlock> cylinders() const noexcept {
+    return {cylinders_.data(), blocks().size()};
+  }
   std::size_t size() const noexcept { return size_; }
 
  private:
   static constexpr std::size_t most_boxes = 4 * NodeBlock::lanes;
 
-  void add(const NodeBlock& from, std::size_t lane) noexcept;
+  void add(const WideBvh& tree, std::uint32_t node, std::size_t lane) noexcept;
 
   double distance_to_boxes() const noexcept;
 
@@ -46,6 +49,7 @@ class Frontier {
   double free_radius_ = -1.0;  // around the same centre there are no boxes [length]
   std::size_t size_ = 0;       // boxes
   std::array<NodeBlock, most_boxes / NodeBlock::lanes> blocks_;
+  std::array<CylinderBlock, most_boxes / NodeBlock::lanes> cylinders_;  // of the blocks
 };
 
 }  // namespace keepout

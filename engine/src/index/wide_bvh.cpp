@@ -13,6 +13,7 @@
 #include "keepout/error.h"
 #include "leaf_fill.h"
 #include "median_split.h"
+#include "sheet_cylinder.h"
 #include "threads.h"
 
 namespace keepout {
@@ -125,13 +126,14 @@ void enclose(const NodeBlock& node, NodeBlock& parent, std::size_t lane) noexcep
 }
 
 /// Puts boxes at infinity, which nothing reaches, in the lanes from the first unused one on.
-void close_lanes(NodeBlock& node, std::size_t first) noexcept {
+void close_lanes(NodeBlock& node, CylinderBlock& cylinders, std::size_t first) noexcept {
   for (std::size_t lane = first; lane < NodeBlock::lanes; ++lane) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       node.low[axis][lane] = infinity;
       node.high[axis][lane] = infinity;
     }
     node.child[lane] = 0;
+    close_lane(cylinders, lane);
   }
 }
 
@@ -150,6 +152,7 @@ WideBvh::WideBvh(std::shared_ptr<const Mesh> mesh, unsigned threads) : mesh_(std
     if (capacity > LeafBlock::lanes) nodes += rounded_up_quotient(count, capacity);
   }
   nodes_.resize(nodes);
+  cylinders_.resize(nodes);
   fit(threads);
 }
 
@@ -186,9 +189,10 @@ void WideBvh::fit(unsigned threads) {
       NodeBlock& node = nodes_[begin + leaf / NodeBlock::lanes];
       enclose(box, exact, node, leaf % NodeBlock::lanes);
       node.child[leaf % NodeBlock::lanes] = static_cast<std::uint32_t>(leaf) | NodeBlock::leaf;
+      enclose(leaves_[leaf], cylinders_[begin + leaf / NodeBlock::lanes], leaf % NodeBlock::lanes);
     });
   });
-  close_lanes(nodes_.back(), leaves_.size() - (size - 1) * NodeBlock::lanes);
+  close_lanes(nodes_.back(), cylinders_.back(), leaves_.size() - (size - 1) * NodeBlock::lanes);
   while (size > 1) {
     const std::size_t children = size;
     const std::size_t first_child = begin;
@@ -197,14 +201,18 @@ void WideBvh::fit(unsigned threads) {
     for (std::size_t i = 0; i < children; ++i) {
       NodeBlock& node = nodes_[begin + i / NodeBlock::lanes];
       enclose(nodes_[first_child + i], node, i % NodeBlock::lanes);
+      enclose(nodes_[first_child + i], cylinders_[first_child + i],
+              cylinders_[begin + i / NodeBlock::lanes], i % NodeBlock::lanes);
       node.child[i % NodeBlock::lanes] = static_cast<std::uint32_t>(first_child + i);
     }
-    close_lanes(nodes_[first_child - 1], children - (size - 1) * NodeBlock::lanes);
+    close_lanes(nodes_[first_child - 1], cylinders_[first_child - 1],
+                children - (size - 1) * NodeBlock::lanes);
   }
 }
 
 std::size_t WideBvh::memory() const noexcept {
-  return nodes_.capacity() * sizeof(NodeBlock) + leaves_.capacity() * sizeof(LeafBlock);
+  return nodes_.capacity() * sizeof(NodeBlock) + cylinders_.capacity() * sizeof(CylinderBlock) +
+         leaves_.capacity() * sizeof(LeafBlock);
 }
 
 }  // namespace keepout

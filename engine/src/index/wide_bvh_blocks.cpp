@@ -15,6 +15,7 @@
 #include "../parallel.h"
 #include "keepout/error.h"
 #include "keepout/index/wide_bvh.h"
+#include "sheet_cylinder.h"
 
 namespace keepout {
 namespace {
@@ -210,6 +211,32 @@ WideBvh::WideBvh(std::shared_ptr<const Mesh> mesh, BlockVector<NodeBlock> nodes,
   expect(mesh_->triangle_count() <= most_triangles);
   Check(*mesh_, nodes_, leaves_).run();
   coordinate_error_ = largest_rounding(*mesh_);
+  cylinders_.resize(nodes_.size());
+  enclose_blocks();
+}
+
+/// Puts the cylinders around what the blocks hold.
+void WideBvh::enclose_blocks() {
+  share_ranges(nodes_.size(), processors(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      for (std::size_t lane = 0; lane < NodeBlock::lanes; ++lane) {
+        const std::uint32_t child = nodes_[n].child[lane];
+        if ((child & NodeBlock::leaf) != 0) {
+          enclose(leaves_[child & ~NodeBlock::leaf], cylinders_[n], lane);
+        } else {
+          close_lane(cylinders_[n], lane);
+        }
+      }
+    }
+  });
+  // A parent stands before its children.
+  for (std::size_t n = nodes_.size(); n-- > 0;) {
+    for (std::size_t lane = 0; lane < NodeBlock::lanes && nodes_[n].is_used(lane); ++lane) {
+      const std::uint32_t child = nodes_[n].child[lane];
+      if ((child & NodeBlock::leaf) != 0) continue;
+      enclose(nodes_[child], cylinders_[child], cylinders_[n], lane);
+    }
+  }
 }
 
 }  // namespace keepout

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "keepout/index/block_memory.h"
+#include "keepout/index/cylinder_block.h"
 #include "keepout/index/leaf_block.h"
 #include "keepout/index/query_counts.h"
 #include "keepout/index/spatial_index.h"
@@ -76,16 +77,21 @@ class WideBvh final : public SpatialIndex {
   std::span<const NodeBlock> nodes() const noexcept { return nodes_; }
   std::span<const LeafBlock> leaves() const noexcept { return leaves_; }
 
+  /// Of each node: around what its boxes are around, as its leaves have it.
+  std::span<const CylinderBlock> cylinders() const noexcept { return cylinders_; }
+
   /// How far a corner in a leaf may be from the mesh's, in each coordinate: 0 where the mesh's are
   /// floats, as those of STL files are. [length]
   double coordinate_error() const noexcept { return coordinate_error_; }
 
  private:
   void fit(unsigned threads);
+  void enclose_blocks();
 
   std::shared_ptr<const Mesh> mesh_;
-  BlockVector<NodeBlock> nodes_;   // level by level, the root first
-  BlockVector<LeafBlock> leaves_;  // neighbours near each other
+  BlockVector<NodeBlock> nodes_;          // level by level, the root first
+  BlockVector<LeafBlock> leaves_;         // neighbours near each other
+  BlockVector<CylinderBlock> cylinders_;  // as nodes_
   double coordinate_error_ = 0.0;
 };
 

@@ -4,45 +4,10 @@
 
 #include <cstdint>
 
-#include "keepout/geometry/vec3.h"
-#include "keepout/index/wide_bvh.h"
+#include "float_motion.h"
+#include "keepout/index/leaf_block.h"
 
 namespace keepout {
-
-/// A motion from the tip, to be looked at in float: the tip as the sum of two floats, so that what
-/// is near it keeps its digits.
-struct FloatTip {
-  float high[3];
-  float low[3];
-};
-
-FloatTip float_tip(const Vec3& tip) noexcept;
-
-/// How near is near. All are rounded up.
-struct FloatReach {
-  float margin;    // to keep from the motion [length]
-  float relative;  // what rounding adds: so much of |v - tip| of the farthest corner v ...
-  float slack;     // ... and this [length]
-  float boxes;     // margin and rounding, for boxes [length]
-};
-
-/// `error`: of the coordinates in leaves. `longest`: no motion that is looked at is longer.
-FloatReach float_reach(double margin, double longest, const Vec3& tip, double error) noexcept;
-
-/// When a motion may first come within the margin of each of sixteen boxes: a share of the motion,
-/// never late; 0 where it begins there, beyond 1 where it never does.
-struct BoxEntries {
-  alignas(64) float time[NodeBlock::lanes];
-  std::uint32_t reached;  // a bit for each box that is reached
-};
-
-/// `rounded`: looks closer, which is worth it where a motion passes many boxes by. Then the margin
-/// rounds the boxes; else they keep sharp corners.
-void enter_boxes(const NodeBlock& boxes, const FloatTip& tip, const float* motion,
-                 const FloatReach& reach, bool rounded, BoxEntries& entries) noexcept;
-
-/// The boxes within `radius` of the tip: a bit for each. Never one too few.
-std::uint32_t boxes_near(const NodeBlock& boxes, const FloatTip& center, float radius) noexcept;
 
 /// What is known of the sixteen triangles of a leaf while the tip stays where it is: unit vectors,
 /// and how far the margin is kept along each. That the plane between triangle and tip along a

@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "keepout/geometry/vec3.h"
+
+namespace keepout {
+
+/// A motion from the tip, to be looked at in float: the tip as the sum of two floats, so that what
+/// is near it keeps its digits.
+struct FloatTip {
+  float high[3];
+  float low[3];
+};
+
+FloatTip float_tip(const Vec3& tip) noexcept;
+
+/// How near is near. All are rounded up.
+struct FloatReach {
+  float margin;    // to keep from the motion [length]
+  float relative;  // what rounding adds: so much of |v - tip| of the farthest corner v ...
+  float slack;     // ... and this [length]
+  float boxes;     // margin and rounding, for boxes [length]
+};
+
+/// `error`: of the coordinates in leaves. `longest`: no motion that is looked at is longer.
+FloatReach float_reach(double margin, double longest, const Vec3& tip, double error) noexcept;
+
+}  // namespace keepout

@@ -1,0 +1,186 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "activation/leaf_screen.cpp"
+#include <hwy/foreach_target.h>
+// After it, for it tells for whom to compile.
+#include "leaf_screen.h"
+#include "proof_lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace keepout::HWY_NAMESPACE {
+
+/// Triangles, relative to the tip.
+struct Corners {
+  Vector a, b, c;
+};
+
+HWY_INLINE Corners corners(Float d, const LeafBlock& leaf, const FloatTip& tip, std::size_t lane) {
+  return {relative(d, leaf.corner[0], lane, tip), relative(d, leaf.corner[1], lane, tip),
+          relative(d, leaf.corner[2], lane, tip)};
+}
+
+/// About the point of each triangle that is nearest to p.
+/// Source: Ericson, "Real-Time Collision Detection", 2005, section 5.1.5.
+HWY_INLINE Vector nearest(Float d, const Corners& t, const Vector& p) {
+  const V zero = hn::Zero(d);
+  const Vector ab = t.b - t.a;
+  const Vector ac = t.c - t.a;
+  const Vector ap = p - t.a;
+  const Vector bp = p - t.b;
+  const Vector cp = p - t.c;
+  const V d1 = dot(ab, ap), d2 = dot(ac, ap);
+  const V d3 = dot(ab, bp), d4 = dot(ac, bp);
+  const V d5 = dot(ab, cp), d6 = dot(ac, cp);
+  const V va = hn::Sub(hn::Mul(d3, d6), hn::Mul(d5, d4));
+  const V vb = hn::Sub(hn::Mul(d5, d2), hn::Mul(d1, d6));
+  const V vc = hn::Sub(hn::Mul(d1, d4), hn::Mul(d3, d2));
+  const V along_bc = hn::Sub(d4, d3);
+  const V along_cb = hn::Sub(d5, d6);
+
+  // v and w of a + v ab + w ac, each over `whole`; the last that applies counts.
+  V v = vb, w = vc, whole = hn::Add(hn::Add(va, vb), vc);
+  const auto take = [&](M where, V its_v, V its_w, V its_whole) {
+    v = hn::IfThenElse(where, its_v, v);
+    w = hn::IfThenElse(where, its_w, w);
+    whole = hn::IfThenElse(where, its_whole, whole);
+  };
+  const auto edge = [&](V beyond, V from, V to) {
+    return hn::And(hn::Le(beyond, zero), hn::And(hn::Ge(from, zero), hn::Ge(to, zero)));
+  };
+  const V one = hn::Set(d, 1.0f);
+  take(edge(va, along_bc, along_cb), along_cb, along_bc, hn::Add(along_bc, along_cb));
+  take(edge(vb, d2, hn::Neg(d6)), zero, d2, hn::Sub(d2, d6));
+  take(edge(vc, d1, hn::Neg(d3)), d1, zero, hn::Sub(d1, d3));
+  take(hn::And(hn::Ge(d6, zero), hn::Le(d5, d6)), zero, one, one);
+  take(hn::And(hn::Ge(d3, zero), hn::Le(d4, d3)), one, zero, one);
+  take(hn::And(hn::Le(d1, zero), hn::Le(d2, zero)), zero, zero, one);
+  const V share = hn::Div(one, whole);
+  return t.a + (hn::Mul(v, share) * ab + hn::Mul(w, share) * ac);
+}
+
+/// What the direction of `way` proves; nothing, if it is none.
+HWY_INLINE Proof proof_along(Float d, const Corners& t, const Vector& way,
+                             const FloatReach& reach) {
+  const V length2 = dot(way, way);
+  const Vector n = hn::Div(hn::Set(d, 1.0f), hn::Sqrt(length2)) * way;
+  const V support = hn::Max(dot(n, t.a), hn::Max(dot(n, t.b), dot(n, t.c)));
+  const V far = hn::Max(size(t.a), hn::Max(size(t.b), size(t.c)));
+  const V rounding = hn::Add(hn::Mul(far, hn::Set(d, reach.relative)), hn::Set(d, reach.slack));
+  const V clear = hn::Sub(hn::Sub(hn::Neg(support), hn::Set(d, reach.margin)), rounding);
+  return proof_if(d, has_direction(d, length2), n, clear);
+}
+
+HWY_INLINE Proof proof_at(Float d, const Corners& t, const Vector& p, const FloatReach& reach) {
+  return proof_along(d, t, p - nearest(d, t, p), reach);
+}
+
+HWY_INLINE void store(Float d, const Proof& proof, std::size_t lane, LeafScreen::Normals& to) {
+  store(d, proof.n, lane, to.n);
+  hn::Store(proof.clear, d, to.clear + lane);
+}
+
+HWY_INLINE Proof load(Float d, const LeafScreen::Normals& from, std::size_t lane) {
+  return {load(d, from.n, lane), hn::Load(d, from.clear + lane)};
+}
+
+void Look(const LeafBlock& leaf, const FloatTip& tip, const FloatReach& reach, LeafScreen& screen) {
+  const Float d;
+  const V zero = hn::Zero(d);
+  for (std::size_t lane = 0; lane < LeafBlock::lanes; lane += hn::Lanes(d)) {
+    const Corners t = corners(d, leaf, tip, lane);
+    const Proof proof = proof_at(d, t, {zero, zero, zero}, reach);
+    store(d, proof, lane, screen.at_tip);
+    store(d, proof, lane, screen.last);
+  }
+}
+
+void Suspect(const LeafScreen& screen, const float* motion, Suspects& suspects) {
+  const Float d;
+  const Vector z = all(d, motion);
+  suspects.mask = 0;
+  for (std::size_t lane = 0; lane < LeafBlock::lanes; lane += hn::Lanes(d)) {
+    const Proof first = load(d, screen.at_tip, lane);
+    const Proof last = load(d, screen.last, lane);
+    const V along_first = dot(first.n, z);
+    const V along_last = dot(last.n, z);
+    const M clear = hn::Or(holds(d, first, along_first), holds(d, last, along_last));
+    hn::Store(hn::Max(entry(d, first, along_first), entry(d, last, along_last)), d,
+              suspects.time + lane);
+    suspects.mask |= bits(d, hn::Not(clear), lane);
+  }
+}
+
+void SuspectSharply(const LeafBlock& leaf, const FloatTip& tip, const float* motion,
+                    const FloatReach& reach, LeafScreen& screen, Suspects& suspects) {
+  constexpr int cuts = 2;
+  const Float d;
+  const Vector z = all(d, motion);
+  const V zero = hn::Zero(d);
+  const V one = hn::Set(d, 1.0f);
+  suspects.mask = 0;
+  for (std::size_t lane = 0; lane < LeafBlock::lanes; lane += hn::Lanes(d)) {
+    const Corners t = corners(d, leaf, tip, lane);
+    Proof left = load(d, screen.at_tip, lane);
+    V fall = dot(left.n, z);
+    Proof best = load(d, screen.last, lane);
+    M clear = hn::Or(holds(d, left, fall), holds(d, best, dot(best.n, z)));
+    V time = hn::Max(entry(d, left, fall), entry(d, best, dot(best.n, z)));
+    const auto consider = [&](const Proof& proof, V along) {
+      const M better = hn::AndNot(clear, holds(d, proof, along));
+      best = select(better, proof, best);
+      clear = hn::Or(clear, better);
+      time = hn::Max(time, entry(d, proof, along));
+    };
+    Proof right = proof_at(d, t, z, reach);
+    V rise = dot(right.n, z);
+    consider(right, rise);
+    for (int cut = 0; cut < cuts && !hn::AllTrue(d, clear); ++cut) {
+      // The blend that is level along the motion, and the normal where the two lines cross.
+      const Proof blend = proof_along(d, t, rise * left.n - fall * right.n, reach);
+      consider(blend, dot(blend.n, z));
+      const V crossing = hn::Div(hn::Sub(left.clear, right.clear), hn::Sub(rise, fall));
+      const V at = hn::Min(hn::Max(crossing, zero), one);
+      const Proof next = proof_at(d, t, at * z, reach);
+      const V along = dot(next.n, z);
+      consider(next, along);
+      const M falls = hn::Lt(along, zero);
+      left = select(falls, next, left);
+      fall = hn::IfThenElse(falls, along, fall);
+      right = select(falls, right, next);
+      rise = hn::IfThenElse(falls, rise, along);
+    }
+    store(d, best, lane, screen.last);
+    hn::Store(time, d, suspects.time + lane);
+    suspects.mask |= bits(d, hn::Not(clear), lane);
+  }
+}
+
+}  // namespace keepout::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+
+namespace keepout {
+
+HWY_EXPORT(Look);
+HWY_EXPORT(Suspect);
+HWY_EXPORT(SuspectSharply);
+
+void look(const LeafBlock& leaf, const FloatTip& tip, const FloatReach& reach,
+          LeafScreen& screen) noexcept {
+  HWY_DYNAMIC_DISPATCH(Look)(leaf, tip, reach, screen);
+}
+
+void suspect(const LeafScreen& screen, const float* motion, Suspects& suspects) noexcept {
+  HWY_DYNAMIC_DISPATCH(Suspect)(screen, motion, suspects);
+}
+
+void suspect_sharply(const LeafBlock& leaf, const FloatTip& tip, const float* motion,
+                     const FloatReach& reach, LeafScreen& screen, Suspects& suspects) noexcept {
+  HWY_DYNAMIC_DISPATCH(SuspectSharply)(leaf, tip, motion, reach, screen, suspects);
+}
+
+}  // namespace keepout
+
+#endif
