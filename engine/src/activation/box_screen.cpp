@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include <limits>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "activation/box_screen.cpp"
 #include <hwy/foreach_target.h>
@@ -10,48 +12,53 @@
 HWY_BEFORE_NAMESPACE();
 namespace keepout::HWY_NAMESPACE {
 
-/// How far each cylinder reaches along a unit vector from its middle, or a little farther.
-HWY_INLINE V half_extent(const Vector& axis, V half_height, V radius, const Vector& n) {
-  const V along = dot(axis, n);
-  const Vector across = n - along * axis;
-  return hn::Add(hn::Mul(half_height, hn::Abs(along)),
-                 hn::Mul(radius, hn::Sqrt(dot(across, across))));
+/// Cylinders, relative to the tip.
+struct Cylinders {
+  Vector middle, axis;
+  V half_height, radius;
+};
+
+HWY_INLINE Cylinders cylinders_at(Float d, const CylinderBlock& block, const FloatTip& tip,
+                                  std::size_t lane) {
+  return {relative(d, block.middle, lane, tip), load(d, block.axis, lane),
+          hn::Load(d, block.half_height + lane), hn::Load(d, block.radius + lane)};
 }
 
-/// What the direction proves that leads from each cylinder to the place of the motion that is
-/// nearest to it, or nearly.
-HWY_INLINE Proof proof_of_cylinder(Float d, const CylinderBlock& cylinders, std::size_t lane,
-                                   const FloatTip& tip, const Vector& z, const FloatReach& reach) {
-  const V zero = hn::Zero(d);
-  const V one = hn::Set(d, 1.0f);
-  const Vector middle = relative(d, cylinders.middle, lane, tip);
-  const Vector axis = load(d, cylinders.axis, lane);
-  const V half_height = hn::Load(d, cylinders.half_height + lane);
-  const V radius = hn::Load(d, cylinders.radius + lane);
+/// About the point of each cylinder that is nearest to p.
+HWY_INLINE Vector nearest(Float d, const Cylinders& c, const Vector& p) {
+  const Vector way = p - c.middle;
+  const V along = dot(c.axis, way);
+  const Vector across = way - along * c.axis;
+  const V far2 = hn::Max(dot(across, across), hn::Set(d, 1e-30f));
+  const V inside =
+      hn::Min(hn::Mul(c.radius, hn::ApproximateReciprocalSqrt(far2)), hn::Set(d, 1.0f));
+  const V height = hn::Max(hn::Min(along, c.half_height), hn::Neg(c.half_height));
+  return c.middle + height * c.axis + inside * across;
+}
 
-  const V per_length2 = hn::Div(one, hn::Max(dot(z, z), hn::Set(d, 1e-30f)));
-  const auto nearest_of_motion = [&](const Vector& to) {
-    return hn::Min(hn::Max(hn::Mul(dot(to, z), per_length2), zero), one) * z;
-  };
-  const auto nearest_of_cylinder = [&](const Vector& to) -> Vector {
-    const Vector way = to - middle;
-    const V along = dot(axis, way);
-    const Vector across = way - along * axis;
-    const V far2 = hn::Max(dot(across, across), hn::Set(d, 1e-30f));
-    const V inside = hn::Min(hn::Div(radius, hn::Sqrt(far2)), one);
-    const V height = hn::Max(hn::Min(along, half_height), hn::Neg(half_height));
-    return middle + height * axis + inside * across;
-  };
-  const Vector near = nearest_of_cylinder(nearest_of_motion(middle));
-  const Vector way = nearest_of_motion(near) - near;
-  const V length2 = dot(way, way);
-  const Vector n = hn::Div(one, hn::Sqrt(length2)) * way;
-  const V support = hn::Add(dot(n, middle), half_extent(axis, half_height, radius, n));
-  // Of what is in the cylinder nothing is farther from the tip.
-  const V far = hn::Add(size(middle), hn::Add(half_height, radius));
+/// How far each cylinder reaches along a unit vector from its middle, or a little farther.
+HWY_INLINE V half_extent(const Cylinders& c, const Vector& n) {
+  const V along = dot(c.axis, n);
+  const Vector across = n - along * c.axis;
+  return hn::Add(hn::Mul(c.half_height, hn::Abs(along)),
+                 hn::Mul(c.radius, hn::Sqrt(dot(across, across))));
+}
+
+/// What a unit vector proves.
+HWY_INLINE V clear_along(Float d, const Cylinders& c, const Vector& n, const FloatReach& reach) {
+  const V support = hn::Add(dot(n, c.middle), half_extent(c, n));
+  // Nothing that is in the cylinder is farther from the tip.
+  const V far = hn::Add(size(c.middle), hn::Add(c.half_height, c.radius));
   const V rounding = hn::Add(hn::Mul(far, hn::Set(d, reach.relative)), hn::Set(d, reach.slack));
-  const V clear = hn::Sub(hn::Sub(hn::Neg(support), hn::Set(d, reach.margin)), rounding);
-  return proof_if(d, has_direction(d, length2), n, clear);
+  return hn::Sub(hn::Sub(hn::Neg(support), hn::Set(d, reach.margin)), rounding);
+}
+
+/// What the direction of `way` proves; nothing, if it is none.
+HWY_INLINE Proof proof_along(Float d, const Cylinders& c, const Vector& way,
+                             const FloatReach& reach) {
+  const V length2 = dot(way, way);
+  const Vector n = hn::Div(hn::Set(d, 1.0f), hn::Sqrt(length2)) * way;
+  return proof_if(d, has_direction(d, length2), n, clear_along(d, c, n, reach));
 }
 
 /// Boxes, relative to the tip.
@@ -63,10 +70,9 @@ HWY_INLINE Boxes boxes_at(Float d, const NodeBlock& node, const FloatTip& tip, s
   return {relative(d, node.low, lane, tip), relative(d, node.high, lane, tip)};
 }
 
-void EnterBoxes(const NodeBlock& node, const CylinderBlock& cylinders, const FloatTip& tip,
-                const float* motion, const FloatReach& reach, BoxEntries& entries) {
+void EnterBoxes(const NodeBlock& node, const FloatTip& tip, const float* motion,
+                const FloatReach& reach, BoxEntries& entries) {
   const Float d;
-  const Vector z = all(d, motion);
   const V margin = hn::Set(d, reach.boxes);
   // Where the motion stands still along an axis, a box is beside it or around it for good.
   V inverse[3];
@@ -90,27 +96,66 @@ void EnterBoxes(const NodeBlock& node, const CylinderBlock& cylinders, const Flo
     clip(boxes.low.x, boxes.high.x, inverse[0]);
     clip(boxes.low.y, boxes.high.y, inverse[1]);
     clip(boxes.low.z, boxes.high.z, inverse[2]);
-    const M in_boxes = hn::Le(enter, leave);
-    const Proof proof = proof_of_cylinder(d, cylinders, lane, tip, z, reach);
-    const V along = dot(proof.n, z);
-    const M reached = hn::AndNot(holds(d, proof, along), in_boxes);
-    const V time = hn::Max(hn::Mul(enter, hn::Set(d, 0.999999f)), entry(d, proof, along));
-    hn::Store(time, d, entries.time + lane);
-    entries.reached |= bits(d, reached, lane);
+    hn::Store(hn::Mul(enter, hn::Set(d, 0.999999f)), d, entries.time + lane);
+    entries.reached |= bits(d, hn::Le(enter, leave), lane);
   }
+}
+
+void EnterCylinders(const CylinderBlock& block, const FloatTip& tip, const float* motion,
+                    const FloatReach& reach, const Directions& directions, BoxEntries& entries) {
+  const Float d;
+  const Vector z = all(d, motion);
+  const V per_length2 = hn::Div(hn::Set(d, 1.0f), hn::Max(dot(z, z), hn::Set(d, 1e-30f)));
+  const auto nearest_of_motion = [&](const Vector& to) {
+    const V along = hn::Mul(dot(to, z), per_length2);
+    return hn::Min(hn::Max(along, hn::Zero(d)), hn::Set(d, 1.0f)) * z;
+  };
+  std::uint32_t clear = 0;
+  for (std::size_t lane = 0; lane < CylinderBlock::lanes; lane += hn::Lanes(d)) {
+    const Cylinders its = cylinders_at(d, block, tip, lane);
+    V time = hn::Load(d, entries.time + lane);
+    const auto consider = [&](const Proof& proof) {
+      const V along = dot(proof.n, z);
+      time = hn::Max(time, entry(d, proof, along));
+      clear |= bits(d, holds(d, proof, along), lane);
+    };
+    for (std::size_t i = 0; i < directions.size; ++i) {
+      const Vector n = all(d, directions.n[i]);
+      consider({n, clear_along(d, its, n, reach)});
+    }
+    // To where the motion comes nearest to the cylinder, or nearly.
+    const Vector near = nearest(d, its, nearest_of_motion(its.middle));
+    consider(proof_along(d, its, nearest_of_motion(near) - near, reach));
+    hn::Store(time, d, entries.time + lane);
+  }
+  entries.reached &= ~clear;
+}
+
+/// The squared distances of the boxes from the point that they are relative to.
+HWY_INLINE V distance2(Float d, const Boxes& boxes) {
+  const V zero = hn::Zero(d);
+  const Vector nearest = most(boxes.low, least(boxes.high, {zero, zero, zero}));
+  return dot(nearest, nearest);
 }
 
 std::uint32_t BoxesNear(const NodeBlock& boxes, const FloatTip& center, float radius) {
   const Float d;
-  const V zero = hn::Zero(d);
   std::uint32_t near = 0;
   for (std::size_t lane = 0; lane < NodeBlock::lanes; lane += hn::Lanes(d)) {
-    const Boxes its = boxes_at(d, boxes, center, lane);
-    const Vector nearest = most(its.low, least(its.high, {zero, zero, zero}));
-    const V distance2 = dot(nearest, nearest);
-    near |= bits(d, hn::Not(hn::Gt(distance2, hn::Set(d, radius * radius))), lane);
+    const V its = distance2(d, boxes_at(d, boxes, center, lane));
+    near |= bits(d, hn::Not(hn::Gt(its, hn::Set(d, radius * radius))), lane);
   }
   return near;
+}
+
+float DistanceToBoxes(const NodeBlock& boxes, const FloatTip& center) {
+  const Float d;
+  V least2 = hn::Set(d, std::numeric_limits<float>::infinity());
+  for (std::size_t lane = 0; lane < NodeBlock::lanes; lane += hn::Lanes(d)) {
+    least2 = hn::Min(least2, distance2(d, boxes_at(d, boxes, center, lane)));
+  }
+  constexpr float down = 1.0f - 4e-6f;
+  return down * hn::GetLane(hn::Sqrt(hn::MinOfLanes(d, least2)));
 }
 
 }  // namespace keepout::HWY_NAMESPACE
@@ -121,15 +166,27 @@ HWY_AFTER_NAMESPACE();
 namespace keepout {
 
 HWY_EXPORT(EnterBoxes);
+HWY_EXPORT(EnterCylinders);
 HWY_EXPORT(BoxesNear);
+HWY_EXPORT(DistanceToBoxes);
 
-void enter_boxes(const NodeBlock& boxes, const CylinderBlock& cylinders, const FloatTip& tip,
-                 const float* motion, const FloatReach& reach, BoxEntries& entries) noexcept {
-  HWY_DYNAMIC_DISPATCH(EnterBoxes)(boxes, cylinders, tip, motion, reach, entries);
+void enter_boxes(const NodeBlock& boxes, const FloatTip& tip, const float* motion,
+                 const FloatReach& reach, BoxEntries& entries) noexcept {
+  HWY_DYNAMIC_DISPATCH(EnterBoxes)(boxes, tip, motion, reach, entries);
+}
+
+void enter_cylinders(const CylinderBlock& cylinders, const FloatTip& tip, const float* motion,
+                     const FloatReach& reach, const Directions& directions,
+                     BoxEntries& entries) noexcept {
+  HWY_DYNAMIC_DISPATCH(EnterCylinders)(cylinders, tip, motion, reach, directions, entries);
 }
 
 std::uint32_t boxes_near(const NodeBlock& boxes, const FloatTip& center, float radius) noexcept {
   return HWY_DYNAMIC_DISPATCH(BoxesNear)(boxes, center, radius);
+}
+
+float distance_to_boxes(const NodeBlock& boxes, const FloatTip& center) noexcept {
+  return HWY_DYNAMIC_DISPATCH(DistanceToBoxes)(boxes, center);
 }
 
 }  // namespace keepout

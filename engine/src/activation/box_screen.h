@@ -17,11 +17,19 @@ struct BoxEntries {
   std::uint32_t reached;  // a bit for each box that is reached
 };
 
-/// `cylinders`: around the same triangles as the boxes.
-void enter_boxes(const NodeBlock& boxes, const CylinderBlock& cylinders, const FloatTip& tip,
-                 const float* motion, const FloatReach& reach, BoxEntries& entries) noexcept;
+void enter_boxes(const NodeBlock& boxes, const FloatTip& tip, const float* motion,
+                 const FloatReach& reach, BoxEntries& entries) noexcept;
+
+/// Looks closer at the boxes that are reached: along the directions, and along those from their
+/// cylinders to the places of the motion that are nearest to them.
+void enter_cylinders(const CylinderBlock& cylinders, const FloatTip& tip, const float* motion,
+                     const FloatReach& reach, const Directions& directions,
+                     BoxEntries& entries) noexcept;
 
 /// The boxes within `radius` of the tip: a bit for each. Never one too few.
 std::uint32_t boxes_near(const NodeBlock& boxes, const FloatTip& center, float radius) noexcept;
+
+/// How far the nearest of the boxes is from the centre, or a little less. [length]
+float distance_to_boxes(const NodeBlock& boxes, const FloatTip& center) noexcept;
 
 }  // namespace keepout

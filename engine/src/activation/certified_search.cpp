@@ -3,26 +3,17 @@
 #include "certified_search.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <utility>
 
-#include "box_screen.h"
 #include "keepout/activation/planes.h"
 #include "tolerance_ladder.h"
 
 namespace keepout {
 namespace {
 
-constexpr std::uint32_t no_facet = ~std::uint32_t{0};
-
-// Leaves whose screens are kept, a power of 2; a cycle in contact looks at a dozen.
-constexpr std::size_t most_memory = 256;
-constexpr std::size_t most_waiting = 4096;
+constexpr std::uint32_t no_facet = TrialWalk::no_note;
 constexpr std::size_t most_facets = 4096;
-
-// How often a cycle may look at a leaf: some milliseconds.
-constexpr std::size_t most_looks = std::size_t{1} << 17;
 
 }  // namespace
 
@@ -30,9 +21,8 @@ CertifiedSearch::CertifiedSearch(std::shared_ptr<const Mesh> mesh, const WideBvh
     : mesh_(std::move(mesh)),
       tree_(tree),
       longest_edge_(mesh_->longest_edge()),
-      facets_(most_facets),
-      memory_(most_memory),
-      waiting_(most_waiting) {}
+      walk_(tree),
+      facets_(most_facets) {}
 
 std::size_t CertifiedSearch::triangles(const Surroundings&) const noexcept {
   return facets_.size();
@@ -46,7 +36,7 @@ Opening CertifiedSearch::start(const Surroundings& around, HalfSpaceBuffer&) noe
   using Stance = Opening::Stance;
   const double tau = certified_tolerance(around, longest_edge_);
   facets_.clear();
-  looks_ = 0;
+  walk_.restart_counting();
   if (!(around.margin > needed_margin * tau)) return {Stance::no_margin};
   locate(around);
   is_free_ = frontier_.is_free(around.ball);
@@ -54,8 +44,8 @@ Opening CertifiedSearch::start(const Surroundings& around, HalfSpaceBuffer&) noe
   begin(around, CertifiedTerms::keeping(around.margin, tau));
 
   constexpr double always = 2.0;
-  walk(Vec3::Zero(), always, [&](LeafMemory& memory, std::size_t lane) {
-    make_facet(memory, lane, corners(memory.leaf, lane));
+  walk_.run(frontier_, Vec3::Zero(), {}, always, [&](TrialWalk::Leaf& leaf, std::size_t lane) {
+    make_facet(leaf, lane, corners(leaf.number, lane));
   });
   if (facets_.overflowed()) return {Stance::over_capacity};
   const Facet* its = nearest();
@@ -71,16 +61,10 @@ Opening CertifiedSearch::start(const Surroundings& around, HalfSpaceBuffer&) noe
 void CertifiedSearch::begin(const Surroundings& around, const CertifiedTerms& terms) noexcept {
   terms_ = terms;
   tip_ = around.tip;
-  float_tip_ = float_tip(tip_);
   const double longest =
       around.reach == Reach::sphere ? around.longest : around.aim.norm() * (1.0 + 1e-9);
-  reach_ = float_reach(terms.target, longest, tip_, tree_.coordinate_error());
-  is_long_ = longest > around.margin;
+  walk_.begin(tip_, terms.target, longest);
   facets_.clear();
-  if (++cycle_ == 0) {  // the counter went round: forget the leaves of cycles long gone
-    for (LeafMemory& leaf : memory_) leaf.cycle = 0;
-    cycle_ = 1;
-  }
 }
 
 /// Of the facets that were asked about; of equals the first by their corners.
@@ -97,7 +81,8 @@ const Facet* CertifiedSearch::nearest() const noexcept {
 void CertifiedSearch::locate(const Surroundings& around) noexcept {
   if (frontier_.covers(around.ball)) return;
   const double motion = around.aim.norm();
-  const bool serves_more = farther_ > motion;
+  // A planner's states have nothing to do with each other: more would serve none of them.
+  const bool serves_more = farther_ > motion && frontier_.is_near(around.ball);
   frontier_.gather(tree_,
                    {around.ball.center, around.ball.radius + (serves_more ? farther_ : 0.0)});
   constexpr std::size_t few = 12;
@@ -111,87 +96,6 @@ void CertifiedSearch::locate(const Surroundings& around) noexcept {
   }
 }
 
-/// Visits, as visit(its leaf's memory, lane), the triangles that the trial is not sure to keep
-/// clear of, the earliest first but for the order among those that it begins at; none that it meets
-/// after `latest`, which visits may lower.
-template <class Visit>
-void CertifiedSearch::walk(const Vec3& trial, const double& latest, Visit&& visit) noexcept {
-  const std::array<float, 3> motion{static_cast<float>(trial.x()), static_cast<float>(trial.y()),
-                                    static_cast<float>(trial.z())};
-  std::array<std::uint32_t, 16 * NodeBlock::lanes> begun;  // boxes that the motion begins in
-  std::size_t begun_size = 0;
-  waiting_size_ = 0;
-  const auto later = [](const Waiting& a, const Waiting& b) { return a.time > b.time; };
-  const auto wait = [&](const Waiting& item) {
-    if (waiting_size_ == waiting_.size()) return false;
-    waiting_[waiting_size_++] = item;
-    std::push_heap(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(waiting_size_),
-                   later);
-    return true;
-  };
-  const auto enter = [&](const NodeBlock& node, const CylinderBlock& cylinders) {
-    BoxEntries entries;
-    enter_boxes(node, cylinders, float_tip_, motion.data(), reach_, entries);
-    for (std::uint32_t reached = entries.reached; reached != 0; reached &= reached - 1) {
-      const auto lane = static_cast<std::size_t>(std::countr_zero(reached));
-      const std::uint32_t child = node.child[lane];
-      if (child == 0) break;
-      const float time = entries.time[lane];
-      // What the motion begins in it may meet before it begins: where the tip is too close already.
-      if (time > 0.0f) {
-        if (static_cast<double>(time) > latest) continue;
-        if (wait({time, LeafBlock::lanes, child})) continue;
-      }
-      begun[begun_size++] = child;
-    }
-  };
-  const auto look_at = [&](std::uint32_t leaf) {
-    LeafMemory& memory = memory_of(leaf);
-    Suspects suspects;
-    suspect(memory.screen, motion.data(), suspects);
-    if (is_long_ && suspects.mask != 0) {
-      suspect_sharply(tree_.leaves()[leaf], float_tip_, motion.data(), reach_, memory.screen,
-                      suspects);
-    }
-    for (std::uint32_t mask = suspects.mask; mask != 0; mask &= mask - 1) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(mask));
-      if (!tree_.leaves()[leaf].is_used(lane)) break;
-      const float time = suspects.time[lane];
-      if (time > 0.0f) {
-        if (static_cast<double>(time) > latest) continue;
-        if (wait({time, lane, leaf})) continue;
-      }
-      visit(memory, lane);
-    }
-  };
-  const auto open = [&](std::uint32_t box) {
-    if ((box & NodeBlock::leaf) != 0) {
-      look_at(box & ~NodeBlock::leaf);
-    } else {
-      enter(tree_.nodes()[box], tree_.cylinders()[box]);
-    }
-  };
-
-  for (std::size_t i = 0; i < frontier_.blocks().size(); ++i) {
-    enter(frontier_.blocks()[i], frontier_.cylinders()[i]);
-  }
-  while (looks_ <= most_looks) {
-    if (begun_size > 0) {
-      open(begun[--begun_size]);
-      continue;
-    }
-    if (waiting_size_ == 0 || static_cast<double>(waiting_[0].time) > latest) return;
-    std::pop_heap(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(waiting_size_),
-                  later);
-    const Waiting next = waiting_[--waiting_size_];
-    if (next.lane == LeafBlock::lanes) {
-      open(next.what);
-    } else {
-      visit(memory_of(next.what), next.lane);
-    }
-  }
-}
-
 Judgement CertifiedSearch::judge(const Surroundings& around, const Vec3& trial,
                                  HalfSpaceBuffer& planes) noexcept {
   using Verdict = Judgement::Verdict;
@@ -200,11 +104,11 @@ Judgement CertifiedSearch::judge(const Surroundings& around, const Vec3& trial,
   Contact first{2.0, {Vec3::Zero(), 0.0, no_triangle}};
   std::uint32_t found = no_facet;
   const double length = trial.norm();
-  walk(trial, first.time, [&](LeafMemory& memory, std::size_t lane) {
-    const Facet* its = known(memory, lane);
-    const Triangle its_corners = its != nullptr ? its->corners() : corners(memory.leaf, lane);
+  const auto visit = [&](TrialWalk::Leaf& leaf, std::size_t lane) {
+    const Facet* its = known(leaf, lane);
+    const Triangle its_corners = its != nullptr ? its->corners() : corners(leaf.number, lane);
     if (terms_.is_covered(its_corners, trial, planes.view())) return;
-    const Facet& facet = its != nullptr ? *its : make_facet(memory, lane, its_corners);
+    const Facet& facet = its != nullptr ? *its : make_facet(leaf, lane, its_corners);
     if (facet.distance() - length > terms_.demand(facet)) return;
     const auto is_sooner = [&](const Contact& contact) {
       return contact.time < first.time ||
@@ -220,9 +124,10 @@ Judgement CertifiedSearch::judge(const Surroundings& around, const Vec3& trial,
     if (!is_sooner(contact)) return;
     first = contact;
     found = static_cast<std::uint32_t>(&facet - facets_.begin());
-  });
+  };
+  walk_.run(frontier_, trial, planes.view(), first.time, visit);
   // Beyond the budget of work nothing is known.
-  if (looks_ > most_looks || facets_.overflowed()) return {Verdict::blocked, 0.0};
+  if (walk_.looks() > TrialWalk::most_looks || facets_.overflowed()) return {Verdict::blocked, 0.0};
   if (found == no_facet) return {Verdict::accepted};
   const double free_share = std::clamp(first.time, 0.0, 1.0);
   if (has_plane(first.plane.source, planes.view()) || planes.size() >= most_planes) {
@@ -247,17 +152,6 @@ void CertifiedSearch::ways_around(const Surroundings&, TriangleId source,
   if (source != no_triangle) terms_.ways_around(facet(source), ways);
 }
 
-CertifiedSearch::LeafMemory& CertifiedSearch::memory_of(std::uint32_t leaf) noexcept {
-  LeafMemory& memory = memory_[leaf % most_memory];
-  if (memory.leaf == leaf && memory.cycle == cycle_) return memory;
-  ++looks_;
-  memory.leaf = leaf;
-  memory.cycle = cycle_;
-  memory.facet.fill(no_facet);
-  look(tree_.leaves()[leaf], float_tip_, reach_, memory.screen);
-  return memory;
-}
-
 /// Relative to the tip, in lexicographic order, as a Facet has them.
 Triangle CertifiedSearch::corners(std::uint32_t leaf, std::size_t lane) const noexcept {
   const LeafBlock& block = tree_.leaves()[leaf];
@@ -272,16 +166,16 @@ Triangle CertifiedSearch::corners(std::uint32_t leaf, std::size_t lane) const no
   return ordered_relative(mesh_->triangle(block.triangle(lane)), tip_);
 }
 
-const Facet* CertifiedSearch::known(const LeafMemory& memory, std::size_t lane) const noexcept {
-  const std::uint32_t number = memory.facet[lane];
+const Facet* CertifiedSearch::known(const TrialWalk::Leaf& leaf, std::size_t lane) const noexcept {
+  const std::uint32_t number = leaf.note[lane];
   return number == no_facet ? nullptr : &facets_[number];
 }
 
-const Facet& CertifiedSearch::make_facet(LeafMemory& memory, std::size_t lane,
+const Facet& CertifiedSearch::make_facet(TrialWalk::Leaf& leaf, std::size_t lane,
                                          const Triangle& corners) noexcept {
-  facets_.push(Facet(corners, tree_.leaves()[memory.leaf].triangle(lane)));
-  memory.facet[lane] = static_cast<std::uint32_t>(facets_.size() - 1);
-  return facets_[memory.facet[lane]];
+  facets_.push(Facet(corners, tree_.leaves()[leaf.number].triangle(lane)));
+  leaf.note[lane] = static_cast<std::uint32_t>(facets_.size() - 1);
+  return facets_[leaf.note[lane]];
 }
 
 const Facet& CertifiedSearch::facet(TriangleId source) const noexcept {

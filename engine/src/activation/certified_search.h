@@ -2,16 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <memory>
-#include <vector>
 
 #include "certified_terms.h"
 #include "frontier.h"
 #include "keepout/activation/certified.h"
 #include "keepout/index/wide_bvh.h"
-#include "leaf_screen.h"
+#include "trial_walk.h"
 
 namespace keepout {
 
@@ -39,29 +37,12 @@ class CertifiedSearch final : public Activation {
                    HalfSpaceBuffer& ways) const noexcept override;
 
  private:
-  /// What is known of a leaf in this cycle.
-  struct LeafMemory {
-    LeafScreen screen;
-    std::array<std::uint32_t, LeafBlock::lanes> facet;  // in facets_, or none
-    std::uint32_t leaf = 0;
-    std::uint32_t cycle = 0;  // 0: none yet
-  };
-
-  /// A part of the tree, or a triangle, that the motion may meet at some time.
-  struct Waiting {
-    float time;
-    std::uint32_t lane;  // of the leaf `what`; LeafBlock::lanes for a box
-    std::uint32_t what;  // as NodeBlock::child
-  };
-
   void begin(const Surroundings& around, const CertifiedTerms& terms) noexcept;
   void locate(const Surroundings& around) noexcept;
-  template <class Visit>
-  void walk(const Vec3& trial, const double& latest, Visit&& visit) noexcept;
-  LeafMemory& memory_of(std::uint32_t leaf) noexcept;
-  const Facet* known(const LeafMemory& memory, std::size_t lane) const noexcept;
+  const Facet* known(const TrialWalk::Leaf& leaf, std::size_t lane) const noexcept;
   Triangle corners(std::uint32_t leaf, std::size_t lane) const noexcept;
-  const Facet& make_facet(LeafMemory& memory, std::size_t lane, const Triangle& corners) noexcept;
+  const Facet& make_facet(TrialWalk::Leaf& leaf, std::size_t lane,
+                          const Triangle& corners) noexcept;
   const Facet* nearest() const noexcept;
   const Facet& facet(TriangleId source) const noexcept;
 
@@ -70,21 +51,14 @@ class CertifiedSearch final : public Activation {
   double longest_edge_;  // [length]
 
   Frontier frontier_;
+  TrialWalk walk_;
   double farther_ = 0.0;  // than needed the next one is gathered [length]
 
   // Of this cycle.
   CertifiedTerms terms_{};
   Vec3 tip_ = Vec3::Zero();
-  FloatTip float_tip_{};
-  FloatReach reach_{};
   bool is_free_ = false;  // nothing is in reach
-  bool is_long_ = false;  // motions lead far beyond the margin
-  std::uint32_t cycle_ = 0;
-  std::size_t looks_ = 0;  // at leaves
-  Buffer<Facet> facets_;   // that were asked about in double
-  std::vector<LeafMemory> memory_;
-  std::vector<Waiting> waiting_;  // a heap, the earliest first
-  std::size_t waiting_size_ = 0;
+  Buffer<Facet> facets_;  // that were asked about in double
 };
 
 }  // namespace keepout

@@ -2,6 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
+#include <span>
+
+#include "keepout/geometry/half_space.h"
 #include "keepout/geometry/vec3.h"
 
 namespace keepout {
@@ -25,5 +29,26 @@ struct FloatReach {
 
 /// `error`: of the coordinates in leaves. `longest`: no motion that is looked at is longer.
 FloatReach float_reach(double margin, double longest, const Vec3& tip, double error) noexcept;
+
+/// What is known of sixteen things while the tip stays where it is: unit vectors, and how far the
+/// margin is kept along each. That the plane between thing and tip along a vector is valid is
+/// checked by what holds the thing, however the vector was come by.
+struct ProofBlock {
+  static constexpr std::size_t lanes = 16;
+
+  alignas(64) float n[3][lanes];   // [axis][lane]
+  alignas(64) float clear[lanes];  // of the margin at the tip, less rounding [length]
+};
+
+/// Unit vectors that may be proofs.
+struct Directions {
+  static constexpr std::size_t most = 8;
+
+  float n[most][3];
+  std::size_t size = 0;
+};
+
+/// The normals of the last planes.
+Directions directions_of(std::span<const HalfSpace> planes) noexcept;
 
 }  // namespace keepout

@@ -77,26 +77,12 @@ std::size_t Frontier::gather(const WideBvh& tree, const Ball& ball) noexcept {
       add(tree, box.node, box.lane);
     }
   }
-  free_radius_ = std::min(distance_to_boxes(), ball.radius) * (1.0 - 1e-12);
-  return looks;
-}
-
-/// From the centre; infinite where there are none. [length]
-double Frontier::distance_to_boxes() const noexcept {
-  double least2 = std::numeric_limits<double>::infinity();
-  for (std::size_t box = 0; box < size_; ++box) {
-    const NodeBlock& block = blocks_[box / NodeBlock::lanes];
-    const std::size_t lane = box % NodeBlock::lanes;
-    double distance2 = 0.0;
-    for (int axis = 0; axis < 3; ++axis) {
-      const double before = block.low[axis][lane] - around_.center[axis];
-      const double beyond = around_.center[axis] - block.high[axis][lane];
-      const double apart = std::max({before, beyond, 0.0});
-      distance2 += apart * apart;
-    }
-    least2 = std::min(least2, distance2);
+  double free = ball.radius;
+  for (const NodeBlock& block : blocks()) {
+    free = std::min(free, double{distance_to_boxes(block, center)} - rounding);
   }
-  return std::sqrt(least2);
+  free_radius_ = free * (1.0 - 1e-12);
+  return looks;
 }
 
 }  // namespace keepout

@@ -26,6 +26,11 @@ class Frontier {
     return (ball.center - around_.center).norm() + ball.radius <= free_radius_;
   }
 
+  /// Whether the ball is next to what is covered: where a tip that moves on leaves.
+  bool is_near(const Ball& ball) const noexcept {
+    return (ball.center - around_.center).norm() <= around_.radius + ball.radius;
+  }
+
   /// Makes it cover the ball. The work is bounded: what is left over stays unopened, as large
   /// boxes. Returns the number of nodes that were looked at.
   std::size_t gather(const WideBvh& tree, const Ball& ball) noexcept;
@@ -42,8 +47,6 @@ class Frontier {
   static constexpr std::size_t most_boxes = 4 * NodeBlock::lanes;
 
   void add(const WideBvh& tree, std::uint32_t node, std::size_t lane) noexcept;
-
-  double distance_to_boxes() const noexcept;
 
   Ball around_{Vec3::Zero(), -1.0};
   double free_radius_ = -1.0;  // around the same centre there are no boxes [length]

@@ -59,32 +59,28 @@ HWY_INLINE Vector nearest(Float d, const Corners& t, const Vector& p) {
   return t.a + (hn::Mul(v, share) * ab + hn::Mul(w, share) * ac);
 }
 
+/// What a unit vector proves.
+HWY_INLINE V clear_along(Float d, const Corners& t, const Vector& n, const FloatReach& reach) {
+  const V support = hn::Max(dot(n, t.a), hn::Max(dot(n, t.b), dot(n, t.c)));
+  const V far = hn::Max(size(t.a), hn::Max(size(t.b), size(t.c)));
+  const V rounding = hn::Add(hn::Mul(far, hn::Set(d, reach.relative)), hn::Set(d, reach.slack));
+  return hn::Sub(hn::Sub(hn::Neg(support), hn::Set(d, reach.margin)), rounding);
+}
+
 /// What the direction of `way` proves; nothing, if it is none.
 HWY_INLINE Proof proof_along(Float d, const Corners& t, const Vector& way,
                              const FloatReach& reach) {
   const V length2 = dot(way, way);
   const Vector n = hn::Div(hn::Set(d, 1.0f), hn::Sqrt(length2)) * way;
-  const V support = hn::Max(dot(n, t.a), hn::Max(dot(n, t.b), dot(n, t.c)));
-  const V far = hn::Max(size(t.a), hn::Max(size(t.b), size(t.c)));
-  const V rounding = hn::Add(hn::Mul(far, hn::Set(d, reach.relative)), hn::Set(d, reach.slack));
-  const V clear = hn::Sub(hn::Sub(hn::Neg(support), hn::Set(d, reach.margin)), rounding);
-  return proof_if(d, has_direction(d, length2), n, clear);
+  return proof_if(d, has_direction(d, length2), n, clear_along(d, t, n, reach));
 }
 
 HWY_INLINE Proof proof_at(Float d, const Corners& t, const Vector& p, const FloatReach& reach) {
   return proof_along(d, t, p - nearest(d, t, p), reach);
 }
 
-HWY_INLINE void store(Float d, const Proof& proof, std::size_t lane, LeafScreen::Normals& to) {
-  store(d, proof.n, lane, to.n);
-  hn::Store(proof.clear, d, to.clear + lane);
-}
-
-HWY_INLINE Proof load(Float d, const LeafScreen::Normals& from, std::size_t lane) {
-  return {load(d, from.n, lane), hn::Load(d, from.clear + lane)};
-}
-
-void Look(const LeafBlock& leaf, const FloatTip& tip, const FloatReach& reach, LeafScreen& screen) {
+void LookAtLeaf(const LeafBlock& leaf, const FloatTip& tip, const FloatReach& reach,
+                LeafScreen& screen) {
   const Float d;
   const V zero = hn::Zero(d);
   for (std::size_t lane = 0; lane < LeafBlock::lanes; lane += hn::Lanes(d)) {
@@ -111,6 +107,31 @@ void Suspect(const LeafScreen& screen, const float* motion, Suspects& suspects) 
   }
 }
 
+void SuspectAlong(const LeafBlock& leaf, const FloatTip& tip, const float* motion,
+                  const FloatReach& reach, const Directions& directions, LeafScreen& screen,
+                  Suspects& suspects) {
+  const Float d;
+  const Vector z = all(d, motion);
+  std::uint32_t proven = 0;
+  for (std::size_t lane = 0; lane < LeafBlock::lanes; lane += hn::Lanes(d)) {
+    const Corners t = corners(d, leaf, tip, lane);
+    V time = hn::Load(d, suspects.time + lane);
+    Proof best = load(d, screen.last, lane);
+    for (std::size_t i = 0; i < directions.size; ++i) {
+      const Vector n = all(d, directions.n[i]);
+      const Proof proof{n, clear_along(d, t, n, reach)};
+      const V along = dot(n, z);
+      const M clear = holds(d, proof, along);
+      best = select(clear, proof, best);
+      time = hn::Max(time, entry(d, proof, along));
+      proven |= bits(d, clear, lane);
+    }
+    store(d, best, lane, screen.last);
+    hn::Store(time, d, suspects.time + lane);
+  }
+  suspects.mask &= ~proven;
+}
+
 void SuspectSharply(const LeafBlock& leaf, const FloatTip& tip, const float* motion,
                     const FloatReach& reach, LeafScreen& screen, Suspects& suspects) {
   constexpr int cuts = 2;
@@ -118,14 +139,15 @@ void SuspectSharply(const LeafBlock& leaf, const FloatTip& tip, const float* mot
   const Vector z = all(d, motion);
   const V zero = hn::Zero(d);
   const V one = hn::Set(d, 1.0f);
-  suspects.mask = 0;
+  std::uint32_t left_over = 0;
   for (std::size_t lane = 0; lane < LeafBlock::lanes; lane += hn::Lanes(d)) {
-    const Corners t = corners(d, leaf, tip, lane);
     Proof left = load(d, screen.at_tip, lane);
     V fall = dot(left.n, z);
     Proof best = load(d, screen.last, lane);
     M clear = hn::Or(holds(d, left, fall), holds(d, best, dot(best.n, z)));
-    V time = hn::Max(entry(d, left, fall), entry(d, best, dot(best.n, z)));
+    V time = hn::Load(d, suspects.time + lane);
+    if (hn::AllTrue(d, clear)) continue;
+    const Corners t = corners(d, leaf, tip, lane);
     const auto consider = [&](const Proof& proof, V along) {
       const M better = hn::AndNot(clear, holds(d, proof, along));
       best = select(better, proof, best);
@@ -152,8 +174,25 @@ void SuspectSharply(const LeafBlock& leaf, const FloatTip& tip, const float* mot
     }
     store(d, best, lane, screen.last);
     hn::Store(time, d, suspects.time + lane);
-    suspects.mask |= bits(d, hn::Not(clear), lane);
+    left_over |= bits(d, hn::Not(clear), lane);
   }
+  suspects.mask &= left_over;
+}
+
+void SuspectLater(const LeafBlock& leaf, const FloatTip& tip, const float* motion,
+                  const FloatReach& reach, Suspects& suspects) {
+  const Float d;
+  const Vector z = all(d, motion);
+  std::uint32_t proven = 0;
+  for (std::size_t lane = 0; lane < LeafBlock::lanes; lane += hn::Lanes(d)) {
+    const V time = hn::Load(d, suspects.time + lane);
+    const V at = hn::Min(hn::Max(time, hn::Zero(d)), hn::Set(d, 1.0f));
+    const Proof proof = proof_at(d, corners(d, leaf, tip, lane), at * z, reach);
+    const V along = dot(proof.n, z);
+    hn::Store(hn::Max(time, entry(d, proof, along)), d, suspects.time + lane);
+    proven |= bits(d, holds(d, proof, along), lane);
+  }
+  suspects.mask &= ~proven;
 }
 
 }  // namespace keepout::HWY_NAMESPACE
@@ -163,22 +202,36 @@ HWY_AFTER_NAMESPACE();
 
 namespace keepout {
 
-HWY_EXPORT(Look);
+HWY_EXPORT(LookAtLeaf);
 HWY_EXPORT(Suspect);
+HWY_EXPORT(SuspectAlong);
 HWY_EXPORT(SuspectSharply);
+HWY_EXPORT(SuspectLater);
 
 void look(const LeafBlock& leaf, const FloatTip& tip, const FloatReach& reach,
           LeafScreen& screen) noexcept {
-  HWY_DYNAMIC_DISPATCH(Look)(leaf, tip, reach, screen);
+  HWY_DYNAMIC_DISPATCH(LookAtLeaf)(leaf, tip, reach, screen);
 }
 
 void suspect(const LeafScreen& screen, const float* motion, Suspects& suspects) noexcept {
   HWY_DYNAMIC_DISPATCH(Suspect)(screen, motion, suspects);
 }
 
+void suspect_along(const LeafBlock& leaf, const FloatTip& tip, const float* motion,
+                   const FloatReach& reach, const Directions& directions, LeafScreen& screen,
+                   Suspects& suspects) noexcept {
+  if (directions.size == 0) return;
+  HWY_DYNAMIC_DISPATCH(SuspectAlong)(leaf, tip, motion, reach, directions, screen, suspects);
+}
+
 void suspect_sharply(const LeafBlock& leaf, const FloatTip& tip, const float* motion,
                      const FloatReach& reach, LeafScreen& screen, Suspects& suspects) noexcept {
   HWY_DYNAMIC_DISPATCH(SuspectSharply)(leaf, tip, motion, reach, screen, suspects);
+}
+
+void suspect_later(const LeafBlock& leaf, const FloatTip& tip, const float* motion,
+                   const FloatReach& reach, Suspects& suspects) noexcept {
+  HWY_DYNAMIC_DISPATCH(SuspectLater)(leaf, tip, motion, reach, suspects);
 }
 
 }  // namespace keepout

@@ -9,16 +9,10 @@
 
 namespace keepout {
 
-/// What is known of the sixteen triangles of a leaf while the tip stays where it is: unit vectors,
-/// and how far the margin is kept along each. That the plane between triangle and tip along a
-/// vector is valid is checked by its corners, however the vector was come by.
+/// What is known of the sixteen triangles of a leaf.
 struct LeafScreen {
-  struct Normals {
-    alignas(64) float n[3][LeafBlock::lanes];   // [axis][lane]
-    alignas(64) float clear[LeafBlock::lanes];  // of the margin at the tip, less rounding [length]
-  };
-  Normals at_tip;  // from the closest point to the tip
-  Normals last;    // the last ones that were found better for some motion
+  ProofBlock at_tip;  // from the closest points to the tip
+  ProofBlock last;    // the last ones that were found better for some motion
 };
 
 /// Looks at a leaf for the first time from this tip.
@@ -34,8 +28,17 @@ struct Suspects {
 
 void suspect(const LeafScreen& screen, const float* motion, Suspects& suspects) noexcept;
 
+/// Tries the directions as proofs for those that are left over.
+void suspect_along(const LeafBlock& leaf, const FloatTip& tip, const float* motion,
+                   const FloatReach& reach, const Directions& directions, LeafScreen& screen,
+                   Suspects& suspects) noexcept;
+
 /// The same, after some cutting-plane steps for those that are left over: dearer, and sharper.
 void suspect_sharply(const LeafBlock& leaf, const FloatTip& tip, const float* motion,
                      const FloatReach& reach, LeafScreen& screen, Suspects& suspects) noexcept;
+
+/// A Newton step towards the times when the suspects are met: makes them later.
+void suspect_later(const LeafBlock& leaf, const FloatTip& tip, const float* motion,
+                   const FloatReach& reach, Suspects& suspects) noexcept;
 
 }  // namespace keepout

@@ -51,6 +51,15 @@ HWY_INLINE Proof select(M mask, const Proof& yes, const Proof& no) {
   return {select(mask, yes.n, no.n), hn::IfThenElse(mask, yes.clear, no.clear)};
 }
 
+HWY_INLINE void store(Float d, const Proof& proof, std::size_t lane, ProofBlock& to) {
+  store(d, proof.n, lane, to.n);
+  hn::Store(proof.clear, d, to.clear + lane);
+}
+
+HWY_INLINE Proof load(Float d, const ProofBlock& from, std::size_t lane) {
+  return {load(d, from.n, lane), hn::Load(d, from.clear + lane)};
+}
+
 /// Whether the proof holds for the whole motion. Not for NaN.
 HWY_INLINE M holds(Float d, const Proof& proof, V along) {
   const V zero = hn::Zero(d);
