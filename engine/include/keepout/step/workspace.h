@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -54,7 +53,6 @@ class Workspace {
   HalfSpaceBuffer earlier_planes;  // of the motion that is to be improved upon
   HalfSpaceBuffer ways;            // around one triangle
   Branches branches;
-  std::optional<StepProblem> problem;
   Solution solution;
 
   /// Puts planes and answer aside, for a search that may find better ones.
