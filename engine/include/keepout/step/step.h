@@ -24,7 +24,9 @@ Status check(const Motion& motion, const StepOptions& options) noexcept;
 /// What a position may be off by after a step: the rounding of tip + motion, some 1e-16 of the
 /// tip's coordinates, and the solver's, some 1e-13 of the motion; both taken a thousand times.
 /// [length]
-double position_rounding(const Vec3& tip, const StepOptions& options) noexcept;
+inline double position_rounding(const Vec3& tip, const StepOptions& options) noexcept {
+  return 1e-12 * (tip.lpNorm<1>() + options.margin) + 1e-10 * options.radius;
+}
 
 /// What the rule is to be asked about a motion, before triangles are looked for. `projections`: how
 /// far the rule's motions can lead when they are projections of the aim.
