@@ -50,10 +50,6 @@ Status check(const Motion& motion, const StepOptions& options) noexcept {
   return Status::free;
 }
 
-double position_rounding(const Vec3& tip, const StepOptions& options) noexcept {
-  return 1e-12 * (tip.lpNorm<1>() + options.margin) + 1e-10 * options.radius;
-}
-
 Surroundings surroundings_of(const Motion& motion, const StepOptions& options,
                              Reach projections) noexcept {
   // With joints or rows of the caller's own the answer need not be a projection of the aim.

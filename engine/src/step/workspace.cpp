@@ -66,14 +66,12 @@ StepProblem Workspace::pose(const Motion& motion, const Vec3& aim, double dampin
 void Workspace::note(const Solution& answer, double share) noexcept {
   answer_.increment.clear();
   for (const double u : answer.u) answer_.increment.push(share * u);
-  answer_.active.clear();
-  for (const std::uint32_t row : answer.active) answer_.active.push(row);
+  answer_.active.assign(answer.active);
 }
 
 void Workspace::note(const Solution& answer, const Vec3& increment) noexcept {
-  note(answer, 0.0);
-  answer_.increment.clear();
-  for (const double u : increment) answer_.increment.push(u);
+  answer_.increment.assign({increment.data(), 3});
+  answer_.active.assign(answer.active);
 }
 
 void Workspace::set_aside() noexcept {

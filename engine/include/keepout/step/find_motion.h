@@ -37,21 +37,32 @@ HalfSpace bound_of(const Vec3& motion, double longest) noexcept;
 /// motion.
 bool allow_parts(const std::optional<ExtraRows>& rows) noexcept;
 
+/// Whether the answer is the projection of the aim on the planes, to the last bit: so it is with a
+/// solver that skips idle rows, unless joints, rows of the caller's or damping have a say.
+inline bool is_projection(const Surroundings& around, const StepOptions& options) noexcept {
+  return around.needed == NeededPlanes::in_the_way && options.damping == 0.0;
+}
+
 /// The nearest motion that the planes allow; not judged yet. free, or what went wrong.
 template <ActivationRule A, QpSolver S>
 Settled solve(A& activation, S& solver, const Motion& motion, const StepOptions& options,
               const Surroundings& around, Workspace& work) noexcept {
   if (work.planes.overflowed()) return Settled::stopped(Status::over_capacity);
+  // The projection of the aim on no plane: it needs no solver.
+  if (work.planes.empty() && is_projection(around, options)) {
+    work.solution = {};
+    return {Status::free, around.aim};
+  }
   const PlaneRows rows = reads_planes(solver) ? PlaneRows::left_out : PlaneRows::written;
   std::optional<Vec3> answer;
   const auto attempt = [&] {
-    work.problem.emplace(work.pose(motion, around.aim, options.damping, rows));
+    const StepProblem problem = work.pose(motion, around.aim, options.damping, rows);
     work.solution = {};
-    const SolveStatus solved = solver.solve(*work.problem, work.solution);
+    const SolveStatus solved = solver.solve(problem, work.solution);
     if (solved != SolveStatus::optimal) return status_of(solved);
-    const auto variables = static_cast<std::size_t>(work.problem->jacobian.cols());
+    const auto variables = static_cast<std::size_t>(problem.jacobian.cols());
     if (work.solution.u.size() != variables) return Status::unsolved;
-    answer = tip_motion(*work.problem, work.solution, 1e-10 * options.radius);
+    answer = tip_motion(problem, work.solution, 1e-10 * options.radius);
     return answer ? Status::free : Status::ill_posed;
   };
   Status solved = attempt();

@@ -24,7 +24,9 @@ Status check(const Motion& motion, const StepOptions& options) noexcept;
 /// What a position may be off by after a step: the rounding of tip + motion, some 1e-16 of the
 /// tip's coordinates, and the solver's, some 1e-13 of the motion; both taken a thousand times.
 /// [length]
-double position_rounding(const Vec3& tip, const StepOptions& options) noexcept;
+inline double position_rounding(const Vec3& tip, const StepOptions& options) noexcept {
+  return 1e-12 * (tip.lpNorm<1>() + options.margin) + 1e-10 * options.radius;
+}
 
 /// What the rule is to be asked about a motion, before triangles are looked for. `projections`: how
 /// far the rule's motions can lead when they are projections of the aim.
@@ -68,15 +70,13 @@ template <Index I, ActivationRule A, QpSolver S, StageObserver O = Unobserved>
 Step step(const Mesh& mesh, const I& index, A& activation, S& solver, const Motion& motion,
           const StepOptions& options, Workspace& work, O&& observer = {}) noexcept {
   Step result;
-  const auto stop = [&](Status why) {
-    result.status = why;
-    return result;
-  };
   work.planes.clear();
-  if (const Status status = check(motion, options); !is_ok(status)) return stop(status);
+  result.status = check(motion, options);
+  if (!is_ok(result.status)) return result;
   if ((motion.jacobian && motion.jacobian->joints() > work.variables()) ||
       (motion.rows && motion.rows->count() > work.extra_rows())) {
-    return stop(Status::over_capacity);
+    result.status = Status::over_capacity;
+    return result;
   }
 
   using Stance = Opening::Stance;
@@ -110,19 +110,24 @@ Step step(const Mesh& mesh, const I& index, A& activation, S& solver, const Moti
     opening = open(mesh, index, activation, around, work, observer);
     open_shorter();
   }
-  result.triangles = activation.triangles(around);
-  if (const Status status = status_of(opening.stance); !is_ok(status)) return stop(status);
+  result.status = status_of(opening.stance);
+  if (!is_ok(result.status)) {
+    result.triangles = activation.triangles(around);
+    return result;
+  }
 
   const Settled settled = settle(activation, solver, motion, options, around, work);
   result.triangles = activation.triangles(around);
   observer.ended(Stage::solve);
   result.planes = work.planes.view();
-  if (!is_ok(settled.status)) return stop(settled.status);
+  result.status = settled.status;
+  if (!is_ok(result.status)) return result;
   result.motion = settled.motion;
   result.increment = work.increment();
   result.active = work.active();
-  if (recovering) return stop(Status::recovering);
-  return stop(halvings > 0 ? Status::fallback : settled.status);
+  if (halvings > 0) result.status = Status::fallback;
+  if (recovering) result.status = Status::recovering;
+  return result;
 }
 
 }  // namespace keepout

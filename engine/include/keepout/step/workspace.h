@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -19,7 +18,10 @@ namespace keepout {
 
 /// Room for the largest step that shall be solved; a step that needs more ends with over_capacity.
 struct Capacity {
-  std::size_t triangles = std::size_t{1} << 16;  // candidates of one query
+  /// Candidates of one query. The form of the certified rule that searches the index by itself
+  /// makes no such query and does not heed it; it has budgets of its own: 4096 triangles asked
+  /// about in double, and 131072 looks at leaves a cycle.
+  std::size_t triangles = std::size_t{1} << 16;
   std::size_t planes = std::size_t{1} << 14;
   std::size_t variables = 7;    // columns of the Jacobian, or 3 without one
   std::size_t extra_rows = 64;  // of the caller's own
@@ -54,7 +56,6 @@ class Workspace {
   HalfSpaceBuffer earlier_planes;  // of the motion that is to be improved upon
   HalfSpaceBuffer ways;            // around one triangle
   Branches branches;
-  std::optional<StepProblem> problem;
   Solution solution;
 
   /// Puts planes and answer aside, for a search that may find better ones.
