@@ -102,7 +102,7 @@ void EnterBoxes(const NodeBlock& node, const FloatTip& tip, const float* motion,
 }
 
 void EnterCylinders(const CylinderBlock& block, const FloatTip& tip, const float* motion,
-                    const FloatReach& reach, const Directions& directions, BoxEntries& entries) {
+                    const FloatReach& reach, BoxEntries& entries) {
   const Float d;
   const Vector z = all(d, motion);
   const V per_length2 = hn::Div(hn::Set(d, 1.0f), hn::Max(dot(z, z), hn::Set(d, 1e-30f)));
@@ -113,20 +113,13 @@ void EnterCylinders(const CylinderBlock& block, const FloatTip& tip, const float
   std::uint32_t clear = 0;
   for (std::size_t lane = 0; lane < CylinderBlock::lanes; lane += hn::Lanes(d)) {
     const Cylinders its = cylinders_at(d, block, tip, lane);
-    V time = hn::Load(d, entries.time + lane);
-    const auto consider = [&](const Proof& proof) {
-      const V along = dot(proof.n, z);
-      time = hn::Max(time, entry(d, proof, along));
-      clear |= bits(d, holds(d, proof, along), lane);
-    };
-    for (std::size_t i = 0; i < directions.size; ++i) {
-      const Vector n = all(d, directions.n[i]);
-      consider({n, clear_along(d, its, n, reach)});
-    }
     // To where the motion comes nearest to the cylinder, or nearly.
     const Vector near = nearest(d, its, nearest_of_motion(its.middle));
-    consider(proof_along(d, its, nearest_of_motion(near) - near, reach));
-    hn::Store(time, d, entries.time + lane);
+    const Proof proof = proof_along(d, its, nearest_of_motion(near) - near, reach);
+    const V along = dot(proof.n, z);
+    const V time = hn::Load(d, entries.time + lane);
+    hn::Store(hn::Max(time, entry(d, proof, along)), d, entries.time + lane);
+    clear |= bits(d, holds(d, proof, along), lane);
   }
   entries.reached &= ~clear;
 }
@@ -176,9 +169,8 @@ void enter_boxes(const NodeBlock& boxes, const FloatTip& tip, const float* motio
 }
 
 void enter_cylinders(const CylinderBlock& cylinders, const FloatTip& tip, const float* motion,
-                     const FloatReach& reach, const Directions& directions,
-                     BoxEntries& entries) noexcept {
-  HWY_DYNAMIC_DISPATCH(EnterCylinders)(cylinders, tip, motion, reach, directions, entries);
+                     const FloatReach& reach, BoxEntries& entries) noexcept {
+  HWY_DYNAMIC_DISPATCH(EnterCylinders)(cylinders, tip, motion, reach, entries);
 }
 
 std::uint32_t boxes_near(const NodeBlock& boxes, const FloatTip& center, float radius) noexcept {

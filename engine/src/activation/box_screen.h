@@ -20,11 +20,10 @@ struct BoxEntries {
 void enter_boxes(const NodeBlock& boxes, const FloatTip& tip, const float* motion,
                  const FloatReach& reach, BoxEntries& entries) noexcept;
 
-/// Looks closer at the boxes that are reached: along the directions, and along those from their
-/// cylinders to the places of the motion that are nearest to them.
+/// Looks closer at the boxes that are reached: by the directions from their cylinders to the places
+/// of the motion that are nearest to them.
 void enter_cylinders(const CylinderBlock& cylinders, const FloatTip& tip, const float* motion,
-                     const FloatReach& reach, const Directions& directions,
-                     BoxEntries& entries) noexcept;
+                     const FloatReach& reach, BoxEntries& entries) noexcept;
 
 /// The boxes within `radius` of the tip: a bit for each. Never one too few.
 std::uint32_t boxes_near(const NodeBlock& boxes, const FloatTip& center, float radius) noexcept;

@@ -43,11 +43,16 @@ Opening CertifiedSearch::start(const Surroundings& around, HalfSpaceBuffer&) noe
   if (is_free_) return {Stance::clear};
   begin(around, CertifiedTerms::keeping(around.margin, tau));
 
-  constexpr double always = 2.0;
-  walk_.run(frontier_, Vec3::Zero(), {}, always, [&](TrialWalk::Leaf& leaf, std::size_t lane) {
+  // What is in reach of the tip itself; and by the way, whether the motion asked for meets
+  // anything.
+  constexpr double at_once = 0.0;
+  const auto note = [&](TrialWalk::Leaf& leaf, std::size_t lane) {
     make_facet(leaf, lane, corners(leaf.number, lane));
-  });
-  if (facets_.overflowed()) return {Stance::over_capacity};
+  };
+  aim_is_free_ = walk_.run(frontier_, around.aim, at_once, note);
+  if (facets_.overflowed() || walk_.looks() > TrialWalk::most_looks) {
+    return {Stance::over_capacity};
+  }
   const Facet* its = nearest();
   if (its == nullptr || its->distance() >= around.margin - lost_below * tau) return {Stance::clear};
   if (its->distance() <= touching_within * tau) return {Stance::touching};
@@ -100,6 +105,10 @@ Judgement CertifiedSearch::judge(const Surroundings& around, const Vec3& trial,
                                  HalfSpaceBuffer& planes) noexcept {
   using Verdict = Judgement::Verdict;
   if (is_free_) return {Verdict::accepted};
+  const auto is_aim = [&] {
+    return (trial - around.aim).norm() <= TrialWalk::alike * around.aim.norm();
+  };
+  if (aim_is_free_ && is_aim()) return {Verdict::accepted};
 
   Contact first{2.0, {Vec3::Zero(), 0.0, no_triangle}};
   std::uint32_t found = no_facet;
@@ -125,7 +134,7 @@ Judgement CertifiedSearch::judge(const Surroundings& around, const Vec3& trial,
     first = contact;
     found = static_cast<std::uint32_t>(&facet - facets_.begin());
   };
-  walk_.run(frontier_, trial, planes.view(), first.time, visit);
+  walk_.run(frontier_, trial, first.time, visit);
   // Beyond the budget of work nothing is known.
   if (walk_.looks() > TrialWalk::most_looks || facets_.overflowed()) return {Verdict::blocked, 0.0};
   if (found == no_facet) return {Verdict::accepted};

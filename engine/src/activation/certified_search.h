@@ -57,8 +57,9 @@ class CertifiedSearch final : public Activation {
   // Of this cycle.
   CertifiedTerms terms_{};
   Vec3 tip_ = Vec3::Zero();
-  bool is_free_ = false;  // nothing is in reach
-  Buffer<Facet> facets_;  // that were asked about in double
+  bool is_free_ = false;      // nothing is in reach
+  bool aim_is_free_ = false;  // the motion asked for meets nothing
+  Buffer<Facet> facets_;      // that were asked about in double
 };
 
 }  // namespace keepout

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "float_motion.h"
 
-#include <algorithm>
-
 namespace keepout {
 
 FloatTip float_tip(const Vec3& tip) noexcept {
@@ -23,16 +21,6 @@ FloatReach float_reach(double margin, double longest, const Vec3& tip, double er
   constexpr double up = 1.0 + 1e-6;
   return {static_cast<float>(margin * up), 1.5e-6f, static_cast<float>(slack * up),
           static_cast<float>(boxes * up)};
-}
-
-Directions directions_of(std::span<const HalfSpace> planes) noexcept {
-  Directions directions;
-  directions.size = std::min(planes.size(), Directions::most);
-  for (std::size_t i = 0; i < directions.size; ++i) {
-    const Vec3& normal = planes[planes.size() - 1 - i].normal;
-    for (int axis = 0; axis < 3; ++axis) directions.n[i][axis] = static_cast<float>(normal[axis]);
-  }
-  return directions;
 }
 
 }  // namespace keepout

@@ -3,9 +3,7 @@
 #pragma once
 
 #include <cstddef>
-#include <span>
 
-#include "keepout/geometry/half_space.h"
 #include "keepout/geometry/vec3.h"
 
 namespace keepout {
@@ -39,16 +37,5 @@ struct ProofBlock {
   alignas(64) float n[3][lanes];   // [axis][lane]
   alignas(64) float clear[lanes];  // of the margin at the tip, less rounding [length]
 };
-
-/// Unit vectors that may be proofs.
-struct Directions {
-  static constexpr std::size_t most = 8;
-
-  float n[most][3];
-  std::size_t size = 0;
-};
-
-/// The normals of the last planes.
-Directions directions_of(std::span<const HalfSpace> planes) noexcept;
 
 }  // namespace keepout

@@ -107,31 +107,6 @@ void Suspect(const LeafScreen& screen, const float* motion, Suspects& suspects) 
   }
 }
 
-void SuspectAlong(const LeafBlock& leaf, const FloatTip& tip, const float* motion,
-                  const FloatReach& reach, const Directions& directions, LeafScreen& screen,
-                  Suspects& suspects) {
-  const Float d;
-  const Vector z = all(d, motion);
-  std::uint32_t proven = 0;
-  for (std::size_t lane = 0; lane < LeafBlock::lanes; lane += hn::Lanes(d)) {
-    const Corners t = corners(d, leaf, tip, lane);
-    V time = hn::Load(d, suspects.time + lane);
-    Proof best = load(d, screen.last, lane);
-    for (std::size_t i = 0; i < directions.size; ++i) {
-      const Vector n = all(d, directions.n[i]);
-      const Proof proof{n, clear_along(d, t, n, reach)};
-      const V along = dot(n, z);
-      const M clear = holds(d, proof, along);
-      best = select(clear, proof, best);
-      time = hn::Max(time, entry(d, proof, along));
-      proven |= bits(d, clear, lane);
-    }
-    store(d, best, lane, screen.last);
-    hn::Store(time, d, suspects.time + lane);
-  }
-  suspects.mask &= ~proven;
-}
-
 void SuspectSharply(const LeafBlock& leaf, const FloatTip& tip, const float* motion,
                     const FloatReach& reach, LeafScreen& screen, Suspects& suspects) {
   constexpr int cuts = 2;
@@ -204,7 +179,6 @@ namespace keepout {
 
 HWY_EXPORT(LookAtLeaf);
 HWY_EXPORT(Suspect);
-HWY_EXPORT(SuspectAlong);
 HWY_EXPORT(SuspectSharply);
 HWY_EXPORT(SuspectLater);
 
@@ -215,13 +189,6 @@ void look(const LeafBlock& leaf, const FloatTip& tip, const FloatReach& reach,
 
 void suspect(const LeafScreen& screen, const float* motion, Suspects& suspects) noexcept {
   HWY_DYNAMIC_DISPATCH(Suspect)(screen, motion, suspects);
-}
-
-void suspect_along(const LeafBlock& leaf, const FloatTip& tip, const float* motion,
-                   const FloatReach& reach, const Directions& directions, LeafScreen& screen,
-                   Suspects& suspects) noexcept {
-  if (directions.size == 0) return;
-  HWY_DYNAMIC_DISPATCH(SuspectAlong)(leaf, tip, motion, reach, directions, screen, suspects);
 }
 
 void suspect_sharply(const LeafBlock& leaf, const FloatTip& tip, const float* motion,

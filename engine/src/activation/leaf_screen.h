@@ -28,11 +28,6 @@ struct Suspects {
 
 void suspect(const LeafScreen& screen, const float* motion, Suspects& suspects) noexcept;
 
-/// Tries the directions as proofs for those that are left over.
-void suspect_along(const LeafBlock& leaf, const FloatTip& tip, const float* motion,
-                   const FloatReach& reach, const Directions& directions, LeafScreen& screen,
-                   Suspects& suspects) noexcept;
-
 /// The same, after some cutting-plane steps for those that are left over: dearer, and sharper.
 void suspect_sharply(const LeafBlock& leaf, const FloatTip& tip, const float* motion,
                      const FloatReach& reach, LeafScreen& screen, Suspects& suspects) noexcept;

@@ -58,7 +58,7 @@ void TrialWalk::enter(const NodeBlock& node, const CylinderBlock& cylinders,
   // To look closer is cheaper than to look into more boxes than this.
   const int few = is_long_ ? 1 : 4;
   if (std::popcount(entries.reached) > few) {
-    enter_cylinders(cylinders, tip_, motion_.data(), reach_, directions_, entries);
+    enter_cylinders(cylinders, tip_, motion_.data(), reach_, entries);
   }
   for (std::uint32_t reached = entries.reached; reached != 0; reached &= reached - 1) {
     const auto lane = static_cast<std::size_t>(std::countr_zero(reached));
@@ -68,7 +68,10 @@ void TrialWalk::enter(const NodeBlock& node, const CylinderBlock& cylinders,
     const float time = entries.time[lane];
     // What the motion begins in it may meet before it begins: where the tip is too close already.
     if (time > 0.0f) {
-      if (static_cast<double>(time) > latest) continue;
+      if (static_cast<double>(time) > latest) {
+        meets_nothing_ = false;
+        continue;
+      }
       if (wait(time, child)) continue;
     }
     begun_[begun_size_++] = child;

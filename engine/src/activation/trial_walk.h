@@ -7,12 +7,10 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "box_screen.h"
 #include "frontier.h"
-#include "keepout/geometry/half_space.h"
 #include "leaf_screen.h"
 
 namespace keepout {
@@ -42,10 +40,14 @@ class TrialWalk {
   /// Calls visit(leaf, lane) for the triangles below the frontier that the trial is not sure to
   /// keep clear of; none that it meets after `latest`, which visits may lower. The earliest come
   /// first, but for those that it may meet as it begins, and as far as there is room to put things
-  /// off. The normals of `planes` are tried as proofs.
+  /// off.
+  ///
+  /// True if there was nothing to visit whatever the time: the trial keeps clear of all, and so
+  /// does any other that ends within `alike` times `longest` of it.
   template <class Visit>
-  void run(const Frontier& frontier, const Vec3& trial, std::span<const HalfSpace> planes,
-           const double& latest, Visit&& visit) noexcept;
+  bool run(const Frontier& frontier, const Vec3& trial, const double& latest,
+           Visit&& visit) noexcept;
+  static constexpr double alike = 1e-7;
 
   /// Of leaves, since `restart_counting`.
   std::size_t looks() const noexcept { return looks_; }
@@ -98,25 +100,25 @@ class TrialWalk {
 
   // Of this trial.
   std::array<float, 3> motion_{};
-  Directions directions_{};
   std::array<std::uint32_t, 16 * NodeBlock::lanes> begun_{};  // boxes that it begins in
   std::size_t begun_size_ = 0;
   std::vector<Waiting> waiting_;  // a heap, the earliest first
   std::size_t waiting_size_ = 0;
   std::vector<PutOff> put_off_;
   std::size_t put_off_size_ = 0;
+  bool meets_nothing_ = false;
 };
 
 template <class Visit>
-void TrialWalk::run(const Frontier& frontier, const Vec3& trial, std::span<const HalfSpace> planes,
-                    const double& latest, Visit&& visit) noexcept {
+bool TrialWalk::run(const Frontier& frontier, const Vec3& trial, const double& latest,
+                    Visit&& visit) noexcept {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     motion_[axis] = static_cast<float>(trial[static_cast<Eigen::Index>(axis)]);
   }
-  directions_ = directions_of(planes);
   begun_size_ = 0;
   waiting_size_ = 0;
   put_off_size_ = 0;
+  meets_nothing_ = true;
   const auto open = [&](std::uint32_t box) {
     if ((box & NodeBlock::leaf) != 0) {
       look_at(box & ~NodeBlock::leaf, latest, visit);
@@ -132,7 +134,8 @@ void TrialWalk::run(const Frontier& frontier, const Vec3& trial, std::span<const
       open(begun_[--begun_size_]);
       continue;
     }
-    if (waiting_size_ == 0 || static_cast<double>(waiting_[0].time) > latest) return;
+    if (waiting_size_ == 0) return meets_nothing_;
+    if (static_cast<double>(waiting_[0].time) > latest) return false;
     const std::uint32_t what = next().what;
     if ((what & NodeBlock::leaf) == 0 && (what & suspects) != 0) {
       resume(what & ~suspects, latest, visit);
@@ -140,6 +143,7 @@ void TrialWalk::run(const Frontier& frontier, const Vec3& trial, std::span<const
       open(what);
     }
   }
+  return false;
 }
 
 template <class Visit>
@@ -151,8 +155,7 @@ void TrialWalk::look_at(std::uint32_t number, double latest, Visit&& visit) noex
   std::uint32_t& mask = found.suspects.mask;
   mask &= its.used;
   if (mask == 0) return;
-  const LeafBlock& block = tree_.leaves()[number];
-  suspect_along(block, tip_, motion_.data(), reach_, directions_, its.screen, found.suspects);
+  meets_nothing_ = false;
 
   // What the motion may meet before it begins, where the tip is too close already, is visited now;
   // and all, where there is no room to put it off.
