@@ -125,8 +125,7 @@ HalfSpace CertifiedTerms::answer(const Facet& facet, const Surroundings& around,
 
 HalfSpace CertifiedTerms::turned(const HalfSpace& plane, const Facet& facet, const Vec3& kept,
                                  const Vec3& towards) const noexcept {
-  double distance = 0.0;
-  const Vec3 wanted = facet.normal_at(towards, distance);
+  const Vec3 wanted = facet.nearest_to(towards).normal;
   Turn turn(plane, wanted, facet.corners(), target, kept, proof_slack * tolerance);
   constexpr int most_evaluations = 16;  // five were seen
   double theta = 1.0;
