@@ -108,11 +108,13 @@ Facet::Facet(const Triangle& ordered, TriangleId source) noexcept
   if (area2 > thin * thin * longest2 * longest2) {
     determinant_ = first2_ * last2_ - between_ * between_;
     plane_normal_ = normal / std::sqrt(area2);
+  } else {
+    plane_normal_.setZero();
   }
   at_tip_ = nearest_to(Vec3::Zero());
 }
 
-Facet::Shares Facet::shares(const Vec3& point) const noexcept {
+inline Facet::Shares Facet::shares(const Vec3& point) const noexcept {
   const Vec3 off = point - corners_[0];
   const double along_first = off.dot(corners_[1] - corners_[0]);
   const double along_last = off.dot(corners_[2] - corners_[0]);
@@ -120,8 +122,59 @@ Facet::Shares Facet::shares(const Vec3& point) const noexcept {
           first2_ * along_last - between_ * along_first};
 }
 
+// A direction is known only to the root of a rounding where two features are about equally near,
+// and worse close to the facet and on a needle. What proves less than this of a distance is not
+// taken before all that it could be was tried.
+constexpr double tight = 1.0 - 1e-12;
+
+/// `off`: from a point of the facet to `point`, `distance` long. It is the shortest one if what it
+/// proves is as long.
+inline bool Facet::is_nearest(const Vec3& point, const Vec3& off, double distance, Feature feature,
+                              Nearest& nearest) const noexcept {
+  nearest.normal = off / distance;
+  nearest.distance = distance;
+  nearest.support = support(nearest.normal);
+  nearest.feature = feature;
+  return nearest.normal.dot(point) - nearest.support >= tight * distance;
+}
+
+/// Precondition: the point is right over the face.
+inline bool Facet::face_is_nearest(const Vec3& point, Nearest& nearest) const noexcept {
+  const double height = plane_normal_.dot(point - corners_[0]);
+  nearest.normal = height < 0.0 ? Vec3(-plane_normal_) : plane_normal_;
+  nearest.distance = std::abs(height);
+  nearest.support = support(nearest.normal);
+  nearest.feature = Feature::face;
+  return nearest.normal.dot(point) - nearest.support >= tight * nearest.distance;
+}
+
+inline bool Facet::edge_is_nearest(const Vec3& point, int edge, Nearest& nearest) const noexcept {
+  const Vec3& from = corners_[edge == 2 ? 0 : edge];
+  const Vec3 along = corners_[edge == 0 ? 1 : 2] - from;
+  const Vec3 off = point - from;
+  const double share = off.dot(along);
+  const double length2 = along.squaredNorm();
+  if (!(share > 0.0 && share < length2)) return false;
+  const Vec3 straight = off - along * (share / length2);
+  return is_nearest(point, straight, straight.norm(),
+                    static_cast<Feature>(static_cast<int>(Feature::edge_0) + edge), nearest);
+}
+
+inline bool Facet::corner_is_nearest(const Vec3& point, int corner,
+                                     Nearest& nearest) const noexcept {
+  const Vec3 off = point - corners_[corner];
+  return is_nearest(point, off, off.norm(),
+                    static_cast<Feature>(static_cast<int>(Feature::vertex_0) + corner), nearest);
+}
+
 bool Facet::is_under(const Vec3& point) const noexcept {
   return shares(point).are_inside(determinant_);
+}
+
+Facet::Nearest Facet::face() const noexcept {
+  Nearest nearest;
+  face_is_nearest(Vec3::Zero(), nearest);
+  return nearest;
 }
 
 Facet::Nearest Facet::nearest_to(const Vec3& point) const noexcept {
@@ -155,50 +208,6 @@ Facet::Nearest Facet::nearest_to(const Vec3& point, Feature likely) const noexce
   if (is_edge(likely) && edge_is_nearest(point, number_of(likely), nearest)) return nearest;
   if (is_vertex(likely) && corner_is_nearest(point, number_of(likely), nearest)) return nearest;
   return nearest_to(point);
-}
-
-// A direction is known only to the root of a rounding where two features are about equally near,
-// and worse close to the facet and on a needle. What proves less than this of a distance is not
-// taken before all that it could be was tried.
-constexpr double tight = 1.0 - 1e-12;
-
-/// `off`: from a point of the facet to `point`, `distance` long. It is the shortest one if what it
-/// proves is as long.
-bool Facet::is_nearest(const Vec3& point, const Vec3& off, double distance, Feature feature,
-                       Nearest& nearest) const noexcept {
-  nearest.normal = off / distance;
-  nearest.distance = distance;
-  nearest.support = support(nearest.normal);
-  nearest.feature = feature;
-  return nearest.normal.dot(point) - nearest.support >= tight * distance;
-}
-
-/// Precondition: the point is right over the face.
-bool Facet::face_is_nearest(const Vec3& point, Nearest& nearest) const noexcept {
-  const double height = plane_normal_.dot(point - corners_[0]);
-  nearest.normal = height < 0.0 ? Vec3(-plane_normal_) : plane_normal_;
-  nearest.distance = std::abs(height);
-  nearest.support = support(nearest.normal);
-  nearest.feature = Feature::face;
-  return nearest.normal.dot(point) - nearest.support >= tight * nearest.distance;
-}
-
-bool Facet::edge_is_nearest(const Vec3& point, int edge, Nearest& nearest) const noexcept {
-  const Vec3& from = corners_[edge == 2 ? 0 : edge];
-  const Vec3 along = corners_[edge == 0 ? 1 : 2] - from;
-  const Vec3 off = point - from;
-  const double share = off.dot(along);
-  const double length2 = along.squaredNorm();
-  if (!(share > 0.0 && share < length2)) return false;
-  const Vec3 straight = off - along * (share / length2);
-  return is_nearest(point, straight, straight.norm(),
-                    static_cast<Feature>(static_cast<int>(Feature::edge_0) + edge), nearest);
-}
-
-bool Facet::corner_is_nearest(const Vec3& point, int corner, Nearest& nearest) const noexcept {
-  const Vec3 off = point - corners_[corner];
-  return is_nearest(point, off, off.norm(),
-                    static_cast<Feature>(static_cast<int>(Feature::vertex_0) + corner), nearest);
 }
 
 Facet::Nearest Facet::nearest_with_care(const Vec3& point) const noexcept {
@@ -333,6 +342,19 @@ Contact first_contact(const Facet& facet, const Vec3& z, double level, double sl
         return {time, plane_of(nearest, facet, level), true, time * z - level * nearest.normal};
       }
     } else {
+      if (i == 0 && facet.has_face()) {
+        // The face's plane is not met later than the facet. It is met there, or on the way on.
+        const Facet::Nearest face = facet.face();
+        const Line fall = line_of(face, z, level);
+        if (fall.at_0 > 0.0 && fall.slope < 0.0) {
+          const double meets = -fall.at_0 / fall.slope;
+          if (meets > too_late || !(meets < 1.0)) return {meets, plane_of(face, facet, level)};
+          if (facet.is_under(meets * z)) {
+            return {meets, plane_of(face, facet, level), true, meets * z - level * face.normal};
+          }
+          time = std::max(time, meets);
+        }
+      }
       const double leap = last + time_until(nearest.distance * nearest.normal, z, facet,
                                             nearest.feature, level + 0.5 * slack);
       if (leap > time && leap < 1.0) {

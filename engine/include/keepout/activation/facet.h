@@ -70,6 +70,10 @@ class Facet {
   /// max n . p over the points p of the facet. [length]
   double support(const Vec3& n) const noexcept { return keepout::support(corners_, n); }
 
+  /// What the tip would have of the face, if that were the nearest: there is one unless it is thin.
+  bool has_face() const noexcept { return determinant_ > 0.0; }
+  Nearest face() const noexcept;
+
   /// Whether a point is right over the face, on either side; no for a thin facet.
   bool is_under(const Vec3& point) const noexcept;
 
