@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "certified_terms.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <optional>
 
 #include "tolerance_ladder.h"
@@ -20,60 +23,76 @@ constexpr double idle_slack = 1e-6;
 /// normals that allow a motion are a convex cone, so those that do are an interval from theta 0.
 class Turn {
  public:
-  Turn(const HalfSpace& plane, const Vec3& wanted, const Triangle& corners, double target,
+  Turn(const HalfSpace& plane, const Vec3& change, const Triangle& corners, double target,
        const Vec3& kept, double slack) noexcept
-      : old_(plane.normal),
-        change_(wanted - plane.normal),
-        corners_(corners),
-        target_(target),
-        kept_(kept),
-        slack_(slack),
-        least_at_0_(std::min(-plane.offset, 0.0) - slack),
-        least_at_end_(std::min(plane.normal.dot(kept) - plane.offset, 0.0) - slack) {}
-
-  /// The plane at theta, if it goes on allowing what is to be allowed.
-  std::optional<HalfSpace> at(double theta, TriangleId source) noexcept {
-    blend_ = old_ + theta * change_;
-    length_ = blend_.norm();
-    if (!(length_ > 1e-3)) return std::nullopt;  // all but opposite: no direction in between
-    const Vec3 n = blend_ / length_;
-    const double offset = support(corners_, n) + target_;
-    at_0_ = -offset - least_at_0_;
-    at_end_ = n.dot(kept_) - offset - least_at_end_;
-    if (at_0_ < 0.0 || at_end_ < 0.0) return std::nullopt;
-    return HalfSpace{n, offset, source};
+      : old_(plane.normal), change_(change), slack_(slack) {
+    const double along_kept = old_.dot(kept);
+    ends_[0] = {0.0, 0.0, target + std::min(-plane.offset, 0.0) - slack};
+    ends_[1] = {along_kept, change_.dot(kept),
+                target + std::min(along_kept - plane.offset, 0.0) - slack};
+    for (std::size_t c = 0; c < 3; ++c) {
+      depth_[c] = old_.dot(corners[c]);
+      deepens_[c] = change_.dot(corners[c]);
+    }
   }
 
-  /// Newton's next theta after one that failed. What a blend allows, times its length, is concave
-  /// in theta: so this comes from above, and never passes the last theta that holds. It heads for
-  /// half of the slack, so as to arrive.
-  double next(double theta) const noexcept {
-    const bool ends = at_end_ < at_0_;
-    const double missing = length_ * ((ends ? at_end_ : at_0_) - 0.5 * slack_);
-    const Vec3* deepest = &corners_[0];
-    for (const Vec3& corner : corners_) {
-      if (blend_.dot(corner) > blend_.dot(*deepest)) deepest = &corner;
+  /// Whether the plane at theta goes on allowing what is to be allowed.
+  bool is_allowed_at(double theta) noexcept {
+    blend_ = old_ + theta * change_;
+    length_ = blend_.norm();
+    if (!(length_ > 1e-3)) return false;  // all but opposite: no direction in between
+    deepest_ = 0;
+    double most = depth_[0] + theta * deepens_[0];
+    for (std::size_t c = 1; c < 3; ++c) {
+      const double its = depth_[c] + theta * deepens_[c];
+      deepest_ = its > most ? c : deepest_;
+      most = std::max(its, most);
     }
-    const double least = ends ? least_at_end_ : least_at_0_;
-    double slope = -change_.dot(*deepest) - (target_ + least) * change_.dot(blend_) / length_;
-    if (ends) slope += change_.dot(kept_);
+    const auto left = [&](const End& end) {
+      return end.along_old + theta * end.along_change - most - end.least * length_;
+    };
+    const double at_0 = left(ends_[0]);
+    const double at_end = left(ends_[1]);
+    tight_ = at_end < at_0 ? 1 : 0;
+    left_ = std::min(at_end, at_0);
+    return !(left_ < 0.0);
+  }
+
+  /// The unit normal at the last theta asked about.
+  Vec3 normal() const noexcept { return blend_ / length_; }
+
+  /// Newton's next theta after one that failed. What a blend allows is concave in theta: so this
+  /// comes from above, and never passes the last theta that holds. It heads for half of the slack,
+  /// so as to arrive.
+  double next(double theta) const noexcept {
+    const End& end = ends_[tight_];
+    const double missing = left_ - 0.5 * slack_ * length_;
+    const double slope =
+        end.along_change - deepens_[deepest_] - end.least * change_.dot(blend_) / length_;
     if (!(slope < 0.0)) return 0.0;
     return theta - missing / slope;
   }
 
  private:
+  /// An end of what is kept, and how far off the corners a plane has to leave it.
+  struct End {
+    double along_old;
+    double along_change;
+    double least;
+  };
+
   Vec3 old_;
   Vec3 change_;
-  const Triangle& corners_;
-  double target_;
-  Vec3 kept_;
   double slack_;
-  double least_at_0_;
-  double least_at_end_;
-  Vec3 blend_;         // of the last theta
+  std::array<End, 2> ends_;
+  std::array<double, 3> depth_;    // of the corners along the old normal
+  std::array<double, 3> deepens_;  // ... and along the change
+  // Of the last theta.
+  Vec3 blend_;
   double length_ = 0;  // |blend|
-  double at_0_ = 0;    // what it leaves, less what it has to
-  double at_end_ = 0;
+  double left_ = 0;    // what it allows, less what it has to, times its length
+  std::size_t tight_ = 0;
+  std::size_t deepest_ = 0;
 };
 
 }  // namespace
@@ -125,13 +144,16 @@ HalfSpace CertifiedTerms::answer(const Facet& facet, const Surroundings& around,
 
 HalfSpace CertifiedTerms::turned(const HalfSpace& plane, const Facet& facet, const Vec3& kept,
                                  const Vec3& towards) const noexcept {
-  double distance = 0.0;
-  const Vec3 wanted = facet.normal_at(towards, distance);
-  Turn turn(plane, wanted, facet.corners(), target, kept, proof_slack * tolerance);
+  const Vec3 change = facet.nearest_to(towards).normal - plane.normal;
+  if (!(change.squaredNorm() > least_turn * least_turn)) return plane;
+  Turn turn(plane, change, facet.corners(), target, kept, proof_slack * tolerance);
   constexpr int most_evaluations = 16;  // five were seen
   double theta = 1.0;
   for (int i = 0; i < most_evaluations; ++i) {
-    if (const std::optional<HalfSpace> found = turn.at(theta, plane.source)) return *found;
+    if (turn.is_allowed_at(theta)) {
+      const Vec3 n = turn.normal();
+      return {n, facet.support(n) + target, plane.source};
+    }
     theta = std::min(turn.next(theta), theta);
     if (!(theta > 1e-6)) break;  // not worth it
   }

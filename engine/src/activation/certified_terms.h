@@ -10,6 +10,9 @@
 
 namespace keepout {
 
+// From a plane turned less than this a motion gains less, as a share of it, than is worthwhile.
+inline constexpr double least_turn = 1e-6;
+
 /// What a certified cycle asks of each triangle. Every form of the rule decides by these functions
 /// of one triangle, the trial and the planes at hand, and by nothing else: so all forms answer the
 /// same, bit for bit, in whatever order they come by the triangles.
@@ -86,9 +89,6 @@ bool CertifiedTerms::turn_all(const Surroundings& around, std::span<const HalfSp
     const bool stays = plane.source == no_triangle;
     turned_planes.push(stays ? plane
                              : turned(plane, facet(plane.source), around.kept, around.kept));
-    // A motion of this length gains less than what is worthwhile from a plane turned less than
-    // this.
-    constexpr double least_turn = 1e-6;
     const Vec3 turn = turned_planes[turned_planes.size() - 1].normal - plane.normal;
     changed = changed || turn.squaredNorm() > least_turn * least_turn;
   }

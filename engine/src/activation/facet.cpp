@@ -24,8 +24,8 @@ struct Line {
   double at(double t) const noexcept { return at_0 + t * slope; }
 };
 
-Line line_of(const Vec3& n, const Facet& facet, const Vec3& z, double level) noexcept {
-  return {-facet.support(n) - level, n.dot(z)};
+Line line_of(const Facet::Nearest& nearest, const Vec3& z, double level) noexcept {
+  return {-nearest.support - level, nearest.normal.dot(z)};
 }
 
 bool holds(const Line& line, double slack) noexcept {
@@ -38,8 +38,8 @@ Vec3 unit(const Vec3& v) noexcept {
   return length > 0.0 ? Vec3(v / length) : Vec3::Zero();
 }
 
-HalfSpace plane_along(const Vec3& n, const Facet& facet, double level) noexcept {
-  return {n, facet.support(n) + level, facet.source()};
+HalfSpace plane_of(const Facet::Nearest& nearest, const Facet& facet, double level) noexcept {
+  return {nearest.normal, nearest.support + level, facet.source()};
 }
 
 /// How long until a motion along z comes within `level` of what it is `away` from; 0 if it does
@@ -95,13 +95,123 @@ Facet::Facet(const Triangle& triangle, const Vec3& tip, TriangleId source) noexc
 
 Facet::Facet(const Triangle& ordered, TriangleId source) noexcept
     : corners_(ordered), source_(source) {
-  normal_ = normal_at(Vec3::Zero(), distance_, feature_);
+  const Vec3 first = corners_[1] - corners_[0];
+  const Vec3 last = corners_[2] - corners_[0];
+  const Vec3 normal = first.cross(last);
+  const double area2 = normal.squaredNorm();
+  first2_ = first.squaredNorm();
+  last2_ = last.squaredNorm();
+  between_ = first.dot(last);
+  const double longest2 = std::max({first2_, last2_, first2_ - 2.0 * between_ + last2_});
+  // Of what is thinner, the shares of the corners are not known well enough.
+  constexpr double thin = 1e-2;  // height, in lengths of the longest edge
+  if (area2 > thin * thin * longest2 * longest2) {
+    determinant_ = first2_ * last2_ - between_ * between_;
+    plane_normal_ = normal / std::sqrt(area2);
+  } else {
+    plane_normal_.setZero();
+  }
+  at_tip_ = nearest_to(Vec3::Zero());
 }
 
-Vec3 Facet::normal_at(const Vec3& point, double& distance, Feature& feature) const noexcept {
+inline Facet::Shares Facet::shares(const Vec3& point) const noexcept {
+  const Vec3 off = point - corners_[0];
+  const double along_first = off.dot(corners_[1] - corners_[0]);
+  const double along_last = off.dot(corners_[2] - corners_[0]);
+  return {along_first, along_last, last2_ * along_first - between_ * along_last,
+          first2_ * along_last - between_ * along_first};
+}
+
+// A direction is known only to the root of a rounding where two features are about equally near,
+// and worse close to the facet and on a needle. What proves less than this of a distance is not
+// taken before all that it could be was tried.
+constexpr double tight = 1.0 - 1e-12;
+
+/// `off`: from a point of the facet to `point`, `distance` long. It is the shortest one if what it
+/// proves is as long.
+inline bool Facet::is_nearest(const Vec3& point, const Vec3& off, double distance, Feature feature,
+                              Nearest& nearest) const noexcept {
+  nearest.normal = off / distance;
+  nearest.distance = distance;
+  nearest.support = support(nearest.normal);
+  nearest.feature = feature;
+  return nearest.normal.dot(point) - nearest.support >= tight * distance;
+}
+
+/// Precondition: the point is right over the face.
+inline bool Facet::face_is_nearest(const Vec3& point, Nearest& nearest) const noexcept {
+  const double height = plane_normal_.dot(point - corners_[0]);
+  nearest.normal = height < 0.0 ? Vec3(-plane_normal_) : plane_normal_;
+  nearest.distance = std::abs(height);
+  nearest.support = support(nearest.normal);
+  nearest.feature = Feature::face;
+  return nearest.normal.dot(point) - nearest.support >= tight * nearest.distance;
+}
+
+inline bool Facet::edge_is_nearest(const Vec3& point, int edge, Nearest& nearest) const noexcept {
+  const Vec3& from = corners_[edge == 2 ? 0 : edge];
+  const Vec3 along = corners_[edge == 0 ? 1 : 2] - from;
+  const Vec3 off = point - from;
+  const double share = off.dot(along);
+  const double length2 = along.squaredNorm();
+  if (!(share > 0.0 && share < length2)) return false;
+  const Vec3 straight = off - along * (share / length2);
+  return is_nearest(point, straight, straight.norm(),
+                    static_cast<Feature>(static_cast<int>(Feature::edge_0) + edge), nearest);
+}
+
+inline bool Facet::corner_is_nearest(const Vec3& point, int corner,
+                                     Nearest& nearest) const noexcept {
+  const Vec3 off = point - corners_[corner];
+  return is_nearest(point, off, off.norm(),
+                    static_cast<Feature>(static_cast<int>(Feature::vertex_0) + corner), nearest);
+}
+
+bool Facet::is_under(const Vec3& point) const noexcept {
+  return shares(point).are_inside(determinant_);
+}
+
+Facet::Nearest Facet::face() const noexcept {
+  Nearest nearest;
+  face_is_nearest(Vec3::Zero(), nearest);
+  return nearest;
+}
+
+Facet::Nearest Facet::nearest_to(const Vec3& point) const noexcept {
+  Nearest nearest;
+  const Shares its = shares(point);
+  bool found = false;
+  if (its.are_inside(determinant_)) {
+    found = face_is_nearest(point, nearest);
+  } else if (determinant_ > 0.0) {
+    const double along_second = (its.along_last - between_) - (its.along_first - first2_);
+    const double second2 = (first2_ - between_) + (last2_ - between_);
+    const unsigned first = unsigned{its.of_third <= 0.0} & unsigned{its.along_first > 0.0} &
+                           unsigned{its.along_first < first2_};
+    const unsigned second = unsigned{its.of_second + its.of_third >= determinant_} &
+                            unsigned{along_second > 0.0} & unsigned{along_second < second2};
+    const unsigned last = unsigned{its.of_second <= 0.0} & unsigned{its.along_last > 0.0} &
+                          unsigned{its.along_last < last2_};
+    if ((first | second | last) != 0) {
+      found = edge_is_nearest(point, first != 0 ? 0 : second != 0 ? 1 : 2, nearest);
+    } else {
+      const bool is_first = its.along_first <= 0.0 && its.along_last <= 0.0;
+      const bool is_second = along_second <= 0.0;
+      found = corner_is_nearest(point, is_first ? 0 : is_second ? 1 : 2, nearest);
+    }
+  }
+  return found ? nearest : nearest_with_care(point);
+}
+
+Facet::Nearest Facet::nearest_to(const Vec3& point, Feature likely) const noexcept {
+  Nearest nearest;
+  if (is_edge(likely) && edge_is_nearest(point, number_of(likely), nearest)) return nearest;
+  if (is_vertex(likely) && corner_is_nearest(point, number_of(likely), nearest)) return nearest;
+  return nearest_to(point);
+}
+
+Facet::Nearest Facet::nearest_with_care(const Vec3& point) const noexcept {
   const ClosestPoint closest = closest_point_of_ordered(corners_, point);
-  distance = closest.distance;
-  feature = closest.feature;
   const Vec3 away = unit(-closest.offset);
   const auto proven = [&](const Vec3& n) { return n.dot(point) - support(n); };
   Vec3 best = is_edge(closest.feature) ? across(away, number_of(closest.feature)) : away;
@@ -113,13 +223,11 @@ Vec3 Facet::normal_at(const Vec3& point, double& distance, Feature& feature) con
     most = proves;
   };
   if (is_face(closest.feature)) consider(facing(closest));
-  // A direction is known only to the root of a rounding where two features are about equally near,
-  // and worse close to the facet and on a needle. Of all that it could be, what proves the most.
-  constexpr double tight = 1.0 - 1e-12;
-  if (most >= tight * distance) return best;
-  consider(facing(closest));
-  for (int edge = 0; edge < 3; ++edge) consider(across(away, edge));
-  return best;
+  if (!(most >= tight * closest.distance)) {
+    consider(facing(closest));
+    for (int edge = 0; edge < 3; ++edge) consider(across(away, edge));
+  }
+  return {best, closest.distance, support(best), closest.feature};
 }
 
 /// On either side, for the order of the corners does not tell; zero without an area.
@@ -173,13 +281,13 @@ bool Facet::before(const Facet& other) const noexcept {
 std::optional<Vec3> proof_of_clearance(const Facet& facet, const Vec3& z, double level,
                                        double slack) noexcept {
   Vec3 n_left = facet.normal();
-  Line left = line_of(n_left, facet, z, level);
+  Line left = line_of(facet.at_tip(), z, level);
   if (holds(left, slack)) return n_left;
 
-  double distance = 0.0;
-  Vec3 n_right = facet.normal_at(z, distance);
-  if (!(distance - level >= -slack)) return std::nullopt;
-  Line right = line_of(n_right, facet, z, level);
+  const Facet::Nearest at_end = facet.nearest_to(z);
+  if (!(at_end.distance - level >= -slack)) return std::nullopt;
+  Vec3 n_right = at_end.normal;
+  Line right = line_of(at_end, z, level);
   if (holds(right, slack)) return n_right;
   // A distance that never falls, or always does, is least at an end, and was proven there: but for
   // a rounding, and then no is the safe answer.
@@ -191,15 +299,15 @@ std::optional<Vec3> proof_of_clearance(const Facet& facet, const Vec3& z, double
     const Vec3 blend = level_blend(n_left, left.slope, n_right, right.slope);
     if (separates(blend, facet.corners(), z, level, slack)) return blend;
     const double t = (left.at_0 - right.at_0) / (right.slope - left.slope);
-    const Vec3 n = facet.normal_at(t * z, distance);
-    if (!(distance - level >= -slack)) return std::nullopt;
-    const Line line = line_of(n, facet, z, level);
-    if (holds(line, slack)) return n;
+    const Facet::Nearest nearest = facet.nearest_to(t * z);
+    if (!(nearest.distance - level >= -slack)) return std::nullopt;
+    const Line line = line_of(nearest, z, level);
+    if (holds(line, slack)) return nearest.normal;
     if (line.slope < 0.0) {
-      n_left = n;
+      n_left = nearest.normal;
       left = line;
     } else {
-      n_right = n;
+      n_right = nearest.normal;
       right = line;
     }
   }
@@ -208,43 +316,59 @@ std::optional<Vec3> proof_of_clearance(const Facet& facet, const Vec3& z, double
 
 Contact first_contact(const Facet& facet, const Vec3& z, double level, double slack,
                       double latest) noexcept {
-  Vec3 n = facet.normal();
-  double distance = facet.distance();
-  Feature feature = facet.feature();
+  Facet::Nearest nearest = facet.at_tip();
   double time = 0.0;
   // What is given up is later than `latest` by more than the last digits can make up for.
   const double digits = slack / z.norm();
   const double too_late = latest + digits;
   for (int i = 0; i < most_newton_steps; ++i) {
-    const Line line = line_of(n, facet, z, level);
+    const Line line = line_of(nearest, z, level);
     if (!(line.slope < 0.0)) break;
     const double last = time;
     time = -line.at_0 / line.slope;
     // Later than `latest` shall mean later at the end as well, whatever rounding does.
     if (i > 0) time = std::max(time, last);
-    if (distance - level <= slack) {
-      const double direct = time_from_tip(z, facet, feature, level);
+    if (nearest.distance - level <= slack) {
+      const double direct = time_from_tip(z, facet, nearest.feature, level);
       if (direct > 0.0 && std::abs(direct - time) <= digits) time = direct;
-      return {time, plane_along(n, facet, level), true, last * z - distance * n};
+      return {time, plane_of(nearest, facet, level), true,
+              last * z - nearest.distance * nearest.normal};
     }
     // Too late, or as far as numbers go.
     if (time > too_late || !(time > last && time < 1.0)) break;
-    const double leap = last + time_until(distance * n, z, facet, feature, level + 0.5 * slack);
-    if (leap > time && leap < 1.0) {
-      double there = 0.0;
-      Feature at_leap;
-      const Vec3 normal = facet.normal_at(leap * z, there, at_leap);
-      if (there >= level && normal.dot(z) < 0.0) {
-        n = normal;
-        distance = there;
-        feature = at_leap;
-        time = leap;
-        continue;
+    if (is_face(nearest.feature)) {
+      // It is met where its plane is, if that is where the face is.
+      if (facet.is_under(time * z)) {
+        return {time, plane_of(nearest, facet, level), true, time * z - level * nearest.normal};
+      }
+    } else {
+      if (i == 0 && facet.has_face()) {
+        // The face's plane is not met later than the facet. It is met there, or on the way on.
+        const Facet::Nearest face = facet.face();
+        const Line fall = line_of(face, z, level);
+        if (fall.at_0 > 0.0 && fall.slope < 0.0) {
+          const double meets = -fall.at_0 / fall.slope;
+          if (meets > too_late || !(meets < 1.0)) return {meets, plane_of(face, facet, level)};
+          if (facet.is_under(meets * z)) {
+            return {meets, plane_of(face, facet, level), true, meets * z - level * face.normal};
+          }
+          time = std::max(time, meets);
+        }
+      }
+      const double leap = last + time_until(nearest.distance * nearest.normal, z, facet,
+                                            nearest.feature, level + 0.5 * slack);
+      if (leap > time && leap < 1.0) {
+        const Facet::Nearest there = facet.nearest_to(leap * z, nearest.feature);
+        if (there.distance >= level && there.normal.dot(z) < 0.0) {
+          nearest = there;
+          time = leap;
+          continue;
+        }
       }
     }
-    n = facet.normal_at(time * z, distance, feature);
+    nearest = facet.nearest_to(time * z);
   }
-  return {time, plane_along(n, facet, level)};
+  return {time, plane_of(nearest, facet, level)};
 }
 
 }  // namespace keepout

@@ -29,6 +29,14 @@ inline double support(const Triangle& corners, const Vec3& n) noexcept {
 /// where n points from the triangle's closest point to t z.
 class Facet {
  public:
+  /// What a point has of the facet.
+  struct Nearest {
+    Vec3 normal;      // a unit vector from the closest point to the point; zero on the facet
+    double distance;  // of the point [length]
+    double support;   // of the facet along the normal [length]
+    Feature feature;  // on which the closest point lies
+  };
+
   Facet() = default;
   Facet(const Triangle& triangle, const Vec3& tip, TriangleId source) noexcept;
 
@@ -38,29 +46,36 @@ class Facet {
   TriangleId source() const noexcept { return source_; }
   const Triangle& corners() const noexcept { return corners_; }
 
-  /// Its distance from the tip. [length]
-  double distance() const noexcept { return distance_; }
+  /// Of all that the normal could be within rounding, the one that proves the largest distance.
+  Nearest nearest_to(const Vec3& point) const noexcept;
 
-  /// Unit vector from the closest point to `point`; of all that it could be within rounding, the
-  /// one that proves the largest distance. Zero where the point is on the facet. `distance` is set
-  /// to the distance of the point. [length]
+  /// The same, sooner where the closest point lies on the feature that it is `likely` to lie on.
+  Nearest nearest_to(const Vec3& point, Feature likely) const noexcept;
+
+  /// Its normal. `distance` is set to the distance of the point. [length]
   Vec3 normal_at(const Vec3& point, double& distance) const noexcept {
-    Feature feature;
-    return normal_at(point, distance, feature);
+    const Nearest nearest = nearest_to(point);
+    distance = nearest.distance;
+    return nearest.normal;
   }
 
-  /// The same, and where on the facet the closest point lies.
-  Vec3 normal_at(const Vec3& point, double& distance, Feature& feature) const noexcept;
-
-  /// normal_at the tip.
-  const Vec3& normal() const noexcept { return normal_; }
-  Feature feature() const noexcept { return feature_; }
+  /// nearest_to the tip.
+  const Nearest& at_tip() const noexcept { return at_tip_; }
+  double distance() const noexcept { return at_tip_.distance; }
+  const Vec3& normal() const noexcept { return at_tip_.normal; }
 
   /// The direction of an edge (0, 1, 2), of its length. [length]
   Vec3 edge(int number) const noexcept { return corners_[(number + 1) % 3] - corners_[number]; }
 
   /// max n . p over the points p of the facet. [length]
   double support(const Vec3& n) const noexcept { return keepout::support(corners_, n); }
+
+  /// What the tip would have of the face, if that were the nearest: there is one unless it is thin.
+  bool has_face() const noexcept { return determinant_ > 0.0; }
+  Nearest face() const noexcept;
+
+  /// Whether a point is right over the face, on either side; no for a thin facet.
+  bool is_under(const Vec3& point) const noexcept;
 
   /// The facet's own unit normal, on the side of the tip; zero without an area.
   Vec3 face_normal() const noexcept;
@@ -74,14 +89,38 @@ class Facet {
   bool before(const Facet& other) const noexcept;
 
  private:
+  /// A point's coordinates along the two edges at the first corner.
+  struct Shares {
+    double along_first;  // edge 0 . (point - corner 0)
+    double along_last;
+    double of_second;  // barycentric coordinates of the corners, times the determinant
+    double of_third;
+
+    bool are_inside(double determinant) const noexcept {
+      return of_second > 0.0 && of_third > 0.0 && of_second + of_third < determinant;
+    }
+  };
+
+  Shares shares(const Vec3& point) const noexcept;
+  bool is_nearest(const Vec3& point, const Vec3& off, double distance, Feature feature,
+                  Nearest& nearest) const noexcept;
+  bool face_is_nearest(const Vec3& point, Nearest& nearest) const noexcept;
+  bool edge_is_nearest(const Vec3& point, int edge, Nearest& nearest) const noexcept;
+  bool corner_is_nearest(const Vec3& point, int corner, Nearest& nearest) const noexcept;
+  Nearest nearest_with_care(const Vec3& point) const noexcept;
+
   Vec3 plane_normal() const noexcept;
   Vec3 facing(const ClosestPoint& closest) const noexcept;
   Vec3 across(const Vec3& n, int edge) const noexcept;
 
-  Triangle corners_;                 // relative to the tip [length]
-  Vec3 normal_;                      // at the tip
-  double distance_ = 0;              // of the tip [length]
-  Feature feature_ = Feature::face;  // nearest to the tip
+  Triangle corners_;  // relative to the tip [length]
+  // Of the edges at the first corner. The determinant is 0 for a thin facet. [length^2], [length^4]
+  double first2_ = 0;
+  double last2_ = 0;
+  double between_ = 0;
+  double determinant_ = 0;
+  Vec3 plane_normal_;  // unless the facet is thin
+  Nearest at_tip_;
   TriangleId source_ = no_triangle;
 };
 
