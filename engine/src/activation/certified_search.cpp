@@ -29,6 +29,7 @@ constexpr std::size_t most_looks = std::size_t{1} << 17;
 CertifiedSearch::CertifiedSearch(std::shared_ptr<const Mesh> mesh, const WideBvh& tree)
     : mesh_(std::move(mesh)),
       tree_(tree),
+      generation_(tree.generation()),
       longest_edge_(mesh_->longest_edge()),
       facets_(most_facets),
       memory_(most_memory),
@@ -44,6 +45,7 @@ Ball CertifiedSearch::region(const Surroundings& around) const noexcept {
 
 Opening CertifiedSearch::start(const Surroundings& around, HalfSpaceBuffer&) noexcept {
   using Stance = Opening::Stance;
+  if (tree_.generation() != generation_) return {Stance::over_capacity};
   const double tau = certified_tolerance(around, longest_edge_);
   facets_.clear();
   looks_ = 0;
