@@ -18,6 +18,11 @@ namespace keepout {
 /// As many threads as there are processors to run on.
 inline unsigned processors() noexcept { return std::max(1u, std::thread::hardware_concurrency()); }
 
+/// The number of threads to use where the caller asks for `wanted`, 0 being all there are.
+inline unsigned thread_count(unsigned wanted) noexcept {
+  return wanted != 0 ? wanted : processors();
+}
+
 /// What goes wrong in the blocks of a shared work. Of several failures the one of the lowest block
 /// counts, which is the one that a single thread would have met.
 class BlockFailures {
@@ -90,18 +95,34 @@ void share_blocks(std::size_t blocks, unsigned threads, const MakeWorker& make_w
   failures.rethrow();
 }
 
-/// How many of the items of share_ranges are worked on at a time.
+/// Calls work(begin, end) for ranges that make up 0 to `size`, each of `share` items but for the
+/// last one. Throws what the lowest range threw that failed.
+template <class Work>
+void share_ranges(std::size_t size, unsigned threads, std::size_t share, const Work& work) {
+  share_blocks((size + share - 1) / share, threads, [&] {
+    return [&](std::size_t block) { work(block * share, std::min((block + 1) * share, size)); };
+  });
+}
+
+/// How many of a mesh's vertices or triangles are worked on at a time.
 constexpr std::size_t share_size = std::size_t{1} << 13;
 
-/// Calls work(begin, end) for ranges that make up 0 to `size`; `begin` is a multiple of share_size.
-/// Throws what the lowest range threw that failed.
 template <class Work>
 void share_ranges(std::size_t size, unsigned threads, const Work& work) {
-  share_blocks((size + share_size - 1) / share_size, threads, [&] {
-    return [&](std::size_t block) {
-      work(block * share_size, std::min((block + 1) * share_size, size));
-    };
-  });
+  share_ranges(size, threads, share_size, work);
+}
+
+/// Runs both, at the same time if `threads` > 1 and the system has a thread to give. Throws what
+/// the first threw, or else the other.
+template <class One, class Other>
+void run_both(unsigned threads, const One& one, const Other& other) {
+  if (threads <= 1) {
+    one();
+    other();
+    return;
+  }
+  share_blocks(2, threads,
+               [&] { return [&](std::size_t block) { block == 0 ? one() : other(); }; });
 }
 
 /// The same as share_blocks for a worker of three parts: prepare(block) and finish(block) run side

@@ -20,6 +20,7 @@ constexpr std::size_t most_facets = 4096;
 CertifiedSearch::CertifiedSearch(std::shared_ptr<const Mesh> mesh, const WideBvh& tree)
     : mesh_(std::move(mesh)),
       tree_(tree),
+      generation_(tree.generation()),
       longest_edge_(mesh_->longest_edge()),
       walk_(tree),
       facets_(most_facets) {}
@@ -34,6 +35,7 @@ Ball CertifiedSearch::region(const Surroundings& around) const noexcept {
 
 Opening CertifiedSearch::start(const Surroundings& around, HalfSpaceBuffer&) noexcept {
   using Stance = Opening::Stance;
+  if (tree_.generation() != generation_) return {Stance::over_capacity};
   const double tau = certified_tolerance(around, longest_edge_);
   facets_.clear();
   walk_.restart_counting();

@@ -20,7 +20,8 @@ namespace keepout {
 /// change them.
 class CertifiedSearch final : public Activation {
  public:
-  /// `tree` must outlive this, and be over `mesh`.
+  /// `tree` must outlive this, and be over `mesh`. After a refit of it every start is refused, as
+  /// over_capacity: the mesh is another one.
   CertifiedSearch(std::shared_ptr<const Mesh> mesh, const WideBvh& tree);
 
   bool searches() const noexcept override { return true; }
@@ -48,7 +49,8 @@ class CertifiedSearch final : public Activation {
 
   std::shared_ptr<const Mesh> mesh_;
   const WideBvh& tree_;
-  double longest_edge_;  // [length]
+  std::uint64_t generation_;  // of the tree that is known here
+  double longest_edge_;       // [length]
 
   Frontier frontier_;
   TrialWalk walk_;

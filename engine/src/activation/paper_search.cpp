@@ -29,6 +29,7 @@ void for_each_bit(std::uint32_t bits, Visit&& visit) noexcept {
 PaperSearch::PaperSearch(const PaperRule& rule, const WideBvh& tree)
     : rule_(rule),
       tree_(tree),
+      generation_(tree.generation()),
       edges_(edges_of_leaves(tree, rule.adjacency())),
       leaves_(tree.leaves().size()),
       rest_(std::make_unique<PaperRest>()),
@@ -47,6 +48,7 @@ void PaperSearch::reserve(std::size_t triangles) {
 }
 
 Opening PaperSearch::start(const Surroundings& around, HalfSpaceBuffer& planes) noexcept {
+  if (tree_.generation() != generation_) return {Opening::Stance::over_capacity};
   const std::size_t before = planes.size();
   handed_over_ = around.needed;
   bool fits = find(around, handed_over_, planes);

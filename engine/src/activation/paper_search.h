@@ -25,7 +25,8 @@ namespace keepout {
 /// it looks at lies in idle_ball. Otherwise it gets them all.
 class PaperSearch final : public Activation {
  public:
-  /// `tree` must outlive this.
+  /// `tree` must outlive this. After a refit of it every start is refused, as over_capacity: what
+  /// is known of edges and normals is another mesh's.
   PaperSearch(const PaperRule& rule, const WideBvh& tree);
 
   void reserve(std::size_t triangles) override;
@@ -44,6 +45,7 @@ class PaperSearch final : public Activation {
 
   PaperRule rule_;
   const WideBvh& tree_;
+  std::uint64_t generation_;      // of the tree that is known here
   std::vector<LeafEdges> edges_;  // of each leaf
   std::vector<Vec3> normals_;     // of each triangle
 

@@ -3,10 +3,11 @@
 #include "leaf_fill.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cstdint>
+#include <cstring>
+#include <vector>
 
-#include "threads.h"
+#include "../parallel.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "index/leaf_fill.cpp"
@@ -20,101 +21,190 @@ namespace keepout::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-using Doubles = hn::CappedTag<double, LeafBlock::lanes>;
-using Values = hn::Vec<Doubles>;
-using Choice = hn::Mask<Doubles>;
+template <class Number>
+using Lanes = hn::CappedTag<Number, LeafBlock::lanes>;
 
+template <class Number>
 struct Place {
-  Values x, y, z;
+  hn::Vec<Lanes<Number>> x, y, z;
 };
 
-HWY_INLINE Choice is_before(const Place& a, const Place& b) {
-  const Choice in_plane = hn::Or(hn::Lt(a.y, b.y), hn::And(hn::Eq(a.y, b.y), hn::Lt(a.z, b.z)));
+template <class Number>
+using Choice = hn::Mask<Lanes<Number>>;
+
+template <class Number>
+HWY_INLINE Choice<Number> is_before(const Place<Number>& a, const Place<Number>& b) {
+  const auto in_plane = hn::Or(hn::Lt(a.y, b.y), hn::And(hn::Eq(a.y, b.y), hn::Lt(a.z, b.z)));
   return hn::Or(hn::Lt(a.x, b.x), hn::And(hn::Eq(a.x, b.x), in_plane));
 }
 
-HWY_INLINE Place choose(Choice first, const Place& a, const Place& b) {
+template <class Number>
+HWY_INLINE Place<Number> choose(Choice<Number> first, const Place<Number>& a,
+                                const Place<Number>& b) {
   return {hn::IfThenElse(first, a.x, b.x), hn::IfThenElse(first, a.y, b.y),
           hn::IfThenElse(first, a.z, b.z)};
 }
 
-/// The corners of a leaf's triangles as the mesh has them. [length]
-struct alignas(64) Gathered {
-  double corner[3][3][LeafBlock::lanes];  // [corner][axis][lane]
+HWY_INLINE void store(const Place<float>& place, float (&corner)[3][LeafBlock::lanes],
+                      std::size_t first) {
+  const Lanes<float> d;
+  hn::Store(place.x, d, corner[0] + first);
+  hn::Store(place.y, d, corner[1] + first);
+  hn::Store(place.z, d, corner[2] + first);
+}
 
-  HWY_INLINE Place place(std::size_t c, std::size_t first) const {
-    const Doubles d;
-    return {hn::Load(d, corner[c][0] + first), hn::Load(d, corner[c][1] + first),
-            hn::Load(d, corner[c][2] + first)};
-  }
-};
-
-HWY_INLINE void store(const Place& place, float (&corner)[3][LeafBlock::lanes], std::size_t first) {
-  const hn::Rebind<float, Doubles> floats;
+HWY_INLINE void store(const Place<double>& place, float (&corner)[3][LeafBlock::lanes],
+                      std::size_t first) {
+  const hn::Rebind<float, Lanes<double>> floats;
   hn::Store(hn::DemoteTo(floats, place.x), floats, corner[0] + first);
   hn::Store(hn::DemoteTo(floats, place.y), floats, corner[1] + first);
   hn::Store(hn::DemoteTo(floats, place.z), floats, corner[2] + first);
 }
 
-HWY_INLINE FloatBox box_around(const LeafBlock& leaf) {
-  const hn::CappedTag<float, LeafBlock::lanes> d;
-  FloatBox box;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    auto low = hn::Load(d, leaf.corner[0][axis]);
-    auto high = low;
-    for (const auto& corner : leaf.corner) {
-      for (std::size_t first = 0; first < LeafBlock::lanes; first += hn::Lanes(d)) {
-        low = hn::Min(low, hn::Load(d, corner[axis] + first));
-        high = hn::Max(high, hn::Load(d, corner[axis] + first));
-      }
-    }
-    box.low[axis] = hn::GetLane(hn::MinOfLanes(d, low));
-    box.high[axis] = hn::GetLane(hn::MaxOfLanes(d, high));
+/// The corners of a leaf's triangles, each beside a number that is not looked at. [length]
+template <class Number>
+struct alignas(64) Gathered {
+  Number corner[3][LeafBlock::lanes][4];
+
+  HWY_INLINE Place<Number> place(std::size_t c, std::size_t first) const {
+    const Lanes<Number> d;
+    Place<Number> place;
+    hn::Vec<Lanes<Number>> unused;
+    hn::LoadInterleaved4(d, corner[c][first], place.x, place.y, place.z, unused);
+    return place;
   }
-  return box;
+};
+
+HWY_INLINE void copy(const LeafFill::FloatVertex& from, float (&to)[4]) {
+  std::memcpy(to, from.x, sizeof to);  // one instruction
 }
 
-FloatBox fill_lanes(const Mesh& mesh, LeafBlock& leaf) {
-  Gathered from;
-  for (std::size_t lane = 0; lane < LeafBlock::lanes; ++lane) {
-    const Corners& corners = mesh.corners(leaf.triangle(leaf.is_used(lane) ? lane : 0));
-    for (std::size_t c = 0; c < 3; ++c) {
-      const Vec3& vertex = mesh.vertex(corners[c]);
-      from.corner[c][0][lane] = vertex.x();
-      from.corner[c][1][lane] = vertex.y();
-      from.corner[c][2][lane] = vertex.z();
-    }
-  }
+HWY_INLINE void copy(const Vec3& from, double (&to)[4]) {
+  to[0] = from.x();
+  to[1] = from.y();
+  to[2] = from.z();
+  to[3] = 0.0;
+}
 
-  // As corner_order does: equal corners keep their order.
+/// Writes the corners in lexicographic order: as corner_order does, equal ones keep theirs.
+template <class Number>
+HWY_INLINE void write_in_order(const Gathered<Number>& from, LeafBlock& leaf) {
+  const Lanes<Number> d;
   std::uint32_t odd = 0;
-  const Doubles d;
   for (std::size_t first = 0; first < LeafBlock::lanes; first += hn::Lanes(d)) {
-    const Place a = from.place(0, first);
-    const Place b = from.place(1, first);
-    const Place c = from.place(2, first);
-    const Choice b_before_a = is_before(b, a);
-    const Choice c_before_a = is_before(c, a);
-    const Choice c_before_b = is_before(c, b);
-    const Place lower = choose(b_before_a, b, a);
-    const Place upper = choose(b_before_a, a, b);
-    const Choice c_is_first =
+    const Place<Number> a = from.place(0, first);
+    const Place<Number> b = from.place(1, first);
+    const Place<Number> c = from.place(2, first);
+    const Choice<Number> b_before_a = is_before<Number>(b, a);
+    const Choice<Number> c_before_a = is_before<Number>(c, a);
+    const Choice<Number> c_before_b = is_before<Number>(c, b);
+    const Place<Number> lower = choose<Number>(b_before_a, b, a);
+    const Place<Number> upper = choose<Number>(b_before_a, a, b);
+    const Choice<Number> c_is_first =
         hn::Or(hn::And(b_before_a, c_before_b), hn::AndNot(b_before_a, c_before_a));
-    const Choice c_is_not_last =
+    const Choice<Number> c_is_not_last =
         hn::Or(hn::And(b_before_a, c_before_a), hn::AndNot(b_before_a, c_before_b));
-    store(choose(c_is_first, c, lower), leaf.corner[0], first);
-    store(choose(c_is_first, lower, choose(c_is_not_last, c, upper)), leaf.corner[1], first);
-    store(choose(c_is_not_last, upper, c), leaf.corner[2], first);
+    store(choose<Number>(c_is_first, c, lower), leaf.corner[0], first);
+    store(choose<Number>(c_is_first, lower, choose<Number>(c_is_not_last, c, upper)),
+          leaf.corner[1], first);
+    store(choose<Number>(c_is_not_last, upper, c), leaf.corner[2], first);
 
     std::uint8_t bits[8] = {};
     hn::StoreMaskBits(d, hn::Xor(hn::Xor(b_before_a, c_before_a), c_before_b), bits);
     odd |= (bits[0] | std::uint32_t{bits[1]} << 8) << first;
   }
   for (std::size_t lane = 0; lane < LeafBlock::lanes; ++lane) {
-    const std::uint32_t parity = (odd >> lane & 1) != 0 ? LeafBlock::odd : 0;
-    if (leaf.is_used(lane)) leaf.source[lane] = leaf.triangle(lane) | parity;
+    const std::uint32_t parity = odd << (31 - lane) & LeafBlock::odd;
+    const std::uint32_t named = leaf.triangle(lane) | parity;
+    leaf.source[lane] = leaf.is_used(lane) ? named : no_triangle;
   }
-  return box_around(leaf);
+}
+
+/// What is asked of the mesh for a leaf.
+using VerticesOfLeaf = Corners[LeafBlock::lanes];
+
+HWY_INLINE bool is_full(const LeafBlock& leaf) { return leaf.is_used(LeafBlock::lanes - 1); }
+
+HWY_INLINE void look_up(const Corners* triangles, const LeafBlock& leaf, VerticesOfLeaf& vertices) {
+  if (is_full(leaf)) [[likely]] {
+    for (std::size_t lane = 0; lane < LeafBlock::lanes; ++lane) {
+      vertices[lane] = triangles[leaf.triangle(lane)];
+    }
+    return;
+  }
+  for (std::size_t lane = 0; lane < LeafBlock::lanes; ++lane) {
+    vertices[lane] = triangles[leaf.triangle(leaf.is_used(lane) ? lane : 0)];
+  }
+}
+
+/// Nearly every read would be waited for: triangles are fetched some leaves ahead, and vertices
+/// when those have come.
+template <class Number, class Vertex>
+HWY_INLINE void fill_leaves(const Corners* triangles, const Vertex* vertices,
+                            std::span<LeafBlock> leaves, std::size_t first, std::size_t last) {
+  constexpr std::size_t vertices_ahead = 4;
+  constexpr std::size_t triangles_ahead = 12;
+  VerticesOfLeaf looked_up[vertices_ahead];
+  // Those that the call before this one has fetched.
+  for (std::size_t i = first; i < std::min(first + vertices_ahead, leaves.size()); ++i) {
+    look_up(triangles, leaves[i], looked_up[i % vertices_ahead]);
+  }
+  for (std::size_t i = first; i < last; ++i) {
+    VerticesOfLeaf& its = looked_up[i % vertices_ahead];
+    Gathered<Number> gathered;
+    for (std::size_t lane = 0; lane < LeafBlock::lanes; ++lane) {
+      for (std::size_t c = 0; c < 3; ++c) copy(vertices[its[lane][c]], gathered.corner[c][lane]);
+    }
+    if (i + triangles_ahead < leaves.size() && is_full(leaves[i + triangles_ahead])) {
+      const LeafBlock& ahead = leaves[i + triangles_ahead];
+      for (std::size_t lane = 0; lane < LeafBlock::lanes; ++lane) {
+        hwy::Prefetch(&triangles[ahead.triangle(lane)]);
+      }
+    }
+    if (i + vertices_ahead < leaves.size()) {
+      LeafBlock& ahead = leaves[i + vertices_ahead];
+      look_up(triangles, ahead, its);
+      for (const Corners& corners : its) {
+        for (const VertexId v : corners) hwy::Prefetch(&vertices[v]);
+      }
+      for (auto& corner : ahead.corner) {
+        for (const auto& coordinates : corner) __builtin_prefetch(coordinates, 1);  // to be written
+      }
+    }
+    write_in_order(gathered, leaves[i]);
+  }
+}
+
+void FillFromFloats(const Corners* triangles, const LeafFill::FloatVertex* vertices,
+                    std::span<LeafBlock> leaves, std::size_t first, std::size_t last) {
+  fill_leaves<float>(triangles, vertices, leaves, first, last);
+}
+
+void FillFromDoubles(const Corners* triangles, const Vec3* vertices, std::span<LeafBlock> leaves,
+                     std::size_t first, std::size_t last) {
+  fill_leaves<double>(triangles, vertices, leaves, first, last);
+}
+
+/// Rounds vertices to floats. Returns how far the worst coordinate is from its float.
+double RoundVertices(std::span<const Vec3> from, LeafFill::FloatVertex* to) {
+  // A vertex and the coordinate behind it, which does no harm.
+  const hn::CappedTag<double, 4> d;
+  const hn::Rebind<float, decltype(d)> floats;
+  auto error = hn::Zero(d);
+  const auto round = [&](const double* x, float* rounded) HWY_ATTR {
+    for (std::size_t i = 0; i < 4; i += hn::Lanes(d)) {
+      const auto exact = hn::LoadU(d, x + i);
+      const auto nearest = hn::DemoteTo(floats, exact);
+      hn::StoreU(nearest, floats, rounded + i);
+      error = hn::Max(error, hn::Abs(hn::Sub(exact, hn::PromoteTo(d, nearest))));
+    }
+  };
+  static_assert(sizeof(Vec3) == 3 * sizeof(double));
+  const std::size_t last = from.size() - 1;
+  for (std::size_t v = 0; v < last; ++v) round(from[v].data(), to[v].x);
+  const double copied[4] = {from[last].x(), from[last].y(), from[last].z(), from[last].z()};
+  round(copied, to[last].x);
+  return hn::GetLane(hn::MaxOfLanes(d, error));
 }
 
 }  // namespace keepout::HWY_NAMESPACE
@@ -124,31 +214,30 @@ HWY_AFTER_NAMESPACE();
 
 namespace keepout {
 
-HWY_EXPORT(fill_lanes);
+HWY_EXPORT(FillFromFloats);
+HWY_EXPORT(FillFromDoubles);
+HWY_EXPORT(RoundVertices);
 
-double float_error(const Mesh& mesh, unsigned threads) {
-  std::atomic<double> largest = 0.0;
-  for_ranges(threads, 0, mesh.vertex_count(), [&](std::size_t begin, std::size_t end) {
-    double error = 0.0;
-    for (const Vec3& v : mesh.vertices().subspan(begin, end - begin)) {
-      error = std::max(error, (v - v.cast<float>().cast<double>()).cwiseAbs().maxCoeff());
-    }
-    double known = largest;
-    while (error > known && !largest.compare_exchange_weak(known, error)) {
-    }
+LeafFill::LeafFill(const Mesh& mesh, unsigned threads)
+    : mesh_(mesh), vertices_(mesh.vertex_count()) {
+  std::vector<double> errors(mesh.vertex_count() / share_size + 1, 0.0);
+  share_ranges(mesh.vertex_count(), threads, [&](std::size_t begin, std::size_t end) {
+    errors[begin / share_size] = HWY_DYNAMIC_DISPATCH(RoundVertices)(
+        mesh.vertices().subspan(begin, end - begin), &vertices_[begin]);
   });
-  return largest;
+  coordinate_error_ = *std::max_element(errors.begin(), errors.end());
+  // Corners that are one float may be in an order all the same: then the doubles are asked.
+  if (coordinate_error_ > 0.0) vertices_ = {};
 }
 
-void fetch_corners(const Mesh& mesh, const LeafBlock& leaf) noexcept {
-  for (std::size_t lane = 0; lane < LeafBlock::lanes && leaf.is_used(lane); ++lane) {
-    hwy::Prefetch(&mesh.corners(leaf.triangle(lane)));
-  }
-}
-
-void fetch_vertices(const Mesh& mesh, const LeafBlock& leaf) noexcept {
-  for (std::size_t lane = 0; lane < LeafBlock::lanes && leaf.is_used(lane); ++lane) {
-    for (const VertexId v : mesh.corners(leaf.triangle(lane))) hwy::Prefetch(&mesh.vertex(v));
+void LeafFill::fill(std::span<LeafBlock> leaves, std::size_t first,
+                    std::size_t last) const noexcept {
+  const Corners* triangles = mesh_.triangles().data();
+  if (coordinate_error_ == 0.0) {
+    HWY_DYNAMIC_DISPATCH(FillFromFloats)(triangles, vertices_.data(), leaves, first, last);
+  } else {
+    HWY_DYNAMIC_DISPATCH(FillFromDoubles)
+    (triangles, mesh_.vertices().data(), leaves, first, last);
   }
 }
 
@@ -156,10 +245,6 @@ void name_triangles(std::span<const Center> centers, LeafBlock& leaf) noexcept {
   for (std::size_t lane = 0; lane < LeafBlock::lanes; ++lane) {
     leaf.source[lane] = lane < centers.size() ? centers[lane].triangle : no_triangle;
   }
-}
-
-FloatBox fill_leaf(const Mesh& mesh, LeafBlock& leaf) noexcept {
-  return HWY_DYNAMIC_DISPATCH(fill_lanes)(mesh, leaf);
 }
 
 }  // namespace keepout

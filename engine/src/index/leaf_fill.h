@@ -2,47 +2,44 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <span>
 
+#include "keepout/index/block_memory.h"
 #include "keepout/index/leaf_block.h"
 #include "keepout/mesh/mesh.h"
 #include "median_split.h"
 
 namespace keepout {
 
-/// How far a coordinate of the mesh may be from the float nearest to it; 0 where all are floats.
-/// [length]
-double float_error(const Mesh& mesh, unsigned threads);
+/// Writes the corners of a mesh's triangles to leaves. A mesh is in an order of its own and each of
+/// its vertices is asked for six times, so where they are floats they are put into a table of
+/// floats first, four to a cache line.
+class LeafFill {
+ public:
+  /// Goes over the vertices once. `mesh` must outlive this.
+  LeafFill(const Mesh& mesh, unsigned threads);
 
-/// The smallest box around the floats of a leaf. [length]
-struct FloatBox {
-  float low[3];
-  float high[3];
+  /// How far a coordinate of the mesh may be from the float nearest to it; 0 where all are floats.
+  /// [length]
+  double coordinate_error() const noexcept { return coordinate_error_; }
+
+  /// Fills leaves first .. last - 1, whose `source` says which triangles are theirs, and has what
+  /// those behind them need brought nearer. The bits `odd` are set anew.
+  void fill(std::span<LeafBlock> leaves, std::size_t first, std::size_t last) const noexcept;
+
+  /// Never straddles cache lines. [length]
+  struct alignas(16) FloatVertex {
+    float x[4];  // the last one is not looked at
+  };
+
+ private:
+  const Mesh& mesh_;
+  BlockVector<FloatVertex> vertices_;  // none where the mesh's are no floats
+  double coordinate_error_ = 0.0;
 };
-
-/// Writes the corners of the triangles, as the mesh has them, to the lanes of leaves whose `source`
-/// says which they are. The bits `odd` are set anew. Calls filled(i, box) after leaf i.
-template <class Filled>
-void fill_leaves(const Mesh& mesh, std::span<LeafBlock> leaves, const Filled& filled) noexcept;
-
-/// The same for one leaf.
-FloatBox fill_leaf(const Mesh& mesh, LeafBlock& leaf) noexcept;
-
-/// Has what fill_leaf will read brought nearer: the first some leaves ahead, the second when that
-/// has come. A mesh is in an order of its own, so nearly every read would be waited for.
-void fetch_corners(const Mesh& mesh, const LeafBlock& leaf) noexcept;
-void fetch_vertices(const Mesh& mesh, const LeafBlock& leaf) noexcept;
 
 /// Writes the numbers of the triangles to the lanes of a leaf.
 void name_triangles(std::span<const Center> centers, LeafBlock& leaf) noexcept;
-
-template <class Filled>
-void fill_leaves(const Mesh& mesh, std::span<LeafBlock> leaves, const Filled& filled) noexcept {
-  for (std::size_t i = 0; i < leaves.size(); ++i) {
-    if (i + 4 < leaves.size()) fetch_corners(mesh, leaves[i + 4]);
-    if (i + 2 < leaves.size()) fetch_vertices(mesh, leaves[i + 2]);
-    filled(i, fill_leaf(mesh, leaves[i]));
-  }
-}
 
 }  // namespace keepout

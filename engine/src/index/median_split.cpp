@@ -2,14 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "median_split.h"
 
-#include "threads.h"
+#include "../parallel.h"
 
 namespace keepout {
 
 BlockVector<Center> centers_of(const Mesh& mesh, unsigned threads) {
   BlockVector<Center> centers(mesh.triangle_count());
   const Vec3 twice_the_middle = mesh.bounds().low + mesh.bounds().high;
-  for_ranges(threads, 0, centers.size(), [&](std::size_t begin, std::size_t end) {
+  share_ranges(centers.size(), threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
       const Triangle c = mesh.triangle(static_cast<TriangleId>(t));
       const Vec3 low = c[0].cwiseMin(c[1]).cwiseMin(c[2]);

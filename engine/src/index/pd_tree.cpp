@@ -9,11 +9,11 @@
 #include <cmath>
 #include <utility>
 
+#include "../parallel.h"
 #include "keepout/error.h"
 #include "leaf_fill.h"
 #include "median_split.h"
 #include "oriented_extent.h"
-#include "threads.h"
 
 namespace keepout {
 namespace {
@@ -72,23 +72,29 @@ constexpr std::size_t worth_a_thread = 4096;  // triangles
 
 class Builder {
  public:
-  Builder(const Mesh& mesh, std::span<PdNode> nodes, std::span<LeafBlock> leaves, double error)
+  Builder(const Mesh& mesh, std::span<PdNode> nodes, std::span<LeafBlock> leaves)
       : mesh_(mesh),
         middle_(0.5 * (mesh.bounds().low + mesh.bounds().high)),
-        coordinate_error_(error),
         nodes_(nodes),
         leaves_(leaves) {}
 
-  void build(unsigned threads) {
+  /// Returns how far a corner in a leaf may be from the mesh's. [length]
+  double build(unsigned threads) {
     {
       BlockVector<Center> centers = centers_of(mesh_, threads);
       BlockVector<Center> spare(centers.size());
       divide(centers, spare, 0, 0, threads);
     }
-    for_ranges(threads, 0, leaves_.size(), [this](std::size_t begin, std::size_t end) {
-      fill_leaves(mesh_, leaves_.subspan(begin, end - begin), [](std::size_t, const FloatBox&) {});
-    });
+    {
+      const LeafFill fill(mesh_, threads);
+      coordinate_error_ = fill.coordinate_error();
+      constexpr std::size_t share = 1024;  // leaves, worked on at a time
+      share_ranges(leaves_.size(), threads, share, [&](std::size_t begin, std::size_t end) {
+        fill.fill(leaves_.first(end), begin, end);
+      });
+    }
     enclose(0, 0, threads);
+    return coordinate_error_;
   }
 
  private:
@@ -178,7 +184,7 @@ class Builder {
 
   const Mesh& mesh_;
   const Vec3 middle_;  // of the mesh's bounds: where centers are measured from [length]
-  const double coordinate_error_;
+  double coordinate_error_ = 0.0;
   std::span<PdNode> nodes_;
   std::span<LeafBlock> leaves_;
 };
@@ -191,10 +197,9 @@ PdTree::PdTree(std::shared_ptr<const Mesh> mesh, unsigned threads) : mesh_(std::
     throw Error("a pd_tree holds at most 2^31 - 1 triangles: split or decimate the mesh");
   }
   threads = thread_count(threads);
-  coordinate_error_ = float_error(*mesh_, threads);
   leaves_.resize((count + LeafBlock::lanes - 1) / LeafBlock::lanes);
   nodes_.resize(2 * leaves_.size() - 1);
-  Builder(*mesh_, nodes_, leaves_, coordinate_error_).build(threads);
+  coordinate_error_ = Builder(*mesh_, nodes_, leaves_).build(threads);
 }
 
 std::size_t PdTree::memory() const noexcept {

@@ -6,15 +6,15 @@
 #include <array>
 #include <atomic>
 #include <bit>
-#include <cmath>
+#include <cstring>
 #include <limits>
 #include <utility>
 
+#include "../parallel.h"
+#include "enclosure.h"
 #include "keepout/error.h"
 #include "leaf_fill.h"
 #include "median_split.h"
-#include "sheet_cylinder.h"
-#include "threads.h"
 
 namespace keepout {
 namespace {
@@ -101,27 +101,12 @@ float previous(float x) noexcept {
 
 float next(float x) noexcept { return -previous(-x); }
 
-/// Puts the box around a leaf's floats in a lane of the node above it; outward by what the mesh
-/// may be off them.
-void enclose(const FloatBox& box, bool exact, NodeBlock& parent, std::size_t lane) noexcept {
+/// Makes boxes around floats hold the mesh, whose coordinates are off them: rounding keeps the
+/// order, so the mesh's extreme is within one float of the floats' extreme.
+void widen(NodeBlock& node) noexcept {
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    // Rounding keeps the order: the mesh's extreme is within one float of the floats' extreme.
-    parent.low[axis][lane] = exact ? box.low[axis] : previous(box.low[axis]);
-    parent.high[axis][lane] = exact ? box.high[axis] : next(box.high[axis]);
-  }
-}
-
-/// Puts the boxes of a node in a lane of the node above it.
-void enclose(const NodeBlock& node, NodeBlock& parent, std::size_t lane) noexcept {
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    float low = node.low[axis][0];
-    float high = node.high[axis][0];
-    for (std::size_t i = 1; i < NodeBlock::lanes && node.is_used(i); ++i) {
-      low = std::min(low, node.low[axis][i]);
-      high = std::max(high, node.high[axis][i]);
-    }
-    parent.low[axis][lane] = low;
-    parent.high[axis][lane] = high;
+    for (float& low : node.low[axis]) low = previous(low);
+    for (float& high : node.high[axis]) high = next(high);
   }
 }
 
@@ -153,61 +138,80 @@ WideBvh::WideBvh(std::shared_ptr<const Mesh> mesh, unsigned threads) : mesh_(std
   }
   nodes_.resize(nodes);
   cylinders_.resize(nodes);
-  fit(threads);
+  fit(LeafFill(*mesh_, threads), threads);
 }
 
 void WideBvh::refit(std::shared_ptr<const Mesh> moved, unsigned threads) {
   threads = thread_count(threads);
   const auto corners = mesh_->triangles();
+  const auto others = moved->triangles();
   std::atomic<bool> same =
-      corners.size() == moved->triangle_count() && mesh_->vertex_count() == moved->vertex_count();
-  for_ranges(threads, 0, same ? corners.size() : 0, [&](std::size_t begin, std::size_t end) {
-    const auto first = [begin](const auto& all) {
-      return all.begin() + static_cast<std::ptrdiff_t>(begin);
-    };
-    const auto size = static_cast<std::ptrdiff_t>(end - begin);
-    if (!std::equal(first(corners), first(corners) + size, first(moved->triangles()))) same = false;
+      corners.size() == others.size() && mesh_->vertex_count() == moved->vertex_count();
+  share_ranges(same ? corners.size() : 0, threads, [&](std::size_t begin, std::size_t end) {
+    const std::size_t bytes = (end - begin) * sizeof(Corners);
+    if (std::memcmp(&corners[begin], &others[begin], bytes) != 0) same = false;
   });
   if (!same) throw Error("a refit is for moved vertices: the triangles are to be the same");
+  const LeafFill fill(*moved, threads);
   mesh_ = std::move(moved);
-  fit(threads);
+  ++generation_;
+  fit(fill, threads);
 }
 
-void WideBvh::fit(unsigned threads) {
-  coordinate_error_ = float_error(*mesh_, threads);
-  const bool exact = coordinate_error_ == 0.0;
+void WideBvh::fit(const LeafFill& fill, unsigned threads) {
+  coordinate_error_ = fill.coordinate_error();
 
   // Each level stands behind the one above it: the lowest is the last.
   std::size_t size = rounded_up_quotient(leaves_.size(), NodeBlock::lanes);
   std::size_t begin = nodes_.size() - size;
-  for_ranges(threads, 0, size, [&](std::size_t from, std::size_t to) {
-    const std::size_t first = from * NodeBlock::lanes;
-    const std::size_t last = std::min(to * NodeBlock::lanes, leaves_.size());
-    const std::span leaves = std::span(leaves_).subspan(first, last - first);
-    fill_leaves(*mesh_, leaves, [&](std::size_t i, const FloatBox& box) {
-      const std::size_t leaf = first + i;
-      NodeBlock& node = nodes_[begin + leaf / NodeBlock::lanes];
-      enclose(box, exact, node, leaf % NodeBlock::lanes);
-      node.child[leaf % NodeBlock::lanes] = static_cast<std::uint32_t>(leaf) | NodeBlock::leaf;
-      enclose(leaves_[leaf], cylinders_[begin + leaf / NodeBlock::lanes], leaf % NodeBlock::lanes);
-    });
+  constexpr std::size_t share = 128;  // nodes, worked on at a time
+  share_ranges(size, threads, share, [&](std::size_t from, std::size_t to) {
+    // What is behind them is another thread's.
+    const std::span shared =
+        std::span(leaves_).first(std::min(to * NodeBlock::lanes, leaves_.size()));
+    for (std::size_t i = from; i < to; ++i) {
+      const std::size_t first = i * NodeBlock::lanes;
+      const std::size_t last = std::min(first + NodeBlock::lanes, shared.size());
+      fill.fill(shared, first, last);
+      enclose_leaves(begin + i, first, last);
+    }
   });
-  close_lanes(nodes_.back(), cylinders_.back(), leaves_.size() - (size - 1) * NodeBlock::lanes);
   while (size > 1) {
     const std::size_t children = size;
     const std::size_t first_child = begin;
     size = rounded_up_quotient(children, NodeBlock::lanes);
     begin -= size;
-    for (std::size_t i = 0; i < children; ++i) {
-      NodeBlock& node = nodes_[begin + i / NodeBlock::lanes];
-      enclose(nodes_[first_child + i], node, i % NodeBlock::lanes);
-      enclose(nodes_[first_child + i], cylinders_[first_child + i],
-              cylinders_[begin + i / NodeBlock::lanes], i % NodeBlock::lanes);
-      node.child[i % NodeBlock::lanes] = static_cast<std::uint32_t>(first_child + i);
-    }
-    close_lanes(nodes_[first_child - 1], cylinders_[first_child - 1],
-                children - (size - 1) * NodeBlock::lanes);
+    share_ranges(size, threads, share, [&](std::size_t from, std::size_t to) {
+      for (std::size_t i = from; i < to; ++i) {
+        const std::size_t first = i * NodeBlock::lanes;
+        enclose_nodes(begin + i, first_child + first,
+                      first_child + std::min(first + NodeBlock::lanes, children));
+      }
+    });
   }
+}
+
+/// Makes a node of the leaves first .. last - 1.
+void WideBvh::enclose_leaves(std::size_t self, std::size_t first, std::size_t last) noexcept {
+  NodeBlock& node = nodes_[self];
+  SixteenLeaves leaves;
+  for (std::size_t lane = 0; lane < NodeBlock::lanes; ++lane) {
+    const std::size_t leaf = std::min(first + lane, last - 1);
+    leaves[lane] = &leaves_[leaf];
+    node.child[lane] = static_cast<std::uint32_t>(leaf) | NodeBlock::leaf;
+  }
+  enclose(leaves, node, cylinders_[self]);
+  if (coordinate_error_ > 0.0) widen(node);
+  close_lanes(node, cylinders_[self], last - first);
+}
+
+/// Makes a node of the nodes first .. last - 1.
+void WideBvh::enclose_nodes(std::size_t self, std::size_t first, std::size_t last) noexcept {
+  for (std::size_t child = first; child < last; ++child) {
+    enclose(nodes_[child], cylinders_[child], nodes_[self], cylinders_[self], child - first);
+    nodes_[self].child[child - first] = static_cast<std::uint32_t>(child);
+  }
+  close_lanes(nodes_[self], cylinders_[self], last - first);
 }
 
 std::size_t WideBvh::memory() const noexcept {

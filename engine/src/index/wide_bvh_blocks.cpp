@@ -13,9 +13,9 @@
 
 #include "../geometry/corner_order.h"
 #include "../parallel.h"
+#include "enclosure.h"
 #include "keepout/error.h"
 #include "keepout/index/wide_bvh.h"
-#include "sheet_cylinder.h"
 
 namespace keepout {
 namespace {
@@ -218,23 +218,27 @@ WideBvh::WideBvh(std::shared_ptr<const Mesh> mesh, BlockVector<NodeBlock> nodes,
 /// Puts the cylinders around what the blocks hold.
 void WideBvh::enclose_blocks() {
   share_ranges(nodes_.size(), processors(), [&](std::size_t begin, std::size_t end) {
+    NodeBlock boxes;
     for (std::size_t n = begin; n < end; ++n) {
+      SixteenLeaves leaves;
+      leaves.fill(leaves_.data());  // where there is none
       for (std::size_t lane = 0; lane < NodeBlock::lanes; ++lane) {
         const std::uint32_t child = nodes_[n].child[lane];
-        if ((child & NodeBlock::leaf) != 0) {
-          enclose(leaves_[child & ~NodeBlock::leaf], cylinders_[n], lane);
-        } else {
-          close_lane(cylinders_[n], lane);
-        }
+        if ((child & NodeBlock::leaf) != 0) leaves[lane] = &leaves_[child & ~NodeBlock::leaf];
+      }
+      enclose(leaves, boxes, cylinders_[n]);
+      for (std::size_t lane = 0; lane < NodeBlock::lanes; ++lane) {
+        if ((nodes_[n].child[lane] & NodeBlock::leaf) == 0) close_lane(cylinders_[n], lane);
       }
     }
   });
   // A parent stands before its children.
+  NodeBlock boxes;
   for (std::size_t n = nodes_.size(); n-- > 0;) {
     for (std::size_t lane = 0; lane < NodeBlock::lanes && nodes_[n].is_used(lane); ++lane) {
       const std::uint32_t child = nodes_[n].child[lane];
       if ((child & NodeBlock::leaf) != 0) continue;
-      enclose(nodes_[child], cylinders_[child], cylinders_[n], lane);
+      enclose(nodes_[child], cylinders_[child], boxes, cylinders_[n], lane);
     }
   }
 }

@@ -218,6 +218,28 @@ TEST(CertifiedSearchIndex, IsForWideBvhOnly) {
   EXPECT_EQ(CertifiedRule(mesh).searching(PdTree(mesh)), nullptr);
 }
 
+/// The wall comes to where it was free: what was known of free space must not let the tip through.
+TEST(CertifiedSearchIndex, StopsOnceItsTreeIsRefit) {
+  BothForms forms(make_cube(5.0));
+  const Motion motion{.tip = Vec3(0.0, 0.0, 58.0), .desired = Vec3(0.0, 0.0, -4.0)};
+  const StepOptions options{.radius = 5.0, .margin = 1.0};
+  ASSERT_EQ(forms.step(motion, options).status, Status::free);
+  Surface raised{{forms.mesh->vertices().begin(), forms.mesh->vertices().end()},
+                 {forms.mesh->triangles().begin(), forms.mesh->triangles().end()}};
+  for (Vec3& v : raised.vertices) v.z() += 5.0;
+  const auto mesh = std::make_shared<const Mesh>(std::move(raised));
+  forms.tree.refit(mesh);
+  const Outcome stopped = forms.step(motion, options);
+  EXPECT_EQ(stopped.status, Status::over_capacity);
+  EXPECT_EQ(stopped.motion, Vec3::Zero());
+
+  const auto anew = CertifiedRule(mesh).searching(forms.tree);
+  const Step step =
+      keepout::step(*mesh, forms.tree, *anew, forms.solver, motion, options, forms.work);
+  EXPECT_EQ(step.status, Status::limited);
+  EXPECT_NEAR(step.motion.z(), -2.0, 1e-6);
+}
+
 /// Far from the origin, where a tip's second float matters, and coordinates are no floats.
 TEST(CertifiedSearchPrecision, StepsAsThePlainRuleDoesFarFromTheOrigin) {
   Surface surface = make_shape("cortex");

@@ -275,5 +275,18 @@ TEST(PaperSearch, OnlyForATreeItKnows) {
   EXPECT_TRUE(PaperRule(mesh).searching(tree)->searches());
 }
 
+TEST(PaperSearch, StopsOnceItsTreeIsRefit) {
+  BothForms forms(make_cube(5.0));
+  const Motion motion{.tip = Vec3(0.0, 0.0, 58.0), .desired = Vec3(0.0, 0.0, -4.0)};
+  ASSERT_EQ(forms.step(motion, {.radius = 5.0}).status, Status::free);
+  Surface raised{{forms.mesh->vertices().begin(), forms.mesh->vertices().end()},
+                 {forms.mesh->triangles().begin(), forms.mesh->triangles().end()}};
+  for (Vec3& v : raised.vertices) v.z() += 5.0;
+  forms.tree.refit(std::make_shared<const Mesh>(std::move(raised)));
+  const Step stopped = forms.step(motion, {.radius = 5.0});
+  EXPECT_EQ(stopped.status, Status::over_capacity);
+  EXPECT_EQ(stopped.motion, Vec3::Zero());
+}
+
 }  // namespace
 }  // namespace keepout

@@ -5,12 +5,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <utility>
 #include <vector>
 
 #include "adapters/index_contract.h"
 #include "keepout/fixtures/shapes.h"
+#include "keepout/index/wide_bvh.h"
 
 namespace keepout {
 
@@ -93,6 +95,44 @@ inline void expect_leaves_hold(const Mesh& mesh, std::span<const LeafBlock> leav
     }
   }
   EXPECT_EQ(std::count(times.begin(), times.end(), 1), std::ssize(times));
+}
+
+/// Fails unless each cylinder holds what is in the leaves below it. Appends these.
+inline void expect_cylinders_hold(const WideBvh& index, std::size_t self,
+                                  std::vector<std::size_t>& leaves) {
+  const NodeBlock& node = index.nodes()[self];
+  const CylinderBlock& cylinders = index.cylinders()[self];
+  const auto vector_of = [](const float(&from)[3][16], std::size_t lane) {
+    return Vec3(from[0][lane], from[1][lane], from[2][lane]);
+  };
+  for (std::size_t lane = 0; lane < NodeBlock::lanes && node.is_used(lane); ++lane) {
+    const std::size_t first = leaves.size();
+    if ((node.child[lane] & NodeBlock::leaf) != 0) {
+      leaves.push_back(node.child[lane] & ~NodeBlock::leaf);
+    } else {
+      expect_cylinders_hold(index, node.child[lane], leaves);
+    }
+    const Vec3 middle = vector_of(cylinders.middle, lane);
+    const Vec3 axis = vector_of(cylinders.axis, lane).normalized();
+    for (std::size_t i = first; i < leaves.size(); ++i) {
+      const LeafBlock& leaf = index.leaves()[leaves[i]];
+      for (std::size_t t = 0; t < LeafBlock::lanes; ++t) {
+        for (const auto& corner : leaf.corner) {
+          const Vec3 way = vector_of(corner, t) - middle;
+          const double height = axis.dot(way);
+          ASSERT_LE(std::abs(height), cylinders.half_height[lane]) << self << ' ' << lane;
+          ASSERT_LE((way - height * axis).stableNorm(), cylinders.radius[lane])
+              << self << ' ' << lane;
+        }
+      }
+    }
+  }
+}
+
+inline void expect_cylinders_hold(const WideBvh& index) {
+  std::vector<std::size_t> leaves;
+  expect_cylinders_hold(index, 0, leaves);
+  EXPECT_EQ(leaves.size(), index.leaves().size());
 }
 
 }  // namespace keepout

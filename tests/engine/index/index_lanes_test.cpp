@@ -6,8 +6,10 @@
 #include <hwy/highway.h>
 
 #include <bit>
+#include <cstring>
 #include <vector>
 
+#include "engine/index/exact_index.h"
 #include "keepout/fixtures/poses.h"
 #include "keepout/fixtures/shapes.h"
 #include "keepout/index/pd_tree.h"
@@ -111,6 +113,17 @@ TYPED_TEST(IndexLanes, EveryProcessorBuildsTheSameTree) {
     EXPECT_EQ(std::memcmp(index.leaves().data(), expected.leaves().data(),
                           expected.leaves().size_bytes()),
               0);
+  }
+}
+
+TEST(WideBvhLanes, CylindersHoldWhateverProcessorBuildsThem) {
+  for (const char* name : {"cortex", "needles", "far_cube"}) {
+    const auto mesh = shared_shape(name);
+    for (const std::int64_t target : targets()) {
+      SCOPED_TRACE(testing::Message() << name << " on " << hwy::TargetName(target));
+      const OnlyTarget only(target);
+      expect_cylinders_hold(WideBvh(mesh));
+    }
   }
 }
 

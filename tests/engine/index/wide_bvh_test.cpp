@@ -117,11 +117,30 @@ TEST(WideBvh, BoxesHoldTheirTrianglesAndEveryTriangleIsThereOnce) {
   }
 }
 
+TEST(WideBvh, CylindersHoldTheirTriangles) {
+  for (const Shape& shape : shapes()) {
+    SCOPED_TRACE(shape.name);
+    expect_cylinders_hold(WideBvh(shared_shape(shape.name)));
+    if (HasFatalFailure()) return;
+  }
+  for (const double scale : {1e-30, 1e-12, 1e-6, 1e6, 1e16, 1e22}) {
+    for (const double offset : {0.0, 1e6}) {
+      SCOPED_TRACE(testing::Message() << "scale " << scale << " offset " << offset);
+      const auto mesh = moved(*shared_shape("gear"), [&](const Vec3& v) -> Vec3 {
+        return scale * (v + offset * Vec3(1.0, -0.7, 0.3));
+      });
+      expect_cylinders_hold(WideBvh(mesh));
+      if (HasFatalFailure()) return;
+    }
+  }
+}
+
 bool are_equal(const WideBvh& one, const WideBvh& other) {
   const auto equal = [](auto a, auto b) {
     return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
   };
   return equal(one.nodes(), other.nodes()) && equal(one.leaves(), other.leaves()) &&
+         equal(one.cylinders(), other.cylinders()) &&
          one.coordinate_error() == other.coordinate_error();
 }
 
@@ -150,6 +169,7 @@ TEST(WideBvh, IsExactAfterARefitToMovedVertices) {
       index.refit(after, threads);
       EXPECT_EQ(&index.mesh(), after.get());
       expect_sound(index);
+      expect_cylinders_hold(index);
       expect_exact(*after, index, 5);
       if (HasFatalFailure()) return;
     }
@@ -164,6 +184,19 @@ TEST(WideBvh, ARefitAndBackIsTheTreeThatWas) {
   EXPECT_FALSE(are_equal(index, was));
   index.refit(mesh);
   EXPECT_TRUE(are_equal(index, was));
+  EXPECT_EQ(index.generation(), 2u);
+}
+
+TEST(WideBvh, ARefitIsTheSameWhateverTheNumberOfThreads) {
+  const auto mesh = std::make_shared<const Mesh>(make_cortex(0.7, 1));
+  const auto after = moved(*mesh, twisted);
+  WideBvh alone(mesh, 1);
+  alone.refit(after, 1);
+  for (const unsigned threads : {2u, 3u, 8u}) {
+    WideBvh index(mesh);
+    index.refit(after, threads);
+    EXPECT_TRUE(are_equal(alone, index)) << threads << " threads";
+  }
 }
 
 TEST(WideBvh, RefusesToBeRefitToOtherTriangles) {
@@ -182,6 +215,7 @@ TEST(WideBvh, RefusesToBeRefitToOtherTriangles) {
   EXPECT_THROW(index.refit(std::make_shared<const Mesh>(more)), Error);
   EXPECT_TRUE(are_equal(index, was));
   EXPECT_EQ(&index.mesh(), mesh.get());
+  EXPECT_EQ(index.generation(), 0u);
 }
 
 TEST(WideBvh, HoldsFewBytesATriangle) {

@@ -1,0 +1,358 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "enclosure.h"
+
+#include <cmath>
+#include <limits>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "index/enclosure.cpp"
+#include <hwy/foreach_target.h>
+// After it, for it tells for whom to compile.
+#include "../lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace keepout::HWY_NAMESPACE {
+
+constexpr std::size_t width = hn::MaxLanes(Float());
+constexpr std::size_t leaf_count = NodeBlock::lanes;
+
+/// A vector a leaf: what is still to be put together, lane by lane, to a number a leaf.
+struct alignas(64) Rows {
+  float row[leaf_count][width];
+};
+
+struct VectorRows {
+  Rows x, y, z;
+};
+
+HWY_INLINE void store(Float d, const Vector& v, std::size_t leaf, VectorRows& to) {
+  hn::Store(v.x, d, to.x.row[leaf]);
+  hn::Store(v.y, d, to.y.row[leaf]);
+  hn::Store(v.z, d, to.z.row[leaf]);
+}
+
+/// Puts together the lanes of each of `Count` rows: two rows become one in each round, so that the
+/// results come to stand side by side, and the work is a quarter of that of row by row.
+template <std::size_t Count, class Operation>
+HWY_INLINE V put_together(Float d, const float (*rows)[width],
+                          [[maybe_unused]] const Operation& operation) {
+#if HWY_TARGET != HWY_SCALAR  // which has one lane, and no halves of it
+  if constexpr (Count > 1) {
+    const V front = put_together<Count / 2>(d, rows, operation);
+    const V back = put_together<Count / 2>(d, rows + Count / 2, operation);
+    return operation(hn::ConcatEven(d, back, front), hn::ConcatOdd(d, back, front));
+  }
+#endif
+  return hn::Load(d, *rows);
+}
+
+constexpr auto sum = [](V a, V b) HWY_ATTR { return hn::Add(a, b); };
+constexpr auto least_of = [](V a, V b) HWY_ATTR { return hn::Min(a, b); };
+constexpr auto most_of = [](V a, V b) HWY_ATTR { return hn::Max(a, b); };
+
+/// A number a leaf, of the leaves from `first` on.
+template <class Operation>
+HWY_INLINE V of_leaves(Float d, const Rows& rows, std::size_t first, const Operation& operation) {
+  return put_together<width>(d, rows.row + first, operation);
+}
+
+template <class Operation>
+HWY_INLINE Vector of_leaves(Float d, const VectorRows& rows, std::size_t first,
+                            const Operation& operation) {
+  return {of_leaves(d, rows.x, first, operation), of_leaves(d, rows.y, first, operation),
+          of_leaves(d, rows.z, first, operation)};
+}
+
+/// The sum of the triangles' normals, as long as twice their areas and on the side that their
+/// winding tells; and the leaf's box.
+HWY_INLINE void look_at(Float d, const LeafBlock& leaf, std::size_t row, VectorRows& normals,
+                        VectorRows& lows, VectorRows& highs) {
+  const hn::RebindToUnsigned<Float> unsigned_lanes;
+  const V zero = hn::Zero(d);
+  Vector normal{zero, zero, zero};
+  Vector low = load(d, leaf.corner[0], 0);
+  Vector high = low;
+  for (std::size_t lane = 0; lane < LeafBlock::lanes; lane += width) {
+    const Vector a = load(d, leaf.corner[0], lane);
+    const Vector b = load(d, leaf.corner[1], lane);
+    const Vector c = load(d, leaf.corner[2], lane);
+    // The first corner has the least x, the last one the greatest.
+    low = {hn::Min(low.x, a.x), hn::Min(low.y, hn::Min(a.y, hn::Min(b.y, c.y))),
+           hn::Min(low.z, hn::Min(a.z, hn::Min(b.z, c.z)))};
+    high = {hn::Max(high.x, c.x), hn::Max(high.y, hn::Max(a.y, hn::Max(b.y, c.y))),
+            hn::Max(high.z, hn::Max(a.z, hn::Max(b.z, c.z)))};
+    const Vector ab = b - a;
+    const Vector ac = c - a;
+    // The bit `odd` is where a float has its sign.
+    const V sign = hn::BitCast(d, hn::And(hn::Load(unsigned_lanes, leaf.source + lane),
+                                          hn::Set(unsigned_lanes, LeafBlock::odd)));
+    const auto turned = [&](V p, V q, V r, V s) HWY_ATTR {
+      return hn::Xor(hn::Sub(hn::Mul(p, q), hn::Mul(r, s)), sign);
+    };
+    normal = normal + Vector{turned(ab.y, ac.z, ab.z, ac.y), turned(ab.z, ac.x, ab.x, ac.z),
+                             turned(ab.x, ac.y, ab.y, ac.x)};
+  }
+  store(d, normal, row, normals);
+  store(d, low, row, lows);
+  store(d, high, row, highs);
+}
+
+/// Sets of each leaf the axis of its cylinder and, as the middle, that of its box.
+HWY_INLINE void set_axes(Float d, const VectorRows& normals, const NodeBlock& boxes,
+                         CylinderBlock& cylinders) {
+  const V zero = hn::Zero(d);
+  const V one = hn::Set(d, 1.0f);
+  for (std::size_t first = 0; first < leaf_count; first += width) {
+    const Vector normal = of_leaves(d, normals, first, sum);
+    const V length2 = dot(normal, normal);
+    const M is_sheet =
+        hn::And(hn::Gt(length2, hn::Set(d, 1e-30f)), hn::Lt(length2, hn::Set(d, 1e30f)));
+    const V length = hn::Sqrt(hn::IfThenElse(is_sheet, length2, one));
+    store(d, select(is_sheet, hn::Div(one, length) * normal, {zero, zero, one}), first,
+          cylinders.axis);
+    const Vector low = load(d, boxes.low, first);
+    const Vector high = load(d, boxes.high, first);
+    store(d, low + hn::Set(d, 0.5f) * (high - low), first, cylinders.middle);
+  }
+}
+
+/// Measures a leaf from the middle of its box, along the cylinder's axis and across.
+HWY_INLINE void measure(Float d, const LeafBlock& leaf, std::size_t row,
+                        const CylinderBlock& cylinders, Rows& bottoms, Rows& tops, Rows& radii2) {
+  const auto vector_of = [&](const float(&from)[3][leaf_count]) HWY_ATTR -> Vector {
+    return {hn::Set(d, from[0][row]), hn::Set(d, from[1][row]), hn::Set(d, from[2][row])};
+  };
+  const Vector middle = vector_of(cylinders.middle);
+  const Vector axis = vector_of(cylinders.axis);
+  V bottom = dot(axis, load(d, leaf.corner[0], 0) - middle);
+  V top = bottom;
+  V radius2 = hn::Zero(d);
+  for (const auto& corner : leaf.corner) {
+    for (std::size_t lane = 0; lane < LeafBlock::lanes; lane += width) {
+      const Vector way = load(d, corner, lane) - middle;
+      const V height = dot(axis, way);
+      const Vector across = way - height * axis;
+      bottom = hn::Min(bottom, height);
+      top = hn::Max(top, height);
+      radius2 = hn::Max(radius2, dot(across, across));
+    }
+  }
+  hn::Store(bottom, d, bottoms.row[row]);
+  hn::Store(top, d, tops.row[row]);
+  hn::Store(radius2, d, radii2.row[row]);
+}
+
+/// Moves the middles along the axes to the middle of the sheets.
+HWY_INLINE void set_sizes(Float d, const Rows& bottoms, const Rows& tops, const Rows& radii2,
+                          const NodeBlock& boxes, CylinderBlock& cylinders) {
+  for (std::size_t first = 0; first < leaf_count; first += width) {
+    const V bottom = of_leaves(d, bottoms, first, least_of);
+    const V top = of_leaves(d, tops, first, most_of);
+    const V radius2 = of_leaves(d, radii2, first, most_of);
+    const Vector axis = load(d, cylinders.axis, first);
+    const Vector box_middle = load(d, cylinders.middle, first);
+    const Vector middle = box_middle + hn::Mul(hn::Set(d, 0.5f), hn::Add(bottom, top)) * axis;
+    // Rounding takes it elsewhere, and off the line that was measured from.
+    const Vector moved = middle - box_middle;
+    const V along = dot(axis, moved);
+    const Vector off = moved - along * axis;
+
+    // No corner is farther from the middle of the box than that.
+    const V far = size(load(d, boxes.high, first) - load(d, boxes.low, first));
+    // What rounding may add to a length, as a share of the sum of the coordinates' sizes: 32 u,
+    // where a dozen operations and the length of the axis make less than 24 u.
+    constexpr float outward = 2e-6f;
+    const V rounding = hn::Mul(hn::Set(d, outward), hn::Add(far, size(moved)));
+    // Squares of what is very small or very large are lost.
+    const M is_known =
+        hn::And(hn::Gt(radius2, hn::Set(d, 1e-30f)), hn::Lt(radius2, hn::Set(d, 1e30f)));
+    const V radius = hn::IfThenElse(is_known, hn::Sqrt(radius2), far);
+    const V half_height = hn::Max(hn::Sub(top, along), hn::Sub(along, bottom));
+    store(d, middle, first, cylinders.middle);
+    hn::Store(hn::Add(half_height, rounding), d, cylinders.half_height + first);
+    hn::Store(hn::Add(hn::Add(radius, hn::Sqrt(dot(off, off))), rounding), d,
+              cylinders.radius + first);
+  }
+}
+
+void EncloseLeaves(const SixteenLeaves& leaves, NodeBlock& boxes, CylinderBlock& cylinders) {
+  const Float d;
+  VectorRows normals, lows, highs;
+  for (std::size_t leaf = 0; leaf < leaf_count; ++leaf) {
+    look_at(d, *leaves[leaf], leaf, normals, lows, highs);
+  }
+  for (std::size_t first = 0; first < leaf_count; first += width) {
+    store(d, of_leaves(d, lows, first, least_of), first, boxes.low);
+    store(d, of_leaves(d, highs, first, most_of), first, boxes.high);
+  }
+  set_axes(d, normals, boxes, cylinders);
+  Rows bottoms, tops, radii2;
+  for (std::size_t leaf = 0; leaf < leaf_count; ++leaf) {
+    measure(d, *leaves[leaf], leaf, cylinders, bottoms, tops, radii2);
+  }
+  set_sizes(d, bottoms, tops, radii2, boxes, cylinders);
+}
+
+// A node is enclosed in double, so that rounding does not add up from level to level.
+
+using Double = hn::CappedTag<double, NodeBlock::lanes>;
+using Half = hn::Rebind<float, Double>;
+
+struct DoubleVector {
+  hn::Vec<Double> x, y, z;
+};
+
+HWY_INLINE hn::Vec<Double> promoted(const float* from) {
+  return hn::PromoteTo(Double(), hn::Load(Half(), from));
+}
+
+HWY_INLINE DoubleVector promoted(const float (&from)[3][NodeBlock::lanes], std::size_t lane) {
+  return {promoted(from[0] + lane), promoted(from[1] + lane), promoted(from[2] + lane)};
+}
+
+HWY_INLINE hn::Vec<Double> inner(const DoubleVector& a, const DoubleVector& b) {
+  return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
+}
+
+HWY_INLINE hn::Vec<Double> norm(const DoubleVector& a) { return hn::Sqrt(inner(a, a)); }
+
+/// `a` less that much of `b`.
+HWY_INLINE DoubleVector less(const DoubleVector& a, hn::Vec<Double> much, const DoubleVector& b) {
+  return {hn::Sub(a.x, hn::Mul(much, b.x)), hn::Sub(a.y, hn::Mul(much, b.y)),
+          hn::Sub(a.z, hn::Mul(much, b.z))};
+}
+
+HWY_INLINE DoubleVector all_double(const double (&v)[3]) {
+  const Double d;
+  return {hn::Set(d, v[0]), hn::Set(d, v[1]), hn::Set(d, v[2])};
+}
+
+/// Of some cylinders, beside each other: how far they reach along an axis and away from it.
+struct Reaches {
+  hn::Vec<Double> at, along, away, far;
+};
+
+HWY_INLINE Reaches reaches(const CylinderBlock& cylinders, std::size_t first,
+                           const double (&from)[3], const DoubleVector& axis) {
+  const auto one = hn::Set(Double(), 1.0);
+  const DoubleVector way = less(promoted(cylinders.middle, first), one, all_double(from));
+  const DoubleVector its_axis = promoted(cylinders.axis, first);
+  const auto half_height = promoted(cylinders.half_height + first);
+  const auto radius = promoted(cylinders.radius + first);
+  const auto at = inner(axis, way);
+  const auto cosine = inner(its_axis, axis);
+  const auto sine = norm(less(its_axis, cosine, axis));
+  const auto size = hn::Add(hn::Add(hn::Abs(way.x), hn::Abs(way.y)), hn::Abs(way.z));
+  return {at, hn::Add(hn::Mul(half_height, hn::Abs(cosine)), hn::Mul(radius, sine)),
+          hn::Add(norm(less(way, at, axis)), hn::Add(radius, hn::Mul(half_height, sine))),
+          hn::Add(size, hn::Add(radius, half_height))};
+}
+
+void EncloseNode(const NodeBlock& node, const CylinderBlock& of_node, NodeBlock& boxes,
+                 CylinderBlock& above, std::size_t lane) {
+  const Double d;
+  const auto infinite = hn::Set(d, std::numeric_limits<double>::infinity());
+  std::size_t used = 1;
+  while (used < NodeBlock::lanes && node.is_used(used)) ++used;
+  const auto for_each_lane = [&](auto&& visit) HWY_ATTR {
+    for (std::size_t first = 0; first < used; first += hn::Lanes(d)) {
+      visit(first, hn::FirstN(d, used - first));
+    }
+  };
+
+  double axis_sum[3];
+  double box_middle[3];
+  for (std::size_t i = 0; i < 3; ++i) {
+    auto low = infinite, middle_low = infinite;
+    auto high = hn::Neg(infinite), middle_high = high;
+    auto along = hn::Zero(d);
+    for_each_lane([&](std::size_t first, hn::Mask<Double> is_used) HWY_ATTR {
+      const auto middle = promoted(of_node.middle[i] + first);
+      const auto below = hn::Neg(infinite);
+      low = hn::Min(low, promoted(node.low[i] + first));  // of unused lanes: infinite
+      high = hn::Max(high, hn::IfThenElse(is_used, promoted(node.high[i] + first), below));
+      middle_low = hn::Min(middle_low, hn::IfThenElse(is_used, middle, infinite));
+      middle_high = hn::Max(middle_high, hn::IfThenElse(is_used, middle, below));
+      along = hn::Add(along, hn::IfThenElseZero(is_used, promoted(of_node.axis[i] + first)));
+    });
+    boxes.low[i][lane] = static_cast<float>(hn::GetLane(hn::MinOfLanes(d, low)));
+    boxes.high[i][lane] = static_cast<float>(hn::GetLane(hn::MaxOfLanes(d, high)));
+    box_middle[i] = 0.5 * (hn::GetLane(hn::MinOfLanes(d, middle_low)) +
+                           hn::GetLane(hn::MaxOfLanes(d, middle_high)));
+    axis_sum[i] = hn::GetLane(hn::SumOfLanes(d, along));
+  }
+
+  const double length =
+      std::sqrt(axis_sum[0] * axis_sum[0] + axis_sum[1] * axis_sum[1] + axis_sum[2] * axis_sum[2]);
+  double axis_values[3];
+  for (std::size_t i = 0; i < 3; ++i) {
+    above.axis[i][lane] =
+        length > 0.1 ? static_cast<float>(axis_sum[i] / length) : of_node.axis[i][0];
+    axis_values[i] = above.axis[i][lane];
+  }
+  const DoubleVector axis = all_double(axis_values);
+
+  auto bottom = infinite;
+  auto top = hn::Neg(infinite);
+  for_each_lane([&](std::size_t first, hn::Mask<Double> is_used) HWY_ATTR {
+    const Reaches its = reaches(of_node, first, box_middle, axis);
+    bottom = hn::Min(bottom, hn::IfThenElse(is_used, hn::Sub(its.at, its.along), infinite));
+    top = hn::Max(top, hn::IfThenElse(is_used, hn::Add(its.at, its.along), hn::Neg(infinite)));
+  });
+  const double shift =
+      0.5 * (hn::GetLane(hn::MinOfLanes(d, bottom)) + hn::GetLane(hn::MaxOfLanes(d, top)));
+  double middle[3];
+  for (std::size_t i = 0; i < 3; ++i) {
+    above.middle[i][lane] = static_cast<float>(box_middle[i] + shift * axis_values[i]);
+    middle[i] = above.middle[i][lane];
+  }
+
+  auto half_height = hn::Zero(d);
+  auto radius = hn::Zero(d);
+  auto far = hn::Zero(d);
+  for_each_lane([&](std::size_t first, hn::Mask<Double> is_used) HWY_ATTR {
+    const Reaches its = reaches(of_node, first, middle, axis);
+    const auto height = hn::Add(hn::Abs(its.at), its.along);
+    half_height = hn::Max(half_height, hn::IfThenElseZero(is_used, height));
+    radius = hn::Max(radius, hn::IfThenElseZero(is_used, its.away));
+    far = hn::Max(far, hn::IfThenElseZero(is_used, its.far));
+  });
+  constexpr double outward = 2e-6;  // the axes' lengths, and the rounding to float
+  const double rounding = outward * hn::GetLane(hn::MaxOfLanes(d, far));
+  above.half_height[lane] =
+      static_cast<float>(hn::GetLane(hn::MaxOfLanes(d, half_height)) + rounding);
+  above.radius[lane] = static_cast<float>(hn::GetLane(hn::MaxOfLanes(d, radius)) + rounding);
+}
+
+}  // namespace keepout::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+
+namespace keepout {
+
+HWY_EXPORT(EncloseLeaves);
+HWY_EXPORT(EncloseNode);
+
+void enclose(const SixteenLeaves& leaves, NodeBlock& boxes, CylinderBlock& cylinders) noexcept {
+  HWY_DYNAMIC_DISPATCH(EncloseLeaves)(leaves, boxes, cylinders);
+}
+
+void enclose(const NodeBlock& node, const CylinderBlock& of_node, NodeBlock& boxes,
+             CylinderBlock& cylinders, std::size_t lane) noexcept {
+  HWY_DYNAMIC_DISPATCH(EncloseNode)(node, of_node, boxes, cylinders, lane);
+}
+
+void close_lane(CylinderBlock& cylinders, std::size_t lane) noexcept {
+  for (std::size_t i = 0; i < 3; ++i) {
+    cylinders.middle[i][lane] = 0.0f;
+    cylinders.axis[i][lane] = 0.0f;
+  }
+  cylinders.half_height[lane] = 0.0f;
+  cylinders.radius[lane] = 0.0f;
+}
+
+}  // namespace keepout
+
+#endif

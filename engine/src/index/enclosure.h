@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "keepout/index/cylinder_block.h"
+#include "keepout/index/leaf_block.h"
+#include "keepout/index/wide_bvh.h"
+
+namespace keepout {
+
+using SixteenLeaves = std::array<const LeafBlock*, NodeBlock::lanes>;
+
+/// Puts boxes and cylinders around the leaves' floats, in all lanes. The axis of a cylinder is the
+/// mean normal of the triangles.
+void enclose(const SixteenLeaves& leaves, NodeBlock& boxes, CylinderBlock& cylinders) noexcept;
+
+/// Puts a box and a cylinder around a node's boxes and cylinders in a lane of the blocks above it.
+void enclose(const NodeBlock& node, const CylinderBlock& of_node, NodeBlock& boxes,
+             CylinderBlock& cylinders, std::size_t lane) noexcept;
+
+/// Leaves no numbers in an unused lane that arithmetic would stumble over.
+void close_lane(CylinderBlock& cylinders, std::size_t lane) noexcept;
+
+}  // namespace keepout
