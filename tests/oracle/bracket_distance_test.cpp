@@ -7,17 +7,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <memory>
 
 #include "keepout/oracle/exact_distance.h"
 #include "keepout/oracle/safety_oracle.h"
 #include "oracle/hostile_pairs.h"
+#include "oracle/infinity.h"
 
 namespace keepout::oracle {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 double size_of(const HostilePair& pair) {
   double size = (pair.segment.to - pair.segment.from).lpNorm<1>();

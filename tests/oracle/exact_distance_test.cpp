@@ -7,14 +7,12 @@
 
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "oracle/hostile_pairs.h"
+#include "oracle/infinity.h"
 
 namespace keepout::oracle {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// The distance is exactly this: also one unit in the last place to either side is told apart.
 void expect_exactly(const Segment& segment, const Triangle& triangle, double distance) {

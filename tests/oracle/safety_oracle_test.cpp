@@ -13,11 +13,10 @@
 #include "keepout/fixtures/poses.h"
 #include "keepout/fixtures/shapes.h"
 #include "keepout/oracle/exact_distance.h"
+#include "oracle/infinity.h"
 
 namespace keepout::oracle {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 struct Judgement {
   bool crosses = false;

@@ -18,16 +18,11 @@
 #include "keepout/index/wide_bvh.h"
 #include "keepout/solvers/active_set.h"
 #include "keepout/step/step.h"
+#include "names_of_shapes.h"
 #include "only_target.h"
 
 namespace keepout {
 namespace {
-
-std::vector<std::string> names_of_shapes() {
-  std::vector<std::string> names;
-  for (const Shape& shape : shapes()) names.emplace_back(shape.name);
-  return names;
-}
 
 /// All that a step comes to.
 struct Outcome {
@@ -53,9 +48,9 @@ struct Outcome {
 };
 
 /// Both forms of the rule on one mesh, each with an index of its own.
-class BothForms {
+class CertifiedForms {
  public:
-  explicit BothForms(Surface surface)
+  explicit CertifiedForms(Surface surface)
       : mesh(std::make_shared<const Mesh>(std::move(surface))),
         tree(mesh),
         other_tree(mesh),
@@ -94,7 +89,7 @@ constexpr Scale scales[] = {{0.005, 0.003}, {0.001, 0.02}, {0.03, 0.002}, {0.02,
 /// What a hand does that presses and drags, from tips that keep the margin, are too close, touch,
 /// or are inside; the tip goes where the plain rule lets it.
 template <class Ask>
-void drag(BothForms& forms, const Scale& scale, std::size_t strokes, Ask&& ask) {
+void drag(CertifiedForms& forms, const Scale& scale, std::size_t strokes, Ask&& ask) {
   const double size = forms.mesh->bounds().size().norm();
   const double margin = scale.margin * size;
   const double motion = scale.motion * size;
@@ -122,7 +117,7 @@ void drag(BothForms& forms, const Scale& scale, std::size_t strokes, Ask&& ask) 
 class CertifiedSearch : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(CertifiedSearch, StepsAsThePlainRuleDoes) {
-  BothForms forms(make_shape(GetParam()));
+  CertifiedForms forms(make_shape(GetParam()));
   ASSERT_NE(forms.searching, nullptr);
   ASSERT_TRUE(forms.searching->searches());
   std::size_t limited = 0, recovering = 0;
@@ -145,7 +140,7 @@ INSTANTIATE_TEST_SUITE_P(Shapes, CertifiedSearch, ::testing::ValuesIn(names_of_s
                          [](const auto& shape) { return shape.param; });
 
 TEST(CertifiedSearchOptions, StepsAsThePlainRuleDoesWithOptionsJointsAndRows) {
-  BothForms forms(make_shape("cortex"));
+  CertifiedForms forms(make_shape("cortex"));
   const TipJacobian::Matrix jacobian = [] {
     TipJacobian::Matrix j(3, 5);
     j << 1, 0, 0, 0.5, -0.3, 0, 1, 0, 0.2, 0.7, 0, 0, 1, -0.4, 0.1;
@@ -180,7 +175,7 @@ TEST(CertifiedSearchOptions, StepsAsThePlainRuleDoesWithOptionsJointsAndRows) {
 }
 
 TEST(CertifiedSearchMemory, DoesNotChangeAnswers) {
-  BothForms forms(make_shape("star_bumps"));
+  CertifiedForms forms(make_shape("star_bumps"));
   std::size_t limited = 0;
   drag(forms, scales[0], 10, [&](const Motion& motion, double margin, double length) {
     const StepOptions options{.radius = 1.1 * length, .margin = margin};
@@ -196,7 +191,7 @@ TEST(CertifiedSearchMemory, DoesNotChangeAnswers) {
 }
 
 TEST(CertifiedSearchTargets, AnswerAlike) {
-  BothForms forms(make_shape("gear"));
+  CertifiedForms forms(make_shape("gear"));
   for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
     const OnlyTarget only(target);
     std::size_t limited = 0;
@@ -244,7 +239,7 @@ TEST(CertifiedSearchIndex, StopsOnceItsTreeIsRefit) {
 TEST(CertifiedSearchPrecision, StepsAsThePlainRuleDoesFarFromTheOrigin) {
   Surface surface = make_shape("cortex");
   for (Vec3& v : surface.vertices) v = 1.1 * v + Vec3(1234.5678, -987.654321, 3456.789);
-  BothForms forms(std::move(surface));
+  CertifiedForms forms(std::move(surface));
   ASSERT_GT(forms.tree.coordinate_error(), 0.0);
   std::size_t limited = 0;
   drag(forms, scales[0], 10, [&](const Motion& motion, double margin, double length) {

@@ -14,16 +14,11 @@
 #include "keepout/index/wide_bvh.h"
 #include "keepout/solvers/active_set.h"
 #include "keepout/step/step.h"
+#include "names_of_shapes.h"
 #include "only_target.h"
 
 namespace keepout {
 namespace {
-
-std::vector<std::string> names_of_shapes() {
-  std::vector<std::string> names;
-  for (const Shape& shape : shapes()) names.emplace_back(shape.name);
-  return names;
-}
 
 bool operator==(const HalfSpace& one, const HalfSpace& other) {
   return one.normal == other.normal && one.offset == other.offset && one.source == other.source;
@@ -35,9 +30,9 @@ bool are_equal(std::span<const HalfSpace> one, std::span<const HalfSpace> other)
 }
 
 /// Both forms of the rule on one mesh.
-class BothForms {
+class PaperForms {
  public:
-  explicit BothForms(const Surface& surface, const Capacity& capacity = {})
+  explicit PaperForms(const Surface& surface, const Capacity& capacity = {})
       : mesh(std::make_shared<const Mesh>(surface)),
         tree(mesh),
         other_tree(mesh),
@@ -96,7 +91,7 @@ std::vector<Vec3> tips_around(const Mesh& mesh, std::size_t count) {
   return tips;
 }
 
-void expect_same_planes(BothForms& forms, std::size_t tips, std::size_t& planes) {
+void expect_same_planes(PaperForms& forms, std::size_t tips, std::size_t& planes) {
   const double size = forms.mesh->bounds().size().norm();
   for (const Vec3& tip : tips_around(*forms.mesh, tips)) {
     for (const double radius : {1e-3 * size, 0.02 * size, 0.1 * size}) {
@@ -115,7 +110,7 @@ void expect_same_planes(BothForms& forms, std::size_t tips, std::size_t& planes)
 class PaperSearchOn : public testing::TestWithParam<std::string> {};
 
 TEST_P(PaperSearchOn, ThePlanesAreThoseOfThePlainRule) {
-  BothForms forms(make_shape(GetParam()));
+  PaperForms forms(make_shape(GetParam()));
   std::size_t planes = 0;
   expect_same_planes(forms, 12, planes);
   EXPECT_GT(planes, GetParam() == "needles" ? 0u : 100u);
@@ -135,7 +130,7 @@ std::vector<Motion> motions_around(const Mesh& mesh, double radius) {
 }
 
 TEST_P(PaperSearchOn, TheStepsAreThoseOfThePlainRule) {
-  BothForms forms(make_shape(GetParam()));
+  PaperForms forms(make_shape(GetParam()));
   const double size = forms.mesh->bounds().size().norm();
   for (const double radius : {2e-3 * size, 0.05 * size}) {
     for (const double margin : {0.0, 2e-3 * size}) {
@@ -169,7 +164,7 @@ Surface as_floats(Surface surface) {
 }
 
 TEST(PaperSearch, ThePlanesAreThoseOfThePlainRuleWhereTheFloatsAreExact) {
-  BothForms forms(as_floats(make_gear(1.0)));
+  PaperForms forms(as_floats(make_gear(1.0)));
   ASSERT_EQ(forms.tree.coordinate_error(), 0.0);
   std::size_t planes = 0;
   expect_same_planes(forms, 12, planes);
@@ -180,14 +175,14 @@ TEST(PaperSearch, ThePlanesAreThoseOfThePlainRuleFarFromTheOriginAndAtEveryScale
   for (const double scale : {1e-25, 1e-9, 1e9, 1e25}) {
     Surface surface = make_cortex(6.0, 1);
     for (Vec3& v : surface.vertices) v *= scale;
-    BothForms forms(surface);
+    PaperForms forms(surface);
     std::size_t planes = 0;
     expect_same_planes(forms, 4, planes);
     EXPECT_GT(planes, 1000u) << scale;
   }
   Surface surface = make_cortex(6.0, 1);
   for (Vec3& v : surface.vertices) v += Vec3(1e6, -2e6, 3e5);
-  BothForms forms(surface);
+  PaperForms forms(surface);
   std::size_t planes = 0;
   expect_same_planes(forms, 4, planes);
   EXPECT_GT(planes, 1000u);
@@ -199,7 +194,7 @@ TEST(PaperSearch, EveryProcessorGivesTheSamePlanes) {
     const OnlyTarget only(target);
     for (const char* name : {"cortex", "gear", "needles", "triangle_soup", "non_manifold"}) {
       SCOPED_TRACE(name);
-      BothForms forms(make_shape(name));
+      PaperForms forms(make_shape(name));
       std::size_t planes = 0;
       expect_same_planes(forms, 4, planes);
       EXPECT_GT(planes, 0u);
@@ -208,7 +203,7 @@ TEST(PaperSearch, EveryProcessorGivesTheSamePlanes) {
 }
 
 TEST(PaperSearch, MostPlanesOfAShortMotionAreIdleAndLeftOut) {
-  BothForms forms(make_shape("cortex"));
+  PaperForms forms(make_shape("cortex"));
   Random random(1);
   std::size_t got = 0, expected = 0;
   for (const Vec3& tip : surface_points(*forms.mesh, 50, 0.2, random)) {
@@ -221,7 +216,7 @@ TEST(PaperSearch, MostPlanesOfAShortMotionAreIdleAndLeftOut) {
 }
 
 TEST(PaperSearch, WithJointsOrRowsAllPlanesArePosed) {
-  BothForms forms(make_shape("cortex"));
+  PaperForms forms(make_shape("cortex"));
   Random random(1);
   Eigen::Matrix<double, 3, Eigen::Dynamic> jacobian(3, 6);
   for (int i = 0; i < jacobian.size(); ++i) jacobian.data()[i] = random.normal();
@@ -249,7 +244,7 @@ TEST(PaperSearch, WhatIsBeyondTheCapacityEndsAsWithThePlainRule) {
   const std::vector<Vec3> tips = surface_points(Mesh(surface), 30, 0.2, random);
   std::size_t over = 0;
   for (const Capacity& capacity : {Capacity{.triangles = 40}, Capacity{.planes = 10}}) {
-    BothForms forms(surface, capacity);
+    PaperForms forms(surface, capacity);
     for (const Vec3& tip : tips) {
       for (const double radius : {1.0, 3.0, 9.0}) {
         const Motion motion{.tip = tip, .desired = Vec3(0.05, 0, 0)};

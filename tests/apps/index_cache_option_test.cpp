@@ -1,0 +1,108 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+// --index-cache as a user meets it: the answers are the same, whatever is in the folder.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "apps/command_process.h"
+#include "keepout/fixtures/shapes.h"
+#include "keepout/mesh/binary_stl.h"
+
+namespace keepout::test {
+namespace {
+
+class IndexCacheOption : public testing::Test {
+ protected:
+  void SetUp() override {
+    write_binary_stl(folder.file("gear.stl"), make_gear(1.0));
+    folder.write("poses.txt", "0 0 60 1 2 -3\n30 4 21 1 -2 -3\n49 1 0 -4 1 0\n0 45 12 0 2 -3\n");
+    plain_answer = answer("");
+  }
+
+  /// What the command answers, but for how long it took.
+  std::string answer(const std::string& options, const std::string& index = "wide_bvh") const {
+    const ProcessOutcome outcome = folder.run(
+        "replay gear.stl --poses poses.txt --out steps.csv --index " + index + ' ' + options);
+    EXPECT_EQ(outcome.status, 0) << outcome.output;
+    std::ifstream steps(folder.file("steps.csv"));
+    std::string all;
+    for (std::string line; std::getline(steps, line);) {
+      std::istringstream cells(line);
+      int column = 0;
+      for (std::string cell; column < untimed_columns && std::getline(cells, cell, ','); ++column) {
+        all += cell + ',';
+      }
+      all += '\n';
+    }
+    return all;
+  }
+
+  /// The files in the cache, whatever their names.
+  std::vector<std::filesystem::path> cached() const {
+    const std::filesystem::directory_iterator files(folder.file("cache"));
+    return {begin(files), end(files)};
+  }
+
+  static std::string bytes_of(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+
+  static constexpr int untimed_columns = 13;  // the rest are t_..._ns
+
+  CommandFolder folder;
+  std::string plain_answer;
+};
+
+TEST_F(IndexCacheOption, TheFirstRunKeepsWhatTheSecondAnswersFrom) {
+  ASSERT_NE(plain_answer.find("limited"), std::string::npos) << plain_answer;
+  EXPECT_EQ(answer("--index-cache cache"), plain_answer);
+  const auto files = cached();
+  ASSERT_EQ(files.size(), 1u);
+  EXPECT_EQ(files[0].extension(), ".wide_bvh");
+
+  // A file that is read and found good is left as it is.
+  const auto long_ago = std::filesystem::last_write_time(files[0]) - std::chrono::hours(1);
+  std::filesystem::last_write_time(files[0], long_ago);
+  EXPECT_EQ(answer("--index-cache cache"), plain_answer);
+  EXPECT_EQ(cached(), files);
+  EXPECT_EQ(std::filesystem::last_write_time(files[0]), long_ago);
+}
+
+TEST_F(IndexCacheOption, ADamagedFileIsReplaced) {
+  answer("--index-cache cache");
+  ASSERT_EQ(cached().size(), 1u);
+  const std::filesystem::path file = cached()[0];
+  const std::string good = bytes_of(file);
+  ASSERT_GT(good.size(), 1000u);
+  std::string changed = good;
+  changed[good.size() / 2] = static_cast<char>(changed[good.size() / 2] ^ 4);
+  for (const std::string& bad : {changed, good.substr(0, good.size() / 2), std::string()}) {
+    std::ofstream(file, std::ios::binary) << bad;
+    EXPECT_EQ(answer("--index-cache cache"), plain_answer) << bad.size();
+    EXPECT_EQ(bytes_of(file), good) << bad.size();
+    EXPECT_EQ(cached().size(), 1u);
+  }
+}
+
+TEST_F(IndexCacheOption, AFolderThatCannotBeUsedDoesNotStopTheRun) {
+  folder.write("occupied", "a file where the folder should be");
+  EXPECT_EQ(answer("--index-cache occupied"), plain_answer);
+  EXPECT_EQ(answer("--index-cache occupied/below"), plain_answer);
+  EXPECT_EQ(bytes_of(folder.file("occupied")), "a file where the folder should be");
+}
+
+TEST_F(IndexCacheOption, OtherIndicesKeepNothing) {
+  answer("--index-cache cache", "pd_tree");
+  EXPECT_FALSE(std::filesystem::exists(folder.file("cache")));
+}
+
+}  // namespace
+}  // namespace keepout::test

@@ -1,0 +1,11 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <limits>
+
+namespace keepout::oracle {
+
+inline constexpr double infinity = std::numeric_limits<double>::infinity();
+
+}  // namespace keepout::oracle
