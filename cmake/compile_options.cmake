@@ -35,8 +35,6 @@ function(keepout_compile_options target)
     # such: x - double(float(x)) is 0 then, and what was rounded outward is not. A test stands guard
     # (tests/engine/geometry/float_rounding_test.cpp).
     target_compile_options(${target} PRIVATE -fno-tree-slp-vectorize)
-    # Or -fPIC keeps it from inlining what another library might replace.
-    target_compile_options(${target} PRIVATE -fno-semantic-interposition)
   endif()
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
     target_compile_options(${target} PRIVATE -Wno-restrict)  # GCC bug 105651: std::string +
