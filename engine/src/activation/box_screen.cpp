@@ -49,16 +49,7 @@ HWY_INLINE V clear_along(Float d, const Cylinders& c, const Vector& n, const Flo
   const V support = hn::Add(dot(n, c.middle), half_extent(c, n));
   // Nothing that is in the cylinder is farther from the tip.
   const V far = hn::Add(size(c.middle), hn::Add(c.half_height, c.radius));
-  const V rounding = hn::Add(hn::Mul(far, hn::Set(d, reach.relative)), hn::Set(d, reach.slack));
-  return hn::Sub(hn::Sub(hn::Neg(support), hn::Set(d, reach.margin)), rounding);
-}
-
-/// What the direction of `way` proves; nothing, if it is none.
-HWY_INLINE Proof proof_along(Float d, const Cylinders& c, const Vector& way,
-                             const FloatReach& reach) {
-  const V length2 = dot(way, way);
-  const Vector n = hn::Div(hn::Set(d, 1.0f), hn::Sqrt(length2)) * way;
-  return proof_if(d, has_direction(d, length2), n, clear_along(d, c, n, reach));
+  return clear_of(d, support, far, reach);
 }
 
 /// Boxes, relative to the tip.

@@ -63,16 +63,7 @@ HWY_INLINE Vector nearest(Float d, const Corners& t, const Vector& p) {
 HWY_INLINE V clear_along(Float d, const Corners& t, const Vector& n, const FloatReach& reach) {
   const V support = hn::Max(dot(n, t.a), hn::Max(dot(n, t.b), dot(n, t.c)));
   const V far = hn::Max(size(t.a), hn::Max(size(t.b), size(t.c)));
-  const V rounding = hn::Add(hn::Mul(far, hn::Set(d, reach.relative)), hn::Set(d, reach.slack));
-  return hn::Sub(hn::Sub(hn::Neg(support), hn::Set(d, reach.margin)), rounding);
-}
-
-/// What the direction of `way` proves; nothing, if it is none.
-HWY_INLINE Proof proof_along(Float d, const Corners& t, const Vector& way,
-                             const FloatReach& reach) {
-  const V length2 = dot(way, way);
-  const Vector n = hn::Div(hn::Set(d, 1.0f), hn::Sqrt(length2)) * way;
-  return proof_if(d, has_direction(d, length2), n, clear_along(d, t, n, reach));
+  return clear_of(d, support, far, reach);
 }
 
 HWY_INLINE Proof proof_at(Float d, const Corners& t, const Vector& p, const FloatReach& reach) {

@@ -47,6 +47,23 @@ HWY_INLINE M has_direction(Float d, V length2) {
   return hn::And(hn::Gt(length2, hn::Set(d, 1e-30f)), hn::Lt(length2, hn::Set(d, 1e30f)));
 }
 
+/// What a unit vector proves of things that reach so far along it, and of which nothing is farther
+/// from the tip than `far`.
+HWY_INLINE V clear_of(Float d, V support, V far, const FloatReach& reach) {
+  const V rounding = hn::Add(hn::Mul(far, hn::Set(d, reach.relative)), hn::Set(d, reach.slack));
+  return hn::Sub(hn::Sub(hn::Neg(support), hn::Set(d, reach.margin)), rounding);
+}
+
+/// What the direction of `way` proves; nothing, if it is none. `clear_along(d, shapes, n, reach)`
+/// tells what a unit vector proves of the shapes.
+template <class Shapes>
+HWY_INLINE Proof proof_along(Float d, const Shapes& shapes, const Vector& way,
+                             const FloatReach& reach) {
+  const V length2 = dot(way, way);
+  const Vector n = hn::Div(hn::Set(d, 1.0f), hn::Sqrt(length2)) * way;
+  return proof_if(d, has_direction(d, length2), n, clear_along(d, shapes, n, reach));
+}
+
 HWY_INLINE Proof select(M mask, const Proof& yes, const Proof& no) {
   return {select(mask, yes.n, no.n), hn::IfThenElse(mask, yes.clear, no.clear)};
 }

@@ -65,7 +65,8 @@ class TrialWalk {
   static constexpr std::uint32_t suspects = std::uint32_t{1} << 30;
 
   /// How often suspects are looked at more closely before they are visited, where motions are long:
-  /// many that come late turn out not to be met, or not first.
+  /// many that come late turn out not to be met, or not first. Where motions are short, once is
+  /// enough, and only if they are many.
   static constexpr int closer_looks = 3;
 
   /// Suspects of a leaf that are still to be visited.
@@ -175,7 +176,8 @@ void TrialWalk::look_at(std::uint32_t number, double latest, Visit&& visit) noex
   }
   mask = later;
   if (mask == 0) return;
-  found.looks_left = is_long_ ? closer_looks : 0;
+  const bool are_many = std::popcount(mask) > 2;
+  found.looks_left = is_long_ ? closer_looks : are_many ? 1 : 0;
   const auto put_off = static_cast<std::uint32_t>(put_off_size_++);
   if (!wait(found.suspects.time[found.earliest()], put_off | suspects)) {
     resume(put_off, latest, visit);
