@@ -215,7 +215,7 @@ TEST(CertifiedSearchIndex, IsForWideBvhOnly) {
 
 /// The wall comes to where it was free: what was known of free space must not let the tip through.
 TEST(CertifiedSearchIndex, StopsOnceItsTreeIsRefit) {
-  BothForms forms(make_cube(5.0));
+  CertifiedForms forms(make_cube(5.0));
   const Motion motion{.tip = Vec3(0.0, 0.0, 58.0), .desired = Vec3(0.0, 0.0, -4.0)};
   const StepOptions options{.radius = 5.0, .margin = 1.0};
   ASSERT_EQ(forms.step(motion, options).status, Status::free);

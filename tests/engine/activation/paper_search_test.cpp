@@ -271,7 +271,7 @@ TEST(PaperSearch, OnlyForATreeItKnows) {
 }
 
 TEST(PaperSearch, StopsOnceItsTreeIsRefit) {
-  BothForms forms(make_cube(5.0));
+  PaperForms forms(make_cube(5.0));
   const Motion motion{.tip = Vec3(0.0, 0.0, 58.0), .desired = Vec3(0.0, 0.0, -4.0)};
   ASSERT_EQ(forms.step(motion, {.radius = 5.0}).status, Status::free);
   Surface raised{{forms.mesh->vertices().begin(), forms.mesh->vertices().end()},
