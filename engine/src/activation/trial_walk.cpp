@@ -10,6 +10,13 @@ constexpr std::size_t most_leaves = 256;
 constexpr std::size_t most_waiting = 4096;
 constexpr std::size_t most_put_off = 1024;
 
+/// A bit for each; all leaves but one are full.
+std::uint32_t lanes_used(const LeafBlock& leaf) noexcept {
+  std::size_t count = LeafBlock::lanes;
+  while (!leaf.is_used(count - 1)) --count;
+  return (std::uint32_t{1} << count) - 1;
+}
+
 }  // namespace
 
 TrialWalk::TrialWalk(const WideBvh& tree)
@@ -33,10 +40,7 @@ TrialWalk::Leaf& TrialWalk::leaf(std::uint32_t number) noexcept {
   its.number = number;
   its.cycle = cycle_;
   its.note.fill(no_note);
-  its.used = 0;
-  for (std::size_t lane = 0; lane < LeafBlock::lanes && block.is_used(lane); ++lane) {
-    its.used |= std::uint32_t{1} << lane;
-  }
+  its.used = lanes_used(block);
   look(block, tip_, reach_, its.screen);
   return its;
 }
@@ -56,8 +60,7 @@ void TrialWalk::enter(const NodeBlock& node, const CylinderBlock& cylinders,
   BoxEntries entries;
   enter_boxes(node, tip_, motion_.data(), reach_, entries);
   // To look closer is cheaper than to look into more boxes than this.
-  const int few = is_long_ ? 1 : 4;
-  if (std::popcount(entries.reached) > few) {
+  if (are_more(entries.reached, is_long_ ? 1 : 4)) {
     enter_cylinders(cylinders, tip_, motion_.data(), reach_, entries);
   }
   for (std::uint32_t reached = entries.reached; reached != 0; reached &= reached - 1) {

@@ -15,6 +15,13 @@
 
 namespace keepout {
 
+/// Whether more than so many bits are set. Not every processor that this is compiled for has
+/// an instruction that counts them.
+inline bool are_more(std::uint32_t bits, int count) noexcept {
+  for (; count > 0; --count) bits &= bits - 1;
+  return bits != 0;
+}
+
 /// The way through a tree along one trial motion after another, from a tip that stays where it is:
 /// to the triangles that a trial is not sure to keep clear of, the earliest first. Nothing but the
 /// time it takes depends on what it remembers.
@@ -176,8 +183,7 @@ void TrialWalk::look_at(std::uint32_t number, double latest, Visit&& visit) noex
   }
   mask = later;
   if (mask == 0) return;
-  const bool are_many = std::popcount(mask) > 2;
-  found.looks_left = is_long_ ? closer_looks : are_many ? 1 : 0;
+  found.looks_left = is_long_ ? closer_looks : are_more(mask, 2) ? 1 : 0;
   const auto put_off = static_cast<std::uint32_t>(put_off_size_++);
   if (!wait(found.suspects.time[found.earliest()], put_off | suspects)) {
     resume(put_off, latest, visit);
