@@ -53,7 +53,7 @@ class WideBvh final : public SpatialIndex {
   explicit WideBvh(std::shared_ptr<const Mesh> mesh, unsigned threads = 0);
 
   /// Makes it the index of a mesh whose triangles are the same, of as many vertices that are
-  /// elsewhere: about nine times as fast as a new one, and nearly as good while neighbours stay
+  /// elsewhere: in about a tenth of the time of a new one, and nearly as good while neighbours stay
   /// neighbours. Not to be called while others ask. Rules that search the index know the old mesh:
   /// they stop every step from then on, and are to be made anew on the moved mesh. Throws Error,
   /// and stays as it is, if the corners of a triangle differ.
