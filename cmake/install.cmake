@@ -23,7 +23,9 @@ include(GNUInstallDirs)
 
 option(KEEPOUT_INSTALL "Install keepout with the project that embeds it" ${PROJECT_IS_TOP_LEVEL})
 set(KEEPOUT_PACKAGES_DEFAULT OFF)
-if(PROJECT_IS_TOP_LEVEL AND CMAKE_BUILD_TYPE STREQUAL "Release" AND KEEPOUT_BUILD_APPS AND NOT KEEPOUT_SANITIZE)
+find_program(KEEPOUT_SHLIBDEPS dpkg-shlibdeps)
+mark_as_advanced(KEEPOUT_SHLIBDEPS)
+if(PROJECT_IS_TOP_LEVEL AND CMAKE_BUILD_TYPE STREQUAL "Release" AND KEEPOUT_SHLIBDEPS AND NOT KEEPOUT_SANITIZE)
   set(KEEPOUT_PACKAGES_DEFAULT ON)
 endif()
 option(KEEPOUT_PACKAGES "Link what the Debian packages hold; target `packages` makes them"

@@ -9,9 +9,7 @@
 namespace keepout {
 namespace {
 
-TEST(Version, OfTheHeadersIsThatOfTheLibrary) {
-  EXPECT_EQ(library_version(), KEEPOUT_VERSION);
-}
+TEST(Version, OfTheHeadersIsThatOfTheLibrary) { EXPECT_EQ(library_version(), KEEPOUT_VERSION); }
 
 TEST(Version, IsMadeOfItsThreeNumbers) {
   EXPECT_EQ(std::to_string(KEEPOUT_VERSION_MAJOR) + "." + std::to_string(KEEPOUT_VERSION_MINOR) +

@@ -7,30 +7,33 @@
 . "$(dirname "$0")/common.sh"
 work=$1 root=$1/root
 
-rm -rf "$root"
-mkdir -p "$root"/var/lib/dpkg/{info,updates,triggers}
-# Without a trace of an earlier installation of ours.
+rm -rf "$root" "$work/commands"
+mkdir -p "$root"/var/lib/dpkg/{info,updates,triggers} "$work/commands"
 awk -v RS= -v ORS='\n\n' '!/^Package: (lib)?keepout/' /var/lib/dpkg/status > "$root/var/lib/dpkg/status"
+# The packages' scripts call it, and it knows of no root but this system's.
+printf '#!/bin/sh\necho called >> "%s"\n' "$work/commands/calls" > "$work/commands/ldconfig"
+chmod +x "$work/commands/ldconfig"
+
 in_root() {
-  dpkg --root="$root" --log="$work/dpkg.log" --force-not-root --force-script-chrootless "$@" 2>&1 |
-    grep -v 'files list file for package' || true
+  if ! PATH=$work/commands:/usr/sbin:/sbin:$PATH dpkg --root="$root" --log="$work/dpkg.log" \
+    --force-not-root --force-script-chrootless "$@" > "$work/dpkg.txt" 2>&1; then
+    # No lists of files came with the copy.
+    grep -v 'files list file for package' "$work/dpkg.txt" >&2
+    fail "dpkg $1 failed"
+  fi
 }
+state() { dpkg-query --admindir="$root/var/lib/dpkg" -W -f '${db:Status-Status}' "$1"; }
 
-for package in "$work"/packages/*.deb; do
-  while IFS= read -r need; do
-    # "a (>= 1)": as dpkg would ask of this system.
-    name=${need%% *}
-    [[ $name == libkeepout* ]] || dpkg-query -W -f '${db:Status-Status}\n' "$name" | grep -qx installed ||
-      fail "$(basename "$package") needs $name, which is not installed"
-  done < <(dpkg -f "$package" Depends | tr ',' '\n' | sed 's/^ *//')
-done
-
-in_root --force-depends -i "$work"/packages/*.deb
-for name in keepout libkeepout0 libkeepout-dev; do
-  dpkg-query --admindir="$root/var/lib/dpkg" -W -f '${db:Status-Status}' "$name" | grep -qx installed ||
-    fail "$name is not installed"
+packages=("$work"/packages/*.deb)
+in_root -i "${packages[@]}"
+names=()
+for package in "${packages[@]}"; do
+  names+=("$(dpkg -f "$package" Package)")
+  [ "$(state "${names[-1]}")" = installed ] || fail "${names[-1]} is not installed"
 done
 [ -x "$root/usr/bin/keepout" ] || fail "there is no command"
-in_root -r keepout libkeepout-dev libkeepout0
+[ -s "$work/commands/calls" ] || fail "the linker was not told of the new libraries"
+
+in_root -r "${names[@]}"
 left=$(find "$root/usr" -mindepth 1 2>/dev/null || true)
 [ -z "$left" ] || fail "left behind: $left"
