@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <Eigen/Core>
 #include <memory>
 #include <vector>
 
@@ -10,16 +11,22 @@
 
 namespace keepout {
 
-/// A step problem that owns its numbers.
+/// A step problem that owns its numbers. Its memory is the standard library's, not aligned as Eigen
+/// does for the machine compiled for: it is made here and may be let go by a program for another.
 struct RecordedProblem {
+  static constexpr int dynamic = Eigen::Dynamic;
+  using Matrix = Eigen::Matrix<double, dynamic, dynamic, Eigen::DontAlign>;
+  using RowMatrix = Eigen::Matrix<double, dynamic, dynamic, Eigen::RowMajor | Eigen::DontAlign>;
+  using Vector = Eigen::Matrix<double, dynamic, 1, Eigen::DontAlign>;
+
   explicit RecordedProblem(const StepProblem& problem);
 
   StepProblem view() const noexcept;
 
-  StepProblem::Matrix jacobian;
-  StepProblem::Vector desired;
-  StepProblem::RowMatrix rows;
-  StepProblem::Vector bounds;
+  Matrix jacobian;
+  Vector desired;
+  RowMatrix rows;
+  Vector bounds;
   double damping = 0;
 };
 
