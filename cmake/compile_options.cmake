@@ -24,19 +24,13 @@ function(keepout_precompile_headers target)
   endif()
 endfunction()
 
-# keepout_share_headers(TARGET): compiles several sources of the target as one, which read once the
-# headers that all of them include, and instantiate once what all of them use. For tests and for the
-# command; each source of the library compiles alone. More of them under sanitizers, whose builds
-# begin from nothing.
+# keepout_share_headers(TARGET COUNT): compiles so many sources of the target as one, which read once
+# the headers that all of them include, and instantiate once what all of them use. For tests and for
+# the command; each source of the library compiles alone.
 option(KEEPOUT_SHARE_HEADERS "Compile several sources of tests and command as one" OFF)
-function(keepout_share_headers target)
-  set(count 4)
-  if(KEEPOUT_SANITIZE)
-    set(count 8)
-  endif()
+function(keepout_share_headers target count)
   if(KEEPOUT_SHARE_HEADERS)
-    set_target_properties(${target} PROPERTIES UNITY_BUILD ON
-                          UNITY_BUILD_BATCH_SIZE ${count})
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${count})
   endif()
 endfunction()
 
