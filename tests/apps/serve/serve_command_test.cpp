@@ -31,6 +31,13 @@
 namespace keepout {
 namespace {
 
+// The sanitizers keep what was freed for a while.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool memory_is_plain = false;
+#else
+constexpr bool memory_is_plain = true;
+#endif
+
 constexpr int patience = 60'000;  // until a server on a busy machine has done something [ms]
 
 /// One end of a conversation.
@@ -233,7 +240,9 @@ TEST_F(ServeCommand, AClientWhoNeverReadsHoldsUpHimselfAlone) {
   flood();
   const long before = resident();
   flood();
-  EXPECT_LT(resident(), before + 512);
+  if (memory_is_plain) {
+    EXPECT_LT(resident(), before + 512);
+  }
   EXPECT_EQ(end(SIGTERM), 0);
 }
 
@@ -366,6 +375,7 @@ TEST_F(ServeCommand, ItsAnswersAreThoseOfReplayBitForBit) {
 }
 
 TEST_F(ServeCommand, ItsMemoryDoesNotGrowWithWhatItIsAsked) {
+  if (!memory_is_plain) GTEST_SKIP() << "not under sanitizers";
   Talk talk = start();
   const std::vector<std::string> lines{
       R"({"id":2,"do":"step","tip":[0,0,50.4],"desired":[0.1,0,-0.5]})",

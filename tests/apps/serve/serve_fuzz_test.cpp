@@ -76,8 +76,8 @@ class Garbler {
     static constexpr std::array<std::string_view, 8> ids{
         "1", "\"a\"", "null", "-5", "1.5", "\"\\u0000\\\"\"", "[1]", "18446744073709551615"};
     std::string text = "{\"id\":" + std::string(any(ids));
-    const std::size_t kind = below(10);
-    if (kind < 6) {
+    const std::size_t kind = below(12);
+    if (kind < 4) {
       text += ",\"do\":\"step\",\"tip\":" + tip() + ",\"desired\":" + increment();
       const std::size_t joints = 1 + below(7);
       if (kind == 1) text += ",\"jacobian\":" + matrix(3, joints);
@@ -85,9 +85,9 @@ class Garbler {
         const std::size_t rows = below(4);
         text += ",\"rows\":" + matrix(rows, kind == 1 ? joints : 3) + ",\"bounds\":" + array(rows);
       }
-    } else if (kind == 6) {
+    } else if (kind == 4) {
       text += ",\"do\":\"steps\",\"motions\":" + (size_ = 6.0, matrix(below(5), 6));
-    } else if (kind == 7) {
+    } else if (kind < 7) {
       text += ",\"do\":\"polytope\",\"tip\":" + tip() + ",\"radius\":" + (size_ = 2.0, number());
     } else {
       static constexpr std::array<std::string_view, 4> others{"info", "ping", "ping", "fly"};
