@@ -70,3 +70,6 @@ foreach(kind include/keepout src)
   forbid(engine/${kind}/index "${include}keepout/(activation|step)/" "an index knows no rule")
   forbid(engine/${kind}/activation "${include}keepout/step/" "a rule knows no step")
 endforeach()
+
+# What serves other programs needs none of the command's studies.
+forbid(apps/keepout/serve "${include}\"(bench|compare|report|verify)/" "serve knows no study")

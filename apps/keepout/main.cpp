@@ -22,6 +22,7 @@
 #include "number_checks.h"
 #include "part_lists.h"
 #include "replay.h"
+#include "serve/serve_command.h"
 #include "simulate.h"
 #include "verify/verify.h"
 
@@ -204,6 +205,47 @@ void add_verify(CLI::App& app, VerifyOptions& options) {
       "The exit status is 0 only if no step broke what docs/certified-step.md promises.");
 }
 
+void add_serve(CLI::App& app, ServeOptions& options) {
+  CLI::App& command = *app.add_subcommand(
+      "serve",
+      "Answer requests of other programs, one JSON object a line, on stdin and stdout or on a "
+      "Unix socket");
+  ServiceSettings& service = options.service;
+  add_mesh(command, service.mesh);
+  CLI::Option* socket =
+      command.add_option("--socket", options.socket, "Listen at this path instead of stdin")
+          ->type_name("PATH");
+  command.add_option("--max-clients", options.most_clients, "Clients of the socket at a time")
+      ->type_name("NUMBER")
+      ->transform(whole_number(1, 256))
+      ->needs(socket)
+      ->capture_default_str();
+  command.add_option("--max-line", service.longest_line, "Longest request")
+      ->type_name("BYTES")
+      ->transform(whole_number(256, std::uint64_t{1} << 24))
+      ->capture_default_str();
+  command.add_option("--joints", service.limits.joints, "Columns of a Jacobian, at most")
+      ->type_name("NUMBER")
+      ->transform(whole_number(1, 64))
+      ->capture_default_str();
+  command.add_option("--rows", service.limits.rows, "Rows of a request's own, at most")
+      ->type_name("NUMBER")
+      ->transform(whole_number(0, 1024))
+      ->capture_default_str();
+  command
+      .add_option("--damping", service.constraint.damping,
+                  "Weight of the increment's square beside the task: above 0 for a Jacobian with "
+                  "more than three joints, or near a singularity")
+      ->type_name("NUMBER")
+      ->check(length(Zero::allowed))
+      ->capture_default_str();
+  command.add_option("--activation", service.constraint.activation, "Rule that chooses the planes")
+      ->check(CLI::IsMember(names(activation_rules())))
+      ->capture_default_str();
+  add_constraint_options(command, service.constraint);
+  command.footer(std::string(protocol_help));
+}
+
 /// What was printed has to arrive: a full disk shall not look like success.
 void flush_stdout() {
   std::cout.flush();
@@ -220,11 +262,13 @@ int run(int argc, char** argv) {
   InspectOptions inspect_options;
   ReplayOptions replay_options;
   SimulateOptions simulate_options;
+  ServeOptions serve_options;
   VerifyOptions verify_options;
   simulate_options.rules = names(activation_rules());
   add_inspect(app, inspect_options);
   add_replay(app, replay_options);
   add_simulate(app, simulate_options);
+  add_serve(app, serve_options);
   add_verify(app, verify_options);
   BenchCommand bench_command(app);
   CompareCommand compare_command(app);
@@ -240,6 +284,7 @@ int run(int argc, char** argv) {
 
   if (app.got_subcommand("inspect")) inspect(inspect_options, std::cout);
   if (app.got_subcommand("replay")) replay(replay_options, std::cout);
+  if (app.got_subcommand("serve")) return serve(serve_options, std::cerr);
   if (app.got_subcommand("simulate")) simulate(simulate_options, std::cout);
   if (app.got_subcommand("bench")) bench_command.run({argv + 1, argv + argc}, std::cout);
   if (app.got_subcommand("compare")) return compare_command.run(std::cout);

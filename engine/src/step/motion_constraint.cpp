@@ -46,8 +46,8 @@ MotionConstraint::MotionConstraint(std::shared_ptr<const Mesh> mesh,
       work_(fitted(capacity, mesh_.get(), options_)),
       polytope_(mesh_, work_.candidates.capacity()),
       polytope_planes_(std::max(work_.planes.capacity(), planes_to_hold_still)),
-      sides_(inside == Inside::led_out && is_watertight(*mesh_) ? SideWatch::of_watertight()
-                                                                : SideWatch()) {
+      watch_(inside == Inside::led_out && is_watertight(*mesh_)),
+      sides_(new_watch()) {
   if (!index_ || !activation_ || !solver_) {
     throw Error("a motion constraint needs a mesh, an index, an activation rule and a solver");
   }
@@ -83,6 +83,10 @@ Step MotionConstraint::step(const Motion& motion) noexcept {
 Step MotionConstraint::step(const Motion& motion, StageTimes& times) noexcept {
   return keepout::step(sides_, *mesh_, *index_, *activation_, *solver_, motion, options_, work_,
                        StageClock(times));
+}
+
+Step MotionConstraint::step(const Motion& motion, SideWatch& sides) noexcept {
+  return keepout::step(sides, *mesh_, *index_, *activation_, *solver_, motion, options_, work_);
 }
 
 Polytope MotionConstraint::free_polytope(const Vec3& tip, double radius) noexcept {

@@ -53,6 +53,13 @@ class MotionConstraint {
   /// The same, and what each stage took.
   Step step(const Motion& motion, StageTimes& times) noexcept;
 
+  /// The same for one of several tips that are stepped in turn, with one memory: each is watched by
+  /// itself, and gets the answers that a MotionConstraint of its own would give.
+  Step step(const Motion& motion, SideWatch& sides) noexcept;
+
+  /// For a tip that no step has led to.
+  SideWatch new_watch() const noexcept { return watch_ ? SideWatch::of_watertight() : SideWatch(); }
+
   /// The free space around a tip as one convex polytope, whatever the direction of the motion: for
   /// a caller's own QP, MPC or sampler. Every motion that stays within all planes and within
   /// `radius` keeps the margin; guarantee and failures: FreePolytope. The planes stay valid until
@@ -71,6 +78,7 @@ class MotionConstraint {
   Workspace work_;
   FreePolytope polytope_;
   HalfSpaceBuffer polytope_planes_;
+  bool watch_;  // whether sides are asked about
   SideWatch sides_;
 };
 

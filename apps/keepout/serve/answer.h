@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+#include "keepout/step/motion_constraint.h"
+
+namespace keepout::app {
+
+// Answers, appended to what is to be sent: one line each.
+
+/// Begins the answer to a request: {"id":7 and no more. `id`: JSON.
+void begin_answer(std::string& out, std::string_view id);
+
+void end_answer(std::string& out);
+
+/// What became of a step, as members of an object. `joints`: of its Jacobian; 0 without one.
+void append_step(std::string& out, const Step& step, std::size_t joints);
+
+void append_polytope(std::string& out, const Polytope& polytope);
+
+/// The whole answer to a line that was not carried out.
+void append_error(std::string& out, std::string_view id, std::string_view kind,
+                  std::string_view message);
+
+/// Every status that a step or a polytope may end with, as members of an object.
+std::string status_members();
+
+}  // namespace keepout::app

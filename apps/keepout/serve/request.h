@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "serve/number_table.h"
+
+namespace keepout::app {
+
+/// What a line may ask for.
+enum class Verb : std::uint8_t { step, steps, polytope, info, statuses, ping };
+
+/// The largest request that there is room for.
+struct RequestLimits {
+  std::size_t joints = 7;      // columns of a Jacobian
+  std::size_t rows = 64;       // of the caller's own
+  std::size_t motions = 1024;  // of one batch
+};
+
+/// One request as it was read.
+struct Request {
+  explicit Request(const RequestLimits& limits);
+
+  std::string id;  // as JSON, to be echoed; null if there is none, or none that can be read
+  Verb verb = Verb::ping;
+  NumberTable tip;
+  NumberTable desired;
+  NumberTable jacobian;  // (3, n)
+  NumberTable rows;      // A (m, n)
+  NumberTable bounds;    // b (m)
+  NumberTable radius;
+  NumberTable motions;  // (count, 6): tip and desired increment
+
+  std::array<NumberTable*, 7> tables() noexcept {
+    return {&tip, &desired, &jacobian, &rows, &bounds, &radius, &motions};
+  }
+};
+
+/// Why a line was not carried out.
+enum class Refusal : std::uint8_t {
+  none,
+  line_too_long,
+  not_json,
+  not_a_request,  // JSON, but with another key, type, size or value than a request has
+};
+
+/// The name as it stands in the enumeration, for answers.
+std::string_view name(Refusal refusal) noexcept;
+
+/// Reads requests into memory that is made once.
+class RequestReader {
+ public:
+  explicit RequestReader(const RequestLimits& limits);
+
+  /// Reads a line. Whatever the outcome, request().id is what is to be echoed; the rest of the
+  /// request holds only after Refusal::none.
+  Refusal read(std::string_view line);
+
+  const Request& request() const noexcept { return request_; }
+
+  /// What is wrong with the line and what to do, unless Refusal::none.
+  const std::string& message() const noexcept { return message_; }
+
+ private:
+  Request request_;
+  std::string message_;
+};
+
+}  // namespace keepout::app

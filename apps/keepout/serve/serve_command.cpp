@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "serve/serve_command.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <ostream>
+
+#include "keepout/adapters/load_mesh.h"
+#include "keepout/error.h"
+#include "number_text.h"
+#include "serve/server.h"
+#include "serve/stop_signal.h"
+#include "serve/unix_socket.h"
+
+namespace keepout::app {
+namespace {
+
+/// Otherwise the next file that is opened would be taken for it.
+void require_stdio() {
+  for (const int file : {STDIN_FILENO, STDOUT_FILENO}) {
+    if (::fcntl(file, F_GETFD) < 0) {
+      throw Error(
+          "stdin or stdout is closed: 'keepout serve' reads requests from the one and answers on "
+          "the other; connect both, or give --socket");
+    }
+  }
+}
+
+}  // namespace
+
+int serve(const ServeOptions& options, std::ostream& log) {
+  if (!options.socket) require_stdio();
+  const LoadedMesh loaded = load_mesh(options.service.mesh);
+  for (const std::string& warning : loaded.warnings) log << "keepout: " << warning << '\n';
+  Service service(loaded.mesh, options.service);
+  const StopSignal stop;
+  log << "keepout: serving " << options.service.mesh.string() << " ("
+      << counted(loaded.mesh->triangle_count(), "triangle") << ") on ";
+  if (!options.socket) {
+    log << "stdin and stdout" << std::endl;
+    return serve_stdio(service, stop, log);
+  }
+  UnixSocket socket(*options.socket);
+  log << options.socket->string() << std::endl;
+  return serve_socket(service, stop, socket, options.most_clients);
+}
+
+const std::string_view protocol_help =
+    R"(One JSON object a line, answered in order by one line with the same id. Lengths in mm, in the
+frame of the mesh. Lines for people go to stderr.
+
+  {"id":1,"do":"step","tip":[0,0,60],"desired":[0,0,-0.5]}
+  {"id":1,"ok":true,"status":"free","motion":[0,0,-0.5],"triangles":0,"planes":0}
+
+step      tip, desired: the motion that the tip may make instead of the desired one; zero unless ok.
+          With jacobian, three rows of n numbers: 'increment' is that of the joints.
+          With rows and bounds: rows . u >= bounds holds for the increment u.
+steps     motions, an array of [px,py,pz,dx,dy,dz]: as many steps, answered as "steps".
+polytope  tip, radius: normals and offsets of the free space around it, normal . d >= offset.
+info      version, mesh, settings and limits.
+statuses  all statuses by name, each with its reason.
+ping      whether it is there.
+
+A line that cannot be carried out is answered, moves nothing and ends nothing:
+
+  {"id":2,"error":{"kind":"not_a_request","message":"'tip' must be an array of three numbers"}}
+
+kinds: line_too_long, not_json, not_a_request, too_many_clients. All of it: docs/serve.md
+)";
+
+}  // namespace keepout::app

@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <iosfwd>
+#include <optional>
+#include <string_view>
+
+#include "serve/service.h"
+
+namespace keepout::app {
+
+struct ServeOptions {
+  ServiceSettings service;
+  std::optional<std::filesystem::path> socket;  // to listen at; none: stdin and stdout
+  std::size_t most_clients = 16;                // of the socket, at a time
+};
+
+/// Reads the mesh, and answers requests until the client or a signal ends it. Returns an exit
+/// status. `log`: for people. Throws Error for settings, mesh and socket.
+int serve(const ServeOptions& options, std::ostream& log);
+
+/// The protocol on a page, for --help.
+extern const std::string_view protocol_help;
+
+}  // namespace keepout::app

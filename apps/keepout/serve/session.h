@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "serve/line_reader.h"
+#include "serve/service.h"
+
+namespace keepout::app {
+
+/// One client: what came from him in part, the side of his tip, and what he has not been sent yet.
+/// Knows no file or socket. While answers are unsent no line is taken, so a client who does not
+/// read takes up no more memory than one turn's answers.
+class Session {
+ public:
+  /// `service` must outlive it.
+  explicit Session(Service& service);
+
+  // What the client sends: see LineReader.
+  std::span<char> room() noexcept { return lines_.room(); }
+  void added(std::size_t count) noexcept { lines_.added(count), may_have_line_ = true; }
+  void ended() noexcept { lines_.ended(), may_have_line_ = has_ended_ = true; }
+
+  /// Answers lines that are there, up to some work's worth, so that other clients have their turn.
+  void take_turn();
+
+  /// Whether another turn would get somewhere, without more bytes.
+  bool has_work() const noexcept { return may_have_line_ && unsent().empty(); }
+
+  /// Whether there is use in more bytes. Precondition of room().
+  bool wants_bytes() const noexcept { return !may_have_line_ && !has_ended_ && unsent().empty(); }
+
+  std::string_view unsent() const noexcept { return std::string_view(out_).substr(sent_); }
+  void sent(std::size_t count) noexcept;
+
+  /// Nothing will come of it any more.
+  bool is_done() const noexcept { return has_ended_ && !may_have_line_ && unsent().empty(); }
+
+ private:
+  Service& service_;
+  LineReader lines_;
+  SideWatch tip_;
+  std::string out_;
+  std::size_t sent_ = 0;  // bytes of out_
+  bool may_have_line_ = false;
+  bool has_ended_ = false;
+};
+
+}  // namespace keepout::app

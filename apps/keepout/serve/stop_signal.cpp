@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "serve/stop_signal.h"
+
+#include <signal.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <cstdint>
+#include <cstring>
+#include <string>
+
+#include "keepout/error.h"
+
+namespace keepout::app {
+namespace {
+
+constexpr std::array stopping{SIGHUP, SIGINT, SIGTERM};
+
+// Signals come to the process, on whatever thread: those of an index's library among them.
+std::atomic<int> event_file{-1};
+struct sigaction earlier_pipe_action;
+std::array<struct sigaction, stopping.size()> earlier_actions;
+
+void note(int) {
+  const int error = errno;
+  const std::uint64_t one = 1;
+  // It can fail only if it is noted already.
+  [[maybe_unused]] const ssize_t written = ::write(event_file.load(), &one, sizeof one);
+  errno = error;
+}
+
+}  // namespace
+
+StopSignal::StopSignal() {
+  event_file = ::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+  if (event_file < 0) throw Error(std::string("no event file: ") + std::strerror(errno));
+  struct sigaction action = {};
+  ::sigemptyset(&action.sa_mask);
+  action.sa_handler = note;
+  for (std::size_t i = 0; i < stopping.size(); ++i) {
+    ::sigaction(stopping[i], &action, &earlier_actions[i]);
+    // What was ignored from the start, as under nohup, stays ignored.
+    if (earlier_actions[i].sa_handler == SIG_IGN) {
+      ::sigaction(stopping[i], &earlier_actions[i], nullptr);
+    }
+  }
+  action.sa_handler = SIG_IGN;
+  ::sigaction(SIGPIPE, &action, &earlier_pipe_action);
+}
+
+StopSignal::~StopSignal() {
+  for (std::size_t i = 0; i < stopping.size(); ++i) {
+    ::sigaction(stopping[i], &earlier_actions[i], nullptr);
+  }
+  ::sigaction(SIGPIPE, &earlier_pipe_action, nullptr);
+  ::close(event_file.exchange(-1));
+}
+
+int StopSignal::file() const noexcept { return event_file.load(); }
+
+}  // namespace keepout::app

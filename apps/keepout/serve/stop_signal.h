@@ -1,0 +1,21 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+namespace keepout::app {
+
+/// Takes SIGHUP, SIGINT and SIGTERM for a wish to end, which poll() can wait for; and SIGPIPE for
+/// nothing, so that a client who has gone is an error of write() alone. One at a time.
+class StopSignal {
+ public:
+  /// Throws Error when the system has no more files.
+  StopSignal();
+  ~StopSignal();
+  StopSignal(const StopSignal&) = delete;
+  StopSignal& operator=(const StopSignal&) = delete;
+
+  /// Readable from the first such signal on.
+  int file() const noexcept;
+};
+
+}  // namespace keepout::app

@@ -1,0 +1,239 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "serve/request.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "serve/json_text.h"
+
+namespace keepout::app {
+namespace {
+
+class RequestLine : public testing::Test {
+ protected:
+  /// The id, the kind of error and its message.
+  std::string outcome(std::string_view line) {
+    const Refusal refusal = reader_.read(line);
+    std::string text = reader_.request().id + " " + std::string(name(refusal));
+    return refusal == Refusal::none ? text : text + ": " + reader_.message();
+  }
+  bool is_read(std::string_view line) { return reader_.read(line) == Refusal::none; }
+  const Request& request() const { return reader_.request(); }
+
+  RequestReader reader_{{.joints = 4, .rows = 2, .motions = 3}};
+};
+
+std::vector<double> numbers(const NumberTable& table) {
+  return {table.numbers().begin(), table.numbers().end()};
+}
+
+TEST_F(RequestLine, AStepHasATipAndADesiredIncrement) {
+  ASSERT_TRUE(is_read(R"( { "desired" : [4,5.5,-6e0] , "do":"step", "tip":[1,2,3], "id":9 } )"));
+  EXPECT_EQ(request().verb, Verb::step);
+  EXPECT_EQ(request().id, "9");
+  EXPECT_EQ(numbers(request().tip), (std::vector<double>{1, 2, 3}));
+  EXPECT_EQ(numbers(request().desired), (std::vector<double>{4, 5.5, -6}));
+  EXPECT_FALSE(request().jacobian.is_given());
+  EXPECT_FALSE(request().rows.is_given());
+}
+
+TEST_F(RequestLine, NothingIsLeftOfTheRequestBefore) {
+  ASSERT_TRUE(
+      is_read(R"({"id":1,"do":"step","tip":[1,2,3],"desired":[0,0,0],"jacobian":[[1],[2],[3]]})"));
+  EXPECT_TRUE(request().jacobian.is_given());
+  ASSERT_TRUE(is_read(R"({"do":"step","tip":[1,2,3],"desired":[0,0,0]})"));
+  EXPECT_FALSE(request().jacobian.is_given());
+  EXPECT_EQ(request().jacobian.columns(), 0u);
+  EXPECT_EQ(request().id, "null");
+  EXPECT_FALSE(is_read(R"({"do":"step","desired":[0,0,0]})"));
+  EXPECT_FALSE(is_read(R"({"tip":[1,2,3],"desired":[0,0,0]})"));
+}
+
+TEST_F(RequestLine, RowsAndBoundsFitTheJacobianOrTheTip) {
+  const std::string step = R"({"do":"step","tip":[1,2,3],"desired":[0,0,0],)";
+  const std::string joints = R"("jacobian":[[1,2,3,4],[5,6,7,8],[9,10,11,12]])";
+  ASSERT_TRUE(is_read(step + joints + R"(,"rows":[[1,2,3,4],[5,6,7,8]],"bounds":[-1,-2]})"));
+  EXPECT_EQ(request().jacobian.columns(), 4u);
+  EXPECT_EQ(request().rows.rows(), 2u);
+  EXPECT_EQ(numbers(request().bounds), (std::vector<double>{-1, -2}));
+  EXPECT_TRUE(is_read(step + R"("rows":[[1,2,3]],"bounds":[0]})"));
+  EXPECT_TRUE(is_read(step + R"("rows":[],"bounds":[]})"));
+  for (const char* wrong : {R"("rows":[[1,2,3]]})",
+                            R"("bounds":[1]})",
+                            R"("rows":[[1,2,3]],"bounds":[]})",
+                            R"("rows":[[1,2,3]],"bounds":[1,2]})",
+                            R"("rows":[[1,2,3,4]],"bounds":[1]})",
+                            R"("rows":[[1,2]],"bounds":[1]})",
+                            R"("rows":[1,2,3],"bounds":[1]})",
+                            R"("rows":[[]],"bounds":[1]})",
+                            R"("rows":[[1,2,3],[1,2]],"bounds":[1,2]})",
+                            R"("rows":[[1,2,3],[1,2,3],[1,2,3]],"bounds":[1,2,3]})",
+                            R"("jacobian":[[1],[2],[3]],"rows":[[1,2,3]],"bounds":[1]})",
+                            R"("jacobian":[]})",
+                            R"("jacobian":[[1,2],[3,4]]})",
+                            R"("jacobian":[[],[],[]]})",
+                            R"("jacobian":[[1,2,3,4,5],[1,2,3,4,5],[1,2,3,4,5]]})",
+                            R"("jacobian":[[1],[2],[3],[4]]})",
+                            R"("jacobian":[[1],[2],3]})",
+                            R"("jacobian":[[1],[2],[[3]]]})",
+                            R"("jacobian":{}})",
+                            R"("jacobian":[[1],[2],[3]],"radius":1})",
+                            R"("radius":1})"}) {
+    EXPECT_FALSE(is_read(step + wrong)) << wrong;
+  }
+}
+
+TEST_F(RequestLine, AMessageNamesWhatIsWrong) {
+  const std::vector<std::pair<std::string_view, std::string_view>> table{
+      {R"({"id":1,"do":"step","tip":[1,2]})", "'tip' must be an array of three numbers"},
+      {R"({"id":1,"do":"step","tip":[1,2,3,4]})", "'tip' must be an array of three numbers"},
+      {R"({"id":1,"do":"step","tip":[1,[2],3]})", "'tip' must be"},
+      {R"({"id":1,"do":"step","tip":[1,"2",3]})", "'tip' must be"},
+      {R"({"id":1,"do":"step","tip":[1,null,3]})", "'tip' must be"},
+      {R"({"id":1,"do":"step","tip":[1,true,3]})", "'tip' must be"},
+      {R"({"id":1,"do":"step","tip":null})", "'tip' must be"},
+      {R"({"id":1,"do":"step","tip":{"x":1}})", "'tip' must be"},
+      {R"({"id":1,"do":"step","tip":1})", "'tip' must be"},
+      {R"({"id":1,"do":"polytope","tip":[1,2,3],"radius":[1]})", "'radius' must be a number"},
+      {R"({"id":1,"do":"polytope","tip":[1,2,3]})", "'radius' is missing"},
+      {R"({"id":1,"do":"step","tip":[1,2,3]})", "'desired' is missing"},
+      {R"({"id":1,"do":"steps"})", "'motions' is missing"},
+      {R"({"id":1,"do":"steps","motions":[[1,2,3,4,5]]})", "arrays of six numbers"},
+      {R"({"id":1,"do":"steps","motions":[[1,2,3,4,5,6],[1,2,3,4,5,6],[1,2,3,4,5,6],[1,2,3,4,5,6]]})",
+       "at most 3 of them"},
+      {R"({"id":1})", "'do' is missing"},
+      {R"({"id":1,"do":7})", "'do' must be one of 'step'"},
+      {R"({"id":1,"do":["step"]})", "'do' must be one of"},
+      {R"({"id":1,"do":"Step"})", "'Step'"},
+      {R"({"id":1,"do":"ping","Tip":[1]})", "no key 'Tip'"},
+      {R"({"id":1,"do":"ping","\u0007\u00e9":1})", "no key '?"},
+      {R"({"id":1,"do":"ping","tip":[1,2,3]})", "'tip' is nothing that 'ping' takes"},
+      {R"({"id":1,"do":"ping","do":"ping"})", "'do' is given twice"},
+      {R"({"id":1,"id":1,"do":"ping"})", "'id' is given twice"},
+      {R"({"id":1,"do":"step","tip":[1,2,3],"tip":[1,2,3]})", "'tip' is given twice"},
+  };
+  for (const auto& [line, message] : table) {
+    const std::string told = outcome(line);
+    EXPECT_TRUE(told.starts_with("1 not_a_request: ")) << line << '\n' << told;
+    EXPECT_NE(told.find(message), std::string::npos) << line << '\n' << told;
+  }
+}
+
+TEST_F(RequestLine, WhatIsNotJsonIsTold) {
+  for (const char* line : {"{",
+                           "}",
+                           "{}}",
+                           "x",
+                           "{\"id\":1,}",
+                           "{\"do\":ping}",
+                           "{'do':'ping'}",
+                           "{\"do\":\"ping\"} {}",
+                           "{\"tip\":[1,2,NaN]}",
+                           "{\"tip\":[1,2,Infinity]}",
+                           "{\"tip\":[1,2,-Infinity]}",
+                           "{\"tip\":[1,2,1e999]}",
+                           "{\"tip\":[1,2,0x10]}",
+                           "{\"tip\":[1,2,01]}",
+                           "{\"tip\":[1,2,+1]}",
+                           "{\"tip\":[1,2,.5]}",
+                           "{\"tip\":[1,2,5.]}",
+                           "{\"tip\":[1,,2]}",
+                           "{\"tip\":[1,2,3}",
+                           "// comment",
+                           "{\"do\":\"\xff\"}",
+                           "{\"do\":\"\xc0\x80\"}",
+                           "{\"do\":\"\xed\xa0\x80\"}",
+                           "{\"do\":\"\\ud800\"}",
+                           "{\"do\":\"a\tb\"}",
+                           "\xff\xfe{\"do\":\"ping\"}"}) {
+    const std::string told = outcome(line);
+    EXPECT_NE(told.find("not_json: the line is not JSON: "), std::string::npos) << line << told;
+    for (const char c : told) EXPECT_TRUE(c >= ' ' && c <= '~') << line;
+  }
+  EXPECT_EQ(reader_.read(std::string_view("{\"do\":\"ping\"}\0", 14)), Refusal::not_json);
+  EXPECT_EQ(reader_.read(std::string_view("{\"do\":\0\"ping\"}", 14)), Refusal::not_json);
+}
+
+TEST_F(RequestLine, OtherJsonThanAnObjectIsTold) {
+  for (const char* line : {"[]", "7", "null", "true", "\"step\"", "1.5", "-3", "[[1,2],{\"id\":3}]",
+                           "[{\"id\":3,\"do\":\"ping\"}]"}) {
+    EXPECT_TRUE(outcome(line).starts_with("null not_a_request: a request is one object")) << line;
+  }
+}
+
+TEST_F(RequestLine, DeepNestingEndsTheReading) {
+  for (const char* open : {"[", "{\"tip\":", "{\"x\":[", "{\"id\":["}) {
+    std::string line;
+    for (int i = 0; i < 100'000; ++i) line += open;
+    EXPECT_NE(reader_.read(line), Refusal::none);
+  }
+}
+
+TEST_F(RequestLine, AnIdIsEchoedAsTheSameValueOrRefused) {
+  const std::vector<std::pair<std::string, std::string>> table{
+      {"0", "0"},
+      {"-7", "-7"},
+      {"18446744073709551615", "18446744073709551615"},
+      {"-9223372036854775808", "-9223372036854775808"},
+      {"null", "null"},
+      {R"("")", R"("")"},
+      {R"("a\"\\\/\n\u0000\u00e9")", "\"a\\\"\\\\/\\u000a\\u0000\u00e9\""},
+      {'"' + std::string(128, 'x') + '"', '"' + std::string(128, 'x') + '"'}};
+  for (const auto& [id, echo] : table) {
+    EXPECT_EQ(outcome("{\"id\":" + id + ",\"do\":\"ping\"}"), echo + " none");
+    EXPECT_TRUE(
+        outcome("{\"do\":\"fly\",\"tip\":7,\"id\":" + id + "}").starts_with(echo + " not_a"));
+    EXPECT_TRUE(outcome("{\"id\":" + id + ",\"tip\":[").starts_with(echo + " not_json"));
+  }
+  for (const std::string& id : {std::string("1.5"), std::string("18446744073709551616"),
+                                std::string("true"), std::string("[1]"), std::string("{\"id\":1}"),
+                                std::string("1e2"), '"' + std::string(129, 'x') + '"'}) {
+    EXPECT_TRUE(
+        outcome("{\"id\":" + id + ",\"do\":\"ping\"}").starts_with("null not_a_request: 'id' must"))
+        << id << outcome("{\"id\":" + id + ",\"do\":\"ping\"}");
+  }
+}
+
+TEST_F(RequestLine, NumbersAreTheNearestDoubles) {
+  const std::vector<std::pair<std::string, double>> table{
+      {"0.1", 0.1},
+      {"1e-320", 1e-320},
+      {"1e-999", 0.0},
+      {"-0", -0.0},
+      {"-0.0", -0.0},
+      {"9007199254740993", 9007199254740992.0},
+      {"18446744073709551617", 18446744073709551616.0},
+      {"123456789012345678901234567890", 123456789012345678901234567890.0},
+      {"1.7976931348623157e308", 1.7976931348623157e308},
+      {"2.2250738585072011e-308", 2.2250738585072011e-308}};
+  for (const auto& [text, value] : table) {
+    ASSERT_TRUE(is_read("{\"do\":\"polytope\",\"tip\":[0,0,0],\"radius\":" + text + "}")) << text;
+    EXPECT_EQ(std::bit_cast<std::uint64_t>(request().radius.numbers()[0]),
+              std::bit_cast<std::uint64_t>(value))
+        << text;
+  }
+}
+
+TEST_F(RequestLine, NumbersWrittenReadBackBitForBit) {
+  std::uint64_t bits = 0x9E3779B97F4A7C15u;
+  for (int i = 0; i < 20'000; ++i) {
+    bits = bits * 6364136223846793005u + 1442695040888963407u;
+    const auto value = i == 0 ? -0.0 : std::bit_cast<double>(bits);
+    if (!std::isfinite(value)) continue;
+    std::string line = "{\"do\":\"polytope\",\"tip\":[0,0,0],\"radius\":";
+    append_number(line, value);
+    ASSERT_TRUE(is_read(line + "}")) << line;
+    ASSERT_EQ(std::bit_cast<std::uint64_t>(request().radius.numbers()[0]),
+              std::bit_cast<std::uint64_t>(value));
+  }
+}
+
+}  // namespace
+}  // namespace keepout::app

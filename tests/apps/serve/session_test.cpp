@@ -1,0 +1,192 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "serve/session.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <charconv>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "keepout/fixtures/poses.h"
+#include "keepout/fixtures/shapes.h"
+#include "serve/json_text.h"
+
+namespace keepout::app {
+namespace {
+
+using Json = nlohmann::json;
+
+/// With a memory and a constraint for one client or several.
+class SessionTest : public testing::Test {
+ protected:
+  static ServiceSettings settings() {
+    ServiceSettings settings;
+    settings.mesh = "bunny";
+    settings.constraint.radius = 1.0;
+    settings.longest_line = 4096;
+    return settings;
+  }
+
+  std::shared_ptr<const Mesh> mesh_ = std::make_shared<const Mesh>(make_shape("cortex"));
+  Service service_{mesh_, settings()};
+};
+
+void send(Session& session, std::string_view bytes) {
+  const std::span<char> room = session.room();
+  ASSERT_LE(bytes.size(), room.size());
+  std::copy(bytes.begin(), bytes.end(), room.begin());
+  session.added(bytes.size());
+}
+
+/// All that is answered so far.
+std::string taken(Session& session) {
+  std::string all;
+  while (session.has_work() || !session.unsent().empty()) {
+    session.take_turn();
+    all += session.unsent();
+    session.sent(session.unsent().size());
+  }
+  return all;
+}
+
+std::string ask(Session& session, std::string_view line) {
+  send(session, line);
+  send(session, "\n");
+  return taken(session);
+}
+
+std::string step_line(const Vec3& tip, const Vec3& desired) {
+  std::string line = "{\"do\":\"step\"";
+  for (const auto& [key, v] : {std::pair(",\"tip\":", tip), std::pair(",\"desired\":", desired)}) {
+    line += key;
+    for (int i = 0; i < 3; ++i) append_number(line += i == 0 ? '[' : ',', v[i]);
+    line += ']';
+  }
+  return line + '}';
+}
+
+/// As a client in another language would read it.
+Vec3 motion_in(std::string_view answer) {
+  Vec3 motion;
+  const char* at = answer.data() + answer.find("\"motion\":[") + 9;
+  for (double& x : motion) at = std::from_chars(at + 1, answer.data() + answer.size(), x).ptr;
+  return motion;
+}
+
+bool same_bits(const Vec3& a, const Vec3& b) {
+  using Bits = std::array<std::uint64_t, 3>;
+  return std::bit_cast<Bits>(std::array{a.x(), a.y(), a.z()}) ==
+         std::bit_cast<Bits>(std::array{b.x(), b.y(), b.z()});
+}
+
+TEST_F(SessionTest, ClosedLoopsOfSeveralClientsAreThoseOfTheirOwnConstraintsBitForBit) {
+  Random random(3);
+  std::vector<Vec3> tips = surface_points(*mesh_, 4, 0.6, random);
+  tips.push_back(surface_points(*mesh_, 1, -0.3, random).front());  // inside: it is led out
+  std::vector<std::unique_ptr<Session>> sessions;
+  std::vector<MotionConstraint> own;
+  for (std::size_t i = 0; i < tips.size(); ++i) {
+    sessions.push_back(std::make_unique<Session>(service_));
+    own.push_back(make_motion_constraint(mesh_, settings().constraint));
+  }
+  std::vector<Vec3> desired(tips.size(), Vec3::Zero());
+  std::size_t limited = 0;
+  std::size_t recovering = 0;
+  for (int cycle = 0; cycle < 400; ++cycle) {
+    for (std::size_t i = 0; i < tips.size(); ++i) {
+      if (cycle % 40 == 0) desired[i] = 0.4 * random.direction();
+      const Step step = own[i].step({.tip = tips[i], .desired = desired[i]});
+      const std::string answer = ask(*sessions[i], step_line(tips[i], desired[i]));
+      ASSERT_TRUE(same_bits(motion_in(answer), step.motion)) << answer;
+      ASSERT_NE(answer.find('"' + std::string(name(step.status)) + '"'), std::string::npos);
+      limited += step.status == Status::limited;
+      recovering += step.status == Status::recovering;
+      tips[i] += step.motion;
+    }
+  }
+  EXPECT_GT(limited, 100u);
+  EXPECT_GT(recovering, 0u);
+}
+
+TEST_F(SessionTest, AFailingStepIsAnAnswerWithZeroMotionAndAReason) {
+  Session session(service_);
+  const Json answer = Json::parse(ask(session, step_line({0, 0, 60}, {0, 0, -5})));
+  EXPECT_EQ(answer["ok"], false);
+  EXPECT_EQ(answer["status"], "beyond_reach");
+  EXPECT_EQ(answer["reason"], reason(Status::beyond_reach));
+  EXPECT_EQ(answer["motion"], Json({0, 0, 0}));
+  const Json joints = Json::parse(
+      ask(session,
+          R"({"do":"step","tip":[0,0,60],"desired":[0,0,-5],"jacobian":[[1,0],[0,1],[0,0]]})"));
+  EXPECT_EQ(joints["increment"], Json({0, 0}));
+}
+
+TEST_F(SessionTest, InfoAndStatusesTellWhatThereIs) {
+  Session session(service_);
+  const Json info = Json::parse(ask(session, R"({"id":"i","do":"info"})"));
+  EXPECT_EQ(info["id"], "i");
+  EXPECT_EQ(info["version"], KEEPOUT_VERSION);
+  EXPECT_EQ(info["mesh"]["triangles"], mesh_->triangle_count());
+  EXPECT_EQ(info["settings"]["radius"], 1.0);
+  EXPECT_EQ(info["limits"]["line"], 4096);
+  const Json statuses = Json::parse(ask(session, R"({"do":"statuses"})"));
+  EXPECT_EQ(statuses["statuses"].size(), 13u);
+  for (const Json& status : statuses["statuses"]) EXPECT_NE(status["status"], "unknown");
+  EXPECT_EQ(statuses["statuses"].back()["status"], "margin_too_small");
+  EXPECT_EQ(statuses["polytope_statuses"].size(), 5u);
+}
+
+TEST_F(SessionTest, AClientWhoDoesNotReadIsNotAnsweredAnyFurther) {
+  Session session(service_);
+  std::string lines;
+  while (lines.size() < 3900) lines += "{\"do\":\"statuses\"}\n";
+  send(session, lines);
+  session.take_turn();
+  const std::size_t unsent = session.unsent().size();
+  EXPECT_GT(unsent, 0u);
+  EXPECT_LT(unsent, 80'000u);
+  EXPECT_FALSE(session.has_work());
+  EXPECT_FALSE(session.wants_bytes());
+  session.sent(unsent - 1);
+  EXPECT_FALSE(session.has_work());
+  session.sent(1);
+  EXPECT_TRUE(session.has_work());
+  const std::string rest = taken(session);
+  EXPECT_TRUE(session.wants_bytes());
+  EXPECT_GT(std::count(rest.begin(), rest.end(), '\n'), 100);
+}
+
+TEST_F(SessionTest, ATurnEndsSoThatOthersHaveTheirs) {
+  Session session(service_);
+  std::string lines;
+  for (int i = 0; i < 100; ++i) lines += "{\"do\":\"ping\"}\n";
+  send(session, lines);
+  session.take_turn();
+  const std::string_view first = session.unsent();
+  EXPECT_LE(std::count(first.begin(), first.end(), '\n'), 16);
+  const std::string all = taken(session);
+  EXPECT_EQ(std::count(all.begin(), all.end(), '\n'), 100);
+}
+
+TEST_F(SessionTest, TheEndInTheMiddleOfALineIsAnswered) {
+  Session whole(service_);
+  send(whole, R"({"id":1,"do":"ping"})");
+  EXPECT_EQ(taken(whole), "");
+  whole.ended();
+  EXPECT_EQ(taken(whole), "{\"id\":1,\"ok\":true}\n");
+  EXPECT_TRUE(whole.is_done());
+
+  Session cut(service_);
+  send(cut, R"({"id":1,"do":"pi)");
+  cut.ended();
+  EXPECT_EQ(Json::parse(taken(cut))["error"]["kind"], "not_json");
+  EXPECT_TRUE(cut.is_done());
+}
+
+}  // namespace
+}  // namespace keepout::app
