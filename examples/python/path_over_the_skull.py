@@ -64,9 +64,9 @@ print(f"closest to the bone: {distances.min():.4f} mm, to keep: {guard.distance_
 print(f"hand inside, tip outside: {np.linalg.norm(hands - ran.tips[:, 1:], axis=2).max():.1f} mm apart")
 
 
-# %% A shaded picture of the surface, drawn point by point in depth order
-# matplotlib sorts triangles slowly and by their centres; so the surface is drawn here: each triangle
-# as a few points into a depth buffer, as a renderer does.
+# %% A shaded picture of the surface
+# matplotlib has no depth buffer, and would take minutes for half a million triangles. Here is one:
+# each triangle is drawn as points, half a pixel apart, of which the nearest ones stay.
 def camera(azimuth, elevation):
     """Rows: right, up and towards the viewer, for an eye that looks at the centre."""
     a, e = np.radians([azimuth, elevation])
@@ -116,7 +116,6 @@ def render(view, scale, width):
     normals *= np.where(normals[:, 2:] < 0, -1.0, 1.0)
     key = normals @ (np.array([-0.45, 0.6, 0.66]) / np.linalg.norm([-0.45, 0.6, 0.66]))
     shade = 0.22 + 0.68 * np.clip(key, 0, 1) + 0.10 * normals[:, 2]
-    # Hollows are darker: what lies deeper than its surroundings.
     image = np.where(np.isfinite(depth), depth, np.nan).reshape(width, width)
     shade = np.where(front >= 0, shade, np.nan).reshape(width, width)
     return image, shade
@@ -130,7 +129,7 @@ colours = ["#d1495b", "#00798c"]
 figure = plt.figure(figsize=(options.size / 100, 0.68 * options.size / 100), dpi=100)
 grid = figure.add_gridspec(2, 2, height_ratios=[4, 1], hspace=0.12, wspace=0.03)
 for place, (title, azimuth, elevation) in enumerate(
-    [("from above, in front", -62.0, 34.0), ("from above, behind", 128.0, 40.0)]
+    [("from the front", 128.0, 36.0), ("from behind", -62.0, 34.0)]
 ):
     axes = figure.add_subplot(grid[0, place])
     view = camera(azimuth, elevation)
@@ -139,6 +138,7 @@ for place, (title, azimuth, elevation) in enumerate(
     seen = np.isfinite(depth)
     picture[seen] = np.clip(bone * shade[seen][:, None], 0, 1)
     axes.imshow(picture, interpolation="bilinear")
+    # The lines and their cut: what is behind the bone is not drawn.
     for loop, colour in enumerate(colours):
         column, row, z = pixels(ran.tips[loop], view, scale, width)
         within = (column >= 0) & (column < width) & (row >= 0) & (row < width)
@@ -158,15 +158,14 @@ for place, (title, azimuth, elevation) in enumerate(
     axes.axis("off")
 
 axes = figure.add_subplot(grid[1, :])
+kept = guard.distance_kept
 for loop, (colour, name) in enumerate(zip(colours, ["side to side", "front to back"])):
-    axes.plot(np.maximum(distances[loop], 1e-3), color=colour, lw=1.4, label=name)
-axes.axhline(guard.distance_kept, color="0.4", lw=1, ls="--")
-axes.text(0, guard.distance_kept * 0.93, "distance to keep", color="0.4", va="top", fontsize=9)
-axes.set(xlabel="cycle", ylabel="tip to bone [mm]", xlim=(0, options.cycles), yscale="log")
+    axes.plot(distances[loop], color=colour, lw=1.3, label=name)
+axes.axhspan(0, kept, color="0.92", lw=0)
+axes.text(0.01 * options.cycles, 0.5 * kept, "distance to keep", color="0.4", va="center")
+axes.set(xlabel="cycle", ylabel="tip to bone [mm]", xlim=(0, options.cycles), ylim=(0, 3 * kept))
 axes.spines[["top", "right"]].set_visible(False)
 axes.legend(frameon=False, ncol=2, loc="upper right")
-figure.suptitle(
-    "Two hands press into the skull; their tips glide over it", fontsize=15, x=0.5, y=0.97
-)
+figure.suptitle("Two hands press into the skull; their tips glide over it", fontsize=15, y=0.95)
 figure.savefig(options.out, bbox_inches="tight", facecolor="white")
 print("picture:", options.out)
