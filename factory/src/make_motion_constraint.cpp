@@ -28,6 +28,13 @@ MotionConstraint make_motion_constraint(std::shared_ptr<const Mesh> mesh,
                                         const MotionConstraintSettings& settings) {
   if (!mesh) throw Error("a motion constraint needs a mesh: none was given");
   auto index = make_or_load_index(mesh, settings);
+  return make_motion_constraint(std::move(mesh), std::move(index), settings);
+}
+
+MotionConstraint make_motion_constraint(std::shared_ptr<const Mesh> mesh,
+                                        std::shared_ptr<const SpatialIndex> index,
+                                        const MotionConstraintSettings& settings) {
+  if (!mesh) throw Error("a motion constraint needs a mesh: none was given");
   auto activation = make_activation(settings.activation, mesh);
   auto solver = make_solver(settings.solver);
   return {std::move(mesh),

@@ -34,7 +34,7 @@ Capacity fitted(Capacity capacity, const Mesh* mesh, const StepOptions& options)
 }  // namespace
 
 MotionConstraint::MotionConstraint(std::shared_ptr<const Mesh> mesh,
-                                   std::unique_ptr<SpatialIndex> index,
+                                   std::shared_ptr<const SpatialIndex> index,
                                    std::unique_ptr<Activation> activation,
                                    std::unique_ptr<Solver> solver, const StepOptions& options,
                                    const Capacity& capacity, Inside inside)

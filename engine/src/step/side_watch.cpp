@@ -78,4 +78,6 @@ void SideWatch::after(const Motion& motion, const Step& step, const StepOptions&
   free_around_ = keeps_the_margin ? 0.5 * options.margin : 0.0;
 }
 
+void SideWatch::forget() noexcept { free_tip_ = Motion::unset; }
+
 }  // namespace keepout

@@ -47,6 +47,23 @@ TEST(SideWatch, ATipThatTheCallerMovesInsideIsFound) {
   EXPECT_EQ(constraint.step({.tip = {3, 4, 50.9}, .desired = {0, 0, -0.1}}).status, Status::free);
 }
 
+TEST(SideWatch, AfterForgettingATipIsPlacedAnewHoweverNear) {
+  // A cube in a cube: between them the side depends on which is nearer, unless a step has led there.
+  Surface nested = make_shape("cube");
+  const Surface cube = nested;
+  const auto first = static_cast<VertexId>(cube.vertices.size());
+  for (const Vec3& v : cube.vertices) nested.vertices.push_back(0.1 * v);
+  for (const Corners& c : cube.triangles) {
+    nested.triangles.push_back({c[0] + first, c[1] + first, c[2] + first});
+  }
+  auto constraint = make_motion_constraint(std::make_shared<const Mesh>(nested), {});
+  ASSERT_EQ(constraint.step({.tip = {3, 4, 26}, .desired = {0, 0, 4}}).status, Status::free);
+  const Motion on{.tip = {3, 4, 30}, .desired = {0, 0, 0.1}};
+  EXPECT_EQ(constraint.step(on).status, Status::free);
+  constraint.forget();
+  EXPECT_EQ(constraint.step(on).status, Status::inside);
+}
+
 TEST(SideWatch, TooDeepInsideNothingMovesByItself) {
   auto constraint = guard({.deepest = 2.0});
   const Step deep = constraint.step({.tip = {3, 4, 47}, .desired = {0, 0, 0.1}});

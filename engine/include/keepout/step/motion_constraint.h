@@ -39,10 +39,11 @@ struct Polytope {
 /// by the winding. From there on no certified step changes sides.
 class MotionConstraint {
  public:
-  /// Index and rule must be built on `mesh`. Throws Error when a part is missing, or an option or
+  /// Index and rule must be built on `mesh`. An index may be shared with other motion constraints,
+  /// of other threads too; rule and solver may not. Throws Error when a part is missing, or an option or
   /// capacity is out of range, and when tips are to be led out under a rule that guards a whole
   /// tool. Makes all memory here.
-  MotionConstraint(std::shared_ptr<const Mesh> mesh, std::unique_ptr<SpatialIndex> index,
+  MotionConstraint(std::shared_ptr<const Mesh> mesh, std::shared_ptr<const SpatialIndex> index,
                    std::unique_ptr<Activation> activation, std::unique_ptr<Solver> solver,
                    const StepOptions& options, const Capacity& capacity = {},
                    Inside inside = Inside::taken_as_is);
@@ -67,11 +68,15 @@ class MotionConstraint {
   /// inside it is the space inside. With a rule that guards a whole tool it is refused.
   Polytope free_polytope(const Vec3& tip, double radius) noexcept;
 
+  /// Forgets where the last step led, so that the next tip is placed anew however near it is, as at
+  /// the start: for motions that have nothing to do with each other.
+  void forget() noexcept { sides_.forget(); }
+
   const Mesh& mesh() const noexcept { return *mesh_; }
 
  private:
   std::shared_ptr<const Mesh> mesh_;
-  std::unique_ptr<SpatialIndex> index_;
+  std::shared_ptr<const SpatialIndex> index_;
   std::unique_ptr<Activation> activation_;
   std::unique_ptr<Solver> solver_;
   StepOptions options_;

@@ -35,6 +35,9 @@ class SideWatch {
   /// Takes down where a certified step from the free side has led to.
   void after(const Motion& motion, const Step& step, const StepOptions& options) noexcept;
 
+  /// Forgets it: the next tip is placed anew.
+  void forget() noexcept;
+
  private:
   bool is_on_ = false;
   Vec3 free_tip_ = Motion::unset;  // where the last step ended; at first nowhere

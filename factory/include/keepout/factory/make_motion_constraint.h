@@ -35,4 +35,10 @@ struct MotionConstraintSettings {
 MotionConstraint make_motion_constraint(std::shared_ptr<const Mesh> mesh,
                                         const MotionConstraintSettings& settings);
 
+/// The same on an index that is there already, built on this mesh: settings.index and index_cache
+/// are not looked at. Constraints of many threads may share it, as they share the mesh.
+MotionConstraint make_motion_constraint(std::shared_ptr<const Mesh> mesh,
+                                        std::shared_ptr<const SpatialIndex> index,
+                                        const MotionConstraintSettings& settings);
+
 }  // namespace keepout

@@ -1,0 +1,120 @@
+#!/usr/bin/python3
+# SPDX-FileCopyrightText: 2026 the keepout authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a step costs from Python beside the same step from C++, and what two threads gain.
+
+After ./test, or ninja -C build/release keepout_python keepout_cpp_loop:
+
+    PYTHONPATH=build/release/python python3 python/benchmark/overhead.py MESH
+
+The poses are alike for all; answers are held to those of C++, bit for bit, before anything is told.
+Times are the least of several passes, taken in turn. `--build` names another build directory.
+"""
+
+import argparse
+import subprocess
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+
+import keepout
+
+parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+parser.add_argument("mesh")
+parser.add_argument("--build", default="build/release", help="build directory")
+parser.add_argument("--poses", type=int, default=50000)
+parser.add_argument("--passes", type=int, default=5)
+options = parser.parse_args()
+
+mesh = keepout.load_mesh(options.mesh)
+watching = keepout.MotionConstraint(mesh, tool_radius=0.3, margin=0.2)
+as_is = keepout.MotionConstraint(
+    mesh, index=watching.index, tool_radius=0.3, margin=0.2, inside="taken_as_is"
+)
+random = np.random.default_rng(1)
+
+
+def poses_outside(spread):
+    """Up to `spread` off the surface, on its free side; motions of 0.2 in any direction."""
+    at = random.integers(0, len(mesh), options.poses)
+    tips = mesh.vertices[mesh.triangles[at, 0]]
+    tips = tips + mesh.normals[at] * random.uniform(0.55, spread, (options.poses, 1))
+    return tips, 0.2 * random.normal(size=tips.shape)
+
+
+def least(function):
+    """Seconds of wall clock, and of all processors together."""
+    wall, cpu = time.perf_counter(), time.process_time()
+    function()
+    return time.perf_counter() - wall, time.process_time() - cpu
+
+
+def path():
+    """A tip that wanders: each pose is where the step before led, as in a control loop."""
+    tips, _ = poses_outside(2.0)
+    starts = tips[:: max(1, options.poses // 50)][:50]
+    cycles = options.poses // len(starts)
+    aims = starts[:, None] + np.cumsum(0.2 * random.normal(size=(len(starts), cycles, 3)), axis=1)
+    ran = watching.simulate(starts, aims, max_step=0.2)
+    tips = ran.tips[:, :-1].reshape(-1, 3)
+    desired = aims.reshape(-1, 3) - tips
+    length = np.linalg.norm(desired, axis=1, keepdims=True)
+    return tips, desired * np.minimum(1.0, 0.2 / np.maximum(length, 1e-300))
+
+
+def measure(title, tips, desired, memory):
+    count = len(tips)
+    lines = np.ascontiguousarray(np.hstack([tips, desired]))
+    out, two = keepout.Steps.empty(count), keepout.Steps.empty(count)
+    guard = as_is if memory == "as_is" else watching
+    independent = memory != "remembering"
+
+    def batch():
+        if independent:
+            guard.steps(tips, desired, threads=1, out=out)
+        else:
+            guard.replay(lines, out=out)
+
+    def single():
+        step = guard.step
+        for tip, aim in zip(tips, desired):
+            step(tip, aim).motion
+
+    cpp_ns, batch_s, single_s, two_s, two_cpu = [], [], [], [], []
+    with tempfile.TemporaryDirectory() as folder:
+        files = [Path(folder) / name for name in ("poses", "answers")]
+        lines.tofile(files[0])
+        program = Path(options.build) / "python" / "keepout_cpp_loop"
+        for _ in range(options.passes):
+            ended = subprocess.run(
+                [program, options.mesh, *files, memory, "2"], check=True, capture_output=True
+            )
+            cpp_ns.append(float(ended.stdout))
+            batch_s.append(least(batch)[0])
+            single_s.append(least(single)[0])
+            if independent:
+                wall, cpu = least(lambda: guard.steps(tips, desired, threads=2, out=two))
+                two_s.append(wall)
+                two_cpu.append(cpu / wall)
+        answers = np.fromfile(files[1]).reshape(-1, 6)
+    assert np.array_equal(out.motion.view(np.int64), answers[:, :3].copy().view(np.int64))
+    assert np.array_equal(out.status, answers[:, 3])
+
+    cpp, batched, scalar = min(cpp_ns), 1e9 * min(batch_s) / count, 1e9 * min(single_s) / count
+    print(f"{title} ({count} poses)")
+    print(f"  C++ loop              {cpp:9.0f} ns a step")
+    print(f"  Python, a batch       {batched:9.0f} ns a step  {batched - cpp:+7.0f} ns")
+    print(f"  Python, step by step  {scalar:9.0f} ns a step  {scalar - cpp:+7.0f} ns")
+    if independent:
+        assert np.array_equal(out.motion, two.motion)
+        print(f"  two threads           {1e9 * min(two_s) / count:9.0f} ns a step  "
+              f"x {min(batch_s) / min(two_s):.2f}, {max(two_cpu):.2f} processors busy")  # fmt: skip
+
+
+print(f"{mesh}, {watching.index.name}; least of {options.passes} passes")
+near = poses_outside(2.0)
+measure("poses up to 2 off the surface, each placed anew", *near, "anew")
+measure("the same, sides taken as they are", *near, "as_is")
+measure("paths along it, step after step", *path(), "remembering")

@@ -1,0 +1,150 @@
+# SPDX-FileCopyrightText: 2026 the keepout authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""What pip calls (PEP 517): builds the module with CMake, and zips it into a wheel. Needs nothing
+from PyPI.
+
+The build directory is build/python, or an existing one of the same Python that already holds most
+objects:
+
+    pip install . --config-settings build-dir=build/release
+    KEEPOUT_BUILD_DIR=build/release pip install .
+"""
+
+import base64
+import hashlib
+import os
+import re
+import shutil
+import subprocess
+import sys
+import sysconfig
+import tarfile
+import tempfile
+import zipfile
+from pathlib import Path
+
+root = Path(__file__).resolve().parents[2]
+
+
+def version():
+    text = (root / "CMakeLists.txt").read_text(encoding="utf-8")
+    return re.search(r"project\(keepout VERSION ([0-9.]+)", text).group(1)
+
+
+def metadata():
+    return (
+        "Metadata-Version: 2.1\n"
+        "Name: keepout\n"
+        f"Version: {version()}\n"
+        "Summary: Keeps a robot's tool out of a triangle mesh of anatomy\n"
+        "License: BSD-3-Clause\n"
+        "Requires-Python: >=3.9\n"
+        "Requires-Dist: numpy>=1.20\n"
+    )
+
+
+def tag():
+    """Of the one Python and machine that the extension is for."""
+    python = f"cp{sys.version_info.major}{sys.version_info.minor}"
+    platform = re.sub(r"[-.]", "_", sysconfig.get_platform())
+    return f"{python}-{python}-{platform}"
+
+
+def run(*command):
+    try:
+        subprocess.run([str(word) for word in command], cwd=root, check=True)
+    except FileNotFoundError:
+        sys.exit(f"keepout: {command[0]} was not found; install what cmake/debian_packages.txt lists")
+    except subprocess.CalledProcessError as error:
+        sys.exit(
+            f"keepout: {command[0]} failed with status {error.returncode}: see above. What the build "
+            "needs is listed in cmake/debian_packages.txt: apt install what is missing of it"
+        )
+
+
+def configure(build):
+    # Ninja where there is one; CMake has a generator of its own otherwise.
+    generator = ["-G", "Ninja"] if shutil.which("ninja") else []
+    parts = ["APPS", "EXAMPLES", "TESTS", "BENCHMARKS"]
+    run(
+        "cmake", "-S", root, "-B", build, *generator,
+        "-DCMAKE_BUILD_TYPE=Release",
+        "-DBUILD_SHARED_LIBS=OFF",
+        "-DKEEPOUT_BUILD_PYTHON=ON",
+        *(f"-DKEEPOUT_BUILD_{part}=OFF" for part in parts),
+        f"-DPython3_EXECUTABLE={sys.executable}",
+    )  # fmt: skip
+
+
+def build_package(settings, staging):
+    """The package, complete, below `staging`."""
+    given = (settings or {}).get("build-dir") or os.environ.get("KEEPOUT_BUILD_DIR")
+    build = (root / given) if given else root / "build" / "python"
+    if given and not (build / "CMakeCache.txt").exists():
+        sys.exit(f"keepout: build-dir {build} holds no build; configure it first, or leave it out")
+    if not given:
+        configure(build)
+    run("cmake", "--build", build, "--target", "keepout_python")
+    run("cmake", "--install", build, "--component", "python", "--prefix", staging)
+    suffix = sysconfig.get_config_var("EXT_SUFFIX")
+    if not (staging / "keepout" / f"_core{suffix}").exists():
+        sys.exit(f"keepout: {build} was configured for another Python than {sys.executable}")
+
+
+def digest(data):
+    return base64.urlsafe_b64encode(hashlib.sha256(data).digest()).rstrip(b"=").decode()
+
+
+def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None):
+    info = Path(metadata_directory) / f"keepout-{version()}.dist-info"
+    info.mkdir()
+    (info / "METADATA").write_text(metadata(), encoding="utf-8")
+    return info.name
+
+
+def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
+    info = f"keepout-{version()}.dist-info"
+    with tempfile.TemporaryDirectory() as folder:
+        staging = Path(folder)
+        build_package(config_settings, staging)
+        contents = {
+            path.relative_to(staging).as_posix(): path.read_bytes()
+            for path in sorted(staging.rglob("*"))
+            if path.is_file()
+        }
+    contents[f"{info}/METADATA"] = metadata().encode()
+    contents[f"{info}/WHEEL"] = (
+        f"Wheel-Version: 1.0\nGenerator: keepout\nRoot-Is-Purelib: false\nTag: {tag()}\n".encode()
+    )
+    contents[f"{info}/LICENSE"] = (root / "LICENSE").read_bytes()
+    record = f"{info}/RECORD"
+    lines = [f"{name},sha256={digest(data)},{len(data)}\n" for name, data in contents.items()]
+    contents[record] = ("".join(lines) + f"{record},,\n").encode()
+
+    name = f"keepout-{version()}-{tag()}.whl"
+    with zipfile.ZipFile(Path(wheel_directory) / name, "w", zipfile.ZIP_DEFLATED) as wheel:
+        for file, data in contents.items():
+            entry = zipfile.ZipInfo(file)  # dated 1980: the same source gives the same wheel
+            entry.compress_type = zipfile.ZIP_DEFLATED
+            entry.external_attr = (0o755 if ".so" in file else 0o644) << 16
+            wheel.writestr(entry, data)
+    return name
+
+
+def build_sdist(sdist_directory, config_settings=None):
+    base = f"keepout-{version()}"
+    left_out = {"build", ".cache", "out", ".git", "__pycache__"}
+
+    def kept(entry):
+        return None if left_out & set(Path(entry.name).parts) else entry
+
+    with tempfile.TemporaryDirectory() as folder:
+        info = Path(folder) / "PKG-INFO"
+        info.write_text(metadata(), encoding="utf-8")
+        name = f"{base}.tar.gz"
+        with tarfile.open(Path(sdist_directory) / name, "w:gz") as archive:
+            for path in sorted(root.iterdir()):
+                if path.name not in left_out:
+                    archive.add(path, f"{base}/{path.name}", filter=kept)
+            archive.add(info, f"{base}/PKG-INFO")
+    return name

@@ -1,0 +1,58 @@
+# SPDX-FileCopyrightText: 2026 the keepout authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Keeps a robot's tool out of a triangle mesh of anatomy.
+
+    mesh = keepout.load_mesh("skull.stl")
+    guard = keepout.MotionConstraint(mesh, tool_radius=0.3, margin=0.2)
+    step = guard.step(tip, desired)    # the allowed motion nearest to the one desired
+    tip += step.motion                 # zero unless step.ok
+
+Lengths are in the unit of the mesh, usually mm, and everything is in its frame. Arguments are arrays
+or anything that numpy makes one of; what is wrong with one is said by keepout.Error.
+"""
+
+from ._core import (
+    Error,
+    Hits,
+    Index,
+    Inspection,
+    Mesh,
+    MotionConstraint,
+    Planes,
+    Polytope,
+    Step,
+    __version__,
+    activations,
+    indices,
+    load_mesh,
+    solvers,
+)
+from ._results import Part, Simulation, Steps
+from ._status import Status
+
+__all__ = [
+    "Error",
+    "Hits",
+    "Index",
+    "Inspection",
+    "Mesh",
+    "MotionConstraint",
+    "Part",
+    "Planes",
+    "Polytope",
+    "Simulation",
+    "Status",
+    "Step",
+    "Steps",
+    "__version__",
+    "activations",
+    "indices",
+    "load_mesh",
+    "solvers",
+]
+
+# Where things are documented is where they are to be imported from.
+for _name in __all__:
+    if _name != "__version__":
+        globals()[_name].__module__ = "keepout"
+del _name

@@ -1,0 +1,110 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "arguments.h"
+
+#include <algorithm>
+
+#include "keepout/error.h"
+
+namespace keepout::python {
+namespace {
+
+bool fits(const py::array& array, std::initializer_list<py::ssize_t> shape) {
+  if (static_cast<std::size_t>(array.ndim()) != shape.size()) return false;
+  return std::equal(
+      shape.begin(), shape.end(), array.shape(),
+      [](py::ssize_t wanted, py::ssize_t got) { return wanted == any || wanted == got; });
+}
+
+std::string type_name(py::handle object) { return Py_TYPE(object.ptr())->tp_name; }
+
+std::string dtype_text(const py::array& array) {
+  return py::str(array.dtype()).cast<std::string>();
+}
+
+/// Whether it was three floats; no number is converted.
+template <class Item>
+bool read_floats(Item item, Vec3& values) {
+  for (py::ssize_t i = 0; i < 3; ++i) {
+    PyObject* value = item(i);
+    if (!PyFloat_CheckExact(value)) return false;
+    values[i] = PyFloat_AS_DOUBLE(value);
+  }
+  return true;
+}
+
+/// A copy of three doubles from an array of them, whatever its stride.
+bool read_array(py::handle argument, Vec3& values) {
+  if (!py::isinstance<py::array_t<double>>(argument)) return false;
+  const auto array = py::reinterpret_borrow<py::array_t<double>>(argument);
+  if (array.ndim() != 1 || array.shape(0) != 3) return false;
+  for (py::ssize_t i = 0; i < 3; ++i) values[i] = array.at(i);
+  return true;
+}
+
+}  // namespace
+
+std::string shape_text(const py::array& array) {
+  std::string text = "(";
+  for (py::ssize_t i = 0; i < array.ndim(); ++i) {
+    text += (i > 0 ? ", " : "") + std::to_string(array.shape(i));
+  }
+  return text + (array.ndim() == 1 ? ",)" : ")");
+}
+
+void refuse(std::string_view name, const std::string& expected, const std::string& got) {
+  throw Error(std::string(name) + ": expected " + expected + ", got " + got);
+}
+
+py::array numbers(py::handle argument, const Expected& expected) {
+  const std::string wanted = "numbers of shape " + std::string(expected.text);
+  if (argument.is_none()) refuse(expected.name, wanted, "None");
+  py::array array;
+  try {
+    array = py::module_::import("numpy").attr("asarray")(argument);
+  } catch (py::error_already_set& error) {
+    if (!error.matches(PyExc_ValueError) && !error.matches(PyExc_TypeError)) throw;
+    refuse(expected.name, wanted, type_name(argument) + " of which numpy makes no array");
+  }
+  // What is empty has no type of its own.
+  constexpr std::string_view kinds = "fiu";
+  if (kinds.find(array.dtype().kind()) == std::string_view::npos && array.size() > 0) {
+    refuse(expected.name, wanted, "an array of dtype " + dtype_text(array));
+  }
+  if (!fits(array, expected.shape)) {
+    refuse(expected.name, wanted, "shape " + shape_text(array));
+  }
+  return array;
+}
+
+Doubles doubles(py::handle argument, const Expected& expected) {
+  const py::array array = numbers(argument, expected);
+  Doubles converted = Doubles::ensure(array);
+  if (!converted) {
+    refuse(expected.name, "numbers that fit a double", "dtype " + dtype_text(array));
+  }
+  return converted;
+}
+
+Vec3 point(py::handle argument, std::string_view name) {
+  Vec3 values;
+  PyObject* const object = argument.ptr();
+  if (read_array(argument, values)) return values;
+  if (PyTuple_CheckExact(object) && PyTuple_GET_SIZE(object) == 3 &&
+      read_floats([&](py::ssize_t i) { return PyTuple_GET_ITEM(object, i); }, values)) {
+    return values;
+  }
+  if (PyList_CheckExact(object) && PyList_GET_SIZE(object) == 3 &&
+      read_floats([&](py::ssize_t i) { return PyList_GET_ITEM(object, i); }, values)) {
+    return values;
+  }
+  const Doubles three = doubles(argument, {name, {3}, "(3,)"});
+  return row(three.data(), 0);
+}
+
+std::size_t count(py::ssize_t value, std::string_view name) {
+  if (value < 0) refuse(name, "a number not below zero", std::to_string(value));
+  return static_cast<std::size_t>(value);
+}
+
+}  // namespace keepout::python

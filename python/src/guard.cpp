@@ -1,0 +1,222 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "guard.h"
+
+#include <cmath>
+#include <utility>
+
+#include "arguments.h"
+#include "keepout/error.h"
+
+namespace keepout::python {
+namespace {
+
+/// Takes a lock that another thread of Python's may hold, which needs Python's own to go on: never
+/// waits for it while holding that.
+class InUse {
+ public:
+  explicit InUse(std::mutex& mutex) : lock_(mutex, std::try_to_lock) {
+    if (lock_.owns_lock()) return;
+    const py::gil_scoped_release release;
+    lock_.lock();
+  }
+
+ private:
+  std::unique_lock<std::mutex> lock_;
+};
+
+/// Column by column.
+using Jacobian = py::array_t<double, py::array::f_style | py::array::forcecast>;
+
+/// The increment, shortened to at most `longest`: as the keepout command does. [length]
+Vec3 clipped(const Vec3& increment, double longest) {
+  const double length = increment.norm();
+  return length > longest ? Vec3(increment * (longest / length)) : increment;
+}
+
+void require_max_step(double max_step, double radius) {
+  if (!(max_step >= 0.0) || max_step > radius) {
+    refuse("max_step", "0 to the radius of the motion sphere, " + std::to_string(radius),
+           std::to_string(max_step));
+  }
+}
+
+/// What there is to know of a step in a batch, but for its motion.
+void write(const StepColumns& columns, std::size_t i, const Step& step) {
+  columns.status[i] = static_cast<std::uint8_t>(step.status);
+  columns.triangles[i] = static_cast<std::uint32_t>(step.triangles);
+  columns.planes[i] = static_cast<std::uint32_t>(step.planes.size());
+}
+
+void write(double* points, std::size_t i, const Vec3& point) {
+  points[3 * i] = point.x();
+  points[3 * i + 1] = point.y();
+  points[3 * i + 2] = point.z();
+}
+
+/// One loop: the tip follows the hand as far as the steps lead.
+void run_loop(MotionConstraint& constraint, Vec3 tip, const double* hand, std::size_t loop,
+              std::size_t cycles, double max_step, const StepColumns& to, const Stop& stop) {
+  constraint.forget();
+  const std::size_t first_tip = loop * (cycles + 1);
+  write(to.motions, first_tip, tip);
+  for (std::size_t cycle = 0; cycle < cycles && !stop.asked(); ++cycle) {
+    const std::size_t i = loop * cycles + cycle;
+    const Step step =
+        constraint.step({.tip = tip, .desired = clipped(row(hand, i) - tip, max_step)});
+    tip += step.motion;
+    write(to.motions, first_tip + cycle + 1, tip);
+    write(to, i, step);
+  }
+}
+
+}  // namespace
+
+Guard::Guard(std::shared_ptr<IndexHandle> index, MotionConstraintSettings settings)
+    : index_(std::move(index)), settings_(std::move(settings)), constraint_(make()) {}
+
+MotionConstraint Guard::make() const {
+  const py::gil_scoped_release release;
+  return make_motion_constraint(index_->mesh(), index_->shared(), settings_);
+}
+
+std::deque<MotionConstraint>& Guard::workers(unsigned threads) {
+  while (workers_.size() < threads) {
+    workers_.push_back(make_motion_constraint(index_->mesh(), index_->shared(), settings_));
+  }
+  return workers_;
+}
+
+StepResult Guard::step(py::handle tip, py::handle desired, py::handle jacobian, py::handle rows) {
+  Motion motion{.tip = point(tip, "tip"), .desired = point(desired, "desired")};
+  Jacobian j;
+  Doubles matrix;
+  Doubles bounds;
+  py::ssize_t variables = 3;
+  if (!jacobian.is_none()) {
+    j = Jacobian::ensure(numbers(jacobian, {"jacobian", {3, any}, "(3, n)"}));
+    variables = j.shape(1);
+    if (variables == 0) refuse("jacobian", "a column for each joint, (3, n)", "none, (3, 0)");
+    motion.jacobian.emplace(j.data(), variables);
+  }
+  if (!rows.is_none()) {
+    if (!py::isinstance<py::sequence>(rows) || py::len(rows) != 2) {
+      refuse("rows", "a pair: a matrix (m, n) and bounds (m,), as in matrix @ u >= bounds",
+             Py_TYPE(rows.ptr())->tp_name);
+    }
+    const auto pair = py::reinterpret_borrow<py::sequence>(rows);
+    const std::string text = "(m, " + std::to_string(variables) + ")";
+    matrix = doubles(py::object(pair[0]), {"rows[0]", {any, variables}, text});
+    const py::ssize_t count = matrix.shape(0);
+    const std::string length = "(" + std::to_string(count) + ",)";
+    bounds = doubles(py::object(pair[1]), {"rows[1]", {count}, length});
+    if (count > 0) motion.rows.emplace(matrix.data(), bounds.data(), count);
+  }
+  const InUse in_use(constraint_in_use_);
+  return StepResult(constraint_.step(motion));
+}
+
+FreeSpace Guard::free_polytope(py::handle tip, double radius) {
+  const Vec3 at = point(tip, "tip");
+  const InUse in_use(constraint_in_use_);
+  const Polytope polytope = constraint_.free_polytope(at, radius);
+  return {{{polytope.planes.begin(), polytope.planes.end()}}, polytope.status};
+}
+
+void Guard::forget() {
+  const InUse in_use(constraint_in_use_);
+  constraint_.forget();
+}
+
+py::object Guard::steps(py::handle tips, py::handle desired, std::optional<py::ssize_t> threads,
+                        const py::object& out) {
+  const Doubles from = doubles(tips, {"tips", {any, 3}, "(n, 3)"});
+  const std::string shape = "(" + std::to_string(from.shape(0)) + ", 3), as many as tips";
+  const Doubles wanted = doubles(desired, {"desired", {from.shape(0), 3}, shape});
+  const auto poses = static_cast<std::size_t>(from.shape(0));
+  const StepColumns to = steps_columns(out, from.shape(0), {from, wanted});
+  const unsigned crew = threads_for(poses, threads);
+  const double* const tip = from.data();
+  const double* const aim = wanted.data();
+  {
+    const py::gil_scoped_release release;
+    const std::lock_guard in_use(workers_in_use_);
+    std::deque<MotionConstraint>& constraints = workers(crew);
+    const Work work = [&](unsigned worker, std::size_t begin, std::size_t end, const Stop& stop) {
+      MotionConstraint& constraint = constraints[worker];
+      for (std::size_t i = begin; i < end && !stop.asked(); ++i) {
+        // Or the answer would depend on which pose this worker did before.
+        constraint.forget();
+        const Step step = constraint.step({.tip = row(tip, i), .desired = row(aim, i)});
+        write(to.motions, i, step.motion);
+        write(to, i, step);
+      }
+    };
+    constexpr std::size_t chunk = 64;
+    if (poses <= chunk) {
+      // A thread takes longer to start.
+      work(0, 0, poses, Stop());
+    } else {
+      run_batch(poses, chunk, crew, work);
+    }
+  }
+  return to.result;
+}
+
+py::object Guard::replay(py::handle poses, bool closed_loop, double max_step,
+                         const py::object& out) {
+  const Doubles lines = doubles(poses, {"poses", {any, 6}, "(n, 6)"});
+  const auto count = static_cast<std::size_t>(lines.shape(0));
+  if (closed_loop) require_max_step(max_step, settings_.radius);
+  const StepColumns to = steps_columns(out, lines.shape(0), {lines});
+  const double* const data = lines.data();
+  {
+    const py::gil_scoped_release release;
+    const std::lock_guard in_use(workers_in_use_);
+    MotionConstraint& constraint = workers(1).front();
+    constraint.forget();
+    // One after another, whatever the number of processors: each step may depend on the last.
+    run_batch(1, 1, 1, [&](unsigned, std::size_t, std::size_t, const Stop& stop) {
+      Vec3 tip = count > 0 ? row(data, 1) : Vec3::Zero();
+      for (std::size_t i = 0; i < count && !stop.asked(); ++i) {
+        const Vec3 first = row(data, 2 * i);
+        const Motion motion = closed_loop
+                                  ? Motion{.tip = tip, .desired = clipped(first - tip, max_step)}
+                                  : Motion{.tip = first, .desired = row(data, 2 * i + 1)};
+        const Step step = constraint.step(motion);
+        write(to.motions, i, step.motion);
+        write(to, i, step);
+        tip += step.motion;
+      }
+    });
+  }
+  return to.result;
+}
+
+py::object Guard::simulate(py::handle starts, py::handle hands, double max_step,
+                           std::optional<py::ssize_t> threads, const py::object& out) {
+  const Doubles from = doubles(starts, {"starts", {any, 3}, "(m, 3)"});
+  const std::string shape = "(" + std::to_string(from.shape(0)) + ", cycles, 3), as many as starts";
+  const Doubles paths = doubles(hands, {"hands", {from.shape(0), any, 3}, shape});
+  require_max_step(max_step, settings_.radius);
+  const auto loops = static_cast<std::size_t>(paths.shape(0));
+  const auto cycles = static_cast<std::size_t>(paths.shape(1));
+  const StepColumns to = simulation_columns(out, paths.shape(0), paths.shape(1), {from, paths});
+  const unsigned crew = threads_for(loops, threads);
+  const double* const tips = from.data();
+  const double* const hand = paths.data();
+  {
+    const py::gil_scoped_release release;
+    const std::lock_guard in_use(workers_in_use_);
+    std::deque<MotionConstraint>& constraints = workers(crew);
+    run_batch(loops, 1, crew,
+              [&](unsigned worker, std::size_t begin, std::size_t end, const Stop& stop) {
+                for (std::size_t i = begin; i < end; ++i) {
+                  run_loop(constraints[worker], row(tips, i), hand, i, cycles, max_step, to, stop);
+                }
+              });
+  }
+  return to.result;
+}
+
+}  // namespace keepout::python

@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <optional>
+
+#include "batch.h"
+#include "index_handle.h"
+#include "keepout/factory/make_motion_constraint.h"
+#include "out_arrays.h"
+#include "planes.h"
+#include "step_result.h"
+
+namespace keepout::python {
+
+namespace py = pybind11;
+
+/// A motion constraint as Python holds it: one for its own steps, and one for each worker of its
+/// batches. All share mesh and index. A batch changes nothing for the steps: they remember where
+/// the last of their own led.
+class Guard {
+ public:
+  Guard(std::shared_ptr<IndexHandle> index, MotionConstraintSettings settings);
+
+  // As in Python: see bind_motion_constraint.
+  StepResult step(py::handle tip, py::handle desired, py::handle jacobian, py::handle rows);
+  FreeSpace free_polytope(py::handle tip, double radius);
+  void forget();
+  py::object steps(py::handle tips, py::handle desired, std::optional<py::ssize_t> threads,
+                   const py::object& out);
+  py::object replay(py::handle poses, bool closed_loop, double max_step, const py::object& out);
+  py::object simulate(py::handle starts, py::handle hands, double max_step,
+                      std::optional<py::ssize_t> threads, const py::object& out);
+
+  const MotionConstraintSettings& settings() const noexcept { return settings_; }
+  const std::shared_ptr<IndexHandle>& index() const noexcept { return index_; }
+
+ private:
+  MotionConstraint make() const;
+
+  /// As many motion constraints for workers. Without Python's lock, with ours.
+  std::deque<MotionConstraint>& workers(unsigned threads);
+
+  std::shared_ptr<IndexHandle> index_;
+  MotionConstraintSettings settings_;
+  MotionConstraint constraint_;
+  std::mutex constraint_in_use_;
+  std::deque<MotionConstraint> workers_;
+  std::mutex workers_in_use_;
+};
+
+}  // namespace keepout::python

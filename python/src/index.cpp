@@ -1,0 +1,194 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "arguments.h"
+#include "batch.h"
+#include "bindings.h"
+#include "index_handle.h"
+#include "keepout/adapters/index_registry.h"
+#include "keepout/index/index_cache.h"
+#include "keepout/index/nearest.h"
+#include "keepout/index/refine.h"
+#include "views.h"
+
+namespace keepout::python {
+namespace {
+
+std::shared_ptr<const SpatialIndex> build(const std::string& name,
+                                          const std::shared_ptr<const Mesh>& mesh,
+                                          const std::filesystem::path& cache) {
+  const py::gil_scoped_release release;
+  if (name == "wide_bvh" && !cache.empty()) return load_or_build(mesh, cache);
+  return make_index(name, mesh);
+}
+
+Ball ball_of(py::handle center, double radius) {
+  const Ball ball{point(center, "center"), radius};
+  if (!ball.center.allFinite()) refuse("center", "finite numbers", "one that is not");
+  if (!(radius >= 0.0) || !std::isfinite(radius)) {
+    refuse("radius", "a finite number not below zero", std::to_string(radius));
+  }
+  return ball;
+}
+
+/// With as much room as it takes.
+TriangleBuffer candidates_in(const IndexHandle& index, const Ball& ball) {
+  const std::size_t all = index.mesh()->triangle_count();
+  for (std::size_t room = std::min<std::size_t>(all, 1024);; room = std::min(all, 8 * room)) {
+    TriangleBuffer candidates(room);
+    index.index().collect(ball, candidates);
+    if (!candidates.overflowed() || room == all) return candidates;
+  }
+}
+
+py::array_t<TriangleId> query(const IndexHandle& index, const py::object& center, double radius) {
+  TriangleBuffer candidates = candidates_in(index, ball_of(center, radius));
+  std::sort(candidates.begin(), candidates.end());
+  return py::array_t<TriangleId>(static_cast<py::ssize_t>(candidates.size()), candidates.begin());
+}
+
+/// Exact hits, as Python reads them.
+struct Hits {
+  Vec3 center;
+  std::vector<Hit> hits;
+};
+
+Hits hits_in(const IndexHandle& index, const py::object& center, double radius) {
+  const Ball ball = ball_of(center, radius);
+  const TriangleBuffer candidates = candidates_in(index, ball);
+  HitBuffer hits(std::max<std::size_t>(candidates.size(), 1));
+  refine(*index.mesh(), ball, candidates.view(), hits);
+  return {ball.center, {hits.begin(), hits.end()}};
+}
+
+/// A member of each hit, in place.
+template <class T>
+py::array column(const py::object& self, const T* first, py::ssize_t width) {
+  const auto size = static_cast<py::ssize_t>(self.cast<const Hits&>().hits.size());
+  if (width == 1) return view(first, {size}, {sizeof(Hit)}, self);
+  return view(first, {size, width}, {sizeof(Hit), sizeof(T)}, self);
+}
+
+const Hit* first_hit(const py::object& self) {
+  static const Hit none{};  // of an empty list no number is read, but an address is
+  const std::vector<Hit>& hits = self.cast<const Hits&>().hits;
+  return hits.empty() ? &none : hits.data();
+}
+
+py::array_t<double> points_of(const Hits& self) {
+  py::array_t<double> points({static_cast<py::ssize_t>(self.hits.size()), py::ssize_t{3}});
+  double* to = points.mutable_data();
+  for (const Hit& hit : self.hits) {
+    const Vec3 at = self.center + hit.closest.offset;
+    to = std::copy_n(at.data(), 3, to);
+  }
+  return points;
+}
+
+/// From each point to the mesh. What is not finite has no distance.
+py::array_t<double> distances(const IndexHandle& index, const py::object& points,
+                              std::optional<py::ssize_t> threads) {
+  const Doubles from = doubles(points, {"points", {any, 3}, "(n, 3)"});
+  const auto size = static_cast<std::size_t>(from.shape(0));
+  py::array_t<double> result(from.shape(0));
+  const double* const tips = from.data();
+  double* const to = result.mutable_data();
+  const unsigned workers = threads_for(size, threads);
+  const py::gil_scoped_release release;
+  run_batch(size, 64, workers, [&](unsigned, std::size_t begin, std::size_t end, const Stop& stop) {
+    NearestTriangle nearest(*index.mesh(), index.index());
+    double guess = 0.0;
+    for (std::size_t i = begin; i < end && !stop.asked(); ++i) {
+      const Vec3 tip = row(tips, i);
+      // The guess makes it faster, and no different: the nearest is the nearest.
+      guess = tip.allFinite() ? nearest(tip, guess).closest.distance : 0.0;
+      to[i] = tip.allFinite() ? guess : std::nan("");
+    }
+  });
+  return result;
+}
+
+}  // namespace
+
+IndexHandle::IndexHandle(py::object mesh, std::string name, const std::filesystem::path& cache)
+    : mesh_object_(std::move(mesh)),
+      mesh_(mesh_object_.cast<const MeshHandle&>().shared()),
+      name_(std::move(name)),
+      index_(build(name_, mesh_, cache)) {}
+
+void bind_index(py::module_& module) {
+  py::class_<Hits>(module, "Hits",
+                   "The triangles that touch a ball, by ascending number, and of each the point\n"
+                   "nearest to the centre. Arrays are read-only views.")
+      .def_property_readonly(
+          "triangles",
+          [](const py::object& self) { return column(self, &first_hit(self)->triangle, 1); },
+          "(k,) uint32.")
+      .def_property_readonly(
+          "offsets",
+          [](const py::object& self) {
+            return column(self, first_hit(self)->closest.offset.data(), 3);
+          },
+          "(k, 3) float64 [length]: from the centre to the closest points; as exact as can be.")
+      .def_property_readonly("points", &points_of,
+                             "(k, 3) float64 [length]: the closest points, centre + offset.")
+      .def_property_readonly(
+          "distances",
+          [](const py::object& self) {
+            return column(self, &first_hit(self)->closest.distance, 1);
+          },
+          "(k,) float64 [length].")
+      .def("__len__", [](const Hits& self) { return self.hits.size(); })
+      .def("__repr__", [](const Hits& self) {
+        return "<keepout.Hits: " + std::to_string(self.hits.size()) + " triangles>";
+      });
+
+  py::class_<IndexHandle, std::shared_ptr<IndexHandle>>(
+      module, "Index",
+      "Finds the triangles near a place. Any number of motion constraints, of any threads, may\n"
+      "share one.\n\n"
+      "name: one of indices(). cache: a folder that keeps built indices for the next start; only\n"
+      "wide_bvh is kept.")
+      .def(py::init([](const py::object& mesh, std::string name,
+                       const std::optional<std::filesystem::path>& cache) {
+             if (!py::isinstance<MeshHandle>(mesh)) {
+               refuse("mesh", "a keepout.Mesh", Py_TYPE(mesh.ptr())->tp_name);
+             }
+             return std::make_shared<IndexHandle>(mesh, std::move(name),
+                                                  cache.value_or(std::filesystem::path()));
+           }),
+           py::arg("mesh"), py::arg("name") = "wide_bvh", py::kw_only(),
+           py::arg("cache") = py::none())
+      .def("query", &query, py::arg("center"), py::arg("radius"),
+           "(k,) uint32: every triangle that touches the ball, and perhaps others, ascending.\n\n"
+           "center: (3,) [length]; radius >= 0 [length].")
+      .def(
+          "hits", &hits_in, py::arg("center"), py::arg("radius"),
+          "Exactly the triangles that touch the ball, and their closest points: the same of every\n"
+          "index, bit for bit.\n\ncenter: (3,) [length]; radius >= 0 [length].")
+      .def("distances", &distances, py::arg("points"), py::kw_only(),
+           py::arg("threads") = py::none(),
+           "(n,) float64 [length]: from each point to the mesh; nan for a point that is not "
+           "finite.\n"
+           "Runs without Python's lock, on every processor unless `threads` says fewer.\n\n"
+           "points: (n, 3) [length].")
+      .def_property_readonly(
+          "mesh", [](const IndexHandle& self) { return self.mesh_object(); }, "The mesh.")
+      .def_property_readonly("name", &IndexHandle::name, "As in indices().")
+      .def_property_readonly(
+          "memory", [](const IndexHandle& self) { return self.index().memory(); },
+          "What it holds beside the mesh [bytes].")
+      .def("__repr__", [](const IndexHandle& self) {
+        return "<keepout.Index '" + self.name() + "' of " +
+               std::to_string(self.mesh()->triangle_count()) + " triangles>";
+      });
+}
+
+}  // namespace keepout::python

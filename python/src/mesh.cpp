@@ -1,0 +1,162 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <array>
+#include <limits>
+#include <sstream>
+#include <utility>
+
+#include "arguments.h"
+#include "bindings.h"
+#include "inspection.h"
+#include "keepout/adapters/load_mesh.h"
+#include "keepout/error.h"
+#include "keepout/mesh/weld.h"
+#include "mesh_handle.h"
+#include "views.h"
+
+namespace keepout::python {
+namespace {
+
+std::vector<Vec3> vertices_from(py::handle argument) {
+  const Doubles array = doubles(argument, {"vertices", {any, 3}, "(n, 3)"});
+  std::vector<Vec3> vertices(static_cast<std::size_t>(array.shape(0)));
+  for (std::size_t i = 0; i < vertices.size(); ++i) vertices[i] = row(array.data(), i);
+  return vertices;
+}
+
+using Ids = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
+
+std::vector<Corners> triangles_from(py::handle argument, std::size_t vertices) {
+  const py::array given = numbers(argument, {"triangles", {any, 3}, "(m, 3)"});
+  if (given.size() > 0 && given.dtype().kind() == 'f') {
+    refuse("triangles", "integers, which count vertices from 0",
+           "an array of dtype " + py::str(given.dtype()).cast<std::string>());
+  }
+  const Ids ids = Ids::ensure(given);
+  if (!ids) refuse("triangles", "integers", "what numpy cannot make integers of");
+  std::vector<Corners> triangles(static_cast<std::size_t>(ids.shape(0)));
+  const std::int64_t* id = ids.data();
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    for (VertexId& corner : triangles[t]) {
+      // Before they are narrowed: 2^32 is not vertex 0.
+      if (*id < 0 || static_cast<std::uint64_t>(*id) >= vertices) {
+        refuse("triangles", "vertices from 0 to " + std::to_string(vertices) + " - 1",
+               std::to_string(*id) + " in row " + std::to_string(t));
+      }
+      corner = static_cast<VertexId>(*id++);
+    }
+  }
+  return triangles;
+}
+
+MeshHandle mesh_from(const py::object& vertices, const py::object& triangles, bool welded) {
+  Surface surface;
+  surface.vertices = vertices_from(vertices);
+  surface.triangles = triangles_from(triangles, surface.vertices.size());
+  const py::gil_scoped_release release;
+  if (!welded) return MeshHandle(std::make_shared<const Mesh>(std::move(surface)));
+  // Checked as they were given: what is not finite cannot be welded.
+  const Mesh checked(surface);
+  return MeshHandle(std::make_shared<const Mesh>(weld(std::move(surface))));
+}
+
+MeshHandle load(const std::filesystem::path& path) {
+  const py::gil_scoped_release release;
+  LoadedMesh loaded = load_mesh(path);
+  return MeshHandle(std::move(loaded.mesh), std::move(loaded.warnings));
+}
+
+py::ssize_t signed_size(std::size_t size) { return static_cast<py::ssize_t>(size); }
+
+py::array rows_of_three(const std::vector<Vec3>& rows, py::handle owner) {
+  static_assert(sizeof(Vec3) == 3 * sizeof(double));
+  return view(rows.empty() ? nullptr : rows.front().data(), {signed_size(rows.size()), 3},
+              {sizeof(Vec3), sizeof(double)}, owner);
+}
+
+}  // namespace
+
+MeshHandle::MeshHandle(std::shared_ptr<const Mesh> mesh, std::vector<std::string> warnings)
+    : mesh_(std::move(mesh)), warnings_(std::move(warnings)) {}
+
+const std::vector<Vec3>& MeshHandle::normals() {
+  if (normals_.empty()) {
+    normals_.reserve(mesh_->triangle_count());
+    for (std::size_t t = 0; t < mesh_->triangle_count(); ++t) {
+      normals_.push_back(mesh_->normal(static_cast<TriangleId>(t)));
+    }
+  }
+  return normals_;
+}
+
+void bind_mesh(py::module_& module) {
+  py::class_<MeshHandle>(
+      module, "Mesh",
+      "An immutable triangle surface, shared by all that is built on it.\n\n"
+      "Seen from the free side, the vertices of a triangle run counter-clockwise; any one unit of\n"
+      "length, usually mm. What is given is copied; what is read from it is not.\n\n"
+      "vertices: (n, 3), finite [length]. triangles: (m, 3) integers from 0, m > 0.\n"
+      "weld: merge vertices of equal coordinates, which renumbers them; a surface whose triangles\n"
+      "do not share their vertices looks open otherwise.")
+      .def(py::init(&mesh_from), py::arg("vertices"), py::arg("triangles"), py::kw_only(),
+           py::arg("weld") = false)
+      .def_property_readonly(
+          "vertices",
+          [](const py::object& self) {
+            const auto vertices = self.cast<const MeshHandle&>().mesh().vertices();
+            return view(vertices.data()->data(), {signed_size(vertices.size()), 3},
+                        {sizeof(Vec3), sizeof(double)}, self);
+          },
+          "(n, 3) float64 [length], read-only: the mesh's own memory.")
+      .def_property_readonly(
+          "triangles",
+          [](const py::object& self) {
+            static_assert(sizeof(Corners) == 3 * sizeof(VertexId));
+            const auto triangles = self.cast<const MeshHandle&>().mesh().triangles();
+            return view(triangles.data()->data(), {signed_size(triangles.size()), 3},
+                        {sizeof(Corners), sizeof(VertexId)}, self);
+          },
+          "(m, 3) uint32, read-only: the mesh's own memory.")
+      .def_property_readonly(
+          "normals",
+          [](const py::object& self) {
+            return rows_of_three(self.cast<MeshHandle&>().normals(), self);
+          },
+          "(m, 3) float64, read-only: unit normals of the triangles, towards the free side; zero\n"
+          "for one without an area. Made when first asked for.")
+      .def_property_readonly(
+          "bounds",
+          [](const MeshHandle& self) {
+            const Box& box = self.mesh().bounds();
+            py::array_t<double> bounds({2, 3});
+            for (int i = 0; i < 3; ++i) {
+              bounds.mutable_at(0, i) = box.low[i];
+              bounds.mutable_at(1, i) = box.high[i];
+            }
+            return bounds;
+          },
+          "(2, 3) float64 [length]: the lowest and the highest corner of the smallest box around.")
+      .def_property_readonly("warnings", &MeshHandle::warnings,
+                             "What the file had to say, if it came from one: a list of lines.")
+      .def(
+          "inspect",
+          [](const MeshHandle& self, bool self_intersections) {
+            return inspect(self.shared(), self_intersections);
+          },
+          py::kw_only(), py::arg("self_intersections") = false,
+          "Examines the mesh; repairs nothing. The search for self-intersections takes longest.")
+      .def("__len__", [](const MeshHandle& self) { return self.mesh().triangle_count(); })
+      .def("__repr__", [](const MeshHandle& self) {
+        return "<keepout.Mesh of " + std::to_string(self.mesh().triangle_count()) + " triangles, " +
+               std::to_string(self.mesh().vertex_count()) + " vertices>";
+      });
+
+  module.def("load_mesh", &load, py::arg("path"),
+             "Reads a mesh from an STL, PLY, OBJ or OFF file, and welds it exactly. Nothing is\n"
+             "rescaled and nothing repaired: see Mesh.inspect and Mesh.warnings.");
+}
+
+}  // namespace keepout::python

@@ -1,0 +1,197 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <sstream>
+#include <string>
+#include <utility>
+
+#include "arguments.h"
+#include "bindings.h"
+#include "guard.h"
+
+namespace keepout::python {
+namespace {
+
+Query query_named(const std::string& name) {
+  if (name == "motion") return Query::motion;
+  if (name == "sphere") return Query::sphere;
+  refuse("query", "'motion' or 'sphere'", "'" + name + "'");
+}
+
+Inside inside_named(const std::string& name) {
+  if (name == "led_out") return Inside::led_out;
+  if (name == "taken_as_is") return Inside::taken_as_is;
+  refuse("inside", "'led_out' or 'taken_as_is'", "'" + name + "'");
+}
+
+/// The one given, or one made for this constraint.
+std::shared_ptr<IndexHandle> index_from(const py::object& mesh, const py::object& index,
+                                        const std::optional<std::filesystem::path>& cache) {
+  if (!py::isinstance<MeshHandle>(mesh)) {
+    refuse("mesh", "a keepout.Mesh", Py_TYPE(mesh.ptr())->tp_name);
+  }
+  if (py::isinstance<IndexHandle>(index)) {
+    auto shared = index.cast<std::shared_ptr<IndexHandle>>();
+    if (shared->mesh() != mesh.cast<const MeshHandle&>().shared()) {
+      refuse("index", "an Index of the same Mesh object", "one of another mesh");
+    }
+    return shared;
+  }
+  if (!py::isinstance<py::str>(index)) {
+    refuse("index", "a name of indices(), or a keepout.Index", Py_TYPE(index.ptr())->tp_name);
+  }
+  return std::make_shared<IndexHandle>(mesh, index.cast<std::string>(),
+                                       cache.value_or(std::filesystem::path()));
+}
+
+std::string repr(const Guard& guard) {
+  const MotionConstraintSettings& s = guard.settings();
+  std::ostringstream text;
+  text << "<keepout.MotionConstraint index='" << guard.index()->name() << "' activation='"
+       << s.activation << "' solver='" << s.solver << "' radius=" << s.radius
+       << " tool_radius=" << s.tool_radius << " margin=" << s.margin << " on "
+       << guard.index()->mesh()->triangle_count() << " triangles>";
+  return text.str();
+}
+
+constexpr const char* class_doc =
+    "Keeps a tool tip out of a mesh, step by step. It is safe to use from several threads, which\n"
+    "then wait for each other; for loops of their own give each a constraint, and let them share\n"
+    "the Index.\n\n"
+    "index: a name of indices(), or an Index of this mesh. index_cache: a folder that keeps built\n"
+    "indices for the next start. activation, solver: a name of activations(), solvers().\n"
+    "radius: of the motion sphere, the farthest that the tip may go in a step [length].\n"
+    "tool_radius: of the ball around the tip that shall not touch the mesh [length].\n"
+    "margin: distance to keep beyond that [length].\n"
+    "damping: weight of |u|^2 beside the task, for Jacobians without full column rank.\n"
+    "recovery: how far a tip that is too close is led away in a step [length].\n"
+    "deepest: no tip is led out from deeper inside [length].\n"
+    "refinements: how often a certified motion is improved upon.\n"
+    "nodes: of a branch and bound for a better motion still; 0: none.\n"
+    "query: 'motion' looks for triangles as far as the motion can lead, 'sphere' in the whole "
+    "ball.\n"
+    "inside: a tip that starts on the forbidden side is 'led_out' or 'taken_as_is'.\n"
+    "max_triangles, max_planes, max_joints, max_rows: room for a step; one that needs more ends\n"
+    "with Status.over_capacity.";
+
+constexpr const char* step_doc =
+    "The allowed motion nearest to the one desired: a Step. It remembers where the last step led; "
+    "a\n"
+    "tip from elsewhere is placed anew. A number that is not finite gives Status.invalid_input.\n\n"
+    "tip: (3,) in the frame of the mesh [length]. desired: (3,), the increment asked for "
+    "[length].\n"
+    "jacobian: (3, n), of the tip in the joints that move it [length / unit of the joint].\n"
+    "rows: a pair, matrix (m, n) and bounds (m,), which the increment u of the joints (or of the\n"
+    "tip, n = 3) must satisfy: matrix @ u >= bounds.";
+
+constexpr const char* steps_doc =
+    "One step for each pose, each for itself: every tip is placed anew, so that the result does "
+    "not\n"
+    "depend on the order or on the number of threads. Runs without Python's lock.\n\n"
+    "tips: (n, 3) [length]. desired: (n, 3) [length]. Taken without a copy if they are float64 "
+    "and\n"
+    "C-contiguous. threads: 1 to 1024; None for one a processor. out: a Steps to write to; None "
+    "for\n"
+    "a new one. A pose that is not finite has Status.invalid_input and zero motion.";
+
+constexpr const char* replay_doc =
+    "The steps of 'keepout replay', one after another: a Steps. Runs without Python's lock, on "
+    "one\n"
+    "processor, as each step may depend on the last.\n\n"
+    "poses: (n, 6) [length]: a tip and a desired increment a row; with closed_loop, a goal and a\n"
+    "reset position, of which the first is where the tip starts. max_step: longest increment "
+    "asked\n"
+    "for in a closed loop [length]. out: a Steps to write to; None for a new one.";
+
+constexpr const char* simulate_doc =
+    "Closed loops: in each cycle the tip makes for where the hand is, as far as the step allows.\n"
+    "Loops share nothing; each is done by one thread. Runs without Python's lock.\n\n"
+    "starts: (m, 3), where the tips start [length]. hands: (m, cycles, 3), where the hand is in "
+    "each\n"
+    "cycle [length]. max_step: longest increment asked for in a cycle [length], at most the "
+    "radius.\n"
+    "threads: 1 to 1024; None for one a processor. out: a Simulation to write to; None for a new "
+    "one.";
+
+constexpr const char* polytope_doc =
+    "The free space around a tip as one convex polytope, for a QP, an MPC or a sampler of your "
+    "own:\n"
+    "every motion that stays within all planes and within `radius` keeps the margin. Sides are "
+    "not\n"
+    "asked about: around a tip inside it is the space inside.\n\n"
+    "tip: (3,) [length]; radius >= 0 [length].";
+
+}  // namespace
+
+void bind_motion_constraint(py::module_& module) {
+  const MotionConstraintSettings usual;
+  py::class_<Guard>(module, "MotionConstraint", class_doc)
+      .def(py::init([](const py::object& mesh, const py::object& index,
+                       const std::optional<std::filesystem::path>& index_cache,
+                       std::string activation, std::string solver, double radius,
+                       double tool_radius, double margin, double damping, double recovery,
+                       double deepest, int refinements, int nodes, const std::string& query,
+                       const std::string& inside, py::ssize_t max_triangles, py::ssize_t max_planes,
+                       py::ssize_t max_joints, py::ssize_t max_rows) {
+             MotionConstraintSettings settings;
+             settings.activation = std::move(activation);
+             settings.solver = std::move(solver);
+             settings.radius = radius;
+             settings.tool_radius = tool_radius;
+             settings.margin = margin;
+             settings.damping = damping;
+             settings.recovery = recovery;
+             settings.deepest = deepest;
+             settings.refinements = refinements;
+             settings.nodes = nodes;
+             settings.query = query_named(query);
+             settings.inside = inside_named(inside);
+             settings.capacity.triangles = count(max_triangles, "max_triangles");
+             settings.capacity.planes = count(max_planes, "max_planes");
+             settings.capacity.variables = count(max_joints, "max_joints");
+             settings.capacity.extra_rows = count(max_rows, "max_rows");
+             return std::make_unique<Guard>(index_from(mesh, index, index_cache),
+                                            std::move(settings));
+           }),
+           py::arg("mesh"), py::kw_only(), py::arg("index") = usual.index,
+           py::arg("index_cache") = py::none(), py::arg("activation") = usual.activation,
+           py::arg("solver") = usual.solver, py::arg("radius") = usual.radius,
+           py::arg("tool_radius") = usual.tool_radius, py::arg("margin") = usual.margin,
+           py::arg("damping") = usual.damping, py::arg("recovery") = usual.recovery,
+           py::arg("deepest") = usual.deepest, py::arg("refinements") = usual.refinements,
+           py::arg("nodes") = usual.nodes, py::arg("query") = "motion",
+           py::arg("inside") = "led_out", py::arg("max_triangles") = usual.capacity.triangles,
+           py::arg("max_planes") = usual.capacity.planes,
+           py::arg("max_joints") = usual.capacity.variables,
+           py::arg("max_rows") = usual.capacity.extra_rows)
+      .def("step", &Guard::step, py::arg("tip"), py::arg("desired"),
+           py::arg("jacobian") = py::none(), py::arg("rows") = py::none(), step_doc)
+      .def("forget", &Guard::forget,
+           "Forgets where the last step led: the next tip is placed anew, as at the start.")
+      .def("free_polytope", &Guard::free_polytope, py::arg("tip"), py::arg("radius"), polytope_doc)
+      .def("steps", &Guard::steps, py::arg("tips"), py::arg("desired"), py::kw_only(),
+           py::arg("threads") = py::none(), py::arg("out") = py::none(), steps_doc)
+      .def("replay", &Guard::replay, py::arg("poses"), py::kw_only(),
+           py::arg("closed_loop") = false, py::arg("max_step") = 1.0, py::arg("out") = py::none(),
+           replay_doc)
+      .def("simulate", &Guard::simulate, py::arg("starts"), py::arg("hands"), py::kw_only(),
+           py::arg("max_step") = 0.5, py::arg("threads") = py::none(), py::arg("out") = py::none(),
+           simulate_doc)
+      .def_property_readonly(
+          "mesh", [](const Guard& self) { return self.index()->mesh_object(); }, "The mesh.")
+      .def_property_readonly(
+          "index", [](const Guard& self) { return self.index(); },
+          "Its Index, which others may share.")
+      .def_property_readonly(
+          "radius", [](const Guard& self) { return self.settings().radius; },
+          "Of the motion sphere [length].")
+      .def_property_readonly(
+          "distance_kept",
+          [](const Guard& self) { return self.settings().tool_radius + self.settings().margin; },
+          "From the tip to the mesh: tool radius and margin [length].")
+      .def("__repr__", &repr);
+}
+
+}  // namespace keepout::python

@@ -1,0 +1,58 @@
+# SPDX-FileCopyrightText: 2026 the keepout authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Small surfaces for tests, and poses around them."""
+
+import os
+from pathlib import Path
+
+import numpy as np
+
+
+def sphere(n=24, radius=10.0):
+    """A watertight sphere: n meridians, n / 2 bands; vertices, triangles."""
+    bands = n // 2
+    theta = np.pi * np.arange(1, bands) / bands
+    phi = 2 * np.pi * np.arange(n) / n
+    ring = np.stack(
+        [
+            np.outer(np.sin(theta), np.cos(phi)),
+            np.outer(np.sin(theta), np.sin(phi)),
+            np.outer(np.cos(theta), np.ones(n)),
+        ],
+        axis=-1,
+    ).reshape(-1, 3)
+    vertices = radius * np.vstack([ring, [[0, 0, 1], [0, 0, -1]]])
+    top, bottom = len(ring), len(ring) + 1
+    triangles = []
+    for j in range(n):
+        k = (j + 1) % n
+        triangles.append((top, j, k))
+        triangles.append((bottom, (bands - 2) * n + k, (bands - 2) * n + j))
+        for i in range(bands - 2):
+            a, b, c, d = i * n + j, i * n + k, (i + 1) * n + j, (i + 1) * n + k
+            triangles += [(a, c, b), (b, c, d)]
+    return vertices, np.array(triangles)
+
+
+def write_stl(path, vertices, triangles):
+    """Binary; in single precision, as the format has it."""
+    records = np.zeros(
+        len(triangles), dtype=[("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("extra", "<u2")]
+    )
+    records["corners"] = vertices[triangles]
+    Path(path).write_bytes(bytes(80) + np.uint32(len(triangles)).tobytes() + records.tobytes())
+
+
+def poses(vertices, count, seed=1, spread=1.0, step=0.3):
+    """Tips around the vertices, inside and outside, and increments in any direction: (count, 6)."""
+    random = np.random.default_rng(seed)
+    tips = vertices[random.integers(0, len(vertices), count)]
+    tips = tips + spread * random.normal(size=(count, 3))
+    return np.hstack([tips, step * random.normal(size=(count, 3))])
+
+
+def skull():
+    """The CT skull as fixtures/prepare makes it, or None."""
+    root = Path(__file__).resolve().parents[2]
+    path = Path(os.environ.get("KEEPOUT_CACHE", root / ".cache")) / "fixtures" / "skull.stl"
+    return path if path.exists() else None

@@ -1,0 +1,209 @@
+# SPDX-FileCopyrightText: 2026 the keepout authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the parts of the module do."""
+
+import inspect
+import re
+
+import numpy as np
+import pytest
+from surfaces import sphere
+
+import keepout
+from keepout import Status, _core
+
+
+def test_parts_are_listed_and_each_can_be_used(mesh):
+    assert "wide_bvh" in [part.name for part in keepout.indices()]
+    assert [part.name for part in keepout.activations()] == ["all_faces", "paper", "certified"]
+    assert keepout.solvers()[0].name == "active_set"
+    assert all(part.description for part in keepout.indices() + keepout.solvers())
+    for part in keepout.indices():
+        step = keepout.MotionConstraint(mesh, index=part.name).step((0, 0, 10.5), (0, 0, -1))
+        assert step.status == Status.limited, part.name
+    for part in keepout.activations():
+        inside = "taken_as_is" if part.name != "certified" else "led_out"
+        guard = keepout.MotionConstraint(mesh, activation=part.name, inside=inside)
+        assert guard.step((0, 0, 10.5), (0, 0, -1)).ok, part.name
+
+
+def test_status_is_the_one_of_cpp():
+    assert tuple(status.name for status in Status) == _core.status_names
+    assert [int(status) for status in Status] == list(range(len(Status)))
+    assert all(len(status.reason) > 10 for status in Status)
+    assert [s for s in Status if s.ok] == [
+        Status.free,
+        Status.limited,
+        Status.recovering,
+        Status.fallback,
+    ]
+
+
+def test_a_step_is_held_back(guard):
+    free = guard.step([0, 0, 14], [0, 0, -1])
+    assert free.ok and free.status is Status.free and list(free.motion) == [0, 0, -1]
+    held = guard.step([0.1, 0.2, 10.6], [0, 0, -1])
+    assert held.status is Status.limited and -0.2 < held.motion[2] < 0
+    assert len(held.planes) > 0 and held.triangles > 0
+    assert np.all(held.planes.normals @ held.motion >= held.planes.offsets - 1e-9)
+    np.testing.assert_allclose(np.linalg.norm(held.planes.normals, axis=1), 1)
+    assert np.all(held.planes.sources < len(guard.mesh))
+    assert np.all(held.active < len(held.planes))
+    np.testing.assert_array_equal(held.increment, held.motion)
+    assert "limited" in repr(held) and held.reason
+
+
+def test_joints_and_rows(guard):
+    jacobian = np.array([[1.0, 0, 0, 1], [0, 1, 0, 1], [0, 0, 2, 0]])
+    guard = keepout.MotionConstraint(guard.mesh, damping=1e-6)
+    step = guard.step([0, 0, 14], [0.1, 0.2, -1], jacobian=jacobian)
+    assert step.increment.shape == (4,)
+    np.testing.assert_allclose(jacobian @ step.increment, step.motion, atol=1e-9)
+    np.testing.assert_allclose(step.motion, [0.1, 0.2, -1], atol=1e-4)
+    # The second joint does not go back, and the third goes on.
+    rows = ([[0.0, 1, 0, 0], [0, 0, 1, 0]], [0.0, -0.1])
+    step = guard.step([0, 0, 14], [0, -1, -1], jacobian=np.asfortranarray(jacobian), rows=rows)
+    assert step.increment[1] >= -1e-9 and step.increment[2] >= -0.1 - 1e-9
+    only_rows = guard.step([0, 0, 14], [0, 0, -1], rows=([[0.0, 0, 1]], [-0.25]))
+    np.testing.assert_allclose(only_rows.motion, [0, 0, -0.25], atol=1e-9)
+    assert list(only_rows.active) == [len(only_rows.planes)]
+    none = keepout.MotionConstraint(guard.mesh).step([0, 0, 14], [0, 0, -1], rows=(np.zeros((0, 3)), []))
+    assert list(none.motion) == [0, 0, -1]
+    many = keepout.MotionConstraint(guard.mesh, max_joints=3).step([0, 0, 14], [0, 0, 1], jacobian)
+    assert many.status is Status.over_capacity
+
+
+def test_steps_remember_and_forget():
+    # A cube in a cube: between them the side depends on which is nearer, unless a step led there.
+    corners = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], float)
+    quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    cube = np.array([t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))])
+    mesh = keepout.Mesh(np.vstack([50 * corners, 5 * corners]), np.vstack([cube, cube + 8]))
+    assert mesh.inspect().watertight and not mesh.inspect().inside_out
+    guard = keepout.MotionConstraint(mesh)
+    assert guard.step((0, 0, 26), (0, 0, 4)).status is Status.free
+    batch = guard.steps([(0, 0, 26), (0, 0, 30)], [(0, 0, 4), (0, 0, 0.1)])
+    assert list(batch.status) == [Status.free, Status.inside]  # each pose for itself
+    assert guard.step((0, 0, 30), (0, 0, 0.1)).status is Status.free  # a batch leaves this alone
+    guard.forget()
+    assert guard.step((0, 0, 30), (0, 0, 0.1)).status is Status.inside
+
+
+def test_the_free_polytope_keeps_the_distance(guard):
+    polytope = guard.free_polytope((0, 0, 11.0), radius=2.0)
+    assert polytope.ok and polytope.status == "found" and len(polytope) > 0
+    random = np.random.default_rng(1)
+    d = random.normal(size=(2000, 3))
+    d = d[np.linalg.norm(d, axis=1) <= 2.0]
+    d = d[np.all(d @ polytope.normals.T >= polytope.offsets, axis=1)]
+    assert len(d) > 100
+    assert np.all(guard.index.distances((0, 0, 11.0) + d) >= 0.5 - 1e-9)
+    refused = guard.free_polytope((np.nan, 0, 0), 1.0)
+    assert not refused.ok and refused.status == "invalid_input" and len(refused) == 6
+
+
+def test_queries_and_hits_are_those_of_brute_force(mesh):
+    oracle = keepout.Index(mesh, "brute_force")
+    for part in keepout.indices():
+        index = keepout.Index(mesh, part.name)
+        for center, radius in [((0, 0, 9.5), 2.0), ((3.0, 4.0, 8.0), 5.0), ((0, 0, 30), 1.0)]:
+            exact, found = oracle.hits(center, radius), index.hits(center, radius)
+            np.testing.assert_array_equal(found.triangles, exact.triangles)
+            np.testing.assert_array_equal(found.offsets, exact.offsets)
+            np.testing.assert_array_equal(found.distances, exact.distances)
+            assert set(exact.triangles) <= set(index.query(center, radius))
+        np.testing.assert_allclose(
+            np.linalg.norm(found.points - center, axis=1), found.distances, rtol=1e-12
+        )
+    assert index.mesh is mesh and index.memory > 0 and "triangles" in repr(index)
+    everything = oracle.hits((0, 0, 0), 100.0)
+    assert len(everything) == len(mesh)
+
+
+def test_distances(mesh):
+    index = keepout.Index(mesh)
+    points = np.array([[0, 0, 10.0], [0, 0, 12.5], [np.nan, 0, 0], [np.inf, 0, 0], [1e6, 0, 0]])
+    found = index.distances(points, threads=2)
+    np.testing.assert_allclose(found[:2], [0, 2.5], atol=1e-12)
+    assert np.all(np.isnan(found[2:4])) and abs(found[4] - (1e6 - 10)) < 0.2
+    many = np.random.default_rng(2).normal(size=(1000, 3)) * 12
+    np.testing.assert_array_equal(index.distances(many, threads=1), index.distances(many, threads=3))
+    assert index.distances(np.zeros((0, 3))).shape == (0,)
+
+
+def test_an_index_is_kept_on_the_disk_and_shared(mesh, tmp_path):
+    index = keepout.Index(mesh, cache=tmp_path)
+    assert len(list(tmp_path.iterdir())) == 1
+    guard = keepout.MotionConstraint(mesh, index=index)
+    assert guard.index is index and guard.mesh is mesh
+    again = keepout.MotionConstraint(mesh, index_cache=str(tmp_path))
+    assert len(list(tmp_path.iterdir())) == 1
+    assert list(again.step((0, 0, 10.5), (0, 0, -1)).motion) == list(
+        guard.step((0, 0, 10.5), (0, 0, -1)).motion
+    )
+
+
+def test_welding_and_inspection():
+    vertices, triangles = sphere()
+    soup = vertices[triangles].reshape(-1, 3)
+    apart = np.arange(len(soup)).reshape(-1, 3)
+    loose = keepout.Mesh(soup, apart).inspect()
+    assert not loose.closed and loose.boundary_edges == 3 * len(triangles)
+    assert loose.genus is None and loose.signed_volume is None and "open" in str(loose)
+    welded = keepout.Mesh(soup, apart, weld=True)
+    found = welded.inspect(self_intersections=True)
+    assert len(welded.vertices) == len(vertices) and found.watertight and found.genus == 0
+    assert found.self_intersections == 0 and "watertight" in repr(found)
+    flipped = keepout.Mesh(vertices, triangles[:, ::-1]).inspect()
+    assert flipped.inside_out and flipped.signed_volume < 0
+    normals = welded.normals
+    assert np.all(np.einsum("ij,ij->i", normals, welded.vertices[welded.triangles[:, 0]]) > 0)
+
+
+def test_loading_tells_what_is_wrong(tmp_path, sphere_file):
+    mesh = keepout.load_mesh(str(sphere_file))
+    assert mesh.inspect().watertight and mesh.warnings == [] and len(mesh) > 1000
+    assert mesh.bounds.shape == (2, 3) and np.all(mesh.bounds[0] < mesh.bounds[1])
+    with pytest.raises(keepout.Error, match="absent.stl"):
+        keepout.load_mesh(tmp_path / "absent.stl")
+
+
+def test_closed_loops_stay_out(guard):
+    hands = np.zeros((3, 60, 3))
+    hands[:, :, 2] = np.linspace(14, 5, 60)
+    hands[1:, :, 0] = 1.5
+    starts = hands[:, 0].copy()
+    ran = guard.simulate(starts, hands)
+    assert ran.tips.shape == (3, 61, 3) and ran.status.shape == (3, 60) and len(ran) == 3
+    np.testing.assert_array_equal(ran.tips[:, 0], starts)
+    np.testing.assert_array_equal(ran.tips[1], ran.tips[2])
+    assert ran.ok.all() and Status.limited in ran.counts() and "limited" in repr(ran)
+    assert guard.index.distances(ran.tips.reshape(-1, 3)).min() > 0.5 - 1e-6
+    # A loop is a replay in a closed loop.
+    poses = np.hstack([hands[1], np.broadcast_to(starts[1], hands[1].shape)])
+    alone = guard.replay(poses, closed_loop=True, max_step=0.5)
+    np.testing.assert_array_equal(np.cumsum(np.vstack([starts[1], alone.motion]), axis=0), ran.tips[1])
+
+
+def test_every_public_name_is_documented():
+    assert keepout.__doc__ and keepout.__version__
+    for name in set(keepout.__all__) - {"__version__"}:
+        public = getattr(keepout, name)
+        assert public.__doc__ and public.__module__ == "keepout", name
+        if inspect.isclass(public) and issubclass(public, (Exception, tuple, int)):
+            continue
+        members = dict(vars(public)) if inspect.isclass(public) else {}
+        for member, value in list(members.items()):
+            if member.startswith("_") or member in getattr(public, "__annotations__", {}):
+                continue
+            assert value.__doc__, f"{name}.{member}"
+
+
+def test_arrays_are_documented_with_shapes():
+    arrays = {"normals", "offsets", "vertices", "triangles", "motion", "sources", "bounds", "points"}
+    for name in ("Mesh", "Planes", "Step", "Hits"):
+        for member in arrays & set(vars(getattr(keepout, name))):
+            if (name, member) == ("Step", "triangles"):
+                continue  # a number
+            doc = getattr(keepout, name).__dict__[member].__doc__
+            assert re.match(r"\(\w+,( \w+)?\) (float64|uint32)", doc), f"{name}.{member}"

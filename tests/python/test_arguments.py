@@ -1,0 +1,222 @@
+# SPDX-FileCopyrightText: 2026 the keepout authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Arguments of every kind are converted, or refused by name."""
+
+import numpy as np
+import pytest
+from surfaces import sphere
+
+import keepout
+from keepout import Status
+
+vertices, triangles = sphere()
+
+
+def refused(match):
+    return pytest.raises(keepout.Error, match=match)
+
+
+@pytest.mark.parametrize(
+    "bad, says",
+    [
+        (None, r"vertices: expected numbers of shape \(n, 3\), got None"),
+        ("abc", r"vertices: .* dtype <U3"),
+        (vertices.T, r"vertices: .* shape \(3, \d+\)"),
+        (vertices[0], r"vertices: .* shape \(3,\)"),
+        (np.zeros((0, 3)), "triangles: expected vertices from 0"),
+        (vertices.astype(complex), "vertices: .* complex128"),
+        (vertices.astype(bool), "vertices: .* bool"),
+        (vertices.astype(object), "vertices: .* object"),
+        ([[1, 2, 3], [4, 5]], "vertices: .* numpy makes no array"),
+        (np.where(vertices > 9, np.nan, vertices), "finite"),
+        (np.where(vertices > 9, np.inf, vertices), "finite"),
+    ],
+)
+def test_vertices_that_are_refused(bad, says):
+    with refused(says):
+        keepout.Mesh(bad, triangles)
+
+
+@pytest.mark.parametrize(
+    "bad, says",
+    [
+        (triangles.astype(float), "triangles: expected integers.* float64"),
+        (triangles - 1, "triangles: expected vertices from 0 to .* got -1 in row 0"),
+        (triangles + 2**32, "triangles: expected vertices from 0 to"),
+        (np.full((1, 3), 2**63, np.uint64), "triangles: "),
+        (triangles.ravel(), r"triangles: .* \(m, 3\)"),
+        (np.zeros((0, 3), int), "triangle"),
+        ([], r"triangles: .* \(m, 3\)"),
+        (triangles > 3, "triangles: .* bool"),
+    ],
+)
+def test_triangles_that_are_refused(bad, says):
+    for weld in (False, True):
+        with refused(says):
+            keepout.Mesh(vertices, bad, weld=weld)
+
+
+def test_nan_is_refused_when_welding_too():
+    with refused("finite"):
+        keepout.Mesh(np.full((3, 3), np.nan), [[0, 1, 2]], weld=True)
+
+
+def test_any_layout_is_converted():
+    usual = keepout.Mesh(vertices, triangles)
+    wide = np.zeros((len(vertices), 7))
+    wide[:, ::3] = vertices
+    for v in (np.asfortranarray(vertices), wide[:, ::3], vertices.tolist(), vertices[::-1][::-1]):
+        for dtype in (np.int8 if len(vertices) < 128 else np.int16, np.uint16, np.uint64, ">i4"):
+            mesh = keepout.Mesh(v, np.asfortranarray(triangles.astype(dtype)))
+            np.testing.assert_array_equal(mesh.vertices, usual.vertices)
+            np.testing.assert_array_equal(mesh.triangles, triangles)
+    single = keepout.Mesh(vertices.astype(np.float32), triangles)
+    np.testing.assert_array_equal(single.vertices, vertices.astype(np.float32).astype(float))
+    frozen = vertices.copy()
+    frozen.flags.writeable = False
+    np.testing.assert_array_equal(keepout.Mesh(frozen, triangles).vertices, vertices)
+
+
+def test_a_point_comes_in_many_forms(guard):
+    exact = guard.step(np.array([0.5, 0.25, 10.75]), np.array([0, 0, -1.0])).motion
+    column = np.zeros((3, 4))
+    column[:, 1] = 0.5, 0.25, 10.75
+    swapped = np.array([0.5, 0.25, 10.75], ">f8")
+    unaligned = np.zeros(25, np.uint8)[1:].view(np.float64)
+    unaligned[:] = 0.5, 0.25, 10.75
+    single = np.array([0.5, 0.25, 10.75], np.float32)
+    for tip in ((0.5, 0.25, 10.75), [0.5, 0.25, 10.75], column[:, 1], swapped, unaligned, single):
+        for desired in ((0, 0, -1), [0, 0.0, -1], np.array([0, 0, -1], np.int8)):
+            guard.forget()
+            np.testing.assert_array_equal(guard.step(tip, desired).motion, exact)
+
+
+@pytest.mark.parametrize("bad", [(1, 2), [1.0, 2, 3, 4], np.zeros((1, 3)), 5.0, "xyz", None, {1: 2}])
+def test_points_that_are_refused(guard, bad):
+    with refused(r"tip: expected numbers of shape \(3,\)"):
+        guard.step(bad, (0, 0, 1))
+    with refused(r"desired: expected numbers of shape \(3,\)"):
+        guard.step((0, 0, 14), bad)
+    with refused(r"tip: "):
+        guard.free_polytope(bad, 1.0)
+    with refused(r"center: "):
+        guard.index.hits(bad, 1.0)
+
+
+def test_what_is_not_finite_is_a_status(guard, outside):
+    assert guard.step((np.nan, 0, 14), (0, 0, 1)).status is Status.invalid_input
+    assert guard.step((0, 0, 14), (0, np.inf, 1)).status is Status.invalid_input
+    assert guard.step((0, 0, 14), (0, 0, 100)).status is Status.beyond_reach
+    nan = np.full((3, 2), np.nan)
+    assert guard.step((0, 0, 14), (0, 0, 1), nan).status is Status.invalid_input
+    tips, desired = outside[0].copy(), outside[1].copy()
+    clean = guard.steps(tips, desired)
+    tips[10, 1] = np.nan
+    desired[20, 2] = -np.inf
+    mixed = guard.steps(tips, desired)
+    assert list(np.flatnonzero(~mixed.ok)) == [10, 20]
+    assert np.all(mixed.motion[[10, 20]] == 0)
+    rest = np.setdiff1d(np.arange(len(tips)), [10, 20])
+    np.testing.assert_array_equal(mixed.motion[rest], clean.motion[rest])
+
+
+@pytest.mark.parametrize(
+    "arguments, says",
+    [
+        ({"jacobian": np.zeros((2, 3))}, r"jacobian: .* \(3, n\), got shape \(2, 3\)"),
+        ({"jacobian": np.zeros((3, 0))}, "jacobian: "),
+        ({"rows": 5}, "rows: expected a pair"),
+        ({"rows": ([[1, 0, 0]],)}, "rows: expected a pair"),
+        ({"rows": ([[1, 0]], [0])}, r"rows\[0\]: .* \(m, 3\), got shape \(1, 2\)"),
+        ({"rows": ([[1, 0, 0]], [0, 1])}, r"rows\[1\]: .* \(1,\), got shape \(2,\)"),
+        ({"jacobian": np.eye(3), "rows": ([[1, 0, 0, 0]], [0])}, r"rows\[0\]: .* \(m, 3\)"),
+    ],
+)
+def test_jacobians_and_rows_that_are_refused(guard, arguments, says):
+    with refused(says):
+        guard.step((0, 0, 14), (0, 0, 1), **arguments)
+
+
+@pytest.mark.parametrize(
+    "settings, says",
+    [
+        ({"index": "nonsense"}, "no .*'nonsense'; known: .*wide_bvh"),
+        ({"activation": "nonsense"}, "known: .*certified"),
+        ({"solver": "nonsense"}, "known: .*active_set"),
+        ({"index": 5}, "index: expected a name"),
+        ({"query": "far"}, "query: expected 'motion' or 'sphere', got 'far'"),
+        ({"inside": "ignored"}, "inside: "),
+        ({"radius": -1.0}, "radius"),
+        ({"radius": np.nan}, "radius"),
+        ({"margin": -1.0}, "margin"),
+        ({"margin": 0.0}, "margin"),
+        ({"max_planes": -1}, "max_planes: expected a number not below zero, got -1"),
+        ({"max_triangles": -1}, "max_triangles"),
+        ({"max_planes": 2**40}, "capacity"),
+    ],
+)
+def test_settings_that_are_refused(mesh, settings, says):
+    with refused(says):
+        keepout.MotionConstraint(mesh, **settings)
+
+
+def test_meshes_that_are_none(mesh):
+    other = keepout.Mesh(vertices, triangles)
+    with refused("index: expected an Index of the same Mesh"):
+        keepout.MotionConstraint(mesh, index=keepout.Index(other))
+    with refused("mesh: expected a keepout.Mesh, got numpy.ndarray"):
+        keepout.MotionConstraint(vertices)
+    with refused("mesh: expected a keepout.Mesh, got str"):
+        keepout.Index("skull.stl")
+    with refused("radius: expected a finite number not below zero"):
+        keepout.Index(mesh).hits((0, 0, 0), -1.0)
+    with refused("center: expected finite numbers"):
+        keepout.Index(mesh).query((0, 0, np.nan), 1.0)
+
+
+def test_batches_of_the_wrong_shape(guard, outside):
+    tips, desired = outside
+    with refused(r"desired: .* \(500, 3\), as many as tips, got shape \(499, 3\)"):
+        guard.steps(tips, desired[1:])
+    with refused(r"tips: .* \(n, 3\), got shape \(3,\)"):
+        guard.steps(tips[0], desired[0])
+    with refused(r"poses: .* \(n, 6\)"):
+        guard.replay(tips)
+    with refused(r"hands: .* \(500, cycles, 3\)"):
+        guard.simulate(tips, desired)
+    for threads in (0, -3, 1025):
+        with refused(f"threads: expected 1 to 1024, .* got {threads}"):
+            guard.steps(tips, desired, threads=threads)
+    with refused("max_step: "):
+        guard.simulate(tips, tips[:, None], max_step=5.1)
+    with refused("max_step: "):
+        guard.replay(np.zeros((1, 6)), closed_loop=True, max_step=np.nan)
+
+
+def test_empty_batches(guard):
+    none = np.zeros((0, 3))
+    assert len(guard.steps(none, none)) == 0
+    assert len(guard.replay(np.zeros((0, 6)))) == 0
+    assert guard.simulate(none, np.zeros((0, 5, 3))).tips.shape == (0, 6, 3)
+    still = guard.simulate([(0, 0, 14)], np.zeros((1, 0, 3)))
+    assert still.tips.tolist() == [[[0, 0, 14]]] and "none" in repr(still)
+
+
+def test_batches_of_any_layout(guard, outside):
+    tips, desired = outside
+    usual = guard.steps(tips, desired)
+    frozen = tips.copy()
+    frozen.flags.writeable = False
+    for t in (np.asfortranarray(tips), tips.tolist(), np.repeat(tips, 2, axis=0)[::2], frozen):
+        np.testing.assert_array_equal(guard.steps(t, desired).motion, usual.motion)
+    single = tips.astype(np.float32)
+    np.testing.assert_array_equal(
+        guard.steps(single, desired).motion, guard.steps(single.astype(float), desired).motion
+    )
+
+
+def test_an_unknown_keyword_is_a_type_error(mesh):
+    with pytest.raises(TypeError):
+        keepout.MotionConstraint(mesh, marging=0.2)
+    with pytest.raises(TypeError):
+        keepout.MotionConstraint(mesh, "wide_bvh")

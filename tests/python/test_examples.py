@@ -1,0 +1,45 @@
+# SPDX-FileCopyrightText: 2026 the keepout authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The examples do what they say."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import keepout
+
+examples = Path(__file__).resolve().parents[2] / "examples" / "python"
+
+
+def run(example, *arguments):
+    ended = subprocess.run(
+        [sys.executable, examples / example, *arguments], capture_output=True, text=True
+    )
+    assert ended.returncode == 0, ended.stderr
+    return ended.stdout
+
+
+def test_first_steps(sphere_file):
+    words = run("first_steps.py", sphere_file).split()
+    assert int(words[words.index("in") + 1]) > 100
+    tip = np.array([float(word) for word in words[-3:]])
+    assert keepout.Index(keepout.load_mesh(sphere_file)).distances([tip])[0] >= 0.5 - 1e-9
+
+
+def test_the_path_over_the_skull(request, tmp_path):
+    matplotlib = pytest.importorskip("matplotlib.image")
+    # Of the sphere where there is no skull.
+    try:
+        path = request.getfixturevalue("skull_file")
+    except pytest.skip.Exception:
+        path = request.getfixturevalue("sphere_file")
+    said = run("path_over_the_skull.py", path, "--out", tmp_path / "p.png", "--cycles", "300",
+               "--size", "300")  # fmt: skip
+    assert "limited" in said and "picture" in said
+    closest = float(said.split("closest to the bone: ")[1].split()[0])
+    assert closest >= 0.5
+    picture = matplotlib.imread(tmp_path / "p.png")
+    assert picture.shape[0] > 100 and len(np.unique(picture)) > 50

@@ -1,0 +1,112 @@
+# SPDX-FileCopyrightText: 2026 the keepout authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Python gives what C++ gives, bit for bit."""
+
+import csv
+import json
+import os
+import subprocess
+
+import numpy as np
+import pytest
+from surfaces import poses
+
+import keepout
+
+loop = os.environ.get("KEEPOUT_CPP_LOOP")
+command = os.environ.get("KEEPOUT_COMMAND")
+needs_loop = pytest.mark.skipif(not loop, reason="KEEPOUT_CPP_LOOP names no program")
+needs_command = pytest.mark.skipif(not command, reason="KEEPOUT_COMMAND names no program")
+
+settings = {"tool_radius": 0.3, "margin": 0.2}  # cpp_loop's
+
+
+@pytest.fixture(params=["sphere_file", "skull_file"])
+def surface(request):
+    path = request.getfixturevalue(request.param)
+    return path, keepout.load_mesh(path)
+
+
+def cpp_steps(path, lines, memory, folder):
+    lines.tofile(folder / "poses")
+    subprocess.run([loop, path, folder / "poses", folder / "answers", memory, "1"], check=True)
+    return np.fromfile(folder / "answers").reshape(-1, 6)
+
+
+def assert_same(steps, answers):
+    assert len(answers) > 1000
+    np.testing.assert_array_equal(steps.motion.view(np.int64), answers[:, :3].copy().view(np.int64))
+    np.testing.assert_array_equal(steps.status, answers[:, 3])
+    np.testing.assert_array_equal(steps.triangles, answers[:, 4])
+    np.testing.assert_array_equal(steps.planes, answers[:, 5])
+    assert len(steps.counts()) > 2  # not all alike
+
+
+@needs_loop
+def test_a_batch_on_any_number_of_threads(surface, tmp_path):
+    path, mesh = surface
+    lines = poses(mesh.vertices, 2000)
+    guard = keepout.MotionConstraint(mesh, **settings)
+    answers = cpp_steps(path, lines, "anew", tmp_path)
+    for threads in (1, 2, 5):
+        assert_same(guard.steps(lines[:, :3], lines[:, 3:], threads=threads), answers)
+
+
+@needs_loop
+def test_single_steps_and_a_replay(surface, tmp_path):
+    path, mesh = surface
+    lines = poses(mesh.vertices, 2000, seed=2, spread=0.4)
+    guard = keepout.MotionConstraint(mesh, **settings)
+    answers = cpp_steps(path, lines, "remembering", tmp_path)
+    assert_same(guard.replay(lines), answers)
+    single = [guard.step(line[:3], line[3:]) for line in lines]
+    motions = np.array([step.motion for step in single])
+    np.testing.assert_array_equal(motions.view(np.int64), answers[:, :3].copy().view(np.int64))
+    np.testing.assert_array_equal([int(step.status) for step in single], answers[:, 3])
+    np.testing.assert_array_equal([len(step.planes) for step in single], answers[:, 5])
+
+
+@needs_command
+@pytest.mark.parametrize("closed_loop", [False, True])
+def test_the_replay_of_the_command(sphere_file, closed_loop, tmp_path):
+    mesh = keepout.load_mesh(sphere_file)
+    lines = poses(mesh.vertices, 1500, seed=3)
+    if closed_loop:
+        turn = np.linspace(0, 20, len(lines))[:, None]
+        goals = 9.5 * np.hstack([np.cos(turn), np.sin(turn), np.sin(3 * turn) / 2])
+        lines = np.hstack([goals, np.broadcast_to([12.0, 0, 0], goals.shape)])
+    np.savetxt(tmp_path / "poses.txt", lines, fmt="%.17g")
+    flags = ["--closed-loop", "--max-step", "0.5"] if closed_loop else []
+    # fmt: off
+    subprocess.run(
+        [command, "replay", sphere_file, "--poses", tmp_path / "poses.txt", "--out",
+         tmp_path / "steps.csv", "--tool-radius", "0.3", "--margin", "0.2", *flags],
+        check=True, capture_output=True)
+    # fmt: on
+    with open(tmp_path / "steps.csv", newline="") as file:
+        rows = list(csv.DictReader(file))
+    guard = keepout.MotionConstraint(mesh, **settings)
+    steps = guard.replay(lines, closed_loop=closed_loop, max_step=0.5)
+    motion = np.array([[float(row[axis]) for axis in ("ux", "uy", "uz")] for row in rows])
+    np.testing.assert_array_equal(steps.motion, motion)
+    assert [keepout.Status(s).name for s in steps.status] == [row["status"] for row in rows]
+    np.testing.assert_array_equal(steps.triangles, [int(row["triangles"]) for row in rows])
+    np.testing.assert_array_equal(steps.planes, [int(row["planes"]) for row in rows])
+
+
+@needs_command
+def test_the_inspection_of_the_command(sphere_file):
+    output = subprocess.run(
+        [command, "inspect", sphere_file, "--json", "--self-intersections"],
+        check=True,
+        capture_output=True,
+        text=True,
+    ).stdout
+    told = json.loads(output)
+    found = keepout.load_mesh(sphere_file).inspect(self_intersections=True)
+    for name in (name for name in dir(found) if not name.startswith("_")):
+        value = getattr(found, name)
+        if name in ("low", "high"):
+            assert list(value) == told["bounds"][name]
+        elif name != "unused_vertices":
+            assert value == told[name], name

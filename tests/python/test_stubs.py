@@ -1,0 +1,123 @@
+# SPDX-FileCopyrightText: 2026 the keepout authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The stubs say what the module has."""
+
+import ast
+import inspect
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import keepout
+
+package = Path(keepout.__file__).parent
+
+
+def run(arguments, folder):
+    pytest.importorskip("mypy")
+    ended = subprocess.run(
+        [sys.executable, "-m", *arguments],
+        cwd=folder,
+        env={**os.environ, "MYPYPATH": str(package.parent)},
+        capture_output=True,
+        text=True,
+    )
+    assert ended.returncode == 0, ended.stdout + ended.stderr
+
+
+def test_stubtest(tmp_path):
+    made_by_others = "Hits Inspection Planes Polytope Step"
+    allowed = [
+        # pybind11 has a metaclass of its own, and an __init__ for what cannot be made by hand.
+        r"keepout\.(Index|Mesh|MotionConstraint|" + made_by_others.replace(" ", "|") + ")",
+        r"keepout\.(" + made_by_others.replace(" ", "|") + r")\.__init__",
+        r"keepout\._results\.NamedTuple",  # a function in Python 3.11, which mypy 1.0 does not know
+    ]
+    (tmp_path / "allowed").write_text("\n".join(allowed))
+    run(["mypy.stubtest", "keepout", "--allowlist", "allowed"], tmp_path)
+
+
+use = """
+import numpy as np
+import keepout
+
+mesh = keepout.Mesh(np.zeros((3, 3)), [[0, 1, 2]])
+guard = keepout.MotionConstraint(mesh, index=keepout.Index(mesh), margin=0.2, query="sphere")
+step = guard.step((0, 0, 1), np.zeros(3), rows=([[1, 0, 0]], [0]))
+status: keepout.Status = step.status
+length = float(np.linalg.norm(step.motion)) + step.planes.offsets.sum()
+steps = guard.steps(np.zeros((4, 3)), np.zeros((4, 3)), threads=2, out=keepout.Steps.empty(4))
+names: list[str] = [part.name for part in keepout.indices()]
+"""
+
+
+# Each line is wrong: were it not, the comment would be.
+misuse = """
+guard.steps(np.zeros((1, 3)), np.zeros((1, 3)), thread=3)  # type: ignore[call-arg]
+number: int = step.status.name  # type: ignore[assignment]
+keepout.MotionConstraint(mesh, query="far")  # type: ignore[arg-type]
+"""
+
+
+def test_mypy_accepts_right_use_and_no_other(tmp_path):
+    (tmp_path / "use.py").write_text(use + misuse)
+    # numpy's own stubs take mypy the longest, the first time.
+    run(["mypy", "--strict", "--cache-dir", str(package.parent / "mypy_cache"), "use.py"], tmp_path)
+
+
+def signature(doc):
+    """Names of the arguments in the line that pybind11 writes, and which of them have a default."""
+    line = re.match(r"\w+\((.*)\) -> ", doc).group(1)
+    line = re.sub(r"<[^>]*>", "None", line)
+    function = ast.parse(f"def f({line}): ...").body[0]
+    return arguments_of(function)
+
+
+def arguments_of(function):
+    a = function.args
+    defaults = [None] * (len(a.args) - len(a.defaults)) + list(a.defaults)
+    positional = [(arg.arg, default is not None) for arg, default in zip(a.args, defaults)]
+    keywords = [(arg.arg, default is not None) for arg, default in zip(a.kwonlyargs, a.kw_defaults)]
+    return positional, keywords
+
+
+def default_values(function):
+    a = function.args
+    pairs = list(zip(a.args[len(a.args) - len(a.defaults) :], a.defaults))
+    pairs += [(arg, value) for arg, value in zip(a.kwonlyargs, a.kw_defaults) if value]
+    return {arg.arg: ast.literal_eval(value) for arg, value in pairs}
+
+
+def compiled_functions():
+    """Every function of the stubs that is compiled, which stubtest cannot look into."""
+    stubs = ast.parse((package / "__init__.pyi").read_text())
+    for item in stubs.body:
+        if isinstance(item, ast.FunctionDef):
+            yield item.name, item, getattr(keepout, item.name).__doc__
+        if isinstance(item, ast.ClassDef):
+            for member in item.body:
+                special = isinstance(member, ast.FunctionDef) and member.decorator_list
+                if not isinstance(member, ast.FunctionDef) or special or member.name == "__len__":
+                    continue
+                method = getattr(getattr(keepout, item.name), member.name)
+                yield f"{item.name}.{member.name}", member, method.__doc__
+
+
+@pytest.mark.parametrize("name, stub, doc", [pytest.param(*f, id=f[0]) for f in compiled_functions()])
+def test_signatures(name, stub, doc):
+    assert arguments_of(stub) == signature(doc), name
+    line = doc.splitlines()[0]
+    for argument, value in default_values(stub).items():
+        written = re.search(rf"\b{argument}: [^=]* = ([^,)]*)", line).group(1)
+        assert ast.literal_eval(written) == value, f"{name}: {argument}"
+
+
+def test_all_that_is_public_is_in_the_stubs():
+    stubs = (package / "__init__.pyi").read_text()
+    assert all(f'"{name}"' in stubs for name in keepout.__all__)
+    assert (package / "py.typed").exists()
+    assert inspect.ismodule(keepout)
