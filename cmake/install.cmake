@@ -3,7 +3,8 @@
 #
 # What `cmake --install` and the Debian packages contain.
 #
-# keepout_install(TARGET COMPONENT [NOT_PACKAGED] [PUBLIC_PACKAGES ...] [PRIVATE_PACKAGES ...])
+# keepout_install(TARGET COMPONENT [NOT_PACKAGED] [PUBLIC_PACKAGES ...] [PRIVATE_PACKAGES ...]
+#                 [FIND_SCRIPT file])
 #   installs a library of ours, exported as keepout::COMPONENT for find_package(keepout COMPONENTS
 #   COMPONENT) and as keepout-COMPONENT.pc, with its headers. Call it last in a room's
 #   CMakeLists.txt. Which of our other libraries it needs is read from what it links; its headers are
@@ -14,6 +15,9 @@
 #   PRIVATE_PACKAGES: what a consumer must find only if our library is static, as "FCL@DEBIAN@FLAGS":
 #                     the arguments of find_package, or "-lNAME" for a library without one; the Debian
 #                     package; the linker's flags.
+#   FIND_SCRIPT:      is included by a consumer before the target, to make targets of other libraries
+#                     that it links and that no package makes. Appends to _keepout_missing what to do
+#                     if it cannot.
 #   NOT_PACKAGED:     left out of the Debian packages.
 #
 # keepout_install_config() installs keepout-config.cmake for all of them; call it once, after them.
@@ -98,13 +102,14 @@ function(keepout_pkg_config component form libdir name requires link private fil
   set(KEEPOUT_PC_LIBDIR ${libdir})
   # From where the file is to the prefix, so that the whole may be moved.
   file(RELATIVE_PATH KEEPOUT_PC_PREFIX /prefix/${libdir}/pkgconfig /prefix)
+  string(REGEX REPLACE "/$" "" KEEPOUT_PC_PREFIX ${KEEPOUT_PC_PREFIX})
   set(path ${PROJECT_BINARY_DIR}/${form}/${name}.pc)
   configure_file(${PROJECT_SOURCE_DIR}/cmake/keepout.pc.in ${path} @ONLY)
   set(${file} ${path} PARENT_SCOPE)
 endfunction()
 
 function(keepout_install target component)
-  cmake_parse_arguments(PARSE_ARGV 2 arg "NOT_PACKAGED" "" "PUBLIC_PACKAGES;PRIVATE_PACKAGES")
+  cmake_parse_arguments(PARSE_ARGV 2 arg "NOT_PACKAGED" "FIND_SCRIPT" "PUBLIC_PACKAGES;PRIVATE_PACKAGES")
   if(arg_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "keepout_install(${target}): what is ${arg_UNPARSED_ARGUMENTS}?")
   endif()
@@ -189,6 +194,10 @@ function(keepout_install target component)
   keepout_pkg_config(${component} linked ${CMAKE_INSTALL_LIBDIR} ${name} "${requires}" "${link}"
                      "${private}" file)
   install(FILES ${file} DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT keepout_development)
+  if(arg_FIND_SCRIPT)
+    install(FILES ${arg_FIND_SCRIPT} DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/keepout
+            RENAME keepout-${component}-find.cmake COMPONENT keepout_development)
+  endif()
 
   # As it is packaged.
   if(NOT KEEPOUT_PACKAGES OR arg_NOT_PACKAGED)
@@ -217,6 +226,10 @@ function(keepout_install target component)
                      file)
   install(FILES ${file} DESTINATION ${KEEPOUT_PACKAGE_LIBDIR}/pkgconfig COMPONENT libkeepout-dev
     EXCLUDE_FROM_ALL)
+  if(arg_FIND_SCRIPT)
+    install(FILES ${arg_FIND_SCRIPT} DESTINATION ${KEEPOUT_PACKAGE_LIBDIR}/cmake/keepout
+            RENAME keepout-${component}-find.cmake COMPONENT libkeepout-dev EXCLUDE_FROM_ALL)
+  endif()
 endfunction()
 
 # What keepout-config.cmake is to know of the components of a form, in the order of their needs.

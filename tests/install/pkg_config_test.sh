@@ -16,14 +16,14 @@ form=
 [ -e "$folder/libkeepout.so" ] || form=--static
 # Words of flags, none of which holds a blank.
 # shellcheck disable=SC2046
-"$compiler" -std=c++20 -O1 "$here/consumer/main.cpp" -o "$work/consumer" \
+"$compiler" -std=c++20 "$here/consumer/main.cpp" -o "$work/consumer" \
   $(pkg-config --cflags --libs $form keepout)
 run_consumer "$work/consumer" "$prefix"
 
 # As for a machine with wider vectors than ours: what Eigen aligns for them is not exchanged.
 if [ -z "$form" ]; then
   # shellcheck disable=SC2046
-  "$compiler" -std=c++20 -O1 -DEIGEN_MAX_ALIGN_BYTES=64 "$here/../../examples/05_own_solver.cpp" \
+  "$compiler" -std=c++20 -DEIGEN_MAX_ALIGN_BYTES=64 "$here/../../examples/05_own_solver.cpp" \
     -o "$work/own_solver" $(pkg-config --cflags --libs keepout)
   LD_LIBRARY_PATH=$folder "$work/own_solver" "$here/cube.obj" | grep 'held back in .* 0 failed'
 fi
