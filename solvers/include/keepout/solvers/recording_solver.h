@@ -12,15 +12,17 @@ namespace keepout {
 
 /// A step problem that owns its numbers.
 struct RecordedProblem {
+  /// Copies all its numbers. Precondition: its rows are written, those of planes as well.
   explicit RecordedProblem(const StepProblem& problem);
 
+  /// The problem again. Valid as long as this lives, and stays where it is.
   StepProblem view() const noexcept;
 
-  StepProblem::Matrix jacobian;
-  StepProblem::Vector desired;
-  StepProblem::RowMatrix rows;
-  StepProblem::Vector bounds;
-  double damping = 0;
+  StepProblem::Matrix jacobian;  // J (k, n)
+  StepProblem::Vector desired;   // d (k) [length]
+  StepProblem::RowMatrix rows;   // A (m, n)
+  StepProblem::Vector bounds;    // b (m)
+  double damping = 0;            // weight of |u|^2
 };
 
 /// Passes every problem on to another solver, and keeps a copy of it: to pose the problems of real
