@@ -47,7 +47,8 @@ class Reader:
             # Debian's, which the module was built for.
             (commands / "python3").symlink_to("/usr/bin/python3")
             self.environment["PYTHONPATH"] = str(python)
-        self.printed = None  # by the last run, None if there was none
+        self.printed = None  # by the last run
+        self.was_left_out = False
 
     def fail(self, line, why):
         sys.exit(f"{self.page}:{line}: {why}")
@@ -74,6 +75,8 @@ class Reader:
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_text(text, encoding="utf-8")
         elif what == "output":
+            if self.printed is None and not self.was_left_out:
+                self.fail(line, "nothing was run before")
             if self.printed is not None and self.printed != text:
                 difference = difflib.unified_diff(text.splitlines(), self.printed.splitlines(),
                                                   "the page", "the run", lineterm="")
@@ -82,7 +85,7 @@ class Reader:
             if not name:
                 self.fail(line, "say why it is not tested")
         elif what == "run python" and not self.python:
-            self.printed = None
+            self.printed, self.was_left_out = None, True
         else:
             self.run(text, what == "run fails", line)
 
@@ -90,7 +93,7 @@ class Reader:
         done = subprocess.run(["bash", "-euc", text], cwd=self.folder, env=self.environment,
                               stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                               stderr=subprocess.STDOUT, text=True, timeout=600)
-        self.printed = done.stdout
+        self.printed, self.was_left_out = done.stdout, False
         if (done.returncode != 0) != fails:
             self.fail(line, f"ended with {done.returncode}:\n{done.stdout}")
 
