@@ -7,7 +7,7 @@
 
 Above each block of code a comment that readers do not see says what is to be done with it:
 
-    <!-- file: NAME -->      write it to this file
+    <!-- file: NAME -->      write it to this file, which the text before it must name, too
     <!-- run -->             run it, as a reader would, in one shell after the other; it must succeed
     <!-- run fails -->       the same; it must fail
     <!-- run python -->      the same, if there is a Python module (--python)
@@ -61,14 +61,17 @@ class Reader:
             order = ORDER.search(text, 0, block.start())
             if order is None:
                 self.fail(line, "what is to be done with this block? See tests/docs/follow_page.py")
-            self.obey(order["what"], (order["name"] or "").strip(), block["text"], line)
+            self.obey(order["what"], (order["name"] or "").strip(), block["text"], line,
+                      text[max(0, block.start() - 400):order.start()])
             count += 1
         if count == 0:
             self.fail(1, "there is no block of code: has the page changed its form?")
         print(f"{self.page.name}: {count} blocks")
 
-    def obey(self, what, name, text, line):
+    def obey(self, what, name, text, line, before):
         if what == "file":
+            if f"`{name}`" not in before:
+                self.fail(line, f"nothing tells the reader that this is `{name}`")
             path = self.folder / name
             if self.folder not in path.resolve().parents:
                 self.fail(line, f"{name} is not in the folder")
