@@ -24,6 +24,16 @@ function(keepout_precompile_headers target)
   endif()
 endfunction()
 
+# keepout_share_headers(TARGET COUNT): compiles so many sources of the target as one, which read once
+# the headers that all of them include, and instantiate once what all of them use. For tests and for
+# the command; each source of the library compiles alone.
+option(KEEPOUT_SHARE_HEADERS "Compile several sources of tests and command as one" OFF)
+function(keepout_share_headers target count)
+  if(KEEPOUT_SHARE_HEADERS)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${count})
+  endif()
+endfunction()
+
 function(keepout_compile_options target)
   target_compile_features(${target} PUBLIC cxx_std_20)
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON)
@@ -45,6 +55,12 @@ function(keepout_compile_options target)
   if(KEEPOUT_SANITIZE)
     target_compile_options(${target} PRIVATE -fsanitize=${KEEPOUT_SANITIZE}
                                              -fno-sanitize-recover=all -fno-omit-frame-pointer)
+    if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+      # Registers are found in half the time for the long functions that checks make of short ones.
+      target_compile_options(${target} PRIVATE -fira-region=one)
+    endif()
+    # Both have vectors of the length that SSE2 has, and so run the same lines.
+    target_compile_definitions(${target} PRIVATE "HWY_DISABLED_TARGETS=(HWY_SSSE3|HWY_SSE4)")
     target_link_options(${target} PUBLIC -fsanitize=${KEEPOUT_SANITIZE})
     keepout_precompile_headers(${target})
   endif()

@@ -18,6 +18,7 @@
 #include "keepout/adapters/index_registry.h"
 #include "keepout/error.h"
 #include "keepout/solvers/registry.h"
+#include "keepout/version.h"
 #include "number_checks.h"
 #include "part_lists.h"
 #include "replay.h"

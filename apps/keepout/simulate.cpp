@@ -17,6 +17,7 @@
 #include "keepout/activation/registry.h"
 #include "keepout/adapters/load_mesh.h"
 #include "keepout/error.h"
+#include "keepout/version.h"
 #include "machine.h"
 #include "output_file.h"
 #include "path_audit.h"

@@ -17,6 +17,7 @@
 #include "keepout/fixtures/shapes.h"
 #include "keepout/geometry/closest_point.h"
 #include "small_surfaces.h"
+#include "trials.h"
 
 namespace keepout::test {
 namespace {
@@ -231,7 +232,7 @@ class BestStepOnShapes : public testing::TestWithParam<const char*> {};
 TEST_P(BestStepOnShapes, IsSafeAndNoDirectionOfManyIsBetter) {
   const Mesh mesh(make_shape(GetParam()));
   Random random(11);
-  for (int walk = 0; walk < 6; ++walk) {
+  for (int walk = 0; walk < trials(6); ++walk) {
     const double length = random.uniform(0.5, 3.0);
     const double margin = random.uniform(0.1, 0.4);
     Vec3 tip = surface_points(mesh, 1, 1.05 * margin, random)[0];

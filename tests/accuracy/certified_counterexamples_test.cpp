@@ -9,6 +9,7 @@
 #include "accuracy/certified_loop.h"
 #include "accuracy/counterexamples.h"
 #include "accuracy/segment_crossing.h"
+#include "trials.h"
 
 namespace keepout::test {
 namespace {
@@ -93,7 +94,7 @@ TEST_P(CertifiedCounterexample, IsTheSameWithAnyNumbering) {
   Random random(1);
   for (const double margin : margins) {
     const std::vector<Cycle> expected = cycles(example.surface, example, margin);
-    for (int i = 0; i < 100; ++i) {
+    for (int i = 0; i < test::trials(100); ++i) {
       Surface other = renumbered(example.surface, random);
       ASSERT_EQ(cycles(other, example, margin), expected) << "numbering " << i;
       if (example.name == "CE5_closed_octahedron") continue;

@@ -16,6 +16,7 @@
 #include "keepout/geometry/closest_point.h"
 #include "keepout/index/spatial_index.h"
 #include "keepout/mesh/mesh.h"
+#include "trials.h"
 
 namespace keepout {
 
@@ -28,8 +29,9 @@ inline std::vector<double> distances(const Mesh& mesh, const Vec3& point) {
   return all;
 }
 
-/// Places of every kind that an index might get wrong.
+/// Places of every kind that an index might get wrong; fewer under sanitizers.
 inline std::vector<Vec3> probing_points(const Mesh& mesh, std::size_t of_each_kind) {
+  of_each_kind = test::trials(of_each_kind);
   Random random(1);
   const double size = mesh.bounds().size().norm();
   std::vector<Vec3> points;

@@ -13,6 +13,7 @@
 #include "keepout/fixtures/poses.h"
 #include "keepout/fixtures/shapes.h"
 #include "path_audit.h"
+#include "trials.h"
 
 namespace keepout::app {
 namespace {
@@ -183,7 +184,7 @@ TEST(PathAudit, AgreesWithTheHeightOfATerrainAlongARandomWalk) {
   PathAudit path(audit, tip);
   bool below = is_below(tip);
   std::size_t changes = 0;
-  for (int i = 0; i < 1000; ++i) {
+  for (int i = 0; i < test::trials(1000); ++i) {
     const Vec3 to = (0.98 * tip + 1.5 * random.direction()).eval();
     // Over a crest, a move may go in and come out again.
     bool changes_side = false;
@@ -195,7 +196,7 @@ TEST(PathAudit, AgreesWithTheHeightOfATerrainAlongARandomWalk) {
     below = is_below(to);
     tip = to;
   }
-  EXPECT_GT(changes, 20u);
+  EXPECT_GT(changes, test::trials(20u));
 }
 
 }  // namespace

@@ -52,6 +52,20 @@ TEST(Example01, EndsOutsideOfTheMeshByTheMargin) {
   EXPECT_GT(ending.tip.norm(), radius + 0.5);
 }
 
+TEST(Example02, ComposedStaticallyOrByNameTheMotionsAreTheSame) {
+  int different = -1;
+  double composed = 0.0, by_name = 0.0, searching = 0.0;  // [us]
+  const std::string text = output_of(KEEPOUT_EXAMPLE_STATIC_COMPOSITION);
+  ASSERT_EQ(
+      std::sscanf(text.c_str(),
+                  "%d motions differ; a step takes %lf us composed, %lf by name, %lf searching",
+                  &different, &composed, &by_name, &searching),
+      4)
+      << text;
+  EXPECT_EQ(different, 0);
+  for (const double time : {composed, by_name, searching}) EXPECT_GT(time, 0.0);
+}
+
 TEST(Example03, AnOwnIndexKeepsTheTipOutAsBruteForceDoes) {
   int held = 0, cycles = 0, different = 0;
   const std::string text = output_of(KEEPOUT_EXAMPLE_OWN_INDEX);
@@ -71,6 +85,38 @@ TEST(Example04, TheWholeShaftEndsOutsideOfTheMeshByTheMargin) {
     const Vec3 on_the_axis = ending.tip + 0.01 * i * Vec3(8.5, 0, 8.5);
     EXPECT_GT(on_the_axis.norm(), radius + 1.5 + 0.2 - 1e-6);
   }
+}
+
+TEST(Example05, AnOwnSolverIsOptimalAndMovesAsActiveSetDoes) {
+  int held = 0, cycles = 0, failed = -1, problems = 0;
+  double apart = 1.0, residual = 1.0;
+  const std::string text = output_of(KEEPOUT_EXAMPLE_OWN_SOLVER);
+  ASSERT_EQ(std::sscanf(text.c_str(),
+                        "held back in %d of %d cycles, %d failed; %lf from active_set; "
+                        "KKT residual %lf in %d problems",
+                        &held, &cycles, &failed, &apart, &residual, &problems),
+            6)
+      << text;
+  EXPECT_GT(held, 100);
+  EXPECT_EQ(failed, 0);
+  EXPECT_GT(problems, held);
+  EXPECT_LT(apart, 1e-11);
+  EXPECT_LT(residual, 1e-12);
+}
+
+TEST(Example06, AnOwnProgramInTheFreePolytopeKeepsTheMargin) {
+  double closest = 0.0, margin = 0.0, change = 1.0;
+  Vec3 tip = Vec3::Zero();
+  const std::string text = output_of(KEEPOUT_EXAMPLE_OWN_QP);
+  ASSERT_EQ(std::sscanf(text.c_str(),
+                        "closest %lf of %lf, largest change of a move %lf, ends at %lf %lf %lf",
+                        &closest, &margin, &change, &tip.x(), &tip.y(), &tip.z()),
+            6)
+      << text;
+  EXPECT_GE(closest, margin - 1e-8);
+  EXPECT_LT(closest, margin + 0.1);  // it does come there
+  EXPECT_LT(change, 0.15);
+  EXPECT_GT(tip.norm(), radius + margin - 1e-8);
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "keepout/oracle/safety_oracle.h"
 #include "oracle/hostile_pairs.h"
 #include "oracle/infinity.h"
+#include "trials.h"
 
 namespace keepout::oracle {
 namespace {
@@ -27,7 +28,7 @@ double size_of(const HostilePair& pair) {
 
 TEST(BracketDistance, HoldsTheExactDistanceOfHostilePairs) {
   Random random(20261120);
-  for (int i = 0; i < 30'000; ++i) {
+  for (int i = 0; i < test::trials(30'000); ++i) {
     const HostilePair pair = hostile_pair(random);
     const Bracket bracket = bracket_distance(pair.segment, pair.triangle);
     ASSERT_LE(bracket.low, bracket.estimate);
@@ -41,7 +42,7 @@ TEST(BracketDistance, HoldsTheExactDistanceOfHostilePairs) {
 
 TEST(NarrowDistance, IsWithinABillionthOfTheExactOneAndZeroOnlyAtATouch) {
   Random random(2);
-  for (int i = 0; i < 40'000; ++i) {
+  for (int i = 0; i < test::trials(40'000); ++i) {
     const HostilePair pair = hostile_pair(random);
     const Bracket narrow = narrow_distance(pair.segment, pair.triangle);
     const ExactDistance exact = exact_distance(pair.segment, pair.triangle, 0.0);
@@ -56,7 +57,7 @@ TEST(BracketDistance, IsNarrowForNearlyAllFairPairs) {
   Random random(3);
   const auto point = [&random]() -> Vec3 { return 10.0 * random.direction() * random.uniform(); };
   int wide = 0;
-  constexpr int count = 1'000'000;
+  constexpr int count = test::trials(1'000'000);
   for (int i = 0; i < count; ++i) {
     HostilePair pair;
     pair.triangle = {point(), point(), point()};
@@ -97,7 +98,7 @@ void expect_exact_verdict(const HostilePair& pair, double threshold, SafetyOracl
 
 TEST(BracketDistance, AndTheExactOneNeverDisagreeOneStepAroundTheTruth) {
   Random random(4);
-  for (int i = 0; i < 8'000; ++i) {
+  for (int i = 0; i < test::trials(8'000); ++i) {
     const HostilePair pair = hostile_pair(random);
     const auto& [a, b, c] = pair.triangle;
     SafetyOracle oracle(std::make_shared<const Mesh>(Surface{{a, b, c}, {{0, 1, 2}}}));

@@ -11,6 +11,7 @@
 #include "keepout/fixtures/poses.h"
 #include "keepout/fixtures/shapes.h"
 #include "keepout/oracle/exact_distance.h"
+#include "trials.h"
 
 namespace keepout::oracle {
 namespace {
@@ -22,9 +23,9 @@ std::vector<TriangleId> sorted(std::vector<TriangleId> ids) {
 
 /// Points on and near the mesh, and all over its bounds.
 std::vector<Vec3> places(const Mesh& mesh, Random& random) {
-  std::vector<Vec3> all = random_points(mesh, 10, random);
-  for (const Vec3& p : vertex_points(mesh, 10, random)) all.push_back(p);
-  for (const Vec3& p : edge_points(mesh, 10, random)) all.push_back(p);
+  std::vector<Vec3> all = random_points(mesh, test::trials(10u), random);
+  for (const Vec3& p : vertex_points(mesh, test::trials(10u), random)) all.push_back(p);
+  for (const Vec3& p : edge_points(mesh, test::trials(10u), random)) all.push_back(p);
   return all;
 }
 

@@ -6,6 +6,7 @@
 #include "contradiction.h"
 #include "keepout/solvers/active_set.h"
 #include "solvers/solver_contract.h"
+#include "trials.h"
 
 namespace keepout::test {
 namespace {
@@ -54,7 +55,7 @@ TEST(AnswerCheck, AcceptsTheOptimum) {
 TEST(AnswerCheck, AcceptsNothingThatIsFartherFromTheOptimumThanItSays) {
   // From last digits to wild guesses, in any direction; of every kind of problem.
   int accepted = 0, rejected = 0;
-  for (std::uint64_t seed = 0; seed < 6000; ++seed) {
+  for (std::uint64_t seed = 0; seed < trials(6000u); ++seed) {
     Posed posed(tasks[seed % tasks.size()], plane_kinds[seed / tasks.size() % plane_kinds.size()],
                 seed);
     const double far = posed.random.log_uniform(1e-12, 10) * (1e-3 + posed.best.norm());
@@ -72,8 +73,8 @@ TEST(AnswerCheck, AcceptsNothingThatIsFartherFromTheOptimumThanItSays) {
                             .active = answer.active};
     EXPECT_LE(kkt_residual(posed.problem.view(), solution).worst(), accuracy) << "seed " << seed;
   }
-  EXPECT_GT(accepted, 1200);
-  EXPECT_GT(rejected, 1200);
+  EXPECT_GT(accepted, trials(1200));
+  EXPECT_GT(rejected, trials(1200));
 }
 
 TEST(AnswerCheck, SaysWhatIsWrong) {

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "bench/parts.h"
+#include "keepout/version.h"
 #include "machine.h"
 
 namespace keepout::app {

@@ -15,6 +15,7 @@
 #include "arenas.h"
 #include "campaign.h"
 #include "keepout/error.h"
+#include "keepout/version.h"
 #include "result.h"
 
 namespace keepout::app {

@@ -17,6 +17,7 @@
 #include "keepout/geometry/closest_point.h"
 #include "keepout/oracle/bracket_distance.h"
 #include "keepout/oracle/exact_distance.h"
+#include "trials.h"
 
 namespace keepout {
 namespace {
@@ -123,7 +124,7 @@ TEST_P(FacetOfKind, WhatIsSaidToKeepClearDoes) {
   Random random(1);
   double worst = 0.0;
   std::size_t clear = 0;
-  for (int i = 0; i < 30'000; ++i) {
+  for (int i = 0; i < test::trials(30'000); ++i) {
     const Case c = random_case(random, GetParam().height);
     const Facet facet(c.triangle, Vec3::Zero(), 7);
     if (!keeps_clear(facet, c.z, c.level, c.slack)) continue;
@@ -131,27 +132,27 @@ TEST_P(FacetOfKind, WhatIsSaidToKeepClearDoes) {
     worst = std::max(worst, (c.level - c.slack - c.distance) / c.size);
     ASSERT_GE(c.distance, c.level - c.slack - GetParam().rounding * c.size) << "case " << i;
   }
-  EXPECT_GT(clear, 5'000u);
+  EXPECT_GT(clear, test::trials(5'000u));
   RecordProperty("worst_in_sizes", std::to_string(worst));
 }
 
 TEST_P(FacetOfKind, WhatKeepsClearIsSaidTo) {
   Random random(2);
   std::size_t kept = 0;
-  for (int i = 0; i < 30'000; ++i) {
+  for (int i = 0; i < test::trials(30'000); ++i) {
     const Case c = random_case(random, GetParam().height);
     const Facet facet(c.triangle, Vec3::Zero(), 7);
     if (c.distance < c.level - c.slack + GetParam().hidden * c.size) continue;
     ++kept;
     ASSERT_TRUE(keeps_clear(facet, c.z, c.level, c.slack)) << "case " << i;
   }
-  EXPECT_GT(kept, 5'000u);
+  EXPECT_GT(kept, test::trials(5'000u));
 }
 
 TEST_P(FacetOfKind, NoSampleOfAClearMotionIsTooNear) {
   Random random(3);
   std::size_t clear = 0;
-  for (int i = 0; i < 2'000; ++i) {
+  for (int i = 0; i < test::trials(2'000); ++i) {
     const Case c = random_case(random, GetParam().height);
     const Facet facet(c.triangle, Vec3::Zero(), 7);
     if (!keeps_clear(facet, c.z, c.level, c.slack)) continue;
@@ -160,13 +161,13 @@ TEST_P(FacetOfKind, NoSampleOfAClearMotionIsTooNear) {
               c.level - c.slack - GetParam().rounding * c.size)
         << "case " << i;
   }
-  EXPECT_GT(clear, 300u);
+  EXPECT_GT(clear, test::trials(300u));
 }
 
 TEST_P(FacetOfKind, TheFirstContactIsNeitherLateNorEarly) {
   Random random(4);
   std::size_t contacts = 0;
-  for (int i = 0; i < 30'000; ++i) {
+  for (int i = 0; i < test::trials(30'000); ++i) {
     const Case c = random_case(random, GetParam().height);
     const double rounding = GetParam().rounding * c.size;
     const Facet facet(c.triangle, Vec3::Zero(), 7);
@@ -187,13 +188,13 @@ TEST_P(FacetOfKind, TheFirstContactIsNeitherLateNorEarly) {
       ASSERT_LE(plane.normal.dot(corner) + c.level, plane.offset + 1e-15 * c.size);
     }
   }
-  EXPECT_GT(contacts, 2'000u);
+  EXPECT_GT(contacts, test::trials(2'000u));
 }
 
 TEST_P(FacetOfKind, ThePlaneOfAContactExcludesTheMotion) {
   Random random(5);
   std::size_t contacts = 0;
-  for (int i = 0; i < 30'000; ++i) {
+  for (int i = 0; i < test::trials(30'000); ++i) {
     const Case c = random_case(random, GetParam().height);
     const Facet facet(c.triangle, Vec3::Zero(), 7);
     // What the rule does: it objects an eighth of a tolerance later than the slack of a contact.
@@ -203,7 +204,7 @@ TEST_P(FacetOfKind, ThePlaneOfAContactExcludesTheMotion) {
     const HalfSpace plane = first_contact(facet, c.z, c.level, c.slack, 1.0).plane;
     ASSERT_LT(plane.normal.dot(c.z), plane.offset) << "case " << i;
   }
-  EXPECT_GT(contacts, 2'000u);
+  EXPECT_GT(contacts, test::trials(2'000u));
 }
 
 TEST_P(FacetOfKind, TheSearchForALateContactIsGivenUpOnlyBeyondTheLatest) {

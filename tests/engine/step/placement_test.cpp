@@ -19,6 +19,7 @@
 #include "keepout/mesh/watertight.h"
 #include "keepout/oracle/safety_oracle.h"
 #include "small_surfaces.h"
+#include "trials.h"
 
 namespace keepout {
 namespace {
@@ -58,6 +59,7 @@ Surface rotated(Surface surface, double angle) {
 
 /// Places off the surface, by `offset` in some direction, on faces, edges and vertices.
 std::vector<Vec3> tips_around(const Mesh& mesh, std::size_t count, Random& random) {
+  count = test::trials(count);
   std::vector<Vec3> tips = random_points(mesh, count, random);
   const auto add = [&](const std::vector<Vec3>& points) {
     for (const Vec3& p : points) {
@@ -96,8 +98,8 @@ TEST_P(PlacementOnSolid, AgreesWithAnIndependentInsideTest) {
         << "at " << tip.transpose() << ", distance " << distance;
     ++(is_inside ? inside : outside);
   }
-  EXPECT_GT(inside, 300u);
-  EXPECT_GT(outside, 300u);
+  EXPECT_GT(inside, test::trials(300u));
+  EXPECT_GT(outside, test::trials(300u));
 }
 
 TEST_P(PlacementOnSolid, TheWayLeadsToTheSurfaceFromInsideAndOffItFromOutside) {
@@ -135,7 +137,7 @@ TEST_P(PlacementOnSolid, LeadingOutNeverLeadsDeeper) {
       }
     }
   }
-  EXPECT_GT(forbidden, 50u);
+  EXPECT_GT(forbidden, test::trials(50u));
 }
 
 TEST_P(PlacementOnSolid, DoesNotDependOnTheNumbering) {

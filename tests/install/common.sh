@@ -1,0 +1,44 @@
+# Sourced by the tests of this folder.
+# SPDX-FileCopyrightText: 2026 the keepout authors
+# SPDX-License-Identifier: BSD-3-Clause
+set -euo pipefail
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+
+fail() { printf '%s\n' "$*" >&2; exit 1; }
+
+# Of a prefix: where its files of CMake and pkg-config are.
+library_folder() { dirname "$(dirname "$(find "$1" -path '*/pkgconfig/keepout.pc')")"; }
+
+# The consumer wants to go 1 aside and 4 down, from 2 above the cube, and to stay 0.5 away.
+run_consumer() {
+  local answer
+  answer=$(LD_LIBRARY_PATH=$(library_folder "$2") "$1" "$here/cube.obj")
+  [ "$answer" = "1.000000 -1.500000: planes of nearby triangles hold the motion back" ] ||
+    fail "the consumer answers: $answer"
+}
+
+# bare_compiler FOLDER: makes a compiler that sees the headers of C, C++ and the kernel, and no others
+# but by -I; prints its path.
+bare_compiler() {
+  local compiler=${CXX:-c++} folder=$1 version includes= path
+  version=$("$compiler" -dumpversion)
+  mkdir -p "$folder/headers"
+  dpkg -L libc6-dev linux-libc-dev "libstdc++-${version%%.*}-dev" | grep '^/usr/include/' |
+    while read -r path; do [ -d "$path" ] || printf '%s\n' "$path"; done |
+    (cd "$folder/headers" && xargs cp --parents -sft .)
+  # In the order in which the compiler itself looks.
+  while read -r path; do
+    path=$(realpath -m "$path")
+    case $path in
+      /usr/local/*) ;;
+      /usr/include | /usr/include/*) includes+=" -isystem $folder/headers$path" ;;
+      *) includes+=" -isystem $path" ;;
+    esac
+  done < <("$compiler" -E -v -x c++ /dev/null 2>&1 >/dev/null | sed -n '/#include </,/^End/s/^ //p')
+  printf '#!/bin/sh\nexec %s -nostdinc%s "$@"\n' "$compiler" "$includes" > "$folder/bare_compiler"
+  chmod +x "$folder/bare_compiler"
+  printf '#include <fcl/config.h>\n' > "$folder/foreign.cpp"
+  ! "$folder/bare_compiler" -fsyntax-only "$folder/foreign.cpp" 2>/dev/null ||
+    fail "the bare compiler finds the headers of FCL"
+  printf '%s\n' "$folder/bare_compiler"
+}

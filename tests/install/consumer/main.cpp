@@ -1,0 +1,9 @@
+#include <cstdio>
+
+#include "keepout/keepout.h"
+
+int main(int, char** argv) {
+  auto guard = keepout::make_motion_constraint(keepout::load_mesh(argv[1]).mesh, {.margin = 0.5});
+  const keepout::Step step = guard.step({.tip = {0, 0, 12}, .desired = {1, 0, -4}});
+  std::printf("%.6f %.6f: %s\n", step.motion.x(), step.motion.z(), step.reason().data());
+}

@@ -1,0 +1,22 @@
+#!/usr/bin/env bash
+# A project outside of ours finds keepout in a prefix, builds and runs.
+# With `bare`: though nothing else is there but Eigen.
+#   consumer_test.sh PREFIX WORK [bare]
+# SPDX-FileCopyrightText: 2026 the keepout authors
+# SPDX-License-Identifier: BSD-3-Clause
+. "$(dirname "$0")/common.sh"
+prefix=$1 work=$2 kind=${3:-}
+
+rm -rf "$work"
+mkdir -p "$work"
+options=()
+if [ "$kind" = bare ]; then
+  options+=(-DCMAKE_CXX_COMPILER="$(bare_compiler "$work")")
+  for package in fcl ccd octomap assimp embree Bullet NLopt hwy CGAL Threads; do
+    options+=(-DCMAKE_DISABLE_FIND_PACKAGE_$package=ON)
+  done
+fi
+cmake -S "$here/consumer" -B "$work/build" -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_BUILD_TYPE=Release \
+  --no-warn-unused-cli "${options[@]}"
+cmake --build "$work/build"
+run_consumer "$work/build/consumer" "$prefix"

@@ -1,0 +1,39 @@
+#!/usr/bin/env bash
+# The Debian packages hold what they should, and nothing that may not be passed on; unpacks them.
+#   packages_test.sh WORK SOURCE
+# SPDX-FileCopyrightText: 2026 the keepout authors
+# SPDX-License-Identifier: BSD-3-Clause
+. "$(dirname "$0")/common.sh"
+work=$1 source=$2
+
+rm -rf "$work/unpacked"
+count=0
+for package in "$work"/packages/*.deb; do
+  dpkg -x "$package" "$work/unpacked"
+  name=$(dpkg -f "$package" Package)
+  for file in copyright changelog.gz; do
+    [ -s "$work/unpacked/usr/share/doc/$name/$file" ] || fail "$name has no $file"
+  done
+  count=$((count + 1))
+done
+[ $count -eq 3 ] || fail "$count packages instead of 3"
+
+cd "$work/unpacked"
+for forbidden in cgal gpl all_indices fixtures oracle; do
+  found=$(find . -iname "*$forbidden*")
+  [ -z "$found" ] || fail "not to be passed on: $found"
+done
+found=$(grep -rlF "$source" . || true)
+[ -z "$found" ] || fail "a path of this machine is in: $found"
+
+usr/bin/keepout --version
+usr/bin/keepout inspect "$here/cube.obj" | grep -q watertight || fail "the command cannot inspect"
+! usr/bin/keepout bench --help | grep -q '^ *cgal' || fail "the command has CGAL"
+
+for library in usr/lib/*/*.so.*; do
+  # Nothing but ours: no template of another library may stand in for a program's own.
+  foreign=$(nm -DC --defined-only "$library" | grep -v -e ' keepout::' -e ' A KEEPOUT_' \
+    -e ' \(vtable\|typeinfo\|typeinfo name\|VTT\|guard variable\) for keepout::' || true)
+  [ -z "$foreign" ] || fail "$library shows: $foreign"
+  ! readelf -d "$library" | grep -q -e RUNPATH -e RPATH || fail "$library has a path to libraries"
+done

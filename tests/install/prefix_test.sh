@@ -1,0 +1,15 @@
+#!/usr/bin/env bash
+# `cmake --install` leaves nothing that is not to be passed on, and no path of the source.
+#   prefix_test.sh PREFIX SOURCE
+# SPDX-FileCopyrightText: 2026 the keepout authors
+# SPDX-License-Identifier: BSD-3-Clause
+. "$(dirname "$0")/common.sh"
+prefix=$1 source=$2
+
+for forbidden in cgal gpl all_indices fixtures oracle; do
+  found=$(find "$prefix" -iname "*$forbidden*")
+  [ -z "$found" ] || fail "not to be installed: $found"
+done
+found=$(grep -rlF "$source" "$prefix" || true)
+[ -z "$found" ] || fail "a path of this machine is in: $found"
+"$prefix/bin/keepout" --version

@@ -1,0 +1,39 @@
+#!/usr/bin/env bash
+# dpkg installs the packages, runs their scripts, and removes them without a trace: in a root of its
+# own, whose record of packages is a copy of this system's, so that dependencies are truly checked.
+#   round_trip_test.sh WORK
+# SPDX-FileCopyrightText: 2026 the keepout authors
+# SPDX-License-Identifier: BSD-3-Clause
+. "$(dirname "$0")/common.sh"
+work=$1 root=$1/root
+
+rm -rf "$root" "$work/commands"
+mkdir -p "$root"/var/lib/dpkg/{info,updates,triggers} "$work/commands"
+awk -v RS= -v ORS='\n\n' '!/^Package: (lib)?keepout/' /var/lib/dpkg/status > "$root/var/lib/dpkg/status"
+# The packages' scripts call it, and it knows of no root but this system's.
+printf '#!/bin/sh\necho called >> "%s"\n' "$work/commands/calls" > "$work/commands/ldconfig"
+chmod +x "$work/commands/ldconfig"
+
+in_root() {
+  if ! PATH=$work/commands:/usr/sbin:/sbin:$PATH dpkg --root="$root" --log="$work/dpkg.log" \
+    --force-not-root --force-script-chrootless "$@" > "$work/dpkg.txt" 2>&1; then
+    # No lists of files came with the copy.
+    grep -v 'files list file for package' "$work/dpkg.txt" >&2
+    fail "dpkg $1 failed"
+  fi
+}
+state() { dpkg-query --admindir="$root/var/lib/dpkg" -W -f '${db:Status-Status}' "$1"; }
+
+packages=("$work"/packages/*.deb)
+in_root -i "${packages[@]}"
+names=()
+for package in "${packages[@]}"; do
+  names+=("$(dpkg -f "$package" Package)")
+  [ "$(state "${names[-1]}")" = installed ] || fail "${names[-1]} is not installed"
+done
+[ -x "$root/usr/bin/keepout" ] || fail "there is no command"
+[ -s "$work/commands/calls" ] || fail "the linker was not told of the new libraries"
+
+in_root -r "${names[@]}"
+left=$(find "$root/usr" -mindepth 1 2>/dev/null || true)
+[ -z "$left" ] || fail "left behind: $left"
