@@ -79,7 +79,7 @@ def candidates():
                 "A section through tissue with a ball around the tip. Boxes around four triangles each; "
                 "those that touch the ball give candidates; triangles in the ball are hits, each with its "
                 "closest point.")
-    s = Section(p, (8, 8, 704, 318), (0.2, 0.26), 110)
+    s = Section(p, (8, 8, 704, 318), (0.2, 0.32), 104)
     s.body(profile)
     s.circle(tip, reach, "ball")
     segments = list(zip(profile, profile[1:]))
