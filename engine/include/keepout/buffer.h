@@ -14,6 +14,7 @@ namespace keepout {
 template <class T>
 class Buffer {
  public:
+  /// Makes room for `capacity` items. Allocates; nothing after it does.
   explicit Buffer(std::size_t capacity) : items_(capacity) {}
 
   /// Appends, or marks the overflow when full.
@@ -35,6 +36,7 @@ class Buffer {
     for (const T& item : items) push(item);
   }
 
+  /// Lets go of all items, and forgets an overflow.
   void clear() noexcept {
     size_ = 0;
     overflowed_ = false;
@@ -50,16 +52,26 @@ class Buffer {
 
   /// True if anything was pushed beyond the capacity since the last clear().
   bool overflowed() const noexcept { return overflowed_; }
+  /// Whether nothing is in it.
   bool empty() const noexcept { return size_ == 0; }
+  /// How many items are in it.
   std::size_t size() const noexcept { return size_; }
+  /// How many there is room for.
   std::size_t capacity() const noexcept { return items_.size(); }
 
+  /// Item i. Precondition: i < size().
   T& operator[](std::size_t i) noexcept { return items_[i]; }
+  /// Item i. Precondition: i < size().
   const T& operator[](std::size_t i) const noexcept { return items_[i]; }
+  /// The first item, and where the next one would go: valid as long as the buffer lives.
   T* begin() noexcept { return items_.data(); }
+  /// Behind the last item; room up to capacity() follows.
   T* end() noexcept { return items_.data() + size_; }
+  /// The first item.
   const T* begin() const noexcept { return items_.data(); }
+  /// Behind the last item.
   const T* end() const noexcept { return items_.data() + size_; }
+  /// All items. Valid until the contents change.
   std::span<const T> view() const noexcept { return {items_.data(), size_}; }
 
  private:

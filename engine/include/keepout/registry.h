@@ -19,7 +19,7 @@ enum class Allocation : std::uint8_t {
 
 /// A part that keepout has, but not this build of it.
 struct AbsentPart {
-  std::string_view name;
+  std::string_view name;   // as it would be asked for
   std::string_view needs;  // the library, its Debian package and our option
 };
 

@@ -16,8 +16,8 @@ namespace keepout {
 
 /// One way to find the triangles near a place.
 struct IndexBackend {
-  std::string_view name;
-  std::string_view description;
+  std::string_view name;         // to ask for it by
+  std::string_view description;  // one line, for lists
   /// Throws Error when the library behind it cannot hold the mesh: no triangle is ever lost.
   std::unique_ptr<SpatialIndex> (*make)(std::shared_ptr<const Mesh> mesh);
   std::size_t most_triangles;  // what its data structure can hold, were memory no object

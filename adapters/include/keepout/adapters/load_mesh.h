@@ -11,8 +11,9 @@
 
 namespace keepout {
 
+/// What load_mesh has read.
 struct LoadedMesh {
-  std::shared_ptr<const Mesh> mesh;
+  std::shared_ptr<const Mesh> mesh;   // welded; never null
   std::vector<std::string> warnings;  // what was left out of the mesh, or looks odd in the file
 };
 

@@ -14,10 +14,11 @@ namespace keepout {
 
 /// One way to tell the distance between a convex tool and a triangle.
 struct NarrowPhaseBackend {
-  std::string_view name;
-  std::string_view description;
+  std::string_view name;         // to ask for it by
+  std::string_view description;  // one line, for lists
+  /// A new one for a tool; as make_narrow_phase.
   std::unique_ptr<NarrowPhase> (*make)(const ConvexTool& tool);
-  Allocation allocation;
+  Allocation allocation;     // whether it takes memory while it answers
   std::string (*library)();  // name and version of the library behind it; null for our own
 };
 

@@ -15,6 +15,7 @@
 
 namespace keepout {
 
+/// Planes, with a declared capacity.
 using HalfSpaceBuffer = Buffer<HalfSpace>;
 
 /// Where the solved motions of a cycle may end.
@@ -31,23 +32,24 @@ enum class NeededPlanes : std::uint8_t {
 
 /// What a rule decides from: the tip, where it shall go, and every triangle in reach of the motion.
 struct Surroundings {
-  Vec3 tip;         // [length]
-  Vec3 aim;         // increment that is wanted: the one asked for, or the way out [length]
-  Vec3 kept;        // a motion that planes shall go on allowing; zero at first [length]
-  double radius;    // of the motion sphere [length]
-  double longest;   // no motion is longer: the radius, or less [length]
-  double margin;    // distance to keep from the mesh [length], >= 0
-  double recovery;  // how far to lead a tip away in a cycle that is too close [length]
-  double rounding;  // what the tip may be off by after earlier steps [length]
-  Reach reach;      // where motions may end
-  Reach searched;   // what the region is to cover: as much, or more
-  NeededPlanes needed;
-  Ball ball;                  // what the rule asked for: see Activation::region
+  Vec3 tip;             // [length]
+  Vec3 aim;             // increment that is wanted: the one asked for, or the way out [length]
+  Vec3 kept;            // a motion that planes shall go on allowing; zero at first [length]
+  double radius;        // of the motion sphere [length]
+  double longest;       // no motion is longer: the radius, or less [length]
+  double margin;        // distance to keep from the mesh [length], >= 0
+  double recovery;      // how far to lead a tip away in a cycle that is too close [length]
+  double rounding;      // what the tip may be off by after earlier steps [length]
+  Reach reach;          // where motions may end
+  Reach searched;       // what the region is to cover: as much, or more
+  NeededPlanes needed;  // which planes the rule is to hand over
+  Ball ball;            // what the rule asked for: see Activation::region
   std::span<const Hit> hits;  // in that ball, sorted by id; relative to the ball's centre
 };
 
 /// How a cycle begins.
 struct Opening {
+  /// How the tip stands to the surface.
   enum class Stance : std::uint8_t {
     clear,         // the tip keeps its distance: go for the aim
     too_close,     // nearer than the margin: `aim` leads away from the surface
@@ -55,18 +57,19 @@ struct Opening {
     no_margin,     // the margin is too small for the numbers at hand to tell
     over_capacity  // more triangles than room was made for
   };
-  Stance stance = Stance::clear;
-  Vec3 aim = Vec3::Zero();  // to go for instead, when too close [length]
+  Stance stance = Stance::clear;  // what the cycle is to do
+  Vec3 aim = Vec3::Zero();        // to go for instead, when too close [length]
 };
 
 /// What a rule says of a trial motion.
 struct Judgement {
+  /// What is to become of the trial.
   enum class Verdict : std::uint8_t {
     accepted,
     objected,  // a plane that excludes the trial was added
     blocked    // the trial is not accepted, and no plane would help
   };
-  Verdict verdict = Verdict::accepted;
+  Verdict verdict = Verdict::accepted;  // on the trial as a whole
   double free_share = 1.0;  // how much of the trial nothing speaks against, unless accepted
 };
 

@@ -14,6 +14,7 @@ namespace keepout {
 /// an area have no face and are passed over.
 class AllFaces final : public Activation {
  public:
+  /// The rule on a mesh. Precondition: it is not null.
   explicit AllFaces(std::shared_ptr<const Mesh> mesh);
 
   Opening start(const Surroundings& around, HalfSpaceBuffer& planes) noexcept override;

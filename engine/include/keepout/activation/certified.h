@@ -23,6 +23,7 @@ struct CertifiedTerms;
 /// Guarantee: dist(x + s dx, mesh) >= min(margin, dist(x, mesh)) - 3 tolerance for all s in [0, 1].
 class CertifiedRule final : public Activation {
  public:
+  /// The rule on a mesh. Precondition: it is not null.
   explicit CertifiedRule(std::shared_ptr<const Mesh> mesh);
   ~CertifiedRule() override;
 

@@ -52,6 +52,7 @@ class ConvexToolRule final : public Activation {
   /// a position. [length]
   double tolerance(const Surroundings& around) const noexcept;
 
+  /// What is kept out.
   const ConvexTool& tool() const noexcept { return tool_; }
 
  private:

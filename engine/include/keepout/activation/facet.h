@@ -38,12 +38,15 @@ class Facet {
   };
 
   Facet() = default;
+  /// Of a triangle as the mesh has it. `tip`: what it is to be relative to. [length]
   Facet(const Triangle& triangle, const Vec3& tip, TriangleId source) noexcept;
 
   /// Of corners that are relative to the tip and in lexicographic order already.
   Facet(const Triangle& ordered, TriangleId source) noexcept;
 
+  /// The triangle's number; no_triangle until one is given.
   TriangleId source() const noexcept { return source_; }
+  /// In lexicographic order, relative to the tip. [length]
   const Triangle& corners() const noexcept { return corners_; }
 
   /// Of all that the normal could be within rounding, the one that proves the largest distance.
@@ -61,7 +64,9 @@ class Facet {
 
   /// nearest_to the tip.
   const Nearest& at_tip() const noexcept { return at_tip_; }
+  /// Of the tip. [length]
   double distance() const noexcept { return at_tip_.distance; }
+  /// Towards the tip, a unit vector; zero when the tip is on the facet.
   const Vec3& normal() const noexcept { return at_tip_.normal; }
 
   /// The direction of an edge (0, 1, 2), of its length. [length]
@@ -70,8 +75,10 @@ class Facet {
   /// max n . p over the points p of the facet. [length]
   double support(const Vec3& n) const noexcept { return keepout::support(corners_, n); }
 
-  /// What the tip would have of the face, if that were the nearest: there is one unless it is thin.
+  /// Whether there is a face, and not just a thin facet's edges.
   bool has_face() const noexcept { return determinant_ > 0.0; }
+
+  /// What the tip would have of the face, if that were the nearest. Precondition: has_face().
   Nearest face() const noexcept;
 
   /// Whether a point is right over the face, on either side; no for a thin facet.
@@ -131,6 +138,7 @@ class Facet {
 std::optional<Vec3> proof_of_clearance(const Facet& facet, const Vec3& z, double level,
                                        double slack) noexcept;
 
+/// Whether there is such a proof: see proof_of_clearance.
 inline bool keeps_clear(const Facet& facet, const Vec3& z, double level, double slack) noexcept {
   return proof_of_clearance(facet, z, level, slack).has_value();
 }

@@ -35,8 +35,10 @@ std::string_view name(PolytopeStatus status) noexcept;
 /// One line on what happened and what to do about it.
 std::string_view reason(PolytopeStatus status) noexcept;
 
-/// Replaces planes by six that allow standing still and nothing else.
+/// How many planes it takes to allow standing still and nothing else.
 inline constexpr std::size_t planes_to_hold_still = 6;
+
+/// Replaces planes by that many, one to each side along the axes.
 void hold_still(HalfSpaceBuffer& planes) noexcept;
 
 /// The free space around the tip as one convex polytope, whatever the direction of the motion: for

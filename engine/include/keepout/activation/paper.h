@@ -30,7 +30,9 @@ class PaperRule final : public Activation {
   /// Builds the adjacency of the mesh.
   explicit PaperRule(std::shared_ptr<const Mesh> mesh);
 
+  /// What it was built on.
   const std::shared_ptr<const Mesh>& mesh() const noexcept { return mesh_; }
+  /// The neighbours that its conditions are about.
   const Adjacency& adjacency() const noexcept { return *adjacency_; }
 
   /// For a WideBvh.

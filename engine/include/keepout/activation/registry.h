@@ -13,8 +13,9 @@ namespace keepout {
 
 /// A rule by name.
 struct ActivationEntry {
-  std::string_view name;
-  std::string_view description;
+  std::string_view name;         // to ask for it by
+  std::string_view description;  // one line, for lists
+  /// A new rule on a mesh; as make_activation.
   std::unique_ptr<Activation> (*make)(std::shared_ptr<const Mesh> mesh);
 };
 

@@ -11,8 +11,11 @@ namespace keepout {
 /// The part of a triangle on which a point lies. Edge e runs from corner e to corner (e + 1) % 3.
 enum class Feature : std::uint8_t { face, edge_0, edge_1, edge_2, vertex_0, vertex_1, vertex_2 };
 
+/// Whether it is the inside of the triangle.
 constexpr bool is_face(Feature f) noexcept { return f == Feature::face; }
+/// Whether it is one of the three edges, without their ends.
 constexpr bool is_edge(Feature f) noexcept { return f >= Feature::edge_0 && f <= Feature::edge_2; }
+/// Whether it is one of the three corners.
 constexpr bool is_vertex(Feature f) noexcept { return f >= Feature::vertex_0; }
 
 /// Number (0, 1, 2) of an edge or a vertex feature. Precondition: not the face.
@@ -20,6 +23,7 @@ constexpr int number_of(Feature f) noexcept {
   return static_cast<int>(f) - static_cast<int>(is_vertex(f) ? Feature::vertex_0 : Feature::edge_0);
 }
 
+/// The point of a triangle that is nearest to a query.
 struct ClosestPoint {
   Vec3 offset;      // from the query to the closest point [length]
   double distance;  // |offset| [length]

@@ -19,18 +19,23 @@ namespace keepout {
 /// stands otherwise is turned once, when it is made.
 class ConvexTool {
  public:
+  /// Of a core.
   static constexpr std::size_t most_points = 64;
 
-  // All throw Error when a length is not finite or above 1e30, a radius is below 0, or there is no
-  // point or more than most_points.
+  /// A ball around the origin. Like the others below it throws Error when a length is not finite or
+  /// above 1e30, a radius is below 0, or there is no point or more than most_points. [length]
   static ConvexTool sphere(double radius);
+  /// A cylinder with round ends: all within `radius` of a segment. [length]
   static ConvexTool capsule(const Vec3& from, const Vec3& to, double radius);
+  /// A box along the axes. [length]
   static ConvexTool box(const Box& box);
+  /// All within `radius` of the convex hull of points, in any order. [length]
   static ConvexTool hull(std::span<const Vec3> points, double radius = 0.0);
 
   /// The same tool, turned about its origin. Throws Error unless the matrix is a rotation.
   ConvexTool rotated(const Eigen::Matrix3d& rotation) const;
 
+  /// The core's, as they were given. [length]
   std::span<const Vec3> points() const noexcept { return points_; }
   double radius() const noexcept { return radius_; }  // [length]
 
@@ -44,6 +49,7 @@ class ConvexTool {
   /// least the directions of its edges. What separates a core from another convex body with the
   /// least motion is among them and the cross products of edges.
   std::span<const Vec3> face_normals() const noexcept { return face_normals_; }
+  /// As face_normals, of the core's edges.
   std::span<const Vec3> edge_directions() const noexcept { return edge_directions_; }
 
  private:

@@ -14,8 +14,10 @@ struct NarrowPhaseAnswer {
   Separation separation;     // meaningful only when answered
   std::string_view failure;  // why there is no answer; empty when there is one
 
+  /// Whether there is a separation.
   bool answered() const noexcept { return failure.empty(); }
 
+  /// No answer. `why`: what was wrong; must outlive the answer, as a literal does.
   static NarrowPhaseAnswer failed(std::string_view why) noexcept {
     return {{0.0, Vec3::Zero(), Vec3::Zero()}, why};
   }
@@ -38,6 +40,7 @@ bool is_in_range(const Vec3& position, const Triangle& triangle) noexcept;
 /// The exact kernel: never fails, allocates nothing.
 class ExactNarrowPhase final : public NarrowPhase {
  public:
+  /// The kernel for one tool.
   explicit ExactNarrowPhase(ConvexTool tool) : tool_(std::move(tool)) {}
 
   NarrowPhaseAnswer separation(const Vec3& position, const Triangle& triangle) noexcept override;

@@ -12,6 +12,7 @@ namespace keepout {
 /// Asks the exact kernel about every triangle: the oracle to which all other indices are held.
 class BruteForce final : public SpatialIndex {
  public:
+  /// Nothing is built. O(1).
   explicit BruteForce(std::shared_ptr<const Mesh> mesh);
 
   void collect(const Ball& ball, TriangleBuffer& candidates) const noexcept override;

@@ -9,6 +9,7 @@ namespace keepout {
 /// Sixteen cylinders, coordinate by coordinate: around the triangles of a tree where they make up a
 /// sheet, which a box that is not along it holds badly.
 struct alignas(64) CylinderBlock {
+  /// In a block.
   static constexpr std::size_t lanes = 16;
 
   float middle[3][lanes];    // [axis][lane] [length]

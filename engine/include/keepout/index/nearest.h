@@ -25,6 +25,7 @@ class NearestTriangle {
   /// Both must outlive this object.
   NearestTriangle(const Mesh& mesh, const SpatialIndex& index);
 
+  /// The nearest triangle; ties, `guess` and precondition as for find_nearest. Allocates.
   Hit operator()(const Vec3& point, double guess = 0.0);
 
  private:

@@ -38,6 +38,7 @@ struct alignas(64) PdNode {
 /// and all leaves but the last are full.
 class PdTree final : public SpatialIndex {
  public:
+  /// That it can hold.
   static constexpr std::size_t most_triangles = LeafBlock::most_triangles;
 
   /// Builds with so many threads, 0 being all there are: the tree is the same. Throws Error for a
@@ -52,10 +53,13 @@ class PdTree final : public SpatialIndex {
   bool is_exact() const noexcept override { return true; }
   std::size_t memory() const noexcept override;
 
+  /// What it was built on.
   const Mesh& mesh() const noexcept { return *mesh_; }
 
   /// A parent stands before its children; the first is the root.
   std::span<const PdNode> nodes() const noexcept { return nodes_; }
+
+  /// In the order in which the nodes hold them.
   std::span<const LeafBlock> leaves() const noexcept { return leaves_; }
 
   /// How far a corner in a leaf may be from the mesh's, in each coordinate. [length]

@@ -13,10 +13,11 @@ namespace keepout {
 
 /// A triangle that touches the query ball, and its point nearest to the centre.
 struct Hit {
-  TriangleId triangle;
+  TriangleId triangle;   // its number
   ClosestPoint closest;  // relative to the ball's centre
 };
 
+/// Hits, with a declared capacity.
 using HitBuffer = Buffer<Hit>;
 
 /// From candidates to exact hits: keeps the triangles within the ball (distance <= radius) and

@@ -11,6 +11,7 @@
 
 namespace keepout {
 
+/// Numbers of triangles, with a declared capacity.
 using TriangleBuffer = Buffer<TriangleId>;
 
 /// Finds the triangles near a place. An index proposes candidates; the engine's exact kernel

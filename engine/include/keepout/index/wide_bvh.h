@@ -20,7 +20,9 @@ class LeafFill;
 
 /// Sixteen boxes, coordinate by coordinate, and what is in them.
 struct alignas(64) NodeBlock {
+  /// In a block.
   static constexpr std::size_t lanes = 16;
+  /// The bit of `child` that tells a leaf from a node.
   static constexpr std::uint32_t leaf = std::uint32_t{1} << 31;
 
   /// Hold their triangles, as the mesh has them, rounded outward. Unused lanes, which are the last
@@ -32,6 +34,7 @@ struct alignas(64) NodeBlock {
   /// the root and nobody's child.
   std::uint32_t child[lanes];
 
+  /// Whether there is a box in a lane.
   bool is_used(std::size_t lane) const noexcept { return child[lane] != 0; }
 };
 
@@ -43,6 +46,7 @@ struct alignas(64) NodeBlock {
 /// The order of a traversal, and of the triangles, is the tree's own; nothing may depend on it.
 class WideBvh final : public SpatialIndex {
  public:
+  /// That it can hold.
   static constexpr std::size_t most_triangles = LeafBlock::most_triangles;
 
   /// Of nodes, one below the other: as many as most_triangles need.
@@ -76,10 +80,13 @@ class WideBvh final : public SpatialIndex {
   bool is_exact() const noexcept override { return true; }
   std::size_t memory() const noexcept override;
 
+  /// What it was built on, or last refit to.
   const Mesh& mesh() const noexcept { return *mesh_; }
 
   /// A parent stands before its children; the first is the root.
   std::span<const NodeBlock> nodes() const noexcept { return nodes_; }
+
+  /// As the nodes number them.
   std::span<const LeafBlock> leaves() const noexcept { return leaves_; }
 
   /// Of each node: around what its boxes are around, as its leaves have it.

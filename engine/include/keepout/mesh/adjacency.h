@@ -26,12 +26,14 @@ enum class EdgeKind : std::uint8_t {
 /// rules that reason about neighbours need it: it is built apart from the mesh.
 class Adjacency {
  public:
+  /// Of a welded mesh, on all processors. The mesh need not outlive it.
   explicit Adjacency(const Mesh& mesh);
 
   /// The triangle across edge `edge` (0, 1, 2) of `t`, or no_triangle at a boundary or a
   /// non-manifold edge.
   TriangleId neighbor(TriangleId t, int edge) const noexcept { return neighbors_[t][edge]; }
 
+  /// What edge `edge` (0, 1, 2) of `t` is to the surface; the same from both sides.
   EdgeKind kind(TriangleId t, int edge) const noexcept { return kinds_[t][edge]; }
 
  private:

@@ -11,8 +11,9 @@
 
 namespace keepout {
 
+/// What was read of a file.
 struct PlySurface {
-  Surface surface;
+  Surface surface;                    // not welded
   std::vector<std::string> warnings;  // what was left out
 };
 

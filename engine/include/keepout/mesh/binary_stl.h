@@ -27,6 +27,7 @@ Surface read_welded_stl(const std::filesystem::path& path, unsigned threads = 0)
 /// Coordinates are rounded to single precision, which is all that the format holds. Throws Error,
 /// also when a coordinate does not fit.
 void write_binary_stl(const std::filesystem::path& path, const Surface& surface);
+/// The same for a mesh.
 void write_binary_stl(const std::filesystem::path& path, const Mesh& mesh);
 
 }  // namespace keepout

@@ -16,9 +16,9 @@ namespace keepout {
 struct MeshFindings {
   std::size_t vertices = 0;         // those that a triangle uses
   std::size_t unused_vertices = 0;  // none after a weld
-  std::size_t triangles = 0;
+  std::size_t triangles = 0;        // all of them
 
-  std::size_t edges = 0;
+  std::size_t edges = 0;               // all of them
   std::size_t boundary_edges = 0;      // one triangle: a hole, or a rim
   std::size_t non_manifold_edges = 0;  // three triangles or more
   std::size_t inconsistent_edges = 0;  // two triangles, wound against each other
@@ -31,8 +31,8 @@ struct MeshFindings {
   std::size_t components = 0;       // held together by shared vertices
   std::size_t edge_components = 0;  // held together by shared edges
 
-  Box bounds{Vec3::Zero(), Vec3::Zero()};
-  double area = 0.0;           // [length^2]
+  Box bounds{Vec3::Zero(), Vec3::Zero()};  // of the triangles [length]
+  double area = 0.0;                       // [length^2]
   double signed_volume = 0.0;  // below 0: inside out. Meaningless when not closed. [length^3]
 
   /// V - E + F, over the triangles that have edges.
@@ -40,6 +40,7 @@ struct MeshFindings {
   /// Handles, in all components together. Only a watertight mesh without pinched vertices has one.
   std::optional<std::ptrdiff_t> genus;
 
+  /// Those without an area, of either kind.
   std::size_t degenerate_triangles() const noexcept {
     return repeated_vertex_triangles + collinear_triangles;
   }
@@ -59,7 +60,7 @@ struct MeshFindings {
   /// Smaller than `metres_below` in every direction, where files are in millimetres.
   bool looks_like_metres() const noexcept { return bounds.size().maxCoeff() < metres_below; }
 
-  // No anatomy that a tool is kept out of is smaller than 3 mm, and none is larger than 3 m. [mm]
+  /// No anatomy that a tool is kept out of is smaller than 3 mm, and none is larger than 3 m. [mm]
   static constexpr double metres_below = 3.0;
 };
 

@@ -19,8 +19,8 @@ using Corners = std::array<VertexId, 3>;
 /// An indexed triangle surface as plain data: what readers and generators make, and what a Mesh is
 /// made from. Any one length unit.
 struct Surface {
-  std::vector<Vec3> vertices;
-  std::vector<Corners> triangles;
+  std::vector<Vec3> vertices;      // [length]
+  std::vector<Corners> triangles;  // by the numbers of their vertices
 };
 
 /// An immutable triangle surface: shared by every index and rule that is built on it. It may be
@@ -31,12 +31,17 @@ class Mesh {
   /// a vertex that does not exist, or when there are more than 2^32 - 2 triangles.
   explicit Mesh(Surface surface);
 
+  /// At least 1.
   std::size_t triangle_count() const noexcept { return surface_.triangles.size(); }
+  /// Those that no triangle uses included.
   std::size_t vertex_count() const noexcept { return surface_.vertices.size(); }
 
+  /// The vertices of a triangle. Precondition: t < triangle_count().
   const Corners& corners(TriangleId t) const noexcept { return surface_.triangles[t]; }
+  /// Where a vertex is. Precondition: v < vertex_count(). [length]
   const Vec3& vertex(VertexId v) const noexcept { return surface_.vertices[v]; }
 
+  /// Where the corners of a triangle are. Precondition: t < triangle_count(). [length]
   Triangle triangle(TriangleId t) const noexcept {
     const Corners& c = corners(t);
     return {vertex(c[0]), vertex(c[1]), vertex(c[2])};
@@ -45,7 +50,9 @@ class Mesh {
   /// Unit normal from the winding; zero for a triangle without an area.
   Vec3 normal(TriangleId t) const noexcept { return unit_normal(triangle(t)); }
 
+  /// All vertices, by their number. [length]
   std::span<const Vec3> vertices() const noexcept { return surface_.vertices; }
+  /// All triangles, by their number.
   std::span<const Corners> triangles() const noexcept { return surface_.triangles; }
 
   /// The smallest axis-aligned box around the triangles.

@@ -15,42 +15,52 @@ namespace keepout {
 // What a PLY file says of itself before its data. Source: Turk, "The PLY polygon file format",
 // 1994.
 
-enum class PlyEncoding { text, little_endian, big_endian };
+/// How the data after the header are written.
+enum class PlyEncoding {
+  text,           // "ascii", one element a line
+  little_endian,  // binary
+  big_endian      // binary
+};
 
 /// A type of numbers.
 struct PlyScalar {
   std::string_view name;     // as the source has it
   std::string_view synonym;  // as others write it
   std::size_t size;          // [bytes]
-  bool whole, is_signed;
+  bool whole;                // an integer, not a floating-point number
+  bool is_signed;            // whether it may be below 0
 };
 
+/// What each item of an element has: one value, or a list of them.
 struct PlyProperty {
-  std::string name;
-  const PlyScalar* type = nullptr;
+  std::string name;                       // as the file has it
+  const PlyScalar* type = nullptr;        // of the value, or of each one in a list
   const PlyScalar* count_type = nullptr;  // of a list; nullptr: a single value
 
+  /// Whether it is a count and as many values.
   bool is_list() const noexcept { return count_type != nullptr; }
 };
 
+/// A table of the file, such as its vertices or its faces.
 struct PlyElement {
-  std::string name;
-  std::uint64_t count = 0;
-  std::vector<PlyProperty> properties;
+  std::string name;                     // as the file has it
+  std::uint64_t count = 0;              // of items
+  std::vector<PlyProperty> properties;  // of each item, in their order
 };
 
+/// All that is declared, in the order of the data.
 struct PlyHeader {
-  PlyEncoding encoding = PlyEncoding::text;
-  std::vector<PlyElement> elements;
-  std::size_t size = 0;  // where the data begin [bytes]
+  PlyEncoding encoding = PlyEncoding::text;  // of the data
+  std::vector<PlyElement> elements;          // in the order in which their items follow
+  std::size_t size = 0;                      // where the data begin [bytes]
 };
 
 /// Where the surface is among the elements of a header, which must outlive this.
 struct PlyLayout {
-  const PlyElement* vertex = nullptr;
-  std::array<const PlyProperty*, 3> coordinates{};
-  const PlyElement* face = nullptr;      // nullptr: there are none
-  const PlyProperty* corners = nullptr;  // nullptr: there are no faces
+  const PlyElement* vertex = nullptr;               // the element with the coordinates
+  std::array<const PlyProperty*, 3> coordinates{};  // x, y and z among its properties
+  const PlyElement* face = nullptr;                 // nullptr: there are none
+  const PlyProperty* corners = nullptr;             // nullptr: there are no faces
 };
 
 /// Reads the header of a file. Throws Error, with the line, for what is malformed or not

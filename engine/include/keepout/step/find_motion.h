@@ -15,9 +15,10 @@ namespace keepout {
 
 /// What a search for a motion came to.
 struct Settled {
-  Status status;
-  Vec3 motion;  // of the tip; zero unless the status is ok [length]
+  Status status;  // how it ended
+  Vec3 motion;    // of the tip; zero unless the status is ok [length]
 
+  /// No motion, and why.
   static Settled stopped(Status why) noexcept { return {why, Vec3::Zero()}; }
 };
 

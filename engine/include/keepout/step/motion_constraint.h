@@ -16,8 +16,7 @@
 
 namespace keepout {
 
-/// What becomes of a tip that starts on the forbidden side.
-/// For the certified rule.
+/// What becomes of a tip that starts on the forbidden side. For the certified rule.
 enum class Inside : std::uint8_t {
   led_out,     // straight through the nearest point of the surface, before it may do anything else
   taken_as_is  // not asked: the surface is kept from on whichever side the tip is
@@ -25,10 +24,12 @@ enum class Inside : std::uint8_t {
 
 /// Planes around a tip.
 struct Polytope {
-  PolytopeStatus status = PolytopeStatus::invalid_input;
-  std::span<const HalfSpace> planes;
+  PolytopeStatus status = PolytopeStatus::invalid_input;  // how it ended
+  std::span<const HalfSpace> planes;  // unless found, they allow standing still only
 
+  /// Whether the planes are complete.
   bool ok() const noexcept { return status == PolytopeStatus::found; }
+  /// One line on what happened and what to do about it; a literal.
   std::string_view reason() const noexcept { return keepout::reason(status); }
 };
 
@@ -72,6 +73,7 @@ class MotionConstraint {
   /// the start: for motions that have nothing to do with each other.
   void forget() noexcept { sides_.forget(); }
 
+  /// What the tip is kept out of.
   const Mesh& mesh() const noexcept { return *mesh_; }
 
  private:

@@ -21,7 +21,7 @@ struct StepOptions {
   double deepest = 10.0;   // no tip is led out from deeper inside; it is told of instead [length]
   int refinements = 3;     // how often planes are turned towards a better motion, >= 0
   int nodes = 0;           // of a branch and bound for a better motion still; 0: none, >= 0
-  Query query = Query::motion;
+  Query query = Query::motion;  // how far around the tip triangles are looked for
   bool searching = true;  // whether a rule may search the index by itself: the same, but faster
 };
 

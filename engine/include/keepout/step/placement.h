@@ -12,8 +12,12 @@ namespace keepout {
 
 /// Where a tip is that no step has led to: at the start, or after the caller has moved it.
 struct Placement {
-  enum class Side : std::uint8_t { free, forbidden };
-  Side side;
+  /// Of the surface.
+  enum class Side : std::uint8_t {
+    free,      // the one that normals point to
+    forbidden  // the other one, and the surface itself
+  };
+  Side side;        // on which the tip is
   double distance;  // from the surface; on it, to within rounding, 0 and forbidden [length]
   Vec3 way_out;     // unit vector: to the surface from the forbidden side, off it from the free one
   Vec3 normal;      // unit vector: of the surface at its nearest point

@@ -15,9 +15,10 @@ namespace keepout {
 ///
 /// Views only: whoever poses the problem owns the numbers. n variables, k task rows, m constraints.
 struct StepProblem {
-  using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic>;
+  using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic>;  // column by column
+  /// Row by row.
   using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  using Vector = Eigen::VectorXd;
+  using Vector = Eigen::VectorXd;  // of any length
 
   Eigen::Map<const Matrix> jacobian;  // J (k, n)
   Eigen::Map<const Vector> desired;   // d (k) [length]

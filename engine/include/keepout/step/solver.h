@@ -30,7 +30,7 @@ struct Solution {
   std::span<const double> u;              // (n); meaningful only when optimal
   std::span<const double> multipliers;    // (active.size()), >= 0, of the active rows: see Solver
   std::span<const std::uint32_t> active;  // the rows that hold with equality and push
-  int iterations = 0;
+  int iterations = 0;  // of the method's own kind: to compare a solver with itself
 };
 
 /// Solves one step problem after another, without allocating.
@@ -48,6 +48,8 @@ class Solver {
   /// with a dual active-set method.
   virtual bool skips_idle_rows() const noexcept { return false; }
 
+  /// The u of least cost that satisfies all rows. Fills `solution` when optimal; otherwise what is
+  /// in it may not be used. More variables or rows than reserved: `over_capacity`.
   virtual SolveStatus solve(const StepProblem& problem, Solution& solution) noexcept = 0;
 
   /// Whether it takes rows that come from planes from the planes, so that they need not be written.

@@ -22,10 +22,10 @@ struct Capacity {
   /// makes no such query and does not heed it; it has budgets of its own: 4096 triangles asked
   /// about in double, and 131072 looks at leaves a cycle.
   std::size_t triangles = std::size_t{1} << 16;
-  std::size_t planes = std::size_t{1} << 14;
-  std::size_t variables = 7;    // columns of the Jacobian, or 3 without one
-  std::size_t extra_rows = 64;  // of the caller's own
-  std::size_t nodes = 0;        // of the branch and bound
+  std::size_t planes = std::size_t{1} << 14;  // that a rule may pose at the same time
+  std::size_t variables = 7;                  // columns of the Jacobian, or 3 without one
+  std::size_t extra_rows = 64;                // of the caller's own
+  std::size_t nodes = 0;                      // of the branch and bound
 };
 
 /// Whether a problem has rows for its planes, or leaves them to a solver that reads planes.
@@ -34,9 +34,12 @@ enum class PlaneRows : std::uint8_t { written, left_out };
 /// All the memory of a step, made once. One for each thread.
 class Workspace {
  public:
+  /// Makes all memory here.
   explicit Workspace(const Capacity& capacity);
 
+  /// The most columns of a Jacobian; at least 3.
   Eigen::Index variables() const noexcept { return variables_; }
+  /// The most rows of the caller's own.
   Eigen::Index extra_rows() const noexcept { return extra_rows_; }
 
   /// The problem whose rows are the planes, then those of the caller: on the tip's own increment
@@ -48,15 +51,16 @@ class Workspace {
   /// Takes down an answer, which outlives the solver's next one: `share` of the increment, or the
   /// tip's own.
   void note(const Solution& answer, double share) noexcept;
+  /// The same where the tip itself is what moves.
   void note(const Solution& answer, const Vec3& increment) noexcept;
 
-  TriangleBuffer candidates;
-  HitBuffer hits;
-  HalfSpaceBuffer planes;
+  TriangleBuffer candidates;       // of the query, in the order of the index
+  HitBuffer hits;                  // of the query, exact and sorted by id
+  HalfSpaceBuffer planes;          // that the trial at hand has to satisfy
   HalfSpaceBuffer earlier_planes;  // of the motion that is to be improved upon
   HalfSpaceBuffer ways;            // around one triangle
-  Branches branches;
-  Solution solution;
+  Branches branches;               // of the branch and bound
+  Solution solution;               // the solver's last one
 
   /// Puts planes and answer aside, for a search that may find better ones.
   void set_aside() noexcept;
@@ -66,6 +70,7 @@ class Workspace {
 
   /// What was taken down.
   std::span<const double> increment() const noexcept { return answer_.increment.view(); }
+  /// The rows that hold it back: planes, then those of the caller.
   std::span<const std::uint32_t> active() const noexcept { return answer_.active.view(); }
 
  private:

@@ -12,11 +12,11 @@ namespace keepout {
 
 /// Which parts to build a motion constraint from, by name, and how it shall behave.
 struct MotionConstraintSettings {
-  std::string index = "wide_bvh";
-  std::filesystem::path index_cache =
-      {};  // where built indices are kept; only wide_bvh is; empty: none
-  std::string activation = "certified";
-  std::string solver = "active_set";
+  std::string index = "wide_bvh";  // see index_backends()
+  /// The folder where built indices are kept; only wide_bvh is. Empty: none is kept.
+  std::filesystem::path index_cache = {};
+  std::string activation = "certified";  // see activation_rules()
+  std::string solver = "active_set";     // see solver_backends()
   double radius = 5.0;          // of the motion sphere: the farthest that the tip may go [length]
   double tool_radius = 0.0;     // of the ball around the tip that shall not touch the mesh [length]
   double margin = 0.2;          // distance to keep beyond that; certified needs one [length]
@@ -27,7 +27,7 @@ struct MotionConstraintSettings {
   int nodes = 0;                // of a branch and bound for a better motion still; 0: none
   Query query = Query::motion;  // how far around the tip triangles are looked for
   Inside inside = Inside::led_out;  // what becomes of a tip that starts inside; certified only
-  Capacity capacity = {};
+  Capacity capacity = {};           // the largest step there is room for
 };
 
 /// Builds the parts and puts them together. Throws Error, listing what exists, for a name that does

@@ -21,6 +21,7 @@ struct KktResidual {
   double dual = 0;             // the most negative multiplier, as a force
   double complementarity = 0;  // the worst |slack| / |A_i| of a row with a multiplier
 
+  /// The largest of the four.
   double worst() const noexcept;
 };
 

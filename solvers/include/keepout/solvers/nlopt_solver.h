@@ -47,11 +47,14 @@ enum class NloptFinding : std::uint8_t {
 
 /// As NLopt spells it.
 std::string_view name(NloptClaim claim) noexcept;
+
+/// The name as it stands in the enumeration.
 std::string_view name(NloptFinding finding) noexcept;
 
+/// What NLopt said of a problem, and what was found.
 struct NloptReport {
-  NloptClaim claim = NloptClaim::not_asked;
-  NloptFinding finding = NloptFinding::refused;
+  NloptClaim claim = NloptClaim::not_asked;      // NLopt's word
+  NloptFinding finding = NloptFinding::refused;  // that of our check
 };
 
 /// A method of NLopt, of which nothing is believed: an answer counts as optimal only when it
@@ -65,6 +68,7 @@ struct NloptReport {
 /// work is limited by a number of evaluations and never by time. It allocates while it solves.
 class NloptSolver final : public Solver {
  public:
+  /// Without room yet: see reserve.
   explicit NloptSolver(NloptMethod method);
   ~NloptSolver() override;
 

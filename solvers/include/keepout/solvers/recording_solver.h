@@ -14,20 +14,24 @@ namespace keepout {
 /// A step problem that owns its numbers. Its memory is the standard library's, not aligned as Eigen
 /// does for the machine compiled for: it is made here and may be let go by a program for another.
 struct RecordedProblem {
-  static constexpr int dynamic = Eigen::Dynamic;
+  static constexpr int dynamic = Eigen::Dynamic;  // as many as the problem has
+  /// Column by column.
   using Matrix = Eigen::Matrix<double, dynamic, dynamic, Eigen::DontAlign>;
+  /// Row by row.
   using RowMatrix = Eigen::Matrix<double, dynamic, dynamic, Eigen::RowMajor | Eigen::DontAlign>;
-  using Vector = Eigen::Matrix<double, dynamic, 1, Eigen::DontAlign>;
+  using Vector = Eigen::Matrix<double, dynamic, 1, Eigen::DontAlign>;  // of any length
 
+  /// Copies all its numbers. Precondition: its rows are written, those of planes as well.
   explicit RecordedProblem(const StepProblem& problem);
 
+  /// The problem again. Valid as long as this lives, and stays where it is.
   StepProblem view() const noexcept;
 
-  Matrix jacobian;
-  Vector desired;
-  RowMatrix rows;
-  Vector bounds;
-  double damping = 0;
+  Matrix jacobian;     // J (k, n)
+  Vector desired;      // d (k) [length]
+  RowMatrix rows;      // A (m, n)
+  Vector bounds;       // b (m)
+  double damping = 0;  // weight of |u|^2
 };
 
 /// Passes every problem on to another solver, and keeps a copy of it: to pose the problems of real

@@ -14,10 +14,11 @@ namespace keepout {
 
 /// One way to solve the step problem, by name.
 struct SolverBackend {
-  std::string_view name;
-  std::string_view description;
+  std::string_view name;         // to ask for it by
+  std::string_view description;  // one line, for lists
+  /// A new one; as make_solver.
   std::unique_ptr<Solver> (*make)();
-  Allocation allocation;
+  Allocation allocation;  // whether it takes memory while it solves
   /// How far an `optimal` answer may be from the best one, and from satisfying the KKT conditions:
   /// relative, as KktResidual is.
   double accuracy;

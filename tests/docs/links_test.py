@@ -1,0 +1,106 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 the keepout authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Checks that all links of the pages lead somewhere: links_test.py ROOT
+
+Every .md file that git would commit; without git, all but those in build/, out/ and hidden folders.
+A relative link must name a file or folder of the sources, by its very letters, and an anchor a heading
+there. Links to the web are not followed. A picture must say in words what it shows. docs/README.md must
+have a link to each page beside it.
+"""
+
+import pathlib
+import re
+import subprocess
+import sys
+import unicodedata
+import urllib.parse
+
+FENCE = re.compile(r"^( {0,3})(`{3,}|~{3,}).*?^ {0,3}\2`*~* *$", re.M | re.S)
+CODE = re.compile(r"(`+)(?!`).+?(?<!`)\1(?!`)", re.S)
+COMMENT = re.compile(r"<!--.*?-->", re.S)
+LINK = re.compile(r"(?P<picture>!?)\[(?P<words>(?:[^\[\]]|\[[^\]]*\])*)\]\((?P<to>[^()\s]*)(?:\s+\"[^\"]*\")?\)")
+HEADING = re.compile(r"^#{1,6} +(.+?) *#* *$", re.M)
+
+
+def blank(match):
+    """As many lines, and nothing in them."""
+    return re.sub(r"[^\n]", " ", match[0])
+
+
+def anchor_of(heading):
+    """The anchor that GitHub gives a heading."""
+    words = re.sub(r"!?\[([^\]]*)\]\([^)]*\)", r"\1", heading).replace("`", "").lower()
+    kept = (c for c in words if c in " -_" or unicodedata.category(c)[0] in "LNM")
+    return "".join(kept).strip().replace(" ", "-")
+
+
+def anchors(page):
+    found, seen = set(), {}
+    for heading in HEADING.findall(FENCE.sub(blank, page.read_text(encoding="utf-8"))):
+        anchor = anchor_of(heading)
+        number = seen.get(anchor, 0)
+        seen[anchor] = number + 1
+        found.add(f"{anchor}-{number}" if number else anchor)
+    return found
+
+
+def pages_of(root):
+    listed = subprocess.run(["git", "-C", root, "ls-files", "-co", "--exclude-standard", "*.md"],
+                            capture_output=True, text=True)
+    if listed.returncode == 0 and listed.stdout:
+        return sorted(path for path in map(root.joinpath, listed.stdout.splitlines()) if path.exists())
+    inner = lambda path: path.relative_to(root).parts
+    return sorted(path for path in root.rglob("*.md")
+                  if inner(path)[0] not in ("build", "out") and
+                  not any(part.startswith(".") for part in inner(path)))
+
+
+def exists(path):
+    """Also on file systems that do not tell letters apart."""
+    return path.exists() and (path.name in ("", "..", ".") or
+                              path.resolve().name in [p.name for p in path.resolve().parent.iterdir()])
+
+
+def faults_of(page, root):
+    text = page.read_text(encoding="utf-8")
+    for rule in (FENCE, COMMENT, CODE):
+        text = rule.sub(blank, text)
+    for link in LINK.finditer(text):
+        line = text.count("\n", 0, link.start()) + 1
+        if link["picture"] and not link["words"].strip():
+            yield line, f"the picture {link['to']} has no words for who cannot see it"
+        parts = urllib.parse.urlsplit(link["to"])
+        if parts.scheme or parts.netloc:
+            continue
+        target = page
+        if parts.path:
+            target = page.parent / urllib.parse.unquote(parts.path)
+            if not exists(target):
+                yield line, f"there is no {link['to']}"
+                continue
+            if root not in target.resolve().parents and target.resolve() != root:
+                yield line, f"{link['to']} is not of the sources"
+                continue
+        if parts.fragment and target.suffix == ".md" and parts.fragment not in anchors(target):
+            yield line, f"there is no heading for {link['to']}"
+
+
+def main():
+    root = pathlib.Path(sys.argv[1]).resolve()
+    pages = pages_of(root)
+    if not pages:
+        sys.exit(f"{root}: there are no pages")
+    faults = [f"{page.relative_to(root)}:{line}: {why}" for page in pages
+              for line, why in faults_of(page, root)]
+    overview = root / "docs/README.md"
+    listed = {(overview.parent / link["to"]).resolve()
+              for link in LINK.finditer(overview.read_text(encoding="utf-8"))}
+    faults += [f"docs/README.md:1: has no link to {page.name}" for page in pages
+               if page.parent == overview.parent and page != overview and page not in listed]
+    print("\n".join(faults) or f"{len(pages)} pages: all links lead somewhere")
+    sys.exit(1 if faults else 0)
+
+
+if __name__ == "__main__":
+    main()
