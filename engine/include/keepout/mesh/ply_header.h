@@ -42,7 +42,8 @@ struct PlyElement {
 struct PlyHeader {
   PlyEncoding encoding = PlyEncoding::text;
   std::vector<PlyElement> elements;
-  std::size_t size = 0;  // where the data begin [bytes]
+  std::vector<std::string> comments;  // and obj_info: what follows the word
+  std::size_t size = 0;               // where the data begin [bytes]
 };
 
 /// Where the surface is among the elements of a header, which must outlive this.
