@@ -61,6 +61,7 @@ class MotionConstraint {
   Polytope free_polytope(const Vec3& tip, double radius) noexcept;
 
   const Mesh& mesh() const noexcept { return *mesh_; }
+  const StepOptions& options() const noexcept { return options_; }
 
  private:
   std::shared_ptr<const Mesh> mesh_;
