@@ -20,10 +20,11 @@ function(forbid folder expression why)
 endfunction()
 
 set(include "^ *# *include *[<\"]")
-forbid(engine "${include}keepout/(adapters|solvers|factory|fixtures)/" "the engine knows no other part")
-forbid(adapters "${include}keepout/(solvers|factory|fixtures)/" "adapters know only the engine")
-forbid(solvers "${include}keepout/(adapters|factory|fixtures)/" "solvers know only the engine")
-forbid(fixtures "${include}keepout/(adapters|solvers|factory)/" "fixtures know only the engine")
+forbid(engine "${include}keepout/(adapters|solvers|factory|fixtures|control)/" "the engine knows no other part")
+forbid(adapters "${include}keepout/(solvers|factory|fixtures|control)/" "adapters know only the engine")
+forbid(solvers "${include}keepout/(adapters|factory|fixtures|control)/" "solvers know only the engine")
+forbid(fixtures "${include}keepout/(adapters|solvers|factory|control)/" "fixtures know only the engine")
+forbid(control "${include}keepout/(adapters|solvers|factory|fixtures)/" "control knows only the engine")
 
 # One folder a library: what two of them share is in adapters/src.
 set(libraries assimp bullet ccd cgal embree fcl)
@@ -36,7 +37,7 @@ foreach(library IN LISTS libraries)
 endforeach()
 
 # What is under the GPL stays in its own folder, and in the target that gathers all indices.
-foreach(part engine solvers factory fixtures oracle adapters/include adapters/src adapters/assimp
+foreach(part engine solvers control factory fixtures oracle adapters/include adapters/src adapters/assimp
         adapters/bullet adapters/ccd adapters/embree adapters/fcl)
   forbid(${part} "${include}(CGAL/|keepout/adapters/(gpl_index_registry|all_indices))"
          "the library is not to depend on the GPL")
@@ -47,13 +48,15 @@ forbid(oracle "${include}keepout/(adapters|solvers|factory|fixtures)/" "the orac
 forbid(oracle "${include}keepout/(index|activation|step)/" "the oracle shares no algorithm with the engine")
 forbid(oracle "${include}keepout/geometry/(closest_point|orientation)" "the oracle has a geometry of its own")
 forbid(python "${include}keepout/(fixtures|oracle)/" "the module is the library, and no more")
-foreach(part engine adapters solvers factory fixtures)
+foreach(part engine adapters solvers control factory fixtures)
   forbid(${part} "${include}(pybind11/|Python.h)" "the library knows no Python")
+endforeach()
+foreach(part engine adapters solvers control factory fixtures)
   forbid(${part} "${include}keepout/oracle/" "the oracle is for tests and the command")
 endforeach()
 
 # In public headers: ours, Eigen's, and the standard library's, whose names have no dot or slash.
-foreach(part engine adapters solvers factory fixtures oracle)
+foreach(part engine adapters solvers control factory fixtures oracle)
   file(GLOB_RECURSE headers "${SOURCE}/${part}/include/*.h")
   foreach(header IN LISTS headers)
     file(STRINGS "${header}" lines REGEX "${include}")

@@ -5,11 +5,13 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cstring>
 #include <fstream>
 #include <new>
 #include <string_view>
 
+#include "coordinate_notes.h"
 #include "keepout/error.h"
 #include "keepout/mesh/binary_ply.h"
 #include "keepout/mesh/binary_stl.h"
@@ -111,15 +113,31 @@ MeshFormat format_of(const std::string& extension) noexcept {
   return MeshFormat::stl;
 }
 
+CoordinateNotes notes_of(MeshFormat format, std::string_view contents, const std::string& file) {
+  switch (format) {
+    case MeshFormat::stl:
+      return notes_of_text_stl(contents);
+    case MeshFormat::ply:
+      return notes_of_ply(read_ply_header(contents, file).comments);
+    case MeshFormat::obj:
+    case MeshFormat::off:
+      break;
+  }
+  return notes_after_hashes(contents);
+}
+
 Surface read_other(const std::filesystem::path& path, const std::string& extension,
-                   std::vector<std::string>& warnings) {
-  return read_with_assimp(format_of(extension), contents_of(path), path.string(), warnings);
+                   std::vector<std::string>& warnings, CoordinateNotes& notes) {
+  const MeshFormat format = format_of(extension);
+  const std::string contents = contents_of(path);
+  notes = notes_of(format, contents, path.string());
+  return read_with_assimp(format, contents, path.string(), warnings);
 }
 
 #else
 
-Surface read_other(const std::filesystem::path& path, const std::string&,
-                   std::vector<std::string>&) {
+Surface read_other(const std::filesystem::path& path, const std::string&, std::vector<std::string>&,
+                   CoordinateNotes&) {
   fail(path,
        "only binary STL and PLY can be read, for keepout was built without assimp; convert the "
        "mesh, "
@@ -136,7 +154,8 @@ Surface read_ply(const std::filesystem::path& path, const PlyHeader& header,
   return weld(std::move(read.surface));
 }
 
-Surface read_welded(const std::filesystem::path& path, std::vector<std::string>& warnings) {
+Surface read_welded(const std::filesystem::path& path, std::vector<std::string>& warnings,
+                    CoordinateNotes& notes) {
   check_file(path);
   const std::string beginning = beginning_of(path);
   refuse_compressed(path, beginning);
@@ -145,7 +164,10 @@ Surface read_welded(const std::filesystem::path& path, std::vector<std::string>&
   if (std::find(known.begin(), known.end(), extension) == known.end()) {
     fail(path, "its extension is none of .stl, .ply, .obj, .off; convert the mesh to one of them");
   }
-  if (extension == ".stl" && is_binary_stl(path)) return read_welded_stl(path);
+  if (extension == ".stl" && is_binary_stl(path)) {
+    notes = notes_of_binary_stl(beginning);
+    return read_welded_stl(path);
+  }
   const std::string_view expected = extension_by_content(beginning);
   if (!expected.empty() && expected != extension) {
     fail(path, "its content is " + std::string(expected) + "; give it that extension");
@@ -153,23 +175,81 @@ Surface read_welded(const std::filesystem::path& path, std::vector<std::string>&
   if (extension == ".stl" && !looks_like_text_stl(beginning)) refuse_stl(path, beginning);
   if (extension == ".ply") {
     const PlyHeader header = read_ply_header(path);
-    if (header.encoding != PlyEncoding::text) return read_ply(path, header, warnings);
+    if (header.encoding != PlyEncoding::text) {
+      notes = notes_of_ply(header.comments);
+      return read_ply(path, header, warnings);
+    }
   }
-  return weld(read_other(path, extension, warnings));
+  return weld(read_other(path, extension, warnings, notes));
+}
+
+/// Turns the surface into the space that is wanted, and takes down what is known of it. Throws
+/// Error when that cannot be done without guessing.
+void settle_space(const std::filesystem::path& path, const CoordinateNotes& notes,
+                  const LoadOptions& options, Surface& surface, LoadedMesh& loaded) {
+  constexpr AnatomicalSpace unstated = AnatomicalSpace::unstated;
+  if (!notes.contradiction.empty()) {
+    fail(path, "states that its space is " + notes.contradiction +
+                   ", which cannot both be; correct its comments, or export it again");
+  }
+  loaded.stated = notes.space;
+  loaded.space = notes.space;
+  if (loaded.space == unstated && notes.other_space.empty()) loaded.space = options.untagged;
+  if (options.space == unstated) {
+    if (!notes.other_space.empty()) {
+      loaded.warnings.push_back("states SPACE=" + notes.other_space +
+                                ", which is neither RAS nor LPS: taken as it stands");
+    } else if (notes.space != unstated) {
+      const std::string stated(name(notes.space));
+      const std::string other(
+          name(notes.space == AnatomicalSpace::ras ? AnatomicalSpace::lps : AnatomicalSpace::ras));
+      loaded.warnings.push_back(
+          "states SPACE=" + stated + ": taken as it stands, so tips must be in " + stated +
+          " too; ask for the space " + stated + ", or for " + other + " to have it turned");
+    }
+    return;
+  }
+  const std::string wanted(name(options.space));
+  if (!notes.other_space.empty()) {
+    fail(path, "states SPACE=" + notes.other_space + ", and only RAS and LPS are turned into " +
+                   wanted + "; export it in one of them");
+  }
+  if (loaded.space == unstated) {
+    fail(path, "does not state its space, so it cannot be told whether it is in " + wanted +
+                   "; say what a file without SPACE=RAS or SPACE=LPS is in (LoadOptions::untagged, "
+                   "--untagged). 3D Slicer saved RAS before 4.11 and saves LPS since; most other "
+                   "programs for DICOM images use LPS");
+  }
+  if (loaded.space != options.space) {
+    swap_ras_and_lps(surface);
+    loaded.space = options.space;
+  }
+}
+
+void warn_of_unit(const CoordinateNotes& notes, std::vector<std::string>& warnings) {
+  if (!notes.millimetres || *notes.millimetres == 1.0) return;
+  std::array<char, 32> digits{};
+  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), *notes.millimetres);
+  const std::string factor(digits.data(), end.ptr);
+  warnings.push_back("states that 1 unit is " + factor + " mm: not rescaled; scale it by " +
+                     factor + " where lengths are in millimetres");
 }
 
 }  // namespace
 
-LoadedMesh load_mesh(const std::filesystem::path& path) {
+LoadedMesh load_mesh(const std::filesystem::path& path, const LoadOptions& options) {
   LoadedMesh loaded;
   Surface surface;
+  CoordinateNotes notes;
   try {
-    surface = read_welded(path, loaded.warnings);
+    surface = read_welded(path, loaded.warnings, notes);
   } catch (const std::bad_alloc&) {
     fail(path, "there is not enough memory to read it; decimate the mesh, or use binary STL");
   } catch (const std::filesystem::filesystem_error& error) {
     fail(path, error.code().message());
   }
+  settle_space(path, notes, options, surface, loaded);
+  warn_of_unit(notes, loaded.warnings);
   try {
     loaded.mesh = std::make_shared<const Mesh>(std::move(surface));
   } catch (const Error& error) {

@@ -16,6 +16,7 @@
 #include "keepout/index/self_intersection.h"
 #include "keepout/mesh/doctor.h"
 #include "number_text.h"
+#include "unit_guess.h"
 
 namespace keepout::app {
 namespace {
@@ -38,7 +39,7 @@ struct Inspection {
 
 Inspection examine_file(const InspectOptions& options) {
   Inspection inspection;
-  inspection.loaded = load_mesh(options.mesh);
+  inspection.loaded = load_mesh(options.mesh, options.load);
   inspection.mesh = examine(*inspection.loaded.mesh);
   if (options.self_intersections) {
     const PdTree tree(inspection.loaded.mesh);
@@ -51,13 +52,18 @@ Inspection examine_file(const InspectOptions& options) {
 std::vector<Finding> findings_of(const Inspection& inspection) {
   const MeshFindings& mesh = inspection.mesh;
   const std::size_t hints_at_metres = mesh.looks_like_metres() ? 1 : 0;
+  const std::size_t hints_at_micrometres = mesh.looks_like_micrometres() ? 1 : 0;
   const std::size_t inside_out = mesh.is_inside_out() ? 1 : 0;
   const std::vector<Finding> all{
       {"inside_out", inside_out, "", "",
        "the normals point into the solid: tissue and free space are swapped", "flip all triangles"},
       {"looks_like_metres", hints_at_metres, "", "",
        "smaller than 3 in every direction: in millimetres that is tiny, so these may be metres",
-       "scale by 1000 if so; nothing is rescaled here"},
+       "scale by 1000 if so, or by what 'unit' above names; nothing is rescaled here"},
+      {"looks_like_micrometres", hints_at_micrometres, "", "",
+       "larger than 3000 in some direction: 3 m in millimetres, so these may be micrometres, or "
+       "something lies far from the rest",
+       "divide by 1000 if so; nothing is rescaled here"},
       {"inconsistent_edges", mesh.inconsistent_edges, "inconsistently wound edge",
        "inconsistently wound edges", "the two triangles there disagree about which side is free",
        "orient the surface consistently"},
@@ -98,6 +104,21 @@ void print_row(std::ostream& out, std::string_view name, const std::string& valu
   out << "  " << std::left << std::setw(14) << name << value << '\n';
 }
 
+/// Which anatomical space, and how it is known.
+std::string space_text(const LoadedMesh& loaded) {
+  std::string text(name(loaded.space));
+  if (loaded.space == AnatomicalSpace::unstated) return text + ": RAS, LPS or any other";
+  if (loaded.stated == AnatomicalSpace::unstated) return text + ", not stated in the file";
+  if (loaded.stated == loaded.space) return text + ", as stated in the file";
+  return text + ", turned from " + std::string(name(loaded.stated));
+}
+
+/// As JSON has it: null where nothing is known.
+nlohmann::ordered_json to_json(AnatomicalSpace space) {
+  if (space == AnatomicalSpace::unstated) return nullptr;
+  return name(space);
+}
+
 void print_text(const InspectOptions& options, const Inspection& inspection, std::ostream& out) {
   const MeshFindings& mesh = inspection.mesh;
   out << options.mesh.string() << '\n';
@@ -108,6 +129,8 @@ void print_text(const InspectOptions& options, const Inspection& inspection, std
   print_row(out, "size", triple(mesh.bounds.size(), " x ") + " mm");
   print_row(out, "from", triple(mesh.bounds.low, ", ") + " mm");
   print_row(out, "to", triple(mesh.bounds.high, ", ") + " mm");
+  print_row(out, "unit", unit_text(mesh.bounds.size().maxCoeff()));
+  print_row(out, "space", space_text(inspection.loaded));
   print_row(out, "area", trimmed(mesh.area) + " mm^2");
   if (mesh.is_watertight()) {
     print_row(out, "volume", trimmed(mesh.signed_volume) + " mm^3");
@@ -149,6 +172,9 @@ void print_json(const InspectOptions& options, const Inspection& inspection, std
   nlohmann::ordered_json json{
       {"mesh", options.mesh.string()},
       {"unit", "mm"},
+      {"other_units", nlohmann::ordered_json::array()},
+      {"space", to_json(inspection.loaded.space)},
+      {"stated_space", to_json(inspection.loaded.stated)},
       {"triangles", mesh.triangles},
       {"vertices", mesh.vertices},
       {"edges", mesh.edges},
@@ -165,6 +191,7 @@ void print_json(const InspectOptions& options, const Inspection& inspection, std
       {"watertight", mesh.is_watertight()},
       {"inside_out", mesh.is_inside_out()},
       {"looks_like_metres", mesh.looks_like_metres()},
+      {"looks_like_micrometres", mesh.looks_like_micrometres()},
       {"euler_characteristic", mesh.euler_characteristic},
       {"genus", to_json(mesh.genus)},
       {"area", mesh.area},
@@ -174,6 +201,9 @@ void print_json(const InspectOptions& options, const Inspection& inspection, std
       {"self_intersections", to_json(inspection.self_intersections)},
       {"warnings", inspection.loaded.warnings},
       {"findings", nlohmann::ordered_json::array()}};
+  for (const UnitGuess& guess : other_units(mesh.bounds.size().maxCoeff())) {
+    json["other_units"].push_back({{"unit", guess.unit}, {"scale", guess.millimetres}});
+  }
   for (const Finding& finding : findings_of(inspection)) {
     json["findings"].push_back({{"key", finding.key},
                                 {"count", finding.count},

@@ -5,10 +5,13 @@
 #include <filesystem>
 #include <iosfwd>
 
+#include "keepout/adapters/load_mesh.h"
+
 namespace keepout::app {
 
 struct InspectOptions {
   std::filesystem::path mesh;
+  LoadOptions load = {};
   bool json = false;
   bool self_intersections = false;  // costs seconds where the rest costs a fraction of one
 };

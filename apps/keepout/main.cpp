@@ -16,6 +16,7 @@
 #include "inspect.h"
 #include "keepout/activation/registry.h"
 #include "keepout/adapters/index_registry.h"
+#include "keepout/adapters/load_mesh.h"
 #include "keepout/error.h"
 #include "keepout/solvers/registry.h"
 #include "keepout/version.h"
@@ -34,6 +35,26 @@ const std::map<std::string, Query> queries{{"motion", Query::motion}, {"sphere",
 /// The argument that every command shares.
 void add_mesh(CLI::App& command, std::filesystem::path& mesh) {
   command.add_option("MESH", mesh, "Mesh file: STL, PLY, OBJ or OFF, in mm")->required();
+}
+
+/// An option that takes the name of an anatomical space, in any case.
+CLI::Option* add_space(CLI::App& command, const char* name, AnatomicalSpace& space,
+                       const char* description) {
+  const auto take = [&space](const std::string& word) {
+    space =
+        word.front() == 'r' || word.front() == 'R' ? AnatomicalSpace::ras : AnatomicalSpace::lps;
+  };
+  return command.add_option_function<std::string>(name, take, description)
+      ->check(CLI::IsMember({"ras", "lps"}, CLI::ignore_case));
+}
+
+/// The options of every command that places something in the frame of the mesh.
+void add_spaces(CLI::App& command, LoadOptions& load) {
+  add_space(command, "--space", load.space,
+            "Anatomical space to have the mesh in: turned if the file says SPACE=LPS or SPACE=RAS "
+            "and it is the other one. Without it: as it stands");
+  add_space(command, "--untagged", load.untagged,
+            "Anatomical space of a file that does not say which it is in");
 }
 
 /// The options that every command shares which builds a motion constraint.
@@ -91,8 +112,9 @@ void add_inspect(CLI::App& app, InspectOptions& options) {
   CLI::App& command = *app.add_subcommand(
       "inspect",
       "Say what a mesh is made of and what is wrong with it: counts, holes, winding, "
-      "degenerate and duplicate triangles, size and unit");
+      "degenerate and duplicate triangles, size, unit and anatomical space");
   add_mesh(command, options.mesh);
+  add_spaces(command, options.load);
   command.add_flag("--json", options.json, "Print JSON instead of text");
   command.add_flag("--self-intersections", options.self_intersections,
                    "Also count the pairs of triangles that cut through each other");
@@ -102,6 +124,7 @@ void add_replay(CLI::App& app, ReplayOptions& options) {
   CLI::App& command = *app.add_subcommand(
       "replay", "Solve one step for each line of a pose file and write every result as CSV");
   add_mesh(command, options.mesh);
+  add_spaces(command, options.load);
   command
       .add_option("--poses", options.poses,
                   "One step a line, 'px py pz dx dy dz': tip and desired increment, in mm")
@@ -142,6 +165,7 @@ void add_simulate(CLI::App& app, SimulateOptions& options) {
       "Push a tool over and into the anatomy with a simulated hand, without a fixture "
       "and with each rule, and write an HTML report with pictures");
   add_mesh(command, options.mesh);
+  add_spaces(command, options.load);
   command.add_option("--out", options.report, "Where to write the report")
       ->type_name("REPORT.html")
       ->capture_default_str();

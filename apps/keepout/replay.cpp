@@ -68,7 +68,7 @@ void replay(const ReplayOptions& options, std::ostream& out) {
     planes->stream() << "step,triangle,nx,ny,nz,offset\n";
   }
   const std::vector<PoseLine> poses = read_poses(options.poses);
-  const LoadedMesh loaded = load_mesh(options.mesh);
+  const LoadedMesh loaded = load_mesh(options.mesh, options.load);
   MotionConstraint constraint = make_motion_constraint(loaded.mesh, options.constraint);
 
   std::map<std::string_view, std::size_t> counts;

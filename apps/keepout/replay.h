@@ -7,6 +7,7 @@
 #include <iosfwd>
 #include <optional>
 
+#include "keepout/adapters/load_mesh.h"
 #include "keepout/factory/make_motion_constraint.h"
 
 namespace keepout::app {
@@ -18,6 +19,7 @@ enum class Loop : std::uint8_t {
 
 struct ReplayOptions {
   std::filesystem::path mesh;
+  LoadOptions load = {};
   std::filesystem::path poses;
   std::filesystem::path steps;                  // STEPS.csv, to be written
   std::optional<std::filesystem::path> planes;  // PLANES.csv, to be written: all that were posed

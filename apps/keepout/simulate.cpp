@@ -222,7 +222,7 @@ void simulate(const SimulateOptions& options, std::ostream& out) {
   refuse_shared_files(std::array{NamedPath{"MESH", options.mesh}},
                       std::array{NamedPath{"--out", options.report}});
   OutputFile report(options.report);
-  const LoadedMesh loaded = load_mesh(options.mesh);
+  const LoadedMesh loaded = load_mesh(options.mesh, options.load);
   for (const std::string& warning : loaded.warnings) out << "note: " << warning << '\n';
   // Nor a mistyped name.
   const std::vector<std::string> rules = without_repeats(options.rules);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "hand.h"
+#include "keepout/adapters/load_mesh.h"
 #include "keepout/factory/make_motion_constraint.h"
 
 namespace keepout::app {
@@ -19,6 +20,7 @@ enum class Timings {
 
 struct SimulateOptions {
   std::filesystem::path mesh;
+  LoadOptions load = {};
   std::filesystem::path report = "keepout-report.html";  // to be written
   std::vector<std::string> rules;                        // run beside the tool without a fixture
   MotionConstraintSettings constraint;  // its activation is each of the rules in turn

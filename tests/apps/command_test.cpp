@@ -116,6 +116,19 @@ TEST_F(Command, TheHeadersAreThoseAgreedUpon) {
   EXPECT_EQ(line, "step,triangle,nx,ny,nz,offset");
 }
 
+TEST_F(Command, TheAnatomicalSpaceIsAskedForAndGiven) {
+  folder_.write("poses.txt", "0 0 60 1 2 -3\n");
+  const std::string replay = "replay cube.stl --poses poses.txt --out s.csv --space RAS";
+  const Outcome refused = run(replay);
+  EXPECT_NE(refused.status, 0);
+  EXPECT_NE(refused.output.find("--untagged"), std::string::npos) << refused.output;
+  EXPECT_EQ(run(replay + " --untagged lps").status, 0);
+  EXPECT_NE(run(replay + " --untagged xyz").status, 0);
+  const Outcome inspected = run("inspect cube.stl --untagged lps");
+  EXPECT_NE(inspected.output.find("LPS, not stated in the file"), std::string::npos)
+      << inspected.output;
+}
+
 TEST_F(Command, EveryNumberReadsBackExactly) {
   folder_.write("poses.txt", "0.1 0.2 60.3 0.30000000000000004 1e-17 -0.7\n");
   ASSERT_EQ(run("replay cube.stl --poses poses.txt --out s.csv").status, 0);

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
@@ -93,6 +94,49 @@ TEST_F(Inspect, EachFindingSaysHowManyWhatItMeansAndWhatToDo) {
 TEST_F(Inspect, TheUnitAndTheOrientationAreQuestioned) {
   write(flipped(tetrahedron()), 1.0);
   EXPECT_EQ(finding_keys(), (std::set<std::string>{"inside_out", "looks_like_metres"}));
+}
+
+TEST_F(Inspect, WhatIsFarTooLargeIsQuestionedToo) {
+  write(tetrahedron(), 150'000.0);
+  EXPECT_EQ(finding_keys(), std::set<std::string>{"looks_like_micrometres"});
+  EXPECT_TRUE(contains(text(), "um (150 mm)")) << text();
+  EXPECT_EQ(json().at("other_units").at(0).at("unit"), "um");
+  EXPECT_EQ(json().at("looks_like_micrometres"), true);
+}
+
+TEST_F(Inspect, PlausibleUnitsAreNamedWithTheSizeThatTheyMake) {
+  const auto units_at = [&](double size) {
+    write(tetrahedron(), size);
+    std::set<std::string> units;
+    const nlohmann::json report = json();
+    for (const nlohmann::json& guess : report.at("other_units")) units.insert(guess.at("unit"));
+    return units;
+  };
+  using Units = std::set<std::string>;
+  EXPECT_EQ(units_at(0.18), Units{"m"});
+  EXPECT_EQ(units_at(0.5), Units{"m"});
+  EXPECT_EQ(units_at(2.5), (Units{"cm", "in"}));
+  EXPECT_EQ(units_at(7.1), (Units{"cm", "in"}));
+  EXPECT_EQ(units_at(150.0), Units{});
+  EXPECT_EQ(units_at(1e6), Units{});
+  write(tetrahedron(), 0.18);
+  EXPECT_TRUE(contains(text(), "mm, which is assumed; as plausible: m (180 mm)")) << text();
+}
+
+TEST_F(Inspect, TheAnatomicalSpaceIsPrintedAndHowItIsKnown) {
+  write(tetrahedron());
+  EXPECT_TRUE(contains(text(), "unstated: RAS, LPS or any other")) << text();
+  EXPECT_EQ(json().at("space"), nullptr);
+  std::fstream out(file, std::ios::in | std::ios::out | std::ios::binary);
+  out << std::string("3D Slicer output. SPACE=LPS").append(53, '\0');
+  out.close();
+  EXPECT_TRUE(contains(text(), "LPS, as stated in the file")) << text();
+  EXPECT_TRUE(contains(text(), "in the file: states SPACE=LPS: taken as it stands")) << text();
+  EXPECT_EQ(json().at("space"), "LPS");
+  std::ostringstream turned;
+  inspect({.mesh = file, .load = {.space = AnatomicalSpace::ras}}, turned);
+  EXPECT_TRUE(contains(turned.str(), "RAS, turned from LPS")) << turned.str();
+  EXPECT_TRUE(contains(turned.str(), "Findings\n  none\n")) << turned.str();
 }
 
 TEST_F(Inspect, EveryKindOfFindingIsReported) {

@@ -119,5 +119,31 @@ TEST(Example06, AnOwnProgramInTheFreePolytopeKeepsTheMargin) {
   EXPECT_GT(tip.norm(), radius + margin - 1e-8);
 }
 
+TEST(Example08, TheProxyKeepsTheMarginTheForceSaturatesAndTheEnergiesAddUp) {
+  const std::string text = output_of(KEEPOUT_EXAMPLE_CRTK_LOOP);
+  int held = 0, stopped = -1;
+  double nearest = 0, tool = 0, hand = 0, to_hand = 0, stored = -1, dissipated = 0, from_proxy = 0,
+         active = -1;
+  ASSERT_EQ(std::sscanf(text.c_str(),
+                        "held back in %d of 4000 cycles, stopped in %d, nearest %lf mm of 1.0\n"
+                        "largest force on the tool %lf N, on the hand %lf N\n"
+                        "energy [mJ]: to the hand %lf, stored %lf, dissipated %lf, from the proxy "
+                        "%lf, active %lf",
+                        &held, &stopped, &nearest, &tool, &hand, &to_hand, &stored, &dissipated,
+                        &from_proxy, &active),
+            10)
+      << text;
+  EXPECT_GT(held, 1000);
+  EXPECT_EQ(stopped, 0) << text;
+  EXPECT_GT(nearest, 1.0 - 1e-6);
+  EXPECT_LT(nearest, 1.0 + 1e-3) << "it was pressed against the margin";
+  EXPECT_NEAR(tool, 4.0, 1e-9);
+  EXPECT_NEAR(hand, 2.0, 1e-9);
+  EXPECT_EQ(stored, 0.0) << "it has come back";
+  EXPECT_NEAR(to_hand + stored + dissipated, from_proxy, 1e-9);
+  EXPECT_LT(to_hand, 0.0);
+  EXPECT_GE(active, 0.0);
+}
+
 }  // namespace
 }  // namespace keepout

@@ -47,7 +47,13 @@ class HeaderParser {
       fail("expected 'ply'; if the file has another format, give it that extension");
     }
     while (next_line()) {
-      if (words_[0] == "comment" || words_[0] == "obj_info") continue;
+      if (words_[0] == "comment" || words_[0] == "obj_info") {
+        // Cut short by the end of the text, it is read once more with the rest.
+        const auto after =
+            static_cast<std::size_t>(words_[0].data() + words_[0].size() - text_.data());
+        header_.comments.emplace_back(text_.substr(after, line_end_ - after));
+        continue;
+      }
       if (words_[0] == "end_header") {
         // The second half of a line end may be beyond the text.
         if (position_ == text_.size() && text_.size() < file_size_) return std::nullopt;
@@ -121,6 +127,7 @@ class HeaderParser {
       ++line_;
       const std::size_t end = std::min(text_.find_first_of("\r\n", position_), text_.size());
       split(text_.substr(position_, end - position_));
+      line_end_ = end;
       const bool two = text_.substr(end).starts_with("\r\n");
       position_ = std::min(end + (two ? 2 : 1), text_.size());
     }
@@ -145,6 +152,7 @@ class HeaderParser {
   std::uint64_t file_size_;
   std::size_t position_ = 0;
   std::size_t line_ = 0;
+  std::size_t line_end_ = 0;  // of the line that the words are of
   std::vector<std::string_view> words_;
   PlyHeader header_;
   bool has_format_ = false;

@@ -7,19 +7,33 @@
 #include <string>
 #include <vector>
 
+#include "keepout/adapters/anatomical_space.h"
 #include "keepout/mesh/mesh.h"
 
 namespace keepout {
 
+/// What is known of a file, and what is wanted of it.
+struct LoadOptions {
+  /// The space that the coordinates shall be in: they are turned if the file says the other one.
+  /// unstated: as they stand in the file.
+  AnatomicalSpace space = AnatomicalSpace::unstated;
+  /// The space of a file that does not say. One that does is believed.
+  AnatomicalSpace untagged = AnatomicalSpace::unstated;
+};
+
 /// What load_mesh has read.
 struct LoadedMesh {
   std::shared_ptr<const Mesh> mesh;   // welded; never null
+  AnatomicalSpace space = AnatomicalSpace::unstated;   // that the coordinates are in now
+  AnatomicalSpace stated = AnatomicalSpace::unstated;  // that the file states: SPACE=...
   std::vector<std::string> warnings;  // what was left out of the mesh, or looks odd in the file
 };
 
 /// Reads a triangle mesh from a file: STL, PLY (text and binary both), OBJ or OFF, by its
 /// extension in any case; and welds it exactly. Polygons are triangulated. Nothing is rescaled, and
-/// nothing repaired: see doctor.h.
+/// nothing repaired: see doctor.h. Nothing is turned either, but on demand: see LoadOptions. A file
+/// that states its space (as 3D Slicer writes it) gets a warning unless `options.space` says what
+/// is wanted, and one that states two is an error; so is a demand on a file of unknown space.
 ///
 /// Coordinates of binary files are exact, also doubles of PLY. Those of text files arrive in single
 /// precision: those of PLY are the nearest, and those of the others within 1 unit in the last
@@ -28,6 +42,6 @@ struct LoadedMesh {
 ///
 /// Throws Error, naming the file, the line where there is one, what is wrong and what to do. A file
 /// that was cut short is an error, except that an OBJ file cut at the end of a line cannot be told.
-LoadedMesh load_mesh(const std::filesystem::path& path);
+LoadedMesh load_mesh(const std::filesystem::path& path, const LoadOptions& options = {});
 
 }  // namespace keepout

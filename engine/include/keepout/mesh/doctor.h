@@ -60,8 +60,14 @@ struct MeshFindings {
   /// Smaller than `metres_below` in every direction, where files are in millimetres.
   bool looks_like_metres() const noexcept { return bounds.size().maxCoeff() < metres_below; }
 
+  /// Larger than `micrometres_above` in some direction, where files are in millimetres.
+  bool looks_like_micrometres() const noexcept {
+    return bounds.size().maxCoeff() > micrometres_above;
+  }
+
   /// No anatomy that a tool is kept out of is smaller than 3 mm, and none is larger than 3 m. [mm]
   static constexpr double metres_below = 3.0;
+  static constexpr double micrometres_above = 3000.0;
 };
 
 /// Examines a welded mesh: a pure report, nothing is repaired. Time grows with the size of the

@@ -52,6 +52,7 @@ struct PlyElement {
 struct PlyHeader {
   PlyEncoding encoding = PlyEncoding::text;  // of the data
   std::vector<PlyElement> elements;          // in the order in which their items follow
+  std::vector<std::string> comments;         // and obj_info: what follows the word
   std::size_t size = 0;                      // where the data begin [bytes]
 };
 

@@ -75,6 +75,7 @@ class MotionConstraint {
 
   /// What the tip is kept out of.
   const Mesh& mesh() const noexcept { return *mesh_; }
+  const StepOptions& options() const noexcept { return options_; }
 
  private:
   std::shared_ptr<const Mesh> mesh_;

@@ -1,0 +1,96 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "keepout/control/cycle_status.h"
+#include "keepout/control/energy_account.h"
+#include "keepout/control/passivity.h"
+#include "keepout/control/spring_damper.h"
+#include "keepout/step/motion_constraint.h"
+
+namespace keepout {
+
+struct HapticOptions {
+  double period = 0.001;  // of a cycle [s], > 0
+  SpringDamper spring = {};
+  double top_speed = 200.0;  // of the proxy, which the robot follows [length / s], > 0
+  double farthest = 50.0;    // of the hand from the proxy; beyond it is refused [length], > 0
+  /// How long the force takes to die when cycles fail, and to come back [s], >= period
+  double fade = 0.05;
+  double largest_brake = 0.0;  // of the passivity controller [N s / length]; 0: it only observes
+};
+
+/// What a cycle came to.
+struct HapticCycle {
+  CycleStatus status = CycleStatus::not_engaged;
+  Status step = Status::invalid_input;  // the engine's; of guarded and stopped cycles only
+  Vec3 proxy = Vec3::Zero();            // where the tool shall be [length]
+  Vec3 force = Vec3::Zero();            // on the hand, from now on until the next cycle [N]
+
+  bool ok() const noexcept { return is_ok(status); }
+  /// One line on what happened and what to do about it; of a stopped cycle, the engine's.
+  std::string_view reason() const noexcept {
+    return status == CycleStatus::stopped ? keepout::reason(step) : keepout::reason(status);
+  }
+};
+
+/// A proxy of the hand that stays out of the mesh (the god-object of Zilles and Salisbury 1995,
+/// whose constraint is the certified step), and the force that pulls the hand to it. All in the
+/// frame and the unit of the mesh. Not thread-safe; a cycle allocates, locks and throws nothing.
+///
+/// When a cycle fails, the proxy stands still. The force must not jump, for the hand leans against
+/// it; nor may a fault leave a motor pushing. So it goes on to be that of the spring to the
+/// standing proxy, which is where the tool is, and fades out over `fade` seconds; while there is no
+/// hand to measure, the last force fades. With the first good cycle it comes back over as many
+/// seconds.
+class HapticProxy {
+ public:
+  /// Throws Error for an option out of range. The step of a cycle, top_speed * period, is cut to
+  /// the radius of the motion sphere.
+  HapticProxy(MotionConstraint guard, const HapticOptions& options);
+
+  /// Places proxy and hand at a tip: at the start, and whenever the hand has moved on its own
+  /// (after clutching). No force; energies start anew. guarded, or invalid_pose.
+  CycleStatus engage(const Vec3& tip) noexcept;
+
+  /// Lets go: no force at once, no cycle until it is engaged anew. The energies stay to be read.
+  void release() noexcept;
+
+  /// One cycle: the proxy goes towards the hand as far as the mesh allows.
+  HapticCycle cycle(const Vec3& hand) noexcept;
+
+  /// A cycle in which the proxy must not move, and why; the hand is where it was last seen, unless
+  /// it is given. The force fades.
+  HapticCycle stand(CycleStatus why) noexcept;
+  HapticCycle stand(CycleStatus why, const Vec3& hand) noexcept;
+
+  const Vec3& proxy() const noexcept { return proxy_; }
+  bool engaged() const noexcept { return engaged_; }
+  const EnergyReport& energy() const noexcept { return account_.report(); }
+  const HapticOptions& options() const noexcept { return options_; }
+  const Mesh& mesh() const noexcept { return guard_.mesh(); }
+
+ private:
+  /// Books the cycle past, and takes down where the hand is.
+  void book(const Vec3& hand, const Vec3& proxy_way) noexcept;
+  void update_force() noexcept;
+  void fade(double towards) noexcept;
+  HapticCycle finish(CycleStatus status, Status step) const noexcept;
+
+  MotionConstraint guard_;
+  HapticOptions options_;
+  double longest_;  // way of the proxy in a cycle [length]
+  PassivityObserver passivity_;
+  EnergyAccount account_;
+  HeldForce held_;  // since the last cycle
+  Vec3 proxy_ = Vec3::Zero();
+  Vec3 hand_ = Vec3::Zero();      // where it was last seen
+  Vec3 hand_way_ = Vec3::Zero();  // in the cycle past; zero when it was not seen twice
+  double stretch_ = 0.0;          // between proxy and hand in the last cycle [length]
+  double rate_ = 0.0;             // of the stretch [length / s]
+  double share_ = 1.0;            // of the force that has not faded
+  bool engaged_ = false;
+  bool seen_ = false;  // whether the last cycle saw the hand
+};
+
+}  // namespace keepout

@@ -1,0 +1,111 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "keepout/control/crtk_guard.h"
+
+#include <string>
+#include <utility>
+
+#include "keepout/error.h"
+
+namespace keepout {
+namespace {
+
+const CrtkOptions& checked(const CrtkOptions& options) {
+  const auto require = [](bool holds, const char* what) {
+    if (!holds) throw Error(std::string("CRTK guard: ") + what);
+  };
+  require(options.motion_scale > 0.0 && options.motion_scale <= 1e3,
+          "the motion scale must be above 0 and at most 1000");
+  require(is_rotation(options.hand_from_robot),
+          "hand_from_robot must be a rotation: no reflection, no scale");
+  require(options.longest_silence >= 0.0, "the longest silence must not be below 0");
+  require(options.farthest_lag > 0.0, "the farthest lag must be above 0");
+  require(options.farthest_start > 0.0, "the farthest start must be above 0");
+  return options;
+}
+
+/// From a point to a box; 0 within.
+double distance(const Vec3& point, const Box& box) noexcept {
+  return (point - point.cwiseMax(box.low).cwiseMin(box.high)).norm();
+}
+
+}  // namespace
+
+CrtkGuard::CrtkGuard(MotionConstraint guard, const Registration& registration,
+                     const CrtkOptions& options)
+    : proxy_(std::move(guard), options.haptic),
+      registration_(registration),
+      options_(checked(options)) {}
+
+CycleStatus CrtkGuard::engage(const Pose& setpoint) noexcept {
+  release();
+  if (!is_valid(setpoint)) return cycle_.status = CycleStatus::invalid_pose;
+  const Vec3 tip = registration_.point_to_mesh(setpoint.position);
+  if (!(distance(tip, proxy_.mesh().bounds()) <= options_.farthest_start)) {
+    return cycle_.status = CycleStatus::far_from_mesh;
+  }
+  cycle_.status = proxy_.engage(tip);
+  if (is_ok(cycle_.status)) {
+    cycle_.step = Status::free;
+    cycle_.proxy = tip;
+    setpoint_ = goal_ = setpoint;
+  }
+  return cycle_.status;
+}
+
+void CrtkGuard::release() noexcept {
+  proxy_.release();
+  setpoint_.reset();
+  wrench_ = {};
+  cycle_ = {};
+  has_measured_ = Measured::not_given;
+  silence_ = 0.0;
+}
+
+void CrtkGuard::set_registration(const Registration& registration) noexcept {
+  release();
+  registration_ = registration;
+}
+
+void CrtkGuard::measured_cp(const Pose& pose) noexcept {
+  has_measured_ = is_valid(pose) ? Measured::given : Measured::invalid;
+  measured_ = registration_.point_to_mesh(pose.position);
+}
+
+CycleStatus CrtkGuard::servo_cp(const Pose& goal) noexcept {
+  silence_ = 0.0;
+  goal_ = goal;
+  return go();
+}
+
+CycleStatus CrtkGuard::await_cp() noexcept {
+  silence_ += proxy_.options().period;
+  return go();
+}
+
+CycleStatus CrtkGuard::go() noexcept {
+  const Measured measured = std::exchange(has_measured_, Measured::not_given);
+  // To within a rounding of the sum.
+  if (silence_ > options_.longest_silence * (1.0 + 1e-9)) {
+    return take(proxy_.stand(CycleStatus::stale));
+  }
+  if (!is_valid(goal_) || measured == Measured::invalid) {
+    return take(proxy_.stand(CycleStatus::invalid_pose));
+  }
+  const Vec3 hand = registration_.point_to_mesh(goal_.position);
+  if (measured == Measured::given &&
+      !((measured_ - proxy_.proxy()).norm() <= options_.farthest_lag)) {
+    return take(proxy_.stand(CycleStatus::lagging, hand));
+  }
+  return take(proxy_.cycle(hand));
+}
+
+CycleStatus CrtkGuard::take(const HapticCycle& cycle) noexcept {
+  cycle_ = cycle;
+  if (cycle.ok()) setpoint_ = Pose{registration_.point_to_robot(cycle.proxy), goal_.rotation};
+  wrench_.force = options_.motion_scale *
+                  (options_.hand_from_robot * registration_.force_to_robot(cycle.force));
+  return cycle.status;
+}
+
+}  // namespace keepout

@@ -1,0 +1,168 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "keepout/control/haptic_proxy.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "keepout/error.h"
+
+namespace keepout {
+namespace {
+
+constexpr double longest_length = 1e30;  // as for the engine's lengths
+
+bool is_place(const Vec3& point) noexcept {
+  // What is not a number is not below.
+  return point.cwiseAbs().maxCoeff() <= longest_length && point.allFinite();
+}
+
+const HapticOptions& checked(const HapticOptions& options) {
+  const auto require = [](bool holds, const char* what) {
+    if (!holds) throw Error(std::string("haptic proxy: ") + what);
+  };
+  check(options.spring);
+  require(options.period > 0.0 && options.period <= 1.0,
+          "the period must be above 0 and at most 1 s; it is in seconds");
+  require(options.top_speed > 0.0 && options.top_speed <= longest_length,
+          "the top speed must be above 0");
+  require(options.farthest > 0.0 && options.farthest <= longest_length,
+          "the farthest distance of the hand must be above 0");
+  require(options.fade >= options.period && options.fade <= 10.0,
+          "the force must fade within one period at least and 10 s at most");
+  require(options.largest_brake >= 0.0 && options.largest_brake <= longest_length,
+          "the largest brake must not be below 0");
+  return options;
+}
+
+}  // namespace
+
+HapticProxy::HapticProxy(MotionConstraint guard, const HapticOptions& options)
+    : guard_(std::move(guard)),
+      options_(checked(options)),
+      longest_(std::min(options.top_speed * options.period, guard_.options().radius)),
+      passivity_(options.largest_brake) {}
+
+CycleStatus HapticProxy::engage(const Vec3& tip) noexcept {
+  release();
+  if (!is_place(tip)) return CycleStatus::invalid_pose;
+  account_.restart();
+  proxy_ = hand_ = tip;
+  engaged_ = seen_ = true;
+  return CycleStatus::guarded;
+}
+
+void HapticProxy::release() noexcept {
+  passivity_.restart();
+  held_ = {};
+  hand_way_ = Vec3::Zero();
+  stretch_ = 0.0;
+  share_ = 1.0;
+  engaged_ = seen_ = false;
+}
+
+HapticCycle HapticProxy::cycle(const Vec3& hand) noexcept {
+  if (!engaged_) return finish(CycleStatus::not_engaged, Status::invalid_input);
+  if (!is_place(hand)) return stand(CycleStatus::invalid_pose);
+  const Vec3 wanted = hand - proxy_;
+  const double distance = wanted.norm();
+  if (!(distance <= options_.farthest)) return stand(CycleStatus::too_far);
+
+  const double radius = guard_.options().radius;
+  const bool is_cut = distance > radius;
+  Motion motion{.tip = proxy_, .desired = wanted};
+  if (is_cut) motion.desired *= radius / distance;
+  Step step = guard_.step(motion);
+  const Status status = step.status;
+  const double length = step.motion.norm();
+  // It is the motion that is cut, and not the way wanted: a hand that presses into the surface and
+  // slides would else be slowed down. The engine is asked about the shorter one as well.
+  const bool is_slowed = step.ok() && length > longest_;
+  if (is_slowed) {
+    motion.desired = step.motion * (longest_ / length);
+    step = guard_.step(motion);
+  }
+  if (!step.ok()) {
+    HapticCycle stood = stand(CycleStatus::stopped, hand);
+    stood.step = step.status;
+    return stood;
+  }
+  // Free motion arrives, to the last bit: no force is left in free space.
+  const bool arrives = !is_cut && !is_slowed && step.motion == motion.desired;
+  const Vec3 before = proxy_;
+  proxy_ = arrives ? hand : Vec3(proxy_ + step.motion);
+  fade(1.0);
+  book(hand, proxy_ - before);
+  update_force();
+  return finish(CycleStatus::guarded, status);
+}
+
+HapticCycle HapticProxy::stand(CycleStatus why, const Vec3& hand) noexcept {
+  if (!is_place(hand) || !((hand - proxy_).norm() <= options_.farthest)) return stand(why);
+  if (!engaged_) return finish(CycleStatus::not_engaged, Status::invalid_input);
+  fade(0.0);
+  book(hand, Vec3::Zero());
+  update_force();
+  return finish(why, Status::invalid_input);
+}
+
+HapticCycle HapticProxy::stand(CycleStatus why) noexcept {
+  if (!engaged_) return finish(CycleStatus::not_engaged, Status::invalid_input);
+  const double before = share_;
+  fade(0.0);
+  held_.spring *= before > 0.0 ? share_ / before : 0.0;
+  held_.brake = Vec3::Zero();
+  account_.book_blind(share_ * options_.spring.stored(stretch_));
+  seen_ = false;
+  return finish(why, Status::invalid_input);
+}
+
+void HapticProxy::fade(double towards) noexcept {
+  const double change = options_.period / options_.fade;
+  share_ = towards > share_ ? std::min(share_ + change, 1.0) : std::max(share_ - change, towards);
+}
+
+void HapticProxy::book(const Vec3& hand, const Vec3& proxy_way) noexcept {
+  const double stretch = (proxy_ - hand).norm();
+  const double stored = share_ * options_.spring.stored(stretch);
+  rate_ = 0.0;
+  hand_way_ = Vec3::Zero();
+  if (seen_) {
+    hand_way_ = hand - hand_;
+    rate_ = (stretch - stretch_) / options_.period;
+    passivity_.observe(held_.total(), hand_way_);
+    account_.book(held_, hand_way_, proxy_way, stored);
+    account_.note_active(-passivity_.energy());
+  } else {
+    account_.book_blind(stored);
+  }
+  hand_ = hand;
+  stretch_ = stretch;
+  seen_ = true;
+}
+
+void HapticProxy::update_force() noexcept {
+  const double newtons_before = held_.spring.norm();
+  held_ = {};
+  if (!(stretch_ > 0.0)) {
+    passivity_.leave_contact();
+    return;
+  }
+  const SpringDamper& spring = options_.spring;
+  const double newtons = std::min(share_ * spring.force(stretch_, rate_),
+                                  newtons_before + spring.largest_rise * options_.period);
+  held_.spring = (newtons / stretch_) * (proxy_ - hand_);
+  held_.brake = share_ * passivity_.brake(hand_way_, options_.period);
+  const double total = held_.total().norm();
+  if (total > spring.largest_force) {
+    held_.spring *= spring.largest_force / total;
+    held_.brake *= spring.largest_force / total;
+  }
+  account_.note_force(held_.total().norm());
+}
+
+HapticCycle HapticProxy::finish(CycleStatus status, Status step) const noexcept {
+  return {status, step, proxy_, held_.total()};
+}
+
+}  // namespace keepout

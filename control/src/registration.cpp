@@ -1,0 +1,108 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "keepout/control/registration.h"
+
+#include <Eigen/SVD>
+#include <string>
+
+#include "keepout/error.h"
+
+namespace keepout {
+namespace {
+
+constexpr double longest_translation = 10'000.0;  // [mm]
+
+double millimetres(LengthUnit unit, const char* whose) {
+  switch (unit) {
+    case LengthUnit::millimetre:
+      return 1.0;
+    case LengthUnit::metre:
+      return 1000.0;
+    case LengthUnit::unstated:
+      break;
+  }
+  throw Error(std::string("registration: say the unit of ") + whose +
+              ": LengthUnit::millimetre or LengthUnit::metre");
+}
+
+std::string text_of(double value) {
+  std::string text = std::to_string(value);
+  while (text.find('.') != std::string::npos && (text.back() == '0' || text.back() == '.')) {
+    const bool was_point = text.back() == '.';
+    text.pop_back();
+    if (was_point) break;
+  }
+  return text;
+}
+
+/// The rotation nearest to a matrix which is one to within the tolerance. Throws Error otherwise,
+/// saying what the matrix is instead.
+Mat3 rotation_of(const Mat3& matrix) {
+  const Eigen::JacobiSVD<Mat3> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Vec3 scales = svd.singularValues();  // the largest first
+  if (!is_rotation(matrix)) {
+    const std::string start = "registration: the matrix is no rotation: ";
+    if (scales[0] == 0.0) throw Error(start + "it is all zeros; has it been filled in?");
+    if (scales[2] < 1e-3 * scales[0]) {
+      throw Error(start + "it flattens space; check its nine elements");
+    }
+    if (scales[0] - scales[2] > rotation_tolerance * scales[0]) {
+      throw Error(start + "it stretches by " + text_of(scales[0]) + " one way and by " +
+                  text_of(scales[2]) +
+                  " another; register rigidly, without scale or shear, and write four digits or "
+                  "more");
+    }
+    if (std::abs(scales[0] - 1.0) > rotation_tolerance) {
+      throw Error(start + "it scales by " + text_of(scales[0]) +
+                  "; leave the scale out of it: what is metres and what is millimetres is told by "
+                  "RegistrationUnits");
+    }
+    throw Error(start +
+                "it is a reflection; an axis has the wrong sign, or the frame is left-handed. From "
+                "LPS to RAS two axes change signs, not one");
+  }
+  const Mat3 rotation = svd.matrixU() * svd.matrixV().transpose();
+  return rotation;
+}
+
+void check_matrix(const Eigen::Matrix4d& matrix) {
+  if (!matrix.allFinite())
+    throw Error("registration: the matrix has an element that is not finite");
+  const Eigen::RowVector4d last(0.0, 0.0, 0.0, 1.0);
+  if ((matrix.row(3) - last).cwiseAbs().maxCoeff() > 1e-9) {
+    throw Error(
+        "registration: the last row of the matrix must be 0 0 0 1; is it transposed, with its "
+        "translation there?");
+  }
+}
+
+}  // namespace
+
+Registration Registration::mesh_from_robot(const Eigen::Matrix4d& matrix,
+                                           const RegistrationUnits& units) {
+  const double transform = millimetres(units.transform, "the matrix's translation");
+  const double robot = millimetres(units.robot, "the robot's poses");
+  const double mesh = millimetres(units.mesh, "the mesh");
+  check_matrix(matrix);
+  const Mat3 rotation = rotation_of(matrix.topLeftCorner<3, 3>());
+  const Vec3 translation = matrix.topRightCorner<3, 1>();
+  if (translation.norm() * transform > longest_translation) {
+    throw Error("registration: the translation is " +
+                text_of(translation.norm() * transform / 1000.0) +
+                " m long, and no robot is so far from what it works on; is its unit " +
+                (units.transform == LengthUnit::metre ? "millimetres?" : "micrometres?"));
+  }
+  return {rotation, translation * (transform / mesh), robot / mesh};
+}
+
+Registration Registration::robot_from_mesh(const Eigen::Matrix4d& matrix,
+                                           const RegistrationUnits& units) {
+  check_matrix(matrix);
+  const Mat3 rotation = rotation_of(matrix.topLeftCorner<3, 3>());
+  Eigen::Matrix4d inverse = Eigen::Matrix4d::Identity();
+  inverse.topLeftCorner<3, 3>() = rotation.transpose();
+  inverse.topRightCorner<3, 1>() = -(rotation.transpose() * matrix.topRightCorner<3, 1>());
+  return mesh_from_robot(inverse, units);
+}
+
+}  // namespace keepout

@@ -1,0 +1,108 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+// A teleoperation loop at 1 kHz under the names of CRTK, with a simulated hand and robot: where a
+// dVRK has topics, here are two structs. docs/controllers.md says what goes where.
+#include <algorithm>
+#include <cstdio>
+
+#include "keepout/control/crtk_guard.h"
+#include "keepout/index/nearest.h"
+#include "keepout/index/wide_bvh.h"
+#include "keepout/keepout.h"
+
+/// In place of a PSM: follows what it is sent, a little late. In metres, in its own frame.
+struct Robot {
+  keepout::Pose pose;
+  keepout::Pose measured_cp() const { return pose; }  // subscribe: /PSM1/measured_cp
+  keepout::Pose setpoint_cp() const { return pose; }  // subscribe: /PSM1/setpoint_cp
+  void servo_cp(const keepout::Pose& setpoint) {      // publish: /PSM1/servo_cp
+    pose.position += 0.3 * (setpoint.position - pose.position);
+    pose.rotation = setpoint.rotation;
+  }
+};
+
+/// In place of an MTM and the teleoperation: dives into the anatomy, slides along in it, and comes
+/// back, in four seconds. Distances are those of the goal for the robot, from where it started. [m]
+struct Hand {
+  double largest_force = 0.0;
+  keepout::Vec3 way(double seconds) const {
+    const double down = std::min(seconds, 1.0) - std::clamp(seconds - 2.0, 0.0, 1.0);
+    const double sideways = std::clamp(seconds - 1.0, 0.0, 1.0);
+    return {0.010 * sideways, 0.0, -0.010 * down};
+  }
+  void servo_cf(const keepout::Wrench& wrench) {  // publish: /MTMR/body/servo_cf
+    largest_force = std::max(largest_force, wrench.force.norm());
+  }
+};
+
+int main(int argc, char** argv) try {
+  if (argc != 2) {
+    std::fprintf(stderr, "usage: %s MESH\n", argv[0]);
+    return 2;
+  }
+  const auto mesh = keepout::load_mesh(argv[1]).mesh;
+  constexpr double margin = 0.5, tool_radius = 0.5;  // [mm]
+
+  // Where the mesh is in the robot's frame: in earnest, the result of a registration. Here the
+  // robot's origin is 150 mm above the middle of the mesh, and its axes are those of the mesh.
+  const keepout::Vec3 middle = mesh->bounds().center();
+  Eigen::Matrix4d mesh_from_robot = Eigen::Matrix4d::Identity();
+  mesh_from_robot.topRightCorner<3, 1>() = middle + keepout::Vec3(0, 0, 150);
+  const auto registration = keepout::Registration::mesh_from_robot(
+      mesh_from_robot, {.transform = keepout::LengthUnit::millimetre,
+                        .robot = keepout::LengthUnit::metre,
+                        .mesh = keepout::LengthUnit::millimetre});
+
+  keepout::CrtkGuard guard(
+      keepout::make_motion_constraint(mesh, {.tool_radius = tool_radius, .margin = margin}),
+      registration,
+      {.haptic = {.period = 0.001,
+                  .spring = {.stiffness = 1.0, .damping = 0.002, .largest_force = 4.0},
+                  .largest_brake = 0.01},
+       .motion_scale = 0.5});
+
+  // The robot waits 5 mm above the mesh.
+  const keepout::Vec3 start(middle.x(), middle.y(), mesh->bounds().high.z() + 5.0);
+  Robot robot{{registration.point_to_robot(start), keepout::Mat3::Identity()}};
+  Hand hand;
+  const keepout::Pose begin = robot.setpoint_cp();
+  if (!is_ok(guard.engage(begin))) {
+    std::fprintf(stderr, "%s\n", guard.reason().data());
+    return 1;
+  }
+
+  const keepout::WideBvh index(mesh);
+  keepout::NearestTriangle nearest_triangle(*mesh, index);
+  double nearest = 1e9;
+  int held = 0, stopped = 0;
+  constexpr int cycles = 4000;
+  for (int cycle = 0; cycle < cycles; ++cycle) {  // here: wait for the next millisecond
+    guard.measured_cp(robot.measured_cp());
+    const bool message_lost = cycle % 100 < 3;
+    if (message_lost) {
+      guard.await_cp();
+    } else {
+      guard.servo_cp({begin.position + hand.way(0.001 * cycle), begin.rotation});
+    }
+    robot.servo_cp(*guard.setpoint_cp());  // after a failed cycle, the last one
+    hand.servo_cf(guard.servo_cf());       // then it fades out
+
+    if (!guard.cycle().ok() && stopped++ == 0) std::printf("%s\n", guard.reason().data());
+    held += guard.cycle().step == keepout::Status::limited;
+    nearest = std::min(nearest, nearest_triangle(guard.cycle().proxy).closest.offset.norm());
+  }
+
+  const keepout::EnergyReport& energy = guard.energy();
+  std::printf("held back in %d of %d cycles, stopped in %d, nearest %.9f mm of %.1f\n", held,
+              cycles, stopped, nearest, tool_radius + margin);
+  std::printf("largest force on the tool %.9f N, on the hand %.9f N\n", energy.largest_force,
+              hand.largest_force);
+  std::printf(
+      "energy [mJ]: to the hand %.12f, stored %.12f, dissipated %.12f, from the proxy %.12f, "
+      "active %.12f\n",
+      energy.to_hand, energy.stored, energy.dissipated, energy.from_proxy, energy.active);
+  return 0;
+} catch (const keepout::Error& error) {
+  std::fprintf(stderr, "%s\n", error.what());
+  return 1;
+}

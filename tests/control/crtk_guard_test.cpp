@@ -1,0 +1,219 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "keepout/control/crtk_guard.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <limits>
+#include <set>
+#include <string>
+
+#include "control/guarded_shapes.h"
+#include "keepout/error.h"
+
+namespace keepout {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double accuracy = 1e-9;  // [m]
+
+/// A robot whose base is turned and 300 mm away from the mesh.
+Registration registration() {
+  Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
+  matrix.topLeftCorner<3, 3>() =
+      Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+  matrix.topRightCorner<3, 1>() = Vec3(100, -250, 120);
+  return Registration::mesh_from_robot(matrix, {.transform = LengthUnit::millimetre,
+                                                .robot = LengthUnit::metre,
+                                                .mesh = LengthUnit::millimetre});
+}
+
+const Mat3 tilted = Eigen::AngleAxisd(0.3, Vec3::UnitX()).toRotationMatrix();
+
+/// In the robot's frame, in metres.
+Pose pose_at(const Vec3& point_of_mesh, const Mat3& rotation = tilted) {
+  return {registration().point_to_robot(point_of_mesh), rotation};
+}
+
+const Vec3 above(3, 4, top + 5.0);
+
+class Crtk : public testing::Test {
+ protected:
+  static CrtkGuard make(const CrtkOptions& options = {}) {
+    return {guard_of(cube()), registration(), options};
+  }
+  /// Straight down from where it is engaged, in so many cycles.
+  static void press(CrtkGuard& guard, double z, int cycles = 200) {
+    for (int i = 1; i <= cycles; ++i) {
+      guard.servo_cp(
+          pose_at(above + (static_cast<double>(i) / cycles) * Vec3(0, 0, z - above.z())));
+    }
+  }
+};
+
+TEST_F(Crtk, AFreeGoalIsSentAsItIs) {
+  CrtkGuard guard = make();
+  EXPECT_EQ(guard.engage(pose_at(above)), CycleStatus::guarded);
+  const Mat3 other = Eigen::AngleAxisd(1.3, Vec3::UnitY()).toRotationMatrix();
+  const Pose goal = pose_at(above + Vec3(0.1, 0, 0), other);
+  EXPECT_EQ(guard.servo_cp(goal), CycleStatus::guarded);
+  EXPECT_LT((guard.setpoint_cp()->position - goal.position).norm(), 1e-15);
+  EXPECT_EQ(guard.setpoint_cp()->rotation, goal.rotation) << "to the last bit";
+  EXPECT_EQ(guard.servo_cf().force, Vec3::Zero());
+}
+
+TEST_F(Crtk, AGoalBehindTheSurfaceIsHeldAtTheMarginAndTheHandFeelsIt) {
+  CrtkGuard guard = make();
+  guard.engage(pose_at(above));
+  press(guard, top + kept - 2.0);
+  const Vec3 held(3, 4, top + kept);
+  EXPECT_LT((guard.setpoint_cp()->position - pose_at(held).position).norm(), accuracy);
+  EXPECT_EQ(guard.cycle().step, Status::limited);
+  // 1 N/mm, along the outward normal as the robot sees it.
+  const Vec3 expected = registration().force_to_robot({0, 0, 2.0});
+  EXPECT_LT((guard.servo_cf().force - expected).norm(), 1e-6);
+  EXPECT_EQ(guard.servo_cf().torque, Vec3::Zero());
+}
+
+TEST_F(Crtk, TheOrientationPassesThroughWhileTheTipIsHeld) {
+  CrtkGuard guard = make();
+  guard.engage(pose_at(above));
+  press(guard, top - 1.0);
+  const Mat3 other = Eigen::AngleAxisd(-2.0, Vec3::UnitZ()).toRotationMatrix();
+  EXPECT_EQ(guard.servo_cp(pose_at({3, 4, top - 1.0}, other)), CycleStatus::guarded);
+  EXPECT_EQ(guard.setpoint_cp()->rotation, other);
+}
+
+TEST_F(Crtk, AScaledTeleoperationGivesTheHandWhatItPutsIn) {
+  const Mat3 device = Eigen::AngleAxisd(0.5, Vec3::UnitZ()).toRotationMatrix();
+  CrtkGuard guard = make({.motion_scale = 0.25, .hand_from_robot = device});
+  guard.engage(pose_at(above));
+  press(guard, top + kept - 2.0);
+  const Vec3 on_the_tool = registration().force_to_robot({0, 0, 2.0});
+  EXPECT_LT((guard.servo_cf().force - 0.25 * (device * on_the_tool)).norm(), 1e-6);
+}
+
+TEST_F(Crtk, WithoutEngagingThereIsNothingToSend) {
+  CrtkGuard guard = make();
+  EXPECT_EQ(guard.servo_cp(pose_at(above)), CycleStatus::not_engaged);
+  EXPECT_EQ(guard.await_cp(), CycleStatus::not_engaged);
+  EXPECT_FALSE(guard.setpoint_cp());
+  EXPECT_EQ(guard.servo_cf().force, Vec3::Zero());
+  guard.engage(pose_at(above));
+  EXPECT_EQ(guard.setpoint_cp()->position, pose_at(above).position) << "no jump";
+  press(guard, top - 1.0);
+  guard.release();
+  EXPECT_FALSE(guard.setpoint_cp());
+  EXPECT_EQ(guard.servo_cf().force, Vec3::Zero());
+  EXPECT_EQ(guard.servo_cp(pose_at(above)), CycleStatus::not_engaged);
+}
+
+TEST_F(Crtk, ClutchingStartsAnewWithoutForce) {
+  CrtkGuard guard = make();
+  guard.engage(pose_at(above));
+  press(guard, top + kept - 2.0);
+  EXPECT_GT(guard.servo_cf().force.norm(), 1.9);
+  const Pose robot = *guard.setpoint_cp();
+  guard.release();
+  // The hand has moved meanwhile; the teleoperation starts from where the robot is.
+  EXPECT_EQ(guard.engage(robot), CycleStatus::guarded);
+  EXPECT_EQ(guard.servo_cp(robot), CycleStatus::guarded);
+  EXPECT_LT(guard.servo_cf().force.norm(), 1e-6);
+  EXPECT_LT((guard.setpoint_cp()->position - robot.position).norm(), accuracy);
+}
+
+TEST_F(Crtk, AGoalInMillimetresIsRefused) {
+  CrtkGuard guard = make();
+  guard.engage(pose_at(above));
+  Pose goal = pose_at(above);
+  goal.position *= 1000.0;
+  EXPECT_EQ(guard.servo_cp(goal), CycleStatus::too_far);
+  EXPECT_EQ(guard.setpoint_cp()->position, pose_at(above).position);
+  EXPECT_EQ(guard.engage(goal), CycleStatus::far_from_mesh);
+  EXPECT_FALSE(guard.setpoint_cp());
+}
+
+TEST_F(Crtk, AGoalThatIsNoPoseStopsTheRobotWithItsOrientation) {
+  CrtkGuard guard = make();
+  guard.engage(pose_at(above));
+  for (const Pose& goal : {Pose{{nan, 0, 0}, tilted}, pose_at(above, Mat3::Constant(nan)),
+                           pose_at(above, Mat3::Zero()), pose_at(above, -tilted)}) {
+    EXPECT_EQ(guard.servo_cp(goal), CycleStatus::invalid_pose);
+    EXPECT_EQ(guard.setpoint_cp()->position, pose_at(above).position);
+    EXPECT_EQ(guard.setpoint_cp()->rotation, tilted);
+    EXPECT_FALSE(guard.reason().empty());
+  }
+  EXPECT_EQ(guard.engage(pose_at(above, Mat3::Zero())), CycleStatus::invalid_pose);
+}
+
+TEST_F(Crtk, WithoutMessagesTheLastGoalStandsForAWhile) {
+  CrtkGuard guard = make({.haptic = {.fade = 0.01}, .longest_silence = 0.02});
+  guard.engage(pose_at(above));
+  press(guard, top + kept - 2.0);
+  for (int i = 0; i < 20; ++i) {
+    EXPECT_EQ(guard.await_cp(), CycleStatus::guarded) << i;
+    EXPECT_NEAR(guard.servo_cf().force.norm(), 2.0, 1e-6);
+  }
+  const Pose held = *guard.setpoint_cp();
+  for (int i = 1; i <= 20; ++i) {
+    EXPECT_EQ(guard.await_cp(), CycleStatus::stale);
+    EXPECT_NEAR(guard.servo_cf().force.norm(), std::max(0.0, 2.0 - 0.2 * i), 1e-6);
+    EXPECT_EQ(guard.setpoint_cp()->position, held.position);
+  }
+  // Messages again.
+  EXPECT_EQ(guard.servo_cp(pose_at({3, 4, top + kept - 2.0})), CycleStatus::guarded);
+}
+
+TEST_F(Crtk, ARobotThatIsNotWhereItWasSentIsWaitedFor) {
+  CrtkGuard guard = make({.farthest_lag = 2.0});
+  guard.engage(pose_at(above));
+  guard.measured_cp(pose_at(above + Vec3(0, 0, 1.9)));
+  EXPECT_EQ(guard.servo_cp(pose_at(above)), CycleStatus::guarded);
+  guard.measured_cp(pose_at(above + Vec3(0, 0, 2.1)));
+  EXPECT_EQ(guard.servo_cp(pose_at(above + Vec3(0.1, 0, 0))), CycleStatus::lagging);
+  EXPECT_LT((guard.setpoint_cp()->position - pose_at(above).position).norm(), 1e-15);
+  // What was measured once is not compared again.
+  EXPECT_EQ(guard.servo_cp(pose_at(above)), CycleStatus::guarded);
+  guard.measured_cp({{nan, nan, nan}, tilted});
+  EXPECT_EQ(guard.servo_cp(pose_at(above)), CycleStatus::invalid_pose);
+}
+
+TEST_F(Crtk, AnotherRegistrationIsTakenOnLettingGo) {
+  CrtkGuard guard = make();
+  guard.engage(pose_at(above));
+  const auto moved = Registration::mesh_from_robot(
+      Eigen::Matrix4d::Identity(),
+      {.transform = LengthUnit::metre, .robot = LengthUnit::metre, .mesh = LengthUnit::millimetre});
+  guard.set_registration(moved);
+  EXPECT_FALSE(guard.setpoint_cp());
+  EXPECT_EQ(guard.servo_cp(pose_at(above)), CycleStatus::not_engaged);
+  EXPECT_EQ(guard.engage({0.001 * above, tilted}), CycleStatus::guarded);
+  EXPECT_EQ(guard.cycle().proxy, moved.point_to_mesh(0.001 * above));
+}
+
+TEST_F(Crtk, OptionsOutOfRangeAreRefused) {
+  for (const double bad : {0.0, -1.0, nan}) {
+    EXPECT_THROW(make({.motion_scale = bad}), Error);
+    EXPECT_THROW(make({.farthest_lag = bad}), Error);
+    EXPECT_THROW(make({.farthest_start = bad}), Error);
+  }
+  EXPECT_THROW(make({.longest_silence = nan}), Error);
+  EXPECT_THROW(make({.hand_from_robot = -Mat3::Identity()}), Error);
+  EXPECT_THROW(make({.hand_from_robot = 1000.0 * Mat3::Identity()}), Error);
+  EXPECT_THROW(make({.haptic = {.period = 0.0}}), Error);
+}
+
+TEST(CycleStatus, EachHasANameAndAReasonOfItsOwn) {
+  std::set<std::string_view> names, reasons;
+  for (int i = 0; i <= static_cast<int>(CycleStatus::stopped); ++i) {
+    names.insert(name(static_cast<CycleStatus>(i)));
+    reasons.insert(reason(static_cast<CycleStatus>(i)));
+  }
+  EXPECT_EQ(names.size(), 8u);
+  EXPECT_EQ(reasons.size(), 8u);
+  EXPECT_FALSE(names.contains("unknown"));
+}
+
+}  // namespace
+}  // namespace keepout
