@@ -10,6 +10,7 @@
 
 namespace keepout {
 
+/// How a CrtkGuard behaves; what it takes lengths in is said at each.
 struct CrtkOptions {
   HapticOptions haptic = {};  // on the side of the robot, in the unit of the mesh
   /// How far the robot goes for the way of the hand, as set in the teleoperation. The force on the
@@ -23,8 +24,8 @@ struct CrtkOptions {
 
 /// A force and a torque. [N], [N length]
 struct Wrench {
-  Vec3 force = Vec3::Zero();
-  Vec3 torque = Vec3::Zero();
+  Vec3 force = Vec3::Zero();   // [N]
+  Vec3 torque = Vec3::Zero();  // [N length]
 };
 
 /// A motion constraint under the names of CRTK, the convention that the da Vinci Research Kit
@@ -75,9 +76,12 @@ class CrtkGuard {
 
   /// The last cycle, in the frame of the mesh.
   const HapticCycle& cycle() const noexcept { return cycle_; }
+  /// One line on the last cycle, and what to do about it; a literal.
   std::string_view reason() const noexcept { return cycle_.reason(); }
 
+  /// What went to and fro since it was engaged.
   const EnergyReport& energy() const noexcept { return proxy_.energy(); }
+  /// Between the robot's frame and that of the mesh.
   const Registration& registration() const noexcept { return registration_; }
 
  private:

@@ -20,6 +20,7 @@ enum class CycleStatus : std::uint8_t {
   stopped         // the engine refused the step: see its status
 };
 
+/// Whether the proxy went where the step allowed.
 constexpr bool is_ok(CycleStatus status) noexcept { return status == CycleStatus::guarded; }
 
 /// The name as it stands in the enumeration, for logs.

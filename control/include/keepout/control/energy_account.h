@@ -22,9 +22,9 @@ struct EnergyReport {
   /// The most that the hand has ever been owed, as PassivityObserver counts: what contacts gave it
   /// beyond what it had put into them. 0 when the display was passive throughout.
   double active = 0.0;
-  double braked = 0.0;         // by the passivity controller
-  double largest_force = 0.0;  // [N]
-  std::size_t cycles = 0;
+  double braked = 0.0;           // by the passivity controller
+  double largest_force = 0.0;    // [N]
+  std::size_t cycles = 0;        // all of them
   std::size_t blind_cycles = 0;  // without a hand to observe: their work is not in the sums
 };
 
@@ -33,6 +33,7 @@ struct HeldForce {
   Vec3 spring = Vec3::Zero();  // between the proxy and the hand, on the hand [N]
   Vec3 brake = Vec3::Zero();   // between the ground and the hand, on the hand [N]
 
+  /// What the hand feels. [N]
   Vec3 total() const noexcept { return spring + brake; }
 };
 
@@ -51,9 +52,12 @@ class EnergyAccount {
   /// be lost to, or made by, damping.
   void book_blind(double stored) noexcept;
 
+  /// Takes down what the hand is owed; the report keeps the most. [N length]
   void note_active(double energy) noexcept;
+  /// Takes down how large the force is; the report keeps the largest. [N]
   void note_force(double newtons) noexcept;
 
+  /// The sums so far.
   const EnergyReport& report() const noexcept { return report_; }
 
  private:

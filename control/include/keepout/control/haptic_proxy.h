@@ -10,9 +10,10 @@
 
 namespace keepout {
 
+/// How a proxy is led, and how it pulls the hand.
 struct HapticOptions {
-  double period = 0.001;  // of a cycle [s], > 0
-  SpringDamper spring = {};
+  double period = 0.001;     // of a cycle [s], > 0
+  SpringDamper spring = {};  // between proxy and hand
   double top_speed = 200.0;  // of the proxy, which the robot follows [length / s], > 0
   double farthest = 50.0;    // of the hand from the proxy; beyond it is refused [length], > 0
   /// How long the force takes to die when cycles fail, and to come back [s], >= period
@@ -22,11 +23,12 @@ struct HapticOptions {
 
 /// What a cycle came to.
 struct HapticCycle {
-  CycleStatus status = CycleStatus::not_engaged;
+  CycleStatus status = CycleStatus::not_engaged;  // how it ended
   Status step = Status::invalid_input;  // the engine's; of guarded and stopped cycles only
   Vec3 proxy = Vec3::Zero();            // where the tool shall be [length]
   Vec3 force = Vec3::Zero();            // on the hand, from now on until the next cycle [N]
 
+  /// Whether the proxy went where the step allowed.
   bool ok() const noexcept { return is_ok(status); }
   /// One line on what happened and what to do about it; of a stopped cycle, the engine's.
   std::string_view reason() const noexcept {
@@ -62,12 +64,18 @@ class HapticProxy {
   /// A cycle in which the proxy must not move, and why; the hand is where it was last seen, unless
   /// it is given. The force fades.
   HapticCycle stand(CycleStatus why) noexcept;
+  /// The same, with the hand in sight. [length]
   HapticCycle stand(CycleStatus why, const Vec3& hand) noexcept;
 
+  /// Where the tool shall be. [length]
   const Vec3& proxy() const noexcept { return proxy_; }
+  /// Whether it has been placed, and not been let go since.
   bool engaged() const noexcept { return engaged_; }
+  /// What went to and fro since it was engaged.
   const EnergyReport& energy() const noexcept { return account_.report(); }
+  /// As they were given.
   const HapticOptions& options() const noexcept { return options_; }
+  /// What the proxy is kept out of.
   const Mesh& mesh() const noexcept { return guard_.mesh(); }
 
  private:

@@ -20,6 +20,7 @@ class PassivityObserver {
   /// observes.
   explicit PassivityObserver(double largest_brake = 0.0) noexcept : largest_brake_(largest_brake) {}
 
+  /// Owes nothing, and is owed nothing.
   void restart() noexcept { energy_ = 0.0; }
 
   /// Books a cycle past: the force held, and the way of the hand meanwhile.

@@ -14,17 +14,17 @@ using Mat3 = Eigen::Matrix3d;
 
 /// Where a tool is, and how it is turned: in the frame and the unit of whoever says so.
 struct Pose {
-  Vec3 position = Vec3::Zero();
-  Mat3 rotation = Mat3::Identity();
+  Vec3 position = Vec3::Zero();      // of the tip, in the unit of that frame
+  Mat3 rotation = Mat3::Identity();  // from the tool's axes to those of that frame
 };
 
 /// A quaternion as messages have it. Named, for the order of its parts differs from one library to
 /// the next.
 struct Quaternion {
-  double x = 0.0;
-  double y = 0.0;
-  double z = 0.0;
-  double w = 1.0;
+  double x = 0.0;  // along the first axis
+  double y = 0.0;  // along the second
+  double z = 0.0;  // along the third
+  double w = 1.0;  // the scalar part
 };
 
 /// How far a matrix may be from a rotation, in each element of R^T R: matrices are passed on with

@@ -40,18 +40,21 @@ class Registration {
   Vec3 point_to_mesh(const Vec3& point) const noexcept {
     return rotation_ * (scale_ * point) + translation_;
   }
+  /// The inverse of point_to_mesh.
   Vec3 point_to_robot(const Vec3& point) const noexcept {
     return (rotation_.transpose() * (point - translation_)) / scale_;
   }
 
   /// A displacement or a velocity; and back.
   Vec3 vector_to_mesh(const Vec3& vector) const noexcept { return rotation_ * (scale_ * vector); }
+  /// The inverse of vector_to_mesh.
   Vec3 vector_to_robot(const Vec3& vector) const noexcept {
     return (rotation_.transpose() * vector) / scale_;
   }
 
   /// A force, [N] on both sides; and back.
   Vec3 force_to_mesh(const Vec3& force) const noexcept { return rotation_ * force; }
+  /// The inverse of force_to_mesh.
   Vec3 force_to_robot(const Vec3& force) const noexcept { return rotation_.transpose() * force; }
 
   /// How many of the mesh's units one of the robot's is: 1000 for metres and millimetres.
