@@ -20,6 +20,7 @@
 #include "keepout/solvers/registry.h"
 #include "number_checks.h"
 #include "part_lists.h"
+#include "plan/plan_command.h"
 #include "replay.h"
 #include "simulate.h"
 #include "verify/verify.h"
@@ -227,6 +228,7 @@ int run(int argc, char** argv) {
   add_verify(app, verify_options);
   BenchCommand bench_command(app);
   CompareCommand compare_command(app);
+  PlanCommand plan_command(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -242,6 +244,7 @@ int run(int argc, char** argv) {
   if (app.got_subcommand("simulate")) simulate(simulate_options, std::cout);
   if (app.got_subcommand("bench")) bench_command.run({argv + 1, argv + argc}, std::cout);
   if (app.got_subcommand("compare")) return compare_command.run(std::cout);
+  if (app.got_subcommand("plan")) return plan_command.run(std::cout);
   if (app.got_subcommand("verify")) return verify(verify_options, std::cout);
   return EXIT_SUCCESS;
 }

@@ -62,6 +62,8 @@ class MotionConstraint {
 
   const Mesh& mesh() const noexcept { return *mesh_; }
 
+  const StepOptions& options() const noexcept { return options_; }
+
  private:
   std::shared_ptr<const Mesh> mesh_;
   std::unique_ptr<SpatialIndex> index_;
