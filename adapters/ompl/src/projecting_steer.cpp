@@ -47,6 +47,7 @@ ProjectingSteer::Way ProjectingSteer::steer(const Vec3& from, const Vec3& toward
   if (!towards.allFinite() || !is_within(bounds, from) || !keeps_margin(*guard_, from)) {
     return ended(Ending::not_free);
   }
+  if (!(longest > 0.0)) return ended(Ending::length);  // no number, neither
   double longest_step = guard_->options().radius;
   for (std::size_t steps = 0; steps < options_.most_steps; ++steps) {
     const Vec3 tip = points_.back();
