@@ -42,7 +42,7 @@ void FreeCells::for_each_neighbor(Cell cell, const Visit& visit) const {
   if (p.z + 1 < nz_) visit(cell + nx_ * ny_);
 }
 
-FreeCells::FreeCells(Scene& scene, const Box& bounds, double spacing, double clearance,
+FreeCells::FreeCells(Scene& scene, const Box& bounds, double spacing, double clearance, double told,
                      const Vec3& from)
     : low_(bounds.low),
       spacing_(spacing),
@@ -51,9 +51,17 @@ FreeCells::FreeCells(Scene& scene, const Box& bounds, double spacing, double cle
       nz_(count(bounds.size().z(), spacing)),
       distance_(std::size_t{nx_} * ny_ * nz_, not_looked_at) {
   const double needed = clearance + 0.5 * spacing;
+  const double reach = std::max(needed, told);
+  TriangleBuffer candidates(scene.mesh()->triangle_count());
+  const auto distance_of = [&](const Vec3& point, double guess) {
+    candidates.clear();
+    scene.index().collect({point, reach}, candidates);  // far off, as most are: soon told
+    if (candidates.view().empty()) return std::numeric_limits<double>::infinity();
+    return scene.nearest(point, std::min(guess, reach)).closest.distance;
+  };
   const auto look = [&](Cell cell, double guess) {
     if (distance_[cell] != not_looked_at) return;
-    const double distance = scene.nearest(center(cell), guess).closest.distance;
+    const double distance = distance_of(center(cell), guess);
     distance_[cell] = distance >= needed ? static_cast<float>(distance) : not_free;
     if (distance >= needed) reached_.push_back(cell);
   };

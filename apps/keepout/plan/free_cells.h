@@ -18,12 +18,14 @@ class FreeCells {
  public:
   using Cell = std::uint32_t;
 
-  /// Floods from the cell nearest to `from`. Nothing is reached when it is not free. [length]
-  FreeCells(Scene& scene, const Box& bounds, double spacing, double clearance, const Vec3& from);
+  /// Floods from the cell nearest to `from`. Nothing is reached when it is not free. `told`: up to
+  /// where distances from the mesh are of interest. [length]
+  FreeCells(Scene& scene, const Box& bounds, double spacing, double clearance, double told,
+            const Vec3& from);
 
   const std::vector<Cell>& reached() const noexcept { return reached_; }
   Vec3 center(Cell cell) const noexcept;
-  double distance(Cell cell) const noexcept { return distance_[cell]; }  // from the mesh [length]
+  double distance(Cell cell) const noexcept { return distance_[cell]; }  // infinite: not told
 
   /// The length of the shortest way along the grid to each cell, in steps; max(): none.
   std::vector<std::uint32_t> steps_from(Cell cell) const;

@@ -98,8 +98,9 @@ std::vector<Problem> draw_problems(PlanningScene& where, double clearance, std::
   const Vec3 from = where.space == PlanningScene::Space::around
                         ? where.bounds.low
                         : widest_within(scene, start_box, random);
-  const FreeCells cells(scene, where.bounds, spacing, clearance, from);
-  const Cells near = near_the_mesh(cells, nearest_clearances * clearance);
+  const double near_enough = nearest_clearances * clearance;
+  const FreeCells cells(scene, where.bounds, spacing, clearance, near_enough, from);
+  const Cells near = near_the_mesh(cells, near_enough);
   const Cells starts = below(cells, near, start_box.high.z());
 
   std::vector<Problem> problems;
