@@ -27,7 +27,7 @@ forbid(fixtures "${include}keepout/(adapters|solvers|factory|control)/" "fixture
 forbid(control "${include}keepout/(adapters|solvers|factory|fixtures)/" "control knows only the engine")
 
 # One folder a library: what two of them share is in adapters/src.
-set(libraries assimp bullet ccd cgal embree fcl)
+set(libraries assimp bullet ccd cgal embree fcl ompl)
 foreach(library IN LISTS libraries)
   set(others ${libraries})
   list(REMOVE_ITEM others ${library})
@@ -36,9 +36,25 @@ foreach(library IN LISTS libraries)
          "one library's adapter knows no other's")
 endforeach()
 
+# Planning is a library of its own, which knows the engine and OMPL alone.
+forbid(adapters/ompl "${include}keepout/adapters/" "planning knows only the engine")
+forbid(engine "${include}(ompl/|keepout/ompl/)" "the engine knows no planner")
+forbid(solvers "${include}(ompl/|keepout/ompl/)" "solvers know no planner")
+forbid(factory "${include}(ompl/|keepout/ompl/)" "the factory knows no planner")
+forbid(adapters/src "${include}(ompl/|keepout/ompl/)" "the other adapters know no planner")
+file(GLOB_RECURSE headers "${SOURCE}/adapters/ompl/include/*.h")
+foreach(header IN LISTS headers)
+  file(STRINGS "${header}" lines REGEX "${include}")
+  foreach(line IN LISTS lines)
+    if(NOT line MATCHES "include (\"keepout/|<Eigen/|<[a-z_]+>)")
+      message(SEND_ERROR "${header}: ${line}\n  a third-party header in a public one")
+    endif()
+  endforeach()
+endforeach()
+
 # What is under the GPL stays in its own folder, and in the target that gathers all indices.
 foreach(part engine solvers control factory fixtures oracle adapters/include adapters/src adapters/assimp
-        adapters/bullet adapters/ccd adapters/embree adapters/fcl)
+        adapters/bullet adapters/ccd adapters/embree adapters/fcl adapters/ompl)
   forbid(${part} "${include}(CGAL/|keepout/adapters/(gpl_index_registry|all_indices))"
          "the library is not to depend on the GPL")
 endforeach()

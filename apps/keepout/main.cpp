@@ -22,6 +22,7 @@
 #include "keepout/version.h"
 #include "number_checks.h"
 #include "part_lists.h"
+#include "plan/plan_command.h"
 #include "replay.h"
 #include "serve/serve_command.h"
 #include "simulate.h"
@@ -296,6 +297,7 @@ int run(int argc, char** argv) {
   add_verify(app, verify_options);
   BenchCommand bench_command(app);
   CompareCommand compare_command(app);
+  PlanCommand plan_command(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -312,6 +314,7 @@ int run(int argc, char** argv) {
   if (app.got_subcommand("simulate")) simulate(simulate_options, std::cout);
   if (app.got_subcommand("bench")) bench_command.run({argv + 1, argv + argc}, std::cout);
   if (app.got_subcommand("compare")) return compare_command.run(std::cout);
+  if (app.got_subcommand("plan")) return plan_command.run(std::cout);
   if (app.got_subcommand("verify")) return verify(verify_options, std::cout);
   return EXIT_SUCCESS;
 }

@@ -145,5 +145,18 @@ TEST(Example08, TheProxyKeepsTheMarginTheForceSaturatesAndTheEnergiesAddUp) {
   EXPECT_GE(active, 0.0);
 }
 
+#ifdef KEEPOUT_EXAMPLE_OMPL
+TEST(Example07, PlansAroundTheSphere) {
+  int motions = 0;
+  double length = 0.0;
+  const std::string text = output_of(KEEPOUT_EXAMPLE_OMPL);
+  ASSERT_EQ(std::sscanf(text.c_str(), "a path of %d proven motions, %lf long", &motions, &length),
+            2)
+      << text;
+  EXPECT_GE(motions, 2);
+  EXPECT_GT(length, 120.0);  // straight on would be 120
+}
+#endif
+
 }  // namespace
 }  // namespace keepout

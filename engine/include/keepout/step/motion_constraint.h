@@ -77,6 +77,8 @@ class MotionConstraint {
   const Mesh& mesh() const noexcept { return *mesh_; }
   const StepOptions& options() const noexcept { return options_; }
 
+  const StepOptions& options() const noexcept { return options_; }
+
  private:
   std::shared_ptr<const Mesh> mesh_;
   std::shared_ptr<const SpatialIndex> index_;

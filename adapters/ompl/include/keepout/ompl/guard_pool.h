@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <condition_variable>
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "keepout/step/motion_constraint.h"
+
+namespace keepout {
+
+/// Lends motion constraints to the threads of a planner. A MotionConstraint is for one thread at a
+/// time, while OMPL asks that validators can be called from many: each call borrows one, and the
+/// pool makes another when all are out.
+class GuardPool {
+ public:
+  /// `make`: builds a constraint, each time the same; the mesh may be shared, as by
+  /// make_motion_constraint. `most`: how many are made at most; threads beyond it wait. One is made
+  /// at once, so that what is wrong with the settings is thrown here. Throws Error as well when
+  /// `make` is empty or `most` is 0. Whatever `make` throws later makes a thread wait for a
+  /// constraint that is there.
+  explicit GuardPool(std::function<MotionConstraint()> make, std::size_t most = cores());
+
+  GuardPool(const GuardPool&) = delete;
+  GuardPool& operator=(const GuardPool&) = delete;
+
+  /// A constraint for as long as this lives. It must not outlive the pool.
+  class Loan {
+   public:
+    Loan(Loan&& other) noexcept = default;
+    Loan& operator=(Loan&&) = delete;
+    ~Loan();
+
+    MotionConstraint& operator*() const noexcept { return *guard_; }
+    MotionConstraint* operator->() const noexcept { return guard_.get(); }
+
+   private:
+    friend class GuardPool;
+    Loan(GuardPool& pool, std::unique_ptr<MotionConstraint> guard) noexcept
+        : pool_(&pool), guard_(std::move(guard)) {}
+    GuardPool* pool_;
+    std::unique_ptr<MotionConstraint> guard_;
+  };
+
+  /// Waits while `most` are out. A thread that borrows a second one before it has given back the
+  /// first may wait for ever.
+  Loan borrow();
+
+  /// What the constraints keep to.
+  const StepOptions& options() const noexcept { return options_; }
+  std::size_t made() const;
+
+ private:
+  static std::size_t cores() noexcept;
+  std::unique_ptr<MotionConstraint> made_anew(std::unique_lock<std::mutex>& lock);
+
+  std::function<MotionConstraint()> make_;
+  std::size_t most_;
+  StepOptions options_;
+  mutable std::mutex mutex_;
+  std::condition_variable returned_;
+  std::vector<std::unique_ptr<MotionConstraint>> free_;
+  std::size_t made_ = 0;
+};
+
+}  // namespace keepout

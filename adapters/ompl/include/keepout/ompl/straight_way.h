@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "keepout/step/motion_constraint.h"
+
+namespace keepout {
+
+/// Whether a tip may be there: standing still is a certified step, and no recovery. So the point
+/// keeps the margin to within 2.75 tau (docs/certified-step.md) and, where the guard asks about
+/// sides, is on the free one. A point that is no number may not.
+bool keeps_margin(MotionConstraint& guard, const Vec3& point) noexcept;
+
+/// The part of a straight way that is proven, from its start on.
+struct ProvenPrefix {
+  double share = 0.0;  // of the way; 1: the whole of it, its end included
+  Vec3 end;            // from + share (to - from); `from` itself when nothing is proven [length]
+  bool may_start = false;  // `from` may be stood on
+
+  bool whole() const noexcept { return may_start && share == 1.0; }
+};
+
+/// Whether the certified rule proves the whole straight way: from its start to its end, both
+/// included, it keeps the margin - 3 tau from the mesh. A way longer than the motion sphere is
+/// proven in pieces. What the rule would not prove within its budget is not proven.
+///
+/// Precondition: the rule proves what it lets pass, as `certified` does; the solver's answer is
+/// exact where no plane holds it, as the active set's is: from others more may be left unproven.
+bool proves(MotionConstraint& guard, const Vec3& from, const Vec3& to) noexcept;
+
+/// The same, and how far it is proven if not to the end: to within 2^-8 of a piece.
+ProvenPrefix proven_prefix(MotionConstraint& guard, const Vec3& from, const Vec3& to) noexcept;
+
+}  // namespace keepout

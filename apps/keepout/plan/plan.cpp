@@ -1,0 +1,202 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plan/plan.h"
+
+#include <signal.h>
+
+#include <cstdlib>
+#include <memory>
+#include <ostream>
+#include <utility>
+
+#include "keepout/activation/certified.h"
+#include "keepout/adapters/index_registry.h"
+#include "keepout/adapters/load_mesh.h"
+#include "keepout/error.h"
+#include "keepout/factory/make_motion_constraint.h"
+#include "keepout/fixtures/real_mesh.h"
+#include "keepout/ompl/straight_only.h"
+#include "number_text.h"
+#include "output_file.h"
+#include "plan/planning_page.h"
+#include "plan/planning_result.h"
+#include "progress.h"
+
+namespace keepout::app {
+namespace {
+
+volatile sig_atomic_t is_interrupted = 0;
+bool interrupted() { return is_interrupted != 0; }
+
+/// Ctrl-C ends the run that is on, and what is finished is told all the same.
+void finish_on_ctrl_c() {
+  struct sigaction action = {};
+  action.sa_handler = [](int) { is_interrupted = 1; };
+  is_interrupted = 0;
+  ::sigaction(SIGINT, &action, nullptr);
+  ::sigaction(SIGTERM, &action, nullptr);
+}
+
+PlanningScene load(const std::filesystem::path& path, std::string name, PlanningScene::Space space,
+                   PlanningScene::Starts starts) {
+  return planning_scene(std::make_unique<Scene>(std::move(name), load_mesh(path).mesh, "wide_bvh"),
+                        space, starts);
+}
+
+std::vector<PlanningScene> scenes_of(const PlanOptions& options) {
+  using Space = PlanningScene::Space;
+  using Starts = PlanningScene::Starts;
+  std::vector<PlanningScene> scenes;
+  if (options.mesh) {
+    scenes.push_back(load(*options.mesh, options.mesh->filename().string(),
+                          options.inside ? Space::within : Space::around, Starts::anywhere));
+  } else {
+    // From the throat up into nose and sinuses.
+    scenes.push_back(load(fixture_path("airway"), "airway", Space::within, Starts::below));
+    scenes.push_back(load(fixture_path("skull"), "skull", Space::around, Starts::anywhere));
+  }
+  return scenes;
+}
+
+/// Sides are not asked about: a certified motion never changes them, whichever way the mesh is
+/// wound, so a tree that starts within stays within.
+constexpr Inside sides = Inside::taken_as_is;
+
+std::shared_ptr<GuardPool> steering_guards(const PlanOptions& options, const PlanningScene& where) {
+  return std::make_shared<GuardPool>([&options, mesh = where.scene->mesh()] {
+    return make_motion_constraint(mesh, {.radius = options.radius,
+                                         .tool_radius = options.tool_radius,
+                                         .margin = options.margin,
+                                         .inside = sides});
+  });
+}
+
+/// The same, but for a solver that does not search where a motion is held back.
+std::shared_ptr<GuardPool> validating_guards(const PlanOptions& options,
+                                             const PlanningScene& where) {
+  return std::make_shared<GuardPool>([&options, mesh = where.scene->mesh()] {
+    return MotionConstraint(
+        mesh, make_index("wide_bvh", mesh), std::make_unique<CertifiedRule>(mesh),
+        std::make_unique<StraightOnly>(),
+        {.radius = options.radius, .margin = options.tool_radius + options.margin}, {}, sides);
+  });
+}
+
+class Outputs {
+ public:
+  explicit Outputs(const PlanOptions& options) {
+    std::vector<NamedPath> inputs, outputs;
+    if (options.mesh) inputs.push_back({"MESH", *options.mesh});
+    const auto add = [&](const char* name, const std::optional<std::filesystem::path>& path) {
+      if (path) outputs.push_back({name, *path});
+    };
+    add("--json", options.json);
+    add("--csv", options.csv);
+    add("--out", options.page);
+    refuse_shared_files(inputs, outputs);
+    // Before any work: what cannot be written shall not be told of after an hour.
+    if (options.json) json_ = std::make_unique<OutputFile>(*options.json);
+    if (options.csv) csv_ = std::make_unique<OutputFile>(*options.csv);
+    if (options.page) page_ = std::make_unique<OutputFile>(*options.page);
+  }
+
+  void write(const PlanOptions& options, const std::vector<PlanningScene>& scenes,
+             const std::vector<PlanningRun>& runs) {
+    if (json_) write_planning_json(json_->stream(), options, runs);
+    if (csv_) write_planning_csv(csv_->stream(), runs);
+    if (page_) write_planning_page(page_->stream(), options, scenes, runs);
+    for (OutputFile* file : {json_.get(), csv_.get(), page_.get()}) {
+      if (file != nullptr) file->finish();
+    }
+    for (OutputFile* file : {json_.get(), csv_.get(), page_.get()}) {
+      if (file != nullptr) file->commit();
+    }
+  }
+
+ private:
+  std::unique_ptr<OutputFile> json_, csv_, page_;
+};
+
+void run_scene(const PlanOptions& options, PlanningScene& where, Progress& progress,
+               std::vector<PlanningRun>& runs) {
+  const double clearance = options.tool_radius + options.margin;
+  progress.show(where.scene->name() + ", drawing problems");
+  const std::vector<Problem> problems =
+      draw_problems(where, clearance, options.problems, options.seed);
+  const std::shared_ptr<GuardPool> validating = validating_guards(options, where);
+  const std::shared_ptr<GuardPool> steering = steering_guards(options, where);
+  const double least = least_distance(*where.scene, clearance, options.radius);
+  for (const Problem& problem : problems) {
+    for (const Checker& checker : checkers(options.resolutions)) {
+      if (interrupted()) return;
+      progress.show(where.scene->name() + " " + std::to_string(problem.number) + ", " +
+                    checker.name());
+      const bool slides = checker.kind == Checker::Kind::sliding;
+      PlanningRun run{.mesh = where.scene->name(),
+                      .planner = slides ? "SlidingConnect" : options.planner,
+                      .checker = checker,
+                      .problem = problem,
+                      .path = run_planner({.where = &where,
+                                           .problem = &problem,
+                                           .checker = checker,
+                                           .planner = options.planner,
+                                           .seed = options.seed + problem.number,
+                                           .seconds = options.seconds,
+                                           .range = options.range,
+                                           .simplify = options.simplify,
+                                           .clearance = clearance,
+                                           .guards = slides ? steering : validating},
+                                          interrupted),
+                      .verdict = {}};
+      // Cut short it tells nothing.
+      if (interrupted() && !run.path.solved) return;
+      if (run.path.solved) run.verdict = judge_path(*where.scene, run.path.points, least);
+      runs.push_back(std::move(run));
+      progress.advance();
+    }
+  }
+}
+
+/// What keepout let pass and the oracle does not.
+std::size_t invalid_of_keepout(const std::vector<PlanningRun>& runs) {
+  std::size_t count = 0;
+  for (const PlanningRun& run : runs) {
+    count += run.checker.is_keepouts() && run.path.solved && !run.verdict.is_valid();
+  }
+  return count;
+}
+
+void print_lead(std::ostream& out, const PlanOptions& options) {
+  out << options.planner << ", " << trimmed(options.seconds) << " s for each problem, clearance "
+      << trimmed(options.tool_radius + options.margin) << " mm, seed " << options.seed;
+  if (options.simplify) out << ", simplified";
+  out << ". The sliding checker has a planner of its own, SlidingConnect.\n"
+      << "valid: of those solved, by the exact oracle over the whole of each path.\n\n";
+}
+
+}  // namespace
+
+int plan(const PlanOptions& options, std::ostream& out) {
+  finish_on_ctrl_c();  // before the files, whose own handling would lose them
+  Outputs outputs(options);
+  std::vector<PlanningScene> scenes = scenes_of(options);
+  std::vector<PlanningRun> runs;
+  const std::size_t total = scenes.size() * options.problems * checkers(options.resolutions).size();
+  {
+    Progress progress("plan", total);
+    for (PlanningScene& where : scenes) {
+      if (!interrupted()) run_scene(options, where, progress, runs);
+    }
+  }
+  outputs.write(options, scenes, runs);
+  print_lead(out, options);
+  print_table(out, summaries(runs));
+  if (interrupted()) {
+    out << "\ninterrupted: " << runs.size() << " of " << total << " runs are finished\n";
+  }
+  const std::size_t invalid = invalid_of_keepout(runs);
+  if (invalid > 0) out << "\n" << counted(invalid, "path") << " of keepout's are not valid!\n";
+  return invalid == 0 && !interrupted() ? EXIT_SUCCESS : EXIT_FAILURE;
+}
+
+}  // namespace keepout::app

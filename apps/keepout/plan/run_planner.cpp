@@ -1,0 +1,243 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plan/run_planner.h"
+
+#include <ompl/base/DiscreteMotionValidator.h>
+#include <ompl/base/SpaceInformation.h>
+#include <ompl/base/objectives/PathLengthOptimizationObjective.h>
+#include <ompl/base/spaces/RealVectorStateSpace.h>
+#include <ompl/geometric/PathGeometric.h>
+#include <ompl/geometric/PathSimplifier.h>
+#include <ompl/geometric/planners/informedtrees/BITstar.h>
+#include <ompl/geometric/planners/prm/PRM.h>
+#include <ompl/geometric/planners/rrt/RRT.h>
+#include <ompl/geometric/planners/rrt/RRTConnect.h>
+#include <ompl/util/Console.h>
+#include <ompl/util/RandomNumbers.h>
+
+#include <algorithm>
+#include <chrono>
+#include <limits>
+#include <mutex>
+#include <utility>
+
+#include "keepout/error.h"
+#include "keepout/index/refine.h"
+#include "keepout/ompl/planning.h"
+
+namespace keepout::app {
+namespace {
+
+namespace base = ompl::base;
+namespace geometric = ompl::geometric;
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+Vec3 point_of(const base::State* state) {
+  const double* values = state->as<base::RealVectorStateSpace::StateType>()->values;
+  return {values[0], values[1], values[2]};
+}
+
+/// Time spent in checking. What is checked on the way of a check is part of it.
+struct Timer {
+  bool running = false;
+  double seconds = 0.0;
+  std::uint64_t motions = 0;
+
+  template <class Check>
+  bool time(const Check& check) {
+    if (running) return check();
+    running = true;
+    const Clock::time_point start = Clock::now();
+    const bool result = check();
+    seconds += seconds_since(start);
+    running = false;
+    return result;
+  }
+};
+
+/// What a user of OMPL would write: no triangle within the clearance, by the fastest index here.
+/// Which side a place is on is not asked: that would only cost time, as a tree starts on the right
+/// one. For one thread.
+class SampledStates final : public base::StateValidityChecker {
+ public:
+  SampledStates(const base::SpaceInformationPtr& space, const Scene& scene, double clearance,
+                Timer& timer)
+      : StateValidityChecker(space),
+        scene_(&scene),
+        clearance_(clearance),
+        timer_(&timer),
+        candidates_(scene.mesh()->triangle_count()),
+        hits_(scene.mesh()->triangle_count()) {}
+
+  bool isValid(const base::State* state) const override {
+    return timer_->time([&] { return si_->satisfiesBounds(state) && is_clear(point_of(state)); });
+  }
+
+ private:
+  bool is_clear(const Vec3& point) const {
+    const Ball ball{point, clearance_};
+    candidates_.clear();
+    scene_->index().collect(ball, candidates_);
+    if (candidates_.view().empty()) return true;
+    hits_.clear();
+    refine(*scene_->mesh(), ball, candidates_.view(), hits_);
+    return hits_.view().empty();
+  }
+
+  const Scene* scene_;
+  double clearance_;
+  Timer* timer_;
+  mutable TriangleBuffer candidates_;
+  mutable HitBuffer hits_;
+};
+
+class TimedStates final : public base::StateValidityChecker {
+ public:
+  TimedStates(const base::SpaceInformationPtr& space, base::StateValidityCheckerPtr checker,
+              Timer& timer)
+      : StateValidityChecker(space), checker_(std::move(checker)), timer_(&timer) {}
+
+  bool isValid(const base::State* state) const override {
+    return timer_->time([&] { return checker_->isValid(state); });
+  }
+
+ private:
+  base::StateValidityCheckerPtr checker_;
+  Timer* timer_;
+};
+
+class TimedMotions final : public base::MotionValidator {
+ public:
+  TimedMotions(const base::SpaceInformationPtr& space, base::MotionValidatorPtr validator,
+               Timer& timer)
+      : MotionValidator(space), validator_(std::move(validator)), timer_(&timer) {}
+
+  bool checkMotion(const base::State* from, const base::State* to) const override {
+    ++timer_->motions;
+    return timer_->time([&] { return validator_->checkMotion(from, to); });
+  }
+
+  bool checkMotion(const base::State* from, const base::State* to,
+                   std::pair<base::State*, double>& last_valid) const override {
+    ++timer_->motions;
+    return timer_->time([&] { return validator_->checkMotion(from, to, last_valid); });
+  }
+
+ private:
+  base::MotionValidatorPtr validator_;
+  Timer* timer_;
+};
+
+base::StateSpacePtr space_of(const Box& bounds) {
+  auto space = std::make_shared<base::RealVectorStateSpace>(3);
+  base::RealVectorBounds limits(3);
+  for (unsigned int i = 0; i < 3; ++i) {
+    limits.setLow(i, bounds.low[i]);
+    limits.setHigh(i, bounds.high[i]);
+  }
+  space->setBounds(limits);
+  return space;
+}
+
+void set_checkers(const base::SpaceInformationPtr& space, const PlanningTask& task, Timer& timer) {
+  if (!task.checker.is_keepouts()) {
+    // Between two places so far apart no distance falls by more than half of it.
+    const double apart = task.checker.resolution * space->getStateSpace()->getMaximumExtent();
+    const bool is_widened = task.checker.kind == Checker::Kind::widened;
+    const double clearance = task.clearance + (is_widened ? 0.5 * apart : 0.0);
+    space->setStateValidityCheckingResolution(task.checker.resolution);
+    space->setStateValidityChecker(
+        std::make_shared<SampledStates>(space, *task.where->scene, clearance, timer));
+    space->setMotionValidator(std::make_shared<TimedMotions>(
+        space, std::make_shared<base::DiscreteMotionValidator>(space), timer));
+  } else {
+    space->setStateValidityChecker(std::make_shared<TimedStates>(
+        space, make_state_validity_checker(space, task.guards), timer));
+    space->setMotionValidator(
+        std::make_shared<TimedMotions>(space, make_motion_validator(space, task.guards), timer));
+  }
+  space->setup();
+}
+
+template <class Planner>
+base::PlannerPtr with_range(std::shared_ptr<Planner> planner, double range) {
+  if (range > 0.0) planner->setRange(range);
+  return planner;
+}
+
+base::PlannerPtr planner_of(const PlanningTask& task, const base::SpaceInformationPtr& space) {
+  if (task.checker.kind == Checker::Kind::sliding) {
+    base::PlannerPtr planner = make_sliding_connect(space, task.guards);
+    if (task.range > 0.0) planner->params().setParam("range", std::to_string(task.range));
+    return planner;
+  }
+  if (task.planner == "RRTConnect") {
+    return with_range(std::make_shared<geometric::RRTConnect>(space), task.range);
+  }
+  if (task.planner == "RRT") return with_range(std::make_shared<geometric::RRT>(space), task.range);
+  // These have no range.
+  if (task.planner == "PRM") return std::make_shared<geometric::PRM>(space);
+  if (task.planner == "BITstar") return std::make_shared<geometric::BITstar>(space);
+  throw Error("plan: there is no planner '" + task.planner + "'");
+}
+
+/// What the planner that steers by itself tells of it.
+void read_steering(const base::PlannerPtr& planner, PlannedPath& path) {
+  const auto& properties = planner->getPlannerProgressProperties();
+  const auto seconds = properties.find("steering time REAL");
+  const auto ways = properties.find("ways INTEGER");
+  if (seconds != properties.end()) path.checking_seconds += std::stod(seconds->second());
+  if (ways != properties.end()) path.checks += std::stoull(ways->second());
+}
+
+}  // namespace
+
+PlannedPath run_planner(const PlanningTask& task, bool (*interrupted)()) {
+  ompl::msg::noOutputHandler();  // also of its complaint that a seed is set anew, which is meant
+  // All generators that OMPL makes from here on have their seeds from this one; 0 would be none.
+  ompl::RNG::setSeed(static_cast<std::uint_fast32_t>(1 + task.seed % 0x7FFFFFFF));
+  const auto space = std::make_shared<base::SpaceInformation>(space_of(task.where->bounds));
+  Timer timer;
+  set_checkers(space, task, timer);
+
+  base::ScopedState<base::RealVectorStateSpace> start(space), goal(space);
+  for (unsigned int i = 0; i < 3; ++i) {
+    start[i] = task.problem->start[i];
+    goal[i] = task.problem->goal[i];
+  }
+  const auto definition = std::make_shared<base::ProblemDefinition>(space);
+  definition->setStartAndGoalStates(start, goal);
+  // Planners that go on for a shorter path are to stop at the first.
+  const auto objective = std::make_shared<base::PathLengthOptimizationObjective>(space);
+  objective->setCostThreshold(objective->infiniteCost());
+  definition->setOptimizationObjective(objective);
+
+  const base::PlannerPtr planner = planner_of(task, space);
+  planner->setProblemDefinition(definition);
+  planner->setup();
+  const Clock::time_point begin = Clock::now();
+  const base::PlannerTerminationCondition stop(
+      [&] { return seconds_since(begin) > task.seconds || interrupted(); });
+  planner->solve(stop);
+
+  PlannedPath result;
+  result.solved = definition->hasExactSolution();
+  if (result.solved) {
+    auto& path = *definition->getSolutionPath()->as<geometric::PathGeometric>();
+    if (task.simplify) geometric::PathSimplifier(space).simplify(path, stop);
+    result.seconds = seconds_since(begin);
+    for (const base::State* state : path.getStates()) result.points.push_back(point_of(state));
+  } else {
+    result.seconds = seconds_since(begin);
+  }
+  result.checking_seconds = timer.seconds;
+  result.checks = timer.motions;
+  read_steering(planner, result);
+  return result;
+}
+
+}  // namespace keepout::app

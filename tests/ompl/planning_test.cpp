@@ -1,0 +1,326 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+// What is plugged into OMPL, held to an independent oracle. The only test that sees OMPL's headers.
+#include "keepout/ompl/planning.h"
+
+#include <gtest/gtest.h>
+#include <ompl/base/DiscreteMotionValidator.h>
+#include <ompl/base/SpaceInformation.h>
+#include <ompl/base/spaces/RealVectorStateSpace.h>
+#include <ompl/base/spaces/SE3StateSpace.h>
+#include <ompl/geometric/PathGeometric.h>
+#include <ompl/geometric/planners/rrt/RRTConnect.h>
+#include <ompl/util/Console.h>
+#include <ompl/util/RandomNumbers.h>
+
+#include <limits>
+#include <thread>
+#include <vector>
+
+#include "keepout/error.h"
+#include "keepout/factory/make_motion_constraint.h"
+#include "keepout/fixtures/random.h"
+#include "keepout/fixtures/shapes.h"
+#include "keepout/oracle/safety_oracle.h"
+
+namespace keepout {
+namespace {
+
+namespace base = ompl::base;
+
+constexpr double margin = 0.5;
+constexpr double tolerance = 1e-6;  // far above 3 tau of shapes of this size
+
+using SharedMesh = std::shared_ptr<const Mesh>;
+
+SharedMesh mesh_of(std::string_view shape) {
+  return std::make_shared<const Mesh>(make_shape(shape));
+}
+
+std::shared_ptr<GuardPool> guards_of(const SharedMesh& mesh, std::size_t most = 2) {
+  return std::make_shared<GuardPool>(
+      [mesh] { return make_motion_constraint(mesh, {.margin = margin}); }, most);
+}
+
+base::SpaceInformationPtr space_around(const Mesh& mesh) {
+  ompl::msg::noOutputHandler();
+  auto space = std::make_shared<base::RealVectorStateSpace>(3);
+  base::RealVectorBounds bounds(3);
+  for (unsigned int i = 0; i < 3; ++i) {
+    bounds.setLow(i, mesh.bounds().low[i] - 10.0);
+    bounds.setHigh(i, mesh.bounds().high[i] + 10.0);
+  }
+  space->setBounds(bounds);
+  return std::make_shared<base::SpaceInformation>(space);
+}
+
+/// A state that goes away with this object.
+class TipState {
+ public:
+  TipState(const base::SpaceInformationPtr& space, const Vec3& tip) : space_(space) {
+    state_ = space->allocState();
+    for (int i = 0; i < 3; ++i) values()[i] = tip[i];
+  }
+  ~TipState() { space_->freeState(state_); }
+  TipState(const TipState&) = delete;
+  TipState& operator=(const TipState&) = delete;
+
+  base::State* get() const { return state_; }
+  Vec3 tip() const { return {values()[0], values()[1], values()[2]}; }
+
+ private:
+  double* values() const { return state_->as<base::RealVectorStateSpace::StateType>()->values; }
+  base::SpaceInformationPtr space_;
+  base::State* state_;
+};
+
+Vec3 any_place(const Mesh& mesh, Random& random) {
+  Vec3 place;
+  for (int i = 0; i < 3; ++i) {
+    place[i] = random.uniform(mesh.bounds().low[i] - 9.0, mesh.bounds().high[i] + 9.0);
+  }
+  return place;
+}
+
+class PlanningOn : public testing::TestWithParam<const char*> {};
+
+TEST_P(PlanningOn, TheValidatorAgreesWithTheOracleOnRandomMotions) {
+  const SharedMesh mesh = mesh_of(GetParam());
+  const base::SpaceInformationPtr space = space_around(*mesh);
+  set_certified_checkers(space, guards_of(mesh));
+  space->setup();
+  oracle::SafetyOracle oracle(mesh);
+  Random random(7);
+  int valid = 0, invalid = 0;
+  for (int i = 0; i < 800; ++i) {
+    const Vec3 from = any_place(*mesh, random);
+    // Short ones and long ones, of many pieces.
+    const Vec3 to = i % 2 == 0 ? any_place(*mesh, random)
+                               : Vec3(from + random.uniform(0.0, 8.0) * random.direction());
+    const TipState a(space, from), b(space, to);
+    if (!space->isValid(a.get())) continue;
+    const TipState last(space, Vec3::Zero());
+    std::pair<base::State*, double> last_valid{last.get(), -1.0};
+    const oracle::Finding whole = oracle.check(from, to, margin - tolerance);
+    if (space->checkMotion(a.get(), b.get(), last_valid)) {
+      ++valid;
+      EXPECT_FALSE(whole.below);
+      EXPECT_EQ(last_valid.second, -1.0) << "is not to be touched";
+      continue;
+    }
+    ++invalid;
+    ASSERT_GE(last_valid.second, 0.0);
+    ASSERT_LT(last_valid.second, 1.0);
+    EXPECT_LT((last.tip() - (from + last_valid.second * (to - from))).norm(), 1e-9);
+    EXPECT_FALSE(oracle.check(from, last.tip(), margin - tolerance).below);
+    EXPECT_TRUE(space->isValid(last.get()));
+    if (space->satisfiesBounds(b.get())) {
+      EXPECT_TRUE(oracle.check(from, to, margin + tolerance).below) << "refused without a reason";
+      // To within a piece's 2^-8 the whole of what there is is proven.
+      const Vec3 beyond = last.tip() + (to - from).normalized() * 0.05;
+      EXPECT_TRUE(oracle.check(from, beyond, margin + tolerance).below);
+    }
+  }
+  EXPECT_GT(valid, 25);
+  EXPECT_GT(invalid, 25);
+}
+
+INSTANTIATE_TEST_SUITE_P(Shapes, PlanningOn,
+                         testing::Values("cube", "sphere", "gear", "thin_plates", "cortex",
+                                         "star_bumps", "tunnel", "triangle_soup"),
+                         [](const auto& shape) { return std::string(shape.param); });
+
+/// One plate of no thickness at z = 0, 100 wide.
+SharedMesh sheet() { return std::make_shared<const Mesh>(make_flat_plate(10.0, 1)); }
+
+TEST(Planning, SampledCheckingJumpsOverAPlateThatTheValidatorSees) {
+  const SharedMesh mesh = sheet();
+  const base::SpaceInformationPtr space = space_around(*mesh);
+  const auto guards = guards_of(mesh);
+  set_certified_checkers(space, guards);
+  space->setup();
+  const base::DiscreteMotionValidator sampled(space);
+  const TipState above(space, {1, 2, 0.6}), below(space, {1, 2, -0.6});
+  EXPECT_TRUE(sampled.checkMotion(above.get(), below.get()));
+  EXPECT_FALSE(space->checkMotion(above.get(), below.get()));
+}
+
+TEST(Planning, AStateNearerThanTheMarginIsInvalid) {
+  const SharedMesh mesh = sheet();
+  const base::SpaceInformationPtr space = space_around(*mesh);
+  set_certified_checkers(space, guards_of(mesh));
+  space->setup();
+  const auto is_valid = [&](double height) {
+    const TipState state(space, {3, 4, height});
+    return space->isValid(state.get());
+  };
+  EXPECT_TRUE(is_valid(margin));
+  EXPECT_TRUE(is_valid(-margin)) << "an open mesh has no sides";
+  EXPECT_FALSE(is_valid(margin - 1e-6));
+  EXPECT_FALSE(is_valid(0.0));
+  EXPECT_TRUE(is_valid(9.9));
+  EXPECT_FALSE(is_valid(10.1)) << "out of bounds";
+  EXPECT_FALSE(is_valid(std::numeric_limits<double>::quiet_NaN()));
+}
+
+TEST(Planning, WithSidesTheInsideIsInvalidAndWithoutItIsAnotherRoom) {
+  const SharedMesh mesh = mesh_of("sphere");
+  const base::SpaceInformationPtr space = space_around(*mesh);
+  const TipState centre(space, Vec3::Zero());
+  EXPECT_FALSE(make_state_validity_checker(space, guards_of(mesh))->isValid(centre.get()));
+  const auto no_sides = std::make_shared<GuardPool>([mesh] {
+    return make_motion_constraint(mesh, {.margin = margin, .inside = Inside::taken_as_is});
+  });
+  EXPECT_TRUE(make_state_validity_checker(space, no_sides)->isValid(centre.get()));
+  const TipState outside(space, {0, 0, 55});
+  EXPECT_FALSE(make_motion_validator(space, no_sides)->checkMotion(centre.get(), outside.get()));
+}
+
+TEST(Planning, AMotionThatLeavesTheBoundsEndsAtItsStart) {
+  const SharedMesh mesh = mesh_of("cube");
+  const base::SpaceInformationPtr space = space_around(*mesh);
+  const TipState from(space, {0, 0, 55}), to(space, {0, 0, 65}), last(space, Vec3::Zero());
+  std::pair<base::State*, double> last_valid{last.get(), -1.0};
+  const auto validator = make_motion_validator(space, guards_of(mesh));
+  EXPECT_FALSE(validator->checkMotion(from.get(), to.get(), last_valid));
+  EXPECT_EQ(last_valid.second, 0.0);
+  EXPECT_EQ(last.tip(), from.tip());
+}
+
+TEST(Planning, ValidatorsCountAndMayBeCalledFromManyThreads) {
+  const SharedMesh mesh = mesh_of("gear");
+  const base::SpaceInformationPtr space = space_around(*mesh);
+  const auto guards = guards_of(mesh, 2);  // fewer than threads: some wait
+  const auto validator = make_motion_validator(space, guards);
+  const auto answers = [&] {
+    std::vector<bool> result;
+    Random random(3);
+    for (int i = 0; i < 200; ++i) {
+      const TipState a(space, any_place(*mesh, random)), b(space, any_place(*mesh, random));
+      result.push_back(validator->checkMotion(a.get(), b.get()));
+    }
+    return result;
+  };
+  std::vector<std::vector<bool>> results(4);
+  std::vector<std::thread> threads;
+  for (auto& result : results) threads.emplace_back([&] { result = answers(); });
+  for (std::thread& thread : threads) thread.join();
+  for (const auto& result : results) EXPECT_EQ(result, results.front());
+  EXPECT_EQ(validator->getCheckedMotionCount(), 800u);
+  EXPECT_LE(guards->made(), 2u);
+}
+
+/// The message of the error, or none.
+template <class Call>
+std::string error_of(const Call& call) {
+  try {
+    call();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return {};
+}
+
+TEST(Planning, AWrongSpaceIsRefusedWithAWordOnWhatToDo) {
+  const SharedMesh mesh = mesh_of("cube");
+  const auto guards = guards_of(mesh);
+  const auto make = [&](const base::StateSpacePtr& space) {
+    return error_of(
+        [&] { make_motion_validator(std::make_shared<base::SpaceInformation>(space), guards); });
+  };
+  const auto plane = std::make_shared<base::RealVectorStateSpace>(2);
+  plane->setBounds(-1, 1);
+  EXPECT_NE(make(plane).find("RealVectorStateSpace>(3)"), std::string::npos) << make(plane);
+  const auto poses = std::make_shared<base::SE3StateSpace>();
+  EXPECT_NE(make(poses).find("6 dimensions"), std::string::npos) << make(poses);
+  const auto unbounded = std::make_shared<base::RealVectorStateSpace>(3);
+  EXPECT_NE(make(unbounded).find("setBounds"), std::string::npos) << make(unbounded);
+  EXPECT_NE(
+      error_of([&] { make_motion_validator(space_around(*mesh), nullptr); }).find("GuardPool"),
+      std::string::npos);
+  EXPECT_NE(error_of([&] { set_certified_checkers(nullptr, guards); }), "");
+  EXPECT_NE(
+      error_of([&] { make_sliding_connect(space_around(*mesh), guards, {.sliding_step = 6.0}); }),
+      "");
+}
+
+/// From one side of the cortex to the other.
+std::vector<Vec3> planned(std::uint64_t seed, bool slides, double range = 0.0) {
+  const SharedMesh mesh = mesh_of("cortex");
+  const base::SpaceInformationPtr space = space_around(*mesh);
+  ompl::RNG::setSeed(static_cast<std::uint_fast32_t>(seed));
+  const auto guards = guards_of(mesh);
+  set_certified_checkers(space, guards);
+  space->setup();
+  const auto definition = std::make_shared<base::ProblemDefinition>(space);
+  base::ScopedState<base::RealVectorStateSpace> start(space), goal(space);
+  for (unsigned int i = 0; i < 3; ++i) {
+    start[i] = i == 0 ? -56 : 0;
+    goal[i] = i == 0 ? 56 : 0;
+  }
+  definition->setStartAndGoalStates(start, goal);
+  base::PlannerPtr planner = make_sliding_connect(space, guards);
+  if (!slides) planner = std::make_shared<ompl::geometric::RRTConnect>(space);
+  if (range > 0.0) planner->params().setParam("range", std::to_string(range));
+  planner->setProblemDefinition(definition);
+  planner->setup();
+  planner->solve(10.0);
+  std::vector<Vec3> tips;
+  if (!definition->hasExactSolution()) return tips;
+  base::PlannerData data(space);
+  planner->getPlannerData(data);
+  EXPECT_GE(data.numVertices(), 2u);
+  EXPECT_EQ(data.numStartVertices(), 1u);
+  for (const base::State* state :
+       definition->getSolutionPath()->as<ompl::geometric::PathGeometric>()->getStates()) {
+    const double* v = state->as<base::RealVectorStateSpace::StateType>()->values;
+    tips.emplace_back(v[0], v[1], v[2]);
+  }
+  return tips;
+}
+
+TEST(Planning, BothPlannersFindPathsThatTheOraclePasses) {
+  const SharedMesh mesh = mesh_of("cortex");
+  oracle::SafetyOracle oracle(mesh);
+  for (const bool slides : {false, true}) {
+    for (const std::uint64_t seed : {1, 2, 3}) {
+      const std::vector<Vec3> tips = planned(seed, slides);
+      ASSERT_GE(tips.size(), 2u) << "not solved";
+      EXPECT_EQ(tips.front(), Vec3(-56, 0, 0));
+      EXPECT_EQ(tips.back(), Vec3(56, 0, 0));
+      for (std::size_t i = 1; i < tips.size(); ++i) {
+        EXPECT_FALSE(oracle.check(tips[i - 1], tips[i], margin - tolerance).below);
+      }
+    }
+  }
+}
+
+TEST(Planning, TheSameSeedPlansTheSameAndTheRangeIsHeeded) {
+  EXPECT_EQ(planned(5, true), planned(5, true));
+  EXPECT_NE(planned(5, true), planned(6, true));
+  EXPECT_NE(planned(5, true), planned(5, true, 7.0));
+}
+
+TEST(Planning, AStartThatIsNotFreeEndsThePlanner) {
+  const SharedMesh mesh = mesh_of("sphere");
+  const base::SpaceInformationPtr space = space_around(*mesh);
+  // Not even when the space's own checker lets everything pass.
+  space->setStateValidityChecker([](const base::State*) { return true; });
+  space->setup();
+  const auto definition = std::make_shared<base::ProblemDefinition>(space);
+  base::ScopedState<base::RealVectorStateSpace> inside(space), outside(space);
+  for (unsigned int i = 0; i < 3; ++i) inside[i] = 0.0, outside[i] = 45.0;
+  const auto status = [&](const auto& start, const auto& goal) {
+    definition->clearSolutionPaths();
+    definition->setStartAndGoalStates(start, goal);
+    const auto planner = make_sliding_connect(space, guards_of(mesh));
+    planner->setProblemDefinition(definition);
+    planner->setup();
+    return static_cast<base::PlannerStatus::StatusType>(planner->solve(1.0));
+  };
+  EXPECT_EQ(status(inside, outside), base::PlannerStatus::INVALID_START);
+  EXPECT_EQ(status(outside, inside), base::PlannerStatus::INVALID_GOAL);
+}
+
+}  // namespace
+}  // namespace keepout
