@@ -31,11 +31,14 @@ class GuardPool {
   /// A constraint for as long as this lives. It must not outlive the pool.
   class Loan {
    public:
+    /// Hands the constraint on; `other` has none any more.
     Loan(Loan&& other) noexcept = default;
     Loan& operator=(Loan&&) = delete;
     ~Loan();
 
+    /// The constraint that is lent. Precondition: it was not handed on.
     MotionConstraint& operator*() const noexcept { return *guard_; }
+    /// The same.
     MotionConstraint* operator->() const noexcept { return guard_.get(); }
 
    private:
@@ -52,6 +55,7 @@ class GuardPool {
 
   /// What the constraints keep to.
   const StepOptions& options() const noexcept { return options_; }
+  /// How many have been made so far, lent or not.
   std::size_t made() const;
 
  private:

@@ -13,6 +13,7 @@
 
 namespace keepout {
 
+/// How a way is led along the anatomy.
 struct SteerOptions {
   /// The longest step on a way that is held back. Short ones follow the surface closely, long ones
   /// are few. 0: an eighth of the motion sphere's radius. [length]
@@ -35,6 +36,7 @@ class ProjectingSteer {
   /// The guard must outlive this. Throws Error for options out of range.
   explicit ProjectingSteer(MotionConstraint& guard, const SteerOptions& options = {});
 
+  /// Why a way ends where it does.
   enum class Ending : std::uint8_t {
     arrived,    // the last way point is the target, to the last bit
     length,     // as long as asked for
@@ -44,8 +46,9 @@ class ProjectingSteer {
     unbounded,  // the way left the bounds, and was cut off before
   };
 
+  /// What a call of steer came to.
   struct Way {
-    Ending ending = Ending::not_free;
+    Ending ending = Ending::not_free;  // why there is no more of it
     /// The start first. The straight pieces between neighbours are proven. Valid until the next
     /// call. [length]
     std::span<const Vec3> points;

@@ -17,6 +17,7 @@ struct ProvenPrefix {
   Vec3 end;            // from + share (to - from); `from` itself when nothing is proven [length]
   bool may_start = false;  // `from` may be stood on
 
+  /// Whether all of the way is proven, both ends included.
   bool whole() const noexcept { return may_start && share == 1.0; }
 };
 
