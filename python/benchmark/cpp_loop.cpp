@@ -22,7 +22,7 @@ struct Pose {
 };
 struct Answer {
   double motion[3];
-  double status, triangles, planes;
+  double status, planes;
 };
 
 std::vector<Pose> read(const char* path) {
@@ -66,7 +66,6 @@ int main(int argc, char** argv) try {
                            .desired = {pose.desired[0], pose.desired[1], pose.desired[2]}});
       answers[i] = {{step.motion.x(), step.motion.y(), step.motion.z()},
                     static_cast<double>(step.status),
-                    static_cast<double>(step.triangles),
                     static_cast<double>(step.planes.size())};
     }
     const std::chrono::duration<double, std::nano> taken = Clock::now() - start;

@@ -98,7 +98,7 @@ def measure(title, tips, desired, memory):
                 wall, cpu = least(lambda: guard.steps(tips, desired, threads=2, out=two))
                 two_s.append(wall)
                 two_cpu.append(cpu / wall)
-        answers = np.fromfile(files[1]).reshape(-1, 6)
+        answers = np.fromfile(files[1]).reshape(-1, 5)
     assert np.array_equal(out.motion.view(np.int64), answers[:, :3].copy().view(np.int64))
     assert np.array_equal(out.status, answers[:, 3])
 
