@@ -32,7 +32,6 @@ class Steps:
 
     motion: NDArray[np.float64]  # (n, 3): of the tip; zero unless ok [length]
     status: NDArray[np.uint8]  # (n,): of Status, as numbers
-    triangles: NDArray[np.uint32]  # (n,): how many triangles each step rests on
     planes: NDArray[np.uint32]  # (n,): how many planes were posed to the solver
 
     @classmethod
@@ -41,7 +40,6 @@ class Steps:
         return cls(
             np.zeros((poses, 3)),
             np.full(poses, Status.invalid_input, np.uint8),
-            np.zeros(poses, np.uint32),
             np.zeros(poses, np.uint32),
         )
 
@@ -68,7 +66,6 @@ class Simulation:
 
     tips: NDArray[np.float64]  # (m, cycles + 1, 3): from the start to after the last cycle [length]
     status: NDArray[np.uint8]  # (m, cycles): of Status, as numbers
-    triangles: NDArray[np.uint32]  # (m, cycles): how many triangles each step rests on
     planes: NDArray[np.uint32]  # (m, cycles): how many planes were posed to the solver
 
     @classmethod
@@ -77,7 +74,6 @@ class Simulation:
         return cls(
             np.zeros((loops, cycles + 1, 3)),
             np.full((loops, cycles), Status.invalid_input, np.uint8),
-            np.zeros((loops, cycles), np.uint32),
             np.zeros((loops, cycles), np.uint32),
         )
 

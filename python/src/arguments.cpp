@@ -35,7 +35,11 @@ bool read_floats(Item item, Vec3& values) {
 
 /// A copy of three doubles from an array of them, whatever its stride.
 bool read_array(py::handle argument, Vec3& values) {
-  if (!py::isinstance<py::array_t<double>>(argument)) return false;
+  // Of no subclass, such as one with a mask.
+  if (Py_TYPE(argument.ptr()) != py::detail::npy_api::get().PyArray_Type_ ||
+      !py::isinstance<py::array_t<double>>(argument)) {
+    return false;
+  }
   const auto array = py::reinterpret_borrow<py::array_t<double>>(argument);
   if (array.ndim() != 1 || array.shape(0) != 3) return false;
   for (py::ssize_t i = 0; i < 3; ++i) values[i] = array.at(i);
@@ -59,6 +63,9 @@ void refuse(std::string_view name, const std::string& expected, const std::strin
 py::array numbers(py::handle argument, const Expected& expected) {
   const std::string wanted = "numbers of shape " + std::string(expected.text);
   if (argument.is_none()) refuse(expected.name, wanted, "None");
+  if (py::hasattr(argument, "mask")) {
+    refuse(expected.name, wanted, "a masked array, whose mask would be lost; fill it first");
+  }
   py::array array;
   try {
     array = py::module_::import("numpy").attr("asarray")(argument);

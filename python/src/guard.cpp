@@ -41,10 +41,11 @@ void require_max_step(double max_step, double radius) {
   }
 }
 
-/// What there is to know of a step in a batch, but for its motion.
+/// What there is to know of a step in a batch, but for its motion. How many triangles it rests on
+/// is left out: a rule that searches an index has that depend on where it searched before, and so
+/// on which worker did the pose.
 void write(const StepColumns& columns, std::size_t i, const Step& step) {
   columns.status[i] = static_cast<std::uint8_t>(step.status);
-  columns.triangles[i] = static_cast<std::uint32_t>(step.triangles);
   columns.planes[i] = static_cast<std::uint32_t>(step.planes.size());
 }
 
@@ -87,7 +88,8 @@ std::deque<MotionConstraint>& Guard::workers(unsigned threads) {
   return workers_;
 }
 
-StepResult Guard::step(py::handle tip, py::handle desired, py::handle jacobian, py::handle rows) {
+StepResult Guard::step(const py::object& tip, const py::object& desired, const py::object& jacobian,
+                       const py::object& rows) {
   Motion motion{.tip = point(tip, "tip"), .desired = point(desired, "desired")};
   Jacobian j;
   Doubles matrix;
@@ -106,17 +108,17 @@ StepResult Guard::step(py::handle tip, py::handle desired, py::handle jacobian, 
     }
     const auto pair = py::reinterpret_borrow<py::sequence>(rows);
     const std::string text = "(m, " + std::to_string(variables) + ")";
-    matrix = doubles(py::object(pair[0]), {"rows[0]", {any, variables}, text});
+    matrix = doubles(pair[0], {"rows[0]", {any, variables}, text});
     const py::ssize_t count = matrix.shape(0);
     const std::string length = "(" + std::to_string(count) + ",)";
-    bounds = doubles(py::object(pair[1]), {"rows[1]", {count}, length});
+    bounds = doubles(pair[1], {"rows[1]", {count}, length});
     if (count > 0) motion.rows.emplace(matrix.data(), bounds.data(), count);
   }
   const InUse in_use(constraint_in_use_);
   return StepResult(constraint_.step(motion));
 }
 
-FreeSpace Guard::free_polytope(py::handle tip, double radius) {
+FreeSpace Guard::free_polytope(const py::object& tip, double radius) {
   const Vec3 at = point(tip, "tip");
   const InUse in_use(constraint_in_use_);
   const Polytope polytope = constraint_.free_polytope(at, radius);
@@ -128,8 +130,8 @@ void Guard::forget() {
   constraint_.forget();
 }
 
-py::object Guard::steps(py::handle tips, py::handle desired, std::optional<py::ssize_t> threads,
-                        const py::object& out) {
+py::object Guard::steps(const py::object& tips, const py::object& desired,
+                        std::optional<py::ssize_t> threads, const py::object& out) {
   const Doubles from = doubles(tips, {"tips", {any, 3}, "(n, 3)"});
   const std::string shape = "(" + std::to_string(from.shape(0)) + ", 3), as many as tips";
   const Doubles wanted = doubles(desired, {"desired", {from.shape(0), 3}, shape});
@@ -163,7 +165,7 @@ py::object Guard::steps(py::handle tips, py::handle desired, std::optional<py::s
   return to.result;
 }
 
-py::object Guard::replay(py::handle poses, bool closed_loop, double max_step,
+py::object Guard::replay(const py::object& poses, bool closed_loop, double max_step,
                          const py::object& out) {
   const Doubles lines = doubles(poses, {"poses", {any, 6}, "(n, 6)"});
   const auto count = static_cast<std::size_t>(lines.shape(0));
@@ -193,7 +195,7 @@ py::object Guard::replay(py::handle poses, bool closed_loop, double max_step,
   return to.result;
 }
 
-py::object Guard::simulate(py::handle starts, py::handle hands, double max_step,
+py::object Guard::simulate(const py::object& starts, const py::object& hands, double max_step,
                            std::optional<py::ssize_t> threads, const py::object& out) {
   const Doubles from = doubles(starts, {"starts", {any, 3}, "(m, 3)"});
   const std::string shape = "(" + std::to_string(from.shape(0)) + ", cycles, 3), as many as starts";

@@ -29,13 +29,15 @@ class Guard {
   Guard(std::shared_ptr<IndexHandle> index, MotionConstraintSettings settings);
 
   // As in Python: see bind_motion_constraint.
-  StepResult step(py::handle tip, py::handle desired, py::handle jacobian, py::handle rows);
-  FreeSpace free_polytope(py::handle tip, double radius);
+  StepResult step(const py::object& tip, const py::object& desired, const py::object& jacobian,
+                  const py::object& rows);
+  FreeSpace free_polytope(const py::object& tip, double radius);
   void forget();
-  py::object steps(py::handle tips, py::handle desired, std::optional<py::ssize_t> threads,
-                   const py::object& out);
-  py::object replay(py::handle poses, bool closed_loop, double max_step, const py::object& out);
-  py::object simulate(py::handle starts, py::handle hands, double max_step,
+  py::object steps(const py::object& tips, const py::object& desired,
+                   std::optional<py::ssize_t> threads, const py::object& out);
+  py::object replay(const py::object& poses, bool closed_loop, double max_step,
+                    const py::object& out);
+  py::object simulate(const py::object& starts, const py::object& hands, double max_step,
                       std::optional<py::ssize_t> threads, const py::object& out);
 
   const MotionConstraintSettings& settings() const noexcept { return settings_; }

@@ -89,7 +89,9 @@ constexpr const char* step_doc =
 constexpr const char* steps_doc =
     "One step for each pose, each for itself: every tip is placed anew, so that the result does "
     "not\n"
-    "depend on the order or on the number of threads. Runs without Python's lock.\n\n"
+    "depend on the order or on the number of threads. Runs without Python's lock. Placing a tip "
+    "may\n"
+    "take longer than its step; where sides are known, inside='taken_as_is' does without.\n\n"
     "tips: (n, 3) [length]. desired: (n, 3) [length]. Taken without a copy if they are float64 "
     "and\n"
     "C-contiguous. threads: 1 to 1024; None for one a processor. out: a Steps to write to; None "

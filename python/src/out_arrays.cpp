@@ -77,7 +77,6 @@ StepColumns steps_columns(const py::object& out, py::ssize_t poses,
   Checked arrays(result, inputs);
   return {result, arrays.take<double>("motion", {poses, 3}),
           arrays.take<std::uint8_t>("status", {poses}),
-          arrays.take<std::uint32_t>("triangles", {poses}),
           arrays.take<std::uint32_t>("planes", {poses})};
 }
 
@@ -87,7 +86,6 @@ StepColumns simulation_columns(const py::object& out, py::ssize_t loops, py::ssi
   Checked arrays(result, inputs);
   return {result, arrays.take<double>("tips", {loops, cycles + 1, 3}),
           arrays.take<std::uint8_t>("status", {loops, cycles}),
-          arrays.take<std::uint32_t>("triangles", {loops, cycles}),
           arrays.take<std::uint32_t>("planes", {loops, cycles})};
 }
 

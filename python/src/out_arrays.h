@@ -18,7 +18,6 @@ struct StepColumns {
   py::object result;  // keepout.Steps, or keepout.Simulation
   double* motions;    // (count, 3): of a simulation, the tips (loops, cycles + 1, 3)
   std::uint8_t* status;
-  std::uint32_t* triangles;
   std::uint32_t* planes;
 };
 

@@ -91,6 +91,20 @@ def test_a_point_comes_in_many_forms(guard):
             np.testing.assert_array_equal(guard.step(tip, desired).motion, exact)
 
 
+def test_masks_are_not_lost(guard, outside):
+    hidden = np.ma.masked_array([0.0, 0, 14], mask=[False, True, False])
+    with refused("tip: .* masked array"):
+        guard.step(hidden, (0, 0, 1))
+    with refused("tips: .* masked array"):
+        guard.steps(np.ma.masked_array(outside[0], mask=False), outside[1])
+
+
+def test_a_file_name_that_is_not_text_is_told(tmp_path):
+    with refused("no such file") as raised:
+        keepout.load_mesh(tmp_path / "a\udcff.stl")
+    assert "a\udcff.stl" in str(raised.value)
+
+
 @pytest.mark.parametrize("bad", [(1, 2), [1.0, 2, 3, 4], np.zeros((1, 3)), 5.0, "xyz", None, {1: 2}])
 def test_points_that_are_refused(guard, bad):
     with refused(r"tip: expected numbers of shape \(3,\)"):

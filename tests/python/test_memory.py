@@ -103,7 +103,7 @@ def test_results_are_written_where_they_are_wanted(guard, outside):
     np.testing.assert_array_equal(out.motion, guard.steps(tips, desired).motion)
     # Of arrays of one's own: a row of a larger one.
     many = np.zeros((4, len(tips), 3))
-    own = keepout.Steps(many[2], out.status, out.triangles, out.planes)
+    own = keepout.Steps(many[2], out.status, out.planes)
     guard.steps(tips, desired, out=own)
     np.testing.assert_array_equal(many[2], out.motion)
     assert not many[[0, 1, 3]].any()
@@ -118,9 +118,10 @@ def test_places_that_cannot_be_written_to(guard, outside):
     tips, desired = outside
     n = len(tips)
     good = keepout.Steps.empty(n)
+    shared = np.zeros((n, 3))
 
     def refused(says, **arrays):
-        names = ("motion", "status", "triangles", "planes")
+        names = ("motion", "status", "planes")
         given = {name: arrays.get(name, getattr(good, name)) for name in names}
         with pytest.raises(keepout.Error, match=says):
             guard.steps(tips, desired, out=keepout.Steps(**given))
@@ -135,6 +136,6 @@ def test_places_that_cannot_be_written_to(guard, outside):
     frozen.flags.writeable = False
     refused("out.motion: .* read-only", motion=frozen)
     refused("out.motion: .* shares it", motion=tips)
-    refused("out.planes: .* shares it", planes=good.triangles)
+    refused("out.planes: .* shares it", planes=shared.reshape(-1).view(np.uint32)[:n], motion=shared)
     with pytest.raises(keepout.Error, match="out.motion: "):
         guard.steps(tips, desired, out=np.zeros((n, 3)))

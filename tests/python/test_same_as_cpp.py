@@ -30,15 +30,14 @@ def surface(request):
 def cpp_steps(path, lines, memory, folder):
     lines.tofile(folder / "poses")
     subprocess.run([loop, path, folder / "poses", folder / "answers", memory, "1"], check=True)
-    return np.fromfile(folder / "answers").reshape(-1, 6)
+    return np.fromfile(folder / "answers").reshape(-1, 5)
 
 
 def assert_same(steps, answers):
     assert len(answers) > 1000
     np.testing.assert_array_equal(steps.motion.view(np.int64), answers[:, :3].copy().view(np.int64))
     np.testing.assert_array_equal(steps.status, answers[:, 3])
-    np.testing.assert_array_equal(steps.triangles, answers[:, 4])
-    np.testing.assert_array_equal(steps.planes, answers[:, 5])
+    np.testing.assert_array_equal(steps.planes, answers[:, 4])
     assert len(steps.counts()) > 2  # not all alike
 
 
@@ -63,7 +62,7 @@ def test_single_steps_and_a_replay(surface, tmp_path):
     motions = np.array([step.motion for step in single])
     np.testing.assert_array_equal(motions.view(np.int64), answers[:, :3].copy().view(np.int64))
     np.testing.assert_array_equal([int(step.status) for step in single], answers[:, 3])
-    np.testing.assert_array_equal([len(step.planes) for step in single], answers[:, 5])
+    np.testing.assert_array_equal([len(step.planes) for step in single], answers[:, 4])
 
 
 @needs_command
@@ -90,7 +89,6 @@ def test_the_replay_of_the_command(sphere_file, closed_loop, tmp_path):
     motion = np.array([[float(row[axis]) for axis in ("ux", "uy", "uz")] for row in rows])
     np.testing.assert_array_equal(steps.motion, motion)
     assert [keepout.Status(s).name for s in steps.status] == [row["status"] for row in rows]
-    np.testing.assert_array_equal(steps.triangles, [int(row["triangles"]) for row in rows])
     np.testing.assert_array_equal(steps.planes, [int(row["planes"]) for row in rows])
 
 
