@@ -41,9 +41,9 @@ struct Polytope {
 class MotionConstraint {
  public:
   /// Index and rule must be built on `mesh`. An index may be shared with other motion constraints,
-  /// of other threads too; rule and solver may not. Throws Error when a part is missing, or an option or
-  /// capacity is out of range, and when tips are to be led out under a rule that guards a whole
-  /// tool. Makes all memory here.
+  /// of other threads too; rule and solver may not. Throws Error when a part is missing, or an
+  /// option or capacity is out of range, and when tips are to be led out under a rule that guards a
+  /// whole tool. Makes all memory here.
   MotionConstraint(std::shared_ptr<const Mesh> mesh, std::shared_ptr<const SpatialIndex> index,
                    std::unique_ptr<Activation> activation, std::unique_ptr<Solver> solver,
                    const StepOptions& options, const Capacity& capacity = {},
@@ -75,8 +75,8 @@ class MotionConstraint {
 
   /// What the tip is kept out of.
   const Mesh& mesh() const noexcept { return *mesh_; }
-  const StepOptions& options() const noexcept { return options_; }
 
+  /// How it behaves: radius and margin, among others.
   const StepOptions& options() const noexcept { return options_; }
 
  private:
