@@ -8,6 +8,7 @@
 
 #include <cstdio>
 
+#include "keepout/adapters/index_registry.h"
 #include "keepout/keepout.h"
 #include "keepout/ompl/planning.h"
 
@@ -30,9 +31,10 @@ int main(int argc, char** argv) try {
   ompl::msg::setLogLevel(ompl::msg::LOG_WARN);
   ompl::geometric::SimpleSetup setup(space);
 
-  // A guard for each thread that asks, made as they are needed.
-  const auto guards = std::make_shared<keepout::GuardPool>([mesh] {
-    return keepout::make_motion_constraint(mesh, {.tool_radius = 0.3, .margin = 0.2});
+  // A guard for each thread that asks, made as they are needed, all on one index.
+  const std::shared_ptr<const keepout::SpatialIndex> index = keepout::make_index("wide_bvh", mesh);
+  const auto guards = std::make_shared<keepout::GuardPool>([mesh, index] {
+    return keepout::make_motion_constraint(mesh, index, {.tool_radius = 0.3, .margin = 0.2});
   });
   keepout::set_certified_checkers(setup.getSpaceInformation(), guards);
 

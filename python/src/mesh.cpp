@@ -5,7 +5,9 @@
 
 #include <array>
 #include <limits>
+#include <optional>
 #include <sstream>
+#include <string>
 #include <utility>
 
 #include "arguments.h"
@@ -63,10 +65,20 @@ MeshHandle mesh_from(const py::object& vertices, const py::object& triangles, bo
   return MeshHandle(std::make_shared<const Mesh>(weld(std::move(surface))));
 }
 
-MeshHandle load(const std::filesystem::path& path) {
+AnatomicalSpace space_from(const char* argument, const std::optional<std::string>& given) {
+  if (!given) return AnatomicalSpace::unstated;
+  for (const AnatomicalSpace space : {AnatomicalSpace::ras, AnatomicalSpace::lps}) {
+    if (*given == name(space)) return space;
+  }
+  refuse(argument, "'RAS', 'LPS' or None", "'" + *given + "'");
+}
+
+MeshHandle load(const std::filesystem::path& path, const std::optional<std::string>& space,
+                const std::optional<std::string>& untagged) {
+  const LoadOptions options{.space = space_from("space", space),
+                            .untagged = space_from("untagged", untagged)};
   const py::gil_scoped_release release;
-  LoadedMesh loaded = load_mesh(path);
-  return MeshHandle(std::move(loaded.mesh), std::move(loaded.warnings));
+  return MeshHandle(load_mesh(path, options));
 }
 
 py::ssize_t signed_size(std::size_t size) { return static_cast<py::ssize_t>(size); }
@@ -79,8 +91,10 @@ py::array rows_of_three(const std::vector<Vec3>& rows, py::handle owner) {
 
 }  // namespace
 
-MeshHandle::MeshHandle(std::shared_ptr<const Mesh> mesh, std::vector<std::string> warnings)
-    : mesh_(std::move(mesh)), warnings_(std::move(warnings)) {}
+MeshHandle::MeshHandle(std::shared_ptr<const Mesh> mesh) : mesh_(std::move(mesh)) {}
+
+MeshHandle::MeshHandle(LoadedMesh loaded)
+    : mesh_(std::move(loaded.mesh)), warnings_(std::move(loaded.warnings)), space_(loaded.space) {}
 
 const std::vector<Vec3>& MeshHandle::normals() {
   if (normals_.empty()) {
@@ -141,6 +155,13 @@ void bind_mesh(py::module_& module) {
           "(2, 3) float64 [length]: the lowest and the highest corner of the smallest box around.")
       .def_property_readonly("warnings", &MeshHandle::warnings,
                              "What the file had to say, if it came from one: a list of lines.")
+      .def_property_readonly(
+          "space",
+          [](const MeshHandle& self) -> std::optional<std::string> {
+            if (self.space() == AnatomicalSpace::unstated) return std::nullopt;
+            return std::string(name(self.space()));
+          },
+          "The anatomical space of the coordinates, 'RAS' or 'LPS', if it is known; or None.")
       .def(
           "inspect",
           [](const MeshHandle& self, bool self_intersections) {
@@ -154,9 +175,14 @@ void bind_mesh(py::module_& module) {
                std::to_string(self.mesh().vertex_count()) + " vertices>";
       });
 
-  module.def("load_mesh", &load, py::arg("path"),
-             "Reads a mesh from an STL, PLY, OBJ or OFF file, and welds it exactly. Nothing is\n"
-             "rescaled and nothing repaired: see Mesh.inspect and Mesh.warnings.");
+  module.def(
+      "load_mesh", &load, py::arg("path"), py::kw_only(), py::arg("space") = py::none(),
+      py::arg("untagged") = py::none(),
+      "Reads a mesh from an STL, PLY, OBJ or OFF file, and welds it exactly. Nothing is\n"
+      "rescaled and nothing repaired: see Mesh.inspect and Mesh.warnings.\n\n"
+      "space: 'RAS' or 'LPS', which the coordinates shall be in; they are turned if the file\n"
+      "says the other one (SPACE=...). None: as they stand.\n"
+      "untagged: the space of a file that does not say. One that does is believed.");
 }
 
 }  // namespace keepout::python

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "keepout/adapters/load_mesh.h"
 #include "keepout/mesh/mesh.h"
 
 namespace keepout::python {
@@ -13,11 +14,13 @@ namespace keepout::python {
 /// A mesh as Python holds it: with what its file had to say, and normals once they are asked for.
 class MeshHandle {
  public:
-  explicit MeshHandle(std::shared_ptr<const Mesh> mesh, std::vector<std::string> warnings = {});
+  explicit MeshHandle(std::shared_ptr<const Mesh> mesh);
+  explicit MeshHandle(LoadedMesh loaded);
 
   const std::shared_ptr<const Mesh>& shared() const noexcept { return mesh_; }
   const Mesh& mesh() const noexcept { return *mesh_; }
   const std::vector<std::string>& warnings() const noexcept { return warnings_; }
+  AnatomicalSpace space() const noexcept { return space_; }
 
   /// One for each triangle. Made on the first call, which Python's lock keeps from being two.
   const std::vector<Vec3>& normals();
@@ -25,6 +28,7 @@ class MeshHandle {
  private:
   std::shared_ptr<const Mesh> mesh_;
   std::vector<std::string> warnings_;
+  AnatomicalSpace space_ = AnatomicalSpace::unstated;
   std::vector<Vec3> normals_;
 };
 

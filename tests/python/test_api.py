@@ -168,6 +168,23 @@ def test_loading_tells_what_is_wrong(tmp_path, sphere_file):
         keepout.load_mesh(tmp_path / "absent.stl")
 
 
+def test_a_mesh_is_turned_to_the_space_asked_for(tmp_path):
+    text = "# SPACE=LPS\nv 1 2 3\nv 4 2 3\nv 1 5 3\nf 1 2 3\n"
+    tagged, bare = tmp_path / "tagged.obj", tmp_path / "bare.obj"
+    tagged.write_text(text)
+    bare.write_text(text.partition("\n")[2])
+    as_it_stands = keepout.load_mesh(tagged)
+    assert as_it_stands.space == "LPS" and keepout.load_mesh(bare).space is None
+    turned = keepout.load_mesh(tagged, space="RAS")
+    assert turned.space == "RAS"
+    assert np.array_equal(turned.vertices, as_it_stands.vertices * [-1, -1, 1])
+    assert keepout.load_mesh(bare, space="RAS", untagged="RAS").space == "RAS"
+    with pytest.raises(keepout.Error, match="untagged"):
+        keepout.load_mesh(bare, space="RAS")
+    with pytest.raises(keepout.Error, match="space.*'RAS', 'LPS' or None.*'ras'"):
+        keepout.load_mesh(bare, space="ras")
+
+
 def test_closed_loops_stay_out(guard):
     hands = np.zeros((3, 60, 3))
     hands[:, :, 2] = np.linspace(14, 5, 60)

@@ -62,22 +62,25 @@ std::vector<PlanningScene> scenes_of(const PlanOptions& options) {
 /// wound, so a tree that starts within stays within.
 constexpr Inside sides = Inside::taken_as_is;
 
-std::shared_ptr<GuardPool> steering_guards(const PlanOptions& options, const PlanningScene& where) {
-  return std::make_shared<GuardPool>([&options, mesh = where.scene->mesh()] {
-    return make_motion_constraint(mesh, {.radius = options.radius,
-                                         .tool_radius = options.tool_radius,
-                                         .margin = options.margin,
-                                         .inside = sides});
+using SharedIndex = std::shared_ptr<const SpatialIndex>;
+
+std::shared_ptr<GuardPool> steering_guards(const PlanOptions& options, const PlanningScene& where,
+                                           const SharedIndex& index) {
+  return std::make_shared<GuardPool>([&options, index, mesh = where.scene->mesh()] {
+    return make_motion_constraint(mesh, index,
+                                  {.radius = options.radius,
+                                   .tool_radius = options.tool_radius,
+                                   .margin = options.margin,
+                                   .inside = sides});
   });
 }
 
 /// The same, but for a solver that does not search where a motion is held back.
-std::shared_ptr<GuardPool> validating_guards(const PlanOptions& options,
-                                             const PlanningScene& where) {
-  return std::make_shared<GuardPool>([&options, mesh = where.scene->mesh()] {
+std::shared_ptr<GuardPool> validating_guards(const PlanOptions& options, const PlanningScene& where,
+                                             const SharedIndex& index) {
+  return std::make_shared<GuardPool>([&options, index, mesh = where.scene->mesh()] {
     return MotionConstraint(
-        mesh, make_index("wide_bvh", mesh), std::make_unique<CertifiedRule>(mesh),
-        std::make_unique<StraightOnly>(),
+        mesh, index, std::make_unique<CertifiedRule>(mesh), std::make_unique<StraightOnly>(),
         {.radius = options.radius, .margin = options.tool_radius + options.margin}, {}, sides);
   });
 }
@@ -123,8 +126,9 @@ void run_scene(const PlanOptions& options, PlanningScene& where, Progress& progr
   progress.show(where.scene->name() + ", drawing problems");
   const std::vector<Problem> problems =
       draw_problems(where, clearance, options.problems, options.seed);
-  const std::shared_ptr<GuardPool> validating = validating_guards(options, where);
-  const std::shared_ptr<GuardPool> steering = steering_guards(options, where);
+  const SharedIndex index = make_index("wide_bvh", where.scene->mesh());
+  const std::shared_ptr<GuardPool> validating = validating_guards(options, where, index);
+  const std::shared_ptr<GuardPool> steering = steering_guards(options, where, index);
   const double least = least_distance(*where.scene, clearance, options.radius);
   for (const Problem& problem : problems) {
     for (const Checker& checker : checkers(options.resolutions)) {

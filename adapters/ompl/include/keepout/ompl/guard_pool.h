@@ -18,10 +18,10 @@ namespace keepout {
 /// pool makes another when all are out.
 class GuardPool {
  public:
-  /// `make`: builds a constraint, each time the same; the mesh may be shared, as by
-  /// make_motion_constraint. `most`: how many are made at most; threads beyond it wait. One is made
-  /// at once, so that what is wrong with the settings is thrown here. Throws Error as well when
-  /// `make` is empty or `most` is 0. Whatever `make` throws later makes a thread wait for a
+  /// `make`: builds a constraint, each time the same, on a mesh and an index that all share
+  /// (make_motion_constraint). `most`: how many are made at most; threads beyond it wait. One is
+  /// made at once, so that what is wrong with the settings is thrown here. Throws Error as well
+  /// when `make` is empty or `most` is 0. Whatever `make` throws later makes a thread wait for a
   /// constraint that is there.
   explicit GuardPool(std::function<MotionConstraint()> make, std::size_t most = cores());
 
