@@ -48,7 +48,8 @@ TEST(SideWatch, ATipThatTheCallerMovesInsideIsFound) {
 }
 
 TEST(SideWatch, AfterForgettingATipIsPlacedAnewHoweverNear) {
-  // A cube in a cube: between them the side depends on which is nearer, unless a step has led there.
+  // A cube in a cube: between them the side depends on which is nearer, unless a step has led
+  // there.
   Surface nested = make_shape("cube");
   const Surface cube = nested;
   const auto first = static_cast<VertexId>(cube.vertices.size());

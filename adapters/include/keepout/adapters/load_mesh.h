@@ -23,7 +23,7 @@ struct LoadOptions {
 
 /// What load_mesh has read.
 struct LoadedMesh {
-  std::shared_ptr<const Mesh> mesh;   // welded; never null
+  std::shared_ptr<const Mesh> mesh;                    // welded; never null
   AnatomicalSpace space = AnatomicalSpace::unstated;   // that the coordinates are in now
   AnatomicalSpace stated = AnatomicalSpace::unstated;  // that the file states: SPACE=...
   std::vector<std::string> warnings;  // what was left out of the mesh, or looks odd in the file
