@@ -237,6 +237,7 @@ void add_serve(CLI::App& app, ServeOptions& options) {
       "Unix socket");
   ServiceSettings& service = options.service;
   add_mesh(command, service.mesh);
+  add_spaces(command, options.load);
   CLI::Option* socket =
       command.add_option("--socket", options.socket, "Listen at this path instead of stdin")
           ->type_name("PATH");

@@ -7,6 +7,7 @@
 
 #include "bindings.h"
 #include "keepout/error.h"
+#include "keepout/version.h"
 
 namespace keepout::python {
 

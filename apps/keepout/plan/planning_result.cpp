@@ -10,6 +10,7 @@
 #include <ostream>
 #include <utility>
 
+#include "keepout/version.h"
 #include "machine.h"
 #include "number_text.h"
 

@@ -32,9 +32,11 @@ void require_stdio() {
 
 int serve(const ServeOptions& options, std::ostream& log) {
   if (!options.socket) require_stdio();
-  const LoadedMesh loaded = load_mesh(options.service.mesh);
+  const LoadedMesh loaded = load_mesh(options.service.mesh, options.load);
   for (const std::string& warning : loaded.warnings) log << "keepout: " << warning << '\n';
-  Service service(loaded.mesh, options.service);
+  ServiceSettings settings = options.service;
+  settings.space = loaded.space;
+  Service service(loaded.mesh, settings);
   const StopSignal stop;
   log << "keepout: serving " << options.service.mesh.string() << " ("
       << counted(loaded.mesh->triangle_count(), "triangle") << ") on ";

@@ -8,12 +8,14 @@
 #include <optional>
 #include <string_view>
 
+#include "keepout/adapters/load_mesh.h"
 #include "serve/service.h"
 
 namespace keepout::app {
 
 struct ServeOptions {
   ServiceSettings service;
+  LoadOptions load = {};
   std::optional<std::filesystem::path> socket;  // to listen at; none: stdin and stdout
   std::size_t most_clients = 16;                // of the socket, at a time
 };

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "keepout/mesh/watertight.h"
+#include "keepout/version.h"
 #include "serve/answer.h"
 #include "serve/json_text.h"
 
@@ -26,12 +27,14 @@ std::string info_members(const Mesh& mesh, const ServiceSettings& settings) {
   using Json = nlohmann::ordered_json;
   const MotionConstraintSettings& c = settings.constraint;
   const auto array = [](const Vec3& v) { return Json{v.x(), v.y(), v.z()}; };
+  const std::string space(name(settings.space));
   Json info{{"version", KEEPOUT_VERSION},
             {"protocol", protocol},
             {"unit", "mm"},
             {"frame", "of the mesh"},
             {"mesh",
              {{"file", settings.mesh.string()},
+              {"space", space},
               {"triangles", mesh.triangle_count()},
               {"vertices", mesh.vertex_count()},
               {"low", array(mesh.bounds().low)},

@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 
+#include "keepout/adapters/anatomical_space.h"
 #include "keepout/factory/make_motion_constraint.h"
 #include "serve/line_reader.h"
 #include "serve/request.h"
@@ -17,7 +18,8 @@ inline constexpr std::size_t default_longest_line = std::size_t{1} << 18;
 
 /// What a service is made from.
 struct ServiceSettings {
-  std::filesystem::path mesh;  // what it was read from, to be told
+  std::filesystem::path mesh;                         // what it was read from, to be told
+  AnatomicalSpace space = AnatomicalSpace::unstated;  // that its coordinates are in, to be told
   MotionConstraintSettings constraint;
   RequestLimits limits;
   std::size_t longest_line = default_longest_line;  // [bytes]

@@ -14,6 +14,7 @@
 
 #include "keepout/fixtures/poses.h"
 #include "keepout/fixtures/shapes.h"
+#include "keepout/version.h"
 #include "serve/json_text.h"
 
 namespace keepout::app {
@@ -131,6 +132,7 @@ TEST_F(SessionTest, InfoAndStatusesTellWhatThereIs) {
   const Json info = Json::parse(ask(session, R"({"id":"i","do":"info"})"));
   EXPECT_EQ(info["id"], "i");
   EXPECT_EQ(info["version"], KEEPOUT_VERSION);
+  EXPECT_EQ(info["mesh"]["space"], "unstated");
   EXPECT_EQ(info["mesh"]["triangles"], mesh_->triangle_count());
   EXPECT_EQ(info["settings"]["radius"], 1.0);
   EXPECT_EQ(info["limits"]["line"], 4096);
