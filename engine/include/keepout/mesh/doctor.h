@@ -65,8 +65,9 @@ struct MeshFindings {
     return bounds.size().maxCoeff() > micrometres_above;
   }
 
-  /// No anatomy that a tool is kept out of is smaller than 3 mm, and none is larger than 3 m. [mm]
+  /// No anatomy that a tool is kept out of is smaller. [mm]
   static constexpr double metres_below = 3.0;
+  /// And none is larger. [mm]
   static constexpr double micrometres_above = 3000.0;
 };
 
