@@ -46,7 +46,8 @@ class Server {
     int to[2];
     int from[2];
     if (::pipe(to) != 0 || ::pipe(from) != 0) throw std::runtime_error("no pipes");
-    const std::string socket = "/tmp/keepout_serve_load_" + std::to_string(::getpid()) + ".sock";
+    const std::string socket = std::filesystem::temp_directory_path() /
+                               ("keepout_serve_load_" + std::to_string(::getpid()) + ".sock");
     const bool is_pipe = load.transport == "pipe";
     process_ = ::fork();
     if (process_ == 0) {
