@@ -11,6 +11,7 @@ have a link to each page beside it.
 
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import unicodedata
@@ -46,10 +47,12 @@ def anchors(page):
 
 
 def pages_of(root):
-    listed = subprocess.run(["git", "-C", root, "ls-files", "-co", "--exclude-standard", "*.md"],
-                            capture_output=True, text=True)
-    if listed.returncode == 0 and listed.stdout:
-        return sorted(path for path in map(root.joinpath, listed.stdout.splitlines()) if path.exists())
+    if shutil.which("git"):
+        listed = subprocess.run(["git", "-C", root, "ls-files", "-co", "--exclude-standard", "*.md"],
+                                capture_output=True, text=True)
+        if listed.returncode == 0 and listed.stdout:
+            return sorted(path for path in map(root.joinpath, listed.stdout.splitlines())
+                          if path.exists())
     inner = lambda path: path.relative_to(root).parts
     return sorted(path for path in root.rglob("*.md")
                   if inner(path)[0] not in ("build", "out") and
