@@ -18,6 +18,7 @@
 #include "keepout/adapters/index_registry.h"
 #include "keepout/adapters/load_mesh.h"
 #include "keepout/error.h"
+#include "keepout/simd_target.h"
 #include "keepout/solvers/registry.h"
 #include "keepout/version.h"
 #include "number_checks.h"
@@ -284,6 +285,12 @@ int run(int argc, char** argv) {
   app.set_version_flag("--version", KEEPOUT_VERSION);
   app.set_help_all_flag("--help-all", "Help on every command");
   app.require_subcommand(1);
+  app.add_option_function<std::string>("--simd", use_simd_target,
+                                       "Instruction set to run on instead of the fastest that this "
+                                       "processor has; the steps are the same")
+      ->check(CLI::IsMember(simd_targets()))
+      ->default_str(std::string(simd_target()))
+      ->type_name("TARGET");
 
   InspectOptions inspect_options;
   ReplayOptions replay_options;

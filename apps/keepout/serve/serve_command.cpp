@@ -11,8 +11,8 @@
 #include "keepout/error.h"
 #include "number_text.h"
 #include "serve/server.h"
-#include "serve/stop_signal.h"
 #include "serve/unix_socket.h"
+#include "stop_signal.h"
 
 namespace keepout::app {
 namespace {

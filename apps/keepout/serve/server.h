@@ -6,8 +6,8 @@
 #include <iosfwd>
 
 #include "serve/service.h"
-#include "serve/stop_signal.h"
 #include "serve/unix_socket.h"
+#include "stop_signal.h"
 
 namespace keepout::app {
 

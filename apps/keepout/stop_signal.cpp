@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "serve/stop_signal.h"
+#include "stop_signal.h"
 
 #include <signal.h>
 #include <sys/eventfd.h>
@@ -22,10 +22,12 @@ constexpr std::array stopping{SIGHUP, SIGINT, SIGTERM};
 
 // Signals come to the process, on whatever thread: those of an index's library among them.
 std::atomic<int> event_file{-1};
+std::atomic<bool> noted{false};
 struct sigaction earlier_pipe_action;
 std::array<struct sigaction, stopping.size()> earlier_actions;
 
 void note(int) {
+  noted = true;
   const int error = errno;
   const std::uint64_t one = 1;
   // It can fail only if it is noted already.
@@ -36,11 +38,13 @@ void note(int) {
 }  // namespace
 
 StopSignal::StopSignal() {
+  noted = false;
   event_file = ::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
   if (event_file < 0) throw Error(std::string("no event file: ") + std::strerror(errno));
   struct sigaction action = {};
   ::sigemptyset(&action.sa_mask);
   action.sa_handler = note;
+  action.sa_flags = static_cast<int>(SA_RESETHAND);  // a second one is not waited for
   for (std::size_t i = 0; i < stopping.size(); ++i) {
     ::sigaction(stopping[i], &action, &earlier_actions[i]);
     // What was ignored from the start, as under nohup, stays ignored.
@@ -49,6 +53,7 @@ StopSignal::StopSignal() {
     }
   }
   action.sa_handler = SIG_IGN;
+  action.sa_flags = 0;
   ::sigaction(SIGPIPE, &action, &earlier_pipe_action);
 }
 
@@ -61,5 +66,7 @@ StopSignal::~StopSignal() {
 }
 
 int StopSignal::file() const noexcept { return event_file.load(); }
+
+bool StopSignal::has_come() const noexcept { return noted.load(); }
 
 }  // namespace keepout::app

@@ -4,8 +4,10 @@
 
 namespace keepout::app {
 
-/// Takes SIGHUP, SIGINT and SIGTERM for a wish to end, which poll() can wait for; and SIGPIPE for
-/// nothing, so that a client who has gone is an error of write() alone. One at a time.
+/// Takes SIGHUP, SIGINT and SIGTERM for a wish to end, which poll() can wait for and long work can
+/// ask for, so that it keeps what it has finished; the same signal once more ends the process at
+/// once. SIGPIPE is taken for nothing, so that a client who has gone is an error of write() alone.
+/// One at a time.
 class StopSignal {
  public:
   /// Throws Error when the system has no more files.
@@ -16,6 +18,9 @@ class StopSignal {
 
   /// Readable from the first such signal on.
   int file() const noexcept;
+
+  /// Whether there was such a signal.
+  bool has_come() const noexcept;
 };
 
 }  // namespace keepout::app

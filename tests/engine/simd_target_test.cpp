@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "keepout/simd_target.h"
+
+#include <gtest/gtest.h>
+
+#include "keepout/error.h"
+
+namespace keepout {
+namespace {
+
+TEST(SimdTarget, IsTheFastestUnlessAnotherIsChosen) {
+  EXPECT_EQ(simd_target(), simd_targets().front());
+}
+
+TEST(SimdTarget, IsTheOneThatWasChosenAndHidesNoOther) {
+  const auto all = simd_targets();
+  for (const std::string_view target : all) {
+    use_simd_target(target);
+    EXPECT_EQ(simd_target(), target);
+    EXPECT_EQ(simd_targets(), all);
+    EXPECT_EQ(simd_target(), target) << "to ask changes nothing";
+  }
+  use_simd_target(all.front());
+}
+
+TEST(SimdTarget, ThatIsNotThereIsRefusedAndLeavesWhatWasChosen) {
+  const std::string_view last = simd_targets().back();
+  use_simd_target(last);
+  EXPECT_THROW(use_simd_target("abacus"), Error);
+  EXPECT_EQ(simd_target(), last);
+  use_simd_target(simd_targets().front());
+}
+
+}  // namespace
+}  // namespace keepout
