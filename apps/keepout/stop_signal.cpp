@@ -26,8 +26,12 @@ std::atomic<bool> noted{false};
 struct sigaction earlier_pipe_action;
 std::array<struct sigaction, stopping.size()> earlier_actions;
 
-void note(int) {
+void note(int signal) {
   noted = true;
+  // A second one is not waited for: it does what it did before.
+  for (std::size_t i = 0; i < stopping.size(); ++i) {
+    if (stopping[i] == signal) ::sigaction(signal, &earlier_actions[i], nullptr);
+  }
   const int error = errno;
   const std::uint64_t one = 1;
   // It can fail only if it is noted already.
@@ -44,7 +48,6 @@ StopSignal::StopSignal() {
   struct sigaction action = {};
   ::sigemptyset(&action.sa_mask);
   action.sa_handler = note;
-  action.sa_flags = static_cast<int>(SA_RESETHAND);  // a second one is not waited for
   for (std::size_t i = 0; i < stopping.size(); ++i) {
     ::sigaction(stopping[i], &action, &earlier_actions[i]);
     // What was ignored from the start, as under nohup, stays ignored.
@@ -53,7 +56,6 @@ StopSignal::StopSignal() {
     }
   }
   action.sa_handler = SIG_IGN;
-  action.sa_flags = 0;
   ::sigaction(SIGPIPE, &action, &earlier_pipe_action);
 }
 

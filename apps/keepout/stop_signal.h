@@ -4,6 +4,10 @@
 
 namespace keepout::app {
 
+/// The exit status of a command that was interrupted and has kept what it had finished: that which
+/// a shell gives to what Ctrl-C ended.
+inline constexpr int exit_interrupted = 130;
+
 /// Takes SIGHUP, SIGINT and SIGTERM for a wish to end, which poll() can wait for and long work can
 /// ask for, so that it keeps what it has finished; the same signal once more ends the process at
 /// once. SIGPIPE is taken for nothing, so that a client who has gone is an error of write() alone.

@@ -37,7 +37,7 @@ std::string headline(const SpeedRecord& record) {
   if (measured < record.rows.size()) {
     text += ", " + grouped(record.rows.size() - measured) + " not measured";
   }
-  return text + ".";
+  return text + (record.complete ? "." : "; interrupted, so only a part of the table.");
 }
 
 std::string sides_text(const SpeedRow& row) {

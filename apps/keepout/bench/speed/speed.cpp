@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/speed/speed.h"
 
+#include <cstdlib>
 #include <memory>
 #include <ostream>
 #include <utility>
@@ -16,6 +17,7 @@
 #include "number_text.h"
 #include "output_file.h"
 #include "report/speed_report.h"
+#include "stop_signal.h"
 
 namespace keepout::app {
 namespace {
@@ -29,18 +31,22 @@ constexpr Family on_the_bunny[] = {
 constexpr void (*on_their_own[])(SpeedRun&) = {measure_concave_sphere, measure_first_step,
                                                measure_large_meshes};
 
-void measure_all(SpeedRun& run) {
+/// As far as nobody wishes to stop. Whether it came to the end.
+bool measure_all(SpeedRun& run, const StopSignal& stop) {
   {
     const IndexedMesh bunny = with_index(bunny_of(run.settings.triangles));
     for (const Family family : on_the_bunny) {
+      if (stop.has_come()) return false;
       family(run, bunny);
       run.progress.advance();
     }
   }
   for (const auto family : on_their_own) {
+    if (stop.has_come()) return false;
     family(run);
     run.progress.advance();
   }
+  return true;
 }
 
 void refuse_overwriting(const SpeedOptions& options) {
@@ -51,7 +57,7 @@ void refuse_overwriting(const SpeedOptions& options) {
 
 }  // namespace
 
-void bench_speed(const SpeedOptions& options, std::ostream& out) {
+int bench_speed(const SpeedOptions& options, std::ostream& out) {
   refuse_overwriting(options);
   for (const std::string& fixture : {std::string("bunny"), options.settings.file}) {
     fixture_path(fixture);  // throws if it is missing
@@ -75,7 +81,8 @@ void bench_speed(const SpeedOptions& options, std::ostream& out) {
                .progress = progress,
                .out = out,
                .record = std::move(record)};
-  measure_all(run);
+  const StopSignal stop;
+  run.record.complete = measure_all(run, stop);
   progress.interrupt();
   print_queries(out, run.record);
   print_summary(out, run.record);
@@ -86,6 +93,7 @@ void bench_speed(const SpeedOptions& options, std::ostream& out) {
   print_speed_report(report.stream(), run.record);
   report.commit();
   out << "report: " << options.report.string() << '\n';
+  return run.record.complete ? EXIT_SUCCESS : exit_interrupted;
 }
 
 }  // namespace keepout::app

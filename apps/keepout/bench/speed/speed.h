@@ -19,8 +19,9 @@ struct SpeedOptions {
 };
 
 /// Measures the table of ratios that the engine is held to, prints it as it goes, and writes a
-/// report and files. What falls short is said, and is no error. Throws Error before any work when a
-/// file could not be written, or a fixture is missing.
-void bench_speed(const SpeedOptions& options, std::ostream& out);
+/// report and files. What falls short is said, and is no error. A wish to stop ends it after the
+/// family of rows at hand: what is measured is written, and said to be a part. The exit status.
+/// Throws Error before any work when a file could not be written, or a fixture is missing.
+int bench_speed(const SpeedOptions& options, std::ostream& out);
 
 }  // namespace keepout::app

@@ -67,6 +67,7 @@ void write_json(std::ostream& out, const SpeedRecord& record) {
   const Json all = {
       {"date", record.date},
       {"command", record.command},
+      {"complete", record.complete},
       {"seed", record.seed},
       {"machine", json_of(record.machine)},
       {"mesh", record.mesh},

@@ -71,6 +71,7 @@ struct SpeedRecord {
   std::vector<SpeedRow> rows = {};
   std::vector<QueryFigures> queries = {};
   std::optional<StepHistogram> histogram = {};
+  bool complete = true;  // or interrupted: the rows are those that were measured until then
 };
 
 }  // namespace keepout::app

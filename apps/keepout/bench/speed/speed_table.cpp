@@ -106,6 +106,7 @@ void print_summary(std::ostream& out, const SpeedRecord& record) {
       missing.push_back(name_of(row) + ": " + row.remark);
     }
   }
+  if (!record.complete) out << "\nInterrupted: what had been measured until then is kept.\n";
   out << "\nOf " << counted(record.rows.size(), "demand") << ", " << grouped(met) << " are met, "
       << grouped(short_ones.size()) << " fall short, " << grouped(missing.size())
       << " were not measured.\n";
