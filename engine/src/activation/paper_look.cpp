@@ -77,7 +77,7 @@ HWY_INLINE void LookAtLanes(const LeafBlock& leaf, const LeafEdges& edges, std::
   const M settled = both(near, both(inside, planeless));
   rest.settled += hn::CountTrue(d, settled);
 
-  const M chosen = but_not(near, settled);
+  const LanePacking chosen = packing_of(but_not(near, settled));
   const std::size_t to = rest.size;
   for (std::size_t c = 0; c < 3; ++c) {
     append(block.p[c].x, chosen, rest.corner[c][0] + to);
@@ -94,7 +94,7 @@ HWY_INLINE void LookAtLanes(const LeafBlock& leaf, const LeafEdges& edges, std::
   append(hn::Load(du, leaf.source + lane), chosen, rest.source + to);
   const auto place = static_cast<std::uint32_t>(number * LeafBlock::lanes + lane);
   append(hn::Iota(du, place), chosen, rest.place + to);
-  rest.size += hn::CountTrue(d, chosen);
+  rest.size += chosen.count();
 }
 
 std::size_t Look(const WideBvh& tree, std::span<const LeafEdges> edges, const PaperQuery& query,

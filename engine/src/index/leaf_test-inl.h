@@ -20,6 +20,7 @@
 #include <cstdint>
 #include <span>
 
+#include "../lane_packing-inl.h"
 #include "ball_screen.h"
 #include "keepout/buffer.h"
 #include "keepout/geometry/closest_point.h"
@@ -170,8 +171,9 @@ HWY_INLINE void append(hn::Vec<Ids> source, Mask chosen, TriangleBuffer& out) {
   const auto used = hn::Ne(source, hn::Set(ids, no_triangle));
   const auto taken = hn::And(hn::RebindMask(ids, chosen), used);
   const auto triangles = hn::AndNot(hn::Set(ids, LeafBlock::odd), source);
-  const auto packed = hn::Compress(triangles, taken);
-  const std::size_t count = hn::CountTrue(ids, taken);
+  const LanePacking packing(taken);
+  const auto packed = packing(triangles);
+  const std::size_t count = packing.count();
   if (out.capacity() - out.size() >= hn::Lanes(ids)) {
     hn::StoreU(packed, ids, out.end());
     out.grow(count);
