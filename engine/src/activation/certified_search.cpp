@@ -90,8 +90,17 @@ void CertifiedSearch::locate(const Surroundings& around) noexcept {
   const double motion = around.aim.norm();
   // A planner's states have nothing to do with each other: more would serve none of them.
   const bool serves_more = farther_ > motion && frontier_.is_near(around.ball);
-  frontier_.gather(tree_,
-                   {around.ball.center, around.ball.radius + (serves_more ? farther_ : 0.0)});
+  const auto gather = [&](double farther) {
+    frontier_.gather(tree_, {around.ball.center, around.ball.radius + farther});
+  };
+  gather(serves_more ? farther_ : 0.0);
+  if (serves_more && !frontier_.is_opened()) {
+    // So far that large boxes are left over, which every cycle to come would have to look into.
+    farther_ *= 0.25;
+    gather(farther_ > motion ? farther_ : 0.0);
+    return;
+  }
+  if (farther_ > motion && !serves_more) return;  // it tells nothing of reaching that far
   constexpr std::size_t few = 12;
   constexpr std::size_t many = 24;
   if (frontier_.size() == 0) {

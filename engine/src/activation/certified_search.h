@@ -37,6 +37,9 @@ class CertifiedSearch final : public Activation {
   void ways_around(const Surroundings& around, TriangleId source,
                    HalfSpaceBuffer& ways) const noexcept override;
 
+  /// Where the searches of the last cycle began.
+  const Frontier& frontier() const noexcept { return frontier_; }
+
  private:
   void begin(const Surroundings& around, const CertifiedTerms& terms) noexcept;
   void locate(const Surroundings& around) noexcept;

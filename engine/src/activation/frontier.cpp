@@ -48,6 +48,7 @@ std::size_t Frontier::gather(const WideBvh& tree, const Ball& ball) noexcept {
 
   around_ = ball;
   size_ = 0;
+  is_opened_ = true;
   const FloatTip center = float_tip(ball.center);
   const double rounding = 1e-13 * ball.center.lpNorm<1>();
   const auto radius = static_cast<float>(ball.radius * (1.0 + 4e-6) + rounding);
@@ -74,6 +75,7 @@ std::size_t Frontier::gather(const WideBvh& tree, const Ball& ball) noexcept {
     if (fits) {
       open(tree.nodes()[box.node].child[box.lane]);
     } else {
+      is_opened_ = false;
       add(tree, box.node, box.lane);
     }
   }

@@ -43,6 +43,9 @@ class Frontier {
   }
   std::size_t size() const noexcept { return size_; }
 
+  /// Whether all of its boxes are those of leaves: none was left unopened.
+  bool is_opened() const noexcept { return is_opened_; }
+
  private:
   static constexpr std::size_t most_boxes = 4 * NodeBlock::lanes;
 
@@ -50,7 +53,8 @@ class Frontier {
 
   Ball around_{Vec3::Zero(), -1.0};
   double free_radius_ = -1.0;  // around the same centre there are no boxes [length]
-  std::size_t size_ = 0;       // boxes
+  bool is_opened_ = true;
+  std::size_t size_ = 0;  // boxes
   std::array<NodeBlock, most_boxes / NodeBlock::lanes> blocks_;
   std::array<CylinderBlock, most_boxes / NodeBlock::lanes> cylinders_;  // of the blocks
 };

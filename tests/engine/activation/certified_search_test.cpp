@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // The certified rule on a tree of its own, held to the plain rule bit for bit.
+#include "activation/certified_search.h"
+
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
 
@@ -114,9 +116,9 @@ void drag(CertifiedForms& forms, const Scale& scale, std::size_t strokes, Ask&& 
   }
 }
 
-class CertifiedSearch : public ::testing::TestWithParam<std::string> {};
+class CertifiedSearchOn : public ::testing::TestWithParam<std::string> {};
 
-TEST_P(CertifiedSearch, StepsAsThePlainRuleDoes) {
+TEST_P(CertifiedSearchOn, StepsAsThePlainRuleDoes) {
   CertifiedForms forms(make_shape(GetParam()));
   ASSERT_NE(forms.searching, nullptr);
   ASSERT_TRUE(forms.searching->searches());
@@ -136,7 +138,7 @@ TEST_P(CertifiedSearch, StepsAsThePlainRuleDoes) {
   EXPECT_GT(recovering, 20u);
 }
 
-INSTANTIATE_TEST_SUITE_P(Shapes, CertifiedSearch, ::testing::ValuesIn(names_of_shapes()),
+INSTANTIATE_TEST_SUITE_P(Shapes, CertifiedSearchOn, ::testing::ValuesIn(names_of_shapes()),
                          [](const auto& shape) { return shape.param; });
 
 TEST(CertifiedSearchOptions, StepsAsThePlainRuleDoesWithOptionsJointsAndRows) {
@@ -188,6 +190,36 @@ TEST(CertifiedSearchMemory, DoesNotChangeAnswers) {
     return remembered.motion;
   });
   EXPECT_GT(limited, 50u);
+}
+
+/// A reach that grew with every stroke until large boxes were left over would have each cycle look
+/// into them, and would cover all that is asked about, so that nothing would ever mend it.
+TEST(CertifiedSearchMemory, IsOfLeavesHoweverManyStrokesThereWere) {
+  const auto mesh = std::make_shared<const Mesh>(make_shape("cortex"));
+  const WideBvh tree(mesh);
+  const PdTree nearby(mesh);
+  NearestTriangle nearest(*mesh, nearby);
+  CertifiedSearch rule(mesh, tree);
+  ActiveSet solver;
+  Workspace work({.triangles = 1});
+  solver.reserve(3, static_cast<int>(work.planes.capacity()));
+  const double size = mesh->bounds().size().norm();
+  const StepOptions options{.radius = 2e-3 * size, .margin = 2e-3 * size};
+  Random random(3);
+  int limited = 0, unopened = 0;
+  for (Vec3 tip : surface_points(*mesh, 300, 1.2 * options.margin, random)) {
+    const Vec3 along = random.direction();
+    for (int cycle = 0; cycle < 20; ++cycle) {
+      const Vec3 way = nearest(tip).closest.offset.normalized() + along;
+      const Motion motion{.tip = tip, .desired = 0.5 * options.radius * way.normalized()};
+      const Step made = step(*mesh, tree, rule, solver, motion, options, work);
+      limited += made.status == Status::limited;
+      unopened += rule.frontier().is_opened() ? 0 : 1;
+      tip += made.motion;
+    }
+  }
+  EXPECT_GT(limited, 3000);
+  EXPECT_LT(unopened, 60);  // one in a hundred, at the end of a reach that was tried
 }
 
 TEST(CertifiedSearchTargets, AnswerAlike) {
