@@ -81,12 +81,15 @@ void TrialWalk::enter(const NodeBlock& node, const CylinderBlock& cylinders,
   }
 }
 
-void TrialWalk::look_closer(PutOff& its) noexcept {
+/// At suspects that may be met no later than `latest`.
+void TrialWalk::look_closer(PutOff& its, double latest) noexcept {
   const LeafBlock& block = tree_.leaves()[its.leaf];
+  const auto until = static_cast<float>(latest * (1.0 + 1e-6));  // not before it, when rounded
   if (its.looks_left-- == closer_looks) {
-    suspect_sharply(block, tip_, motion_.data(), reach_, leaf(its.leaf).screen, its.suspects);
+    suspect_sharply(block, tip_, motion_.data(), reach_, until, leaf(its.leaf).screen,
+                    its.suspects);
   } else {
-    suspect_later(block, tip_, motion_.data(), reach_, its.suspects);
+    suspect_later(block, tip_, motion_.data(), reach_, until, its.suspects);
   }
 }
 

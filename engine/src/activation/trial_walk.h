@@ -85,7 +85,7 @@ class TrialWalk {
     std::uint32_t earliest() const noexcept;
   };
 
-  void look_closer(PutOff& its) noexcept;
+  void look_closer(PutOff& its, double latest) noexcept;
   bool wait(float time, std::uint32_t what) noexcept;
   Waiting next() noexcept;
   void enter(const NodeBlock& node, const CylinderBlock& cylinders, double latest) noexcept;
@@ -195,7 +195,7 @@ template <class Visit>
 void TrialWalk::resume(std::uint32_t put_off, const double& latest, Visit&& visit) noexcept {
   PutOff& its = put_off_[put_off];
   while (its.suspects.mask != 0) {
-    if (its.looks_left > 0) look_closer(its);
+    if (its.looks_left > 0) look_closer(its, latest);
     if (its.suspects.mask == 0) return;
     const std::uint32_t lane = its.earliest();
     const float time = its.suspects.time[lane];
