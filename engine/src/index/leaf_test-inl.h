@@ -187,9 +187,19 @@ HWY_INLINE void append(hn::Vec<Ids> source, Mask chosen, TriangleBuffer& out) {
 /// Appends all triangles of a leaf.
 HWY_INLINE void append_all(const LeafBlock& leaf, TriangleBuffer& out) {
   const Floats d;
+  const Ids ids;
+  const bool is_full = leaf.is_used(LeafBlock::lanes - 1);
+  if (HWY_LIKELY(is_full && out.capacity() - out.size() >= LeafBlock::lanes)) {
+    for (std::size_t first = 0; first < LeafBlock::lanes; first += hn::Lanes(ids)) {
+      const auto source = hn::Load(ids, leaf.source + first);
+      hn::StoreU(hn::AndNot(hn::Set(ids, LeafBlock::odd), source), ids, out.end() + first);
+    }
+    out.grow(LeafBlock::lanes);
+    return;
+  }
   const Mask all = hn::Eq(hn::Zero(d), hn::Zero(d));
   for (std::size_t first = 0; first < LeafBlock::lanes; first += hn::Lanes(d)) {
-    append(hn::Load(Ids(), leaf.source + first), all, out);
+    append(hn::Load(ids, leaf.source + first), all, out);
   }
 }
 
