@@ -4,13 +4,13 @@
 #include "activation/certified_search.h"
 
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 #include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "each_simd_target.h"
 #include "keepout/activation/certified.h"
 #include "keepout/fixtures/poses.h"
 #include "keepout/fixtures/random.h"
@@ -21,7 +21,6 @@
 #include "keepout/solvers/active_set.h"
 #include "keepout/step/step.h"
 #include "names_of_shapes.h"
-#include "only_target.h"
 
 namespace keepout {
 namespace {
@@ -118,30 +117,37 @@ void drag(CertifiedForms& forms, const Scale& scale, std::size_t strokes, Ask&& 
 
 class CertifiedSearchOn : public ::testing::TestWithParam<std::string> {};
 
-TEST_P(CertifiedSearchOn, StepsAsThePlainRuleDoes) {
+TEST_P(CertifiedSearchOn, StepsAsThePlainRuleDoesAndAlikeOnEachTarget) {
   CertifiedForms forms(make_shape(GetParam()));
   ASSERT_NE(forms.searching, nullptr);
   ASSERT_TRUE(forms.searching->searches());
-  std::size_t limited = 0, recovering = 0;
-  for (const Scale& scale : scales) {
-    drag(forms, scale, 8, [&](const Motion& motion, double margin, double length) {
-      const StepOptions options{.radius = 1.1 * length, .margin = margin, .recovery = 0.2 * margin};
-      const Outcome expected = forms.plain_step(motion, options);
-      EXPECT_EQ(forms.step(motion, options), expected)
-          << motion.tip.transpose() << " by " << motion.desired.transpose();
-      limited += expected.status == Status::limited;
-      recovering += expected.status == Status::recovering;
-      return expected.motion;
-    });
-  }
-  EXPECT_GT(limited, 50u);
-  EXPECT_GT(recovering, 20u);
+  std::vector<Outcome> on_the_first;
+  on_each_simd_target([&] {
+    std::vector<Outcome> made;
+    for (const Scale& scale : scales) {
+      drag(forms, scale, 4, [&](const Motion& motion, double margin, double length) {
+        const StepOptions options{
+            .radius = 1.1 * length, .margin = margin, .recovery = 0.2 * margin};
+        made.push_back(forms.plain_step(motion, options));
+        EXPECT_EQ(forms.step(motion, options), made.back())
+            << motion.tip.transpose() << " by " << motion.desired.transpose();
+        return made.back().motion;
+      });
+    }
+    if (on_the_first.empty()) on_the_first = made;
+    EXPECT_TRUE(made == on_the_first);
+  });
+  const auto count = [&](Status status) {
+    return std::ranges::count(on_the_first, status, &Outcome::status);
+  };
+  EXPECT_GT(count(Status::limited), 50);
+  EXPECT_GT(count(Status::recovering), 20);
 }
 
 INSTANTIATE_TEST_SUITE_P(Shapes, CertifiedSearchOn, ::testing::ValuesIn(names_of_shapes()),
                          [](const auto& shape) { return shape.param; });
 
-TEST(CertifiedSearchOptions, StepsAsThePlainRuleDoesWithOptionsJointsAndRows) {
+TEST(CertifiedSearchOptions, StepsAsThePlainRuleDoesWithOptionsJointsAndRowsOnEachTarget) {
   CertifiedForms forms(make_shape("cortex"));
   const TipJacobian::Matrix jacobian = [] {
     TipJacobian::Matrix j(3, 5);
@@ -150,7 +156,7 @@ TEST(CertifiedSearchOptions, StepsAsThePlainRuleDoesWithOptionsJointsAndRows) {
   }();
   const std::vector<double> matrix{1, 0, 0, -1, 0, 0}, bounds{-0.001, -0.5};
   std::size_t limited = 0;
-  for (const Scale& scale : {scales[0], scales[1]}) {
+  const auto ask_on = [&](const Scale& scale) {
     drag(forms, scale, 6, [&](const Motion& motion, double margin, double length) {
       StepOptions options{.radius = 1.5 * length, .margin = margin};
       Vec3 way = Vec3::Zero();
@@ -172,7 +178,10 @@ TEST(CertifiedSearchOptions, StepsAsThePlainRuleDoesWithOptionsJointsAndRows) {
       }
       return way;
     });
-  }
+  };
+  on_each_simd_target([&] {
+    for (const Scale& scale : {scales[0], scales[1]}) ask_on(scale);
+  });
   EXPECT_GT(limited, 100u);
 }
 
@@ -220,24 +229,6 @@ TEST(CertifiedSearchMemory, IsOfLeavesHoweverManyStrokesThereWere) {
   }
   EXPECT_GT(limited, 3000);
   EXPECT_LT(unopened, 60);  // one in a hundred, at the end of a reach that was tried
-}
-
-TEST(CertifiedSearchTargets, AnswerAlike) {
-  CertifiedForms forms(make_shape("gear"));
-  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-    const OnlyTarget only(target);
-    std::size_t limited = 0;
-    for (const Scale& scale : {scales[0], scales[3]}) {
-      drag(forms, scale, 5, [&](const Motion& motion, double margin, double length) {
-        const StepOptions options{.radius = 1.1 * length, .margin = margin};
-        const Outcome expected = forms.plain_step(motion, options);
-        EXPECT_EQ(forms.step(motion, options), expected) << hwy::TargetName(target);
-        limited += expected.status == Status::limited;
-        return expected.motion;
-      });
-    }
-    EXPECT_GT(limited, 20u);
-  }
 }
 
 TEST(CertifiedSearchIndex, IsForWideBvhOnly) {
