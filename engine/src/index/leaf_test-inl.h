@@ -242,7 +242,7 @@ class LeafList {
   template <bool counting>
   HWY_INLINE void look(const LeafBlock* leaves, const BallScreen& ball, const Mesh& mesh,
                        TriangleBuffer& out, QueryCounts* counts) {
-    constexpr std::size_t ahead = 4;
+    constexpr std::size_t ahead = 8;
     for (std::size_t i = 0; i < std::min(ahead, size_); ++i) fetch(leaves, leaves_[i]);
     for (std::size_t i = 0; i < size_; ++i) {
       if (i + ahead < size_) fetch(leaves, leaves_[i + ahead]);
