@@ -28,8 +28,8 @@ struct Suspects {
 
 void suspect(const LeafScreen& screen, const float* motion, Suspects& suspects) noexcept;
 
-/// The same, after some cutting-plane steps for those that are left over: dearer, and sharper. Those
-/// that come later than `latest`, a share of the motion, may be left as they are.
+/// The same, after some cutting-plane steps for those that are left over: dearer, and sharper.
+/// Those that come later than `latest`, a share of the motion, may be left as they are.
 void suspect_sharply(const LeafBlock& leaf, const FloatTip& tip, const float* motion,
                      const FloatReach& reach, float latest, LeafScreen& screen,
                      Suspects& suspects) noexcept;

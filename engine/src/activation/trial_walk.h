@@ -156,8 +156,8 @@ bool TrialWalk::run(Frontier& frontier, const Vec3& trial, const double& latest,
   return false;
 }
 
-/// Finds out which boxes of a node the trial reaches, and when. `cylinders()` are those beside them,
-/// asked for where they are needed.
+/// Finds out which boxes of a node the trial reaches, and when. `cylinders()` are those beside
+/// them, asked for where they are needed.
 template <class Cylinders>
 void TrialWalk::enter(const NodeBlock& node, Cylinders&& cylinders, double latest) noexcept {
   BoxEntries entries;
