@@ -56,12 +56,17 @@ Opening CertifiedSearch::start(const Surroundings& around, HalfSpaceBuffer&) noe
     return {Stance::over_capacity};
   }
   const Facet* its = nearest();
-  if (its == nullptr || its->distance() >= around.margin - lost_below * tau) return {Stance::clear};
-  if (its->distance() <= touching_within * tau) return {Stance::touching};
+  const std::optional<double> distance = known_distance(its, around.margin, tau);
+  if (its == nullptr || its->distance() >= around.margin - lost_below * tau) {
+    return {.stance = Stance::clear, .distance = distance};
+  }
+  if (its->distance() <= touching_within * tau) {
+    return {.stance = Stance::touching, .distance = distance};
+  }
   const double lift = std::min(around.recovery, around.margin - its->distance());
   const Vec3 aim = way_out(around, its->normal(), lift);
   begin(around, CertifiedTerms::leading_off(its->distance(), lift, tau));
-  return {Stance::too_close, aim};
+  return {Stance::too_close, aim, distance};
 }
 
 /// From here on nothing is known of any triangle.

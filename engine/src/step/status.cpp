@@ -52,11 +52,13 @@ std::string_view reason(Status status) noexcept {
              "or "
              "the joints cannot move it away; retreat, or lower the margin";
     case Status::ill_posed:
-      return "the Jacobian lacks full column rank, or all but: give a damping above zero";
+      return "the Jacobian lacks full column rank, or all but, as it does with more than three "
+             "joints: "
+             "set damping above 0";
     case Status::invalid_input:
       return "a number is missing, not finite, beyond 1e30, or so far from the origin that the "
-             "step "
-             "is lost in its digits: check the tip, the increment and the Jacobian";
+             "step is lost in its digits, or a Jacobian has other than 3 rows: check the tip, the "
+             "increment and the Jacobian";
     case Status::beyond_reach:
       return "the motion is longer than the radius of the motion sphere: ask for less in a cycle, "
              "or declare a larger radius";

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,16 +31,19 @@ struct Outcome {
   Vec3 motion;
   std::vector<double> increment;
   std::vector<HalfSpace> planes;
+  std::optional<double> distance;
 
   explicit Outcome(const Step& step)
       : status(step.status),
         motion(step.motion),
         increment(step.increment.begin(), step.increment.end()),
-        planes(step.planes.begin(), step.planes.end()) {}
+        planes(step.planes.begin(), step.planes.end()),
+        distance(step.distance) {}
 
   /// The sources of planes count too, but for triangles that are one on top of the other.
   friend bool operator==(const Outcome& a, const Outcome& b) {
     return a.status == b.status && a.motion == b.motion && a.increment == b.increment &&
+           a.distance == b.distance &&
            std::equal(a.planes.begin(), a.planes.end(), b.planes.begin(), b.planes.end(),
                       [](const HalfSpace& p, const HalfSpace& q) {
                         return p.normal == q.normal && p.offset == q.offset;
