@@ -155,7 +155,9 @@ void add_replay(CLI::App& app, ReplayOptions& options) {
       ->capture_default_str();
   command.footer(
       "STEPS.csv: step, status, tip, desired increment, solved increment (u), triangles in reach,\n"
-      "planes, and what each stage took. PLANES.csv: allowed are all u with normal . u >= "
+      "planes, what each stage took, and how far the tip was from the surface before the step; "
+      "empty "
+      "where\nthe step is invalid_input. PLANES.csv: allowed are all u with normal . u >= "
       "offset.\n\n" +
       listing("Rules", activation_rules()) + listing("Indices", index_backends()) +
       listing("Solvers", solver_backends()));

@@ -33,10 +33,12 @@ void write_step(std::ostream& out, std::size_t number, const Motion& motion, con
   const Vec3& u = step.motion;
   print(out,
         "%zu,%s,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%zu,%zu,%" PRId64 ",%" PRId64
-        ",%" PRId64 ",%" PRId64 "\n",
+        ",%" PRId64 ",%" PRId64 ",",
         number, name(step.status).data(), p.x(), p.y(), p.z(), d.x(), d.y(), d.z(), u.x(), u.y(),
         u.z(), step.triangles, step.planes.size(), times.query, times.activation, times.solve,
         times.total());
+  if (step.distance) print(out, "%.17g", *step.distance);
+  out << '\n';
 }
 
 void write_planes(std::ostream& out, std::size_t number, const Step& step) {
@@ -61,7 +63,7 @@ void replay(const ReplayOptions& options, std::ostream& out) {
   require_files_of_their_own(options);
   OutputFile steps(options.steps);
   steps.stream() << "step,status,px,py,pz,dx,dy,dz,ux,uy,uz,triangles,planes,"
-                    "t_query_ns,t_activate_ns,t_solve_ns,t_total_ns\n";
+                    "t_query_ns,t_activate_ns,t_solve_ns,t_total_ns,distance\n";
   std::optional<OutputFile> planes;
   if (options.planes) {
     planes.emplace(*options.planes);
@@ -69,7 +71,9 @@ void replay(const ReplayOptions& options, std::ostream& out) {
   }
   const std::vector<PoseLine> poses = read_poses(options.poses);
   const LoadedMesh loaded = load_mesh(options.mesh, options.load);
-  MotionConstraint constraint = make_motion_constraint(loaded.mesh, options.constraint);
+  MotionConstraintSettings settings = options.constraint;
+  settings.distances = Distances::always;
+  MotionConstraint constraint = make_motion_constraint(loaded.mesh, settings);
 
   std::map<std::string_view, std::size_t> counts;
   {

@@ -90,6 +90,11 @@ TEST_F(Command, ReplaySolvesOneStepForEachLine) {
   EXPECT_EQ(steps[2].at("status"), "beyond_reach");
   EXPECT_EQ(vector(steps[2], "u"), Vec3(0, 0, 0));
 
+  const std::vector<double> distances{10.0, 1.0, 1.0};
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    EXPECT_NEAR(std::stod(steps[i].at("distance")), distances[i], 1e-12);
+  }
+
   std::size_t of_step_1 = 0;
   for (const Row& plane : rows("planes.csv")) {
     const std::size_t step = std::stoul(plane.at("step"));
@@ -110,7 +115,7 @@ TEST_F(Command, TheHeadersAreThoseAgreedUpon) {
   std::getline(steps, line);
   EXPECT_EQ(line,
             "step,status,px,py,pz,dx,dy,dz,ux,uy,uz,triangles,planes,"
-            "t_query_ns,t_activate_ns,t_solve_ns,t_total_ns");
+            "t_query_ns,t_activate_ns,t_solve_ns,t_total_ns,distance");
   std::ifstream planes(file("p.csv"));
   std::getline(planes, line);
   EXPECT_EQ(line, "step,triangle,nx,ny,nz,offset");

@@ -54,9 +54,10 @@ const std::string_view protocol_help =
 frame of the mesh. Lines for people go to stderr.
 
   {"id":1,"do":"step","tip":[0,0,60],"desired":[0,0,-0.5]}
-  {"id":1,"ok":true,"status":"free","motion":[0,0,-0.5],"triangles":0,"planes":0}
+  {"id":1,"ok":true,"status":"free","motion":[0,0,-0.5],"triangles":0,"planes":0,"distance":10}
 
 step      tip, desired: the motion that the tip may make instead of the desired one; zero unless ok.
+          'distance' is that of the tip from the surface, before it.
           With jacobian, three rows of n numbers: 'increment' is that of the joints.
           With rows and bounds: rows . u >= bounds holds for the increment u.
 steps     motions, an array of [px,py,pz,dx,dy,dz]: as many steps, answered as "steps".

@@ -16,8 +16,10 @@ namespace {
 
 constexpr int protocol = 1;  // goes up when an old client would no longer be understood
 
+/// With room for the largest request. A client has no other way to a distance than a step.
 MotionConstraintSettings with_room_for(MotionConstraintSettings settings,
                                        const RequestLimits& limits) {
+  settings.distances = Distances::always;
   settings.capacity.variables = std::max<std::size_t>(limits.joints, 3);
   settings.capacity.extra_rows = limits.rows;
   return settings;
