@@ -5,9 +5,17 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <set>
 #include <utility>
 
 namespace keepout::app {
+
+void warn_on_stderr(const std::string& text) {
+  static std::set<std::string> said;
+  if (!said.insert(text).second) return;
+  const char* const clear = ::isatty(STDERR_FILENO) == 1 ? "\r\033[K" : "";
+  std::fprintf(stderr, "%skeepout: %s\n", clear, text.c_str());
+}
 
 Progress::Progress(std::string what, std::size_t total)
     : what_(std::move(what)), total_(total), terminal_(::isatty(STDERR_FILENO) == 1) {

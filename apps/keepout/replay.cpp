@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "clip.h"
-#include "keepout/adapters/load_mesh.h"
+#include "named_mesh.h"
 #include "output_file.h"
 #include "pose_file.h"
 #include "progress.h"
@@ -47,7 +47,8 @@ void write_planes(std::ostream& out, std::size_t number, const Step& step) {
 }
 
 void require_files_of_their_own(const ReplayOptions& options) {
-  const std::array inputs{NamedPath{"MESH", options.mesh}, NamedPath{"--poses", options.poses}};
+  const std::array inputs{NamedPath{"MESH", file_of_mesh(options.mesh)},
+                          NamedPath{"--poses", options.poses}};
   std::vector<NamedPath> outputs{{"--out", options.steps}};
   if (options.planes) outputs.push_back({"--planes", *options.planes});
   refuse_shared_files(inputs, outputs);
@@ -68,8 +69,10 @@ void replay(const ReplayOptions& options, std::ostream& out) {
     planes->stream() << "step,triangle,nx,ny,nz,offset\n";
   }
   const std::vector<PoseLine> poses = read_poses(options.poses);
-  const LoadedMesh loaded = load_mesh(options.mesh, options.load);
-  MotionConstraint constraint = make_motion_constraint(loaded.mesh, options.constraint);
+  const LoadedMesh loaded = load_named_mesh(options.mesh, options.load);
+  MotionConstraintSettings settings = options.constraint;
+  settings.warn = warn_on_stderr;
+  MotionConstraint constraint = make_motion_constraint(loaded.mesh, settings);
 
   std::map<std::string_view, std::size_t> counts;
   {
@@ -93,7 +96,6 @@ void replay(const ReplayOptions& options, std::ostream& out) {
   steps.commit();
   if (planes) planes->commit();
 
-  for (const std::string& warning : loaded.warnings) out << "note: " << warning << '\n';
   out << poses.size() << " steps -> " << options.steps.string() << '\n';
   for (const auto& [status, count] : counts) out << "  " << status << ": " << count << '\n';
 }

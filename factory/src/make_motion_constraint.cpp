@@ -17,7 +17,7 @@ namespace {
 std::unique_ptr<SpatialIndex> make_or_load_index(std::shared_ptr<const Mesh> mesh,
                                                  const MotionConstraintSettings& settings) {
   if (settings.index == "wide_bvh" && !settings.index_cache.empty()) {
-    return load_or_build(std::move(mesh), settings.index_cache);
+    return load_or_build(std::move(mesh), settings.index_cache, settings.warn);
   }
   return make_index(settings.index, std::move(mesh));
 }

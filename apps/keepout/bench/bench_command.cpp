@@ -2,13 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/bench_command.h"
 
-#include <map>
 #include <optional>
 #include <ostream>
 
 #include "bench/parts.h"
 #include "keepout/activation/registry.h"
 #include "keepout/error.h"
+#include "name_checks.h"
 #include "number_checks.h"
 #include "part_lists.h"
 #include "shell_word.h"
@@ -41,12 +41,12 @@ BenchCommand::BenchCommand(CLI::App& app) {
     command.add_option(name, list, text)
         ->delimiter(',')
         ->type_name("NAMES")
-        ->check(CLI::IsMember(names(table)));
+        ->check(one_of(names(table)));
   };
   add_list("--index", options.selection.indices, indices(), "Indices to measure");
   add_list("--activation", options.selection.activations, activation_rules(), "Rules to measure");
   add_list("--solver", options.selection.solvers, solver_backends(), "Solvers to measure");
-  command.add_option("--mesh", options.meshes, "Real fixtures, or mesh files")
+  command.add_option("--mesh", options.meshes, "Fixtures, or mesh files")
       ->delimiter(',')
       ->type_name("NAMES");
   command
@@ -70,12 +70,11 @@ BenchCommand::BenchCommand(CLI::App& app) {
       .add_option("--seconds", options.seconds,
                   "How long a combination is asked, at most, and timed as long again")
       ->type_name("S")
-      ->check(CLI::Range(0.001, 1e6));
+      ->check(length(Zero::refused));
   command
       .add_option("--poses", options.poses,
                   "contact: a tool that slides along the surface; unrelated: as a planner asks")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, Poses>{
-          {"contact", Poses::contact}, {"unrelated", Poses::unrelated}}))
+      ->transform(one_of<Poses>({{"contact", Poses::contact}, {"unrelated", Poses::unrelated}}))
       ->default_str("contact");
   command.add_option("--seed", options.seed, "Seed of the motions")
       ->type_name("NUMBER")

@@ -5,24 +5,13 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "keepout/adapters/load_mesh.h"
 #include "keepout/error.h"
-#include "keepout/fixtures/real_mesh.h"
 #include "keepout/fixtures/refine_mesh.h"
 #include "keepout/fixtures/resample_mesh.h"
+#include "named_mesh.h"
 #include "number_text.h"
 
 namespace keepout::app {
-namespace {
-
-std::filesystem::path path_of(const std::string& mesh) {
-  const auto known = real_meshes();
-  const bool is_fixture = std::find(known.begin(), known.end(), mesh) != known.end();
-  return is_fixture ? fixture_path(mesh) : std::filesystem::path(mesh);
-}
-
-}  // namespace
-
 std::vector<Subject> subjects_of(std::span<const std::string> meshes,
                                  std::span<const std::size_t> sizes) {
   std::vector<Subject> subjects;
@@ -55,7 +44,7 @@ std::string title_of(const Subject& subject) {
 }
 
 std::shared_ptr<const Mesh> make_mesh(const Subject& subject) {
-  auto mesh = load_mesh(path_of(subject.mesh)).mesh;
+  auto mesh = load_named_mesh(subject.mesh).mesh;
   if (subject.triangles == 0) return mesh;
   constexpr double largest_extent = 150.0;  // [mm]
   Surface bunny{{mesh->vertices().begin(), mesh->vertices().end()},

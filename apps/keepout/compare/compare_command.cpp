@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "compare/compare_command.h"
 
+#include "named_mesh.h"
 #include "number_checks.h"
 
 namespace keepout::app {
@@ -12,8 +13,7 @@ CompareCommand::CompareCommand(CLI::App& app) {
       "compare",
       "Hold all parts that can take each other's place to each other and to the truth, on the same "
       "input: indices, solvers, narrow phases");
-  command.add_option("MESH", options.mesh, "A real fixture, or a mesh file in mm")
-      ->capture_default_str();
+  command.add_option("MESH", options.mesh, std::string(mesh_help))->capture_default_str();
   command.add_option("--poses", options.extent.poses, "Poses for the indices, under each rule")
       ->type_name("NUMBER")
       ->transform(whole_number(6, 1'000'000))

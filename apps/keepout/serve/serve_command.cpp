@@ -7,9 +7,10 @@
 
 #include <ostream>
 
-#include "keepout/adapters/load_mesh.h"
 #include "keepout/error.h"
+#include "named_mesh.h"
 #include "number_text.h"
+#include "progress.h"
 #include "serve/server.h"
 #include "serve/unix_socket.h"
 #include "stop_signal.h"
@@ -32,9 +33,9 @@ void require_stdio() {
 
 int serve(const ServeOptions& options, std::ostream& log) {
   if (!options.socket) require_stdio();
-  const LoadedMesh loaded = load_mesh(options.service.mesh, options.load);
-  for (const std::string& warning : loaded.warnings) log << "keepout: " << warning << '\n';
+  const LoadedMesh loaded = load_named_mesh(options.service.mesh, options.load);
   ServiceSettings settings = options.service;
+  settings.constraint.warn = warn_on_stderr;
   settings.space = loaded.space;
   Service service(loaded.mesh, settings);
   const StopSignal stop;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -15,6 +16,9 @@ struct MotionConstraintSettings {
   std::string index = "wide_bvh";  // see index_backends()
   /// The folder where built indices are kept; only wide_bvh is. Empty: none is kept.
   std::filesystem::path index_cache = {};
+  /// Told while building of what does no harm but should be known: that an index could not be kept.
+  /// Empty: nobody is told.
+  std::function<void(const std::string&)> warn = {};
   std::string activation = "certified";  // see activation_rules()
   std::string solver = "active_set";     // see solver_backends()
   double radius = 5.0;          // of the motion sphere: the farthest that the tip may go [length]
