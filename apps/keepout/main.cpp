@@ -302,6 +302,8 @@ std::string called_as(const char* path) {
 int run(int argc, char** argv) {
   CLI::App app("keepout keeps a tool out of a triangle mesh of anatomy. All lengths are in mm.",
                called_as(argv[0]));
+  app.get_formatter()->label("SUBCOMMAND", "COMMAND");
+  app.get_formatter()->label("Subcommands", "Commands");
   app.footer(mesh_names_help() + '\n' + exit_statuses);
   app.set_version_flag("--version", KEEPOUT_VERSION);
   app.set_help_all_flag("--help-all", "Help on every command");

@@ -24,7 +24,8 @@ Progress::Progress(std::string what, std::size_t total)
 
 Progress::~Progress() {
   const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
-  std::fprintf(stderr, "%s%s: %.1f s\n", terminal_ ? "\r\033[K" : "", what_.c_str(), seconds);
+  interrupt();
+  if (seconds >= 0.5) std::fprintf(stderr, "%s: %.1f s\n", what_.c_str(), seconds);
 }
 
 void Progress::advance(std::size_t by) {

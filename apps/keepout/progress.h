@@ -13,7 +13,7 @@ namespace keepout::app {
 void warn_on_stderr(const std::string& text);
 
 /// Tells on stderr how far a long piece of work has come: on a terminal a line that is rewritten,
-/// elsewhere only the line at the end.
+/// elsewhere only the line at the end, of work that took half a second or more.
 ///
 /// Who prints something else meanwhile calls interrupt() first.
 class Progress {

@@ -11,6 +11,7 @@
 
 #include "clip.h"
 #include "named_mesh.h"
+#include "number_text.h"
 #include "output_file.h"
 #include "pose_file.h"
 #include "progress.h"
@@ -96,7 +97,7 @@ void replay(const ReplayOptions& options, std::ostream& out) {
   steps.commit();
   if (planes) planes->commit();
 
-  out << poses.size() << " steps -> " << options.steps.string() << '\n';
+  out << counted(poses.size(), "step") << " -> " << options.steps.string() << '\n';
   for (const auto& [status, count] : counts) out << "  " << status << ": " << count << '\n';
 }
 

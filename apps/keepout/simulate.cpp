@@ -193,7 +193,10 @@ void print_next(const SimulateOptions& options, std::ostream& out) {
   const std::string mesh = shell_word(options.mesh.string());
   out << "\nReport, with pictures, tables and settings: " << options.report.string() << "\n\n";
   const auto suggest = [&](const std::string& arguments, const char* what) {
-    out << "  " << options.called_as << ' ' << arguments << "   # " << what << '\n';
+    constexpr std::size_t column = 40;
+    std::string command = options.called_as + ' ' + arguments;
+    command.resize(std::max(command.size(), column), ' ');
+    out << "  " << command << "  # " << what << '\n';
   };
   out << "Try next:\n";
   suggest("inspect " + mesh, "what the mesh is made of, and what is wrong with it");

@@ -52,7 +52,7 @@ std::string in_words(const CLI::App& app, const CLI::App& command, const CLI::Pa
   if (&command == &app && kind == "RequiredError") {
     return "a command is missing; there are " + enumerated(command_names(app));
   }
-  if (kind == "ExtrasError") {
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {  // whose name is the command's
     return "'" + extra.front() + "' is one argument too many for " + command.get_name();
   }
   if (kind == "RequiredError") return "an argument is missing: " + told;
