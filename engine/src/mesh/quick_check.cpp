@@ -25,12 +25,11 @@ namespace {
 // cells are then gathered and looked at. That reads the triangles twice, and no memory but the
 // cells'.
 
-/// An edge from its lower vertex to its higher one.
+/// The lower vertex, and in the lower half of the bits the higher one.
 using Edge = std::uint64_t;
 
-constexpr Edge edge_of(VertexId low, VertexId high) noexcept {
-  return std::uint64_t{low} << 32 | high;
-}
+/// All bits for a side that runs from the lower vertex to the higher, none for the other way.
+using Upwards = std::uint64_t;
 
 /// Not linear: edges of a regular grid must not cancel out. (The finalizer of splitmix64.)
 constexpr std::uint64_t hash_of(Edge edge) noexcept {
@@ -44,15 +43,18 @@ std::size_t cell_count(std::size_t triangles) noexcept {
   return std::bit_ceil(std::clamp<std::size_t>(triangles / 20, 64, 65536));
 }
 
-/// Calls visit(edge, upwards) for each side of the triangles from begin to end.
+/// Calls visit(edge, upwards) for each side of the triangles from begin to end. Which way a side
+/// runs is as good as random, so no branch depends on it: they would take most of the time.
 template <class Visit>
 void for_each_side(const Mesh& mesh, std::size_t begin, std::size_t end, Visit&& visit) {
   for (const Corners& c : mesh.triangles().subspan(begin, end - begin)) {
     if (repeats_a_vertex(c)) continue;
     for (int i = 0; i < 3; ++i) {
-      const VertexId from = c[i];
-      const VertexId to = c[(i + 1) % 3];
-      visit(edge_of(std::min(from, to), std::max(from, to)), from < to);
+      const std::uint64_t from = c[i];
+      const std::uint64_t to = c[(i + 1) % 3];
+      const Upwards upwards = std::uint64_t{0} - ((from - to) >> 63);
+      const std::uint64_t swap = (from ^ to) & upwards;
+      visit((to ^ swap) << 32 | (from ^ swap), upwards);
     }
   }
 }
@@ -64,9 +66,9 @@ std::vector<std::uint64_t> sums_of_cells(const Mesh& mesh, std::size_t cells, un
   const std::size_t share = std::max<std::size_t>(mesh.triangle_count() / threads + 1, share_size);
   share_ranges(mesh.triangle_count(), threads, share, [&](std::size_t begin, std::size_t end) {
     std::vector<std::uint64_t> own(cells, 0);
-    for_each_side(mesh, begin, end, [&](Edge edge, bool upwards) {
+    for_each_side(mesh, begin, end, [&](Edge edge, Upwards upwards) {
       const std::uint64_t hash = hash_of(edge);
-      own[hash & (cells - 1)] += upwards ? hash : -hash;
+      own[hash & (cells - 1)] += (hash ^ upwards) - upwards;  // the negative, where it is all bits
     });
     const std::lock_guard lock(mutex);
     for (std::size_t i = 0; i < cells; ++i) sums[i] += own[i];
@@ -75,7 +77,7 @@ std::vector<std::uint64_t> sums_of_cells(const Mesh& mesh, std::size_t cells, un
 }
 
 /// A side of a triangle: its edge, and whether it runs upwards.
-using Side = std::pair<Edge, bool>;
+using Side = std::pair<Edge, Upwards>;
 
 /// The sides in the cells whose sum is not 0, in order.
 std::vector<Side> suspects(const Mesh& mesh, const std::vector<std::uint64_t>& sums,
@@ -87,7 +89,7 @@ std::vector<Side> suspects(const Mesh& mesh, const std::vector<std::uint64_t>& s
   const std::size_t share = std::max<std::size_t>(mesh.triangle_count() / threads + 1, share_size);
   share_ranges(mesh.triangle_count(), threads, share, [&](std::size_t begin, std::size_t end) {
     std::vector<Side> own;
-    for_each_side(mesh, begin, end, [&](Edge edge, bool upwards) {
+    for_each_side(mesh, begin, end, [&](Edge edge, Upwards upwards) {
       if (is_suspect[hash_of(edge) & (sums.size() - 1)]) own.emplace_back(edge, upwards);
     });
     const std::lock_guard lock(mutex);
