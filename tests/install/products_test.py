@@ -27,9 +27,11 @@ def installed(build):
 
 def main():
     build = pathlib.Path(sys.argv[1]).resolve()
-    listed = subprocess.run(["ninja", "-C", build, "-t", "inputs", "products"],
-                            capture_output=True, text=True, check=True).stdout
-    made = {build / line for line in listed.splitlines()}
+    # The one tool lists what the target itself is made of, the other what that is made of.
+    listed = "".join(subprocess.run(["ninja", "-C", build, "-t", *tool, "products"],
+                                    capture_output=True, text=True, check=True).stdout
+                     for tool in (["query"], ["inputs"]))
+    made = {build / line.strip() for line in listed.splitlines()}
     taken = set(installed(build))
     if len(taken) < 5:
         sys.exit(f"only {len(taken)} files are installed: has the form of the scripts changed?")
