@@ -33,10 +33,6 @@ void note(int signal) {
     if (stopping[i] == signal) ::sigaction(signal, &earlier_actions[i], nullptr);
   }
   const int error = errno;
-  // A second one is not waited for: files that are not whole are removed by who took it before.
-  for (std::size_t i = 0; i < stopping.size(); ++i) {
-    if (stopping[i] == signal) ::sigaction(signal, &earlier_actions[i], nullptr);
-  }
   const std::uint64_t one = 1;
   // It can fail only if it is noted already.
   [[maybe_unused]] const ssize_t written = ::write(event_file.load(), &one, sizeof one);

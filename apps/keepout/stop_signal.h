@@ -9,9 +9,9 @@ namespace keepout::app {
 inline constexpr int exit_interrupted = 130;
 
 /// Takes SIGHUP, SIGINT and SIGTERM for a wish to end, which poll() can wait for and long work can
-/// ask for, so that it keeps what it has finished; the same signal once more does what it did
-/// before, which is to end the process at once. SIGPIPE is taken for nothing, so that a client who
-/// has gone is an error of write() alone. One at a time.
+/// ask for, so that it keeps what it has finished; the same signal once more ends the process at
+/// once. SIGPIPE is taken for nothing, so that a client who has gone is an error of write() alone.
+/// One at a time.
 class StopSignal {
  public:
   /// Throws Error when the system has no more files.
@@ -25,10 +25,6 @@ class StopSignal {
 
   /// Whether there was such a signal.
   bool has_come() const noexcept;
-
-  /// What a command ends with that was interrupted, and has kept what was finished: the status that
-  /// shells have for SIGINT.
-  static constexpr int exit_status = 130;
 };
 
 }  // namespace keepout::app

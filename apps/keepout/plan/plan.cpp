@@ -188,7 +188,7 @@ int plan(const PlanOptions& options, std::ostream& out) {
   const std::size_t invalid = invalid_of_keepout(runs);
   if (invalid > 0) out << "\n" << counted(invalid, "path") << " of keepout's are not valid!\n";
   if (invalid > 0) return EXIT_FAILURE;
-  return stop.has_come() ? StopSignal::exit_status : EXIT_SUCCESS;
+  return stop.has_come() ? exit_interrupted : EXIT_SUCCESS;
 }
 
 }  // namespace keepout::app

@@ -119,7 +119,7 @@ int verify(const VerifyOptions& options, std::ostream& out) {
   print(out, result);
   if (result.findings.total().breach_count() > 0) return EXIT_FAILURE;
   const bool interrupted = options.merge.empty() && !result.shards.front().is_whole;
-  return interrupted ? StopSignal::exit_status : EXIT_SUCCESS;
+  return interrupted ? exit_interrupted : EXIT_SUCCESS;
 }
 
 }  // namespace keepout::app
