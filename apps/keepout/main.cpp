@@ -303,7 +303,6 @@ int run(int argc, char** argv) {
   CLI::App app("keepout keeps a tool out of a triangle mesh of anatomy. All lengths are in mm.",
                called_as(argv[0]));
   app.get_formatter()->label("SUBCOMMAND", "COMMAND");
-  app.get_formatter()->label("Subcommands", "Commands");
   app.footer(mesh_names_help() + '\n' + exit_statuses);
   app.set_version_flag("--version", KEEPOUT_VERSION);
   app.set_help_all_flag("--help-all", "Help on every command");
@@ -331,6 +330,9 @@ int run(int argc, char** argv) {
   BenchCommand bench_command(app);
   CompareCommand compare_command(app);
   PlanCommand plan_command(app);
+  for (CLI::App* command : app.get_subcommands([](CLI::App*) { return true; })) {
+    command->group("Commands");
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& call_for_help) {

@@ -26,7 +26,7 @@ struct LoadOptions {
   AnatomicalSpace space = AnatomicalSpace::unstated;
   /// The space of a file that does not say. One that does is believed.
   AnatomicalSpace untagged = AnatomicalSpace::unstated;
-  MeshCheck check = MeshCheck::quick;
+  MeshCheck check = MeshCheck::quick;  // whether the mesh is looked at once it is read
 };
 
 /// What load_mesh has read.
