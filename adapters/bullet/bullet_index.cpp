@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "../src/ball_against_box.h"
+#include "keepout/geometry/ball_against_box.h"
 #include "../src/capacity.h"
 #include "../src/centered_frame.h"
 #include "bullet_mesh.h"

@@ -5,7 +5,7 @@
 #include <fcl/math/bv/AABB.h>
 #include <fcl/math/bv/OBBRSS.h>
 
-#include "../src/ball_against_box.h"
+#include "keepout/geometry/ball_against_box.h"
 
 namespace keepout {
 

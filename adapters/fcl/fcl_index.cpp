@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "../src/ball_against_box.h"
+#include "keepout/geometry/ball_against_box.h"
 #include "../src/capacity.h"
 #include "bounding_volumes.h"
 #include "keepout/error.h"

@@ -8,6 +8,7 @@
 
 #include "keepout/index/brute_force.h"
 #include "keepout/index/pd_tree.h"
+#include "keepout/index/pd_tree_1997.h"
 #include "keepout/index/wide_bvh.h"
 #include "keepout/registry.h"
 
@@ -36,8 +37,11 @@ constexpr IndexBackend backends[] = {
      as_many_as_a_mesh, nullptr},
     {"wide_bvh", "axis-aligned boxes and triangles sixteen at a time", make<WideBvh>,
      WideBvh::most_triangles, nullptr},
-    {"pd_tree", "principal direction tree of oriented boxes (Williams et al. 1997)", make<PdTree>,
-     PdTree::most_triangles, nullptr},
+    {"pd_tree", "principal direction tree, split at the median, leaves sixteen at a time",
+     make<PdTree>, PdTree::most_triangles, nullptr},
+    {"pd_tree_1997", "principal direction tree as published: split at the mean, plain leaves",
+     make<PdTree1997>, PdTree1997::most_triangles, nullptr, Allocation::never,
+     "The tree of Williams et al. 1997 and Li et al. 2020: pd_tree without our split and leaves."},
 #if KEEPOUT_HAS_FCL
     {"fcl_obbrss", "oriented boxes of FCL", make_fcl_obbrss_index, fcl_most_triangles, fcl_library},
     {"fcl_aabb", "axis-aligned boxes of FCL", make_fcl_aabb_index, fcl_most_triangles, fcl_library},
