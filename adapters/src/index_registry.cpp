@@ -45,12 +45,20 @@ constexpr IndexBackend backends[] = {
 #if KEEPOUT_HAS_FCL
     {"fcl_obbrss", "oriented boxes of FCL", make_fcl_obbrss_index, fcl_most_triangles, fcl_library},
     {"fcl_aabb", "axis-aligned boxes of FCL", make_fcl_aabb_index, fcl_most_triangles, fcl_library},
+    {"fcl_collide", "oriented boxes of FCL, by its own collide(): takes memory, not for real time",
+     make_fcl_collide_index, fcl_most_triangles, fcl_library, Allocation::inside,
+     "FCL's collide() also tests each triangle, and makes a list of contacts on the heap at each "
+     "query; the contact points are not asked for."},
 #endif
 #if KEEPOUT_HAS_BULLET
     {"bullet_quantized", "axis-aligned boxes of Bullet, in 16 bits", make_bullet_quantized_index,
      bullet_quantized_most_triangles, bullet_library},
     {"bullet", "axis-aligned boxes of Bullet", make_bullet_index, bullet_most_triangles,
      bullet_library},
+    {"bullet_callback", "axis-aligned boxes of Bullet, in 16 bits, by its own walk and callback",
+     make_bullet_callback_index, bullet_quantized_most_triangles, bullet_library, Allocation::never,
+     "Bullet's walk takes a box, not a ball, and so finds more candidates; it calls back for each, "
+     "without fetching the triangle's corners as processAllTriangles() would."},
 #endif
 #if KEEPOUT_HAS_EMBREE
     {"embree", "axis-aligned boxes of Embree, in float", make_embree_index, embree_most_triangles,
@@ -63,11 +71,14 @@ constexpr AbsentPart absent[] = {
 #if !KEEPOUT_HAS_FCL
     {"fcl_obbrss", "FCL (install libfcl-dev, configure with KEEPOUT_WITH_FCL=ON)"},
     {"fcl_aabb", "FCL (install libfcl-dev, configure with KEEPOUT_WITH_FCL=ON)"},
+    {"fcl_collide", "FCL (install libfcl-dev, configure with KEEPOUT_WITH_FCL=ON)"},
 #endif
 #if !KEEPOUT_HAS_BULLET
     {"bullet_quantized",
      "Bullet (install libbullet-dev and pkg-config, configure with KEEPOUT_WITH_BULLET=ON)"},
     {"bullet",
+     "Bullet (install libbullet-dev and pkg-config, configure with KEEPOUT_WITH_BULLET=ON)"},
+    {"bullet_callback",
      "Bullet (install libbullet-dev and pkg-config, configure with KEEPOUT_WITH_BULLET=ON)"},
 #endif
 #if !KEEPOUT_HAS_EMBREE

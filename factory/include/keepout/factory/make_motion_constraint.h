@@ -12,7 +12,7 @@ namespace keepout {
 
 /// Which parts to build a motion constraint from, by name, and how it shall behave.
 struct MotionConstraintSettings {
-  std::string index = "wide_bvh";  // see index_backends()
+  std::string index = "wide_bvh";  // see index_backends(); fcl_collide is not for real time
   /// The folder where built indices are kept; only wide_bvh is. Empty: none is kept.
   std::filesystem::path index_cache = {};
   std::string activation = "certified";  // see activation_rules()
