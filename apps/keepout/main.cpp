@@ -321,7 +321,7 @@ int run(int argc, char** argv) {
   if (app.got_subcommand("serve")) return serve(serve_options, std::cerr);
   if (app.got_subcommand("simulate")) simulate(simulate_options, std::cout);
   if (app.got_subcommand("bench")) bench_command.run({argv + 1, argv + argc}, std::cout);
-  if (app.got_subcommand("compare")) return compare_command.run(std::cout);
+  if (app.got_subcommand("compare")) return compare_command.run({argv + 1, argv + argc}, std::cout);
   if (app.got_subcommand("plan")) return plan_command.run(std::cout);
   if (app.got_subcommand("verify")) return verify(verify_options, std::cout);
   return EXIT_SUCCESS;
