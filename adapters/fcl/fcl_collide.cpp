@@ -48,13 +48,11 @@ class FclCollideIndex final : public SpatialIndex {
   }
 
   void collect(const Ball& ball, TriangleBuffer& candidates) const noexcept override {
-    const std::size_t before = candidates.size();
     try {
       if (ask(ball, candidates)) return;
     } catch (const std::exception&) {
-      // No memory: it is not for a query to throw.
+      // No memory for FCL's list, and nothing is in ours yet: it is not for a query to throw.
     }
-    candidates.truncate(before);
     BruteForce(model_.mesh()).collect(ball, candidates);
   }
 

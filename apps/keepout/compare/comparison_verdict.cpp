@@ -32,9 +32,8 @@ std::string guilty(const auto& rows, auto name, auto count) {
 /// Equal steps are no finding where they could not be otherwise.
 std::string what_is_by_construction(const std::vector<IndexAgreement>& rows) {
   std::string text =
-      " By construction the exact kernel decides, whichever index proposes: a plain rule can come "
-      "to "
-      "another step only by a triangle that the index missed or gave twice.";
+      " By construction the exact kernel decides, whichever index proposes: a plain rule can only "
+      "come to another step by a triangle that the index missed or gave twice.";
   std::vector<std::string> indices, rules;
   for (const IndexAgreement& row : rows) {
     if (!row.searched) continue;
@@ -110,7 +109,7 @@ std::string solver_verdict(const std::vector<SolverAgreement>& rows) {
   }
   std::string text =
       shorter.empty() ? "Each solver got the same recorded problems, and every answer was checked; "
-                      : "The solvers got recorded problems, the same but for those that are slow, "
+                      : "All solvers got problems of one recorded set, slow ones a share of it, "
                         "and every answer was checked; ";
   text += wrong.empty()
               ? "none was wrong"

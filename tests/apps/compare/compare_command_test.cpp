@@ -72,8 +72,8 @@ TEST_F(CompareCommand, WritesWhereItRanAndHowToDoItAgain) {
 
 TEST_F(CompareCommand, KeepsWhatIsFinishedWhenItIsInterrupted) {
   const ProcessOutcome outcome =
-      folder.run("compare cube.stl --poses 6 --problems 1000000 --pairs 10 --json c.json",
-                 "timeout --preserve-status --signal=INT 4");
+      folder.run("compare cube.stl --poses 6 --problems 200000 --pairs 10 --json c.json",
+                 "timeout --foreground --preserve-status --signal=INT 6");
   EXPECT_EQ(outcome.status, 130) << outcome.output;
   EXPECT_NE(outcome.output.find("Interrupted: "), std::string::npos) << outcome.output;
   EXPECT_NE(outcome.output.find("So far all parts agree that must."), std::string::npos);
