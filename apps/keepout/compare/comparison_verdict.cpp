@@ -29,23 +29,6 @@ std::string guilty(const auto& rows, auto name, auto count) {
   return listed(result);
 }
 
-/// Equal steps are no finding where they could not be otherwise.
-std::string what_is_by_construction(const std::vector<IndexAgreement>& rows) {
-  std::string text =
-      " By construction the exact kernel decides, whichever index proposes: a plain rule can only "
-      "come to another step by a triangle that the index missed or gave twice.";
-  std::vector<std::string> indices, rules;
-  for (const IndexAgreement& row : rows) {
-    if (!row.searched) continue;
-    if (std::ranges::find(indices, row.index) == indices.end()) indices.push_back(row.index);
-    if (std::ranges::find(rules, row.activation) == rules.end()) rules.push_back(row.activation);
-  }
-  if (indices.empty()) return text;
-  return text + " Not so where the rule searches the index by itself, which is what " +
-         listed(rules) + (rules.size() == 1 ? " does" : " do") + " on " + listed(indices) +
-         ": these steps were found in another way than brute force's.";
-}
-
 /// Beside the first solver, which all are held to.
 std::string why_fewer(const std::vector<SolverAgreement>& rows, const SolverAgreement& of) {
   double least = 0.0, most = 0.0;
@@ -96,7 +79,23 @@ std::string index_verdict(const std::vector<IndexAgreement>& rows) {
                             " brute force's steps, bit for bit."
                       : "; " + grouped(differ) + (differ == 1 ? " step differs" : " steps differ") +
                             " from brute force's in some bit.";
-  return text + what_is_by_construction(rows);
+  return text;
+}
+
+std::string index_agreement_by_construction(const std::vector<IndexAgreement>& rows) {
+  std::string text =
+      "By construction the exact kernel decides, whichever index proposes: a plain rule can only "
+      "come to another step by a triangle that the index missed or gave twice.";
+  std::vector<std::string> indices, rules;
+  for (const IndexAgreement& row : rows) {
+    if (!row.searched) continue;
+    if (std::ranges::find(indices, row.index) == indices.end()) indices.push_back(row.index);
+    if (std::ranges::find(rules, row.activation) == rules.end()) rules.push_back(row.activation);
+  }
+  if (indices.empty()) return text;
+  return text + " Not so where the rule searches the index by itself, which is what " +
+         listed(rules) + (rules.size() == 1 ? " does" : " do") + " on " + listed(indices) +
+         ": these steps were found in another way than brute force's.";
 }
 
 std::string solver_verdict(const std::vector<SolverAgreement>& rows) {
@@ -149,7 +148,9 @@ std::vector<std::string> verdict(const Comparison& comparison) {
   const auto add = [&](const char* what, const auto& rows, auto in_words) {
     if (!rows.empty()) paragraphs.push_back(what + in_words(rows));
   };
-  add("Indices: ", comparison.indices, index_verdict);
+  add("Indices: ", comparison.indices, [](const std::vector<IndexAgreement>& rows) {
+    return index_verdict(rows) + " " + index_agreement_by_construction(rows);
+  });
   add("Solvers: ", comparison.solvers, solver_verdict);
   add("Narrow phases, which are not all ours: ", comparison.narrow_phases, narrow_phase_verdict);
   if (!comparison.complete) {

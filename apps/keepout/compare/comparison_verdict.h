@@ -18,8 +18,10 @@ bool agree(const Comparison& comparison);
 /// A paragraph for each kind of part that was compared, then whether those agree that must.
 std::vector<std::string> verdict(const Comparison& comparison);
 
-/// On queries and steps, and on what agrees by construction.
+/// On queries and steps, in one sentence.
 std::string index_verdict(const std::vector<IndexAgreement>& rows);
+/// Equal steps are no finding where they could not be otherwise: on where that is so.
+std::string index_agreement_by_construction(const std::vector<IndexAgreement>& rows);
 /// On answers, and on why some solvers got fewer problems.
 std::string solver_verdict(const std::vector<SolverAgreement>& rows);
 /// On distances.

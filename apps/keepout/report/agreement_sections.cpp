@@ -131,7 +131,9 @@ void print_index_agreement(std::ostream& out, const Comparison& comparison) {
                           {error_text(row.step_difference)},
                           {grouped(row.steps_that_differ)}});
   }
-  open_section(out, "Do the indices agree?", index_verdict(comparison.indices));
+  open_section(out, "Do the indices agree?",
+               index_verdict(comparison.indices) + " " +
+                   index_agreement_by_construction(comparison.indices));
   print_table(out, table);
 }
 

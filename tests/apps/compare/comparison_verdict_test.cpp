@@ -30,7 +30,7 @@ Comparison two_indices() {
 TEST(ComparisonVerdict, SaysThatAllAgreeAndWhatCouldNotBeOtherwise) {
   const Comparison comparison = two_indices();
   EXPECT_TRUE(agree(comparison));
-  const std::string text = index_verdict(comparison.indices);
+  const std::string text = verdict(comparison).front();
   EXPECT_TRUE(has(text, "Of 200 queries")) << text;
   EXPECT_TRUE(has(text, "all 2 indices give brute force's steps, bit for bit")) << text;
   EXPECT_TRUE(has(text, "By construction the exact kernel decides")) << text;
