@@ -320,7 +320,9 @@ int run(int argc, char** argv) {
   if (app.got_subcommand("replay")) replay(replay_options, std::cout);
   if (app.got_subcommand("serve")) return serve(serve_options, std::cerr);
   if (app.got_subcommand("simulate")) simulate(simulate_options, std::cout);
-  if (app.got_subcommand("bench")) bench_command.run({argv + 1, argv + argc}, std::cout);
+  if (app.got_subcommand("bench")) {
+    return bench_command.run({argv + 1, argv + argc}, std::cout, std::cerr);
+  }
   if (app.got_subcommand("compare")) return compare_command.run({argv + 1, argv + argc}, std::cout);
   if (app.got_subcommand("plan")) return plan_command.run(std::cout);
   if (app.got_subcommand("verify")) return verify(verify_options, std::cout);

@@ -10,7 +10,8 @@
 #include <utility>
 
 #include "bench/bench.h"
-#include "bench/machine_record.h"
+#include "bench/benchmark_table.h"
+#include "bench/used_cores.h"
 #include "clip.h"
 #include "compare/compare.h"
 #include "compare/comparison_files.h"
@@ -201,13 +202,15 @@ Measured timings_of(const SimulateOptions& options, const std::shared_ptr<const 
   Measured measured;
   if (options.timings == Timings::of_the_run) return measured;
   const Subject subject{.mesh = options.mesh.string()};
-  measured.benchmark = {.date = date_now(),
-                        .command = command_of(options, options.rules),
-                        .seed = 1,
-                        .machine = this_machine()};
+  const std::vector<Combination> combinations = quick_combinations();
+  measured.benchmark = new_benchmark(command_of(options, options.rules), 1, combinations, 1);
+  const StopSignal stop;
+  const UsedCores used;
+  print_machine(out, measured.benchmark.machine);
   MemoryTaken memory;
-  run_trial(subject, quick_combinations(), {.queries = 1500, .seconds = 0.3}, memory,
+  run_trial(subject, combinations, {.queries = 1500, .seconds = 0.3}, memory, stop,
             measured.benchmark, out);
+  measured.benchmark.others_cores = used.others();
   measured.comparison = compare_parts(options.mesh.stem().string(), mesh,
                                       {.poses = 12, .problems = 400, .pairs = 100});
   print(out, measured.comparison);

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/bench_command.h"
 
+#include <cstdlib>
 #include <map>
-#include <optional>
 #include <ostream>
 
 #include "bench/parts.h"
@@ -14,20 +14,7 @@
 #include "shell_word.h"
 
 namespace keepout::app {
-namespace {
-
-/// "motion", or a length.
-std::optional<double> radius_of(const std::string& text) {
-  if (text == "motion") return std::nullopt;
-  std::string number = text;
-  const std::string problem = length(Zero::refused)(number);
-  if (!problem.empty()) {
-    throw Error("--radius: expected lengths in mm, or 'motion': " + problem);
-  }
-  return std::stod(number);
-}
-
-}  // namespace
+namespace {}  // namespace
 
 BenchCommand::BenchCommand(CLI::App& app) {
   BenchOptions& options = options_;
@@ -56,10 +43,12 @@ BenchCommand::BenchCommand(CLI::App& app) {
       ->type_name("NUMBERS")
       ->transform(whole_number(1000, 200'000'000));
   command
-      .add_option("--radius", radii_,
-                  "Radii of the motion sphere, in mm; 'motion': as long as each motion")
+      .add_option("--radius", options.selection.radii,
+                  "Radii of the motion sphere, in mm; certified looks as far as the motion leads, "
+                  "whatever the radius")
       ->delimiter(',')
-      ->type_name("MM");
+      ->type_name("MM")
+      ->check(length(Zero::refused));
   command.add_flag_callback(
       "--full", [&options] { options.extent = Extent::full; },
       "To 18 million triangles, and the skull of a million: about a third of an hour, and 14 GB");
@@ -67,8 +56,10 @@ BenchCommand::BenchCommand(CLI::App& app) {
       ->type_name("NUMBER")
       ->transform(whole_number(5, 10'000'000));
   command
-      .add_option("--seconds", options.seconds,
-                  "How long a combination is asked, at most, and timed as long again")
+      .add_option(
+          "--seconds", options.seconds,
+          "How long a combination is asked, at most, in each of two rounds: stage by stage, "
+          "and as a whole")
       ->type_name("S")
       ->check(CLI::Range(0.001, 1e6));
   command
@@ -89,7 +80,7 @@ BenchCommand::BenchCommand(CLI::App& app) {
   add_speed_options(command);
   command.footer(
       "Each list is crossed with the others; what is not named is wide_bvh, paper and certified,\n"
-      "active_set, and radii of 5, 1, 0.25 and the motion. Without --index, --activation and\n"
+      "active_set, and radii of 5, 1 and 0.25. Without --index, --activation and\n"
       "--solver: each index, then each solver, with those; and FCL's tree with SLSQP.");
 }
 
@@ -137,19 +128,19 @@ void BenchCommand::run_speed(std::ostream& out) {
               out);
 }
 
-void BenchCommand::run(const std::vector<std::string>& arguments, std::ostream& out) {
+int BenchCommand::run(const std::vector<std::string>& arguments, std::ostream& out,
+                      std::ostream& notes) {
   if (list_) {
     list_parts(out);
-    return;
+    return EXIT_SUCCESS;
   }
   options_.command = "keepout";
   for (const std::string& argument : arguments) options_.command += " " + shell_word(argument);
   if (is_speed_) {
     run_speed(out);
-    return;
+    return EXIT_SUCCESS;
   }
-  for (const std::string& radius : radii_) options_.selection.radii.push_back(radius_of(radius));
-  bench(options_, out);
+  return bench(options_, out, notes);
 }
 
 }  // namespace keepout::app

@@ -19,8 +19,8 @@ class BenchCommand {
   BenchCommand(const BenchCommand&) = delete;
   BenchCommand& operator=(const BenchCommand&) = delete;
 
-  /// After parsing. `arguments`: of the command line, for the record.
-  void run(const std::vector<std::string>& arguments, std::ostream& out);
+  /// After parsing; gives the exit status. `arguments`: of the command line, for the record.
+  int run(const std::vector<std::string>& arguments, std::ostream& out, std::ostream& notes);
 
  private:
   /// To be called last: it has no use for most of the others.
@@ -30,7 +30,6 @@ class BenchCommand {
   BenchOptions options_;
   SpeedSettings speed_;
   bool is_speed_ = false;
-  std::vector<std::string> radii_;
   bool list_ = false;
 };
 
