@@ -83,9 +83,6 @@ void refuse_overwriting(const BenchOptions& options) {
   refuse_shared_files(inputs, outputs);
 }
 
-/// Of a command that a signal ended, as shells have it.
-constexpr int stopped_status = 130;
-
 /// The files, by their names.
 std::vector<std::string> written_to(const BenchOptions& options) {
   std::vector<std::string> names = {options.report.string()};
@@ -196,6 +193,7 @@ int bench(const BenchOptions& options, std::ostream& out, std::ostream& notes) {
   Benchmark benchmark = new_benchmark(options.command, options.seed, combinations, subjects.size());
   const UsedCores used;
   print_machine(out, benchmark.machine);
+  out.flush();
   MemoryTaken memory;
   for (const Subject& subject : subjects) {
     if (stop.has_come()) break;
@@ -204,7 +202,7 @@ int bench(const BenchOptions& options, std::ostream& out, std::ostream& notes) {
   benchmark.others_cores = used.others();
   if (benchmark.rows.empty()) {
     notes << "keepout: stopped before any row was finished: nothing was written\n";
-    return stopped_status;
+    return exit_interrupted;
   }
   // What has been measured is safe before anything else is tried.
   if (json) write_json(json->stream(), benchmark);
@@ -224,7 +222,7 @@ int bench(const BenchOptions& options, std::ostream& out, std::ostream& notes) {
   notes << "keepout: stopped; " << grouped(benchmark.rows.size()) << " of "
         << counted(benchmark.planned, "row") << " were finished, and are kept in "
         << listed(written_to(options)) << '\n';
-  return stopped_status;
+  return exit_interrupted;
 }
 
 }  // namespace keepout::app

@@ -37,9 +37,9 @@ struct BenchOptions {
 /// the parts' answers on the first mesh, and writes a report and files. Throws Error before any
 /// work when one could not be written.
 ///
-/// Gives the exit status: 0, or 130 when a signal stopped it. The rows that were finished are then
-/// written all the same, marked as incomplete, and `notes` is told what was kept and where; where
-/// there is none, nothing is written.
+/// Gives the exit status: 0, or exit_interrupted when a signal stopped it. The rows that were
+/// finished are then written all the same, marked as incomplete, and `notes` is told what was kept
+/// and where; where there is none, nothing is written.
 int bench(const BenchOptions& options, std::ostream& out, std::ostream& notes);
 
 /// Says what there is to measure, and what this build was made without.

@@ -117,15 +117,15 @@ void BenchCommand::add_speed_options(CLI::App& command) {
       ->needs(speed);
 }
 
-void BenchCommand::run_speed(std::ostream& out) {
+int BenchCommand::run_speed(std::ostream& out) {
   if (options_.triangles.size() > 1) throw Error("--speed: give --triangles one size");
   if (!options_.triangles.empty()) speed_.triangles = options_.triangles.front();
   speed_.seed = options_.seed;
-  bench_speed({.settings = speed_,
-               .report = options_.report,
-               .json = options_.json,
-               .command = options_.command},
-              out);
+  return bench_speed({.settings = speed_,
+                      .report = options_.report,
+                      .json = options_.json,
+                      .command = options_.command},
+                     out);
 }
 
 int BenchCommand::run(const std::vector<std::string>& arguments, std::ostream& out,
@@ -136,10 +136,7 @@ int BenchCommand::run(const std::vector<std::string>& arguments, std::ostream& o
   }
   options_.command = "keepout";
   for (const std::string& argument : arguments) options_.command += " " + shell_word(argument);
-  if (is_speed_) {
-    run_speed(out);
-    return EXIT_SUCCESS;
-  }
+  if (is_speed_) return run_speed(out);
   return bench(options_, out, notes);
 }
 

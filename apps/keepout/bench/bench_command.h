@@ -25,7 +25,7 @@ class BenchCommand {
  private:
   /// To be called last: it has no use for most of the others.
   void add_speed_options(CLI::App& command);
-  void run_speed(std::ostream& out);
+  int run_speed(std::ostream& out);
 
   BenchOptions options_;
   SpeedSettings speed_;

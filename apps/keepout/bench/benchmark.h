@@ -88,7 +88,7 @@ struct Benchmark {
   Machine machine;
   std::map<std::string, std::string> parts = {};    // what each index, rule and solver is
   std::map<std::string, std::string> remarks = {};  // what an index does more or less than others
-  std::size_t planned = 0;                        // rows; more than there are: it was stopped
+  std::size_t planned = 0;                          // rows; more than there are: it was stopped
   std::optional<double> others_cores = {};  // that other processes kept busy meanwhile, if known
   std::vector<BenchmarkRow> rows = {};
 };
