@@ -319,7 +319,7 @@ int run(int argc, char** argv) {
   if (app.got_subcommand("inspect")) inspect(inspect_options, std::cout);
   if (app.got_subcommand("replay")) replay(replay_options, std::cout);
   if (app.got_subcommand("serve")) return serve(serve_options, std::cerr);
-  if (app.got_subcommand("simulate")) simulate(simulate_options, std::cout);
+  if (app.got_subcommand("simulate")) return simulate(simulate_options, std::cout);
   if (app.got_subcommand("bench")) {
     return bench_command.run({argv + 1, argv + argc}, std::cout, std::cerr);
   }

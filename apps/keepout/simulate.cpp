@@ -6,6 +6,8 @@
 #include <array>
 #include <charconv>
 #include <cstdio>
+#include <cstdlib>
+#include <iostream>
 #include <ostream>
 #include <utility>
 
@@ -20,6 +22,7 @@
 #include "keepout/error.h"
 #include "keepout/version.h"
 #include "machine.h"
+#include "number_text.h"
 #include "output_file.h"
 #include "path_audit.h"
 #include "progress.h"
@@ -211,15 +214,21 @@ Measured timings_of(const SimulateOptions& options, const std::shared_ptr<const 
   run_trial(subject, combinations, {.queries = 1500, .seconds = 0.3}, memory, stop,
             measured.benchmark, out);
   measured.benchmark.others_cores = used.others();
+  if (stop.has_come()) {
+    std::cerr << "keepout: stopped; " << grouped(measured.benchmark.rows.size()) << " of "
+              << counted(measured.benchmark.planned, "row")
+              << " of the benchmark were finished, and are kept in the report\n";
+    return measured;
+  }
   measured.comparison = compare_parts(options.mesh.stem().string(), mesh,
-                                      {.poses = 12, .problems = 400, .pairs = 100});
+                                      {.poses = 12, .problems = 400, .pairs = 100}, &stop);
   print(out, measured.comparison);
   return measured;
 }
 
 }  // namespace
 
-void simulate(const SimulateOptions& options, std::ostream& out) {
+int simulate(const SimulateOptions& options, std::ostream& out) {
   // Before any work: what cannot be written shall not be told of after minutes.
   require_within_reach(options.max_step, options.constraint.radius);
   refuse_shared_files(std::array{NamedPath{"MESH", options.mesh}},
@@ -255,6 +264,8 @@ void simulate(const SimulateOptions& options, std::ostream& out) {
   print_report(report.stream(), simulation, benchmark, comparison);
   report.commit();
   out << "report: " << options.report.string() << '\n';
+  const bool complete = benchmark.rows.size() >= benchmark.planned && comparison.complete;
+  return complete ? EXIT_SUCCESS : exit_interrupted;
 }
 
 }  // namespace keepout::app

@@ -31,7 +31,8 @@ struct SimulateOptions {
 
 /// Pushes the tool over and into the anatomy in closed loop, without a fixture and with each rule;
 /// prints a table to `out` and writes a report. A rule that is named twice runs once. Throws Error,
-/// also when the report would overwrite the mesh; then there is no report.
-void simulate(const SimulateOptions& options, std::ostream& out);
+/// also when the report would overwrite the mesh; then there is no report. Gives the exit status:
+/// exit_interrupted where a signal stopped the benchmark, of which the report has what was finished.
+int simulate(const SimulateOptions& options, std::ostream& out);
 
 }  // namespace keepout::app

@@ -104,7 +104,7 @@ Comparison comparison_for(const BenchOptions& options, const Subject& subject,
   out << "\ncomparing answers on " << title_of(subject) << '\n';
   try {
     const Comparison comparison =
-        compare_parts(label_of(subject), make_mesh(subject), {.seed = options.seed});
+        compare_parts(label_of(subject), make_mesh(subject), {.seed = options.seed}, &stop);
     print(out, comparison);
     return comparison;
   } catch (const Error& error) {

@@ -29,8 +29,9 @@ struct Trial::Built {
   std::string name;
   std::shared_ptr<const SpatialIndex> index = nullptr;
   double seconds = 0.0;
-  double cores = 0.0;        // kept busy meanwhile
-  std::string refusal = {};  // why there is none
+  double cores = 0.0;                            // kept busy meanwhile
+  std::map<std::string, bool> searched_by = {};  // each rule that was asked whether it searches it
+  std::string refusal = {};                      // why there is none
 };
 
 Trial::Trial(const Subject& subject, const TrialSettings& settings, MemoryTaken& memory,
@@ -100,6 +101,12 @@ const Trial::Built& Trial::build(const std::string& index) {
   return *built_;
 }
 
+bool Trial::is_searched_by(const std::string& activation) {
+  const auto [known, is_new] = built_->searched_by.try_emplace(activation);
+  if (is_new) known->second = rule(activation).searching(*built_->index) != nullptr;
+  return known->second;
+}
+
 BenchmarkRow Trial::measure(const Combination& combination) {
   BenchmarkRow row{.mesh = label_of(subject_),
                    .triangles = mesh_->triangle_count(),
@@ -136,9 +143,8 @@ BenchmarkRow Trial::measure(const Combination& combination) {
                                                         .margin = options_of(setting).margin,
                                                         .inside = Inside::taken_as_is,
                                                         .capacity = room});
-  const bool searches = rule(combination.activation).searching(*built.index) != nullptr;
-  app::measure({*built.index, constraint, searches, accuracy}, motions_, expected,
-               settings_.seconds, stop_, row);
+  app::measure({*built.index, constraint, is_searched_by(combination.activation), accuracy},
+               motions_, expected, settings_.seconds, stop_, row);
   return row;
 }
 

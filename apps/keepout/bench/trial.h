@@ -55,6 +55,9 @@ class Trial {
   struct Built;
 
   const Built& build(const std::string& index);
+  /// Whether the rule searches the index at hand by itself.
+  bool is_searched_by(const std::string& activation);
+
   Activation& rule(const std::string& activation);
   Reference& reference(const RuleSetting& setting);
 
