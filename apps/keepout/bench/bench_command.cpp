@@ -21,7 +21,7 @@ BenchCommand::BenchCommand(CLI::App& app) {
   CLI::App& command = *app.add_subcommand(
       "bench",
       "Time every stage of the step, for indices, rules and solvers side by side; each is held to "
-      "brute force and to our own solver before it is timed");
+      "brute force and to our own solver as it is timed");
   command.add_flag("--list", list_, "Say what there is to measure, and stop");
   const auto add_list = [&](const char* name, std::vector<std::string>& list, const auto& table,
                             const char* text) {
