@@ -179,6 +179,9 @@ function(keepout_install target component)
   set_property(GLOBAL APPEND PROPERTY KEEPOUT_linked_COMPONENTS ${component})
   set_property(GLOBAL PROPERTY KEEPOUT_linked_${component}
     "set(_keepout_${component}_needs ${needs})\nset(_keepout_${component}_packages \"${arg_PUBLIC_PACKAGES};${private_packages}\")\n")
+  if(NOT type STREQUAL "INTERFACE_LIBRARY")
+    set_property(GLOBAL APPEND PROPERTY KEEPOUT_INSTALLED_TARGETS ${target})
+  endif()
   install(TARGETS ${target} EXPORT keepout-${component}
     RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT keepout_runtime
     LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT keepout_runtime

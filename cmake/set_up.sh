@@ -2,8 +2,32 @@
 # SPDX-FileCopyrightText: 2026 the keepout authors
 # SPDX-License-Identifier: BSD-3-Clause
 
-say() { printf '\033[1m==> %s\033[0m\n' "$*" >&2; }
+say() {
+  if [ -t 2 ] && [ -z "${NO_COLOR:-}" ]; then
+    printf '\033[1m==> %s\033[0m\n' "$*" >&2
+  else
+    printf '==> %s\n' "$*" >&2
+  fi
+}
 fail() { printf 'keepout: %s\n' "$*" >&2; exit 1; }
+
+# What another user has built, fetched or written here cannot be gone on with.
+require_own_checkout() {
+  local path blocked
+  blocked=$(
+    find "$root" -maxdepth 0 ! -writable
+    for path in "$root/build" "$root/out" "${KEEPOUT_CACHE:-$root/.cache}"; do
+      [ ! -e "$path" ] || find "$path" -maxdepth 2 ! -writable 2>/dev/null || true
+    done
+  )
+  blocked=${blocked%%$'\n'*}
+  [ -z "$blocked" ] || fail "$(id -un) may not write to $blocked, which belongs to $(stat -c %U "$blocked").
+If nobody else works here, make all of it yours:
+  sudo chown -R $(id -un) ${root@Q}
+Otherwise work in a copy of the sources of your own:
+  mkdir ~/keepout && tar -C ${root@Q} --exclude=./build --exclude=./out --exclude=./.cache -c . |
+    tar -C ~/keepout -x && ~/keepout/run"
+}
 
 # Installs the Debian packages of cmake/debian_packages.txt that are missing. Offline when none is.
 install_packages() {

@@ -24,6 +24,10 @@ std::unique_ptr<SpatialIndex> make_bullet_index(std::shared_ptr<const Mesh> mesh
 /// The same, the coordinates of the boxes quantised to 16 bits, outwards.
 std::unique_ptr<SpatialIndex> make_bullet_quantized_index(std::shared_ptr<const Mesh> mesh);
 
+/// The quantised tree, walked by Bullet itself, which calls back for each triangle whose box
+/// touches the ball's.
+std::unique_ptr<SpatialIndex> make_bullet_callback_index(std::shared_ptr<const Mesh> mesh);
+
 std::string bullet_library();
 
 }  // namespace keepout

@@ -10,7 +10,7 @@
 #include <boost/iterator/counting_iterator.hpp>
 #include <utility>
 
-#include "../src/ball_against_box.h"
+#include "keepout/geometry/ball_against_box.h"
 
 namespace keepout {
 namespace {

@@ -9,9 +9,9 @@
 #include <type_traits>
 #include <utility>
 
-#include "../src/ball_against_box.h"
 #include "../src/centered_frame.h"
 #include "keepout/error.h"
+#include "keepout/geometry/ball_against_box.h"
 
 namespace keepout {
 namespace {

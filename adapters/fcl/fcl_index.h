@@ -20,6 +20,10 @@ std::unique_ptr<SpatialIndex> make_fcl_obbrss_index(std::shared_ptr<const Mesh> 
 /// FCL's tree of axis-aligned boxes.
 std::unique_ptr<SpatialIndex> make_fcl_aabb_index(std::shared_ptr<const Mesh> mesh);
 
+/// FCL's own collide() of a sphere with its tree of oriented boxes (OBB), which lists what the
+/// sphere touches. Takes memory while it answers: for comparison, not for real time.
+std::unique_ptr<SpatialIndex> make_fcl_collide_index(std::shared_ptr<const Mesh> mesh);
+
 std::string fcl_library();
 
 }  // namespace keepout

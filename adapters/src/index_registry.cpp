@@ -8,6 +8,7 @@
 
 #include "keepout/index/brute_force.h"
 #include "keepout/index/pd_tree.h"
+#include "keepout/index/pd_tree_1997.h"
 #include "keepout/index/wide_bvh.h"
 #include "keepout/registry.h"
 
@@ -36,17 +37,28 @@ constexpr IndexBackend backends[] = {
      as_many_as_a_mesh, nullptr},
     {"wide_bvh", "axis-aligned boxes and triangles sixteen at a time", make<WideBvh>,
      WideBvh::most_triangles, nullptr},
-    {"pd_tree", "principal direction tree of oriented boxes (Williams et al. 1997)", make<PdTree>,
-     PdTree::most_triangles, nullptr},
+    {"pd_tree", "principal direction tree, split at the median, leaves sixteen at a time",
+     make<PdTree>, PdTree::most_triangles, nullptr},
+    {"pd_tree_1997", "principal direction tree as published: split at the mean, plain leaves",
+     make<PdTree1997>, PdTree1997::most_triangles, nullptr, Allocation::never,
+     "The tree of Williams et al. 1997 and Li et al. 2020: pd_tree without our split and leaves."},
 #if KEEPOUT_HAS_FCL
     {"fcl_obbrss", "oriented boxes of FCL", make_fcl_obbrss_index, fcl_most_triangles, fcl_library},
     {"fcl_aabb", "axis-aligned boxes of FCL", make_fcl_aabb_index, fcl_most_triangles, fcl_library},
+    {"fcl_collide", "oriented boxes of FCL, by its own collide(): takes memory, not for real time",
+     make_fcl_collide_index, fcl_most_triangles, fcl_library, Allocation::inside,
+     "FCL's collide() also tests each triangle, and makes a list of contacts on the heap at each "
+     "query; the contact points are not asked for."},
 #endif
 #if KEEPOUT_HAS_BULLET
     {"bullet_quantized", "axis-aligned boxes of Bullet, in 16 bits", make_bullet_quantized_index,
      bullet_quantized_most_triangles, bullet_library},
     {"bullet", "axis-aligned boxes of Bullet", make_bullet_index, bullet_most_triangles,
      bullet_library},
+    {"bullet_callback", "axis-aligned boxes of Bullet, in 16 bits, by its own walk and callback",
+     make_bullet_callback_index, bullet_quantized_most_triangles, bullet_library, Allocation::never,
+     "Bullet's walk takes a box, not a ball, and so finds more candidates; it calls back for each, "
+     "without fetching the triangle's corners as processAllTriangles() would."},
 #endif
 #if KEEPOUT_HAS_EMBREE
     {"embree", "axis-aligned boxes of Embree, in float", make_embree_index, embree_most_triangles,
@@ -59,11 +71,14 @@ constexpr AbsentPart absent[] = {
 #if !KEEPOUT_HAS_FCL
     {"fcl_obbrss", "FCL (install libfcl-dev, configure with KEEPOUT_WITH_FCL=ON)"},
     {"fcl_aabb", "FCL (install libfcl-dev, configure with KEEPOUT_WITH_FCL=ON)"},
+    {"fcl_collide", "FCL (install libfcl-dev, configure with KEEPOUT_WITH_FCL=ON)"},
 #endif
 #if !KEEPOUT_HAS_BULLET
     {"bullet_quantized",
      "Bullet (install libbullet-dev and pkg-config, configure with KEEPOUT_WITH_BULLET=ON)"},
     {"bullet",
+     "Bullet (install libbullet-dev and pkg-config, configure with KEEPOUT_WITH_BULLET=ON)"},
+    {"bullet_callback",
      "Bullet (install libbullet-dev and pkg-config, configure with KEEPOUT_WITH_BULLET=ON)"},
 #endif
 #if !KEEPOUT_HAS_EMBREE

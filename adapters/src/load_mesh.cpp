@@ -15,6 +15,7 @@
 #include "keepout/error.h"
 #include "keepout/mesh/binary_ply.h"
 #include "keepout/mesh/binary_stl.h"
+#include "keepout/mesh/quick_check.h"
 #include "keepout/mesh/weld.h"
 
 #if KEEPOUT_WITH_ASSIMP
@@ -254,6 +255,11 @@ LoadedMesh load_mesh(const std::filesystem::path& path, const LoadOptions& optio
     loaded.mesh = std::make_shared<const Mesh>(std::move(surface));
   } catch (const Error& error) {
     fail(path, error.what());
+  }
+  if (options.check == MeshCheck::quick) {
+    for (std::string& warning : quick_check(*loaded.mesh)) {
+      loaded.warnings.push_back(std::move(warning));
+    }
   }
   return loaded;
 }

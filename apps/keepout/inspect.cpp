@@ -11,12 +11,12 @@
 #include <string_view>
 #include <vector>
 
-#include "keepout/adapters/load_mesh.h"
 #include "keepout/index/pd_tree.h"
 #include "keepout/index/self_intersection.h"
 #include "keepout/mesh/doctor.h"
+#include "keepout/mesh/unit_guess.h"
+#include "named_mesh.h"
 #include "number_text.h"
-#include "unit_guess.h"
 
 namespace keepout::app {
 namespace {
@@ -39,7 +39,9 @@ struct Inspection {
 
 Inspection examine_file(const InspectOptions& options) {
   Inspection inspection;
-  inspection.loaded = load_mesh(options.mesh, options.load);
+  LoadOptions load = options.load;
+  load.check = MeshCheck::none;  // all that it would say, and more, is among the findings
+  inspection.loaded = read_named_mesh(options.mesh, load);
   inspection.mesh = examine(*inspection.loaded.mesh);
   if (options.self_intersections) {
     const PdTree tree(inspection.loaded.mesh);
@@ -97,6 +99,18 @@ std::vector<Finding> findings_of(const Inspection& inspection) {
 std::string triple(const Vec3& v, std::string_view between) {
   std::string text = trimmed(v.x());
   for (const double value : {v.y(), v.z()}) text.append(between).append(trimmed(value));
+  return text;
+}
+
+/// The unit that is assumed, and the others that are plausible.
+std::string unit_text(double extent) {
+  std::string text = "mm, which is assumed";
+  std::string_view joint = "; as plausible: ";
+  for (const UnitGuess& guess : other_units(extent)) {
+    text.append(joint).append(guess.unit).append(" (").append(trimmed(extent * guess.millimetres));
+    text += " mm)";
+    joint = ", ";
+  }
   return text;
 }
 

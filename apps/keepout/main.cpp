@@ -6,9 +6,9 @@
 #include <exception>
 #include <filesystem>
 #include <iostream>
-#include <map>
 #include <new>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "bench/bench_command.h"
@@ -21,22 +21,31 @@
 #include "keepout/simd_target.h"
 #include "keepout/solvers/registry.h"
 #include "keepout/version.h"
+#include "name_checks.h"
+#include "named_mesh.h"
 #include "number_checks.h"
 #include "part_lists.h"
 #include "plan/plan_command.h"
 #include "replay.h"
 #include "serve/serve_command.h"
 #include "simulate.h"
+#include "usage_error.h"
 #include "verify/verify.h"
 
 namespace keepout::app {
 namespace {
 
-const std::map<std::string, Query> queries{{"motion", Query::motion}, {"sphere", Query::sphere}};
+// What main returns, and `keepout --help` says. 0 and 1 are EXIT_SUCCESS and EXIT_FAILURE.
+constexpr int exit_usage = 2;
+
+constexpr const char* exit_statuses =
+    "Exit status: 0 if all went well; 1 if something failed, or what was to be checked does not "
+    "hold;\n"
+    "2 if the command line is wrong; 130 if it was interrupted, and what was finished is kept.\n";
 
 /// The argument that every command shares.
 void add_mesh(CLI::App& command, std::filesystem::path& mesh) {
-  command.add_option("MESH", mesh, "Mesh file: STL, PLY, OBJ or OFF, in mm")->required();
+  command.add_option("MESH", mesh, std::string(mesh_help))->type_name("")->required();
 }
 
 /// An option that takes the name of an anatomical space, in any case.
@@ -47,7 +56,8 @@ CLI::Option* add_space(CLI::App& command, const char* name, AnatomicalSpace& spa
         word.front() == 'r' || word.front() == 'R' ? AnatomicalSpace::ras : AnatomicalSpace::lps;
   };
   return command.add_option_function<std::string>(name, take, description)
-      ->check(CLI::IsMember({"ras", "lps"}, CLI::ignore_case));
+      ->type_name("")
+      ->check(one_of({"ras", "lps", "RAS", "LPS"}));
 }
 
 /// The options of every command that places something in the frame of the mesh.
@@ -62,14 +72,14 @@ void add_spaces(CLI::App& command, LoadOptions& load) {
 /// The options that every command shares which builds a motion constraint.
 void add_constraint_options(CLI::App& command, MotionConstraintSettings& settings) {
   command.add_option("--index", settings.index, "Spatial index that finds triangles")
-      ->check(CLI::IsMember(names(index_backends())))
+      ->check(one_of(names(index_backends())))
       ->capture_default_str();
   command
       .add_option("--index-cache", settings.index_cache,
                   "Keep what --index wide_bvh builds in this folder, for the next run")
       ->type_name("FOLDER");
   command.add_option("--solver", settings.solver, "Solver of the step problem")
-      ->check(CLI::IsMember(names(solver_backends())))
+      ->check(one_of(names(solver_backends())))
       ->capture_default_str();
   command
       .add_option("--radius", settings.radius,
@@ -106,7 +116,7 @@ void add_constraint_options(CLI::App& command, MotionConstraintSettings& setting
       .add_option("--query", settings.query,
                   "How far around the tip the certified rule looks: as far as the motion asked for "
                   "can lead, or always the motion sphere")
-      ->transform(CLI::CheckedTransformer(queries))
+      ->transform(one_of<Query>({{"motion", Query::motion}, {"sphere", Query::sphere}}))
       ->default_str("motion");
 }
 
@@ -140,7 +150,7 @@ void add_replay(CLI::App& app, ReplayOptions& options) {
                   "Where to write all planes that were posed, whether or not they limited the step")
       ->type_name("PLANES.csv");
   command.add_option("--activation", options.constraint.activation, "Rule that chooses the planes")
-      ->check(CLI::IsMember(names(activation_rules())))
+      ->check(one_of(names(activation_rules())))
       ->capture_default_str();
   add_constraint_options(command, options.constraint);
   CLI::Option* closed = command.add_flag_callback(
@@ -155,7 +165,9 @@ void add_replay(CLI::App& app, ReplayOptions& options) {
       ->capture_default_str();
   command.footer(
       "STEPS.csv: step, status, tip, desired increment, solved increment (u), triangles in reach,\n"
-      "planes, and what each stage took. PLANES.csv: allowed are all u with normal . u >= "
+      "planes, what each stage took, and how far the tip was from the surface before the step; "
+      "empty "
+      "where\nthe step is invalid_input. PLANES.csv: allowed are all u with normal . u >= "
       "offset.\n\n" +
       listing("Rules", activation_rules()) + listing("Indices", index_backends()) +
       listing("Solvers", solver_backends()));
@@ -172,13 +184,16 @@ void add_simulate(CLI::App& app, SimulateOptions& options) {
       ->type_name("REPORT.html")
       ->capture_default_str();
   command.add_option("--activation", options.rules, "Rules to run beside the unguarded tool")
-      ->check(CLI::IsMember(names(activation_rules())))
+      ->check(one_of(names(activation_rules())))
       ->delimiter(',')
       ->capture_default_str();
   command.add_flag_callback(
       "--bench", [&options] { options.timings = Timings::of_every_part; },
       "Then time indices, rules and solvers side by side on this mesh, into the same report: a "
       "quick 'keepout bench'");
+  command.add_flag_callback(
+      "--verbose", [&options] { options.tables = Tables::printed; },
+      "Print the tables of the report as well");
   add_constraint_options(command, options.constraint);
   command.add_option("--max-step", options.max_step, "Longest increment to desire in a cycle")
       ->type_name("MM")
@@ -205,7 +220,7 @@ void add_verify(CLI::App& app, VerifyOptions& options) {
       "judged by an independent, exact oracle");
   std::vector<CLI::Option*> of_a_run;
   of_a_run.push_back(command.add_option(
-      "MESH", options.meshes, "Mesh files, in mm; without one, all generated and real fixtures"));
+      "MESH", options.meshes, "Mesh files in mm, or fixtures; without one, all fixtures"));
   of_a_run.push_back(command.add_option("--steps", options.steps, "Steps of the whole campaign")
                          ->type_name("NUMBER")
                          ->transform(large_count())
@@ -217,9 +232,10 @@ void add_verify(CLI::App& app, VerifyOptions& options) {
           ->capture_default_str());
   of_a_run.push_back(command.add_option("--shard", options.shard, "Do part I of N of the campaign")
                          ->type_name("I/N")
+                         ->check(shard_text())
                          ->capture_default_str());
   of_a_run.push_back(command.add_option("--index", options.index, "Index that finds triangles")
-                         ->check(CLI::IsMember(names(index_backends())))
+                         ->check(one_of(names(index_backends())))
                          ->capture_default_str());
   command.add_option("--json", options.json, "Where to write the results, every breach included")
       ->type_name("FILE");
@@ -228,6 +244,7 @@ void add_verify(CLI::App& app, VerifyOptions& options) {
           ->type_name("FILES");
   for (CLI::Option* option : of_a_run) merge->excludes(option);
   command.footer(
+      "Ctrl-C ends it early: what is finished is printed and written.\n"
       "The exit status is 0 only if no step broke what docs/certified-step.md promises.");
 }
 
@@ -267,7 +284,7 @@ void add_serve(CLI::App& app, ServeOptions& options) {
       ->check(length(Zero::allowed))
       ->capture_default_str();
   command.add_option("--activation", service.constraint.activation, "Rule that chooses the planes")
-      ->check(CLI::IsMember(names(activation_rules())))
+      ->check(one_of(names(activation_rules())))
       ->capture_default_str();
   add_constraint_options(command, service.constraint);
   command.footer(std::string(protocol_help));
@@ -279,16 +296,24 @@ void flush_stdout() {
   if (!std::cout) throw Error("stdout: could not be written to the end; is the disk full?");
 }
 
+/// How the user calls this command: ./run puts its own name in the place of ours.
+std::string called_as(const char* path) {
+  return std::filesystem::path(path).filename() == "run" ? "./run" : "keepout";
+}
+
 int run(int argc, char** argv) {
   CLI::App app("keepout keeps a tool out of a triangle mesh of anatomy. All lengths are in mm.",
-               "keepout");
+               called_as(argv[0]));
+  app.get_formatter()->label("SUBCOMMAND", "COMMAND");
+  app.footer(mesh_names_help() + '\n' + exit_statuses);
   app.set_version_flag("--version", KEEPOUT_VERSION);
   app.set_help_all_flag("--help-all", "Help on every command");
   app.require_subcommand(1);
+  const std::vector<std::string_view> targets = simd_targets();
   app.add_option_function<std::string>("--simd", use_simd_target,
                                        "Instruction set to run on instead of the fastest that this "
                                        "processor has; the steps are the same")
-      ->check(CLI::IsMember(simd_targets()))
+      ->check(one_of({targets.begin(), targets.end()}))
       ->default_str(std::string(simd_target()))
       ->type_name("TARGET");
 
@@ -298,6 +323,7 @@ int run(int argc, char** argv) {
   ServeOptions serve_options;
   VerifyOptions verify_options;
   simulate_options.rules = names(activation_rules());
+  simulate_options.called_as = app.get_name();
   add_inspect(app, inspect_options);
   add_replay(app, replay_options);
   add_simulate(app, simulate_options);
@@ -306,22 +332,26 @@ int run(int argc, char** argv) {
   BenchCommand bench_command(app);
   CompareCommand compare_command(app);
   PlanCommand plan_command(app);
+  for (CLI::App* command : app.get_subcommands([](CLI::App*) { return true; })) {
+    command->group("Commands");
+  }
   try {
     app.parse(argc, argv);
+  } catch (const CLI::Success& call_for_help) {
+    return app.exit(call_for_help);
   } catch (const CLI::ParseError& error) {
-    // CLI11 would only say that a command is missing.
-    if (app.get_subcommands().empty() && !app.remaining().empty()) {
-      throw Error("there is no command '" + app.remaining().front() + "'; see 'keepout --help'");
-    }
-    return app.exit(error);
+    std::cerr << "keepout: " << usage_error(app, error) << '\n';
+    return exit_usage;
   }
 
   if (app.got_subcommand("inspect")) inspect(inspect_options, std::cout);
   if (app.got_subcommand("replay")) replay(replay_options, std::cout);
   if (app.got_subcommand("serve")) return serve(serve_options, std::cerr);
-  if (app.got_subcommand("simulate")) simulate(simulate_options, std::cout);
-  if (app.got_subcommand("bench")) bench_command.run({argv + 1, argv + argc}, std::cout);
-  if (app.got_subcommand("compare")) return compare_command.run(std::cout);
+  if (app.got_subcommand("simulate")) return simulate(simulate_options, std::cout);
+  if (app.got_subcommand("bench")) {
+    return bench_command.run({argv + 1, argv + argc}, std::cout, std::cerr);
+  }
+  if (app.got_subcommand("compare")) return compare_command.run({argv + 1, argv + argc}, std::cout);
   if (app.got_subcommand("plan")) return plan_command.run(std::cout);
   if (app.got_subcommand("verify")) return verify(verify_options, std::cout);
   return EXIT_SUCCESS;

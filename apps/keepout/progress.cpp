@@ -5,9 +5,17 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <set>
 #include <utility>
 
 namespace keepout::app {
+
+void warn_on_stderr(const std::string& text) {
+  static std::set<std::string> said;
+  if (!said.insert(text).second) return;
+  const char* const clear = ::isatty(STDERR_FILENO) == 1 ? "\r\033[K" : "";
+  std::fprintf(stderr, "%skeepout: %s\n", clear, text.c_str());
+}
 
 Progress::Progress(std::string what, std::size_t total)
     : what_(std::move(what)), total_(total), terminal_(::isatty(STDERR_FILENO) == 1) {
@@ -16,7 +24,8 @@ Progress::Progress(std::string what, std::size_t total)
 
 Progress::~Progress() {
   const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
-  std::fprintf(stderr, "%s%s: %.1f s\n", terminal_ ? "\r\033[K" : "", what_.c_str(), seconds);
+  interrupt();
+  if (seconds >= 0.5) std::fprintf(stderr, "%s: %.1f s\n", what_.c_str(), seconds);
 }
 
 void Progress::advance(std::size_t by) {

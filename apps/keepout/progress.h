@@ -8,8 +8,12 @@
 
 namespace keepout::app {
 
+/// A line for people on stderr, "keepout: TEXT", for which a line that shows progress makes room.
+/// The same text is said once only. For one thread.
+void warn_on_stderr(const std::string& text);
+
 /// Tells on stderr how far a long piece of work has come: on a terminal a line that is rewritten,
-/// elsewhere only the line at the end.
+/// elsewhere only the line at the end, of work that took half a second or more.
 ///
 /// Who prints something else meanwhile calls interrupt() first.
 class Progress {

@@ -10,7 +10,8 @@
 #include <vector>
 
 #include "clip.h"
-#include "keepout/adapters/load_mesh.h"
+#include "named_mesh.h"
+#include "number_text.h"
 #include "output_file.h"
 #include "pose_file.h"
 #include "progress.h"
@@ -33,10 +34,12 @@ void write_step(std::ostream& out, std::size_t number, const Motion& motion, con
   const Vec3& u = step.motion;
   print(out,
         "%zu,%s,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%zu,%zu,%" PRId64 ",%" PRId64
-        ",%" PRId64 ",%" PRId64 "\n",
+        ",%" PRId64 ",%" PRId64 ",",
         number, name(step.status).data(), p.x(), p.y(), p.z(), d.x(), d.y(), d.z(), u.x(), u.y(),
         u.z(), step.triangles, step.planes.size(), times.query, times.activation, times.solve,
         times.total());
+  if (step.distance) print(out, "%.17g", *step.distance);
+  out << '\n';
 }
 
 void write_planes(std::ostream& out, std::size_t number, const Step& step) {
@@ -47,7 +50,8 @@ void write_planes(std::ostream& out, std::size_t number, const Step& step) {
 }
 
 void require_files_of_their_own(const ReplayOptions& options) {
-  const std::array inputs{NamedPath{"MESH", options.mesh}, NamedPath{"--poses", options.poses}};
+  const std::array inputs{NamedPath{"MESH", file_of_mesh(options.mesh)},
+                          NamedPath{"--poses", options.poses}};
   std::vector<NamedPath> outputs{{"--out", options.steps}};
   if (options.planes) outputs.push_back({"--planes", *options.planes});
   refuse_shared_files(inputs, outputs);
@@ -61,15 +65,18 @@ void replay(const ReplayOptions& options, std::ostream& out) {
   require_files_of_their_own(options);
   OutputFile steps(options.steps);
   steps.stream() << "step,status,px,py,pz,dx,dy,dz,ux,uy,uz,triangles,planes,"
-                    "t_query_ns,t_activate_ns,t_solve_ns,t_total_ns\n";
+                    "t_query_ns,t_activate_ns,t_solve_ns,t_total_ns,distance\n";
   std::optional<OutputFile> planes;
   if (options.planes) {
     planes.emplace(*options.planes);
     planes->stream() << "step,triangle,nx,ny,nz,offset\n";
   }
   const std::vector<PoseLine> poses = read_poses(options.poses);
-  const LoadedMesh loaded = load_mesh(options.mesh, options.load);
-  MotionConstraint constraint = make_motion_constraint(loaded.mesh, options.constraint);
+  const LoadedMesh loaded = load_named_mesh(options.mesh, options.load);
+  MotionConstraintSettings settings = options.constraint;
+  settings.warn = warn_on_stderr;
+  settings.distances = Distances::always;
+  MotionConstraint constraint = make_motion_constraint(loaded.mesh, settings);
 
   std::map<std::string_view, std::size_t> counts;
   {
@@ -93,8 +100,7 @@ void replay(const ReplayOptions& options, std::ostream& out) {
   steps.commit();
   if (planes) planes->commit();
 
-  for (const std::string& warning : loaded.warnings) out << "note: " << warning << '\n';
-  out << poses.size() << " steps -> " << options.steps.string() << '\n';
+  out << counted(poses.size(), "step") << " -> " << options.steps.string() << '\n';
   for (const auto& [status, count] : counts) out << "  " << status << ": " << count << '\n';
 }
 

@@ -6,25 +6,30 @@
 #include <array>
 #include <charconv>
 #include <cstdio>
+#include <cstdlib>
+#include <iostream>
 #include <ostream>
 #include <utility>
 
 #include "bench/bench.h"
-#include "bench/machine_record.h"
+#include "bench/benchmark_table.h"
+#include "bench/used_cores.h"
 #include "clip.h"
 #include "compare/compare.h"
 #include "compare/comparison_files.h"
 #include "keepout/activation/registry.h"
-#include "keepout/adapters/load_mesh.h"
 #include "keepout/error.h"
 #include "keepout/version.h"
 #include "machine.h"
+#include "named_mesh.h"
+#include "number_text.h"
 #include "output_file.h"
 #include "path_audit.h"
 #include "progress.h"
 #include "report/html_report.h"
 #include "shell_word.h"
 #include "simulation_record.h"
+#include "simulation_summary.h"
 
 namespace keepout::app {
 namespace {
@@ -144,34 +149,6 @@ std::string description_of(std::string_view rule) {
   return {};
 }
 
-std::string fixed(double value, int decimals) {
-  std::array<char, 64> text;
-  std::snprintf(text.data(), text.size(), "%.*f", decimals, value);
-  return text.data();
-}
-
-void print_table(const Simulation& simulation, std::ostream& out) {
-  std::array<char, 256> line;
-  std::snprintf(line.data(), line.size(), "%-10s %8s %9s %9s %9s %12s %12s %8s %10s %9s\n", "rule",
-                "cycles", "kHz", "p50 us", "p99 us", "closest mm", "deepest mm", "inside",
-                "crossings", "stopped");
-  out << line.data();
-  const bool closed = simulation.surface == SurfaceKind::closed;  // an open one has no inside
-  for (const Run& run : simulation.runs) {
-    const RunSummary s = summarize(run);
-    // Without a fixture there is no step to be timed.
-    const auto time = [&](double value, int decimals) {
-      return s.max_us > 0.0 ? fixed(value, decimals) : "-";
-    };
-    std::snprintf(line.data(), line.size(), "%-10s %8zu %9s %9s %9s %12.4f %12s %8s %10zu %9zu\n",
-                  run.rule.c_str(), s.cycles, time(s.rate_khz, 1).c_str(),
-                  time(s.p50_us, 2).c_str(), time(s.p99_us, 2).c_str(), s.closest_approach,
-                  closed ? fixed(s.deepest_penetration, 4).c_str() : "-",
-                  closed ? std::to_string(s.cycles_inside).c_str() : "-", s.crossings, s.stopped);
-    out << line.data();
-  }
-}
-
 /// Each once, in the order of their first mention.
 std::vector<std::string> without_repeats(const std::vector<std::string>& rules) {
   std::vector<std::string> once;
@@ -201,29 +178,53 @@ Measured timings_of(const SimulateOptions& options, const std::shared_ptr<const 
   Measured measured;
   if (options.timings == Timings::of_the_run) return measured;
   const Subject subject{.mesh = options.mesh.string()};
-  measured.benchmark = {.date = date_now(),
-                        .command = command_of(options, options.rules),
-                        .seed = 1,
-                        .machine = this_machine()};
+  const std::vector<Combination> combinations = quick_combinations();
+  measured.benchmark = new_benchmark(command_of(options, options.rules), 1, combinations, 1);
+  const StopSignal stop;
+  const UsedCores used;
+  print_machine(out, measured.benchmark.machine);
   MemoryTaken memory;
-  run_trial(subject, quick_combinations(), {.queries = 1500, .seconds = 0.3}, memory,
+  run_trial(subject, combinations, {.queries = 1500, .seconds = 0.3}, memory, stop,
             measured.benchmark, out);
+  measured.benchmark.others_cores = used.others();
+  if (stop.has_come()) {
+    std::cerr << "keepout: stopped; " << grouped(measured.benchmark.rows.size()) << " of "
+              << counted(measured.benchmark.planned, "row")
+              << " of the benchmark were finished, and are kept in the report\n";
+    return measured;
+  }
   measured.comparison = compare_parts(options.mesh.stem().string(), mesh,
-                                      {.poses = 12, .problems = 400, .pairs = 100});
+                                      {.poses = 12, .problems = 400, .pairs = 100}, &stop);
   print(out, measured.comparison);
   return measured;
 }
 
+/// The last lines on the terminal.
+void print_next(const SimulateOptions& options, std::ostream& out) {
+  const std::string mesh = shell_word(options.mesh.string());
+  out << "\nReport, with pictures, tables and settings: " << options.report.string() << "\n\n";
+  const auto suggest = [&](const std::string& arguments, const char* what) {
+    constexpr std::size_t column = 40;
+    std::string command = options.called_as + ' ' + arguments;
+    command.resize(std::max(command.size(), column), ' ');
+    out << "  " << command << "  # " << what << '\n';
+  };
+  out << "Try next:\n";
+  suggest("inspect " + mesh, "what the mesh is made of, and what is wrong with it");
+  suggest("verify " + mesh + " --steps 1e5", "attack the certified rule; an exact oracle judges");
+  suggest("simulate YOUR_MESH.stl", "the same on a mesh of yours, in mm");
+  suggest("--help", "all commands");
+}
+
 }  // namespace
 
-void simulate(const SimulateOptions& options, std::ostream& out) {
+int simulate(const SimulateOptions& options, std::ostream& out) {
   // Before any work: what cannot be written shall not be told of after minutes.
   require_within_reach(options.max_step, options.constraint.radius);
-  refuse_shared_files(std::array{NamedPath{"MESH", options.mesh}},
+  refuse_shared_files(std::array{NamedPath{"MESH", file_of_mesh(options.mesh)}},
                       std::array{NamedPath{"--out", options.report}});
   OutputFile report(options.report);
-  const LoadedMesh loaded = load_mesh(options.mesh, options.load);
-  for (const std::string& warning : loaded.warnings) out << "note: " << warning << '\n';
+  const LoadedMesh loaded = load_named_mesh(options.mesh, options.load);
   // Nor a mistyped name.
   const std::vector<std::string> rules = without_repeats(options.rules);
   std::vector<std::pair<std::string, std::unique_ptr<Tool>>> tools;
@@ -231,6 +232,7 @@ void simulate(const SimulateOptions& options, std::ostream& out) {
   for (const std::string& rule : rules) {
     MotionConstraintSettings settings = options.constraint;
     settings.activation = rule;
+    settings.warn = warn_on_stderr;
     tools.emplace_back(
         rule, std::make_unique<GuardedTool>(make_motion_constraint(loaded.mesh, settings)));
   }
@@ -247,11 +249,21 @@ void simulate(const SimulateOptions& options, std::ostream& out) {
     simulation.runs.push_back(
         run_strokes(rule, description_of(rule), *tool, hand, options.max_step, audit));
   }
-  print_table(simulation, out);
-  const auto [benchmark, comparison] = timings_of(options, loaded.mesh, out);
+  // Those of the benchmark are many, and tell who does not know it of nothing but numbers.
+  std::ostream tables(options.tables == Tables::printed ? out.rdbuf() : nullptr);
+  print_table(tables, simulation);
+  const auto [benchmark, comparison] = timings_of(options, loaded.mesh, tables);
   print_report(report.stream(), simulation, benchmark, comparison);
   report.commit();
-  out << "report: " << options.report.string() << '\n';
+  if (options.tables == Tables::printed) out << '\n';
+  print_summary(out, simulation);
+  if (options.timings == Timings::of_every_part) {
+    out << "Timed as well, in the report: " << counted(benchmark.rows.size(), "combination")
+        << " of index, rule, solver and radius.\n";
+  }
+  print_next(options, out);
+  const bool complete = benchmark.rows.size() >= benchmark.planned && comparison.complete;
+  return complete ? EXIT_SUCCESS : exit_interrupted;
 }
 
 }  // namespace keepout::app

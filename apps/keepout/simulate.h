@@ -18,6 +18,9 @@ enum class Timings {
   of_every_part  // and a quick benchmark of everything that could take its parts' place
 };
 
+/// Whether the tables of the report are printed too.
+enum class Tables { in_the_report, printed };
+
 struct SimulateOptions {
   std::filesystem::path mesh;
   LoadOptions load = {};
@@ -27,11 +30,15 @@ struct SimulateOptions {
   HandSettings hand;
   double max_step = 0.5;  // longest increment asked for in a cycle [mm]
   Timings timings = Timings::of_the_run;
+  Tables tables = Tables::in_the_report;
+  std::string called_as = "keepout";  // what the user is told to type next
 };
 
 /// Pushes the tool over and into the anatomy in closed loop, without a fixture and with each rule;
-/// prints a table to `out` and writes a report. A rule that is named twice runs once. Throws Error,
-/// also when the report would overwrite the mesh; then there is no report.
-void simulate(const SimulateOptions& options, std::ostream& out);
+/// writes a report, and prints to `out` in a dozen lines what came out and what to try next. A rule
+/// that is named twice runs once. Throws Error, also when the report would overwrite the mesh; then
+/// there is no report. Gives the exit status: exit_interrupted where a signal stopped the
+/// benchmark, of which the report has what was finished.
+int simulate(const SimulateOptions& options, std::ostream& out);
 
 }  // namespace keepout::app

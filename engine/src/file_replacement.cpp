@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "file_replacement.h"
 
+#include <cerrno>
 #include <random>
 #include <string>
 
@@ -19,9 +20,11 @@ std::filesystem::path temporary_beside(const std::filesystem::path& path) {
 }  // namespace
 
 FileReplacement::FileReplacement(const std::filesystem::path& path)
-    : path_(path),
-      temporary_(temporary_beside(path)),
-      file_(temporary_, std::ios::binary | std::ios::trunc) {}
+    : path_(path), temporary_(temporary_beside(path)) {
+  errno = 0;
+  file_.open(temporary_, std::ios::binary | std::ios::trunc);
+  note_failure();
+}
 
 FileReplacement::~FileReplacement() {
   if (committed_) return;
@@ -31,16 +34,26 @@ FileReplacement::~FileReplacement() {
 }
 
 void FileReplacement::write(const void* bytes, std::size_t size) {
+  errno = 0;
   file_.write(static_cast<const char*>(bytes), static_cast<std::streamsize>(size));
+  note_failure();
 }
 
-bool FileReplacement::commit() {
+std::error_code FileReplacement::commit() {
+  errno = 0;
   file_.close();
-  if (!file_) return false;
-  std::error_code error;
-  std::filesystem::rename(temporary_, path_, error);
-  committed_ = !error;
-  return committed_;
+  note_failure();
+  if (error_) return error_;
+  std::filesystem::rename(temporary_, path_, error_);
+  committed_ = !error_;
+  return error_;
+}
+
+void FileReplacement::note_failure() {
+  if (file_ || error_) return;
+  // Streams do not say why, but the system that they asked last did.
+  error_ = errno != 0 ? std::error_code(errno, std::generic_category())
+                      : std::make_error_code(std::errc::io_error);
 }
 
 }  // namespace keepout

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <system_error>
 
 namespace keepout {
 
@@ -19,12 +20,15 @@ class FileReplacement {
 
   void write(const void* bytes, std::size_t size);
 
-  /// Puts the file into its place; false if that, or anything written before, failed.
-  bool commit();
+  /// Puts the file into its place. No error if that, and all that was written before, succeeded.
+  std::error_code commit();
 
  private:
+  void note_failure();
+
   std::filesystem::path path_, temporary_;
   std::ofstream file_;
+  std::error_code error_ = {};  // the first
   bool committed_ = false;
 };
 

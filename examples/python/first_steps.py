@@ -11,7 +11,12 @@ import numpy as np
 
 import keepout
 
-mesh = keepout.load_mesh(sys.argv[1])
+if len(sys.argv) != 2:
+    sys.exit(f"usage: python3 {sys.argv[0]} MESH")
+try:
+    mesh = keepout.load_mesh(sys.argv[1])
+except keepout.Error as error:
+    sys.exit(str(error))
 guard = keepout.MotionConstraint(mesh, tool_radius=0.3, margin=0.2)
 
 # A hand that comes from above and wants to go straight through to below.

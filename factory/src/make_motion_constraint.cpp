@@ -17,7 +17,7 @@ namespace {
 std::unique_ptr<SpatialIndex> make_or_load_index(std::shared_ptr<const Mesh> mesh,
                                                  const MotionConstraintSettings& settings) {
   if (settings.index == "wide_bvh" && !settings.index_cache.empty()) {
-    return load_or_build(std::move(mesh), settings.index_cache);
+    return load_or_build(std::move(mesh), settings.index_cache, settings.warn);
   }
   return make_index(settings.index, std::move(mesh));
 }
@@ -42,13 +42,15 @@ MotionConstraint make_motion_constraint(std::shared_ptr<const Mesh> mesh,
           std::move(activation),
           std::move(solver),
           {.radius = settings.radius,
-           .margin = settings.tool_radius + settings.margin,
+           .tool_radius = settings.tool_radius,
+           .margin = settings.margin,
            .damping = settings.damping,
            .recovery = settings.recovery,
            .deepest = settings.deepest,
            .refinements = settings.refinements,
            .nodes = settings.nodes,
-           .query = settings.query},
+           .query = settings.query,
+           .distances = settings.distances},
           settings.capacity,
           settings.activation == "certified" ? settings.inside : Inside::taken_as_is};
 }

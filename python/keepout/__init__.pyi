@@ -181,6 +181,8 @@ class Step:
     def active(self) -> NDArray[np.uint32]: ...
     @property
     def triangles(self) -> int: ...
+    @property
+    def distance(self) -> float | None: ...
 
 class MotionConstraint:
     def __init__(
@@ -200,6 +202,7 @@ class MotionConstraint:
         refinements: int = 3,
         nodes: int = 0,
         query: Literal["motion", "sphere"] = "motion",
+        distances: Literal["where_known", "always"] = "where_known",
         inside: Literal["led_out", "taken_as_is"] = "led_out",
         max_triangles: int = 65536,
         max_planes: int = 16384,
@@ -246,5 +249,9 @@ class MotionConstraint:
     def index(self) -> Index: ...
     @property
     def radius(self) -> float: ...
+    @property
+    def tool_radius(self) -> float: ...
+    @property
+    def margin(self) -> float: ...
     @property
     def distance_kept(self) -> float: ...

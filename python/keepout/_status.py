@@ -23,6 +23,13 @@ class Status(IntEnum):
     touching = 11  # the tip is on the surface, and which side is free cannot be told
     margin_too_small = 12  # the margin is lost in the rounding of lengths this large
 
+    def __str__(self) -> str:
+        return self.name
+
+    def __format__(self, spec: str) -> str:
+        """The name; a number where a type of number is asked for, as in f"{status:d}"."""
+        return format(int(self), spec) if spec and spec[-1] in "bcdoxXn" else format(self.name, spec)
+
     @property
     def ok(self) -> bool:
         """Whether a motion comes with it, which may be carried out."""

@@ -9,10 +9,12 @@
 namespace keepout::python {
 namespace {
 
-bool fits(const py::array& array, std::initializer_list<py::ssize_t> shape) {
-  if (static_cast<std::size_t>(array.ndim()) != shape.size()) return false;
+bool fits(const py::array& array, const Expected& expected) {
+  const auto axes = static_cast<std::size_t>(array.ndim());
+  const auto* first = expected.shape.begin();
+  if (expected.one_for_all == OneForAll::allowed && axes + 1 == expected.shape.size()) ++first;
   return std::equal(
-      shape.begin(), shape.end(), array.shape(),
+      first, expected.shape.end(), array.shape(), array.shape() + axes,
       [](py::ssize_t wanted, py::ssize_t got) { return wanted == any || wanted == got; });
 }
 
@@ -78,7 +80,7 @@ py::array numbers(py::handle argument, const Expected& expected) {
   if (kinds.find(array.dtype().kind()) == std::string_view::npos && array.size() > 0) {
     refuse(expected.name, wanted, "an array of dtype " + dtype_text(array));
   }
-  if (!fits(array, expected.shape)) {
+  if (!fits(array, expected)) {
     refuse(expected.name, wanted, "shape " + shape_text(array));
   }
   return array;

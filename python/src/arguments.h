@@ -21,11 +21,15 @@ using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
 inline constexpr py::ssize_t any = -1;
 
+/// Whether an argument may leave out its first axis: then what there is stands for all.
+enum class OneForAll { refused, allowed };
+
 /// What an argument shall look like: its name, an extent for each axis, and how to write that.
 struct Expected {
   std::string_view name;
   std::initializer_list<py::ssize_t> shape;  // `any` where the caller decides
   std::string_view text;                     // "(n, 3)"
+  OneForAll one_for_all = OneForAll::refused;
 };
 
 /// "(4, 3)"
@@ -41,6 +45,25 @@ py::array numbers(py::handle argument, const Expected& expected);
 
 /// The same in double precision.
 Doubles doubles(py::handle argument, const Expected& expected);
+
+/// Points, or one that stands for as many as are asked for.
+class Points {
+ public:
+  /// A view of an array of shape (n, 3) or (3,), which must outlive this.
+  explicit Points(const Doubles& array) noexcept
+      : data_(array.data()), count_(array.ndim() == 1 ? 1 : array.shape(0)) {}
+
+  py::ssize_t count() const noexcept { return count_; }
+  /// Of a single one, that one.
+  Vec3 operator[](std::size_t i) const noexcept {
+    const double* at = data_ + (count_ == 1 ? 0 : 3 * i);
+    return {at[0], at[1], at[2]};
+  }
+
+ private:
+  const double* data_;
+  py::ssize_t count_;
+};
 
 /// Three numbers. Fast for an array, a list or a tuple of floats.
 Vec3 point(py::handle argument, std::string_view name);

@@ -132,14 +132,21 @@ void Guard::forget() {
 
 py::object Guard::steps(const py::object& tips, const py::object& desired,
                         std::optional<py::ssize_t> threads, const py::object& out) {
-  const Doubles from = doubles(tips, {"tips", {any, 3}, "(n, 3)"});
-  const std::string shape = "(" + std::to_string(from.shape(0)) + ", 3), as many as tips";
-  const Doubles wanted = doubles(desired, {"desired", {from.shape(0), 3}, shape});
-  const auto poses = static_cast<std::size_t>(from.shape(0));
-  const StepColumns to = steps_columns(out, from.shape(0), {from, wanted});
+  const Doubles from = doubles(tips, {"tips", {any, 3}, "(n, 3) or (3,)", OneForAll::allowed});
+  const Points tip(from);
+  const py::ssize_t many = tip.count() == 1 ? any : tip.count();
+  const std::string shape = many == any
+                                ? "(n, 3) or (3,)"
+                                : "(" + std::to_string(many) + ", 3), as many as tips, or (3,)";
+  const Doubles wanted = doubles(desired, {"desired", {any, 3}, shape, OneForAll::allowed});
+  const Points aim(wanted);
+  if (many != any && aim.count() != 1 && aim.count() != many) {
+    refuse("desired", "numbers of shape " + shape, "shape " + shape_text(wanted));
+  }
+  const py::ssize_t count = tip.count() == 1 ? aim.count() : tip.count();
+  const auto poses = static_cast<std::size_t>(count);
+  const StepColumns to = steps_columns(out, count, {from, wanted});
   const unsigned crew = threads_for(poses, threads);
-  const double* const tip = from.data();
-  const double* const aim = wanted.data();
   {
     const py::gil_scoped_release release;
     const std::lock_guard in_use(workers_in_use_);
@@ -149,7 +156,7 @@ py::object Guard::steps(const py::object& tips, const py::object& desired,
       for (std::size_t i = begin; i < end && !stop.asked(); ++i) {
         // Or the answer would depend on which pose this worker did before.
         constraint.forget();
-        const Step step = constraint.step({.tip = row(tip, i), .desired = row(aim, i)});
+        const Step step = constraint.step({.tip = tip[i], .desired = aim[i]});
         write(to.motions, i, step.motion);
         write(to, i, step);
       }

@@ -77,8 +77,17 @@ MeshHandle load(const std::filesystem::path& path, const std::optional<std::stri
                 const std::optional<std::string>& untagged) {
   const LoadOptions options{.space = space_from("space", space),
                             .untagged = space_from("untagged", untagged)};
-  const py::gil_scoped_release release;
-  return MeshHandle(load_mesh(path, options));
+  const auto loaded = [&] {
+    const py::gil_scoped_release release;
+    return load_mesh(path, options);
+  };
+  MeshHandle mesh(loaded());
+  // Nobody looks at warnings who does not know of any.
+  for (const std::string& warning : mesh.warnings()) {
+    const std::string text = path.filename().string() + ": " + warning;
+    if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) != 0) throw py::error_already_set();
+  }
+  return mesh;
 }
 
 py::ssize_t signed_size(std::size_t size) { return static_cast<py::ssize_t>(size); }
@@ -153,8 +162,10 @@ void bind_mesh(py::module_& module) {
             return bounds;
           },
           "(2, 3) float64 [length]: the lowest and the highest corner of the smallest box around.")
-      .def_property_readonly("warnings", &MeshHandle::warnings,
-                             "What the file had to say, if it came from one: a list of lines.")
+      .def_property_readonly(
+          "warnings", &MeshHandle::warnings,
+          "What the file had to say, if it came from one: a list of lines, which "
+          "load_mesh\nshows as Python's warnings, too.")
       .def_property_readonly(
           "space",
           [](const MeshHandle& self) -> std::optional<std::string> {
@@ -179,7 +190,9 @@ void bind_mesh(py::module_& module) {
       "load_mesh", &load, py::arg("path"), py::kw_only(), py::arg("space") = py::none(),
       py::arg("untagged") = py::none(),
       "Reads a mesh from an STL, PLY, OBJ or OFF file, and welds it exactly. Nothing is\n"
-      "rescaled and nothing repaired: see Mesh.inspect and Mesh.warnings.\n\n"
+      "rescaled and nothing repaired: see Mesh.inspect. What is odd about it is a UserWarning, "
+      "and\n"
+      "in Mesh.warnings.\n\n"
       "space: 'RAS' or 'LPS', which the coordinates shall be in; they are turned if the file\n"
       "says the other one (SPACE=...). None: as they stand.\n"
       "untagged: the space of a file that does not say. One that does is believed.");

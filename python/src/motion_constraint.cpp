@@ -3,6 +3,7 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <array>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -10,6 +11,7 @@
 #include "arguments.h"
 #include "bindings.h"
 #include "guard.h"
+#include "keepout/nearest_name.h"
 
 namespace keepout::python {
 namespace {
@@ -24,6 +26,31 @@ Inside inside_named(const std::string& name) {
   if (name == "led_out") return Inside::led_out;
   if (name == "taken_as_is") return Inside::taken_as_is;
   refuse("inside", "'led_out' or 'taken_as_is'", "'" + name + "'");
+}
+
+Distances distances_named(const std::string& name) {
+  if (name == "where_known") return Distances::where_known;
+  if (name == "always") return Distances::always;
+  refuse("distances", "'where_known' or 'always'", "'" + name + "'");
+}
+
+constexpr std::array<std::string_view, 20> arguments = {
+    "mesh",      "index",   "index_cache",   "activation", "solver",      "radius",  "tool_radius",
+    "margin",    "damping", "recovery",      "deepest",    "refinements", "nodes",   "query",
+    "distances", "inside",  "max_triangles", "max_planes", "max_joints",  "max_rows"};
+
+/// What Python says of a keyword that there is not, and which one may have been meant.
+void refuse_others(const py::kwargs& others) {
+  if (others.empty()) return;
+  const auto name = py::str(others.begin()->first).cast<std::string>();
+  std::string known;
+  for (const std::string_view argument : arguments) {
+    known += (known.empty() ? "" : ", ") + std::string(argument);
+  }
+  const auto meant = nearest_name(name, arguments);
+  throw py::type_error("MotionConstraint has no argument '" + name + "'" +
+                       (meant ? "; did you mean '" + std::string(*meant) + "'?" : ";") +
+                       " known: " + known);
 }
 
 /// The one given, or one made for this constraint.
@@ -65,13 +92,16 @@ constexpr const char* class_doc =
     "radius: of the motion sphere, the farthest that the tip may go in a step [length].\n"
     "tool_radius: of the ball around the tip that shall not touch the mesh [length].\n"
     "margin: distance to keep beyond that [length].\n"
-    "damping: weight of |u|^2 beside the task, for Jacobians without full column rank.\n"
+    "damping: weight of |u|^2 beside the task; above 0 with more than three joints, such as 1e-6 "
+    "of\n"
+    "a squared column of the Jacobian.\n"
     "recovery: how far a tip that is too close is led away in a step [length].\n"
     "deepest: no tip is led out from deeper inside [length].\n"
     "refinements: how often a certified motion is improved upon.\n"
     "nodes: of a branch and bound for a better motion still; 0: none.\n"
     "query: 'motion' looks for triangles as far as the motion can lead, 'sphere' in the whole "
     "ball.\n"
+    "distances: of which tips Step.distance is told, 'where_known' or 'always'.\n"
     "inside: a tip that starts on the forbidden side is 'led_out' or 'taken_as_is'.\n"
     "max_triangles, max_planes, max_joints, max_rows: room for a step; one that needs more ends\n"
     "with Status.over_capacity.";
@@ -82,7 +112,8 @@ constexpr const char* step_doc =
     "tip from elsewhere is placed anew. A number that is not finite gives Status.invalid_input.\n\n"
     "tip: (3,) in the frame of the mesh [length]. desired: (3,), the increment asked for "
     "[length].\n"
-    "jacobian: (3, n), of the tip in the joints that move it [length / unit of the joint].\n"
+    "jacobian: (3, n), of the tip in the joints that move it [length / unit of the joint]; with n\n"
+    "above 3 give the constraint a damping above 0, or the step is Status.ill_posed.\n"
     "rows: a pair, matrix (m, n) and bounds (m,), which the increment u of the joints (or of the\n"
     "tip, n = 3) must satisfy: matrix @ u >= bounds.";
 
@@ -92,7 +123,8 @@ constexpr const char* steps_doc =
     "depend on the order or on the number of threads. Runs without Python's lock. Placing a tip "
     "may\n"
     "take longer than its step; where sides are known, inside='taken_as_is' does without.\n\n"
-    "tips: (n, 3) [length]. desired: (n, 3) [length]. Taken without a copy if they are float64 "
+    "tips: (n, 3) [length]. desired: (n, 3) [length]. A single one of either, (3,), serves all of\n"
+    "the other. Taken without a copy if they are float64 "
     "and\n"
     "C-contiguous. threads: 1 to 1024; None for one a processor. out: a Steps to write to; None "
     "for\n"
@@ -135,8 +167,10 @@ void bind_motion_constraint(py::module_& module) {
                        std::string activation, std::string solver, double radius,
                        double tool_radius, double margin, double damping, double recovery,
                        double deepest, int refinements, int nodes, const std::string& query,
-                       const std::string& inside, py::ssize_t max_triangles, py::ssize_t max_planes,
-                       py::ssize_t max_joints, py::ssize_t max_rows) {
+                       const std::string& distances, const std::string& inside,
+                       py::ssize_t max_triangles, py::ssize_t max_planes, py::ssize_t max_joints,
+                       py::ssize_t max_rows, const py::kwargs& others) {
+             refuse_others(others);
              MotionConstraintSettings settings;
              settings.activation = std::move(activation);
              settings.solver = std::move(solver);
@@ -149,6 +183,7 @@ void bind_motion_constraint(py::module_& module) {
              settings.refinements = refinements;
              settings.nodes = nodes;
              settings.query = query_named(query);
+             settings.distances = distances_named(distances);
              settings.inside = inside_named(inside);
              settings.capacity.triangles = count(max_triangles, "max_triangles");
              settings.capacity.planes = count(max_planes, "max_planes");
@@ -164,7 +199,8 @@ void bind_motion_constraint(py::module_& module) {
            py::arg("damping") = usual.damping, py::arg("recovery") = usual.recovery,
            py::arg("deepest") = usual.deepest, py::arg("refinements") = usual.refinements,
            py::arg("nodes") = usual.nodes, py::arg("query") = "motion",
-           py::arg("inside") = "led_out", py::arg("max_triangles") = usual.capacity.triangles,
+           py::arg("distances") = "where_known", py::arg("inside") = "led_out",
+           py::arg("max_triangles") = usual.capacity.triangles,
            py::arg("max_planes") = usual.capacity.planes,
            py::arg("max_joints") = usual.capacity.variables,
            py::arg("max_rows") = usual.capacity.extra_rows)
@@ -189,6 +225,12 @@ void bind_motion_constraint(py::module_& module) {
       .def_property_readonly(
           "radius", [](const Guard& self) { return self.settings().radius; },
           "Of the motion sphere [length].")
+      .def_property_readonly(
+          "tool_radius", [](const Guard& self) { return self.settings().tool_radius; },
+          "Of the ball around the tip that shall not touch the mesh [length].")
+      .def_property_readonly(
+          "margin", [](const Guard& self) { return self.settings().margin; },
+          "Distance that is kept beyond that [length].")
       .def_property_readonly(
           "distance_kept",
           [](const Guard& self) { return self.settings().tool_radius + self.settings().margin; },

@@ -17,7 +17,8 @@ StepResult::StepResult(const Step& step)
       increment(step.increment.begin(), step.increment.end()),
       planes{{step.planes.begin(), step.planes.end()}},
       active(step.active.begin(), step.active.end()),
-      triangles(step.triangles) {}
+      triangles(step.triangles),
+      distance(step.distance) {}
 
 void bind_step(py::module_& module) {
   py::class_<StepResult>(module, "Step",
@@ -51,6 +52,11 @@ void bind_step(py::module_& module) {
           [](const py::object& self) { return view(self.cast<const StepResult&>().active, self); },
           "(a,) uint32: which planes hold the motion back, by position; from len(planes) on, rows.")
       .def_readonly("triangles", &StepResult::triangles, "How many triangles the step rests on.")
+      .def_readonly(
+          "distance", &StepResult::distance,
+          "From the tip, as the step began, to the nearest triangle [length]; None where the\n"
+          "rule does not come by it, unless the constraint was made with "
+          "distances='always'.")
       .def("__repr__", [](const StepResult& self) {
         const auto number = [](double value) {
           return py::repr(py::float_(value)).cast<std::string>();

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "keepout/step/motion.h"
@@ -21,6 +22,7 @@ struct StepResult {
   Planes planes;
   std::vector<std::uint32_t> active;
   std::size_t triangles;
+  std::optional<double> distance;
 };
 
 }  // namespace keepout::python

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "accuracy/certified_loop.h"
+#include "each_simd_target.h"
 #include "keepout/adapters/index_registry.h"
 #include "keepout/fixtures/shapes.h"
 #include "keepout/index/nearest.h"
@@ -91,6 +92,26 @@ TEST_P(CertifiedDeterminism, TheIndexDoesNotMatter) {
     MotionConstraintSettings other = settings();
     other.index = backend.name;
     ASSERT_EQ(loops(surface, other, starts, 40), expected) << backend.name;
+  }
+}
+
+/// From the mesh to the motion: the index is built, the tips are placed and the motions found on
+/// that processor alone.
+TEST_P(CertifiedDeterminism, TheProcessorDoesNotMatter) {
+  const Surface surface = GetParam().make();
+  const std::vector<Start> starts = starts_on(surface, 4);
+  MotionConstraintSettings branching = settings();
+  branching.nodes = 8;
+  MotionConstraintSettings paper = settings();
+  paper.activation = "paper";
+  for (const MotionConstraintSettings& with : {settings(), branching, paper}) {
+    std::vector<Cycle> expected;
+    on_each_simd_target([&] {
+      const std::vector<Cycle> got = loops(surface, with, starts, 40);
+      if (expected.empty()) expected = got;
+      EXPECT_GT(limited(got), 5u);
+      EXPECT_TRUE(got == expected);
+    });
   }
 }
 

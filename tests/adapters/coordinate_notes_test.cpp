@@ -214,13 +214,13 @@ TEST_F(LoadMesh, TagsInOddPlacesAreFound) {
 TEST_F(LoadMesh, AUnitOtherThanMillimetresThatTheFileStatesIsWarnedOf) {
   const std::string start = "vertex coordinates are measured in units, where 1 unit = ";
   const Surface surface = tetrahedron();
-  const LoadedMesh metres = load("a.obj", slicer_obj(surface, start + "1000.000000 mm"));
+  const LoadedMesh metres = load_unchecked("a.obj", slicer_obj(surface, start + "1000.000000 mm"));
   ASSERT_EQ(metres.warnings.size(), 1u);
   EXPECT_CONTAINS(metres.warnings[0], "1 unit is 1000 mm: not rescaled");
   EXPECT_EQ(metres.mesh->bounds().high.x(), 1.0);
-  EXPECT_TRUE(load("b.obj", slicer_obj(surface, start + "1.000000 mm")).warnings.empty());
+  EXPECT_TRUE(load_unchecked("b.obj", slicer_obj(surface, start + "1.000000 mm")).warnings.empty());
   for (const char* odd : {"-3 mm", "nan mm", "1000 parsecs", "mm", "1e999 mm", ""}) {
-    EXPECT_TRUE(load("c.obj", slicer_obj(surface, start + odd)).warnings.empty()) << odd;
+    EXPECT_TRUE(load_unchecked("c.obj", slicer_obj(surface, start + odd)).warnings.empty()) << odd;
   }
 }
 

@@ -81,13 +81,18 @@ inline std::vector<Probe> probes(const Mesh& mesh, std::size_t of_each_kind) {
 }
 
 /// Fails unless the index finds, at every place and radius, each triangle that brute force finds,
-/// and none twice.
+/// and none twice; and at every place the nearest of them, if it has a search of its own for that.
 inline void expect_brute_force_sets(const Mesh& mesh, const SpatialIndex& index,
                                     const std::vector<Probe>& probes) {
   TriangleBuffer candidates(mesh.triangle_count());
   std::vector<std::size_t> found(mesh.triangle_count(), 0);  // in which question
   std::size_t question = 0;
   for (const Probe& probe : probes) {
+    if (const TriangleId nearest = index.nearest(probe.point); nearest != no_triangle) {
+      const auto least = std::min_element(probe.distances.begin(), probe.distances.end());
+      ASSERT_EQ(nearest, least - probe.distances.begin())
+          << "nearest to " << probe.point.transpose();
+    }
     for (const double radius : probe.radii) {
       candidates.clear();
       index.collect({probe.point, radius}, candidates);

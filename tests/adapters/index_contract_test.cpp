@@ -66,6 +66,25 @@ TEST_P(IndexContract, FindsWhatBruteForceFindsOnAMeshOfEverySize) {
   expect_brute_force_sets(*mesh, *GetParam().make(mesh), probes(*mesh, 20));
 }
 
+// The normal of a needle is all rounding: a plane through it may be anywhere.
+TEST_P(IndexContract, FindsWhatBruteForceFindsOnNeedles) {
+  if (GetParam().name == "brute_force") return;  // is what the others are held to
+  Random random(4);
+  Surface surface;
+  for (const double width : {1e-3, 1e-6, 1e-9, 1e-12, 1e-15}) {
+    for (int i = 0; i < 100; ++i) {
+      const Vec3 start = 10.0 * random.direction();
+      const Vec3 way = random.direction();
+      const Vec3 aside = start + random.uniform() * way + width * random.direction();
+      const auto first = static_cast<VertexId>(surface.vertices.size());
+      surface.vertices.insert(surface.vertices.end(), {start, start + way, aside});
+      surface.triangles.push_back({first, first + 1, first + 2});
+    }
+  }
+  const auto mesh = std::make_shared<const Mesh>(std::move(surface));
+  expect_brute_force_sets(*mesh, *GetParam().make(mesh), probes(*mesh, 50));
+}
+
 TEST_P(IndexContract, FindsWhatBruteForceFindsOnOneTriangleAndOnManyInOnePlace) {
   const Surface one{{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)}, {{0, 1, 2}}};
   Surface many = one;
@@ -241,8 +260,9 @@ TEST(IndexRegistry, EveryIndexOfThisBuildIsEitherThereOrAbsent) {
     EXPECT_TRUE(names.insert(part.name).second) << part.name << " is both";
   }
   // And whatever else has a row.
-  for (const std::string_view ours : {"brute_force", "pd_tree", "fcl_obbrss", "fcl_aabb",
-                                      "bullet_quantized", "bullet", "embree", "cgal"}) {
+  for (const std::string_view ours :
+       {"brute_force", "wide_bvh", "pd_tree", "pd_tree_1997", "fcl_obbrss", "fcl_aabb",
+        "fcl_collide", "bullet_quantized", "bullet", "bullet_callback", "embree", "cgal"}) {
     EXPECT_TRUE(names.contains(ours)) << ours;
   }
 }

@@ -51,7 +51,7 @@ TEST_F(LoadMesh, PolygonsOfAnySizeAreReadExceptFromOff) {
 
 TEST_F(LoadMesh, FacesOfFewerThanThreeCornersAreLeftOutWithAWarning) {
   const LoadedMesh loaded =
-      load("mesh.off", "OFF\n3 3 0\n0 0 0\n1 0 0\n0 1 0\n2 0 1\n3 0 1 2\n1 2\n");
+      load_unchecked("mesh.off", "OFF\n3 3 0\n0 0 0\n1 0 0\n0 1 0\n2 0 1\n3 0 1 2\n1 2\n");
   EXPECT_EQ(loaded.mesh->triangle_count(), 1u);
   ASSERT_EQ(loaded.warnings.size(), 1u);
   EXPECT_CONTAINS(loaded.warnings[0], "2 faces");
@@ -103,9 +103,9 @@ TEST_F(LoadMesh, FewerFacesThanDeclaredIsAnErrorAndMoreAWarning) {
   EXPECT_CONTAINS(complaint("mesh.ply", replaced(as_text_ply(tetrahedron()), "face 4", "face 5")),
                   "cut short");
   for (const LoadedMesh& loaded :
-       {load("mesh.off", std::string(square_off) + "3 0 1 2\n"),
-        load("mesh.ply", as_text_ply(single_triangle()) + "3 0 1 2 -7\n"),
-        load("mesh.ply", as_binary_ply<float>(single_triangle(), false) + "more")}) {
+       {load_unchecked("mesh.off", std::string(square_off) + "3 0 1 2\n"),
+        load_unchecked("mesh.ply", as_text_ply(single_triangle()) + "3 0 1 2 -7\n"),
+        load_unchecked("mesh.ply", as_binary_ply<float>(single_triangle(), false) + "more")}) {
     ASSERT_EQ(loaded.warnings.size(), 1u);
     EXPECT_CONTAINS(loaded.warnings[0], "more in the file");
   }
@@ -157,7 +157,7 @@ TEST_F(LoadMesh, ObjVerticesMayHaveColoursAndAWeightOfOne) {
 
 TEST_F(LoadMesh, ObjLinesAndPointsAreLeftOutWithAWarningAndAloneAreAnError) {
   const std::string points = "v 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2 3\np 1\n";
-  const LoadedMesh loaded = load("mesh.obj", points + "f 1 2 3\n");
+  const LoadedMesh loaded = load_unchecked("mesh.obj", points + "f 1 2 3\n");
   ASSERT_EQ(loaded.warnings.size(), 1u);
   EXPECT_CONTAINS(loaded.warnings[0], "2 lines or points");
   EXPECT_CONTAINS(complaint("mesh.obj", points), "no faces");

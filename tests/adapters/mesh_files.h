@@ -175,6 +175,10 @@ class LoadMesh : public testing::Test {
   LoadedMesh load(std::string_view name, std::string_view contents) const {
     return load_mesh(folder.write(name, contents));
   }
+  /// Warnings are of the file then, and not of the small, open surface in it.
+  LoadedMesh load_unchecked(std::string_view name, std::string_view contents) const {
+    return load_mesh(folder.write(name, contents), {.check = MeshCheck::none});
+  }
 
   /// What load_mesh says against the file; the test fails if it says nothing or not which file.
   std::string complaint(std::string_view name, std::string_view contents) const {

@@ -24,6 +24,10 @@ namespace {
 using Outcome = test::ProcessOutcome;
 using Row = std::map<std::string, std::string>;
 
+/// Of the table of simulate, all but the times, which stand in the columns kHz, p50 and p99.
+constexpr const char* untimed_rows =
+    " | grep -E '^(rule|none|all_faces|paper|certified) ' | awk '{$3=$4=$5=\"\"; print}'";
+
 class Command : public testing::Test {
  protected:
   void SetUp() override { write_binary_stl(file("cube.stl"), make_cube(10.0)); }
@@ -90,6 +94,11 @@ TEST_F(Command, ReplaySolvesOneStepForEachLine) {
   EXPECT_EQ(steps[2].at("status"), "beyond_reach");
   EXPECT_EQ(vector(steps[2], "u"), Vec3(0, 0, 0));
 
+  const std::vector<double> distances{10.0, 1.0, 1.0};
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    EXPECT_NEAR(std::stod(steps[i].at("distance")), distances[i], 1e-12);
+  }
+
   std::size_t of_step_1 = 0;
   for (const Row& plane : rows("planes.csv")) {
     const std::size_t step = std::stoul(plane.at("step"));
@@ -110,7 +119,7 @@ TEST_F(Command, TheHeadersAreThoseAgreedUpon) {
   std::getline(steps, line);
   EXPECT_EQ(line,
             "step,status,px,py,pz,dx,dy,dz,ux,uy,uz,triangles,planes,"
-            "t_query_ns,t_activate_ns,t_solve_ns,t_total_ns");
+            "t_query_ns,t_activate_ns,t_solve_ns,t_total_ns,distance");
   std::ifstream planes(file("p.csv"));
   std::getline(planes, line);
   EXPECT_EQ(line, "step,triangle,nx,ny,nz,offset");
@@ -189,8 +198,8 @@ TEST_F(Command, MistakesAreToldOfAndLeaveNothingBehind) {
   folder_.write("nan.txt", "0 0 60 1 2 -3\n0 0 nan 0 0 0\n");
   folder_.write("broken.stl", "solid broken\nfacet normal 0 0 1\nouter loop\nvertex 0 0");
   const std::vector<std::pair<std::string, std::string>> mistakes{
-      {"", "subcommand"},
-      {"replya cube.stl", "replya"},
+      {"", "a command is missing"},
+      {"replya cube.stl", "did you mean 'replay'"},
       {"replay cube.stl --poses poses.txt --out s.csv --raduis 3", "--raduis"},
       {"replay cube.stl --poses poses.txt --out s.csv --radius -3", "--radius"},
       {"replay cube.stl --poses poses.txt --out s.csv --radius three", "--radius"},
@@ -328,9 +337,10 @@ TEST_F(Command, ASignalLeavesNoPartialFile) {
 }
 
 TEST_F(Command, AReportThatCannotBeWrittenIsToldOfBeforeAnyWork) {
+  folder_.write("none.stl", "no mesh, which is work to find out");
   std::filesystem::create_directory(file("folder"));
   for (const char* out : {"no/such/folder/r.html", "folder"}) {
-    // Work would begin with the mesh, which is not there.
+    // Work would begin with the mesh, which is none.
     const Outcome outcome = run(std::string("simulate none.stl --out ") + out);
     EXPECT_EQ(outcome.status, EXIT_FAILURE);
     EXPECT_NE(outcome.output.find(out), std::string::npos) << outcome.output;
@@ -350,7 +360,7 @@ TEST_F(Command, AnUnfitMeshIsNamed) {
 TEST_F(Command, ARuleThatIsNamedTwiceRunsOnce) {
   const Outcome outcome =
       run("simulate cube.stl --out r.html --strokes 1 --cycles 20 --activation paper,paper "
-          "2>/dev/null");
+          "--verbose 2>/dev/null");
   ASSERT_EQ(outcome.status, 0) << outcome.output;
   const std::size_t first = outcome.output.find("\npaper ");
   ASSERT_NE(first, std::string::npos) << outcome.output;
@@ -359,7 +369,7 @@ TEST_F(Command, ARuleThatIsNamedTwiceRunsOnce) {
 
 TEST_F(Command, WithoutAFixtureThereAreNoTimes) {
   const Outcome outcome =
-      run("simulate cube.stl --out r.html --strokes 1 --cycles 20 --activation paper");
+      run("simulate cube.stl --out r.html --strokes 1 --cycles 20 --activation paper --verbose");
   ASSERT_EQ(outcome.status, 0) << outcome.output;
   std::istringstream row(outcome.output.substr(outcome.output.find("\nnone ")));
   std::string rule, cycles, khz, p50, p99;
@@ -370,7 +380,7 @@ TEST_F(Command, WithoutAFixtureThereAreNoTimes) {
 
 TEST_F(Command, TheReportTellsTheDateAndTheCommandThatMakesItAgain) {
   const auto untimed = [&](const std::string& arguments) {
-    return run(arguments + " 2>/dev/null | awk '{$3=$4=$5=\"\"; print}'").output;
+    return run(arguments + " --verbose 2>/dev/null" + untimed_rows).output;
   };
   const std::string table = untimed(
       "simulate cube.stl --out r.html --strokes 2 --cycles 50 --margin 0.1 --radius 1.25 "
@@ -396,7 +406,8 @@ TEST_F(Command, TheReportTellsTheDateAndTheCommandThatMakesItAgain) {
 }
 
 TEST_F(Command, SimulatePrintsATableAndWritesAReport) {
-  const Outcome outcome = run("simulate cube.stl --out r.html --strokes 3 --cycles 200 --radius 1");
+  const Outcome outcome =
+      run("simulate cube.stl --out r.html --strokes 3 --cycles 200 --radius 1 --verbose");
   ASSERT_EQ(outcome.status, 0) << outcome.output;
   for (const char* word : {"none", "all_faces", "paper", "certified", "r.html"}) {
     EXPECT_NE(outcome.output.find(word), std::string::npos) << word;
@@ -407,12 +418,11 @@ TEST_F(Command, SimulatePrintsATableAndWritesAReport) {
 }
 
 TEST_F(Command, TheSameSeedMovesTheSameHand) {
-  // All but the times, which stand in the columns kHz, p50 and p99.
   const auto untimed = [&](const std::string& seed) {
     const Outcome outcome =
         run("simulate cube.stl --out r.html --strokes 3 --cycles 200 "
-            "--activation certified --seed " +
-            seed + " | awk '{$3=$4=$5=\"\"; print}'");
+            "--activation certified --verbose --seed " +
+            seed + " 2>/dev/null" + untimed_rows);
     return outcome.output;
   };
   const std::string seven = untimed("7");

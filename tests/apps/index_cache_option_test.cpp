@@ -99,6 +99,29 @@ TEST_F(IndexCacheOption, AFolderThatCannotBeUsedDoesNotStopTheRun) {
   EXPECT_EQ(bytes_of(folder.file("occupied")), "a file where the folder should be");
 }
 
+TEST_F(IndexCacheOption, WhatCannotBeKeptIsToldOfOnceAndWhy) {
+  folder.write("occupied", "a file where the folder should be");
+  const std::string replay = "replay gear.stl --poses poses.txt --out steps.csv --index-cache ";
+  const ProcessOutcome no_folder = folder.run(replay + "occupied/below");
+  EXPECT_EQ(no_folder.status, 0);
+  EXPECT_NE(no_folder.output.find("keepout: the index is not kept"), std::string::npos);
+  EXPECT_NE(no_folder.output.find("Not a directory"), std::string::npos) << no_folder.output;
+  // As when the disk is full: no file may become larger than this.
+  const ProcessOutcome full = folder.run(replay + "cache", "trap '' XFSZ; ulimit -f 8; ");
+  EXPECT_EQ(full.status, 0) << full.output;
+  EXPECT_NE(full.output.find("cannot be written (File too large)"), std::string::npos)
+      << full.output;
+  EXPECT_TRUE(cached().empty());
+  // Every rule has an index of its own, but the news is the same.
+  const std::string all =
+      folder.run("simulate gear.stl --out r.html --strokes 1 --cycles 20 --index-cache occupied")
+          .output;
+  const std::size_t first = all.find("the index is not kept");
+  ASSERT_NE(first, std::string::npos) << all;
+  EXPECT_EQ(all.find("the index is not kept", first + 1), std::string::npos) << all;
+  EXPECT_EQ(folder.run(replay + "kept").output.find("keepout:"), std::string::npos);
+}
+
 TEST_F(IndexCacheOption, OtherIndicesKeepNothing) {
   answer("--index-cache cache", "pd_tree");
   EXPECT_FALSE(std::filesystem::exists(folder.file("cache")));

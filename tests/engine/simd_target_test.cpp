@@ -3,6 +3,9 @@
 #include "keepout/simd_target.h"
 
 #include <gtest/gtest.h>
+#include <hwy/targets.h>
+
+#include <algorithm>
 
 #include "keepout/error.h"
 
@@ -30,6 +33,21 @@ TEST(SimdTarget, ThatIsNotThereIsRefusedAndLeavesWhatWasChosen) {
   EXPECT_THROW(use_simd_target("abacus"), Error);
   EXPECT_EQ(simd_target(), last);
   use_simd_target(simd_targets().front());
+}
+
+/// What on_each_simd_target goes through (each_simd_target.h).
+TEST(SimdTarget, ThePortableOneIsAlwaysThere) {
+  EXPECT_EQ(simd_targets().back(), hwy::TargetName(HWY_STATIC_TARGET));
+}
+
+TEST(SimdTarget, Avx2IsThereSoThatTheTestsOfEachTargetRunOnIt) {
+  const auto all = simd_targets();
+  if (std::ranges::find(all, "AVX2") == all.end()) {
+    GTEST_SKIP() << "this processor has no AVX2: nothing was tested on it";
+  }
+  use_simd_target("AVX2");
+  EXPECT_EQ(simd_target(), "AVX2");
+  use_simd_target(all.front());
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The examples do what they say: on a sphere, whose top they come down upon.
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 
 #include <cstdio>
 #include <string>
@@ -143,6 +144,42 @@ TEST(Example08, TheProxyKeepsTheMarginTheForceSaturatesAndTheEnergiesAddUp) {
   EXPECT_NEAR(to_hand + stored + dissipated, from_proxy, 1e-9);
   EXPECT_LT(to_hand, 0.0);
   EXPECT_GE(active, 0.0);
+}
+
+TEST(Example09, TheJointsKeepTheTipOut) {
+  int held = 0;
+  double nearest = 0.0;
+  Vec3 tip = Vec3::Zero();
+  const std::string text = output_of(KEEPOUT_EXAMPLE_JOINTS);
+  ASSERT_EQ(std::sscanf(text.c_str(),
+                        "held back in %d of 2000 cycles, nearest %lf mm, ends at %lf %lf %lf",
+                        &held, &nearest, &tip.x(), &tip.y(), &tip.z()),
+            5)
+      << text;
+  EXPECT_GT(held, 100);
+  // The arm moves along arcs, of which its Jacobian knows the tangents: 0.2 mm of 60 mm.
+  EXPECT_GT(nearest, 0.5 - 0.001);
+  EXPECT_LT(nearest, 0.51) << "it does come there";
+  EXPECT_GT(tip.norm(), radius + 0.5 - 0.001);
+}
+
+TEST(Examples, SayWhatIsWrongWhenTheMeshIsMissing) {
+  for (const std::string example :
+       {KEEPOUT_EXAMPLE, KEEPOUT_EXAMPLE_STATIC_COMPOSITION, KEEPOUT_EXAMPLE_OWN_INDEX,
+        KEEPOUT_EXAMPLE_CONVEX_TOOL, KEEPOUT_EXAMPLE_OWN_SOLVER, KEEPOUT_EXAMPLE_OWN_QP,
+        KEEPOUT_EXAMPLE_CRTK_LOOP, KEEPOUT_EXAMPLE_JOINTS}) {
+    const auto said = [&](const std::string& arguments, int status) {
+      FILE* pipe = ::popen(("'" + example + "' " + arguments + " 2>&1").c_str(), "r");
+      EXPECT_NE(pipe, nullptr);
+      char line[256] = "";
+      std::string text;
+      while (std::fgets(line, sizeof line, pipe) != nullptr) text += line;
+      EXPECT_EQ(WEXITSTATUS(::pclose(pipe)), status) << example << ": " << text;
+      return text;
+    };
+    EXPECT_NE(said("", 2).find("usage:"), std::string::npos);
+    EXPECT_NE(said("/no/such/mesh.stl", 1).find("/no/such/mesh.stl"), std::string::npos);
+  }
 }
 
 #ifdef KEEPOUT_EXAMPLE_OMPL

@@ -20,3 +20,9 @@ cmake -S "$here/consumer" -B "$work/build" -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE
   --no-warn-unused-cli "${options[@]}"
 cmake --build "$work/build"
 run_consumer "$work/build/consumer" "$prefix"
+answer=$(LD_LIBRARY_PATH=$(library_folder "$prefix") "$work/build/consumer" 2>&1) && fail "no mesh, and no error"
+[ "$answer" = "usage: consumer MESH" ] || fail "without a mesh the consumer says: $answer"
+
+# And is what the page shows.
+sed -n '/^```cpp$/,/^```$/p' "$here/../../docs/embedding.md" | sed '/^```/d' | head -n 14 |
+  cmp - "$here/consumer/main.cpp" || fail "docs/embedding.md shows another program"

@@ -4,6 +4,7 @@
 
 import inspect
 import re
+import warnings
 
 import numpy as np
 import pytest
@@ -39,6 +40,37 @@ def test_status_is_the_one_of_cpp():
     ]
 
 
+def test_a_status_is_written_as_its_name():
+    assert f"{Status.limited}" == str(Status.limited) == "%s" % Status.limited == "limited"
+    assert f"{Status.limited:>9}|{Status.limited:.3}" == "  limited|lim"
+    assert f"{Status.limited:d} {Status.limited:02x}" == "1 01"
+    assert repr(Status.limited) == "<Status.limited: 1>"
+    assert Status.limited == 1 and np.array([1], np.uint8)[0] == Status.limited
+
+
+def test_a_guard_tells_what_it_keeps(mesh):
+    guard = keepout.MotionConstraint(mesh, radius=4.0, tool_radius=0.3, margin=0.2)
+    assert (guard.radius, guard.tool_radius, guard.margin) == (4.0, 0.3, 0.2)
+    assert guard.distance_kept == 0.3 + 0.2
+    for part in ("certified", "wide_bvh", "radius=4", "tool_radius=0.3", "margin=0.2", "triangles"):
+        assert part in repr(guard)
+
+
+def test_a_step_tells_its_distance(mesh, outside):
+    known = keepout.MotionConstraint(mesh, tool_radius=0.3, margin=0.2)
+    always = keepout.MotionConstraint(mesh, tool_radius=0.3, margin=0.2, distances="always")
+    distances = known.index.distances
+    for tip in [*outside[0][:50], (0, 0, 10.3), (0, 0, 80.0), (0, 0, 9.0)]:
+        true = distances([tip])[0]
+        step = known.step(tip, (0, 0, 0))
+        is_inside = np.linalg.norm(tip) < 10
+        assert (step.distance is not None) == (true <= 0.5 or is_inside)
+        if step.distance is not None:
+            np.testing.assert_allclose(step.distance, true, rtol=1e-12)
+        np.testing.assert_allclose(always.step(tip, (0, 0, 0)).distance, true, rtol=1e-12)
+    assert always.step((np.nan, 0, 0), (0, 0, 0)).distance is None
+
+
 def test_a_step_is_held_back(guard):
     free = guard.step([0, 0, 14], [0, 0, -1])
     assert free.ok and free.status is Status.free and list(free.motion) == [0, 0, -1]
@@ -71,6 +103,13 @@ def test_joints_and_rows(guard):
     assert list(none.motion) == [0, 0, -1]
     many = keepout.MotionConstraint(guard.mesh, max_joints=3).step([0, 0, 14], [0, 0, 1], jacobian)
     assert many.status is Status.over_capacity
+
+
+def test_more_than_three_joints_want_damping(mesh):
+    jacobian = np.random.default_rng(3).normal(size=(3, 7))
+    undamped = keepout.MotionConstraint(mesh).step((0, 0, 14), (0, 0, -1), jacobian)
+    assert undamped.status is Status.ill_posed and "set damping above 0" in undamped.reason
+    assert keepout.MotionConstraint(mesh, damping=1e-6).step((0, 0, 14), (0, 0, -1), jacobian).ok
 
 
 def test_steps_remember_and_forget():
@@ -129,6 +168,10 @@ def test_distances(mesh):
     many = np.random.default_rng(2).normal(size=(1000, 3)) * 12
     np.testing.assert_array_equal(index.distances(many, threads=1), index.distances(many, threads=3))
     assert index.distances(np.zeros((0, 3))).shape == (0,)
+    exact = keepout.Index(mesh, "brute_force").distances(many)
+    for part in keepout.indices():
+        found = keepout.Index(mesh, part.name).distances(many)
+        np.testing.assert_array_equal(found, exact, err_msg=part.name)
 
 
 def test_an_index_is_kept_on_the_disk_and_shared(mesh, tmp_path):
@@ -224,3 +267,17 @@ def test_arrays_are_documented_with_shapes():
                 continue  # a number
             doc = getattr(keepout, name).__dict__[member].__doc__
             assert re.match(r"\(\w+,( \w+)?\) (float64|uint32)", doc), f"{name}.{member}"
+
+
+def test_what_a_file_has_to_say_is_a_warning(tmp_path):
+    path = tmp_path / "tagged.obj"
+    path.write_text("# SPACE=LPS\nv 0 0 0\nv 50 0 0\nv 0 50 0\nv 0 0 50\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n")
+    with pytest.warns(UserWarning, match="tagged.obj: .*LPS") as said:
+        mesh = keepout.load_mesh(path)
+    assert mesh.warnings and [str(w.message) for w in said] == [f"tagged.obj: {w}" for w in mesh.warnings]
+    assert said[0].filename == __file__, "of the line that loads it"
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        with pytest.raises(UserWarning):
+            keepout.load_mesh(path)
+        assert keepout.load_mesh(path, space="LPS").warnings == []

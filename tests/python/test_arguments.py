@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Arguments of every kind are converted, or refused by name."""
 
+import re
+
 import numpy as np
 import pytest
 from surfaces import sphere
@@ -155,11 +157,15 @@ def test_jacobians_and_rows_that_are_refused(guard, arguments, says):
     "settings, says",
     [
         ({"index": "nonsense"}, "no .*'nonsense'; known: .*wide_bvh"),
+        ({"index": "wide-bvh"}, "no .*'wide-bvh'; did you mean 'wide_bvh'[?] known: "),
+        ({"activation": "certifed"}, "no .*'certifed'; did you mean 'certified'[?] known: "),
+        ({"solver": "slsqp"}, "no .*'slsqp'; did you mean 'nlopt_slsqp'[?] known: "),
         ({"activation": "nonsense"}, "known: .*certified"),
         ({"solver": "nonsense"}, "known: .*active_set"),
         ({"index": 5}, "index: expected a name"),
         ({"query": "far"}, "query: expected 'motion' or 'sphere', got 'far'"),
         ({"inside": "ignored"}, "inside: "),
+        ({"distances": "never"}, "distances: expected 'where_known' or 'always', got 'never'"),
         ({"radius": -1.0}, "radius"),
         ({"radius": np.nan}, "radius"),
         ({"margin": -1.0}, "margin"),
@@ -190,10 +196,14 @@ def test_meshes_that_are_none(mesh):
 
 def test_batches_of_the_wrong_shape(guard, outside):
     tips, desired = outside
-    with refused(r"desired: .* \(500, 3\), as many as tips, got shape \(499, 3\)"):
+    with refused(r"desired: .* \(500, 3\), as many as tips, or \(3,\), got shape \(499, 3\)"):
         guard.steps(tips, desired[1:])
-    with refused(r"tips: .* \(n, 3\), got shape \(3,\)"):
-        guard.steps(tips[0], desired[0])
+    with refused(r"tips: .* \(n, 3\) or \(3,\), got shape \(2,\)"):
+        guard.steps(tips[0, :2], desired[0])
+    with refused(r"desired: .* \(n, 3\) or \(3,\), got shape \(4,\)"):
+        guard.steps(tips[0], np.zeros(4))
+    with refused(r"desired: .* got shape \(1, 500, 3\)"):
+        guard.steps(tips, desired[None])
     with refused(r"poses: .* \(n, 6\)"):
         guard.replay(tips)
     with refused(r"hands: .* \(500, cycles, 3\)"):
@@ -229,8 +239,33 @@ def test_batches_of_any_layout(guard, outside):
     )
 
 
+def test_one_point_stands_for_all(guard, outside):
+    tips, desired = outside
+    same = guard.steps(tips, np.tile(desired[0], (len(tips), 1)))
+    for one in (desired[0], desired[:1], desired[0].tolist()):
+        np.testing.assert_array_equal(guard.steps(tips, one).motion, same.motion)
+    same = guard.steps(np.tile(tips[0], (len(desired), 1)), desired)
+    for one in (tips[0], tips[:1], tips[0].tolist()):
+        steps = guard.steps(one, desired)
+        np.testing.assert_array_equal(steps.motion, same.motion)
+        assert len(steps) == len(desired)
+    assert len(guard.steps(tips[0], desired[0])) == 1
+    assert len(guard.steps(np.zeros((0, 3)), desired[0])) == 0
+    assert len(guard.steps(tips[0], np.zeros((0, 3)))) == 0
+    room = keepout.Steps.empty(len(tips))
+    assert guard.steps(tips, desired[0], out=room) is room
+
+
 def test_an_unknown_keyword_is_a_type_error(mesh):
-    with pytest.raises(TypeError):
+    with pytest.raises(TypeError, match="no argument 'marging'; did you mean 'margin'[?] known: mesh"):
         keepout.MotionConstraint(mesh, marging=0.2)
+    with pytest.raises(TypeError, match="no argument 'rule'; known: .*activation, solver"):
+        keepout.MotionConstraint(mesh, rule="certified")
+    # What it says is known is what there is.
+    with pytest.raises(TypeError) as raised:
+        keepout.MotionConstraint(mesh, toolradius=0.2)
+    known = str(raised.value).split("known: ")[1].split(", ")
+    line = keepout.MotionConstraint.__init__.__doc__.splitlines()[0]
+    assert known == re.findall(r"(\w+): ", line)[1:]
     with pytest.raises(TypeError):
         keepout.MotionConstraint(mesh, "wide_bvh")

@@ -29,6 +29,22 @@ def test_first_steps(sphere_file):
     assert keepout.Index(keepout.load_mesh(sphere_file)).distances([tip])[0] >= 0.5 - 1e-9
 
 
+def test_joints(sphere_file):
+    words = run("joints.py", sphere_file).replace(",", "").split()
+    assert int(words[words.index("in") + 1]) > 100
+    # The arm moves along arcs, of which its Jacobian knows the tangents: 0.2 mm of 60 mm.
+    assert 0.499 < float(words[words.index("nearest") + 1]) < 0.51
+
+
+@pytest.mark.parametrize("example", ["first_steps.py", "joints.py"])
+def test_a_mesh_that_is_missing_is_told(example):
+    for arguments, says in [([], "usage: "), (["none.stl"], "none.stl")]:
+        ended = subprocess.run(
+            [sys.executable, examples / example, *arguments], capture_output=True, text=True
+        )
+        assert ended.returncode == 1 and says in ended.stderr and "Traceback" not in ended.stderr
+
+
 def test_the_path_over_the_skull(request, tmp_path):
     matplotlib = pytest.importorskip("matplotlib.image")
     # Of the sphere where there is no skull.

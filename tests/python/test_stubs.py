@@ -49,6 +49,8 @@ mesh = keepout.Mesh(np.zeros((3, 3)), [[0, 1, 2]])
 guard = keepout.MotionConstraint(mesh, index=keepout.Index(mesh), margin=0.2, query="sphere")
 step = guard.step((0, 0, 1), np.zeros(3), rows=([[1, 0, 0]], [0]))
 status: keepout.Status = step.status
+distance: float | None = step.distance
+kept: float = guard.tool_radius + guard.margin
 length = float(np.linalg.norm(step.motion)) + step.planes.offsets.sum()
 steps = guard.steps(np.zeros((4, 3)), np.zeros((4, 3)), threads=2, out=keepout.Steps.empty(4))
 names: list[str] = [part.name for part in keepout.indices()]

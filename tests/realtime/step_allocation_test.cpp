@@ -51,10 +51,13 @@ TEST(Step, AllocatesNothingWhateverItsPartsAndItsOutcome) {
   const std::vector<Vec3> tips = surface_points(*mesh, 60, 0.5, random);
   Eigen::Matrix<double, 3, Eigen::Dynamic> jacobian(3, 7);
   for (int i = 0; i < jacobian.size(); ++i) jacobian.data()[i] = random.normal();
+  Eigen::Matrix<double, 6, 7, Eigen::RowMajor> of_a_frame;
+  of_a_frame << jacobian, jacobian;
   const std::vector<double> limits(14, -1.0);
   const std::vector<double> rows(14 * 7, 0.1);
 
   for (const IndexBackend& index : index_backends()) {
+    if (index.allocation != Allocation::never) continue;  // see index_allocation_test.cpp
     for (const ActivationEntry& rule : activation_rules()) {
       for (const SolverBackend& solver : solver_backends()) {
         if (solver.allocation != Allocation::never) continue;
@@ -68,6 +71,9 @@ TEST(Step, AllocatesNothingWhateverItsPartsAndItsOutcome) {
                                                 .damping = 1e-6,
                                                 .nodes = 8};
         MotionConstraint constraint = make_motion_constraint(mesh, settings);
+        MotionConstraintSettings with_distances = settings;
+        with_distances.distances = Distances::always;
+        MotionConstraint telling = make_motion_constraint(mesh, with_distances);
         MotionConstraintSettings ill_posed = settings;
         ill_posed.damping = 0.0;
         ill_posed.capacity.triangles = 1;
@@ -101,6 +107,9 @@ TEST(Step, AllocatesNothingWhateverItsPartsAndItsOutcome) {
           take(constraint, {.tip = tip});
           take(constraint, {.tip = tip, .desired = desired, .jacobian = jacobian});
           take(constraint, {.tip = tip, .desired = desired, .jacobian = jacobian, .rows = extra});
+          take(constraint, {.tip = tip, .desired = desired, .jacobian = of_a_frame.topRows<3>()});
+          take(telling, {.tip = tip, .desired = desired});
+          take(telling, {.tip = 3.0 * tip, .desired = desired});
           take(constraint, {.tip = 0.9 * tip, .desired = desired});  // some of these are inside
           take(small, {.tip = tip, .desired = desired, .jacobian = jacobian});
           take(small, {.tip = tip + Vec3(0, 0, 100), .desired = desired, .jacobian = jacobian});

@@ -3,13 +3,12 @@
 // Problems whose rows come from planes: read from the planes they are solved as from the rows, on
 // every instruction set there is.
 #include <gtest/gtest.h>
-#include <hwy/highway.h>
 
 #include <algorithm>
-#include <cstdint>
 #include <limits>
 #include <vector>
 
+#include "each_simd_target.h"
 #include "keepout/solvers/active_set.h"
 #include "keepout/solvers/kkt.h"
 #include "solvers/solver_contract.h"
@@ -17,21 +16,6 @@
 
 namespace keepout::test {
 namespace {
-
-/// Calls for each instruction set that this machine has.
-template <class F>
-void on_each_target(const F& call) {
-  const std::int64_t targets = hwy::SupportedTargets() & HWY_TARGETS;
-  for (std::int64_t left = targets; left != 0; left &= left - 1) {
-    const std::int64_t target = left & -left;
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-    SCOPED_TRACE(hwy::TargetName(target));
-    call();
-  }
-  hwy::SetSupportedTargetsForTest(0);
-  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-}
 
 /// A problem whose first rows come from planes.
 struct PlaneProblem {
@@ -127,7 +111,7 @@ TEST(UnitPlanes, TheMostViolatedIsThatOfALoopOnEveryTarget) {
       if (by > expected.by) expected = {row, by};
     }
     listed.close();
-    on_each_target([&] {
+    on_each_simd_target([&] {
       const active_set::Violated got = listed.most_violated(point.data());
       ASSERT_EQ(got.plane, expected.plane) << "seed " << i;
       ASSERT_EQ(got.by, expected.by) << "seed " << i;
@@ -145,7 +129,7 @@ TEST_F(ActiveSetPlanes, APointIsMovedTheSameToTheLastBitFromPlanesAndFromRows) {
       ASSERT_EQ(from_rows.status, SolveStatus::optimal) << name(kind) << ", seed " << i;
       EXPECT_LT(kkt_residual(posed.as_rows(), solution_).worst(), 1e-10)
           << name(kind) << ", seed " << i;
-      on_each_target([&] {
+      on_each_simd_target([&] {
         EXPECT_TRUE(solve(posed.as_planes()) == from_rows) << name(kind) << ", seed " << i;
         EXPECT_TRUE(solve(posed.as_rows()) == from_rows) << name(kind) << ", seed " << i;
       });
@@ -173,7 +157,7 @@ TEST_F(ActiveSetPlanes, JointsAreMovedTheSameFromPlanesAndFromRows) {
       }
       ++posed_in_all;
       if (expected == from_rows) ++same_bits;
-      on_each_target([&] {
+      on_each_simd_target([&] {
         EXPECT_TRUE(solve(posed.as_planes()) == expected) << name(kind) << ", seed " << i;
       });
     }
@@ -272,7 +256,7 @@ TEST_F(ActiveSetPlanes, TheFirstOfEqualPlanesIsTheActiveOne) {
                                     Eigen::VectorXd::Zero(static_cast<Eigen::Index>(m)));
     StepProblem view = problem.view();
     view.planes = planes;
-    on_each_target([&] {
+    on_each_simd_target([&] {
       const Answer answer = solve(view);
       ASSERT_EQ(answer.active.size(), 1U);
       EXPECT_EQ(answer.active[0], 1U);

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/bench.h"
 
+#include <algorithm>
+#include <cstdlib>
 #include <memory>
 #include <new>
 #include <ostream>
@@ -10,6 +12,7 @@
 #include "bench/benchmark_table.h"
 #include "bench/machine_record.h"
 #include "bench/parts.h"
+#include "bench/used_cores.h"
 #include "compare/compare.h"
 #include "compare/comparison_files.h"
 #include "keepout/activation/registry.h"
@@ -21,6 +24,7 @@
 #include "part_lists.h"
 #include "progress.h"
 #include "report/benchmark_report.h"
+#include "report/text.h"
 
 namespace keepout::app {
 namespace {
@@ -29,6 +33,18 @@ namespace {
 std::vector<std::size_t> sizes_of(Extent extent) {
   if (extent == Extent::standard) return {51'978, 278'664, 989'376};
   return {51'978, 104'000, 278'664, 557'000, 989'376, 4'458'624, 17'834'496};
+}
+
+/// Tables and pictures know a mesh by its name.
+std::vector<Subject> with_names_of_their_own(std::vector<Subject> subjects) {
+  for (const Subject& one : subjects) {
+    for (const Subject& other : subjects) {
+      if (one.mesh == other.mesh || label_of(one) != label_of(other)) continue;
+      throw Error("--mesh: '" + one.mesh + "' and '" + other.mesh +
+                  "' could not be told apart in the report: give one of them another name");
+    }
+  }
+  return subjects;
 }
 
 std::vector<Subject> chosen_subjects(const BenchOptions& options) {
@@ -42,7 +58,8 @@ std::vector<Subject> chosen_subjects(const BenchOptions& options) {
   const std::vector<std::string> meshes =
       is_default ? std::vector<std::string>{std::string(resampled_mesh)} : options.meshes;
   const bool own_sizes = !options.triangles.empty() || !is_default;
-  return subjects_of(meshes, own_sizes ? options.triangles : sizes_of(options.extent));
+  return with_names_of_their_own(
+      subjects_of(meshes, own_sizes ? options.triangles : sizes_of(options.extent)));
 }
 
 TrialSettings settings_of(const BenchOptions& options) {
@@ -66,19 +83,28 @@ void refuse_overwriting(const BenchOptions& options) {
   refuse_shared_files(inputs, outputs);
 }
 
+/// The files, by their names.
+std::vector<std::string> written_to(const BenchOptions& options) {
+  std::vector<std::string> names = {options.report.string()};
+  if (options.json) names.push_back(options.json->string());
+  if (options.csv) names.push_back(options.csv->string());
+  return names;
+}
+
 void list_absent(std::ostream& out, std::span<const AbsentPart> parts) {
   for (const AbsentPart& part : parts) {
     out << "  " << part.name << " is not in this build: needs " << part.needs << '\n';
   }
 }
 
-/// How well all parts agree; nothing, where the user wants to know about some only.
-Comparison comparison_for(const BenchOptions& options, const Subject& subject, std::ostream& out) {
-  if (names_parts(options.selection)) return {};
+/// How well all parts agree; nothing, where the user wants to know about some only, or no more.
+Comparison comparison_for(const BenchOptions& options, const Subject& subject,
+                          const StopSignal& stop, std::ostream& out) {
+  if (names_parts(options.selection) || stop.has_come()) return {};
   out << "\ncomparing answers on " << title_of(subject) << '\n';
   try {
     const Comparison comparison =
-        compare_parts(label_of(subject), make_mesh(subject), {.seed = options.seed});
+        compare_parts(label_of(subject), make_mesh(subject), {.seed = options.seed}, &stop);
     print(out, comparison);
     return comparison;
   } catch (const Error& error) {
@@ -86,6 +112,13 @@ Comparison comparison_for(const BenchOptions& options, const Subject& subject, s
   } catch (const std::bad_alloc&) {
     out << "left out: not enough memory\n";
   }
+  return {};
+}
+
+/// What there is to say beside its times; only some tables of parts have such.
+template <class Entry>
+std::string_view remark_of(const Entry& entry) {
+  if constexpr (requires { entry.remark; }) return entry.remark;
   return {};
 }
 
@@ -103,27 +136,52 @@ void list_parts(std::ostream& out) {
 }
 
 void run_trial(const Subject& subject, const std::vector<Combination>& combinations,
-               const TrialSettings& settings, MemoryTaken& memory, Benchmark& benchmark,
-               std::ostream& out) {
+               const TrialSettings& settings, MemoryTaken& memory, const StopSignal& stop,
+               Benchmark& benchmark, std::ostream& out) {
   Progress progress("bench " + title_of(subject), combinations.size());
-  Trial trial(subject, settings, memory);
+  Trial trial(subject, settings, memory, stop);
   progress.interrupt();
   out << '\n'
       << label_of(subject) << ", " << counted(trial.mesh().triangle_count(), "triangle") << ", "
-      << grouped(trial.mesh().vertex_count()) << " vertices (build in s; times in us, medians "
-      << "unless said)\n";
+      << grouped(trial.mesh().vertex_count()) << " vertices; its file was read in "
+      << rounded(trial.loaded().seconds, 2) << " s with " << rounded(trial.loaded().cores, 2)
+      << " cores busy\n";
   print_table_head(out);
   for (const Combination& combination : combinations) {
     progress.show(combination.index + " " + combination.activation + " " + combination.solver);
-    const BenchmarkRow& row = benchmark.rows.emplace_back(trial.measure(combination));
+    BenchmarkRow row = trial.measure(combination);
     progress.interrupt();
-    print_table_row(out, row);
+    if (stop.has_come()) return;
+    benchmark.rows.push_back(std::move(row));
+    print_table_row(out, benchmark.rows.back());
     out.flush();
     progress.advance();
   }
 }
 
-void bench(const BenchOptions& options, std::ostream& out) {
+Benchmark new_benchmark(const std::string& command, std::uint64_t seed,
+                        const std::vector<Combination>& combinations, std::size_t meshes) {
+  Benchmark benchmark{.date = date_now(),
+                      .command = command,
+                      .seed = seed,
+                      .machine = this_machine(),
+                      .planned = combinations.size() * meshes};
+  const auto describe = [&](const auto& table, std::string Combination::*part) {
+    for (const auto& entry : table) {
+      if (std::ranges::find(combinations, entry.name, part) != combinations.end()) {
+        benchmark.parts.emplace(entry.name, entry.description);
+        const std::string_view remark = remark_of(entry);
+        if (!remark.empty()) benchmark.remarks.emplace(entry.name, remark);
+      }
+    }
+  };
+  describe(indices(), &Combination::index);
+  describe(activation_rules(), &Combination::activation);
+  describe(solver_backends(), &Combination::solver);
+  return benchmark;
+}
+
+int bench(const BenchOptions& options, std::ostream& out, std::ostream& notes) {
   const std::vector<Subject> subjects = chosen_subjects(options);
   const std::vector<Combination> combinations = combinations_of(options.selection);
   if (combinations.empty()) throw Error("there is nothing to measure: see 'keepout bench --list'");
@@ -131,13 +189,20 @@ void bench(const BenchOptions& options, std::ostream& out) {
   OutputFile report(options.report);
   const std::unique_ptr<OutputFile> json = open(options.json), csv = open(options.csv);
 
-  Benchmark benchmark{.date = date_now(),
-                      .command = options.command,
-                      .seed = options.seed,
-                      .machine = this_machine()};
+  const StopSignal stop;
+  Benchmark benchmark = new_benchmark(options.command, options.seed, combinations, subjects.size());
+  const UsedCores used;
+  print_machine(out, benchmark.machine);
+  out.flush();
   MemoryTaken memory;
   for (const Subject& subject : subjects) {
-    run_trial(subject, combinations, settings_of(options), memory, benchmark, out);
+    if (stop.has_come()) break;
+    run_trial(subject, combinations, settings_of(options), memory, stop, benchmark, out);
+  }
+  benchmark.others_cores = used.others();
+  if (benchmark.rows.empty()) {
+    notes << "keepout: stopped before any row was finished: nothing was written\n";
+    return exit_interrupted;
   }
   // What has been measured is safe before anything else is tried.
   if (json) write_json(json->stream(), benchmark);
@@ -149,9 +214,15 @@ void bench(const BenchOptions& options, std::ostream& out) {
     if (file != nullptr) file->commit();
   }
   print_benchmark_report(report.stream(), benchmark,
-                         comparison_for(options, subjects.front(), out));
+                         comparison_for(options, subjects.front(), stop, out));
   report.commit();
+  print_verdict(out, benchmark);
   out << "report: " << options.report.string() << '\n';
+  if (!stop.has_come()) return EXIT_SUCCESS;
+  notes << "keepout: stopped; " << grouped(benchmark.rows.size()) << " of "
+        << counted(benchmark.planned, "row") << " were finished, and are kept in "
+        << listed(written_to(options)) << '\n';
+  return exit_interrupted;
 }
 
 }  // namespace keepout::app

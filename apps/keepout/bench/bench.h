@@ -10,6 +10,7 @@
 
 #include "bench/combination.h"
 #include "bench/trial.h"
+#include "stop_signal.h"
 
 namespace keepout::app {
 
@@ -35,14 +36,22 @@ struct BenchOptions {
 /// Measures every combination that was asked for on every mesh, prints a table as it goes, compares
 /// the parts' answers on the first mesh, and writes a report and files. Throws Error before any
 /// work when one could not be written.
-void bench(const BenchOptions& options, std::ostream& out);
+///
+/// Gives the exit status: 0, or exit_interrupted when a signal stopped it. The rows that were
+/// finished are then written all the same, marked as incomplete, and `notes` is told what was kept
+/// and where; where there is none, nothing is written.
+int bench(const BenchOptions& options, std::ostream& out, std::ostream& notes);
 
 /// Says what there is to measure, and what this build was made without.
 void list_parts(std::ostream& out);
 
-/// The combinations on one mesh; `out` gets the table.
+/// An empty record of this machine, for those rows on so many meshes.
+Benchmark new_benchmark(const std::string& command, std::uint64_t seed,
+                        const std::vector<Combination>& combinations, std::size_t meshes);
+
+/// The combinations on one mesh, until it is stopped; `out` gets the table.
 void run_trial(const Subject& subject, const std::vector<Combination>& combinations,
-               const TrialSettings& settings, MemoryTaken& memory, Benchmark& benchmark,
-               std::ostream& out);
+               const TrialSettings& settings, MemoryTaken& memory, const StopSignal& stop,
+               Benchmark& benchmark, std::ostream& out);
 
 }  // namespace keepout::app

@@ -2,51 +2,38 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/bench_command.h"
 
+#include <cstdlib>
 #include <map>
-#include <optional>
 #include <ostream>
 
 #include "bench/parts.h"
 #include "keepout/activation/registry.h"
 #include "keepout/error.h"
+#include "name_checks.h"
 #include "number_checks.h"
 #include "part_lists.h"
 #include "shell_word.h"
 
 namespace keepout::app {
-namespace {
-
-/// "motion", or a length.
-std::optional<double> radius_of(const std::string& text) {
-  if (text == "motion") return std::nullopt;
-  std::string number = text;
-  const std::string problem = length(Zero::refused)(number);
-  if (!problem.empty()) {
-    throw Error("--radius: expected lengths in mm, or 'motion': " + problem);
-  }
-  return std::stod(number);
-}
-
-}  // namespace
 
 BenchCommand::BenchCommand(CLI::App& app) {
   BenchOptions& options = options_;
   CLI::App& command = *app.add_subcommand(
       "bench",
       "Time every stage of the step, for indices, rules and solvers side by side; each is held to "
-      "brute force and to our own solver before it is timed");
+      "brute force and to our own solver as it is timed");
   command.add_flag("--list", list_, "Say what there is to measure, and stop");
   const auto add_list = [&](const char* name, std::vector<std::string>& list, const auto& table,
                             const char* text) {
     command.add_option(name, list, text)
         ->delimiter(',')
         ->type_name("NAMES")
-        ->check(CLI::IsMember(names(table)));
+        ->check(one_of(names(table)));
   };
   add_list("--index", options.selection.indices, indices(), "Indices to measure");
   add_list("--activation", options.selection.activations, activation_rules(), "Rules to measure");
   add_list("--solver", options.selection.solvers, solver_backends(), "Solvers to measure");
-  command.add_option("--mesh", options.meshes, "Real fixtures, or mesh files")
+  command.add_option("--mesh", options.meshes, "Fixtures, or mesh files")
       ->delimiter(',')
       ->type_name("NAMES");
   command
@@ -56,10 +43,12 @@ BenchCommand::BenchCommand(CLI::App& app) {
       ->type_name("NUMBERS")
       ->transform(whole_number(1000, 200'000'000));
   command
-      .add_option("--radius", radii_,
-                  "Radii of the motion sphere, in mm; 'motion': as long as each motion")
+      .add_option("--radius", options.selection.radii,
+                  "Radii of the motion sphere, in mm; certified looks as far as the motion leads, "
+                  "whatever the radius")
       ->delimiter(',')
-      ->type_name("MM");
+      ->type_name("MM")
+      ->check(length(Zero::refused));
   command.add_flag_callback(
       "--full", [&options] { options.extent = Extent::full; },
       "To 18 million triangles, and the skull of a million: about a third of an hour, and 14 GB");
@@ -67,15 +56,16 @@ BenchCommand::BenchCommand(CLI::App& app) {
       ->type_name("NUMBER")
       ->transform(whole_number(5, 10'000'000));
   command
-      .add_option("--seconds", options.seconds,
-                  "How long a combination is asked, at most, and timed as long again")
+      .add_option(
+          "--seconds", options.seconds,
+          "How long a combination is asked, at most, in each of two rounds: stage by stage, "
+          "and as a whole")
       ->type_name("S")
-      ->check(CLI::Range(0.001, 1e6));
+      ->check(length(Zero::refused));
   command
       .add_option("--poses", options.poses,
                   "contact: a tool that slides along the surface; unrelated: as a planner asks")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, Poses>{
-          {"contact", Poses::contact}, {"unrelated", Poses::unrelated}}))
+      ->transform(one_of<Poses>({{"contact", Poses::contact}, {"unrelated", Poses::unrelated}}))
       ->default_str("contact");
   command.add_option("--seed", options.seed, "Seed of the motions")
       ->type_name("NUMBER")
@@ -89,7 +79,7 @@ BenchCommand::BenchCommand(CLI::App& app) {
   add_speed_options(command);
   command.footer(
       "Each list is crossed with the others; what is not named is wide_bvh, paper and certified,\n"
-      "active_set, and radii of 5, 1, 0.25 and the motion. Without --index, --activation and\n"
+      "active_set, and radii of 5, 1 and 0.25. Without --index, --activation and\n"
       "--solver: each index, then each solver, with those; and FCL's tree with SLSQP.");
 }
 
@@ -126,30 +116,27 @@ void BenchCommand::add_speed_options(CLI::App& command) {
       ->needs(speed);
 }
 
-void BenchCommand::run_speed(std::ostream& out) {
+int BenchCommand::run_speed(std::ostream& out) {
   if (options_.triangles.size() > 1) throw Error("--speed: give --triangles one size");
   if (!options_.triangles.empty()) speed_.triangles = options_.triangles.front();
   speed_.seed = options_.seed;
-  bench_speed({.settings = speed_,
-               .report = options_.report,
-               .json = options_.json,
-               .command = options_.command},
-              out);
+  return bench_speed({.settings = speed_,
+                      .report = options_.report,
+                      .json = options_.json,
+                      .command = options_.command},
+                     out);
 }
 
-void BenchCommand::run(const std::vector<std::string>& arguments, std::ostream& out) {
+int BenchCommand::run(const std::vector<std::string>& arguments, std::ostream& out,
+                      std::ostream& notes) {
   if (list_) {
     list_parts(out);
-    return;
+    return EXIT_SUCCESS;
   }
   options_.command = "keepout";
   for (const std::string& argument : arguments) options_.command += " " + shell_word(argument);
-  if (is_speed_) {
-    run_speed(out);
-    return;
-  }
-  for (const std::string& radius : radii_) options_.selection.radii.push_back(radius_of(radius));
-  bench(options_, out);
+  if (is_speed_) return run_speed(out);
+  return bench(options_, out, notes);
 }
 
 }  // namespace keepout::app

@@ -19,18 +19,17 @@ class BenchCommand {
   BenchCommand(const BenchCommand&) = delete;
   BenchCommand& operator=(const BenchCommand&) = delete;
 
-  /// After parsing. `arguments`: of the command line, for the record.
-  void run(const std::vector<std::string>& arguments, std::ostream& out);
+  /// After parsing; gives the exit status. `arguments`: of the command line, for the record.
+  int run(const std::vector<std::string>& arguments, std::ostream& out, std::ostream& notes);
 
  private:
   /// To be called last: it has no use for most of the others.
   void add_speed_options(CLI::App& command);
-  void run_speed(std::ostream& out);
+  int run_speed(std::ostream& out);
 
   BenchOptions options_;
   SpeedSettings speed_;
   bool is_speed_ = false;
-  std::vector<std::string> radii_;
   bool list_ = false;
 };
 

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -29,16 +30,19 @@ struct BenchmarkRow {
   std::string mesh = {};
   std::size_t triangles = 0;
   std::size_t vertices = 0;
-  std::optional<double> radius = {};  // of the motion sphere [mm]; none: as long as each motion
+  double load_s = 0.0;                // from the mesh's file, before it is resampled
+  double load_cores = 0.0;            // kept busy meanwhile, in the mean
+  std::optional<double> radius = {};  // of the motion sphere [mm]; none: as far as motions lead
   std::string index = {}, activation = {}, solver = {};
 
-  std::size_t queries = 0;
+  std::size_t queries = 0;  // and steps: of the same motions, the first so many
   double build_s = 0.0;
+  double build_cores = 0.0;  // kept busy meanwhile, in the mean
   double bytes_per_triangle = 0.0;
-  double candidates_mean = 0.0;  // that the index proposed
-  double hits_mean = 0.0;        // of them, truly in reach
-  double planes_mean = 0.0;
-  double iterations_mean = 0.0;  // of the solver
+  double candidates_mean = 0.0;  // of the query: that the index proposed
+  double hits_mean = 0.0;        // of the query: of them, truly in reach
+  double reaching_share = 0.0;   // of the queries: that find a triangle
+  double planes_mean = 0.0;      // of the step: that the solver was given in the end
   double unsolved_share = 0.0;   // of the steps: ended in a status that is not ok
 
   /// Of the steps, with a solver other than the reference's, under a rule that accepts a motion for
@@ -46,15 +50,20 @@ struct BenchmarkRow {
   /// a thousandth of it.
   double worse_share = 0.0;
 
+  // The query, apart from the step: the same work for every index.
   std::optional<Timing> collect = {};  // candidates only
-  std::optional<Timing> query = {};    // candidates and the exact kernel
+  std::optional<Timing> query = {};    // all triangles in the ball, exact, with closest points
+
+  // The step.
+  std::optional<Timing> step = {};        // all of it, by itself
+  std::optional<Timing> step_query = {};  // none under a rule that searches the index by itself
   std::optional<Timing> activate = {};
   std::optional<Timing> solve = {};
-  std::optional<Timing> step = {};  // all of it
 
-  std::uint64_t hash = 0;   // of all steps: equal if they are equal, bit for bit
-  bool verified = false;    // what is not, is not timed
-  std::string remark = {};  // why it was not timed, or anything else worth saying
+  std::uint64_t hash = 0;                     // of all steps: equal if they are equal, bit for bit
+  std::vector<std::uint64_t> first_hashes{};  // of the first 1, 2, 4, 8, ... of them
+  bool verified = false;                      // what is not, is not timed
+  std::string remark = {};                    // why it was not timed, or anything else worth saying
 };
 
 /// Where it ran.
@@ -62,6 +71,7 @@ struct Machine {
   std::string processor;
   unsigned cores = 0;
   double memory_gib = 0.0;
+  std::string simd;  // the instruction set that keepout ran on
   std::string system;
   std::string compiler;
   std::string flags;
@@ -76,6 +86,10 @@ struct Benchmark {
   std::string command;  // that does it again
   std::uint64_t seed = 0;
   Machine machine;
+  std::map<std::string, std::string> parts = {};    // what each index, rule and solver is
+  std::map<std::string, std::string> remarks = {};  // what an index does more or less than others
+  std::size_t planned = 0;                          // rows; more than there are: it was stopped
+  std::optional<double> others_cores = {};  // that other processes kept busy meanwhile, if known
   std::vector<BenchmarkRow> rows = {};
 };
 

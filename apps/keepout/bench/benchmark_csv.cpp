@@ -26,27 +26,29 @@ std::string quoted(const std::string& text) {
   return result + "\"";
 }
 
-constexpr std::array stages = {&BenchmarkRow::collect, &BenchmarkRow::query,
-                               &BenchmarkRow::activate, &BenchmarkRow::solve, &BenchmarkRow::step};
-constexpr std::array stage_names = {"collect", "query", "activate", "solve", "step"};
+constexpr std::array stages = {&BenchmarkRow::collect,  &BenchmarkRow::query,
+                               &BenchmarkRow::step,     &BenchmarkRow::step_query,
+                               &BenchmarkRow::activate, &BenchmarkRow::solve};
+constexpr std::array stage_names = {"collect", "query", "step", "step_query", "activate", "solve"};
 
 }  // namespace
 
 void write_csv(std::ostream& out, const Benchmark& benchmark) {
-  out << "mesh,triangles,vertices,radius,queries,index,activation,solver,build_s,"
-         "bytes_per_triangle,candidates_mean,hits_mean,planes_mean,iterations_mean,unsolved_share,"
-         "worse_share";
+  out << "mesh,triangles,vertices,radius,queries,index,activation,solver,load_s,load_cores,build_s,"
+         "build_cores,bytes_per_triangle,candidates_mean,hits_mean,reaching_share,planes_mean,"
+         "unsolved_share,worse_share";
   for (const char* stage : stage_names) {
     for (const char* which : {"p50", "p99", "p999", "max"}) out << ',' << stage << "_us_" << which;
   }
-  out << ",hash,verified,remark\n";
+  out << ",hash,verified,remark,date,processor,simd,keepout,others_cores\n";
   for (const BenchmarkRow& row : benchmark.rows) {
     out << quoted(row.mesh) << ',' << row.triangles << ',' << row.vertices << ','
         << number(row.radius) << ',' << row.queries << ',' << row.index << ',' << row.activation
         << ',' << row.solver;
     for (const double value :
-         {row.build_s, row.bytes_per_triangle, row.candidates_mean, row.hits_mean, row.planes_mean,
-          row.iterations_mean, row.unsolved_share, row.worse_share}) {
+         {row.load_s, row.load_cores, row.build_s, row.build_cores, row.bytes_per_triangle,
+          row.candidates_mean, row.hits_mean, row.reaching_share, row.planes_mean,
+          row.unsolved_share, row.worse_share}) {
       out << ',' << number(value);
     }
     for (const auto stage : stages) {
@@ -59,7 +61,9 @@ void write_csv(std::ostream& out, const Benchmark& benchmark) {
           << ',' << number(timing->max);
     }
     out << ',' << std::hex << row.hash << std::dec << ',' << (row.verified ? "true" : "false")
-        << ',' << quoted(row.remark) << '\n';
+        << ',' << quoted(row.remark) << ',' << benchmark.date << ','
+        << quoted(benchmark.machine.processor) << ',' << benchmark.machine.simd << ','
+        << benchmark.machine.keepout << ',' << number(benchmark.others_cores) << '\n';
   }
 }
 

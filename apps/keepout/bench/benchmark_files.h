@@ -9,10 +9,11 @@
 namespace keepout::app {
 
 /// All of it: {"machine": {...}, "rows": [{"mesh": ..., "query_us": {"p50": ..., ...}, ...}, ...]}.
-/// null stands for what was not measured; a radius of null is that of each motion.
+/// null stands for what was not measured; a radius of null is as far as the motions lead.
 void write_json(std::ostream& out, const Benchmark& benchmark);
 
-/// The rows, one a line, below a line of names; what was not measured is empty.
+/// The rows, one a line, below a line of names; what was not measured is empty. Each says where it
+/// was measured, so that files can be put together.
 void write_csv(std::ostream& out, const Benchmark& benchmark);
 
 }  // namespace keepout::app

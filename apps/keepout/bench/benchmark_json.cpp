@@ -6,6 +6,7 @@
 
 #include "bench/benchmark_files.h"
 #include "bench/json_parts.h"
+#include "report/benchmark_verdict.h"
 
 namespace keepout::app {
 namespace {
@@ -22,28 +23,37 @@ std::string hexadecimal(std::uint64_t value) {
 }
 
 Json json_of(const BenchmarkRow& row) {
+  Json first_hashes = Json::object();
+  for (std::size_t k = 0; k < row.first_hashes.size(); ++k) {
+    first_hashes[std::to_string(std::size_t{1} << k)] = hexadecimal(row.first_hashes[k]);
+  }
   return {{"mesh", row.mesh},
           {"triangles", row.triangles},
           {"vertices", row.vertices},
+          {"load_s", row.load_s},
+          {"load_cores", row.load_cores},
           {"radius", or_null(row.radius)},
           {"queries", row.queries},
           {"index", row.index},
           {"activation", row.activation},
           {"solver", row.solver},
           {"build_s", row.build_s},
+          {"build_cores", row.build_cores},
           {"bytes_per_triangle", row.bytes_per_triangle},
           {"candidates_mean", row.candidates_mean},
           {"hits_mean", row.hits_mean},
+          {"reaching_share", row.reaching_share},
           {"planes_mean", row.planes_mean},
-          {"iterations_mean", row.iterations_mean},
           {"unsolved_share", row.unsolved_share},
           {"worse_share", row.worse_share},
           {"collect_us", json_of(row.collect)},
           {"query_us", json_of(row.query)},
+          {"step_us", json_of(row.step)},
+          {"step_query_us", json_of(row.step_query)},
           {"activate_us", json_of(row.activate)},
           {"solve_us", json_of(row.solve)},
-          {"step_us", json_of(row.step)},
           {"hash", hexadecimal(row.hash)},
+          {"hashes_of_first", std::move(first_hashes)},
           {"verified", row.verified},
           {"remark", row.remark}};
 }
@@ -57,6 +67,13 @@ void write_json(std::ostream& out, const Benchmark& benchmark) {
                     {"command", benchmark.command},
                     {"seed", benchmark.seed},
                     {"machine", json_of(benchmark.machine)},
+                    {"others_cores", or_null(benchmark.others_cores)},
+                    {"complete", benchmark.rows.size() >= benchmark.planned},
+                    {"planned_rows", benchmark.planned},
+                    {"headline", headline(benchmark)},
+                    {"account", account(benchmark)},
+                    {"parts", benchmark.parts},
+                    {"remarks", benchmark.remarks},
                     {"rows", std::move(rows)}};
   out << all.dump(2) << '\n';
 }

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "number_text.h"
+#include "report/benchmark_verdict.h"
 
 namespace keepout::app {
 namespace {
@@ -32,27 +33,48 @@ std::string share(double value, const char* of_what) {
 
 }  // namespace
 
+void print_machine(std::ostream& out, const Machine& machine) {
+  out << machine.processor << ", " << counted(machine.cores, "core") << ", SIMD target "
+      << machine.simd << '\n'
+      << "build in s, and the cores that it kept busy; times in us, medians unless said\n"
+         "collect, query: what the index proposes, and all triangles where the rule looks; for "
+         "every "
+         "index the same work, apart from the step\n"
+         "find, activate, solve: stages of the step; '-' where the rule searches the tree by "
+         "itself\n";
+}
+
+void print_verdict(std::ostream& out, const Benchmark& benchmark) {
+  for (const auto& [name, remark] : benchmark.remarks) {
+    out << '\n' << name << ": " << remark;
+  }
+  out << '\n' << headline(benchmark) << '\n' << account(benchmark) << '\n';
+}
+
 void print_table_head(std::ostream& out) {
-  out << formatted("%-11s %-16s %-10s %-13s %6s %7s %6s %7s %7s %9s %9s %9s %9s %9s %9s %9s\n",
-                   "r mm", "index", "rule", "solver", "build", "B/tri", "cand.", "hits", "planes",
-                   "collect", "query", "activate", "solve", "step p50", "p99", "p99.9");
+  out << formatted(
+      "%-6s %-18s %-9s %-12s %6s %5s %6s %7s %7s %7s | %8s %8s | %8s %8s %8s %8s %8s %8s\n", "r mm",
+      "index", "rule", "solver", "build", "cores", "B/tri", "cand.", "hits", "planes", "collect",
+      "query", "find", "activate", "solve", "step p50", "p99", "p99.9");
 }
 
 void print_table_row(std::ostream& out, const BenchmarkRow& row) {
   const std::string radius = row.radius ? trimmed(*row.radius) : "motion";
-  out << formatted("%-11s %-16s %-10s %-13s ", radius.c_str(), row.index.c_str(),
+  out << formatted("%-6s %-18s %-9s %-12s ", radius.c_str(), row.index.c_str(),
                    row.activation.c_str(), row.solver.c_str());
   if (!row.step) {
     out << row.remark << '\n';
     return;
   }
-  out << formatted("%6s %7s %6s %7s %7s %9s %9s %9s %9s %9s %9s %9s",
-                   rounded(row.build_s, 2).c_str(), rounded(row.bytes_per_triangle).c_str(),
-                   rounded(row.candidates_mean, 2).c_str(), rounded(row.hits_mean).c_str(),
-                   rounded(row.planes_mean).c_str(), median(row.collect).c_str(),
-                   median(row.query).c_str(), median(row.activate).c_str(),
+  out << formatted("%6s %5s %6s %7s %7s %7s | %8s %8s | %8s %8s %8s %8s %8s %8s",
+                   rounded(row.build_s, 2).c_str(), rounded(row.build_cores, 2).c_str(),
+                   rounded(row.bytes_per_triangle).c_str(), rounded(row.candidates_mean, 2).c_str(),
+                   rounded(row.hits_mean).c_str(), rounded(row.planes_mean).c_str(),
+                   median(row.collect).c_str(), median(row.query).c_str(),
+                   median(row.step_query).c_str(), median(row.activate).c_str(),
                    median(row.solve).c_str(), median(row.step).c_str(), time(row.step->p99).c_str(),
                    time(row.step->p999).c_str())
+      << share(1.0 - row.reaching_share, "reach nothing")
       << share(row.unsolved_share, "without an answer") << share(row.worse_share, "worse") << '\n';
 }
 

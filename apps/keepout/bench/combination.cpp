@@ -17,7 +17,7 @@ constexpr const char* usual_index = "fcl_obbrss";
 constexpr const char* usual_solver = "nlopt_slsqp";
 
 using Names = std::vector<std::string>;
-using Radii = std::vector<std::optional<double>>;
+using Radii = std::vector<double>;
 
 template <class Table>
 bool has(const Table& table, const std::string& name) {
@@ -32,9 +32,11 @@ class Matrix {
     for (const std::string& index : indices) {
       for (const std::string& activation : activations) {
         for (const std::string& solver : solvers) {
-          // Its radius is that of the motion.
-          const Radii chosen = activation == certified ? Radii{std::nullopt} : radii;
-          for (const auto& radius : chosen) add({index, activation, solver, radius});
+          if (activation == certified) {
+            add({index, activation, solver, std::nullopt});
+            continue;
+          }
+          for (const double radius : radii) add({index, activation, solver, radius});
         }
       }
     }
@@ -99,8 +101,7 @@ bool names_parts(const Selection& selection) {
 }
 
 std::vector<Combination> combinations_of(const Selection& selection) {
-  const Radii radii =
-      selection.radii.empty() ? Radii{5.0, 1.0, 0.25, std::nullopt} : selection.radii;
+  const Radii radii = selection.radii.empty() ? Radii{5.0, 1.0, 0.25} : selection.radii;
   if (!names_parts(selection)) return default_matrix(radii);
   Matrix matrix;
   matrix.add(or_else(selection.indices, {reference_index}),

@@ -11,7 +11,7 @@ namespace keepout::app {
 /// One way to put a step together.
 struct Combination {
   std::string index, activation, solver;
-  std::optional<double> radius;  // of the motion sphere [mm]; none: as long as each motion
+  std::optional<double> radius;  // of the motion sphere [mm]; none: as far as motions lead
 
   bool operator==(const Combination&) const = default;
 };
@@ -19,7 +19,7 @@ struct Combination {
 /// What the user asked for; empty lists are up to us.
 struct Selection {
   std::vector<std::string> indices, activations, solvers;
-  std::vector<std::optional<double>> radii;
+  std::vector<double> radii;
 };
 
 /// Whether any part was asked for by name.

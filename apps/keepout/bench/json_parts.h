@@ -27,10 +27,11 @@ inline Json json_of(const Timing& timing) {
 
 inline Json json_of(const Machine& machine) {
   return {{"processor", machine.processor},   {"cores", machine.cores},
-          {"memory_gib", machine.memory_gib}, {"system", machine.system},
-          {"compiler", machine.compiler},     {"flags", machine.flags},
-          {"build_type", machine.build_type}, {"keepout", machine.keepout},
-          {"libraries", machine.libraries},   {"clock_ns", machine.clock_ns}};
+          {"memory_gib", machine.memory_gib}, {"simd", machine.simd},
+          {"system", machine.system},         {"compiler", machine.compiler},
+          {"flags", machine.flags},           {"build_type", machine.build_type},
+          {"keepout", machine.keepout},       {"libraries", machine.libraries},
+          {"clock_ns", machine.clock_ns}};
 }
 
 }  // namespace keepout::app

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "bench/parts.h"
+#include "keepout/simd_target.h"
 #include "keepout/version.h"
 #include "machine.h"
 
@@ -46,6 +47,7 @@ Machine this_machine() {
   return {.processor = processor(),
           .cores = std::thread::hardware_concurrency(),
           .memory_gib = static_cast<double>(total_memory()) / static_cast<double>(1 << 30),
+          .simd = std::string(simd_target()),
           .system = operating_system(),
           .compiler = KEEPOUT_COMPILER,
           .flags = KEEPOUT_FLAGS,

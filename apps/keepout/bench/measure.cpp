@@ -2,16 +2,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/measure.h"
 
+#include <algorithm>
 #include <bit>
 #include <chrono>
 #include <string>
+#include <vector>
 
+#include "bench/bit_hash.h"
 #include "number_text.h"
 
 namespace keepout::app {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+using Times = std::vector<double>;  // [us]
 
 /// So many steps are asked for whatever the time, that medians and 99.9 % compare; unless it takes
 /// so many times the time that there is.
@@ -24,46 +28,6 @@ constexpr std::size_t fewest_steps = 5;
 double microseconds(Clock::duration duration) {
   return std::chrono::duration<double, std::micro>(duration).count();
 }
-
-/// Adds up what a solver does; a step may ask it more than once.
-class CountingSolver final : public Solver {
- public:
-  explicit CountingSolver(Solver& solver) : solver_(solver) {}
-
-  void reserve(int variables, int rows) override { solver_.reserve(variables, rows); }
-
-  SolveStatus solve(const StepProblem& problem, Solution& solution) noexcept override {
-    const SolveStatus status = solver_.solve(problem, solution);
-    iterations_ += static_cast<std::size_t>(solution.iterations);
-    return status;
-  }
-
-  std::size_t iterations() const { return iterations_; }
-
- private:
-  Solver& solver_;
-  std::size_t iterations_ = 0;
-};
-
-/// Of all bits of all answers (FNV-1a).
-class AnswerHash {
- public:
-  void add(const Answer& answer) {
-    add(static_cast<std::uint64_t>(answer.status));
-    for (const double x : answer.motion) add(std::bit_cast<std::uint64_t>(x + 0.0));  // -0 is 0
-  }
-
-  std::uint64_t value() const { return value_; }
-
- private:
-  void add(std::uint64_t word) {
-    for (int byte = 0; byte < 8; ++byte) {
-      value_ = (value_ ^ ((word >> (8 * byte)) & 0xFF)) * 0x100000001B3;
-    }
-  }
-
-  std::uint64_t value_ = 0xCBF29CE484222325;
-};
 
 /// A wrong answer; one that is withheld is not.
 bool is_wrong(const Answer& got, const Answer& expected, double accuracy, const Motion& motion,
@@ -81,92 +45,142 @@ bool is_worse(const Answer& got, const Answer& expected, const Motion& motion) {
              (expected.motion - motion.desired).norm() + 1e-3 * motion.desired.norm();
 }
 
-/// The number of steps that there was time for; the row says whether they were right.
-std::size_t verify(const Pipeline& pipeline, std::span<const Motion> motions, Reference& reference,
-                   double accuracy, double seconds, BenchmarkRow& row) {
-  CountingSolver solver(pipeline.solver);
-  const Pipeline watched{pipeline.mesh, pipeline.index, pipeline.rule,
-                         solver,        pipeline.work,  pipeline.setting};
-  AnswerHash hash;
-  std::size_t candidates = 0, hits = 0, planes = 0, unsolved = 0, worse = 0, wrong = 0, count = 0;
-  Clock::duration spent{};
-  for (; count < motions.size(); ++count) {
-    const double limit = count < enough_steps ? patience * seconds : seconds;
-    if (count >= fewest_steps && microseconds(spent) > 1e6 * limit) break;
-    const Clock::time_point start = Clock::now();
-    const Answer got = watched.ask(motions[count]);
-    spent += Clock::now() - start;
-    candidates += pipeline.work.candidates.size();
-    hits += pipeline.work.hits.size();
-    planes += pipeline.work.planes.size();
-    hash.add(got);
-    if (!is_ok(got.status)) ++unsolved;
-    const Answer& expected = reference.answer(count);
-    if (is_wrong(got, expected, accuracy, motions[count], pipeline.setting)) ++wrong;
-    if (is_worse(got, expected, motions[count])) ++worse;
-  }
-  const auto mean = [&](std::size_t sum) {
-    return static_cast<double>(sum) / static_cast<double>(count);
-  };
-  row.queries = count;
-  row.candidates_mean = mean(candidates);
-  row.hits_mean = mean(hits);
-  row.planes_mean = mean(planes);
-  row.iterations_mean = mean(solver.iterations());
-  row.unsolved_share = mean(unsolved);
-  row.worse_share = mean(worse);
-  row.hash = hash.value();
-  row.verified = wrong == 0;
-  if (wrong > 0) {
-    row.remark = "not timed: " + grouped(wrong) + " of " + counted(count, "step") +
-                 " are not those of the reference";
-  }
-  return count;
-}
+struct Stages {
+  Times query, activate, solve;
+};
 
-Timing time_collect(const Pipeline& pipeline, std::span<const Ball> balls) {
-  std::vector<double> times;
-  times.reserve(balls.size());
-  for (const Ball& ball : balls) {
-    pipeline.work.candidates.clear();
-    const Clock::time_point start = Clock::now();
-    pipeline.index.collect(ball, pipeline.work.candidates);
-    times.push_back(microseconds(Clock::now() - start));
-  }
-  return timing_of(times);
-}
-
-void time_steps(const Pipeline& pipeline, std::span<const Motion> motions, BenchmarkRow& row) {
-  std::vector<double> query, activate, solve, all;
-  for (std::vector<double>* times : {&query, &activate, &solve, &all}) {
-    times->reserve(motions.size());
-  }
+/// As many as there is time for.
+std::vector<Answer> ask_by_stages(MotionConstraint& constraint, std::span<const Motion> motions,
+                                  double seconds, const StopSignal& stop, Stages& stages) {
+  std::vector<Answer> answers;
+  double spent = 0.0;  // [us]
   for (const Motion& motion : motions) {
+    const double limit = answers.size() < enough_steps ? patience * seconds : seconds;
+    if ((answers.size() >= fewest_steps && spent > 1e6 * limit) || stop.has_come()) break;
     StageTimes times;
-    pipeline.ask(motion, times);
-    query.push_back(1e-3 * static_cast<double>(times.query));
-    activate.push_back(1e-3 * static_cast<double>(times.activation));
-    solve.push_back(1e-3 * static_cast<double>(times.solve));
-    all.push_back(1e-3 * static_cast<double>(times.total()));
+    const Step step = constraint.step(motion, times);
+    answers.push_back({step.status, step.motion});
+    stages.query.push_back(1e-3 * static_cast<double>(times.query));
+    stages.activate.push_back(1e-3 * static_cast<double>(times.activation));
+    stages.solve.push_back(1e-3 * static_cast<double>(times.solve));
+    spent += 1e-3 * static_cast<double>(times.total());
   }
-  row.query = timing_of(query);
-  row.activate = timing_of(activate);
-  row.solve = timing_of(solve);
-  row.step = timing_of(all);
+  return answers;
+}
+
+/// All of them, as a control loop would ask.
+std::vector<Answer> ask(MotionConstraint& constraint, std::span<const Motion> motions,
+                        const StopSignal& stop, Times& times, double& planes_mean) {
+  std::vector<Answer> answers;
+  std::size_t planes = 0;
+  for (const Motion& motion : motions) {
+    if (stop.has_come()) break;
+    const Clock::time_point start = Clock::now();
+    const Step step = constraint.step(motion);
+    times.push_back(microseconds(Clock::now() - start));
+    answers.push_back({step.status, step.motion});
+    planes += step.planes.size();
+  }
+  planes_mean = static_cast<double>(planes) / static_cast<double>(motions.size());
+  return answers;
+}
+
+/// How many answers are wrong; the row gets what can be said of all.
+std::size_t judge(std::span<const Answer> answers, std::span<const Motion> motions,
+                  Reference& reference, double accuracy, BenchmarkRow& row) {
+  BitHash hash;
+  std::size_t unsolved = 0, worse = 0, wrong = 0;
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    const Answer& got = answers[i];
+    const Answer& expected = reference.answer(i);
+    hash.add(static_cast<std::uint64_t>(got.status));
+    for (const double x : got.motion) hash.add(x);
+    if (std::has_single_bit(i + 1)) row.first_hashes.push_back(hash.value());
+    if (!is_ok(got.status)) ++unsolved;
+    if (is_wrong(got, expected, accuracy, motions[i], reference.setting())) ++wrong;
+    if (is_worse(got, expected, motions[i])) ++worse;
+  }
+  const auto count = static_cast<double>(answers.size());
+  row.unsolved_share = static_cast<double>(unsolved) / count;
+  row.worse_share = static_cast<double>(worse) / count;
+  row.hash = hash.value();
+  return wrong;
+}
+
+struct QueryTimes {
+  Times collect, query;
+};
+
+/// How many queries found something else than the reference. Whatever the index has decided or
+/// computed already, all do the same work: candidates, exact test, closest points, sorted.
+std::size_t ask_for_triangles(const SpatialIndex& index, std::size_t count, Reference& reference,
+                              const StopSignal& stop, QueryTimes& times, BenchmarkRow& row) {
+  Workspace& work = reference.work();
+  // Before any is timed, so that caches are the same for the first index as for the last.
+  std::vector<std::uint64_t> expected;
+  for (std::size_t i = 0; i < count; ++i) expected.push_back(reference.hits_hash(i));
+  std::size_t candidates = 0, hits = 0, reaching = 0, wrong = 0;
+  for (std::size_t i = 0; i < count && !stop.has_come(); ++i) {
+    const Ball& ball = reference.balls()[i];
+    work.candidates.clear();
+    work.hits.clear();
+    const Clock::time_point start = Clock::now();
+    index.collect(ball, work.candidates);
+    const Clock::time_point collected = Clock::now();
+    refine(reference.mesh(), ball, work.candidates.view(), work.hits);
+    const Clock::time_point end = Clock::now();
+    times.collect.push_back(microseconds(collected - start));
+    times.query.push_back(microseconds(end - start));
+    candidates += work.candidates.size();
+    hits += work.hits.size();
+    reaching += work.hits.empty() ? 0 : 1;
+    wrong += hash_of(work.hits.view()) == expected[i] ? 0 : 1;
+  }
+  row.candidates_mean = static_cast<double>(candidates) / static_cast<double>(count);
+  row.hits_mean = static_cast<double>(hits) / static_cast<double>(count);
+  row.reaching_share = static_cast<double>(reaching) / static_cast<double>(count);
+  return wrong;
 }
 
 }  // namespace
 
-void measure(const Pipeline& pipeline, std::span<const Motion> motions, Reference& reference,
-             double accuracy, double seconds, BenchmarkRow& row) {
-  if (!reference.is_found_by(pipeline.index)) {
+void measure(const Assembly& assembly, std::span<const Motion> motions, Reference& reference,
+             double seconds, const StopSignal& stop, BenchmarkRow& row) {
+  if (!reference.is_found_by(assembly.index)) {
     row.remark = "not timed: the triangles are not those of brute force";
     return;
   }
-  const std::size_t count = verify(pipeline, motions, reference, accuracy, seconds, row);
+  Stages stages;
+  const std::vector<Answer> staged =
+      ask_by_stages(assembly.constraint, motions, seconds, stop, stages);
+  const std::span<const Motion> asked = motions.first(staged.size());
+  Times steps;
+  const std::vector<Answer> answers = ask(assembly.constraint, asked, stop, steps, row.planes_mean);
+  if (stop.has_come()) return;
+  row.queries = asked.size();
+  std::size_t wrong = judge(answers, asked, reference, assembly.accuracy, row);
+  // The same parts that were asked for the same: whatever differs is wrong in one of the two.
+  for (std::size_t i = 0; i < asked.size(); ++i) wrong += staged[i] == answers[i] ? 0 : 1;
+  QueryTimes queries;
+  const std::size_t missed =
+      ask_for_triangles(assembly.index, asked.size(), reference, stop, queries, row);
+  if (stop.has_come()) return;
+  if (missed > 0) {
+    row.remark = "not timed: " + grouped(missed) + " of " + grouped(asked.size()) +
+                 " queries do not find what the reference finds";
+  }
+  if (wrong > 0) {
+    row.remark = "not timed: " + grouped(wrong) + " of " + counted(asked.size(), "step") +
+                 " are not those of the reference";
+  }
+  row.verified = wrong == 0 && missed == 0;
   if (!row.verified) return;
-  row.collect = time_collect(pipeline, reference.balls().first(count));
-  time_steps(pipeline, motions.first(count), row);
+  row.collect = timing_of(queries.collect);
+  row.query = timing_of(queries.query);
+  row.step = timing_of(steps);
+  if (!assembly.searches) row.step_query = timing_of(stages.query);
+  row.activate = timing_of(stages.activate);
+  row.solve = timing_of(stages.solve);
 }
 
 }  // namespace keepout::app

@@ -5,21 +5,32 @@
 #include <span>
 
 #include "bench/benchmark.h"
-#include "bench/pipeline.h"
 #include "bench/reference.h"
+#include "keepout/step/motion_constraint.h"
+#include "stop_signal.h"
 
 namespace keepout::app {
 
-/// First asks the pipeline for the motions, in order and for so many seconds (or up to four times
-/// as many, to come to 1000 steps), holds each step to the reference and counts what went into it;
-/// then, if all were right, times the same steps.
+/// What a row is about: parts put together as any user has them.
+struct Assembly {
+  const SpatialIndex& index;     // that of the constraint
+  MotionConstraint& constraint;  // its tips taken as they are: the motions do not follow its steps
+  bool searches;                 // whether its rule searches the index by itself
+  double accuracy;               // of its solver; 0: its steps are the reference's, bit for bit
+};
+
+/// Asks the constraint for the motions, in order and for so many seconds (or up to four times as
+/// many, to come to 1000 steps), stage by stage; then for the same steps as a whole; then the index
+/// for all triangles where the rule looks for them at first. Each answer of each time is held to
+/// the reference afterwards, and unless all are right no time is taken down.
 ///
-/// Steps must be those of the reference bit for bit if the solver is the same, `accuracy` being 0;
-/// else within `accuracy` of the length of the motion. A solver may give up, but not be wrong.
-/// Under a rule that proves each motion, another solver's may be worse, of which the row tells.
+/// Steps must be those of the reference bit for bit if the accuracy is 0; else within so much of
+/// the length of the motion. A solver may give up, but not be wrong. Under a rule that proves each
+/// motion, another solver's may be worse, of which the row tells. Triangles and their closest
+/// points must be those of the reference bit for bit.
 ///
-/// Fills the row from its queries on.
-void measure(const Pipeline& pipeline, std::span<const Motion> motions, Reference& reference,
-             double accuracy, double seconds, BenchmarkRow& row);
+/// Fills the row from its queries on. Of no use when it was stopped meanwhile.
+void measure(const Assembly& assembly, std::span<const Motion> motions, Reference& reference,
+             double seconds, const StopSignal& stop, BenchmarkRow& row);
 
 }  // namespace keepout::app

@@ -6,23 +6,17 @@
 
 namespace keepout::app {
 
-StepOptions options_of(const RuleSetting& setting, const Motion& motion) {
-  if (setting.proves_motions()) return {.radius = 5.0, .margin = setting.margin};
-  return {.radius = setting.radius.value_or(motion.desired.norm())};
+StepOptions options_of(const RuleSetting& setting) {
+  return {.radius = setting.radius.value_or(5.0),
+          .margin = setting.proves_motions() ? setting.margin : 0.0};
 }
 
 Ball ball_of(const RuleSetting& setting, const Activation& rule, const Motion& motion) {
-  return rule.region(surroundings_of(motion, options_of(setting, motion), rule.reach()));
+  return rule.region(surroundings_of(motion, options_of(setting), rule.reach()));
 }
 
 Answer Pipeline::ask(const Motion& motion) const {
-  const Step result = step(mesh, index, rule, solver, motion, options_of(setting, motion), work);
-  return {result.status, result.motion};
-}
-
-Answer Pipeline::ask(const Motion& motion, StageTimes& times) const {
-  const StepOptions options = options_of(setting, motion);
-  const Step result = step(mesh, index, rule, solver, motion, options, work, StageClock(times));
+  const Step result = step(mesh, index, rule, solver, motion, options_of(setting), work);
   return {result.status, result.motion};
 }
 

@@ -11,7 +11,6 @@
 #include "keepout/step/motion.h"
 #include "keepout/step/options.h"
 #include "keepout/step/solver.h"
-#include "keepout/step/stages.h"
 #include "keepout/step/workspace.h"
 
 namespace keepout::app {
@@ -19,15 +18,15 @@ namespace keepout::app {
 /// A rule as it is measured.
 struct RuleSetting {
   std::string activation;
-  std::optional<double> radius;  // of the motion sphere; none: as long as each motion [mm]
+  std::optional<double> radius;  // of the motion sphere; none: as far as motions lead [mm]
   double margin = 0.0;           // that certified keeps; the paper's rules take the tip as is [mm]
 
   /// Whether a motion is accepted for its proof, and not because a solver says that it is the best.
   bool proves_motions() const { return activation == "certified"; }
 };
 
-/// The options of one step: the certified rule looks only where the motion leads, within 5 mm.
-StepOptions options_of(const RuleSetting& setting, const Motion& motion);
+/// The certified rule looks only where the motion leads, within 5 mm.
+StepOptions options_of(const RuleSetting& setting);
 
 /// Where the rule looks for triangles at first when it is asked for the motion.
 Ball ball_of(const RuleSetting& setting, const Activation& rule, const Motion& motion);
@@ -40,7 +39,7 @@ struct Answer {
   bool operator==(const Answer&) const = default;
 };
 
-/// All that a step needs; views only.
+/// All that a step needs, put together by hand, the rule in the form that is given; views only.
 struct Pipeline {
   const Mesh& mesh;
   const SpatialIndex& index;
@@ -50,7 +49,6 @@ struct Pipeline {
   const RuleSetting& setting;
 
   Answer ask(const Motion& motion) const;
-  Answer ask(const Motion& motion, StageTimes& times) const;
 };
 
 }  // namespace keepout::app

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "bench/bit_hash.h"
 #include "keepout/error.h"
 #include "keepout/index/brute_force.h"
 #include "keepout/solvers/active_set.h"
@@ -22,6 +23,17 @@ bool is_same(const Hit& one, const Hit& other) {
 }
 
 }  // namespace
+
+std::uint64_t hash_of(std::span<const Hit> hits) {
+  BitHash hash;
+  for (const Hit& hit : hits) {
+    hash.add(std::uint64_t{hit.triangle});
+    for (const double x : hit.closest.offset) hash.add(x);
+    hash.add(hit.closest.distance);
+    hash.add(static_cast<std::uint64_t>(hit.closest.feature));
+  }
+  return hash.value();
+}
 
 Reference::Reference(std::shared_ptr<const Mesh> mesh, const SpatialIndex& index, Activation& rule,
                      Workspace& work, const RuleSetting& setting, std::span<const Motion> motions)
@@ -54,6 +66,13 @@ Reference::~Reference() = default;
 const Answer& Reference::answer(std::size_t motion) {
   while (answers_.size() <= motion) answers_.push_back(pipeline_.ask(motions_[answers_.size()]));
   return answers_[motion];
+}
+
+std::uint64_t Reference::hits_hash(std::size_t motion) {
+  while (hits_hashes_.size() <= motion) {
+    hits_hashes_.push_back(hash_of(hits_of(pipeline_.index, balls_[hits_hashes_.size()])));
+  }
+  return hits_hashes_[motion];
 }
 
 bool Reference::is_found_by(const SpatialIndex& index) {

@@ -11,8 +11,12 @@
 
 namespace keepout::app {
 
+/// Of what a query finds, to the last bit.
+std::uint64_t hash_of(std::span<const Hit> hits);
+
 /// What every index and solver is held to, for one rule and radius on one mesh: brute force, in a
-/// sample of the places; everywhere, pd_tree and active_set, which are held to brute force too.
+/// sample of the places; everywhere, pd_tree and active_set with the rule's plain form, which are
+/// held to brute force too.
 class Reference {
  public:
   /// All must outlive this. Throws Error when the reference's own parts are not right: a fault of
@@ -27,7 +31,14 @@ class Reference {
   /// The step that is expected for a motion.
   const Answer& answer(std::size_t motion);
 
-  /// Where the rule looks, for each motion.
+  /// The hash of what a query finds there.
+  std::uint64_t hits_hash(std::size_t motion);
+
+  const Mesh& mesh() const noexcept { return *mesh_; }
+  Workspace& work() const noexcept { return work_; }
+  const RuleSetting& setting() const noexcept { return setting_; }
+
+  /// Where the rule looks at first, for each motion.
   std::span<const Ball> balls() const noexcept { return balls_; }
 
   /// Whether the index finds in every sampled ball what brute force finds, to the bit.
@@ -49,7 +60,8 @@ class Reference {
   Pipeline pipeline_;
   std::vector<Ball> balls_;
   std::vector<Sample> samples_;
-  std::vector<Answer> answers_;  // as far as they have been asked for
+  std::vector<Answer> answers_;             // as far as they have been asked for
+  std::vector<std::uint64_t> hits_hashes_;  // likewise
   bool fits_ = true;
 };
 

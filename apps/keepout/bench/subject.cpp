@@ -5,24 +5,14 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "keepout/adapters/load_mesh.h"
+#include "bench/used_cores.h"
 #include "keepout/error.h"
-#include "keepout/fixtures/real_mesh.h"
 #include "keepout/fixtures/refine_mesh.h"
 #include "keepout/fixtures/resample_mesh.h"
+#include "named_mesh.h"
 #include "number_text.h"
 
 namespace keepout::app {
-namespace {
-
-std::filesystem::path path_of(const std::string& mesh) {
-  const auto known = real_meshes();
-  const bool is_fixture = std::find(known.begin(), known.end(), mesh) != known.end();
-  return is_fixture ? fixture_path(mesh) : std::filesystem::path(mesh);
-}
-
-}  // namespace
-
 std::vector<Subject> subjects_of(std::span<const std::string> meshes,
                                  std::span<const std::size_t> sizes) {
   std::vector<Subject> subjects;
@@ -54,16 +44,23 @@ std::string title_of(const Subject& subject) {
   return subject.mesh + ", " + counted(subject.triangles, "triangle");
 }
 
-std::shared_ptr<const Mesh> make_mesh(const Subject& subject) {
-  auto mesh = load_mesh(path_of(subject.mesh)).mesh;
-  if (subject.triangles == 0) return mesh;
+LoadedSubject load(const Subject& subject) {
+  const UsedCores used;
+  LoadedSubject loaded{.mesh = load_named_mesh(subject.mesh).mesh, .seconds = 0.0, .cores = 0.0};
+  loaded.seconds = used.seconds();
+  loaded.cores = used.own();
+  if (subject.triangles == 0) return loaded;
+  std::shared_ptr<const Mesh>& mesh = loaded.mesh;
   constexpr double largest_extent = 150.0;  // [mm]
   Surface bunny{{mesh->vertices().begin(), mesh->vertices().end()},
                 {mesh->triangles().begin(), mesh->triangles().end()}};
   mesh.reset();
   constexpr std::uint64_t seed = 1;
-  return std::make_shared<const Mesh>(
+  mesh = std::make_shared<const Mesh>(
       resampled(scaled(std::move(bunny), largest_extent), subject.triangles, seed));
+  return loaded;
 }
+
+std::shared_ptr<const Mesh> make_mesh(const Subject& subject) { return load(subject).mesh; }
 
 }  // namespace keepout::app

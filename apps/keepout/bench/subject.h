@@ -32,7 +32,15 @@ std::string label_of(const Subject& subject);
 /// "bunny, 989,376 triangles".
 std::string title_of(const Subject& subject);
 
+/// A mesh, and what reading its file took, before anything is resampled.
+struct LoadedSubject {
+  std::shared_ptr<const Mesh> mesh;
+  double seconds;  // [s]
+  double cores;    // kept busy meanwhile, in the mean
+};
+
 /// Reads or makes it: the bunny 150 mm large, as in the paper. Throws Error.
+LoadedSubject load(const Subject& subject);
 std::shared_ptr<const Mesh> make_mesh(const Subject& subject);
 
 }  // namespace keepout::app

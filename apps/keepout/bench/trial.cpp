@@ -2,38 +2,53 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/trial.h"
 
-#include <chrono>
 #include <new>
 
 #include "bench/measure.h"
 #include "bench/parts.h"
+#include "bench/used_cores.h"
 #include "keepout/activation/registry.h"
 #include "keepout/error.h"
+#include "keepout/factory/make_motion_constraint.h"
 #include "keepout/fixtures/motions.h"
 #include "keepout/index/pd_tree.h"
 #include "machine.h"
 #include "number_text.h"
 
 namespace keepout::app {
+namespace {
+
+/// Room for every step that shall be timed.
+constexpr Capacity room{
+    .triangles = std::size_t{1} << 18, .planes = std::size_t{1} << 16, .variables = 3};
+
+}  // namespace
 
 /// The index at hand, and what it took.
 struct Trial::Built {
   std::string name;
-  std::unique_ptr<SpatialIndex> index = nullptr;
+  std::shared_ptr<const SpatialIndex> index = nullptr;
   double seconds = 0.0;
-  std::string refusal = {};  // why there is none
+  double cores = 0.0;                            // kept busy meanwhile
+  std::map<std::string, bool> searched_by = {};  // each rule that was asked whether it searches it
+  std::string refusal = {};                      // why there is none
 };
 
-Trial::Trial(const Subject& subject, const TrialSettings& settings, MemoryTaken& memory)
-    : subject_(subject), settings_(settings), memory_(memory), mesh_(make_mesh(subject)) {
+Trial::Trial(const Subject& subject, const TrialSettings& settings, MemoryTaken& memory,
+             const StopSignal& stop)
+    : subject_(subject),
+      settings_(settings),
+      memory_(memory),
+      stop_(stop),
+      loaded_(load(subject)),
+      mesh_(std::move(loaded_.mesh)) {
   reference_index_ = std::make_unique<PdTree>(mesh_);
   Random random(settings_.seed);
   const MotionKind kind{.clearance = settings_.margin};
   motions_ = settings_.poses == Poses::contact
                  ? contact_motions(*mesh_, *reference_index_, settings_.queries, kind, random)
                  : unrelated_motions(*mesh_, settings_.queries, kind, random);
-  work_ = std::make_unique<Workspace>(
-      Capacity{.triangles = std::size_t{1} << 18, .planes = std::size_t{1} << 16, .variables = 3});
+  work_ = std::make_unique<Workspace>(room);
 }
 
 Trial::~Trial() = default;
@@ -43,15 +58,6 @@ Activation& Trial::rule(const std::string& activation) {
   if (!made) {
     made = make_activation(activation, mesh_);
     made->reserve(work_->candidates.capacity());
-  }
-  return *made;
-}
-
-Solver& Trial::solver(const std::string& name) {
-  std::unique_ptr<Solver>& made = solvers_[name];
-  if (!made) {
-    made = make_solver(name);
-    made->reserve(3, static_cast<int>(work_->planes.capacity()));
   }
   return *made;
 }
@@ -82,10 +88,10 @@ const Trial::Built& Trial::build(const std::string& index) {
     }
   }
   try {
-    using Clock = std::chrono::steady_clock;
-    const Clock::time_point start = Clock::now();
+    const UsedCores used;
     built_->index = backend.make(mesh_);
-    built_->seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    built_->seconds = used.seconds();
+    built_->cores = used.own();
     memory_[index] = static_cast<double>(built_->index->memory()) / count;
   } catch (const Error& error) {
     built_->refusal = std::string("not built: ") + error.what();
@@ -95,10 +101,18 @@ const Trial::Built& Trial::build(const std::string& index) {
   return *built_;
 }
 
+bool Trial::is_searched_by(const std::string& activation) {
+  const auto [known, is_new] = built_->searched_by.try_emplace(activation);
+  if (is_new) known->second = rule(activation).searching(*built_->index) != nullptr;
+  return known->second;
+}
+
 BenchmarkRow Trial::measure(const Combination& combination) {
   BenchmarkRow row{.mesh = label_of(subject_),
                    .triangles = mesh_->triangle_count(),
                    .vertices = mesh_->vertex_count(),
+                   .load_s = loaded_.seconds,
+                   .load_cores = loaded_.cores,
                    .radius = combination.radius,
                    .index = combination.index,
                    .activation = combination.activation,
@@ -107,17 +121,11 @@ BenchmarkRow Trial::measure(const Combination& combination) {
   row.remark = built.refusal;
   if (!built.index) return row;
   row.build_s = built.seconds;
+  row.build_cores = built.cores;
   row.bytes_per_triangle =
       static_cast<double>(built.index->memory()) / static_cast<double>(mesh_->triangle_count());
 
   const RuleSetting setting{combination.activation, combination.radius, settings_.margin};
-  // As MotionConstraint does it.
-  Activation& plain = rule(combination.activation);
-  const std::unique_ptr<Activation> searching = plain.searching(*built.index);
-  if (searching) searching->reserve(work_->candidates.capacity());
-  const Pipeline pipeline{
-      *mesh_, *built.index, searching ? *searching : plain, solver(combination.solver),
-      *work_, setting};
   const double accuracy =
       combination.solver == "active_set"
           ? 0.0
@@ -128,7 +136,15 @@ BenchmarkRow Trial::measure(const Combination& combination) {
                  " triangles are in reach; ask for a smaller radius";
     return row;
   }
-  app::measure(pipeline, motions_, expected, accuracy, settings_.seconds, row);
+  MotionConstraint constraint = make_motion_constraint(mesh_, built.index,
+                                                       {.activation = combination.activation,
+                                                        .solver = combination.solver,
+                                                        .radius = options_of(setting).radius,
+                                                        .margin = options_of(setting).margin,
+                                                        .inside = Inside::taken_as_is,
+                                                        .capacity = room});
+  app::measure({*built.index, constraint, is_searched_by(combination.activation), accuracy},
+               motions_, expected, settings_.seconds, stop_, row);
   return row;
 }
 

@@ -13,6 +13,7 @@
 #include "bench/combination.h"
 #include "bench/reference.h"
 #include "bench/subject.h"
+#include "stop_signal.h"
 
 namespace keepout::app {
 
@@ -35,33 +36,41 @@ using MemoryTaken = std::map<std::string, double>;
 /// One mesh, and the same motions for every combination.
 class Trial {
  public:
-  /// `memory` must outlive this, and is added to. Throws Error when there is no such mesh.
-  Trial(const Subject& subject, const TrialSettings& settings, MemoryTaken& memory);
+  /// `memory` must outlive this, and is added to; so must `stop`, at which work ends early. Throws
+  /// Error when there is no such mesh.
+  Trial(const Subject& subject, const TrialSettings& settings, MemoryTaken& memory,
+        const StopSignal& stop);
   ~Trial();
 
   /// Builds the index unless the combination before had the same. What cannot be built, or gives a
-  /// wrong answer, is not timed, and the row's remark says why.
+  /// wrong answer, is not timed, and the row's remark says why. Of no use once it was stopped.
   BenchmarkRow measure(const Combination& combination);
 
   const Mesh& mesh() const noexcept { return *mesh_; }
+
+  /// What reading its file took, and the cores it kept busy.
+  const LoadedSubject& loaded() const noexcept { return loaded_; }
 
  private:
   struct Built;
 
   const Built& build(const std::string& index);
+  /// Whether the rule searches the index at hand by itself.
+  bool is_searched_by(const std::string& activation);
+
   Activation& rule(const std::string& activation);
-  Solver& solver(const std::string& name);
   Reference& reference(const RuleSetting& setting);
 
   Subject subject_;
   TrialSettings settings_;
   MemoryTaken& memory_;
+  const StopSignal& stop_;
+  LoadedSubject loaded_;
   std::shared_ptr<const Mesh> mesh_;
   std::vector<Motion> motions_;
   std::unique_ptr<SpatialIndex> reference_index_;
   std::unique_ptr<Workspace> work_;
   std::map<std::string, std::unique_ptr<Activation>> rules_;
-  std::map<std::string, std::unique_ptr<Solver>> solvers_;
   std::map<std::pair<std::string, std::optional<double>>, std::unique_ptr<Reference>> references_;
   std::unique_ptr<Built> built_;
 };

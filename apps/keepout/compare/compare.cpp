@@ -2,18 +2,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "compare/compare.h"
 
-#include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <ostream>
 
+#include "bench/machine_record.h"
 #include "bench/parts.h"
 #include "bench/subject.h"
 #include "compare/comparison_files.h"
+#include "compare/comparison_verdict.h"
 #include "compare/index_agreement.h"
 #include "compare/narrow_phase_agreement.h"
 #include "compare/solver_agreement.h"
 #include "keepout/activation/registry.h"
+#include "machine.h"
 #include "output_file.h"
 #include "part_lists.h"
 #include "progress.h"
@@ -28,42 +30,43 @@ std::vector<std::string> indices_to_compare() {
   return all;
 }
 
-/// No index may differ in any bit, no solver be wrong; the narrow phases are not ours.
-bool agree(const Comparison& comparison) {
-  return std::ranges::all_of(comparison.indices,
-                             [](const IndexAgreement& a) {
-                               return a.missed == 0 && a.invented == 0 && a.plane_angle == 0.0 &&
-                                      a.steps_that_differ == 0;
-                             }) &&
-         std::ranges::all_of(comparison.solvers,
-                             [](const SolverAgreement& a) { return a.wrong == 0; });
-}
+bool has_come(const StopSignal* stop) { return stop != nullptr && stop->has_come(); }
 
 }  // namespace
 
 Comparison compare_parts(const std::string& mesh_name, const std::shared_ptr<const Mesh>& mesh,
-                         const CompareExtent& extent) {
+                         const CompareExtent& extent, const StopSignal* stop) {
   Comparison comparison;
   const std::vector<std::string> rules = names(activation_rules());
+  const Stopped stopped = [stop] { return has_come(stop); };
   {
     const std::vector<std::string> compared = indices_to_compare();
     Progress progress("compare indices", extent.poses * rules.size() * (compared.size() + 1));
-    comparison.indices = compare_indices({.mesh_name = mesh_name,
-                                          .mesh = mesh,
-                                          .indices = compared,
-                                          .activations = rules,
-                                          .poses = extent.poses,
-                                          .seed = extent.seed},
-                                         [&] { progress.advance(); });
+    comparison.indices = compare_indices(
+        {.mesh_name = mesh_name,
+         .mesh = mesh,
+         .indices = compared,
+         .activations = rules,
+         .poses = extent.poses,
+         .seed = extent.seed},
+        [&] { progress.advance(); }, stopped);
   }
-  comparison.solvers = compare_solvers(mesh, {.rules = rules,
-                                              .solvers = names(solver_backends()),
-                                              .problems = extent.problems / rules.size(),
-                                              .seed = extent.seed,
-                                              .most = {{"nlopt_cobyla", extent.problems / 10},
-                                                       {"nlopt_mma", extent.problems / 10}}});
-  Progress progress("compare narrow phases", narrow_phase_rows());
-  comparison.narrow_phases = compare_narrow_phases(*mesh, extent.pairs, extent.seed, progress);
+  if (!stopped()) {
+    comparison.solvers = compare_solvers(
+        mesh,
+        {.rules = rules,
+         .solvers = names(solver_backends()),
+         .problems = extent.problems / rules.size(),
+         .seed = extent.seed,
+         .most = {{"nlopt_cobyla", extent.problems / 10}, {"nlopt_mma", extent.problems / 10}}},
+        stopped);
+  }
+  if (!stopped()) {
+    Progress progress("compare narrow phases", narrow_phase_rows());
+    comparison.narrow_phases =
+        compare_narrow_phases(*mesh, extent.pairs, extent.seed, progress, stopped);
+  }
+  comparison.complete = !stopped();
   return comparison;
 }
 
@@ -75,16 +78,22 @@ int compare(const CompareOptions& options, std::ostream& out) {
     json = std::make_unique<OutputFile>(*options.json);
   }
   const Subject subject{.mesh = options.mesh};
-  const Comparison comparison =
-      compare_parts(label_of(subject), make_mesh(subject), options.extent);
-  print(out, comparison);
+  const std::shared_ptr<const Mesh> mesh = make_mesh(subject);
+  ComparisonRecord record{.date = date_now(),
+                          .command = options.command,
+                          .mesh = label_of(subject),
+                          .triangles = mesh->triangle_count(),
+                          .extent = options.extent,
+                          .machine = this_machine()};
+  const StopSignal stop;
+  record.comparison = compare_parts(record.mesh, mesh, options.extent, &stop);
+  print(out, record.comparison);
   if (json) {
-    write_json(json->stream(), comparison);
+    write_json(json->stream(), record);
     json->commit();
   }
-  if (agree(comparison)) return EXIT_SUCCESS;
-  out << "\nParts that must not differ do: please report it.\n";
-  return EXIT_FAILURE;
+  if (!record.comparison.complete) return exit_interrupted;
+  return agree(record.comparison) ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 
 }  // namespace keepout::app

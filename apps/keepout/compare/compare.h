@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <iosfwd>
 #include <memory>
@@ -11,29 +10,24 @@
 
 #include "compare/comparison.h"
 #include "keepout/mesh/mesh.h"
+#include "stop_signal.h"
 
 namespace keepout::app {
-
-/// How thoroughly to compare.
-struct CompareExtent {
-  std::size_t poses = 60;        // for the indices, under each rule
-  std::size_t problems = 2'000;  // for the solvers
-  std::size_t pairs = 500;       // of tool and triangle, of each kind, for the narrow phases
-  std::uint64_t seed = 1;
-};
 
 struct CompareOptions {
   std::string mesh = "skull";  // a real fixture or a file
   CompareExtent extent;
   std::optional<std::filesystem::path> json;  // to be written
+  std::string command = "keepout compare";    // that does it again
 };
 
-/// Everything that can take another's place, on the same input.
+/// Everything that can take another's place, on the same input; as much as is finished when `stop`,
+/// which may be null, has come.
 Comparison compare_parts(const std::string& mesh_name, const std::shared_ptr<const Mesh>& mesh,
-                         const CompareExtent& extent);
+                         const CompareExtent& extent, const StopSignal* stop = nullptr);
 
-/// Compares, and prints tables. Throws Error. Nonzero, for the exit status, when parts disagree by
-/// more than they may.
+/// Compares, and prints tables and a verdict. Throws Error. For the exit status: nonzero when parts
+/// disagree by more than they may, and exit_interrupted when a signal came first.
 int compare(const CompareOptions& options, std::ostream& out);
 
 }  // namespace keepout::app

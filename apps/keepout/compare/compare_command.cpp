@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "compare/compare_command.h"
 
+#include "named_mesh.h"
 #include "number_checks.h"
+#include "shell_word.h"
 
 namespace keepout::app {
 
@@ -12,8 +14,7 @@ CompareCommand::CompareCommand(CLI::App& app) {
       "compare",
       "Hold all parts that can take each other's place to each other and to the truth, on the same "
       "input: indices, solvers, narrow phases");
-  command.add_option("MESH", options.mesh, "A real fixture, or a mesh file in mm")
-      ->capture_default_str();
+  command.add_option("MESH", options.mesh, std::string(mesh_help))->capture_default_str();
   command.add_option("--poses", options.extent.poses, "Poses for the indices, under each rule")
       ->type_name("NUMBER")
       ->transform(whole_number(6, 1'000'000))
@@ -32,9 +33,18 @@ CompareCommand::CompareCommand(CLI::App& app) {
       ->type_name("NUMBER")
       ->transform(whole_number(0, largest_seed))
       ->capture_default_str();
-  command.add_option("--json", options.json, "Where to write the tables")->type_name("FILE");
+  command.add_option("--json", options.json, "Where to write the tables and the verdict")
+      ->type_name("FILE");
   command.footer(
-      "The exit status is 0 only if all indices agree to the bit and no solver is wrong.");
+      "The exit status is 0 only if all indices agree to the bit and no solver is wrong; 130 "
+      "after\n"
+      "Ctrl-C, which keeps the rows that are finished.");
+}
+
+int CompareCommand::run(const std::vector<std::string>& arguments, std::ostream& out) {
+  options_.command = "keepout";
+  for (const std::string& argument : arguments) options_.command += " " + shell_word(argument);
+  return compare(options_, out);
 }
 
 }  // namespace keepout::app

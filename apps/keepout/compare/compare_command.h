@@ -4,6 +4,8 @@
 
 #include <CLI/CLI.hpp>
 #include <iosfwd>
+#include <string>
+#include <vector>
 
 #include "compare/compare.h"
 
@@ -16,8 +18,8 @@ class CompareCommand {
   CompareCommand(const CompareCommand&) = delete;
   CompareCommand& operator=(const CompareCommand&) = delete;
 
-  /// After parsing. The exit status.
-  int run(std::ostream& out) const { return compare(options_, out); }
+  /// After parsing. `arguments`: of the whole command line, to be noted. The exit status.
+  int run(const std::vector<std::string>& arguments, std::ostream& out);
 
  private:
   CompareOptions options_;

@@ -3,16 +3,34 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
 
+#include "bench/benchmark.h"
+
 namespace keepout::app {
 
-/// One index under one rule, on the same poses as all others, held to brute force.
+/// Whether whoever asked for the work wishes it to end.
+using Stopped = std::function<bool()>;
+inline bool never() { return false; }
+
+/// How thoroughly to compare.
+struct CompareExtent {
+  std::size_t poses = 60;        // for the indices, under each rule
+  std::size_t problems = 2'000;  // for the solvers
+  std::size_t pairs = 500;       // of tool and triangle, of each kind, for the narrow phases
+  std::uint64_t seed = 1;
+};
+
+/// One index under one rule in a motion constraint as it is shipped, on the same poses as all
+/// others, held to brute force.
 struct IndexAgreement {
   std::string mesh = {}, index = {}, activation = {};
-  std::size_t poses = 0;
+  bool searched = false;     // by a form of the rule that asks no query of it
+  std::size_t poses = 0;     // each for one query and one step
   std::size_t missed = 0;    // triangles in reach that it did not give
   std::size_t invented = 0;  // triangles it gave twice, or that are not in reach, after refining
   double closest_point_error = 0.0;   // against exact arithmetic, the worst [mm]
@@ -24,7 +42,8 @@ struct IndexAgreement {
 /// One solver on recorded problems.
 struct SolverAgreement {
   std::string solver, activation;
-  std::size_t problems = 0;
+  std::size_t posed = 0;     // problems that were recorded
+  std::size_t problems = 0;  // of them, those that it got, evenly spread
   std::size_t optimal = 0;
   std::size_t infeasible = 0;
   std::size_t gave_up = 0;
@@ -33,7 +52,7 @@ struct SolverAgreement {
   double kkt_residual = 0.0;     // of the optimal ones, the worst
   double median_us = 0.0;
   double p99_us = 0.0;
-  std::map<std::string, std::size_t> outcomes;  // what the library said, and what we found
+  std::map<std::string, std::size_t> outcomes = {};  // what the library said, and what we found
 };
 
 /// One way to tell the distance between a convex tool and a triangle.
@@ -51,9 +70,21 @@ struct NarrowPhaseAgreement {
 };
 
 struct Comparison {
+  bool complete = true;  // not if it was interrupted: then the rows that were finished
   std::vector<IndexAgreement> indices;
   std::vector<SolverAgreement> solvers;
   std::vector<NarrowPhaseAgreement> narrow_phases;
+};
+
+/// A comparison, and all that it takes to do it again.
+struct ComparisonRecord {
+  std::string date;     // ISO 8601, UTC
+  std::string command;  // that does it again
+  std::string mesh;
+  std::size_t triangles = 0;  // of the mesh
+  CompareExtent extent;
+  Machine machine;
+  Comparison comparison = {};
 };
 
 }  // namespace keepout::app

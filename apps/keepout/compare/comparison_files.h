@@ -8,9 +8,10 @@
 
 namespace keepout::app {
 
-/// Tables for a terminal. Parts that were not compared are left out.
+/// Tables for a terminal, and the verdict. Parts that were not compared are left out.
 void print(std::ostream& out, const Comparison& comparison);
 
-void write_json(std::ostream& out, const Comparison& comparison);
+/// All of it, the verdict included.
+void write_json(std::ostream& out, const ComparisonRecord& record);
 
 }  // namespace keepout::app

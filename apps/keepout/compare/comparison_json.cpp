@@ -1,19 +1,19 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include <nlohmann/json.hpp>
 #include <ostream>
 
+#include "bench/json_parts.h"
 #include "compare/comparison_files.h"
+#include "compare/comparison_verdict.h"
 
 namespace keepout::app {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 Json json_of(const IndexAgreement& a) {
   return {{"mesh", a.mesh},
           {"index", a.index},
           {"activation", a.activation},
+          {"searched_by_the_rule", a.searched},
           {"poses", a.poses},
           {"missed", a.missed},
           {"invented", a.invented},
@@ -26,6 +26,7 @@ Json json_of(const IndexAgreement& a) {
 Json json_of(const SolverAgreement& a) {
   return {{"solver", a.solver},
           {"activation", a.activation},
+          {"posed", a.posed},
           {"problems", a.problems},
           {"optimal", a.optimal},
           {"infeasible", a.infeasible},
@@ -61,10 +62,24 @@ Json list_of(const std::vector<Agreement>& agreements) {
 
 }  // namespace
 
-void write_json(std::ostream& out, const Comparison& comparison) {
-  const Json all = {{"indices", list_of(comparison.indices)},
-                    {"solvers", list_of(comparison.solvers)},
-                    {"narrow_phases", list_of(comparison.narrow_phases)}};
+void write_json(std::ostream& out, const ComparisonRecord& record) {
+  const Comparison& comparison = record.comparison;
+  const CompareExtent& extent = record.extent;
+  const Json all = {
+      {"date", record.date},
+      {"command", record.command},
+      {"seed", extent.seed},
+      {"machine", json_of(record.machine)},
+      {"mesh", record.mesh},
+      {"triangles", record.triangles},
+      {"asked_for",
+       {{"poses", extent.poses}, {"problems", extent.problems}, {"pairs", extent.pairs}}},
+      {"complete", comparison.complete},
+      {"agree", agree(comparison)},
+      {"verdict", verdict(comparison)},
+      {"indices", list_of(comparison.indices)},
+      {"solvers", list_of(comparison.solvers)},
+      {"narrow_phases", list_of(comparison.narrow_phases)}};
   out << all.dump(2) << '\n';
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "compare/comparison_files.h"
+#include "compare/comparison_verdict.h"
 #include "number_text.h"
 
 namespace keepout::app {
@@ -22,14 +23,17 @@ std::string line(const char* format, Values... values) {
 std::string small(double value) { return value == 0.0 ? "0" : line("%.1e", value); }
 
 void print_indices(std::ostream& out, const std::vector<IndexAgreement>& indices) {
-  out << "\nIndices, held to brute force (closest points: to exact arithmetic)\n"
-      << line("%-10s %-17s %-10s %6s %7s %9s %13s %10s %10s %9s\n", "mesh", "index", "rule",
-              "poses", "missed", "invented", "closest p. mm", "plane rad", "step mm", "differ");
+  out << "\nIndices in motion constraints, held to brute force (closest points: to exact "
+         "arithmetic)\n"
+      << line("%-10s %-17s %-10s %-8s %6s %7s %9s %13s %10s %10s %9s\n", "mesh", "index", "rule",
+              "form", "poses", "missed", "invented", "closest p. mm", "plane rad", "step mm",
+              "differ");
   for (const IndexAgreement& a : indices) {
-    out << line("%-10.10s %-17s %-10s %6zu %7zu %9zu %13s %10s %10s %9zu\n", a.mesh.c_str(),
-                a.index.c_str(), a.activation.c_str(), a.poses, a.missed, a.invented,
-                small(a.closest_point_error).c_str(), small(a.plane_angle).c_str(),
-                small(a.step_difference).c_str(), a.steps_that_differ);
+    out << line("%-10.10s %-17s %-10s %-8s %6zu %7zu %9zu %13s %10s %10s %9zu\n", a.mesh.c_str(),
+                a.index.c_str(), a.activation.c_str(), a.searched ? "searches" : "plain", a.poses,
+                a.missed, a.invented, small(a.closest_point_error).c_str(),
+                small(a.plane_angle).c_str(), small(a.step_difference).c_str(),
+                a.steps_that_differ);
   }
 }
 
@@ -72,6 +76,8 @@ void print(std::ostream& out, const Comparison& comparison) {
   if (!comparison.indices.empty()) print_indices(out, comparison.indices);
   if (!comparison.solvers.empty()) print_solvers(out, comparison.solvers);
   if (!comparison.narrow_phases.empty()) print_narrow_phases(out, comparison.narrow_phases);
+  out << "\nVerdict\n";
+  for (const std::string& paragraph : verdict(comparison)) out << "  " << paragraph << '\n';
 }
 
 }  // namespace keepout::app

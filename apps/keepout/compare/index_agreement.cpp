@@ -5,43 +5,45 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <optional>
+#include <utility>
 
 #include "bench/parts.h"
-#include "bench/pipeline.h"
 #include "keepout/activation/registry.h"
+#include "keepout/factory/make_motion_constraint.h"
 #include "keepout/fixtures/motions.h"
 #include "keepout/fixtures/poses.h"
 #include "keepout/index/brute_force.h"
 #include "keepout/index/pd_tree.h"
 #include "keepout/oracle/exact_distance.h"
 #include "keepout/registry.h"
-#include "keepout/solvers/active_set.h"
 
 namespace keepout::app {
 namespace {
 
 /// What an index came to at one pose.
 struct Finding {
-  Vec3 center;            // of the ball
   std::vector<Hit> hits;  // after the exact kernel, sorted
   std::vector<HalfSpace> planes;
-  Answer answer;
+  Status status = Status::invalid_input;
+  Vec3 motion = Vec3::Zero();
   bool repeats = false;  // a candidate came twice
 };
 
-/// A rule, and what brute force came to under it at each pose.
-struct Rule {
-  RuleSetting setting;
-  std::unique_ptr<Activation> activation;
-  std::vector<Finding> expected;
+/// What one index came to under one rule.
+struct Findings {
+  std::vector<Finding> at;           // each pose
+  bool searched = false;             // by the rule
+  double closest_point_error = 0.0;  // the worst [mm]
 };
 
 std::vector<Motion> motions_of(const IndexComparison& comparison) {
   const Mesh& mesh = *comparison.mesh;
   const PdTree tree(comparison.mesh);
   Random random(comparison.seed);
-  const MotionKind kind{.clearance = comparison.margin};
+  const MotionKind kind;
   const std::size_t others = comparison.poses / 6;
   std::vector<Motion> motions = unrelated_motions(mesh, others, kind, random);
   for (const auto& points :
@@ -55,25 +57,6 @@ std::vector<Motion> motions_of(const IndexComparison& comparison) {
     motions.push_back(motion);
   }
   return motions;
-}
-
-Finding find(const Pipeline& pipeline, const Motion& motion) {
-  const Ball ball = ball_of(pipeline.setting, pipeline.rule, motion);
-  Workspace& work = pipeline.work;
-  work.candidates.clear();
-  work.hits.clear();
-  pipeline.index.collect(ball, work.candidates);
-  refine(pipeline.mesh, ball, work.candidates.view(), work.hits);
-  Finding finding{.center = ball.center,
-                  .hits = {work.hits.begin(), work.hits.end()},
-                  .planes = {},
-                  .answer = {}};
-  std::sort(work.candidates.begin(), work.candidates.end());
-  finding.repeats =
-      std::adjacent_find(work.candidates.begin(), work.candidates.end()) != work.candidates.end();
-  finding.answer = pipeline.ask(motion);
-  finding.planes.assign(work.planes.begin(), work.planes.end());
-  return finding;
 }
 
 /// The part of the one set of triangles that is missing in the other.
@@ -109,65 +92,143 @@ double closest_point_error(const Mesh& mesh, const Vec3& center, const std::vect
 }
 
 /// To the last bit: of normals, offsets and the triangles that called for them.
-bool are_same(const std::vector<HalfSpace>& one, const std::vector<HalfSpace>& other) {
-  return std::ranges::equal(one, other, [](const HalfSpace& a, const HalfSpace& b) {
-    return a.normal == b.normal && a.offset == b.offset && a.source == b.source;
-  });
+bool are_same(const HalfSpace& a, const HalfSpace& b) {
+  return a.normal == b.normal && a.offset == b.offset && a.source == b.source;
 }
 
-void compare(const Mesh& mesh, const Finding& got, const Finding& expected,
+/// Whether `some` are `all`, or some of them in their order.
+bool are_among(const std::vector<HalfSpace>& some, const std::vector<HalfSpace>& all) {
+  auto next = all.begin();
+  for (const HalfSpace& plane : some) {
+    next = std::find_if(next, all.end(), [&](const HalfSpace& o) { return are_same(plane, o); });
+    if (next++ == all.end()) return false;
+  }
+  return true;
+}
+
+void compare(const Finding& got, const Finding& expected, bool searched,
              IndexAgreement& agreement) {
   ++agreement.poses;
   agreement.missed += missing(expected.hits, got.hits);
   agreement.invented += missing(got.hits, expected.hits) + (got.repeats ? 1 : 0);
-  agreement.plane_angle = std::max(agreement.plane_angle, plane_angle(got.planes, expected.planes));
   agreement.step_difference =
-      std::max(agreement.step_difference, (got.answer.motion - expected.answer.motion).norm());
-  if (!(got.answer == expected.answer && are_same(got.planes, expected.planes))) {
+      std::max(agreement.step_difference, (got.motion - expected.motion).norm());
+  // A rule that searches may leave out planes that no motion in question comes near.
+  const bool same_planes = are_among(got.planes, expected.planes) &&
+                           (searched || got.planes.size() == expected.planes.size());
+  if (!same_planes) {
+    agreement.plane_angle =
+        std::max(agreement.plane_angle, plane_angle(got.planes, expected.planes));
+  }
+  if (!(got.status == expected.status && got.motion == expected.motion && same_planes)) {
     ++agreement.steps_that_differ;
   }
-  agreement.closest_point_error =
-      std::max(agreement.closest_point_error, closest_point_error(mesh, got.center, got.hits));
 }
+
+/// One after the other, as a program would ask; nothing when it was stopped.
+class Asker {
+ public:
+  Asker(const IndexComparison& comparison, const std::function<void()>& done,
+        const Stopped& stopped)
+      : comparison_(comparison), motions_(motions_of(comparison)), done_(done), stopped_(stopped) {}
+
+  std::optional<Findings> ask(const std::shared_ptr<const SpatialIndex>& index,
+                              const std::string& rule) {
+    const std::shared_ptr<const Mesh>& mesh = comparison_.mesh;
+    MotionConstraint guard =
+        make_motion_constraint(mesh, index, {.activation = rule, .radius = comparison_.radius});
+    Findings findings;
+    findings.searched = make_activation(rule, mesh)->searching(*index) != nullptr;
+    for (const Motion& motion : motions_) {
+      if (stopped_()) return std::nullopt;
+      const StepOptions& options = guard.options();
+      Finding finding = query(*index, {motion.tip, options.radius + options.margin});
+      const Step step = guard.step(motion);
+      finding.status = step.status;
+      finding.motion = step.motion;
+      finding.planes.assign(step.planes.begin(), step.planes.end());
+      findings.at.push_back(std::move(finding));
+      done_();
+    }
+    return findings;
+  }
+
+  /// Sets the error of the closest points, which takes long: once where they are the same.
+  void judge_closest_points(Findings& findings, const Findings* known = nullptr) const {
+    for (std::size_t i = 0; i < findings.at.size(); ++i) {
+      if (known != nullptr && are_same_hits(findings.at[i].hits, known->at[i].hits)) continue;
+      findings.closest_point_error =
+          std::max(findings.closest_point_error,
+                   closest_point_error(*comparison_.mesh, motions_[i].tip, findings.at[i].hits));
+    }
+    if (known != nullptr) {
+      findings.closest_point_error =
+          std::max(findings.closest_point_error, known->closest_point_error);
+    }
+  }
+
+ private:
+  static bool are_same_hits(const std::vector<Hit>& some, const std::vector<Hit>& others) {
+    return std::ranges::equal(some, others, [](const Hit& a, const Hit& b) {
+      return a.triangle == b.triangle && a.closest.offset == b.closest.offset &&
+             a.closest.distance == b.closest.distance;
+    });
+  }
+
+  Finding query(const SpatialIndex& index, const Ball& ball) {
+    candidates_.clear();
+    hits_.clear();
+    index.collect(ball, candidates_);
+    refine(*comparison_.mesh, ball, candidates_.view(), hits_);
+    Finding finding;
+    finding.hits.assign(hits_.begin(), hits_.end());
+    std::sort(candidates_.begin(), candidates_.end());
+    finding.repeats =
+        std::adjacent_find(candidates_.begin(), candidates_.end()) != candidates_.end();
+    return finding;
+  }
+
+  const IndexComparison& comparison_;
+  std::vector<Motion> motions_;
+  const std::function<void()>& done_;
+  const Stopped& stopped_;
+  TriangleBuffer candidates_{comparison_.mesh->triangle_count()};
+  HitBuffer hits_{comparison_.mesh->triangle_count()};
+};
 
 }  // namespace
 
 std::vector<IndexAgreement> compare_indices(const IndexComparison& comparison,
-                                            const std::function<void()>& done) {
-  const Mesh& mesh = *comparison.mesh;
-  Workspace work({.triangles = std::max<std::size_t>(mesh.triangle_count(), 1), .variables = 3});
-  ActiveSet solver;
-  solver.reserve(3, static_cast<int>(work.planes.capacity()));
-  const std::vector<Motion> motions = motions_of(comparison);
-  std::vector<Rule> rules;
-  for (const std::string& activation : comparison.activations) {
-    rules.push_back({{activation, comparison.radius, comparison.margin},
-                     make_activation(activation, comparison.mesh),
-                     {}});
-    rules.back().activation->reserve(work.candidates.capacity());
-  }
-  const auto find_with = [&](const SpatialIndex& index, const Rule& rule, const Motion& motion) {
-    done();
-    return find({mesh, index, *rule.activation, solver, work, rule.setting}, motion);
-  };
-
-  const BruteForce brute_force(comparison.mesh);
-  for (Rule& rule : rules) {
-    for (const Motion& motion : motions) {
-      rule.expected.push_back(find_with(brute_force, rule, motion));
-    }
-  }
+                                            const std::function<void()>& done,
+                                            const Stopped& stopped) {
+  Asker asker(comparison, done, stopped);
   std::vector<IndexAgreement> agreements;
+  std::map<std::string, Findings> expected;  // of brute force, by rule
+  const auto brute_force = std::make_shared<const BruteForce>(comparison.mesh);
+  for (const std::string& rule : comparison.activations) {
+    std::optional<Findings> findings = asker.ask(brute_force, rule);
+    if (!findings) return agreements;
+    asker.judge_closest_points(*findings);
+    expected.emplace(rule, *std::move(findings));
+  }
   for (const std::string& name : comparison.indices) {
     // One at a time: of a large mesh they need not fit all at once.
-    const auto index =
+    const std::shared_ptr<const SpatialIndex> index =
         entry_named(name, indices(), "index", absent_indices()).make(comparison.mesh);
-    for (const Rule& rule : rules) {
-      IndexAgreement& agreement = agreements.emplace_back(IndexAgreement{
-          .mesh = comparison.mesh_name, .index = name, .activation = rule.setting.activation});
-      for (std::size_t i = 0; i < motions.size(); ++i) {
-        compare(mesh, find_with(*index, rule, motions[i]), rule.expected[i], agreement);
+    for (const std::string& rule : comparison.activations) {
+      std::optional<Findings> got = asker.ask(index, rule);
+      if (!got) return agreements;
+      const Findings& truth = expected.at(rule);
+      asker.judge_closest_points(*got, &truth);
+      IndexAgreement agreement{.mesh = comparison.mesh_name,
+                               .index = name,
+                               .activation = rule,
+                               .searched = got->searched,
+                               .closest_point_error = got->closest_point_error};
+      for (std::size_t i = 0; i < got->at.size(); ++i) {
+        compare(got->at[i], truth.at[i], got->searched, agreement);
       }
+      agreements.push_back(std::move(agreement));
     }
   }
   return agreements;

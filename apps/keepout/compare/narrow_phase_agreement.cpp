@@ -147,7 +147,8 @@ std::size_t narrow_phase_rows() noexcept {
 }
 
 std::vector<NarrowPhaseAgreement> compare_narrow_phases(const Mesh& mesh, std::size_t pairs,
-                                                        std::uint64_t seed, Progress& progress) {
+                                                        std::uint64_t seed, Progress& progress,
+                                                        const Stopped& stopped) {
   std::vector<NarrowPhaseAgreement> rows;
   Random random(seed);
   for (const Kind& kind : kinds) {
@@ -155,6 +156,7 @@ std::vector<NarrowPhaseAgreement> compare_narrow_phases(const Mesh& mesh, std::s
     for (const Relation& relation : relations) {
       const std::vector<Pair> same = make_pairs(mesh, tools, relation, pairs, random);
       for (const NarrowPhaseBackend& backend : narrow_phase_backends()) {
+        if (stopped()) return rows;
         NarrowPhaseAgreement row = agreement_of(backend, tools, same);
         row.backend = backend.name;
         row.tool = kind.name;

@@ -18,7 +18,9 @@ std::size_t narrow_phase_rows() noexcept;
 /// Holds each narrow phase of this build to the exact kernel: instrument-like tools of 2 mm to 5
 /// mm, turned at random, at triangles of the mesh picked at random; as many pairs apart (up to 5
 /// mm), touching (within 1e-6 mm) and overlapping (by 0.001 mm or more). All get the same pairs.
+/// Up to the row before which it was stopped.
 std::vector<NarrowPhaseAgreement> compare_narrow_phases(const Mesh& mesh, std::size_t pairs,
-                                                        std::uint64_t seed, Progress& progress);
+                                                        std::uint64_t seed, Progress& progress,
+                                                        const Stopped& stopped = never);
 
 }  // namespace keepout::app

@@ -110,7 +110,8 @@ void judge(const RecordedProblem& problem, const Reference& reference, SolveStat
 }  // namespace
 
 std::vector<SolverAgreement> compare_solvers(const std::shared_ptr<const Mesh>& mesh,
-                                             const SolverComparison& comparison) {
+                                             const SolverComparison& comparison,
+                                             const Stopped& stopped) {
   using Clock = std::chrono::steady_clock;
   using Microseconds = std::chrono::duration<double, std::micro>;
   std::vector<SolverAgreement> rows;
@@ -129,10 +130,12 @@ std::vector<SolverAgreement> compare_solvers(const std::shared_ptr<const Mesh>& 
       SolverAgreement row;
       row.solver = name;
       row.activation = rule;
+      row.posed = problems.size();
       row.problems = count;
       std::vector<double> times;
       Progress progress(name + ", " + rule, count);
       for (std::size_t i = 0; i < count; ++i) {
+        if (stopped()) return rows;
         const std::size_t at = i * problems.size() / count;
         const StepProblem problem = problems[at].view();
         Solution solution;

@@ -24,9 +24,10 @@ struct SolverComparison {
 };
 
 /// Poses the problems of closed-loop steps to each solver, times it, and judges each answer by the
-/// KKT conditions and by active_set. A row for each rule and solver, in this order. Throws Error
-/// for an unknown name.
+/// KKT conditions and by active_set. A row for each rule and solver, in this order, up to the one
+/// during which it was stopped. Throws Error for an unknown name.
 std::vector<SolverAgreement> compare_solvers(const std::shared_ptr<const Mesh>& mesh,
-                                             const SolverComparison& comparison);
+                                             const SolverComparison& comparison,
+                                             const Stopped& stopped = never);
 
 }  // namespace keepout::app

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plan/plan.h"
 
-#include <signal.h>
-
 #include <cstdlib>
 #include <memory>
 #include <ostream>
@@ -11,36 +9,25 @@
 
 #include "keepout/activation/certified.h"
 #include "keepout/adapters/index_registry.h"
-#include "keepout/adapters/load_mesh.h"
 #include "keepout/error.h"
 #include "keepout/factory/make_motion_constraint.h"
-#include "keepout/fixtures/real_mesh.h"
 #include "keepout/ompl/straight_only.h"
+#include "named_mesh.h"
 #include "number_text.h"
 #include "output_file.h"
 #include "plan/planning_page.h"
 #include "plan/planning_result.h"
 #include "progress.h"
+#include "stop_signal.h"
 
 namespace keepout::app {
 namespace {
 
-volatile sig_atomic_t is_interrupted = 0;
-bool interrupted() { return is_interrupted != 0; }
-
-/// Ctrl-C ends the run that is on, and what is finished is told all the same.
-void finish_on_ctrl_c() {
-  struct sigaction action = {};
-  action.sa_handler = [](int) { is_interrupted = 1; };
-  is_interrupted = 0;
-  ::sigaction(SIGINT, &action, nullptr);
-  ::sigaction(SIGTERM, &action, nullptr);
-}
-
 PlanningScene load(const std::filesystem::path& path, std::string name, PlanningScene::Space space,
                    PlanningScene::Starts starts) {
-  return planning_scene(std::make_unique<Scene>(std::move(name), load_mesh(path).mesh, "wide_bvh"),
-                        space, starts);
+  return planning_scene(
+      std::make_unique<Scene>(std::move(name), load_named_mesh(path).mesh, "wide_bvh"), space,
+      starts);
 }
 
 std::vector<PlanningScene> scenes_of(const PlanOptions& options) {
@@ -52,8 +39,8 @@ std::vector<PlanningScene> scenes_of(const PlanOptions& options) {
                           options.inside ? Space::within : Space::around, Starts::anywhere));
   } else {
     // From the throat up into nose and sinuses.
-    scenes.push_back(load(fixture_path("airway"), "airway", Space::within, Starts::below));
-    scenes.push_back(load(fixture_path("skull"), "skull", Space::around, Starts::anywhere));
+    scenes.push_back(load("airway", "airway", Space::within, Starts::below));
+    scenes.push_back(load("skull", "skull", Space::around, Starts::anywhere));
   }
   return scenes;
 }
@@ -89,7 +76,7 @@ class Outputs {
  public:
   explicit Outputs(const PlanOptions& options) {
     std::vector<NamedPath> inputs, outputs;
-    if (options.mesh) inputs.push_back({"MESH", *options.mesh});
+    if (options.mesh) inputs.push_back({"MESH", file_of_mesh(*options.mesh)});
     const auto add = [&](const char* name, const std::optional<std::filesystem::path>& path) {
       if (path) outputs.push_back({name, *path});
     };
@@ -121,7 +108,7 @@ class Outputs {
 };
 
 void run_scene(const PlanOptions& options, PlanningScene& where, Progress& progress,
-               std::vector<PlanningRun>& runs) {
+               const StopSignal& stop, std::vector<PlanningRun>& runs) {
   const double clearance = options.tool_radius + options.margin;
   progress.show(where.scene->name() + ", drawing problems");
   const std::vector<Problem> problems =
@@ -132,7 +119,7 @@ void run_scene(const PlanOptions& options, PlanningScene& where, Progress& progr
   const double least = least_distance(*where.scene, clearance, options.radius);
   for (const Problem& problem : problems) {
     for (const Checker& checker : checkers(options.resolutions)) {
-      if (interrupted()) return;
+      if (stop.has_come()) return;
       progress.show(where.scene->name() + " " + std::to_string(problem.number) + ", " +
                     checker.name());
       const bool slides = checker.kind == Checker::Kind::sliding;
@@ -150,10 +137,10 @@ void run_scene(const PlanOptions& options, PlanningScene& where, Progress& progr
                                            .simplify = options.simplify,
                                            .clearance = clearance,
                                            .guards = slides ? steering : validating},
-                                          interrupted),
+                                          [&stop] { return stop.has_come(); }),
                       .verdict = {}};
       // Cut short it tells nothing.
-      if (interrupted() && !run.path.solved) return;
+      if (stop.has_come() && !run.path.solved) return;
       if (run.path.solved) run.verdict = judge_path(*where.scene, run.path.points, least);
       runs.push_back(std::move(run));
       progress.advance();
@@ -181,26 +168,27 @@ void print_lead(std::ostream& out, const PlanOptions& options) {
 }  // namespace
 
 int plan(const PlanOptions& options, std::ostream& out) {
-  finish_on_ctrl_c();  // before the files, whose own handling would lose them
   Outputs outputs(options);
+  const StopSignal stop;  // after the files, which a second signal removes
   std::vector<PlanningScene> scenes = scenes_of(options);
   std::vector<PlanningRun> runs;
   const std::size_t total = scenes.size() * options.problems * checkers(options.resolutions).size();
   {
     Progress progress("plan", total);
     for (PlanningScene& where : scenes) {
-      if (!interrupted()) run_scene(options, where, progress, runs);
+      if (!stop.has_come()) run_scene(options, where, progress, stop, runs);
     }
   }
   outputs.write(options, scenes, runs);
   print_lead(out, options);
   print_table(out, summaries(runs));
-  if (interrupted()) {
+  if (stop.has_come()) {
     out << "\ninterrupted: " << runs.size() << " of " << total << " runs are finished\n";
   }
   const std::size_t invalid = invalid_of_keepout(runs);
   if (invalid > 0) out << "\n" << counted(invalid, "path") << " of keepout's are not valid!\n";
-  return invalid == 0 && !interrupted() ? EXIT_SUCCESS : EXIT_FAILURE;
+  if (invalid > 0) return EXIT_FAILURE;
+  return stop.has_come() ? exit_interrupted : EXIT_SUCCESS;
 }
 
 }  // namespace keepout::app

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plan/plan_command.h"
 
+#include "name_checks.h"
 #include "number_checks.h"
 
 namespace keepout::app {
@@ -38,7 +39,7 @@ PlanCommand::PlanCommand(CLI::App& app) {
       "side, and have an independent, exact oracle judge every path");
   CLI::Option* mesh = command.add_option(
       "MESH", options.mesh,
-      "Mesh file, in mm; without one, the fixtures airway (within) and skull (around)");
+      "Mesh file in mm, or a fixture; without one, airway (within) and skull (around)");
   command.add_flag("--inside", options.inside, "Plan within MESH, not around it")->needs(mesh);
   command.add_option("--problems", options.problems, "Problems of each mesh")
       ->type_name("NUMBER")
@@ -49,7 +50,7 @@ PlanCommand::PlanCommand(CLI::App& app) {
       ->transform(whole_number(0, largest_seed))
       ->capture_default_str();
   command.add_option("--planner", options.planner, "Planner of OMPL, the same under each checker")
-      ->check(CLI::IsMember(ompl_planners))
+      ->check(one_of(ompl_planners))
       ->capture_default_str();
   command.add_option("--seconds", options.seconds, "Time that a planner has for each problem")
       ->check(seconds())

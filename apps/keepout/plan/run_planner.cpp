@@ -196,7 +196,7 @@ void read_steering(const base::PlannerPtr& planner, PlannedPath& path) {
 
 }  // namespace
 
-PlannedPath run_planner(const PlanningTask& task, bool (*interrupted)()) {
+PlannedPath run_planner(const PlanningTask& task, const std::function<bool()>& interrupted) {
   ompl::msg::noOutputHandler();  // also of its complaint that a seed is set anew, which is meant
   // All generators that OMPL makes from here on have their seeds from this one; 0 would be none.
   ompl::RNG::setSeed(static_cast<std::uint_fast32_t>(1 + task.seed % 0x7FFFFFFF));

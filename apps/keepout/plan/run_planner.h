@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,6 @@ struct PlannedPath {
 
 /// The same task yields the same path, unless time ran out. `interrupted`: asked by the planner as
 /// it goes on; ends it when true. Not for two threads at once: OMPL's seed is the process's.
-PlannedPath run_planner(const PlanningTask& task, bool (*interrupted)());
+PlannedPath run_planner(const PlanningTask& task, const std::function<bool()>& interrupted);
 
 }  // namespace keepout::app

@@ -9,6 +9,7 @@
 #include <ostream>
 #include <vector>
 
+#include "compare/comparison_verdict.h"
 #include "number_text.h"
 #include "report/mark.h"
 #include "report/page.h"
@@ -29,76 +30,6 @@ std::string error_text(double value) {
   if (value >= 1e-3) return rounded(value, 2);
   const double power = std::pow(10.0, std::floor(std::log10(value)));
   return tick_text(power * std::round(10.0 * value / power) / 10.0);
-}
-
-std::size_t sum(const auto& rows, auto count) {
-  std::size_t result = 0;
-  for (const auto& row : rows) result += row.*count;
-  return result;
-}
-
-/// The names of those that have any, and how many.
-std::string guilty(const auto& rows, auto name, auto count) {
-  std::vector<std::string> result;
-  for (const auto& row : rows) {
-    if (row.*count == 0) continue;
-    if (std::find(result.begin(), result.end(), row.*name) == result.end()) {
-      result.push_back(row.*name);
-    }
-  }
-  return listed(result);
-}
-
-std::string index_lead(const std::vector<IndexAgreement>& rows) {
-  const std::size_t poses = sum(rows, &IndexAgreement::poses);
-  const std::size_t wrong =
-      sum(rows, &IndexAgreement::missed) + sum(rows, &IndexAgreement::invented);
-  const std::size_t differ = sum(rows, &IndexAgreement::steps_that_differ);
-  std::string text = "Of " + grouped(poses) + " queries, held to brute force one by one, ";
-  if (wrong == 0) {
-    text += "no index missed a triangle or invented one";
-  } else {
-    const std::string missing = guilty(rows, &IndexAgreement::index, &IndexAgreement::missed);
-    const std::string inventing = guilty(rows, &IndexAgreement::index, &IndexAgreement::invented);
-    if (!missing.empty()) {
-      text += missing + " missed " + counted(sum(rows, &IndexAgreement::missed), "triangle");
-    }
-    if (!inventing.empty()) {
-      text += (missing.empty() ? "" : ", and ") + inventing + " invented " +
-              counted(sum(rows, &IndexAgreement::invented), "triangle");
-    }
-  }
-  return text + (differ == 0
-                     ? "; all steps are those of brute force, bit for bit."
-                     : "; " + grouped(differ) + (differ == 1 ? " step differs" : " steps differ") +
-                           " from brute force's in some bit.");
-}
-
-std::string solver_lead(const std::vector<SolverAgreement>& rows) {
-  const std::string wrong = guilty(rows, &SolverAgreement::solver, &SolverAgreement::wrong);
-  const std::string quit = guilty(rows, &SolverAgreement::solver, &SolverAgreement::gave_up);
-  std::string text = "Each solver got the same recorded problems, and every answer was checked; ";
-  text += wrong.empty()
-              ? "none was wrong"
-              : wrong + " gave " + counted(sum(rows, &SolverAgreement::wrong), "answer") +
-                    " that " + (sum(rows, &SolverAgreement::wrong) == 1 ? "is" : "are") + " wrong";
-  text += quit.empty() ? ", and none gave up."
-                       : ", and " + quit + " gave up " +
-                             how_often(sum(rows, &SolverAgreement::gave_up)) + ".";
-  return text;
-}
-
-std::string narrow_phase_lead(const std::vector<NarrowPhaseAgreement>& rows) {
-  const auto backend = &NarrowPhaseAgreement::backend;
-  const std::string contrary = guilty(rows, backend, &NarrowPhaseAgreement::contradicted);
-  const std::string failing = guilty(rows, backend, &NarrowPhaseAgreement::failed);
-  std::string text = "Distance between a tool and a triangle, held to the exact kernel: ";
-  text += contrary.empty() ? "none called apart what overlaps, or the reverse"
-                           : contrary + " took apart for overlapping, or the reverse, " +
-                                 how_often(sum(rows, &NarrowPhaseAgreement::contradicted));
-  return text + (failing.empty() ? ", and all gave an answer."
-                                 : ", and " + failing + " gave no answer " +
-                                       how_often(sum(rows, &NarrowPhaseAgreement::failed)) + ".");
 }
 
 /// What the libraries said, in their words: a line for each solver.
@@ -170,9 +101,9 @@ void print_errors(std::ostream& out, const std::vector<NarrowPhaseAgreement>& ro
 }  // namespace
 
 std::string agreement_headline(const Comparison& comparison) {
-  if (!comparison.indices.empty()) return index_lead(comparison.indices);
-  if (!comparison.solvers.empty()) return solver_lead(comparison.solvers);
-  return narrow_phase_lead(comparison.narrow_phases);
+  if (!comparison.indices.empty()) return index_verdict(comparison.indices);
+  if (!comparison.solvers.empty()) return solver_verdict(comparison.solvers);
+  return narrow_phase_verdict(comparison.narrow_phases);
 }
 
 void print_index_agreement(std::ostream& out, const Comparison& comparison) {
@@ -200,7 +131,9 @@ void print_index_agreement(std::ostream& out, const Comparison& comparison) {
                           {error_text(row.step_difference)},
                           {grouped(row.steps_that_differ)}});
   }
-  open_section(out, "Do the indices agree?", index_lead(comparison.indices));
+  open_section(out, "Do the indices agree?",
+               index_verdict(comparison.indices) + " " +
+                   index_agreement_by_construction(comparison.indices));
   print_table(out, table);
 }
 
@@ -231,7 +164,7 @@ void print_solver_agreement(std::ostream& out, const Comparison& comparison) {
                           {rounded(row.median_us)},
                           {rounded(row.p99_us)}});
   }
-  open_section(out, "Do the solvers agree?", solver_lead(comparison.solvers));
+  open_section(out, "Do the solvers agree?", solver_verdict(comparison.solvers));
   print_table(out, table);
   print_outcomes(out, comparison.solvers);
 }
@@ -254,7 +187,7 @@ void print_narrow_phase_agreement(std::ostream& out, const Comparison& compariso
                           {rounded(row.median_us)},
                           {rounded(row.p99_us)}});
   }
-  open_section(out, "Do the narrow phases agree?", narrow_phase_lead(comparison.narrow_phases));
+  open_section(out, "Do the narrow phases agree?", narrow_phase_verdict(comparison.narrow_phases));
   print_table(out, table);
   print_errors(out, comparison.narrow_phases);
 }

@@ -40,8 +40,6 @@ Rows sorted(Rows rows, double BenchmarkRow::*cost) {
   return rows;
 }
 
-double rate_khz(const BenchmarkRow& row) { return 1e3 / median(row, &BenchmarkRow::step); }
-
 }  // namespace
 
 std::string query_plot(const Rows& rows, Stage stage, const std::vector<std::string>& all) {
@@ -96,7 +94,6 @@ std::string rate_plot(const std::vector<Rows>& combinations, Over over) {
       series.points.push_back(
           {static_cast<double>(triangles ? row->triangles : row->vertices), rate_khz(*row)});
     }
-    sort_by_x(series.points);
     plot.series.push_back(std::move(series));
   }
   Series published{"Li et al. 2020, their machine", "series-published", {}, Mark::star};
@@ -167,9 +164,10 @@ std::string stage_bars(const Rows& rows) {
       {"query", "stage-query"}, {"activate", "stage-activate"}, {"solve", "stage-solve"}};
   chart.length = Bars::Length::of_share;
   for (const BenchmarkRow* row : rows) {
-    chart.bars.push_back({combination(*row),
-                          time_text(row->step->p50),
-                          {row->query->p50, row->activate->p50, row->solve->p50}});
+    chart.bars.push_back(
+        {combination(*row),
+         time_text(row->step->p50),
+         {row->step_query ? row->step_query->p50 : 0.0, row->activate->p50, row->solve->p50}});
   }
   return to_svg(chart);
 }
@@ -179,7 +177,10 @@ std::string build_bars(Rows rows) {
   chart.description = "Time to build each index.";
   chart.parts = {{"build", "series-0"}};
   for (const BenchmarkRow* row : sorted(std::move(rows), &BenchmarkRow::build_s)) {
-    chart.bars.push_back({row->index, rounded(row->build_s) + "\u00a0s", {row->build_s}});
+    chart.bars.push_back(
+        {row->index,
+         rounded(row->build_s) + "\u00a0s, " + rounded(row->build_cores, 2) + "\u00a0cores",
+         {row->build_s}});
   }
   return to_svg(chart);
 }
@@ -196,7 +197,7 @@ std::string memory_bars(Rows rows) {
 }
 
 std::string line_name(const BenchmarkRow& row) {
-  return combination(row) + ", r = " + (row.radius ? radius_text(row.radius) : "motion");
+  return combination(row) + (row.radius ? ", r = " + radius_text(row.radius) : "");
 }
 
 }  // namespace keepout::app

@@ -31,7 +31,8 @@ std::string rate_spans(const std::vector<Rows>& combinations);
 enum class Percentile { median, p99 };
 std::string solve_plot(const Rows& rows, const std::vector<std::string>& all, Percentile told);
 
-/// What the median steps are made of. Precondition: all stages were timed.
+/// What the median steps are made of: no query, where the rule searches the index by itself.
+/// Precondition: all other stages were timed.
 std::string stage_bars(const Rows& rows);
 
 /// What an index costs before the first query. One row an index.

@@ -43,20 +43,21 @@ Rows hardest_problems(const Rows& rows) {
 
 /// Instead of a ranking, where no row is fit for one.
 constexpr const char* nobody_ranked =
-    "No row is ranked: none has an answer to 99 % of its steps in a time that can be measured";
+    "No row is ranked: none has triangles in reach and an answer to 99 % of its steps";
 
 /// The solvers that are shown, but not ranked.
 std::string given_up(const Rows& rows) {
   const Rows some = only(rows, [](const BenchmarkRow& row) { return !answers(row); });
   if (some.empty()) return {};
-  return " Not ranked where more than 1 % of the steps are without an answer: " +
-         listed(names(some, &BenchmarkRow::solver)) + ".";
+  return " Shown, but not ranked: " + counted(some.size(), "row") + " of " +
+         listed(names(some, &BenchmarkRow::solver)) +
+         " with more than 1 % of the steps without an answer.";
 }
 
 /// The stage that takes most of a step, and how much of it.
 std::string main_stage(const BenchmarkRow& row) {
   const std::vector<std::pair<double, const char*>> stages = {
-      {row.query->p50, "query"},
+      {row.step_query ? row.step_query->p50 : 0.0, "query"},
       {row.activate->p50, "activation"},
       {row.solve->p50, "search for the motion"}};
   double sum = 0.0;
@@ -67,6 +68,26 @@ std::string main_stage(const BenchmarkRow& row) {
          " % of the step";
 }
 
+/// Which have no query stage, and why.
+std::string searching(const Rows& rows) {
+  std::vector<std::string> names;
+  for (const BenchmarkRow* row : rows) {
+    if (!row->step_query) names.push_back(row->index + " under " + row->activation);
+  }
+  std::sort(names.begin(), names.end());
+  names.erase(std::unique(names.begin(), names.end()), names.end());
+  if (names.empty()) return {};
+  return " With " + listed(names) +
+         " the rule searches the tree by itself: there is no query, its work is in the other two.";
+}
+
+std::string rate_text(const BenchmarkRow& row) { return rounded(rate_khz(row)) + "\u00a0kHz"; }
+
+/// Three digits, the thousands set apart.
+std::string grouped_digits(double value) {
+  return grouped(static_cast<std::size_t>(std::stod(rounded(value))));
+}
+
 }  // namespace
 
 std::string query_lead(const Rows& rows) {
@@ -75,14 +96,24 @@ std::string query_lead(const Rows& rows) {
   const Rows there = on_common_mesh(eligible);
   const BenchmarkRow& quick = fastest(there, &BenchmarkRow::query);
   const BenchmarkRow& slow = slowest(there, &BenchmarkRow::query);
-  std::string text = "On " + mesh_text(quick) + ", with " + sphere_text(quick.radius) + ", " +
+  std::string text = "On " + mesh_text(quick) + ", " + sphere_text(quick.radius) + ", " +
                      quick.index + " finds the triangles in " +
                      time_text(median(quick, &BenchmarkRow::query));
   if (&quick != &slow) {
     text += " and " + slow.index + " in " + time_text(median(slow, &BenchmarkRow::query));
   }
   const std::string grows = growth(eligible, quick.index, &BenchmarkRow::query);
-  return text + (grows.empty() ? "." : "; the flatter a line, the less a finer mesh costs.");
+  text += grows.empty() ? "." : "; the flatter a line, the less a finer mesh costs.";
+  // What an index that proposes no other triangles has decided need not be decided again, but is.
+  const Rows exact =
+      only(there, [](const BenchmarkRow& row) { return row.candidates_mean == row.hits_mean; });
+  if (!exact.empty()) {
+    text += " What " + listed(names(exact, &BenchmarkRow::index)) +
+            (exact.size() > 1 ? " propose" : " proposes") +
+            " are the triangles in reach and no others, so that their candidates include a test "
+            "of triangles, and the query tests them once more.";
+  }
+  return text;
 }
 
 std::string query_about(const Rows& rows, Stage stage) {
@@ -97,26 +128,37 @@ std::string query_about(const Rows& rows, Stage stage) {
   return grows.empty() ? text : text + " " + grows + ".";
 }
 
-std::string rate_lead(const std::vector<Rows>& lines) {
-  const BenchmarkRow* best = nullptr;
-  for (const Rows& line : lines) {
-    const BenchmarkRow& largest = **std::max_element(
-        line.begin(), line.end(),
-        [](const BenchmarkRow* a, const BenchmarkRow* b) { return a->triangles < b->triangles; });
-    if (best == nullptr ||
-        median(largest, &BenchmarkRow::step) < median(*best, &BenchmarkRow::step)) {
-      best = &largest;
-    }
+std::string rate_lead(const Rows& line) {
+  const BenchmarkRow& small = *line.front();
+  const BenchmarkRow& large = *line.back();
+  std::string text = line_name(large) + ": " + rate_text(large) + " at " +
+                     counted(large.triangles, "triangle") + "; ";
+  const std::vector<RateCrossing> crossings = crossings_of_1_khz(line);
+  const bool keeps = rate_khz(small) >= 1.0;
+  if (crossings.empty()) {
+    const std::string range = line.size() == 1 ? "" : " from " + grouped(small.triangles) + " on";
+    return text + (keeps ? "1\u00a0kHz is kept up to there, the largest here."
+                         : "1\u00a0kHz is not reached" + range + ".");
   }
-  return "By its median step " + line_name(*best) + " makes " +
-         rounded(1e3 / median(*best, &BenchmarkRow::step)) + "\u00a0kHz at " +
-         counted(best->triangles, "triangle") +
-         "; the stars are what Li et al. 2020 published for the Stanford bunny, " +
+  text += keeps ? "it falls below 1\u00a0kHz at about " : "it rises above 1\u00a0kHz at about ";
+  const char* separator = "";
+  for (const RateCrossing& crossing : crossings) {
+    text += separator + grouped_digits(crossing.triangles) + " triangles, between the meshes of " +
+            grouped(crossing.before->triangles) + " and " + grouped(crossing.after->triangles);
+    separator = ", and crosses it again at about ";
+  }
+  return text + ".";
+}
+
+std::string published_lead(const std::vector<Rows>& lines) {
+  return "Rates of the median step. The stars are what Li et al. 2020 published for the Stanford "
+         "bunny, " +
          trimmed(published_rates.front().khz) + "\u00a0kHz at " +
          grouped(published_rates.front().triangles) + " and " +
          trimmed(published_rates.back().khz) + "\u00a0kHz at " +
          grouped(published_rates.back().triangles) +
-         " triangles on an Intel i7-8700, which is another machine" +
+         " triangles on an Intel i7-8700: another machine, and motions and a sphere that are not "
+         "known" +
          (one_size(lines) ? "." : ": compare the slopes, not the heights.");
 }
 
@@ -126,26 +168,25 @@ std::string solve_lead(const Rows& rows) {
       "; rule " + rows.front()->activation + ", a mark for each mesh and radius." + given_up(rows);
   if (eligible.empty()) return std::string(nobody_ranked) + marks;
   const Rows there = hardest_problems(eligible);
+  const auto told = [](const BenchmarkRow& row) {
+    return row.solver + " finds the motion in " + time_text(median(row, &BenchmarkRow::solve)) +
+           " among " + mean_text(row.planes_mean) + " planes in the mean";
+  };
   const BenchmarkRow& quick = fastest(there, &BenchmarkRow::solve);
   const BenchmarkRow& slow = slowest(there, &BenchmarkRow::solve);
-  const std::string text = "With " + mean_text(quick.planes_mean) + " planes in the mean, " +
-                           quick.solver + " finds the motion in " +
-                           time_text(median(quick, &BenchmarkRow::solve));
-  return text +
-         (quick.solver == slow.solver
-              ? ""
-              : " and " + slow.solver + " in " + time_text(median(slow, &BenchmarkRow::solve))) +
-         marks;
+  return "On " + mesh_text(quick) + ", " + sphere_text(quick.radius) + ", " + told(quick) +
+         (quick.solver == slow.solver ? "" : " and " + told(slow)) + marks;
 }
 
 std::string stage_lead(const Rows& rows) {
   const BenchmarkRow& quick = fastest(rows, &BenchmarkRow::step);
   const BenchmarkRow& slow = slowest(rows, &BenchmarkRow::step);
-  const std::string text = "On " + mesh_text(quick) + ", with " + sphere_text(quick.radius) +
+  const std::string text = "On " + mesh_text(quick) + ", " + sphere_text(quick.radius) +
                            ", in the fastest combination " + main_stage(quick);
   return text + (&quick == &slow ? "." : "; in the slowest " + main_stage(slow) + ".") +
          " Solve is the search for the motion: the solver's work and, under certified, the rule's "
-         "proofs.";
+         "proofs." +
+         searching(rows);
 }
 
 std::string cost_lead(const Rows& rows) {
@@ -159,13 +200,19 @@ std::string cost_lead(const Rows& rows) {
         rows.begin(), rows.end(),
         [&](const BenchmarkRow* a, const BenchmarkRow* b) { return a->*cost < b->*cost; });
   };
+  const auto built = [](const BenchmarkRow& row) {
+    return "in " + rounded(row.build_s) + " s with " + rounded(row.build_cores, 2) + " cores busy";
+  };
   const auto build = &BenchmarkRow::build_s;
   const auto memory = &BenchmarkRow::bytes_per_triangle;
-  return "On " + mesh_text(*rows.front()) + ", " + least(build)->index + " is built fastest, in " +
-         rounded(least(build)->build_s) + " s, and " + most(build)->index + " slowest, in " +
-         rounded(most(build)->build_s) + " s; " + least(memory)->index + " takes least memory, " +
+  const BenchmarkRow& first = *rows.front();
+  return "On " + mesh_text(first) + ", " + least(build)->index + " is built fastest, " +
+         built(*least(build)) + ", and " + most(build)->index + " slowest, " + built(*most(build)) +
+         "; " + least(memory)->index + " takes least memory, " +
          rounded(least(memory)->bytes_per_triangle) + " bytes a triangle, and " +
-         most(memory)->index + " most, " + rounded(most(memory)->bytes_per_triangle) + ".";
+         most(memory)->index + " most, " + rounded(most(memory)->bytes_per_triangle) +
+         ". Reading the mesh's file took " + rounded(first.load_s) + " s with " +
+         rounded(first.load_cores, 2) + " cores busy.";
 }
 
 }  // namespace keepout::app

@@ -19,10 +19,13 @@ std::string query_lead(const Rows& rows);
 /// The same in a few words, for the caption of a panel.
 std::string query_about(const Rows& rows, Stage stage);
 
-/// `lines`: as rate_lines() gives them.
-std::string rate_lead(const std::vector<Rows>& lines);
+/// `line`: one that rate_lines() gives. Its rate, and where it passes 1 kHz.
+std::string rate_lead(const Rows& line);
 
-/// `rows`: those of one rule.
+/// What to compare all lines with.
+std::string published_lead(const std::vector<Rows>& lines);
+
+/// `rows`: those of one rule and mesh.
 std::string solve_lead(const Rows& rows);
 
 /// `rows`: those of one mesh and radius.

@@ -50,9 +50,10 @@ void print_account(std::ostream& out, const Benchmark& benchmark) {
 void print_benchmark_report(std::ostream& out, const Benchmark& benchmark,
                             const Comparison& comparison) {
   open_page(out, "keepout bench", benchmark_style);
-  out << "<p class=\"eyebrow\">Search trees, activation rules and solvers, on the same poses";
+  out << "<p class=\"eyebrow\">Search trees, activation rules and solvers, on the same motions";
   if (!benchmark.machine.processor.empty()) {
-    out << "; <strong>" << escape(benchmark.machine.processor) << "</strong>";
+    out << "; <strong>" << escape(benchmark.machine.processor) << "</strong>, "
+        << escape(benchmark.machine.simd);
   }
   if (!benchmark.date.empty()) out << ", " << escape(benchmark.date);
   out << "</p>\n<h1>" << escape(title_of(benchmark, comparison)) << "</h1>\n";

@@ -3,6 +3,7 @@
 #include "report/benchmark_rows.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <map>
 #include <set>
@@ -54,9 +55,12 @@ Rows timed(const Benchmark& benchmark, Stage stage) {
 
 bool answers(const BenchmarkRow& row) { return row.unsolved_share <= 0.01; }
 
+bool reaches(const BenchmarkRow& row) { return row.reaching_share >= 0.5; }
+
 Rows ranked(const Rows& rows, Stage stage) {
-  return only(rows,
-              [&](const BenchmarkRow& row) { return answers(row) && median(row, stage) > 0.0; });
+  return only(rows, [&](const BenchmarkRow& row) {
+    return reaches(row) && answers(row) && median(row, stage) > 0.0;
+  });
 }
 
 Rows only(const Rows& rows, const std::function<bool(const BenchmarkRow&)>& wanted) {
@@ -106,11 +110,7 @@ Rows at_radius(const Rows& rows, const std::optional<double>& radius) {
   return only(rows, [&](const BenchmarkRow& row) { return row.radius == radius; });
 }
 
-Rows on_scaled_mesh(const Rows& rows) {
-  if (rows.empty()) return {};
-  const std::string mesh = most_common(
-      rows, +[](const BenchmarkRow& row) { return row.mesh; },
-      [](const BenchmarkRow& row) { return row.triangles; });
+Rows on_mesh(const Rows& rows, const std::string& mesh) {
   return only(rows, [&](const BenchmarkRow& row) { return row.mesh == mesh; });
 }
 
@@ -168,34 +168,50 @@ Neighborhood neighborhood(const Rows& rows) {
 }
 
 std::vector<Rows> rate_lines(const Rows& rows) {
-  const Rows scaled = on_scaled_mesh(rows);
   std::vector<Rows> lines;
   const auto add = [&](const BenchmarkRow& like) {
-    lines.push_back(only(scaled, [&](const BenchmarkRow& row) {
+    Rows line = only(rows, [&](const BenchmarkRow& row) {
       return combination(row) == combination(like) && row.radius == like.radius;
-    }));
+    });
+    std::stable_sort(line.begin(), line.end(), [](const BenchmarkRow* a, const BenchmarkRow* b) {
+      return a->triangles < b->triangles;
+    });
+    lines.push_back(std::move(line));
   };
-  for (const char* rule : {"certified", "paper"}) {
-    for (const Pair& pair : {our_pair, peer_pair}) {
-      const Rows own = only(
-          scaled, [&](const BenchmarkRow& row) { return is(row, pair) && row.activation == rule; });
-      if (own.empty()) continue;
-      const std::vector<std::optional<double>> spheres = radii(own);
-      for (const Rows& sphere : {at_radius(own, std::nullopt), at_radius(own, spheres.front())}) {
-        const bool ours = std::string(pair.index) == our_pair.index;
-        if (sphere.empty() || (!sphere.front()->radius && spheres.size() > 1 && !ours)) continue;
-        if (!lines.empty() && lines.back().front() == sphere.front()) continue;
-        add(*sphere.front());
-      }
+  for (const std::string& rule : names(rows, &BenchmarkRow::activation)) {
+    const Rows under = only(rows, [&](const BenchmarkRow& row) { return row.activation == rule; });
+    const auto those_of = [&](const Pair& pair) {
+      return only(under, [&](const BenchmarkRow& row) { return is(row, pair); });
+    };
+    const Rows ours = those_of(our_pair), peers = those_of(peer_pair);
+    if (ours.empty() && peers.empty()) {
+      const Rows there = on_common_mesh(under);
+      const Rows widest = at_radius(there, radii(there).front());
+      add(fastest(widest, &BenchmarkRow::step));
+      if (widest.size() > 1) add(slowest(widest, &BenchmarkRow::step));
+    }
+    for (const Rows& own : {ours, peers}) {
+      if (!own.empty()) add(*at_radius(own, radii(own).front()).front());
     }
   }
-  if (lines.empty()) {
-    const Rows there = on_common_mesh(scaled);
-    const Rows widest = at_radius(there, radii(there).front());
-    add(fastest(widest, &BenchmarkRow::step));
-    if (widest.size() > 1) add(slowest(widest, &BenchmarkRow::step));
-  }
   return lines;
+}
+
+double rate_khz(const BenchmarkRow& row) { return 1e3 / median(row, &BenchmarkRow::step); }
+
+std::vector<RateCrossing> crossings_of_1_khz(const Rows& line) {
+  std::vector<RateCrossing> crossings;
+  for (std::size_t i = 1; i < line.size(); ++i) {
+    const BenchmarkRow& before = *line[i - 1];
+    const BenchmarkRow& after = *line[i];
+    const double from = std::log(rate_khz(before)), to = std::log(rate_khz(after));
+    if ((from >= 0.0) == (to >= 0.0)) continue;
+    const double share = from / (from - to);
+    const auto small = static_cast<double>(before.triangles);
+    const auto large = static_cast<double>(after.triangles);
+    crossings.push_back({&before, &after, small * std::pow(large / small, share)});
+  }
+  return crossings;
 }
 
 bool one_size(const std::vector<Rows>& lines) {
@@ -207,11 +223,11 @@ std::string combination(const BenchmarkRow& row) {
 }
 
 std::string radius_text(const std::optional<double>& radius) {
-  return radius ? trimmed(*radius) + "\u00a0mm" : "as long as the motion";
+  return radius ? trimmed(*radius) + "\u00a0mm" : "as far as the motion leads";
 }
 
 std::string sphere_text(const std::optional<double>& radius) {
-  return "a motion sphere " + (radius ? "of " + radius_text(radius) : radius_text(radius));
+  return (radius ? "with a motion sphere of " : "looking ") + radius_text(radius);
 }
 
 std::string mesh_text(const BenchmarkRow& row) {

@@ -24,8 +24,13 @@ Rows timed(const Benchmark& benchmark, Stage stage);
 /// quick, but is not fast.
 bool answers(const BenchmarkRow& row);
 
-/// Those that may be set against each other by their median time of a stage: their steps have
-/// answers, and the clock saw the stage take time. Precondition: the stage was timed in all.
+/// Whether at least half of the queries find a triangle: else their median is the time of finding
+/// nothing, and there is nothing to keep a step from.
+bool reaches(const BenchmarkRow& row);
+
+/// Those that may be set against each other by their median time of a stage: there are triangles in
+/// reach, the steps have answers, and the clock saw the stage take time. Precondition: the stage
+/// was timed in all.
 Rows ranked(const Rows& rows, Stage stage);
 
 Rows only(const Rows& rows, const std::function<bool(const BenchmarkRow&)>& wanted);
@@ -41,12 +46,12 @@ const BenchmarkRow& slowest(const Rows& rows, Stage stage);
 std::vector<std::string> names(const Rows& rows, std::string BenchmarkRow::*part);
 std::vector<std::size_t> sizes(const Rows& rows);  // in triangles, ascending
 
-/// Radii of the motion sphere, the largest first, "as long as each motion" last.
+/// Radii of the motion sphere, the largest first, "as far as motions lead" last.
 std::vector<std::optional<double>> radii(const Rows& rows);
 Rows at_radius(const Rows& rows, const std::optional<double>& radius);
 
-/// Those on the mesh that comes in most sizes.
-Rows on_scaled_mesh(const Rows& rows);
+/// Those on a mesh of that name, in whatever size.
+Rows on_mesh(const Rows& rows, const std::string& mesh);
 
 /// Those on one mesh: the one on which there are most, and of these the largest.
 Rows on_common_mesh(const Rows& rows);
@@ -68,10 +73,21 @@ struct Neighborhood {
 /// Precondition: there is a row.
 Neighborhood neighborhood(const Rows& rows);
 
-/// The combinations whose rate over the size of the mesh is worth a line, one each: ours and its
-/// peer's with the largest sphere, and ours with the sphere as long as the motion; or else the
-/// fastest and the slowest there are.
+/// The combinations whose rate over the size of the mesh is worth a line, one each: under every
+/// rule ours and its peer's, or else the fastest and the slowest there are on the mesh that most
+/// have; each with the largest sphere, and the smallest mesh first. `rows`: those on one mesh.
 std::vector<Rows> rate_lines(const Rows& rows);
+
+/// How often the median step fits into a second. [kHz]
+double rate_khz(const BenchmarkRow& row);
+
+/// Where a rate line passes 1 kHz, by a straight line between its points in the plot.
+struct RateCrossing {
+  const BenchmarkRow* before;
+  const BenchmarkRow* after;
+  double triangles;
+};
+std::vector<RateCrossing> crossings_of_1_khz(const Rows& line);
 
 /// Whether no line has more than a point.
 bool one_size(const std::vector<Rows>& lines);
@@ -79,10 +95,10 @@ bool one_size(const std::vector<Rows>& lines);
 /// "wide_bvh, paper, active_set"
 std::string combination(const BenchmarkRow& row);
 
-/// "5 mm"; "as long as the motion".
+/// "5 mm"; "as far as the motion leads".
 std::string radius_text(const std::optional<double>& radius);
 
-/// "a motion sphere of 5 mm"; "a motion sphere as long as the motion".
+/// "with a motion sphere of 5 mm"; "looking as far as the motion leads".
 std::string sphere_text(const std::optional<double>& radius);
 
 /// "bunny with 985,856 triangles"
@@ -92,11 +108,9 @@ std::string mesh_text(const BenchmarkRow& row);
 struct Pair {
   const char* index;
   const char* solver;
-  const char* words;  // for a reader who does not know the names, within a sentence
 };
-inline constexpr Pair our_pair = {"wide_bvh", "active_set",
-                                  "the principal direction tree with our active set"};
-inline constexpr Pair peer_pair = {"fcl_obbrss", "nlopt_slsqp", "FCL's tree with NLopt's SLSQP"};
+inline constexpr Pair our_pair = {"wide_bvh", "active_set"};
+inline constexpr Pair peer_pair = {"fcl_obbrss", "nlopt_slsqp"};
 bool is(const BenchmarkRow& row, const Pair& pair);
 
 }  // namespace keepout::app

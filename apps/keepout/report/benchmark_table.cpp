@@ -3,11 +3,12 @@
 #include "report/benchmark_table.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstdint>
 #include <cstdio>
+#include <limits>
 #include <map>
 #include <ostream>
-#include <set>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -46,16 +47,18 @@ std::vector<TableCell> cells(const BenchmarkRow& row) {
                                    {grouped(row.triangles)},
                                    {row.radius ? trimmed(*row.radius) : "motion"},
                                    {cost(row.build_s)},
+                                   {cost(row.build_cores)},
                                    {cost(row.bytes_per_triangle)},
                                    {grouped(row.queries)},
                                    {count(row.candidates_mean)},
                                    {count(row.hits_mean)},
+                                   {count(100.0 * row.reaching_share)},
                                    {count(row.planes_mean)},
-                                   {count(row.iterations_mean)},
                                    {count(100.0 * row.unsolved_share)},
                                    {count(100.0 * row.worse_share)},
                                    {median_or_dash(row.collect)},
                                    {median_or_dash(row.query)},
+                                   {median_or_dash(row.step_query)},
                                    {median_or_dash(row.activate)},
                                    {median_or_dash(row.solve)},
                                    {median_or_dash(row.step)}};
@@ -85,31 +88,66 @@ Rows in_order(const Benchmark& benchmark) {
   return rows;
 }
 
-/// In how many comparisons of indices, all else being equal, they all led to the same steps.
+/// A row's hash over as many steps as another made too, or a power of two fewer.
+std::uint64_t hash_over(const BenchmarkRow& row, std::size_t steps) {
+  return row.queries == steps ? row.hash : row.first_hashes[std::bit_width(steps) - 1];
+}
+
+/// Whether rows that differ in the index alone led to the same steps, as far as they made the same;
+/// and which rows have no such other.
 std::string same_steps(const Benchmark& benchmark) {
-  using Problem = std::tuple<std::string, std::size_t, std::optional<double>, std::string,
-                             std::string, std::size_t>;
-  struct Group {
-    std::size_t rows = 0;
-    std::set<std::uint64_t> hashes;
-  };
-  std::map<Problem, Group> groups;
+  using Problem =
+      std::tuple<std::string, std::size_t, std::optional<double>, std::string, std::string>;
+  std::map<Problem, Rows> groups;
+  std::size_t unverified = 0, alone = 0, members = 0, compared = 0, same = 0;
   for (const BenchmarkRow& row : benchmark.rows) {
-    if (!row.verified) continue;
-    Group& group =
-        groups[{row.mesh, row.triangles, row.radius, row.activation, row.solver, row.queries}];
-    ++group.rows;
-    group.hashes.insert(row.hash);
+    if (row.verified) {
+      groups[{row.mesh, row.triangles, row.radius, row.activation, row.solver}].push_back(&row);
+    } else {
+      ++unverified;
+    }
   }
-  std::size_t compared = 0, same = 0;
-  for (const auto& [problem, group] : groups) {
-    if (group.rows < 2) continue;
+  std::size_t fewest = std::numeric_limits<std::size_t>::max(), most = 0;
+  for (const auto& [problem, rows] : groups) {
+    if (rows.size() < 2) {
+      ++alone;
+      continue;
+    }
+    const BenchmarkRow& longest = **std::ranges::max_element(rows, {}, &BenchmarkRow::queries);
+    bool all = true;
+    for (const BenchmarkRow* row : rows) {
+      if (row == &longest) continue;
+      const std::size_t steps =
+          row->queries == longest.queries ? row->queries : std::bit_floor(row->queries);
+      fewest = std::min(fewest, steps);
+      most = std::max(most, steps);
+      all = all && hash_over(*row, steps) == hash_over(longest, steps);
+    }
+    members += rows.size();
     ++compared;
-    if (group.hashes.size() == 1) ++same;
+    same += all ? 1 : 0;
   }
-  if (compared == 0) return {};
-  return ": all indices did in " + grouped(same) + " of the " + counted(compared, "group") +
-         " that differ in the index alone";
+  std::string text;
+  if (compared > 0) {
+    text = " Rows that differ in the index alone, " + grouped(members) + " in " +
+           counted(compared, "group") + ", made the same steps in " + grouped(same) +
+           " of them, as far as they were asked for the same, the first " +
+           (fewest == most ? grouped(most) : grouped(fewest) + " to " + grouped(most)) +
+           " motions.";
+  }
+  if (alone > 0) text += " Left out: " + counted(alone, "row") + " without such another.";
+  if (unverified > 0) text += " Left out: " + counted(unverified, "row") + " not verified.";
+  return text;
+}
+
+/// What the names stand for.
+void print_parts(std::ostream& out, const Benchmark& benchmark) {
+  if (benchmark.parts.empty()) return;
+  out << "<dl>";
+  for (const auto& [name, what] : benchmark.parts) {
+    out << "<dt>" << escape(name) << "</dt><dd>" << escape(what) << "</dd>";
+  }
+  out << "</dl>";
 }
 
 bool has_nlopt(const Benchmark& benchmark) {
@@ -130,16 +168,18 @@ void print_row_section(std::ostream& out, const Benchmark& benchmark) {
                    "triangles",
                    "radius [mm]",
                    "build [s]",
+                   "cores busy",
                    "bytes a triangle",
                    "queries",
                    "candi\u00addates",
                    "hits",
+                   "reach any [%]",
                    "planes",
-                   "itera\u00adtions",
                    "not solved [%]",
                    "worse [%]",
                    "candidates only [µs]",
                    "query [µs]",
+                   "find [µs]",
                    "activate [µs]",
                    "solve [µs]",
                    "step [µs]",
@@ -155,8 +195,8 @@ void print_row_section(std::ostream& out, const Benchmark& benchmark) {
       << (untimed == 0 ? "all of them timed" : grouped(untimed) + " of them not timed")
       << ": the largest mesh first, then the largest sphere, then the fastest step. Times are "
          "medians unless they say otherwise; counts are means. Rows with the same hash made the "
-         "same steps, bit for bit"
-      << same_steps(benchmark) << ".</p>\n";
+         "same steps, bit for bit."
+      << same_steps(benchmark) << "</p>\n";
   print_table(out, table);
   out << "</section>\n";
 }
@@ -166,41 +206,45 @@ void print_machine_section(std::ostream& out, const Benchmark& benchmark) {
   out << "<h2>The machine, and how it was measured</h2>\n"
       << "<div class=\"panels wide\" style=\"--columns:2\">\n<figure>";
   print_machine_facts(out, benchmark.machine, benchmark.date, benchmark.command, benchmark.seed);
+  print_parts(out, benchmark);
   out << "</figure>\n<div>\n<p class=\"method\">All combinations draw on the same seeded "
          "motions; a slow one is asked the first of them only, and the table says how many: rows "
-         "of "
-         "few queries compare by their order of magnitude. What is wrong is not timed. An index is "
-         "held to the triangles of brute force "
-         "in a sample of eight places for each rule and radius, and in all its steps, bit for bit, "
-         "to those of pd_tree with active_set, which are themselves held to brute force in that "
-         "sample. The steps of other solvers are held to them within the solver's stated "
-         "accuracy. Under the rule certified another solver's motion counts as right because the "
-         "rule has proven it; the column <b>worse</b> tells how many fell short of the reference "
-         "by more than a thousandth of the motion. Rows with more than 1 % of the steps without an "
-         "answer are in the table, but not ranked.</p>\n"
-         "<p class=\"method\"><b>Candidates only</b> is what the index does alone; <b>query</b> "
-         "adds "
-         "the exact test of each candidate, which all indices share, so that nobody is credited "
-         "with it; <b>activate</b> makes planes of the triangles; <b>solve</b> searches for the "
+         "of few queries compare by their order of magnitude. Each is a MotionConstraint as users "
+         "make one, but takes its tips as they are: to place a tip that no step led to is not part "
+         "of it. It is asked twice for the same motions, stage by stage and as a whole, and only "
+         "what was right both times has times. Steps with active_set are held, bit for bit, to "
+         "those of pd_tree with active_set and the plain form of the rule, which are held to brute "
+         "force in a sample of eight places for each rule and radius; those of other solvers "
+         "within the solver's stated accuracy. Under the rule certified another solver's motion "
+         "counts as right because the rule has proven it; the column <b>worse</b> tells how many "
+         "fell short of the reference by more than a thousandth of the motion. The triangles of "
+         "every query are held, bit for bit, to those of pd_tree, and to brute force in the same "
+         "sample. Rows with more than 1 % of the steps without an answer are in the table, but not "
+         "ranked, nor are those that <b>reach any</b> triangle in fewer than half of the "
+         "motions.</p>\n"
+         "<p class=\"method\"><b>Candidates only</b> is what the index proposes; <b>query</b> is "
+         "that, the exact test of each candidate, the closest point of each hit, and their "
+         "sorting: "
+         "the same work for every index, around the same places, apart from the step. <b>Find</b> "
+         "is the query as it is part of the step; it is empty where the rule searches the tree by "
+         "itself. <b>Activate</b> makes planes of the triangles; <b>solve</b> searches for the "
          "motion: the solver's work and, under certified, the rule's proofs; <b>step</b> is all of "
-         "it, one call. Loading the mesh and building the index are not part "
-         "of it. Stages are timed one by one, so that their medians need not add up to the median "
-         "of the step.";
+         "it, one call, timed in a round of its own, so that the medians of stages need not add up "
+         "to its median. <b>Planes</b> are those the solver was given in the end. Loading the mesh "
+         "and building the index are not part of it.";
   if (has_nlopt(benchmark)) {
-    out << " NLopt's times include posing the problem without units and proving the answer, about "
-           "a third of them: without that its answers could not be used.";
+    out << " NLopt's times include posing the problem without units and proving the answer.";
   }
   out << "</p>\n"
          "<p class=\"method\">Percentiles are by nearest rank: times that did occur. The 99 % "
-         "needs "
-         "100 samples, the 99.9 % a thousand. The slowest step tells more of the machine than of "
-         "the method.";
+         "needs 100 samples, the 99.9 % a thousand. The slowest step includes whatever else the "
+         "machine did meanwhile.";
   if (benchmark.machine.clock_ns > 0.0) {
     out << " Reading the clock adds " << rounded(benchmark.machine.clock_ns)
         << " ns to each time, which is not taken off.";
   }
-  out << "</p>\n<p class=\"method\">Absolute times do not carry over to another machine; ratios "
-         "between rows do, by and large.</p>\n</div>\n</div>\n";
+  out << "</p>\n<p class=\"method\">Neither times nor their ratios carry over to another "
+         "machine or another SIMD target: measure there.</p>\n</div>\n</div>\n";
 }
 
 }  // namespace keepout::app

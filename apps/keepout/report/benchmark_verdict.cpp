@@ -3,11 +3,11 @@
 #include "report/benchmark_verdict.h"
 
 #include <algorithm>
-#include <cctype>
 #include <optional>
 #include <tuple>
 #include <vector>
 
+#include "bench/used_cores.h"
 #include "number_text.h"
 #include "report/benchmark_rows.h"
 
@@ -60,10 +60,7 @@ double ratio(const BenchmarkRow& quick, const BenchmarkRow& slow) {
   return median(slow, step) / median(quick, step);
 }
 
-std::string sentence(std::string words) {
-  words.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(words.front())));
-  return words;
-}
+std::string words(const BenchmarkRow& row) { return row.index + " with " + row.solver; }
 
 bool ahead(const Duel& duel) { return median(*duel.ours, step) <= median(*duel.peers, step); }
 const BenchmarkRow& quick_of(const Duel& duel) { return ahead(duel) ? *duel.ours : *duel.peers; }
@@ -72,24 +69,25 @@ const BenchmarkRow& slow_of(const Duel& duel) { return ahead(duel) ? *duel.peers
 std::string told(const Duel& duel) {
   const BenchmarkRow& quick = quick_of(duel);
   const BenchmarkRow& slow = slow_of(duel);
-  const Pair& first = ahead(duel) ? our_pair : peer_pair;
-  const Pair& second = ahead(duel) ? peer_pair : our_pair;
-  return sentence(first.words) + " answers a step in " + time_text(median(quick, step)) +
-         ", where " + second.words + " takes " + time_text(median(slow, step)) + ": " +
+  return words(quick) + " answers a step in " + time_text(median(quick, step)) + ", where " +
+         words(slow) + " takes " + time_text(median(slow, step)) + ": " +
          ratio_text(ratio(quick, slow)) + " times as long.";
 }
 
-/// "Those are medians of 2,500 and 120 steps on bunny with 51,978 triangles"
+/// "Those are medians of 2,500 and 120 steps on bunny with 51,978 triangles"; of so many "each"
 std::string medians(const BenchmarkRow& quick, const BenchmarkRow& slow) {
   const std::string where = " on " + mesh_text(quick);
   if (&quick == &slow) return "That is the median of " + counted(quick.queries, "step") + where;
+  if (quick.queries == slow.queries) {
+    return "Those are medians of " + counted(quick.queries, "step") + " each" + where;
+  }
   return "Those are medians of " + grouped(quick.queries) + " and " +
          counted(slow.queries, "step") + where;
 }
 
 std::string conditions(const Duel& duel) {
   const BenchmarkRow& row = *duel.ours;
-  return medians(quick_of(duel), slow_of(duel)) + ", rule " + row.activation + ", with " +
+  return medians(quick_of(duel), slow_of(duel)) + ", rule " + row.activation + ", " +
          sphere_text(row.radius) + ". ";
 }
 
@@ -103,17 +101,15 @@ std::string other_radii(const std::vector<Duel>& all, const Duel& main) {
       continue;
     }
     const double ours = median(*duel.ours, step), peers = median(*duel.peers, step);
-    text += (text.empty() ? "With a sphere " : "; with one ") +
-            (duel.ours->radius ? "of " + radius_text(duel.ours->radius)
-                               : radius_text(duel.ours->radius)) +
-            " it is " + time_text(ours) + " against " + time_text(peers) + ", " +
-            ratio_text(std::max(ours, peers) / std::min(ours, peers)) + " times as " +
-            (ours <= peers ? "long" : "quick");
+    text += (text.empty() ? "With a sphere of " : "; with one of ") +
+            radius_text(duel.ours->radius) + " it is " + time_text(ours) + " against " +
+            time_text(peers) + ", " + ratio_text(std::max(ours, peers) / std::min(ours, peers)) +
+            " times as " + (ours <= peers ? "long" : "quick");
   }
   return text.empty() ? text : text + ". ";
 }
 
-/// What our pair does there under the other rules, each with the sphere that suits it best.
+/// What our pair does there under the other rules, each with the largest sphere.
 std::string other_rules(const Rows& rows, const BenchmarkRow& main) {
   const Rows ours = only(rows, [&](const BenchmarkRow& row) {
     return is(row, our_pair) && row.mesh == main.mesh && row.triangles == main.triangles &&
@@ -121,11 +117,24 @@ std::string other_rules(const Rows& rows, const BenchmarkRow& main) {
   });
   std::string text;
   for (const std::string& rule : names(ours, &BenchmarkRow::activation)) {
-    const BenchmarkRow& best =
-        fastest(only(ours, [&](const BenchmarkRow& row) { return row.activation == rule; }), step);
+    const Rows under = only(ours, [&](const BenchmarkRow& row) { return row.activation == rule; });
+    const BenchmarkRow& widest = *at_radius(under, radii(under).front()).front();
     text += (text.empty() ? "Under rule " : "; under rule ") + rule +
-            (text.empty() ? ", the same tree and solver take " : ", ") +
-            time_text(median(best, step)) + " with " + sphere_text(best.radius);
+            (text.empty() ? ", the same index and solver take " : ", ") +
+            time_text(median(widest, step)) + ", " + sphere_text(widest.radius);
+  }
+  return text.empty() ? text : text + ". ";
+}
+
+/// The parts that are named, as they describe themselves.
+std::string what_they_are(const Benchmark& benchmark, const Duel& duel) {
+  std::string text;
+  for (const std::string& name : {duel.ours->index, duel.ours->solver, duel.peers->index,
+                                  duel.peers->solver, duel.ours->activation}) {
+    const auto part = benchmark.parts.find(name);
+    if (part == benchmark.parts.end()) continue;
+    text += (text.empty() ? "Of the names, " : "; ") + name + " stands for \u201c" + part->second +
+            "\u201d";
   }
   return text.empty() ? text : text + ". ";
 }
@@ -139,6 +148,11 @@ std::string left_out(const Benchmark& benchmark) {
   std::string text;
   if (rows.size() < all) {
     text += of_all(all - rows.size()) + " not timed; the table of all rows says why. ";
+  }
+  const Rows idle = only(rows, [](const BenchmarkRow& row) { return !reaches(row); });
+  if (!idle.empty()) {
+    text += of_all(idle.size()) +
+            " not ranked: for more than half of the motions no triangle is in reach. ";
   }
   const Rows given_up = only(rows, [](const BenchmarkRow& row) { return !answers(row); });
   if (!given_up.empty()) {
@@ -168,7 +182,7 @@ std::string headline(const Benchmark& benchmark) {
   if (all.empty()) return "No step was timed.";
   const Rows rows = ranked(all, step);
   if (rows.empty()) {
-    return "No combination answered 99 % of its steps in a time that can be measured.";
+    return "No combination had triangles in reach and answered 99 % of its steps.";
   }
   if (const std::optional<Duel> duel = main_duel(duels(rows))) return told(*duel);
   const auto [quick, slow] = extremes(rows);
@@ -182,14 +196,21 @@ std::string headline(const Benchmark& benchmark) {
 std::string account(const Benchmark& benchmark) {
   const Rows rows = ranked(timed(benchmark, step), step);
   std::string text;
+  if (benchmark.rows.size() < benchmark.planned) {
+    text = "Incomplete: it was stopped after " + grouped(benchmark.rows.size()) + " of " +
+           counted(benchmark.planned, "row") + ". ";
+  }
   if (const std::vector<Duel> all = duels(rows); !all.empty()) {
     const Duel main = *main_duel(all);
-    text = conditions(main) + other_radii(all, main) + other_rules(rows, *main.ours);
+    text += conditions(main) + other_radii(all, main) + other_rules(rows, *main.ours) +
+            what_they_are(benchmark, main);
   } else if (!rows.empty()) {
     const auto [quick, slow] = extremes(rows);
-    text = medians(*quick, *slow) + ", with " + sphere_text(quick->radius) + ". ";
+    text += medians(*quick, *slow) + ", " + sphere_text(quick->radius) + ". ";
   }
   text += left_out(benchmark);
+  const std::string others = others_text(benchmark.others_cores, benchmark.machine.cores);
+  if (!others.empty()) text += others + " ";
   if (!text.empty()) text.pop_back();
   return text;
 }

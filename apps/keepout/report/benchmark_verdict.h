@@ -15,7 +15,8 @@ namespace keepout::app {
 /// under the same conditions, or else the fastest combination against the slowest.
 std::string headline(const Benchmark& benchmark);
 
-/// The sentences below it: where that holds, and what it is at the other radii.
+/// The sentences below it: where that holds, what it is at the other radii, what the names stand
+/// for, what was left out, and whether the machine was busy with other things.
 std::string account(const Benchmark& benchmark);
 
 }  // namespace keepout::app

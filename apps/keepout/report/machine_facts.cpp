@@ -18,6 +18,7 @@ void print_machine_facts(std::ostream& out, const Machine& machine, const std::s
       {"processor", machine.processor},
       {"cores", machine.cores > 0 ? std::to_string(machine.cores) : ""},
       {"memory", machine.memory_gib > 0.0 ? rounded(machine.memory_gib) + " GiB" : ""},
+      {"SIMD target", machine.simd},
       {"system", machine.system},
       {"compiler", machine.compiler},
       {"flags", machine.flags},

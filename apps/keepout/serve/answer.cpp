@@ -71,6 +71,10 @@ void append_step(std::string& out, const Step& step, std::size_t joints) {
   append_count(out, step.triangles);
   out += ",\"planes\":";
   append_count(out, step.planes.size());
+  if (step.distance) {
+    out += ",\"distance\":";
+    append_number(out, *step.distance);
+  }
 }
 
 void append_polytope(std::string& out, const Polytope& polytope) {

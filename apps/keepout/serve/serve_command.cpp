@@ -7,9 +7,10 @@
 
 #include <ostream>
 
-#include "keepout/adapters/load_mesh.h"
 #include "keepout/error.h"
+#include "named_mesh.h"
 #include "number_text.h"
+#include "progress.h"
 #include "serve/server.h"
 #include "serve/unix_socket.h"
 #include "stop_signal.h"
@@ -32,9 +33,9 @@ void require_stdio() {
 
 int serve(const ServeOptions& options, std::ostream& log) {
   if (!options.socket) require_stdio();
-  const LoadedMesh loaded = load_mesh(options.service.mesh, options.load);
-  for (const std::string& warning : loaded.warnings) log << "keepout: " << warning << '\n';
+  const LoadedMesh loaded = load_named_mesh(options.service.mesh, options.load);
   ServiceSettings settings = options.service;
+  settings.constraint.warn = warn_on_stderr;
   settings.space = loaded.space;
   Service service(loaded.mesh, settings);
   const StopSignal stop;
@@ -54,9 +55,10 @@ const std::string_view protocol_help =
 frame of the mesh. Lines for people go to stderr.
 
   {"id":1,"do":"step","tip":[0,0,60],"desired":[0,0,-0.5]}
-  {"id":1,"ok":true,"status":"free","motion":[0,0,-0.5],"triangles":0,"planes":0}
+  {"id":1,"ok":true,"status":"free","motion":[0,0,-0.5],"triangles":0,"planes":0,"distance":10}
 
 step      tip, desired: the motion that the tip may make instead of the desired one; zero unless ok.
+          'distance' is that of the tip from the surface, before it.
           With jacobian, three rows of n numbers: 'increment' is that of the joints.
           With rows and bounds: rows . u >= bounds holds for the increment u.
 steps     motions, an array of [px,py,pz,dx,dy,dz]: as many steps, answered as "steps".

@@ -16,50 +16,52 @@ namespace {
 
 constexpr int protocol = 1;  // goes up when an old client would no longer be understood
 
+/// With room for the largest request. A client has no other way to a distance than a step.
 MotionConstraintSettings with_room_for(MotionConstraintSettings settings,
                                        const RequestLimits& limits) {
+  settings.distances = Distances::always;
   settings.capacity.variables = std::max<std::size_t>(limits.joints, 3);
   settings.capacity.extra_rows = limits.rows;
   return settings;
 }
 
 std::string info_members(const Mesh& mesh, const ServiceSettings& settings) {
-  using Json = nlohmann::ordered_json;
+  using OrderedJson = nlohmann::ordered_json;
   const MotionConstraintSettings& c = settings.constraint;
-  const auto array = [](const Vec3& v) { return Json{v.x(), v.y(), v.z()}; };
+  const auto array = [](const Vec3& v) { return OrderedJson{v.x(), v.y(), v.z()}; };
   const std::string space(name(settings.space));
-  Json info{{"version", KEEPOUT_VERSION},
-            {"protocol", protocol},
-            {"unit", "mm"},
-            {"frame", "of the mesh"},
-            {"mesh",
-             {{"file", settings.mesh.string()},
-              {"space", space},
-              {"triangles", mesh.triangle_count()},
-              {"vertices", mesh.vertex_count()},
-              {"low", array(mesh.bounds().low)},
-              {"high", array(mesh.bounds().high)},
-              {"watertight", is_watertight(mesh)}}},
-            {"settings",
-             {{"index", c.index},
-              {"activation", c.activation},
-              {"solver", c.solver},
-              {"radius", c.radius},
-              {"tool_radius", c.tool_radius},
-              {"margin", c.margin},
-              {"damping", c.damping},
-              {"recovery", c.recovery},
-              {"deepest", c.deepest},
-              {"refinements", c.refinements},
-              {"branches", c.nodes},
-              {"query", c.query == Query::motion ? "motion" : "sphere"}}},
-            {"limits",
-             {{"line", settings.longest_line},
-              {"joints", settings.limits.joints},
-              {"rows", settings.limits.rows},
-              {"motions", settings.limits.motions}}}};
+  OrderedJson info{{"version", KEEPOUT_VERSION},
+                   {"protocol", protocol},
+                   {"unit", "mm"},
+                   {"frame", "of the mesh"},
+                   {"mesh",
+                    {{"file", settings.mesh.string()},
+                     {"space", space},
+                     {"triangles", mesh.triangle_count()},
+                     {"vertices", mesh.vertex_count()},
+                     {"low", array(mesh.bounds().low)},
+                     {"high", array(mesh.bounds().high)},
+                     {"watertight", is_watertight(mesh)}}},
+                   {"settings",
+                    {{"index", c.index},
+                     {"activation", c.activation},
+                     {"solver", c.solver},
+                     {"radius", c.radius},
+                     {"tool_radius", c.tool_radius},
+                     {"margin", c.margin},
+                     {"damping", c.damping},
+                     {"recovery", c.recovery},
+                     {"deepest", c.deepest},
+                     {"refinements", c.refinements},
+                     {"branches", c.nodes},
+                     {"query", c.query == Query::motion ? "motion" : "sphere"}}},
+                   {"limits",
+                    {{"line", settings.longest_line},
+                     {"joints", settings.limits.joints},
+                     {"rows", settings.limits.rows},
+                     {"motions", settings.limits.motions}}}};
   // A path need not be UTF-8.
-  const std::string text = info.dump(-1, ' ', false, Json::error_handler_t::replace);
+  const std::string text = info.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
   return text.substr(1, text.size() - 2);
 }
 

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,7 +16,7 @@ std::vector<Arena> generated_arenas(std::string_view index);
 /// The real meshes in the cache; `missing` is told the others.
 std::vector<Arena> real_arenas(std::string_view index, std::vector<std::string>& missing);
 
-/// A file. It is read when it is its turn.
-Arena file_arena(const std::filesystem::path& path, std::string name, std::string_view index);
+/// A mesh that the user names (named_mesh.h). It is read when it is its turn.
+Arena named_arena(const std::string& mesh, std::string_view index);
 
 }  // namespace keepout::app

@@ -28,7 +28,7 @@ std::uint64_t trajectory_count(std::uint64_t steps) noexcept {
 }
 
 Findings run_campaign(const CampaignSettings& settings, std::span<const Arena> arenas,
-                      const std::function<void(std::uint64_t)>& advanced) {
+                      const std::function<Next(std::uint64_t)>& advanced) {
   std::vector<std::vector<std::uint64_t>> trajectories(arenas.size());
   const std::uint64_t count = trajectory_count(settings.steps);
   for (std::uint64_t n = settings.shard.index - 1; n < count; n += settings.shard.count) {
@@ -37,9 +37,10 @@ Findings run_campaign(const CampaignSettings& settings, std::span<const Arena> a
 
   using Clock = std::chrono::steady_clock;
   Findings findings;
+  Next next = Next::go_on;
   for (std::size_t a = 0; a < arenas.size(); ++a) {
     SceneResult result{.mesh = arenas[a].mesh};
-    if (!trajectories[a].empty()) {
+    if (!trajectories[a].empty() && next == Next::go_on) {
       const std::vector<std::unique_ptr<Scene>> scenes = arenas[a].load();
       std::vector<std::unique_ptr<Guard>> guards;
       for (const auto& scene : scenes) guards.push_back(settings.make_guard(*scene));
@@ -53,7 +54,8 @@ Findings run_campaign(const CampaignSettings& settings, std::span<const Arena> a
         const std::size_t s = is_elsewhere ? 1 + random.below(scenes.size() - 1) : 0;
         const std::uint64_t steps = length_of(n, settings.steps);
         run_trajectory(*scenes[s], *guards[s], n, steps, random, result.tally, findings);
-        advanced(steps);
+        next = advanced(steps);
+        if (next == Next::stop) break;
       }
       result.tally.seconds = std::chrono::duration<double>(Clock::now() - start).count();
     }

@@ -39,9 +39,12 @@ struct CampaignSettings {
 inline constexpr std::uint64_t steps_of_a_trajectory = 500;
 std::uint64_t trajectory_count(std::uint64_t steps) noexcept;
 
+/// Whether to go on after a trajectory of that many steps.
+enum class Next : std::uint8_t { go_on, stop };
+
 /// Runs trajectories, mesh by mesh, so that only one is in memory at a time; `advanced` is told the
-/// number of steps after each.
+/// number of steps after each. Where it says stop, the findings are of those that were run.
 Findings run_campaign(const CampaignSettings& settings, std::span<const Arena> arenas,
-                      const std::function<void(std::uint64_t)>& advanced);
+                      const std::function<Next(std::uint64_t)>& advanced);
 
 }  // namespace keepout::app

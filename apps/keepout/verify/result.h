@@ -17,6 +17,7 @@ struct ShardRun {
   std::uint64_t index = 1;
   double seconds = 0.0;  // wall time, loading included
   std::string machine;
+  bool is_whole = true;  // false: it was interrupted
 };
 
 /// A campaign, as far as its shards are done.
@@ -42,6 +43,9 @@ CampaignResult merged(const std::vector<std::filesystem::path>& files);
 
 /// Which shards are not there.
 std::vector<std::uint64_t> missing_shards(const CampaignResult& result);
+
+/// Whether all shards are there, none of them interrupted.
+bool is_complete(const CampaignResult& result);
 
 /// The results as a table, the first breaches, and what machine it was.
 void print(std::ostream& out, const CampaignResult& result);

@@ -167,7 +167,8 @@ CampaignResult to_result(const Json& json) {
   json.at("index").get_to(result.index);
   json.at("shard_count").get_to(result.shard_count);
   for (const Json& shard : json.at("shards")) {
-    result.shards.push_back({shard.at("index"), shard.at("seconds"), shard.at("machine")});
+    result.shards.push_back({shard.at("index"), shard.at("seconds"), shard.at("machine"),
+                             shard.value("complete", true)});
   }
   json.at("missing").get_to(result.missing);
   for (const Json& scene : json.at("meshes")) result.findings.scenes.push_back(to_scene(scene));
@@ -181,8 +182,10 @@ CampaignResult to_result(const Json& json) {
 void write_json(std::ostream& out, const CampaignResult& result) {
   Json shards = Json::array();
   for (const ShardRun& shard : result.shards) {
-    shards.push_back(
-        {{"index", shard.index}, {"seconds", shard.seconds}, {"machine", shard.machine}});
+    shards.push_back({{"index", shard.index},
+                      {"seconds", shard.seconds},
+                      {"machine", shard.machine},
+                      {"complete", shard.is_whole}});
   }
   Json total = to_json(SceneResult{.mesh = "total", .tally = result.findings.total()});
   total.erase("triangles");
@@ -190,6 +193,8 @@ void write_json(std::ostream& out, const CampaignResult& result) {
                   {"version", result.version},
                   {"seed", result.seed},
                   {"steps", result.steps},
+                  {"steps_done", result.findings.total().steps},
+                  {"complete", is_complete(result)},
                   {"index", result.index},
                   {"shard_count", result.shard_count},
                   {"shards", shards},

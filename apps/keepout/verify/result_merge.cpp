@@ -99,4 +99,10 @@ std::vector<std::uint64_t> missing_shards(const CampaignResult& result) {
   return missing;
 }
 
+bool is_complete(const CampaignResult& result) {
+  return missing_shards(result).empty() &&
+         std::all_of(result.shards.begin(), result.shards.end(),
+                     [](const ShardRun& shard) { return shard.is_whole; });
+}
+
 }  // namespace keepout::app

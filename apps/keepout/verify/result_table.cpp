@@ -83,7 +83,7 @@ void print(std::ostream& out, const CampaignResult& result) {
   }
   for (const ShardRun& shard : result.shards) {
     out << "shard " << shard.index << "/" << result.shard_count << ": " << fixed(shard.seconds, 1)
-        << " s on " << shard.machine << '\n';
+        << " s on " << shard.machine << (shard.is_whole ? "" : ", interrupted") << '\n';
   }
   constexpr std::size_t shown = 5;
   const std::vector<Incident>& breaches = result.findings.breaches;
@@ -95,6 +95,10 @@ void print(std::ostream& out, const CampaignResult& result) {
     out << grouped(broken) << (broken == 1 ? " breach in " : " breaches in ")
         << counted(total.steps, "step") << "; --json keeps " << grouped(breaches.size())
         << " of them\n";
+  }
+  if (!is_complete(result)) {
+    out << "incomplete: " << grouped(total.steps) << " of the campaign's "
+        << counted(result.steps, "step") << " are done\n";
   }
 }
 

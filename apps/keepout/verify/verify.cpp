@@ -10,8 +10,10 @@
 #include <ostream>
 
 #include "../machine.h"
+#include "../named_mesh.h"
 #include "../output_file.h"
 #include "../progress.h"
+#include "../stop_signal.h"
 #include "arenas.h"
 #include "campaign.h"
 #include "keepout/error.h"
@@ -21,8 +23,8 @@
 namespace keepout::app {
 namespace {
 
-/// "I/N".
-Shard parse_shard(const std::string& text) {
+/// "I/N"; nothing where it is not that.
+std::optional<Shard> parse_shard(const std::string& text) {
   Shard shard{0, 0};
   const char* const last = text.data() + text.size();
   const auto index = std::from_chars(text.data(), last, shard.index);
@@ -30,23 +32,23 @@ Shard parse_shard(const std::string& text) {
   const auto count =
       has_slash ? std::from_chars(index.ptr + 1, last, shard.count) : std::from_chars_result{};
   const bool is_read = has_slash && count.ec == std::errc{} && count.ptr == last;
-  if (!is_read || shard.index < 1 || shard.index > shard.count) {
-    throw Error("--shard: expected I/N, part I of N, such as 1/2 or 2/2; not '" + text + "'");
-  }
+  if (!is_read || shard.index < 1 || shard.index > shard.count) return std::nullopt;
   return shard;
+}
+
+std::uint64_t trajectory_count_of(const Shard& shard, std::uint64_t all) {
+  return (all + shard.count - shard.index) / shard.count;
 }
 
 std::vector<Arena> arenas_of(const VerifyOptions& options, std::vector<std::string>& missing) {
   std::vector<Arena> arenas;
   for (const std::filesystem::path& mesh : options.meshes) {
-    if (!std::filesystem::exists(mesh)) {
-      throw Error(mesh.string() + ": cannot be read; is it there?");
-    }
+    file_of_mesh(mesh);  // before any work: is there such a one?
     const auto is_same = [&](const Arena& arena) { return arena.mesh == mesh.string(); };
     if (std::any_of(arenas.begin(), arenas.end(), is_same)) {
       throw Error(mesh.string() + ": is named twice");
     }
-    arenas.push_back(file_arena(mesh, mesh.string(), options.index));
+    arenas.push_back(named_arena(mesh.string(), options.index));
   }
   if (!arenas.empty()) return arenas;
   arenas = generated_arenas(options.index);
@@ -55,7 +57,7 @@ std::vector<Arena> arenas_of(const VerifyOptions& options, std::vector<std::stri
 }
 
 CampaignResult run(const VerifyOptions& options, std::ostream& out) {
-  const Shard shard = parse_shard(options.shard);
+  const Shard shard = parse_shard(options.shard).value();
   if (shard.count > trajectory_count(options.steps)) {
     throw Error("--shard: there are only " + std::to_string(trajectory_count(options.steps)) +
                 " trajectories of " + std::to_string(steps_of_a_trajectory) +
@@ -69,26 +71,41 @@ CampaignResult run(const VerifyOptions& options, std::ostream& out) {
   const std::vector<Arena> arenas = arenas_of(options, result.missing);
   for (const std::string& mesh : result.missing) out << "note: " << mesh << '\n';
   const auto start = std::chrono::steady_clock::now();
+  const StopSignal stop;
   {
     Progress progress("verify", options.steps / shard.count);
     result.findings = run_campaign({.seed = options.seed, .steps = options.steps, .shard = shard},
-                                   arenas, [&](std::uint64_t steps) { progress.advance(steps); });
+                                   arenas, [&](std::uint64_t steps) {
+                                     progress.advance(steps);
+                                     return stop.has_come() ? Next::stop : Next::go_on;
+                                   });
   }
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  result.shards = {
-      {shard.index, seconds, processor() + ", " + KEEPOUT_COMPILER + ", " + KEEPOUT_BUILD_TYPE}};
+  // A signal that came after the last trajectory has interrupted nothing.
+  const bool is_whole = result.findings.total().trajectories ==
+                        trajectory_count_of(shard, trajectory_count(options.steps));
+  result.shards = {{shard.index, seconds,
+                    processor() + ", " + KEEPOUT_COMPILER + ", " + KEEPOUT_BUILD_TYPE, is_whole}};
   return result;
 }
 
 }  // namespace
+
+CLI::Validator shard_text() {
+  const auto check = [](std::string& text) {
+    return parse_shard(text) ? std::string()
+                             : "expected I/N, part I of N, such as 1/2 or 2/2; not '" + text + "'";
+  };
+  return {check, ""};
+}
 
 int verify(const VerifyOptions& options, std::ostream& out) {
   // Before any work: what cannot be written shall not be told of after an hour.
   std::unique_ptr<OutputFile> json;
   if (options.json) {
     std::vector<NamedPath> inputs;
-    for (const auto& mesh : options.meshes) inputs.push_back({"MESH", mesh});
+    for (const auto& mesh : options.meshes) inputs.push_back({"MESH", file_of_mesh(mesh)});
     for (const auto& file : options.merge) inputs.push_back({"--merge", file});
     const NamedPath output{"--json", *options.json};
     refuse_shared_files(inputs, {&output, 1});
@@ -100,7 +117,9 @@ int verify(const VerifyOptions& options, std::ostream& out) {
     json->commit();
   }
   print(out, result);
-  return result.findings.total().breach_count() == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+  if (result.findings.total().breach_count() > 0) return EXIT_FAILURE;
+  const bool interrupted = options.merge.empty() && !result.shards.front().is_whole;
+  return interrupted ? exit_interrupted : EXIT_SUCCESS;
 }
 
 }  // namespace keepout::app

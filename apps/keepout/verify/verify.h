@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <filesystem>
 #include <iosfwd>
@@ -21,8 +22,12 @@ struct VerifyOptions {
   std::vector<std::filesystem::path> merge;   // results to add up, instead of a campaign
 };
 
+/// What --shard may be told.
+CLI::Validator shard_text();
+
 /// Tries by all means to break what docs/certified-step.md promises, or adds up earlier tries, and
-/// prints a table. The exit status: failure when there was any breach. Throws Error.
+/// prints a table. A StopSignal ends it early, and what is done is printed and written. The exit
+/// status: failure when there was any breach. Throws Error.
 int verify(const VerifyOptions& options, std::ostream& out);
 
 }  // namespace keepout::app

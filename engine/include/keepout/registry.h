@@ -6,8 +6,10 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "keepout/error.h"
+#include "keepout/nearest_name.h"
 
 namespace keepout {
 
@@ -23,15 +25,17 @@ struct AbsentPart {
   std::string_view needs;  // the library, its Debian package and our option
 };
 
-/// The entry of a table of parts with that name. Throws Error, listing the names there are, when
-/// there is none; and saying what it would need, when the part is absent. `what` says what kind of
-/// part it is.
+/// The entry of a table of parts with that name. Throws Error, listing the names there are and the
+/// one that was probably meant, when there is none; and saying what it would need, when the part is
+/// absent. `what` says what kind of part it is.
 template <class Table>
 const auto& entry_named(std::string_view name, const Table& table, std::string_view what,
                         std::span<const AbsentPart> absent = {}) {
   std::string known;
+  std::vector<std::string_view> names;
   for (const auto& entry : table) {
     if (entry.name == name) return entry;
+    names.push_back(entry.name);
     known += (known.empty() ? "" : ", ") + std::string(entry.name);
   }
   const std::string named = std::string(what) + " '" + std::string(name) + "'";
@@ -40,7 +44,10 @@ const auto& entry_named(std::string_view name, const Table& table, std::string_v
     throw Error("this build was made without " + named + ", which needs " +
                 std::string(part.needs) + "; it has: " + known);
   }
-  throw Error("there is no " + named + "; known: " + known);
+  for (const AbsentPart& part : absent) names.push_back(part.name);
+  const auto meant = nearest_name(name, names);
+  const std::string hint = meant ? "; did you mean '" + std::string(*meant) + "'?" : ";";
+  throw Error("there is no " + named + hint + " known: " + known);
 }
 
 }  // namespace keepout

@@ -61,14 +61,17 @@ Opening CertifiedRule::start(const Surroundings& around, HalfSpaceBuffer&) noexc
     }
   }
   *terms_ = CertifiedTerms::keeping(around.margin, tau);
+  const std::optional<double> distance = known_distance(nearest, around.margin, tau);
   if (nearest == nullptr || nearest->distance() >= around.margin - lost_below * tau) {
-    return {Stance::clear};
+    return {.stance = Stance::clear, .distance = distance};
   }
-  if (nearest->distance() <= touching_within * tau) return {Stance::touching};
+  if (nearest->distance() <= touching_within * tau) {
+    return {.stance = Stance::touching, .distance = distance};
+  }
   // Too close already: the mesh shall not come closer, and what comes as close is led off as well.
   const double lift = std::min(around.recovery, around.margin - nearest->distance());
   *terms_ = CertifiedTerms::leading_off(nearest->distance(), lift, tau);
-  return {Stance::too_close, way_out(around, nearest->normal(), lift)};
+  return {Stance::too_close, way_out(around, nearest->normal(), lift), distance};
 }
 
 Judgement CertifiedRule::judge(const Surroundings& around, const Vec3& trial,

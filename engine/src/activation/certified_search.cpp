@@ -38,6 +38,8 @@ Opening CertifiedSearch::start(const Surroundings& around, HalfSpaceBuffer&) noe
   if (tree_.generation() != generation_) return {Stance::over_capacity};
   const double tau = certified_tolerance(around, longest_edge_);
   facets_.clear();
+  aim_is_free_ = false;
+  at_aim_.reset();
   walk_.restart_counting();
   if (!(around.margin > needed_margin * tau)) return {Stance::no_margin};
   locate(around);
@@ -45,23 +47,25 @@ Opening CertifiedSearch::start(const Surroundings& around, HalfSpaceBuffer&) noe
   if (is_free_) return {Stance::clear};
   begin(around, CertifiedTerms::keeping(around.margin, tau));
 
-  // What is in reach of the tip itself; and by the way, whether the motion asked for meets
-  // anything.
-  constexpr double at_once = 0.0;
-  const auto note = [&](TrialWalk::Leaf& leaf, std::size_t lane) {
-    make_facet(leaf, lane, corners(leaf.number, lane));
-  };
-  aim_is_free_ = walk_.run(frontier_, around.aim, at_once, note);
-  if (facets_.overflowed() || walk_.looks() > TrialWalk::most_looks) {
-    return {Stance::over_capacity};
-  }
+  // What is in reach of the tip itself, which comes first; and by the way, what speaks against the
+  // motion asked for, should the tip keep the margin: it is the first trial.
+  const double least = around.margin - lost_below * tau;
+  aim_is_free_ = meet(around.aim, {}, least, at_aim_.emplace());
+  if (is_over_budget()) return {Stance::over_capacity};
   const Facet* its = nearest();
-  if (its == nullptr || its->distance() >= around.margin - lost_below * tau) return {Stance::clear};
-  if (its->distance() <= touching_within * tau) return {Stance::touching};
+  const std::optional<double> distance = known_distance(its, around.margin, tau);
+  if (its == nullptr || its->distance() >= least) {
+    return {.stance = Stance::clear, .distance = distance};
+  }
+  aim_is_free_ = false;
+  at_aim_.reset();
+  if (its->distance() <= touching_within * tau) {
+    return {.stance = Stance::touching, .distance = distance};
+  }
   const double lift = std::min(around.recovery, around.margin - its->distance());
   const Vec3 aim = way_out(around, its->normal(), lift);
   begin(around, CertifiedTerms::leading_off(its->distance(), lift, tau));
-  return {Stance::too_close, aim};
+  return {Stance::too_close, aim, distance};
 }
 
 /// From here on nothing is known of any triangle.
@@ -90,8 +94,17 @@ void CertifiedSearch::locate(const Surroundings& around) noexcept {
   const double motion = around.aim.norm();
   // A planner's states have nothing to do with each other: more would serve none of them.
   const bool serves_more = farther_ > motion && frontier_.is_near(around.ball);
-  frontier_.gather(tree_,
-                   {around.ball.center, around.ball.radius + (serves_more ? farther_ : 0.0)});
+  const auto gather = [&](double farther) {
+    frontier_.gather(tree_, {around.ball.center, around.ball.radius + farther});
+  };
+  gather(serves_more ? farther_ : 0.0);
+  if (serves_more && !frontier_.is_opened()) {
+    // So far that large boxes are left over, which every cycle to come would have to look into.
+    farther_ *= 0.25;
+    gather(farther_ > motion ? farther_ : 0.0);
+    return;
+  }
+  if (farther_ > motion && !serves_more) return;  // it tells nothing of reaching that far
   constexpr std::size_t few = 12;
   constexpr std::size_t many = 24;
   if (frontier_.size() == 0) {
@@ -103,6 +116,45 @@ void CertifiedSearch::locate(const Surroundings& around) noexcept {
   }
 }
 
+/// Beyond the budget of work nothing is known.
+bool CertifiedSearch::is_over_budget() const noexcept {
+  return walk_.looks() > TrialWalk::most_looks || facets_.overflowed();
+}
+
+bool CertifiedSearch::meet(const Vec3& trial, std::span<const HalfSpace> planes, double too_close,
+                           Meeting& meeting) noexcept {
+  constexpr double at_once = 0.0;
+  const double length = trial.norm();
+  Contact& first = meeting.contact;
+  const auto visit = [&](TrialWalk::Leaf& leaf, std::size_t lane) {
+    const Facet* its = known(leaf, lane);
+    const Triangle its_corners = its != nullptr ? its->corners() : corners(leaf.number, lane);
+    if (terms_.is_covered(its_corners, trial, planes)) return;
+    const Facet& facet = its != nullptr ? *its : make_facet(leaf, lane, its_corners);
+    if (facet.distance() - length > terms_.demand(facet)) return;
+    if (facet.distance() < too_close) {
+      first.time = at_once;
+      return;
+    }
+    const bool is_first = meeting.facet == no_facet;
+    const auto is_sooner = [&](const Contact& contact) {
+      return contact.time < first.time ||
+             (contact.time == first.time && !is_first && facet.before(facets_[meeting.facet]));
+    };
+    // When it would meet the trial is told sooner than whether it does; most that come this far do.
+    const Contact contact = terms_.contact(facet, trial, first.time);
+    if (!is_first && !is_sooner(contact)) return;
+    if (!terms_.is_beyond_doubt(contact, facet, trial)) {
+      const bool answered = has_plane(facet.source(), planes);
+      if (terms_.keeps_clear(facet, trial, answered)) return;
+    }
+    if (!is_sooner(contact)) return;
+    first = contact;
+    meeting.facet = static_cast<std::uint32_t>(&facet - facets_.begin());
+  };
+  return walk_.run(frontier_, trial, first.time, visit);
+}
+
 Judgement CertifiedSearch::judge(const Surroundings& around, const Vec3& trial,
                                  HalfSpaceBuffer& planes) noexcept {
   using Verdict = Judgement::Verdict;
@@ -112,39 +164,20 @@ Judgement CertifiedSearch::judge(const Surroundings& around, const Vec3& trial,
   };
   if (aim_is_free_ && is_aim()) return {Verdict::accepted};
 
-  Contact first{2.0, {Vec3::Zero(), 0.0, no_triangle}};
-  std::uint32_t found = no_facet;
-  const double length = trial.norm();
-  const auto visit = [&](TrialWalk::Leaf& leaf, std::size_t lane) {
-    const Facet* its = known(leaf, lane);
-    const Triangle its_corners = its != nullptr ? its->corners() : corners(leaf.number, lane);
-    if (terms_.is_covered(its_corners, trial, planes.view())) return;
-    const Facet& facet = its != nullptr ? *its : make_facet(leaf, lane, its_corners);
-    if (facet.distance() - length > terms_.demand(facet)) return;
-    const auto is_sooner = [&](const Contact& contact) {
-      return contact.time < first.time ||
-             (contact.time == first.time && found != no_facet && facet.before(facets_[found]));
-    };
-    // When it would meet the trial is told sooner than whether it does; most that come this far do.
-    const Contact contact = terms_.contact(facet, trial, first.time);
-    if (found != no_facet && !is_sooner(contact)) return;
-    if (!terms_.is_beyond_doubt(contact, facet, trial)) {
-      const bool answered = has_plane(facet.source(), planes.view());
-      if (terms_.keeps_clear(facet, trial, answered)) return;
-    }
-    if (!is_sooner(contact)) return;
-    first = contact;
-    found = static_cast<std::uint32_t>(&facet - facets_.begin());
-  };
-  walk_.run(frontier_, trial, first.time, visit);
-  // Beyond the budget of work nothing is known.
-  if (walk_.looks() > TrialWalk::most_looks || facets_.overflowed()) return {Verdict::blocked, 0.0};
-  if (found == no_facet) return {Verdict::accepted};
-  const double free_share = std::clamp(first.time, 0.0, 1.0);
-  if (has_plane(first.plane.source, planes.view()) || planes.size() >= most_planes) {
+  Meeting meeting;
+  if (at_aim_ && planes.empty() && trial == around.aim) {
+    meeting = *at_aim_;
+  } else {
+    meet(trial, planes.view(), 0.0, meeting);
+  }
+  if (is_over_budget()) return {Verdict::blocked, 0.0};
+  if (meeting.facet == no_facet) return {Verdict::accepted};
+  const HalfSpace& plane = meeting.contact.plane;
+  const double free_share = std::clamp(meeting.contact.time, 0.0, 1.0);
+  if (has_plane(plane.source, planes.view()) || planes.size() >= most_planes) {
     return {Verdict::blocked, free_share};
   }
-  planes.push(terms_.answer(facets_[found], around, trial, first.plane));
+  planes.push(terms_.answer(facets_[meeting.facet], around, trial, plane));
   return {Verdict::objected, free_share};
 }
 

@@ -4,6 +4,8 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
+#include <span>
 
 #include "certified_terms.h"
 #include "frontier.h"
@@ -37,7 +39,22 @@ class CertifiedSearch final : public Activation {
   void ways_around(const Surroundings& around, TriangleId source,
                    HalfSpaceBuffer& ways) const noexcept override;
 
+  /// Where the searches of the last cycle began.
+  const Frontier& frontier() const noexcept { return frontier_; }
+
  private:
+  /// The first triangle that speaks against a trial.
+  struct Meeting {
+    Contact contact{2.0, {Vec3::Zero(), 0.0, no_triangle}};  // after any trial's end: none
+    std::uint32_t facet = TrialWalk::no_note;                // its number
+  };
+
+  /// Walks along a trial to what it meets first. A triangle nearer to the tip than `too_close` ends
+  /// the search: what speaks against the trial does not matter then, and facets_ has all that are
+  /// as near. Whether nothing came near the trial, so that others like it are as free.
+  bool meet(const Vec3& trial, std::span<const HalfSpace> planes, double too_close,
+            Meeting& meeting) noexcept;
+  bool is_over_budget() const noexcept;
   void begin(const Surroundings& around, const CertifiedTerms& terms) noexcept;
   void locate(const Surroundings& around) noexcept;
   const Facet* known(const TrialWalk::Leaf& leaf, std::size_t lane) const noexcept;
@@ -59,9 +76,10 @@ class CertifiedSearch final : public Activation {
   // Of this cycle.
   CertifiedTerms terms_{};
   Vec3 tip_ = Vec3::Zero();
-  bool is_free_ = false;      // nothing is in reach
-  bool aim_is_free_ = false;  // the motion asked for meets nothing
-  Buffer<Facet> facets_;      // that were asked about in double
+  bool is_free_ = false;           // nothing is in reach
+  bool aim_is_free_ = false;       // nothing comes near the motion asked for
+  std::optional<Meeting> at_aim_;  // what it meets, planes apart, where that is known
+  Buffer<Facet> facets_;           // that were asked about in double
 };
 
 }  // namespace keepout

@@ -175,6 +175,14 @@ bool is_idle(const HalfSpace& plane, const Surroundings& around) noexcept {
   return plane.normal.dot(around.kept) - plane.offset > idle_slack * around.aim.norm();
 }
 
+std::optional<double> known_distance(const Facet* nearest, double margin,
+                                     double tolerance) noexcept {
+  constexpr double share = 5e-7;
+  const double beyond = std::min(0.5 * region_beyond * tolerance, share * margin);
+  if (nearest == nullptr || nearest->distance() > margin + beyond) return std::nullopt;
+  return nearest->distance();
+}
+
 double certified_tolerance(const Surroundings& around, double longest_edge) noexcept {
   return 2e-10 * (longest_edge + around.radius + around.margin) + 4e-16 * around.tip.lpNorm<1>();
 }

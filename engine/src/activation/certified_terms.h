@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
 #include <span>
 
 #include "keepout/activation/activation.h"
@@ -72,6 +73,14 @@ struct CertifiedTerms {
 
 /// Whether an accepted motion is so far from a plane that the plane has not shaped it.
 bool is_idle(const HalfSpace& plane, const Surroundings& around) noexcept;
+
+/// What an opening tells of the distance: that of the nearest facet at hand, unless the tip is
+/// farther off than the margin, or than what a motion along a plane leaves of rounding. So near all
+/// forms ask about all triangles: the ball of the region goes `region_beyond` tolerances farther,
+/// and the screen of floats, which clears no triangle nearer than its margin, a share of 9e-7. Of
+/// those beyond, one form may have met what another has not. Null if there is no facet.
+std::optional<double> known_distance(const Facet* nearest, double margin,
+                                     double tolerance) noexcept;
 
 /// See CertifiedRule::tolerance. `longest_edge`: of the mesh. [length]
 double certified_tolerance(const Surroundings& around, double longest_edge) noexcept;

@@ -11,11 +11,20 @@
 
 namespace keepout {
 
+namespace {
+
+/// Has a node brought nearer that is to be opened.
+void fetch(const NodeBlock& node) noexcept {
+  constexpr std::size_t line = 64;
+  const char* block = reinterpret_cast<const char*>(&node);
+  for (std::size_t at = 0; at < sizeof node; at += line) __builtin_prefetch(block + at);
+}
+
+}  // namespace
+
 void Frontier::add(const WideBvh& tree, std::uint32_t node, std::size_t lane) noexcept {
   const NodeBlock& from = tree.nodes()[node];
-  const CylinderBlock& its_cylinders = tree.cylinders()[node];
   NodeBlock& block = blocks_[size_ / NodeBlock::lanes];
-  CylinderBlock& cylinders = cylinders_[size_ / NodeBlock::lanes];
   const std::size_t to = size_ % NodeBlock::lanes;
   if (to == 0) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -23,18 +32,34 @@ void Frontier::add(const WideBvh& tree, std::uint32_t node, std::size_t lane) no
       for (float& x : block.high[axis]) x = std::numeric_limits<float>::infinity();
     }
     for (std::uint32_t& child : block.child) child = 0;
-    cylinders = {};
   }
   for (std::size_t axis = 0; axis < 3; ++axis) {
     block.low[axis][to] = from.low[axis][lane];
     block.high[axis][to] = from.high[axis][lane];
-    cylinders.middle[axis][to] = its_cylinders.middle[axis][lane];
-    cylinders.axis[axis][to] = its_cylinders.axis[axis][lane];
   }
-  cylinders.half_height[to] = its_cylinders.half_height[lane];
-  cylinders.radius[to] = its_cylinders.radius[lane];
   block.child[to] = from.child[lane];
+  places_[size_] = {node, static_cast<std::uint32_t>(lane)};
   ++size_;
+}
+
+const CylinderBlock& Frontier::cylinders(const WideBvh& tree, std::size_t block) noexcept {
+  CylinderBlock& its = cylinders_[block];
+  if (has_cylinders_[block]) return its;
+  has_cylinders_[block] = true;
+  its = {};
+  const std::size_t first = block * NodeBlock::lanes;
+  const std::size_t count = std::min(size_ - first, NodeBlock::lanes);
+  for (std::size_t to = 0; to < count; ++to) {
+    const auto [node, lane] = places_[first + to];
+    const CylinderBlock& from = tree.cylinders()[node];
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      its.middle[axis][to] = from.middle[axis][lane];
+      its.axis[axis][to] = from.axis[axis][lane];
+    }
+    its.half_height[to] = from.half_height[lane];
+    its.radius[to] = from.radius[lane];
+  }
+  return its;
 }
 
 std::size_t Frontier::gather(const WideBvh& tree, const Ball& ball) noexcept {
@@ -48,6 +73,8 @@ std::size_t Frontier::gather(const WideBvh& tree, const Ball& ball) noexcept {
 
   around_ = ball;
   size_ = 0;
+  is_opened_ = true;
+  has_cylinders_.fill(false);
   const FloatTip center = float_tip(ball.center);
   const double rounding = 1e-13 * ball.center.lpNorm<1>();
   const auto radius = static_cast<float>(ball.radius * (1.0 + 4e-6) + rounding);
@@ -61,7 +88,7 @@ std::size_t Frontier::gather(const WideBvh& tree, const Ball& ball) noexcept {
       if ((node.child[lane] & NodeBlock::leaf) != 0) {
         add(tree, number, lane);
       } else {
-        __builtin_prefetch(&tree.nodes()[node.child[lane]]);
+        fetch(tree.nodes()[node.child[lane]]);
         waiting[last++] = {number, lane};
       }
     }
@@ -74,6 +101,7 @@ std::size_t Frontier::gather(const WideBvh& tree, const Ball& ball) noexcept {
     if (fits) {
       open(tree.nodes()[box.node].child[box.lane]);
     } else {
+      is_opened_ = false;
       add(tree, box.node, box.lane);
     }
   }

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 
 #include "keepout/geometry/ball.h"
@@ -38,21 +39,35 @@ class Frontier {
   std::span<const NodeBlock> blocks() const noexcept {
     return {blocks_.data(), (size_ + NodeBlock::lanes - 1) / NodeBlock::lanes};
   }
-  std::span<const CylinderBlock> cylinders() const noexcept {
-    return {cylinders_.data(), blocks().size()};
-  }
+
+  /// Beside the boxes of a block. Taken from the tree when first asked for, which few cycles do.
+  const CylinderBlock& cylinders(const WideBvh& tree, std::size_t block) noexcept;
+
   std::size_t size() const noexcept { return size_; }
 
+  /// Whether all of its boxes are those of leaves: none was left unopened.
+  bool is_opened() const noexcept { return is_opened_; }
+
  private:
-  static constexpr std::size_t most_boxes = 4 * NodeBlock::lanes;
+  static constexpr std::size_t most_blocks = 4;
+  static constexpr std::size_t most_boxes = most_blocks * NodeBlock::lanes;
+
+  /// Where a box is in the tree.
+  struct Place {
+    std::uint32_t node;
+    std::uint32_t lane;
+  };
 
   void add(const WideBvh& tree, std::uint32_t node, std::size_t lane) noexcept;
 
   Ball around_{Vec3::Zero(), -1.0};
   double free_radius_ = -1.0;  // around the same centre there are no boxes [length]
-  std::size_t size_ = 0;       // boxes
-  std::array<NodeBlock, most_boxes / NodeBlock::lanes> blocks_;
-  std::array<CylinderBlock, most_boxes / NodeBlock::lanes> cylinders_;  // of the blocks
+  bool is_opened_ = true;
+  std::size_t size_ = 0;  // boxes
+  std::array<NodeBlock, most_blocks> blocks_;
+  std::array<Place, most_boxes> places_;              // of the boxes
+  std::array<CylinderBlock, most_blocks> cylinders_;  // of those blocks that have them
+  std::array<bool, most_blocks> has_cylinders_{};
 };
 
 }  // namespace keepout

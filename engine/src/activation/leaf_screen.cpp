@@ -98,21 +98,34 @@ void Suspect(const LeafScreen& screen, const float* motion, Suspects& suspects) 
   }
 }
 
+/// The lanes whose bits are set, at their place in the block.
+HWY_INLINE M lanes_of(Float d, std::uint32_t mask, std::size_t lane) {
+  const hn::RebindToUnsigned<Float> du;
+  const auto bit = hn::Shl(hn::Set(du, 1u), hn::Iota(du, static_cast<std::uint32_t>(lane)));
+  return hn::RebindMask(d, hn::TestBit(hn::Set(du, mask), bit));
+}
+
+/// The suspects of a vector that may be met in time: those that a closer look is worth it for.
+HWY_INLINE M in_time(Float d, const Suspects& suspects, V time, float latest, std::size_t lane) {
+  return hn::And(lanes_of(d, suspects.mask, lane), hn::Le(time, hn::Set(d, latest)));
+}
+
 void SuspectSharply(const LeafBlock& leaf, const FloatTip& tip, const float* motion,
-                    const FloatReach& reach, LeafScreen& screen, Suspects& suspects) {
+                    const FloatReach& reach, float latest, LeafScreen& screen, Suspects& suspects) {
   constexpr int cuts = 2;
   const Float d;
   const Vector z = all(d, motion);
   const V zero = hn::Zero(d);
   const V one = hn::Set(d, 1.0f);
-  std::uint32_t left_over = 0;
+  std::uint32_t proven = 0;
   for (std::size_t lane = 0; lane < LeafBlock::lanes; lane += hn::Lanes(d)) {
+    V time = hn::Load(d, suspects.time + lane);
+    M asked = in_time(d, suspects, time, latest, lane);
+    if (hn::AllFalse(d, asked)) continue;
     Proof left = load(d, screen.at_tip, lane);
     V fall = dot(left.n, z);
     Proof best = load(d, screen.last, lane);
     M clear = hn::Or(holds(d, left, fall), holds(d, best, dot(best.n, z)));
-    V time = hn::Load(d, suspects.time + lane);
-    if (hn::AllTrue(d, clear)) continue;
     const Corners t = corners(d, leaf, tip, lane);
     const auto consider = [&](const Proof& proof, V along) {
       const M better = hn::AndNot(clear, holds(d, proof, along));
@@ -123,7 +136,11 @@ void SuspectSharply(const LeafBlock& leaf, const FloatTip& tip, const float* mot
     Proof right = proof_at(d, t, z, reach);
     V rise = dot(right.n, z);
     consider(right, rise);
-    for (int cut = 0; cut < cuts && !hn::AllTrue(d, clear); ++cut) {
+    // Where the motion ends too close there is no proof to be found.
+    asked = hn::AndNot(hn::Lt(hn::Add(right.clear, rise), zero), asked);
+    for (int cut = 0; cut < cuts; ++cut) {
+      asked = hn::AndNot(hn::Or(clear, hn::Gt(time, hn::Set(d, latest))), asked);
+      if (hn::AllFalse(d, asked)) break;
       // The blend that is level along the motion, and the normal where the two lines cross.
       const Proof blend = proof_along(d, t, rise * left.n - fall * right.n, reach);
       consider(blend, dot(blend.n, z));
@@ -140,18 +157,19 @@ void SuspectSharply(const LeafBlock& leaf, const FloatTip& tip, const float* mot
     }
     store(d, best, lane, screen.last);
     hn::Store(time, d, suspects.time + lane);
-    left_over |= bits(d, hn::Not(clear), lane);
+    proven |= bits(d, clear, lane);
   }
-  suspects.mask &= left_over;
+  suspects.mask &= ~proven;
 }
 
 void SuspectLater(const LeafBlock& leaf, const FloatTip& tip, const float* motion,
-                  const FloatReach& reach, Suspects& suspects) {
+                  const FloatReach& reach, float latest, Suspects& suspects) {
   const Float d;
   const Vector z = all(d, motion);
   std::uint32_t proven = 0;
   for (std::size_t lane = 0; lane < LeafBlock::lanes; lane += hn::Lanes(d)) {
     const V time = hn::Load(d, suspects.time + lane);
+    if (hn::AllFalse(d, in_time(d, suspects, time, latest, lane))) continue;
     const V at = hn::Min(hn::Max(time, hn::Zero(d)), hn::Set(d, 1.0f));
     const Proof proof = proof_at(d, corners(d, leaf, tip, lane), at * z, reach);
     const V along = dot(proof.n, z);
@@ -183,13 +201,14 @@ void suspect(const LeafScreen& screen, const float* motion, Suspects& suspects) 
 }
 
 void suspect_sharply(const LeafBlock& leaf, const FloatTip& tip, const float* motion,
-                     const FloatReach& reach, LeafScreen& screen, Suspects& suspects) noexcept {
-  HWY_DYNAMIC_DISPATCH(SuspectSharply)(leaf, tip, motion, reach, screen, suspects);
+                     const FloatReach& reach, float latest, LeafScreen& screen,
+                     Suspects& suspects) noexcept {
+  HWY_DYNAMIC_DISPATCH(SuspectSharply)(leaf, tip, motion, reach, latest, screen, suspects);
 }
 
 void suspect_later(const LeafBlock& leaf, const FloatTip& tip, const float* motion,
-                   const FloatReach& reach, Suspects& suspects) noexcept {
-  HWY_DYNAMIC_DISPATCH(SuspectLater)(leaf, tip, motion, reach, suspects);
+                   const FloatReach& reach, float latest, Suspects& suspects) noexcept {
+  HWY_DYNAMIC_DISPATCH(SuspectLater)(leaf, tip, motion, reach, latest, suspects);
 }
 
 }  // namespace keepout

@@ -29,11 +29,13 @@ struct Suspects {
 void suspect(const LeafScreen& screen, const float* motion, Suspects& suspects) noexcept;
 
 /// The same, after some cutting-plane steps for those that are left over: dearer, and sharper.
+/// Those that come later than `latest`, a share of the motion, may be left as they are.
 void suspect_sharply(const LeafBlock& leaf, const FloatTip& tip, const float* motion,
-                     const FloatReach& reach, LeafScreen& screen, Suspects& suspects) noexcept;
+                     const FloatReach& reach, float latest, LeafScreen& screen,
+                     Suspects& suspects) noexcept;
 
-/// A Newton step towards the times when the suspects are met: makes them later.
+/// A Newton step towards the times when the suspects are met: makes them later. As far as `latest`.
 void suspect_later(const LeafBlock& leaf, const FloatTip& tip, const float* motion,
-                   const FloatReach& reach, Suspects& suspects) noexcept;
+                   const FloatReach& reach, float latest, Suspects& suspects) noexcept;
 
 }  // namespace keepout

@@ -11,6 +11,7 @@
 
 #include <hwy/highway.h>
 
+#include "../lane_packing-inl.h"
 #include "paper_screen.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -85,12 +86,17 @@ HWY_INLINE Banded select(M mask, const Banded& yes, const Banded& no) {
   return {select(mask, yes.value, no.value), select(mask, yes.band, no.band)};
 }
 
-/// Appends the chosen lanes.
-HWY_INLINE void append(V values, M chosen, float* to) {
-  hn::StoreU(hn::Compress(values, chosen), Float(), to);
+using keepout::HWY_NAMESPACE::LanePacking;
+HWY_INLINE LanePacking packing_of(M chosen) {
+  return LanePacking(hn::RebindMask(Unsigned(), chosen));
 }
-HWY_INLINE void append(VU values, M chosen, std::uint32_t* to) {
-  hn::StoreU(hn::Compress(values, hn::RebindMask(Unsigned(), chosen)), Unsigned(), to);
+
+/// Appends the chosen lanes.
+HWY_INLINE void append(V values, const LanePacking& chosen, float* to) {
+  hn::StoreU(chosen(values), Float(), to);
+}
+HWY_INLINE void append(VU values, const LanePacking& chosen, std::uint32_t* to) {
+  hn::StoreU(chosen(values), Unsigned(), to);
 }
 
 HWY_INLINE VU flag_if(M mask, std::uint32_t flag) {

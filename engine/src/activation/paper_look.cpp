@@ -68,6 +68,7 @@ HWY_INLINE void LookAtLanes(const LeafBlock& leaf, const LeafEdges& edges, std::
   const M far =
       both(hn::Gt(minus(along, block.band), limit), hn::Lt(block.reach, hn::Set(d, overflow)));
   const M near = but_not(has(flags, LeafEdges::used), far);
+  if (hn::AllFalse(d, near)) return;
   const V nearest = hn::Min(hn::Min(block.squares[0], block.squares[1]), block.squares[2]);
   const M inside = hn::Lt(plus(nearest, block.band), hn::Set(d, query.inside2));
   const Face face = face_of(block, edges, lane, query);
@@ -77,7 +78,9 @@ HWY_INLINE void LookAtLanes(const LeafBlock& leaf, const LeafEdges& edges, std::
   const M settled = both(near, both(inside, planeless));
   rest.settled += hn::CountTrue(d, settled);
 
-  const M chosen = but_not(near, settled);
+  const M unsettled = but_not(near, settled);
+  if (hn::AllFalse(d, unsettled)) return;
+  const LanePacking chosen = packing_of(unsettled);
   const std::size_t to = rest.size;
   for (std::size_t c = 0; c < 3; ++c) {
     append(block.p[c].x, chosen, rest.corner[c][0] + to);
@@ -94,7 +97,7 @@ HWY_INLINE void LookAtLanes(const LeafBlock& leaf, const LeafEdges& edges, std::
   append(hn::Load(du, leaf.source + lane), chosen, rest.source + to);
   const auto place = static_cast<std::uint32_t>(number * LeafBlock::lanes + lane);
   append(hn::Iota(du, place), chosen, rest.place + to);
-  rest.size += hn::CountTrue(d, chosen);
+  rest.size += chosen.count();
 }
 
 std::size_t Look(const WideBvh& tree, std::span<const LeafEdges> edges, const PaperQuery& query,

@@ -102,14 +102,16 @@ void ScreenLanes(std::span<const LeafEdges> edges, const PaperQuery& query, cons
     const M planes =
         either(but_not(decided.faces, closest.idle), but_not(decided.front, face_is_idle));
     const VU corners = hn::And(hn::Shr(flags, hn::ShiftLeft<2>(closest.place)), hn::Set(du, 15));
-    append(number, planes, answers.triangle + answers.planes);
-    append(hn::Or(corners, flag_if(decided.faces, PaperAnswers::faces_tip)), planes,
+    const LanePacking packed = packing_of(planes);
+    append(number, packed, answers.triangle + answers.planes);
+    append(hn::Or(corners, flag_if(decided.faces, PaperAnswers::faces_tip)), packed,
            answers.origin + answers.planes);
-    answers.planes += hn::CountTrue(d, planes);
+    answers.planes += packed.count();
   }
   answers.in += hn::CountTrue(d, but_not(known_in, open));
-  append(number, open, answers.open + answers.opens);
-  answers.opens += hn::CountTrue(d, open);
+  const LanePacking opens = packing_of(open);
+  append(number, opens, answers.open + answers.opens);
+  answers.opens += opens.count();
 }
 
 void Screen(std::span<const LeafEdges> edges, const PaperQuery& query, const PaperRest& rest,

@@ -54,39 +54,15 @@ void TrialWalk::fetch(std::uint32_t number) const noexcept {
   for (std::size_t at = 0; at < sizeof(LeafBlock); at += line) __builtin_prefetch(block + at);
 }
 
-/// Finds out which boxes of a node the trial reaches, and when.
-void TrialWalk::enter(const NodeBlock& node, const CylinderBlock& cylinders,
-                      double latest) noexcept {
-  BoxEntries entries;
-  enter_boxes(node, tip_, motion_.data(), reach_, entries);
-  // To look closer is cheaper than to look into more boxes than this.
-  if (are_more(entries.reached, is_long_ ? 1 : 4)) {
-    enter_cylinders(cylinders, tip_, motion_.data(), reach_, entries);
-  }
-  for (std::uint32_t reached = entries.reached; reached != 0; reached &= reached - 1) {
-    const auto lane = static_cast<std::size_t>(std::countr_zero(reached));
-    const std::uint32_t child = node.child[lane];
-    if (child == 0) break;
-    if ((child & NodeBlock::leaf) != 0) fetch(child & ~NodeBlock::leaf);
-    const float time = entries.time[lane];
-    // What the motion begins in it may meet before it begins: where the tip is too close already.
-    if (time > 0.0f) {
-      if (static_cast<double>(time) > latest) {
-        meets_nothing_ = false;
-        continue;
-      }
-      if (wait(time, child)) continue;
-    }
-    begun_[begun_size_++] = child;
-  }
-}
-
-void TrialWalk::look_closer(PutOff& its) noexcept {
+/// At suspects that may be met no later than `latest`.
+void TrialWalk::look_closer(PutOff& its, double latest) noexcept {
   const LeafBlock& block = tree_.leaves()[its.leaf];
+  const auto until = static_cast<float>(latest * (1.0 + 1e-6));  // not before it, when rounded
   if (its.looks_left-- == closer_looks) {
-    suspect_sharply(block, tip_, motion_.data(), reach_, leaf(its.leaf).screen, its.suspects);
+    suspect_sharply(block, tip_, motion_.data(), reach_, until, leaf(its.leaf).screen,
+                    its.suspects);
   } else {
-    suspect_later(block, tip_, motion_.data(), reach_, its.suspects);
+    suspect_later(block, tip_, motion_.data(), reach_, until, its.suspects);
   }
 }
 

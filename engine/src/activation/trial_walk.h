@@ -52,8 +52,7 @@ class TrialWalk {
   /// True if there was nothing to visit whatever the time: the trial keeps clear of all, and so
   /// does any other that ends within `alike` times `longest` of it.
   template <class Visit>
-  bool run(const Frontier& frontier, const Vec3& trial, const double& latest,
-           Visit&& visit) noexcept;
+  bool run(Frontier& frontier, const Vec3& trial, const double& latest, Visit&& visit) noexcept;
   static constexpr double alike = 1e-7;
 
   /// Of leaves, since `restart_counting`.
@@ -85,10 +84,11 @@ class TrialWalk {
     std::uint32_t earliest() const noexcept;
   };
 
-  void look_closer(PutOff& its) noexcept;
+  void look_closer(PutOff& its, double latest) noexcept;
   bool wait(float time, std::uint32_t what) noexcept;
   Waiting next() noexcept;
-  void enter(const NodeBlock& node, const CylinderBlock& cylinders, double latest) noexcept;
+  template <class Cylinders>
+  void enter(const NodeBlock& node, Cylinders&& cylinders, double latest) noexcept;
   template <class Visit>
   void look_at(std::uint32_t leaf, double latest, Visit&& visit) noexcept;
   template <class Visit>
@@ -118,7 +118,7 @@ class TrialWalk {
 };
 
 template <class Visit>
-bool TrialWalk::run(const Frontier& frontier, const Vec3& trial, const double& latest,
+bool TrialWalk::run(Frontier& frontier, const Vec3& trial, const double& latest,
                     Visit&& visit) noexcept {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     motion_[axis] = static_cast<float>(trial[static_cast<Eigen::Index>(axis)]);
@@ -131,11 +131,13 @@ bool TrialWalk::run(const Frontier& frontier, const Vec3& trial, const double& l
     if ((box & NodeBlock::leaf) != 0) {
       look_at(box & ~NodeBlock::leaf, latest, visit);
     } else {
-      enter(tree_.nodes()[box], tree_.cylinders()[box], latest);
+      const auto cylinders = [&]() -> const CylinderBlock& { return tree_.cylinders()[box]; };
+      enter(tree_.nodes()[box], cylinders, latest);
     }
   };
   for (std::size_t i = 0; i < frontier.blocks().size(); ++i) {
-    enter(frontier.blocks()[i], frontier.cylinders()[i], latest);
+    const auto cylinders = [&]() -> const CylinderBlock& { return frontier.cylinders(tree_, i); };
+    enter(frontier.blocks()[i], cylinders, latest);
   }
   while (looks_ <= most_looks) {
     if (begun_size_ > 0) {
@@ -152,6 +154,34 @@ bool TrialWalk::run(const Frontier& frontier, const Vec3& trial, const double& l
     }
   }
   return false;
+}
+
+/// Finds out which boxes of a node the trial reaches, and when. `cylinders()` are those beside
+/// them, asked for where they are needed.
+template <class Cylinders>
+void TrialWalk::enter(const NodeBlock& node, Cylinders&& cylinders, double latest) noexcept {
+  BoxEntries entries;
+  enter_boxes(node, tip_, motion_.data(), reach_, entries);
+  // To look closer is cheaper than to look into more boxes than this.
+  if (are_more(entries.reached, is_long_ ? 1 : 4)) {
+    enter_cylinders(cylinders(), tip_, motion_.data(), reach_, entries);
+  }
+  for (std::uint32_t reached = entries.reached; reached != 0; reached &= reached - 1) {
+    const auto lane = static_cast<std::size_t>(std::countr_zero(reached));
+    const std::uint32_t child = node.child[lane];
+    if (child == 0) break;
+    if ((child & NodeBlock::leaf) != 0) fetch(child & ~NodeBlock::leaf);
+    const float time = entries.time[lane];
+    // What the motion begins in it may meet before it begins: where the tip is too close already.
+    if (time > 0.0f) {
+      if (static_cast<double>(time) > latest) {
+        meets_nothing_ = false;
+        continue;
+      }
+      if (wait(time, child)) continue;
+    }
+    begun_[begun_size_++] = child;
+  }
 }
 
 template <class Visit>
@@ -195,7 +225,7 @@ template <class Visit>
 void TrialWalk::resume(std::uint32_t put_off, const double& latest, Visit&& visit) noexcept {
   PutOff& its = put_off_[put_off];
   while (its.suspects.mask != 0) {
-    if (its.looks_left > 0) look_closer(its);
+    if (its.looks_left > 0) look_closer(its, latest);
     if (its.suspects.mask == 0) return;
     const std::uint32_t lane = its.earliest();
     const float time = its.suspects.time[lane];

@@ -17,4 +17,16 @@ void BruteForce::collect(const Ball& ball, TriangleBuffer& candidates) const noe
   }
 }
 
+TriangleId BruteForce::nearest(const Vec3& point) const noexcept {
+  TriangleId best = 0;
+  double least = closest_point(mesh_->triangle(best), point).distance;
+  for (TriangleId t = 1; t < mesh_->triangle_count(); ++t) {
+    const double distance = closest_point(mesh_->triangle(t), point).distance;
+    if (!(distance < least)) continue;
+    least = distance;
+    best = t;
+  }
+  return best;
+}
+
 }  // namespace keepout

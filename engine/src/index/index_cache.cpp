@@ -103,7 +103,8 @@ std::unique_ptr<WideBvh> load(std::shared_ptr<const Mesh> mesh, const Digest& di
   }
 }
 
-bool save(const WideBvh& index, const Digest& mesh, const std::filesystem::path& path) {
+/// Why it could not be written; no error if it was.
+std::error_code save(const WideBvh& index, const Digest& mesh, const std::filesystem::path& path) {
   const auto nodes = std::as_bytes(index.nodes());
   const auto leaves = std::as_bytes(index.leaves());
   Header header(mesh);
@@ -132,18 +133,23 @@ std::unique_ptr<WideBvh> load_index(std::shared_ptr<const Mesh> mesh,
 }
 
 bool save_index(const WideBvh& index, const std::filesystem::path& file) {
-  return save(index, mesh_digest(index.mesh()), file);
+  return !save(index, mesh_digest(index.mesh()), file);
 }
 
 std::unique_ptr<WideBvh> load_or_build(std::shared_ptr<const Mesh> mesh,
-                                       const std::filesystem::path& folder) {
+                                       const std::filesystem::path& folder,
+                                       const std::function<void(const std::string&)>& warn) {
   const Digest digest = mesh_digest(*mesh);
   const std::filesystem::path file = file_of(digest, folder);
   if (std::unique_ptr<WideBvh> index = load(mesh, digest, file)) return index;
   auto index = std::make_unique<WideBvh>(std::move(mesh));
-  std::error_code ignored;
-  std::filesystem::create_directories(folder, ignored);
-  save(*index, digest, file);
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (!error) error = save(*index, digest, file);
+  if (error && warn) {
+    warn("the index is not kept for the next time: " + file.string() + " cannot be written (" +
+         error.message() + ")");
+  }
   return index;
 }
 

@@ -137,13 +137,14 @@ HWY_INLINE void look_up(const Corners* triangles, const LeafBlock& leaf, Vertice
   }
 }
 
-/// Nearly every read would be waited for: triangles are fetched some leaves ahead, and vertices
-/// when those have come.
+/// Nearly every read would be waited for: what names a leaf's triangles is fetched many leaves
+/// ahead, triangles when that has come, and vertices when those have.
 template <class Number, class Vertex>
 HWY_INLINE void fill_leaves(const Corners* triangles, const Vertex* vertices,
                             std::span<LeafBlock> leaves, std::size_t first, std::size_t last) {
   constexpr std::size_t vertices_ahead = 4;
   constexpr std::size_t triangles_ahead = 12;
+  constexpr std::size_t sources_ahead = 24;
   VerticesOfLeaf looked_up[vertices_ahead];
   // Those that the call before this one has fetched.
   for (std::size_t i = first; i < std::min(first + vertices_ahead, leaves.size()); ++i) {
@@ -155,6 +156,7 @@ HWY_INLINE void fill_leaves(const Corners* triangles, const Vertex* vertices,
     for (std::size_t lane = 0; lane < LeafBlock::lanes; ++lane) {
       for (std::size_t c = 0; c < 3; ++c) copy(vertices[its[lane][c]], gathered.corner[c][lane]);
     }
+    if (i + sources_ahead < leaves.size()) hwy::Prefetch(leaves[i + sources_ahead].source);
     if (i + triangles_ahead < leaves.size() && is_full(leaves[i + triangles_ahead])) {
       const LeafBlock& ahead = leaves[i + triangles_ahead];
       for (std::size_t lane = 0; lane < LeafBlock::lanes; ++lane) {

@@ -20,6 +20,7 @@
 #include <cstdint>
 #include <span>
 
+#include "../lane_packing-inl.h"
 #include "ball_screen.h"
 #include "keepout/buffer.h"
 #include "keepout/geometry/closest_point.h"
@@ -170,8 +171,9 @@ HWY_INLINE void append(hn::Vec<Ids> source, Mask chosen, TriangleBuffer& out) {
   const auto used = hn::Ne(source, hn::Set(ids, no_triangle));
   const auto taken = hn::And(hn::RebindMask(ids, chosen), used);
   const auto triangles = hn::AndNot(hn::Set(ids, LeafBlock::odd), source);
-  const auto packed = hn::Compress(triangles, taken);
-  const std::size_t count = hn::CountTrue(ids, taken);
+  const LanePacking packing(taken);
+  const auto packed = packing(triangles);
+  const std::size_t count = packing.count();
   if (out.capacity() - out.size() >= hn::Lanes(ids)) {
     hn::StoreU(packed, ids, out.end());
     out.grow(count);
@@ -185,9 +187,19 @@ HWY_INLINE void append(hn::Vec<Ids> source, Mask chosen, TriangleBuffer& out) {
 /// Appends all triangles of a leaf.
 HWY_INLINE void append_all(const LeafBlock& leaf, TriangleBuffer& out) {
   const Floats d;
+  const Ids ids;
+  const bool is_full = leaf.is_used(LeafBlock::lanes - 1);
+  if (HWY_LIKELY(is_full && out.capacity() - out.size() >= LeafBlock::lanes)) {
+    for (std::size_t first = 0; first < LeafBlock::lanes; first += hn::Lanes(ids)) {
+      const auto source = hn::Load(ids, leaf.source + first);
+      hn::StoreU(hn::AndNot(hn::Set(ids, LeafBlock::odd), source), ids, out.end() + first);
+    }
+    out.grow(LeafBlock::lanes);
+    return;
+  }
   const Mask all = hn::Eq(hn::Zero(d), hn::Zero(d));
   for (std::size_t first = 0; first < LeafBlock::lanes; first += hn::Lanes(d)) {
-    append(hn::Load(Ids(), leaf.source + first), all, out);
+    append(hn::Load(ids, leaf.source + first), all, out);
   }
 }
 
@@ -230,7 +242,7 @@ class LeafList {
   template <bool counting>
   HWY_INLINE void look(const LeafBlock* leaves, const BallScreen& ball, const Mesh& mesh,
                        TriangleBuffer& out, QueryCounts* counts) {
-    constexpr std::size_t ahead = 4;
+    constexpr std::size_t ahead = 8;
     for (std::size_t i = 0; i < std::min(ahead, size_); ++i) fetch(leaves, leaves_[i]);
     for (std::size_t i = 0; i < size_; ++i) {
       if (i + ahead < size_) fetch(leaves, leaves_[i + ahead]);

@@ -30,6 +30,9 @@ std::optional<Hit> nearest_of(const Mesh& mesh, const Ball& ball,
 
 std::optional<Hit> find_nearest(const Mesh& mesh, const SpatialIndex& index, const Vec3& point,
                                 double guess, TriangleBuffer& candidates) noexcept {
+  if (const TriangleId its = index.nearest(point); its != no_triangle) {
+    return Hit{its, closest_point(mesh.triangle(its), point)};
+  }
   const Box& bounds = mesh.bounds();
   const double size = bounds.size().norm() + point.cwiseAbs().maxCoeff() + bounds.low.norm();
   // No triangle is nearer than the box around them; the floor keeps the growth from starting at 0.

@@ -41,8 +41,9 @@ HWY_INLINE std::size_t children_in_reach(const NodeBlock& node, const BallScreen
     const auto whole = hn::RebindMask(ids, hn::Le(far2, inside2));
     const auto marked = hn::IfThenElse(whole, hn::Or(child, hn::Set(ids, LeafList::whole)), child);
     const auto hit = hn::RebindMask(ids, hn::Le(near2, reach2));
-    hn::StoreU(hn::Compress(marked, hit), ids, reached + count);
-    count += hn::CountTrue(ids, hit);
+    const LanePacking packing(hit);
+    hn::StoreU(packing(marked), ids, reached + count);
+    count += packing.count();
   }
   return count;
 }

@@ -70,8 +70,9 @@ void write(const std::filesystem::path& path, std::span<const Vec3> vertices,
   file.write(header.data(), header.size());
   file.write(&count, sizeof count);
   write_records(file, vertices, triangles);
-  if (!file.commit()) {
-    fail("cannot be written; check the directory, its permissions and the space on the disk");
+  if (const std::error_code error = file.commit()) {
+    fail("cannot be written (" + error.message() +
+         "); check the directory, its permissions and the space on the disk");
   }
 }
 

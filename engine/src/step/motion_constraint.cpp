@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "keepout/error.h"
+#include "keepout/index/nearest.h"
 #include "keepout/mesh/watertight.h"
 
 namespace keepout {
@@ -23,8 +24,8 @@ Capacity fitted(Capacity capacity, const Mesh* mesh, const StepOptions& options)
   }
   if (!is_ok(check({.tip = Vec3::Zero(), .desired = Vec3::Zero()}, options))) {
     throw Error(
-        "the radius must be above zero and not lost beside the margin; margin, damping, recovery, "
-        "depth, refinements and nodes not below zero; no length above 1e30");
+        "the radius must be above zero and not lost beside the margin; tool radius, margin, "
+        "damping, recovery, depth, refinements and nodes not below zero; no length above 1e30");
   }
   capacity.nodes = std::max(capacity.nodes, static_cast<std::size_t>(std::max(options.nodes, 0)));
   capacity.triangles = std::min(capacity.triangles, mesh->triangle_count());
@@ -76,17 +77,27 @@ MotionConstraint::MotionConstraint(std::shared_ptr<const Mesh> mesh,
                                                             static_cast<int>(work_.extra_rows()));
 }
 
-Step MotionConstraint::step(const Motion& motion) noexcept {
-  return keepout::step(sides_, *mesh_, *index_, *activation_, *solver_, motion, options_, work_);
-}
+Step MotionConstraint::step(const Motion& motion) noexcept { return step(motion, sides_); }
 
 Step MotionConstraint::step(const Motion& motion, StageTimes& times) noexcept {
-  return keepout::step(sides_, *mesh_, *index_, *activation_, *solver_, motion, options_, work_,
-                       StageClock(times));
+  Step result = keepout::step(sides_, *mesh_, *index_, *activation_, *solver_, motion, options_,
+                              work_, StageClock(times));
+  if (options_.distances == Distances::always) tell_distance(motion.tip, result);
+  return result;
 }
 
 Step MotionConstraint::step(const Motion& motion, SideWatch& sides) noexcept {
-  return keepout::step(sides, *mesh_, *index_, *activation_, *solver_, motion, options_, work_);
+  Step result =
+      keepout::step(sides, *mesh_, *index_, *activation_, *solver_, motion, options_, work_);
+  if (options_.distances == Distances::always) tell_distance(motion.tip, result);
+  return result;
+}
+
+void MotionConstraint::tell_distance(const Vec3& tip, Step& step) noexcept {
+  if (step.distance || step.status == Status::invalid_input) return;
+  if (const auto nearest = find_nearest(*mesh_, *index_, tip, 0.0, work_.candidates)) {
+    step.distance = nearest->closest.distance;
+  }
 }
 
 Polytope MotionConstraint::free_polytope(const Vec3& tip, double radius) noexcept {
@@ -94,7 +105,7 @@ Polytope MotionConstraint::free_polytope(const Vec3& tip, double radius) noexcep
     hold_still(polytope_planes_);
     return {PolytopeStatus::whole_tool, polytope_planes_.view()};
   }
-  const Ball ball{tip, radius + options_.margin};
+  const Ball ball{tip, radius + distance_kept(options_)};
   work_.candidates.clear();
   work_.hits.clear();
   // What is no number finds nothing, and is refused there.
@@ -107,7 +118,7 @@ Polytope MotionConstraint::free_polytope(const Vec3& tip, double radius) noexcep
     refine(*mesh_, ball, work_.candidates.view(), work_.hits);
   }
   const PolytopeStatus status =
-      polytope_.around(tip, radius, options_.margin, work_.hits.view(), polytope_planes_);
+      polytope_.around(tip, radius, distance_kept(options_), work_.hits.view(), polytope_planes_);
   return {status, polytope_planes_.view()};
 }
 

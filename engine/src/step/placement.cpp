@@ -64,6 +64,9 @@ std::optional<Nearest> look_around(const Mesh& mesh, const SpatialIndex& index, 
   const std::optional<Hit> hit = find_nearest(mesh, index, tip, 0.0, candidates);
   if (!hit) return std::nullopt;
   const double near = hit->closest.distance * (1.0 + 1e-13) + rounding;
+  candidates.clear();
+  index.collect({tip, near}, candidates);
+  if (candidates.overflowed()) return std::nullopt;
   const auto last = std::partition(candidates.begin(), candidates.end(), [&](TriangleId t) {
     return closest_point(mesh.triangle(t), tip).distance <= near;
   });

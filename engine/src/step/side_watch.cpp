@@ -11,7 +11,7 @@ namespace {
 
 /// Far above the distance at which the certified rule can no longer tell a side. [length]
 double well_off(const Mesh& mesh, const StepOptions& options) noexcept {
-  const double size = mesh.bounds().size().norm() + options.radius + options.margin;
+  const double size = mesh.bounds().size().norm() + options.radius + distance_kept(options);
   return std::max(1e-4 * options.recovery, 1e-8 * size);
 }
 
@@ -23,15 +23,9 @@ bool may_be_led(const Motion& motion, const StepOptions& options, const Mesh& me
   return !motion.jacobian && !motion.rows && longest_way(options) >= well_off(mesh, options);
 }
 
-Step stopped(Status why) noexcept {
-  Step result;
-  result.status = why;
-  return result;
-}
-
 Step led_out(const Placement& placement, const Mesh& mesh, const SpatialIndex& index,
              const Motion& motion, const StepOptions& options, Workspace& work) noexcept {
-  Step result = stopped(Status::recovering);
+  Step result{.status = Status::recovering, .distance = placement.distance};
   result.motion = lead_out(mesh, index, motion.tip, placement, longest_way(options),
                            well_off(mesh, options), work.candidates);
   work.note({}, result.motion);
@@ -52,10 +46,10 @@ std::optional<Step> SideWatch::before(const Mesh& mesh, const SpatialIndex& inde
                                       Workspace& work) const noexcept {
   if (!is_on_ || (motion.tip - free_tip_).norm() <= free_around_) return std::nullopt;
   const std::optional<Placement> placement = place(mesh, index, motion.tip, work.candidates);
-  if (!placement) return stopped(Status::over_capacity);
+  if (!placement) return Step{.status = Status::over_capacity};
   if (placement->side == Placement::Side::free) return std::nullopt;
   if (!may_be_led(motion, options, mesh) || placement->distance > options.deepest) {
-    return stopped(Status::inside);
+    return Step{.status = Status::inside, .distance = placement->distance};
   }
   return led_out(*placement, mesh, index, motion, options, work);
 }
@@ -75,7 +69,7 @@ void SideWatch::after(const Motion& motion, const Step& step, const StepOptions&
   free_tip_ = motion.tip + step.motion;
   // A margin that is kept leaves more than half of itself free, whatever the tolerance.
   const bool keeps_the_margin = step.ok() && step.status != Status::recovering;
-  free_around_ = keeps_the_margin ? 0.5 * options.margin : 0.0;
+  free_around_ = keeps_the_margin ? 0.5 * distance_kept(options) : 0.0;
 }
 
 void SideWatch::forget() noexcept { free_tip_ = Motion::unset; }

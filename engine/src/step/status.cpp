@@ -49,34 +49,32 @@ std::string_view reason(Status status) noexcept {
              "that was";
     case Status::infeasible:
       return "no motion satisfies all planes: the tip is closer than the margin on several sides, "
-             "or "
-             "the joints cannot move it away; retreat, or lower the margin";
+             "or the joints cannot move it away; retreat, or lower the margin";
     case Status::ill_posed:
-      return "the Jacobian lacks full column rank, or all but: give a damping above zero";
+      return "the Jacobian lacks full column rank, or all but, as it does with more than three "
+             "joints: set damping above 0";
     case Status::invalid_input:
       return "a number is missing, not finite, beyond 1e30, or so far from the origin that the "
-             "step "
-             "is lost in its digits: check the tip, the increment and the Jacobian";
+             "step is lost in its digits, or a Jacobian has other than 3 rows: check the tip, the "
+             "increment and the Jacobian";
     case Status::beyond_reach:
       return "the motion is longer than the radius of the motion sphere: ask for less in a cycle, "
-             "or declare a larger radius";
+             "or declare a larger radius; are motion, radius and mesh in one unit, as mm?";
     case Status::over_capacity:
       return "more triangles, planes or joints than room was made for: lower the radius or raise "
-             "the "
-             "capacity";
+             "the capacity; or is the mesh in metres, so that a radius in mm holds all of it?";
     case Status::unsolved:
       return "the solver gave up within its budget of work, or its answer did not satisfy the "
              "planes";
     case Status::inside:
       return "the tip is on the forbidden side: lead it out by steps without a Jacobian and rows, "
-             "or "
-             "by hand";
+             "or by hand; if it is outside, the mesh is wound inside out";
     case Status::touching:
       return "the tip touches the surface, and which side is free cannot be told: move it off by "
              "hand";
     case Status::margin_too_small:
       return "the margin is lost in the rounding of lengths this large: raise the margin or the "
-             "tool radius, or move the origin closer";
+             "tool radius, or move the origin closer; or is the mesh in micrometres?";
   }
   return "unknown status";
 }

@@ -33,7 +33,8 @@ bool are_usable(const ExtraRows& rows, Eigen::Index variables) noexcept {
 Status check(const Motion& motion, const StepOptions& options) noexcept {
   const bool usable =
       are_usable(motion.tip) && are_usable(motion.desired) && options.radius > 0.0 &&
-      is_usable(options.radius) && is_usable(options.margin) && is_usable(options.damping) &&
+      is_usable(options.radius) && is_usable(options.tool_radius) && is_usable(options.margin) &&
+      is_usable(distance_kept(options)) && is_usable(options.damping) &&
       is_usable(options.recovery) && is_usable(options.deepest) && options.refinements >= 0 &&
       options.refinements <= most_refinements && options.nodes >= 0 && options.nodes <= most_nodes;
   if (!usable) return Status::invalid_input;
@@ -59,7 +60,7 @@ Surroundings surroundings_of(const Motion& motion, const StepOptions& options,
           .kept = Vec3::Zero(),
           .radius = options.radius,
           .longest = reach(options),
-          .margin = options.margin,
+          .margin = distance_kept(options),
           .recovery = options.recovery,
           .rounding = position_rounding(motion.tip, options),
           .reach = reached,

@@ -26,6 +26,7 @@ Workspace::Workspace(const Capacity& capacity)
       branches(most_ways * capacity.nodes + 1),
       variables_(static_cast<Eigen::Index>(std::max<std::size_t>(capacity.variables, 3))),
       extra_rows_(static_cast<Eigen::Index>(capacity.extra_rows)),
+      jacobian_(3 * static_cast<std::size_t>(variables_)),
       rows_((capacity.planes + capacity.extra_rows) * static_cast<std::size_t>(variables_)),
       bounds_(capacity.planes + capacity.extra_rows),
       answer_{Buffer<double>(static_cast<std::size_t>(variables_)),
@@ -34,8 +35,15 @@ Workspace::Workspace(const Capacity& capacity)
 
 StepProblem Workspace::pose(const Motion& motion, const Vec3& aim, double damping,
                             PlaneRows plane_rows) noexcept {
-  const TipJacobian jacobian = motion.jacobian.value_or(TipJacobian(identity.data(), 3));
-  const Eigen::Index n = jacobian.joints();
+  const Eigen::Index n = motion.jacobian ? motion.jacobian->joints() : 3;
+  const double* jacobian = identity.data();
+  if (motion.jacobian) {
+    jacobian = motion.jacobian->data();
+    if (!motion.jacobian->is_packed()) {
+      Eigen::Map<TipJacobian::Matrix>(jacobian_.data(), 3, n) = motion.jacobian->matrix();
+      jacobian = jacobian_.data();
+    }
+  }
   const auto m = static_cast<Eigen::Index>(planes.size());
   const Eigen::Index extra = motion.rows ? motion.rows->count() : 0;
   if (plane_rows == PlaneRows::written) {
@@ -43,7 +51,7 @@ StepProblem Workspace::pose(const Motion& motion, const Vec3& aim, double dampin
       const HalfSpace& plane = planes[static_cast<std::size_t>(p)];
       double* row = rows_.data() + p * n;
       if (motion.jacobian) {
-        write_row(plane.normal, jacobian.data(), n, row);
+        write_row(plane.normal, jacobian, n, row);
       } else {
         std::copy_n(plane.normal.data(), 3, row);
       }
@@ -55,7 +63,7 @@ StepProblem Workspace::pose(const Motion& motion, const Vec3& aim, double dampin
     std::copy_n(motion.rows->bounds(), extra, bounds_.data() + m);
   }
   desired_ = aim;
-  return {.jacobian = {jacobian.data(), 3, n},
+  return {.jacobian = {jacobian, 3, n},
           .desired = {desired_.data(), 3},
           .rows = {rows_.data(), m + extra, n},
           .bounds = {bounds_.data(), m + extra},

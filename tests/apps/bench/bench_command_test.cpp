@@ -1,9 +1,16 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-// keepout bench and compare as a user meets them.
+// keepout bench as a user meets it.
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <fstream>
+#include <iterator>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
@@ -12,6 +19,7 @@
 #include "keepout/adapters/all_indices.h"
 #include "keepout/fixtures/shapes.h"
 #include "keepout/mesh/binary_stl.h"
+#include "keepout/simd_target.h"
 #include "keepout/solvers/registry.h"
 
 namespace keepout::test {
@@ -51,11 +59,11 @@ TEST_F(BenchCommand, ListsEveryPart) {
 
 TEST_F(BenchCommand, WritesOneRowForEachCombinationWithAllThatIsAskedOfIt) {
   const ProcessOutcome outcome = folder.run(
-      "bench --mesh cube.stl --index pd_tree,brute_force --radius 5,motion "
+      "bench --mesh cube.stl --index pd_tree,wide_bvh --radius 5,1 "
       "--activation paper,certified --queries 300 --seconds 5 --json b.json --csv b.csv");
   ASSERT_EQ(outcome.status, 0) << outcome.output;
   const json benchmark = read("b.json");
-  for (const char* key : {"processor", "cores", "memory_gib", "system", "compiler", "flags",
+  for (const char* key : {"processor", "cores", "memory_gib", "simd", "system", "compiler", "flags",
                           "build_type", "keepout", "libraries", "clock_ns"}) {
     EXPECT_TRUE(benchmark["machine"].contains(key)) << key;
   }
@@ -65,6 +73,10 @@ TEST_F(BenchCommand, WritesOneRowForEachCombinationWithAllThatIsAskedOfIt) {
     EXPECT_TRUE(row["verified"]);
     EXPECT_EQ(row["mesh"], "cube.stl");
     EXPECT_EQ(row["queries"], 300);
+    const bool searched = row["index"] == "wide_bvh";
+    EXPECT_EQ(row["step_query_us"].is_null(), searched) << row;
+    EXPECT_GT(row["build_cores"], 0.0);
+    EXPECT_GT(row["load_cores"], 0.0);
     for (const char* stage : {"collect_us", "query_us", "activate_us", "solve_us", "step_us"}) {
       EXPECT_GT(row[stage]["p50"], 0.0) << stage;
       EXPECT_GE(row[stage]["max"], row[stage]["p99"]) << stage;
@@ -72,6 +84,10 @@ TEST_F(BenchCommand, WritesOneRowForEachCombinationWithAllThatIsAskedOfIt) {
     }
     hashes[row["activation"].get<std::string>() + row["radius"].dump()].insert(row["hash"]);
   }
+  EXPECT_TRUE(benchmark["complete"]);
+  EXPECT_EQ(benchmark["machine"]["simd"], std::string(simd_target()));
+  EXPECT_GE(benchmark["others_cores"], 0.0);
+  EXPECT_NE(outcome.output.find("SIMD target " + std::string(simd_target())), std::string::npos);
   EXPECT_EQ(hashes.size(), 3u);
   for (const auto& [combination, hash] : hashes) EXPECT_EQ(hash.size(), 1u) << combination;
 
@@ -100,7 +116,7 @@ TEST_F(BenchCommand, SaysWhatIsWrongWithTheArguments) {
   expect_refused("bench --index pd-tree", "pd_tree");
   expect_refused("bench --solver nlopt", "active_set");
   expect_refused("bench --radius -1 --mesh cube.stl", "--radius");
-  expect_refused("bench --radius some --mesh cube.stl", "motion");
+  expect_refused("bench --radius some --mesh cube.stl", "--radius");
   expect_refused("bench --triangles 12", "--triangles");
   expect_refused("bench --triangles 2000 --mesh cube.stl", "bunny");
   expect_refused("bench --mesh nowhere.stl", "nowhere.stl");
@@ -109,6 +125,101 @@ TEST_F(BenchCommand, SaysWhatIsWrongWithTheArguments) {
   expect_refused("bench --mesh cube.stl --csv cube.stl", "cube.stl");
   expect_refused("bench --poses somewhere", "contact");
   EXPECT_FALSE(std::filesystem::exists(folder.file("a.json")));
+  std::filesystem::create_directory(folder.file("other"));
+  std::filesystem::copy(folder.file("cube.stl"), folder.file("other/cube.stl"));
+  expect_refused("bench --mesh cube.stl,other/cube.stl", "told apart");
+}
+
+TEST_F(BenchCommand, RanksNoRowWhoseMotionsReachNoTriangle) {
+  // Tips are 0.2 mm off the cube: a sphere of 0.1 mm reaches nothing.
+  const ProcessOutcome outcome = folder.run(
+      "bench --mesh cube.stl --index pd_tree,brute_force --activation paper --radius 0.1 "
+      "--queries 100 --json b.json");
+  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  const json benchmark = read("b.json");
+  for (const json& row : benchmark["rows"]) {
+    EXPECT_TRUE(row["verified"]);
+    EXPECT_EQ(row["hits_mean"], 0.0);
+    EXPECT_EQ(row["reaching_share"], 0.0);
+  }
+  EXPECT_EQ(benchmark["headline"],
+            "No combination had triangles in reach and answered 99 % of its steps.");
+  EXPECT_NE(benchmark["account"].get<std::string>().find("2 of 2 rows were not ranked"),
+            std::string::npos);
+}
+
+/// Runs until its output holds the words, is then interrupted as by Ctrl-C, and gives the rest.
+ProcessOutcome interrupted(const CommandFolder& folder, std::vector<std::string> arguments,
+                           const std::string& words) {
+  std::array<int, 2> ends;
+  if (::pipe(ends.data()) != 0) return {-1, "no pipe"};
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::dup2(ends[1], STDOUT_FILENO);
+    ::dup2(ends[1], STDERR_FILENO);
+    if (::chdir(folder.path().c_str()) != 0) ::_exit(127);
+    arguments.insert(arguments.begin(), KEEPOUT_COMMAND);
+    std::vector<char*> pointers;
+    for (std::string& argument : arguments) pointers.push_back(argument.data());
+    pointers.push_back(nullptr);
+    ::execv(pointers[0], pointers.data());
+    ::_exit(127);
+  }
+  ::close(ends[1]);
+  ProcessOutcome outcome{-1, {}};
+  std::array<char, 4096> part;
+  bool told = false;
+  for (ssize_t count; (count = ::read(ends[0], part.data(), part.size())) > 0;) {
+    outcome.output.append(part.data(), static_cast<std::size_t>(count));
+    if (told || outcome.output.find(words) == std::string::npos) continue;
+    told = true;
+    ::kill(child, SIGINT);
+  }
+  ::close(ends[0]);
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  return outcome;
+}
+
+TEST_F(BenchCommand, KeepsTheRowsThatAreFinishedWhenItIsInterrupted) {
+  // Of so many motions that no row is done before the signal for the first has arrived.
+  const ProcessOutcome outcome =
+      interrupted(folder,
+                  {"bench", "--mesh", "cube.stl", "--index", "wide_bvh,pd_tree", "--activation",
+                   "paper", "--radius", "5,1", "--queries", "200000", "--seconds", "5", "--json",
+                   "b.json", "--csv", "b.csv", "--out", "b.html"},
+                  "\n5      wide_bvh");
+  EXPECT_EQ(outcome.status, 130) << outcome.output;
+  EXPECT_NE(outcome.output.find("were finished, and are kept in b.html, b.json and b.csv"),
+            std::string::npos)
+      << outcome.output;
+  const json benchmark = read("b.json");
+  EXPECT_EQ(benchmark["complete"], false);
+  EXPECT_EQ(benchmark["planned_rows"], 4);
+  const std::size_t rows = benchmark["rows"].size();
+  EXPECT_GE(rows, 1u);
+  EXPECT_LT(rows, 4u);
+  for (const json& row : benchmark["rows"]) EXPECT_TRUE(row["verified"]) << "whole rows only";
+  std::ifstream csv(folder.file("b.csv"));
+  EXPECT_EQ(static_cast<std::size_t>(std::count(std::istreambuf_iterator<char>(csv), {}, '\n')),
+            rows + 1);
+  std::ifstream page(folder.file("b.html"));
+  const std::string text(std::istreambuf_iterator<char>(page), {});
+  EXPECT_NE(text.find("Incomplete: it was stopped after " + std::to_string(rows) + " of 4 rows."),
+            std::string::npos);
+}
+
+TEST_F(BenchCommand, WritesNothingWhenItIsInterruptedBeforeAnyRow) {
+  const ProcessOutcome outcome =
+      interrupted(folder,
+                  {"bench", "--mesh", "cube.stl", "--queries", "200000", "--seconds", "5", "--json",
+                   "b.json", "--out", "b.html"},
+                  "SIMD target");
+  EXPECT_EQ(outcome.status, 130) << outcome.output;
+  EXPECT_NE(outcome.output.find("nothing was written"), std::string::npos) << outcome.output;
+  EXPECT_FALSE(std::filesystem::exists(folder.file("b.json")));
+  EXPECT_FALSE(std::filesystem::exists(folder.file("b.html")));
 }
 
 TEST_F(BenchCommand, SaysWhenMoreTrianglesAreInReachThanItHasRoomFor) {
@@ -129,23 +240,6 @@ TEST_F(BenchCommand, SaysWhenMoreTrianglesAreInReachThanItHasRoomFor) {
 TEST_F(BenchCommand, LeavesNoFileBehindWhenItFails) {
   expect_refused("bench --mesh nowhere.stl --json b.json", "nowhere.stl");
   EXPECT_FALSE(std::filesystem::exists(folder.file("b.json")));
-}
-
-TEST_F(BenchCommand, ComparesEveryIndexToBruteForce) {
-  const ProcessOutcome outcome =
-      folder.run("compare cube.stl --poses 30 --problems 60 --pairs 20 --json c.json");
-  ASSERT_EQ(outcome.status, 0) << outcome.output;
-  const json comparison = read("c.json");
-  std::set<std::string> names;
-  for (const json& row : comparison["indices"]) {
-    names.insert(row["index"]);
-    EXPECT_EQ(row["poses"], 30);
-    EXPECT_EQ(row["missed"], 0);
-    EXPECT_EQ(row["invented"], 0);
-    EXPECT_EQ(row["steps_that_differ"], 0);
-    EXPECT_LT(row["closest_point_error_mm"], 1e-12);
-  }
-  EXPECT_EQ(names.size(), all_index_backends().size() - 1);
 }
 
 }  // namespace

@@ -52,7 +52,7 @@ TEST(Combinations, CrossWhatWasAskedForAndTakeTheReferenceForTheRest) {
 
 TEST(Combinations, ListTheCertifiedRuleOnceWhateverTheRadii) {
   const std::vector<Combination> all = combinations_of(
-      {.indices = {}, .activations = {"certified"}, .solvers = {}, .radii = {5.0, 1.0, {}}});
+      {.indices = {}, .activations = {"certified"}, .solvers = {}, .radii = {5.0, 1.0}});
   ASSERT_EQ(all.size(), 1u);
   EXPECT_EQ(all[0].radius, std::nullopt);
 }

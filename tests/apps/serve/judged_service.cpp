@@ -26,6 +26,7 @@ app::ServiceSettings settings(std::size_t longest_line) {
   settings.mesh = "cube";
   settings.constraint.radius = 2.0;
   settings.constraint.damping = 1e-3;
+  settings.constraint.distances = Distances::always;
   settings.limits = {.joints = 7, .rows = 4, .motions = 8};
   settings.longest_line = longest_line;
   return settings;
@@ -108,7 +109,10 @@ Vec3 vector(const Json& array, std::size_t from = 0) {
 bool is_same(const Json& answer, const Step& step) {
   return answer["ok"] == step.ok() && answer["status"] == name(step.status) &&
          vector(answer["motion"]) == step.motion && answer["planes"] == step.planes.size() &&
-         answer["triangles"] == step.triangles && answer.contains("reason") == !step.ok();
+         answer["triangles"] == step.triangles &&
+         answer.contains("distance") == step.distance.has_value() &&
+         (!step.distance || answer["distance"] == *step.distance) &&
+         answer.contains("reason") == !step.ok();
 }
 
 bool is_same(const Json& answer, const Polytope& polytope) {

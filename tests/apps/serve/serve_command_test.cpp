@@ -184,7 +184,8 @@ TEST_F(ServeCommand, APipeIsServedUntilItEnds) {
   Talk talk = start();
   EXPECT_EQ(talk.ask(ping), pong);
   EXPECT_EQ(talk.ask(R"({"id":2,"do":"step","tip":[0,0,60],"desired":[0,0,-0.5]})"),
-            R"({"id":2,"ok":true,"status":"free","motion":[0,0,-0.5],"triangles":0,"planes":0})");
+            R"({"id":2,"ok":true,"status":"free","motion":[0,0,-0.5],"triangles":0,"planes":0,)"
+            R"("distance":10})");
   EXPECT_NE(talk.ask("nonsense").find("not_json"), std::string::npos);
   EXPECT_TRUE(talk.send("\r\n\n  \n" + std::string(ping) + "\r\n" + std::string(ping)));
   EXPECT_EQ(talk.line(), pong);
@@ -360,7 +361,7 @@ TEST_F(ServeCommand, ItsAnswersAreThoseOfReplayBitForBit) {
     std::vector<std::string> cells;
     std::istringstream rest(row);
     for (std::string cell; std::getline(rest, cell, ',');) cells.push_back(cell);
-    ASSERT_GT(cells.size(), 12u);
+    ASSERT_EQ(cells.size(), 18u);
     if (expected.back() == '}') expected += ',';
     limited += cells[1] == "limited";
     expected += "{\"ok\":true,\"status\":\"" + cells[1] + "\",\"motion\":[";
@@ -368,7 +369,9 @@ TEST_F(ServeCommand, ItsAnswersAreThoseOfReplayBitForBit) {
       app::append_number(expected, std::stod(cells[i]));
       expected += i < 10 ? ',' : ']';
     }
-    expected += ",\"triangles\":" + cells[11] + ",\"planes\":" + cells[12] + "}";
+    expected += ",\"triangles\":" + cells[11] + ",\"planes\":" + cells[12] + ",\"distance\":";
+    app::append_number(expected, std::stod(cells[17]));
+    expected += '}';
   }
   EXPECT_EQ(answer, expected + "]}");
   EXPECT_GT(limited, 100u);

@@ -15,8 +15,11 @@ namespace {
 TEST(Campaign, NoStepBreaksTheTheoremOnAnyGeneratedShape) {
   std::uint64_t told = 0;
   const std::vector<Arena> arenas = generated_arenas("pd_tree");
-  const Findings findings = run_campaign({.seed = 20261120, .steps = 200'000}, arenas,
-                                         [&](std::uint64_t n) { told += n; });
+  const Findings findings =
+      run_campaign({.seed = 20261120, .steps = 200'000}, arenas, [&](std::uint64_t n) {
+        told += n;
+        return Next::go_on;
+      });
   for (const Incident& breach : findings.breaches) ADD_FAILURE() << text(breach);
   const Tally total = findings.total();
   EXPECT_EQ(total.breach_count(), 0u);

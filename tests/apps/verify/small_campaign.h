@@ -23,7 +23,8 @@ inline Arena arena_of(std::string_view shape) {
 }
 
 inline Findings campaign_on(std::string_view shape, const CampaignSettings& settings) {
-  return run_campaign(settings, std::array{arena_of(shape)}, [](std::uint64_t) {});
+  return run_campaign(settings, std::array{arena_of(shape)},
+                      [](std::uint64_t) { return Next::go_on; });
 }
 
 inline std::uint64_t count(const Findings& findings, Breach breach) {

@@ -60,6 +60,36 @@ TEST_F(Verify, ShardsAddUpToTheWhole) {
   EXPECT_EQ(merged.output.find("missing"), std::string::npos) << merged.output;
   EXPECT_EQ(without_times(read("merged.json")), without_times(read("whole.json")));
   EXPECT_EQ(read("merged.json")["shards"].size(), 3u);
+  EXPECT_EQ(read("merged.json")["complete"], true);
+  EXPECT_EQ(whole.output.find("incomplete"), std::string::npos) << whole.output;
+}
+
+TEST_F(Verify, WhatIsInterruptedKeepsWhatIsFinishedAndIsNotTakenForWhole) {
+  for (const char* signal : {"INT", "TERM"}) {
+    // Once it is surely in the midst of it.
+    const Outcome outcome =
+        run("cube.stl --steps 1e9 --shard 1/2 --json part.json",
+            "timeout --preserve-status -k 30 -s " + std::string(signal) + " 2 ");
+    EXPECT_EQ(outcome.status, 130) << outcome.output;
+    const nlohmann::json part = read("part.json");
+    const auto done = part["total"]["steps"].get<std::uint64_t>();
+    EXPECT_GT(done, 0u);
+    EXPECT_EQ(done % 500, 0u) << "a trajectory is done whole";
+    EXPECT_EQ(part["steps"], 1'000'000'000u);
+    EXPECT_EQ(part["steps_done"], done);
+    EXPECT_EQ(part["complete"], false);
+    EXPECT_EQ(part["shards"][0]["complete"], false);
+    EXPECT_NE(outcome.output.find(" s on "), std::string::npos) << outcome.output;
+    EXPECT_NE(outcome.output.find(", interrupted\n"), std::string::npos) << outcome.output;
+    EXPECT_NE(outcome.output.find("of the campaign's 1,000,000,000 steps are done"),
+              std::string::npos)
+        << outcome.output;
+  }
+  const Outcome merged = run("--merge part.json --json merged.json");
+  EXPECT_EQ(merged.status, 0);
+  EXPECT_NE(merged.output.find("incomplete: "), std::string::npos) << merged.output;
+  EXPECT_NE(merged.output.find("missing: shard 2/2"), std::string::npos) << merged.output;
+  EXPECT_EQ(read("merged.json")["complete"], false);
 }
 
 TEST_F(Verify, AMissingShardIsToldOf) {

@@ -1,35 +1,23 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-// The same triangles in the same order, and the same work, whatever processor answers: each kind
-// that this one can stand in for is held to one lane at a time.
+// The same triangles in the same order, the same trees and the same work, whatever processor
+// answers: all kinds that this one can stand in for, down to one lane at a time.
 #include <gtest/gtest.h>
-#include <hwy/highway.h>
 
-#include <bit>
 #include <cstring>
+#include <optional>
+#include <span>
 #include <vector>
 
+#include "each_simd_target.h"
 #include "engine/index/exact_index.h"
 #include "keepout/fixtures/poses.h"
 #include "keepout/fixtures/shapes.h"
 #include "keepout/index/pd_tree.h"
 #include "keepout/index/wide_bvh.h"
-#include "only_target.h"
 
 namespace keepout {
 namespace {
-
-/// All that this processor can do and the engine is compiled for, the plainest first.
-std::vector<std::int64_t> targets() {
-  std::vector<std::int64_t> all;
-  for (std::uint64_t rest = static_cast<std::uint64_t>(hwy::SupportedTargets() & HWY_TARGETS);
-       rest != 0;) {
-    const std::uint64_t highest = std::bit_floor(rest);
-    all.push_back(static_cast<std::int64_t>(highest));
-    rest &= ~highest;
-  }
-  return all;
-}
 
 std::vector<Ball> balls(const Mesh& mesh) {
   const double size = mesh.bounds().size().norm();
@@ -75,55 +63,67 @@ using Indices = testing::Types<WideBvh, PdTree>;
 TYPED_TEST_SUITE(IndexLanes, Indices);
 
 TYPED_TEST(IndexLanes, EveryProcessorGivesTheSameTrianglesInTheSameOrder) {
-  ASSERT_GE(targets().size(), 2u);
+  ASSERT_GE(simd_targets().size(), 2u);
   for (const char* name : {"cortex", "gear", "needles", "triangle_soup"}) {
     SCOPED_TRACE(name);
     const TypeParam index(std::make_shared<const Mesh>(make_shape(name)));
     const std::vector<Ball> asked = balls(index.mesh());
-    Answers expected;
-    for (const std::int64_t target : targets()) {
-      SCOPED_TRACE(hwy::TargetName(target));
-      const OnlyTarget only(target);
-      Answers got = answers(index, asked);
-      if (target == targets().front()) {
-        EXPECT_GT(got.counts.triangles, 0u) << "the kernel was never asked";
-        expected = std::move(got);
-        continue;
-      }
-      EXPECT_EQ(got.found, expected.found);
-      EXPECT_EQ(got.counts.nodes, expected.counts.nodes);
-      EXPECT_EQ(got.counts.blocks, expected.counts.blocks);
-      EXPECT_EQ(got.counts.triangles, expected.counts.triangles);
-    }
+    std::optional<Answers> expected;
+    on_each_simd_target([&] {
+      const Answers got = answers(index, asked);
+      if (!expected) expected = got;
+      EXPECT_GT(got.counts.triangles, 0u) << "the kernel was never asked";
+      EXPECT_EQ(got.found, expected->found);
+      EXPECT_EQ(got.counts.nodes, expected->counts.nodes);
+      EXPECT_EQ(got.counts.blocks, expected->counts.blocks);
+      EXPECT_EQ(got.counts.triangles, expected->counts.triangles);
+    });
   }
+}
+
+template <class Block>
+void expect_same_blocks(std::span<const Block> got, std::span<const Block> expected) {
+  ASSERT_EQ(got.size_bytes(), expected.size_bytes());
+  EXPECT_EQ(std::memcmp(got.data(), expected.data(), expected.size_bytes()), 0);
 }
 
 TYPED_TEST(IndexLanes, EveryProcessorBuildsTheSameTree) {
   const auto mesh = std::make_shared<const Mesh>(make_shape("cortex"));
   const TypeParam expected(mesh);
-  for (const std::int64_t target : targets()) {
-    SCOPED_TRACE(hwy::TargetName(target));
-    const OnlyTarget only(target);
+  on_each_simd_target([&] {
     const TypeParam index(mesh);
-    ASSERT_EQ(index.nodes().size_bytes(), expected.nodes().size_bytes());
-    EXPECT_EQ(
-        std::memcmp(index.nodes().data(), expected.nodes().data(), expected.nodes().size_bytes()),
-        0);
-    ASSERT_EQ(index.leaves().size_bytes(), expected.leaves().size_bytes());
-    EXPECT_EQ(std::memcmp(index.leaves().data(), expected.leaves().data(),
-                          expected.leaves().size_bytes()),
-              0);
+    expect_same_blocks(index.nodes(), expected.nodes());
+    expect_same_blocks(index.leaves(), expected.leaves());
+  });
+}
+
+/// With coordinates that are floats, and that are not.
+TEST(WideBvhLanes, EveryProcessorRefitsToTheSameTree) {
+  for (const double stretch : {2.0, 1.1}) {
+    Surface surface = make_shape("cortex");
+    for (Vec3& v : surface.vertices) v = v.cast<float>().cast<double>();
+    const auto before = std::make_shared<const Mesh>(surface);
+    for (Vec3& v : surface.vertices) v.z() *= stretch;
+    const auto after = std::make_shared<const Mesh>(surface);
+    WideBvh expected(before);
+    expected.refit(after);
+    EXPECT_EQ(expected.coordinate_error() == 0.0, stretch == 2.0);
+    on_each_simd_target([&] {
+      WideBvh index(before);
+      index.refit(after);
+      expect_same_blocks(index.nodes(), expected.nodes());
+      expect_same_blocks(index.leaves(), expected.leaves());
+      EXPECT_EQ(index.coordinate_error(), expected.coordinate_error());
+      expect_cylinders_hold(index);
+    });
   }
 }
 
 TEST(WideBvhLanes, CylindersHoldWhateverProcessorBuildsThem) {
   for (const char* name : {"cortex", "needles", "far_cube"}) {
+    SCOPED_TRACE(name);
     const auto mesh = shared_shape(name);
-    for (const std::int64_t target : targets()) {
-      SCOPED_TRACE(testing::Message() << name << " on " << hwy::TargetName(target));
-      const OnlyTarget only(target);
-      expect_cylinders_hold(WideBvh(mesh));
-    }
+    on_each_simd_target([&] { expect_cylinders_hold(WideBvh(mesh)); });
   }
 }
 

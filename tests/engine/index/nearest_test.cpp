@@ -10,24 +10,69 @@
 #include "keepout/fixtures/shapes.h"
 #include "keepout/index/brute_force.h"
 #include "keepout/index/pd_tree.h"
+#include "keepout/index/wide_bvh.h"
+#include "keepout/simd_target.h"
 
 namespace keepout {
 namespace {
 
-TEST(NearestTriangle, IsTheOneThatBruteForceFindsAndTheLowestAmongEquals) {
+/// A mesh whose coordinates are not floats, so that leaves have them rounded.
+Mesh in_odd_numbers(const Surface& surface) {
+  Surface odd = surface;
+  for (Vec3& vertex : odd.vertices) vertex = vertex / 3.0 + Vec3(0.1, -200.0 / 7.0, 1e3 / 3.0);
+  return Mesh(std::move(odd));
+}
+
+template <class Index>
+void expect_nearest_of(const std::shared_ptr<const Mesh>& mesh, std::size_t of_each_kind) {
+  const Index index(mesh);
+  NearestTriangle nearest(*mesh, index);
+  for (const Vec3& point : probing_points(*mesh, of_each_kind)) {
+    const std::vector<double> distance = distances(*mesh, point);
+    const auto expected = std::min_element(distance.begin(), distance.end());
+    for (const double guess : {0.0, 0.5 * *expected, *expected, 3.0 * *expected}) {
+      const Hit hit = nearest(point, guess);
+      ASSERT_EQ(hit.triangle, expected - distance.begin()) << point.transpose();
+      ASSERT_EQ(hit.closest.distance, *expected);
+    }
+  }
+}
+
+template <class Index>
+class NearestTriangleOf : public testing::Test {};
+
+using AnyIndex = testing::Types<WideBvh, PdTree, BruteForce>;
+TYPED_TEST_SUITE(NearestTriangleOf, AnyIndex);
+
+TYPED_TEST(NearestTriangleOf, IsTheOneThatBruteForceFindsAndTheLowestAmongEquals) {
   for (const Shape& shape : shapes()) {
     SCOPED_TRACE(shape.name);
-    const auto mesh = std::make_shared<const Mesh>(shape.make());
-    const PdTree tree(mesh);
-    NearestTriangle nearest(*mesh, tree);
-    for (const Vec3& point : probing_points(*mesh, 10)) {
-      const std::vector<double> distance = distances(*mesh, point);
-      const auto expected = std::min_element(distance.begin(), distance.end());
-      for (const double guess : {0.0, 0.5 * *expected, *expected, 3.0 * *expected}) {
-        const Hit hit = nearest(point, guess);
-        ASSERT_EQ(hit.triangle, expected - distance.begin());
-        ASSERT_EQ(hit.closest.distance, *expected);
-      }
+    expect_nearest_of<TypeParam>(std::make_shared<const Mesh>(shape.make()), 10);
+    expect_nearest_of<TypeParam>(std::make_shared<const Mesh>(in_odd_numbers(shape.make())), 3);
+  }
+}
+
+TEST(NearestTriangle, IsTheSameOnEveryProcessor) {
+  const auto mesh = std::make_shared<const Mesh>(make_shape("cortex"));
+  for (const std::string_view target : simd_targets()) {
+    SCOPED_TRACE(target);
+    use_simd_target(target);
+    expect_nearest_of<WideBvh>(mesh, 20);
+  }
+  use_simd_target(simd_targets().front());
+}
+
+TEST(NearestTriangle, IsFoundWhereFloatsOverflow) {
+  for (const double scale : {1e-25, 1e17, 1e25}) {
+    Surface surface = make_shape("cube");
+    for (Vec3& vertex : surface.vertices) vertex *= scale;
+    const auto mesh = std::make_shared<const Mesh>(std::move(surface));
+    const WideBvh tree(mesh);
+    const BruteForce brute(mesh);
+    Random random(4);
+    for (int i = 0; i < 200; ++i) {
+      const Vec3 point = random.uniform(0.0, 200.0) * scale * random.direction();
+      ASSERT_EQ(tree.nearest(point), brute.nearest(point)) << scale;
     }
   }
 }
@@ -35,8 +80,8 @@ TEST(NearestTriangle, IsTheOneThatBruteForceFindsAndTheLowestAmongEquals) {
 TEST(NearestTriangle, GrowsItsMemoryWhenABallHoldsTheWholeMesh) {
   const auto mesh = std::make_shared<const Mesh>(make_sphere(2.0));
   ASSERT_GT(mesh->triangle_count(), 5000u);
-  const BruteForce brute(mesh);
-  NearestTriangle nearest(*mesh, brute);
+  const PdTree tree(mesh);
+  NearestTriangle nearest(*mesh, tree);
   EXPECT_NEAR(nearest(Vec3::Zero(), 1000.0).closest.distance, 50.0, 0.1);
 }
 

@@ -3,9 +3,12 @@
 // The free polytope as MotionConstraint hands it out.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
+#include "each_simd_target.h"
 #include "keepout/factory/make_motion_constraint.h"
 #include "keepout/fixtures/poses.h"
 #include "keepout/fixtures/shapes.h"
@@ -40,6 +43,26 @@ TEST(MotionConstraintPolytope, EveryMotionWithinItKeepsTheMargin) {
     }
   }
   EXPECT_GT(free, 500u);
+}
+
+TEST(MotionConstraintPolytope, IsTheSameOnEachTarget) {
+  const auto mesh = std::make_shared<const Mesh>(make_shape("cortex"));
+  Random random(4);
+  const std::vector<Vec3> tips = surface_points(*mesh, 50, 0.5, random);
+  std::vector<HalfSpace> expected;
+  on_each_simd_target([&] {
+    auto guard = make_motion_constraint(mesh, {});
+    std::vector<HalfSpace> got;
+    for (const Vec3& tip : tips) {
+      const Polytope polytope = guard.free_polytope(tip, 2.0);
+      got.insert(got.end(), polytope.planes.begin(), polytope.planes.end());
+    }
+    if (expected.empty()) expected = got;
+    EXPECT_GT(got.size(), 100u);
+    EXPECT_TRUE(std::ranges::equal(got, expected, [](const HalfSpace& a, const HalfSpace& b) {
+      return a.normal == b.normal && a.offset == b.offset && a.source == b.source;
+    }));
+  });
 }
 
 TEST(MotionConstraintPolytope, FarFromTheMeshIsTheWholeBall) {

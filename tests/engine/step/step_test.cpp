@@ -10,6 +10,7 @@
 #include "keepout/activation/all_faces.h"
 #include "keepout/activation/paper.h"
 #include "keepout/error.h"
+#include "keepout/factory/make_motion_constraint.h"
 #include "keepout/fixtures/poses.h"
 #include "keepout/fixtures/shapes.h"
 #include "keepout/index/brute_force.h"
@@ -240,6 +241,20 @@ TEST(Step, TellsWhatEachStageTook) {
   EXPECT_GT(times.activation, 0);
   EXPECT_GT(times.solve, 0);
   EXPECT_EQ(times.total(), times.query + times.activation + times.solve);
+}
+
+TEST(MotionConstraint, TellsToolRadiusAndMarginApartAndKeepsBoth) {
+  const auto mesh = make_mesh("cube");
+  auto by_hand = guard<PaperRule>(mesh, {.radius = 2.0, .tool_radius = 0.3, .margin = 0.2});
+  auto by_name = make_motion_constraint(mesh, {.radius = 2.0, .tool_radius = 0.3, .margin = 0.2});
+  for (MotionConstraint* constraint : {&by_hand, &by_name}) {
+    EXPECT_EQ(constraint->options().tool_radius, 0.3);
+    EXPECT_EQ(constraint->options().margin, 0.2);
+    EXPECT_EQ(distance_kept(constraint->options()), 0.5);
+    const Step step = constraint->step({.tip = {3, 4, 51}, .desired = {0, 0, -2}});
+    EXPECT_LT((step.motion - Vec3(0, 0, -0.5)).norm(), 1e-12);
+  }
+  EXPECT_THROW(guard<PaperRule>(mesh, {.radius = 1.0, .tool_radius = -0.1}), Error);
 }
 
 TEST(MotionConstraint, RefusesOptionsOutOfRange) {

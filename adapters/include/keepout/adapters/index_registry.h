@@ -22,6 +22,11 @@ struct IndexBackend {
   std::unique_ptr<SpatialIndex> (*make)(std::shared_ptr<const Mesh> mesh);
   std::size_t most_triangles;  // what its data structure can hold, were memory no object
   std::string (*library)();    // name and version of the library behind it; null for our own
+  /// Whether it takes memory while it answers. With one that does, no step is fit for real time.
+  Allocation allocation = Allocation::never;
+  /// What it does more or less than the others when it is timed beside them, as a sentence; empty
+  /// where there is nothing to say.
+  std::string_view remark = {};
 };
 
 /// All that this build has, the oracle first.

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -12,6 +13,12 @@
 
 namespace keepout {
 
+/// Whether load_mesh looks at the mesh that it has read.
+enum class MeshCheck : std::uint8_t {
+  quick,  // quick_check(): a unit that is not mm, an open surface, an inconsistent winding
+  none    // for who calls examine(), which tells all that and more
+};
+
 /// What is known of a file, and what is wanted of it.
 struct LoadOptions {
   /// The space that the coordinates shall be in: they are turned if the file says the other one.
@@ -19,6 +26,7 @@ struct LoadOptions {
   AnatomicalSpace space = AnatomicalSpace::unstated;
   /// The space of a file that does not say. One that does is believed.
   AnatomicalSpace untagged = AnatomicalSpace::unstated;
+  MeshCheck check = MeshCheck::quick;  // whether the mesh is looked at once it is read
 };
 
 /// What load_mesh has read.
@@ -26,14 +34,17 @@ struct LoadedMesh {
   std::shared_ptr<const Mesh> mesh;                    // welded; never null
   AnatomicalSpace space = AnatomicalSpace::unstated;   // that the coordinates are in now
   AnatomicalSpace stated = AnatomicalSpace::unstated;  // that the file states: SPACE=...
-  std::vector<std::string> warnings;  // what was left out of the mesh, or looks odd in the file
+  /// What was left out of the mesh, looks odd in the file, or should not be guarded with unknowing.
+  std::vector<std::string> warnings = {};
 };
 
 /// Reads a triangle mesh from a file: STL, PLY (text and binary both), OBJ or OFF, by its
 /// extension in any case; and welds it exactly. Polygons are triangulated. Nothing is rescaled, and
 /// nothing repaired: see doctor.h. Nothing is turned either, but on demand: see LoadOptions. A file
 /// that states its space (as 3D Slicer writes it) gets a warning unless `options.space` says what
-/// is wanted, and one that states two is an error; so is a demand on a file of unknown space.
+/// is wanted, and one that states two is an error; so is a demand on a file of unknown space. The
+/// mesh gets a warning for a size that is none of anatomy in mm, for an open surface, and for an
+/// inconsistent winding.
 ///
 /// Coordinates of binary files are exact, also doubles of PLY. Those of text files arrive in single
 /// precision: those of PLY are the nearest, and those of the others within 1 unit in the last

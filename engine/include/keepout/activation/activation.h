@@ -5,6 +5,7 @@
 #include <concepts>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "keepout/buffer.h"
@@ -59,6 +60,9 @@ struct Opening {
   };
   Stance stance = Stance::clear;  // what the cycle is to do
   Vec3 aim = Vec3::Zero();        // to go for instead, when too close [length]
+  /// From the tip to the nearest triangle, if every form of the rule comes by it at no cost.
+  /// [length]
+  std::optional<double> distance = std::nullopt;
 };
 
 /// What a rule says of a trial motion.

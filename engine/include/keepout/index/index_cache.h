@@ -3,7 +3,9 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
+#include <string>
 
 #include "keepout/index/wide_bvh.h"
 #include "keepout/mesh/mesh.h"
@@ -29,9 +31,10 @@ std::unique_ptr<WideBvh> load_index(std::shared_ptr<const Mesh> mesh,
 bool save_index(const WideBvh& index, const std::filesystem::path& file);
 
 /// The index of a mesh: from `folder`, or built and, if it can be, put there. The folder is made
-/// where it is missing. What goes wrong with files costs time and nothing else. Throws Error where
-/// building does.
+/// where it is missing. What goes wrong with files costs time and nothing else; when the index
+/// could not be put there, `warn` is told which file and why. Throws Error where building does.
 std::unique_ptr<WideBvh> load_or_build(std::shared_ptr<const Mesh> mesh,
-                                       const std::filesystem::path& folder);
+                                       const std::filesystem::path& folder,
+                                       const std::function<void(const std::string&)>& warn = {});
 
 }  // namespace keepout

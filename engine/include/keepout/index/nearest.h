@@ -10,12 +10,13 @@
 namespace keepout {
 
 /// The triangle nearest to a point, and its closest point, relative to `point`; ties go to the
-/// lowest id. By any index: a ball around the point grows until it touches the mesh. `candidates`
-/// then holds, among others, all triangles at that distance. Nothing when they are more than it
-/// has room for. Allocates nothing.
+/// lowest id. Of every index the same, bit for bit. One that has no search of its own for it
+/// (SpatialIndex::nearest) is asked about a ball around the point that grows until it touches the
+/// mesh: far from it that may be a large part of it, and there is no answer when it is more than
+/// `candidates` has room for. Allocates nothing.
 ///
-/// `guess`: a radius worth trying first, such as the last distance plus the way since. [length]
-/// Precondition: the point is finite.
+/// `guess`: for such an index a radius worth trying first, such as the last distance plus the way
+/// since. [length] Precondition: the point is finite.
 std::optional<Hit> find_nearest(const Mesh& mesh, const SpatialIndex& index, const Vec3& point,
                                 double guess, TriangleBuffer& candidates) noexcept;
 

@@ -28,6 +28,11 @@ class SpatialIndex {
   /// none extra.
   virtual bool is_exact() const noexcept { return false; }
 
+  /// The triangle nearest to a point by the engine's kernel, of equals the lowest number, whatever
+  /// the distance; no_triangle of an index that has no search of its own for it: see find_nearest.
+  /// Thread-safe. Precondition: the point is finite.
+  virtual TriangleId nearest(const Vec3& /*point*/) const noexcept { return no_triangle; }
+
   /// Memory that the index holds beside the mesh. [bytes]
   virtual std::size_t memory() const noexcept = 0;
 };

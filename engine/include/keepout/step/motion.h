@@ -10,32 +10,9 @@
 #include "keepout/geometry/half_space.h"
 #include "keepout/geometry/vec3.h"
 #include "keepout/step/status.h"
+#include "keepout/step/tip_jacobian.h"
 
 namespace keepout {
-
-/// A view of the tip's Jacobian J, dx = J dq: 3 x n, column by column. [length / unit of the joint]
-class TipJacobian {
- public:
-  /// 3 rows, a column for each joint.
-  using Matrix = Eigen::Matrix<double, 3, Eigen::Dynamic>;
-
-  /// The matrix must outlive the step.
-  TipJacobian(const Matrix& matrix) noexcept : data_(matrix.data()), joints_(matrix.cols()) {}
-  TipJacobian(Matrix&&) = delete;
-  /// `data`: 3 `joints` numbers, column by column, which must outlive the step.
-  TipJacobian(const double* data, Eigen::Index joints) noexcept : data_(data), joints_(joints) {}
-
-  /// How many columns there are.
-  Eigen::Index joints() const noexcept { return joints_; }
-  /// Its numbers, column by column.
-  const double* data() const noexcept { return data_; }
-  /// J (3, n), as a view.
-  Eigen::Map<const Matrix> matrix() const noexcept { return {data_, 3, joints_}; }
-
- private:
-  const double* data_;
-  Eigen::Index joints_;
-};
 
 /// A view of rows of the caller's own on the increment u, such as joint limits: A u >= b.
 class ExtraRows {
@@ -61,7 +38,9 @@ class ExtraRows {
 struct Motion {
   Vec3 tip = unset;      // in the frame of the mesh [length]
   Vec3 desired = unset;  // increment asked for [length]
-  /// Of the joints that are to move the tip. Without one, the tip itself is what moves: u = dx.
+  /// Of the joints that are to move the tip: a 3 x n matrix of Eigen's. With more than three
+  /// joints, or such as move the tip alike, it needs StepOptions::damping above 0. Without a
+  /// Jacobian the tip itself is what moves: u = dx.
   std::optional<TipJacobian> jacobian = std::nullopt;
   /// What else the increment must satisfy. Bounds above 0 ask for motion.
   std::optional<ExtraRows> rows = std::nullopt;
@@ -72,15 +51,21 @@ struct Motion {
 
 /// What one control cycle may do. Views stay valid until the next step of the same workspace.
 struct Step {
-  Status status = Status::invalid_input;  // how it ended
-  Vec3 motion = Vec3::Zero();             // of the tip; zero unless ok() [length]
-  std::span<const double> increment;      // u: the tip's, or the joints' (n); empty unless ok()
+  Status status = Status::invalid_input;   // how it ended
+  Vec3 motion = Vec3::Zero();              // of the tip; zero unless ok() [length]
+  std::span<const double> increment = {};  // u: the tip's, or the joints' (n); empty unless ok()
   /// All that were posed to the solver. A rule that searches an index by itself may leave out those
   /// that no motion in question comes near: see NeededPlanes.
-  std::span<const HalfSpace> planes;
+  std::span<const HalfSpace> planes = {};
   /// Which of them hold the motion back; empty unless ok(). From planes.size() on, extra rows.
-  std::span<const std::uint32_t> active;
+  std::span<const std::uint32_t> active = {};
   std::size_t triangles = 0;  // that it rests on: see Activation::triangles
+  /// From the tip, where it was as the step began, to the nearest triangle, on whichever side. Told
+  /// where it is known anyway, which is under the certified rule, of a tip no farther off than the
+  /// distance kept, or one that is led out from inside; and of every other tip if
+  /// StepOptions::distances says so. Empty where it is not known, and for input that is invalid.
+  /// The same on every index, bit for bit. [length]
+  std::optional<double> distance = std::nullopt;
 
   /// Whether there is a motion that may be carried out; it may be zero.
   bool ok() const noexcept { return is_ok(status); }

@@ -52,7 +52,7 @@ class MotionConstraint {
   /// The nearest motion that the rule allows. The result's views stay valid until the next step.
   Step step(const Motion& motion) noexcept;
 
-  /// The same, and what each stage took.
+  /// The same, and what each stage took; not so looking for a distance, see Distances::always.
   Step step(const Motion& motion, StageTimes& times) noexcept;
 
   /// The same for one of several tips that are stepped in turn, with one memory: each is watched by
@@ -76,10 +76,12 @@ class MotionConstraint {
   /// What the tip is kept out of.
   const Mesh& mesh() const noexcept { return *mesh_; }
 
-  /// How it behaves: radius and margin, among others.
+  /// How it behaves: radius, tool radius and margin, among others.
   const StepOptions& options() const noexcept { return options_; }
 
  private:
+  void tell_distance(const Vec3& tip, Step& step) noexcept;
+
   std::shared_ptr<const Mesh> mesh_;
   std::shared_ptr<const SpatialIndex> index_;
   std::unique_ptr<Activation> activation_;

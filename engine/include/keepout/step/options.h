@@ -12,18 +12,34 @@ enum class Query : std::uint8_t {
   sphere   // always the whole motion sphere
 };
 
+/// Of which tips a step tells how far the surface is: Step::distance.
+enum class Distances : std::uint8_t {
+  where_known,  // of those whose distance the rule comes by anyway: costs nothing
+  always        // of all; the nearest triangle is looked for after the step, where it is not known
+};
+
 /// What stays the same from cycle to cycle.
 struct StepOptions {
-  double radius = 0.0;   // of the motion sphere: how far the tip may go in a cycle [length], > 0
-  double margin = 0.0;   // distance to keep: tool radius and safety offset [length], >= 0
-  double damping = 0.0;  // weight of |u|^2 beside the task, for Jacobians without full column rank
+  double radius = 0.0;  // of the motion sphere: how far the tip may go in a cycle [length], > 0
+  double tool_radius = 0.0;  // of the ball around the tip that shall not touch [length], >= 0
+  double margin = 0.0;       // distance to keep beyond that [length], >= 0
+  /// Weight of |u|^2 beside the task, >= 0. With more than three joints, or such as move the tip
+  /// alike, no increment is the best one without it, and the step is ill_posed: take some 1e-6 of a
+  /// column's squared length.
+  double damping = 0.0;
   double recovery = 0.05;  // how far a tip that is too close is led away in a cycle [length], >= 0
   double deepest = 10.0;   // no tip is led out from deeper inside; it is told of instead [length]
   int refinements = 3;     // how often planes are turned towards a better motion, >= 0
   int nodes = 0;           // of a branch and bound for a better motion still; 0: none, >= 0
-  Query query = Query::motion;  // how far around the tip triangles are looked for
+  Query query = Query::motion;                   // how far around the tip triangles are looked for
+  Distances distances = Distances::where_known;  // see Step::distance
   bool searching = true;  // whether a rule may search the index by itself: the same, but faster
 };
+
+/// From the tip to the surface: tool radius and margin. [length]
+constexpr double distance_kept(const StepOptions& options) noexcept {
+  return options.tool_radius + options.margin;
+}
 
 /// How far the tip may go, all told: a step clipped to the radius may be longer by its rounding.
 constexpr double reach(const StepOptions& options) noexcept {

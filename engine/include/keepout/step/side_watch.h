@@ -50,13 +50,11 @@ Step step(SideWatch& sides, const Mesh& mesh, const SpatialIndex& index, A& acti
           const Motion& motion, const StepOptions& options, Workspace& work,
           O&& observer = {}) noexcept {
   // What is refused says nothing of where the tip is.
-  const bool is_refused = !is_ok(check(motion, options));
-  if (!is_refused) {
-    if (const auto out = sides.before(mesh, index, motion, options, work)) return *out;
-  }
-  const Step result =
-      step(mesh, index, activation, solver, motion, options, work, std::forward<O>(observer));
-  if (is_refused) return result;
+  const Status checked = check(motion, options);
+  if (!is_ok(checked)) return {.status = checked};
+  if (const auto out = sides.before(mesh, index, motion, options, work)) return *out;
+  const Step result = step_as_checked(mesh, index, activation, solver, motion, options, work,
+                                      std::forward<O>(observer));
   if (result.status == Status::touching) {
     if (const auto off = sides.off_surface(mesh, index, motion, options, work)) return *off;
   }

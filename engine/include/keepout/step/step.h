@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <span>
+#include <utility>
 
 #include "keepout/activation/activation.h"
 #include "keepout/index/refine.h"
@@ -25,7 +26,7 @@ Status check(const Motion& motion, const StepOptions& options) noexcept;
 /// tip's coordinates, and the solver's, some 1e-13 of the motion; both taken a thousand times.
 /// [length]
 inline double position_rounding(const Vec3& tip, const StepOptions& options) noexcept {
-  return 1e-12 * (tip.lpNorm<1>() + options.margin) + 1e-10 * options.radius;
+  return 1e-12 * (tip.lpNorm<1>() + distance_kept(options)) + 1e-10 * options.radius;
 }
 
 /// What the rule is to be asked about a motion, before triangles are looked for. `projections`: how
@@ -56,23 +57,13 @@ Opening open(const Mesh& mesh, const I& index, A& activation, Surroundings& arou
   return opening;
 }
 
-/// One control cycle: the motion nearest to the one desired which the rule allows.
-///
-///     ball -> candidates -> exact hits -> planes -> problem -> step
-///
-/// Works on any index, rule and solver; with final types nothing is dispatched. Allocates nothing,
-/// throws nothing. On any trouble the motion is zero and the status says why; no solver is taken at
-/// its word. `observer` is told as each stage ends.
-///
-/// Preconditions: `index` and `activation` are built on `mesh`; `activation` has room for the
-/// workspace's triangles, `solver` for its planes and extra rows.
+/// See step. Precondition: check(motion, options) is ok.
 template <Index I, ActivationRule A, QpSolver S, StageObserver O = Unobserved>
-Step step(const Mesh& mesh, const I& index, A& activation, S& solver, const Motion& motion,
-          const StepOptions& options, Workspace& work, O&& observer = {}) noexcept {
+Step step_as_checked(const Mesh& mesh, const I& index, A& activation, S& solver,
+                     const Motion& motion, const StepOptions& options, Workspace& work,
+                     O&& observer = {}) noexcept {
   Step result;
   work.planes.clear();
-  result.status = check(motion, options);
-  if (!is_ok(result.status)) return result;
   if ((motion.jacobian && motion.jacobian->joints() > work.variables()) ||
       (motion.rows && motion.rows->count() > work.extra_rows())) {
     result.status = Status::over_capacity;
@@ -100,6 +91,7 @@ Step step(const Mesh& mesh, const I& index, A& activation, S& solver, const Moti
     around.searched = opening.stance == Stance::over_capacity ? around.reach : around.searched;
     open_shorter();
   }
+  result.distance = opening.distance;
   // Too close: the way out is the aim, and has surroundings of its own.
   const bool recovering = opening.stance == Stance::too_close;
   if (recovering) {
@@ -128,6 +120,25 @@ Step step(const Mesh& mesh, const I& index, A& activation, S& solver, const Moti
   if (halvings > 0) result.status = Status::fallback;
   if (recovering) result.status = Status::recovering;
   return result;
+}
+
+/// One control cycle: the motion nearest to the one desired which the rule allows.
+///
+///     ball -> candidates -> exact hits -> planes -> problem -> step
+///
+/// Works on any index, rule and solver; with final types nothing is dispatched. Allocates nothing,
+/// throws nothing. On any trouble the motion is zero and the status says why; no solver is taken at
+/// its word. `observer` is told as each stage ends.
+///
+/// Preconditions: `index` and `activation` are built on `mesh`; `activation` has room for the
+/// workspace's triangles, `solver` for its planes and extra rows.
+template <Index I, ActivationRule A, QpSolver S, StageObserver O = Unobserved>
+Step step(const Mesh& mesh, const I& index, A& activation, S& solver, const Motion& motion,
+          const StepOptions& options, Workspace& work, O&& observer = {}) noexcept {
+  const Status checked = check(motion, options);
+  if (!is_ok(checked)) return {.status = checked};
+  return step_as_checked(mesh, index, activation, solver, motion, options, work,
+                         std::forward<O>(observer));
 }
 
 }  // namespace keepout

@@ -81,8 +81,9 @@ class Workspace {
 
   Eigen::Index variables_;
   Eigen::Index extra_rows_;
-  std::vector<double> rows_;    // (planes + extra rows, variables), row by row
-  std::vector<double> bounds_;  // (planes + extra rows)
+  std::vector<double> jacobian_;  // (3, variables), column by column, of one that is not so
+  std::vector<double> rows_;      // (planes + extra rows, variables), row by row
+  std::vector<double> bounds_;    // (planes + extra rows)
   Vec3 desired_;
   Answer answer_;
   Answer earlier_answer_;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -12,20 +13,24 @@ namespace keepout {
 
 /// Which parts to build a motion constraint from, by name, and how it shall behave.
 struct MotionConstraintSettings {
-  std::string index = "wide_bvh";  // see index_backends()
+  std::string index = "wide_bvh";  // see index_backends(); fcl_collide is not for real time
   /// The folder where built indices are kept; only wide_bvh is. Empty: none is kept.
   std::filesystem::path index_cache = {};
+  /// Told while building of what does no harm but should be known: that an index could not be kept.
+  /// Empty: nobody is told.
+  std::function<void(const std::string&)> warn = {};
   std::string activation = "certified";  // see activation_rules()
   std::string solver = "active_set";     // see solver_backends()
   double radius = 5.0;          // of the motion sphere: the farthest that the tip may go [length]
   double tool_radius = 0.0;     // of the ball around the tip that shall not touch the mesh [length]
   double margin = 0.2;          // distance to keep beyond that; certified needs one [length]
-  double damping = 0.0;         // weight of |u|^2 beside the task
+  double damping = 0.0;         // weight of |u|^2 beside the task: above 0 with more than 3 joints
   double recovery = 0.05;       // how far a tip that is too close is led away in a cycle [length]
   double deepest = 10.0;        // no tip is led out from deeper inside [length]
   int refinements = 3;          // how often a certified motion is improved upon
   int nodes = 0;                // of a branch and bound for a better motion still; 0: none
   Query query = Query::motion;  // how far around the tip triangles are looked for
+  Distances distances = Distances::where_known;  // of which tips Step::distance is told
   Inside inside = Inside::led_out;  // what becomes of a tip that starts inside; certified only
   Capacity capacity = {};           // the largest step there is room for
 };

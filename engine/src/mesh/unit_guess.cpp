@@ -1,12 +1,10 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "unit_guess.h"
+#include "keepout/mesh/unit_guess.h"
 
 #include <array>
 
-#include "number_text.h"
-
-namespace keepout::app {
+namespace keepout {
 namespace {
 
 // Of organs and bones. [mm]
@@ -31,15 +29,4 @@ std::vector<UnitGuess> other_units(double extent) {
   return guesses;
 }
 
-std::string unit_text(double extent) {
-  std::string text = "mm, which is assumed";
-  std::string_view joint = "; as plausible: ";
-  for (const UnitGuess& guess : other_units(extent)) {
-    text.append(joint).append(guess.unit).append(" (").append(trimmed(extent * guess.millimetres));
-    text += " mm)";
-    joint = ", ";
-  }
-  return text;
-}
-
-}  // namespace keepout::app
+}  // namespace keepout

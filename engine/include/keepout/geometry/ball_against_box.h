@@ -7,9 +7,10 @@
 
 namespace keepout {
 
-/// The radius within which boxes, tested in double, are not to be passed over: the ball's, and what
-/// the exact kernel and the test may round differently. Each loses some 1e-15 of the lengths
-/// involved, which are at most the ball's radius and its way to the far end of the mesh. [length]
+/// The radius within which boxes around parts of a mesh with these bounds, tested in double, are
+/// not to be passed over: the ball's, and what the exact kernel and the test may round differently.
+/// Each loses some 1e-15 of the lengths involved, which are at most the ball's radius and its way
+/// to the far end of the mesh. [length]
 inline double padded_radius(const Ball& ball, const Box& bounds) noexcept {
   constexpr double rounding = 1e-13;
   const Vec3 from_middle = ball.center - bounds.center();

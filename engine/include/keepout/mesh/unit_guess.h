@@ -2,11 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <string>
 #include <string_view>
 #include <vector>
 
-namespace keepout::app {
+namespace keepout {
 
 /// A unit that the numbers of a file may be in.
 struct UnitGuess {
@@ -18,7 +17,4 @@ struct UnitGuess {
 /// that organs have, 20 to 600 mm. A size that is usual in millimetres has none: from 30 on.
 std::vector<UnitGuess> other_units(double extent);
 
-/// The unit that is assumed, and the others that are plausible: for people.
-std::string unit_text(double extent);
-
-}  // namespace keepout::app
+}  // namespace keepout

@@ -1,0 +1,171 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "compare/comparison_verdict.h"
+
+#include <algorithm>
+#include <set>
+
+#include "number_text.h"
+#include "report/text.h"
+
+namespace keepout::app {
+namespace {
+
+std::size_t sum(const auto& rows, auto count) {
+  std::size_t result = 0;
+  for (const auto& row : rows) result += row.*count;
+  return result;
+}
+
+/// The names of those that have any, and how many.
+std::string guilty(const auto& rows, auto name, auto count) {
+  std::vector<std::string> result;
+  for (const auto& row : rows) {
+    if (row.*count == 0) continue;
+    if (std::find(result.begin(), result.end(), row.*name) == result.end()) {
+      result.push_back(row.*name);
+    }
+  }
+  return listed(result);
+}
+
+/// Beside the first solver, which all are held to.
+std::string why_fewer(const std::vector<SolverAgreement>& rows, const SolverAgreement& of) {
+  double least = 0.0, most = 0.0;
+  for (const SolverAgreement& row : rows) {
+    if (row.solver != of.solver) continue;
+    for (const SolverAgreement& reference : rows) {
+      if (reference.solver != rows.front().solver || reference.activation != row.activation ||
+          reference.median_us == 0.0) {
+        continue;
+      }
+      const double times = row.median_us / reference.median_us;
+      least = least == 0.0 ? times : std::min(least, times);
+      most = std::max(most, times);
+    }
+  }
+  return " " + of.solver + " got " + grouped(of.problems) + " of " + grouped(of.posed) +
+         " under each rule, evenly spread, as it takes " + ratio_text(least) +
+         (least == most ? "" : " to " + ratio_text(most)) + " times as long as " +
+         rows.front().solver + ".";
+}
+
+}  // namespace
+
+std::string index_verdict(const std::vector<IndexAgreement>& rows) {
+  const std::size_t poses = sum(rows, &IndexAgreement::poses);
+  const std::size_t wrong =
+      sum(rows, &IndexAgreement::missed) + sum(rows, &IndexAgreement::invented);
+  const std::size_t differ = sum(rows, &IndexAgreement::steps_that_differ);
+  std::string text = "Of " + grouped(poses) + " queries, held to brute force one by one, ";
+  if (wrong == 0) {
+    text += "no index missed a triangle or invented one";
+  } else {
+    const std::string missing = guilty(rows, &IndexAgreement::index, &IndexAgreement::missed);
+    const std::string inventing = guilty(rows, &IndexAgreement::index, &IndexAgreement::invented);
+    if (!missing.empty()) {
+      text += missing + " missed " + counted(sum(rows, &IndexAgreement::missed), "triangle");
+    }
+    if (!inventing.empty()) {
+      text += (missing.empty() ? "" : ", and ") + inventing + " invented " +
+              counted(sum(rows, &IndexAgreement::invented), "triangle");
+    }
+  }
+  std::set<std::string> indices;
+  for (const IndexAgreement& row : rows) indices.insert(row.index);
+  text += differ == 0 ? (indices.size() == 1
+                             ? "; " + *indices.begin() + " gives"
+                             : "; all " + std::to_string(indices.size()) + " indices give") +
+                            " brute force's steps, bit for bit."
+                      : "; " + grouped(differ) + (differ == 1 ? " step differs" : " steps differ") +
+                            " from brute force's in some bit.";
+  return text;
+}
+
+std::string index_agreement_by_construction(const std::vector<IndexAgreement>& rows) {
+  std::string text =
+      "By construction the exact kernel decides, whichever index proposes: a plain rule can only "
+      "come to another step by a triangle that the index missed or gave twice.";
+  std::vector<std::string> indices, rules;
+  for (const IndexAgreement& row : rows) {
+    if (!row.searched) continue;
+    if (std::ranges::find(indices, row.index) == indices.end()) indices.push_back(row.index);
+    if (std::ranges::find(rules, row.activation) == rules.end()) rules.push_back(row.activation);
+  }
+  if (indices.empty()) return text;
+  return text + " Not so where the rule searches the index by itself, which is what " +
+         listed(rules) + (rules.size() == 1 ? " does" : " do") + " on " + listed(indices) +
+         ": these steps were found in another way than brute force's.";
+}
+
+std::string solver_verdict(const std::vector<SolverAgreement>& rows) {
+  const std::string wrong = guilty(rows, &SolverAgreement::solver, &SolverAgreement::wrong);
+  const std::string quit = guilty(rows, &SolverAgreement::solver, &SolverAgreement::gave_up);
+  std::string shorter;
+  for (const SolverAgreement& row : rows) {
+    const bool is_first = &row == &*std::ranges::find(rows, row.solver, &SolverAgreement::solver);
+    if (is_first && row.problems < row.posed) shorter += why_fewer(rows, row);
+  }
+  std::string text =
+      shorter.empty() ? "Each solver got the same recorded problems, and every answer was checked; "
+                      : "All solvers got problems of one recorded set, slow ones a share of it, "
+                        "and every answer was checked; ";
+  text += wrong.empty()
+              ? "none was wrong"
+              : wrong + " gave " + counted(sum(rows, &SolverAgreement::wrong), "answer") +
+                    " that " + (sum(rows, &SolverAgreement::wrong) == 1 ? "is" : "are") + " wrong";
+  text += quit.empty() ? ", and none gave up."
+                       : ", and " + quit + " gave up " +
+                             how_often(sum(rows, &SolverAgreement::gave_up)) + ".";
+  return text + shorter;
+}
+
+std::string narrow_phase_verdict(const std::vector<NarrowPhaseAgreement>& rows) {
+  const auto backend = &NarrowPhaseAgreement::backend;
+  const std::string contrary = guilty(rows, backend, &NarrowPhaseAgreement::contradicted);
+  const std::string failing = guilty(rows, backend, &NarrowPhaseAgreement::failed);
+  std::string text = "Distance between a tool and a triangle, held to the exact kernel: ";
+  text += contrary.empty() ? "none called apart what overlaps, or the reverse"
+                           : contrary + " took apart for overlapping, or the reverse, " +
+                                 how_often(sum(rows, &NarrowPhaseAgreement::contradicted));
+  return text + (failing.empty() ? ", and all gave an answer."
+                                 : ", and " + failing + " gave no answer " +
+                                       how_often(sum(rows, &NarrowPhaseAgreement::failed)) + ".");
+}
+
+bool agree(const Comparison& comparison) {
+  return std::ranges::all_of(comparison.indices,
+                             [](const IndexAgreement& a) {
+                               return a.missed == 0 && a.invented == 0 && a.plane_angle == 0.0 &&
+                                      a.steps_that_differ == 0;
+                             }) &&
+         std::ranges::all_of(comparison.solvers,
+                             [](const SolverAgreement& a) { return a.wrong == 0; });
+}
+
+std::vector<std::string> verdict(const Comparison& comparison) {
+  std::vector<std::string> paragraphs;
+  const auto add = [&](const char* what, const auto& rows, auto in_words) {
+    if (!rows.empty()) paragraphs.push_back(what + in_words(rows));
+  };
+  add("Indices: ", comparison.indices, [](const std::vector<IndexAgreement>& rows) {
+    return index_verdict(rows) + " " + index_agreement_by_construction(rows);
+  });
+  add("Solvers: ", comparison.solvers, solver_verdict);
+  add("Narrow phases, which are not all ours: ", comparison.narrow_phases, narrow_phase_verdict);
+  if (!comparison.complete) {
+    const std::size_t rows =
+        comparison.indices.size() + comparison.solvers.size() + comparison.narrow_phases.size();
+    paragraphs.push_back("Interrupted: " + counted(rows, "row") + (rows == 1 ? " was" : " were") +
+                         " finished, and nothing is said of the others.");
+  }
+  if (!agree(comparison)) {
+    paragraphs.emplace_back("Parts that must not differ do: please report it.");
+  } else if (!comparison.indices.empty() || !comparison.solvers.empty()) {
+    paragraphs.emplace_back(comparison.complete ? "All parts agree that must."
+                                                : "So far all parts agree that must.");
+  }
+  return paragraphs;
+}
+
+}  // namespace keepout::app

@@ -1,0 +1,113 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "named_mesh.h"
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "keepout/error.h"
+#include "keepout/fixtures/real_mesh.h"
+#include "keepout/fixtures/shapes.h"
+#include "keepout/mesh/quick_check.h"
+#include "part_lists.h"
+#include "progress.h"
+#include "suggestion.h"
+
+namespace keepout::app {
+namespace {
+
+std::vector<std::string> real_names() { return {real_meshes().begin(), real_meshes().end()}; }
+
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// Anything there but a folder, which is no mesh and so hides none.
+bool is_file(const std::filesystem::path& path) {
+  std::error_code none;
+  const std::filesystem::file_status status = std::filesystem::status(path, none);
+  return std::filesystem::exists(status) && !std::filesystem::is_directory(status);
+}
+
+bool is_shape(const std::filesystem::path& name) {
+  return !is_file(name) && contains(names(shapes()), name.string());
+}
+
+/// The meshes in the folder where the user thought there was this one.
+std::vector<std::string> files_beside(const std::filesystem::path& path) {
+  constexpr std::array<std::string_view, 4> extensions{".stl", ".ply", ".obj", ".off"};
+  const std::filesystem::path folder = path.parent_path();
+  std::vector<std::string> files;
+  std::error_code error;
+  for (std::filesystem::directory_iterator entry(folder.empty() ? "." : folder, error), end;
+       !error && entry != end; entry.increment(error)) {
+    const std::string extension = entry->path().extension().string();
+    if (std::find(extensions.begin(), extensions.end(), extension) != extensions.end()) {
+      files.push_back((folder / entry->path().filename()).string());
+    }
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+[[noreturn]] void refuse(const std::filesystem::path& path) {
+  std::vector<std::string> fixtures = real_names();
+  for (std::string& shape : names(shapes())) fixtures.push_back(std::move(shape));
+  std::vector<std::string> known = files_beside(path);
+  known.insert(known.end(), fixtures.begin(), fixtures.end());
+  const std::string name = path.string();
+  const std::string stem = path.stem().string();
+  std::string hint = did_you_mean(name, known);
+  if (hint.empty() && contains(fixtures, stem)) hint = did_you_mean(stem, fixtures);
+  throw Error(name + ": there is no such file, and no fixture of that name" +
+              (hint.empty() ? "; fixtures are " + enumerated(fixtures) : hint));
+}
+
+LoadedMesh generate(const std::filesystem::path& name, const LoadOptions& options) {
+  if (options.space != AnatomicalSpace::unstated && options.space != options.untagged) {
+    throw Error(name.string() + ": is generated, and in no anatomical space: leave --space out");
+  }
+  LoadedMesh loaded{.mesh = std::make_shared<const Mesh>(make_shape(name.string())),
+                    .space = options.untagged};
+  if (options.check == MeshCheck::quick) loaded.warnings = quick_check(*loaded.mesh);
+  return loaded;
+}
+
+}  // namespace
+
+const std::string_view mesh_help =
+    "Mesh file in mm, STL, PLY, OBJ or OFF; or the name of a fixture, such as skull or cube: see "
+    "'keepout --help'";
+
+std::string mesh_names_help() {
+  return "MESH is a file, or, where there is no file of that name, a fixture:\n"
+         "  prepared   " +
+         enumerated(real_names()) + "\n" + "  generated  " + enumerated(names(shapes())) + "\n";
+}
+
+std::filesystem::path file_of_mesh(const std::filesystem::path& name) {
+  if (is_file(name) || is_shape(name)) return name;
+  if (contains(real_names(), name.string())) return fixture_path(name.string());
+  std::error_code none;
+  if (std::filesystem::exists(name, none))
+    return name;  // a folder, which is told of where it is read
+  refuse(name);
+}
+
+LoadedMesh read_named_mesh(const std::filesystem::path& name, const LoadOptions& options) {
+  return is_shape(name) ? generate(name, options) : load_mesh(file_of_mesh(name), options);
+}
+
+LoadedMesh load_named_mesh(const std::filesystem::path& name, const LoadOptions& options) {
+  LoadedMesh loaded = read_named_mesh(name, options);
+  for (const std::string& warning : loaded.warnings) {
+    warn_on_stderr(name.string() + ": " + warning);
+  }
+  return loaded;
+}
+
+}  // namespace keepout::app

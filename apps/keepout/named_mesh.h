@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+#include "keepout/adapters/load_mesh.h"
+
+namespace keepout::app {
+
+// What a user may name where a command takes a mesh: a file, or a fixture, which is one of the real
+// meshes that fixtures/prepare makes, or one of the generated shapes. A file of that name wins.
+
+/// What MESH is, for the help of a command; and which names there are.
+extern const std::string_view mesh_help;
+std::string mesh_names_help();
+
+/// The file behind the name; the name itself for a generated shape. Throws Error, with the names
+/// that were likely meant, when there is neither a file nor a fixture of that name, and when a real
+/// fixture is not prepared.
+std::filesystem::path file_of_mesh(const std::filesystem::path& name);
+
+/// Reads or generates it. Throws Error.
+LoadedMesh read_named_mesh(const std::filesystem::path& name, const LoadOptions& options = {});
+
+/// The same; warnings go to stderr, a line each that begins with the name.
+LoadedMesh load_named_mesh(const std::filesystem::path& name, const LoadOptions& options = {});
+
+}  // namespace keepout::app

@@ -1,0 +1,182 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The nearest triangle by branch and bound: the nearest boxes first, and none that is farther away
+// than a triangle that was found. Floats tell what is surely farther, as in a query with a ball
+// that reaches as far as the best so far (ball_screen.cpp has the bounds); the exact kernel decides
+// about the rest, ties included. So the answer is that of asking it about all triangles.
+#include <array>
+#include <limits>
+
+#include "keepout/index/brute_force.h"
+#include "keepout/index/wide_bvh.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "index/wide_bvh_nearest.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "leaf_test-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace keepout::HWY_NAMESPACE {
+
+/// The best so far, and who is no nearer for sure.
+struct Best {
+  TriangleId triangle;
+  BallScreen reach;  // of the ball that it touches
+};
+
+/// The squared distances of a node's boxes from the centre, rounded down.
+HWY_INLINE void measure_boxes(const NodeBlock& node, const BallScreen& ball, float* distance2) {
+  const Floats d;
+  for (std::size_t first = 0; first < NodeBlock::lanes; first += hn::Lanes(d)) {
+    Lanes near2 = hn::Zero(d);
+    for (int axis = 0; axis < 3; ++axis) {
+      const Lanes low = hn::Load(d, node.low[axis] + first);
+      const Lanes high = hn::Load(d, node.high[axis] + first);
+      const Lanes beyond = most(hn::Sub(low, hn::Set(d, ball.above[axis])),
+                                hn::Sub(hn::Set(d, ball.below[axis]), high), hn::Zero(d));
+      near2 = hn::Add(near2, hn::Mul(beyond, beyond));
+    }
+    hn::Store(near2, d, distance2 + first);
+  }
+}
+
+/// What of a leaf is not surely farther than the best: a bit for each triangle. `likely` is the one
+/// whose nearest point floats find nearest.
+HWY_INLINE std::uint32_t no_farther(const LeafBlock& leaf, const BallScreen& ball,
+                                    std::size_t& likely) {
+  const Floats d;
+  const Lanes band = hn::Set(d, BallScreen::band);
+  const Lanes outside2 = hn::Set(d, ball.outside2);
+  std::uint32_t left = 0;
+  HWY_ALIGN float distance2[LeafBlock::lanes];
+  for (std::size_t first = 0; first < LeafBlock::lanes; first += hn::Lanes(d)) {
+    const Corners3 t{relative_to_center(leaf.corner[0], first, ball),
+                     relative_to_center(leaf.corner[1], first, ball),
+                     relative_to_center(leaf.corner[2], first, ball)};
+    const Lanes farthest2 = most(dot(t.a, t.a), dot(t.b, t.b), dot(t.c, t.c));
+    const Lanes beyond2 = hn::Add(outside2, hn::Mul(band, hn::Add(farthest2, outside2)));
+    Mask out = surely_out(t, t.a + t.b + t.c, beyond2);
+    if (hn::AllTrue(d, out)) continue;
+    const Point nearest = nearest_point(t);
+    out = hn::Or(out, surely_out(t, nearest, beyond2));
+    hn::Store(dot(nearest, nearest), d, distance2 + first);
+    left |= bits_of(hn::Not(out)) << first;
+  }
+  float least2 = std::numeric_limits<float>::infinity();
+  for (std::uint32_t lanes = left; lanes != 0; lanes &= lanes - 1) {
+    const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
+    if (!(distance2[lane] < least2)) continue;
+    least2 = distance2[lane];
+    likely = lane;
+  }
+  return left;
+}
+
+/// Asks the exact kernel about a triangle. Its corners are at hand, in the order that the kernel
+/// puts them in, where the mesh's coordinates are floats.
+HWY_INLINE void ask(const LeafBlock& leaf, std::size_t lane, const WideBvh& tree, Best& best) {
+  if (!leaf.is_used(lane)) return;
+  const TriangleId t = leaf.triangle(lane);
+  const Ball& ball = best.reach.ball;
+  const auto corner = [&](std::size_t c) -> Vec3 {
+    return {leaf.corner[c][0][lane], leaf.corner[c][1][lane], leaf.corner[c][2][lane]};
+  };
+  const double distance =
+      tree.coordinate_error() == 0.0
+          ? closest_point_of_ordered({corner(0), corner(1), corner(2)}, ball.center).distance
+          : closest_point(tree.mesh().triangle(t), ball.center).distance;
+  if (distance > ball.radius) return;
+  if (distance == ball.radius) {
+    best.triangle = std::min(best.triangle, t);
+    return;
+  }
+  best = {t, BallScreen({ball.center, distance}, tree.mesh().bounds(), tree.coordinate_error())};
+}
+
+/// Looks at a leaf: first at its likely nearest, which leaves few others to ask about.
+HWY_INLINE void look(const LeafBlock& leaf, const WideBvh& tree, Best& best) {
+  std::size_t likely = 0;
+  std::uint32_t left = no_farther(leaf, best.reach, likely);
+  if (left == 0) return;
+  const double before = best.reach.ball.radius;
+  ask(leaf, likely, tree, best);
+  const std::uint32_t asked = std::uint32_t{1} << likely;
+  if (best.reach.ball.radius < before) left = no_farther(leaf, best.reach, likely);
+  for (left &= ~asked; left != 0; left &= left - 1) {
+    ask(leaf, static_cast<std::size_t>(std::countr_zero(left)), tree, best);
+  }
+}
+
+/// Has the memory brought nearer of what comes soon.
+HWY_INLINE void fetch(const WideBvh& tree, std::uint32_t what) {
+  const bool is_leaf = (what & NodeBlock::leaf) != 0;
+  const char* lines = is_leaf
+                          ? reinterpret_cast<const char*>(&tree.leaves()[what & ~NodeBlock::leaf])
+                          : reinterpret_cast<const char*>(&tree.nodes()[what]);
+  const std::size_t size = is_leaf ? sizeof(LeafBlock) : sizeof(NodeBlock);
+  for (std::size_t at = 0; at < size; at += 64) hwy::Prefetch(lines + at);
+}
+
+TriangleId nearest_of_wide_bvh(const WideBvh& tree, const BallScreen& around_all) {
+  struct Waiting {
+    float distance2;     // or less
+    std::uint32_t what;  // as NodeBlock::child
+  };
+  // The boxes of each level but the one that was opened, and those of the last.
+  std::array<Waiting, WideBvh::most_levels * NodeBlock::lanes> stack;
+  std::size_t waiting = 0;
+  Best best{no_triangle, around_all};
+  stack[waiting++] = {0.0f, 0};
+  while (waiting > 0) {
+    const Waiting next = stack[--waiting];
+    if (next.distance2 > best.reach.box_reach2) continue;
+    if ((next.what & NodeBlock::leaf) != 0) {
+      look(tree.leaves()[next.what & ~NodeBlock::leaf], tree, best);
+      continue;
+    }
+    const NodeBlock& node = tree.nodes()[next.what];
+    HWY_ALIGN float distance2[NodeBlock::lanes];
+    measure_boxes(node, best.reach, distance2);
+    // The nearest on top.
+    const std::size_t bottom = waiting;
+    for (std::size_t lane = 0; lane < NodeBlock::lanes && node.is_used(lane); ++lane) {
+      if (distance2[lane] > best.reach.box_reach2) continue;
+      std::size_t at = waiting++;
+      for (; at > bottom && stack[at - 1].distance2 < distance2[lane]; --at) {
+        stack[at] = stack[at - 1];
+      }
+      stack[at] = {distance2[lane], node.child[lane]};
+    }
+    constexpr std::size_t ahead = 3;
+    for (std::size_t i = waiting; i > bottom && i + ahead >= waiting + 1; --i) {
+      fetch(tree, stack[i - 1].what);
+    }
+  }
+  return best.triangle;
+}
+
+}  // namespace keepout::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+
+namespace keepout {
+
+HWY_EXPORT(nearest_of_wide_bvh);
+
+TriangleId WideBvh::nearest(const Vec3& point) const noexcept {
+  // No triangle is farther away than the far corner of the box around them.
+  const Box& bounds = mesh_->bounds();
+  const double farthest =
+      (point - bounds.low).cwiseAbs().cwiseMax((bounds.high - point).cwiseAbs()).norm();
+  const BallScreen around_all({point, farthest * (1.0 + 1e-12)}, bounds, coordinate_error_);
+  if (!around_all.fits) return BruteForce(mesh_).nearest(point);
+  return HWY_DYNAMIC_DISPATCH(nearest_of_wide_bvh)(*this, around_all);
+}
+
+}  // namespace keepout
+
+#endif  // HWY_ONCE

@@ -1,0 +1,157 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "keepout/mesh/quick_check.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <cstdio>
+#include <mutex>
+#include <string_view>
+#include <utility>
+
+#include "../parallel.h"
+#include "half_edges.h"
+#include "keepout/mesh/doctor.h"
+#include "keepout/mesh/unit_guess.h"
+
+namespace keepout {
+namespace {
+
+// Where all edges have two triangles, wound alike, each edge is run along once either way. So edges
+// are dealt out over cells, and each cell sums up a hash of its edges, with the sign of the
+// direction: but by chance the sum is 0 in a cell without a fault. Only the edges of the other
+// cells are then gathered and looked at. That reads the triangles twice, and no memory but the
+// cells'.
+
+/// The lower vertex, and in the lower half of the bits the higher one.
+using Edge = std::uint64_t;
+
+/// All bits for a side that runs from the lower vertex to the higher, none for the other way.
+using Upwards = std::uint64_t;
+
+/// Not linear: edges of a regular grid must not cancel out. (The finalizer of splitmix64.)
+constexpr std::uint64_t hash_of(Edge edge) noexcept {
+  edge = (edge ^ (edge >> 30)) * 0xbf58476d1ce4e5b9u;
+  edge = (edge ^ (edge >> 27)) * 0x94d049bb133111ebu;
+  return edge ^ (edge >> 31);
+}
+
+/// Cells for a mesh: about twenty triangles each, and no more than a core's own cache holds.
+std::size_t cell_count(std::size_t triangles) noexcept {
+  return std::bit_ceil(std::clamp<std::size_t>(triangles / 20, 64, 65536));
+}
+
+/// Calls visit(edge, upwards) for each side of the triangles from begin to end. Which way a side
+/// runs is as good as random, so no branch depends on it: they would take most of the time.
+template <class Visit>
+void for_each_side(const Mesh& mesh, std::size_t begin, std::size_t end, Visit&& visit) {
+  for (const Corners& c : mesh.triangles().subspan(begin, end - begin)) {
+    if (repeats_a_vertex(c)) continue;
+    for (int i = 0; i < 3; ++i) {
+      const std::uint64_t from = c[i];
+      const std::uint64_t to = c[(i + 1) % 3];
+      const Upwards upwards = std::uint64_t{0} - ((from - to) >> 63);
+      const std::uint64_t swap = (from ^ to) & upwards;
+      visit((to ^ swap) << 32 | (from ^ swap), upwards);
+    }
+  }
+}
+
+/// The sum of each cell.
+std::vector<std::uint64_t> sums_of_cells(const Mesh& mesh, std::size_t cells, unsigned threads) {
+  std::vector<std::uint64_t> sums(cells, 0);
+  std::mutex mutex;
+  const std::size_t share = std::max<std::size_t>(mesh.triangle_count() / threads + 1, share_size);
+  share_ranges(mesh.triangle_count(), threads, share, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::uint64_t> own(cells, 0);
+    for_each_side(mesh, begin, end, [&](Edge edge, Upwards upwards) {
+      const std::uint64_t hash = hash_of(edge);
+      own[hash & (cells - 1)] += (hash ^ upwards) - upwards;  // the negative, where it is all bits
+    });
+    const std::lock_guard lock(mutex);
+    for (std::size_t i = 0; i < cells; ++i) sums[i] += own[i];
+  });
+  return sums;
+}
+
+/// A side of a triangle: its edge, and whether it runs upwards.
+using Side = std::pair<Edge, Upwards>;
+
+/// The sides in the cells whose sum is not 0, in order.
+std::vector<Side> suspects(const Mesh& mesh, const std::vector<std::uint64_t>& sums,
+                           unsigned threads) {
+  std::vector<bool> is_suspect(sums.size());
+  for (std::size_t i = 0; i < sums.size(); ++i) is_suspect[i] = sums[i] != 0;
+  std::vector<Side> all;
+  std::mutex mutex;
+  const std::size_t share = std::max<std::size_t>(mesh.triangle_count() / threads + 1, share_size);
+  share_ranges(mesh.triangle_count(), threads, share, [&](std::size_t begin, std::size_t end) {
+    std::vector<Side> own;
+    for_each_side(mesh, begin, end, [&](Edge edge, Upwards upwards) {
+      if (is_suspect[hash_of(edge) & (sums.size() - 1)]) own.emplace_back(edge, upwards);
+    });
+    const std::lock_guard lock(mutex);
+    all.insert(all.end(), own.begin(), own.end());
+  });
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+/// A number as people write it, three digits: 0.24, 3600.
+std::string short_number(double value) {
+  std::array<char, 32> text;
+  std::snprintf(text.data(), text.size(), value < 1000.0 ? "%.3g" : "%.0f", value);
+  return text.data();
+}
+
+/// What its size says of the unit; empty for one that organs have.
+std::string doubt_of_unit(const Mesh& mesh) {
+  const double extent = mesh.bounds().size().maxCoeff();
+  if (extent >= MeshFindings::metres_below && extent <= MeshFindings::micrometres_above) return {};
+  std::string text = "is " + short_number(extent) + " mm large if its numbers are mm";
+  std::string_view joint = "; as plausible are ";
+  for (const UnitGuess& guess : other_units(extent)) {
+    text.append(joint).append(guess.unit).append(", of which it would be ");
+    text += short_number(extent * guess.millimetres) + " mm";
+    joint = ", or ";
+  }
+  return text + ": nothing is rescaled, so scale the mesh unless your lengths are in its unit";
+}
+
+}  // namespace
+
+EdgeFaults find_edge_faults(const Mesh& mesh, unsigned threads) {
+  threads = thread_count(threads);
+  EdgeFaults faults;
+  const auto sums = sums_of_cells(mesh, cell_count(mesh.triangle_count()), threads);
+  if (std::all_of(sums.begin(), sums.end(), [](std::uint64_t sum) { return sum == 0; })) {
+    return faults;
+  }
+  const std::vector<Side> sides = suspects(mesh, sums, threads);
+  for (auto side = sides.begin(); side != sides.end();) {
+    const auto next =
+        std::find_if(side, sides.end(), [&](const Side& s) { return s.first != side->first; });
+    if (next - side == 1) faults.boundary = true;
+    if (next - side == 2 && side[0] == side[1]) faults.inconsistent = true;
+    side = next;
+  }
+  return faults;
+}
+
+std::vector<std::string> quick_check(const Mesh& mesh, unsigned threads) {
+  std::vector<std::string> warnings;
+  if (std::string doubt = doubt_of_unit(mesh); !doubt.empty()) warnings.push_back(std::move(doubt));
+  const EdgeFaults faults = find_edge_faults(mesh, threads);
+  if (faults.boundary) {
+    warnings.emplace_back("is an open surface: where triangles are missing nothing is guarded");
+  }
+  if (faults.inconsistent) {
+    warnings.emplace_back(
+        "is wound inconsistently: some neighbours disagree about which of their sides is free");
+  }
+  return warnings;
+}
+
+}  // namespace keepout

@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "keepout/nearest_name.h"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace keepout {
+namespace {
+
+// A shorter piece is in too many names.
+constexpr std::size_t shortest_piece = 3;
+
+/// What is alike looks alike.
+std::string folded(std::string_view word) {
+  std::string text(word);
+  for (char& letter : text) {
+    if (letter >= 'A' && letter <= 'Z') letter = static_cast<char>(letter - 'A' + 'a');
+    if (letter == '_') letter = '-';
+  }
+  return text;
+}
+
+/// How many letters must be put in, left out, exchanged or swapped with their neighbour to turn one
+/// word into the other (optimal string alignment).
+std::size_t edit_distance(const std::string& a, const std::string& b) {
+  // Rows of the table: from the first i letters of `a` to the first j of `b`.
+  std::vector<std::size_t> before_last(b.size() + 1);
+  std::vector<std::size_t> last(b.size() + 1);
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) last[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t exchanged = last[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+      row[j] = std::min({last[j] + 1, row[j - 1] + 1, exchanged});
+      const bool swapped = i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1];
+      if (swapped) row[j] = std::min(row[j], before_last[j - 2] + 1);
+    }
+    before_last.swap(last);
+    last.swap(row);
+  }
+  return last.back();
+}
+
+}  // namespace
+
+std::optional<std::string_view> nearest_name(std::string_view mistyped,
+                                             std::span<const std::string_view> names) {
+  std::optional<std::string_view> nearest;
+  std::size_t fewest = 0;
+  const std::string typed = folded(mistyped);
+  for (const std::string_view name : names) {
+    const std::size_t edits = edit_distance(typed, folded(name));
+    if (edits > std::max(mistyped.size(), name.size()) / 3) continue;
+    if (nearest && edits >= fewest) continue;
+    nearest = name;
+    fewest = edits;
+  }
+  if (nearest || mistyped.size() < shortest_piece) return nearest;
+  const auto has_piece = [&](std::string_view name) {
+    return folded(name).find(typed) != std::string::npos;
+  };
+  const auto found = std::find_if(names.begin(), names.end(), has_piece);
+  return found == names.end() ? nearest : *found;
+}
+
+}  // namespace keepout

@@ -1,0 +1,67 @@
+# SPDX-FileCopyrightText: 2026 the keepout authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""An arm of seven joints that moves the tip: keepout gives the increments of the joints. With more
+than three of them there are many that move the tip alike; damping above 0 picks the smallest.
+
+python3 examples/python/joints.py MESH
+"""
+
+import sys
+
+import numpy as np
+
+import keepout
+
+
+def turn(axis, angle):
+    """The rotation about x (0) or y (1) by an angle [rad]."""
+    c, s = np.cos(angle), np.sin(angle)
+    return np.array([[1, 0, 0], [0, c, -s], [0, s, c]] if axis == 0 else [[c, 0, s], [0, 1, 0], [-s, 0, c]])
+
+
+def arm(q):
+    """Where the tip is, from the arm's base, and how it moves with each joint, (3, 7): joints that
+    turn about x and y in turn, 60 mm from one to the next."""
+    turned, at, joints, axes = np.eye(3), np.zeros(3), [], []
+    for i, angle in enumerate(q):
+        joints.append(at)
+        axes.append(turned[:, i % 2])
+        turned = turned @ turn(i % 2, angle)
+        at = at + turned @ [0, 0, -60.0]
+    return at, np.cross(axes, at - joints).T
+
+
+if len(sys.argv) != 2:
+    sys.exit(f"usage: python3 {sys.argv[0]} MESH")
+try:
+    mesh = keepout.load_mesh(sys.argv[1])
+except keepout.Error as error:
+    sys.exit(str(error))
+# Damping beside columns of 60 mm/rad and more.
+guard = keepout.MotionConstraint(
+    mesh, tool_radius=0.3, margin=0.2, damping=1e-2, distances="always"
+)
+
+# The arm stands so that its tip is 5 mm above the mesh; the hand wants to go straight through.
+low, high = mesh.bounds
+start = np.array([*(0.5 * (low + high))[:2], high[2] + 5.0])
+goal = np.array([start[0], start[1], low[2]])
+q = np.array([0.5, 0.3, -0.8, 0.4, 0.9, -0.3, 0.2])
+from_base, jacobian = arm(q)
+base = start - from_base
+tip, nearest, held = start, 5.0, 0
+for cycle in range(2000):
+    desired = 0.2 * (goal - tip) / np.linalg.norm(goal - tip)
+    step = guard.step(tip, desired, jacobian=jacobian)
+    if not step.ok:
+        print(f"cycle {cycle}: {step.reason}")
+    else:
+        q += step.increment
+    held += step.status is not keepout.Status.free
+    nearest = min(nearest, step.distance)
+    from_base, jacobian = arm(q)
+    tip = base + from_base
+print(
+    f"held back in {held} of 2000 cycles, nearest {nearest:.4f} mm, "
+    f"ends at {tip[0]:.6f} {tip[1]:.6f} {tip[2]:.6f}"
+)

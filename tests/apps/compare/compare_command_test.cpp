@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+// keepout compare as a user meets it.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "apps/command_process.h"
+#include "keepout/adapters/all_indices.h"
+#include "keepout/fixtures/shapes.h"
+#include "keepout/mesh/binary_stl.h"
+#include "keepout/version.h"
+
+namespace keepout::test {
+namespace {
+
+using nlohmann::json;
+
+class CompareCommand : public testing::Test {
+ protected:
+  void SetUp() override { write_binary_stl(folder.file("cube.stl"), make_cube(5.0)); }
+
+  json read(const std::string& name) const {
+    std::ifstream file(folder.file(name));
+    return json::parse(file);
+  }
+
+  CommandFolder folder;
+};
+
+TEST_F(CompareCommand, HoldsEveryIndexToBruteForceAndSaysWhatItCameTo) {
+  const ProcessOutcome outcome =
+      folder.run("compare cube.stl --poses 30 --problems 60 --pairs 20 --seed 3 --json c.json");
+  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  const json comparison = read("c.json");
+  std::set<std::string> names, searched;
+  for (const json& row : comparison["indices"]) {
+    names.insert(row["index"]);
+    if (row["searched_by_the_rule"]) searched.insert(row["index"]);
+    EXPECT_EQ(row["poses"], 30);
+    EXPECT_EQ(row["missed"], 0);
+    EXPECT_EQ(row["invented"], 0);
+    EXPECT_EQ(row["steps_that_differ"], 0);
+    EXPECT_LT(row["closest_point_error_mm"], 1e-12);
+  }
+  EXPECT_EQ(names.size(), all_index_backends().size() - 1);
+  EXPECT_EQ(searched, std::set<std::string>{"wide_bvh"}) << "that is the form that users run";
+  EXPECT_EQ(comparison["agree"], true);
+  for (const json& paragraph : comparison["verdict"]) {
+    EXPECT_NE(outcome.output.find(paragraph.get<std::string>()), std::string::npos) << paragraph;
+  }
+  EXPECT_NE(outcome.output.find("indices give brute force's steps, bit for bit"), std::string::npos)
+      << outcome.output;
+}
+
+TEST_F(CompareCommand, WritesWhereItRanAndHowToDoItAgain) {
+  const std::string arguments =
+      "compare cube.stl --poses 6 --problems 10 --pairs 10 --seed 3 --json c.json";
+  ASSERT_EQ(folder.run(arguments).status, 0);
+  const json comparison = read("c.json");
+  EXPECT_EQ(comparison["command"], "keepout " + arguments);
+  EXPECT_EQ(comparison["seed"], 3);
+  EXPECT_EQ(comparison["mesh"], "cube.stl");
+  EXPECT_EQ(comparison["complete"], true);
+  EXPECT_EQ(comparison["machine"]["keepout"], KEEPOUT_VERSION);
+  EXPECT_FALSE(comparison["machine"]["processor"].get<std::string>().empty());
+  EXPECT_EQ(comparison["date"].get<std::string>().size(),
+            std::string("2026-01-01T00:00:00Z").size());
+}
+
+TEST_F(CompareCommand, KeepsWhatIsFinishedWhenItIsInterrupted) {
+  const ProcessOutcome outcome =
+      folder.run("compare cube.stl --poses 6 --problems 200000 --pairs 10 --json c.json",
+                 "timeout --foreground --preserve-status --signal=INT 6");
+  EXPECT_EQ(outcome.status, 130) << outcome.output;
+  EXPECT_NE(outcome.output.find("Interrupted: "), std::string::npos) << outcome.output;
+  EXPECT_NE(outcome.output.find("So far all parts agree that must."), std::string::npos);
+  const json comparison = read("c.json");
+  EXPECT_EQ(comparison["complete"], false);
+  EXPECT_FALSE(comparison["indices"].empty()) << "they were finished";
+  EXPECT_TRUE(comparison["narrow_phases"].empty());
+}
+
+}  // namespace
+}  // namespace keepout::test

@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "compare/index_agreement.h"
+
+#include <gtest/gtest.h>
+
+#include <csignal>
+
+#include "compare/compare.h"
+#include "keepout/fixtures/shapes.h"
+
+namespace keepout::app {
+namespace {
+
+IndexComparison on_a_cube() {
+  return {.mesh_name = "cube",
+          .mesh = std::make_shared<const Mesh>(make_cube(5.0)),
+          .indices = {"wide_bvh", "pd_tree"},
+          .activations = {"all_faces", "paper", "certified"},
+          .poses = 30};
+}
+
+TEST(IndexAgreement, StepsTheFormsThatAreShipped) {
+  std::size_t told = 0;
+  const auto rows = compare_indices(on_a_cube(), [&] { ++told; });
+  ASSERT_EQ(rows.size(), 6u);
+  EXPECT_EQ(told, 3u * 3 * 30) << "of brute force and of each index, under each rule";
+  for (const IndexAgreement& row : rows) {
+    SCOPED_TRACE(row.index + " " + row.activation);
+    EXPECT_EQ(row.searched, row.index == "wide_bvh" && row.activation != "all_faces");
+    EXPECT_EQ(row.poses, 30u);
+    EXPECT_EQ(row.missed + row.invented + row.steps_that_differ, 0u);
+    EXPECT_LT(row.closest_point_error, 1e-12);
+  }
+}
+
+TEST(IndexAgreement, KeepsTheRowsThatWereFinishedWhenItIsStopped) {
+  std::size_t told = 0;
+  const auto rows = compare_indices(
+      on_a_cube(), [&] { ++told; }, [&] { return told >= 30 * 3 + 30 + 7; });
+  ASSERT_EQ(rows.size(), 1u) << "brute force, and the first index under the first rule";
+  EXPECT_EQ(rows.front().index, "wide_bvh");
+  EXPECT_EQ(rows.front().poses, 30u);
+}
+
+TEST(Compare, EndsAtOnceWhenTheSignalHasCome) {
+  const StopSignal stop;
+  ASSERT_EQ(std::raise(SIGINT), 0);
+  const IndexComparison on = on_a_cube();
+  const Comparison comparison = compare_parts(on.mesh_name, on.mesh, {}, &stop);
+  EXPECT_FALSE(comparison.complete);
+  EXPECT_TRUE(comparison.indices.empty() && comparison.solvers.empty() &&
+              comparison.narrow_phases.empty());
+}
+
+}  // namespace
+}  // namespace keepout::app

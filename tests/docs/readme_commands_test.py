@@ -1,0 +1,78 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 the keepout authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Runs every command that README.md shows: readme_commands_test.py ROOT FOLDER KEEPOUT
+
+In an empty FOLDER, one after the other, as a reader would right after ./run: what is missing is
+prepared. Only the extents differ, so that it takes a minute. The commands are the lines of indented
+blocks that begin with ./run or echo, and code in the text that begins with "./run ".
+"""
+
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+
+BLOCK = re.compile(r"^    ((?:\./run|echo)\b.*)$", re.M)
+INLINE = re.compile(r"(?<!`)`(\./run [^`]+)`(?!`)")
+
+# Of each command: as little as shows that it works.
+SMALL = {
+    "simulate": {"--strokes": "1", "--cycles": "100"},
+    "verify": {"--steps": "2000"},
+    "bench": {"--triangles": "20000", "--queries": "5", "--seconds": "0.01"},
+    "bench --speed": {"--quick": None, "--steps": "1000"},
+    "compare": {"--poses": "6", "--problems": "30", "--pairs": "10"},
+    "plan": {"--problems": "1", "--seconds": "2"},
+}
+
+
+def commands_of(text):
+    """In the order of the page, each once."""
+    found = [(match.start(), match[1]) for rule in (BLOCK, INLINE) for match in rule.finditer(text)]
+    words = [re.sub(r"\s+", " ", re.sub(r"\s#\s.*", "", command)).strip() for _, command in sorted(found)]
+    return [command for command in dict.fromkeys(words) if command not in ("./run", "./run ARGS...")]
+
+
+def made_small(command):
+    name = next((n for n in sorted(SMALL, key=len, reverse=True)
+                 if re.search(rf"\./run {n}\b", command)), None)
+    for option, value in SMALL.get(name, {}).items():
+        wanted = option if value is None else f"{option} {value}"
+        command, replaced = re.subn(rf"{option}(?: [^-\s]\S*)?(?=\s|$)", wanted, command)
+        if not replaced:
+            command += " " + wanted
+    return command
+
+
+def main():
+    root, folder, keepout = (pathlib.Path(argument).resolve() for argument in sys.argv[1:4])
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    # As ./run ends, once all is built.
+    run = folder / "run"
+    run.write_text(f'#!/bin/bash\nexec -a ./run "{keepout}" "$@"\n')
+    run.chmod(0o755)
+    environment = dict(os.environ, KEEPOUT_PREPARE=str(root / "fixtures/prepare"))
+    commands = commands_of((root / "README.md").read_text(encoding="utf-8"))
+    missing = [n for n in ("inspect", "replay", "simulate", "serve", "verify", "bench", "compare", "plan")
+               if not any(c.startswith(f"./run {n}") for c in commands)]
+    if missing:
+        sys.exit(f"README.md does not show {', '.join(missing)}: has the page changed its form?")
+    faults = 0
+    for command in commands:
+        small = made_small(command)
+        done = subprocess.run(["bash", "-euc", small], cwd=folder, env=environment,
+                              stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                              stderr=subprocess.STDOUT, text=True, timeout=600)
+        print(f"{'ok' if done.returncode == 0 else 'FAILED'}: {small}", flush=True)
+        if done.returncode != 0:
+            faults += 1
+            print(f"README.md says: {command}\nended with {done.returncode}:\n{done.stdout[-3000:]}")
+    sys.exit(1 if faults else 0)
+
+
+if __name__ == "__main__":
+    main()

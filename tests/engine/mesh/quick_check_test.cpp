@@ -1,0 +1,98 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "keepout/mesh/quick_check.h"
+
+#include <gtest/gtest.h>
+
+#include <utility>
+
+#include "keepout/fixtures/random.h"
+#include "keepout/fixtures/shapes.h"
+#include "keepout/mesh/doctor.h"
+
+namespace keepout {
+namespace {
+
+void expect_what_the_doctor_finds(const Mesh& mesh, std::string_view what) {
+  const MeshFindings findings = examine(mesh);
+  for (const unsigned threads : {1u, 3u}) {
+    const EdgeFaults faults = find_edge_faults(mesh, threads);
+    EXPECT_EQ(faults.boundary, findings.boundary_edges > 0) << what;
+    EXPECT_EQ(faults.inconsistent, findings.inconsistent_edges > 0) << what;
+  }
+}
+
+TEST(QuickCheck, FindsWhatTheDoctorFindsOnEveryShape) {
+  for (const Shape& shape : shapes()) {
+    expect_what_the_doctor_finds(Mesh(shape.make()), shape.name);
+  }
+}
+
+TEST(QuickCheck, FindsOneMissingTriangleAndOneTurnedOneAmongThousands) {
+  Random random(20261122);
+  for (const Shape& shape : shapes()) {
+    Surface missing = shape.make();
+    Surface turned = missing;
+    Surface both = missing;
+    const std::size_t some = random.below(missing.triangles.size());
+    const std::size_t other = random.below(missing.triangles.size() - 1);
+    std::swap(turned.triangles[some][0], turned.triangles[some][1]);
+    std::swap(both.triangles[some][0], both.triangles[some][1]);
+    for (Surface* surface : {&missing, &both}) {
+      surface->triangles[other] = surface->triangles.back();
+      surface->triangles.pop_back();
+    }
+    expect_what_the_doctor_finds(Mesh(std::move(missing)), shape.name);
+    expect_what_the_doctor_finds(Mesh(std::move(turned)), shape.name);
+    expect_what_the_doctor_finds(Mesh(std::move(both)), shape.name);
+  }
+}
+
+TEST(QuickCheck, OfASoundMeshThereIsNothingToSay) {
+  EXPECT_TRUE(quick_check(Mesh(make_cube(10.0))).empty());
+  EXPECT_TRUE(quick_check(Mesh(make_shape("far_cube"))).empty());
+}
+
+/// The cube, so many times as large as its 100 mm.
+Mesh cube_times(double factor) {
+  Surface cube = make_cube(25.0);
+  for (Vec3& vertex : cube.vertices) vertex *= factor;
+  return Mesh(std::move(cube));
+}
+
+TEST(QuickCheck, ASizeThatNoAnatomyHasIsSaidToBeInAnotherUnit) {
+  const auto metres = quick_check(cube_times(0.001));
+  ASSERT_EQ(metres.size(), 1u);
+  EXPECT_NE(metres[0].find("is 0.1 mm large if its numbers are mm; as plausible are m, of which it "
+                           "would be 100 mm"),
+            std::string::npos)
+      << metres[0];
+  const auto micrometres = quick_check(cube_times(1000.0));
+  ASSERT_EQ(micrometres.size(), 1u);
+  EXPECT_NE(micrometres[0].find("is 100000 mm large"), std::string::npos) << micrometres[0];
+  EXPECT_NE(micrometres[0].find("um, of which it would be 100 mm"), std::string::npos)
+      << micrometres[0];
+  EXPECT_TRUE(quick_check(cube_times(0.25)).empty());  // an aneurysm
+}
+
+TEST(QuickCheck, AnOpenAndAnInconsistentSurfaceAreSaidToBeSo) {
+  Surface surface = make_cube(10.0);
+  surface.triangles.pop_back();
+  const auto open = quick_check(Mesh(surface));
+  ASSERT_EQ(open.size(), 1u);
+  EXPECT_NE(open[0].find("open surface"), std::string::npos) << open[0];
+  std::swap(surface.triangles[3][0], surface.triangles[3][1]);
+  const auto both = quick_check(Mesh(surface));
+  ASSERT_EQ(both.size(), 2u);
+  EXPECT_NE(both[1].find("wound inconsistently"), std::string::npos) << both[1];
+}
+
+TEST(QuickCheck, TrianglesThatNameAVertexTwiceHaveNoEdges) {
+  Surface surface = make_cube(10.0);
+  surface.triangles.push_back({0, 1, 1});
+  surface.triangles.push_back({2, 2, 2});
+  EXPECT_TRUE(quick_check(Mesh(std::move(surface))).empty());
+}
+
+}  // namespace
+}  // namespace keepout

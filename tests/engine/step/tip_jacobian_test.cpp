@@ -1,0 +1,154 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "keepout/step/tip_jacobian.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "keepout/activation/certified.h"
+#include "keepout/fixtures/shapes.h"
+#include "keepout/index/wide_bvh.h"
+#include "keepout/solvers/active_set.h"
+#include "keepout/step/motion_constraint.h"
+
+namespace keepout {
+namespace {
+
+using Packed = Eigen::Matrix<double, 3, 7>;
+
+MotionConstraint guard_with(double damping) {
+  const auto mesh = std::make_shared<const Mesh>(make_shape("cube"));
+  return {mesh,
+          std::make_shared<WideBvh>(mesh),
+          std::make_unique<CertifiedRule>(mesh),
+          std::make_unique<ActiveSet>(),
+          {.radius = 5.0, .margin = 0.5, .damping = damping}};
+}
+
+/// Of an arm of seven joints; no two of its numbers are alike.
+Packed seven_joints() {
+  Packed jacobian;
+  for (Eigen::Index i = 0; i < jacobian.size(); ++i)
+    jacobian(i) = std::sin(1.0 + 2.0 * static_cast<double>(i));
+  return jacobian;
+}
+
+class TipJacobianTypes : public ::testing::Test {
+ protected:
+  static Motion pressing() { return {.tip = {3, 4, 51}, .desired = {0.5, -0.2, -1.0}}; }
+
+  /// Whatever the type, the step is that of the same numbers column by column.
+  template <class Jacobian>
+  void expect_same(Jacobian&& jacobian) {
+    const Motion motion{.tip = pressing().tip, .desired = pressing().desired, .jacobian = jacobian};
+    ASSERT_EQ(motion.jacobian->joints(), jacobian.cols());
+    EXPECT_EQ(motion.jacobian->matrix(), jacobian);
+    const TipJacobian::Matrix packed = jacobian;
+    Motion expected = pressing();
+    expected.jacobian.emplace(packed.data(), packed.cols());
+    const Step its = guard_.step(expected);
+    ASSERT_EQ(its.status, Status::limited) << its.reason();
+    const std::vector<double> increment(its.increment.begin(), its.increment.end());
+    const Step step = guard_.step(motion);
+    EXPECT_EQ(step.status, Status::limited);
+    EXPECT_EQ(step.motion, its.motion);
+    EXPECT_TRUE(std::equal(increment.begin(), increment.end(), step.increment.begin(),
+                           step.increment.end()));
+    EXPECT_GE((motion.tip + step.motion).z(), 50.5 - 1e-9);
+  }
+
+  MotionConstraint guard_ = guard_with(1e-6);
+};
+
+TEST_F(TipJacobianTypes, AreThoseThatEigenHasForAMatrix) {
+  const Packed jacobian = seven_joints();
+  expect_same(jacobian);
+  Packed not_constant = jacobian;
+  expect_same(not_constant);
+  const Eigen::Matrix3d three = jacobian.leftCols<3>();
+  expect_same(three);
+  const Eigen::MatrixXd dynamic = jacobian;
+  expect_same(dynamic);
+  const Eigen::Matrix<double, 3, Eigen::Dynamic> three_rows = jacobian;
+  expect_same(three_rows);
+  const Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, 8> bounded = jacobian;
+  expect_same(bounded);
+  const Eigen::Matrix<double, 3, 7, Eigen::RowMajor> row_by_row = jacobian;
+  expect_same(row_by_row);
+  const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> rows = jacobian;
+  expect_same(rows);
+}
+
+TEST_F(TipJacobianTypes, AreAlsoPartsTransposesAndMapsOfOne) {
+  Eigen::Matrix<double, 6, 7> of_a_frame;
+  of_a_frame << seven_joints(), 2.0 * seven_joints();
+  expect_same(of_a_frame.topRows<3>());
+  expect_same(of_a_frame.bottomRows(3));
+  expect_same(of_a_frame.topRows<3>().leftCols(4));
+  const Eigen::MatrixXd dynamic = of_a_frame;
+  expect_same(dynamic.topRows<3>());
+  expect_same(dynamic.block(3, 1, 3, 5));
+  const Eigen::Matrix<double, 6, 7, Eigen::RowMajor> row_by_row = of_a_frame;
+  expect_same(row_by_row.topRows<3>());
+  const Eigen::Matrix<double, 7, 3> on_its_side = seven_joints().transpose();
+  expect_same(on_its_side.transpose());
+  expect_same(Eigen::Map<const Packed>(of_a_frame.data()));
+  using EverySecond = Eigen::InnerStride<2>;
+  expect_same(Eigen::Map<const Packed, Eigen::Unaligned, EverySecond>(of_a_frame.data()));
+  const Eigen::Ref<const Eigen::MatrixXd> reference = dynamic.topRows(3);
+  expect_same(reference);
+}
+
+TEST_F(TipJacobianTypes, ASingleJointIsAColumn) {
+  const Vec3 along(0.2, 0.1, -0.9);
+  Motion motion = pressing();
+  motion.jacobian = along;
+  const Step step = guard_.step(motion);
+  ASSERT_EQ(step.increment.size(), 1u) << step.reason();
+  EXPECT_LT((step.motion - along * step.increment[0]).norm(), 1e-12);
+}
+
+TEST_F(TipJacobianTypes, OfOtherThanThreeRowsAreRefused) {
+  for (const Eigen::Index rows : {0, 2, 4, 6}) {
+    const Eigen::MatrixXd jacobian = Eigen::MatrixXd::Ones(rows, 7);
+    Motion motion = pressing();
+    motion.jacobian = jacobian;
+    const Step step = guard_.step(motion);
+    EXPECT_EQ(step.status, Status::invalid_input);
+    EXPECT_EQ(step.motion, Vec3::Zero());
+    EXPECT_NE(step.reason().find("3 rows"), std::string_view::npos) << step.reason();
+  }
+}
+
+TEST_F(TipJacobianTypes, ANumberThatIsNoneIsFoundWhereverItIs) {
+  Eigen::Matrix<double, 6, 7> of_a_frame = Eigen::Matrix<double, 6, 7>::Zero();
+  of_a_frame.topRows<3>() = seven_joints();
+  of_a_frame.row(3).setConstant(std::nan(""));
+  Motion motion = pressing();
+  motion.jacobian = of_a_frame.topRows<3>();
+  EXPECT_EQ(guard_.step(motion).status, Status::limited) << "what is beside it does not matter";
+  for (Eigen::Index i = 0; i < 21; ++i) {
+    Eigen::Matrix<double, 3, 7, Eigen::RowMajor> jacobian = seven_joints();
+    jacobian(i) = std::nan("");
+    motion.jacobian = jacobian;
+    EXPECT_EQ(guard_.step(motion).status, Status::invalid_input);
+  }
+}
+
+TEST(TipJacobian, OfMoreThanThreeJointsTellsThatItNeedsDamping) {
+  const Packed jacobian = seven_joints();
+  const Motion motion{.tip = {3, 4, 60}, .desired = {1, 0, 0}, .jacobian = jacobian};
+  MotionConstraint undamped = guard_with(0.0);
+  const Step step = undamped.step(motion);
+  EXPECT_EQ(step.status, Status::ill_posed);
+  EXPECT_NE(step.reason().find("more than three joints"), std::string_view::npos);
+  EXPECT_NE(step.reason().find("set damping above 0"), std::string_view::npos);
+  MotionConstraint damped = guard_with(1e-6);
+  EXPECT_TRUE(damped.step(motion).ok());
+}
+
+}  // namespace
+}  // namespace keepout

@@ -1,0 +1,45 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 the keepout authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""`cmake --install` takes nothing that ./run has not built: products_test.py BUILD
+
+Every library and program that a plain `cmake --install BUILD` copies must be made by the target
+`products`, which is all that ./run builds.
+"""
+
+import pathlib
+import re
+import subprocess
+import sys
+
+BLOCK = re.compile(r"^if\(CMAKE_INSTALL_COMPONENT STREQUAL [^\n]* OR NOT CMAKE_INSTALL_COMPONENT\)$"
+                   r"(.*?)^endif\(\)$", re.M | re.S)
+BUILT = re.compile(r"TYPE (?:STATIC_LIBRARY|SHARED_LIBRARY|MODULE|EXECUTABLE) (?:OPTIONAL )?"
+                   r"FILES((?:\s+\"[^\"]+\")+)")
+
+
+def installed(build):
+    for script in build.rglob("cmake_install.cmake"):
+        for block in BLOCK.findall(script.read_text(encoding="utf-8")):
+            for files in BUILT.findall(block):
+                yield from (pathlib.Path(f) for f in re.findall(r'"([^"]+)"', files))
+
+
+def main():
+    build = pathlib.Path(sys.argv[1]).resolve()
+    # The one tool lists what the target itself is made of, the other what that is made of.
+    listed = "".join(subprocess.run(["ninja", "-C", build, "-t", *tool, "products"],
+                                    capture_output=True, text=True, check=True).stdout
+                     for tool in (["query"], ["inputs"]))
+    made = {build / line.strip() for line in listed.splitlines()}
+    taken = set(installed(build))
+    if len(taken) < 5:
+        sys.exit(f"only {len(taken)} files are installed: has the form of the scripts changed?")
+    missing = sorted(str(path.relative_to(build)) for path in taken - made)
+    if missing:
+        sys.exit("installed, but not made by ./run: " + ", ".join(missing))
+    print(f"{len(taken)} libraries and programs are installed, and ./run makes them all")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,32 @@
+#!/usr/bin/env bash
+# What ./run and ./test say before they build: no colours in pipes, and a clear word to a second user.
+#   set_up_test.sh SOURCE WORK
+# SPDX-FileCopyrightText: 2026 the keepout authors
+# SPDX-License-Identifier: BSD-3-Clause
+set -euo pipefail
+source=$1 work=$2
+fault() { printf '%s\n' "$*" >&2; exit 1; }
+
+rm -rf "$work"
+mkdir -p "$work/cmake" "$work/build/release"
+cp "$source/run" "$source/test" "$work"
+cp "$source/cmake/set_up.sh" "$work/cmake"
+
+said=$(. "$source/cmake/set_up.sh"; say building 2>&1)
+[ "$said" = "==> building" ] || fault "in a pipe it says: $(printf %q "$said")"
+
+# Nobody, when the test is run by root, who may write everywhere.
+chmod -R a+rX,go-w "$work"
+if [ "$(id -u)" -eq 0 ]; then
+  as_other=(setpriv --reuid=65534 --regid=65534 --clear-groups)
+  "${as_other[@]}" test -r "$work/run" || { echo "not to be seen by others: not tested"; exit 0; }
+else
+  as_other=()
+  chmod a-w "$work/build/release"
+fi
+for program in run test; do
+  told=$("${as_other[@]}" bash "$work/$program" 2>&1) && fault "$program goes on in what is not its user's"
+  [[ $told == *"may not write to $work"*"belongs to $(id -un)"*"chown -R"* ]] ||
+    fault "$program says: $told"
+done
+chmod -R u+w "$work"
