@@ -19,6 +19,7 @@
 #include "compare/comparison_files.h"
 #include "keepout/activation/registry.h"
 #include "keepout/error.h"
+#include "keepout/simd_target.h"
 #include "keepout/version.h"
 #include "machine.h"
 #include "named_mesh.h"
@@ -137,6 +138,7 @@ std::vector<std::pair<std::string, std::string>> settings_of(const SimulateOptio
           {"strokes", std::to_string(options.hand.strokes)},
           {"cycles per stroke", std::to_string(options.hand.cycles)},
           {"processor", processor()},
+          {"SIMD target", std::string(simd_target())},
           {"compiler", KEEPOUT_COMPILER},
           {"build", KEEPOUT_BUILD_TYPE},
           {"keepout", KEEPOUT_VERSION}};

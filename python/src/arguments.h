@@ -65,6 +65,9 @@ class Points {
   py::ssize_t count_;
 };
 
+/// Tells the user, as a UserWarning. Throws what Python makes of it where warnings are errors.
+void warn(const std::string& text);
+
 /// Three numbers. Fast for an array, a list or a tuple of floats.
 Vec3 point(py::handle argument, std::string_view name);
 

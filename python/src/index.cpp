@@ -24,8 +24,12 @@ namespace {
 std::shared_ptr<const SpatialIndex> build(const std::string& name,
                                           const std::shared_ptr<const Mesh>& mesh,
                                           const std::filesystem::path& cache) {
+  const auto tell = [](const std::string& text) {
+    const py::gil_scoped_acquire acquire;
+    warn(text);
+  };
   const py::gil_scoped_release release;
-  if (name == "wide_bvh" && !cache.empty()) return load_or_build(mesh, cache);
+  if (name == "wide_bvh" && !cache.empty()) return load_or_build(mesh, cache, tell);
   return make_index(name, mesh);
 }
 

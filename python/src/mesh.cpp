@@ -84,8 +84,7 @@ MeshHandle load(const std::filesystem::path& path, const std::optional<std::stri
   MeshHandle mesh(loaded());
   // Nobody looks at warnings who does not know of any.
   for (const std::string& warning : mesh.warnings()) {
-    const std::string text = path.filename().string() + ": " + warning;
-    if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) != 0) throw py::error_already_set();
+    warn(path.filename().string() + ": " + warning);
   }
   return mesh;
 }

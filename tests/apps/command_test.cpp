@@ -17,6 +17,7 @@
 #include "apps/command_process.h"
 #include "keepout/fixtures/shapes.h"
 #include "keepout/mesh/binary_stl.h"
+#include "keepout/simd_target.h"
 
 namespace keepout {
 namespace {
@@ -398,6 +399,7 @@ TEST_F(Command, TheReportTellsTheDateAndTheCommandThatMakesItAgain) {
   EXPECT_TRUE(
       std::regex_match(setting("date"), std::regex("20\\d\\d-\\d\\d-\\d\\dT\\d\\d:\\d\\d:\\d\\dZ")))
       << setting("date");
+  EXPECT_EQ(setting("SIMD target"), simd_target());
   const std::string command = setting("command");
   ASSERT_TRUE(command.starts_with("keepout simulate ")) << command;
   EXPECT_NE(command.find("--seed 12 "), std::string::npos) << command;

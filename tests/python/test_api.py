@@ -186,6 +186,13 @@ def test_an_index_is_kept_on_the_disk_and_shared(mesh, tmp_path):
     )
 
 
+def test_an_index_that_cannot_be_kept_is_told_of(mesh, tmp_path):
+    in_the_way = tmp_path / "cache"
+    in_the_way.write_text("no folder")
+    with pytest.warns(UserWarning, match="not kept for the next time"):
+        keepout.Index(mesh, cache=in_the_way)
+
+
 def test_welding_and_inspection():
     vertices, triangles = sphere()
     soup = vertices[triangles].reshape(-1, 3)

@@ -10,6 +10,7 @@
 #include <ostream>
 #include <utility>
 
+#include "keepout/simd_target.h"
 #include "keepout/version.h"
 #include "machine.h"
 #include "number_text.h"
@@ -118,6 +119,7 @@ void write_planning_json(std::ostream& out, const PlanOptions& options,
                          const std::vector<PlanningRun>& runs) {
   Json root{{"version", KEEPOUT_VERSION},
             {"machine", processor()},
+            {"simd", simd_target()},
             {"compiler", KEEPOUT_COMPILER},
             {"build", KEEPOUT_BUILD_TYPE},
             {"seed", options.seed},

@@ -17,6 +17,7 @@
 #include "arenas.h"
 #include "campaign.h"
 #include "keepout/error.h"
+#include "keepout/simd_target.h"
 #include "keepout/version.h"
 #include "result.h"
 
@@ -86,7 +87,9 @@ CampaignResult run(const VerifyOptions& options, std::ostream& out) {
   const bool is_whole = result.findings.total().trajectories ==
                         trajectory_count_of(shard, trajectory_count(options.steps));
   result.shards = {{shard.index, seconds,
-                    processor() + ", " + KEEPOUT_COMPILER + ", " + KEEPOUT_BUILD_TYPE, is_whole}};
+                    processor() + ", " + std::string(simd_target()) + ", " + KEEPOUT_COMPILER +
+                        ", " + KEEPOUT_BUILD_TYPE,
+                    is_whole}};
   return result;
 }
 

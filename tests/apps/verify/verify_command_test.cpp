@@ -12,6 +12,7 @@
 #include "apps/command_process.h"
 #include "keepout/fixtures/shapes.h"
 #include "keepout/mesh/binary_stl.h"
+#include "keepout/simd_target.h"
 
 namespace keepout::app {
 namespace {
@@ -51,6 +52,8 @@ TEST_F(Verify, ShardsAddUpToTheWhole) {
   const Outcome whole = run(both + "--json whole.json");
   ASSERT_EQ(whole.status, 0) << whole.output;
   EXPECT_NE(whole.output.find("no breach in 5,250 steps"), std::string::npos) << whole.output;
+  const std::string machine = read("whole.json")["shards"].dump();
+  EXPECT_NE(machine.find(", " + std::string(simd_target()) + ", "), std::string::npos) << machine;
   for (const char* shard : {"1", "2", "3"}) {
     const std::string options = std::string("--shard ") + shard + "/3 --json " + shard + ".json";
     ASSERT_EQ(run(both + options).status, 0);
