@@ -3,6 +3,8 @@
 // keepout bench --speed as a user meets it, on small meshes.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -44,6 +46,14 @@ class SpeedCommand : public testing::Test {
     return text.str();
   }
 
+  /// The table of docs/performance.md, of one run.
+  std::string table_of(const std::string& json_file) const {
+    const std::string script =
+        "python3 '" KEEPOUT_SPEED_TABLE "' " + folder.file(json_file).string();
+    EXPECT_EQ(std::system((script + " > " + folder.file("table.md").string()).c_str()), 0);
+    return text_of("table.md");
+  }
+
   void expect_refused(const std::string& arguments, const std::string& why) const {
     const ProcessOutcome outcome = run(arguments);
     EXPECT_NE(outcome.status, 0) << arguments;
@@ -69,6 +79,11 @@ TEST_F(SpeedCommand, MeasuresEveryRowAndSaysWhatFallsShort) {
   ASSERT_EQ(outcome.status, 0) << "falling short is no failure: " << outcome.output;
   const json record = read("s.json");
   EXPECT_EQ(record["mesh"], "bunny, 4,000 triangles");
+  const std::string table = table_of("s.json");
+  EXPECT_EQ(static_cast<std::size_t>(std::ranges::count(table, '\n')), 2 + record["rows"].size())
+      << table;
+  EXPECT_NE(table.find("| " + record["machine"]["simd"].get<std::string>() + " |"),
+            std::string::npos);
 
   std::map<std::string, std::set<std::string>> demands;  // of each kind of work
   for (const json& row : record["rows"]) {
