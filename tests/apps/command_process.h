@@ -2,12 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <signal.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <array>
 #include <cstdio>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "temporary_folder.h"
 
@@ -33,6 +36,39 @@ class CommandFolder : public TemporaryFolder {
     std::array<char, 4096> part;
     while (std::fgets(part.data(), part.size(), pipe) != nullptr) outcome.output += part.data();
     const int status = ::pclose(pipe);
+    outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    return outcome;
+  }
+
+  /// Runs a program with its arguments until its output holds the words, interrupts it then as by
+  /// Ctrl-C, and gives the rest.
+  ProcessOutcome interrupted(std::vector<std::string> arguments, const std::string& words) const {
+    std::array<int, 2> ends;
+    if (::pipe(ends.data()) != 0) return {-1, "no pipe"};
+    const pid_t child = ::fork();
+    if (child == 0) {
+      ::dup2(ends[1], STDOUT_FILENO);
+      ::dup2(ends[1], STDERR_FILENO);
+      if (::chdir(path().c_str()) != 0) ::_exit(127);
+      std::vector<char*> pointers;
+      for (std::string& argument : arguments) pointers.push_back(argument.data());
+      pointers.push_back(nullptr);
+      ::execvp(pointers[0], pointers.data());
+      ::_exit(127);
+    }
+    ::close(ends[1]);
+    ProcessOutcome outcome{-1, {}};
+    std::array<char, 4096> part;
+    bool told = false;
+    for (ssize_t count; (count = ::read(ends[0], part.data(), part.size())) > 0;) {
+      outcome.output.append(part.data(), static_cast<std::size_t>(count));
+      if (told || outcome.output.find(words) == std::string::npos) continue;
+      told = true;
+      ::kill(child, SIGINT);
+    }
+    ::close(ends[0]);
+    int status = 0;
+    ::waitpid(child, &status, 0);
     outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
     return outcome;
   }

@@ -148,48 +148,14 @@ TEST_F(BenchCommand, RanksNoRowWhoseMotionsReachNoTriangle) {
             std::string::npos);
 }
 
-/// Runs until its output holds the words, is then interrupted as by Ctrl-C, and gives the rest.
-ProcessOutcome interrupted(const CommandFolder& folder, std::vector<std::string> arguments,
-                           const std::string& words) {
-  std::array<int, 2> ends;
-  if (::pipe(ends.data()) != 0) return {-1, "no pipe"};
-  const pid_t child = ::fork();
-  if (child == 0) {
-    ::dup2(ends[1], STDOUT_FILENO);
-    ::dup2(ends[1], STDERR_FILENO);
-    if (::chdir(folder.path().c_str()) != 0) ::_exit(127);
-    arguments.insert(arguments.begin(), KEEPOUT_COMMAND);
-    std::vector<char*> pointers;
-    for (std::string& argument : arguments) pointers.push_back(argument.data());
-    pointers.push_back(nullptr);
-    ::execv(pointers[0], pointers.data());
-    ::_exit(127);
-  }
-  ::close(ends[1]);
-  ProcessOutcome outcome{-1, {}};
-  std::array<char, 4096> part;
-  bool told = false;
-  for (ssize_t count; (count = ::read(ends[0], part.data(), part.size())) > 0;) {
-    outcome.output.append(part.data(), static_cast<std::size_t>(count));
-    if (told || outcome.output.find(words) == std::string::npos) continue;
-    told = true;
-    ::kill(child, SIGINT);
-  }
-  ::close(ends[0]);
-  int status = 0;
-  ::waitpid(child, &status, 0);
-  outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  return outcome;
-}
-
 TEST_F(BenchCommand, KeepsTheRowsThatAreFinishedWhenItIsInterrupted) {
   // Of so many motions that no row is done before the signal for the first has arrived.
   const ProcessOutcome outcome =
-      interrupted(folder,
-                  {"bench", "--mesh", "cube.stl", "--index", "wide_bvh,pd_tree", "--activation",
-                   "paper", "--radius", "5,1", "--queries", "200000", "--seconds", "5", "--json",
-                   "b.json", "--csv", "b.csv", "--out", "b.html"},
-                  "\n5      wide_bvh");
+      folder.interrupted({KEEPOUT_COMMAND,    "bench",        "--mesh",    "cube.stl", "--index",
+                          "wide_bvh,pd_tree", "--activation", "paper",     "--radius", "5,1",
+                          "--queries",        "200000",       "--seconds", "5",        "--json",
+                          "b.json",           "--csv",        "b.csv",     "--out",    "b.html"},
+                         "\n5      wide_bvh");
   EXPECT_EQ(outcome.status, 130) << outcome.output;
   EXPECT_NE(outcome.output.find("were finished, and are kept in b.html, b.json and b.csv"),
             std::string::npos)
@@ -212,10 +178,9 @@ TEST_F(BenchCommand, KeepsTheRowsThatAreFinishedWhenItIsInterrupted) {
 
 TEST_F(BenchCommand, WritesNothingWhenItIsInterruptedBeforeAnyRow) {
   const ProcessOutcome outcome =
-      interrupted(folder,
-                  {"bench", "--mesh", "cube.stl", "--queries", "200000", "--seconds", "5", "--json",
-                   "b.json", "--out", "b.html"},
-                  "SIMD target");
+      folder.interrupted({KEEPOUT_COMMAND, "bench", "--mesh", "cube.stl", "--queries", "200000",
+                          "--seconds", "5", "--json", "b.json", "--out", "b.html"},
+                         "SIMD target");
   EXPECT_EQ(outcome.status, 130) << outcome.output;
   EXPECT_NE(outcome.output.find("nothing was written"), std::string::npos) << outcome.output;
   EXPECT_FALSE(std::filesystem::exists(folder.file("b.json")));

@@ -72,6 +72,20 @@ std::string demand_of(const json& row) {
   return text.str();
 }
 
+TEST_F(SpeedCommand, KeepsWhatItHasMeasuredWhenItIsInterrupted) {
+  const ProcessOutcome outcome = folder.interrupted(
+      {"env", "KEEPOUT_CACHE=" + folder.path().string(), KEEPOUT_COMMAND, "bench", "--speed",
+       "--quick", "--triangles", "4000", "--json", "s.json", "--out", "s.html"},
+      "sphere query");
+  EXPECT_EQ(outcome.status, 130) << outcome.output;
+  EXPECT_NE(outcome.output.find("what had been measured until then is kept"), std::string::npos)
+      << outcome.output;
+  const json record = read("s.json");
+  EXPECT_EQ(record["complete"], false);
+  EXPECT_EQ(record["rows"].size(), 4u) << "those of the family that was at hand";
+  EXPECT_NE(text_of("s.html").find("interrupted, so only a part of the table"), std::string::npos);
+}
+
 TEST_F(SpeedCommand, MeasuresEveryRowAndSaysWhatFallsShort) {
   const ProcessOutcome outcome =
       run("bench --speed --quick --triangles 4000 --steps 3000 --largest 80000 --json s.json "
