@@ -41,7 +41,9 @@ constexpr int exit_usage = 2;
 constexpr const char* exit_statuses =
     "Exit status: 0 if all went well; 1 if something failed, or what was to be checked does not "
     "hold;\n"
-    "2 if the command line is wrong; 130 if it was interrupted, and what was finished is kept.\n";
+    "2 if the command line is wrong; 130 if it was interrupted: bench, compare, plan and verify "
+    "then "
+    "keep\nwhat was finished.\n";
 
 /// The argument that every command shares.
 void add_mesh(CLI::App& command, std::filesystem::path& mesh) {

@@ -46,7 +46,8 @@ std::vector<std::string> files_beside(const std::filesystem::path& path) {
   for (std::filesystem::directory_iterator entry(folder.empty() ? "." : folder, error), end;
        !error && entry != end; entry.increment(error)) {
     const std::string extension = entry->path().extension().string();
-    if (std::find(extensions.begin(), extensions.end(), extension) != extensions.end()) {
+    const bool is_mesh = std::ranges::find(extensions, extension) != extensions.end();
+    if (is_mesh && is_file(entry->path())) {
       files.push_back((folder / entry->path().filename()).string());
     }
   }

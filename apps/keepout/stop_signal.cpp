@@ -23,7 +23,6 @@ constexpr std::array stopping{SIGHUP, SIGINT, SIGTERM};
 // Signals come to the process, on whatever thread: those of an index's library among them.
 std::atomic<int> event_file{-1};
 std::atomic<bool> noted{false};
-struct sigaction earlier_pipe_action;
 std::array<struct sigaction, stopping.size()> earlier_actions;
 
 void note(int signal) {
@@ -55,15 +54,12 @@ StopSignal::StopSignal() {
       ::sigaction(stopping[i], &earlier_actions[i], nullptr);
     }
   }
-  action.sa_handler = SIG_IGN;
-  ::sigaction(SIGPIPE, &action, &earlier_pipe_action);
 }
 
 StopSignal::~StopSignal() {
   for (std::size_t i = 0; i < stopping.size(); ++i) {
     ::sigaction(stopping[i], &earlier_actions[i], nullptr);
   }
-  ::sigaction(SIGPIPE, &earlier_pipe_action, nullptr);
   ::close(event_file.exchange(-1));
 }
 

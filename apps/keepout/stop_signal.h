@@ -10,8 +10,7 @@ inline constexpr int exit_interrupted = 130;
 
 /// Takes SIGHUP, SIGINT and SIGTERM for a wish to end, which poll() can wait for and long work can
 /// ask for, so that it keeps what it has finished; the same signal once more ends the process at
-/// once. SIGPIPE is taken for nothing, so that a client who has gone is an error of write() alone.
-/// One at a time.
+/// once. One at a time.
 class StopSignal {
  public:
   /// Throws Error when the system has no more files.

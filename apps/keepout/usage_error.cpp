@@ -35,8 +35,12 @@ std::string unknown_command(const CLI::App& app, const std::string& word) {
          (hint.empty() ? "; there are " + enumerated(commands) : hint);
 }
 
-std::string unknown_option(const CLI::App& command, const std::string& word) {
+std::string unknown_option(const CLI::App& app, const CLI::App& command, const std::string& word) {
   const std::string name = word.substr(0, word.find('='));
+  if (app.get_option_no_throw(name) != nullptr) {
+    return name + " goes before the command: '" + app.get_name() + " " + name + " ... " +
+           command.get_name() + "'";
+  }
   return "there is no option " + name + did_you_mean(name, option_names(command));
 }
 
@@ -47,7 +51,7 @@ std::string in_words(const CLI::App& app, const CLI::App& command, const CLI::Pa
   // A mistyped option is the likeliest reason of whatever else seems to be missing.
   const std::vector<std::string> extra = app.remaining(true);
   const auto option = std::find_if(extra.begin(), extra.end(), is_option);
-  if (option != extra.end()) return unknown_option(command, *option);
+  if (option != extra.end()) return unknown_option(app, command, *option);
   if (&command == &app && !extra.empty()) return unknown_command(app, extra.front());
   if (&command == &app && kind == "RequiredError") {
     return "a command is missing; there are " + enumerated(command_names(app));
@@ -90,8 +94,11 @@ std::string in_words(const CLI::App& app, const CLI::App& command, const CLI::Pa
 std::string usage_error(const CLI::App& app, const CLI::ParseError& error) {
   const std::vector<CLI::App*> chosen = app.get_subcommands();
   const CLI::App& command = chosen.empty() ? app : *chosen.front();
-  return in_words(app, command, error) + "\nSee '" + app.get_name() +
-         (chosen.empty() ? "" : " " + command.get_name()) + " --help'.";
+  const std::string words = in_words(app, command, error);
+  const bool is_of_all =
+      app.get_option_no_throw(words.substr(0, words.find_first_of(": "))) != nullptr;
+  return words + "\nSee '" + app.get_name() +
+         (chosen.empty() || is_of_all ? "" : " " + command.get_name()) + " --help'.";
 }
 
 }  // namespace keepout::app

@@ -3,6 +3,7 @@
 #include "serve/serve_command.h"
 
 #include <fcntl.h>
+#include <signal.h>
 #include <unistd.h>
 
 #include <ostream>
@@ -39,14 +40,17 @@ int serve(const ServeOptions& options, std::ostream& log) {
   settings.space = loaded.space;
   Service service(loaded.mesh, settings);
   const StopSignal stop;
-  log << "keepout: serving " << options.service.mesh.string() << " ("
-      << counted(loaded.mesh->triangle_count(), "triangle") << ") on ";
+  ::signal(SIGPIPE, SIG_IGN);  // a client who has gone is an error of write() alone
+  const auto tell_where = [&](const std::string& where) {
+    log << "keepout: serving " << options.service.mesh.string() << " ("
+        << counted(loaded.mesh->triangle_count(), "triangle") << ") on " << where << std::endl;
+  };
   if (!options.socket) {
-    log << "stdin and stdout" << std::endl;
+    tell_where("stdin and stdout");
     return serve_stdio(service, stop, log);
   }
   UnixSocket socket(*options.socket);
-  log << options.socket->string() << std::endl;
+  tell_where(options.socket->string());
   return serve_socket(service, stop, socket, options.most_clients);
 }
 

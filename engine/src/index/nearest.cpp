@@ -8,10 +8,6 @@
 namespace keepout {
 namespace {
 
-double distance_to(const Box& box, const Vec3& point) noexcept {
-  return (point - point.cwiseMax(box.low).cwiseMin(box.high)).norm();
-}
-
 /// Of the candidates within the ball, the one nearest to its centre.
 std::optional<Hit> nearest_of(const Mesh& mesh, const Ball& ball,
                               std::span<const TriangleId> candidates) noexcept {

@@ -167,13 +167,65 @@ namespace keepout {
 
 HWY_EXPORT(nearest_of_wide_bvh);
 
+namespace {
+
+/// The same for a point so far off that floats cannot tell one box from the next: in double, a box
+/// and a triangle at a time.
+TriangleId nearest_from_afar(const WideBvh& tree, const Vec3& point) noexcept {
+  struct Waiting {
+    double distance;  // or less
+    std::uint32_t what;
+  };
+  std::array<Waiting, WideBvh::most_levels * NodeBlock::lanes> stack;
+  std::size_t waiting = 0;
+  TriangleId best = no_triangle;
+  double least = std::numeric_limits<double>::infinity();
+  const auto ask = [&](TriangleId t) {
+    const double distance = closest_point(tree.mesh().triangle(t), point).distance;
+    if (distance > least || (distance == least && best < t)) return;
+    best = t;
+    least = distance;
+  };
+  stack[waiting++] = {0.0, 0};
+  while (waiting > 0) {
+    const Waiting next = stack[--waiting];
+    if (next.distance > least) continue;
+    if ((next.what & NodeBlock::leaf) != 0) {
+      const LeafBlock& leaf = tree.leaves()[next.what & ~NodeBlock::leaf];
+      for (std::size_t lane = 0; lane < LeafBlock::lanes; ++lane) {
+        if (leaf.is_used(lane)) ask(leaf.triangle(lane));
+      }
+      continue;
+    }
+    const NodeBlock& node = tree.nodes()[next.what];
+    const std::size_t bottom = waiting;
+    for (std::size_t lane = 0; lane < NodeBlock::lanes && node.is_used(lane); ++lane) {
+      const Vec3 low(node.low[0][lane], node.low[1][lane], node.low[2][lane]);
+      const Vec3 high(node.high[0][lane], node.high[1][lane], node.high[2][lane]);
+      // Less by far more than what the kernel and this lose to rounding.
+      const double distance =
+          distance_to({low, high}, point) * (1.0 - 1e-12) - 2.0 * tree.coordinate_error();
+      if (distance > least) continue;
+      std::size_t at = waiting++;
+      for (; at > bottom && stack[at - 1].distance < distance; --at) stack[at] = stack[at - 1];
+      stack[at] = {distance, node.child[lane]};
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
 TriangleId WideBvh::nearest(const Vec3& point) const noexcept {
   // No triangle is farther away than the far corner of the box around them.
   const Box& bounds = mesh_->bounds();
   const double farthest =
       (point - bounds.low).cwiseAbs().cwiseMax((bounds.high - point).cwiseAbs()).norm();
   const BallScreen around_all({point, farthest * (1.0 + 1e-12)}, bounds, coordinate_error_);
-  if (!around_all.fits) return BruteForce(mesh_).nearest(point);
+  constexpr double afar = 32.0;  // times the mesh: from there on it is the faster one
+  if (!around_all.fits || farthest > afar * bounds.size().norm()) {
+    return nearest_from_afar(*this, point);
+  }
   return HWY_DYNAMIC_DISPATCH(nearest_of_wide_bvh)(*this, around_all);
 }
 

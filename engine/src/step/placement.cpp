@@ -96,6 +96,19 @@ std::optional<Nearest> look_around(const Mesh& mesh, const SpatialIndex& index, 
 
 std::optional<Placement> place(const Mesh& mesh, const SpatialIndex& index, const Vec3& tip,
                                TriangleBuffer& candidates) noexcept {
+  // Beyond the box around the mesh all is one side. From far off, where rounding makes all
+  // triangles alike, it is asked about not so far off.
+  const Vec3 room = Vec3::Constant(4.0 * mesh.bounds().size().norm());
+  const Vec3 nearer = tip.cwiseMax(mesh.bounds().low - room).cwiseMin(mesh.bounds().high + room);
+  if (nearer != tip) {
+    auto placement = place(mesh, index, nearer, candidates);
+    if (!placement || placement->side == Placement::Side::free) return placement;
+    const std::optional<Hit> hit = find_nearest(mesh, index, tip, 0.0, candidates);
+    if (!hit) return std::nullopt;
+    placement->distance = hit->closest.distance;
+    placement->way_out = hit->closest.offset / hit->closest.distance;
+    return placement;
+  }
   const double size = (mesh.bounds().high - mesh.bounds().low).norm() + tip.lpNorm<1>();
   const double rounding = 1e-15 * size;
   const auto nearest = look_around(mesh, index, tip, rounding, candidates);

@@ -61,8 +61,10 @@ std::string_view reason(Status status) noexcept {
       return "the motion is longer than the radius of the motion sphere: ask for less in a cycle, "
              "or declare a larger radius; are motion, radius and mesh in one unit, as mm?";
     case Status::over_capacity:
-      return "more triangles, planes or joints than room was made for: lower the radius or raise "
-             "the capacity; or is the mesh in metres, so that a radius in mm holds all of it?";
+      return "more triangles, planes or joints than room was made for: lower the radius, or raise "
+             "the capacity (of joints: Capacity::variables, max_joints in Python); or is the mesh "
+             "in "
+             "metres, so that a radius in mm holds all of it?";
     case Status::unsolved:
       return "the solver gave up within its budget of work, or its answer did not satisfy the "
              "planes";

@@ -62,6 +62,22 @@ TEST(NearestTriangle, IsTheSameOnEveryProcessor) {
   use_simd_target(simd_targets().front());
 }
 
+TEST(NearestTriangle, IsFoundHoweverFarOffThePointIs) {
+  for (const char* shape : {"cube", "cortex", "crown"}) {
+    const auto mesh = std::make_shared<const Mesh>(in_odd_numbers(make_shape(shape)));
+    const WideBvh tree(mesh);
+    const BruteForce brute(mesh);
+    Random random(4);
+    for (double times = 1.0; times < 1e13; times *= 3.0) {
+      const Vec3 way = times * mesh->bounds().size().norm() * random.direction();
+      const Vec3 point = mesh->bounds().center() + way;
+      ASSERT_EQ(tree.nearest(point), brute.nearest(point)) << shape << ", " << times;
+      const Vec3 along(point.x(), 0.0, 0.0);  // of many triangles as far off
+      ASSERT_EQ(tree.nearest(along), brute.nearest(along)) << shape << ", " << times;
+    }
+  }
+}
+
 TEST(NearestTriangle, IsFoundWhereFloatsOverflow) {
   for (const double scale : {1e-25, 1e17, 1e25}) {
     Surface surface = make_shape("cube");

@@ -248,6 +248,26 @@ TEST(Placement, OnTheSurfaceTheNormalLeadsOut) {
   }
 }
 
+TEST(Placement, FarOffIsTheSideThatIsOutsideWhicheverThatIs) {
+  Surface turned = make_sphere(2.0);
+  for (auto& corners : turned.triangles) std::swap(corners[0], corners[1]);
+  Placing around(make_sphere(2.0));
+  Placing within(std::move(turned));
+  Random random(7);
+  for (double times = 2.0; times < 1e8; times *= 3.0) {
+    const Vec3 tip = times * around.mesh().bounds().size().norm() * random.direction();
+    const std::optional<Placement> outside = around(tip);
+    ASSERT_TRUE(outside.has_value()) << times;
+    EXPECT_EQ(outside->side, Side::free) << times;
+    EXPECT_LE(outside->distance, around.distance(tip) * (1.0 + 1e-12)) << times;
+    const std::optional<Placement> beyond = within(tip);
+    ASSERT_TRUE(beyond.has_value()) << times;
+    EXPECT_EQ(beyond->side, Side::forbidden) << times;
+    EXPECT_NEAR(beyond->distance, within.distance(tip), 1e-12 * within.distance(tip)) << times;
+    EXPECT_LT(beyond->way_out.dot(tip.normalized()), -0.8) << "to the surface";
+  }
+}
+
 TEST(Placement, MoreTrianglesThanThereIsRoomForIsNoPlacement) {
   const auto mesh = std::make_shared<const Mesh>(make_cube(50));
   const PdTree tree(mesh);

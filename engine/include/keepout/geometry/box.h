@@ -17,4 +17,9 @@ struct Box {
   Vec3 size() const noexcept { return high - low; }
 };
 
+/// From a point to a box, 0 within it. [length]
+inline double distance_to(const Box& box, const Vec3& point) noexcept {
+  return (point - point.cwiseMax(box.low).cwiseMin(box.high)).norm();
+}
+
 }  // namespace keepout

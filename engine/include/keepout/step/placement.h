@@ -17,10 +17,12 @@ struct Placement {
     free,      // the one that normals point to
     forbidden  // the other one, and the surface itself
   };
-  Side side;        // on which the tip is
-  double distance;  // from the surface; on it, to within rounding, 0 and forbidden [length]
-  Vec3 way_out;     // unit vector: to the surface from the forbidden side, off it from the free one
-  Vec3 normal;      // unit vector: of the surface at its nearest point
+  Side side;  // on which the tip is
+  /// From the surface; on it, to within rounding, 0 and forbidden. Of a free tip that is farther
+  /// off than four times the mesh is large, less than that. [length]
+  double distance;
+  Vec3 way_out;  // unit vector: to the surface from the forbidden side, off it from the free one
+  Vec3 normal;   // unit vector: of the surface at its nearest point
 };
 
 /// Places a tip by the winding of a watertight mesh that does not cut through itself. It looks from
