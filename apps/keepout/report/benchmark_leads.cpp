@@ -157,9 +157,9 @@ std::string published_lead(const std::vector<Rows>& lines) {
          grouped(published_rates.front().triangles) + " and " +
          trimmed(published_rates.back().khz) + "\u00a0kHz at " +
          grouped(published_rates.back().triangles) +
-         " triangles on an Intel i7-8700: another machine, and motions and a sphere that are not "
-         "known" +
-         (one_size(lines) ? "." : ": compare the slopes, not the heights.");
+         " triangles on an Intel i7-8700, another machine. They state neither the motions nor the "
+         "motion sphere of that run; their 5\u00a0mm are those of the skull that they cut" +
+         (one_size(lines) ? "." : ". Compare the slopes, not the heights.");
 }
 
 std::string solve_lead(const Rows& rows) {

@@ -140,6 +140,7 @@ class Figures {
     // Limits that are stated, and what Li et al. published.
     of_unit_["%"] = {"1", "99"};
     of_unit_["kHz"] = {"1", "7.73", "0.18"};
+    of_unit_["mm"] = {"5"};
     of_unit_["triangles"] = {"51,978", "989,376"};
     of_unit_["and"] = {"51,978"};
     for (const json& row : rows) add_row(row);
