@@ -206,13 +206,18 @@ std::string cost_lead(const Rows& rows) {
   const auto build = &BenchmarkRow::build_s;
   const auto memory = &BenchmarkRow::bytes_per_triangle;
   const BenchmarkRow& first = *rows.front();
-  return "On " + mesh_text(first) + ", " + least(build)->index + " is built fastest, " +
-         built(*least(build)) + ", and " + most(build)->index + " slowest, " + built(*most(build)) +
-         "; " + least(memory)->index + " takes least memory, " +
-         rounded(least(memory)->bytes_per_triangle) + " bytes a triangle, and " +
-         most(memory)->index + " most, " + rounded(most(memory)->bytes_per_triangle) +
-         ". Reading the mesh's file took " + rounded(first.load_s) + " s with " +
-         rounded(first.load_cores, 2) + " cores busy.";
+  const std::string where = "On " + mesh_text(first) + ", ";
+  const std::string file = ". Reading the mesh's file took " + rounded(first.load_s) + " s with " +
+                           rounded(first.load_cores, 2) + " cores busy.";
+  if (rows.size() == 1) {
+    return where + first.index + " is built " + built(first) + ", and takes " +
+           rounded(first.bytes_per_triangle) + " bytes a triangle" + file;
+  }
+  return where + least(build)->index + " is built fastest, " + built(*least(build)) + ", and " +
+         most(build)->index + " slowest, " + built(*most(build)) + "; " + least(memory)->index +
+         " takes least memory, " + rounded(least(memory)->bytes_per_triangle) +
+         " bytes a triangle, and " + most(memory)->index + " most, " +
+         rounded(most(memory)->bytes_per_triangle) + file;
 }
 
 }  // namespace keepout::app
