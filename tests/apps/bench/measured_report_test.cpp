@@ -319,6 +319,28 @@ TEST_F(MeasuredReport, NamesWhatIsBuiltFastestAndSlowestAndTheCoresItKeptBusy) {
   }
 }
 
+TEST_F(MeasuredReport, ComparesSolversByWhatThePlotShowsOfAsManyPlanes) {
+  std::set<std::string> rows;  // as they are told
+  for (const json& row : record["rows"]) {
+    rows.insert(row["solver"].get<std::string>() + " finds the motion in " +
+                time_of(row, "solve_us") + " among " + mean_text(row["planes_mean"]) +
+                " planes in the mean");
+  }
+  const std::regex words("(\\w+ finds the motion in [^ ]+ among ([\\d.]+) planes in the mean)");
+  std::size_t told = 0;
+  for (const std::string& text : texts("<p class=\"lead\">", "</p>")) {
+    std::vector<double> planes;
+    for (std::sregex_iterator it(text.begin(), text.end(), words), end; it != end; ++it, ++told) {
+      EXPECT_TRUE(rows.contains((*it)[1])) << it->str();
+      planes.push_back(std::stod((*it)[2]));
+    }
+    if (planes.size() == 2) {
+      EXPECT_NEAR(planes[0], planes[1], 0.11 * planes[0]) << text;
+    }
+  }
+  EXPECT_GE(told, largest().size()) << first_words(page);
+}
+
 TEST_F(MeasuredReport, CountsTheRowsThatAgreeAndThoseLeftOut) {
   std::map<std::string, std::vector<json>> groups;
   for (const json& row : record["rows"]) {
