@@ -86,7 +86,7 @@ void add_constraint_options(CLI::App& command, MotionConstraintSettings& setting
   command
       .add_option("--radius", settings.radius,
                   "Radius of the motion sphere: the farthest that the tip may go in one cycle. "
-                  "The other rules consider all triangles in it; the paper uses 5")
+                  "The other rules consider all triangles in it; the paper cut a skull with 5")
       ->type_name("MM")
       ->check(length(Zero::refused))
       ->capture_default_str();

@@ -185,14 +185,22 @@ Measured timings_of(const SimulateOptions& options, const std::shared_ptr<const 
   const StopSignal stop;
   const UsedCores used;
   print_machine(out, measured.benchmark.machine);
+  out.flush();
   MemoryTaken memory;
   run_trial(subject, combinations, {.queries = 1500, .seconds = 0.3}, memory, stop,
             measured.benchmark, out);
   measured.benchmark.others_cores = used.others();
   if (stop.has_come()) {
-    std::cerr << "keepout: stopped; " << grouped(measured.benchmark.rows.size()) << " of "
-              << counted(measured.benchmark.planned, "row")
-              << " of the benchmark were finished, and are kept in the report\n";
+    const std::size_t rows = measured.benchmark.rows.size();
+    if (rows == 0) {
+      std::cerr
+          << "keepout: stopped before any row of the benchmark was finished: the report is of "
+             "the simulation alone\n";
+    } else {
+      std::cerr << "keepout: stopped; " << grouped(rows) << " of "
+                << counted(measured.benchmark.planned, "row")
+                << " of the benchmark were finished, and are kept in the report\n";
+    }
     return measured;
   }
   measured.comparison = compare_parts(options.mesh.stem().string(), mesh,
@@ -259,7 +267,7 @@ int simulate(const SimulateOptions& options, std::ostream& out) {
   report.commit();
   if (options.tables == Tables::printed) out << '\n';
   print_summary(out, simulation);
-  if (options.timings == Timings::of_every_part) {
+  if (!benchmark.rows.empty()) {
     out << "Timed as well, in the report: " << counted(benchmark.rows.size(), "combination")
         << " of index, rule, solver and radius.\n";
   }

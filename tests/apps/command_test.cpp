@@ -66,6 +66,20 @@ class Command : public testing::Test {
   test::CommandFolder folder_;
 };
 
+TEST_F(Command, SaysThatNothingOfABenchmarkWasFinishedWhenItIsInterruptedAtOnce) {
+  write_binary_stl(file("ball.stl"), make_sphere(0.5));
+  const Outcome outcome =
+      folder_.interrupted({KEEPOUT_COMMAND, "simulate", "ball.stl", "--bench", "--verbose",
+                           "--strokes", "1", "--cycles", "10", "--out", "r.html"},
+                          "SIMD target");
+  EXPECT_EQ(outcome.status, 130) << outcome.output;
+  EXPECT_NE(outcome.output.find("stopped before any row of the benchmark was finished"),
+            std::string::npos)
+      << outcome.output;
+  EXPECT_EQ(outcome.output.find("Timed as well"), std::string::npos) << outcome.output;
+  EXPECT_TRUE(std::filesystem::exists(file("r.html")));
+}
+
 TEST_F(Command, HelpNamesEveryCommandAndChoice) {
   const Outcome help = run("--help");
   EXPECT_EQ(help.status, 0);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <exception>
 #include <memory>
 #include <new>
 #include <ostream>
@@ -19,6 +20,7 @@
 #include "keepout/error.h"
 #include "keepout/fixtures/real_mesh.h"
 #include "machine.h"
+#include "named_mesh.h"
 #include "number_text.h"
 #include "output_file.h"
 #include "part_lists.h"
@@ -74,9 +76,12 @@ std::unique_ptr<OutputFile> open(const std::optional<std::filesystem::path>& pat
   return path ? std::make_unique<OutputFile>(*path) : nullptr;
 }
 
-void refuse_overwriting(const BenchOptions& options) {
+/// Refuses a mesh of which there is none, too: a mistyped name is told of before the first row.
+void refuse_overwriting(const BenchOptions& options, const std::vector<Subject>& subjects) {
   std::vector<NamedPath> inputs, outputs;
-  for (const std::string& mesh : options.meshes) inputs.push_back({"--mesh", mesh});
+  for (const Subject& subject : subjects) {
+    inputs.push_back({"--mesh", file_of_mesh(subject.mesh)});
+  }
   if (options.json) outputs.push_back({"--json", *options.json});
   if (options.csv) outputs.push_back({"--csv", *options.csv});
   outputs.push_back({"--out", options.report});
@@ -100,7 +105,7 @@ void list_absent(std::ostream& out, std::span<const AbsentPart> parts) {
 /// How well all parts agree; nothing, where the user wants to know about some only, or no more.
 Comparison comparison_for(const BenchOptions& options, const Subject& subject,
                           const StopSignal& stop, std::ostream& out) {
-  if (names_parts(options.selection) || stop.has_come()) return {};
+  if (names_parts(options.selection)) return {};
   out << "\ncomparing answers on " << title_of(subject) << '\n';
   try {
     const Comparison comparison =
@@ -185,7 +190,7 @@ int bench(const BenchOptions& options, std::ostream& out, std::ostream& notes) {
   const std::vector<Subject> subjects = chosen_subjects(options);
   const std::vector<Combination> combinations = combinations_of(options.selection);
   if (combinations.empty()) throw Error("there is nothing to measure: see 'keepout bench --list'");
-  refuse_overwriting(options);
+  refuse_overwriting(options, subjects);
   OutputFile report(options.report);
   const std::unique_ptr<OutputFile> json = open(options.json), csv = open(options.csv);
 
@@ -195,9 +200,15 @@ int bench(const BenchOptions& options, std::ostream& out, std::ostream& notes) {
   print_machine(out, benchmark.machine);
   out.flush();
   MemoryTaken memory;
+  std::exception_ptr failure;  // of a mesh, after the rows of others
   for (const Subject& subject : subjects) {
-    if (stop.has_come()) break;
-    run_trial(subject, combinations, settings_of(options), memory, stop, benchmark, out);
+    if (stop.has_come() || failure) break;
+    try {
+      run_trial(subject, combinations, settings_of(options), memory, stop, benchmark, out);
+    } catch (const std::exception&) {
+      if (benchmark.rows.empty()) throw;
+      failure = std::current_exception();
+    }
   }
   benchmark.others_cores = used.others();
   if (benchmark.rows.empty()) {
@@ -213,15 +224,18 @@ int bench(const BenchOptions& options, std::ostream& out, std::ostream& notes) {
   for (OutputFile* file : {json.get(), csv.get()}) {
     if (file != nullptr) file->commit();
   }
-  print_benchmark_report(report.stream(), benchmark,
-                         comparison_for(options, subjects.front(), stop, out));
+  const bool ended_early = failure || stop.has_come();
+  print_benchmark_report(
+      report.stream(), benchmark,
+      ended_early ? Comparison{} : comparison_for(options, subjects.front(), stop, out));
   report.commit();
   print_verdict(out, benchmark);
   out << "report: " << options.report.string() << '\n';
-  if (!stop.has_come()) return EXIT_SUCCESS;
+  if (!failure && !stop.has_come()) return EXIT_SUCCESS;
   notes << "keepout: stopped; " << grouped(benchmark.rows.size()) << " of "
         << counted(benchmark.planned, "row") << " were finished, and are kept in "
         << listed(written_to(options)) << '\n';
+  if (failure) std::rethrow_exception(failure);
   return exit_interrupted;
 }
 

@@ -35,11 +35,12 @@ struct BenchOptions {
 
 /// Measures every combination that was asked for on every mesh, prints a table as it goes, compares
 /// the parts' answers on the first mesh, and writes a report and files. Throws Error before any
-/// work when one could not be written.
+/// work when one could not be written, or there is no mesh of a name.
 ///
 /// Gives the exit status: 0, or exit_interrupted when a signal stopped it. The rows that were
 /// finished are then written all the same, marked as incomplete, and `notes` is told what was kept
-/// and where; where there is none, nothing is written.
+/// and where; where there is none, nothing is written. The same goes for a mesh that turns out to
+/// be broken: its error is thrown after the rows of those before it are written.
 int bench(const BenchOptions& options, std::ostream& out, std::ostream& notes);
 
 /// Says what there is to measure, and what this build was made without.

@@ -51,16 +51,19 @@ std::optional<double> UsedCores::others() const {
   return std::max(0.0, (*all - *all_start_ - (own_time() - own_start_)) / seconds());
 }
 
+bool is_busy(const std::optional<double>& others, unsigned cores) {
+  // What an idle system does by itself is less.
+  return others && *others > 0.05 * cores;
+}
+
 std::string others_text(const std::optional<double>& others, unsigned cores) {
   if (!others) return {};
-  // What an idle system does by itself is less.
-  const bool busy = *others > 0.05 * cores;
-  return busy ? "The machine was busy: other processes kept " + rounded(*others, 2) + " of its " +
-                    counted(cores, "core") +
-                    " at work meanwhile, so that times are longer, and "
-                    "differ by more, than on an idle one."
-              : "Other processes kept " + rounded(*others, 2) + " of its " +
-                    counted(cores, "core") + " at work meanwhile.";
+  return is_busy(others, cores) ? "The machine was busy: other processes kept " +
+                                      rounded(*others, 2) + " of its " + counted(cores, "core") +
+                                      " at work meanwhile, so that times are longer, and "
+                                      "differ by more, than on an idle one."
+                                : "Other processes kept " + rounded(*others, 2) + " of its " +
+                                      counted(cores, "core") + " at work meanwhile.";
 }
 
 }  // namespace keepout::app

@@ -28,6 +28,9 @@ class UsedCores {
   std::optional<double> all_start_;  // [s]
 };
 
+/// Whether others kept so many of the machine's cores at work that it bears on times.
+bool is_busy(const std::optional<double>& others, unsigned cores);
+
 /// A sentence on what others did to the times, or that they did nothing; empty where nobody knows.
 std::string others_text(const std::optional<double>& others, unsigned cores);
 

@@ -25,7 +25,9 @@ CompareCommand::CompareCommand(CLI::App& app) {
       ->capture_default_str();
   command
       .add_option("--pairs", options.extent.pairs,
-                  "Pairs of tool and triangle for the narrow phases, of each kind")
+                  "Pairs of tool and triangle for the narrow phases, of each kind: apart, "
+                  "overlapping, and touching, which is within " +
+                      std::string(touch_text) + " of a touch, on either side")
       ->type_name("NUMBER")
       ->transform(whole_number(10, 1'000'000))
       ->capture_default_str();

@@ -55,10 +55,15 @@ struct SolverAgreement {
   std::map<std::string, std::size_t> outcomes = {};  // what the library said, and what we found
 };
 
+/// A pair this close to a touch, on either side of it, is "touching": whether it is apart or
+/// overlaps is finer than the tolerance of most libraries.
+inline constexpr double touch = 1e-6;  // [mm]
+inline constexpr const char* touch_text = "1e-6 mm";
+
 /// One way to tell the distance between a convex tool and a triangle.
 struct NarrowPhaseAgreement {
   std::string backend, tool;
-  std::string relation;  // "apart", "touching" (within 1e-6 mm), "overlapping"
+  std::string relation;  // "apart", "touching" (see touch), "overlapping"
   std::size_t pairs = 0;
   std::size_t failed = 0;        // no answer, or one that is no number
   std::size_t contradicted = 0;  // apart called overlapping, or the reverse

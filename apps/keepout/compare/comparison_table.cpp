@@ -57,7 +57,8 @@ void print_solvers(std::ostream& out, const std::vector<SolverAgreement>& solver
 }
 
 void print_narrow_phases(std::ostream& out, const std::vector<NarrowPhaseAgreement>& phases) {
-  out << "\nNarrow phases, held to our exact kernel\n"
+  out << "\nNarrow phases, held to our exact kernel; touching: to within " << touch_text
+      << ", on either side\n"
       << line("%-16s %-9s %-12s %7s %7s %13s %12s %12s %12s %9s %9s\n", "narrow phase", "tool",
               "relation", "pairs", "failed", "contradicted", "median mm", "worst mm", "unproven mm",
               "p50 us", "p99 us");

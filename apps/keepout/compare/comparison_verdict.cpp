@@ -122,12 +122,25 @@ std::string solver_verdict(const std::vector<SolverAgreement>& rows) {
 
 std::string narrow_phase_verdict(const std::vector<NarrowPhaseAgreement>& rows) {
   const auto backend = &NarrowPhaseAgreement::backend;
-  const std::string contrary = guilty(rows, backend, &NarrowPhaseAgreement::contradicted);
+  const auto contradicted = &NarrowPhaseAgreement::contradicted;
+  // Where the two touch, a library may take one for the other within its tolerance.
+  std::vector<NarrowPhaseAgreement> clear, touching;
+  for (const NarrowPhaseAgreement& row : rows) {
+    (row.relation == "touching" ? touching : clear).push_back(row);
+  }
+  const std::string contrary = guilty(clear, backend, contradicted);
+  const std::string confused = guilty(touching, backend, contradicted);
   const std::string failing = guilty(rows, backend, &NarrowPhaseAgreement::failed);
   std::string text = "Distance between a tool and a triangle, held to the exact kernel: ";
   text += contrary.empty() ? "none called apart what overlaps, or the reverse"
                            : contrary + " took apart for overlapping, or the reverse, " +
-                                 how_often(sum(rows, &NarrowPhaseAgreement::contradicted));
+                                 how_often(sum(clear, contradicted));
+  if (!confused.empty()) {
+    text += contrary.empty() ? "; " + confused + " did so " : ", and ";
+    if (!contrary.empty() && confused != contrary) text += confused + " ";
+    text += how_often(sum(touching, contradicted)) + (contrary.empty() ? "" : " more") +
+            " where the two touch to within " + touch_text;
+  }
   return text + (failing.empty() ? ", and all gave an answer."
                                  : ", and " + failing + " gave no answer " +
                                        how_often(sum(rows, &NarrowPhaseAgreement::failed)) + ".");

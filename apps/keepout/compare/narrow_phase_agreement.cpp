@@ -40,7 +40,6 @@ ConvexTool drill() {
 
 constexpr Kind kinds[] = {{"sphere", burr}, {"capsule", shaft}, {"box", blade}, {"hull", drill}};
 
-constexpr double touching = 1e-6;       // [mm]
 constexpr double overlapping = 1e-3;    // at least [mm]
 constexpr double farthest = 5.0;        // [mm]
 constexpr double deepest_wanted = 1.5;  // what is asked for; what comes of it may be less [mm]
@@ -61,7 +60,7 @@ constexpr Relation relations[] = {
        const double size = std::pow(10.0, r.uniform(-12.0, -6.0));
        return 0.9 * (r.below(2) == 0 ? size : -size);
      },
-     [](double d) { return std::abs(d) <= touching; }},
+     [](double d) { return std::abs(d) <= touch; }},
     {"overlapping", [](Random& r) { return -r.uniform(2.0 * overlapping, deepest_wanted); },
      [](double d) { return d <= -overlapping; }},
 };

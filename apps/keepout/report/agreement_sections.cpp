@@ -187,7 +187,10 @@ void print_narrow_phase_agreement(std::ostream& out, const Comparison& compariso
                           {rounded(row.median_us)},
                           {rounded(row.p99_us)}});
   }
-  open_section(out, "Do the narrow phases agree?", narrow_phase_verdict(comparison.narrow_phases));
+  open_section(out, "Do the narrow phases agree?",
+               narrow_phase_verdict(comparison.narrow_phases) +
+                   " Touching stands for a pair within " + touch_text +
+                   " of a touch, on either side.");
   print_table(out, table);
   print_errors(out, comparison.narrow_phases);
 }

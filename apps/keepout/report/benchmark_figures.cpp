@@ -3,8 +3,6 @@
 #include "report/benchmark_figures.h"
 
 #include <algorithm>
-#include <map>
-#include <tuple>
 #include <utility>
 
 #include "number_text.h"
@@ -138,18 +136,9 @@ std::string solve_plot(const Rows& rows, const std::vector<std::string>& all, Pe
   plot.names = Plot::Names::at_line_ends;
   for (const std::string& solver : names(rows, &BenchmarkRow::solver)) {
     Series series = series_named(solver, place_in(all, solver));
-    // Rows that differ in the index alone have the same problems: one mark for all, their median.
-    std::map<std::tuple<std::string, std::size_t, std::optional<double>>, Rows> problems;
-    for (const BenchmarkRow* row : rows) {
-      if (row->solver == solver) problems[{row->mesh, row->triangles, row->radius}].push_back(row);
-    }
-    for (auto& [problem, same] : problems) {
-      std::sort(same.begin(), same.end(), [](const BenchmarkRow* a, const BenchmarkRow* b) {
-        return median(*a, &BenchmarkRow::solve) < median(*b, &BenchmarkRow::solve);
-      });
-      const BenchmarkRow& middle = *same[same.size() / 2];
-      const std::optional<double> time = middle_time ? middle.solve->p50 : middle.solve->p99;
-      if (time) series.points.push_back({middle.planes_mean, *time});
+    for (const BenchmarkRow* row : problems_of(rows, solver)) {
+      const std::optional<double> time = middle_time ? row->solve->p50 : row->solve->p99;
+      if (time) series.points.push_back({row->planes_mean, *time});
     }
     sort_by_x(series.points);
     if (!series.points.empty()) plot.series.push_back(std::move(series));

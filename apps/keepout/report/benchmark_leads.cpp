@@ -3,6 +3,7 @@
 #include "report/benchmark_leads.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "number_text.h"
@@ -26,11 +27,17 @@ std::string growth(const Rows& rows, const std::string& index, Stage stage) {
          ratio_text(median(**large, stage) / median(**small, stage)) + " times as long";
 }
 
-/// The rows of the problems that most solvers got; of these those with most planes.
+/// About as many planes: solvers that are asked for fewer motions have another mean.
+bool as_many_planes(const BenchmarkRow& a, const BenchmarkRow& b) {
+  return std::abs(a.planes_mean - b.planes_mean) <= 0.1 * std::max(a.planes_mean, b.planes_mean);
+}
+
+/// The rows of the problems that most solvers got with as many planes; of these those with most.
 Rows hardest_problems(const Rows& rows) {
   const auto alike = [&](const BenchmarkRow& like) {
     return only(rows, [&](const BenchmarkRow& row) {
-      return row.mesh == like.mesh && row.triangles == like.triangles && row.radius == like.radius;
+      return row.mesh == like.mesh && row.triangles == like.triangles &&
+             row.radius == like.radius && as_many_planes(row, like);
     });
   };
   const auto rank = [&](const BenchmarkRow& row) {
@@ -157,13 +164,18 @@ std::string published_lead(const std::vector<Rows>& lines) {
          grouped(published_rates.front().triangles) + " and " +
          trimmed(published_rates.back().khz) + "\u00a0kHz at " +
          grouped(published_rates.back().triangles) +
-         " triangles on an Intel i7-8700: another machine, and motions and a sphere that are not "
-         "known" +
-         (one_size(lines) ? "." : ": compare the slopes, not the heights.");
+         " triangles on an Intel i7-8700, another machine. They state neither the motions nor the "
+         "motion sphere of that run; their 5\u00a0mm are those of the skull that they cut" +
+         (one_size(lines) ? "." : ". Compare the slopes, not the heights.");
 }
 
 std::string solve_lead(const Rows& rows) {
-  const Rows eligible = ranked(rows, &BenchmarkRow::solve);
+  // What is told is what the plot shows.
+  Rows shown;
+  for (const std::string& solver : names(rows, &BenchmarkRow::solver)) {
+    for (const BenchmarkRow* row : problems_of(rows, solver)) shown.push_back(row);
+  }
+  const Rows eligible = ranked(shown, &BenchmarkRow::solve);
   const std::string marks =
       "; rule " + rows.front()->activation + ", a mark for each mesh and radius." + given_up(rows);
   if (eligible.empty()) return std::string(nobody_ranked) + marks;
@@ -174,8 +186,14 @@ std::string solve_lead(const Rows& rows) {
   };
   const BenchmarkRow& quick = fastest(there, &BenchmarkRow::solve);
   const BenchmarkRow& slow = slowest(there, &BenchmarkRow::solve);
-  return "On " + mesh_text(quick) + ", " + sphere_text(quick.radius) + ", " + told(quick) +
-         (quick.solver == slow.solver ? "" : " and " + told(slow)) + marks;
+  std::string other;
+  if (quick.solver != slow.solver) {
+    other = " and " + told(slow);
+  } else if (names(eligible, &BenchmarkRow::solver).size() > 1) {
+    other = ", and no other solver was given as many";
+  }
+  return "On " + mesh_text(quick) + ", " + sphere_text(quick.radius) + ", " + told(quick) + other +
+         marks;
 }
 
 std::string stage_lead(const Rows& rows) {
@@ -206,13 +224,18 @@ std::string cost_lead(const Rows& rows) {
   const auto build = &BenchmarkRow::build_s;
   const auto memory = &BenchmarkRow::bytes_per_triangle;
   const BenchmarkRow& first = *rows.front();
-  return "On " + mesh_text(first) + ", " + least(build)->index + " is built fastest, " +
-         built(*least(build)) + ", and " + most(build)->index + " slowest, " + built(*most(build)) +
-         "; " + least(memory)->index + " takes least memory, " +
-         rounded(least(memory)->bytes_per_triangle) + " bytes a triangle, and " +
-         most(memory)->index + " most, " + rounded(most(memory)->bytes_per_triangle) +
-         ". Reading the mesh's file took " + rounded(first.load_s) + " s with " +
-         rounded(first.load_cores, 2) + " cores busy.";
+  const std::string where = "On " + mesh_text(first) + ", ";
+  const std::string file = ". Reading the mesh's file took " + rounded(first.load_s) + " s with " +
+                           rounded(first.load_cores, 2) + " cores busy.";
+  if (rows.size() == 1) {
+    return where + first.index + " is built " + built(first) + ", and takes " +
+           rounded(first.bytes_per_triangle) + " bytes a triangle" + file;
+  }
+  return where + least(build)->index + " is built fastest, " + built(*least(build)) + ", and " +
+         most(build)->index + " slowest, " + built(*most(build)) + "; " + least(memory)->index +
+         " takes least memory, " + rounded(least(memory)->bytes_per_triangle) +
+         " bytes a triangle, and " + most(memory)->index + " most, " +
+         rounded(most(memory)->bytes_per_triangle) + file;
 }
 
 }  // namespace keepout::app

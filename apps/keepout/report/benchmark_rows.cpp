@@ -150,6 +150,21 @@ Rows comparable_solvers(const Rows& rows) {
   return only(rows, [&](const BenchmarkRow& row) { return row.activation == rule; });
 }
 
+Rows problems_of(const Rows& rows, const std::string& solver) {
+  std::map<std::tuple<std::string, std::size_t, std::optional<double>>, Rows> problems;
+  for (const BenchmarkRow* row : rows) {
+    if (row->solver == solver) problems[{row->mesh, row->triangles, row->radius}].push_back(row);
+  }
+  Rows result;
+  for (auto& [problem, same] : problems) {
+    std::stable_sort(same.begin(), same.end(), [](const BenchmarkRow* a, const BenchmarkRow* b) {
+      return faster(*a, *b, &BenchmarkRow::solve);
+    });
+    result.push_back(same[same.size() / 2]);
+  }
+  return result;
+}
+
 Neighborhood neighborhood(const Rows& rows) {
   const auto near = [&](const BenchmarkRow& hub) {
     return std::count_if(rows.begin(), rows.end(),

@@ -64,6 +64,10 @@ Rows comparable_indices(const Rows& rows);
 /// Those of one rule: the one under which most solvers were timed.
 Rows comparable_solvers(const Rows& rows);
 
+/// The solver's row that stands for each mesh, size and radius, of those that differ in the index:
+/// the one of median time. Precondition: the search for the motion was timed in all.
+Rows problems_of(const Rows& rows, const std::string& solver);
+
 /// A combination and all that differ from it in one part, so that one part at a time is compared;
 /// the pairs below besides.
 struct Neighborhood {

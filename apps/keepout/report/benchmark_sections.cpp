@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/used_cores.h"
 #include "number_text.h"
 #include "report/benchmark_figures.h"
 #include "report/benchmark_leads.h"
@@ -163,7 +164,11 @@ void print_cost_section(std::ostream& out, const Benchmark& benchmark) {
   open_section(out, "What an index costs before the first query",
                "Each is built once on each mesh. Cores busy are the processor's time of all "
                "threads of this process over the time on the clock, of the " +
-                   counted(benchmark.machine.cores, "core") + " of this machine.");
+                   counted(benchmark.machine.cores, "core") + " of this machine." +
+                   (is_busy(benchmark.others_cores, benchmark.machine.cores)
+                        ? " Others kept this machine busy: times to build include waiting for a "
+                          "core, and do not rank what is close."
+                        : ""));
   for_each_mesh(out, rows, [&](const Rows& there) {
     Rows one_each;
     for (const BenchmarkRow* row : on_common_mesh(there)) {

@@ -135,7 +135,9 @@ std::string same_steps(const Benchmark& benchmark) {
            (fewest == most ? grouped(most) : grouped(fewest) + " to " + grouped(most)) +
            " motions.";
   }
-  if (alone > 0) text += " Left out: " + counted(alone, "row") + " without such another.";
+  if (compared > 0 && alone > 0) {
+    text += " Left out: " + counted(alone, "row") + " without such another.";
+  }
   if (unverified > 0) text += " Left out: " + counted(unverified, "row") + " not verified.";
   return text;
 }

@@ -187,6 +187,35 @@ TEST_F(BenchCommand, WritesNothingWhenItIsInterruptedBeforeAnyRow) {
   EXPECT_FALSE(std::filesystem::exists(folder.file("b.html")));
 }
 
+TEST_F(BenchCommand, TellsOfAMistypedMeshBeforeItMeasuresAnother) {
+  const ProcessOutcome outcome = folder.run("bench --mesh cube.stl,cubes.stl --json b.json");
+  EXPECT_EQ(outcome.status, 1) << outcome.output;
+  EXPECT_NE(outcome.output.find("cubes.stl: there is no such file"), std::string::npos);
+  EXPECT_EQ(outcome.output.find("SIMD target"), std::string::npos) << "nothing was begun";
+  EXPECT_FALSE(std::filesystem::exists(folder.file("b.json")));
+}
+
+TEST_F(BenchCommand, KeepsTheRowsBeforeAMeshThatIsBroken) {
+  std::ofstream(folder.file("broken.stl")) << "solid broken";
+  const ProcessOutcome outcome = folder.run(
+      "bench --mesh cube.stl,broken.stl --index pd_tree --activation paper --radius 5 "
+      "--queries 50 --json b.json --csv b.csv --out b.html");
+  EXPECT_EQ(outcome.status, 1) << outcome.output;
+  EXPECT_NE(outcome.output.find("1 of 2 rows were finished, and are kept in b.html, b.json and "
+                                "b.csv"),
+            std::string::npos)
+      << outcome.output;
+  EXPECT_NE(outcome.output.find("keepout: broken.stl: "), std::string::npos) << outcome.output;
+  const json benchmark = read("b.json");
+  EXPECT_EQ(benchmark["complete"], false);
+  ASSERT_EQ(benchmark["rows"].size(), 1u);
+  EXPECT_EQ(benchmark["rows"][0]["mesh"], "cube.stl");
+  EXPECT_TRUE(std::filesystem::exists(folder.file("b.html")));
+  EXPECT_TRUE(std::filesystem::exists(folder.file("b.csv")));
+  expect_refused("bench --mesh broken.stl --json none.json", "broken.stl");
+  EXPECT_FALSE(std::filesystem::exists(folder.file("none.json"))) << "there is nothing to keep";
+}
+
 TEST_F(BenchCommand, SaysWhenMoreTrianglesAreInReachThanItHasRoomFor) {
   Surface crowd{{Vec3(0, 0, 0), Vec3(90, 0, 0), Vec3(0, 90, 0)}, {}};
   crowd.triangles.assign(300'000, {0, 1, 2});

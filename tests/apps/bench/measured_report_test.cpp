@@ -140,6 +140,7 @@ class Figures {
     // Limits that are stated, and what Li et al. published.
     of_unit_["%"] = {"1", "99"};
     of_unit_["kHz"] = {"1", "7.73", "0.18"};
+    of_unit_["mm"] = {"5"};
     of_unit_["triangles"] = {"51,978", "989,376"};
     of_unit_["and"] = {"51,978"};
     for (const json& row : rows) add_row(row);
@@ -316,6 +317,28 @@ TEST_F(MeasuredReport, NamesWhatIsBuiltFastestAndSlowestAndTheCoresItKeptBusy) {
                         " slowest, " + built(rows.back())))
         << mesh;
   }
+}
+
+TEST_F(MeasuredReport, ComparesSolversByWhatThePlotShowsOfAsManyPlanes) {
+  std::set<std::string> rows;  // as they are told
+  for (const json& row : record["rows"]) {
+    rows.insert(row["solver"].get<std::string>() + " finds the motion in " +
+                time_of(row, "solve_us") + " among " + mean_text(row["planes_mean"]) +
+                " planes in the mean");
+  }
+  const std::regex words("(\\w+ finds the motion in [^ ]+ among ([\\d.]+) planes in the mean)");
+  std::size_t told = 0;
+  for (const std::string& text : texts("<p class=\"lead\">", "</p>")) {
+    std::vector<double> planes;
+    for (std::sregex_iterator it(text.begin(), text.end(), words), end; it != end; ++it, ++told) {
+      EXPECT_TRUE(rows.contains((*it)[1])) << it->str();
+      planes.push_back(std::stod((*it)[2]));
+    }
+    if (planes.size() == 2) {
+      EXPECT_NEAR(planes[0], planes[1], 0.11 * planes[0]) << text;
+    }
+  }
+  EXPECT_GE(told, largest().size()) << first_words(page);
 }
 
 TEST_F(MeasuredReport, CountsTheRowsThatAgreeAndThoseLeftOut) {

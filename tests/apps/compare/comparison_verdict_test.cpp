@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+
 #include "compare/comparison_files.h"
 
 namespace keepout::app {
@@ -72,6 +74,33 @@ TEST(ComparisonVerdict, SaysWhyASolverGotFewerProblems) {
   EXPECT_FALSE(has(text, "Each solver got the same")) << "it did not: " << text;
   EXPECT_TRUE(has(solver_verdict({row("active_set", "paper", 1000, 0.5)}),
                   "Each solver got the same recorded problems"));
+}
+
+TEST(ComparisonVerdict, CountsPairsThatTouchApartFromThoseThatDoNot) {
+  EXPECT_EQ(std::stod(touch_text), touch);
+  const auto row = [](const char* backend, const char* relation, std::size_t contradicted) {
+    return NarrowPhaseAgreement{.backend = backend,
+                                .tool = "box",
+                                .relation = relation,
+                                .pairs = 2000,
+                                .contradicted = contradicted};
+  };
+  const std::vector<NarrowPhaseAgreement> both = {row("fcl_gjk", "apart", 20),
+                                                  row("fcl_gjk", "touching", 1005),
+                                                  row("fcl_gjk", "overlapping", 8)};
+  EXPECT_TRUE(has(narrow_phase_verdict(both),
+                  "fcl_gjk took apart for overlapping, or the reverse, 28 times, and 1,005 times "
+                  "more where the two touch to within 1e-6 mm, and all gave an answer."))
+      << narrow_phase_verdict(both);
+  std::vector<NarrowPhaseAgreement> others = both;
+  others.push_back(row("libccd_gjk", "touching", 3));
+  EXPECT_TRUE(has(narrow_phase_verdict(others),
+                  "28 times, and fcl_gjk and libccd_gjk 1,008 times more where the two touch"))
+      << narrow_phase_verdict(others);
+  EXPECT_TRUE(has(narrow_phase_verdict({row("fcl_gjk", "apart", 0), row("fcl_gjk", "touching", 2)}),
+                  "none called apart what overlaps, or the reverse; fcl_gjk did so twice where the "
+                  "two touch to within 1e-6 mm, and all gave an answer."));
+  EXPECT_FALSE(has(narrow_phase_verdict({row("exact", "touching", 0)}), "touch to within"));
 }
 
 TEST(ComparisonVerdict, OfAnInterruptedComparisonClaimsNoMoreThanWasFinished) {
