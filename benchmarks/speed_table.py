@@ -6,7 +6,7 @@
     benchmarks/speed_table.py avx2.json avx512.json
 
 A column for each run, named by its SIMD target, with the figures of each row; in bold what falls short
-of the demand. The last column has what the figures of the first run are made of. The table of
+of the demand. The last column has what the figure of the first run that has the row is made of. The table of
 docs/performance.md is made by it.
 """
 import json
@@ -43,9 +43,12 @@ def main(paths):
     runs = [json.load(open(path, encoding="utf-8")) for path in paths]
     tables = [{(row["work"], row["compared"]): row for row in run["rows"]} for run in runs]
     targets = [run["machine"]["simd"] for run in runs]
-    print("| work: compared | demanded |", " | ".join(targets), f"| made of, {targets[0]}, us |")
+    print("| work: compared | demanded |", " | ".join(targets), "| made of, us |")
     print("|---" * (3 + len(runs)) + "|")
-    for name, row in tables[0].items():
+    rows = {name: row for table in reversed(tables) for name, row in table.items()}
+    order = list(tables[-1]) if len(tables[-1]) == len(rows) else list(rows)
+    for name in order:
+        row = rows[name]
         figures = [figure(table[name]) if name in table else "-" for table in tables]
         sides = "; ".join(side(measured) for measured in row["sides"])
         print(f"| {': '.join(name)} | {demand(row)} |", " | ".join(figures), f"| {sides} |")
