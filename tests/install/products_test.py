@@ -18,11 +18,17 @@ BUILT = re.compile(r"TYPE (?:STATIC_LIBRARY|SHARED_LIBRARY|MODULE|EXECUTABLE) (?
                    r"FILES((?:\s+\"[^\"]+\")+)")
 
 
-def installed(build):
-    for script in build.rglob("cmake_install.cmake"):
-        for block in BLOCK.findall(script.read_text(encoding="utf-8")):
-            for files in BUILT.findall(block):
-                yield from (pathlib.Path(f) for f in re.findall(r'"([^"]+)"', files))
+INCLUDED = re.compile(r'^\s*include\("([^"]+/cmake_install\.cmake)"\)', re.M)
+
+
+def installed(script):
+    """What a script copies, and what it includes: below the build there are scripts of other tests."""
+    text = script.read_text(encoding="utf-8")
+    for block in BLOCK.findall(text):
+        for files in BUILT.findall(block):
+            yield from (pathlib.Path(f) for f in re.findall(r'"([^"]+)"', files))
+    for included in INCLUDED.findall(text):
+        yield from installed(pathlib.Path(included))
 
 
 def main():
@@ -32,7 +38,7 @@ def main():
                                     capture_output=True, text=True, check=True).stdout
                      for tool in (["query"], ["inputs"]))
     made = {build / line.strip() for line in listed.splitlines()}
-    taken = set(installed(build))
+    taken = set(installed(build / "cmake_install.cmake"))
     if len(taken) < 5:
         sys.exit(f"only {len(taken)} files are installed: has the form of the scripts changed?")
     missing = sorted(str(path.relative_to(build)) for path in taken - made)
