@@ -16,7 +16,7 @@ namespace keepout::app {
 
 enum class Extent {
   standard,  // three sizes of the bunny; some minutes
-  full       // to 18 million triangles, and the skull; a third of an hour
+  full       // to 18 million triangles, and the skull; tens of minutes
 };
 
 struct BenchOptions {

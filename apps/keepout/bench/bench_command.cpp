@@ -51,7 +51,7 @@ BenchCommand::BenchCommand(CLI::App& app) {
       ->check(length(Zero::refused));
   command.add_flag_callback(
       "--full", [&options] { options.extent = Extent::full; },
-      "To 18 million triangles, and the skull of a million: about a third of an hour, and 14 GB");
+      "To 18 million triangles, and the skull of a million: tens of minutes, and 14 GB");
   command.add_option("--queries", options.queries, "Steps of each combination, at most")
       ->type_name("NUMBER")
       ->transform(whole_number(5, 10'000'000));
@@ -86,7 +86,7 @@ BenchCommand::BenchCommand(CLI::App& app) {
 void BenchCommand::add_speed_options(CLI::App& command) {
   CLI::Option* speed = command.add_flag(
       "--speed", is_speed_,
-      "Measure the table of ratios that keepout is held to, in one process on one core; about five "
+      "Measure the table of ratios that keepout is held to, in one process on one core; some "
       "minutes. With --triangles: one size, for meshes of about a million");
   for (const char* name : {"--list", "--index", "--activation", "--solver", "--mesh", "--radius",
                            "--full", "--queries", "--seconds", "--poses", "--csv"}) {
