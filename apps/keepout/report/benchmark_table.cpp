@@ -101,7 +101,7 @@ std::string same_steps(const Benchmark& benchmark) {
   std::map<Problem, Rows> groups;
   std::size_t unverified = 0, alone = 0, members = 0, compared = 0, same = 0;
   for (const BenchmarkRow& row : benchmark.rows) {
-    if (row.verified) {
+    if (row.verified && row.queries > 0) {
       groups[{row.mesh, row.triangles, row.radius, row.activation, row.solver}].push_back(&row);
     } else {
       ++unverified;
