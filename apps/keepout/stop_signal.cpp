@@ -26,12 +26,12 @@ std::atomic<bool> noted{false};
 std::array<struct sigaction, stopping.size()> earlier_actions;
 
 void note(int signal) {
+  const int error = errno;
   noted = true;
   // A second one is not waited for: it does what it did before.
   for (std::size_t i = 0; i < stopping.size(); ++i) {
     if (stopping[i] == signal) ::sigaction(signal, &earlier_actions[i], nullptr);
   }
-  const int error = errno;
   const std::uint64_t one = 1;
   // It can fail only if it is noted already.
   [[maybe_unused]] const ssize_t written = ::write(event_file.load(), &one, sizeof one);

@@ -8,7 +8,6 @@
 #include <array>
 #include <limits>
 
-#include "keepout/index/brute_force.h"
 #include "keepout/index/wide_bvh.h"
 
 #undef HWY_TARGET_INCLUDE

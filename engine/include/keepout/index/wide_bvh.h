@@ -77,7 +77,7 @@ class WideBvh final : public SpatialIndex {
   /// The same, and adds to `counts` what it had to look at.
   void collect(const Ball& ball, TriangleBuffer& candidates, QueryCounts& counts) const noexcept;
 
-  /// By branch and bound: about as fast far from the mesh as near it.
+  /// By branch and bound: however far off the point is, few triangles are asked about.
   TriangleId nearest(const Vec3& point) const noexcept override;
 
   bool is_exact() const noexcept override { return true; }
