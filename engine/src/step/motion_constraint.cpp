@@ -13,6 +13,14 @@
 namespace keepout {
 namespace {
 
+void require_in_range(const StepOptions& options) {
+  if (!is_ok(check({.tip = Vec3::Zero(), .desired = Vec3::Zero()}, options))) {
+    throw Error(
+        "the radius must be above zero and not lost beside the margin; tool radius, margin, "
+        "damping, recovery, depth, refinements and nodes not below zero; no length above 1e30");
+  }
+}
+
 /// No query finds more triangles than there are. Throws before any memory is asked for.
 Capacity fitted(Capacity capacity, const Mesh* mesh, const StepOptions& options) {
   constexpr std::size_t most = std::numeric_limits<int>::max();
@@ -22,11 +30,7 @@ Capacity fitted(Capacity capacity, const Mesh* mesh, const StepOptions& options)
   if (capacity.planes > most / 2 || capacity.variables > most || capacity.extra_rows > most / 2) {
     throw Error("a capacity of more than 2^30 planes or rows cannot be held");
   }
-  if (!is_ok(check({.tip = Vec3::Zero(), .desired = Vec3::Zero()}, options))) {
-    throw Error(
-        "the radius must be above zero and not lost beside the margin; tool radius, margin, "
-        "damping, recovery, depth, refinements and nodes not below zero; no length above 1e30");
-  }
+  require_in_range(options);
   capacity.nodes = std::max(capacity.nodes, static_cast<std::size_t>(std::max(options.nodes, 0)));
   capacity.triangles = std::min(capacity.triangles, mesh->triangle_count());
   return capacity;
@@ -61,10 +65,24 @@ MotionConstraint::MotionConstraint(std::shared_ptr<const Mesh> mesh,
         "that "
         "guards a whole tool, ask for Inside::taken_as_is");
   }
+  require_margin(options_);
+  activation_->reserve(work_.candidates.capacity());
+  solver_->reserve(static_cast<int>(work_.variables()), static_cast<int>(work_.planes.capacity()) +
+                                                            static_cast<int>(work_.extra_rows()));
+}
+
+void MotionConstraint::set_options(const StepOptions& options) {
+  require_in_range(options);
+  require_margin(options);
+  options_ = options;
+}
+
+/// That rounding leaves something of the margin.
+void MotionConstraint::require_margin(const StepOptions& options) {
   // At the tip nearest to the origin that there can be, where rounding is least.
   const Vec3 tip = mesh_->bounds().low.cwiseMax(Vec3::Zero()).cwiseMin(mesh_->bounds().high);
   const Surroundings around =
-      surroundings_of({.tip = tip, .desired = Vec3::Zero()}, options_, activation_->reach());
+      surroundings_of({.tip = tip, .desired = Vec3::Zero()}, options, activation_->reach());
   work_.planes.clear();
   if (activation_->start(around, work_.planes).stance == Opening::Stance::no_margin) {
     throw Error(
@@ -72,9 +90,6 @@ MotionConstraint::MotionConstraint(std::shared_ptr<const Mesh> mesh,
         "tool radius and margin together, must be well above 1e-9 of the longest edge and "
         "of the radius");
   }
-  activation_->reserve(work_.candidates.capacity());
-  solver_->reserve(static_cast<int>(work_.variables()), static_cast<int>(work_.planes.capacity()) +
-                                                            static_cast<int>(work_.extra_rows()));
 }
 
 Step MotionConstraint::step(const Motion& motion) noexcept { return step(motion, sides_); }

@@ -79,7 +79,12 @@ class MotionConstraint {
   /// How it behaves: radius, tool radius and margin, among others.
   const StepOptions& options() const noexcept { return options_; }
 
+  /// Behaves so from the next step on. Where the last step led is remembered. Throws Error, and
+  /// changes nothing, for options that the constructor would refuse.
+  void set_options(const StepOptions& options);
+
  private:
+  void require_margin(const StepOptions& options);
   void tell_distance(const Vec3& tip, Step& step) noexcept;
 
   std::shared_ptr<const Mesh> mesh_;
