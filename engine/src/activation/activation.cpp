@@ -6,8 +6,20 @@
 
 namespace keepout {
 
+Ball ends_of_motions(const Surroundings& around) noexcept {
+  if (around.searched == Reach::sphere) return {around.tip, around.longest};
+  // Projections of the aim on a convex set that holds 0 lie in the ball over it (Thales).
+  return {around.tip + 0.5 * around.aim, 0.5 * around.aim.norm()};
+}
+
 Ball Activation::region(const Surroundings& around) const noexcept {
-  return {around.tip, around.longest + around.margin};
+  Ball ball = ends_of_motions(around);
+  ball.radius += around.margin;
+  return ball;
+}
+
+bool Activation::look_around(const Surroundings& around) noexcept {
+  return near_->look(region(around));
 }
 
 Judgement Activation::judge(const Surroundings& around, const Vec3& trial,

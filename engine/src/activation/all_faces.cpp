@@ -11,7 +11,7 @@ namespace keepout {
 AllFaces::AllFaces(std::shared_ptr<const Mesh> mesh) : mesh_(std::move(mesh)) {}
 
 Opening AllFaces::start(const Surroundings& around, HalfSpaceBuffer& planes) noexcept {
-  for (const Hit& hit : around.hits) {
+  for (const Hit& hit : hits()) {
     const Vec3 normal = mesh_->normal(hit.triangle);
     if (normal.isZero(0.0) || !on_positive_side(around, hit, normal)) continue;
     planes.push(plane_through(hit, normal, around.margin));

@@ -7,8 +7,6 @@
 #include <utility>
 
 #include "keepout/activation/planes.h"
-#include "keepout/index/wide_bvh.h"
-#include "paper_search.h"
 
 namespace keepout {
 namespace {
@@ -31,13 +29,8 @@ struct EdgesAt {
 PaperRule::PaperRule(std::shared_ptr<const Mesh> mesh)
     : mesh_(std::move(mesh)), adjacency_(std::make_shared<const Adjacency>(*mesh_)) {}
 
-std::unique_ptr<Activation> PaperRule::searching(const SpatialIndex& index) const {
-  const auto* const tree = dynamic_cast<const WideBvh*>(&index);
-  return tree != nullptr ? std::make_unique<PaperSearch>(*this, *tree) : nullptr;
-}
-
 Opening PaperRule::start(const Surroundings& around, HalfSpaceBuffer& planes) noexcept {
-  for (const Hit& hit : around.hits) {
+  for (const Hit& hit : hits()) {
     if (const std::optional<HalfSpace> plane = plane_of(around, hit)) planes.push(*plane);
   }
   return {};

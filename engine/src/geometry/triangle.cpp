@@ -17,4 +17,10 @@ Vec3 unit_normal(const Triangle& triangle) noexcept {
   return normal / (order.odd ? -length : length);
 }
 
+Triangle ordered_relative(const Triangle& triangle, const Vec3& tip) noexcept {
+  const CornerOrder order = corner_order(triangle);
+  return {triangle[order.corner[0]] - tip, triangle[order.corner[1]] - tip,
+          triangle[order.corner[2]] - tip};
+}
+
 }  // namespace keepout

@@ -6,9 +6,12 @@
 #include <limits>
 #include <utility>
 
+#include "cycle.h"
+#include "input.h"
 #include "keepout/error.h"
 #include "keepout/index/nearest.h"
 #include "keepout/mesh/watertight.h"
+#include "way_out.h"
 
 namespace keepout {
 namespace {
@@ -21,18 +24,24 @@ void require_in_range(const StepOptions& options) {
   }
 }
 
-/// No query finds more triangles than there are. Throws before any memory is asked for.
-Capacity fitted(Capacity capacity, const Mesh* mesh, const StepOptions& options) {
-  constexpr std::size_t most = std::numeric_limits<int>::max();
-  if (mesh == nullptr) {
+std::unique_ptr<Neighborhood> neighborhood_of(std::shared_ptr<const Mesh> mesh,
+                                              std::shared_ptr<const SpatialIndex> index,
+                                              const Activation* activation, const Solver* solver,
+                                              const Capacity& capacity) {
+  if (!mesh || !index || activation == nullptr || solver == nullptr) {
     throw Error("a motion constraint needs a mesh, an index, an activation rule and a solver");
   }
+  return std::make_unique<Neighborhood>(std::move(mesh), std::move(index), capacity.triangles);
+}
+
+/// Throws before any memory is asked for.
+Capacity checked(Capacity capacity, const StepOptions& options) {
+  require_in_range(options);
+  constexpr std::size_t most = std::numeric_limits<int>::max();
   if (capacity.planes > most / 2 || capacity.variables > most || capacity.extra_rows > most / 2) {
     throw Error("a capacity of more than 2^30 planes or rows cannot be held");
   }
-  require_in_range(options);
   capacity.nodes = std::max(capacity.nodes, static_cast<std::size_t>(std::max(options.nodes, 0)));
-  capacity.triangles = std::min(capacity.triangles, mesh->triangle_count());
   return capacity;
 }
 
@@ -43,48 +52,51 @@ MotionConstraint::MotionConstraint(std::shared_ptr<const Mesh> mesh,
                                    std::unique_ptr<Activation> activation,
                                    std::unique_ptr<Solver> solver, const StepOptions& options,
                                    const Capacity& capacity, Inside inside)
-    : mesh_(std::move(mesh)),
-      index_(std::move(index)),
+    : near_(neighborhood_of(mesh, std::move(index), activation.get(), solver.get(), capacity)),
       activation_(std::move(activation)),
       solver_(std::move(solver)),
       options_(options),
-      work_(fitted(capacity, mesh_.get(), options_)),
-      polytope_(mesh_, work_.candidates.capacity()),
-      polytope_planes_(std::max(work_.planes.capacity(), planes_to_hold_still)),
-      watch_(inside == Inside::led_out && is_watertight(*mesh_)),
+      most_nodes_(checked(capacity, options).nodes),
+      work_(std::make_unique<Workspace>(checked(capacity, options), *solver_)),
+      polytope_(mesh, near_->room()),
+      polytope_planes_(std::max(work_->planes.capacity(), planes_to_hold_still)),
+      watch_(inside == Inside::led_out && is_watertight(*mesh)),
       sides_(new_watch()) {
-  if (!index_ || !activation_ || !solver_) {
-    throw Error("a motion constraint needs a mesh, an index, an activation rule and a solver");
-  }
-  if (options_.searching) {
-    if (auto faster = activation_->searching(*index_)) activation_ = std::move(faster);
-  }
-  if (inside == Inside::led_out && activation_->guarded() != Guarded::tip) {
+  if (inside == Inside::led_out && activation_->guards_a_tool()) {
     throw Error(
         "a tip that starts inside is led out without regard to the rest of a tool: with a rule "
-        "that "
-        "guards a whole tool, ask for Inside::taken_as_is");
+        "that guards a whole tool, ask for Inside::taken_as_is");
   }
-  require_margin(options_);
-  activation_->reserve(work_.candidates.capacity());
-  solver_->reserve(static_cast<int>(work_.variables()), static_cast<int>(work_.planes.capacity()) +
-                                                            static_cast<int>(work_.extra_rows()));
+  activation_->prepare(*near_);
+  solver_->reserve(static_cast<int>(std::max<std::size_t>(capacity.variables, 3)),
+                   static_cast<int>(capacity.planes + capacity.extra_rows));
+  require_usable(options_);
 }
 
+MotionConstraint::MotionConstraint(MotionConstraint&&) noexcept = default;
+MotionConstraint& MotionConstraint::operator=(MotionConstraint&&) noexcept = default;
+MotionConstraint::~MotionConstraint() = default;
+
 void MotionConstraint::set_options(const StepOptions& options) {
-  require_in_range(options);
-  require_margin(options);
+  require_usable(options);
   options_ = options;
 }
 
-/// That rounding leaves something of the margin.
-void MotionConstraint::require_margin(const StepOptions& options) {
+/// In range, and so that rounding leaves something of the margin.
+void MotionConstraint::require_usable(const StepOptions& options) {
+  require_in_range(options);
+  if (static_cast<std::size_t>(options.nodes) > most_nodes_) {
+    throw Error("more nodes than room was made for: see Capacity::nodes");
+  }
   // At the tip nearest to the origin that there can be, where rounding is least.
-  const Vec3 tip = mesh_->bounds().low.cwiseMax(Vec3::Zero()).cwiseMin(mesh_->bounds().high);
+  const Box& bounds = mesh().bounds();
+  const Vec3 tip = bounds.low.cwiseMax(Vec3::Zero()).cwiseMin(bounds.high);
   const Surroundings around =
       surroundings_of({.tip = tip, .desired = Vec3::Zero()}, options, activation_->reach());
-  work_.planes.clear();
-  if (activation_->start(around, work_.planes).stance == Opening::Stance::no_margin) {
+  work_->planes.clear();
+  const bool fits = activation_->look_around(around);
+  const Opening opening = activation_->start(around, work_->planes);
+  if (fits && opening.status == Status::margin_too_small) {
     throw Error(
         "the margin is too small for a mesh and a radius of this size: the distance kept, "
         "tool radius and margin together, must be well above 1e-9 of the longest edge and "
@@ -92,48 +104,54 @@ void MotionConstraint::require_margin(const StepOptions& options) {
   }
 }
 
-Step MotionConstraint::step(const Motion& motion) noexcept { return step(motion, sides_); }
+Step MotionConstraint::step(const Motion& motion) noexcept { return step(motion, sides_, nullptr); }
 
 Step MotionConstraint::step(const Motion& motion, StageTimes& times) noexcept {
-  Step result = keepout::step(sides_, *mesh_, *index_, *activation_, *solver_, motion, options_,
-                              work_, StageClock(times));
-  if (options_.distances == Distances::always) tell_distance(motion.tip, result);
-  return result;
+  return step(motion, sides_, &times);
 }
 
 Step MotionConstraint::step(const Motion& motion, SideWatch& sides) noexcept {
-  Step result =
-      keepout::step(sides, *mesh_, *index_, *activation_, *solver_, motion, options_, work_);
-  if (options_.distances == Distances::always) tell_distance(motion.tip, result);
+  return step(motion, sides, nullptr);
+}
+
+Step MotionConstraint::step(const Motion& motion, SideWatch& sides, StageTimes* times) noexcept {
+  if (times != nullptr) *times = {};
+  Step result{.status = check(motion, options_)};
+  // What is refused says nothing of where the tip is.
+  if (is_ok(result.status)) result = step_as_checked(motion, sides, times);
+  const bool is_asked = options_.distances == Distances::always && !result.distance;
+  if (is_asked && result.status != Status::invalid_input) {
+    const auto nearest =
+        find_nearest(near_->mesh(), near_->index(), motion.tip, 0.0, near_->candidates());
+    if (nearest) result.distance = nearest->closest.distance;
+  }
   return result;
 }
 
-void MotionConstraint::tell_distance(const Vec3& tip, Step& step) noexcept {
-  if (step.distance || step.status == Status::invalid_input) return;
-  if (const auto nearest = find_nearest(*mesh_, *index_, tip, 0.0, work_.candidates)) {
-    step.distance = nearest->closest.distance;
+/// A tip on the forbidden side is led out; any other steps as the rule allows.
+Step MotionConstraint::step_as_checked(const Motion& motion, SideWatch& sides,
+                                       StageTimes* times) noexcept {
+  if (sides.has_to_place(motion.tip)) {
+    if (const auto out = step_from_inside(*near_, motion, options_, *work_)) return *out;
   }
+  const Step result = Cycle(*activation_, *solver_, *work_, options_, motion, times).run();
+  if (result.status == Status::touching && sides.is_on()) {
+    if (const auto off = step_off_surface(*near_, motion, options_, *work_)) return *off;
+  }
+  sides.after(motion, result, options_);
+  return result;
 }
 
 Polytope MotionConstraint::free_polytope(const Vec3& tip, double radius) noexcept {
-  if (activation_->guarded() != Guarded::tip) {
-    hold_still(polytope_planes_);
-    return {PolytopeStatus::whole_tool, polytope_planes_.view()};
+  PolytopeStatus status = PolytopeStatus::whole_tool;
+  if (!activation_->guards_a_tool()) {
+    // What is no number finds nothing, and is refused there.
+    const double kept = distance_kept(options_);
+    const bool fits = near_->look({tip, radius + kept}) || !near_->candidates().overflowed();
+    status = fits ? polytope_.around(tip, radius, kept, near_->hits(), polytope_planes_)
+                  : PolytopeStatus::over_capacity;
   }
-  const Ball ball{tip, radius + distance_kept(options_)};
-  work_.candidates.clear();
-  work_.hits.clear();
-  // What is no number finds nothing, and is refused there.
-  if (tip.allFinite() && ball.radius >= 0.0) {
-    index_->collect(ball, work_.candidates);
-    if (work_.candidates.overflowed()) {
-      hold_still(polytope_planes_);
-      return {PolytopeStatus::over_capacity, polytope_planes_.view()};
-    }
-    refine(*mesh_, ball, work_.candidates.view(), work_.hits);
-  }
-  const PolytopeStatus status =
-      polytope_.around(tip, radius, distance_kept(options_), work_.hits.view(), polytope_planes_);
+  if (status != PolytopeStatus::found) hold_still(polytope_planes_);
   return {status, polytope_planes_.view()};
 }
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "keepout/step/placement.h"
+#include "placement.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -102,7 +102,7 @@ std::optional<Placement> place(const Mesh& mesh, const SpatialIndex& index, cons
   const Vec3 nearer = tip.cwiseMax(mesh.bounds().low - room).cwiseMin(mesh.bounds().high + room);
   if (nearer != tip) {
     auto placement = place(mesh, index, nearer, candidates);
-    if (!placement || placement->side == Placement::Side::free) return placement;
+    if (!placement || placement->is_free) return placement;
     const std::optional<Hit> hit = find_nearest(mesh, index, tip, 0.0, candidates);
     if (!hit) return std::nullopt;
     placement->distance = hit->closest.distance;
@@ -113,7 +113,7 @@ std::optional<Placement> place(const Mesh& mesh, const SpatialIndex& index, cons
   const double rounding = 1e-15 * size;
   const auto nearest = look_around(mesh, index, tip, rounding, candidates);
   if (!nearest) return std::nullopt;
-  Placement placement{Placement::Side::forbidden, 0.0, nearest->normal, nearest->normal};
+  Placement placement{false, 0.0, nearest->normal, nearest->normal};
   if (nearest->distance <= 1e3 * rounding) return placement;
   placement.distance = nearest->distance;
 
@@ -133,8 +133,8 @@ std::optional<Placement> place(const Mesh& mesh, const SpatialIndex& index, cons
     if (are_slivers_asked || !is_sliver(triangle))
       first = std::min(first, met_at(triangle, tip, way));
   }
-  double facing =
-      0.0;  // > 0: the back of what is met first; at an edge, of what faces the tip more
+  // Above 0: the back of what is met first; at an edge, of what faces the tip more.
+  double facing = 0.0;
   for (const TriangleId t : candidates) {
     const Triangle triangle = mesh.triangle(t);
     if (!are_slivers_asked && is_sliver(triangle)) continue;
@@ -143,7 +143,7 @@ std::optional<Placement> place(const Mesh& mesh, const SpatialIndex& index, cons
     if (std::abs(side) > std::abs(facing)) facing = side;
   }
   if (facing == 0.0) facing = unit_normal(faced).dot(way);
-  placement.side = facing > 0.0 ? Placement::Side::forbidden : Placement::Side::free;
+  placement.is_free = !(facing > 0.0);
   placement.way_out = (facing > 0.0 ? 1.0 : -1.0) * nearest->offset / nearest->distance;
   return placement;
 }
@@ -163,7 +163,7 @@ Vec3 lead_out(const Mesh& mesh, const SpatialIndex& index, const Vec3& tip,
   const auto consider = [&](const Vec3& motion) {
     if (most >= 0.5 * off) return;
     const auto there = place(mesh, index, tip + motion, candidates);
-    if (!there || there->side != Placement::Side::free || there->distance <= most) return;
+    if (!there || !there->is_free || there->distance <= most) return;
     most = there->distance;
     best = motion;
   };

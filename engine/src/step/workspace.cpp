@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "keepout/step/workspace.h"
+#include "workspace.h"
 
 #include <algorithm>
 #include <array>
@@ -17,15 +17,14 @@ constexpr std::size_t most_ways = 5;
 
 }  // namespace
 
-Workspace::Workspace(const Capacity& capacity)
-    : candidates(capacity.triangles),
-      hits(capacity.triangles),
-      planes(capacity.planes),
+Workspace::Workspace(const Capacity& capacity, const Solver& solver)
+    : planes(capacity.planes),
       earlier_planes(capacity.planes),
       ways(most_ways),
       branches(most_ways * capacity.nodes + 1),
       variables_(static_cast<Eigen::Index>(std::max<std::size_t>(capacity.variables, 3))),
       extra_rows_(static_cast<Eigen::Index>(capacity.extra_rows)),
+      writes_planes_(!solver.reads_planes()),
       jacobian_(3 * static_cast<std::size_t>(variables_)),
       rows_((capacity.planes + capacity.extra_rows) * static_cast<std::size_t>(variables_)),
       bounds_(capacity.planes + capacity.extra_rows),
@@ -33,8 +32,12 @@ Workspace::Workspace(const Capacity& capacity)
               Buffer<std::uint32_t>(capacity.planes + capacity.extra_rows)},
       earlier_answer_(answer_) {}
 
-StepProblem Workspace::pose(const Motion& motion, const Vec3& aim, double damping,
-                            PlaneRows plane_rows) noexcept {
+bool Workspace::has_room_for(const Motion& motion) const noexcept {
+  return (!motion.jacobian || motion.jacobian->joints() <= variables_) &&
+         (!motion.rows || motion.rows->count() <= extra_rows_);
+}
+
+StepProblem Workspace::pose(const Motion& motion, const Vec3& aim, double damping) noexcept {
   const Eigen::Index n = motion.jacobian ? motion.jacobian->joints() : 3;
   const double* jacobian = identity.data();
   if (motion.jacobian) {
@@ -44,20 +47,9 @@ StepProblem Workspace::pose(const Motion& motion, const Vec3& aim, double dampin
       jacobian = jacobian_.data();
     }
   }
+  if (writes_planes_) write_rows_of_planes(motion.jacobian ? jacobian : nullptr, n);
   const auto m = static_cast<Eigen::Index>(planes.size());
   const Eigen::Index extra = motion.rows ? motion.rows->count() : 0;
-  if (plane_rows == PlaneRows::written) {
-    for (Eigen::Index p = 0; p < m; ++p) {
-      const HalfSpace& plane = planes[static_cast<std::size_t>(p)];
-      double* row = rows_.data() + p * n;
-      if (motion.jacobian) {
-        write_row(plane.normal, jacobian, n, row);
-      } else {
-        std::copy_n(plane.normal.data(), 3, row);
-      }
-      bounds_[static_cast<std::size_t>(p)] = plane.offset;
-    }
-  }
   if (extra > 0) {
     std::copy_n(motion.rows->matrix(), extra * n, rows_.data() + m * n);
     std::copy_n(motion.rows->bounds(), extra, bounds_.data() + m);
@@ -71,20 +63,31 @@ StepProblem Workspace::pose(const Motion& motion, const Vec3& aim, double dampin
           .planes = planes.view()};
 }
 
-void Workspace::note(const Solution& answer, double share) noexcept {
-  answer_.increment.clear();
-  for (const double u : answer.u) answer_.increment.push(share * u);
-  answer_.active.assign(answer.active);
+/// Without a Jacobian they are the normals themselves.
+void Workspace::write_rows_of_planes(const double* jacobian, Eigen::Index variables) noexcept {
+  double* row = rows_.data();
+  for (std::size_t p = 0; p < planes.size(); ++p, row += variables) {
+    if (jacobian != nullptr) {
+      write_row(planes[p].normal, jacobian, variables, row);
+    } else {
+      std::copy_n(planes[p].normal.data(), 3, row);
+    }
+    bounds_[p] = planes[p].offset;
+  }
 }
 
-void Workspace::note(const Solution& answer, const Vec3& increment) noexcept {
-  answer_.increment.assign({increment.data(), 3});
-  answer_.active.assign(answer.active);
+void Workspace::note(const Motion& motion, const Vec3& tip_motion, double share) noexcept {
+  answer_.increment.clear();
+  if (motion.jacobian) {
+    for (const double u : solution.u) answer_.increment.push(share * u);
+  } else {
+    answer_.increment.assign({tip_motion.data(), 3});
+  }
+  answer_.active.assign(solution.active);
 }
 
 void Workspace::set_aside() noexcept {
-  std::swap(planes, earlier_planes);
-  std::swap(answer_, earlier_answer_);
+  take_back();
   planes.clear();
 }
 

@@ -2,17 +2,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <concepts>
+#include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <span>
 
 #include "keepout/buffer.h"
 #include "keepout/geometry/ball.h"
 #include "keepout/geometry/half_space.h"
-#include "keepout/index/refine.h"
-#include "keepout/index/spatial_index.h"
+#include "keepout/index/neighborhood.h"
+#include "keepout/step/status.h"
 
 namespace keepout {
 
@@ -25,43 +24,32 @@ enum class Reach : std::uint8_t {
   sphere   // anywhere in the motion sphere: with joints, or rows of the caller's own
 };
 
-/// Which of its planes a rule is to hand over.
-enum class NeededPlanes : std::uint8_t {
-  all,
-  in_the_way  // those idle may be left out that no projection of the aim can violate
+/// What a rule decides from: the tip, where it shall go, and how far.
+struct Surroundings {
+  Vec3 tip;           // [length]
+  Vec3 aim;           // increment that is wanted: the one asked for, or the way out [length]
+  Vec3 kept;          // a motion that planes shall go on allowing; zero at first [length]
+  double radius;      // of the motion sphere [length]
+  double longest;     // no motion is longer: the radius, or less [length]
+  double margin;      // distance to keep from the mesh [length], >= 0
+  double recovery;    // how far to lead a tip away in a cycle that is too close [length]
+  double rounding;    // what the tip may be off by after earlier steps [length]
+  Reach reach;        // where motions may end
+  Reach searched;     // what the region is to cover: as much, or more
+  bool is_projected;  // the answer is the projection of the aim on the planes, by a solver on which
+                      // idle planes have no bearing: a rule need not hand them over
 };
 
-/// What a rule decides from: the tip, where it shall go, and every triangle in reach of the motion.
-struct Surroundings {
-  Vec3 tip;             // [length]
-  Vec3 aim;             // increment that is wanted: the one asked for, or the way out [length]
-  Vec3 kept;            // a motion that planes shall go on allowing; zero at first [length]
-  double radius;        // of the motion sphere [length]
-  double longest;       // no motion is longer: the radius, or less [length]
-  double margin;        // distance to keep from the mesh [length], >= 0
-  double recovery;      // how far to lead a tip away in a cycle that is too close [length]
-  double rounding;      // what the tip may be off by after earlier steps [length]
-  Reach reach;          // where motions may end
-  Reach searched;       // what the region is to cover: as much, or more
-  NeededPlanes needed;  // which planes the rule is to hand over
-  Ball ball;            // what the rule asked for: see Activation::region
-  std::span<const Hit> hits;  // in that ball, sorted by id; relative to the ball's centre
-};
+/// Where motions may end, as a ball around a part of the tip's way.
+Ball ends_of_motions(const Surroundings& around) noexcept;
 
 /// How a cycle begins.
 struct Opening {
-  /// How the tip stands to the surface.
-  enum class Stance : std::uint8_t {
-    clear,         // the tip keeps its distance: go for the aim
-    too_close,     // nearer than the margin: `aim` leads away from the surface
-    touching,      // on the surface: no telling which side is free
-    no_margin,     // the margin is too small for the numbers at hand to tell
-    over_capacity  // more triangles than room was made for
-  };
-  Stance stance = Stance::clear;  // what the cycle is to do
-  Vec3 aim = Vec3::Zero();        // to go for instead, when too close [length]
-  /// From the tip to the nearest triangle, if every form of the rule comes by it at no cost.
-  /// [length]
+  /// free: go for the aim. recovering: the tip is nearer than the margin, and `aim` leads away.
+  /// Anything else ends the step.
+  Status status = Status::free;
+  Vec3 aim = Vec3::Zero();  // to go for instead, when recovering [length]
+  /// From the tip to the nearest triangle, where the rule comes by it at no cost. [length]
   std::optional<double> distance = std::nullopt;
 };
 
@@ -77,12 +65,6 @@ struct Judgement {
   double free_share = 1.0;  // how much of the trial nothing speaks against, unless accepted
 };
 
-/// What a rule keeps off the surface.
-enum class Guarded : std::uint8_t {
-  tip,  // the tip, and the ball around it that the margin makes
-  tool  // a body of its own, of which the tip is but a point
-};
-
 /// Decides which planes constrain a motion.
 ///
 /// An eager rule hands over all of its planes in `start`. A lazy one is a separation oracle, as in
@@ -93,36 +75,27 @@ class Activation {
  public:
   virtual ~Activation() = default;
 
-  /// Makes room. Allocates; everything after it does not.
-  virtual void reserve(std::size_t /*triangles*/) {}
+  /// Says where to ask for triangles, once and before all else. The neighbourhood must outlive the
+  /// rule. Allocates; everything after it does not.
+  virtual void prepare(Neighborhood& near) { near_ = &near; }
 
-  /// The same rule in a form that searches this index by itself, and faster: its answers are the
-  /// same bit for bit. Null if there is none. The index must outlive it, and stay as it is.
-  virtual std::unique_ptr<Activation> searching(const SpatialIndex& /*index*/) const {
-    return nullptr;
-  }
-
-  /// Whether it is such a form: the surroundings it is asked about need no hits.
-  virtual bool searches() const noexcept { return false; }
-
-  /// How many triangles its last answers rest on: all hits, or those that it found by itself.
-  virtual std::size_t triangles(const Surroundings& around) const noexcept {
-    return around.hits.size();
-  }
-
-  /// What else can be said of the tip alone, such as its side or free space around it, holds for
-  /// what is guarded only if that is the tip.
-  virtual Guarded guarded() const noexcept { return Guarded::tip; }
+  /// Whether it keeps off more than the tip: a tool of which the tip is but a point. What can be
+  /// said of the tip alone, as its side or free space around it, does not hold for that.
+  virtual bool guards_a_tool() const noexcept { return false; }
 
   /// How far its motions can lead when they are projections of the aim: with neither joints nor
   /// rows of the caller's own.
   virtual Reach reach() const noexcept { return Reach::sphere; }
 
-  /// Where triangles matter: the motion sphere, and as much farther as planes are set back by the
-  /// margin, unless the rule says otherwise. `around` has no hits yet.
+  /// Where triangles matter: where motions end, and as much farther as planes are set back by the
+  /// margin, unless the rule says otherwise.
   virtual Ball region(const Surroundings& around) const noexcept;
 
-  /// Appends the planes that hold whatever the trial.
+  /// Asks the index about the region. False if it holds more than there is room for, or if the
+  /// index is no longer the one that the rule was prepared for.
+  [[nodiscard]] virtual bool look_around(const Surroundings& around) noexcept;
+
+  /// Appends the planes that hold whatever the trial. Precondition: look_around.
   virtual Opening start(const Surroundings& around, HalfSpaceBuffer& planes) noexcept = 0;
 
   /// Whether the motion may be made: by default if the planes allow it, which no solver is taken
@@ -142,32 +115,21 @@ class Activation {
 
   /// Planes that each have one triangle in reach behind them and allow standing still: other ways
   /// around it than the one that `judge` answered with.
-  virtual void ways_around(const Surroundings& /*around*/, TriangleId /*source*/,
-                           HalfSpaceBuffer& /*ways*/) const noexcept {}
-};
+  virtual void ways_around(TriangleId /*source*/, HalfSpaceBuffer& /*ways*/) const noexcept {}
 
-/// What `step` needs of a rule; a final class that satisfies it is called without dispatch.
-template <class T>
-concept ActivationRule = requires(T& rule, const Surroundings& around, const Vec3& trial,
-                                  HalfSpaceBuffer& planes) {
-  { rule.searches() }
-  noexcept->std::same_as<bool>;
-  { rule.triangles(around) }
-  noexcept->std::same_as<std::size_t>;
-  { rule.reach() }
-  noexcept->std::same_as<Reach>;
-  { rule.region(around) }
-  noexcept->std::same_as<Ball>;
-  { rule.start(around, planes) }
-  noexcept->std::same_as<Opening>;
-  { rule.judge(around, trial, planes) }
-  noexcept->std::same_as<Judgement>;
-  { rule.relax(planes) }
-  noexcept->std::same_as<bool>;
-  { rule.ways_around(around, TriangleId{}, planes) }
-  noexcept;
-  { rule.turn(around, planes.view(), planes) }
-  noexcept->std::same_as<bool>;
+  /// How many triangles its last answers rest on: all hits, or those that it asked about.
+  virtual std::size_t triangles() const noexcept { return hits().size(); }
+
+ protected:
+  /// What the last look_around found; empty before it.
+  std::span<const Hit> hits() const noexcept {
+    return near_ != nullptr ? near_->hits() : std::span<const Hit>();
+  }
+  /// Where it looked. Precondition: look_around.
+  const Ball& looked_at() const noexcept { return near_->ball(); }
+
+ private:
+  Neighborhood* near_ = nullptr;
 };
 
 }  // namespace keepout

@@ -2,10 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <optional>
+#include <span>
 
 #include "keepout/activation/activation.h"
 #include "keepout/activation/facet.h"
+#include "keepout/index/motion_walk.h"
 #include "keepout/mesh/mesh.h"
 
 namespace keepout {
@@ -20,6 +24,10 @@ struct CertifiedTerms;
 /// contact, which has that triangle, grown by the margin, behind it; so each triangle is answered
 /// at most once in a round. Algorithm, proof and tolerances: docs/certified-step.md.
 ///
+/// The triangles come from the index, by a walk along each trial motion. What they mean is decided
+/// here, in double, of one triangle at a time: so the answers are the same, bit for bit, on every
+/// index, whatever it left out as surely clear.
+///
 /// Guarantee: dist(x + s dx, mesh) >= min(margin, dist(x, mesh)) - 3 tolerance for all s in [0, 1].
 class CertifiedRule final : public Activation {
  public:
@@ -27,33 +35,46 @@ class CertifiedRule final : public Activation {
   explicit CertifiedRule(std::shared_ptr<const Mesh> mesh);
   ~CertifiedRule() override;
 
-  /// On a WideBvh: CertifiedSearch.
-  std::unique_ptr<Activation> searching(const SpatialIndex& index) const override;
-
-  void reserve(std::size_t triangles) override;
+  void prepare(Neighborhood& near) override;
   Reach reach() const noexcept override { return Reach::thales; }
   Ball region(const Surroundings& around) const noexcept override;
+  bool look_around(const Surroundings& around) noexcept override;
   Opening start(const Surroundings& around, HalfSpaceBuffer& planes) noexcept override;
   Judgement judge(const Surroundings& around, const Vec3& trial,
                   HalfSpaceBuffer& planes) noexcept override;
   bool relax(HalfSpaceBuffer& planes) const noexcept override;
   bool turn(const Surroundings& around, std::span<const HalfSpace> planes,
             HalfSpaceBuffer& turned) noexcept override;
-  void ways_around(const Surroundings& around, TriangleId source,
-                   HalfSpaceBuffer& ways) const noexcept override;
+  void ways_around(TriangleId source, HalfSpaceBuffer& ways) const noexcept override;
+  std::size_t triangles() const noexcept override { return facets_.size(); }
 
   /// Distances are told apart down to this: some 1e-10 of the largest lengths at hand. It comes
   /// from the whole mesh, not from the triangles found, so that no index can change it. [length]
   double tolerance(const Surroundings& around) const noexcept;
 
  private:
+  /// The first triangle that speaks against a trial.
+  struct Meeting {
+    Contact contact{2.0, {Vec3::Zero(), 0.0, no_triangle}};  // after any trial's end: none
+    std::uint32_t facet = Encounter::no_note;                // its number
+  };
+  class FirstMeeting;
+
+  bool meet(const Vec3& trial, std::span<const HalfSpace> planes, double too_close,
+            Meeting& meeting) noexcept;
+  bool is_over_budget() const noexcept;
+  const Facet* nearest() const noexcept;
   const Facet& facet(TriangleId source) const noexcept;
 
   std::shared_ptr<const Mesh> mesh_;
-  double longest_edge_;                    // [length]
-  std::unique_ptr<CertifiedTerms> terms_;  // of this cycle
-  Buffer<Facet> facets_;                   // in reach, sorted by source
-  std::size_t proofs_ = 0;                 // asked for in this cycle
+  double longest_edge_;  // [length]
+  std::unique_ptr<MotionWalk> walk_;
+
+  // Of this cycle.
+  std::unique_ptr<CertifiedTerms> terms_;
+  bool aim_is_free_ = false;       // nothing comes near the motion asked for
+  std::optional<Meeting> at_aim_;  // what it meets, planes apart, where that is known
+  Buffer<Facet> facets_;           // that were asked about
 };
 
 }  // namespace keepout

@@ -39,8 +39,8 @@ class ConvexToolRule final : public Activation {
   ConvexToolRule(std::shared_ptr<const Mesh> mesh, ConvexTool tool,
                  std::unique_ptr<NarrowPhase> narrow_phase = nullptr);
 
-  void reserve(std::size_t triangles) override;
-  Guarded guarded() const noexcept override { return Guarded::tool; }
+  void prepare(Neighborhood& near) override;
+  bool guards_a_tool() const noexcept override { return true; }
   Reach reach() const noexcept override { return Reach::thales; }
   Ball region(const Surroundings& around) const noexcept override;
   Opening start(const Surroundings& around, HalfSpaceBuffer& planes) noexcept override;

@@ -12,10 +12,6 @@
 
 namespace keepout {
 
-/// The corners of a triangle in lexicographic order, relative to the tip. Ordered before the tip is
-/// taken off, whose rounding could make different coordinates equal.
-Triangle ordered_relative(const Triangle& triangle, const Vec3& tip) noexcept;
-
 /// max n . p over the points p of a triangle. [length]
 inline double support(const Triangle& corners, const Vec3& n) noexcept {
   return std::max({n.dot(corners[0]), n.dot(corners[1]), n.dot(corners[2])});
@@ -137,6 +133,13 @@ class Facet {
 /// rounding of lengths. [length]
 std::optional<Vec3> proof_of_clearance(const Facet& facet, const Vec3& z, double level,
                                        double slack) noexcept;
+
+/// Whether the plane across the way from the tip to the facet is such a proof, which is told
+/// soonest.
+inline bool clears_at_once(const Facet& facet, const Vec3& z, double level, double slack) noexcept {
+  const double at_0 = -facet.at_tip().support - level;
+  return at_0 >= -slack && at_0 + facet.normal().dot(z) >= -slack;
+}
 
 /// Whether there is such a proof: see proof_of_clearance.
 inline bool keeps_clear(const Facet& facet, const Vec3& z, double level, double slack) noexcept {

@@ -35,12 +35,9 @@ class PaperRule final : public Activation {
   /// The neighbours that its conditions are about.
   const Adjacency& adjacency() const noexcept { return *adjacency_; }
 
-  /// For a WideBvh.
-  std::unique_ptr<Activation> searching(const SpatialIndex& index) const override;
-
   Opening start(const Surroundings& around, HalfSpaceBuffer& planes) noexcept override;
 
-  /// The plane that one triangle calls for, if it does. Does not ask around.hits.
+  /// The plane that one triangle calls for, if it does. Asks no hits.
   std::optional<HalfSpace> plane_of(const Surroundings& around, const Hit& hit) const noexcept;
 
  private:

@@ -15,4 +15,8 @@ using Triangle = std::array<Vec3, 3>;
 /// Unit normal by the right-hand rule; zero for a triangle without an area.
 Vec3 unit_normal(const Triangle& triangle) noexcept;
 
+/// The corners of a triangle in lexicographic order, relative to the tip. Ordered before the tip is
+/// taken off, whose rounding could make different coordinates equal.
+Triangle ordered_relative(const Triangle& triangle, const Vec3& tip) noexcept;
+
 }  // namespace keepout

@@ -2,12 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <concepts>
 #include <cstddef>
+#include <memory>
 
 #include "keepout/buffer.h"
 #include "keepout/geometry/ball.h"
 #include "keepout/ids.h"
+#include "keepout/index/motion_walk.h"
 
 namespace keepout {
 
@@ -33,14 +34,12 @@ class SpatialIndex {
   /// Thread-safe. Precondition: the point is finite.
   virtual TriangleId nearest(const Vec3& /*point*/) const noexcept { return no_triangle; }
 
+  /// A walk of its own along motions, which asks about far fewer triangles than are near; null of
+  /// an index that has none: see make_motion_walk. The index must outlive it.
+  virtual std::unique_ptr<MotionWalk> walk_along_motions() const { return nullptr; }
+
   /// Memory that the index holds beside the mesh. [bytes]
   virtual std::size_t memory() const noexcept = 0;
-};
-
-/// What `step` needs of an index; a final class that satisfies it is called without dispatch.
-template <class T>
-concept Index = requires(const T& index, const Ball& ball, TriangleBuffer& candidates) {
-  requires noexcept(index.collect(ball, candidates));
 };
 
 }  // namespace keepout

@@ -80,6 +80,9 @@ class WideBvh final : public SpatialIndex {
   /// By branch and bound: however far off the point is, few triangles are asked about.
   TriangleId nearest(const Vec3& point) const noexcept override;
 
+  /// Through the boxes along the motion, to the first triangle in its way.
+  std::unique_ptr<MotionWalk> walk_along_motions() const override;
+
   bool is_exact() const noexcept override { return true; }
   std::size_t memory() const noexcept override;
 

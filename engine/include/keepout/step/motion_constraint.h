@@ -11,10 +11,15 @@
 #include "keepout/activation/free_polytope.h"
 #include "keepout/index/spatial_index.h"
 #include "keepout/mesh/mesh.h"
+#include "keepout/step/motion.h"
+#include "keepout/step/options.h"
 #include "keepout/step/side_watch.h"
-#include "keepout/step/step.h"
+#include "keepout/step/solver.h"
+#include "keepout/step/stage_times.h"
 
 namespace keepout {
+
+class Workspace;
 
 /// What becomes of a tip that starts on the forbidden side. For the certified rule.
 enum class Inside : std::uint8_t {
@@ -33,8 +38,12 @@ struct Polytope {
   std::string_view reason() const noexcept { return keepout::reason(status); }
 };
 
-/// Keeps a tool tip out of a mesh: owns an index, a rule, a solver and their memory, by whatever
-/// names they were made. Not thread-safe: one for each control loop; the mesh is shared.
+/// Keeps a tool tip out of a mesh: puts an index, a rule and a solver together, with their memory.
+/// Whatever steps does so through here: what is tested, timed and attacked is what runs.
+///
+///     mesh -> index -> candidates -> exact hits -> planes -> problem -> step
+///
+/// Not thread-safe: one for each control loop; mesh and index may be shared.
 ///
 /// A tip that the last step did not lead to is placed anew: on a watertight mesh its side is found
 /// by the winding. From there on no certified step changes sides.
@@ -48,8 +57,13 @@ class MotionConstraint {
                    std::unique_ptr<Activation> activation, std::unique_ptr<Solver> solver,
                    const StepOptions& options, const Capacity& capacity = {},
                    Inside inside = Inside::taken_as_is);
+  MotionConstraint(MotionConstraint&&) noexcept;
+  MotionConstraint& operator=(MotionConstraint&&) noexcept;
+  ~MotionConstraint();
 
-  /// The nearest motion that the rule allows. The result's views stay valid until the next step.
+  /// The nearest motion that the rule allows: one control cycle. The result's views stay valid
+  /// until the next step. Allocates nothing, throws nothing. On any trouble the motion is zero and
+  /// the status says why.
   Step step(const Motion& motion) noexcept;
 
   /// The same, and what each stage took; not so looking for a distance, see Distances::always.
@@ -74,25 +88,27 @@ class MotionConstraint {
   void forget() noexcept { sides_.forget(); }
 
   /// What the tip is kept out of.
-  const Mesh& mesh() const noexcept { return *mesh_; }
+  const Mesh& mesh() const noexcept { return near_->mesh(); }
 
   /// How it behaves: radius, tool radius and margin, among others.
   const StepOptions& options() const noexcept { return options_; }
 
   /// Behaves so from the next step on. Where the last step led is remembered. Throws Error, and
-  /// changes nothing, for options that the constructor would refuse.
+  /// changes nothing, for options that the constructor would refuse, or for more nodes than there
+  /// is room for.
   void set_options(const StepOptions& options);
 
  private:
-  void require_margin(const StepOptions& options);
-  void tell_distance(const Vec3& tip, Step& step) noexcept;
+  Step step(const Motion& motion, SideWatch& sides, StageTimes* times) noexcept;
+  Step step_as_checked(const Motion& motion, SideWatch& sides, StageTimes* times) noexcept;
+  void require_usable(const StepOptions& options);
 
-  std::shared_ptr<const Mesh> mesh_;
-  std::shared_ptr<const SpatialIndex> index_;
+  std::unique_ptr<Neighborhood> near_;  // the rule holds on to it, wherever this is moved
   std::unique_ptr<Activation> activation_;
   std::unique_ptr<Solver> solver_;
   StepOptions options_;
-  Workspace work_;
+  std::size_t most_nodes_;
+  std::unique_ptr<Workspace> work_;
   FreePolytope polytope_;
   HalfSpaceBuffer polytope_planes_;
   bool watch_;  // whether sides are asked about

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 namespace keepout {
@@ -33,7 +34,6 @@ struct StepOptions {
   int nodes = 0;           // of a branch and bound for a better motion still; 0: none, >= 0
   Query query = Query::motion;                   // how far around the tip triangles are looked for
   Distances distances = Distances::where_known;  // see Step::distance
-  bool searching = true;  // whether a rule may search the index by itself: the same, but faster
 };
 
 /// From the tip to the surface: tool radius and margin. [length]
@@ -45,5 +45,17 @@ constexpr double distance_kept(const StepOptions& options) noexcept {
 constexpr double reach(const StepOptions& options) noexcept {
   return options.radius * (1.0 + 1e-9);
 }
+
+/// Room for the largest step that shall be solved; a step that needs more ends with over_capacity.
+struct Capacity {
+  /// Candidates of one query. An index that walks along motions by itself makes no such query for
+  /// the certified rule and does not heed it; it has budgets of its own: 4096 triangles asked about
+  /// in double, and 131072 looks at leaves a cycle.
+  std::size_t triangles = std::size_t{1} << 16;
+  std::size_t planes = std::size_t{1} << 14;  // that a rule may pose at the same time
+  std::size_t variables = 7;                  // columns of the Jacobian, or 3 without one
+  std::size_t extra_rows = 64;                // of the caller's own
+  std::size_t nodes = 0;                      // of the branch and bound
+};
 
 }  // namespace keepout

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <concepts>
 #include <cstdint>
 #include <span>
 #include <string_view>
@@ -43,38 +42,15 @@ class Solver {
   /// Makes room. Allocates; everything after it does not.
   virtual void reserve(int variables, int rows) = 0;
 
-  /// Whether rows that no iterate violates have no bearing on the answer, not even on its last bit,
-  /// and all iterates for the nearest point to d are projections of d on some of the rows: so it is
-  /// with a dual active-set method.
-  virtual bool skips_idle_rows() const noexcept { return false; }
-
   /// The u of least cost that satisfies all rows. Fills `solution` when optimal; otherwise what is
   /// in it may not be used. More variables or rows than reserved: `over_capacity`.
   virtual SolveStatus solve(const StepProblem& problem, Solution& solution) noexcept = 0;
 
-  /// Whether it takes rows that come from planes from the planes, so that they need not be written.
+  /// Whether it takes rows that come from planes from StepProblem::planes, so that they need not be
+  /// written; and whether planes that no iterate violates have no bearing on the answer, not even
+  /// on its last bit, while all iterates for the point nearest to d are its projections on some of
+  /// them. So it is with a dual active-set method.
   virtual bool reads_planes() const noexcept { return false; }
 };
-
-/// What `step` needs of a solver; a final class that satisfies it is called without dispatch.
-template <class T>
-concept QpSolver = requires(T& solver, const StepProblem& problem, Solution& solution) {
-  requires noexcept(solver.solve(problem, solution));
-  { solver.solve(problem, solution) } -> std::same_as<SolveStatus>;
-};
-
-/// The same of any solver; one that does not say reads rows.
-template <QpSolver S>
-bool reads_planes(const S& solver) noexcept {
-  if constexpr (requires { solver.reads_planes(); }) return solver.reads_planes();
-  return false;
-}
-
-/// The same of any solver; one that does not say does not skip them.
-template <QpSolver S>
-bool skips_idle_rows(const S& solver) noexcept {
-  if constexpr (requires { solver.skips_idle_rows(); }) return solver.skips_idle_rows();
-  return false;
-}
 
 }  // namespace keepout

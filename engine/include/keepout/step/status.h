@@ -5,8 +5,6 @@
 #include <cstdint>
 #include <string_view>
 
-#include "keepout/step/solver.h"
-
 namespace keepout {
 
 /// How a step ended. The first four come with a motion, which may be carried out and may be zero;
@@ -35,8 +33,5 @@ std::string_view name(Status status) noexcept;
 
 /// One line on what happened and what to do about it.
 std::string_view reason(Status status) noexcept;
-
-/// What a failed solve means for the step. Precondition: not optimal.
-Status status_of(SolveStatus failure) noexcept;
 
 }  // namespace keepout

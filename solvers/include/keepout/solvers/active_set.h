@@ -27,7 +27,6 @@ class ActiveSet final : public Solver {
   ~ActiveSet() override;
 
   void reserve(int variables, int rows) override;
-  bool skips_idle_rows() const noexcept override { return true; }
   SolveStatus solve(const StepProblem& problem, Solution& solution) noexcept override;
   bool reads_planes() const noexcept override { return true; }
 

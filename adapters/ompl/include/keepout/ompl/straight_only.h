@@ -13,7 +13,6 @@ namespace keepout {
 class StraightOnly final : public Solver {
  public:
   void reserve(int, int) override {}
-  bool skips_idle_rows() const noexcept override { return true; }
   bool reads_planes() const noexcept override { return true; }
   SolveStatus solve(const StepProblem&, Solution&) noexcept override {
     return SolveStatus::iteration_limit;

@@ -8,13 +8,10 @@
 #include <cstddef>
 #include <optional>
 
-#include "tolerance_ladder.h"
+#include "../tolerance_ladder.h"
 
 namespace keepout {
 namespace {
-
-// Of a proof, in units of the tolerance.
-constexpr double proof_slack = 1.0 / 64.0;
 
 // A plane that an accepted motion is farther from, as a share of it, has not shaped it.
 constexpr double idle_slack = 1e-6;
@@ -128,8 +125,10 @@ bool CertifiedTerms::is_beyond_doubt(const Contact& contact, const Facet& facet,
   if (!contact.is_reached) return false;
   const double along = contact.touched.dot(trial) / trial.squaredNorm();
   const Vec3 nearest = std::clamp(along, 0.0, 1.0) * trial - contact.touched;
-  constexpr double clearly = 1.0 - 1e-5;  // beside the root of a rounding
-  return nearest.norm() < clearly * floor(facet);
+  // Beside the root of a rounding; and by more than what keeps_clear forgives, however small the
+  // floor is.
+  constexpr double clearly = 1.0 - 1e-5;
+  return nearest.norm() < clearly * floor(facet) - 2.0 * proof_slack * tolerance;
 }
 
 HalfSpace CertifiedTerms::answer(const Facet& facet, const Surroundings& around, const Vec3& trial,
@@ -181,17 +180,6 @@ std::optional<double> known_distance(const Facet* nearest, double margin,
   const double beyond = std::min(0.5 * region_beyond * tolerance, share * margin);
   if (nearest == nullptr || nearest->distance() > margin + beyond) return std::nullopt;
   return nearest->distance();
-}
-
-double certified_tolerance(const Surroundings& around, double longest_edge) noexcept {
-  return 2e-10 * (longest_edge + around.radius + around.margin) + 4e-16 * around.tip.lpNorm<1>();
-}
-
-Ball certified_region(const Surroundings& around, double tolerance) noexcept {
-  const double beyond = around.margin + region_beyond * tolerance;
-  if (around.searched == Reach::sphere) return {around.tip, around.longest + beyond};
-  // Projections of the aim on a convex set that holds 0 lie in the ball over it (Thales).
-  return {around.tip + 0.5 * around.aim, 0.5 * around.aim.norm() + beyond};
 }
 
 }  // namespace keepout

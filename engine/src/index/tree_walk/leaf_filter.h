@@ -10,14 +10,14 @@
 namespace keepout {
 
 /// What is known of the sixteen triangles of a leaf.
-struct LeafScreen {
+struct LeafFilter {
   ProofBlock at_tip;  // from the closest points to the tip
   ProofBlock last;    // the last ones that were found better for some motion
 };
 
 /// Looks at a leaf for the first time from this tip.
 void look(const LeafBlock& leaf, const FloatTip& tip, const FloatReach& reach,
-          LeafScreen& screen) noexcept;
+          LeafFilter& screen) noexcept;
 
 /// Triangles that a motion is not sure to keep clear of: a bit for each, and when it may meet them,
 /// never late: a share of the motion, or minus infinity for those that may be too close already.
@@ -26,16 +26,16 @@ struct Suspects {
   std::uint32_t mask;
 };
 
-void suspect(const LeafScreen& screen, const float* motion, Suspects& suspects) noexcept;
+void find_suspects(const LeafFilter& screen, const float* motion, Suspects& suspects) noexcept;
 
 /// The same, after some cutting-plane steps for those that are left over: dearer, and sharper.
 /// Those that come later than `latest`, a share of the motion, may be left as they are.
-void suspect_sharply(const LeafBlock& leaf, const FloatTip& tip, const float* motion,
-                     const FloatReach& reach, float latest, LeafScreen& screen,
+void refine_suspects(const LeafBlock& leaf, const FloatTip& tip, const float* motion,
+                     const FloatReach& reach, float latest, LeafFilter& screen,
                      Suspects& suspects) noexcept;
 
 /// A Newton step towards the times when the suspects are met: makes them later. As far as `latest`.
-void suspect_later(const LeafBlock& leaf, const FloatTip& tip, const float* motion,
-                   const FloatReach& reach, float latest, Suspects& suspects) noexcept;
+void delay_suspects(const LeafBlock& leaf, const FloatTip& tip, const float* motion,
+                    const FloatReach& reach, float latest, Suspects& suspects) noexcept;
 
 }  // namespace keepout

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../geometry/corner_order.h"
+#include "../../geometry/corner_order.h"
 #include "keepout/geometry/closest_point.h"
 
 namespace keepout {
@@ -83,12 +83,6 @@ Vec3 level_blend(const Vec3& falling, double fall, const Vec3& rising, double ri
 }
 
 }  // namespace
-
-Triangle ordered_relative(const Triangle& triangle, const Vec3& tip) noexcept {
-  const CornerOrder order = corner_order(triangle);
-  return {triangle[order.corner[0]] - tip, triangle[order.corner[1]] - tip,
-          triangle[order.corner[2]] - tip};
-}
 
 Facet::Facet(const Triangle& triangle, const Vec3& tip, TriangleId source) noexcept
     : Facet(ordered_relative(triangle, tip), source) {}

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "box_screen.h"
+#include "box_filter.h"
 
 namespace keepout {
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "../geometry/corner_order.h"
+#include "../../geometry/corner_order.h"
 
 namespace keepout {
 namespace {

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "keepout/step/step.h"
+#include "input.h"
+
+#include "keepout/step/problem.h"
 
 namespace keepout {
 namespace {
@@ -65,25 +67,7 @@ Surroundings surroundings_of(const Motion& motion, const StepOptions& options,
           .rounding = position_rounding(motion.tip, options),
           .reach = reached,
           .searched = options.query == Query::motion ? reached : Reach::sphere,
-          .needed = NeededPlanes::all,
-          .ball = {motion.tip, 0.0},
-          .hits = {}};
-}
-
-Status status_of(Opening::Stance stance) noexcept {
-  using Stance = Opening::Stance;
-  switch (stance) {
-    case Stance::clear:
-    case Stance::too_close:
-      return Status::free;
-    case Stance::touching:
-      return Status::touching;
-    case Stance::no_margin:
-      return Status::margin_too_small;
-    case Stance::over_capacity:
-      break;
-  }
-  return Status::over_capacity;
+          .is_projected = false};
 }
 
 }  // namespace keepout

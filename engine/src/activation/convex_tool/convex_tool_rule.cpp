@@ -7,9 +7,9 @@
 #include <limits>
 #include <utility>
 
+#include "../tolerance_ladder.h"
 #include "keepout/activation/planes.h"
 #include "keepout/error.h"
-#include "tolerance_ladder.h"
 
 namespace keepout {
 namespace {
@@ -39,7 +39,10 @@ ConvexToolRule::ConvexToolRule(std::shared_ptr<const Mesh> mesh, ConvexTool tool
       longest_edge_(longest_edge_of(mesh_.get())),
       near_(0) {}
 
-void ConvexToolRule::reserve(std::size_t triangles) { near_ = Buffer<Near>(triangles); }
+void ConvexToolRule::prepare(Neighborhood& near) {
+  Activation::prepare(near);
+  near_ = Buffer<Near>(near.room());
+}
 
 double ConvexToolRule::tolerance(const Surroundings& around) const noexcept {
   const Ball& bounds = tool_.bounding_ball();
@@ -49,11 +52,9 @@ double ConvexToolRule::tolerance(const Surroundings& around) const noexcept {
 
 Ball ConvexToolRule::region(const Surroundings& around) const noexcept {
   const Ball& bounds = tool_.bounding_ball();
-  const Vec3 center = around.tip + bounds.center;
-  const double beyond = bounds.radius + around.margin + region_beyond * tolerance(around);
-  if (around.searched == Reach::sphere) return {center, around.longest + beyond};
-  // Projections of the aim on a convex set that holds 0 lie in the ball over it (Thales).
-  return {center + 0.5 * around.aim, 0.5 * around.aim.norm() + beyond};
+  const Ball ends = ends_of_motions(around);
+  return {ends.center + bounds.center,
+          ends.radius + bounds.radius + around.margin + region_beyond * tolerance(around)};
 }
 
 ConvexToolRule::Proof ConvexToolRule::proof_along(const Vec3& normal, const Vec3& position,
@@ -76,19 +77,18 @@ ConvexToolRule::Proof ConvexToolRule::proof_of(double enough, const Vec3& positi
 }
 
 Opening ConvexToolRule::start(const Surroundings& around, HalfSpaceBuffer&) noexcept {
-  using Stance = Opening::Stance;
   const double tau = tolerance(around);
-  if (!(around.margin > needed_margin * tau)) return {Stance::no_margin};
+  if (!(around.margin > needed_margin * tau)) return {Status::margin_too_small};
 
   near_.clear();
   const Near* nearest = nullptr;
-  for (const Hit& hit : around.hits) {
+  for (const Hit& hit : hits()) {
     near_.push({hit.triangle, proof_of(around.margin, around.tip, hit.triangle), 0.0, 0.0, 0.0});
-    if (near_.overflowed()) return {Stance::over_capacity};
+    if (near_.overflowed()) return {Status::over_capacity};
     const Near& last = near_[near_.size() - 1];
     if (nearest == nullptr || last.at_start.distance < nearest->at_start.distance) nearest = &last;
   }
-  if (nearest == nullptr) return {Stance::clear};
+  if (nearest == nullptr) return {};
 
   const Proof closest = nearest->at_start;
   if (closest.distance >= around.margin - lost_below * tau) {
@@ -97,10 +97,10 @@ Opening ConvexToolRule::start(const Surroundings& around, HalfSpaceBuffer&) noex
       near.demand = std::min(around.margin - demand_below * tau, near.at_start.distance);
       near.floor = std::min(around.margin - floor_below * tau, near.at_start.distance);
     }
-    return {Stance::clear};
+    return {};
   }
   // Not above for NaN.
-  if (!(closest.distance > touching_within * tau)) return {Stance::touching};
+  if (!(closest.distance > touching_within * tau)) return {Status::touching};
   // Too close already: the mesh shall not come closer, and what comes as close is led off as well.
   const double lift = std::min(around.recovery, around.margin - closest.distance);
   for (Near& near : near_) {
@@ -108,7 +108,7 @@ Opening ConvexToolRule::start(const Surroundings& around, HalfSpaceBuffer&) noex
     near.demand = closest.distance;
     near.floor = closest.distance;
   }
-  return {Stance::too_close, way_out(around, closest.normal, lift)};
+  return {Status::recovering, way_out(around, closest.normal, lift)};
 }
 
 /// Whether a plane that there is already proves that a trial keeps the level.
@@ -151,8 +151,8 @@ Judgement ConvexToolRule::judge(const Surroundings& around, const Vec3& trial,
   using Verdict = Judgement::Verdict;
   // Where nothing was looked at, nothing is known.
   const Ball& bounds = tool_.bounding_ball();
-  const double from_center = (around.tip + bounds.center + trial - around.ball.center).norm();
-  if (!(from_center + bounds.radius + around.margin <= around.ball.radius)) {
+  const double from_center = (around.tip + bounds.center + trial - looked_at().center).norm();
+  if (!(from_center + bounds.radius + around.margin <= looked_at().radius)) {
     return {Verdict::blocked, 0.0};
   }
   std::optional<Contact> first;

@@ -14,7 +14,7 @@
 #define KEEPOUT_PROOF_LANES_INL_H
 #endif
 
-#include "../lanes-inl.h"
+#include "../../lanes-inl.h"
 #include "float_motion.h"
 
 HWY_BEFORE_NAMESPACE();

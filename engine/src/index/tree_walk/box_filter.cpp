@@ -3,10 +3,10 @@
 #include <limits>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "activation/box_screen.cpp"
+#define HWY_TARGET_INCLUDE "index/tree_walk/box_filter.cpp"
 #include <hwy/foreach_target.h>
 // After it, for it tells for whom to compile.
-#include "box_screen.h"
+#include "box_filter.h"
 #include "proof_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();

@@ -14,9 +14,12 @@ namespace keepout {
 // From a plane turned less than this a motion gains less, as a share of it, than is worthwhile.
 inline constexpr double least_turn = 1e-6;
 
-/// What a certified cycle asks of each triangle. Every form of the rule decides by these functions
-/// of one triangle, the trial and the planes at hand, and by nothing else: so all forms answer the
-/// same, bit for bit, in whatever order they come by the triangles.
+// Of a proof, in units of the tolerance.
+inline constexpr double proof_slack = 1.0 / 64.0;
+
+/// What a certified cycle asks of each triangle. It is decided by these functions of
+/// one triangle, the trial and the planes at hand, and by nothing else: so the answers are the
+/// same, bit for bit, in whatever order the triangles come.
 struct CertifiedTerms {
   double tolerance;    // tau: see CertifiedRule::tolerance [length]
   double target;       // planes are placed this far off [length]
@@ -41,6 +44,11 @@ struct CertifiedTerms {
   bool is_covered(const Triangle& corners, const Vec3& trial,
                   std::span<const HalfSpace> planes) const noexcept;
 
+  /// Whether the plane across the way from the tip to a facet proves it, which is told soonest.
+  bool is_clear_at_once(const Facet& facet, const Vec3& trial) const noexcept {
+    return clears_at_once(facet, trial, demand(facet), proof_slack * tolerance);
+  }
+
   /// Whether the trial keeps clear of a facet. `answered`: the planes have its own among them.
   bool keeps_clear(const Facet& facet, const Vec3& trial, bool answered) const noexcept;
 
@@ -62,11 +70,6 @@ struct CertifiedTerms {
   HalfSpace turned(const HalfSpace& plane, const Facet& facet, const Vec3& kept,
                    const Vec3& towards) const noexcept;
 
-  /// See Activation::turn. `facet(source)` is the facet of a triangle in reach.
-  template <class FacetOf>
-  bool turn_all(const Surroundings& around, std::span<const HalfSpace> planes, FacetOf&& facet,
-                HalfSpaceBuffer& turned_planes) const noexcept;
-
   /// See Activation::ways_around.
   void ways_around(const Facet& facet, HalfSpaceBuffer& ways) const noexcept;
 };
@@ -81,27 +84,5 @@ bool is_idle(const HalfSpace& plane, const Surroundings& around) noexcept;
 /// those beyond, one form may have met what another has not. Null if there is no facet.
 std::optional<double> known_distance(const Facet* nearest, double margin,
                                      double tolerance) noexcept;
-
-/// See CertifiedRule::tolerance. `longest_edge`: of the mesh. [length]
-double certified_tolerance(const Surroundings& around, double longest_edge) noexcept;
-
-/// The ball that a certified cycle asks about: see Activation::region.
-Ball certified_region(const Surroundings& around, double tolerance) noexcept;
-
-template <class FacetOf>
-bool CertifiedTerms::turn_all(const Surroundings& around, std::span<const HalfSpace> planes,
-                              FacetOf&& facet, HalfSpaceBuffer& turned_planes) const noexcept {
-  bool changed = false;
-  for (const HalfSpace& plane : planes) {
-    if (is_idle(plane, around)) continue;
-    // One that is not a triangle's but the motion sphere's stays.
-    const bool stays = plane.source == no_triangle;
-    turned_planes.push(stays ? plane
-                             : turned(plane, facet(plane.source), around.kept, around.kept));
-    const Vec3 turn = turned_planes[turned_planes.size() - 1].normal - plane.normal;
-    changed = changed || turn.squaredNorm() > least_turn * least_turn;
-  }
-  return changed;
-}
 
 }  // namespace keepout

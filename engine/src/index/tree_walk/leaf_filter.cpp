@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "activation/leaf_screen.cpp"
+#define HWY_TARGET_INCLUDE "index/tree_walk/leaf_filter.cpp"
 #include <hwy/foreach_target.h>
 // After it, for it tells for whom to compile.
-#include "leaf_screen.h"
+#include "leaf_filter.h"
 #include "proof_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -71,7 +71,7 @@ HWY_INLINE Proof proof_at(Float d, const Corners& t, const Vector& p, const Floa
 }
 
 void LookAtLeaf(const LeafBlock& leaf, const FloatTip& tip, const FloatReach& reach,
-                LeafScreen& screen) {
+                LeafFilter& screen) {
   const Float d;
   const V zero = hn::Zero(d);
   for (std::size_t lane = 0; lane < LeafBlock::lanes; lane += hn::Lanes(d)) {
@@ -82,7 +82,7 @@ void LookAtLeaf(const LeafBlock& leaf, const FloatTip& tip, const FloatReach& re
   }
 }
 
-void Suspect(const LeafScreen& screen, const float* motion, Suspects& suspects) {
+void FindSuspects(const LeafFilter& screen, const float* motion, Suspects& suspects) {
   const Float d;
   const Vector z = all(d, motion);
   suspects.mask = 0;
@@ -110,8 +110,8 @@ HWY_INLINE M in_time(Float d, const Suspects& suspects, V time, float latest, st
   return hn::And(lanes_of(d, suspects.mask, lane), hn::Le(time, hn::Set(d, latest)));
 }
 
-void SuspectSharply(const LeafBlock& leaf, const FloatTip& tip, const float* motion,
-                    const FloatReach& reach, float latest, LeafScreen& screen, Suspects& suspects) {
+void RefineSuspects(const LeafBlock& leaf, const FloatTip& tip, const float* motion,
+                    const FloatReach& reach, float latest, LeafFilter& screen, Suspects& suspects) {
   constexpr int cuts = 2;
   const Float d;
   const Vector z = all(d, motion);
@@ -162,8 +162,8 @@ void SuspectSharply(const LeafBlock& leaf, const FloatTip& tip, const float* mot
   suspects.mask &= ~proven;
 }
 
-void SuspectLater(const LeafBlock& leaf, const FloatTip& tip, const float* motion,
-                  const FloatReach& reach, float latest, Suspects& suspects) {
+void DelaySuspects(const LeafBlock& leaf, const FloatTip& tip, const float* motion,
+                   const FloatReach& reach, float latest, Suspects& suspects) {
   const Float d;
   const Vector z = all(d, motion);
   std::uint32_t proven = 0;
@@ -187,28 +187,28 @@ HWY_AFTER_NAMESPACE();
 namespace keepout {
 
 HWY_EXPORT(LookAtLeaf);
-HWY_EXPORT(Suspect);
-HWY_EXPORT(SuspectSharply);
-HWY_EXPORT(SuspectLater);
+HWY_EXPORT(FindSuspects);
+HWY_EXPORT(RefineSuspects);
+HWY_EXPORT(DelaySuspects);
 
 void look(const LeafBlock& leaf, const FloatTip& tip, const FloatReach& reach,
-          LeafScreen& screen) noexcept {
+          LeafFilter& screen) noexcept {
   HWY_DYNAMIC_DISPATCH(LookAtLeaf)(leaf, tip, reach, screen);
 }
 
-void suspect(const LeafScreen& screen, const float* motion, Suspects& suspects) noexcept {
-  HWY_DYNAMIC_DISPATCH(Suspect)(screen, motion, suspects);
+void find_suspects(const LeafFilter& screen, const float* motion, Suspects& suspects) noexcept {
+  HWY_DYNAMIC_DISPATCH(FindSuspects)(screen, motion, suspects);
 }
 
-void suspect_sharply(const LeafBlock& leaf, const FloatTip& tip, const float* motion,
-                     const FloatReach& reach, float latest, LeafScreen& screen,
+void refine_suspects(const LeafBlock& leaf, const FloatTip& tip, const float* motion,
+                     const FloatReach& reach, float latest, LeafFilter& screen,
                      Suspects& suspects) noexcept {
-  HWY_DYNAMIC_DISPATCH(SuspectSharply)(leaf, tip, motion, reach, latest, screen, suspects);
+  HWY_DYNAMIC_DISPATCH(RefineSuspects)(leaf, tip, motion, reach, latest, screen, suspects);
 }
 
-void suspect_later(const LeafBlock& leaf, const FloatTip& tip, const float* motion,
-                   const FloatReach& reach, float latest, Suspects& suspects) noexcept {
-  HWY_DYNAMIC_DISPATCH(SuspectLater)(leaf, tip, motion, reach, latest, suspects);
+void delay_suspects(const LeafBlock& leaf, const FloatTip& tip, const float* motion,
+                    const FloatReach& reach, float latest, Suspects& suspects) noexcept {
+  HWY_DYNAMIC_DISPATCH(DelaySuspects)(leaf, tip, motion, reach, latest, suspects);
 }
 
 }  // namespace keepout

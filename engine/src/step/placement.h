@@ -12,13 +12,9 @@ namespace keepout {
 
 /// Where a tip is that no step has led to: at the start, or after the caller has moved it.
 struct Placement {
-  /// Of the surface.
-  enum class Side : std::uint8_t {
-    free,      // the one that normals point to
-    forbidden  // the other one, and the surface itself
-  };
-  Side side;  // on which the tip is
-  /// From the surface; on it, to within rounding, 0 and forbidden. Of a free tip that is farther
+  /// Whether it is on the side that normals point to; not so on the surface itself.
+  bool is_free;
+  /// From the surface; on it, to within rounding, 0 and not free. Of a free tip that is farther
   /// off than four times the mesh is large, less than that. [length]
   double distance;
   Vec3 way_out;  // unit vector: to the surface from the forbidden side, off it from the free one

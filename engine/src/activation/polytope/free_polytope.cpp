@@ -8,7 +8,7 @@
 #include <optional>
 #include <utility>
 
-#include "../geometry/corner_order.h"
+#include "../../geometry/corner_order.h"
 #include "free_polytope_triangle.h"
 #include "keepout/error.h"
 

@@ -1,0 +1,211 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "keepout/activation/certified.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "../tolerance_ladder.h"
+#include "certified_terms.h"
+#include "keepout/activation/planes.h"
+#include "keepout/index/neighborhood.h"
+
+namespace keepout {
+
+/// Keeps the first contact of a trial with the triangles that it is shown.
+class CertifiedRule::FirstMeeting final : public EncounterVisitor {
+ public:
+  /// A triangle nearer to the tip than `too_close` ends the search: what speaks against the trial
+  /// does not matter then, and `facets` gets all that are as near.
+  FirstMeeting(const CertifiedTerms& terms, const Vec3& trial, std::span<const HalfSpace> planes,
+               double too_close, Buffer<Facet>& facets, Meeting& meeting) noexcept
+      : terms_(terms),
+        trial_(trial),
+        length_(trial.norm()),
+        planes_(planes),
+        too_close_(too_close),
+        facets_(facets),
+        meeting_(meeting) {}
+
+  double visit(const Encounter& its) noexcept override {
+    Contact& first = meeting_.contact;
+    const bool is_known = its.note != Encounter::no_note;
+    const Triangle& corners = is_known ? facets_[its.note].corners() : *its.corners;
+    if (terms_.is_covered(corners, trial_, planes_)) return first.time;
+    if (!is_known) {
+      facets_.push(Facet(corners, its.triangle));
+      its.note = static_cast<std::uint32_t>(facets_.size() - 1);
+    }
+    const Facet& facet = facets_[its.note];
+    if (facet.distance() - length_ > terms_.demand(facet)) return first.time;
+    if (facet.distance() < too_close_) return first.time = at_once;
+    if (terms_.is_clear_at_once(facet, trial_)) return first.time;
+    // When it would meet the trial is told sooner than whether it does; most that come this far do.
+    const Contact contact = terms_.contact(facet, trial_, first.time);
+    if (!is_sooner(contact, facet)) return first.time;
+    if (!terms_.is_beyond_doubt(contact, facet, trial_)) {
+      const bool answered = has_plane(facet.source(), planes_);
+      if (terms_.keeps_clear(facet, trial_, answered)) return first.time;
+    }
+    first = contact;
+    meeting_.facet = its.note;
+    return first.time;
+  }
+
+ private:
+  static constexpr double at_once = 0.0;
+
+  /// Of equals the first by its corners.
+  bool is_sooner(const Contact& contact, const Facet& facet) const noexcept {
+    const Contact& first = meeting_.contact;
+    return contact.time < first.time ||
+           (contact.time == first.time && meeting_.facet != Encounter::no_note &&
+            facet.before(facets_[meeting_.facet]));
+  }
+
+  const CertifiedTerms& terms_;
+  const Vec3& trial_;
+  double length_;
+  std::span<const HalfSpace> planes_;
+  double too_close_;
+  Buffer<Facet>& facets_;
+  Meeting& meeting_;
+};
+
+CertifiedRule::CertifiedRule(std::shared_ptr<const Mesh> mesh)
+    : mesh_(std::move(mesh)),
+      longest_edge_(mesh_->longest_edge()),
+      terms_(std::make_unique<CertifiedTerms>()),
+      facets_(0) {}
+
+CertifiedRule::~CertifiedRule() = default;
+
+void CertifiedRule::prepare(Neighborhood& near) {
+  walk_ = make_motion_walk(near);
+  facets_ = Buffer<Facet>(walk_->room());
+}
+
+double CertifiedRule::tolerance(const Surroundings& around) const noexcept {
+  return 2e-10 * (longest_edge_ + around.radius + around.margin) + 4e-16 * around.tip.lpNorm<1>();
+}
+
+Ball CertifiedRule::region(const Surroundings& around) const noexcept {
+  Ball ball = ends_of_motions(around);
+  ball.radius += around.margin + region_beyond * tolerance(around);
+  return ball;
+}
+
+bool CertifiedRule::look_around(const Surroundings& around) noexcept {
+  facets_.clear();
+  *terms_ = CertifiedTerms::keeping(around.margin, tolerance(around));
+  const bool ends_anywhere = around.reach == Reach::sphere;
+  const double longest = ends_anywhere ? around.longest : around.aim.norm() * (1.0 + 1e-9);
+  return walk_->begin({around.tip, region(around), terms_->target, longest});
+}
+
+Opening CertifiedRule::start(const Surroundings& around, HalfSpaceBuffer&) noexcept {
+  aim_is_free_ = false;
+  at_aim_.reset();
+  const double tau = terms_->tolerance;
+  if (!(around.margin > needed_margin * tau)) return {Status::margin_too_small};
+  if (walk_->is_free()) return {};
+
+  // What is in reach of the tip itself, which comes first; and by the way, what speaks against the
+  // motion asked for, should the tip keep the margin: it is the first trial.
+  const double least = around.margin - lost_below * tau;
+  aim_is_free_ = meet(around.aim, {}, least, at_aim_.emplace());
+  if (is_over_budget()) return {Status::over_capacity};
+  const Facet* near = nearest();
+  const std::optional<double> distance = known_distance(near, around.margin, tau);
+  if (near == nullptr || near->distance() >= least) return {.distance = distance};
+  aim_is_free_ = false;
+  at_aim_.reset();
+  if (near->distance() <= touching_within * tau) {
+    return {.status = Status::touching, .distance = distance};
+  }
+  // Too close already: the mesh shall not come closer, and what comes as close is led off as well.
+  const double lift = std::min(around.recovery, around.margin - near->distance());
+  const Vec3 aim = way_out(around, near->normal(), lift);
+  *terms_ = CertifiedTerms::leading_off(near->distance(), lift, tau);
+  walk_->begin_again(terms_->target);
+  facets_.clear();
+  return {Status::recovering, aim, distance};
+}
+
+/// Walks along a trial to what it meets first. Whether nothing came near it, so that others like it
+/// are as free.
+bool CertifiedRule::meet(const Vec3& trial, std::span<const HalfSpace> planes, double too_close,
+                         Meeting& meeting) noexcept {
+  FirstMeeting visitor(*terms_, trial, planes, too_close, facets_, meeting);
+  return walk_->walk(trial, visitor);
+}
+
+/// Then nothing is known.
+bool CertifiedRule::is_over_budget() const noexcept {
+  return walk_->is_exhausted() || facets_.overflowed();
+}
+
+/// Of the facets that were asked about; of equals the first by their corners.
+const Facet* CertifiedRule::nearest() const noexcept {
+  const auto nearer = [](const Facet& a, const Facet& b) {
+    return a.distance() < b.distance() || (a.distance() == b.distance() && a.before(b));
+  };
+  const Facet* found = std::min_element(facets_.begin(), facets_.end(), nearer);
+  return found == facets_.end() ? nullptr : found;
+}
+
+Judgement CertifiedRule::judge(const Surroundings& around, const Vec3& trial,
+                               HalfSpaceBuffer& planes) noexcept {
+  using Verdict = Judgement::Verdict;
+  if (walk_->is_free()) return {Verdict::accepted};
+  if (aim_is_free_ && (trial - around.aim).norm() <= MotionWalk::alike * around.aim.norm()) {
+    return {Verdict::accepted};
+  }
+  Meeting meeting;
+  if (at_aim_ && planes.empty() && trial == around.aim) {
+    meeting = *at_aim_;
+  } else {
+    meet(trial, planes.view(), 0.0, meeting);
+  }
+  if (is_over_budget()) return {Verdict::blocked, 0.0};
+  if (meeting.facet == Encounter::no_note) return {Verdict::accepted};
+  const HalfSpace& plane = meeting.contact.plane;
+  const double free_share = std::clamp(meeting.contact.time, 0.0, 1.0);
+  if (has_plane(plane.source, planes.view()) || planes.size() >= most_planes) {
+    return {Verdict::blocked, free_share};
+  }
+  planes.push(terms_->answer(facets_[meeting.facet], around, trial, plane));
+  return {Verdict::objected, free_share};
+}
+
+bool CertifiedRule::relax(HalfSpaceBuffer& planes) const noexcept {
+  // Offsets above 0 lead back to the full margin. Standing still is always allowed.
+  return let_stand_still(planes);
+}
+
+bool CertifiedRule::turn(const Surroundings& around, std::span<const HalfSpace> planes,
+                         HalfSpaceBuffer& turned) noexcept {
+  bool changed = false;
+  for (const HalfSpace& plane : planes) {
+    if (is_idle(plane, around)) continue;
+    // One that is not a triangle's but the motion sphere's stays.
+    HalfSpace next = plane;
+    if (plane.source != no_triangle) {
+      next = terms_->turned(plane, facet(plane.source), around.kept, around.kept);
+    }
+    turned.push(next);
+    changed = changed || (next.normal - plane.normal).squaredNorm() > least_turn * least_turn;
+  }
+  return changed;
+}
+
+void CertifiedRule::ways_around(TriangleId source, HalfSpaceBuffer& ways) const noexcept {
+  if (source != no_triangle) terms_->ways_around(facet(source), ways);
+}
+
+const Facet& CertifiedRule::facet(TriangleId source) const noexcept {
+  return *std::find_if(facets_.begin(), facets_.end(),
+                       [&](const Facet& one) { return one.source() == source; });
+}
+
+}  // namespace keepout

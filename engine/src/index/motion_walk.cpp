@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "keepout/index/motion_walk.h"
+
+#include <algorithm>
+#include <span>
+#include <vector>
+
+#include "keepout/index/neighborhood.h"
+
+namespace keepout {
+namespace {
+
+/// Visits all hits in the region, whatever the motion: for indices that know of no motions.
+class WalkOfHits final : public MotionWalk {
+ public:
+  explicit WalkOfHits(Neighborhood& near) : near_(near), notes_(near.room()) {}
+
+  bool begin(const Start& start) noexcept override {
+    tip_ = start.tip;
+    visits_ = 0;
+    if (!near_.look(start.region)) return false;
+    begin_again(start.level);
+    return true;
+  }
+
+  void begin_again(double) noexcept override {
+    std::fill_n(notes_.begin(), near_.hits().size(), Encounter::no_note);
+  }
+
+  bool is_free() const noexcept override { return near_.hits().empty(); }
+
+  bool walk(const Vec3&, EncounterVisitor& visitor) noexcept override {
+    const std::span<const Hit> hits = near_.hits();
+    visits_ += hits.size();
+    for (std::size_t i = 0; i < hits.size() && !is_exhausted(); ++i) {
+      const TriangleId t = hits[i].triangle;
+      if (notes_[i] == Encounter::no_note) {
+        const Triangle corners = ordered_relative(near_.mesh().triangle(t), tip_);
+        visitor.visit({t, notes_[i], &corners});
+      } else {
+        visitor.visit({t, notes_[i], nullptr});
+      }
+    }
+    return false;
+  }
+
+  bool is_exhausted() const noexcept override { return visits_ > most_visits; }
+  std::size_t room() const noexcept override { return near_.room(); }
+
+ private:
+  // Some hundreds of milliseconds: who is in a hurry has an index with a walk of its own.
+  static constexpr std::size_t most_visits = std::size_t{1} << 22;
+
+  Neighborhood& near_;
+  Vec3 tip_ = Vec3::Zero();
+  std::size_t visits_ = 0;
+  std::vector<std::uint32_t> notes_;  // of each hit
+};
+
+}  // namespace
+
+std::unique_ptr<MotionWalk> make_motion_walk(Neighborhood& near) {
+  if (auto own = near.index().walk_along_motions()) return own;
+  return std::make_unique<WalkOfHits>(near);
+}
+
+}  // namespace keepout

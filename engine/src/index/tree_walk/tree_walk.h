@@ -1,0 +1,115 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "box_filter.h"
+#include "frontier.h"
+#include "keepout/index/motion_walk.h"
+#include "keepout/index/wide_bvh.h"
+#include "leaf_filter.h"
+
+namespace keepout {
+
+/// The walk of a WideBvh: through the boxes along a motion, to the triangles that it is not sure to
+/// keep clear of, the earliest first, until the visitor has met one. Floats clear what is surely
+/// clear. What is remembered from motion to motion, and of where the last cycles were, saves time
+/// and changes nothing else.
+class TreeWalk final : public MotionWalk {
+ public:
+  /// `tree` must outlive this. After a refit of it no walk begins: the mesh is another one.
+  explicit TreeWalk(const WideBvh& tree);
+
+  bool begin(const Start& start) noexcept override;
+  void begin_again(double level) noexcept override;
+  bool is_free() const noexcept override { return is_free_; }
+  bool walk(const Vec3& motion, EncounterVisitor& visitor) noexcept override;
+  bool is_exhausted() const noexcept override { return looks_ > most_looks; }
+  std::size_t room() const noexcept override { return most_notes; }
+
+  /// Where the walks of the last cycle began.
+  const Frontier& frontier() const noexcept { return frontier_; }
+
+ private:
+  static constexpr std::size_t most_notes = 4096;
+  static constexpr std::size_t most_looks = std::size_t{1} << 17;  // at leaves: some milliseconds
+
+  /// A leaf as it is seen from the tip.
+  struct Leaf {
+    LeafFilter filter;
+    std::array<std::uint32_t, LeafBlock::lanes> note;
+    std::uint32_t number = 0;
+    std::uint32_t cycle = 0;  // that it was looked at in; 0: none yet
+    std::uint32_t used = 0;   // a bit for each lane
+  };
+
+  /// Something that the motion may meet at some time.
+  struct Waiting {
+    float time;
+    std::uint32_t what;  // as NodeBlock::child, or a number in deferred_ with bit `suspects`
+  };
+  static constexpr std::uint32_t suspects = std::uint32_t{1} << 30;
+
+  /// How often suspects are looked at more closely before they are visited, where motions are long:
+  /// many that come late turn out not to be met, or not first. Where motions are short, once is
+  /// enough, and only if they are many.
+  static constexpr int closer_looks = 3;
+
+  /// Suspects of a leaf that are still to be visited.
+  struct Deferred {
+    Suspects suspects;
+    std::uint32_t leaf;
+    int looks_left;
+
+    std::uint32_t earliest() const noexcept;
+  };
+
+  void locate(const Start& start) noexcept;
+  void open(std::uint32_t box) noexcept;
+  template <class Cylinders>
+  void enter(const NodeBlock& node, Cylinders&& cylinders) noexcept;
+  void look_at(std::uint32_t leaf) noexcept;
+  void look_closer(Deferred& deferred) noexcept;
+  void resume(std::uint32_t deferred) noexcept;
+  void visit(Leaf& leaf, std::uint32_t lane) noexcept;
+  bool wait(float time, std::uint32_t what) noexcept;
+  Waiting next() noexcept;
+  Leaf& leaf(std::uint32_t number) noexcept;
+  void fetch(std::uint32_t leaf) const noexcept;
+  Triangle corners(std::uint32_t leaf, std::size_t lane) const noexcept;
+  bool comes_too_late(float time) const noexcept { return static_cast<double>(time) > latest_; }
+
+  const WideBvh& tree_;
+  std::uint64_t generation_;  // of the tree that is known here
+  Frontier frontier_;
+  double padding_ = 0.0;  // gathered beyond what is needed, for cycles to come [length]
+
+  // Of this cycle.
+  Vec3 tip_ = Vec3::Zero();
+  double longest_ = 0.0;
+  FloatTip float_tip_{};
+  FloatReach reach_{};
+  bool is_free_ = false;
+  bool is_long_ = false;  // motions lead far beyond the level
+  std::uint32_t cycle_ = 0;
+  std::size_t looks_ = 0;
+  std::vector<Leaf> leaves_;  // some that were looked at
+
+  // Of this motion.
+  EncounterVisitor* visitor_ = nullptr;
+  double latest_ = 0.0;  // what is met later does not matter; a share of the motion
+  std::array<float, 3> motion_{};
+  std::array<std::uint32_t, 16 * NodeBlock::lanes> begun_{};  // boxes that it begins in
+  std::size_t begun_size_ = 0;
+  std::vector<Waiting> waiting_;  // a heap, the earliest first
+  std::size_t waiting_size_ = 0;
+  std::vector<Deferred> deferred_;
+  std::size_t deferred_size_ = 0;
+  bool meets_nothing_ = false;
+};
+
+}  // namespace keepout

@@ -1,0 +1,344 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cycle.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "input.h"
+
+namespace keepout {
+namespace {
+
+using Verdict = Judgement::Verdict;
+
+// A sound rule needs a handful of rounds, in the tip of a cone some hundred; the limit bounds an
+// unsound one.
+constexpr int most_rounds = 256;
+
+constexpr int most_halvings = 8;
+
+Status status_of(SolveStatus solved) noexcept {
+  switch (solved) {
+    case SolveStatus::optimal:
+      return Status::free;
+    case SolveStatus::infeasible:
+      return Status::infeasible;
+    case SolveStatus::ill_posed:
+      return Status::ill_posed;
+    case SolveStatus::invalid_input:
+      return Status::invalid_input;
+    case SolveStatus::over_capacity:
+      return Status::over_capacity;
+    case SolveStatus::iteration_limit:
+      break;
+  }
+  return Status::unsolved;
+}
+
+/// A projection of the aim as exact as its planes: what a solver left undone is made up for, and
+/// the motion ends in the ball over the aim, where triangles were looked for.
+Vec3 sharpened(const Vec3& motion, const Vec3& aim, std::span<const HalfSpace> planes) noexcept {
+  // Solvers differ in their last digits; alternating projections on the planes that are violated
+  // settle them. Each is at most a last digit for an exact solver.
+  constexpr int most_corrections = 32;
+  Vec3 z = motion;
+  const double digits2 = 1e-30 * aim.squaredNorm();
+  for (int i = 0; i < most_corrections; ++i) {
+    const HalfSpace* worst = nullptr;
+    double violation = 0.0;
+    for (const HalfSpace& plane : planes) {
+      const double missing = plane.offset - plane.normal.dot(z);
+      if (!(missing > violation)) continue;
+      violation = missing;
+      worst = &plane;
+    }
+    if (worst == nullptr || !(violation * violation > digits2)) break;
+    z += violation * worst->normal;
+  }
+  const double along = aim.dot(z);
+  const double length2 = z.squaredNorm();
+  if (along < length2) z *= std::max(along, 0.0) / length2;
+  return z;
+}
+
+/// The plane that bounds motions in one direction, just short of the longest.
+HalfSpace bound_of(const Vec3& motion, double longest) noexcept {
+  return {-motion / motion.norm(), -longest * (1.0 - 1e-9), no_triangle};
+}
+
+/// Whether any part of a motion that satisfies the caller's rows satisfies them too: none asks for
+/// motion.
+bool allow_parts(const std::optional<ExtraRows>& rows) noexcept {
+  return !rows || std::all_of(rows->bounds(), rows->bounds() + rows->count(),
+                              [](double bound) { return bound <= 0.0; });
+}
+
+}  // namespace
+
+Cycle::Cycle(Activation& rule, Solver& solver, Workspace& work, const StepOptions& options,
+             const Motion& motion, StageTimes* times) noexcept
+    : rule_(rule),
+      solver_(solver),
+      work_(work),
+      options_(options),
+      motion_(motion),
+      around_(surroundings_of(motion, options, rule.reach())),
+      times_(times) {
+  // With joints, rows or damping the answer is none.
+  around_.is_projected =
+      !motion.jacobian && !motion.rows && options.damping == 0.0 && solver.reads_planes();
+  if (times_ == nullptr) return;
+  *times_ = {};
+  last_ = std::chrono::steady_clock::now();
+}
+
+Step Cycle::run() noexcept {
+  Step result;
+  work_.planes.clear();
+  if (!work_.has_room_for(motion_)) {
+    result.status = Status::over_capacity;
+    return result;
+  }
+  // The motion sphere is not for less than was asked for.
+  Opening opening = around_.reach == Reach::thales ? open_as_far_as_fits() : open();
+  result.distance = opening.distance;
+  const bool recovering = opening.status == Status::recovering;
+  if (recovering) {
+    // The way out is the aim, and has surroundings of its own. What leads out is no projection of
+    // it; but it need not lead much farther.
+    around_.aim = opening.aim;
+    around_.reach = around_.searched = Reach::sphere;
+    around_.longest = std::min(around_.longest, 2.0 * around_.aim.norm());
+    opening = open_as_far_as_fits();
+  }
+  Trial settled{opening.status, Vec3::Zero()};
+  if (is_ok(opening.status)) {
+    settled = settle();
+    ended(&StageTimes::solve);
+    result.planes = work_.planes.view();
+  }
+  result.status = settled.status;
+  result.triangles = rule_.triangles();
+  if (!is_ok(settled.status)) return result;
+  result.motion = settled.motion;
+  result.increment = work_.increment();
+  result.active = work_.active();
+  if (halvings_ > 0) result.status = Status::fallback;
+  if (recovering) result.status = Status::recovering;
+  return result;
+}
+
+/// Has the rule look at the triangles that matter for the aim, and begin with them.
+Opening Cycle::open() noexcept {
+  work_.planes.clear();
+  const bool fits = rule_.look_around(around_);
+  ended(&StageTimes::query);
+  if (!fits) return {Status::over_capacity};
+  const Opening opening = rule_.start(around_, work_.planes);
+  ended(&StageTimes::activation);
+  return opening;
+}
+
+/// Where there are more triangles than room: a shorter way has fewer.
+Opening Cycle::open_as_far_as_fits() noexcept {
+  Opening opening = open();
+  while (opening.status == Status::over_capacity && halvings_ < most_halvings) {
+    around_.searched = around_.reach;
+    around_.aim *= 0.5;
+    if (around_.reach == Reach::sphere) around_.longest *= 0.5;
+    ++halvings_;
+    opening = open();
+  }
+  return opening;
+}
+
+/// Finds a motion that the rule accepts, and improves upon it.
+Cycle::Trial Cycle::settle() noexcept {
+  Trial best = find();
+  if (best.status != Status::limited) return best;
+  best = refine(best);
+  if (options_.nodes == 0) return best;
+  const Trial other = branch(best);
+  return other.motion == best.motion ? best : refine(other);
+}
+
+/// Solves, and as long as the rule objects to the trial motion, solves again with its plane.
+Cycle::Trial Cycle::find() noexcept {
+  Trial trial{Status::unsolved, Vec3::Zero()};
+  double free_share = 0.0;  // of the trial
+  for (int round = 0; round < most_rounds; ++round) {
+    const Trial next = solve();
+    if (!is_ok(next.status)) {
+      // Part of the last trial may be made all the same. With joints its increment is gone.
+      if (!(free_share > 0.0) || motion_.jacobian) return next;
+      work_.solution = {};
+      break;
+    }
+    trial = next;
+    // Beyond the sphere nothing was looked at.
+    if (trial.motion.norm() > around_.longest) {
+      work_.planes.push(bound_of(trial.motion, around_.longest));
+      free_share = 0.0;
+      continue;
+    }
+    const Judgement judgement = rule_.judge(around_, trial.motion, work_.planes);
+    if (judgement.verdict == Verdict::accepted) {
+      work_.note(motion_, trial.motion, 1.0);
+      if (!work_.solution.active.empty()) trial.status = Status::limited;
+      return trial;
+    }
+    free_share = judgement.free_share;
+    if (judgement.verdict == Verdict::blocked) break;
+  }
+  return fall_back(trial, free_share);
+}
+
+/// The part of the last trial up to the first contact, provided that it stands the same test.
+Cycle::Trial Cycle::fall_back(const Trial& trial, double free_share) noexcept {
+  const double share = free_share * (1.0 - 1e-9);
+  const Vec3 part = share * trial.motion;
+  if (!(share > 0.0) || !allow_parts(motion_.rows) ||
+      rule_.judge(around_, part, work_.planes).verdict != Verdict::accepted) {
+    return {Status::unsolved, Vec3::Zero()};
+  }
+  work_.note(motion_, part, share);
+  return {Status::fallback, part};
+}
+
+/// The nearest motion that the planes allow; not judged yet. free, or what went wrong.
+Cycle::Trial Cycle::solve() noexcept {
+  if (work_.planes.overflowed()) return {Status::over_capacity, Vec3::Zero()};
+  // The projection of the aim on no plane: it needs no solver.
+  if (work_.planes.empty() && around_.is_projected) {
+    work_.solution = {};
+    return {Status::free, around_.aim};
+  }
+  std::optional<Vec3> answer;
+  Status solved = attempt(answer);
+  // Planes that contradict each other, or all but, so that what satisfies them is out of the world.
+  const bool contradict = solved == Status::infeasible || solved == Status::ill_posed;
+  if (contradict && rule_.relax(work_.planes)) solved = attempt(answer);
+  if (is_ok(solved) && !answer->allFinite()) solved = Status::unsolved;
+  if (!is_ok(solved)) return {solved, Vec3::Zero()};
+  if (around_.reach == Reach::sphere) return {Status::free, *answer};
+  return {Status::free, sharpened(*answer, around_.aim, work_.planes.view())};
+}
+
+Status Cycle::attempt(std::optional<Vec3>& answer) noexcept {
+  const StepProblem problem = work_.pose(motion_, around_.aim, options_.damping);
+  work_.solution = {};
+  const SolveStatus solved = solver_.solve(problem, work_.solution);
+  if (solved != SolveStatus::optimal) return status_of(solved);
+  if (work_.solution.u.size() != static_cast<std::size_t>(problem.jacobian.cols())) {
+    return Status::unsolved;
+  }
+  answer = tip_motion(problem, work_.solution, 1e-10 * options_.radius);
+  return answer ? Status::free : Status::ill_posed;
+}
+
+/// Turns the planes of an accepted motion to where they allow a better one, as long as there is
+/// one and options.refinements lasts. All planes go on allowing the motion there is, those of
+/// triangles that are met on the way as well, so nothing is lost.
+Cycle::Trial Cycle::refine(Trial best) noexcept {
+  const Vec3 kept = around_.kept;
+  for (int refinement = 0; refinement < options_.refinements; ++refinement) {
+    work_.set_aside();
+    around_.kept = best.motion;
+    if (rule_.turn(around_, work_.earlier_planes.view(), work_.planes)) {
+      const Trial next = find();
+      const bool accepted = next.status == Status::limited || next.status == Status::free;
+      if (accepted && is_worthwhile(next.motion, best.motion)) {
+        best = next;
+        continue;
+      }
+    }
+    work_.take_back();
+    break;
+  }
+  around_.kept = kept;
+  return best;
+}
+
+/// Looks for a better motion than the best one known, by branch and bound. Around each triangle
+/// there are several ways, each beyond a plane of its own; a node is a choice of one way for each
+/// triangle met so far, and no motion within its planes is better than the nearest one. The most
+/// promising node is asked first: once the rule accepts its motion, none is better among the ways
+/// considered.
+///
+/// Bounded by options.nodes. What it returns has stood the same test as any other motion, so the
+/// bound costs quality and never safety.
+Cycle::Trial Cycle::branch(const Trial& best) noexcept {
+  work_.set_aside();
+  work_.branches.clear();
+  open_branch(best);
+  for (int node = 0; node < options_.nodes; ++node) {
+    const Branch* nearest = work_.branches.pop_nearest();
+    if (nearest == nullptr) break;
+    work_.planes.assign(nearest->planes());
+    const Verdict verdict = rule_.judge(around_, nearest->motion, work_.planes).verdict;
+    if (verdict == Verdict::accepted) {
+      // Solved once more: the solver has gone on since.
+      const Trial trial = solve();
+      if (!is_ok(trial.status) || trial.motion != nearest->motion) break;
+      work_.note(motion_, trial.motion, 1.0);
+      return {Status::limited, trial.motion};
+    }
+    if (verdict == Verdict::blocked) continue;
+    // The plane of the contact is one way around the triangle; the rule may know others.
+    const TriangleId in_the_way = work_.planes[work_.planes.size() - 1].source;
+    open_branch(best);
+    work_.ways.clear();
+    rule_.ways_around(in_the_way, work_.ways);
+    for (const HalfSpace& way : work_.ways) {
+      work_.planes.assign(nearest->planes());
+      work_.planes.push(way);
+      open_branch(best);
+    }
+  }
+  work_.take_back();
+  return best;
+}
+
+/// Opens a node for the planes at hand, unless it cannot lead to a better motion.
+void Cycle::open_branch(const Trial& best) noexcept {
+  const Trial trial = solve();
+  if (!is_ok(trial.status) || trial.motion.norm() > around_.longest) return;
+  if (!is_worthwhile(trial.motion, best.motion)) return;
+  work_.branches.push((around_.aim - trial.motion).norm(), trial.motion, work_.planes.view());
+}
+
+/// Whether a motion is nearer to the aim by more than a millionth of it.
+bool Cycle::is_worthwhile(const Vec3& motion, const Vec3& best) const noexcept {
+  const Vec3& aim = around_.aim;
+  return (aim - motion).norm() < (aim - best).norm() - 1e-6 * aim.norm();
+}
+
+void Cycle::ended(std::int64_t StageTimes::*stage) noexcept {
+  if (times_ == nullptr) return;
+  const auto now = std::chrono::steady_clock::now();
+  times_->*stage += std::chrono::duration_cast<std::chrono::nanoseconds>(now - last_).count();
+  last_ = now;
+}
+
+std::optional<Vec3> tip_motion(const StepProblem& problem, const Solution& solution,
+                               double rounding) noexcept {
+  constexpr double digits = 5e-16;  // of the sum below, relative to the way
+  if (moves_a_point(problem)) {
+    const double* u = solution.u.data();
+    const double way = std::abs(u[0]) + std::abs(u[1]) + std::abs(u[2]);
+    if (!(digits * way <= rounding)) return std::nullopt;
+    return std::optional<Vec3>(std::in_place, Eigen::Map<const Vec3>(u));
+  }
+  Vec3 motion = Vec3::Zero();
+  double way = 0.0;  // of the tip, were all joints to move it alike
+  for (Eigen::Index c = 0; c < problem.jacobian.cols(); ++c) {
+    const double u = solution.u[static_cast<std::size_t>(c)];
+    motion += problem.jacobian.col(c) * u;
+    way += problem.jacobian.col(c).norm() * std::abs(u);
+  }
+  if (!(digits * way <= rounding)) return std::nullopt;
+  return motion;
+}
+
+}  // namespace keepout

@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+
+#include "keepout/activation/activation.h"
+#include "keepout/step/motion.h"
+#include "keepout/step/options.h"
+#include "keepout/step/solver.h"
+#include "keepout/step/stage_times.h"
+#include "workspace.h"
+
+namespace keepout {
+
+/// One control cycle: the motion nearest to the one desired which the rule allows. The rule looks
+/// around and opens with planes; then, in turn, the solver proposes a trial motion within the
+/// planes, and the rule judges it and may add a plane, until it has no objection. A better motion
+/// is then looked for while the options allow. On any trouble the motion is zero and the status
+/// says why; no solver is taken at its word.
+///
+/// What it proposes trials with is not trusted: only the rule's judgement stands between a trial
+/// and the robot.
+class Cycle {
+ public:
+  /// Preconditions: rule and solver are prepared for the workspace's capacity; the motion is
+  /// checked. `times`, unless null, are set to what each stage took.
+  Cycle(Activation& rule, Solver& solver, Workspace& work, const StepOptions& options,
+        const Motion& motion, StageTimes* times) noexcept;
+
+  /// Allocates nothing, throws nothing. Views in the result are of the workspace.
+  Step run() noexcept;
+
+ private:
+  /// A motion on trial, or why there is none: then it is zero.
+  struct Trial {
+    Status status;
+    Vec3 motion;
+  };
+
+  Opening open() noexcept;
+  Opening open_as_far_as_fits() noexcept;
+  Trial settle() noexcept;
+  Trial find() noexcept;
+  Trial fall_back(const Trial& trial, double free_share) noexcept;
+  Trial solve() noexcept;
+  Status attempt(std::optional<Vec3>& tip_motion) noexcept;
+  Trial refine(Trial best) noexcept;
+  Trial branch(const Trial& best) noexcept;
+  void open_branch(const Trial& best) noexcept;
+  bool is_worthwhile(const Vec3& motion, const Vec3& best) const noexcept;
+  void ended(std::int64_t StageTimes::*stage) noexcept;
+
+  Activation& rule_;
+  Solver& solver_;
+  Workspace& work_;
+  const StepOptions& options_;
+  const Motion& motion_;
+  Surroundings around_;
+  int halvings_ = 0;  // of the way, until there was room for the triangles around it
+
+  StageTimes* times_;
+  std::chrono::steady_clock::time_point last_;
+};
+
+/// What a solved increment does to the tip: dx = J u. Nothing when the joints would move so far,
+/// one against the other, that more than `rounding` of it is lost in their digits.
+std::optional<Vec3> tip_motion(const StepProblem& problem, const Solution& solution,
+                               double rounding) noexcept;
+
+}  // namespace keepout

@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "keepout/activation/activation.h"
+#include "keepout/step/motion.h"
+#include "keepout/step/options.h"
+#include "keepout/step/status.h"
+
+namespace keepout {
+
+/// invalid_input or beyond_reach for a motion that must not be attempted; free otherwise.
+Status check(const Motion& motion, const StepOptions& options) noexcept;
+
+/// What a position may be off by after a step: the rounding of tip + motion, some 1e-16 of the
+/// tip's coordinates, and the solver's, some 1e-13 of the motion; both taken a thousand times.
+/// [length]
+inline double position_rounding(const Vec3& tip, const StepOptions& options) noexcept {
+  return 1e-12 * (tip.lpNorm<1>() + distance_kept(options)) + 1e-10 * options.radius;
+}
+
+/// What the rule is to be asked about a motion. `projections`: how far the rule's motions can lead
+/// when they are projections of the aim.
+Surroundings surroundings_of(const Motion& motion, const StepOptions& options,
+                             Reach projections) noexcept;
+
+}  // namespace keepout

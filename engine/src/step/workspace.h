@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "branches.h"
+#include "keepout/activation/activation.h"
+#include "keepout/step/motion.h"
+#include "keepout/step/options.h"
+#include "keepout/step/problem.h"
+#include "keepout/step/solver.h"
+
+namespace keepout {
+
+/// The memory in which a cycle's planes become a problem, and its solution an answer. Made once.
+class Workspace {
+ public:
+  /// Makes all memory here. The rows of planes are written unless the solver reads planes.
+  Workspace(const Capacity& capacity, const Solver& solver);
+
+  /// Whether there is room for the motion's joints and rows.
+  bool has_room_for(const Motion& motion) const noexcept;
+
+  /// The problem whose rows are the planes, then those of the caller: on the tip's own increment
+  /// without a Jacobian, on the joints' with one, n^T J. `aim`: where the tip shall go. [length]
+  /// Precondition: has_room_for(motion).
+  StepProblem pose(const Motion& motion, const Vec3& aim, double damping) noexcept;
+
+  /// Takes down the last solution as the answer, which outlives the solver's next one: `share` of
+  /// it, or where the tip itself is what moves, `tip_motion`.
+  void note(const Motion& motion, const Vec3& tip_motion, double share) noexcept;
+
+  HalfSpaceBuffer planes;          // that the trial at hand has to satisfy
+  HalfSpaceBuffer earlier_planes;  // of the motion that is to be improved upon
+  HalfSpaceBuffer ways;            // around one triangle
+  Branches branches;               // of the branch and bound
+  Solution solution;               // the solver's last one
+
+  /// Puts planes and answer aside, for a search that may find better ones.
+  void set_aside() noexcept;
+
+  /// It found none.
+  void take_back() noexcept;
+
+  /// What was taken down.
+  std::span<const double> increment() const noexcept { return answer_.increment.view(); }
+  /// The rows that hold it back: planes, then those of the caller.
+  std::span<const std::uint32_t> active() const noexcept { return answer_.active.view(); }
+
+ private:
+  struct Answer {
+    Buffer<double> increment;      // (variables)
+    Buffer<std::uint32_t> active;  // (planes + extra rows)
+  };
+
+  void write_rows_of_planes(const double* jacobian, Eigen::Index variables) noexcept;
+
+  Eigen::Index variables_;   // the most columns of a Jacobian; at least 3
+  Eigen::Index extra_rows_;  // the most rows of the caller's own
+  bool writes_planes_;
+  std::vector<double> jacobian_;  // (3, variables), column by column, of one that is not so
+  std::vector<double> rows_;      // (planes + extra rows, variables), row by row
+  std::vector<double> bounds_;    // (planes + extra rows)
+  Vec3 desired_ = Vec3::Zero();
+  Answer answer_;
+  Answer earlier_answer_;
+};
+
+}  // namespace keepout
