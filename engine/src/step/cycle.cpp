@@ -93,12 +93,11 @@ Cycle::Cycle(Activation& rule, Solver& solver, Workspace& work, const StepOption
   last_ = std::chrono::steady_clock::now();
 }
 
-Step Cycle::run() noexcept {
-  Step result;
+void Cycle::run(Step& result) noexcept {
   work_.planes.clear();
   if (!work_.has_room_for(motion_)) {
     result.status = Status::over_capacity;
-    return result;
+    return;
   }
   // The motion sphere is not for less than was asked for.
   Opening opening = around_.reach == Reach::thales ? open_as_far_as_fits() : open();
@@ -120,13 +119,12 @@ Step Cycle::run() noexcept {
   }
   result.status = settled.status;
   result.triangles = rule_.triangles();
-  if (!is_ok(settled.status)) return result;
+  if (!is_ok(settled.status)) return;
   result.motion = settled.motion;
   result.increment = work_.increment();
   result.active = work_.active();
   if (halvings_ > 0) result.status = Status::fallback;
   if (recovering) result.status = Status::recovering;
-  return result;
 }
 
 /// Has the rule look at the triangles that matter for the aim, and begin with them.

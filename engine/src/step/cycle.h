@@ -30,8 +30,9 @@ class Cycle {
   Cycle(Activation& rule, Solver& solver, Workspace& work, const StepOptions& options,
         const Motion& motion, StageTimes* times) noexcept;
 
-  /// Allocates nothing, throws nothing. Views in the result are of the workspace.
-  Step run() noexcept;
+  /// Fills a step that is empty so far. Its views are of the workspace. Allocates nothing, throws
+  /// nothing.
+  void run(Step& result) noexcept;
 
  private:
   /// A motion on trial, or why there is none: then it is zero.

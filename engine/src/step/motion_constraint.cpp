@@ -115,10 +115,11 @@ Step MotionConstraint::step(const Motion& motion, SideWatch& sides) noexcept {
 }
 
 Step MotionConstraint::step(const Motion& motion, SideWatch& sides, StageTimes* times) noexcept {
+  Step result;
   if (times != nullptr) *times = {};
-  Step result{.status = check(motion, options_)};
+  result.status = check(motion, options_);
   // What is refused says nothing of where the tip is.
-  if (is_ok(result.status)) result = step_as_checked(motion, sides, times);
+  if (is_ok(result.status)) step_as_checked(motion, sides, times, result);
   const bool is_asked = options_.distances == Distances::always && !result.distance;
   if (is_asked && result.status != Status::invalid_input) {
     const auto nearest =
@@ -129,17 +130,18 @@ Step MotionConstraint::step(const Motion& motion, SideWatch& sides, StageTimes* 
 }
 
 /// A tip on the forbidden side is led out; any other steps as the rule allows.
-Step MotionConstraint::step_as_checked(const Motion& motion, SideWatch& sides,
-                                       StageTimes* times) noexcept {
-  if (sides.has_to_place(motion.tip)) {
-    if (const auto out = step_from_inside(*near_, motion, options_, *work_)) return *out;
+void MotionConstraint::step_as_checked(const Motion& motion, SideWatch& sides, StageTimes* times,
+                                       Step& result) noexcept {
+  if (sides.has_to_place(motion.tip) &&
+      lead_out_from_inside(*near_, motion, options_, *work_, result)) {
+    return;
   }
-  const Step result = Cycle(*activation_, *solver_, *work_, options_, motion, times).run();
-  if (result.status == Status::touching && sides.is_on()) {
-    if (const auto off = step_off_surface(*near_, motion, options_, *work_)) return *off;
+  Cycle(*activation_, *solver_, *work_, options_, motion, times).run(result);
+  if (result.status == Status::touching && sides.is_on() &&
+      lead_off_surface(*near_, motion, options_, *work_, result)) {
+    return;
   }
   sides.after(motion, result, options_);
-  return result;
 }
 
 Polytope MotionConstraint::free_polytope(const Vec3& tip, double radius) noexcept {

@@ -36,25 +36,32 @@ Step led_out(const Placement& placement, Neighborhood& near, const Motion& motio
 
 }  // namespace
 
-std::optional<Step> step_from_inside(Neighborhood& near, const Motion& motion,
-                                     const StepOptions& options, Workspace& work) noexcept {
+bool lead_out_from_inside(Neighborhood& near, const Motion& motion, const StepOptions& options,
+                          Workspace& work, Step& step) noexcept {
   const auto placement = place(near.mesh(), near.index(), motion.tip, near.candidates());
-  if (!placement) return Step{.status = Status::over_capacity};
-  if (placement->is_free) return std::nullopt;
-  if (!may_be_led(motion, options, near.mesh()) || placement->distance > options.deepest) {
-    return Step{.status = Status::inside, .distance = placement->distance};
+  if (!placement) {
+    step.status = Status::over_capacity;
+    return true;
   }
-  return led_out(*placement, near, motion, options, work);
+  if (placement->is_free) return false;
+  if (!may_be_led(motion, options, near.mesh()) || placement->distance > options.deepest) {
+    step.status = Status::inside;
+    step.distance = placement->distance;
+  } else {
+    step = led_out(*placement, near, motion, options, work);
+  }
+  return true;
 }
 
-std::optional<Step> step_off_surface(Neighborhood& near, const Motion& motion,
-                                     const StepOptions& options, Workspace& work) noexcept {
-  if (!may_be_led(motion, options, near.mesh())) return std::nullopt;
+bool lead_off_surface(Neighborhood& near, const Motion& motion, const StepOptions& options,
+                      Workspace& work, Step& step) noexcept {
+  if (!may_be_led(motion, options, near.mesh())) return false;
   const auto placement = place(near.mesh(), near.index(), motion.tip, near.candidates());
-  if (!placement) return std::nullopt;
-  const Step result = led_out(*placement, near, motion, options, work);
-  if (result.motion.isZero(0.0)) return std::nullopt;
-  return result;
+  if (!placement) return false;
+  const Step off = led_out(*placement, near, motion, options, work);
+  if (off.motion.isZero(0.0)) return false;
+  step = off;
+  return true;
 }
 
 }  // namespace keepout

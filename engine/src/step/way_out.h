@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <optional>
-
 #include "keepout/index/neighborhood.h"
 #include "keepout/step/motion.h"
 #include "keepout/step/options.h"
@@ -11,17 +9,16 @@
 
 namespace keepout {
 
-/// The step of a tip on the forbidden side, in place of the one asked for; nothing for a tip on the
-/// free side. `inside` and zero motion when it is deeper than options.deepest, and with a Jacobian
-/// or rows, as there is no straight way out. Preconditions: the mesh is watertight; the motion is
-/// checked.
-std::optional<Step> step_from_inside(Neighborhood& near, const Motion& motion,
-                                     const StepOptions& options, Workspace& work) noexcept;
+/// Whether a tip is on the forbidden side; then `step` becomes the one that leads it out, in place of
+/// the one asked for. It is `inside`, with zero motion, when the tip is deeper than options.deepest,
+/// and with a Jacobian or rows, as there is no straight way out. Preconditions: the mesh is
+/// watertight; the motion is checked.
+bool lead_out_from_inside(Neighborhood& near, const Motion& motion, const StepOptions& options,
+                          Workspace& work, Step& step) noexcept;
 
-/// The step of a tip that touches the surface, so that the rule cannot tell its side: a short way
-/// to a place that is found to be free. Nothing where none is found, or none may be made. The same
-/// preconditions.
-std::optional<Step> step_off_surface(Neighborhood& near, const Motion& motion,
-                                     const StepOptions& options, Workspace& work) noexcept;
+/// Whether there is a short way to a place that is found to be free, for a tip that touches the
+/// surface, so that the rule cannot tell its side; then `step` becomes that. The same preconditions.
+bool lead_off_surface(Neighborhood& near, const Motion& motion, const StepOptions& options,
+                      Workspace& work, Step& step) noexcept;
 
 }  // namespace keepout

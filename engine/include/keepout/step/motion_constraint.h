@@ -100,7 +100,8 @@ class MotionConstraint {
 
  private:
   Step step(const Motion& motion, SideWatch& sides, StageTimes* times) noexcept;
-  Step step_as_checked(const Motion& motion, SideWatch& sides, StageTimes* times) noexcept;
+  void step_as_checked(const Motion& motion, SideWatch& sides, StageTimes* times,
+                       Step& result) noexcept;
   void require_usable(const StepOptions& options);
 
   std::unique_ptr<Neighborhood> near_;  // the rule holds on to it, wherever this is moved

@@ -98,9 +98,10 @@ Ball CertifiedRule::region(const Surroundings& around) const noexcept {
 bool CertifiedRule::look_around(const Surroundings& around) noexcept {
   facets_.clear();
   *terms_ = CertifiedTerms::keeping(around.margin, tolerance(around));
-  const bool ends_anywhere = around.reach == Reach::sphere;
-  const double longest = ends_anywhere ? around.longest : around.aim.norm() * (1.0 + 1e-9);
-  return walk_->begin({around.tip, region(around), terms_->target, longest});
+  const Ball ends = ends_of_motions(around);
+  const double longest = std::min(around.longest, 2.0 * ends.radius * (1.0 + 1e-9));
+  const double beyond = around.margin + region_beyond * terms_->tolerance;
+  return walk_->begin({around.tip, {ends.center, ends.radius + beyond}, terms_->target, longest});
 }
 
 Opening CertifiedRule::start(const Surroundings& around, HalfSpaceBuffer&) noexcept {
