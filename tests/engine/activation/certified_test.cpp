@@ -13,14 +13,13 @@
 #include "keepout/fixtures/poses.h"
 #include "keepout/fixtures/shapes.h"
 #include "keepout/index/brute_force.h"
-#include "keepout/index/refine.h"
-#include "keepout/step/step.h"
+#include "keepout/index/neighborhood.h"
 #include "small_surfaces.h"
+#include "step/input.h"
 
 namespace keepout {
 namespace {
 
-using Stance = Opening::Stance;
 using Verdict = Judgement::Verdict;
 
 /// A rule, and what a step does before it asks it.
@@ -32,20 +31,14 @@ class Scene {
         planes(100),
         turned(100),
         options_(options),
-        candidates_(mesh->triangle_count()),
-        hits_(mesh->triangle_count()) {
-    rule.reserve(std::min(room, mesh->triangle_count()));
+        near_(mesh, std::make_shared<BruteForce>(mesh), room) {
+    rule.prepare(near_);
   }
 
   Opening open(const Vec3& tip, const Vec3& desired, Reach reach = Reach::thales) {
     around = surroundings_of({.tip = tip, .desired = desired}, options_, reach);
-    around.ball = rule.region(around);
-    candidates_.clear();
-    hits_.clear();
     planes.clear();
-    BruteForce(mesh).collect(around.ball, candidates_);
-    refine(*mesh, around.ball, candidates_.view(), hits_);
-    around.hits = hits_.view();
+    if (!rule.look_around(around)) return {Status::over_capacity};
     return rule.start(around, planes);
   }
 
@@ -59,8 +52,7 @@ class Scene {
 
  private:
   StepOptions options_;
-  TriangleBuffer candidates_;
-  HitBuffer hits_;
+  Neighborhood near_;
 };
 
 constexpr StepOptions options{.radius = 1.0, .margin = 0.2, .recovery = 0.05};
@@ -84,7 +76,7 @@ TEST(CertifiedRule, AtItsMarginATipIsClear) {
   Scene scene(table(), options);
   for (const double height : {0.2, 0.3, 0.2 - 1e-12}) {
     const Opening opening = scene.open(above(height), Vec3(0, 0, -0.5));
-    EXPECT_EQ(opening.stance, Stance::clear) << height;
+    EXPECT_EQ(opening.status, Status::free) << height;
     EXPECT_TRUE(scene.planes.empty());
   }
 }
@@ -93,14 +85,14 @@ TEST(CertifiedRule, AToleranceDecidesWhereTheMarginIsLost) {
   Scene scene(table(), options);
   scene.open(above(1.0), Vec3::Zero());
   const double tau = scene.tau();
-  EXPECT_EQ(scene.open(above(0.2 - 2.5 * tau), Vec3(0, 0, -0.5)).stance, Stance::clear);
-  EXPECT_EQ(scene.open(above(0.2 - 3.0 * tau), Vec3(0, 0, -0.5)).stance, Stance::too_close);
+  EXPECT_EQ(scene.open(above(0.2 - 2.5 * tau), Vec3(0, 0, -0.5)).status, Status::free);
+  EXPECT_EQ(scene.open(above(0.2 - 3.0 * tau), Vec3(0, 0, -0.5)).status, Status::recovering);
 }
 
 TEST(CertifiedRule, TooCloseItLeadsStraightAwayByTheRecovery) {
   Scene scene(table(), options);
   const Opening opening = scene.open(above(0.1), Vec3::Zero());
-  EXPECT_EQ(opening.stance, Stance::too_close);
+  EXPECT_EQ(opening.status, Status::recovering);
   EXPECT_LT((opening.aim - Vec3(0, 0, 0.05)).norm(), 1e-15);
   // No farther than the margin.
   EXPECT_LT((scene.open(above(0.18), Vec3::Zero()).aim - Vec3(0, 0, 0.02)).norm(), 1e-15);
@@ -122,25 +114,25 @@ TEST(CertifiedRule, TooCloseWhatLeadsAlongOrAwayIsKept) {
 
 TEST(CertifiedRule, OnTheSurfaceNoSideIsFree) {
   Scene scene(table(), options);
-  EXPECT_EQ(scene.open(above(0.0), Vec3(0, 0, 0.5)).stance, Stance::touching);
+  EXPECT_EQ(scene.open(above(0.0), Vec3(0, 0, 0.5)).status, Status::touching);
   const double tau = scene.tau();
-  EXPECT_EQ(scene.open(above(3.0 * tau), Vec3(0, 0, 0.5)).stance, Stance::touching);
-  EXPECT_EQ(scene.open(above(5.0 * tau), Vec3(0, 0, 0.5)).stance, Stance::too_close);
+  EXPECT_EQ(scene.open(above(3.0 * tau), Vec3(0, 0, 0.5)).status, Status::touching);
+  EXPECT_EQ(scene.open(above(5.0 * tau), Vec3(0, 0, 0.5)).status, Status::recovering);
 }
 
 TEST(CertifiedRule, AMarginThatRoundingHidesIsRefused) {
   for (const double margin : {0.0, 1e-12, 5e-9}) {
     Scene scene(table(), {.radius = 1.0, .margin = margin});
-    EXPECT_EQ(scene.open(above(1.0), Vec3(0, 0, -0.5)).stance, Stance::no_margin) << margin;
+    EXPECT_EQ(scene.open(above(1.0), Vec3(0, 0, -0.5)).status, Status::margin_too_small) << margin;
   }
   Scene scene(table(), {.radius = 1.0, .margin = 1e-7});
-  EXPECT_EQ(scene.open(above(1.0), Vec3(0, 0, -0.5)).stance, Stance::clear);
+  EXPECT_EQ(scene.open(above(1.0), Vec3(0, 0, -0.5)).status, Status::free);
 }
 
-TEST(CertifiedRule, MoreTrianglesThanRoomIsAStance) {
+TEST(CertifiedRule, MoreTrianglesThanRoomIsAStatus) {
   Scene scene(table(), options, 1);
-  EXPECT_EQ(scene.open(Vec3(0, 0, 0.5), Vec3(0, 0, -0.5)).stance, Stance::over_capacity);
-  EXPECT_EQ(scene.open(Vec3(0, 0, 0.5), Vec3(0, 0, 0.5)).stance, Stance::clear);
+  EXPECT_EQ(scene.open(Vec3(0, 0, 0.5), Vec3(0, 0, -0.5)).status, Status::over_capacity);
+  EXPECT_EQ(scene.open(Vec3(0, 0, 0.5), Vec3(0, 0, 0.5)).status, Status::free);
 }
 
 TEST(CertifiedRule, LooksWhereMotionsMayLead) {
@@ -153,11 +145,12 @@ TEST(CertifiedRule, LooksWhereMotionsMayLead) {
     const Vec3 n = random.direction();
     const double offset = -random.uniform();
     const Vec3 motion = desired + std::max(offset - n.dot(desired), 0.0) * n;
-    ASSERT_LE((tip + motion - scene.around.ball.center).norm() + 0.2, scene.around.ball.radius);
+    ASSERT_LE((tip + motion - scene.rule.region(scene.around).center).norm() + 0.2,
+              scene.rule.region(scene.around).radius);
   }
   scene.open(tip, desired, Reach::sphere);
-  EXPECT_EQ(scene.around.ball.center, tip);
-  EXPECT_GE(scene.around.ball.radius, 1.2);
+  EXPECT_EQ(scene.rule.region(scene.around).center, tip);
+  EXPECT_GE(scene.rule.region(scene.around).radius, 1.2);
 }
 
 TEST(CertifiedRule, WhatIsFreeIsAccepted) {
@@ -175,7 +168,7 @@ TEST(CertifiedRule, AnObjectionIsAPlaneThatExcludesTheTrialAndNotTheTip) {
   std::size_t objections = 0;
   for (const Vec3& tip : surface_points(mesh, 400, 0.25, random)) {
     const Vec3 trial = random.uniform(0.1, 1.0) * random.direction();
-    if (scene.open(tip, trial).stance != Stance::clear) continue;
+    if (scene.open(tip, trial).status != Status::free) continue;
     const Judgement judgement = scene.rule.judge(scene.around, trial, scene.planes);
     if (judgement.verdict == Verdict::accepted) continue;
     ASSERT_EQ(judgement.verdict, Verdict::objected);
@@ -213,7 +206,7 @@ TEST(CertifiedRule, StandingStillIsAlwaysAccepted) {
     Random random(4);
     for (const Vec3& tip : surface_points(*scene.mesh, 30, random.uniform(0.01, 0.5), random)) {
       const Opening opening = scene.open(tip, random.direction());
-      if (opening.stance == Stance::touching) continue;
+      if (opening.status == Status::touching) continue;
       ASSERT_EQ(scene.rule.judge(scene.around, Vec3::Zero(), scene.planes).verdict,
                 Verdict::accepted)
           << name << " " << tip.transpose();
@@ -242,7 +235,7 @@ TEST(CertifiedRule, TurnedPlanesAllowTheTipAndTheMotionAsBefore) {
     std::size_t changed = 0;
     for (const Vec3& tip : surface_points(mesh, 150, 0.25, random)) {
       const Vec3 trial = random.uniform(0.2, 1.0) * random.direction();
-      if (scene.open(tip, trial).stance != Stance::clear) continue;
+      if (scene.open(tip, trial).status != Status::free) continue;
       const Judgement judgement = scene.rule.judge(scene.around, trial, scene.planes);
       if (judgement.verdict != Verdict::objected) continue;
       const HalfSpace old = scene.planes[0];

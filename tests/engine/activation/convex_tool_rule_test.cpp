@@ -8,6 +8,8 @@
 #include "keepout/activation/certified.h"
 #include "keepout/error.h"
 #include "keepout/fixtures/random.h"
+#include "keepout/index/brute_force.h"
+#include "step/input.h"
 
 namespace keepout {
 namespace {
@@ -74,18 +76,14 @@ TEST(ConvexToolRule, ASpheresPlanesAreThoseThroughTheClosestPoints) {
   const double r = 1.5;
   ConvexToolRule rule(mesh, ConvexTool::sphere(r));
   const Vec3 tip = mesh->vertex(17) * 1.1;
-  Surroundings around = surroundings_of({.tip = tip, .desired = Vec3::Zero()},
-                                        {.radius = 5.0, .margin = margin}, Reach::sphere);
-  around.ball = rule.region(around);
-  EXPECT_GT(around.ball.radius, 5.0 + margin + r);
-  HitBuffer hits(mesh->triangle_count());
-  TriangleBuffer all(mesh->triangle_count());
-  for (TriangleId t = 0; t < mesh->triangle_count(); ++t) all.push(t);
-  refine(*mesh, around.ball, all.view(), hits);
-  around.hits = hits.view();
-  rule.reserve(mesh->triangle_count());
+  const Surroundings around = surroundings_of({.tip = tip, .desired = Vec3::Zero()},
+                                              {.radius = 5.0, .margin = margin}, Reach::sphere);
+  EXPECT_GT(rule.region(around).radius, 5.0 + margin + r);
+  Neighborhood near(mesh, std::make_shared<BruteForce>(mesh), mesh->triangle_count());
+  rule.prepare(near);
+  ASSERT_TRUE(rule.look_around(around));
   HalfSpaceBuffer planes(mesh->triangle_count());
-  ASSERT_EQ(rule.start(around, planes).stance, Opening::Stance::clear);
+  ASSERT_EQ(rule.start(around, planes).status, Status::free);
   EXPECT_TRUE(planes.empty());
   Random random(10);
   for (int i = 0; i < 100; ++i) {

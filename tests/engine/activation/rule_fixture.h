@@ -9,7 +9,7 @@
 #include "keepout/activation/activation.h"
 #include "keepout/index/brute_force.h"
 #include "keepout/mesh/mesh.h"
-#include "keepout/step/step.h"
+#include "step/input.h"
 
 namespace keepout {
 
@@ -17,17 +17,12 @@ namespace keepout {
 /// long as the radius, along and across the axes.
 inline std::vector<HalfSpace> planes_at(const std::shared_ptr<const Mesh>& mesh, Activation& rule,
                                         const Vec3& tip, double radius, double margin = 0.0) {
-  TriangleBuffer candidates(mesh->triangle_count());
-  HitBuffer hits(mesh->triangle_count());
+  Neighborhood near(mesh, std::make_shared<BruteForce>(mesh), mesh->triangle_count());
   HalfSpaceBuffer planes(mesh->triangle_count());
-  Surroundings around = surroundings_of({.tip = tip, .desired = Vec3::Zero()},
-                                        {.radius = radius, .margin = margin}, Reach::sphere);
-  around.ball = {tip, radius + margin};
-  BruteForce(mesh).collect(around.ball, candidates);
-  refine(*mesh, around.ball, candidates.view(), hits);
-  around.hits = hits.view();
-  rule.reserve(mesh->triangle_count());
-  if (rule.start(around, planes).stance != Opening::Stance::clear) return {};
+  const Surroundings around = surroundings_of({.tip = tip, .desired = Vec3::Zero()},
+                                              {.radius = radius, .margin = margin}, Reach::sphere);
+  rule.prepare(near);
+  if (!rule.look_around(around) || rule.start(around, planes).status != Status::free) return {};
   for (int i = 0; i < 27; ++i) {
     const Vec3 towards(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
     if (!towards.isZero()) rule.judge(around, radius * towards.normalized(), planes);

@@ -9,7 +9,7 @@
 #include "keepout/fixtures/poses.h"
 #include "keepout/fixtures/shapes.h"
 #include "keepout/oracle/safety_oracle.h"
-#include "keepout/step/branches.h"
+#include "step/branches.h"
 
 namespace keepout {
 namespace {

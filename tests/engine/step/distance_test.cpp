@@ -35,7 +35,7 @@ double distance_by_force(const Mesh& mesh, const Vec3& tip) {
   return least;
 }
 
-/// The same rule in all its forms.
+/// The same rule on indices that offer different sources of triangles.
 std::vector<MotionConstraint> forms_of(std::string_view rule,
                                        const std::shared_ptr<const Mesh>& mesh,
                                        Distances distances) {
@@ -44,15 +44,12 @@ std::vector<MotionConstraint> forms_of(std::string_view rule,
       std::make_shared<BruteForce>(mesh)};
   const StepOptions options{
       .radius = 3.0, .tool_radius = tool_radius, .margin = margin, .distances = distances};
-  StepOptions plain = options;
-  plain.searching = false;
   std::vector<MotionConstraint> forms;
-  const auto add = [&](const auto& index, const StepOptions& its) {
-    forms.emplace_back(mesh, index, make_activation(rule, mesh), std::make_unique<ActiveSet>(), its,
-                       Capacity{}, rule == "certified" ? Inside::led_out : Inside::taken_as_is);
-  };
-  for (const auto& index : indices) add(index, options);
-  add(indices[0], plain);
+  for (const auto& index : indices) {
+    forms.emplace_back(mesh, index, make_activation(rule, mesh), std::make_unique<ActiveSet>(),
+                       options, Capacity{},
+                       rule == "certified" ? Inside::led_out : Inside::taken_as_is);
+  }
   return forms;
 }
 

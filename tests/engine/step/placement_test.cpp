@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "keepout/step/placement.h"
+#include "step/placement.h"
 
 #include <gtest/gtest.h>
 
@@ -23,8 +23,6 @@
 
 namespace keepout {
 namespace {
-
-using Side = Placement::Side;
 
 class Placing {
  public:
@@ -94,7 +92,7 @@ TEST_P(PlacementOnSolid, AgreesWithAnIndependentInsideTest) {
     ASSERT_NEAR(placement->way_out.norm(), 1.0, 1e-12);
     if (distance < 1e-11 * (tip.norm() + 100.0)) continue;  // all but on the surface
     const bool is_inside = placing.inside(tip);
-    ASSERT_EQ(placement->side == Side::forbidden, is_inside != inside_out)
+    ASSERT_EQ(!placement->is_free, is_inside != inside_out)
         << "at " << tip.transpose() << ", distance " << distance;
     ++(is_inside ? inside : outside);
   }
@@ -110,7 +108,7 @@ TEST_P(PlacementOnSolid, TheWayLeadsToTheSurfaceFromInsideAndOffItFromOutside) {
     ASSERT_TRUE(placement.has_value());
     const double distance = placement->distance;
     if (distance < 1e-5) continue;
-    const double towards = placement->side == Side::forbidden ? 1.0 : -1.0;
+    const double towards = placement->is_free ? -1.0 : 1.0;
     const Vec3 surface = tip + towards * distance * placement->way_out;
     ASSERT_LE(placing.distance(surface), 1e-12 * (tip.norm() + 100.0));
   }
@@ -123,14 +121,14 @@ TEST_P(PlacementOnSolid, LeadingOutNeverLeadsDeeper) {
   for (const Vec3& tip : tips_around(placing.mesh(), 100, random)) {
     const auto placement = placing(tip);
     ASSERT_TRUE(placement.has_value());
-    if (placement->side == Side::free || placement->distance < 1e-9) continue;
+    if (placement->is_free || placement->distance < 1e-9) continue;
     ++forbidden;
     for (const double recovery : {1e-3, 0.05, 1.0, 30.0}) {
       const Vec3 way = placing.way_out(tip, recovery, 1e-4 * recovery);
       ASSERT_LE(way.norm(), recovery * (1.0 + 1e-15));
       const auto after = placing(tip + way);
       ASSERT_TRUE(after.has_value());
-      if (after->side == Side::free) continue;
+      if (after->is_free) continue;
       ASSERT_LE(after->distance, placement->distance * (1.0 + 1e-9) + 1e-12);
       if (way.norm() <= placement->distance) {
         ASSERT_LE(after->distance, placement->distance - way.norm() + 1e-9);
@@ -148,7 +146,7 @@ TEST_P(PlacementOnSolid, DoesNotDependOnTheNumbering) {
   for (const Vec3& tip : tips_around(placing.mesh(), 100, random)) {
     const auto one = placing(tip);
     const auto two = other(tip);
-    ASSERT_EQ(one->side, two->side);
+    ASSERT_EQ(one->is_free, two->is_free);
     ASSERT_EQ(one->distance, two->distance);
   }
 }
@@ -199,7 +197,7 @@ TEST(Placement, RightOverTheRimOfAFaceASharpEdgeDoesNotConfuse) {
       const Vec3 tip = turn * (edge + random.uniform(0.1, 2.0) * normal + trifle * along);
       const auto placement = placing(tip);
       ASSERT_TRUE(placement.has_value());
-      ASSERT_EQ(placement->side, Side::free)
+      ASSERT_TRUE(placement->is_free)
           << "opening " << opening << ", trifle " << trifle << ", case " << i;
     }
   }
@@ -229,7 +227,7 @@ TEST(Placement, ASaddleVertexIsNoTrouble) {
     const auto placement = placing(tip);
     if (placement->distance == 0.0) continue;  // on the surface to within rounding
     const bool is_inside = placing.inside(tip);
-    ASSERT_EQ(placement->side == Side::forbidden, is_inside) << tip.transpose();
+    ASSERT_EQ(!placement->is_free, is_inside) << tip.transpose();
     if (is_inside) ++inside;
   }
   EXPECT_GT(inside, 1'000u);
@@ -241,7 +239,7 @@ TEST(Placement, OnTheSurfaceTheNormalLeadsOut) {
   for (const Vec3& tip : {Vec3(3, 4, 50), Vec3(50, 0, 50), Vec3(50, 50, 50)}) {
     const auto placement = cube(tip);
     ASSERT_TRUE(placement.has_value());
-    EXPECT_EQ(placement->side, Side::forbidden);
+    EXPECT_FALSE(placement->is_free);
     EXPECT_LT(placement->distance, 1e-14);
     EXPECT_NEAR(placement->way_out.norm(), 1.0, 1e-15);
     EXPECT_FALSE(cube.inside(tip + 1e-3 * placement->way_out));
@@ -258,11 +256,11 @@ TEST(Placement, FarOffIsTheSideThatIsOutsideWhicheverThatIs) {
     const Vec3 tip = times * around.mesh().bounds().size().norm() * random.direction();
     const std::optional<Placement> outside = around(tip);
     ASSERT_TRUE(outside.has_value()) << times;
-    EXPECT_EQ(outside->side, Side::free) << times;
+    EXPECT_TRUE(outside->is_free) << times;
     EXPECT_LE(outside->distance, around.distance(tip) * (1.0 + 1e-12)) << times;
     const std::optional<Placement> beyond = within(tip);
     ASSERT_TRUE(beyond.has_value()) << times;
-    EXPECT_EQ(beyond->side, Side::forbidden) << times;
+    EXPECT_FALSE(beyond->is_free) << times;
     EXPECT_NEAR(beyond->distance, within.distance(tip), 1e-12 * within.distance(tip)) << times;
     EXPECT_LT(beyond->way_out.dot(tip.normalized()), -0.8) << "to the surface";
   }
@@ -341,7 +339,7 @@ TEST(Placement, ASliverAtASharpRidgeDoesNotConfuse) {
                        std::pow(10.0, random.uniform(-4.0, -0.5)) * random.direction();
       const auto placement = placing(tip);
       ASSERT_TRUE(placement.has_value());
-      ASSERT_EQ(placement->side == Side::forbidden, placing.inside(tip)) << half_angle << " " << i;
+      ASSERT_EQ(!placement->is_free, placing.inside(tip)) << half_angle << " " << i;
     }
   }
 }
@@ -359,7 +357,7 @@ TEST(Placement, OverAVertexBetweenLongAndShortTrianglesIsTheSideItIsOn) {
     const auto placement = gear(tip);
     ASSERT_TRUE(placement.has_value());
     const bool inside = gear.inside(tip);
-    ASSERT_EQ(placement->side == Side::forbidden, inside) << tip.transpose();
+    ASSERT_EQ(!placement->is_free, inside) << tip.transpose();
     ++(inside ? forbidden : free);
   }
   EXPECT_GT(free, 300u);

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "keepout/step/step.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -186,6 +184,12 @@ class LazyFaces final : public Activation {
  public:
   explicit LazyFaces(std::shared_ptr<const Mesh> mesh)
       : eager_(std::move(mesh)), planes_(100'000) {}
+
+  void prepare(Neighborhood& near) override { eager_.prepare(near); }
+
+  bool look_around(const Surroundings& around) noexcept override {
+    return eager_.look_around(around);
+  }
 
   Opening start(const Surroundings& around, HalfSpaceBuffer&) noexcept override {
     planes_.clear();

@@ -1,0 +1,334 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+// The sources of triangles that indices offer, held to each other by the certified rule bit for
+// bit: the walk of a WideBvh, and all hits around.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "each_simd_target.h"
+#include "index/tree_walk/tree_walk.h"
+#include "keepout/activation/certified.h"
+#include "keepout/fixtures/poses.h"
+#include "keepout/fixtures/random.h"
+#include "keepout/fixtures/shapes.h"
+#include "keepout/index/motion_walk.h"
+#include "keepout/index/nearest.h"
+#include "keepout/index/neighborhood.h"
+#include "keepout/index/pd_tree.h"
+#include "keepout/index/wide_bvh.h"
+#include "keepout/solvers/active_set.h"
+#include "keepout/step/motion_constraint.h"
+#include "names_of_shapes.h"
+#include "trials.h"
+
+namespace keepout {
+namespace {
+
+/// All that a step comes to.
+struct Outcome {
+  Status status;
+  Vec3 motion;
+  std::vector<double> increment;
+  std::vector<HalfSpace> planes;
+  std::optional<double> distance;
+
+  explicit Outcome(const Step& step)
+      : status(step.status),
+        motion(step.motion),
+        increment(step.increment.begin(), step.increment.end()),
+        planes(step.planes.begin(), step.planes.end()),
+        distance(step.distance) {}
+
+  /// The sources of planes count too, but for triangles that are one on top of the other.
+  friend bool operator==(const Outcome& a, const Outcome& b) {
+    return a.status == b.status && a.motion == b.motion && a.increment == b.increment &&
+           a.distance == b.distance &&
+           std::equal(a.planes.begin(), a.planes.end(), b.planes.begin(), b.planes.end(),
+                      [](const HalfSpace& p, const HalfSpace& q) {
+                        return p.normal == q.normal && p.offset == q.offset;
+                      });
+  }
+};
+
+std::unique_ptr<MotionConstraint> guard(const std::shared_ptr<const Mesh>& mesh,
+                                        std::shared_ptr<const SpatialIndex> index,
+                                        const StepOptions& options) {
+  return std::make_unique<MotionConstraint>(
+      mesh, std::move(index), std::make_unique<CertifiedRule>(mesh), std::make_unique<ActiveSet>(),
+      options, Capacity{.nodes = 16});
+}
+
+/// The rule on one mesh and two indices: one that walks along motions, and one that does not.
+class Sources {
+ public:
+  explicit Sources(Surface surface)
+      : mesh(std::make_shared<const Mesh>(std::move(surface))),
+        tree(std::make_shared<WideBvh>(mesh)),
+        walking_(guard(mesh, tree, harmless())),
+        asking_(guard(mesh, std::make_shared<PdTree>(mesh), harmless())) {}
+
+  Outcome walking(const Motion& motion, const StepOptions& options) {
+    return step(*walking_, motion, options);
+  }
+  Outcome asking(const Motion& motion, const StepOptions& options) {
+    return step(*asking_, motion, options);
+  }
+  static Outcome step(MotionConstraint& guard, const Motion& motion, const StepOptions& options) {
+    guard.set_options(options);
+    return Outcome(guard.step(motion));
+  }
+
+  std::shared_ptr<const Mesh> mesh;
+  std::shared_ptr<WideBvh> tree;
+
+ private:
+  StepOptions harmless() const {
+    const double size = mesh->bounds().size().norm();
+    return {.radius = size, .margin = size};
+  }
+
+  std::unique_ptr<MotionConstraint> walking_;
+  std::unique_ptr<MotionConstraint> asking_;
+};
+
+/// Lengths as shares of the mesh's size.
+struct Scale {
+  double margin;
+  double motion;
+};
+constexpr Scale scales[] = {{0.005, 0.003}, {0.001, 0.02}, {0.03, 0.002}, {0.02, 0.1}};
+
+/// What a hand does that presses and drags, from tips that keep the margin, are too close, touch,
+/// or are inside; the tip goes where the rule lets it.
+template <class Ask>
+void drag(Sources& sources, const Scale& scale, std::size_t strokes, Ask&& ask) {
+  const double size = sources.mesh->bounds().size().norm();
+  const double margin = scale.margin * size;
+  const double motion = scale.motion * size;
+  const PdTree nearby(sources.mesh);
+  NearestTriangle nearest(*sources.mesh, nearby);
+  Random random(7);
+  for (const double offset : {1.5 * margin, 0.3 * margin, 0.0, -0.5 * margin}) {
+    for (const Vec3& start : surface_points(*sources.mesh, strokes, offset, random)) {
+      Vec3 tip = start;
+      Vec3 press = random.direction();
+      for (int cycle = 0; cycle < 12; ++cycle) {
+        if (cycle % 4 == 0) {
+          const Vec3 way = nearest(tip).closest.offset;
+          press = way.norm() > 0.0 ? Vec3(way.normalized()) : random.direction();
+        }
+        const Vec3 desired =
+            random.uniform(0.2, 1.0) * motion * (press + random.direction()).normalized();
+        tip += ask(Motion{.tip = tip, .desired = desired}, margin, motion);
+        if (::testing::Test::HasFatalFailure()) return;
+      }
+    }
+  }
+}
+
+class SourcesOn : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(SourcesOn, AgreeBitForBitOnEachTarget) {
+  Sources sources(make_shape(GetParam()));
+  ASSERT_NE(sources.tree->walk_along_motions(), nullptr);
+  std::vector<Outcome> on_the_first;
+  on_each_simd_target([&] {
+    std::vector<Outcome> made;
+    for (const Scale& scale : scales) {
+      drag(sources, scale, 4, [&](const Motion& motion, double margin, double length) {
+        const StepOptions options{
+            .radius = 1.1 * length, .margin = margin, .recovery = 0.2 * margin};
+        made.push_back(sources.asking(motion, options));
+        EXPECT_EQ(sources.walking(motion, options), made.back())
+            << motion.tip.transpose() << " by " << motion.desired.transpose();
+        return made.back().motion;
+      });
+    }
+    if (on_the_first.empty()) on_the_first = made;
+    EXPECT_TRUE(made == on_the_first);
+  });
+  const auto count = [&](Status status) {
+    return std::ranges::count(on_the_first, status, &Outcome::status);
+  };
+  EXPECT_GT(count(Status::limited), 50);
+  EXPECT_GT(count(Status::recovering), 20);
+}
+
+INSTANTIATE_TEST_SUITE_P(Shapes, SourcesOn, ::testing::ValuesIn(names_of_shapes()),
+                         [](const auto& shape) { return shape.param; });
+
+TEST(SourcesWithOptions, AgreeBitForBitWithJointsAndRowsOnEachTarget) {
+  Sources sources(make_shape("cortex"));
+  const TipJacobian::Matrix jacobian = [] {
+    TipJacobian::Matrix j(3, 5);
+    j << 1, 0, 0, 0.5, -0.3, 0, 1, 0, 0.2, 0.7, 0, 0, 1, -0.4, 0.1;
+    return j;
+  }();
+  const std::vector<double> matrix{1, 0, 0, -1, 0, 0}, bounds{-0.001, -0.5};
+  std::size_t limited = 0;
+  const auto ask_on = [&](const Scale& scale) {
+    drag(sources, scale, 6, [&](const Motion& motion, double margin, double length) {
+      StepOptions options{.radius = 1.5 * length, .margin = margin};
+      Vec3 way = Vec3::Zero();
+      for (int variant = 0; variant < 5; ++variant) {
+        Motion asked = motion;
+        options.refinements = variant == 1 ? 0 : 3;
+        options.nodes = variant == 2 ? 12 : 0;
+        options.query = variant == 3 ? Query::sphere : Query::motion;
+        options.damping = 0.0;
+        if (variant == 3) asked.rows = ExtraRows(matrix.data(), bounds.data(), 2);
+        if (variant == 4) {
+          asked.jacobian = TipJacobian(jacobian);
+          options.damping = 1e-3;
+        }
+        const Outcome expected = sources.asking(asked, options);
+        EXPECT_EQ(sources.walking(asked, options), expected) << "variant " << variant;
+        limited += expected.status == Status::limited;
+        if (variant == 0) way = expected.motion;
+      }
+      return way;
+    });
+  };
+  on_each_simd_target([&] {
+    for (const Scale& scale : {scales[0], scales[1]}) ask_on(scale);
+  });
+  EXPECT_GT(limited, 100u);
+}
+
+TEST(TreeWalkMemory, DoesNotChangeAnswers) {
+  Sources sources(make_shape("star_bumps"));
+  std::size_t limited = 0;
+  drag(sources, scales[0], 10, [&](const Motion& motion, double margin, double length) {
+    const StepOptions options{.radius = 1.1 * length, .margin = margin};
+    const Outcome remembered = sources.walking(motion, options);
+    const auto fresh = guard(sources.mesh, sources.tree, options);
+    EXPECT_EQ(Outcome(fresh->step(motion)), remembered);
+    limited += remembered.status == Status::limited;
+    return remembered.motion;
+  });
+  EXPECT_GT(limited, 50u);
+}
+
+/// A reach that grew with every stroke until large boxes were left over would have each cycle look
+/// into them, and would cover all that is asked about, so that nothing would ever mend it.
+TEST(TreeWalkMemory, IsOfLeavesHoweverManyStrokesThereWere) {
+  const auto mesh = std::make_shared<const Mesh>(make_shape("cortex"));
+  const auto tree = std::make_shared<WideBvh>(mesh);
+  const PdTree nearby(mesh);
+  NearestTriangle nearest(*mesh, nearby);
+  const double size = mesh->bounds().size().norm();
+  const StepOptions options{.radius = 2e-3 * size, .margin = 2e-3 * size};
+  const auto constraint = guard(mesh, tree, options);
+  TreeWalk walk(*tree);
+  Random random(3);
+  int limited = 0, unopened = 0;
+  for (Vec3 tip : surface_points(*mesh, 300, 1.2 * options.margin, random)) {
+    const Vec3 along = random.direction();
+    for (int cycle = 0; cycle < 20; ++cycle) {
+      const Vec3 way = nearest(tip).closest.offset.normalized() + along;
+      const Vec3 desired = 0.5 * options.radius * way.normalized();
+      const Ball region{tip + 0.5 * desired, 0.5 * desired.norm() + options.margin};
+      ASSERT_TRUE(walk.begin({tip, region, options.margin, desired.norm()}));
+      const Step made = constraint->step({.tip = tip, .desired = desired});
+      limited += made.status == Status::limited;
+      unopened += walk.frontier().is_opened() ? 0 : 1;
+      tip += made.motion;
+    }
+  }
+  EXPECT_GT(limited, 3000);
+  EXPECT_LT(unopened, 60);  // one in a hundred, at the end of a reach that was tried
+}
+
+TEST(MotionWalk, IsOfferedByWideBvhAndMadeOfHitsForOthers) {
+  const auto mesh = std::make_shared<const Mesh>(make_cube(0.5));
+  EXPECT_NE(WideBvh(mesh).walk_along_motions(), nullptr);
+  EXPECT_EQ(PdTree(mesh).walk_along_motions(), nullptr);
+  Neighborhood near(mesh, std::make_shared<PdTree>(mesh), 100);
+  EXPECT_NE(make_motion_walk(near), nullptr);
+}
+
+/// The wall comes to where it was free: what was known of free space must not let the tip through.
+TEST(TreeWalk, BeginsNoMoreOnceItsTreeIsRefit) {
+  Sources sources(make_cube(5.0));
+  const Motion motion{.tip = Vec3(0.0, 0.0, 58.0), .desired = Vec3(0.0, 0.0, -4.0)};
+  const StepOptions options{.radius = 5.0, .margin = 1.0};
+  ASSERT_EQ(sources.walking(motion, options).status, Status::free);
+  Surface raised{{sources.mesh->vertices().begin(), sources.mesh->vertices().end()},
+                 {sources.mesh->triangles().begin(), sources.mesh->triangles().end()}};
+  for (Vec3& v : raised.vertices) v.z() += 5.0;
+  const auto mesh = std::make_shared<const Mesh>(std::move(raised));
+  sources.tree->refit(mesh);
+  const Outcome stopped = sources.walking(motion, options);
+  EXPECT_EQ(stopped.status, Status::over_capacity);
+  EXPECT_EQ(stopped.motion, Vec3::Zero());
+
+  const Outcome anew(guard(mesh, sources.tree, options)->step(motion));
+  EXPECT_EQ(anew.status, Status::limited);
+  EXPECT_NEAR(anew.motion.z(), -2.0, 1e-6);
+}
+
+/// Near the least margin that a rule may have, in units of its tolerance, where what one source
+/// takes for refused at once has to be what the others prove to be refused.
+TEST(SourcesAtTheLeastMargin, AgreeBitForBitOnEachTarget) {
+  const auto agree_on = [](const char* shape, double times) {
+    Sources sources(make_shape(shape));
+    const double size = sources.mesh->bounds().size().norm();
+    const double tau = 2e-10 * (sources.mesh->longest_edge() + 1e-3 * size);
+    const double margin = times * tau;
+    NearestTriangle nearest(*sources.mesh, *sources.tree);
+    Random random(17);
+    std::size_t held = 0;
+    for (const double clearance : {1.0 + 2.0 / times, 1.0, 1.0 - 2.4 / times, 0.7}) {
+      for (const Vec3& start :
+           surface_points(*sources.mesh, test::trials(40), 20.0 * margin, random)) {
+        const ClosestPoint closest = nearest(start).closest;
+        Vec3 tip = start + closest.offset * (1.0 - clearance * margin / closest.distance);
+        for (int cycle = 0; cycle < 8; ++cycle) {
+          const double length = margin * std::pow(10.0, random.uniform(0.0, 5.0));
+          const Vec3 way = (closest.offset.normalized() + random.direction()).normalized();
+          const StepOptions options{.radius = 1.1 * length, .margin = 1.02 * margin};
+          const Motion motion{.tip = tip, .desired = length * way};
+          const Outcome expected = sources.asking(motion, options);
+          EXPECT_EQ(sources.walking(motion, options), expected)
+              << shape << " " << times << " " << tip.transpose();
+          held += expected.status == Status::limited || expected.status == Status::recovering;
+          tip += expected.motion;
+        }
+      }
+    }
+    return held;
+  };
+  on_each_simd_target([&] {
+    for (const double times : {9.0, 12.0, 40.0, 300.0, 1500.0}) {
+      std::size_t held = 0;
+      for (const char* shape : {"cortex", "gear", "star_bumps"}) held += agree_on(shape, times);
+      EXPECT_GT(held, test::trials(200u)) << times;
+    }
+  });
+}
+
+/// Far from the origin, where a tip's second float matters, and coordinates are no floats.
+TEST(SourcesFarOff, AgreeBitForBitFarFromTheOrigin) {
+  Surface surface = make_shape("cortex");
+  for (Vec3& v : surface.vertices) v = 1.1 * v + Vec3(1234.5678, -987.654321, 3456.789);
+  Sources sources(std::move(surface));
+  ASSERT_GT(sources.tree->coordinate_error(), 0.0);
+  std::size_t limited = 0;
+  drag(sources, scales[0], 10, [&](const Motion& motion, double margin, double length) {
+    const StepOptions options{.radius = 1.1 * length, .margin = margin};
+    const Outcome expected = sources.asking(motion, options);
+    EXPECT_EQ(sources.walking(motion, options), expected);
+    limited += expected.status == Status::limited;
+    return expected.motion;
+  });
+  EXPECT_GT(limited, 50u);
+}
+
+}  // namespace
+}  // namespace keepout
