@@ -7,13 +7,12 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "each_simd_target.h"
+#include "engine/activation/sources.h"
 #include "index/tree_walk/tree_walk.h"
-#include "keepout/activation/certified.h"
 #include "keepout/fixtures/poses.h"
 #include "keepout/fixtures/random.h"
 #include "keepout/fixtures/shapes.h"
@@ -21,81 +20,11 @@
 #include "keepout/index/nearest.h"
 #include "keepout/index/neighborhood.h"
 #include "keepout/index/pd_tree.h"
-#include "keepout/index/wide_bvh.h"
-#include "keepout/solvers/active_set.h"
-#include "keepout/step/motion_constraint.h"
 #include "names_of_shapes.h"
 #include "trials.h"
 
 namespace keepout {
 namespace {
-
-/// All that a step comes to.
-struct Outcome {
-  Status status;
-  Vec3 motion;
-  std::vector<double> increment;
-  std::vector<HalfSpace> planes;
-  std::optional<double> distance;
-
-  explicit Outcome(const Step& step)
-      : status(step.status),
-        motion(step.motion),
-        increment(step.increment.begin(), step.increment.end()),
-        planes(step.planes.begin(), step.planes.end()),
-        distance(step.distance) {}
-
-  /// The sources of planes count too, but for triangles that are one on top of the other.
-  friend bool operator==(const Outcome& a, const Outcome& b) {
-    return a.status == b.status && a.motion == b.motion && a.increment == b.increment &&
-           a.distance == b.distance &&
-           std::equal(a.planes.begin(), a.planes.end(), b.planes.begin(), b.planes.end(),
-                      [](const HalfSpace& p, const HalfSpace& q) {
-                        return p.normal == q.normal && p.offset == q.offset;
-                      });
-  }
-};
-
-std::unique_ptr<MotionConstraint> guard(const std::shared_ptr<const Mesh>& mesh,
-                                        std::shared_ptr<const SpatialIndex> index,
-                                        const StepOptions& options) {
-  return std::make_unique<MotionConstraint>(
-      mesh, std::move(index), std::make_unique<CertifiedRule>(mesh), std::make_unique<ActiveSet>(),
-      options, Capacity{.nodes = 16});
-}
-
-/// The rule on one mesh and two indices: one that walks along motions, and one that does not.
-class Sources {
- public:
-  explicit Sources(Surface surface)
-      : mesh(std::make_shared<const Mesh>(std::move(surface))),
-        tree(std::make_shared<WideBvh>(mesh)),
-        walking_(guard(mesh, tree, harmless())),
-        asking_(guard(mesh, std::make_shared<PdTree>(mesh), harmless())) {}
-
-  Outcome walking(const Motion& motion, const StepOptions& options) {
-    return step(*walking_, motion, options);
-  }
-  Outcome asking(const Motion& motion, const StepOptions& options) {
-    return step(*asking_, motion, options);
-  }
-  static Outcome step(MotionConstraint& guard, const Motion& motion, const StepOptions& options) {
-    guard.set_options(options);
-    return Outcome(guard.step(motion));
-  }
-
-  std::shared_ptr<const Mesh> mesh;
-  std::shared_ptr<WideBvh> tree;
-
- private:
-  StepOptions harmless() const {
-    const double size = mesh->bounds().size().norm();
-    return {.radius = size, .margin = size};
-  }
-
-  std::unique_ptr<MotionConstraint> walking_;
-  std::unique_ptr<MotionConstraint> asking_;
-};
 
 /// Lengths as shares of the mesh's size.
 struct Scale {

@@ -1,0 +1,156 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+// Ten million hostile steps of the certified rule, each made with the walk of a tree and with all
+// hits around: status, motion, increment, planes and distance are the same, bit for bit, on every
+// SIMD target.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "each_simd_target.h"
+#include "engine/activation/sources.h"
+#include "keepout/fixtures/poses.h"
+#include "keepout/fixtures/random.h"
+#include "keepout/fixtures/shapes.h"
+#include "keepout/index/nearest.h"
+#include "names_of_shapes.h"
+
+namespace keepout {
+namespace {
+
+constexpr std::size_t steps_in_all = 10'000'000;
+constexpr std::size_t strokes_on_one_setting = 100;
+constexpr std::size_t cycles_in_a_stroke = 8;
+
+const TipJacobian::Matrix& five_joints() {
+  static const TipJacobian::Matrix jacobian = [] {
+    TipJacobian::Matrix j(3, 5);
+    j << 1, 0, 0, 0.5, -0.3, 0, 1, 0, 0.2, 0.7, 0, 0, 1, -0.4, 0.1;
+    return j;
+  }();
+  return jacobian;
+}
+
+/// Lengths and options that a rule has to bear: margins from just above the least one, eight
+/// tolerances, to a tenth of the mesh; motions from a hundredth of the margin to far across it.
+struct Setting {
+  StepOptions options;
+  double tolerance;  // of the certified rule, near the origin [length]
+  bool has_joints;
+
+  Setting(const Mesh& mesh, Random& random) {
+    const double size = mesh.bounds().size().norm();
+    const double coarsest = 2e-10 * (mesh.longest_edge() + 0.2 * size);
+    const double least = 8.2 * coarsest;
+    const bool is_least = random.below(3) == 0;
+    const double margin = is_least ? least * random.uniform(1.0, 2.0)
+                                   : least * std::pow(0.1 * size / least, random.uniform());
+    const double longest = margin * std::pow(10.0, random.uniform(-2.0, 6.0));
+    options.radius = std::min(longest, 0.2 * size);
+    options.margin = margin;
+    options.recovery = margin * std::pow(10.0, random.uniform(-3.0, 1.0));
+    options.refinements = static_cast<int>(random.below(5));
+    options.nodes = random.below(8) == 0 ? 8 : 0;
+    options.query = random.below(6) == 0 ? Query::sphere : Query::motion;
+    tolerance = 2e-10 * (mesh.longest_edge() + options.radius + margin);
+    has_joints = random.below(8) == 0;
+    options.damping = has_joints ? 1e-3 : 0.0;
+  }
+};
+
+/// Over a corner, an edge or a face, so far off that the steps of the ladder of tolerances are all
+/// met.
+Vec3 hostile_tip(const Mesh& mesh, const SpatialIndex& index, const Setting& setting,
+                 Random& random) {
+  const std::size_t kind = random.below(4);
+  const Vec3 on = kind == 0   ? vertex_points(mesh, 1, random)[0]
+                  : kind == 1 ? edge_points(mesh, 1, random)[0]
+                              : surface_points(mesh, 1, 0.0, random)[0];
+  const double margin = setting.options.margin;
+  const double steps = 0.25 * std::floor(random.uniform(-2.0, 24.0));  // of the ladder
+  const double far[] = {margin - steps * setting.tolerance, margin * random.uniform(0.0, 1.5),
+                        random.uniform(0.0, 12.0) * setting.tolerance, 0.0};
+  const double clearance = far[random.below(4)];
+  const Vec3 off = on + (clearance + 1e-3 * margin) * random.direction();
+  NearestTriangle nearest(mesh, index);
+  const ClosestPoint closest = nearest(off).closest;
+  if (!(closest.distance > 0.0)) return off;
+  return off + closest.offset * (1.0 - clearance / closest.distance);
+}
+
+/// Into the surface, along it, off it, straight along an axis, or anywhere.
+Vec3 hostile_way(const Mesh& mesh, const Vec3& tip, const SpatialIndex& index, Random& random) {
+  NearestTriangle nearest(mesh, index);
+  const Vec3 down = nearest(tip).closest.offset;
+  const double depth = down.norm();
+  const Vec3 towards = depth > 0.0 ? Vec3(down / depth) : random.direction();
+  const Vec3 any = random.direction();
+  switch (random.below(5)) {
+    case 0:
+      return towards;
+    case 1:
+      return (any - any.dot(towards) * towards).normalized();
+    case 2:
+      return (towards + any).normalized();
+    case 3:
+      return Vec3::Unit(static_cast<Eigen::Index>(random.below(3)));
+    default:
+      return any;
+  }
+}
+
+/// How many steps there were, and how many of them were held back or led off.
+struct Tally {
+  std::size_t steps = 0;
+  std::size_t held = 0;
+};
+
+/// Strokes on one mesh; the tip goes where it is let.
+void attack(Sources& sources, std::size_t steps, Random& random, Tally& tally) {
+  const std::size_t end = tally.steps + steps;
+  while (tally.steps < end) {
+    const Setting setting(*sources.mesh, random);
+    for (std::size_t stroke = 0; stroke < strokes_on_one_setting; ++stroke) {
+      Vec3 tip = hostile_tip(*sources.mesh, *sources.tree, setting, random);
+      for (std::size_t cycle = 0; cycle < cycles_in_a_stroke; ++cycle) {
+        const double length = setting.options.radius * (1.0 - std::pow(random.uniform(), 3));
+        const Vec3 way = hostile_way(*sources.mesh, tip, *sources.tree, random);
+        Motion motion{.tip = tip, .desired = length * way};
+        if (setting.has_joints) motion.jacobian.emplace(five_joints());
+        const Outcome asking = sources.asking(motion, setting.options);
+        const Outcome walking = sources.walking(motion, setting.options);
+        ASSERT_EQ(walking, asking)
+            << "tip " << tip.transpose() << ", desired " << motion.desired.transpose()
+            << ", margin " << setting.options.margin << ", radius " << setting.options.radius;
+        ++tally.steps;
+        tally.held += asking.status == Status::limited || asking.status == Status::recovering;
+        if (!is_ok(asking.status)) break;
+        tip += asking.motion;
+      }
+    }
+  }
+}
+
+TEST(HostileSources, AgreeBitForBitOverTenMillionStepsOnAllTargets) {
+  const std::vector<std::string> shapes = names_of_shapes();
+  const std::size_t steps = steps_in_all / shapes.size() / simd_targets().size() + 1;
+  Tally tally;
+  on_each_simd_target([&] {
+    Random random(101 + tally.steps);
+    for (const std::string& shape : shapes) {
+      SCOPED_TRACE(shape);
+      Sources sources(make_shape(shape));
+      attack(sources, steps, random, tally);
+      if (HasFatalFailure()) return;
+    }
+  });
+  EXPECT_GE(tally.steps, steps_in_all);
+  EXPECT_GT(tally.held, steps_in_all / 4);
+  std::printf("%zu steps, %zu of them held back or led off\n", tally.steps, tally.held);
+}
+
+}  // namespace
+}  // namespace keepout

@@ -1,0 +1,86 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "keepout/activation/certified.h"
+#include "keepout/index/pd_tree.h"
+#include "keepout/index/wide_bvh.h"
+#include "keepout/solvers/active_set.h"
+#include "keepout/step/motion_constraint.h"
+
+namespace keepout {
+
+/// All that a step comes to.
+struct Outcome {
+  Status status;
+  Vec3 motion;
+  std::vector<double> increment;
+  std::vector<HalfSpace> planes;
+  std::optional<double> distance;
+
+  explicit Outcome(const Step& step)
+      : status(step.status),
+        motion(step.motion),
+        increment(step.increment.begin(), step.increment.end()),
+        planes(step.planes.begin(), step.planes.end()),
+        distance(step.distance) {}
+
+  /// The sources of planes count too, but for triangles that are one on top of the other.
+  friend bool operator==(const Outcome& a, const Outcome& b) {
+    return a.status == b.status && a.motion == b.motion && a.increment == b.increment &&
+           a.distance == b.distance &&
+           std::equal(a.planes.begin(), a.planes.end(), b.planes.begin(), b.planes.end(),
+                      [](const HalfSpace& p, const HalfSpace& q) {
+                        return p.normal == q.normal && p.offset == q.offset;
+                      });
+  }
+};
+
+inline std::unique_ptr<MotionConstraint> guard(const std::shared_ptr<const Mesh>& mesh,
+                                               std::shared_ptr<const SpatialIndex> index,
+                                               const StepOptions& options) {
+  return std::make_unique<MotionConstraint>(
+      mesh, std::move(index), std::make_unique<CertifiedRule>(mesh), std::make_unique<ActiveSet>(),
+      options, Capacity{.nodes = 16});
+}
+
+/// The rule on one mesh and two indices: one that walks along motions, and one that does not.
+class Sources {
+ public:
+  explicit Sources(Surface surface)
+      : mesh(std::make_shared<const Mesh>(std::move(surface))),
+        tree(std::make_shared<WideBvh>(mesh)),
+        walking_(guard(mesh, tree, harmless())),
+        asking_(guard(mesh, std::make_shared<PdTree>(mesh), harmless())) {}
+
+  Outcome walking(const Motion& motion, const StepOptions& options) {
+    return step(*walking_, motion, options);
+  }
+  Outcome asking(const Motion& motion, const StepOptions& options) {
+    return step(*asking_, motion, options);
+  }
+  static Outcome step(MotionConstraint& guard, const Motion& motion, const StepOptions& options) {
+    guard.set_options(options);
+    return Outcome(guard.step(motion));
+  }
+
+  std::shared_ptr<const Mesh> mesh;
+  std::shared_ptr<WideBvh> tree;
+
+ private:
+  StepOptions harmless() const {
+    const double size = mesh->bounds().size().norm();
+    return {.radius = size, .margin = size};
+  }
+
+  std::unique_ptr<MotionConstraint> walking_;
+  std::unique_ptr<MotionConstraint> asking_;
+};
+
+}  // namespace keepout
