@@ -9,7 +9,6 @@
 #include <new>
 #include <ostream>
 
-#include "bench/benchmark_files.h"
 #include "bench/benchmark_table.h"
 #include "bench/machine_record.h"
 #include "bench/parts.h"

@@ -6,7 +6,6 @@
 
 #include "bench/benchmark.h"
 #include "bench/reference.h"
-#include "keepout/step/motion_constraint.h"
 #include "stop_signal.h"
 
 namespace keepout::app {

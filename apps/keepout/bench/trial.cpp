@@ -7,9 +7,7 @@
 #include "bench/measure.h"
 #include "bench/parts.h"
 #include "bench/used_cores.h"
-#include "keepout/activation/registry.h"
 #include "keepout/error.h"
-#include "keepout/factory/make_motion_constraint.h"
 #include "keepout/fixtures/motions.h"
 #include "keepout/index/pd_tree.h"
 #include "machine.h"
@@ -29,9 +27,8 @@ struct Trial::Built {
   std::string name;
   std::shared_ptr<const SpatialIndex> index = nullptr;
   double seconds = 0.0;
-  double cores = 0.0;                            // kept busy meanwhile
-  std::map<std::string, bool> searched_by = {};  // each rule that was asked whether it searches it
-  std::string refusal = {};                      // why there is none
+  double cores = 0.0;        // kept busy meanwhile
+  std::string refusal = {};  // why there is none
 };
 
 Trial::Trial(const Subject& subject, const TrialSettings& settings, MemoryTaken& memory,
@@ -42,33 +39,29 @@ Trial::Trial(const Subject& subject, const TrialSettings& settings, MemoryTaken&
       stop_(stop),
       loaded_(load(subject)),
       mesh_(std::move(loaded_.mesh)) {
-  reference_index_ = std::make_unique<PdTree>(mesh_);
+  reference_index_ = std::make_shared<const PdTree>(mesh_);
   Random random(settings_.seed);
   const MotionKind kind{.clearance = settings_.margin};
   motions_ = settings_.poses == Poses::contact
                  ? contact_motions(*mesh_, *reference_index_, settings_.queries, kind, random)
                  : unrelated_motions(*mesh_, settings_.queries, kind, random);
-  work_ = std::make_unique<Workspace>(room);
 }
 
 Trial::~Trial() = default;
 
-Activation& Trial::rule(const std::string& activation) {
-  std::unique_ptr<Activation>& made = rules_[activation];
-  if (!made) {
-    made = make_activation(activation, mesh_);
-    made->reserve(work_->candidates.capacity());
-  }
-  return *made;
+ReferenceGuard& Trial::guard(const MotionConstraintSettings& settings) {
+  const auto known = guards_.find(settings.activation);
+  if (known != guards_.end()) return known->second;
+  return guards_
+      .emplace(settings.activation, make_reference_guard(mesh_, reference_index_, settings))
+      .first->second;
 }
 
-Reference& Trial::reference(const RuleSetting& setting) {
-  std::unique_ptr<Reference>& made = references_[{setting.activation, setting.radius}];
-  if (!made) {
-    made = std::make_unique<Reference>(mesh_, *reference_index_, rule(setting.activation), *work_,
-                                       setting, motions_);
-  }
-  return *made;
+Reference& Trial::reference(const MotionConstraintSettings& settings) {
+  return references_
+      .try_emplace({settings.activation, settings.radius}, guard(settings), mesh_, settings,
+                   motions_)
+      .first->second;
 }
 
 const Trial::Built& Trial::build(const std::string& index) {
@@ -101,12 +94,6 @@ const Trial::Built& Trial::build(const std::string& index) {
   return *built_;
 }
 
-bool Trial::is_searched_by(const std::string& activation) {
-  const auto [known, is_new] = built_->searched_by.try_emplace(activation);
-  if (is_new) known->second = rule(activation).searching(*built_->index) != nullptr;
-  return known->second;
-}
-
 BenchmarkRow Trial::measure(const Combination& combination) {
   BenchmarkRow row{.mesh = label_of(subject_),
                    .triangles = mesh_->triangle_count(),
@@ -125,26 +112,28 @@ BenchmarkRow Trial::measure(const Combination& combination) {
   row.bytes_per_triangle =
       static_cast<double>(built.index->memory()) / static_cast<double>(mesh_->triangle_count());
 
-  const RuleSetting setting{combination.activation, combination.radius, settings_.margin};
+  // The certified rule looks only where the motion leads, and the paper's take the tip as it is.
+  const MotionConstraintSettings settings{
+      .activation = combination.activation,
+      .solver = combination.solver,
+      .radius = combination.radius.value_or(5.0),
+      .margin = combination.activation == "certified" ? settings_.margin : 0.0,
+      .inside = Inside::taken_as_is,
+      .capacity = room};
+  Reference& expected = reference(settings);
+  if (!expected.fits()) {
+    row.remark = "not timed: more than " + grouped(expected.candidates.capacity()) +
+                 " triangles are in reach; ask for a smaller radius";
+    return row;
+  }
   const double accuracy =
       combination.solver == "active_set"
           ? 0.0
           : entry_named(combination.solver, solver_backends(), "solver").accuracy;
-  Reference& expected = reference(setting);
-  if (!expected.fits()) {
-    row.remark = "not timed: more than " + grouped(work_->candidates.capacity()) +
-                 " triangles are in reach; ask for a smaller radius";
-    return row;
-  }
-  MotionConstraint constraint = make_motion_constraint(mesh_, built.index,
-                                                       {.activation = combination.activation,
-                                                        .solver = combination.solver,
-                                                        .radius = options_of(setting).radius,
-                                                        .margin = options_of(setting).margin,
-                                                        .inside = Inside::taken_as_is,
-                                                        .capacity = room});
-  app::measure({*built.index, constraint, is_searched_by(combination.activation), accuracy},
-               motions_, expected, settings_.seconds, stop_, row);
+  MotionConstraint constraint = make_motion_constraint(mesh_, built.index, settings);
+  const bool searches = guard(settings).rule->searching(*built.index) != nullptr;
+  app::measure({*built.index, constraint, searches, accuracy}, motions_, expected,
+               settings_.seconds, stop_, row);
   return row;
 }
 

@@ -55,11 +55,8 @@ class Trial {
   struct Built;
 
   const Built& build(const std::string& index);
-  /// Whether the rule searches the index at hand by itself.
-  bool is_searched_by(const std::string& activation);
-
-  Activation& rule(const std::string& activation);
-  Reference& reference(const RuleSetting& setting);
+  ReferenceGuard& guard(const MotionConstraintSettings& settings);
+  Reference& reference(const MotionConstraintSettings& settings);
 
   Subject subject_;
   TrialSettings settings_;
@@ -68,10 +65,9 @@ class Trial {
   LoadedSubject loaded_;
   std::shared_ptr<const Mesh> mesh_;
   std::vector<Motion> motions_;
-  std::unique_ptr<SpatialIndex> reference_index_;
-  std::unique_ptr<Workspace> work_;
-  std::map<std::string, std::unique_ptr<Activation>> rules_;
-  std::map<std::pair<std::string, std::optional<double>>, std::unique_ptr<Reference>> references_;
+  std::shared_ptr<const SpatialIndex> reference_index_;
+  std::map<std::string, ReferenceGuard> guards_;                    // of each rule
+  std::map<std::pair<std::string, double>, Reference> references_;  // of each rule and radius
   std::unique_ptr<Built> built_;
 };
 
