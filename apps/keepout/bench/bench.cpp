@@ -75,24 +75,21 @@ std::unique_ptr<OutputFile> open(const std::optional<std::filesystem::path>& pat
   return path ? std::make_unique<OutputFile>(*path) : nullptr;
 }
 
-/// Refuses a mesh of which there is none, too: a mistyped name is told of before the first row.
-void refuse_overwriting(const BenchOptions& options, const std::vector<Subject>& subjects) {
-  std::vector<NamedPath> inputs, outputs;
-  for (const Subject& subject : subjects) {
-    inputs.push_back({"--mesh", file_of_mesh(subject.mesh)});
-  }
+std::vector<NamedPath> outputs_of(const BenchOptions& options) {
+  std::vector<NamedPath> outputs;
   if (options.json) outputs.push_back({"--json", *options.json});
   if (options.csv) outputs.push_back({"--csv", *options.csv});
   outputs.push_back({"--out", options.report});
-  refuse_shared_files(inputs, outputs);
+  return outputs;
 }
 
-/// The files, by their names.
-std::vector<std::string> written_to(const BenchOptions& options) {
-  std::vector<std::string> names = {options.report.string()};
-  if (options.json) names.push_back(options.json->string());
-  if (options.csv) names.push_back(options.csv->string());
-  return names;
+/// Refuses a mesh of which there is none, too: a mistyped name is told of before the first row.
+void refuse_overwriting(const BenchOptions& options, const std::vector<Subject>& subjects) {
+  std::vector<NamedPath> inputs;
+  for (const Subject& subject : subjects) {
+    inputs.push_back({"--mesh", file_of_mesh(subject.mesh)});
+  }
+  refuse_shared_files(inputs, outputs_of(options));
 }
 
 void list_absent(std::ostream& out, std::span<const AbsentPart> parts) {
@@ -231,9 +228,12 @@ int bench(const BenchOptions& options, std::ostream& out, std::ostream& notes) {
   print_verdict(out, benchmark);
   out << "report: " << options.report.string() << '\n';
   if (!failure && !stop.has_come()) return EXIT_SUCCESS;
+  std::vector<std::string> kept;
+  for (const NamedPath& output : outputs_of(options)) kept.push_back(output.path.string());
+  std::ranges::rotate(kept, kept.end() - 1);  // the report first
   notes << "keepout: stopped; " << grouped(benchmark.rows.size()) << " of "
-        << counted(benchmark.planned, "row") << " were finished, and are kept in "
-        << listed(written_to(options)) << '\n';
+        << counted(benchmark.planned, "row") << " were finished, and are kept in " << listed(kept)
+        << '\n';
   if (failure) std::rethrow_exception(failure);
   return exit_interrupted;
 }

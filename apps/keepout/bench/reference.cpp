@@ -79,7 +79,7 @@ Reference::Reference(ReferenceGuard& guard, std::shared_ptr<const Mesh> mesh,
 }
 
 const Answer& Reference::answer(std::size_t motion) {
-  guard_.constraint.set_options(options_);
+  if (answers_.size() <= motion) guard_.constraint.set_options(options_);
   while (answers_.size() <= motion) {
     answers_.push_back(guard_.constraint.step(motions_[answers_.size()]));
   }

@@ -38,9 +38,7 @@ class QueriesOnly final : public SpatialIndex {
 };
 
 Surface resampled_bunny(std::size_t triangles) {
-  const auto mesh = make_mesh({std::string(resampled_mesh), triangles});
-  return {{mesh->vertices().begin(), mesh->vertices().end()},
-          {mesh->triangles().begin(), mesh->triangles().end()}};
+  return surface_of(*make_mesh({std::string(resampled_mesh), triangles}));
 }
 
 /// Half of them one after the other, as a loop would ask; half from all over.

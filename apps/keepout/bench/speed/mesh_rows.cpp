@@ -12,6 +12,7 @@
 #include "bench/parts.h"
 #include "bench/speed/process.h"
 #include "bench/speed/speed_run.h"
+#include "bench/subject.h"
 #include "keepout/adapters/load_mesh.h"
 #include "keepout/factory/make_motion_constraint.h"
 #include "keepout/fixtures/real_mesh.h"
@@ -31,17 +32,14 @@ namespace {
 
 MeasuredSide time_build(const SpeedRun& run, const IndexedMesh& on, std::string name,
                         unsigned threads) {
+  const OnCores cores(threads);
   return timed_whole(std::move(name), run.options.effort.builds,
                      [&] { const WideBvh index(on.mesh, threads); });
 }
 
 void measure_builds(SpeedRun& run, const IndexedMesh& on) {
   const MeasuredSide ours = time_build(run, on, "wide_bvh", 1);
-  MeasuredSide on_two_cores;
-  {
-    const OnCores two(2);
-    on_two_cores = time_build(run, on, "wide_bvh, 2 cores", 2);
-  }
+  const MeasuredSide on_two_cores = time_build(run, on, "wide_bvh, 2 cores", 2);
   for (const Rival& rival : rivals) {
     const std::string name(rival.name);
     const Attempt theirs = attempted([&] {
@@ -57,8 +55,7 @@ void measure_builds(SpeedRun& run, const IndexedMesh& on) {
 
 /// The surface as it breathes: every vertex is elsewhere, and neighbours stay neighbours.
 std::shared_ptr<const Mesh> deformed(const Mesh& mesh) {
-  Surface surface{{mesh.vertices().begin(), mesh.vertices().end()},
-                  {mesh.triangles().begin(), mesh.triangles().end()}};
+  Surface surface = surface_of(mesh);
   for (Vec3& vertex : surface.vertices) {
     constexpr double amplitude = 0.5, wavelength = 30.0;  // [mm]
     vertex.z() += amplitude * (1.5 + std::sin(vertex.x() * 2.0 * std::numbers::pi / wavelength));
@@ -196,25 +193,6 @@ void first_step(const std::filesystem::path& file, const std::filesystem::path& 
   if (!step.ok()) throw Error("the first step failed: " + std::string(step.reason()));
 }
 
-/// A folder for indices that goes away with this object.
-class CacheFolder {
- public:
-  CacheFolder()
-      : path_(std::filesystem::temp_directory_path() /
-              ("keepout-speed-" + std::to_string(getpid()))) {}
-  ~CacheFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  CacheFolder(const CacheFolder&) = delete;
-  CacheFolder& operator=(const CacheFolder&) = delete;
-
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
-
 }  // namespace
 
 void measure_index_costs(SpeedRun& run, const IndexedMesh& on) {
@@ -262,11 +240,15 @@ void measure_first_step(SpeedRun& run) {
       timed_whole("ours", run.options.effort.builds, [&] { first_step(file); });
   run.add(ratio(work, "(assimp + FCL's tree) / ours", at_least(8.0), theirs, {mine}));
 
-  const CacheFolder folder;
-  first_step(file, folder.path());  // builds the index, and puts it there
-  const MeasuredSide with_cache =
-      timed_whole("ours, index from the cache", run.options.effort.builds,
-                  [&] { first_step(file, folder.path()); });
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("keepout-speed-" + std::to_string(getpid()));
+  const std::shared_ptr<void> removal(nullptr, [&](void*) {
+    std::error_code ignored;
+    std::filesystem::remove_all(folder, ignored);
+  });
+  first_step(file, folder);  // builds the index, and puts it there
+  const MeasuredSide with_cache = timed_whole(
+      "ours, index from the cache", run.options.effort.builds, [&] { first_step(file, folder); });
   run.add(ratio(work, "(assimp + FCL's tree) / ours, with the index cache", at_least(50.0), theirs,
                 {with_cache}));
 }

@@ -39,23 +39,11 @@ Attempt time_libraries(const SpeedRun& run, const IndexedMesh& on, double radius
       timed("FCL's tree + SLSQP", few.size(), 1, [&](std::size_t i) { libraries.step(few[i]); })};
 }
 
-/// Puts other data into every cache, by passing over more than they hold.
-class Eviction {
- public:
-  void operator()() {
-    constexpr std::size_t line = 64;
-    for (std::size_t i = 0; i < bytes_.size(); i += line) ++bytes_[i];
-  }
-
- private:
-  /// Twice the last cache. What a virtual machine tells of it may be the whole machine's.
-  static std::size_t size() {
-    constexpr long least = 64L << 20, most = 256L << 20;
-    return static_cast<std::size_t>(std::clamp(2 * sysconf(_SC_LEVEL3_CACHE_SIZE), least, most));
-  }
-
-  std::vector<unsigned char> bytes_ = std::vector<unsigned char>(size());
-};
+/// Twice the last cache. What a virtual machine tells of it may be the whole machine's. [bytes]
+std::size_t more_than_caches_hold() {
+  constexpr long least = 64L << 20, most = 256L << 20;
+  return static_cast<std::size_t>(std::clamp(2 * sysconf(_SC_LEVEL3_CACHE_SIZE), least, most));
+}
 
 /// Does it so many times; the clock is read once each time.
 template <class Work>
@@ -162,10 +150,11 @@ void measure_cold_caches(SpeedRun& run, const IndexedMesh& on) {
   motions.resize(std::min(motions.size(), run.options.effort.cold_steps));
   MotionConstraint ours = certified(on, MotionKind{}.clearance);
   for (const Motion& motion : motions) ours.step(motion);
-  Eviction evict;
+  std::vector<unsigned char> other_data(more_than_caches_hold());
   std::vector<double> times;
   for (const Motion& motion : motions) {
-    evict();
+    constexpr std::size_t line = 64;
+    for (std::size_t i = 0; i < other_data.size(); i += line) ++other_data[i];
     const BenchClock::time_point start = BenchClock::now();
     ours.step(motion);
     times.push_back(microseconds_since(start));
