@@ -36,8 +36,14 @@ std::vector<std::size_t> sizes_of(Extent extent) {
   return {51'978, 104'000, 278'664, 557'000, 989'376, 4'458'624, 17'834'496};
 }
 
-/// Tables and pictures know a mesh by its name.
-std::vector<Subject> with_names_of_their_own(std::vector<Subject> subjects) {
+std::vector<Subject> chosen_subjects(const BenchOptions& options) {
+  const bool is_default = options.meshes.empty();
+  const bool own_sizes = !options.triangles.empty() || !is_default;
+  std::vector<Subject> subjects =
+      subjects_of(is_default ? std::vector{std::string(resampled_mesh)} : options.meshes,
+                  own_sizes ? options.triangles : sizes_of(options.extent));
+  if (options.extent == Extent::full && !own_sizes) subjects.push_back({"skull_1m", 0});
+  // Tables and pictures know a mesh by its name.
   for (const Subject& one : subjects) {
     for (const Subject& other : subjects) {
       if (one.mesh == other.mesh || label_of(one) != label_of(other)) continue;
@@ -46,21 +52,6 @@ std::vector<Subject> with_names_of_their_own(std::vector<Subject> subjects) {
     }
   }
   return subjects;
-}
-
-std::vector<Subject> chosen_subjects(const BenchOptions& options) {
-  if (options.extent == Extent::full && options.meshes.empty() && options.triangles.empty()) {
-    std::vector<Subject> subjects = subjects_of(
-        std::vector<std::string>{std::string(resampled_mesh)}, sizes_of(options.extent));
-    subjects.push_back({"skull_1m", 0});
-    return subjects;
-  }
-  const bool is_default = options.meshes.empty();
-  const std::vector<std::string> meshes =
-      is_default ? std::vector<std::string>{std::string(resampled_mesh)} : options.meshes;
-  const bool own_sizes = !options.triangles.empty() || !is_default;
-  return with_names_of_their_own(
-      subjects_of(meshes, own_sizes ? options.triangles : sizes_of(options.extent)));
 }
 
 TrialSettings settings_of(const BenchOptions& options) {

@@ -22,15 +22,6 @@ constexpr Capacity room{
 
 }  // namespace
 
-/// The index at hand, and what it took.
-struct Trial::Built {
-  std::string name;
-  std::shared_ptr<const SpatialIndex> index = nullptr;
-  double seconds = 0.0;
-  double cores = 0.0;        // kept busy meanwhile
-  std::string refusal = {};  // why there is none
-};
-
 Trial::Trial(const Subject& subject, const TrialSettings& settings, MemoryTaken& memory,
              const StopSignal& stop)
     : subject_(subject),
@@ -47,8 +38,6 @@ Trial::Trial(const Subject& subject, const TrialSettings& settings, MemoryTaken&
                  : unrelated_motions(*mesh_, settings_.queries, kind, random);
 }
 
-Trial::~Trial() = default;
-
 ReferenceGuard& Trial::guard(const MotionConstraintSettings& settings) {
   const auto known = guards_.find(settings.activation);
   if (known != guards_.end()) return known->second;
@@ -64,10 +53,15 @@ Reference& Trial::reference(const MotionConstraintSettings& settings) {
       .first->second;
 }
 
-const Trial::Built& Trial::build(const std::string& index) {
-  if (built_ && built_->name == index) return *built_;
-  built_.reset();  // two large ones need not fit
-  built_ = std::make_unique<Built>(Built{.name = index});
+void Trial::build(const std::string& index) {
+  if (row_.index == index) return;
+  index_.reset();  // two large ones need not fit
+  row_ = {.mesh = label_of(subject_),
+          .triangles = mesh_->triangle_count(),
+          .vertices = mesh_->vertex_count(),
+          .load_s = loaded_.seconds,
+          .load_cores = loaded_.cores,
+          .index = index};
   const IndexBackend& backend = entry_named(index, indices(), "index", absent_indices());
   const auto count = static_cast<double>(mesh_->triangle_count());
   constexpr double while_building = 1.5;  // some hold more then
@@ -75,42 +69,31 @@ const Trial::Built& Trial::build(const std::string& index) {
     const double needed = while_building * taken->second * count;
     const auto available = static_cast<double>(available_memory());
     if (needed > available) {
-      built_->refusal = "not built: needs up to " + rounded(1e-9 * needed, 2) + " GB, and " +
-                        rounded(1e-9 * available, 2) + " GB are free";
-      return *built_;
+      row_.remark = "not built: needs up to " + rounded(1e-9 * needed, 2) + " GB, and " +
+                    rounded(1e-9 * available, 2) + " GB are free";
+      return;
     }
   }
   try {
     const UsedCores used;
-    built_->index = backend.make(mesh_);
-    built_->seconds = used.seconds();
-    built_->cores = used.own();
-    memory_[index] = static_cast<double>(built_->index->memory()) / count;
+    index_ = backend.make(mesh_);
+    row_.build_s = used.seconds();
+    row_.build_cores = used.own();
+    row_.bytes_per_triangle = memory_[index] = static_cast<double>(index_->memory()) / count;
   } catch (const Error& error) {
-    built_->refusal = std::string("not built: ") + error.what();
+    row_.remark = std::string("not built: ") + error.what();
   } catch (const std::bad_alloc&) {
-    built_->refusal = "not built: out of memory";
+    row_.remark = "not built: out of memory";
   }
-  return *built_;
 }
 
 BenchmarkRow Trial::measure(const Combination& combination) {
-  BenchmarkRow row{.mesh = label_of(subject_),
-                   .triangles = mesh_->triangle_count(),
-                   .vertices = mesh_->vertex_count(),
-                   .load_s = loaded_.seconds,
-                   .load_cores = loaded_.cores,
-                   .radius = combination.radius,
-                   .index = combination.index,
-                   .activation = combination.activation,
-                   .solver = combination.solver};
-  const Built& built = build(combination.index);
-  row.remark = built.refusal;
-  if (!built.index) return row;
-  row.build_s = built.seconds;
-  row.build_cores = built.cores;
-  row.bytes_per_triangle =
-      static_cast<double>(built.index->memory()) / static_cast<double>(mesh_->triangle_count());
+  build(combination.index);
+  BenchmarkRow row = row_;
+  row.radius = combination.radius;
+  row.activation = combination.activation;
+  row.solver = combination.solver;
+  if (!index_) return row;
 
   // The certified rule looks only where the motion leads, and the paper's take the tip as it is.
   const MotionConstraintSettings settings{
@@ -130,10 +113,10 @@ BenchmarkRow Trial::measure(const Combination& combination) {
       combination.solver == "active_set"
           ? 0.0
           : entry_named(combination.solver, solver_backends(), "solver").accuracy;
-  MotionConstraint constraint = make_motion_constraint(mesh_, built.index, settings);
-  const bool searches = guard(settings).rule->searching(*built.index) != nullptr;
-  app::measure({*built.index, constraint, searches, accuracy}, motions_, expected,
-               settings_.seconds, stop_, row);
+  MotionConstraint constraint = make_motion_constraint(mesh_, index_, settings);
+  const bool searches = guard(settings).rule->searching(*index_) != nullptr;
+  app::measure({*index_, constraint, searches, accuracy}, motions_, expected, settings_.seconds,
+               stop_, row);
   return row;
 }
 

@@ -40,7 +40,6 @@ class Trial {
   /// Error when there is no such mesh.
   Trial(const Subject& subject, const TrialSettings& settings, MemoryTaken& memory,
         const StopSignal& stop);
-  ~Trial();
 
   /// Builds the index unless the combination before had the same. What cannot be built, or gives a
   /// wrong answer, is not timed, and the row's remark says why. Of no use once it was stopped.
@@ -52,9 +51,7 @@ class Trial {
   const LoadedSubject& loaded() const noexcept { return loaded_; }
 
  private:
-  struct Built;
-
-  const Built& build(const std::string& index);
+  void build(const std::string& index);
   ReferenceGuard& guard(const MotionConstraintSettings& settings);
   Reference& reference(const MotionConstraintSettings& settings);
 
@@ -68,7 +65,8 @@ class Trial {
   std::shared_ptr<const SpatialIndex> reference_index_;
   std::map<std::string, ReferenceGuard> guards_;                    // of each rule
   std::map<std::pair<std::string, double>, Reference> references_;  // of each rule and radius
-  std::unique_ptr<Built> built_;
+  std::shared_ptr<const SpatialIndex> index_;                       // at hand; null: not built
+  BenchmarkRow row_;  // so much of it as is the same for all combinations with that index
 };
 
 }  // namespace keepout::app

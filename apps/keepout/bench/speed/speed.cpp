@@ -48,12 +48,6 @@ bool measure_all(SpeedRun& run, const StopSignal& stop) {
   return true;
 }
 
-void refuse_overwriting(const SpeedOptions& options) {
-  std::vector<NamedPath> outputs{{"--out", options.report}};
-  if (options.json) outputs.push_back({"--json", *options.json});
-  refuse_shared_files({}, outputs);
-}
-
 }  // namespace
 
 std::vector<Motion> SpeedRun::contact(const IndexedMesh& on, const MotionKind& kind) const {
@@ -97,7 +91,9 @@ Attempt in_contact(SpeedRun& run, const IndexedMesh& on, const MotionKind& kind)
 }
 
 int bench_speed(const SpeedOptions& options, std::ostream& out) {
-  refuse_overwriting(options);
+  std::vector<NamedPath> outputs{{"--out", options.report}};
+  if (options.json) outputs.push_back({"--json", *options.json});
+  refuse_shared_files({}, outputs);
   for (const std::string& fixture : {std::string("bunny"), options.file}) {
     fixture_path(fixture);  // throws if it is missing
   }
