@@ -43,6 +43,9 @@ struct Answer {
 /// A rule on an index that is right and with our own solver: what others are held to, at any
 /// radius.
 struct ReferenceGuard {
+  /// Whether the rule finds its way through the index by itself, so that a step makes no query.
+  bool searches(const SpatialIndex& other) const { return rule->searching(other) != nullptr; }
+
   std::shared_ptr<const SpatialIndex> index;
   const Activation* rule;  // that of the constraint
   MotionConstraint constraint;

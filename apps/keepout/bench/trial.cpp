@@ -114,7 +114,7 @@ BenchmarkRow Trial::measure(const Combination& combination) {
           ? 0.0
           : entry_named(combination.solver, solver_backends(), "solver").accuracy;
   MotionConstraint constraint = make_motion_constraint(mesh_, index_, settings);
-  const bool searches = guard(settings).rule->searching(*index_) != nullptr;
+  const bool searches = guard(settings).searches(*index_);
   app::measure({*index_, constraint, searches, accuracy}, motions_, expected, settings_.seconds,
                stop_, row);
   return row;

@@ -93,7 +93,7 @@ class Measure : public testing::TestWithParam<const char*> {
                         std::unique_ptr<Solver> solver, double accuracy) {
     MotionConstraint constraint(mesh, index, make_activation(GetParam(), mesh), std::move(solver),
                                 guard.constraint.options());
-    const bool searches = guard.rule->searching(*index) != nullptr;
+    const bool searches = guard.searches(*index);
     BenchmarkRow row;
     measure({*index, constraint, searches, accuracy}, motions, *reference, 10.0, stop, row);
     return row;

@@ -49,6 +49,24 @@ TEST(Trajectories, AFreeToolIsNeverHeldBackAndStaysOnItsPath) {
   }
 }
 
+TEST(Trajectories, OfAPlannerAreHeldBackEachTime) {
+  const IndexedMesh on = star();
+  const std::vector<Motion> motions = held_back_motions(on, 300, {}, Random(4));
+  ASSERT_EQ(motions.size(), 300u);
+  MotionConstraint guard = certified(queried(on), MotionKind{}.clearance);
+  for (const Motion& motion : motions) EXPECT_EQ(guard.step(motion).status, Status::limited);
+}
+
+TEST(Disagreement, IsToldOfAnyBitOfAStepAndOfNothingElse) {
+  const IndexedMesh on = star();
+  const std::vector<Motion> motions = pressed_motions(on, 400, {.clearance = 0.5}, Random(5));
+  MotionConstraint ours = certified(on, 0.5), plain = certified(queried(on), 0.5);
+  EXPECT_EQ(disagreement(ours, plain, motions), "");
+  MotionConstraint other = certified(on, 0.5 * (1.0 + 1e-15));
+  EXPECT_NE(disagreement(ours, other, motions).find("not timed: "), std::string::npos);
+  EXPECT_EQ(disagreement(ours, other, motions, 1e-9), "");
+}
+
 TEST(Trajectories, SayWhereThereIsNoSuchSpace) {
   // Nowhere within a sphere of radius 50 is as far from it.
   const IndexedMesh on = with_index(std::make_shared<const Mesh>(make_concave_sphere(10.0)));
