@@ -23,13 +23,13 @@
 #include <thread>
 #include <vector>
 
+#include "bench/timing.h"
 #include "keepout/adapters/load_mesh.h"
 #include "keepout/fixtures/poses.h"
 
 namespace {
 
 using namespace keepout;
-using Clock = std::chrono::steady_clock;
 
 struct Load {
   std::string command;
@@ -168,12 +168,10 @@ class Hand {
 };
 
 void print(std::vector<double>& times, const char* what) {
-  std::sort(times.begin(), times.end());
-  const auto at = [&](double share) {
-    return times[static_cast<std::size_t>(share * static_cast<double>(times.size() - 1))];
-  };
+  const app::Timing timing = app::timing_of(times);
   std::printf("%-10s %8zu  p50 %6.1f  p99 %6.1f  p99.9 %6.1f  max %8.1f us\n", what, times.size(),
-              at(0.5), at(0.99), at(0.999), times.back());
+              timing.p50, timing.p99.value_or(timing.max), timing.p999.value_or(timing.max),
+              timing.max);
 }
 
 void run(const Load& load) {
@@ -195,13 +193,13 @@ void run(const Load& load) {
     const bool is_bad = load.malformed > 0.0 && number % every == every - 1;
     std::string cut;
     if (is_bad) line = cut = std::string(line.substr(0, 20 + number % 60)) + "\n";
-    const Clock::time_point start = Clock::now();
+    const app::BenchClock::time_point start = app::BenchClock::now();
     const std::string_view answer = server.ask(line);
-    const std::chrono::duration<double, std::micro> waited = Clock::now() - start;
+    const double waited = app::microseconds_since(start);
     if ((answer.find("\"error\"") != std::string_view::npos) != is_bad) {
       throw std::runtime_error("a wrong answer: " + std::string(answer));
     }
-    (is_bad ? bad : steps).push_back(waited.count());
+    (is_bad ? bad : steps).push_back(waited);
     if (is_bad) continue;
     limited += answer.find("\"limited\"") != std::string_view::npos;
     hand.follow(answer);

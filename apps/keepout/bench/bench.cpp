@@ -9,7 +9,6 @@
 #include <new>
 #include <ostream>
 
-#include "bench/benchmark_files.h"
 #include "bench/benchmark_table.h"
 #include "bench/machine_record.h"
 #include "bench/parts.h"
@@ -37,8 +36,14 @@ std::vector<std::size_t> sizes_of(Extent extent) {
   return {51'978, 104'000, 278'664, 557'000, 989'376, 4'458'624, 17'834'496};
 }
 
-/// Tables and pictures know a mesh by its name.
-std::vector<Subject> with_names_of_their_own(std::vector<Subject> subjects) {
+std::vector<Subject> chosen_subjects(const BenchOptions& options) {
+  const bool is_default = options.meshes.empty();
+  const bool own_sizes = !options.triangles.empty() || !is_default;
+  std::vector<Subject> subjects =
+      subjects_of(is_default ? std::vector{std::string(resampled_mesh)} : options.meshes,
+                  own_sizes ? options.triangles : sizes_of(options.extent));
+  if (options.extent == Extent::full && !own_sizes) subjects.push_back({"skull_1m", 0});
+  // Tables and pictures know a mesh by its name.
   for (const Subject& one : subjects) {
     for (const Subject& other : subjects) {
       if (one.mesh == other.mesh || label_of(one) != label_of(other)) continue;
@@ -47,21 +52,6 @@ std::vector<Subject> with_names_of_their_own(std::vector<Subject> subjects) {
     }
   }
   return subjects;
-}
-
-std::vector<Subject> chosen_subjects(const BenchOptions& options) {
-  if (options.extent == Extent::full && options.meshes.empty() && options.triangles.empty()) {
-    std::vector<Subject> subjects = subjects_of(
-        std::vector<std::string>{std::string(resampled_mesh)}, sizes_of(options.extent));
-    subjects.push_back({"skull_1m", 0});
-    return subjects;
-  }
-  const bool is_default = options.meshes.empty();
-  const std::vector<std::string> meshes =
-      is_default ? std::vector<std::string>{std::string(resampled_mesh)} : options.meshes;
-  const bool own_sizes = !options.triangles.empty() || !is_default;
-  return with_names_of_their_own(
-      subjects_of(meshes, own_sizes ? options.triangles : sizes_of(options.extent)));
 }
 
 TrialSettings settings_of(const BenchOptions& options) {
@@ -76,24 +66,21 @@ std::unique_ptr<OutputFile> open(const std::optional<std::filesystem::path>& pat
   return path ? std::make_unique<OutputFile>(*path) : nullptr;
 }
 
-/// Refuses a mesh of which there is none, too: a mistyped name is told of before the first row.
-void refuse_overwriting(const BenchOptions& options, const std::vector<Subject>& subjects) {
-  std::vector<NamedPath> inputs, outputs;
-  for (const Subject& subject : subjects) {
-    inputs.push_back({"--mesh", file_of_mesh(subject.mesh)});
-  }
+std::vector<NamedPath> outputs_of(const BenchOptions& options) {
+  std::vector<NamedPath> outputs;
   if (options.json) outputs.push_back({"--json", *options.json});
   if (options.csv) outputs.push_back({"--csv", *options.csv});
   outputs.push_back({"--out", options.report});
-  refuse_shared_files(inputs, outputs);
+  return outputs;
 }
 
-/// The files, by their names.
-std::vector<std::string> written_to(const BenchOptions& options) {
-  std::vector<std::string> names = {options.report.string()};
-  if (options.json) names.push_back(options.json->string());
-  if (options.csv) names.push_back(options.csv->string());
-  return names;
+/// Refuses a mesh of which there is none, too: a mistyped name is told of before the first row.
+void refuse_overwriting(const BenchOptions& options, const std::vector<Subject>& subjects) {
+  std::vector<NamedPath> inputs;
+  for (const Subject& subject : subjects) {
+    inputs.push_back({"--mesh", file_of_mesh(subject.mesh)});
+  }
+  refuse_shared_files(inputs, outputs_of(options));
 }
 
 void list_absent(std::ostream& out, std::span<const AbsentPart> parts) {
@@ -232,9 +219,12 @@ int bench(const BenchOptions& options, std::ostream& out, std::ostream& notes) {
   print_verdict(out, benchmark);
   out << "report: " << options.report.string() << '\n';
   if (!failure && !stop.has_come()) return EXIT_SUCCESS;
+  std::vector<std::string> kept;
+  for (const NamedPath& output : outputs_of(options)) kept.push_back(output.path.string());
+  std::ranges::rotate(kept, kept.end() - 1);  // the report first
   notes << "keepout: stopped; " << grouped(benchmark.rows.size()) << " of "
-        << counted(benchmark.planned, "row") << " were finished, and are kept in "
-        << listed(written_to(options)) << '\n';
+        << counted(benchmark.planned, "row") << " were finished, and are kept in " << listed(kept)
+        << '\n';
   if (failure) std::rethrow_exception(failure);
   return exit_interrupted;
 }

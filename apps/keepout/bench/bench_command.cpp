@@ -120,11 +120,10 @@ int BenchCommand::run_speed(std::ostream& out) {
   if (options_.triangles.size() > 1) throw Error("--speed: give --triangles one size");
   if (!options_.triangles.empty()) speed_.triangles = options_.triangles.front();
   speed_.seed = options_.seed;
-  return bench_speed({.settings = speed_,
-                      .report = options_.report,
-                      .json = options_.json,
-                      .command = options_.command},
-                     out);
+  speed_.report = options_.report;
+  speed_.json = options_.json;
+  speed_.command = options_.command;
+  return bench_speed(speed_, out);
 }
 
 int BenchCommand::run(const std::vector<std::string>& arguments, std::ostream& out,

@@ -28,7 +28,7 @@ class BenchCommand {
   int run_speed(std::ostream& out);
 
   BenchOptions options_;
-  SpeedSettings speed_;
+  SpeedOptions speed_;
   bool is_speed_ = false;
   bool list_ = false;
 };

@@ -7,23 +7,11 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
+#include "bench/timing.h"
+
 namespace keepout::app {
-
-/// How long something took, over many times. [us] Percentiles are by nearest rank: a time that did
-/// occur. Those that need more samples than there are, are missing.
-struct Timing {
-  double p50 = 0.0;
-  std::optional<double> p99 = {};   // of 100 samples or more
-  std::optional<double> p999 = {};  // of 1000 samples or more
-  double max = 0.0;
-  std::size_t samples = 0;
-};
-
-/// Sorts the samples. [us] Precondition: there is one.
-Timing timing_of(std::vector<double>& samples);
 
 /// One combination of parts on one mesh.
 struct BenchmarkRow {

@@ -3,22 +3,18 @@
 #include "bench/benchmark_table.h"
 
 #include <array>
+#include <charconv>
 #include <cstdio>
 #include <ostream>
+#include <sstream>
 #include <string>
 
+#include "bench/json_parts.h"
 #include "number_text.h"
 #include "report/benchmark_verdict.h"
 
 namespace keepout::app {
 namespace {
-
-template <class... Values>
-std::string formatted(const char* format, Values... values) {
-  std::array<char, 320> text;
-  std::snprintf(text.data(), text.size(), format, values...);
-  return text.data();
-}
 
 std::string time(const std::optional<double>& microseconds) {
   return microseconds ? rounded(*microseconds) : "-";
@@ -31,6 +27,78 @@ std::string share(double value, const char* of_what) {
   return value > 0.0 ? "  " + rounded(100.0 * value, 2) + " % " + of_what : "";
 }
 
+/// JSON has no 64-bit whole numbers that every reader keeps.
+std::string hexadecimal(std::uint64_t value) {
+  std::array<char, 20> text;
+  std::snprintf(text.data(), text.size(), "%016llx", static_cast<unsigned long long>(value));
+  return text.data();
+}
+
+Json json_of(const std::optional<Timing>& timing) {
+  return timing ? app::json_of(*timing) : Json(nullptr);
+}
+
+Json json_of(const BenchmarkRow& row) {
+  Json first_hashes = Json::object();
+  for (std::size_t k = 0; k < row.first_hashes.size(); ++k) {
+    first_hashes[std::to_string(std::size_t{1} << k)] = hexadecimal(row.first_hashes[k]);
+  }
+  return {{"mesh", row.mesh},
+          {"triangles", row.triangles},
+          {"vertices", row.vertices},
+          {"load_s", row.load_s},
+          {"load_cores", row.load_cores},
+          {"radius", or_null(row.radius)},
+          {"queries", row.queries},
+          {"index", row.index},
+          {"activation", row.activation},
+          {"solver", row.solver},
+          {"build_s", row.build_s},
+          {"build_cores", row.build_cores},
+          {"bytes_per_triangle", row.bytes_per_triangle},
+          {"candidates_mean", row.candidates_mean},
+          {"hits_mean", row.hits_mean},
+          {"reaching_share", row.reaching_share},
+          {"planes_mean", row.planes_mean},
+          {"unsolved_share", row.unsolved_share},
+          {"worse_share", row.worse_share},
+          {"collect_us", json_of(row.collect)},
+          {"query_us", json_of(row.query)},
+          {"step_us", json_of(row.step)},
+          {"step_query_us", json_of(row.step_query)},
+          {"activate_us", json_of(row.activate)},
+          {"solve_us", json_of(row.solve)},
+          {"hash", hexadecimal(row.hash)},
+          {"hashes_of_first", std::move(first_hashes)},
+          {"verified", row.verified},
+          {"remark", row.remark}};
+}
+
+/// A cell of the table: numbers with the fewest digits that read back exactly, and text, of which
+/// the name of a file may hold anything, in quotes where it has to be.
+std::string cell(const Json& value) {
+  if (value.is_null()) return "";
+  if (value.is_number_float()) {
+    std::array<char, 32> text;
+    const double number = value;
+    return {text.data(), std::to_chars(text.data(), text.data() + text.size(), number).ptr};
+  }
+  if (!value.is_string()) return value.dump();
+  const std::string text = value;
+  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
+constexpr const char* columns =
+    "mesh,triangles,vertices,radius,queries,index,activation,solver,load_s,load_cores,build_s,"
+    "build_cores,bytes_per_triangle,candidates_mean,hits_mean,reaching_share,planes_mean,"
+    "unsolved_share,worse_share";
+constexpr std::array stages = {"collect_us",    "query_us",    "step_us",
+                               "step_query_us", "activate_us", "solve_us"};
+constexpr std::array percentiles = {"p50", "p99", "p999", "max"};
+
 }  // namespace
 
 void print_machine(std::ostream& out, const Machine& machine) {
@@ -38,8 +106,7 @@ void print_machine(std::ostream& out, const Machine& machine) {
       << machine.simd << '\n'
       << "build in s, and the cores that it kept busy; times in us, medians unless said\n"
          "collect, query: what the index proposes, and all triangles where the rule looks; for "
-         "every "
-         "index the same work, apart from the step\n"
+         "every index the same work, apart from the step\n"
          "find, activate, solve: stages of the step; '-' where the rule searches the tree by "
          "itself\n";
 }
@@ -76,6 +143,47 @@ void print_table_row(std::ostream& out, const BenchmarkRow& row) {
                    time(row.step->p999).c_str())
       << share(1.0 - row.reaching_share, "reach nothing")
       << share(row.unsolved_share, "without an answer") << share(row.worse_share, "worse") << '\n';
+}
+
+void write_json(std::ostream& out, const Benchmark& benchmark) {
+  Json rows = Json::array();
+  for (const BenchmarkRow& row : benchmark.rows) rows.push_back(json_of(row));
+  const Json all = {{"date", benchmark.date},
+                    {"command", benchmark.command},
+                    {"seed", benchmark.seed},
+                    {"machine", json_of(benchmark.machine)},
+                    {"others_cores", or_null(benchmark.others_cores)},
+                    {"complete", benchmark.rows.size() >= benchmark.planned},
+                    {"planned_rows", benchmark.planned},
+                    {"headline", headline(benchmark)},
+                    {"account", account(benchmark)},
+                    {"parts", benchmark.parts},
+                    {"remarks", benchmark.remarks},
+                    {"rows", std::move(rows)}};
+  out << all.dump(2) << '\n';
+}
+
+void write_csv(std::ostream& out, const Benchmark& benchmark) {
+  out << columns << ',';
+  for (const char* stage : stages) {
+    for (const char* percentile : percentiles) out << stage << '_' << percentile << ',';
+  }
+  out << "hash,verified,remark,date,processor,simd,keepout,others_cores\n";
+  for (const BenchmarkRow& row : benchmark.rows) {
+    const Json values = json_of(row);
+    std::istringstream names(columns);
+    for (std::string column; std::getline(names, column, ',');) out << cell(values[column]) << ',';
+    for (const char* stage : stages) {
+      const Json& timing = values[stage];
+      for (const char* percentile : percentiles) {
+        out << (timing.is_null() ? "" : cell(timing[percentile])) << ',';
+      }
+    }
+    out << std::hex << row.hash << std::dec << ',' << cell(row.verified) << ',' << cell(row.remark)
+        << ',' << benchmark.date << ',' << cell(benchmark.machine.processor) << ','
+        << benchmark.machine.simd << ',' << benchmark.machine.keepout << ','
+        << cell(or_null(benchmark.others_cores)) << '\n';
+  }
 }
 
 }  // namespace keepout::app

@@ -6,6 +6,7 @@
 
 #include "bench/parts.h"
 #include "keepout/activation/registry.h"
+#include "part_lists.h"
 
 namespace keepout::app {
 namespace {
@@ -24,74 +25,48 @@ bool has(const Table& table, const std::string& name) {
   return std::ranges::any_of(table, [&](const auto& entry) { return entry.name == name; });
 }
 
-/// A list of combinations in which each stands once.
-class Matrix {
- public:
-  void add(const Names& indices, const Names& activations, const Names& solvers,
-           const Radii& radii) {
-    for (const std::string& index : indices) {
-      for (const std::string& activation : activations) {
-        for (const std::string& solver : solvers) {
-          if (activation == certified) {
-            add({index, activation, solver, std::nullopt});
-            continue;
-          }
-          for (const double radius : radii) add({index, activation, solver, radius});
+/// Appends every combination of these, each once, of parts that there are.
+void add(std::vector<Combination>& all, const Names& index_names, const Names& rules,
+         const Names& solvers, const Radii& radii) {
+  const std::vector<std::optional<double>> any(radii.begin(), radii.end()), none(1);
+  for (const std::string& index : index_names) {
+    for (const std::string& rule : rules) {
+      for (const std::string& solver : solvers) {
+        if (!has(indices(), index) || !has(activation_rules(), rule) ||
+            !has(solver_backends(), solver)) {
+          continue;
+        }
+        for (const std::optional<double>& radius : rule == certified ? none : any) {
+          const Combination combination{index, rule, solver, radius};
+          if (std::ranges::find(all, combination) == all.end()) all.push_back(combination);
         }
       }
     }
   }
+}
 
-  std::vector<Combination> sorted() && {
-    std::stable_sort(all_.begin(), all_.end(), [](const Combination& a, const Combination& b) {
-      return place_of(a.index) < place_of(b.index);
-    });
-    return std::move(all_);
-  }
-
- private:
-  void add(const Combination& combination) {
-    const bool is_there = std::find(all_.begin(), all_.end(), combination) != all_.end();
-    const bool exists = has(indices(), combination.index) &&
-                        has(activation_rules(), combination.activation) &&
-                        has(solver_backends(), combination.solver);
-    if (!is_there && exists) all_.push_back(combination);
-  }
-
-  static std::ptrdiff_t place_of(const std::string& index) {
+/// By index, as the table has them.
+std::vector<Combination> sorted(std::vector<Combination> all) {
+  std::ranges::stable_sort(all, {}, [](const Combination& combination) {
     const auto& table = indices();
-    return std::ranges::find(table, index, &IndexBackend::name) - table.begin();
-  }
-
-  std::vector<Combination> all_;
-};
+    return std::ranges::find(table, combination.index, &IndexBackend::name) - table.begin();
+  });
+  return all;
+}
 
 Names or_else(const Names& asked, const Names& otherwise) {
   return asked.empty() ? otherwise : asked;
 }
 
-/// All but the oracle, which takes a thousand times as long.
-Names fast_indices() {
-  Names names;
-  for (const IndexBackend& index : indices()) {
-    if (index.name != "brute_force") names.emplace_back(index.name);
-  }
-  return names;
-}
-
-Names all_solvers() {
-  Names names;
-  for (const SolverBackend& solver : solver_backends()) names.emplace_back(solver.name);
-  return names;
-}
-
 std::vector<Combination> default_matrix(const Radii& radii) {
-  Matrix matrix;
-  matrix.add(fast_indices(), {"paper", certified}, {reference_solver}, radii);
-  matrix.add({reference_index}, {"all_faces"}, {reference_solver}, radii);
-  matrix.add({reference_index}, {"paper", certified}, all_solvers(), radii);
-  matrix.add({usual_index}, {"paper"}, {usual_solver}, radii);
-  return std::move(matrix).sorted();
+  Names fast_indices = names(indices());
+  std::erase(fast_indices, "brute_force");  // takes a thousand times as long
+  std::vector<Combination> all;
+  add(all, fast_indices, {"paper", certified}, {reference_solver}, radii);
+  add(all, {reference_index}, {"all_faces"}, {reference_solver}, radii);
+  add(all, {reference_index}, {"paper", certified}, names(solver_backends()), radii);
+  add(all, {usual_index}, {"paper"}, {usual_solver}, radii);
+  return sorted(std::move(all));
 }
 
 }  // namespace
@@ -103,11 +78,11 @@ bool names_parts(const Selection& selection) {
 std::vector<Combination> combinations_of(const Selection& selection) {
   const Radii radii = selection.radii.empty() ? Radii{5.0, 1.0, 0.25} : selection.radii;
   if (!names_parts(selection)) return default_matrix(radii);
-  Matrix matrix;
-  matrix.add(or_else(selection.indices, {reference_index}),
-             or_else(selection.activations, {"paper", certified}),
-             or_else(selection.solvers, {reference_solver}), radii);
-  return std::move(matrix).sorted();
+  std::vector<Combination> all;
+  add(all, or_else(selection.indices, {reference_index}),
+      or_else(selection.activations, {"paper", certified}),
+      or_else(selection.solvers, {reference_solver}), radii);
+  return sorted(std::move(all));
 }
 
 std::vector<Combination> quick_combinations() { return default_matrix({5.0, 1.0}); }

@@ -4,17 +4,14 @@
 
 #include <algorithm>
 #include <bit>
-#include <chrono>
 #include <string>
 #include <vector>
 
-#include "bench/bit_hash.h"
 #include "number_text.h"
 
 namespace keepout::app {
 namespace {
 
-using Clock = std::chrono::steady_clock;
 using Times = std::vector<double>;  // [us]
 
 /// So many steps are asked for whatever the time, that medians and 99.9 % compare; unless it takes
@@ -25,15 +22,11 @@ constexpr double patience = 4.0;
 /// So many that even the slowest has a median.
 constexpr std::size_t fewest_steps = 5;
 
-double microseconds(Clock::duration duration) {
-  return std::chrono::duration<double, std::micro>(duration).count();
-}
-
 /// A wrong answer; one that is withheld is not.
 bool is_wrong(const Answer& got, const Answer& expected, double accuracy, const Motion& motion,
-              const RuleSetting& setting) {
+              bool proven) {
   if (accuracy == 0.0) return !(got == expected);
-  if (!is_ok(got.status) || setting.proves_motions()) return false;
+  if (!is_ok(got.status) || proven) return false;
   if (!is_ok(expected.status)) return true;
   return !((got.motion - expected.motion).norm() <= accuracy * motion.desired.norm());
 }
@@ -58,8 +51,7 @@ std::vector<Answer> ask_by_stages(MotionConstraint& constraint, std::span<const 
     const double limit = answers.size() < enough_steps ? patience * seconds : seconds;
     if ((answers.size() >= fewest_steps && spent > 1e6 * limit) || stop.has_come()) break;
     StageTimes times;
-    const Step step = constraint.step(motion, times);
-    answers.push_back({step.status, step.motion});
+    answers.push_back(constraint.step(motion, times));
     stages.query.push_back(1e-3 * static_cast<double>(times.query));
     stages.activate.push_back(1e-3 * static_cast<double>(times.activation));
     stages.solve.push_back(1e-3 * static_cast<double>(times.solve));
@@ -75,10 +67,10 @@ std::vector<Answer> ask(MotionConstraint& constraint, std::span<const Motion> mo
   std::size_t planes = 0;
   for (const Motion& motion : motions) {
     if (stop.has_come()) break;
-    const Clock::time_point start = Clock::now();
+    const BenchClock::time_point start = BenchClock::now();
     const Step step = constraint.step(motion);
-    times.push_back(microseconds(Clock::now() - start));
-    answers.push_back({step.status, step.motion});
+    times.push_back(microseconds_since(start));
+    answers.push_back(step);
     planes += step.planes.size();
   }
   planes_mean = static_cast<double>(planes) / static_cast<double>(motions.size());
@@ -97,7 +89,7 @@ std::size_t judge(std::span<const Answer> answers, std::span<const Motion> motio
     for (const double x : got.motion) hash.add(x);
     if (std::has_single_bit(i + 1)) row.first_hashes.push_back(hash.value());
     if (!is_ok(got.status)) ++unsolved;
-    if (is_wrong(got, expected, accuracy, motions[i], reference.setting())) ++wrong;
+    if (is_wrong(got, expected, accuracy, motions[i], reference.proves_motions())) ++wrong;
     if (is_worse(got, expected, motions[i])) ++worse;
   }
   const auto count = static_cast<double>(answers.size());
@@ -115,26 +107,24 @@ struct QueryTimes {
 /// computed already, all do the same work: candidates, exact test, closest points, sorted.
 std::size_t ask_for_triangles(const SpatialIndex& index, std::size_t count, Reference& reference,
                               const StopSignal& stop, QueryTimes& times, BenchmarkRow& row) {
-  Workspace& work = reference.work();
   // Before any is timed, so that caches are the same for the first index as for the last.
   std::vector<std::uint64_t> expected;
   for (std::size_t i = 0; i < count; ++i) expected.push_back(reference.hits_hash(i));
   std::size_t candidates = 0, hits = 0, reaching = 0, wrong = 0;
   for (std::size_t i = 0; i < count && !stop.has_come(); ++i) {
     const Ball& ball = reference.balls()[i];
-    work.candidates.clear();
-    work.hits.clear();
-    const Clock::time_point start = Clock::now();
-    index.collect(ball, work.candidates);
-    const Clock::time_point collected = Clock::now();
-    refine(reference.mesh(), ball, work.candidates.view(), work.hits);
-    const Clock::time_point end = Clock::now();
-    times.collect.push_back(microseconds(collected - start));
-    times.query.push_back(microseconds(end - start));
-    candidates += work.candidates.size();
-    hits += work.hits.size();
-    reaching += work.hits.empty() ? 0 : 1;
-    wrong += hash_of(work.hits.view()) == expected[i] ? 0 : 1;
+    reference.candidates.clear();
+    reference.hits.clear();
+    const BenchClock::time_point start = BenchClock::now();
+    index.collect(ball, reference.candidates);
+    const double collected = microseconds_since(start);
+    refine(reference.mesh(), ball, reference.candidates.view(), reference.hits);
+    times.query.push_back(microseconds_since(start));
+    times.collect.push_back(collected);
+    candidates += reference.candidates.size();
+    hits += reference.hits.size();
+    reaching += reference.hits.empty() ? 0 : 1;
+    wrong += hash_of(reference.hits.view()) == expected[i] ? 0 : 1;
   }
   row.candidates_mean = static_cast<double>(candidates) / static_cast<double>(count);
   row.hits_mean = static_cast<double>(hits) / static_cast<double>(count);
@@ -146,7 +136,7 @@ std::size_t ask_for_triangles(const SpatialIndex& index, std::size_t count, Refe
 
 void measure(const Assembly& assembly, std::span<const Motion> motions, Reference& reference,
              double seconds, const StopSignal& stop, BenchmarkRow& row) {
-  if (!reference.is_found_by(assembly.index)) {
+  if (!reference.is_found_by(assembly.constraint.index())) {
     row.remark = "not timed: the triangles are not those of brute force";
     return;
   }
@@ -163,7 +153,7 @@ void measure(const Assembly& assembly, std::span<const Motion> motions, Referenc
   for (std::size_t i = 0; i < asked.size(); ++i) wrong += staged[i] == answers[i] ? 0 : 1;
   QueryTimes queries;
   const std::size_t missed =
-      ask_for_triangles(assembly.index, asked.size(), reference, stop, queries, row);
+      ask_for_triangles(assembly.constraint.index(), asked.size(), reference, stop, queries, row);
   if (stop.has_come()) return;
   if (missed > 0) {
     row.remark = "not timed: " + grouped(missed) + " of " + grouped(asked.size()) +
@@ -178,7 +168,7 @@ void measure(const Assembly& assembly, std::span<const Motion> motions, Referenc
   row.collect = timing_of(queries.collect);
   row.query = timing_of(queries.query);
   row.step = timing_of(steps);
-  if (!assembly.searches) row.step_query = timing_of(stages.query);
+  if (assembly.constraint.makes_queries()) row.step_query = timing_of(stages.query);
   row.activate = timing_of(stages.activate);
   row.solve = timing_of(stages.solve);
 }

@@ -6,16 +6,13 @@
 
 #include "bench/benchmark.h"
 #include "bench/reference.h"
-#include "keepout/step/motion_constraint.h"
 #include "stop_signal.h"
 
 namespace keepout::app {
 
 /// What a row is about: parts put together as any user has them.
 struct Assembly {
-  const SpatialIndex& index;     // that of the constraint
   MotionConstraint& constraint;  // its tips taken as they are: the motions do not follow its steps
-  bool searches;                 // whether its rule searches the index by itself
   double accuracy;               // of its solver; 0: its steps are the reference's, bit for bit
 };
 

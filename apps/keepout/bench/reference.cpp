@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "bench/bit_hash.h"
+#include "keepout/activation/registry.h"
 #include "keepout/error.h"
 #include "keepout/index/brute_force.h"
 #include "keepout/solvers/active_set.h"
@@ -35,42 +35,59 @@ std::uint64_t hash_of(std::span<const Hit> hits) {
   return hash.value();
 }
 
-Reference::Reference(std::shared_ptr<const Mesh> mesh, const SpatialIndex& index, Activation& rule,
-                     Workspace& work, const RuleSetting& setting, std::span<const Motion> motions)
-    : mesh_(std::move(mesh)),
-      work_(work),
-      setting_(setting),
-      motions_(motions),
-      solver_(std::make_unique<ActiveSet>()),
-      pipeline_{*mesh_, index, rule, *solver_, work_, setting_} {
-  solver_->reserve(3, static_cast<int>(work_.planes.capacity()));
-  for (const Motion& motion : motions_) balls_.push_back(ball_of(setting_, rule, motion));
-  const BruteForce brute_force(mesh_);
-  const Pipeline exhaustive{*mesh_, brute_force, rule, *solver_, work_, setting_};
+MotionConstraint make_reference_guard(std::shared_ptr<const Mesh> mesh,
+                                      std::shared_ptr<const SpatialIndex> index,
+                                      const MotionConstraintSettings& settings) {
+  auto rule = make_activation(settings.activation, mesh);
+  return {std::move(mesh),
+          std::move(index),
+          std::move(rule),
+          std::make_unique<ActiveSet>(),
+          {.radius = settings.radius, .margin = settings.margin},
+          settings.capacity};
+}
+
+Reference::Reference(MotionConstraint& guard, std::shared_ptr<const Mesh> mesh,
+                     const MotionConstraintSettings& settings, std::span<const Motion> motions)
+    : candidates(std::min(settings.capacity.triangles, mesh->triangle_count())),
+      hits(candidates.capacity()),
+      guard_(guard),
+      options_({.radius = settings.radius, .margin = settings.margin}),
+      proves_motions_(settings.activation == "certified"),
+      motions_(motions) {
+  const auto brute_force = std::make_shared<const BruteForce>(mesh);
+  MotionConstraint exhaustive = make_reference_guard(std::move(mesh), brute_force, settings);
+  guard.set_options(options_);
+  for (const Motion& motion : motions_) balls_.push_back(guard.region(motion));
   for (std::size_t s = 0; s < sample_count; ++s) {
     const std::size_t motion = s * motions_.size() / sample_count;
-    samples_.push_back({motion, hits_of(brute_force, balls_[motion])});
-    fits_ = fits_ && !work_.candidates.overflowed();
+    const std::span<const Hit> found = hits_of(*brute_force, balls_[motion]);
+    samples_.push_back({motion, {found.begin(), found.end()}});
+    fits_ = fits_ && !candidates.overflowed();
     if (!fits_) return;
-    if (pipeline_.ask(motions_[motion]) != exhaustive.ask(motions_[motion])) {
+    const Answer expected = exhaustive.step(motions_[motion]);
+    if (Answer(guard.step(motions_[motion])) != expected) {
       throw Error(
           "the steps of the reference are not those of brute force: this is a fault in "
           "keepout; please report it");
     }
   }
-  if (!is_found_by(index)) throw Error("the reference's index misses triangles: please report it");
+  if (!is_found_by(guard.index())) {
+    throw Error("the reference's index misses triangles: please report it");
+  }
 }
 
-Reference::~Reference() = default;
-
 const Answer& Reference::answer(std::size_t motion) {
-  while (answers_.size() <= motion) answers_.push_back(pipeline_.ask(motions_[answers_.size()]));
+  if (answers_.size() <= motion) guard_.set_options(options_);
+  while (answers_.size() <= motion) {
+    answers_.push_back(guard_.step(motions_[answers_.size()]));
+  }
   return answers_[motion];
 }
 
 std::uint64_t Reference::hits_hash(std::size_t motion) {
   while (hits_hashes_.size() <= motion) {
-    hits_hashes_.push_back(hash_of(hits_of(pipeline_.index, balls_[hits_hashes_.size()])));
+    hits_hashes_.push_back(hash_of(hits_of(guard_.index(), balls_[hits_hashes_.size()])));
   }
   return hits_hashes_[motion];
 }
@@ -81,12 +98,12 @@ bool Reference::is_found_by(const SpatialIndex& index) {
   });
 }
 
-std::vector<Hit> Reference::hits_of(const SpatialIndex& index, const Ball& ball) {
-  work_.candidates.clear();
-  work_.hits.clear();
-  index.collect(ball, work_.candidates);
-  refine(*mesh_, ball, work_.candidates.view(), work_.hits);
-  return {work_.hits.begin(), work_.hits.end()};
+std::span<const Hit> Reference::hits_of(const SpatialIndex& index, const Ball& ball) {
+  candidates.clear();
+  hits.clear();
+  index.collect(ball, candidates);
+  refine(mesh(), ball, candidates.view(), hits);
+  return hits.view();
 }
 
 }  // namespace keepout::app

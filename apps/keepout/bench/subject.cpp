@@ -52,8 +52,7 @@ LoadedSubject load(const Subject& subject) {
   if (subject.triangles == 0) return loaded;
   std::shared_ptr<const Mesh>& mesh = loaded.mesh;
   constexpr double largest_extent = 150.0;  // [mm]
-  Surface bunny{{mesh->vertices().begin(), mesh->vertices().end()},
-                {mesh->triangles().begin(), mesh->triangles().end()}};
+  Surface bunny = surface_of(*mesh);
   mesh.reset();
   constexpr std::uint64_t seed = 1;
   mesh = std::make_shared<const Mesh>(
@@ -62,5 +61,10 @@ LoadedSubject load(const Subject& subject) {
 }
 
 std::shared_ptr<const Mesh> make_mesh(const Subject& subject) { return load(subject).mesh; }
+
+Surface surface_of(const Mesh& mesh) {
+  return {{mesh.vertices().begin(), mesh.vertices().end()},
+          {mesh.triangles().begin(), mesh.triangles().end()}};
+}
 
 }  // namespace keepout::app

@@ -43,4 +43,7 @@ struct LoadedSubject {
 LoadedSubject load(const Subject& subject);
 std::shared_ptr<const Mesh> make_mesh(const Subject& subject);
 
+/// A copy, to be changed.
+Surface surface_of(const Mesh& mesh);
+
 }  // namespace keepout::app

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "bench/timing.h"
+
 #include <algorithm>
 #include <cmath>
-
-#include "bench/benchmark.h"
 
 namespace keepout::app {
 
@@ -17,6 +17,17 @@ Timing timing_of(std::vector<double>& samples) {
   if (samples.size() >= 100) timing.p99 = at(0.99);
   if (samples.size() >= 1000) timing.p999 = at(0.999);
   return timing;
+}
+
+Timing least_of(const Timing& one, const Timing& other) {
+  const auto lesser = [](const std::optional<double>& a, const std::optional<double>& b) {
+    return a && b ? std::min(a, b) : std::nullopt;
+  };
+  return {.p50 = std::min(one.p50, other.p50),
+          .p99 = lesser(one.p99, other.p99),
+          .p999 = lesser(one.p999, other.p999),
+          .max = std::min(one.max, other.max),
+          .samples = one.samples};
 }
 
 }  // namespace keepout::app

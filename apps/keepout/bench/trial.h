@@ -40,7 +40,6 @@ class Trial {
   /// Error when there is no such mesh.
   Trial(const Subject& subject, const TrialSettings& settings, MemoryTaken& memory,
         const StopSignal& stop);
-  ~Trial();
 
   /// Builds the index unless the combination before had the same. What cannot be built, or gives a
   /// wrong answer, is not timed, and the row's remark says why. Of no use once it was stopped.
@@ -52,14 +51,9 @@ class Trial {
   const LoadedSubject& loaded() const noexcept { return loaded_; }
 
  private:
-  struct Built;
-
-  const Built& build(const std::string& index);
-  /// Whether the rule searches the index at hand by itself.
-  bool is_searched_by(const std::string& activation);
-
-  Activation& rule(const std::string& activation);
-  Reference& reference(const RuleSetting& setting);
+  void build(const std::string& index);
+  MotionConstraint& guard(const MotionConstraintSettings& settings);
+  Reference& reference(const MotionConstraintSettings& settings);
 
   Subject subject_;
   TrialSettings settings_;
@@ -68,11 +62,11 @@ class Trial {
   LoadedSubject loaded_;
   std::shared_ptr<const Mesh> mesh_;
   std::vector<Motion> motions_;
-  std::unique_ptr<SpatialIndex> reference_index_;
-  std::unique_ptr<Workspace> work_;
-  std::map<std::string, std::unique_ptr<Activation>> rules_;
-  std::map<std::pair<std::string, std::optional<double>>, std::unique_ptr<Reference>> references_;
-  std::unique_ptr<Built> built_;
+  std::shared_ptr<const SpatialIndex> reference_index_;
+  std::map<std::string, MotionConstraint> guards_;                  // of each rule
+  std::map<std::pair<std::string, double>, Reference> references_;  // of each rule and radius
+  std::shared_ptr<const SpatialIndex> index_;                       // at hand; null: not built
+  BenchmarkRow row_;  // so much of it as is the same for all combinations with that index
 };
 
 }  // namespace keepout::app

@@ -60,6 +60,7 @@ MotionConstraint::MotionConstraint(std::shared_ptr<const Mesh> mesh,
       work_(std::make_unique<Workspace>(checked(capacity, options), *solver_)),
       polytope_(mesh, near_->room()),
       polytope_planes_(std::max(work_->planes.capacity(), planes_to_hold_still)),
+      makes_queries_(false),
       watch_(inside == Inside::led_out && is_watertight(*mesh)),
       sides_(new_watch()) {
   if (inside == Inside::led_out && activation_->guards_a_tool()) {
@@ -71,6 +72,7 @@ MotionConstraint::MotionConstraint(std::shared_ptr<const Mesh> mesh,
   solver_->reserve(static_cast<int>(std::max<std::size_t>(capacity.variables, 3)),
                    static_cast<int>(capacity.planes + capacity.extra_rows));
   require_usable(options_);
+  makes_queries_ = near_->ball().radius >= 0.0;  // once it has been asked at all
 }
 
 MotionConstraint::MotionConstraint(MotionConstraint&&) noexcept = default;
@@ -102,6 +104,10 @@ void MotionConstraint::require_usable(const StepOptions& options) {
         "tool radius and margin together, must be well above 1e-9 of the longest edge and "
         "of the radius");
   }
+}
+
+Ball MotionConstraint::region(const Motion& motion) const noexcept {
+  return activation_->region(surroundings_of(motion, options_, activation_->reach()));
 }
 
 Step MotionConstraint::step(const Motion& motion) noexcept { return step(motion, sides_, nullptr); }

@@ -69,7 +69,6 @@ class Watchful final : public Solver {
   explicit Watchful(std::vector<Given>& given) : given_(given) {}
 
   void reserve(int variables, int rows) override { exact_.reserve(variables, rows); }
-  bool skips_idle_rows() const noexcept override { return exact_.skips_idle_rows(); }
   bool reads_planes() const noexcept override { return exact_.reads_planes(); }
   SolveStatus solve(const StepProblem& problem, Solution& solution) noexcept override {
     given_.push_back({problem.planes.size(), problem.rows.rows()});
@@ -86,28 +85,27 @@ class Measure : public testing::TestWithParam<const char*> {
   void SetUp() override {
     Random random(1);
     motions = contact_motions(*mesh, *tree, 500, {}, random);
-    rule = make_activation(GetParam(), mesh);
-    rule->reserve(work.candidates.capacity());
-    reference = std::make_unique<Reference>(mesh, *tree, *rule, work, setting, motions);
+    reference = std::make_unique<Reference>(guard, mesh, settings, motions);
   }
 
   BenchmarkRow measured(const std::shared_ptr<const SpatialIndex>& index,
                         std::unique_ptr<Solver> solver, double accuracy) {
     MotionConstraint constraint(mesh, index, make_activation(GetParam(), mesh), std::move(solver),
-                                options_of(setting));
-    const bool searches = rule->searching(*index) != nullptr;
+                                guard.options());
     BenchmarkRow row;
-    measure({*index, constraint, searches, accuracy}, motions, *reference, 10.0, stop, row);
+    measure({constraint, accuracy}, motions, *reference, 10.0, stop, row);
     return row;
   }
 
   StopSignal stop;
   std::shared_ptr<const Mesh> mesh = std::make_shared<const Mesh>(make_shape("cortex"));
   std::shared_ptr<const PdTree> tree = std::make_shared<PdTree>(mesh);
-  Workspace work{Capacity{}};
-  RuleSetting setting{GetParam(), 1.0, 0.2};
+  MotionConstraintSettings settings{
+      .activation = GetParam(),
+      .radius = 1.0,
+      .margin = std::string_view(GetParam()) == "certified" ? 0.2 : 0.0};
+  MotionConstraint guard = make_reference_guard(mesh, tree, settings);
   std::vector<Motion> motions;
-  std::unique_ptr<Activation> rule;
   std::unique_ptr<Reference> reference;
 };
 
@@ -148,7 +146,7 @@ TEST_P(Measure, DoesNotTimeASolverThatErrsNowAndThen) {
   const BenchmarkRow row = measured(tree, std::make_unique<Flawed>(Flawed::Flaw::shorter), 1e-6);
   EXPECT_GT(row.worse_share, 0.005);
   // Under a rule that proves each motion they are right all the same.
-  EXPECT_EQ(row.verified, setting.proves_motions());
+  EXPECT_EQ(row.verified, reference->proves_motions());
   if (row.verified) return;
   EXPECT_FALSE(row.step);
   EXPECT_NE(row.remark.find("not those of the reference"), std::string::npos) << row.remark;
@@ -185,7 +183,7 @@ TEST_P(Measure, VerifiesTheVeryStepsThatItTimes) {
   // As the assembly that users have gives it.
   std::vector<Watchful::Given> shipped;
   MotionConstraint constraint(mesh, index, make_activation(GetParam(), mesh),
-                              std::make_unique<Watchful>(shipped), options_of(setting));
+                              std::make_unique<Watchful>(shipped), guard.options());
   for (const Motion& motion : motions) constraint.step(motion);
   EXPECT_TRUE(std::equal(given.begin(), half, shipped.begin(), shipped.end()));
 }

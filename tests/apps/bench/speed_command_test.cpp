@@ -14,7 +14,7 @@
 #include <string>
 
 #include "apps/command_process.h"
-#include "bench/speed/counted_calls.h"
+#include "bench/speed/process.h"
 #include "keepout/adapters/all_indices.h"
 #include "keepout/fixtures/real_mesh.h"
 

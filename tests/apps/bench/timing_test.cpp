@@ -32,6 +32,31 @@ TEST(Timing, LeavesOutWhatTooFewSamplesCannotTell) {
   EXPECT_EQ(timing_of(some).p999, std::nullopt);
 }
 
+TEST(Timing, OfSeveralPassesIsTheLeastOfEachPercentile) {
+  const Timing one{.p50 = 1.0, .p99 = 5.0, .p999 = {}, .max = 9.0, .samples = 100};
+  const Timing other{.p50 = 2.0, .p99 = 4.0, .p999 = {}, .max = 8.0, .samples = 100};
+  const Timing least = least_of(one, other);
+  EXPECT_EQ(least.p50, 1.0);
+  EXPECT_EQ(least.p99, 4.0);
+  EXPECT_EQ(least.p999, std::nullopt);
+  EXPECT_EQ(least.max, 8.0);
+}
+
+TEST(Timing, OfWhatIsShorterThanTheClockIsInBatches) {
+  int done = 0;
+  const MeasuredSide quick = timed("quick", 64, 2, [&](std::size_t) { ++done; });
+  EXPECT_EQ(quick.batch, 32u);
+  EXPECT_EQ(done, 2 * 64 + 2 * 64) << "each pass one by one, and in batches";
+  EXPECT_LE(quick.us.p50, quick.us.max);
+  const MeasuredSide slow = timed_whole("slow", 3, [] {
+    const BenchClock::time_point start = BenchClock::now();
+    while (microseconds_since(start) < 50.0) {
+    }
+  });
+  EXPECT_EQ(slow.batch, 1u);
+  EXPECT_GE(slow.us.p50, 50.0);
+}
+
 TEST(Timing, OfOneSampleIsThatSample) {
   std::vector<double> one = {7.0};
   const Timing timing = timing_of(one);

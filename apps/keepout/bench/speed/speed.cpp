@@ -9,9 +9,10 @@
 #include <vector>
 
 #include "bench/machine_record.h"
-#include "bench/speed/families.h"
-#include "bench/speed/speed_files.h"
+#include "bench/speed/process.h"
+#include "bench/speed/speed_run.h"
 #include "bench/speed/speed_table.h"
+#include "bench/speed/trajectories.h"
 #include "keepout/fixtures/real_mesh.h"
 #include "machine.h"
 #include "number_text.h"
@@ -22,9 +23,7 @@
 namespace keepout::app {
 namespace {
 
-using Family = void (*)(SpeedRun&, const IndexedMesh&);
-
-constexpr Family on_the_bunny[] = {
+constexpr void (*on_the_bunny[])(SpeedRun&, const IndexedMesh&) = {
     measure_sphere_queries, measure_paper_steps, measure_certified_steps, measure_unrelated_states,
     measure_cold_caches,    measure_index_costs, measure_steadiness};
 
@@ -34,8 +33,8 @@ constexpr void (*on_their_own[])(SpeedRun&) = {measure_concave_sphere, measure_f
 /// As far as nobody wishes to stop. Whether it came to the end.
 bool measure_all(SpeedRun& run, const StopSignal& stop) {
   {
-    const IndexedMesh bunny = with_index(bunny_of(run.settings.triangles));
-    for (const Family family : on_the_bunny) {
+    const IndexedMesh bunny = with_index(bunny_of(run.options.triangles));
+    for (const auto family : on_the_bunny) {
       if (stop.has_come()) return false;
       family(run, bunny);
       run.progress.advance();
@@ -49,38 +48,72 @@ bool measure_all(SpeedRun& run, const StopSignal& stop) {
   return true;
 }
 
-void refuse_overwriting(const SpeedOptions& options) {
+}  // namespace
+
+std::vector<Motion> SpeedRun::contact(const IndexedMesh& on, const MotionKind& kind) const {
+  return pressed_motions(on, options.effort.steps, kind, random());
+}
+
+void SpeedRun::add(SpeedRow row) {
+  progress.interrupt();
+  print_row(out, row);
+  out.flush();
+  record.rows.push_back(std::move(row));
+}
+
+SpeedRow ratio(std::string work, std::string compared, const Demand& demand,
+               const Attempt& numerator, const Attempt& denominator) {
+  SpeedRow row{.work = std::move(work), .compared = std::move(compared), .demand = demand};
+  for (const Attempt* attempt : {&numerator, &denominator}) {
+    if (attempt->side) row.sides.push_back(*attempt->side);
+    if (row.remark.empty()) row.remark = attempt->refusal;
+  }
+  if (row.sides.size() == 2) row.figure = row.sides[0].us.p50 / row.sides[1].us.p50;
+  return row;
+}
+
+Attempt time_certified(const SpeedRun& run, const IndexedMesh& on, const std::string& name,
+                       double margin, std::span<const Motion> motions) {
+  MotionConstraint ours = certified(on, margin);
+  MotionConstraint plain = certified(queried(on), margin);
+  if (std::string refusal = disagreement(ours, plain, motions); !refusal.empty()) {
+    return {.refusal = std::move(refusal)};
+  }
+  return {timed(name, motions.size(), run.options.effort.passes,
+                [&](std::size_t i) { ours.step(motions[i]); })};
+}
+
+Attempt in_contact(SpeedRun& run, const IndexedMesh& on, const MotionKind& kind) {
+  const std::string name = "margin " + trimmed(kind.clearance) + " mm, motion " +
+                           trimmed(kind.shortest) + "-" + trimmed(kind.longest) + " mm";
+  run.show("certified, contact, " + name);
+  return time_certified(run, on, name, kind.clearance, run.contact(on, kind));
+}
+
+int bench_speed(const SpeedOptions& options, std::ostream& out) {
   std::vector<NamedPath> outputs{{"--out", options.report}};
   if (options.json) outputs.push_back({"--json", *options.json});
   refuse_shared_files({}, outputs);
-}
-
-}  // namespace
-
-int bench_speed(const SpeedOptions& options, std::ostream& out) {
-  refuse_overwriting(options);
-  for (const std::string& fixture : {std::string("bunny"), options.settings.file}) {
+  for (const std::string& fixture : {std::string("bunny"), options.file}) {
     fixture_path(fixture);  // throws if it is missing
   }
   OutputFile report(options.report);
   const auto json = options.json ? std::make_unique<OutputFile>(*options.json) : nullptr;
 
   Progress progress("bench --speed", std::size(on_the_bunny) + std::size(on_their_own));
-  SpeedRecord record{.date = date_now(),
-                     .command = options.command,
-                     .seed = options.settings.seed,
-                     .machine = this_machine(),
-                     .mesh = "bunny, " + counted(options.settings.triangles, "triangle")};
-  const Pinned pinned;
-  progress.interrupt();
-  print_head(out, record);
-  out.flush();
-  if (!pinned.is_pinned()) out << "The system does not let this process stay on one core.\n";
-  SpeedRun run{.settings = options.settings,
-               .pinned = pinned,
+  SpeedRun run{.options = options,
                .progress = progress,
                .out = out,
-               .record = std::move(record)};
+               .record = {.date = date_now(),
+                          .command = options.command,
+                          .seed = options.seed,
+                          .machine = this_machine(),
+                          .mesh = "bunny, " + counted(options.triangles, "triangle")}};
+  const OnCores one(1);
+  progress.interrupt();
+  print_head(out, run.record);
+  out.flush();
+  if (!one.holds()) out << "The system does not let this process stay on one core.\n";
   const StopSignal stop;
   run.record.complete = measure_all(run, stop);
   progress.interrupt();

@@ -23,15 +23,6 @@ struct Demand {
   }
 };
 
-/// What is measured on one side of a ratio. The median of what takes less than 0.2 us is that of
-/// batches, each divided by its length, for reading the clock would be a good part of it; the
-/// percentiles beside it are of single ones, the clock's reading included.
-struct MeasuredSide {
-  std::string name = {};
-  Timing us = {};
-  std::size_t batch = 1;  // how many were timed at once, for the median
-};
-
 /// One line of the table: a figure, what it must come to, and what it was made of.
 struct SpeedRow {
   std::string work = {};      // what is done, on what

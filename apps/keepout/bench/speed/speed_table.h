@@ -29,4 +29,10 @@ void print_row(std::ostream& out, const SpeedRow& row);
 void print_queries(std::ostream& out, const SpeedRecord& record);
 void print_summary(std::ostream& out, const SpeedRecord& record);
 
+/// All of it as JSON: {"machine": {...}, "rows": [{"work": ..., "compared": ..., "demanded":
+/// {"at_least": 38}, "figure": 41.2, "unit": "x", "met": true, "sides": [...]}, ...], "queries":
+/// [...], "histogram": {"steps": {"bins": [[from_ns, count], ...], ...}, "nothing": {...}}}. null
+/// stands for what was not measured.
+void write_json(std::ostream& out, const SpeedRecord& record);
+
 }  // namespace keepout::app

@@ -90,6 +90,16 @@ class MotionConstraint {
   /// What the tip is kept out of.
   const Mesh& mesh() const noexcept { return near_->mesh(); }
 
+  /// What is asked for triangles.
+  const SpatialIndex& index() const noexcept { return near_->index(); }
+
+  /// Where the rule looks for triangles at first. Precondition: the motion is valid.
+  Ball region(const Motion& motion) const noexcept;
+
+  /// Whether a step asks the index for all triangles in the region, and not by something faster
+  /// that the index offers for the rule.
+  bool makes_queries() const noexcept { return makes_queries_; }
+
   /// How it behaves: radius, tool radius and margin, among others.
   const StepOptions& options() const noexcept { return options_; }
 
@@ -112,6 +122,7 @@ class MotionConstraint {
   std::unique_ptr<Workspace> work_;
   FreePolytope polytope_;
   HalfSpaceBuffer polytope_planes_;
+  bool makes_queries_;
   bool watch_;  // whether sides are asked about
   SideWatch sides_;
 };

@@ -1,6 +1,68 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/speed/counted_calls.h"
+#include "bench/speed/process.h"
+
+#include <dlfcn.h>
+#include <pthread.h>
+#include <sys/resource.h>
+
+#include <atomic>
+#include <cerrno>
+#include <fstream>
+#include <string>
+
+namespace keepout::app {
+namespace {
+
+cpu_set_t allowed_cores() noexcept {
+  cpu_set_t cores;
+  CPU_ZERO(&cores);
+  sched_getaffinity(0, sizeof cores, &cores);
+  return cores;
+}
+
+/// As the process began: before anything here has kept it on fewer.
+const cpu_set_t allowed_at_first = allowed_cores();
+
+}  // namespace
+
+OnCores::OnCores(unsigned count) noexcept : before_(allowed_cores()) {
+  const int core = sched_getcpu();
+  if (core < 0) return;
+  cpu_set_t some;
+  CPU_ZERO(&some);
+  CPU_SET(static_cast<unsigned>(core), &some);
+  for (unsigned other = 0; other < CPU_SETSIZE && CPU_COUNT(&some) < static_cast<int>(count);
+       ++other) {
+    if (CPU_ISSET(other, &allowed_at_first)) CPU_SET(other, &some);
+  }
+  holds_ = sched_setaffinity(0, sizeof some, &some) == 0;
+}
+
+OnCores::~OnCores() {
+  if (holds_) sched_setaffinity(0, sizeof before_, &before_);
+}
+
+std::size_t peak_memory() {
+  std::ifstream status("/proc/self/status");
+  for (std::string word; status >> word;) {
+    std::size_t kibibytes = 0;
+    if (word == "VmHWM:" && status >> kibibytes) return kibibytes * 1024;
+  }
+  return 0;
+}
+
+void reset_peak_memory() {
+  std::ofstream("/proc/self/clear_refs") << "5\n";  // proc(5): resets VmHWM
+}
+
+std::uint64_t page_faults() {
+  rusage usage{};
+  getrusage(RUSAGE_THREAD, &usage);
+  return static_cast<std::uint64_t>(usage.ru_minflt + usage.ru_majflt);
+}
+
+}  // namespace keepout::app
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 
@@ -8,12 +70,6 @@ bool keepout::app::counts_calls() noexcept { return false; }
 keepout::app::CallCounts keepout::app::calls_of_this_thread() noexcept { return {}; }
 
 #else
-
-#include <dlfcn.h>
-#include <pthread.h>
-
-#include <atomic>
-#include <cerrno>
 
 namespace {
 

@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "keepout/step/motion_constraint.h"
+
+namespace keepout::app {
+
+/// A mesh to measure on, and an index over it.
+struct IndexedMesh {
+  std::shared_ptr<const Mesh> mesh;
+  std::shared_ptr<const SpatialIndex> index;
+};
+
+/// With our index, wide_bvh.
+IndexedMesh with_index(std::shared_ptr<const Mesh> mesh);
+
+/// The same index as one that only answers queries: no rule walks it by itself.
+IndexedMesh queried(const IndexedMesh& on);
+
+/// The same surface with coordinates as an STL file holds them.
+Surface in_single_precision(Surface surface);
+
+/// The bunny, 150 mm large, with so many triangles (or up to three fewer), as an STL file holds it.
+/// Throws Error where the fixture has not been prepared.
+std::shared_ptr<const Mesh> bunny_of(std::size_t triangles);
+
+/// The file of a bunny that is large: made once, and kept beside the fixtures. Throws Error.
+std::filesystem::path large_bunny(std::size_t triangles);
+
+/// What users run: the certified rule with our solver. [mm]
+MotionConstraint certified(const IndexedMesh& on, double margin);
+
+/// The paper's rule with a solver. [mm]
+MotionConstraint paper(const IndexedMesh& on, double radius, const std::string& solver);
+
+/// Asks both for a sample of the motions. Empty if all answers were the same, bit for bit; else a
+/// remark on how many were not. With an accuracy, for solvers of which one is not exact: status
+/// apart, motions may differ by so much of the length of the one asked for.
+std::string disagreement(MotionConstraint& one, MotionConstraint& other,
+                         std::span<const Motion> motions, double accuracy = 0.0);
+
+}  // namespace keepout::app

@@ -1,0 +1,256 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include "bench/parts.h"
+#include "bench/speed/process.h"
+#include "bench/speed/speed_run.h"
+#include "bench/subject.h"
+#include "keepout/adapters/load_mesh.h"
+#include "keepout/factory/make_motion_constraint.h"
+#include "keepout/fixtures/real_mesh.h"
+#include "keepout/index/index_cache.h"
+#include "keepout/index/wide_bvh.h"
+#include "number_text.h"
+
+#if KEEPOUT_WITH_ASSIMP
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+
+#include <assimp/Importer.hpp>
+#endif
+
+namespace keepout::app {
+namespace {
+
+MeasuredSide time_build(const SpeedRun& run, const IndexedMesh& on, std::string name,
+                        unsigned threads) {
+  const OnCores cores(threads);
+  return timed_whole(std::move(name), run.options.effort.builds,
+                     [&] { const WideBvh index(on.mesh, threads); });
+}
+
+void measure_builds(SpeedRun& run, const IndexedMesh& on) {
+  const MeasuredSide ours = time_build(run, on, "wide_bvh", 1);
+  const MeasuredSide on_two_cores = time_build(run, on, "wide_bvh, 2 cores", 2);
+  for (const Rival& rival : rivals) {
+    const std::string name(rival.name);
+    const Attempt theirs = attempted([&] {
+      const IndexBackend& backend = entry_named(rival.index, indices(), "index", absent_indices());
+      return timed_whole(name, 1, [&] { backend.make(on.mesh); });
+    });
+    SpeedRow row =
+        ratio("build of the index", name + " / wide_bvh", at_least(rival.build), theirs, {ours});
+    row.sides.push_back(on_two_cores);
+    run.add(std::move(row));
+  }
+}
+
+/// The surface as it breathes: every vertex is elsewhere, and neighbours stay neighbours.
+std::shared_ptr<const Mesh> deformed(const Mesh& mesh) {
+  Surface surface = surface_of(mesh);
+  for (Vec3& vertex : surface.vertices) {
+    constexpr double amplitude = 0.5, wavelength = 30.0;  // [mm]
+    vertex.z() += amplitude * (1.5 + std::sin(vertex.x() * 2.0 * std::numbers::pi / wavelength));
+  }
+  return std::make_shared<const Mesh>(in_single_precision(std::move(surface)));
+}
+
+void measure_refit(SpeedRun& run, const IndexedMesh& on) {
+  const std::shared_ptr<const Mesh> moved = deformed(*on.mesh);
+  const auto index = std::make_shared<WideBvh>(on.mesh, 1);
+  // There and back, so that each time all have moved.
+  bool is_moved = false;
+  const MeasuredSide refit = timed_whole("refit", 2 * run.options.effort.builds + 1, [&] {
+    index->refit(is_moved ? on.mesh : moved, 1);
+    is_moved = !is_moved;
+  });
+  hold_to_brute_force({moved, index}, run.random());
+  run.add(ratio("refit after all vertices moved, one core", "refit / build", at_most(0.1), {refit},
+                {time_build(run, on, "build", 1)}));
+}
+
+void measure_memory(SpeedRun& run, const IndexedMesh& on) {
+  const auto triangles = static_cast<double>(on.mesh->triangle_count());
+  const double index = static_cast<double>(on.index->memory()) / triangles;
+  const double mesh = static_cast<double>(on.mesh->vertex_count() * sizeof(Vec3) +
+                                          on.mesh->triangle_count() * sizeof(Corners)) /
+                      triangles;
+  run.add({.work = "memory, a triangle",
+           .compared = "index",
+           .demand = at_most(45.0),
+           .unit = "bytes",
+           .figure = index});
+  run.add({.work = "memory, a triangle",
+           .compared = "index and mesh",
+           .demand = at_most(100.0),
+           .unit = "bytes",
+           .figure = index + mesh});
+}
+
+/// A mesh that was loaded.
+struct Loaded {
+  IndexedMesh mesh;
+  MeasuredSide time;      // from the file to the index, on two cores
+  double peak_gib = 0.0;  // of memory meanwhile
+};
+
+Loaded load(SpeedRun& run, std::size_t triangles) {
+  const std::string name = counted(triangles, "triangle");
+  run.show("making a mesh of " + name);
+  const std::filesystem::path file = large_bunny(triangles);
+  run.show("loading " + name);
+  Loaded loaded;
+  reset_peak_memory();
+  const OnCores two(2);
+  loaded.time = timed_whole(name, 1, [&] { loaded.mesh = with_index(load_mesh(file).mesh); });
+  loaded.peak_gib = static_cast<double>(peak_memory()) / static_cast<double>(1 << 30);
+  return loaded;
+}
+
+std::string millions(std::size_t triangles) {
+  return triangles < 1'000'000 ? grouped(triangles)
+                               : rounded(1e-6 * static_cast<double>(triangles), 2) + " M";
+}
+
+/// The usual contact, beside that on the mesh of all other rows.
+void add_contact(SpeedRun& run, const IndexedMesh& on, std::size_t triangles, double most) {
+  Attempt contact = in_contact(run, on);
+  if (contact.side) contact.side->name = millions(triangles) + " triangles";
+  run.add(ratio("certified in contact, margin .2 mm",
+                millions(triangles) + " / " + millions(run.options.triangles) + " triangles",
+                at_most(most), contact, run.baselines.contact));
+}
+
+/// Large steps over a fine mesh, in microseconds.
+void add_large_steps(SpeedRun& run, const IndexedMesh& on, std::size_t triangles) {
+  const auto [side, refusal] =
+      in_contact(run, on, {.clearance = 1.1, .shortest = 1.0, .longest = 5.0});
+  SpeedRow row{
+      .work = "certified, motion 1-5 mm, margin 1.1 mm, " + millions(triangles) + " triangles",
+      .compared = "median",
+      .demand = at_most(20.0),
+      .unit = "us",
+      .remark = refusal};
+  if (side) {
+    row.figure = side->us.p50;
+    row.sides = {*side};
+  }
+  run.add(row);
+  row.compared = "p99.9";
+  row.demand = at_most(40.0);
+  if (side) row.figure = side->us.p999;
+  run.add(std::move(row));
+}
+
+constexpr unsigned cores = 2;
+
+/// What assimp makes of a mesh file, as a program that uses it alone would read it: triangulated,
+/// and not welded, which costs it least. Throws Error, also in a build without assimp.
+Surface assimp_surface([[maybe_unused]] const std::filesystem::path& file) {
+#if KEEPOUT_WITH_ASSIMP
+  Assimp::Importer importer;
+  const aiScene* scene = importer.ReadFile(file.string(), aiProcess_Triangulate);
+  if (scene == nullptr) throw Error(file.string() + ": assimp: " + importer.GetErrorString());
+  Surface surface;
+  for (unsigned m = 0; m < scene->mNumMeshes; ++m) {
+    const aiMesh& mesh = *scene->mMeshes[m];
+    const auto first = static_cast<VertexId>(surface.vertices.size());
+    surface.vertices.reserve(first + mesh.mNumVertices);
+    for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
+      const aiVector3D& at = mesh.mVertices[v];
+      surface.vertices.emplace_back(double{at.x}, double{at.y}, double{at.z});
+    }
+    surface.triangles.reserve(surface.triangles.size() + mesh.mNumFaces);
+    for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+      const aiFace& face = mesh.mFaces[f];
+      if (face.mNumIndices != 3) continue;
+      surface.triangles.push_back(
+          {first + face.mIndices[0], first + face.mIndices[1], first + face.mIndices[2]});
+    }
+  }
+  return surface;
+#else
+  throw Error("this build has no assimp: configure with KEEPOUT_WITH_ASSIMP=ON");
+#endif
+}
+
+/// As a program begins: the index is read from its cache if there is one.
+void first_step(const std::filesystem::path& file, const std::filesystem::path& cache = {}) {
+  const std::shared_ptr<const Mesh> mesh = load_mesh(file).mesh;
+  const std::shared_ptr<const SpatialIndex> index =
+      cache.empty() ? std::make_unique<WideBvh>(mesh, cores) : load_or_build(mesh, cache);
+  MotionConstraint constraint =
+      make_motion_constraint(mesh, index, {.inside = Inside::taken_as_is});
+  const Step step = constraint.step({.tip = mesh->bounds().high, .desired = Vec3(0.1, 0.1, 0.1)});
+  if (!step.ok()) throw Error("the first step failed: " + std::string(step.reason()));
+}
+
+}  // namespace
+
+void measure_index_costs(SpeedRun& run, const IndexedMesh& on) {
+  run.show("index builds");
+  measure_builds(run, on);
+  measure_refit(run, on);
+  measure_memory(run, on);
+}
+
+void measure_large_meshes(SpeedRun& run) {
+  const std::size_t triangles = run.options.larger * run.options.triangles;
+  MeasuredSide time;
+  {
+    const Loaded large = load(run, triangles);
+    time = large.time;
+    add_contact(run, large.mesh, triangles, 3.0);
+    add_large_steps(run, large.mesh, triangles);
+  }
+  if (!run.options.largest) return;
+  const std::size_t most = *run.options.largest;
+  const Loaded largest = load(run, most);
+  run.add(ratio("file to index, 2 cores", millions(most) + " / " + time.name, at_most(7.0),
+                {largest.time}, {time}));
+  run.add({.work = "file to index, " + millions(most) + " triangles",
+           .compared = "peak of memory",
+           .demand = at_most(14.0),
+           .unit = "GiB",
+           .figure = largest.peak_gib});
+  add_contact(run, largest.mesh, most, 6.0);
+}
+
+void measure_first_step(SpeedRun& run) {
+  run.show("from a file to the first step");
+  const std::filesystem::path file = fixture_path(run.options.file);
+  const OnCores two(cores);
+  const std::size_t count = load_mesh(file).mesh->triangle_count();  // and the file is in memory
+  const std::string work = "binary STL, " + counted(count, "triangle") + ", to first step, 2 cores";
+  const Attempt theirs = attempted([&] {
+    return timed_whole("assimp + FCL OBBRSS", 1, [&] {
+      const auto mesh = std::make_shared<const Mesh>(assimp_surface(file));
+      const auto fcl = entry_named("fcl_obbrss", indices(), "index", absent_indices()).make(mesh);
+    });
+  });
+  const MeasuredSide mine =
+      timed_whole("ours", run.options.effort.builds, [&] { first_step(file); });
+  run.add(ratio(work, "(assimp + FCL's tree) / ours", at_least(8.0), theirs, {mine}));
+
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("keepout-speed-" + std::to_string(getpid()));
+  const std::shared_ptr<void> removal(nullptr, [&](void*) {
+    std::error_code ignored;
+    std::filesystem::remove_all(folder, ignored);
+  });
+  first_step(file, folder);  // builds the index, and puts it there
+  const MeasuredSide with_cache = timed_whole(
+      "ours, index from the cache", run.options.effort.builds, [&] { first_step(file, folder); });
+  run.add(ratio(work, "(assimp + FCL's tree) / ours, with the index cache", at_least(50.0), theirs,
+                {with_cache}));
+}
+
+}  // namespace keepout::app

@@ -1,0 +1,208 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "bench/parts.h"
+#include "bench/speed/process.h"
+#include "bench/speed/speed_run.h"
+#include "bench/speed/trajectories.h"
+#include "keepout/fixtures/shapes.h"
+#include "keepout/solvers/registry.h"
+#include "number_text.h"
+
+namespace keepout::app {
+namespace {
+
+constexpr std::string_view their_index = "fcl_obbrss", their_solver = "nlopt_slsqp";
+
+bool has(std::string_view name, const auto& table) {
+  return std::ranges::any_of(table, [&](const auto& entry) { return entry.name == name; });
+}
+
+/// SLSQP on FCL's tree, held to our own answers.
+Attempt time_libraries(const SpeedRun& run, const IndexedMesh& on, double radius,
+                       MotionConstraint& right, std::span<const Motion> motions) {
+  const std::string solver(their_solver);
+  MotionConstraint libraries = paper(on, radius, solver);
+  const double accuracy = entry_named(solver, solver_backends(), "solver").accuracy;
+  const auto few = motions.first(std::min(run.options.effort.slow_steps, motions.size()));
+  if (std::string refusal = disagreement(libraries, right, few, accuracy); !refusal.empty()) {
+    return {.refusal = std::move(refusal)};
+  }
+  return {
+      timed("FCL's tree + SLSQP", few.size(), 1, [&](std::size_t i) { libraries.step(few[i]); })};
+}
+
+/// Twice the last cache. What a virtual machine tells of it may be the whole machine's. [bytes]
+std::size_t more_than_caches_hold() {
+  constexpr long least = 64L << 20, most = 256L << 20;
+  return static_cast<std::size_t>(std::clamp(2 * sysconf(_SC_LEVEL3_CACHE_SIZE), least, most));
+}
+
+/// Does it so many times; the clock is read once each time.
+template <class Work>
+void fill(TimeHistogram& histogram, std::size_t times, Work&& work) {
+  using std::chrono::nanoseconds;
+  BenchClock::time_point last = BenchClock::now();
+  for (std::size_t i = 0; i < times; ++i) {
+    work(i, last);
+    const BenchClock::time_point now = BenchClock::now();
+    const auto spent = std::chrono::duration_cast<nanoseconds>(now - last).count();
+    histogram.add(static_cast<std::uint64_t>(spent));
+    last = now;
+  }
+}
+
+}  // namespace
+
+void measure_paper_steps(SpeedRun& run, const IndexedMesh& on) {
+  const std::vector<Motion> motions = run.contact(on);
+  run.show("building FCL's tree");
+  IndexedMesh fcl{on.mesh, nullptr};
+  Attempt theirs;
+  if (!has(their_index, indices())) theirs.refusal = "this build has no FCL";
+  if (!has(their_solver, solver_backends())) theirs.refusal = "this build has no NLopt";
+  if (theirs.refusal.empty()) fcl.index = make_index(their_index, on.mesh);
+
+  constexpr std::array demands{std::pair{5.0, 60.0}, std::pair{1.0, 25.0}};
+  for (const auto& [radius, least] : demands) {
+    run.show("the paper's rule, r = " + trimmed(radius) + " mm");
+    MotionConstraint ours = paper(on, radius, "active_set");
+    MotionConstraint plain = paper(queried(on), radius, "active_set");
+    Attempt mine{.refusal = disagreement(ours, plain, motions)};
+    if (mine.refusal.empty()) {
+      mine.side = timed("wide_bvh + active_set", motions.size(), run.options.effort.passes,
+                        [&](std::size_t i) { ours.step(motions[i]); });
+    }
+    if (fcl.index) theirs = time_libraries(run, fcl, radius, plain, motions);
+    if (radius == 5.0) run.baselines.libraries = theirs;
+    run.add(ratio("whole step, paper's rule, r = " + trimmed(radius) + " mm, contact",
+                  "(FCL's tree + SLSQP) / ours", at_least(least), theirs, mine));
+  }
+}
+
+void measure_certified_steps(SpeedRun& run, const IndexedMesh& on) {
+  constexpr const char* to_the_libraries = "(FCL's tree + SLSQP, paper's rule, r = 5 mm) / ours";
+  const Attempt contact = run.baselines.contact = in_contact(run, on);
+  run.add(ratio("certified step in contact, motion .05-.2 mm, margin .2 mm", to_the_libraries,
+                at_least(500.0), run.baselines.libraries, contact));
+
+  run.show("certified, free space");
+  const std::vector<Motion> path = free_motions(on, run.options.effort.steps, {}, {}, run.random());
+  run.baselines.free = time_certified(run, on, "free space", MotionKind{}.clearance, path);
+  run.add(ratio("certified step in free space, 2-20 mm off the surface", to_the_libraries,
+                at_least(5000.0), run.baselines.libraries, run.baselines.free));
+
+  run.add(ratio("certified in contact", "margin 5 mm / margin .2 mm", at_most(3.0),
+                in_contact(run, on, {.clearance = 5.0}), contact));
+  run.add(ratio("certified in contact, margin .2 mm", "motion 1-5 mm / motion .05-.2 mm",
+                at_most(3.0), in_contact(run, on, {.shortest = 1.0, .longest = 5.0}), contact));
+}
+
+void measure_unrelated_states(SpeedRun& run, const IndexedMesh& on) {
+  run.show("certified, unrelated states");
+  const MotionKind kind;
+  const std::vector<Motion> motions =
+      held_back_motions(on, run.options.effort.steps, kind, run.random());
+  const auto time_plain = [&](const std::string& name, const IndexedMesh& plain) {
+    MotionConstraint guard = certified(plain, kind.clearance);
+    return timed("plain form on " + name, motions.size(), run.options.effort.passes,
+                 [&](std::size_t i) { guard.step(motions[i]); });
+  };
+  const Attempt ours = time_certified(run, on, "ours", kind.clearance, motions);
+  Attempt theirs{.refusal = "this build has no FCL"};
+  if (has(their_index, indices())) {  // which has no wide instructions anywhere
+    theirs = {time_plain(std::string(their_index), {on.mesh, make_index(their_index, on.mesh)})};
+  }
+  SpeedRow row = ratio("certified, unrelated states that are held back, margin .2 mm",
+                       "scalar / ours", at_least(8.0), theirs, ours);
+  row.sides.push_back(time_plain("wide_bvh", queried(on)));
+  run.add(std::move(row));
+}
+
+void measure_concave_sphere(SpeedRun& run) {
+  run.show("concave sphere");
+  constexpr double icosahedron = 52.57;  // its edge, in a sphere of radius 50 [mm]
+  const double edge = icosahedron / std::sqrt(static_cast<double>(run.options.triangles) / 20.0);
+  const IndexedMesh sphere =
+      with_index(std::make_shared<const Mesh>(in_single_precision(make_concave_sphere(edge))));
+  const MotionKind kind;
+  const Attempt centre =
+      time_certified(run, sphere, "centre", kind.clearance,
+                     central_motions(run.options.effort.steps, kind, run.random()));
+  run.add(ratio("certified in a concave sphere", "tip at the centre / free space", at_most(3.0),
+                centre, run.baselines.free));
+  Attempt wall = in_contact(run, sphere);
+  if (wall.side) wall.side->name = "wall";
+  run.add(ratio("certified in a concave sphere", "tip at the wall / contact", at_most(6.0), wall,
+                run.baselines.contact));
+}
+
+void measure_cold_caches(SpeedRun& run, const IndexedMesh& on) {
+  run.show("certified, cold caches");
+  std::vector<Motion> motions = run.contact(on);
+  motions.resize(std::min(motions.size(), run.options.effort.cold_steps));
+  MotionConstraint ours = certified(on, MotionKind{}.clearance);
+  for (const Motion& motion : motions) ours.step(motion);
+  std::vector<unsigned char> other_data(more_than_caches_hold());
+  std::vector<double> times;
+  for (const Motion& motion : motions) {
+    constexpr std::size_t line = 64;
+    for (std::size_t i = 0; i < other_data.size(); i += line) ++other_data[i];
+    const BenchClock::time_point start = BenchClock::now();
+    ours.step(motion);
+    times.push_back(microseconds_since(start));
+  }
+  const MeasuredSide cold{.name = "cold", .us = timing_of(times)};
+  const Attempt& warm = run.baselines.contact;
+  SpeedRow row = ratio("certified in contact, caches emptied before each step", "p99 / warm median",
+                       at_most(40.0), {cold}, warm);
+  row.figure = std::nullopt;
+  if (warm.side && cold.us.p99) row.figure = *cold.us.p99 / warm.side->us.p50;
+  run.add(std::move(row));
+}
+
+void measure_steadiness(SpeedRun& run, const IndexedMesh& on) {
+  run.show("histogram");
+  const std::vector<Motion> motions = run.contact(on);
+  const std::size_t steps = run.options.histogram_steps;
+  MotionConstraint ours = certified(on, MotionKind{}.clearance);
+  for (const Motion& motion : motions) ours.step(motion);
+
+  StepHistogram histogram;
+  const std::uint64_t faults = page_faults();
+  const CallCounts calls = calls_of_this_thread();
+  fill(histogram.steps, steps,
+       [&](std::size_t i, BenchClock::time_point) { ours.step(motions[i % motions.size()]); });
+  const CallCounts calls_after = calls_of_this_thread();
+  const auto add_count = [&](const std::string& what, std::uint64_t count) {
+    run.add({.work = "certified in contact, " + grouped(steps) + " steps after warm-up",
+             .compared = what,
+             .demand = at_most(0.0),
+             .unit = "",
+             .figure = static_cast<double>(count)});
+  };
+  add_count("page faults", page_faults() - faults);
+  if (counts_calls()) {
+    add_count("allocations", calls_after.allocations - calls.allocations);
+    add_count("locks", calls_after.locks - calls.locks);
+  }
+
+  // Nothing but waiting, as often and as long as the median step: what it shows beyond that is the
+  // machine's doing.
+  const auto median = std::chrono::nanoseconds(
+      static_cast<std::int64_t>(histogram.steps.percentile(0.5).value_or(0.0)));
+  fill(histogram.nothing, steps, [&](std::size_t, BenchClock::time_point last) {
+    while (BenchClock::now() - last < median) {
+    }
+  });
+  run.record.histogram = histogram;
+}
+
+}  // namespace keepout::app
