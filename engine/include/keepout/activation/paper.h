@@ -11,6 +11,8 @@
 
 namespace keepout {
 
+class PaperBlocks;
+
 /// Algorithm 1 of Li et al. 2020: three conditions on each triangle and its neighbours decide which
 /// planes are active. Kept for comparison: it is not always safe, nor tight (docs/activation.md).
 ///
@@ -29,16 +31,22 @@ class PaperRule final : public Activation {
  public:
   /// Builds the adjacency of the mesh.
   explicit PaperRule(std::shared_ptr<const Mesh> mesh);
+  ~PaperRule() override;
 
   /// What it was built on.
   const std::shared_ptr<const Mesh>& mesh() const noexcept { return mesh_; }
   /// The neighbours that its conditions are about.
   const Adjacency& adjacency() const noexcept { return *adjacency_; }
 
-  /// For a WideBvh.
+  /// For an index that has its triangles in blocks.
   std::unique_ptr<Activation> searching(const SpatialIndex& index) const override;
+  bool searches() const noexcept override { return blocks_ != nullptr; }
+  void reserve(std::size_t triangles) override;
+  std::size_t triangles(const Surroundings& around) const noexcept override;
 
   Opening start(const Surroundings& around, HalfSpaceBuffer& planes) noexcept override;
+  Judgement judge(const Surroundings& around, const Vec3& trial,
+                  HalfSpaceBuffer& planes) noexcept override;
 
   /// The plane that one triangle calls for, if it does. Does not ask around.hits.
   std::optional<HalfSpace> plane_of(const Surroundings& around, const Hit& hit) const noexcept;
@@ -46,11 +54,14 @@ class PaperRule final : public Activation {
  private:
   enum class Role { none, speaks, leaves_it_to_a_neighbor };
 
+  PaperRule(const PaperRule& rule, const TriangleBlocks& blocks);
+
   Role role_in_condition_2(const Surroundings& around, const Hit& hit) const noexcept;
   bool touches_a_valley(const Hit& hit) const noexcept;
 
   std::shared_ptr<const Mesh> mesh_;
   std::shared_ptr<const Adjacency> adjacency_;
+  std::unique_ptr<PaperBlocks> blocks_;  // where the index offers some
 };
 
 }  // namespace keepout

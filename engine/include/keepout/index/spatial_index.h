@@ -11,6 +11,8 @@
 
 namespace keepout {
 
+class TriangleBlocks;
+
 /// Numbers of triangles, with a declared capacity.
 using TriangleBuffer = Buffer<TriangleId>;
 
@@ -32,6 +34,9 @@ class SpatialIndex {
   /// the distance; no_triangle of an index that has no search of its own for it: see find_nearest.
   /// Thread-safe. Precondition: the point is finite.
   virtual TriangleId nearest(const Vec3& /*point*/) const noexcept { return no_triangle; }
+
+  /// Its triangles in leaf blocks; null of an index that has none. They live as long as the index.
+  virtual const TriangleBlocks* blocks() const noexcept { return nullptr; }
 
   /// Memory that the index holds beside the mesh. [bytes]
   virtual std::size_t memory() const noexcept = 0;

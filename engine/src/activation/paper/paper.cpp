@@ -7,8 +7,7 @@
 #include <utility>
 
 #include "keepout/activation/planes.h"
-#include "keepout/index/wide_bvh.h"
-#include "paper_search.h"
+#include "paper_blocks.h"
 
 namespace keepout {
 namespace {
@@ -31,16 +30,42 @@ struct EdgesAt {
 PaperRule::PaperRule(std::shared_ptr<const Mesh> mesh)
     : mesh_(std::move(mesh)), adjacency_(std::make_shared<const Adjacency>(*mesh_)) {}
 
+PaperRule::PaperRule(const PaperRule& rule, const TriangleBlocks& blocks)
+    : mesh_(rule.mesh_),
+      adjacency_(rule.adjacency_),
+      blocks_(std::make_unique<PaperBlocks>(*this, blocks)) {}
+
+PaperRule::~PaperRule() = default;
+
+void PaperRule::reserve(std::size_t triangles) {
+  if (blocks_) blocks_->reserve(triangles);
+}
+
 std::unique_ptr<Activation> PaperRule::searching(const SpatialIndex& index) const {
-  const auto* const tree = dynamic_cast<const WideBvh*>(&index);
-  return tree != nullptr ? std::make_unique<PaperSearch>(*this, *tree) : nullptr;
+  const TriangleBlocks* const blocks = index.blocks();
+  if (blocks == nullptr) return nullptr;
+  return std::unique_ptr<PaperRule>(new PaperRule(*this, *blocks));
+}
+
+std::size_t PaperRule::triangles(const Surroundings& around) const noexcept {
+  return blocks_ ? blocks_->triangles() : around.hits.size();
 }
 
 Opening PaperRule::start(const Surroundings& around, HalfSpaceBuffer& planes) noexcept {
+  if (blocks_) {
+    const bool fits = blocks_->find(around, planes);
+    return {fits ? Opening::Stance::clear : Opening::Stance::over_capacity};
+  }
   for (const Hit& hit : around.hits) {
     if (const std::optional<HalfSpace> plane = plane_of(around, hit)) planes.push(*plane);
   }
   return {};
+}
+
+Judgement PaperRule::judge(const Surroundings& around, const Vec3& trial,
+                           HalfSpaceBuffer& planes) noexcept {
+  if (blocks_ && !blocks_->covers(around, trial)) return {Judgement::Verdict::blocked, 0.0};
+  return Activation::judge(around, trial, planes);
 }
 
 std::optional<HalfSpace> PaperRule::plane_of(const Surroundings& around,
