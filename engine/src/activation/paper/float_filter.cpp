@@ -61,14 +61,14 @@ HWY_INLINE M has(VU flags, std::uint32_t flag) {
   return hn::RebindMask(Float(), hn::TestBit(flags, set(flag)));
 }
 
-/// A quantity, and what rounding may have made of it.
-struct Banded {
-  V value;
-  V band;
+/// Of a number that rounding may have changed by so much: what is sure.
+struct Sign {
+  M positive, negative;
 };
 
-HWY_INLINE M is_positive(const Banded& a) { return hn::Gt(a.value, a.band); }
-HWY_INLINE M is_negative(const Banded& a) { return hn::Lt(a.value, hn::Neg(a.band)); }
+HWY_INLINE Sign sign_of(V value, V band) {
+  return {hn::Gt(value, band), hn::Lt(value, hn::Neg(band))};
+}
 
 /// Of the products of corners within `reach`.
 HWY_INLINE V band_of(V reach, const FilterQuery& query) {
@@ -80,21 +80,6 @@ HWY_INLINE Vector relative(const float (&at)[3][LeafBlock::lanes], std::size_t l
                            const FilterQuery& query) {
   const Float d;
   return load(d, at, lane) - all(d, query.high) - all(d, query.low);
-}
-
-/// The face, as the tip sees it.
-struct Face {
-  Banded above;  // how high the tip is above it [length]
-  M idle;        // its plane is
-};
-
-HWY_INLINE Face face_of(const Vector& corner, const Vector& normal, V reach,
-                        const FilterQuery& query) {
-  const V above = hn::Neg(dot(normal, corner));
-  // Off by the error of the corner, and by 6 u of its distance; as much again for good measure.
-  const V band = set(12.0f * u) * reach + set(1.1f * query.error + query.rounding + tiny);
-  const V of_middle = above + dot(normal, all(Float(), query.middle));
-  return {{above, band}, hn::Gt(of_middle - band, set(query.idle_height))};
 }
 
 /// The first look. `place`: of the leaf's first lane.
@@ -119,8 +104,15 @@ HWY_INLINE void look(const LeafBlock& leaf, const LeafEdges& edges, std::size_t 
   if (!any(near)) return;
   const V nearest = hn::Min(hn::Min(squares[0], squares[1]), squares[2]);
   const M inside = hn::Lt(nearest + band, set(query.inside * query.inside));
-  const Face face = face_of(p[0], load(d, edges.normal, lane), reach, query);
-  const M faceless = either(face.idle, is_negative(face.above));
+  // How high the tip is above the face: off by the error of the corner, and by 6 u of its distance;
+  // as much again for good measure.
+  const Vector normal = load(d, edges.normal, lane);
+  const V above = hn::Neg(dot(normal, p[0]));
+  const V slack = set(12.0f * u) * reach + set(1.1f * query.error + query.rounding + tiny);
+  const V of_middle = above + dot(normal, all(d, query.middle));
+  const Sign height = sign_of(above, slack);
+  const M idle = hn::Gt(of_middle - slack, set(query.idle_height));
+  const M faceless = either(idle, height.negative);
   const M beyond_idle = hn::Gt(first, set(outward) * (around + set(query.idle)));
   const M settled = both(both(inside, has(roles, LeafEdges::sturdy)), both(beyond_idle, faceless));
   const M left = but_not(near, settled);
@@ -135,7 +127,7 @@ HWY_INLINE void look(const LeafBlock& leaf, const LeafEdges& edges, std::size_t 
     hn::StoreU(packing(p[c].z), d, unfinished.corner[c][2] + to);
   }
   const VU faces = hn::Or(flag_if(faceless, Unfinished::faceless),
-                          flag_if(is_positive(face.above), Unfinished::in_front));
+                          flag_if(height.positive, Unfinished::in_front));
   const VU places = hn::Iota(du, static_cast<std::uint32_t>(place + lane));
   hn::StoreU(packing(reach), d, unfinished.reach + to);
   hn::StoreU(packing(roles), du, unfinished.roles + to);
@@ -153,22 +145,23 @@ struct Foot {
   M inside_side;  // elsewhere the two are exact
 };
 
-/// (c . v - |c|^2) length2 for the closest point c and another point v.
-HWY_INLINE Banded beyond(const Foot& foot, const Vector& v, V band) {
-  const V lift = dot(foot.a, v) - foot.aa;
-  const V skew = dot(foot.b, v) - (foot.aa + foot.along) - lift;  // (b - a) . (v - a)
-  const V of_side =
-      set(2.0f) * (hn::Abs(lift) + hn::Abs(foot.along)) + hn::Abs(skew) + set(8.0f) * band;
+/// The sign of x - along y / length2.
+HWY_INLINE Sign sign_at(const Foot& foot, V x, V y, V band) {
+  const V of_side = set(2.0f) * (hn::Abs(x) + hn::Abs(foot.along)) + hn::Abs(y) + set(8.0f) * band;
   const V sizes = foot.length2 + hn::IfThenElseZero(foot.inside_side, of_side);
-  return {foot.length2 * lift - foot.along * skew, set(2.0f) * band * sizes + set(tiny)};
+  return sign_of(foot.length2 * x - foot.along * y, set(2.0f) * band * sizes + set(tiny));
 }
 
-/// (|c|^2 - limit^2) length2 for the closest point c.
-HWY_INLINE Banded over(const Foot& foot, float limit, V band) {
-  const V excess = foot.aa - set(limit * limit);
-  const V of_side = hn::Abs(excess) + hn::Abs(foot.along) + set(8.0f) * band;
-  const V sizes = foot.length2 + hn::IfThenElseZero(foot.inside_side, of_side);
-  return {excess * foot.length2 - foot.along * foot.along, set(2.0f) * band * sizes + set(tiny)};
+/// Of c . v - |c|^2 for the closest point c and another point v.
+HWY_INLINE Sign beyond(const Foot& foot, const Vector& v, V band) {
+  const V lift = dot(foot.a, v) - foot.aa;
+  const V skew = dot(foot.b, v) - (foot.aa + foot.along) - lift;  // (b - a) . (v - a)
+  return sign_at(foot, lift, skew, band);
+}
+
+/// Of |c| - limit for the closest point c.
+HWY_INLINE Sign over(const Foot& foot, float limit, V band) {
+  return sign_at(foot, foot.aa - set(limit * limit), foot.along, band);
 }
 
 /// The closest points that floats are sure of.
@@ -179,94 +172,62 @@ struct Closest {
 };
 
 HWY_INLINE Closest closest_of(const Vector (&p)[3], V band) {
-  const Float d;
   const V squares[3] = {dot(p[0], p[0]), dot(p[1], p[1]), dot(p[2], p[2])};
-  V along[3][2];  // each side, from either end
+  Sign along[3][2];  // each side, from either end
+  Foot foot_of[3];   // inside each side
   M at[places];
   for (std::size_t s = 0; s < 3; ++s) {
     const auto [a, b] = sides[s];
     const V product = dot(p[a], p[b]);
-    along[s][0] = product - squares[a];
-    along[s][1] = product - squares[b];
+    const V from_a = product - squares[a];
+    const V from_b = product - squares[b];
+    along[s][0] = sign_of(from_a, band);
+    along[s][1] = sign_of(from_b, band);
+    foot_of[s] = {p[a], p[b], squares[a], from_a, hn::Neg(from_a + from_b), hn::Not(none())};
+    at[3 + s] = both(both(along[s][0].negative, along[s][1].negative),
+                     beyond(foot_of[s], p[3 - a - b], band).positive);
   }
-  const M everywhere = hn::Not(none());
-  for (std::size_t s = 0; s < 3; ++s) {
-    const auto [a, b] = sides[s];
-    const V length2 = hn::Neg(along[s][0] + along[s][1]);
-    const Foot foot{p[a], p[b], squares[a], along[s][0], length2, everywhere};
-    const M between = both(hn::Lt(along[s][0], hn::Neg(band)), hn::Lt(along[s][1], hn::Neg(band)));
-    at[3 + s] = both(between, is_positive(beyond(foot, p[3 - a - b], band)));
-  }
-  at[0] = both(hn::Gt(along[0][0], band), hn::Gt(along[2][0], band));
-  at[1] = both(hn::Gt(along[0][1], band), hn::Gt(along[1][0], band));
-  at[2] = both(hn::Gt(along[1][1], band), hn::Gt(along[2][1], band));
+  at[0] = both(along[0][0].positive, along[2][0].positive);
+  at[1] = both(along[0][1].positive, along[1][0].positive);
+  at[2] = both(along[1][1].positive, along[2][1].positive);
 
-  M known = none();
-  VU place = set(std::uint32_t{0});
-  for (std::size_t i = 0; i < places; ++i) {
-    known = either(known, at[i]);
-    if (i > 0) place = hn::Or(place, flag_if(at[i], static_cast<std::uint32_t>(i)));
-  }
   const M first = either(at[1], at[4]);
-  Foot foot{select(first, p[1], select(at[2], p[2], p[0])),
-            select(at[3], p[1], p[2]),
-            select(first, squares[1], select(at[2], squares[2], squares[0])),
-            hn::Zero(d),
-            set(1.0f),
-            either(at[3], either(at[4], at[5]))};
-  for (std::size_t s = 0; s < 3; ++s) {
-    foot.along = select(at[3 + s], along[s][0], foot.along);
-    foot.length2 = select(at[3 + s], hn::Neg(along[s][0] + along[s][1]), foot.length2);
+  const M inside_side = either(at[3], either(at[4], at[5]));
+  Closest closest{either(either(at[0], at[1]), either(at[2], inside_side)),
+                  set(std::uint32_t{0}),
+                  {select(first, p[1], select(at[2], p[2], p[0])), select(at[3], p[1], p[2]),
+                   select(first, squares[1], select(at[2], squares[2], squares[0])),
+                   hn::Zero(Float()), set(1.0f), inside_side}};
+  for (std::uint32_t i = 1; i < places; ++i) {
+    closest.place = hn::Or(closest.place, flag_if(at[i], i));
   }
-  return {known, place, foot};
+  for (std::size_t s = 0; s < 3; ++s) {
+    closest.foot.along = select(at[3 + s], foot_of[s].along, closest.foot.along);
+    closest.foot.length2 = select(at[3 + s], foot_of[s].length2, closest.foot.length2);
+  }
+  return closest;
 }
 
 /// The apexes across the sides that meet at the closest points; across the one, if it is inside it.
+/// `which`: the triangles, as in Unfinished. Of those that are not asked about: anything.
 struct Apexes {
   alignas(64) float of[2][3][LeafBlock::lanes] = {};  // [first or second][axis][lane]
-};
 
-HWY_INLINE Apexes apexes_at(VU place, M asked, std::span<const LeafEdges> edges,
-                            const std::uint32_t* which) {
-  const Float d;
-  Apexes apexes;
-  alignas(64) std::uint32_t at[LeafBlock::lanes];
-  hn::Store(place, Unsigned(), at);
-  for (std::uint32_t rest = bits(d, asked, 0); rest != 0; rest &= rest - 1) {
-    const auto i = static_cast<std::size_t>(std::countr_zero(rest));
-    const LeafEdges& leaf = edges[which[i] / LeafBlock::lanes];
-    for (std::size_t n = 0; n < 2; ++n) {
-      const auto side = static_cast<std::size_t>(sides_at[at[i]][n]);
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        apexes.of[n][axis][i] = leaf.apex[side][axis][which[i] % LeafBlock::lanes];
+  HWY_INLINE Apexes(VU place, M asked, std::span<const LeafEdges> edges,
+                    const std::uint32_t* which) {
+    alignas(64) std::uint32_t at[LeafBlock::lanes];
+    hn::Store(place, Unsigned(), at);
+    for (std::uint32_t rest = bits(Float(), asked, 0); rest != 0; rest &= rest - 1) {
+      const auto i = static_cast<std::size_t>(std::countr_zero(rest));
+      const auto& apex = edges[which[i] / LeafBlock::lanes].apex;
+      for (std::size_t n = 0; n < 2; ++n) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          of[n][axis][i] = apex[sides_at[at[i]][n]][axis][which[i] % LeafBlock::lanes];
+        }
       }
     }
   }
-  return apexes;
-}
-
-/// What Algorithm 1 says from condition 2 on.
-struct Conditions {
-  M second, third;
-  M open;  // floats cannot tell
 };
-
-HWY_INLINE Conditions conditions(const Closest& closest, M asked, VU all_roles, V band, M in_front,
-                                 M faceless, const Apexes& apexes, const FilterQuery& query) {
-  const VU roles = hn::Shr(all_roles, hn::ShiftLeft<2>(closest.place) + closest.place);
-  M shares = none(), leaves_it = none(), open = none();
-  for (std::size_t n = 0; n < 2; ++n) {
-    const Banded apex = beyond(closest.foot, relative(apexes.of[n], 0, query), band);
-    const M ridge = both(asked, has(roles, LeafEdges::ridge[n]));
-    const M shared = both(ridge, is_positive(apex));
-    open = either(open, but_not(but_not(ridge, shared), is_negative(apex)));
-    shares = either(shares, shared);
-    leaves_it = either(leaves_it, both(shared, has(roles, LeafEdges::lower[n])));
-  }
-  const M valley = both(but_not(asked, shares), but_not(has(roles, LeafEdges::valley), faceless));
-  return {but_not(but_not(shares, leaves_it), open), but_not(both(valley, in_front), open),
-          either(open, but_not(valley, in_front))};
-}
 
 /// The second look: at some of the unfinished from `at` on. Those that remain go to the end of the
 /// `kept` first ones, which grow.
@@ -287,29 +248,39 @@ HWY_INLINE void look_again(std::span<const LeafEdges> edges, const FilterQuery& 
   const M used = hn::FirstN(d, std::min(unfinished.size - at, hn::Lanes(d)));
   const Closest closest = closest_of(p, band);
   const M known = both(used, both(closest.known, has(roles, LeafEdges::sturdy)));
-  const M in = both(known, both(is_negative(over(closest.foot, query.inside, band)),
-                                is_positive(over(closest.foot, query.rounding, band))));
-  const M out = both(known, is_positive(over(closest.foot, query.radius, band)));
-  const M idle = is_positive(over(closest.foot, query.idle, band));
+  const M in = both(known, both(over(closest.foot, query.inside, band).negative,
+                                over(closest.foot, query.rounding, band).positive));
+  const M out = both(known, over(closest.foot, query.radius, band).positive);
+  const M idle = over(closest.foot, query.idle, band).positive;
   const M faceless = has(faces, Unfinished::faceless);
   const M asked = but_not(in, both(idle, faceless));
   M open = but_not(used, either(in, out));
-  M kept_now = open;
-  VU planes = hn::ShiftLeft<Unfinished::plane_bits>(closest.place);
+  M second = none(), third = none();  // conditions of Algorithm 1
   if (any(asked)) {
-    const Apexes apexes = apexes_at(closest.place, asked, edges, unfinished.which + at);
-    const Conditions met = conditions(closest, asked, roles, band, has(faces, Unfinished::in_front),
-                                      faceless, apexes, query);
-    const M second = but_not(met.second, idle);
-    open = either(open, met.open);
-    kept_now = either(open, either(second, met.third));
-    planes = hn::Or(planes, hn::Or(flag_if(second, Unfinished::faces_tip),
-                                   flag_if(met.third, Unfinished::of_face)));
+    const Apexes apexes(closest.place, asked, edges, unfinished.which + at);
+    const VU its = hn::Shr(roles, hn::ShiftLeft<2>(closest.place) + closest.place);
+    M shares = none(), leaves_it = none();
+    for (std::size_t n = 0; n < 2; ++n) {
+      const Sign apex = beyond(closest.foot, relative(apexes.of[n], 0, query), band);
+      const M ridge = both(asked, has(its, LeafEdges::ridge[n]));
+      const M shared = both(ridge, apex.positive);
+      open = either(open, but_not(ridge, either(apex.positive, apex.negative)));
+      shares = either(shares, shared);
+      leaves_it = either(leaves_it, both(shared, has(its, LeafEdges::lower[n])));
+    }
+    second = but_not(but_not(shares, leaves_it), either(open, idle));
+    third =
+        both(but_not(asked, either(open, shares)), but_not(has(its, LeafEdges::valley), faceless));
+    open = either(open, but_not(third, has(faces, Unfinished::in_front)));
+    third = but_not(third, open);
   }
   unfinished.in += hn::CountTrue(d, but_not(in, open));
-  const LanePacking packing(hn::RebindMask(du, kept_now));
+  const VU planes =
+      hn::Or(flag_if(second, Unfinished::faces_tip), flag_if(third, Unfinished::of_face));
+  const LanePacking packing(hn::RebindMask(du, either(open, either(second, third))));
   hn::StoreU(packing(which), du, unfinished.which + kept);
-  hn::StoreU(packing(planes), du, unfinished.plane + kept);
+  hn::StoreU(packing(hn::Or(planes, hn::ShiftLeft<Unfinished::plane_bits>(closest.place))), du,
+             unfinished.plane + kept);
   kept += packing.count();
 }
 

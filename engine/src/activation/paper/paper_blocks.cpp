@@ -75,14 +75,17 @@ bool PaperBlocks::gather(const Surroundings& around, NeededPlanes needed) noexce
       const std::uint32_t plane = unfinished_->plane[i];
       const LeafBlock& leaf = blocks_.leaves()[which / LeafBlock::lanes];
       const TriangleId t = leaf.triangle(which % LeafBlock::lanes);
+      const Triangle triangle = rule_.mesh()->triangle(t);
       if ((plane & (Unfinished::faces_tip | Unfinished::of_face)) == 0) {
-        ask_rule(t, around);
+        const Hit hit{t, closest_point(triangle, around.ball.center)};
+        if (!(hit.closest.distance <= around.ball.radius)) continue;
+        ++triangles_;
+        if (const std::optional<HalfSpace> its = rule_.plane_of(around, hit)) found_.push(*its);
       } else {
-        const Hit hit{t, closest_point_at(plane >> Unfinished::plane_bits,
-                                          rule_.mesh()->triangle(t), around.tip)};
+        const Hit hit{t, closest_point_at(plane >> Unfinished::plane_bits, triangle, around.tip)};
         const bool faces_tip = (plane & Unfinished::faces_tip) != 0;
-        found_.push(plane_through(hit, faces_tip ? away_from(hit) : rule_.mesh()->normal(t),
-                                  around.margin));
+        found_.push(
+            plane_through(hit, faces_tip ? away_from(hit) : unit_normal(triangle), around.margin));
       }
     }
     if (triangles_ > found_.capacity()) {
@@ -91,13 +94,6 @@ bool PaperBlocks::gather(const Surroundings& around, NeededPlanes needed) noexce
     }
   }
   return true;
-}
-
-void PaperBlocks::ask_rule(TriangleId t, const Surroundings& around) noexcept {
-  const Hit hit{t, closest_point(rule_.mesh()->triangle(t), around.ball.center)};
-  if (!(hit.closest.distance <= around.ball.radius)) return;
-  ++triangles_;
-  if (const std::optional<HalfSpace> plane = rule_.plane_of(around, hit)) found_.push(*plane);
 }
 
 bool PaperBlocks::covers(const Surroundings& around, const Vec3& motion) const noexcept {

@@ -43,7 +43,6 @@ class PaperBlocks {
 
  private:
   bool gather(const Surroundings& around, NeededPlanes needed) noexcept;
-  void ask_rule(TriangleId t, const Surroundings& around) noexcept;
 
   const PaperRule& rule_;
   const TriangleBlocks& blocks_;

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-// The paper's rule on a tree of its own, held to the plain rule bit for bit.
+// The paper's rule on an index that has its triangles in blocks, held to the plain rule bit for
+// bit.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,6 +13,7 @@
 #include "keepout/activation/paper.h"
 #include "keepout/fixtures/poses.h"
 #include "keepout/fixtures/shapes.h"
+#include "keepout/index/brute_force.h"
 #include "keepout/index/pd_tree.h"
 #include "keepout/index/wide_bvh.h"
 #include "keepout/solvers/active_set.h"
@@ -30,7 +32,8 @@ bool are_equal(std::span<const HalfSpace> one, std::span<const HalfSpace> other)
                     [](const HalfSpace& a, const HalfSpace& b) { return a == b; });
 }
 
-/// Both forms of the rule on one mesh.
+/// Both forms of the rule on one mesh; the fast one on an index of this type.
+template <class Tree = WideBvh>
 class PaperForms {
  public:
   explicit PaperForms(const Surface& surface, const Capacity& capacity = {})
@@ -64,7 +67,7 @@ class PaperForms {
   }
 
   std::shared_ptr<const Mesh> mesh;
-  WideBvh tree;
+  Tree tree;
   PdTree other_tree;
   PaperRule plain;
   std::unique_ptr<Activation> searching;
@@ -92,7 +95,8 @@ std::vector<Vec3> tips_around(const Mesh& mesh, std::size_t count) {
   return tips;
 }
 
-void expect_same_planes(PaperForms& forms, std::size_t tips, std::size_t& planes) {
+template <class Forms>
+void expect_same_planes(Forms& forms, std::size_t tips, std::size_t& planes) {
   const double size = forms.mesh->bounds().size().norm();
   for (const Vec3& tip : tips_around(*forms.mesh, tips)) {
     for (const double radius : {1e-3 * size, 0.02 * size, 0.1 * size}) {
@@ -108,9 +112,9 @@ void expect_same_planes(PaperForms& forms, std::size_t tips, std::size_t& planes
   }
 }
 
-class PaperSearchOn : public testing::TestWithParam<std::string> {};
+class PaperBlocksOn : public testing::TestWithParam<std::string> {};
 
-TEST_P(PaperSearchOn, ThePlanesAreThoseOfThePlainRuleOnEachTarget) {
+TEST_P(PaperBlocksOn, ThePlanesAreThoseOfThePlainRuleOnEachTarget) {
   std::size_t on_the_first = 0;
   on_each_simd_target([&] {
     PaperForms forms(make_shape(GetParam()));
@@ -149,7 +153,7 @@ void expect_same_step(const Step& got, const Step& expected) {
       [](const HalfSpace& a, const HalfSpace& b) { return a.source < b.source; }));
 }
 
-TEST_P(PaperSearchOn, TheStepsAreThoseOfThePlainRuleAndAlikeOnEachTarget) {
+TEST_P(PaperBlocksOn, TheStepsAreThoseOfThePlainRuleAndAlikeOnEachTarget) {
   PaperForms forms(make_shape(GetParam()));
   const double size = forms.mesh->bounds().size().norm();
   std::vector<std::pair<Status, Vec3>> on_the_first;
@@ -170,7 +174,7 @@ TEST_P(PaperSearchOn, TheStepsAreThoseOfThePlainRuleAndAlikeOnEachTarget) {
   });
 }
 
-INSTANTIATE_TEST_SUITE_P(Shapes, PaperSearchOn, testing::ValuesIn(names_of_shapes()),
+INSTANTIATE_TEST_SUITE_P(Shapes, PaperBlocksOn, testing::ValuesIn(names_of_shapes()),
                          [](const auto& p) { return p.param; });
 
 /// The shape with coordinates that are floats, as those of STL files are.
@@ -179,7 +183,7 @@ Surface as_floats(Surface surface) {
   return surface;
 }
 
-TEST(PaperSearch, ThePlanesAreThoseOfThePlainRuleWhereTheFloatsAreExact) {
+TEST(PaperBlocks, ThePlanesAreThoseOfThePlainRuleWhereTheFloatsAreExact) {
   PaperForms forms(as_floats(make_gear(1.0)));
   ASSERT_EQ(forms.tree.coordinate_error(), 0.0);
   std::size_t planes = 0;
@@ -187,7 +191,7 @@ TEST(PaperSearch, ThePlanesAreThoseOfThePlainRuleWhereTheFloatsAreExact) {
   EXPECT_GT(planes, 1000u);
 }
 
-TEST(PaperSearch, ThePlanesAreThoseOfThePlainRuleFarFromTheOriginAndAtEveryScale) {
+TEST(PaperBlocks, ThePlanesAreThoseOfThePlainRuleFarFromTheOriginAndAtEveryScale) {
   for (const double scale : {1e-25, 1e-9, 1e9, 1e25}) {
     Surface surface = make_cortex(6.0, 1);
     for (Vec3& v : surface.vertices) v *= scale;
@@ -204,7 +208,7 @@ TEST(PaperSearch, ThePlanesAreThoseOfThePlainRuleFarFromTheOriginAndAtEveryScale
   EXPECT_GT(planes, 1000u);
 }
 
-TEST(PaperSearch, MostPlanesOfAShortMotionAreIdleAndLeftOut) {
+TEST(PaperBlocks, MostPlanesOfAShortMotionAreIdleAndLeftOut) {
   PaperForms forms(make_shape("cortex"));
   Random random(1);
   std::size_t got = 0, expected = 0;
@@ -217,7 +221,7 @@ TEST(PaperSearch, MostPlanesOfAShortMotionAreIdleAndLeftOut) {
   EXPECT_LT(2 * got, expected);
 }
 
-TEST(PaperSearch, WithJointsOrRowsAllPlanesArePosed) {
+TEST(PaperBlocks, WithJointsOrRowsAllPlanesArePosed) {
   PaperForms forms(make_shape("cortex"));
   Random random(1);
   Eigen::Matrix<double, 3, Eigen::Dynamic> jacobian(3, 6);
@@ -240,7 +244,7 @@ TEST(PaperSearch, WithJointsOrRowsAllPlanesArePosed) {
   }
 }
 
-TEST(PaperSearch, WhatIsBeyondTheCapacityEndsAsWithThePlainRule) {
+TEST(PaperBlocks, WhatIsBeyondTheCapacityEndsAsWithThePlainRule) {
   const Surface surface = make_shape("cortex");
   Random random(1);
   const std::vector<Vec3> tips = surface_points(Mesh(surface), 30, 0.2, random);
@@ -264,15 +268,25 @@ TEST(PaperSearch, WhatIsBeyondTheCapacityEndsAsWithThePlainRule) {
   EXPECT_GT(over, 30u);
 }
 
-TEST(PaperSearch, OnlyForATreeItKnows) {
+TEST(PaperBlocks, OnlyForAnIndexThatHasBlocks) {
   const auto mesh = std::make_shared<const Mesh>(make_cube(20.0));
-  EXPECT_EQ(PaperRule(mesh).searching(PdTree(mesh)), nullptr);
+  EXPECT_EQ(PaperRule(mesh).searching(BruteForce(mesh)), nullptr);
   EXPECT_FALSE(PaperRule(mesh).searches());
   const WideBvh tree(mesh);
   EXPECT_TRUE(PaperRule(mesh).searching(tree)->searches());
 }
 
-TEST(PaperSearch, StopsOnceItsTreeIsRefit) {
+TEST(PaperBlocks, ThePlanesAreThoseOfThePlainRuleWhateverTheIndexThatHasTheBlocks) {
+  for (const char* shape : {"cortex", "gear", "needles"}) {
+    SCOPED_TRACE(shape);
+    PaperForms<PdTree> forms(make_shape(shape));
+    std::size_t planes = 0;
+    expect_same_planes(forms, 6, planes);
+    EXPECT_GT(planes, std::string(shape) == "needles" ? 0u : 100u);
+  }
+}
+
+TEST(PaperBlocks, StopsOnceItsTreeIsRefit) {
   PaperForms forms(make_cube(5.0));
   const Motion motion{.tip = Vec3(0.0, 0.0, 58.0), .desired = Vec3(0.0, 0.0, -4.0)};
   ASSERT_EQ(forms.step(motion, {.radius = 5.0}).status, Status::free);
