@@ -177,7 +177,7 @@ HWY_INLINE Closest closest_of(const Vector (&p)[3], V band) {
   Foot foot_of[3];   // inside each side
   M at[places];
   for (std::size_t s = 0; s < 3; ++s) {
-    const auto [a, b] = sides[s];
+    const auto [a, b] = corners_at[3 + s];
     const V product = dot(p[a], p[b]);
     const V from_a = product - squares[a];
     const V from_b = product - squares[b];

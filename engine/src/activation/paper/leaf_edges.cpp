@@ -47,7 +47,8 @@ LeafEdges edges_of(const LeafBlock& leaf, const Mesh& mesh, const Adjacency& adj
     std::uint32_t roles[3] = {};  // of each side, as of the first one at a place
     for (std::size_t side = 0; side < 3; ++side) {
       // Between two corners, whichever comes first.
-      const int edge = (4 - order.corner[sides[side][0]] - order.corner[sides[side][1]]) % 3;
+      const auto [from, to] = corners_at[3 + side];
+      const int edge = (4 - order.corner[from] - order.corner[to]) % 3;
       const EdgeKind kind = adjacency.kind(t, edge);
       Vec3 apex = first;
       if (kind == EdgeKind::concave) roles[side] = LeafEdges::valley;

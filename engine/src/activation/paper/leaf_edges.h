@@ -12,12 +12,13 @@
 
 namespace keepout {
 
-/// The sides of a triangle in a leaf block, by the two corners at their ends.
-inline constexpr std::array<std::array<std::size_t, 2>, 3> sides{{{0, 1}, {1, 2}, {0, 2}}};
-
 /// Where on a triangle in a leaf block a point may lie, but for the face: 0, 1, 2 on its corners,
-/// 3, 4, 5 on its sides.
+/// 3, 4, 5 inside its sides.
 inline constexpr std::size_t places = 6;
+
+/// The corners at either end of each place.
+inline constexpr std::array<std::array<std::size_t, 2>, places> corners_at{
+    {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {0, 2}}};
 
 /// The sides that meet at each place: the second is of no meaning where there is but one.
 inline constexpr std::array<std::array<std::size_t, 2>, places> sides_at{

@@ -18,10 +18,8 @@ ClosestPoint closest_point_at(std::size_t place, const Triangle& triangle,
                               const Vec3& tip) noexcept {
   const auto corner = corner_order(triangle).corner;
   const auto from_tip = [&](std::size_t c) -> Vec3 { return triangle[corner[c]] - tip; };
-  const Vec3 offset =
-      place < 3
-          ? from_tip(place)
-          : closest_on_segment(from_tip(sides[place - 3][0]), from_tip(sides[place - 3][1])).point;
+  const auto [a, b] = corners_at[place];
+  const Vec3 offset = closest_on_segment(from_tip(a), from_tip(b)).point;
   return {offset, offset.norm(), Feature::face};
 }
 
