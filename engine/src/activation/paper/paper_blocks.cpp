@@ -31,9 +31,12 @@ PaperBlocks::PaperBlocks(const PaperRule& rule, const TriangleBlocks& blocks)
       generation_(blocks.generation()),
       leaves_(blocks.leaves().size()),
       unfinished_(std::make_unique<Unfinished>()) {
+  const Mesh& mesh = *rule.mesh();
+  normals_.reserve(mesh.triangle_count());
+  for (TriangleId t = 0; t < mesh.triangle_count(); ++t) normals_.push_back(mesh.normal(t));
   edges_.reserve(blocks.leaves().size());
   for (const LeafBlock& leaf : blocks.leaves()) {
-    edges_.push_back(edges_of(leaf, *rule.mesh(), rule.adjacency()));
+    edges_.push_back(edges_of(leaf, mesh, rule.adjacency()));
   }
 }
 
@@ -82,8 +85,7 @@ bool PaperBlocks::gather(const Surroundings& around, NeededPlanes needed) noexce
       } else {
         const Hit hit{t, closest_point_at(plane >> Unfinished::plane_bits, triangle, around.tip)};
         const bool faces_tip = (plane & Unfinished::faces_tip) != 0;
-        found_.push(
-            plane_through(hit, faces_tip ? away_from(hit) : unit_normal(triangle), around.margin));
+        found_.push(plane_through(hit, faces_tip ? away_from(hit) : normals_[t], around.margin));
       }
     }
     if (triangles_ > found_.capacity()) {

@@ -48,6 +48,7 @@ class PaperBlocks {
   const TriangleBlocks& blocks_;
   std::uint64_t generation_;      // of the blocks that are known here
   std::vector<LeafEdges> edges_;  // of each leaf
+  std::vector<Vec3> normals_;     // of each triangle
 
   // Of this cycle.
   NeededPlanes found_planes_ = NeededPlanes::all;
