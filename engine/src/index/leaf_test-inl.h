@@ -26,6 +26,7 @@
 #include "keepout/geometry/closest_point.h"
 #include "keepout/index/leaf_block.h"
 #include "keepout/index/query_counts.h"
+#include "keepout/index/triangle_blocks.h"
 #include "keepout/mesh/mesh.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -227,47 +228,79 @@ HWY_INLINE void append_touching(const LeafBlock& leaf, const BallScreen& ball, c
   }
 }
 
+/// A leaf as walks name it: its number, and whether all of it is in the ball.
+constexpr std::uint32_t whole_leaf = std::uint32_t{1} << 30;
+constexpr std::uint32_t leaf_number = whole_leaf - 1;
+
 /// Leaves to look at, gathered first so that their memory is on its way when their turn comes.
 class LeafList {
  public:
-  static constexpr std::size_t capacity = 128;
-  static constexpr std::uint32_t whole = std::uint32_t{1} << 30;  // all of the leaf is in the ball
-  static constexpr std::uint32_t number = whole - 1;              // which leaf
-
   std::uint32_t* end() { return leaves_ + size_; }
   void grow(std::size_t count) { size_ += count; }
   std::size_t room() const { return capacity - size_; }
 
-  /// Appends what of them touches the ball, and forgets them.
-  template <bool counting>
-  HWY_INLINE void look(const LeafBlock* leaves, const BallScreen& ball, const Mesh& mesh,
-                       TriangleBuffer& out, QueryCounts* counts) {
+  /// Has the visitor look at them, and forgets them.
+  template <class Visitor>
+  HWY_INLINE void show(const Visitor& visitor) {
+    visitor.look(leaves_, size_);
+    size_ = 0;
+  }
+
+ private:
+  static constexpr std::size_t capacity = 128;
+  std::uint32_t leaves_[capacity + LeafBlock::lanes];  // stores may go beyond what they add
+  std::size_t size_ = 0;
+};
+
+/// Appends what touches the ball.
+template <bool counting>
+struct TouchingTriangles {
+  const LeafBlock* leaves;
+  const Mesh& mesh;
+  const BallScreen& ball;
+  TriangleBuffer& out;
+  QueryCounts* counts;
+
+  static constexpr bool wants_whole_leaves = true;  // marked as such
+
+  HWY_INLINE void look(const std::uint32_t* found, std::size_t count) const {
     constexpr std::size_t ahead = 8;
-    for (std::size_t i = 0; i < std::min(ahead, size_); ++i) fetch(leaves, leaves_[i]);
-    for (std::size_t i = 0; i < size_; ++i) {
-      if (i + ahead < size_) fetch(leaves, leaves_[i + ahead]);
-      const LeafBlock& leaf = leaves[leaves_[i] & number];
-      if ((leaves_[i] & whole) != 0) {
+    for (std::size_t i = 0; i < std::min(ahead, count); ++i) fetch(found[i]);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (i + ahead < count) fetch(found[i + ahead]);
+      const LeafBlock& leaf = leaves[found[i] & leaf_number];
+      if ((found[i] & whole_leaf) != 0) {
         append_all(leaf, out);
       } else {
         append_touching<counting>(leaf, ball, mesh, out, counts);
       }
     }
-    size_ = 0;
   }
 
- private:
-  static HWY_INLINE void fetch(const LeafBlock* leaves, std::uint32_t at) {
-    const LeafBlock& leaf = leaves[at & number];
+  HWY_INLINE void fetch(std::uint32_t at) const {
+    const LeafBlock& leaf = leaves[at & leaf_number];
     hwy::Prefetch(leaf.source);
-    if ((at & whole) != 0) return;
+    if ((at & whole_leaf) != 0) return;
     for (const auto& corner : leaf.corner) {
       for (const auto& axis : corner) hwy::Prefetch(axis);
     }
   }
 
-  std::uint32_t leaves_[capacity + LeafBlock::lanes];  // stores may go beyond what they add
-  std::size_t size_ = 0;
+  HWY_INLINE void count_node() const {
+    if constexpr (counting) ++counts->nodes;
+  }
+};
+
+/// Appends the numbers of the leaves.
+struct TouchedLeaves {
+  LeafBuffer& out;
+
+  static constexpr bool wants_whole_leaves = false;
+
+  HWY_INLINE void look(const std::uint32_t* found, std::size_t count) const {
+    for (std::size_t i = 0; i < count; ++i) out.push(found[i] & leaf_number);
+  }
+  HWY_INLINE void count_node() const {}
 };
 
 }  // namespace keepout::HWY_NAMESPACE

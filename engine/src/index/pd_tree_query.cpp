@@ -66,10 +66,9 @@ HWY_INLINE Overlap overlap(const PdNode& node, const OrientedScreen& screen) {
   return all ? Overlap::all : Overlap::some;
 }
 
-template <bool counting>
-HWY_INLINE void walk(const PdNode* nodes, const LeafBlock* leaves, const Mesh& mesh,
-                     const BallScreen& ball, const OrientedScreen& screen, TriangleBuffer& out,
-                     QueryCounts* counts) {
+/// Shows a visitor the leaves that the ball reaches.
+template <class Visitor>
+HWY_INLINE void walk(const PdNode* nodes, const OrientedScreen& screen, const Visitor& visitor) {
   struct Subtree {
     std::uint32_t node;
     std::uint32_t first_leaf;
@@ -83,7 +82,7 @@ HWY_INLINE void walk(const PdNode* nodes, const LeafBlock* leaves, const Mesh& m
     Subtree at = stack[--waiting];
     while (true) {
       const PdNode& node = nodes[at.node];
-      if constexpr (counting) ++counts->nodes;
+      visitor.count_node();
       const Overlap found = overlap(node, screen);
       if (found == Overlap::none) break;
       if (found == Overlap::some && node.leaves > 1) {
@@ -93,26 +92,30 @@ HWY_INLINE void walk(const PdNode* nodes, const LeafBlock* leaves, const Mesh& m
         ++at.node;
         continue;
       }
-      const std::uint32_t mark = found == Overlap::all ? LeafList::whole : 0;
+      const std::uint32_t mark = found == Overlap::all ? whole_leaf : 0;
       for (std::uint32_t i = 0; i < node.leaves; ++i) {
-        if (list.room() == 0) list.look<counting>(leaves, ball, mesh, out, counts);
+        if (list.room() == 0) list.show(visitor);
         *list.end() = (at.first_leaf + i) | mark;
         list.grow(1);
       }
       break;
     }
   }
-  list.look<counting>(leaves, ball, mesh, out, counts);
+  list.show(visitor);
 }
 
 void walk_pd_tree(const PdNode* nodes, const LeafBlock* leaves, const Mesh& mesh,
                   const BallScreen& ball, TriangleBuffer& out) {
-  walk<false>(nodes, leaves, mesh, ball, OrientedScreen(ball), out, nullptr);
+  walk(nodes, OrientedScreen(ball), TouchingTriangles<false>{leaves, mesh, ball, out, nullptr});
 }
 
 void walk_pd_tree_counting(const PdNode* nodes, const LeafBlock* leaves, const Mesh& mesh,
                            const BallScreen& ball, TriangleBuffer& out, QueryCounts& counts) {
-  walk<true>(nodes, leaves, mesh, ball, OrientedScreen(ball), out, &counts);
+  walk(nodes, OrientedScreen(ball), TouchingTriangles<true>{leaves, mesh, ball, out, &counts});
+}
+
+void walk_pd_tree_to_leaves(const PdNode* nodes, const BallScreen& ball, LeafBuffer& found) {
+  walk(nodes, OrientedScreen(ball), TouchedLeaves{found});
 }
 
 }  // namespace keepout::HWY_NAMESPACE
@@ -124,6 +127,7 @@ namespace keepout {
 
 HWY_EXPORT(walk_pd_tree);
 HWY_EXPORT(walk_pd_tree_counting);
+HWY_EXPORT(walk_pd_tree_to_leaves);
 
 void PdTree::collect(const Ball& ball, TriangleBuffer& candidates) const noexcept {
   const BallScreen screen(ball, mesh_->bounds(), coordinate_error_);
@@ -140,6 +144,12 @@ void PdTree::collect(const Ball& ball, TriangleBuffer& candidates,
   }
   HWY_DYNAMIC_DISPATCH(walk_pd_tree_counting)
   (nodes_.data(), leaves_.data(), *mesh_, screen, candidates, counts);
+}
+
+void PdTree::collect_leaves(const Ball& ball, LeafBuffer& found) const noexcept {
+  const BallScreen screen(ball, mesh_->bounds(), coordinate_error_);
+  if (!screen.fits) return collect_all_leaves(found);
+  HWY_DYNAMIC_DISPATCH(walk_pd_tree_to_leaves)(nodes_.data(), screen, found);
 }
 
 }  // namespace keepout

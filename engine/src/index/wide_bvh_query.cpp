@@ -15,12 +15,16 @@ namespace keepout::HWY_NAMESPACE {
 
 void walk_wide_bvh(const NodeBlock* nodes, const LeafBlock* leaves, const Mesh& mesh,
                    const BallScreen& ball, TriangleBuffer& out) {
-  walk<false>(nodes, leaves, mesh, ball, out, nullptr);
+  walk(nodes, ball, TouchingTriangles<false>{leaves, mesh, ball, out, nullptr});
 }
 
 void walk_wide_bvh_counting(const NodeBlock* nodes, const LeafBlock* leaves, const Mesh& mesh,
                             const BallScreen& ball, TriangleBuffer& out, QueryCounts& counts) {
-  walk<true>(nodes, leaves, mesh, ball, out, &counts);
+  walk(nodes, ball, TouchingTriangles<true>{leaves, mesh, ball, out, &counts});
+}
+
+void walk_to_leaves(const NodeBlock* nodes, const BallScreen& ball, LeafBuffer& found) {
+  walk(nodes, ball, TouchedLeaves{found});
 }
 
 }  // namespace keepout::HWY_NAMESPACE
@@ -32,6 +36,7 @@ namespace keepout {
 
 HWY_EXPORT(walk_wide_bvh);
 HWY_EXPORT(walk_wide_bvh_counting);
+HWY_EXPORT(walk_to_leaves);
 
 void WideBvh::collect(const Ball& ball, TriangleBuffer& candidates) const noexcept {
   const BallScreen screen(ball, mesh_->bounds(), coordinate_error_);
@@ -48,6 +53,12 @@ void WideBvh::collect(const Ball& ball, TriangleBuffer& candidates,
   }
   HWY_DYNAMIC_DISPATCH(walk_wide_bvh_counting)
   (nodes_.data(), leaves_.data(), *mesh_, screen, candidates, counts);
+}
+
+void WideBvh::collect_leaves(const Ball& ball, LeafBuffer& found) const noexcept {
+  const BallScreen screen(ball, mesh_->bounds(), coordinate_error_);
+  if (!screen.fits) return collect_all_leaves(found);
+  HWY_DYNAMIC_DISPATCH(walk_to_leaves)(nodes_.data(), screen, found);
 }
 
 }  // namespace keepout

@@ -1,11 +1,12 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-// The same triangles in the same order, the same trees and the same work, whatever processor
-// answers: all kinds that this one can stand in for, down to one lane at a time.
+// The same triangles and leaves in the same order, the same trees and the same work, whatever
+// processor answers: all kinds that this one can stand in for, down to one lane at a time.
 #include <gtest/gtest.h>
 
 #include <cstring>
 #include <optional>
+#include <set>
 #include <span>
 #include <vector>
 
@@ -36,12 +37,14 @@ std::vector<Ball> balls(const Mesh& mesh) {
 
 struct Answers {
   std::vector<std::vector<TriangleId>> found;
+  std::vector<std::vector<std::uint32_t>> leaves;
   QueryCounts counts;
 };
 
 template <class Index>
 Answers answers(const Index& index, const std::vector<Ball>& balls) {
   TriangleBuffer found(index.mesh().triangle_count());
+  LeafBuffer leaves(index.leaves().size());
   Answers all;
   for (const Ball& ball : balls) {
     found.clear();
@@ -52,6 +55,9 @@ Answers answers(const Index& index, const std::vector<Ball>& balls) {
     EXPECT_TRUE(
         std::equal(found.begin(), found.end(), all.found.back().begin(), all.found.back().end()))
         << "counting changes the answer";
+    leaves.clear();
+    index.collect_leaves(ball, leaves);
+    all.leaves.emplace_back(leaves.begin(), leaves.end());
   }
   return all;
 }
@@ -61,6 +67,36 @@ class IndexLanes : public testing::Test {};
 
 using Indices = testing::Types<WideBvh, PdTree>;
 TYPED_TEST_SUITE(IndexLanes, Indices);
+
+TYPED_TEST(IndexLanes, TheLeavesOfABallHoldAllTrianglesThatTouchIt) {
+  const TypeParam index(std::make_shared<const Mesh>(make_shape("cortex")));
+  std::vector<std::uint32_t> leaf_of(index.mesh().triangle_count());
+  for (std::uint32_t leaf = 0; leaf < index.leaves().size(); ++leaf) {
+    const LeafBlock& block = index.leaves()[leaf];
+    for (std::size_t lane = 0; lane < LeafBlock::lanes && block.is_used(lane); ++lane) {
+      leaf_of[block.triangle(lane)] = leaf;
+    }
+  }
+  const std::vector<Ball> asked = balls(index.mesh());
+  const Answers got = answers(index, asked);
+  std::size_t listed = 0;
+  for (std::size_t i = 0; i < asked.size(); ++i) {
+    const std::set<std::uint32_t> leaves(got.leaves[i].begin(), got.leaves[i].end());
+    EXPECT_EQ(leaves.size(), got.leaves[i].size()) << "a leaf is listed twice";
+    for (const TriangleId t : got.found[i]) EXPECT_TRUE(leaves.contains(leaf_of[t]));
+    listed += leaves.size();
+  }
+  EXPECT_GT(listed, asked.size());
+  EXPECT_LT(listed, asked.size() * index.leaves().size() / 2) << "most are out of reach";
+}
+
+TYPED_TEST(IndexLanes, ABallBeyondWhatFloatsCanTellHasAllLeaves) {
+  const TypeParam index(std::make_shared<const Mesh>(make_shape("cortex")));
+  LeafBuffer leaves(index.leaves().size());
+  index.collect_leaves({Vec3::Zero(), 1e20}, leaves);
+  EXPECT_EQ(leaves.size(), index.leaves().size());
+  EXPECT_FALSE(leaves.overflowed());
+}
 
 TYPED_TEST(IndexLanes, EveryProcessorGivesTheSameTrianglesInTheSameOrder) {
   ASSERT_GE(simd_targets().size(), 2u);
@@ -74,6 +110,7 @@ TYPED_TEST(IndexLanes, EveryProcessorGivesTheSameTrianglesInTheSameOrder) {
       if (!expected) expected = got;
       EXPECT_GT(got.counts.triangles, 0u) << "the kernel was never asked";
       EXPECT_EQ(got.found, expected->found);
+      EXPECT_EQ(got.leaves, expected->leaves);
       EXPECT_EQ(got.counts.nodes, expected->counts.nodes);
       EXPECT_EQ(got.counts.blocks, expected->counts.blocks);
       EXPECT_EQ(got.counts.triangles, expected->counts.triangles);

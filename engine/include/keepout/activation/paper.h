@@ -11,6 +11,8 @@
 
 namespace keepout {
 
+class PaperBlocks;
+
 /// Algorithm 1 of Li et al. 2020: three conditions on each triangle and its neighbours decide which
 /// planes are active. Kept for comparison: it is not always safe, nor tight (docs/activation.md).
 ///
@@ -29,13 +31,20 @@ class PaperRule final : public Activation {
  public:
   /// Builds the adjacency of the mesh.
   explicit PaperRule(std::shared_ptr<const Mesh> mesh);
+  ~PaperRule() override;
 
   /// What it was built on.
   const std::shared_ptr<const Mesh>& mesh() const noexcept { return mesh_; }
   /// The neighbours that its conditions are about.
   const Adjacency& adjacency() const noexcept { return *adjacency_; }
 
+  /// Looks at the leaves by itself where the index has its triangles in blocks.
+  void prepare(Neighborhood& near) override;
+  bool look_around(const Surroundings& around) noexcept override;
+  std::size_t triangles() const noexcept override;
   Opening start(const Surroundings& around, HalfSpaceBuffer& planes) noexcept override;
+  Judgement judge(const Surroundings& around, const Vec3& trial,
+                  HalfSpaceBuffer& planes) noexcept override;
 
   /// The plane that one triangle calls for, if it does. Asks no hits.
   std::optional<HalfSpace> plane_of(const Surroundings& around, const Hit& hit) const noexcept;
@@ -48,6 +57,7 @@ class PaperRule final : public Activation {
 
   std::shared_ptr<const Mesh> mesh_;
   std::shared_ptr<const Adjacency> adjacency_;
+  std::unique_ptr<PaperBlocks> blocks_;  // where the index offers some
 };
 
 }  // namespace keepout

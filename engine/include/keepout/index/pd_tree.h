@@ -10,6 +10,7 @@
 #include "keepout/index/leaf_block.h"
 #include "keepout/index/query_counts.h"
 #include "keepout/index/spatial_index.h"
+#include "keepout/index/triangle_blocks.h"
 #include "keepout/mesh/mesh.h"
 
 namespace keepout {
@@ -36,7 +37,7 @@ struct alignas(64) PdNode {
 /// distance measurement of surfaces", 1997. Split at the median of the triangle centroids instead
 /// of at their mean, so that the depth is bounded by the logarithm of the size, whatever the mesh,
 /// and all leaves but the last are full.
-class PdTree final : public SpatialIndex {
+class PdTree final : public SpatialIndex, public TriangleBlocks {
  public:
   /// That it can hold.
   static constexpr std::size_t most_triangles = LeafBlock::most_triangles;
@@ -50,6 +51,9 @@ class PdTree final : public SpatialIndex {
   /// The same, and adds to `counts` what it had to look at.
   void collect(const Ball& ball, TriangleBuffer& candidates, QueryCounts& counts) const noexcept;
 
+  void collect_leaves(const Ball& ball, LeafBuffer& found) const noexcept override;
+  const TriangleBlocks* blocks() const noexcept override { return this; }
+
   bool is_exact() const noexcept override { return true; }
   std::size_t memory() const noexcept override;
 
@@ -60,10 +64,10 @@ class PdTree final : public SpatialIndex {
   std::span<const PdNode> nodes() const noexcept { return nodes_; }
 
   /// In the order in which the nodes hold them.
-  std::span<const LeafBlock> leaves() const noexcept { return leaves_; }
+  std::span<const LeafBlock> leaves() const noexcept override { return leaves_; }
 
   /// How far a corner in a leaf may be from the mesh's, in each coordinate. [length]
-  double coordinate_error() const noexcept { return coordinate_error_; }
+  double coordinate_error() const noexcept override { return coordinate_error_; }
 
  private:
   std::shared_ptr<const Mesh> mesh_;

@@ -12,6 +12,8 @@
 
 namespace keepout {
 
+class TriangleBlocks;
+
 /// Numbers of triangles, with a declared capacity.
 using TriangleBuffer = Buffer<TriangleId>;
 
@@ -37,6 +39,9 @@ class SpatialIndex {
   /// A walk of its own along motions, which asks about far fewer triangles than are near; null of
   /// an index that has none: see make_motion_walk. The index must outlive it.
   virtual std::unique_ptr<MotionWalk> walk_along_motions() const { return nullptr; }
+
+  /// Its triangles in leaf blocks; null of an index that has none. They live as long as the index.
+  virtual const TriangleBlocks* blocks() const noexcept { return nullptr; }
 
   /// Memory that the index holds beside the mesh. [bytes]
   virtual std::size_t memory() const noexcept = 0;

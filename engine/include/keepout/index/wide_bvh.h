@@ -12,6 +12,7 @@
 #include "keepout/index/leaf_block.h"
 #include "keepout/index/query_counts.h"
 #include "keepout/index/spatial_index.h"
+#include "keepout/index/triangle_blocks.h"
 #include "keepout/mesh/mesh.h"
 
 namespace keepout {
@@ -44,7 +45,7 @@ struct alignas(64) NodeBlock {
 /// and no others.
 ///
 /// The order of a traversal, and of the triangles, is the tree's own; nothing may depend on it.
-class WideBvh final : public SpatialIndex {
+class WideBvh final : public SpatialIndex, public TriangleBlocks {
  public:
   /// That it can hold.
   static constexpr std::size_t most_triangles = LeafBlock::most_triangles;
@@ -64,7 +65,7 @@ class WideBvh final : public SpatialIndex {
   void refit(std::shared_ptr<const Mesh> moved, unsigned threads = 0);
 
   /// How often it was refit: what was remembered of another generation holds no more.
-  std::uint64_t generation() const noexcept { return generation_; }
+  std::uint64_t generation() const noexcept override { return generation_; }
 
   /// From the blocks of an earlier build. Throws Error unless they are a tree of at most
   /// most_levels that holds each triangle of the mesh once and as it is: all is checked, in linear
@@ -83,6 +84,9 @@ class WideBvh final : public SpatialIndex {
   /// Through the boxes along the motion, to the first triangle in its way.
   std::unique_ptr<MotionWalk> walk_along_motions() const override;
 
+  void collect_leaves(const Ball& ball, LeafBuffer& found) const noexcept override;
+  const TriangleBlocks* blocks() const noexcept override { return this; }
+
   bool is_exact() const noexcept override { return true; }
   std::size_t memory() const noexcept override;
 
@@ -93,14 +97,14 @@ class WideBvh final : public SpatialIndex {
   std::span<const NodeBlock> nodes() const noexcept { return nodes_; }
 
   /// As the nodes number them.
-  std::span<const LeafBlock> leaves() const noexcept { return leaves_; }
+  std::span<const LeafBlock> leaves() const noexcept override { return leaves_; }
 
   /// Of each node: around what its boxes are around, as its leaves have it.
   std::span<const CylinderBlock> cylinders() const noexcept { return cylinders_; }
 
   /// How far a corner in a leaf may be from the mesh's, in each coordinate: 0 where the mesh's are
   /// floats, as those of STL files are. [length]
-  double coordinate_error() const noexcept { return coordinate_error_; }
+  double coordinate_error() const noexcept override { return coordinate_error_; }
 
  private:
   void fit(const LeafFill& fill, unsigned threads);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "keepout/activation/planes.h"
+#include "paper_blocks.h"
 
 namespace keepout {
 namespace {
@@ -29,11 +30,35 @@ struct EdgesAt {
 PaperRule::PaperRule(std::shared_ptr<const Mesh> mesh)
     : mesh_(std::move(mesh)), adjacency_(std::make_shared<const Adjacency>(*mesh_)) {}
 
+PaperRule::~PaperRule() = default;
+
+void PaperRule::prepare(Neighborhood& near) {
+  Activation::prepare(near);
+  if (const TriangleBlocks* const blocks = near.index().blocks()) {
+    blocks_ = std::make_unique<PaperBlocks>(*this, *blocks, near.room());
+  }
+}
+
+bool PaperRule::look_around(const Surroundings& around) noexcept {
+  return blocks_ != nullptr || Activation::look_around(around);
+}
+
+std::size_t PaperRule::triangles() const noexcept {
+  return blocks_ ? blocks_->triangles() : Activation::triangles();
+}
+
 Opening PaperRule::start(const Surroundings& around, HalfSpaceBuffer& planes) noexcept {
+  if (blocks_) return {blocks_->find(around, planes) ? Status::free : Status::over_capacity};
   for (const Hit& hit : hits()) {
     if (const std::optional<HalfSpace> plane = plane_of(around, hit)) planes.push(*plane);
   }
   return {};
+}
+
+Judgement PaperRule::judge(const Surroundings& around, const Vec3& trial,
+                           HalfSpaceBuffer& planes) noexcept {
+  if (blocks_ && !blocks_->covers(around, trial)) return {Judgement::Verdict::blocked, 0.0};
+  return Activation::judge(around, trial, planes);
 }
 
 std::optional<HalfSpace> PaperRule::plane_of(const Surroundings& around,

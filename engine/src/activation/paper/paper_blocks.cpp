@@ -1,0 +1,106 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "paper_blocks.h"
+
+#include <algorithm>
+#include <optional>
+#include <span>
+
+#include "../../geometry/closest_on_segment.h"
+#include "../../geometry/corner_order.h"
+#include "keepout/activation/planes.h"
+
+namespace keepout {
+namespace {
+
+/// What the exact kernel says of a triangle whose closest point is at this one of the `places`.
+ClosestPoint closest_point_at(std::size_t place, const Triangle& triangle,
+                              const Vec3& tip) noexcept {
+  const auto corner = corner_order(triangle).corner;
+  const auto from_tip = [&](std::size_t c) -> Vec3 { return triangle[corner[c]] - tip; };
+  const auto [a, b] = corners_at[place];
+  const Vec3 offset = closest_on_segment(from_tip(a), from_tip(b)).point;
+  return {offset, offset.norm(), Feature::face};
+}
+
+}  // namespace
+
+PaperBlocks::PaperBlocks(const PaperRule& rule, const TriangleBlocks& blocks, std::size_t room)
+    : rule_(rule),
+      blocks_(blocks),
+      generation_(blocks.generation()),
+      leaves_(blocks.leaves().size()),
+      unfinished_(std::make_unique<Unfinished>()),
+      found_(room) {
+  const Mesh& mesh = *rule.mesh();
+  normals_.reserve(mesh.triangle_count());
+  for (TriangleId t = 0; t < mesh.triangle_count(); ++t) normals_.push_back(mesh.normal(t));
+  edges_.reserve(blocks.leaves().size());
+  for (const LeafBlock& leaf : blocks.leaves()) {
+    edges_.push_back(edges_of(leaf, mesh, rule.adjacency()));
+  }
+}
+
+bool PaperBlocks::find(const Surroundings& around, HalfSpaceBuffer& planes) noexcept {
+  triangles_ = 0;
+  if (blocks_.generation() != generation_) return false;
+  leaves_.clear();
+  const Ball ball = rule_.region(around);
+  blocks_.collect_leaves(ball, leaves_);
+  const IdlePlanes idle = around.is_projected ? IdlePlanes::left_out : IdlePlanes::found;
+  if (!gather(around, ball, idle)) return false;
+  if (idle == IdlePlanes::left_out) {
+    const auto asks_for_motion = [](const HalfSpace& plane) { return plane.offset > 0.0; };
+    const bool may_overflow = planes.size() + triangles_ > planes.capacity();
+    if (may_overflow || std::any_of(found_.begin(), found_.end(), asks_for_motion)) {
+      gather(around, ball, IdlePlanes::found);
+    }
+  }
+  std::sort(found_.begin(), found_.end(),
+            [](const HalfSpace& a, const HalfSpace& b) { return a.source < b.source; });
+  for (const HalfSpace& plane : found_.view()) planes.push(plane);
+  return true;
+}
+
+/// Finds the planes in no order. False if there are more triangles than room was made for.
+bool PaperBlocks::gather(const Surroundings& around, const Ball& ball, IdlePlanes idle) noexcept {
+  const FilterQuery query = filter_query(around, ball, blocks_.coordinate_error(), idle);
+  idle_planes_ = idle;
+  found_.clear();
+  triangles_ = 0;
+  std::span<const std::uint32_t> leaves = leaves_.view();
+  while (!leaves.empty()) {
+    leaves = leaves.subspan(filter(blocks_.leaves(), edges_, leaves, query, *unfinished_));
+    triangles_ += unfinished_->in;
+    for (std::size_t i = 0; i < unfinished_->size; ++i) {
+      const std::uint32_t which = unfinished_->which[i];
+      const std::uint32_t plane = unfinished_->plane[i];
+      const LeafBlock& leaf = blocks_.leaves()[which / LeafBlock::lanes];
+      const TriangleId t = leaf.triangle(which % LeafBlock::lanes);
+      const Triangle triangle = rule_.mesh()->triangle(t);
+      if ((plane & (Unfinished::faces_tip | Unfinished::of_face)) == 0) {
+        const Hit hit{t, closest_point(triangle, ball.center)};
+        if (!(hit.closest.distance <= ball.radius)) continue;
+        ++triangles_;
+        if (const std::optional<HalfSpace> its = rule_.plane_of(around, hit)) found_.push(*its);
+      } else {
+        const Hit hit{t, closest_point_at(plane >> Unfinished::plane_bits, triangle, around.tip)};
+        const bool faces_tip = (plane & Unfinished::faces_tip) != 0;
+        found_.push(plane_through(hit, faces_tip ? away_from(hit) : normals_[t], around.margin));
+      }
+    }
+    if (triangles_ > found_.capacity()) {
+      triangles_ = 0;
+      return false;
+    }
+  }
+  return true;
+}
+
+bool PaperBlocks::covers(const Surroundings& around, const Vec3& motion) const noexcept {
+  if (idle_planes_ == IdlePlanes::found) return true;
+  const Ball idle = idle_ball(around.aim);
+  return (motion - idle.center).norm() <= idle.radius + 0.5 * around.rounding;
+}
+
+}  // namespace keepout

@@ -1,0 +1,324 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+// The paper's rule on an index that has its triangles in blocks, held to the plain rule bit for
+// bit.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "each_simd_target.h"
+#include "keepout/activation/paper.h"
+#include "keepout/fixtures/poses.h"
+#include "keepout/fixtures/shapes.h"
+#include "keepout/index/pd_tree.h"
+#include "keepout/index/wide_bvh.h"
+#include "keepout/solvers/active_set.h"
+#include "keepout/step/motion_constraint.h"
+#include "names_of_shapes.h"
+#include "queries_only.h"
+#include "step/input.h"
+
+namespace keepout {
+namespace {
+
+bool operator==(const HalfSpace& one, const HalfSpace& other) {
+  return one.normal == other.normal && one.offset == other.offset && one.source == other.source;
+}
+
+bool are_equal(std::span<const HalfSpace> one, std::span<const HalfSpace> other) {
+  return std::equal(one.begin(), one.end(), other.begin(), other.end(),
+                    [](const HalfSpace& a, const HalfSpace& b) { return a == b; });
+}
+
+/// The rule on one mesh: on an index of this type, with its blocks and by queries only.
+template <class Tree = WideBvh>
+class PaperForms {
+ public:
+  explicit PaperForms(const Surface& surface, const Capacity& capacity = {})
+      : mesh(std::make_shared<const Mesh>(surface)),
+        tree(std::make_shared<Tree>(mesh)),
+        planes(capacity.planes),
+        plain_planes(capacity.planes),
+        near_(mesh, tree, capacity.triangles),
+        plain_near_(mesh, std::make_shared<QueriesOnly>(tree), capacity.triangles),
+        rule_(mesh),
+        plain_(mesh),
+        guard_(constraint(tree, capacity)),
+        plain_guard_(constraint(std::make_shared<QueriesOnly>(tree), capacity)) {
+    rule_.prepare(near_);
+    plain_.prepare(plain_near_);
+  }
+
+  /// How a cycle begins with blocks and without, and the planes of both.
+  std::array<Status, 2> start(const Vec3& tip, double radius, double margin) {
+    const Surroundings around = surroundings_of(
+        {.tip = tip, .desired = Vec3::Zero()}, {.radius = radius, .margin = margin}, Reach::sphere);
+    return {start(rule_, around, planes), start(plain_, around, plain_planes)};
+  }
+
+  Step step(const Motion& motion, const StepOptions& options) {
+    guard_.set_options(options);
+    return guard_.step(motion);
+  }
+  Step plain_step(const Motion& motion, const StepOptions& options) {
+    plain_guard_.set_options(options);
+    return plain_guard_.step(motion);
+  }
+  bool makes_queries() const { return guard_.makes_queries(); }
+  bool plain_makes_queries() const { return plain_guard_.makes_queries(); }
+  std::size_t triangles() const { return rule_.triangles(); }
+  std::size_t plain_triangles() const { return plain_.triangles(); }
+
+  std::shared_ptr<const Mesh> mesh;
+  std::shared_ptr<Tree> tree;
+  HalfSpaceBuffer planes;
+  HalfSpaceBuffer plain_planes;
+
+ private:
+  static Status start(PaperRule& rule, const Surroundings& around, HalfSpaceBuffer& planes) {
+    planes.clear();
+    return rule.look_around(around) ? rule.start(around, planes).status : Status::over_capacity;
+  }
+
+  MotionConstraint constraint(std::shared_ptr<const SpatialIndex> index, const Capacity& capacity) {
+    return {mesh,
+            std::move(index),
+            std::make_unique<PaperRule>(mesh),
+            std::make_unique<ActiveSet>(),
+            {.radius = 1e-3 * mesh->bounds().size().norm()},
+            capacity};
+  }
+
+  Neighborhood near_;
+  Neighborhood plain_near_;
+  PaperRule rule_;
+  PaperRule plain_;
+  MotionConstraint guard_;
+  MotionConstraint plain_guard_;
+};
+
+/// Above, on and below faces, edges and corners, and farther off.
+std::vector<Vec3> tips_around(const Mesh& mesh, std::size_t count) {
+  const double size = mesh.bounds().size().norm();
+  Random random(3);
+  std::vector<Vec3> tips = vertex_points(mesh, count, random);
+  const auto add = [&](const std::vector<Vec3>& more) {
+    tips.insert(tips.end(), more.begin(), more.end());
+  };
+  add(edge_points(mesh, count, random));
+  for (const double offset : {0.0, 1e-12, 1e-6, 2e-3, 0.03, -1e-4, -0.02}) {
+    add(surface_points(mesh, count, offset * size, random));
+  }
+  add(random_points(mesh, count, random));
+  // Right above a corner or an edge: the neighbours' nearest points are the same.
+  for (std::size_t i = 0; i < 2 * count; ++i) tips.push_back(tips[i] + Vec3(0, 0, 1e-3 * size));
+  return tips;
+}
+
+template <class Forms>
+void expect_same_planes(Forms& forms, std::size_t tips, std::size_t& planes) {
+  const double size = forms.mesh->bounds().size().norm();
+  for (const Vec3& tip : tips_around(*forms.mesh, tips)) {
+    for (const double radius : {1e-3 * size, 0.02 * size, 0.1 * size}) {
+      for (const double margin : {0.0, 4e-3 * size}) {
+        const auto [got, expected] = forms.start(tip, radius, margin);
+        ASSERT_EQ(got, expected);
+        ASSERT_EQ(forms.triangles(), forms.plain_triangles());
+        ASSERT_TRUE(are_equal(forms.planes.view(), forms.plain_planes.view()))
+            << tip.transpose() << " radius " << radius << " margin " << margin;
+        planes += forms.plain_planes.size();
+      }
+    }
+  }
+}
+
+class PaperBlocksOn : public testing::TestWithParam<std::string> {};
+
+TEST_P(PaperBlocksOn, ThePlanesAreThoseOfThePlainRuleOnEachTarget) {
+  std::size_t on_the_first = 0;
+  on_each_simd_target([&] {
+    PaperForms forms(make_shape(GetParam()));
+    std::size_t planes = 0;
+    expect_same_planes(forms, 6, planes);
+    EXPECT_GT(planes, GetParam() == "needles" ? 0u : 100u);
+    if (on_the_first == 0) on_the_first = planes;
+    EXPECT_EQ(planes, on_the_first);
+  });
+}
+
+/// Increments towards the surface, along it and away from it, up to the radius.
+std::vector<Motion> motions_around(const Mesh& mesh, double radius) {
+  Random random(5);
+  std::vector<Motion> motions;
+  for (const Vec3& tip : tips_around(mesh, 4)) {
+    for (const double length : {0.02, 0.3, 1.0}) {
+      motions.push_back({.tip = tip, .desired = length * radius * random.direction()});
+    }
+  }
+  motions.push_back({.tip = motions.front().tip, .desired = Vec3::Zero()});
+  return motions;
+}
+
+void expect_same_step(const Step& got, const Step& expected) {
+  ASSERT_EQ(got.status, expected.status);
+  ASSERT_EQ(got.motion, expected.motion);
+  ASSERT_EQ(got.triangles, expected.triangles);
+  ASSERT_EQ(got.active.size(), expected.active.size());
+  for (std::size_t i = 0; i < got.active.size(); ++i) {
+    ASSERT_TRUE(got.planes[got.active[i]] == expected.planes[expected.active[i]]);
+  }
+  // The planes that were left out leave the others in their order.
+  ASSERT_TRUE(std::includes(
+      expected.planes.begin(), expected.planes.end(), got.planes.begin(), got.planes.end(),
+      [](const HalfSpace& a, const HalfSpace& b) { return a.source < b.source; }));
+}
+
+TEST_P(PaperBlocksOn, TheStepsAreThoseOfThePlainRuleAndAlikeOnEachTarget) {
+  PaperForms forms(make_shape(GetParam()));
+  const double size = forms.mesh->bounds().size().norm();
+  std::vector<std::pair<Status, Vec3>> on_the_first;
+  on_each_simd_target([&] {
+    std::vector<std::pair<Status, Vec3>> made;
+    for (const double radius : {2e-3 * size, 0.05 * size}) {
+      for (const double margin : {0.0, 2e-3 * size}) {
+        for (const Motion& motion : motions_around(*forms.mesh, radius)) {
+          const StepOptions options{.radius = radius, .margin = margin};
+          const Step expected = forms.plain_step(motion, options);
+          ASSERT_NO_FATAL_FAILURE(expect_same_step(forms.step(motion, options), expected));
+          made.emplace_back(expected.status, expected.motion);
+        }
+      }
+    }
+    if (on_the_first.empty()) on_the_first = made;
+    EXPECT_TRUE(made == on_the_first);
+  });
+}
+
+INSTANTIATE_TEST_SUITE_P(Shapes, PaperBlocksOn, testing::ValuesIn(names_of_shapes()),
+                         [](const auto& p) { return p.param; });
+
+/// The shape with coordinates that are floats, as those of STL files are.
+Surface as_floats(Surface surface) {
+  for (Vec3& v : surface.vertices) v = v.cast<float>().cast<double>();
+  return surface;
+}
+
+TEST(PaperBlocks, ThePlanesAreThoseOfThePlainRuleWhereTheFloatsAreExact) {
+  PaperForms forms(as_floats(make_gear(1.0)));
+  ASSERT_EQ(forms.tree->coordinate_error(), 0.0);
+  std::size_t planes = 0;
+  expect_same_planes(forms, 12, planes);
+  EXPECT_GT(planes, 1000u);
+}
+
+TEST(PaperBlocks, ThePlanesAreThoseOfThePlainRuleFarFromTheOriginAndAtEveryScale) {
+  for (const double scale : {1e-25, 1e-9, 1e9, 1e25}) {
+    Surface surface = make_cortex(6.0, 1);
+    for (Vec3& v : surface.vertices) v *= scale;
+    PaperForms forms(surface);
+    std::size_t planes = 0;
+    expect_same_planes(forms, 4, planes);
+    EXPECT_GT(planes, 1000u) << scale;
+  }
+  Surface surface = make_cortex(6.0, 1);
+  for (Vec3& v : surface.vertices) v += Vec3(1e6, -2e6, 3e5);
+  PaperForms forms(surface);
+  std::size_t planes = 0;
+  expect_same_planes(forms, 4, planes);
+  EXPECT_GT(planes, 1000u);
+}
+
+TEST(PaperBlocks, MostPlanesOfAShortMotionAreIdleAndLeftOut) {
+  PaperForms forms(make_shape("cortex"));
+  Random random(1);
+  std::size_t got = 0, expected = 0;
+  for (const Vec3& tip : surface_points(*forms.mesh, 50, 0.2, random)) {
+    const Motion motion{.tip = tip, .desired = 0.1 * random.direction()};
+    got += forms.step(motion, {.radius = 10.0}).planes.size();
+    expected += forms.plain_step(motion, {.radius = 10.0}).planes.size();
+  }
+  EXPECT_GT(got, 0u);
+  EXPECT_LT(2 * got, expected);
+}
+
+TEST(PaperBlocks, WithJointsOrRowsAllPlanesArePosed) {
+  PaperForms forms(make_shape("cortex"));
+  Random random(1);
+  Eigen::Matrix<double, 3, Eigen::Dynamic> jacobian(3, 6);
+  for (int i = 0; i < jacobian.size(); ++i) jacobian.data()[i] = random.normal();
+  const std::array<double, 3> row{1.0, 0.0, 0.0};
+  const double bound = -0.01;
+  for (const Vec3& tip : surface_points(*forms.mesh, 20, 0.2, random)) {
+    Motion motion{.tip = tip, .desired = 0.1 * random.direction()};
+    motion.jacobian.emplace(jacobian);
+    Step got = forms.step(motion, {.radius = 5.0, .damping = 1e-6});
+    EXPECT_TRUE(
+        are_equal(got.planes, forms.plain_step(motion, {.radius = 5.0, .damping = 1e-6}).planes));
+    EXPECT_FALSE(got.planes.empty());
+    motion.jacobian.reset();
+    motion.rows.emplace(row.data(), &bound, 1);
+    got = forms.step(motion, {.radius = 5.0});
+    const Step expected = forms.plain_step(motion, {.radius = 5.0});
+    EXPECT_TRUE(are_equal(got.planes, expected.planes));
+    EXPECT_EQ(got.motion, expected.motion);
+  }
+}
+
+TEST(PaperBlocks, WhatIsBeyondTheCapacityEndsAsWithThePlainRule) {
+  const Surface surface = make_shape("cortex");
+  Random random(1);
+  const std::vector<Vec3> tips = surface_points(Mesh(surface), 30, 0.2, random);
+  std::size_t over = 0;
+  for (const Capacity& capacity : {Capacity{.triangles = 40}, Capacity{.planes = 10}}) {
+    PaperForms forms(surface, capacity);
+    for (const Vec3& tip : tips) {
+      for (const double radius : {1.0, 3.0, 9.0}) {
+        const Motion motion{.tip = tip, .desired = Vec3(0.05, 0, 0)};
+        const Step got = forms.step(motion, {.radius = radius});
+        const Step expected = forms.plain_step(motion, {.radius = radius});
+        ASSERT_EQ(got.status, expected.status);
+        ASSERT_EQ(got.motion, expected.motion);
+        ASSERT_EQ(got.triangles, expected.triangles);
+        if (got.status == Status::over_capacity) ++over;
+      }
+    }
+  }
+  EXPECT_GT(over, 30u);
+}
+
+TEST(PaperBlocks, OnlyForAnIndexThatHasBlocks) {
+  const PaperForms forms(make_cube(20.0));
+  EXPECT_FALSE(forms.makes_queries());
+  EXPECT_TRUE(forms.plain_makes_queries());
+}
+
+TEST(PaperBlocks, ThePlanesAreThoseOfThePlainRuleWhateverTheIndexThatHasTheBlocks) {
+  for (const char* shape : {"cortex", "gear", "needles"}) {
+    SCOPED_TRACE(shape);
+    PaperForms<PdTree> forms(make_shape(shape));
+    std::size_t planes = 0;
+    expect_same_planes(forms, 6, planes);
+    EXPECT_GT(planes, std::string(shape) == "needles" ? 0u : 100u);
+  }
+}
+
+TEST(PaperBlocks, StopsOnceItsTreeIsRefit) {
+  PaperForms forms(make_cube(5.0));
+  const Motion motion{.tip = Vec3(0.0, 0.0, 58.0), .desired = Vec3(0.0, 0.0, -4.0)};
+  ASSERT_EQ(forms.step(motion, {.radius = 5.0}).status, Status::free);
+  Surface raised{{forms.mesh->vertices().begin(), forms.mesh->vertices().end()},
+                 {forms.mesh->triangles().begin(), forms.mesh->triangles().end()}};
+  for (Vec3& v : raised.vertices) v.z() += 5.0;
+  forms.tree->refit(std::make_shared<const Mesh>(std::move(raised)));
+  const Step stopped = forms.step(motion, {.radius = 5.0});
+  EXPECT_EQ(stopped.status, Status::over_capacity);
+  EXPECT_EQ(stopped.motion, Vec3::Zero());
+}
+
+}  // namespace
+}  // namespace keepout
