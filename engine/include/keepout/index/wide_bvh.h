@@ -3,9 +3,9 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "keepout/index/block_memory.h"
 #include "keepout/index/cylinder_block.h"
@@ -66,11 +66,11 @@ class WideBvh final : public SpatialIndex {
   /// How often it was refit: what was remembered of another generation holds no more.
   std::uint64_t generation() const noexcept { return generation_; }
 
-  /// From the blocks of an earlier build. Throws Error unless they are a tree of at most
-  /// most_levels that holds each triangle of the mesh once and as it is: all is checked, in linear
-  /// time.
-  WideBvh(std::shared_ptr<const Mesh> mesh, BlockVector<NodeBlock> nodes,
-          BlockVector<LeafBlock> leaves);
+  /// From the order() of an earlier build: the same tree in about a tenth of the time. Whatever the
+  /// order, boxes are put around the mesh's triangles, so that none is lost. Throws Error unless it
+  /// names each triangle of the mesh once, and as the other constructor does.
+  WideBvh(std::shared_ptr<const Mesh> mesh, std::span<const TriangleId> order,
+          unsigned threads = 0);
 
   void collect(const Ball& ball, TriangleBuffer& candidates) const noexcept override;
 
@@ -95,15 +95,19 @@ class WideBvh final : public SpatialIndex {
   /// Of each node: around what its boxes are around, as its leaves have it.
   std::span<const CylinderBlock> cylinders() const noexcept { return cylinders_; }
 
+  /// The triangles in the order of the leaves: what is left of a build when all that can be made of
+  /// the mesh anew is taken away. Allocates.
+  std::vector<TriangleId> order() const;
+
   /// How far a corner in a leaf may be from the mesh's, in each coordinate: 0 where the mesh's are
   /// floats, as those of STL files are. [length]
   double coordinate_error() const noexcept { return coordinate_error_; }
 
  private:
+  void make_room();
   void fit(const LeafFill& fill, unsigned threads);
   void enclose_leaves(std::size_t self, std::size_t first, std::size_t last) noexcept;
   void enclose_nodes(std::size_t self, std::size_t first, std::size_t last) noexcept;
-  void enclose_blocks();
 
   std::shared_ptr<const Mesh> mesh_;
   BlockVector<NodeBlock> nodes_;          // level by level, the root first
