@@ -8,7 +8,6 @@
 
 #include "keepout/index/block_memory.h"
 #include "keepout/index/leaf_block.h"
-#include "keepout/index/query_counts.h"
 #include "keepout/index/spatial_index.h"
 #include "keepout/mesh/mesh.h"
 
@@ -45,10 +44,12 @@ class PdTree final : public SpatialIndex {
   /// mesh of more than most_triangles.
   explicit PdTree(std::shared_ptr<const Mesh> mesh, unsigned threads = 0);
 
-  void collect(const Ball& ball, TriangleBuffer& candidates) const noexcept override;
+  void collect(const Ball& ball, TriangleBuffer& candidates) const noexcept override {
+    collect(ball, candidates, nullptr);
+  }
 
-  /// The same, and adds to `counts` what it had to look at.
-  void collect(const Ball& ball, TriangleBuffer& candidates, QueryCounts& counts) const noexcept;
+  /// The same, and adds to `counts` what it had to look at, unless it is null.
+  void collect(const Ball& ball, TriangleBuffer& candidates, QueryCounts* counts) const noexcept;
 
   bool is_exact() const noexcept override { return true; }
   std::size_t memory() const noexcept override;

@@ -10,7 +10,6 @@
 #include "keepout/index/block_memory.h"
 #include "keepout/index/cylinder_block.h"
 #include "keepout/index/leaf_block.h"
-#include "keepout/index/query_counts.h"
 #include "keepout/index/spatial_index.h"
 #include "keepout/mesh/mesh.h"
 
@@ -72,10 +71,12 @@ class WideBvh final : public SpatialIndex {
   WideBvh(std::shared_ptr<const Mesh> mesh, std::span<const TriangleId> order,
           unsigned threads = 0);
 
-  void collect(const Ball& ball, TriangleBuffer& candidates) const noexcept override;
+  void collect(const Ball& ball, TriangleBuffer& candidates) const noexcept override {
+    collect(ball, candidates, nullptr);
+  }
 
-  /// The same, and adds to `counts` what it had to look at.
-  void collect(const Ball& ball, TriangleBuffer& candidates, QueryCounts& counts) const noexcept;
+  /// The same, and adds to `counts` what it had to look at, unless it is null.
+  void collect(const Ball& ball, TriangleBuffer& candidates, QueryCounts* counts) const noexcept;
 
   /// By branch and bound: however far off the point is, few triangles are asked about.
   TriangleId nearest(const Vec3& point) const noexcept override;
