@@ -61,7 +61,7 @@ HWY_INLINE std::size_t all_children(const NodeBlock& node, std::uint32_t* childr
 // Not inline: two of them in one function make each a little slower.
 template <bool counting>
 HWY_NOINLINE void walk(const NodeBlock* nodes, const LeafBlock* leaves, const Mesh& mesh,
-                     const BallScreen& ball, TriangleBuffer& out, QueryCounts* counts) {
+                       const BallScreen& ball, TriangleBuffer& out, QueryCounts* counts) {
   // Seven levels of sixteen children hold the most triangles there can be.
   std::uint32_t stack[9 * NodeBlock::lanes];
   std::size_t waiting = 0;
