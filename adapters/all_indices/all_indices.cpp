@@ -2,26 +2,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "keepout/adapters/all_indices.h"
 
-#include "keepout/adapters/gpl_index_registry.h"
+#include "../src/library_backends.h"
 
 namespace keepout {
-namespace {
 
-template <class Part>
-std::vector<Part> joined(std::span<const Part> ours, std::span<const Part> gpl) {
-  std::vector<Part> all(ours.begin(), ours.end());
-  all.insert(all.end(), gpl.begin(), gpl.end());
+std::vector<IndexBackend> all_index_backends() {
+  std::vector<IndexBackend> all;
+  append(index_backends(), all);
+#if KEEPOUT_HAS_CGAL
+  append(cgal_indices(), all);
+#endif
   return all;
 }
 
-}  // namespace
-
-std::vector<IndexBackend> all_index_backends() {
-  return joined(index_backends(), gpl_index_backends());
-}
-
 std::vector<AbsentPart> all_absent_index_backends() {
-  return joined(absent_index_backends(), absent_gpl_index_backends());
+  std::vector<AbsentPart> all;
+  append(absent_index_backends(), all);
+#if !KEEPOUT_HAS_CGAL
+  all.push_back(
+      {"cgal", "CGAL (install libcgal-dev, configure with KEEPOUT_WITH_CGAL=ON; under the GPL)"});
+#endif
+  return all;
 }
 
 }  // namespace keepout

@@ -1,17 +1,95 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bullet_index.h"
+#include <algorithm>
+#include <vector>
 
-#include "../src/capacity.h"
-#include "bullet_model.h"
+#include "../src/library_backends.h"
+#include "bullet_trees.h"
+#include "keepout/geometry/ball_against_box.h"
 
 namespace keepout {
 namespace {
+
+/// A tree of Bullet's over a mesh, known to hold it. The mesh may go once it is built.
+template <class Tree>
+class BulletModel {
+ public:
+  explicit BulletModel(const Mesh& mesh)
+      : frame_(mesh.bounds(), reach_of_frame),
+        bounds_(frame_.from_mesh(mesh.bounds())),
+        tree_(tree_of(mesh, frame_)) {
+    check(mesh);
+  }
+
+  const Tree& tree() const noexcept { return tree_; }
+
+  /// In the frame of the tree: the ball, as much larger as boxes and the exact kernel may round.
+  Ball padded(const Ball& ball) const noexcept {
+    const Vec3 center = frame_.from_mesh(ball.center);
+    return {center, padded_radius({center, frame_.from_mesh(ball.radius)}, bounds_)};
+  }
+
+ private:
+  // In the frame of the trees. Bullet widens a quantised mesh by 1, and thin triangles by 0.001,
+  // whatever their size: with 2^16 steps across, both are no more than a step.
+  static constexpr double reach_of_frame = 0x1p15;
+
+  static Tree tree_of(const Mesh& mesh, const CenteredFrame& frame) {
+    BulletMesh for_bullet(mesh, frame);
+    return Tree(for_bullet);
+  }
+
+  /// Bullet asserts its limits in debug builds only, and beyond them confuses triangles. So
+  /// each must be there once, within the boxes of all nodes above it.
+  void check(const Mesh& mesh) const {
+    struct Subtree {
+      int end;
+      Box box;
+    };
+    std::vector<Subtree> above;
+    std::vector<char> found(mesh.triangle_count(), 0);
+    for (int n = 0; n < tree_.node_count(); ++n) {
+      while (!above.empty() && above.back().end == n) above.pop_back();
+      const Box box = tree_.box(n);
+      if (!above.empty() && !holds(above.back().box, box)) fail();
+      if (!tree_.is_leaf(n)) {
+        above.push_back({n + tree_.subtree_size(n), box});
+        continue;
+      }
+      const TriangleId t = tree_.triangle(n);
+      if (t >= found.size() || found[t] != 0) fail();
+      found[t] = 1;
+      for (const Vec3& corner : mesh.triangle(t)) {
+        const Vec3 local = frame_.from_mesh(corner);
+        if (!holds(box, {local, local})) fail();
+      }
+    }
+    if (std::find(found.begin(), found.end(), 0) != found.end()) fail();
+  }
+
+  /// To a tenth of the rounding that the radius is padded by.
+  bool holds(const Box& outer, const Box& inner) const {
+    const double slack = 0.1 * padded_radius({bounds_.center(), 0.0}, bounds_);
+    return ((inner.low - outer.low).array() >= -slack).all() &&
+           ((outer.high - inner.high).array() >= -slack).all();
+  }
+
+  [[noreturn]] static void fail() {
+    throw Error("Bullet's tree does not hold the mesh; use the index 'pd_tree'");
+  }
+
+  CenteredFrame frame_;
+  Box bounds_;  // of the mesh, in the frame
+  Tree tree_;
+};
 
 /// Bullet's tree, walked by us: its own walk takes a box, not a ball.
 template <class Tree>
 class BulletIndex final : public SpatialIndex {
  public:
+  static constexpr std::string_view name = Tree::name;
+  static constexpr std::size_t most_triangles = Tree::most_triangles;
+
   explicit BulletIndex(const Mesh& mesh) : model_(mesh) {}
 
   void collect(const Ball& ball, TriangleBuffer& candidates) const noexcept override {
@@ -36,6 +114,9 @@ class BulletIndex final : public SpatialIndex {
 /// Bullet's tree, walked by Bullet.
 class BulletCallbackIndex final : public SpatialIndex {
  public:
+  static constexpr std::string_view name = "bullet_callback";
+  static constexpr std::size_t most_triangles = BulletQuantizedTree::most_triangles;
+
   explicit BulletCallbackIndex(const Mesh& mesh) : model_(mesh) {}
 
   void collect(const Ball& ball, TriangleBuffer& candidates) const noexcept override {
@@ -63,31 +144,31 @@ class BulletCallbackIndex final : public SpatialIndex {
   BulletModel<BulletQuantizedTree> model_;
 };
 
-}  // namespace
-
-// Of the one form that the registry knows; once built, a tree needs the mesh no more.
-// NOLINTBEGIN(performance-unnecessary-value-param)
-std::unique_ptr<SpatialIndex> make_bullet_index(std::shared_ptr<const Mesh> mesh) {
-  require_at_most(bullet_most_triangles, mesh->triangle_count(), "triangles", "bullet");
-  return std::make_unique<BulletIndex<BulletTree>>(*mesh);
+template <class Index>
+std::unique_ptr<SpatialIndex> make(std::shared_ptr<const Mesh> mesh) {
+  require_at_most(Index::most_triangles, mesh->triangle_count(), "triangles", Index::name);
+  return std::make_unique<Index>(*mesh);
 }
 
-std::unique_ptr<SpatialIndex> make_bullet_quantized_index(std::shared_ptr<const Mesh> mesh) {
-  require_at_most(bullet_quantized_most_triangles, mesh->triangle_count(), "triangles",
-                  "bullet_quantized");
-  return std::make_unique<BulletIndex<BulletQuantizedTree>>(*mesh);
-}
-
-std::unique_ptr<SpatialIndex> make_bullet_callback_index(std::shared_ptr<const Mesh> mesh) {
-  require_at_most(bullet_quantized_most_triangles, mesh->triangle_count(), "triangles",
-                  "bullet_callback");
-  return std::make_unique<BulletCallbackIndex>(*mesh);
-}
-// NOLINTEND
-
-std::string bullet_library() {
+std::string library() {
   return "Bullet " + std::to_string(BT_BULLET_VERSION / 100) + "." +
          std::to_string(BT_BULLET_VERSION % 100);
 }
+
+constexpr IndexBackend backends[] = {
+    {BulletQuantizedTree::name, "axis-aligned boxes of Bullet, in 16 bits",
+     make<BulletIndex<BulletQuantizedTree>>, BulletQuantizedTree::most_triangles, library},
+    {BulletTree::name, "axis-aligned boxes of Bullet", make<BulletIndex<BulletTree>>,
+     BulletTree::most_triangles, library},
+    {BulletCallbackIndex::name,
+     "axis-aligned boxes of Bullet, in 16 bits, by its own walk and callback",
+     make<BulletCallbackIndex>, BulletCallbackIndex::most_triangles, library, Allocation::never,
+     "Bullet's walk takes a box, not a ball, and so finds more candidates; it calls back for each, "
+     "without fetching the triangle's corners as processAllTriangles() would."},
+};
+
+}  // namespace
+
+std::span<const IndexBackend> bullet_indices() noexcept { return backends; }
 
 }  // namespace keepout

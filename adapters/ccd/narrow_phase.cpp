@@ -1,11 +1,12 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "narrow_phase.h"
-
+// libccd tells the depth of an overlap, and of bodies apart only that they are: their distance is
+// asked for as the depth of a tool that is grown by more than it.
 #include <algorithm>
 #include <cmath>
 
 #include "../src/ccd_bodies.h"
+#include "../src/library_backends.h"
 #include "keepout/geometry/closest_point.h"
 
 namespace keepout {
@@ -74,17 +75,22 @@ class CcdNarrowPhase final : public NarrowPhase {
   Penetration penetration_;
 };
 
-}  // namespace
-
-std::unique_ptr<NarrowPhase> make_ccd_gjk(const ConvexTool& tool) {
-  return std::make_unique<CcdNarrowPhase>(tool, ccdGJKPenetration);
-}
-
-std::unique_ptr<NarrowPhase> make_ccd_mpr(const ConvexTool& tool) {
-  return std::make_unique<CcdNarrowPhase>(tool, ccdMPRPenetration);
+template <Penetration penetration>
+std::unique_ptr<NarrowPhase> make(const ConvexTool& tool) {
+  return std::make_unique<CcdNarrowPhase>(tool, penetration);
 }
 
 // Its header tells no version; its package says 2.0 for 2.1.
-std::string ccd_library() { return "libccd " KEEPOUT_CCD_VERSION; }
+std::string library() { return "libccd " KEEPOUT_CCD_VERSION; }
+
+constexpr NarrowPhaseBackend backends[] = {
+    {"ccd_gjk", "GJK, and EPA for the depth", make<ccdGJKPenetration>, Allocation::inside, library},
+    {"ccd_mpr", "Minkowski portal refinement: its depth is not the least", make<ccdMPRPenetration>,
+     Allocation::inside, library},
+};
+
+}  // namespace
+
+std::span<const NarrowPhaseBackend> ccd_narrow_phases() noexcept { return backends; }
 
 }  // namespace keepout

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "cgal_index.h"
-
 #include <CGAL/AABB_traits.h>
 #include <CGAL/AABB_tree.h>
 #include <CGAL/Simple_cartesian.h>
@@ -10,6 +8,7 @@
 #include <boost/iterator/counting_iterator.hpp>
 #include <utility>
 
+#include "../src/library_backends.h"
 #include "keepout/geometry/ball_against_box.h"
 
 namespace keepout {
@@ -87,12 +86,14 @@ class CgalIndex final : public SpatialIndex {
   Tree tree_;
 };
 
+// CGAL counts in size_t: as many as a mesh can have.
+constexpr IndexBackend backends[] = {
+    {"cgal", "AABB tree of CGAL", make_index_of<CgalIndex>, no_triangle,
+     [] { return std::string("CGAL " CGAL_VERSION_STR); }},
+};
+
 }  // namespace
 
-std::unique_ptr<SpatialIndex> make_cgal_index(std::shared_ptr<const Mesh> mesh) {
-  return std::make_unique<CgalIndex>(std::move(mesh));
-}
-
-std::string cgal_library() { return "CGAL " CGAL_VERSION_STR; }
+std::span<const IndexBackend> cgal_indices() noexcept { return backends; }
 
 }  // namespace keepout

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "embree_index.h"
-
 #include <embree3/rtcore.h>
 
 #include <array>
@@ -10,6 +8,7 @@
 #include <utility>
 
 #include "../src/centered_frame.h"
+#include "../src/library_backends.h"
 #include "keepout/error.h"
 #include "keepout/geometry/ball_against_box.h"
 
@@ -136,12 +135,14 @@ class EmbreeIndex final : public SpatialIndex {
   Owned<RTCScene> scene_;
 };
 
+// Embree numbers triangles and vertices by 32 bits, as keepout does.
+constexpr IndexBackend backends[] = {
+    {"embree", "axis-aligned boxes of Embree, in float", make_index_of<EmbreeIndex>, no_triangle,
+     [] { return std::string("Embree " RTC_VERSION_STRING); }},
+};
+
 }  // namespace
 
-std::unique_ptr<SpatialIndex> make_embree_index(std::shared_ptr<const Mesh> mesh) {
-  return std::make_unique<EmbreeIndex>(std::move(mesh));
-}
-
-std::string embree_library() { return "Embree " RTC_VERSION_STRING; }
+std::span<const IndexBackend> embree_indices() noexcept { return backends; }
 
 }  // namespace keepout

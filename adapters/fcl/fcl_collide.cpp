@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "fcl_index.h"
 #include "fcl_model.h"
 #include "keepout/geometry/ball_against_box.h"
 #include "keepout/geometry/closest_point.h"

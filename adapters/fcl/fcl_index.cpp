@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "fcl_index.h"
-
 #include <fcl/config.h>
 
 #include <string_view>
@@ -45,16 +43,27 @@ class FclIndex final : public SpatialIndex {
   FclModel<Volume> model_;
 };
 
-}  // namespace
-
-std::unique_ptr<SpatialIndex> make_fcl_obbrss_index(std::shared_ptr<const Mesh> mesh) {
+std::unique_ptr<SpatialIndex> make_obbrss(std::shared_ptr<const Mesh> mesh) {
   return std::make_unique<FclIndex<fcl::OBBRSSd>>(std::move(mesh), "fcl_obbrss");
 }
 
-std::unique_ptr<SpatialIndex> make_fcl_aabb_index(std::shared_ptr<const Mesh> mesh) {
+std::unique_ptr<SpatialIndex> make_aabb(std::shared_ptr<const Mesh> mesh) {
   return std::make_unique<FclIndex<fcl::AABBd>>(std::move(mesh), "fcl_aabb");
 }
 
-std::string fcl_library() { return "FCL " FCL_VERSION; }
+std::string library() { return "FCL " FCL_VERSION; }
+
+constexpr IndexBackend backends[] = {
+    {"fcl_obbrss", "oriented boxes of FCL", make_obbrss, fcl_most_triangles, library},
+    {"fcl_aabb", "axis-aligned boxes of FCL", make_aabb, fcl_most_triangles, library},
+    {"fcl_collide", "oriented boxes of FCL, by its own collide(): takes memory, not for real time",
+     make_fcl_collide_index, fcl_most_triangles, library, Allocation::inside,
+     "FCL's collide() also tests each triangle, and makes a list of contacts on the heap at each "
+     "query; the contact points are not asked for."},
+};
+
+}  // namespace
+
+std::span<const IndexBackend> fcl_indices() noexcept { return backends; }
 
 }  // namespace keepout

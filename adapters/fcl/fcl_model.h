@@ -11,13 +11,19 @@
 #include <utility>
 #include <vector>
 
-#include "../src/capacity.h"
+#include "../src/library_backends.h"
 #include "bounding_volumes.h"
-#include "fcl_index.h"
 #include "keepout/error.h"
 #include "keepout/mesh/mesh.h"
 
 namespace keepout {
+
+/// FCL counts the nodes by an int, as 2 n - 1 of n triangles, of which 2 n must not overflow.
+inline constexpr std::size_t fcl_most_triangles = (std::size_t{1} << 30) - 1;
+
+/// FCL's own collide() of a sphere with its tree of oriented boxes (OBB), which lists what the
+/// sphere touches. Takes memory while it answers: for comparison, not for real time.
+std::unique_ptr<SpatialIndex> make_fcl_collide_index(std::shared_ptr<const Mesh> mesh);
 
 /// FCL's tree over a mesh, each box made to hold its triangles.
 template <class Volume>

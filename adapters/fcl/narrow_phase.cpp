@@ -8,8 +8,6 @@
 #define NDEBUG
 #endif
 
-#include "narrow_phase.h"
-
 #include <fcl/config.h>
 #include <fcl/geometry/shape/convex.h>
 #include <fcl/narrowphase/detail/convexity_based_algorithm/gjk_libccd.h>
@@ -20,6 +18,7 @@
 #include <vector>
 
 #include "../src/ccd_bodies.h"
+#include "../src/library_backends.h"
 
 namespace keepout {
 namespace {
@@ -46,6 +45,10 @@ NarrowPhaseAnswer answer(double distance, const Vec3& direction, const Vec3& on_
   return {{distance - tool.radius(), direction / length, position + on_triangle}, {}};
 }
 
+// Both are asked about the tool's core, whose radius is taken off afterwards: GJK is at its best on
+// corners.
+
+/// libccd's GJK and EPA as FCL has rewritten them.
 class FclGjkLibccd final : public NarrowPhase {
  public:
   explicit FclGjkLibccd(const ConvexTool& tool) : tool_(tool) {}
@@ -90,6 +93,7 @@ class FclGjkLibccd final : public NarrowPhase {
   ConvexTool tool_;
 };
 
+/// FCL's other pair, after Bullet.
 class FclGjkIndep final : public NarrowPhase {
  public:
   explicit FclGjkIndep(const ConvexTool& tool)
@@ -135,16 +139,22 @@ class FclGjkIndep final : public NarrowPhase {
   fcl::detail::GJKSolver_indep<double> solver_;
 };
 
+template <class Phase>
+std::unique_ptr<NarrowPhase> make(const ConvexTool& tool) {
+  return std::make_unique<Phase>(tool);
+}
+
+std::string library() { return "FCL " FCL_VERSION; }
+
+constexpr NarrowPhaseBackend backends[] = {
+    {"fcl_gjk_libccd", "GJK and EPA of FCL, after libccd", make<FclGjkLibccd>, Allocation::inside,
+     library},
+    {"fcl_gjk_indep", "GJK and EPA of FCL, its own", make<FclGjkIndep>, Allocation::inside,
+     library},
+};
+
 }  // namespace
 
-std::unique_ptr<NarrowPhase> make_fcl_gjk_libccd(const ConvexTool& tool) {
-  return std::make_unique<FclGjkLibccd>(tool);
-}
-
-std::unique_ptr<NarrowPhase> make_fcl_gjk_indep(const ConvexTool& tool) {
-  return std::make_unique<FclGjkIndep>(tool);
-}
-
-std::string fcl_narrow_phase_library() { return "FCL " FCL_VERSION; }
+std::span<const NarrowPhaseBackend> fcl_narrow_phases() noexcept { return backends; }
 
 }  // namespace keepout

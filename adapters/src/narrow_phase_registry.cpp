@@ -3,36 +3,19 @@
 #include "keepout/adapters/narrow_phase_registry.h"
 
 #include <iterator>
+#include <vector>
 
-#if KEEPOUT_HAS_CCD
-#include "../ccd/narrow_phase.h"
-#endif
-#if KEEPOUT_HAS_FCL
-#include "../fcl/narrow_phase.h"
-#endif
+#include "library_backends.h"
 
 namespace keepout {
 namespace {
 
-std::unique_ptr<NarrowPhase> make_exact(const ConvexTool& tool) {
-  return std::make_unique<ExactNarrowPhase>(tool);
-}
-
-constexpr NarrowPhaseBackend backends[] = {
-    {"exact", "the engine's own kernel: proven distances, exact depths", make_exact,
-     Allocation::never, nullptr},
-#if KEEPOUT_HAS_CCD
-    {"ccd_gjk", "GJK, and EPA for the depth", make_ccd_gjk, Allocation::inside, ccd_library},
-    {"ccd_mpr", "Minkowski portal refinement: its depth is not the least", make_ccd_mpr,
-     Allocation::inside, ccd_library},
-#endif
-#if KEEPOUT_HAS_FCL
-    {"fcl_gjk_libccd", "GJK and EPA of FCL, after libccd", make_fcl_gjk_libccd, Allocation::inside,
-     fcl_narrow_phase_library},
-    {"fcl_gjk_indep", "GJK and EPA of FCL, its own", make_fcl_gjk_indep, Allocation::inside,
-     fcl_narrow_phase_library},
-#endif
-};
+constexpr NarrowPhaseBackend exact{"exact",
+                                   "the engine's own kernel: proven distances, exact depths",
+                                   [](const ConvexTool& tool) -> std::unique_ptr<NarrowPhase> {
+                                     return std::make_unique<ExactNarrowPhase>(tool);
+                                   },
+                                   Allocation::never, nullptr};
 
 // Its last entry is not one of them, for an array cannot be empty.
 constexpr AbsentPart absent[] = {
@@ -48,14 +31,27 @@ constexpr AbsentPart absent[] = {
 
 }  // namespace
 
-std::span<const NarrowPhaseBackend> narrow_phase_backends() noexcept { return backends; }
+std::span<const NarrowPhaseBackend> narrow_phase_backends() noexcept {
+  static const std::vector<NarrowPhaseBackend> all = [] {
+    std::vector<NarrowPhaseBackend> rows{exact};
+#if KEEPOUT_HAS_CCD
+    append(ccd_narrow_phases(), rows);
+#endif
+#if KEEPOUT_HAS_FCL
+    append(fcl_narrow_phases(), rows);
+#endif
+    return rows;
+  }();
+  return all;
+}
 
 std::span<const AbsentPart> absent_narrow_phase_backends() noexcept {
   return {absent, std::size(absent) - 1};
 }
 
 std::unique_ptr<NarrowPhase> make_narrow_phase(std::string_view name, const ConvexTool& tool) {
-  return entry_named(name, backends, "narrow phase", absent_narrow_phase_backends()).make(tool);
+  return entry_named(name, narrow_phase_backends(), "narrow phase", absent_narrow_phase_backends())
+      .make(tool);
 }
 
 }  // namespace keepout

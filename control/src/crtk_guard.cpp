@@ -24,11 +24,6 @@ const CrtkOptions& checked(const CrtkOptions& options) {
   return options;
 }
 
-/// From a point to a box; 0 within.
-double distance(const Vec3& point, const Box& box) noexcept {
-  return (point - point.cwiseMax(box.low).cwiseMin(box.high)).norm();
-}
-
 }  // namespace
 
 CrtkGuard::CrtkGuard(MotionConstraint guard, const Registration& registration,
@@ -41,7 +36,7 @@ CycleStatus CrtkGuard::engage(const Pose& setpoint) noexcept {
   release();
   if (!is_valid(setpoint)) return cycle_.status = CycleStatus::invalid_pose;
   const Vec3 tip = registration_.point_to_mesh(setpoint.position);
-  if (!(distance(tip, proxy_.mesh().bounds()) <= options_.farthest_start)) {
+  if (!(distance_to(proxy_.mesh().bounds(), tip) <= options_.farthest_start)) {
     return cycle_.status = CycleStatus::far_from_mesh;
   }
   cycle_.status = proxy_.engage(tip);

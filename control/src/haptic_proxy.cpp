@@ -3,12 +3,33 @@
 #include "keepout/control/haptic_proxy.h"
 
 #include <algorithm>
+#include <array>
+#include <string>
 #include <utility>
 
 #include "keepout/error.h"
 
 namespace keepout {
 namespace {
+
+/// In the order of CycleStatus: name and reason.
+constexpr std::array<std::array<std::string_view, 2>, 8> outcomes{{
+    {"guarded", "the proxy followed as far as the mesh allows"},
+    {"not_engaged", "not engaged; call engage() with where the robot is"},
+    {"invalid_pose",
+     "a pose is not finite, or its rotation is none; check the message that it came from"},
+    {"too_far", "the goal is too far from the proxy; check its unit, or engage anew after a jump"},
+    {"stale", "no goal came for too long; check the connection and the rate of the sender"},
+    {"lagging", "the robot is not where it was sent; wait for it, or look at what holds it"},
+    {"far_from_mesh",
+     "the tip is implausibly far from the mesh; check the registration and its units"},
+    {"stopped", "the engine refused the step; see its status"},
+}};
+
+std::string_view text_of(CycleStatus status, std::size_t column) noexcept {
+  const auto at = static_cast<std::size_t>(status);
+  return at < outcomes.size() ? outcomes[at][column] : "unknown";
+}
 
 constexpr double longest_length = 1e30;  // as for the engine's lengths
 
@@ -36,6 +57,10 @@ const HapticOptions& checked(const HapticOptions& options) {
 }
 
 }  // namespace
+
+std::string_view name(CycleStatus status) noexcept { return text_of(status, 0); }
+
+std::string_view reason(CycleStatus status) noexcept { return text_of(status, 1); }
 
 HapticProxy::HapticProxy(MotionConstraint guard, const HapticOptions& options)
     : guard_(std::move(guard)),

@@ -38,33 +38,9 @@ Schedule schedule_of(NloptMethod method) noexcept {
   return {NLOPT_LD_MMA, 1e-9, 300};
 }
 
-NloptClaim claim_of(nlopt_result result) noexcept {
-  switch (result) {
-    case NLOPT_SUCCESS:
-      return NloptClaim::success;
-    case NLOPT_STOPVAL_REACHED:
-      return NloptClaim::stopval_reached;
-    case NLOPT_FTOL_REACHED:
-      return NloptClaim::ftol_reached;
-    case NLOPT_XTOL_REACHED:
-      return NloptClaim::xtol_reached;
-    case NLOPT_MAXEVAL_REACHED:
-      return NloptClaim::maxeval_reached;
-    case NLOPT_MAXTIME_REACHED:
-      return NloptClaim::maxtime_reached;
-    case NLOPT_FAILURE:
-      return NloptClaim::failure;
-    case NLOPT_INVALID_ARGS:
-      return NloptClaim::invalid_args;
-    case NLOPT_OUT_OF_MEMORY:
-      return NloptClaim::out_of_memory;
-    case NLOPT_ROUNDOFF_LIMITED:
-      return NloptClaim::roundoff_limited;
-    case NLOPT_FORCED_STOP:
-      return NloptClaim::forced_stop;
-    default:
-      return NloptClaim::unknown;
-  }
+std::string_view claim_of(nlopt_result result) noexcept {
+  const char* const text = nlopt_result_to_string(result);
+  return text != nullptr ? text : "unknown";
 }
 
 /// What NLopt calls back with. Counts for itself: not every loop of NLopt minds its own limit, nor
@@ -121,9 +97,9 @@ Attempt minimize(NloptMethod method, const NearestPoint& problem) {
   const auto m = static_cast<unsigned>(problem.normals.rows());
   const Schedule schedule = schedule_of(method);
   const Optimizer optimizer(nlopt_create(schedule.algorithm, n));
-  Attempt attempt{.z = start_of(problem)};
+  Attempt attempt{.claim = {}, .z = start_of(problem)};
   if (!optimizer) {
-    attempt.claim = NloptClaim::out_of_memory;
+    attempt.claim = claim_of(NLOPT_OUT_OF_MEMORY);
     return attempt;
   }
   nlopt_opt opt = optimizer.get();
@@ -142,7 +118,7 @@ Attempt minimize(NloptMethod method, const NearestPoint& problem) {
                                                   tolerances.data()) == NLOPT_SUCCESS;
   }
   if (!set) {
-    attempt.claim = NloptClaim::invalid_args;
+    attempt.claim = claim_of(NLOPT_INVALID_ARGS);
     return attempt;
   }
   double least = 0;

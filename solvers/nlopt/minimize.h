@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <string_view>
+
 #include "keepout/solvers/nlopt_solver.h"
 #include "nearest_point.h"
 
@@ -9,7 +11,7 @@ namespace keepout::nlopt {
 
 /// What NLopt makes of a problem; nothing of it is checked.
 struct Attempt {
-  NloptClaim claim = NloptClaim::unknown;
+  std::string_view claim;  // as NLopt spells it
   Eigen::VectorXd z;
   int evaluations = 0;
 };

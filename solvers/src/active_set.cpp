@@ -3,13 +3,38 @@
 #include "keepout/solvers/active_set.h"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "active_set_method.h"
 #include "point_method.h"
-#include "problem_checks.h"
 
 namespace keepout {
+
+namespace {
+
+bool shapes_agree(const StepProblem& problem) noexcept {
+  const Eigen::Index n = problem.jacobian.cols();
+  return n >= 1 && problem.desired.size() == problem.jacobian.rows() &&
+         problem.bounds.size() == problem.rows.rows() &&
+         (problem.rows.cols() == n || problem.rows.rows() == 0) &&
+         (problem.planes.empty() ||
+          (problem.jacobian.rows() == 3 &&
+           problem.planes.size() <= static_cast<std::size_t>(problem.rows.rows())));
+}
+
+/// J, d and damping are numbers, and not too large to calculate with.
+bool cost_in_range(const StepProblem& problem) noexcept {
+  // Written so that NaN fails.
+  const auto in_range = [](double x) { return std::abs(x) <= active_set::largest; };
+  const auto all_in_range = [&](const auto& numbers) {
+    return std::all_of(numbers.data(), numbers.data() + numbers.size(), in_range);
+  };
+  return all_in_range(problem.jacobian) && all_in_range(problem.desired) &&
+         in_range(problem.damping) && problem.damping >= 0;
+}
+
+}  // namespace
 
 using active_set::Method;
 using active_set::PointMethod;

@@ -12,10 +12,10 @@
 #include <string>
 #include <utility>
 
-#include "capacity.h"
 #include "keepout/adapters/all_indices.h"
 #include "keepout/error.h"
 #include "keepout/fixtures/shapes.h"
+#include "library_backends.h"
 
 namespace keepout {
 namespace {

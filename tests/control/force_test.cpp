@@ -7,9 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "keepout/control/energy_account.h"
-#include "keepout/control/passivity.h"
-#include "keepout/control/spring_damper.h"
+#include "keepout/control/haptic_force.h"
 #include "keepout/error.h"
 
 namespace keepout {

@@ -3,7 +3,6 @@
 // The judge of NLopt's answers, given answers that are wrong.
 #include "answer_check.h"
 
-#include "contradiction.h"
 #include "keepout/solvers/active_set.h"
 #include "solvers/solver_contract.h"
 #include "trials.h"
@@ -18,19 +17,14 @@ struct Posed {
   Posed(Task kind, Planes planes, std::uint64_t seed) : random(seed) {
     const int n = random.integer(1, 7);
     problem = make_problem(kind, planes, n, random.integer(0, 60), random);
-    ActiveSet exact;
     exact.reserve(n, 60);
-    Solution solution;
+    judge.reserve(n, 60);
     EXPECT_EQ(exact.solve(problem.view(), solution), SolveStatus::optimal);
     best = vector(solution.u);
   }
 
-  nlopt::CheckedAnswer check(const Eigen::VectorXd& u) const {
-    const StepProblem view = problem.view();
-    nlopt::Task task;
-    task.reserve(static_cast<int>(best.size()));
-    EXPECT_TRUE(task.read(view));
-    return nlopt::check_answer(u, view, task, nlopt::NearestPoint(view, task), accuracy);
+  NloptFinding check(const Eigen::VectorXd& u) {
+    return judge.judge(u, problem.view(), solution, accuracy, answer);
   }
 
   /// In task space.
@@ -40,15 +34,19 @@ struct Posed {
 
   Random random;
   Problem problem;
+  ActiveSet exact;
+  Solution solution;
   Eigen::VectorXd best;
+  nlopt::AnswerCheck judge;
+  Solution answer;
 };
 
 TEST(AnswerCheck, AcceptsTheOptimum) {
   for (std::uint64_t seed = 0; seed < 500; ++seed) {
-    const Posed posed(Task::square, Planes::touching, seed);
-    const nlopt::CheckedAnswer answer = posed.check(posed.best);
-    ASSERT_EQ(answer.finding, NloptFinding::optimal) << "seed " << seed;
-    EXPECT_LE((answer.u - posed.best).norm(), 1e-9 * posed.best.norm()) << "seed " << seed;
+    Posed posed(Task::square, Planes::touching, seed);
+    ASSERT_EQ(posed.check(posed.best), NloptFinding::optimal) << "seed " << seed;
+    EXPECT_LE((vector(posed.answer.u) - posed.best).norm(), 1e-9 * posed.best.norm())
+        << "seed " << seed;
   }
 }
 
@@ -60,18 +58,16 @@ TEST(AnswerCheck, AcceptsNothingThatIsFartherFromTheOptimumThanItSays) {
                 seed);
     const double far = posed.random.log_uniform(1e-12, 10) * (1e-3 + posed.best.norm());
     const Eigen::VectorXd lie = posed.best + far * posed.random.direction(posed.best.size());
-    const nlopt::CheckedAnswer answer = posed.check(lie);
-    if (answer.finding != NloptFinding::optimal) {
+    if (posed.check(lie) != NloptFinding::optimal) {
       ++rejected;
       continue;
     }
     ++accepted;
     const double reach = std::max(posed.length(posed.best), posed.problem.desired.norm());
-    EXPECT_LE(posed.length(answer.u - posed.best), 1.01 * accuracy * reach) << "seed " << seed;
-    const Solution solution{.u = {answer.u.data(), static_cast<std::size_t>(answer.u.size())},
-                            .multipliers = answer.multipliers,
-                            .active = answer.active};
-    EXPECT_LE(kkt_residual(posed.problem.view(), solution).worst(), accuracy) << "seed " << seed;
+    const double off = posed.length(vector(posed.answer.u) - posed.best);
+    EXPECT_LE(off, 1.01 * accuracy * reach) << "seed " << seed;
+    EXPECT_LE(kkt_residual(posed.problem.view(), posed.answer).worst(), accuracy)
+        << "seed " << seed;
   }
   EXPECT_GT(accepted, trials(1200));
   EXPECT_GT(rejected, trials(1200));
@@ -82,14 +78,14 @@ TEST(AnswerCheck, SaysWhatIsWrong) {
   rows << 1, 0;
   const Problem problem =
       point_problem(Eigen::Vector2d(-1, 0), rows, Eigen::VectorXd::Constant(1, 1));
-  const StepProblem view = problem.view();
-  nlopt::Task task;
-  task.reserve(2);
-  ASSERT_TRUE(task.read(view));
+  ActiveSet exact;
+  exact.reserve(2, 1);
+  Solution best, answer;
+  ASSERT_EQ(exact.solve(problem.view(), best), SolveStatus::optimal);
+  nlopt::AnswerCheck judge;
+  judge.reserve(2, 1);
   const auto finding = [&](double x, double y) {
-    return nlopt::check_answer(Eigen::Vector2d(x, y), view, task, nlopt::NearestPoint(view, task),
-                               accuracy)
-        .finding;
+    return judge.judge(Eigen::Vector2d(x, y), problem.view(), best, accuracy, answer);
   };
   EXPECT_EQ(finding(1, 0), NloptFinding::optimal);
   EXPECT_EQ(finding(1 + 1e-9, 1e-9), NloptFinding::optimal);
@@ -98,17 +94,6 @@ TEST(AnswerCheck, SaysWhatIsWrong) {
   EXPECT_NE(finding(-1, 0), NloptFinding::optimal);
   EXPECT_EQ(finding(nan, 0), NloptFinding::not_finite);
   EXPECT_EQ(finding(1, infinity), NloptFinding::not_finite);
-}
-
-TEST(Contradiction, IsNeverSeenWhereThereIsAFeasiblePoint) {
-  for (std::uint64_t seed = 0; seed < 20000; ++seed) {
-    const Posed posed(tasks[seed % tasks.size()],
-                      plane_kinds[seed / tasks.size() % plane_kinds.size()], seed + 1000000);
-    const StepProblem view = posed.problem.view();
-    std::vector<std::uint32_t> rows;
-    for (std::uint32_t i = 0; i < view.rows.rows(); ++i) rows.push_back(i);
-    EXPECT_FALSE(nlopt::contradictory(view, rows, posed.best.norm())) << "seed " << seed;
-  }
 }
 
 }  // namespace

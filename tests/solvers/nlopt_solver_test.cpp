@@ -22,7 +22,7 @@ TEST(NloptSolver, ReportsWhatNloptClaimsAndWhatWasFound) {
   Solution solution;
   const Problem problem = wall();
   ASSERT_EQ(solver.solve(problem.view(), solution), SolveStatus::optimal);
-  EXPECT_NE(solver.last_report().claim, NloptClaim::not_asked);
+  EXPECT_NE(solver.last_report().claim, "not asked");
   EXPECT_EQ(solver.last_report().finding, NloptFinding::optimal);
   EXPECT_GT(solution.iterations, 0);
 }
@@ -34,7 +34,7 @@ TEST(NloptSolver, DoesNotAskNloptAboutWhatItRefuses) {
   Problem problem = wall();
   problem.desired[0] = nan;
   ASSERT_EQ(solver.solve(problem.view(), solution), SolveStatus::invalid_input);
-  EXPECT_EQ(solver.last_report().claim, NloptClaim::not_asked);
+  EXPECT_EQ(solver.last_report().claim, "not asked");
   EXPECT_EQ(solver.last_report().finding, NloptFinding::refused);
   EXPECT_EQ(solution.iterations, 0);
 }
@@ -92,11 +92,8 @@ TEST(NloptSolver, AgreesWithActiveSetInUnitsOfAnySize) {
   }
 }
 
-TEST(NloptSolver, EveryClaimAndFindingHasANameOfItsOwn) {
+TEST(NloptSolver, EveryFindingHasANameOfItsOwn) {
   std::vector<std::string_view> names;
-  for (int i = 0; i <= static_cast<int>(NloptClaim::unknown); ++i) {
-    names.push_back(name(static_cast<NloptClaim>(i)));
-  }
   for (int i = 0; i <= static_cast<int>(NloptFinding::infeasible); ++i) {
     names.push_back(name(static_cast<NloptFinding>(i)));
   }

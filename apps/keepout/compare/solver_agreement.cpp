@@ -78,7 +78,7 @@ std::string outcome(const Solver& solver, SolveStatus status) {
 #if KEEPOUT_HAS_NLOPT
   if (const auto* nlopt = dynamic_cast<const NloptSolver*>(&solver)) {
     const NloptReport report = nlopt->last_report();
-    return std::string(name(report.claim)) + " -> " + std::string(name(report.finding));
+    return std::string(report.claim) + " -> " + std::string(name(report.finding));
   }
 #else
   static_cast<void>(solver);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "keepout/geometry/narrow_phase.h"
 #include "nearest_points.h"
 
 namespace keepout {
@@ -118,6 +119,16 @@ Separation separation(const ConvexTool& tool, const Vec3& position,
   const NearestPoints parted = nearest_points(tool.points(), moved(local, -way));
   return {std::min(best.separation(), 0.0) - tool.radius(), best.normal(),
           position + (parted.on_triangle + way)};
+}
+
+bool is_in_range(const Vec3& position, const Triangle& triangle) noexcept {
+  const auto within = [](const Vec3& v) { return (v.array().abs() <= 1e30).all(); };
+  return within(position) && within(triangle[0]) && within(triangle[1]) && within(triangle[2]);
+}
+
+NarrowPhaseAnswer ExactNarrowPhase::separation(const Vec3& position,
+                                               const Triangle& triangle) noexcept {
+  return {keepout::separation(tool_, position, triangle), {}};
 }
 
 }  // namespace keepout

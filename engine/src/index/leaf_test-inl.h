@@ -12,7 +12,6 @@
 #endif
 
 #include <hwy/cache_control.h>
-#include <hwy/highway.h>
 
 #include <algorithm>
 #include <bit>
@@ -21,63 +20,33 @@
 #include <span>
 
 #include "../lane_packing-inl.h"
+#include "../lanes-inl.h"
 #include "ball_screen.h"
 #include "keepout/buffer.h"
 #include "keepout/geometry/closest_point.h"
 #include "keepout/index/leaf_block.h"
-#include "keepout/index/query_counts.h"
+#include "keepout/index/spatial_index.h"
 #include "keepout/index/triangle_blocks.h"
 #include "keepout/mesh/mesh.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace keepout::HWY_NAMESPACE {
 
-namespace hn = hwy::HWY_NAMESPACE;
+using Ids = hn::RebindToUnsigned<Float>;
 
-using Floats = hn::CappedTag<float, LeafBlock::lanes>;
-using Ids = hn::RebindToUnsigned<Floats>;
-using Lanes = hn::Vec<Floats>;
-using Mask = hn::Mask<Floats>;
-
-struct Point {
-  Lanes x, y, z;
-};
-
-HWY_INLINE Point operator+(const Point& a, const Point& b) {
-  return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
-}
-HWY_INLINE Point operator-(const Point& a, const Point& b) {
-  return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
-}
-HWY_INLINE Point operator*(const Point& a, Lanes s) {
-  return {hn::Mul(a.x, s), hn::Mul(a.y, s), hn::Mul(a.z, s)};
-}
-HWY_INLINE Lanes dot(const Point& a, const Point& b) {
-  return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
-}
-HWY_INLINE Point choose(Mask first, const Point& a, const Point& b) {
-  return {hn::IfThenElse(first, a.x, b.x), hn::IfThenElse(first, a.y, b.y),
-          hn::IfThenElse(first, a.z, b.z)};
-}
-HWY_INLINE Lanes least(Lanes a, Lanes b, Lanes c) { return hn::Min(hn::Min(a, b), c); }
-HWY_INLINE Lanes most(Lanes a, Lanes b, Lanes c) { return hn::Max(hn::Max(a, b), c); }
-
-HWY_INLINE std::uint32_t bits_of(Mask mask) {
-  alignas(8) std::uint8_t bytes[8] = {};
-  hn::StoreMaskBits(Floats(), mask, bytes);
-  return bytes[0] | std::uint32_t{bytes[1]} << 8;
-}
+HWY_INLINE V least(V a, V b, V c) { return hn::Min(hn::Min(a, b), c); }
+HWY_INLINE V most(V a, V b, V c) { return hn::Max(hn::Max(a, b), c); }
 
 /// The corners of some triangles, relative to the centre of the ball.
 struct Corners3 {
-  Point a, b, c;
+  Vector a, b, c;
 };
 
-HWY_INLINE Point relative_to_center(const float (&corner)[3][LeafBlock::lanes], std::size_t first,
-                                    const BallScreen& ball) {
-  const Floats d;
+HWY_INLINE Vector relative_to_center(const float (&corner)[3][LeafBlock::lanes], std::size_t first,
+                                     const BallScreen& ball) {
+  const Float d;
   const auto part = [&](int axis) HWY_ATTR {
-    const Lanes from_high =
+    const V from_high =
         hn::Sub(hn::Load(d, corner[axis] + first), hn::Set(d, ball.high_part[axis]));
     return hn::Sub(from_high, hn::Set(d, ball.low_part[axis]));
   };
@@ -85,89 +54,88 @@ HWY_INLINE Point relative_to_center(const float (&corner)[3][LeafBlock::lanes], 
 }
 
 /// The point of each triangle nearest to the origin, give or take what leaves it in the triangle.
-HWY_INLINE Point nearest_point(const Corners3& t) {
-  const Floats d;
-  const Lanes zero = hn::Zero(d);
-  const Lanes one = hn::Set(d, 1.0f);
-  const Lanes tiny = hn::Set(d, BallScreen::least2);
-  const auto on_edge = [&](const Point& from, const Point& along, Lanes forward, Lanes length2)
-                           HWY_ATTR {
-                             const Lanes share = hn::Div(forward, hn::Max(length2, tiny));
-                             return from + along * hn::Min(hn::Max(share, zero), one);
-                           };
-  const Point ab = t.b - t.a;
-  const Point ac = t.c - t.a;
-  const Point bc = t.c - t.b;
-  const Lanes ab2 = dot(ab, ab);
-  const Lanes ac2 = dot(ac, ac);
-  const Lanes to_b = hn::Neg(dot(ab, t.a));
-  const Lanes to_c = hn::Neg(dot(ac, t.a));
+HWY_INLINE Vector nearest_point(const Corners3& t) {
+  const Float d;
+  const V zero = hn::Zero(d);
+  const V one = hn::Set(d, 1.0f);
+  const V tiny = hn::Set(d, BallScreen::least2);
+  const auto on_edge = [&](const Vector& from, const Vector& along, V forward, V length2) HWY_ATTR {
+    const V share = hn::Div(forward, hn::Max(length2, tiny));
+    return from + hn::Min(hn::Max(share, zero), one) * along;
+  };
+  const Vector ab = t.b - t.a;
+  const Vector ac = t.c - t.a;
+  const Vector bc = t.c - t.b;
+  const V ab2 = dot(ab, ab);
+  const V ac2 = dot(ac, ac);
+  const V to_b = hn::Neg(dot(ab, t.a));
+  const V to_c = hn::Neg(dot(ac, t.a));
 
-  Point best = on_edge(t.a, ab, to_b, ab2);
-  Lanes best2 = dot(best, best);
-  const auto offer = [&](const Point& other) HWY_ATTR {
-    const Lanes other2 = dot(other, other);
-    best = choose(hn::Lt(other2, best2), other, best);
+  Vector best = on_edge(t.a, ab, to_b, ab2);
+  V best2 = dot(best, best);
+  const auto offer = [&](const Vector& other) HWY_ATTR {
+    const V other2 = dot(other, other);
+    best = select(hn::Lt(other2, best2), other, best);
     best2 = hn::Min(other2, best2);
   };
   offer(on_edge(t.a, ac, to_c, ac2));
   offer(on_edge(t.b, bc, hn::Neg(dot(bc, t.b)), dot(bc, bc)));
 
   // In the middle, where both barycentric coordinates and their rest are positive.
-  const Lanes across = dot(ab, ac);
-  const Lanes area2 = hn::Sub(hn::Mul(ab2, ac2), hn::Mul(across, across));
-  const Lanes at_b = hn::Sub(hn::Mul(ac2, to_b), hn::Mul(across, to_c));
-  const Lanes at_c = hn::Sub(hn::Mul(ab2, to_c), hn::Mul(across, to_b));
-  const Mask inside =
+  const V across = dot(ab, ac);
+  const V area2 = hn::Sub(hn::Mul(ab2, ac2), hn::Mul(across, across));
+  const V at_b = hn::Sub(hn::Mul(ac2, to_b), hn::Mul(across, to_c));
+  const V at_c = hn::Sub(hn::Mul(ab2, to_c), hn::Mul(across, to_b));
+  const M inside =
       hn::And(hn::And(hn::Gt(at_b, zero), hn::Gt(at_c, zero)), hn::Lt(hn::Add(at_b, at_c), area2));
-  const Lanes scale = hn::Div(one, hn::Max(area2, tiny));
-  const Point middle = t.a + ab * hn::Mul(at_b, scale) + ac * hn::Mul(at_c, scale);
-  return choose(inside, middle, best);
+  const V scale = hn::Div(one, hn::Max(area2, tiny));
+  const Vector middle = t.a + hn::Mul(at_b, scale) * ab + hn::Mul(at_c, scale) * ac;
+  return select(inside, middle, best);
 }
 
 /// Whether no point of each triangle is within the ball: by the plane through the corner nearest
 /// along `direction`, across it.
-HWY_INLINE Mask surely_out(const Corners3& t, const Point& direction, Lanes outside2_and_band) {
-  const Floats d;
-  const Lanes along = least(dot(direction, t.a), dot(direction, t.b), dot(direction, t.c));
-  const Lanes length2 = dot(direction, direction);
-  const Lanes needed = hn::Add(hn::Mul(length2, outside2_and_band), hn::Set(d, 1e-30f));
+HWY_INLINE M surely_out(const Corners3& t, const Vector& direction, V outside2_and_band) {
+  const Float d;
+  const V along = least(dot(direction, t.a), dot(direction, t.b), dot(direction, t.c));
+  const V length2 = dot(direction, direction);
+  const V needed = hn::Add(hn::Mul(length2, outside2_and_band), hn::Set(d, 1e-30f));
   return hn::And(hn::And(hn::Gt(along, hn::Zero(d)), hn::Gt(hn::Mul(along, along), needed)),
                  hn::Gt(length2, hn::Set(d, 1e-25f)));
 }
 
 /// Of the triangles from lane `first` on, those that surely touch the ball, and those of which the
 /// exact kernel has to say.
-HWY_INLINE void compare(const LeafBlock& leaf, std::size_t first, const BallScreen& ball, Mask& in,
-                        Mask& in_doubt) {
-  const Floats d;
+HWY_INLINE void compare(const LeafBlock& leaf, std::size_t first, const BallScreen& ball, M& in,
+                        M& in_doubt) {
+  const Float d;
   const Corners3 t{relative_to_center(leaf.corner[0], first, ball),
                    relative_to_center(leaf.corner[1], first, ball),
                    relative_to_center(leaf.corner[2], first, ball)};
-  const Lanes a2 = dot(t.a, t.a);
-  const Lanes b2 = dot(t.b, t.b);
-  const Lanes c2 = dot(t.c, t.c);
-  const Lanes farthest2 = most(a2, b2, c2);
-  const Lanes band = hn::Set(d, BallScreen::band);
-  const Lanes inside2 = hn::Set(d, ball.inside2);
-  const Lanes outside2 = hn::Set(d, ball.outside2);
-  const Lanes spread = hn::Mul(band, hn::Add(farthest2, outside2));
-  const Lanes beyond2 = hn::Add(outside2, spread);
+  const V a2 = dot(t.a, t.a);
+  const V b2 = dot(t.b, t.b);
+  const V c2 = dot(t.c, t.c);
+  const V farthest2 = most(a2, b2, c2);
+  const V band = hn::Set(d, BallScreen::band);
+  const V inside2 = hn::Set(d, ball.inside2);
+  const V outside2 = hn::Set(d, ball.outside2);
+  const V spread = hn::Mul(band, hn::Add(farthest2, outside2));
+  const V beyond2 = hn::Add(outside2, spread);
 
   // A corner within the ball, or all of them beyond a plane before it, settle nearly all.
   in = hn::Le(hn::Add(least(a2, b2, c2), spread), inside2);
-  const Mask out = surely_out(t, t.a + t.b + t.c, beyond2);
+  const M out = surely_out(t, t.a + t.b + t.c, beyond2);
   in_doubt = hn::Not(hn::Or(in, out));
   if (hn::AllFalse(d, in_doubt)) return;
 
-  const Point nearest = nearest_point(t);
-  const Mask near = hn::Le(hn::Add(dot(nearest, nearest), spread), inside2);
+  const Vector nearest = nearest_point(t);
+  const M near = hn::Le(hn::Add(dot(nearest, nearest), spread), inside2);
   in = hn::Or(in, near);
   in_doubt = hn::AndNot(hn::Or(in, surely_out(t, nearest, beyond2)), in_doubt);
 }
 
 /// Appends those of a block's ids whose lanes are chosen.
-HWY_INLINE void append(hn::Vec<Ids> source, Mask chosen, TriangleBuffer& out) {
+HWY_INLINE void append(hn::Vec<Ids> source, M chosen, TriangleBuffer& out) {
   const Ids ids;
   const auto used = hn::Ne(source, hn::Set(ids, no_triangle));
   const auto taken = hn::And(hn::RebindMask(ids, chosen), used);
@@ -187,7 +155,7 @@ HWY_INLINE void append(hn::Vec<Ids> source, Mask chosen, TriangleBuffer& out) {
 
 /// Appends all triangles of a leaf.
 HWY_INLINE void append_all(const LeafBlock& leaf, TriangleBuffer& out) {
-  const Floats d;
+  const Float d;
   const Ids ids;
   const bool is_full = leaf.is_used(LeafBlock::lanes - 1);
   if (HWY_LIKELY(is_full && out.capacity() - out.size() >= LeafBlock::lanes)) {
@@ -198,7 +166,7 @@ HWY_INLINE void append_all(const LeafBlock& leaf, TriangleBuffer& out) {
     out.grow(LeafBlock::lanes);
     return;
   }
-  const Mask all = hn::Eq(hn::Zero(d), hn::Zero(d));
+  const M all = hn::Eq(hn::Zero(d), hn::Zero(d));
   for (std::size_t first = 0; first < LeafBlock::lanes; first += hn::Lanes(d)) {
     append(hn::Load(ids, leaf.source + first), all, out);
   }
@@ -208,13 +176,13 @@ HWY_INLINE void append_all(const LeafBlock& leaf, TriangleBuffer& out) {
 template <bool counting>
 HWY_INLINE void append_touching(const LeafBlock& leaf, const BallScreen& ball, const Mesh& mesh,
                                 TriangleBuffer& out, QueryCounts* counts) {
-  const Floats d;
+  const Float d;
   std::uint32_t doubts = 0;
   for (std::size_t first = 0; first < LeafBlock::lanes; first += hn::Lanes(d)) {
-    Mask in, in_doubt;
+    M in, in_doubt;
     compare(leaf, first, ball, in, in_doubt);
     append(hn::Load(Ids(), leaf.source + first), in, out);
-    if (HWY_UNLIKELY(!hn::AllFalse(d, in_doubt))) doubts |= bits_of(in_doubt) << first;
+    if (HWY_UNLIKELY(!hn::AllFalse(d, in_doubt))) doubts |= bits(d, in_doubt, first);
   }
   if constexpr (counting) ++counts->blocks;
   for (; HWY_UNLIKELY(doubts != 0); doubts &= doubts - 1) {

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "median_split.h"
 
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+
 #include "../parallel.h"
 
 namespace keepout {
@@ -19,6 +22,47 @@ BlockVector<Center> centers_of(const Mesh& mesh, unsigned threads) {
     }
   });
   return centers;
+}
+
+Spread spread_of(std::span<const Center> centers) noexcept {
+  const std::array<float, 3> from = centers.front().position;
+  double x = 0, y = 0, z = 0, xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
+  for (const Center& center : centers) {
+    const double dx = static_cast<double>(center.position[0]) - static_cast<double>(from[0]);
+    const double dy = static_cast<double>(center.position[1]) - static_cast<double>(from[1]);
+    const double dz = static_cast<double>(center.position[2]) - static_cast<double>(from[2]);
+    x += dx;
+    y += dy;
+    z += dz;
+    xx += dx * dx;
+    xy += dx * dy;
+    xz += dx * dz;
+    yy += dy * dy;
+    yz += dy * dz;
+    zz += dz * dz;
+  }
+  const auto count = static_cast<double>(centers.size());
+  const Vec3 mean = Vec3(x, y, z) / count;
+  Eigen::Matrix3d about_first;
+  about_first << xx, xy, xz, xy, yy, yz, xz, yz, zz;
+  return {mean + Vec3(static_cast<double>(from[0]), static_cast<double>(from[1]),
+                      static_cast<double>(from[2])),
+          about_first - count * mean * mean.transpose()};
+}
+
+Eigen::Matrix3d principal_axes(const Eigen::Matrix3d& covariance) noexcept {
+  Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
+  solver.computeDirect(covariance);
+  if (!solver.eigenvectors().allFinite()) return axes;
+  const Vec3 first = solver.eigenvectors().col(2).normalized();
+  if (!(std::abs(first.squaredNorm() - 1.0) < 1e-6)) return axes;
+  Vec3 second = first.cross(solver.eigenvectors().col(1)).cross(first).normalized();
+  if (!(std::abs(second.squaredNorm() - 1.0) < 1e-6)) second = first.unitOrthogonal();
+  axes.row(0) = first;
+  axes.row(1) = second;
+  axes.row(2) = first.cross(second);
+  return axes;
 }
 
 }  // namespace keepout

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -23,6 +24,20 @@ struct Center {
 
 /// The middle of each triangle's bounds, in the order of the triangles.
 BlockVector<Center> centers_of(const Mesh& mesh, unsigned threads);
+
+/// The middle of the triangles, from the middle of the mesh, and how they spread.
+struct Spread {
+  Vec3 mean;                   // [length]
+  Eigen::Matrix3d covariance;  // times their number [length^2]
+};
+
+/// Of one triangle or more. In one pass, from the first of them: what is subtracted in the end is
+/// of the size of the rest.
+Spread spread_of(std::span<const Center> centers) noexcept;
+
+/// Orthonormal rows, the direction of largest spread first. The eigenvectors only choose the frame;
+/// the cross products make it orthonormal to rounding, which the box tests rely on.
+Eigen::Matrix3d principal_axes(const Eigen::Matrix3d& covariance) noexcept;
 
 /// Moves the centers to `to`, the `middle` ones with the smallest keys to its front. Ties go by
 /// triangle, so that each half is a set that nothing but the mesh decides.

@@ -9,10 +9,57 @@
 #include "keepout/error.h"
 #include "leaf_fill.h"
 #include "median_split.h"
-#include "oriented_extent.h"
-#include "spread.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "index/pd_tree.cpp"
+#include <hwy/foreach_target.h>
+// After it, for it tells for whom to compile.
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace keepout::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// How far leaves extend along three directions, from `node.center`: low <= 0 <= high, to the
+/// rounding of floats. [length]
+void extent_of(const PdNode& node, std::span<const LeafBlock> leaves, float (&least)[3],
+               float (&most)[3]) {
+  const hn::CappedTag<float, LeafBlock::lanes> d;
+  using Lanes = hn::Vec<decltype(d)>;
+  Lanes low[3] = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+  Lanes high[3] = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+  for (const LeafBlock& leaf : leaves) {
+    for (const auto& corner : leaf.corner) {
+      for (std::size_t first = 0; first < LeafBlock::lanes; first += hn::Lanes(d)) {
+        const Lanes x = hn::Sub(hn::Load(d, corner[0] + first), hn::Set(d, node.center[0]));
+        const Lanes y = hn::Sub(hn::Load(d, corner[1] + first), hn::Set(d, node.center[1]));
+        const Lanes z = hn::Sub(hn::Load(d, corner[2] + first), hn::Set(d, node.center[2]));
+        for (std::size_t k = 0; k < 3; ++k) {
+          const Lanes along = hn::Add(hn::Add(hn::Mul(x, hn::Set(d, node.across[0][k])),
+                                              hn::Mul(y, hn::Set(d, node.across[1][k]))),
+                                      hn::Mul(z, hn::Set(d, node.across[2][k])));
+          low[k] = hn::Min(low[k], along);
+          high[k] = hn::Max(high[k], along);
+        }
+      }
+    }
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    least[k] = hn::GetLane(hn::MinOfLanes(d, low[k]));
+    most[k] = hn::GetLane(hn::MaxOfLanes(d, high[k]));
+  }
+}
+
+}  // namespace keepout::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
 
 namespace keepout {
+
+HWY_EXPORT(extent_of);
+
 namespace {
 
 constexpr std::size_t worth_a_thread = 4096;  // triangles
@@ -95,26 +142,26 @@ class Builder {
   void enclose(std::size_t self, std::size_t first_leaf, unsigned threads) {
     PdNode& node = nodes_[self];
     const std::span inside = leaves_.subspan(first_leaf, node.leaves);
-    const OrientedExtent extent = oriented_extent(node, inside);
+    float low[3], high[3];
+    HWY_DYNAMIC_DISPATCH(extent_of)(node, inside, low, high);
     // The middle of the extents is the better centre, to the rounding of its coordinates; how much
     // that shifts the extents is known exactly.
     Vec3 shift = Vec3::Zero();  // along the mesh's axes, then along the directions
     for (int axis = 0; axis < 3; ++axis) {
       double to_middle = 0.0;
       for (int k = 0; k < 3; ++k) {
-        to_middle +=
-            0.5 * (double{extent.low[k]} + double{extent.high[k]}) * double{node.across[axis][k]};
+        to_middle += 0.5 * (double{low[k]} + double{high[k]}) * double{node.across[axis][k]};
       }
       const auto moved = static_cast<float>(double{node.center[axis]} + to_middle);
       shift[axis] = double{moved} - double{node.center[axis]};
       node.center[axis] = moved;
     }
     double reach = 0.0;
-    for (int k = 0; k < 3; ++k) reach += std::max(double{extent.high[k]}, -double{extent.low[k]});
+    for (int k = 0; k < 3; ++k) reach += std::max(double{high[k]}, -double{low[k]});
     for (int k = 0; k < 3; ++k) {
       double along = 0.0;
       for (int axis = 0; axis < 3; ++axis) along += shift[axis] * double{node.across[axis][k]};
-      const double half = std::max(double{extent.high[k]} - along, along - double{extent.low[k]});
+      const double half = std::max(double{high[k]} - along, along - double{low[k]});
       node.half[k] = static_cast<float>(half + outward * reach + 2.0 * coordinate_error_) + 1e-36f;
     }
     if (node.leaves == 1) return;
@@ -154,3 +201,5 @@ std::size_t PdTree::memory() const noexcept {
 }
 
 }  // namespace keepout
+
+#endif  // HWY_ONCE

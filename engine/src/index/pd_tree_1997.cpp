@@ -13,7 +13,6 @@
 #include "keepout/geometry/ball_against_box.h"
 #include "keepout/geometry/closest_point.h"
 #include "median_split.h"
-#include "spread.h"
 
 namespace keepout {
 

@@ -13,10 +13,34 @@
 #include <hwy/highway.h>
 
 #include "leaf_test-inl.h"
-#include "oriented_screen.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace keepout::HWY_NAMESPACE {
+
+/// A ball as floats see it beside oriented boxes (PdNode).
+///
+/// The place of the centre c in a box's frame is off by at most 8 u |c - center| + A, with u and A
+/// of ball_screen.cpp: two roundings of the difference, four of the products and their sum. Where a
+/// triangle in the box is as near as the radius r, |c - center| is at most r plus half the box's
+/// diagonal; the box was enlarged for the latter's share. The frame stretches lengths by at most
+/// 4 u, and squares and their sum round by 5 u.
+struct OrientedScreen {
+  explicit OrientedScreen(const BallScreen& ball) noexcept {
+    constexpr double band = 0x1p-17;
+    std::copy_n(ball.high_part, 3, high_part);
+    std::copy_n(ball.low_part, 3, low_part);
+    const double off = 2.0 * (ball.off + ball.pad);
+    const double reach = std::max(ball.ball.radius, 0.0) + off;
+    const double core = ball.ball.radius - off;
+    reach2 = at_least(reach * reach * (1.0 + band));
+    inside2 = core > 0.0 ? at_most(core * core * (1.0 - band)) : -1.0f;
+  }
+
+  float high_part[3];  // of the centre, and what is left of it; the sum of both is meant [length]
+  float low_part[3];
+  float reach2;   // a box is out of reach if its squared distance computes to more
+  float inside2;  // all that is in a box touches the ball if its farthest corner's does not
+};
 
 /// How much of a box is in the ball.
 enum class Overlap { none, some, all };
@@ -105,13 +129,12 @@ HWY_INLINE void walk(const PdNode* nodes, const OrientedScreen& screen, const Vi
 }
 
 void walk_pd_tree(const PdNode* nodes, const LeafBlock* leaves, const Mesh& mesh,
-                  const BallScreen& ball, TriangleBuffer& out) {
-  walk(nodes, OrientedScreen(ball), TouchingTriangles<false>{leaves, mesh, ball, out, nullptr});
-}
-
-void walk_pd_tree_counting(const PdNode* nodes, const LeafBlock* leaves, const Mesh& mesh,
-                           const BallScreen& ball, TriangleBuffer& out, QueryCounts& counts) {
-  walk(nodes, OrientedScreen(ball), TouchingTriangles<true>{leaves, mesh, ball, out, &counts});
+                  const BallScreen& ball, TriangleBuffer& out, QueryCounts* counts) {
+  const OrientedScreen screen(ball);
+  if (counts == nullptr) {
+    return walk(nodes, screen, TouchingTriangles<false>{leaves, mesh, ball, out, counts});
+  }
+  walk(nodes, screen, TouchingTriangles<true>{leaves, mesh, ball, out, counts});
 }
 
 void walk_pd_tree_to_leaves(const PdNode* nodes, const BallScreen& ball, LeafBuffer& found) {
@@ -126,23 +149,16 @@ HWY_AFTER_NAMESPACE();
 namespace keepout {
 
 HWY_EXPORT(walk_pd_tree);
-HWY_EXPORT(walk_pd_tree_counting);
 HWY_EXPORT(walk_pd_tree_to_leaves);
 
-void PdTree::collect(const Ball& ball, TriangleBuffer& candidates) const noexcept {
-  const BallScreen screen(ball, mesh_->bounds(), coordinate_error_);
-  if (!screen.fits) return BruteForce(mesh_).collect(ball, candidates);
-  HWY_DYNAMIC_DISPATCH(walk_pd_tree)(nodes_.data(), leaves_.data(), *mesh_, screen, candidates);
-}
-
 void PdTree::collect(const Ball& ball, TriangleBuffer& candidates,
-                     QueryCounts& counts) const noexcept {
+                     QueryCounts* counts) const noexcept {
   const BallScreen screen(ball, mesh_->bounds(), coordinate_error_);
   if (!screen.fits) {
-    counts.triangles += mesh_->triangle_count();
+    if (counts != nullptr) counts->triangles += mesh_->triangle_count();
     return BruteForce(mesh_).collect(ball, candidates);
   }
-  HWY_DYNAMIC_DISPATCH(walk_pd_tree_counting)
+  HWY_DYNAMIC_DISPATCH(walk_pd_tree)
   (nodes_.data(), leaves_.data(), *mesh_, screen, candidates, counts);
 }
 

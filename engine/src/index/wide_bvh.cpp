@@ -125,20 +125,64 @@ void close_lanes(NodeBlock& node, CylinderBlock& cylinders, std::size_t first) n
 }  // namespace
 
 WideBvh::WideBvh(std::shared_ptr<const Mesh> mesh, unsigned threads) : mesh_(std::move(mesh)) {
+  make_room();
+  threads = thread_count(threads);
+  Division(*mesh_, threads, leaves_);
+  fit(LeafFill(*mesh_, threads), threads);
+}
+
+WideBvh::WideBvh(std::shared_ptr<const Mesh> mesh, std::span<const TriangleId> order,
+                 unsigned threads)
+    : mesh_(std::move(mesh)) {
+  const std::size_t count = mesh_->triangle_count();
+  threads = thread_count(threads);
+  std::vector<std::uint8_t> named(count);
+  std::atomic<bool> known = order.size() == count;
+  share_ranges(known ? count : 0, threads, [&](std::size_t begin, std::size_t end) {
+    for (const TriangleId t : order.subspan(begin, end - begin)) {
+      if (t >= count) {
+        known = false;
+      } else {
+        std::atomic_ref(named[t]).store(1, std::memory_order_relaxed);
+      }
+    }
+  });
+  // As many as there are, and none that is missing: so none is there twice.
+  if (!known || std::ranges::find(named, 0) != named.end()) {
+    throw Error(
+        "the order of a wide_bvh names each triangle of the mesh once, and this one does not");
+  }
+  make_room();
+  for (std::size_t i = 0; i < leaves_.size() * LeafBlock::lanes; ++i) {
+    leaves_[i / LeafBlock::lanes].source[i % LeafBlock::lanes] = i < count ? order[i] : no_triangle;
+  }
+  fit(LeafFill(*mesh_, threads), threads);
+}
+
+/// For the blocks of the mesh, whose places follow from the number of its triangles.
+void WideBvh::make_room() {
   const std::size_t count = mesh_->triangle_count();
   if (count > most_triangles) {
     throw Error("a wide_bvh holds at most 2^31 - 1 triangles: split or decimate the mesh");
   }
-  threads = thread_count(threads);
   leaves_.resize(rounded_up_quotient(count, LeafBlock::lanes));
-  Division(*mesh_, threads, leaves_);
   std::size_t nodes = 0;
   for (const std::size_t capacity : capacities(count)) {
     if (capacity > LeafBlock::lanes) nodes += rounded_up_quotient(count, capacity);
   }
   nodes_.resize(nodes);
   cylinders_.resize(nodes);
-  fit(LeafFill(*mesh_, threads), threads);
+}
+
+std::vector<TriangleId> WideBvh::order() const {
+  std::vector<TriangleId> order;
+  order.reserve(mesh_->triangle_count());
+  for (const LeafBlock& leaf : leaves_) {
+    for (std::size_t lane = 0; lane < LeafBlock::lanes && leaf.is_used(lane); ++lane) {
+      order.push_back(leaf.triangle(lane));
+    }
+  }
+  return order;
 }
 
 void WideBvh::refit(std::shared_ptr<const Mesh> moved, unsigned threads) {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The nearest triangle by branch and bound: the nearest boxes first, and none that is farther away
-// than a triangle that was found. Floats tell what is surely farther, as in a query with a ball
+// than a triangle that was found. Float tell what is surely farther, as in a query with a ball
 // that reaches as far as the best so far (ball_screen.cpp has the bounds); the exact kernel decides
 // about the rest, ties included. So the answer is that of asking it about all triangles.
 #include <array>
@@ -28,14 +28,14 @@ struct Best {
 
 /// The squared distances of a node's boxes from the centre, rounded down.
 HWY_INLINE void measure_boxes(const NodeBlock& node, const BallScreen& ball, float* distance2) {
-  const Floats d;
+  const Float d;
   for (std::size_t first = 0; first < NodeBlock::lanes; first += hn::Lanes(d)) {
-    Lanes near2 = hn::Zero(d);
+    V near2 = hn::Zero(d);
     for (int axis = 0; axis < 3; ++axis) {
-      const Lanes low = hn::Load(d, node.low[axis] + first);
-      const Lanes high = hn::Load(d, node.high[axis] + first);
-      const Lanes beyond = most(hn::Sub(low, hn::Set(d, ball.above[axis])),
-                                hn::Sub(hn::Set(d, ball.below[axis]), high), hn::Zero(d));
+      const V low = hn::Load(d, node.low[axis] + first);
+      const V high = hn::Load(d, node.high[axis] + first);
+      const V beyond = most(hn::Sub(low, hn::Set(d, ball.above[axis])),
+                            hn::Sub(hn::Set(d, ball.below[axis]), high), hn::Zero(d));
       near2 = hn::Add(near2, hn::Mul(beyond, beyond));
     }
     hn::Store(near2, d, distance2 + first);
@@ -46,23 +46,23 @@ HWY_INLINE void measure_boxes(const NodeBlock& node, const BallScreen& ball, flo
 /// whose nearest point floats find nearest.
 HWY_INLINE std::uint32_t no_farther(const LeafBlock& leaf, const BallScreen& ball,
                                     std::size_t& likely) {
-  const Floats d;
-  const Lanes band = hn::Set(d, BallScreen::band);
-  const Lanes outside2 = hn::Set(d, ball.outside2);
+  const Float d;
+  const V band = hn::Set(d, BallScreen::band);
+  const V outside2 = hn::Set(d, ball.outside2);
   std::uint32_t left = 0;
   HWY_ALIGN float distance2[LeafBlock::lanes];
   for (std::size_t first = 0; first < LeafBlock::lanes; first += hn::Lanes(d)) {
     const Corners3 t{relative_to_center(leaf.corner[0], first, ball),
                      relative_to_center(leaf.corner[1], first, ball),
                      relative_to_center(leaf.corner[2], first, ball)};
-    const Lanes farthest2 = most(dot(t.a, t.a), dot(t.b, t.b), dot(t.c, t.c));
-    const Lanes beyond2 = hn::Add(outside2, hn::Mul(band, hn::Add(farthest2, outside2)));
-    Mask out = surely_out(t, t.a + t.b + t.c, beyond2);
+    const V farthest2 = most(dot(t.a, t.a), dot(t.b, t.b), dot(t.c, t.c));
+    const V beyond2 = hn::Add(outside2, hn::Mul(band, hn::Add(farthest2, outside2)));
+    M out = surely_out(t, t.a + t.b + t.c, beyond2);
     if (hn::AllTrue(d, out)) continue;
-    const Point nearest = nearest_point(t);
+    const Vector nearest = nearest_point(t);
     out = hn::Or(out, surely_out(t, nearest, beyond2));
     hn::Store(dot(nearest, nearest), d, distance2 + first);
-    left |= bits_of(hn::Not(out)) << first;
+    left |= bits(d, hn::Not(out), first);
   }
   float least2 = std::numeric_limits<float>::infinity();
   for (std::uint32_t lanes = left; lanes != 0; lanes &= lanes - 1) {
@@ -119,42 +119,82 @@ HWY_INLINE void fetch(const WideBvh& tree, std::uint32_t what) {
   for (std::size_t at = 0; at < size; at += 64) hwy::Prefetch(lines + at);
 }
 
-TriangleId nearest_of_wide_bvh(const WideBvh& tree, const BallScreen& around_all) {
+/// Looks into boxes, the nearest first, but not into what `is_beyond`. `measure` tells how far the
+/// boxes of a node are at least, and `look` looks at a leaf.
+template <class Distance, class IsBeyond, class Measure, class Look>
+HWY_INLINE void walk(const WideBvh& tree, const IsBeyond& is_beyond, const Measure& measure,
+                     const Look& look) {
   struct Waiting {
-    float distance2;     // or less
+    Distance distance;
     std::uint32_t what;  // as NodeBlock::child
   };
   // The boxes of each level but the one that was opened, and those of the last.
   std::array<Waiting, WideBvh::most_levels * NodeBlock::lanes> stack;
   std::size_t waiting = 0;
-  Best best{no_triangle, around_all};
-  stack[waiting++] = {0.0f, 0};
+  stack[waiting++] = {0, 0};
   while (waiting > 0) {
     const Waiting next = stack[--waiting];
-    if (next.distance2 > best.reach.box_reach2) continue;
+    if (is_beyond(next.distance)) continue;
     if ((next.what & NodeBlock::leaf) != 0) {
-      look(tree.leaves()[next.what & ~NodeBlock::leaf], tree, best);
+      look(tree.leaves()[next.what & ~NodeBlock::leaf]);
       continue;
     }
     const NodeBlock& node = tree.nodes()[next.what];
-    HWY_ALIGN float distance2[NodeBlock::lanes];
-    measure_boxes(node, best.reach, distance2);
+    HWY_ALIGN Distance distance[NodeBlock::lanes];
+    measure(node, distance);
     // The nearest on top.
     const std::size_t bottom = waiting;
     for (std::size_t lane = 0; lane < NodeBlock::lanes && node.is_used(lane); ++lane) {
-      if (distance2[lane] > best.reach.box_reach2) continue;
+      if (is_beyond(distance[lane])) continue;
       std::size_t at = waiting++;
-      for (; at > bottom && stack[at - 1].distance2 < distance2[lane]; --at) {
+      for (; at > bottom && stack[at - 1].distance < distance[lane]; --at) {
         stack[at] = stack[at - 1];
       }
-      stack[at] = {distance2[lane], node.child[lane]};
+      stack[at] = {distance[lane], node.child[lane]};
     }
     constexpr std::size_t ahead = 3;
     for (std::size_t i = waiting; i > bottom && i + ahead >= waiting + 1; --i) {
       fetch(tree, stack[i - 1].what);
     }
   }
+}
+
+TriangleId nearest_in_floats(const WideBvh& tree, const BallScreen& around_all) {
+  Best best{no_triangle, around_all};
+  walk<float>(
+      tree, [&](float distance2) HWY_ATTR { return distance2 > best.reach.box_reach2; },
+      [&](const NodeBlock& node, float* distance2)
+          HWY_ATTR { measure_boxes(node, best.reach, distance2); },
+      [&](const LeafBlock& leaf) HWY_ATTR { look(leaf, tree, best); });
   return best.triangle;
+}
+
+/// The same for a point so far off that floats cannot tell one box from the next: in double, a box
+/// and a triangle at a time.
+TriangleId nearest_from_afar(const WideBvh& tree, const Vec3& point) {
+  TriangleId best = no_triangle;
+  double least = std::numeric_limits<double>::infinity();
+  const auto measure = [&](const NodeBlock& node, double* distance) {
+    for (std::size_t lane = 0; lane < NodeBlock::lanes && node.is_used(lane); ++lane) {
+      const Vec3 low(node.low[0][lane], node.low[1][lane], node.low[2][lane]);
+      const Vec3 high(node.high[0][lane], node.high[1][lane], node.high[2][lane]);
+      // Less by far more than what the kernel and this lose to rounding.
+      distance[lane] =
+          distance_to({low, high}, point) * (1.0 - 1e-12) - 2.0 * tree.coordinate_error();
+    }
+  };
+  const auto look = [&](const LeafBlock& leaf) {
+    for (std::size_t lane = 0; lane < LeafBlock::lanes && leaf.is_used(lane); ++lane) {
+      const TriangleId t = leaf.triangle(lane);
+      const double distance = closest_point(tree.mesh().triangle(t), point).distance;
+      if (distance > least || (distance == least && best < t)) continue;
+      best = t;
+      least = distance;
+    }
+  };
+  walk<double>(
+      tree, [&](double distance) { return distance > least; }, measure, look);
+  return best;
 }
 
 }  // namespace keepout::HWY_NAMESPACE
@@ -164,56 +204,8 @@ HWY_AFTER_NAMESPACE();
 
 namespace keepout {
 
-HWY_EXPORT(nearest_of_wide_bvh);
-
-namespace {
-
-/// The same for a point so far off that floats cannot tell one box from the next: in double, a box
-/// and a triangle at a time.
-TriangleId nearest_from_afar(const WideBvh& tree, const Vec3& point) noexcept {
-  struct Waiting {
-    double distance;  // or less
-    std::uint32_t what;
-  };
-  std::array<Waiting, WideBvh::most_levels * NodeBlock::lanes> stack;
-  std::size_t waiting = 0;
-  TriangleId best = no_triangle;
-  double least = std::numeric_limits<double>::infinity();
-  const auto ask = [&](TriangleId t) {
-    const double distance = closest_point(tree.mesh().triangle(t), point).distance;
-    if (distance > least || (distance == least && best < t)) return;
-    best = t;
-    least = distance;
-  };
-  stack[waiting++] = {0.0, 0};
-  while (waiting > 0) {
-    const Waiting next = stack[--waiting];
-    if (next.distance > least) continue;
-    if ((next.what & NodeBlock::leaf) != 0) {
-      const LeafBlock& leaf = tree.leaves()[next.what & ~NodeBlock::leaf];
-      for (std::size_t lane = 0; lane < LeafBlock::lanes; ++lane) {
-        if (leaf.is_used(lane)) ask(leaf.triangle(lane));
-      }
-      continue;
-    }
-    const NodeBlock& node = tree.nodes()[next.what];
-    const std::size_t bottom = waiting;
-    for (std::size_t lane = 0; lane < NodeBlock::lanes && node.is_used(lane); ++lane) {
-      const Vec3 low(node.low[0][lane], node.low[1][lane], node.low[2][lane]);
-      const Vec3 high(node.high[0][lane], node.high[1][lane], node.high[2][lane]);
-      // Less by far more than what the kernel and this lose to rounding.
-      const double distance =
-          distance_to({low, high}, point) * (1.0 - 1e-12) - 2.0 * tree.coordinate_error();
-      if (distance > least) continue;
-      std::size_t at = waiting++;
-      for (; at > bottom && stack[at - 1].distance < distance; --at) stack[at] = stack[at - 1];
-      stack[at] = {distance, node.child[lane]};
-    }
-  }
-  return best;
-}
-
-}  // namespace
+HWY_EXPORT(nearest_in_floats);
+HWY_EXPORT(nearest_from_afar);
 
 TriangleId WideBvh::nearest(const Vec3& point) const noexcept {
   // No triangle is farther away than the far corner of the box around them.
@@ -223,9 +215,9 @@ TriangleId WideBvh::nearest(const Vec3& point) const noexcept {
   const BallScreen around_all({point, farthest * (1.0 + 1e-12)}, bounds, coordinate_error_);
   constexpr double afar = 32.0;  // times the mesh: from there on it is the faster one
   if (!around_all.fits || farthest > afar * bounds.size().norm()) {
-    return nearest_from_afar(*this, point);
+    return HWY_DYNAMIC_DISPATCH(nearest_from_afar)(*this, point);
   }
-  return HWY_DYNAMIC_DISPATCH(nearest_of_wide_bvh)(*this, around_all);
+  return HWY_DYNAMIC_DISPATCH(nearest_in_floats)(*this, around_all);
 }
 
 }  // namespace keepout

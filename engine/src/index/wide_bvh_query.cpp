@@ -8,19 +8,100 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "wide_bvh_walk-inl.h"
+#include "leaf_test-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace keepout::HWY_NAMESPACE {
 
-void walk_wide_bvh(const NodeBlock* nodes, const LeafBlock* leaves, const Mesh& mesh,
-                   const BallScreen& ball, TriangleBuffer& out) {
-  walk(nodes, ball, TouchingTriangles<false>{leaves, mesh, ball, out, nullptr});
+/// The children of a node that the ball reaches, if wanted marked where they are all within it.
+/// Returns how many, and writes them, and some more, to `reached`.
+template <bool marking>
+HWY_INLINE std::size_t children_in_reach(const NodeBlock& node, const BallScreen& ball,
+                                         std::uint32_t* reached) {
+  const Float d;
+  const Ids ids;
+  const V reach2 = hn::Set(d, ball.box_reach2);
+  const V inside2 = hn::Set(d, ball.box_inside2);
+  std::size_t count = 0;
+  for (std::size_t first = 0; first < NodeBlock::lanes; first += hn::Lanes(d)) {
+    V near2 = hn::Zero(d);
+    V far2 = hn::Zero(d);
+    for (int axis = 0; axis < 3; ++axis) {
+      const V low = hn::Load(d, node.low[axis] + first);
+      const V high = hn::Load(d, node.high[axis] + first);
+      const V below = hn::Set(d, ball.below[axis]);
+      const V above = hn::Set(d, ball.above[axis]);
+      const V beyond = most(hn::Sub(low, above), hn::Sub(below, high), hn::Zero(d));
+      near2 = hn::Add(near2, hn::Mul(beyond, beyond));
+      if constexpr (marking) {
+        const V across = hn::Max(hn::Sub(above, low), hn::Sub(high, below));
+        far2 = hn::Add(far2, hn::Mul(across, across));
+      }
+    }
+    auto child = hn::Load(ids, node.child + first);
+    if constexpr (marking) {
+      const auto inside = hn::RebindMask(ids, hn::Le(far2, inside2));
+      child = hn::IfThenElse(inside, hn::Or(child, hn::Set(ids, whole_leaf)), child);
+    }
+    const auto hit = hn::RebindMask(ids, hn::Le(near2, reach2));
+    const LanePacking packing(hit);
+    hn::StoreU(packing(child), ids, reached + count);
+    count += packing.count();
+  }
+  return count;
 }
 
-void walk_wide_bvh_counting(const NodeBlock* nodes, const LeafBlock* leaves, const Mesh& mesh,
-                            const BallScreen& ball, TriangleBuffer& out, QueryCounts& counts) {
-  walk(nodes, ball, TouchingTriangles<true>{leaves, mesh, ball, out, &counts});
+/// All children of a node, marked as within the ball.
+HWY_INLINE std::size_t all_children(const NodeBlock& node, std::uint32_t* children) {
+  const Ids ids;
+  std::size_t count = 0;
+  for (std::size_t first = 0; first < NodeBlock::lanes; first += hn::Lanes(ids)) {
+    const auto child = hn::Load(ids, node.child + first);
+    hn::StoreU(hn::Or(child, hn::Set(ids, whole_leaf)), ids, children + count);
+    count += hn::CountTrue(ids, hn::Ne(child, hn::Zero(ids)));
+  }
+  return count;
+}
+
+/// Shows a visitor the leaves that the ball reaches. Not inline: two of them in one function make
+/// each a little slower.
+template <class Visitor>
+HWY_NOINLINE void walk(const NodeBlock* nodes, const BallScreen& ball, const Visitor& visitor) {
+  // Seven levels of sixteen children hold the most triangles there can be.
+  std::uint32_t stack[9 * NodeBlock::lanes];
+  std::size_t waiting = 0;
+  LeafList list;
+  stack[waiting++] = 0;
+  while (waiting > 0) {
+    const std::uint32_t at = stack[--waiting];
+    const NodeBlock& node = nodes[at & ~whole_leaf];
+    visitor.count_node();
+    const bool above_leaves = (node.child[0] & NodeBlock::leaf) != 0;
+    if (above_leaves && list.room() < NodeBlock::lanes) list.show(visitor);
+    std::uint32_t* to = above_leaves ? list.end() : stack + waiting;
+    const std::size_t count = (at & whole_leaf) != 0
+                                  ? all_children(node, to)
+                                  : children_in_reach<Visitor::wants_whole_leaves>(node, ball, to);
+    if (above_leaves) {
+      list.grow(count);
+    } else {
+      for (std::size_t i = 0; i < count; ++i) {
+        const auto* lines = reinterpret_cast<const char*>(nodes + (to[i] & ~whole_leaf));
+        for (std::size_t line = 0; line < sizeof(NodeBlock); line += 64)
+          hwy::Prefetch(lines + line);
+      }
+      waiting += count;
+    }
+  }
+  list.show(visitor);
+}
+
+void walk_wide_bvh(const NodeBlock* nodes, const LeafBlock* leaves, const Mesh& mesh,
+                   const BallScreen& ball, TriangleBuffer& out, QueryCounts* counts) {
+  if (counts == nullptr) {
+    return walk(nodes, ball, TouchingTriangles<false>{leaves, mesh, ball, out, counts});
+  }
+  walk(nodes, ball, TouchingTriangles<true>{leaves, mesh, ball, out, counts});
 }
 
 void walk_to_leaves(const NodeBlock* nodes, const BallScreen& ball, LeafBuffer& found) {
@@ -35,23 +116,16 @@ HWY_AFTER_NAMESPACE();
 namespace keepout {
 
 HWY_EXPORT(walk_wide_bvh);
-HWY_EXPORT(walk_wide_bvh_counting);
 HWY_EXPORT(walk_to_leaves);
 
-void WideBvh::collect(const Ball& ball, TriangleBuffer& candidates) const noexcept {
-  const BallScreen screen(ball, mesh_->bounds(), coordinate_error_);
-  if (!screen.fits) return BruteForce(mesh_).collect(ball, candidates);
-  HWY_DYNAMIC_DISPATCH(walk_wide_bvh)(nodes_.data(), leaves_.data(), *mesh_, screen, candidates);
-}
-
 void WideBvh::collect(const Ball& ball, TriangleBuffer& candidates,
-                      QueryCounts& counts) const noexcept {
+                      QueryCounts* counts) const noexcept {
   const BallScreen screen(ball, mesh_->bounds(), coordinate_error_);
   if (!screen.fits) {
-    counts.triangles += mesh_->triangle_count();
+    if (counts != nullptr) counts->triangles += mesh_->triangle_count();
     return BruteForce(mesh_).collect(ball, candidates);
   }
-  HWY_DYNAMIC_DISPATCH(walk_wide_bvh_counting)
+  HWY_DYNAMIC_DISPATCH(walk_wide_bvh)
   (nodes_.data(), leaves_.data(), *mesh_, screen, candidates, counts);
 }
 

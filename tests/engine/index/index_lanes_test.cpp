@@ -48,7 +48,7 @@ Answers answers(const Index& index, const std::vector<Ball>& balls) {
   Answers all;
   for (const Ball& ball : balls) {
     found.clear();
-    index.collect(ball, found, all.counts);
+    index.collect(ball, found, &all.counts);
     all.found.emplace_back(found.begin(), found.end());
     found.clear();
     index.collect(ball, found);

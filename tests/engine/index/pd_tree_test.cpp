@@ -112,7 +112,7 @@ TEST(PdTree, LooksAtNoMoreThanItDid) {
   QueryCounts counts;
   for (const Vec3& point : surface_points(*mesh, 1000, 0.5, random)) {
     found.clear();
-    index.collect({point, 5.0}, found, counts);
+    index.collect({point, 5.0}, found, &counts);
   }
   EXPECT_LE(counts.nodes, 135'000u);
   EXPECT_LE(counts.blocks, 26'000u);

@@ -234,7 +234,7 @@ TEST(WideBvh, LooksAtNoMoreThanItDid) {
   std::size_t triangles = 0;
   for (const Vec3& point : surface_points(*mesh, 1000, 0.5, random)) {
     found.clear();
-    index.collect({point, 5.0}, found, counts);
+    index.collect({point, 5.0}, found, &counts);
     triangles += found.size();
   }
   EXPECT_EQ(triangles, 251'838u);

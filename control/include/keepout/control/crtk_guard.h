@@ -5,7 +5,6 @@
 #include <optional>
 
 #include "keepout/control/haptic_proxy.h"
-#include "keepout/control/pose.h"
 #include "keepout/control/registration.h"
 
 namespace keepout {

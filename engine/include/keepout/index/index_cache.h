@@ -12,10 +12,10 @@
 
 namespace keepout {
 
-// A built index on the disk, for the next start. A file is never trusted: its version and the
-// layout of its blocks, its length, a digest of its contents and one of the mesh it was built for
-// must agree, and then the tree in it is checked whole against the mesh (see WideBvh). So neither
-// damage nor malice can make an index lose a triangle.
+// What took long about a built index on the disk, for the next start: the order of its triangles. A
+// file is never trusted: its version, its length, a digest of its contents and one of the mesh it
+// was built for must agree, it must name each triangle once, and all else is made of the mesh anew
+// (see WideBvh). So neither damage nor malice can make an index lose a triangle.
 
 /// The file in `folder` that an index of this mesh has. Its name holds a digest of the mesh, so
 /// that any number of meshes may share a folder.

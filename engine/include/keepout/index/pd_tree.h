@@ -8,7 +8,6 @@
 
 #include "keepout/index/block_memory.h"
 #include "keepout/index/leaf_block.h"
-#include "keepout/index/query_counts.h"
 #include "keepout/index/spatial_index.h"
 #include "keepout/index/triangle_blocks.h"
 #include "keepout/mesh/mesh.h"
@@ -46,10 +45,12 @@ class PdTree final : public SpatialIndex, public TriangleBlocks {
   /// mesh of more than most_triangles.
   explicit PdTree(std::shared_ptr<const Mesh> mesh, unsigned threads = 0);
 
-  void collect(const Ball& ball, TriangleBuffer& candidates) const noexcept override;
+  void collect(const Ball& ball, TriangleBuffer& candidates) const noexcept override {
+    collect(ball, candidates, nullptr);
+  }
 
-  /// The same, and adds to `counts` what it had to look at.
-  void collect(const Ball& ball, TriangleBuffer& candidates, QueryCounts& counts) const noexcept;
+  /// The same, and adds to `counts` what it had to look at, unless it is null.
+  void collect(const Ball& ball, TriangleBuffer& candidates, QueryCounts* counts) const noexcept;
 
   void collect_leaves(const Ball& ball, LeafBuffer& found) const noexcept override;
   const TriangleBlocks* blocks() const noexcept override { return this; }

@@ -18,54 +18,35 @@ enum class NloptMethod : std::uint8_t {
   mma      // moving asymptotes, globally convergent (Svanberg 2002)
 };
 
-/// How NLopt said that it had ended.
-enum class NloptClaim : std::uint8_t {
-  not_asked,  // the problem was refused before
-  success,
-  stopval_reached,
-  ftol_reached,
-  xtol_reached,
-  maxeval_reached,
-  maxtime_reached,
-  failure,
-  invalid_args,
-  out_of_memory,
-  roundoff_limited,
-  forced_stop,
-  unknown
-};
-
 /// What our check of its answer found.
 enum class NloptFinding : std::uint8_t {
-  refused,      // no answer was looked at: invalid, ill-posed or too large
-  optimal,      // feasible, and proven to be within the accuracy of the best
-  not_optimal,  // feasible, but no such proof: worse than the accuracy, or rounding hides it
+  refused,      // NLopt was not asked: the problem is invalid, ill-posed or too large
+  optimal,      // feasible, and within the accuracy of the best
+  not_optimal,  // feasible, and worse
   not_feasible,
   not_finite,
   infeasible  // no answer exists: proven by weights on the rows, whatever NLopt said
 };
-
-/// As NLopt spells it.
-std::string_view name(NloptClaim claim) noexcept;
 
 /// The name as it stands in the enumeration.
 std::string_view name(NloptFinding finding) noexcept;
 
 /// What NLopt said of a problem, and what was found.
 struct NloptReport {
-  NloptClaim claim = NloptClaim::not_asked;      // NLopt's word
+  std::string_view claim = "not asked";          // how it ended, as NLopt spells it
   NloptFinding finding = NloptFinding::refused;  // that of our check
 };
 
-/// A method of NLopt, of which nothing is believed: an answer counts as optimal only when it
-/// satisfies the rows and multipliers of our own prove how near it is to the best, and a problem as
-/// infeasible only with weights that prove it. Anything else is `iteration_limit`.
+/// A method of NLopt, of which nothing is believed: an answer counts as optimal only when it is as
+/// near as `accuracy` to the one that ActiveSet has found. What ActiveSet refuses is refused, and
+/// what it has proven to be infeasible is. Anything else is `iteration_limit`.
 ///
-/// Refuses what ActiveSet refuses. "optimal" satisfies each row to 1e-11 of the motion at most, and
-/// is nearer than `accuracy` to the best in task space, |R (u - u*)| with J^T J + damping I =
-/// R^T R, relative to the larger of |R u| and |d| / sqrt(n). It may differ from NLopt's own point
-/// by as much, where last digits were put right. The same problem always gives the same answer: the
-/// work is limited by a number of evaluations and never by time. It allocates while it solves.
+/// "optimal" satisfies each row to 1e-11 of the motion at most, and the conditions of optimality
+/// (KktResidual) to `accuracy`; it is nearer than that to the best in task space, |R (u - u*)| with
+/// J^T J + damping I = R^T R, relative to the larger of |R u*| and |d| / sqrt(n). It is NLopt's own
+/// point, but for the last digits that put it onto the rows which it violates. The same problem
+/// always gives the same answer: the work is limited by a number of evaluations and never by time.
+/// It allocates while it solves.
 class NloptSolver final : public Solver {
  public:
   /// Without room yet: see reserve.

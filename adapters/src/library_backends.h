@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "keepout/adapters/index_registry.h"
+#include "keepout/adapters/narrow_phase_registry.h"
+
+namespace keepout {
+
+// What each library's folder has for the registries: there only in a build with the library.
+
+std::span<const IndexBackend> fcl_indices() noexcept;
+std::span<const IndexBackend> bullet_indices() noexcept;
+std::span<const IndexBackend> embree_indices() noexcept;
+/// Under the GPL: for keepout::all_indices alone.
+std::span<const IndexBackend> cgal_indices() noexcept;
+
+std::span<const NarrowPhaseBackend> ccd_narrow_phases() noexcept;
+std::span<const NarrowPhaseBackend> fcl_narrow_phases() noexcept;
+
+/// An index on a mesh that it holds on to, in the form that the registry knows.
+template <class Index>
+std::unique_ptr<SpatialIndex> make_index_of(std::shared_ptr<const Mesh> mesh) {
+  return std::make_unique<Index>(std::move(mesh));
+}
+
+/// Throws Error when `count` is more than `most`, what the data structure of the index of that name
+/// can hold. `items` says what is counted: triangles or vertices.
+void require_at_most(std::size_t most, std::size_t count, std::string_view items,
+                     std::string_view index);
+
+/// Appends the rows of one table to another.
+template <class Row>
+void append(std::span<const Row> rows, std::vector<Row>& to) {
+  to.insert(to.end(), rows.begin(), rows.end());
+}
+
+}  // namespace keepout
