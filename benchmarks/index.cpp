@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "keepout/adapters/all_indices.h"
-#include "keepout/adapters/load_mesh.h"
 #include "keepout/fixtures/poses.h"
 #include "keepout/fixtures/real_mesh.h"
 #include "keepout/index/brute_force.h"
+#include "keepout/mesh/load_mesh.h"
 
 namespace keepout {
 namespace {

@@ -23,8 +23,8 @@
 #include <thread>
 #include <vector>
 
-#include "keepout/adapters/load_mesh.h"
 #include "keepout/fixtures/poses.h"
+#include "keepout/mesh/load_mesh.h"
 
 namespace {
 

@@ -14,10 +14,10 @@
 #include <vector>
 
 #include "keepout/activation/registry.h"
-#include "keepout/adapters/load_mesh.h"
 #include "keepout/fixtures/poses.h"
 #include "keepout/fixtures/real_mesh.h"
 #include "keepout/index/pd_tree.h"
+#include "keepout/mesh/load_mesh.h"
 #include "keepout/solvers/active_set.h"
 #include "keepout/solvers/recording_solver.h"
 #include "keepout/solvers/registry.h"

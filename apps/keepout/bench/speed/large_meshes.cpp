@@ -8,7 +8,7 @@
 #include "bench/speed/families.h"
 #include "bench/speed/peak_memory.h"
 #include "bench/speed/stopwatch.h"
-#include "keepout/adapters/load_mesh.h"
+#include "keepout/mesh/load_mesh.h"
 #include "number_text.h"
 
 namespace keepout::app {

@@ -14,9 +14,9 @@
 #include <string>
 #include <vector>
 
-#include "keepout/adapters/load_mesh.h"
 #include "keepout/error.h"
 #include "keepout/mesh/binary_stl.h"
+#include "keepout/mesh/load_mesh.h"
 #include "small_surfaces.h"
 #include "temporary_folder.h"
 
