@@ -18,6 +18,9 @@ struct MeshFile {
   Surface surface;                    // not welded
   std::vector<std::string> comments;  // and names and headers: where programs state what they like
   std::vector<std::string> warnings;  // on what was left out
+
+  /// Rounds coordinates to floats.
+  void round_to_floats() noexcept;
 };
 
 /// What a binary STL file begins with, before the number of its triangles: free text. [bytes]
@@ -29,6 +32,9 @@ constexpr std::size_t stl_header_size = 80;
 /// A PLY file, text or binary of either byte order. Coordinates are of the precision that the
 /// header declares; other properties and elements are passed over.
 MeshFile read_ply(const std::filesystem::path& path);
+
+// Coordinates of text are floats where all of its numerals may have been printed from floats, and
+// doubles elsewhere.
 
 MeshFile read_text_stl(std::string_view contents, const std::string& file);
 MeshFile read_obj(std::string_view contents, const std::string& file);

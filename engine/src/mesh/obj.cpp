@@ -15,15 +15,14 @@ bool is_one_of(std::string_view word, std::initializer_list<std::string_view> wo
   return std::ranges::find(words, word) != words.end();
 }
 
-Vec3 read_vertex(const TextLines& lines) {
+Vec3 read_vertex(TextLines& lines) {
   const Words words = lines.words();
   if (words.size() < 4) lines.fail("a vertex needs three coordinates; the file is damaged");
   // A weight; with more numbers, they are a colour.
   if (words.size() == 5 && lines.number<double>(words[4]) != 1.0) {
     lines.fail("weighted vertices are not read; export a plain mesh");
   }
-  return {lines.number<double>(words[1]), lines.number<double>(words[2]),
-          lines.number<double>(words[3])};
+  return {lines.coordinate(words[1]), lines.coordinate(words[2]), lines.coordinate(words[3])};
 }
 
 /// The vertex that a corner such as 7, -1, 7/2, 7//3 or 7/2/3 names, counted from 0.
@@ -69,6 +68,7 @@ MeshFile read_obj(std::string_view contents, const std::string& file) {
   if (vertices.empty()) {
     lines.fail("no vertices and no faces, so this is hardly an OBJ file; check its extension");
   }
+  if (lines.has_only_floats()) mesh.round_to_floats();
   polygons.cut_into(mesh, file);
   mesh.comments = lines.take_comments();
   if (left_out > 0) {

@@ -67,15 +67,15 @@ MeshFile read_off(std::string_view contents, const std::string& file) {
     advance("its last vertex");
     const Words words = lines.words();
     if (words.size() < 3) lines.fail("a vertex needs three coordinates; the file is damaged");
-    mesh.surface.vertices.emplace_back(lines.number<double>(words[0]),
-                                       lines.number<double>(words[1]),
-                                       lines.number<double>(words[2]));
+    mesh.surface.vertices.emplace_back(lines.coordinate(words[0]), lines.coordinate(words[1]),
+                                       lines.coordinate(words[2]));
   }
   Polygons polygons;
   for (std::uint64_t f = 0; f < faces; ++f) {
     advance("its last face");
     read_face(lines, vertices, polygons);
   }
+  if (lines.has_only_floats()) mesh.round_to_floats();
   polygons.cut_into(mesh, file);
   if (lines.next()) {
     mesh.warnings.push_back("there is more in the file than its header declares, from line " +

@@ -51,6 +51,7 @@ class SurfaceReader {
         body_.end_item();
       }
     }
+    if (body_.is_of_floats()) mesh_.round_to_floats();
     polygons_.cut_into(mesh_, file);  // only now: the vertices may stand after the faces
     if (body_.has_more()) {
       mesh_.warnings.push_back("there is more in the file than its header declares: left out");

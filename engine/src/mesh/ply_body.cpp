@@ -25,7 +25,7 @@ std::string_view PlyText::take_word() {
 
 double PlyText::take_real(const PlyScalar& type) {
   const bool is_single = !type.whole && type.size == sizeof(float);
-  return is_single ? lines_.number<float>(take_word()) : lines_.number<double>(take_word());
+  return is_single ? lines_.number<float>(take_word()) : lines_.coordinate(take_word());
 }
 
 void PlyText::skip(const PlyScalar&, std::uint64_t count) {

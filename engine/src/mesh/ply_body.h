@@ -37,6 +37,9 @@ class PlyBody {
   /// Whether anything follows.
   virtual bool has_more() = 0;
 
+  /// Whether the coordinates are to be rounded to floats.
+  virtual bool is_of_floats() const { return false; }
+
   [[noreturn]] void fail(const std::string& what) const { throw Error(place() + ": " + what); }
 
  protected:
@@ -63,6 +66,7 @@ class PlyText final : public PlyBody {
   std::uint64_t take_whole(const PlyScalar&) override { return lines_.whole_number(take_word()); }
   void skip(const PlyScalar& type, std::uint64_t count) override;
   bool has_more() override { return lines_.next(); }
+  bool is_of_floats() const override { return lines_.has_only_floats(); }
 
  private:
   std::string place() const override { return lines_.place(); }

@@ -109,6 +109,10 @@ bool cut_polygon(std::span<const VertexId> polygon, std::span<const Vec3> vertic
 
 }  // namespace
 
+void MeshFile::round_to_floats() noexcept {
+  for (Vec3& vertex : surface.vertices) vertex = vertex.cast<float>().cast<double>().eval();
+}
+
 void Polygons::end_polygon() {
   const std::size_t begin = ends_.empty() ? 0 : ends_.back();
   if (corners_.size() - begin < 3) {

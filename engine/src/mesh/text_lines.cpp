@@ -14,12 +14,25 @@ namespace {
 constexpr bool is_line_end(char c) noexcept { return c == '\n' || c == '\r'; }
 constexpr bool is_space(char c) noexcept { return c == ' ' || c == '\t' || c == '\f' || c == '\v'; }
 
-/// Takes all of a word for a number; one that Real cannot hold is a result_out_of_range.
-template <class Real>
-std::errc parse(std::string_view word, Real& value) {
+/// Takes all of a word for a number; one that its type cannot hold is a result_out_of_range.
+template <class Number>
+std::errc parse(std::string_view word, Number& value) {
   if (word.starts_with('+') && !word.starts_with("+-")) word.remove_prefix(1);
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
   return end == word.data() + word.size() ? error : std::errc::invalid_argument;
+}
+
+/// A unit of a numeral's last digit.
+double last_place(std::string_view numeral) {
+  const std::size_t end = std::min(numeral.find_first_of("eE"), numeral.size());
+  const std::size_t point = std::min(numeral.find('.'), end);
+  int exponent = 0;
+  if (end < numeral.size()) parse(numeral.substr(end + 1), exponent);
+  double unit = 1.0;
+  for (; exponent > 0 && unit < 1e300; --exponent) unit *= 10.0;
+  for (; exponent < 0 && unit > 0.0; ++exponent) unit /= 10.0;
+  for (std::size_t i = point + 1; i < end; ++i) unit /= 10.0;
+  return unit;
 }
 
 }  // namespace
@@ -101,6 +114,14 @@ Real TextLines::number(std::string_view word) const {
 
 template float TextLines::number(std::string_view) const;
 template double TextLines::number(std::string_view) const;
+
+double TextLines::coordinate(std::string_view word) {
+  const double value = number<double>(word);
+  const double off = std::abs(static_cast<double>(static_cast<float>(value)) - value);
+  constexpr double half = 0.5 * (1.0 + 1e-6);  // with what doubles are rounded by
+  if (off > 0.0 && has_only_floats_ && !(off <= half * last_place(word))) has_only_floats_ = false;
+  return value;
+}
 
 std::uint64_t TextLines::whole_number(std::string_view word) const {
   std::uint64_t value = 0;

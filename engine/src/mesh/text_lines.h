@@ -46,6 +46,10 @@ class TextLines {
   /// The word as a number, rounded but once. Throws Error unless it is decimal and finite.
   template <class Real>
   Real number(std::string_view word) const;
+  /// The same of a double, for which is noted whether it may have been printed from a float.
+  double coordinate(std::string_view word);
+  /// Whether all coordinates so far may have been: then the floats are what the file is about.
+  bool has_only_floats() const noexcept { return has_only_floats_; }
   /// The word as a whole number without a sign. Throws Error if it is none.
   std::uint64_t whole_number(std::string_view word) const;
 
@@ -60,6 +64,7 @@ class TextLines {
   std::size_t position_ = 0;
   std::size_t line_ = 0;
   std::size_t next_line_ = 1;
+  bool has_only_floats_ = true;
 };
 
 /// The word in quotes, fit for a message: short, and without control characters.

@@ -70,7 +70,7 @@ void read_facet(Words& words, TextLines& lines, Surface& surface) {
   for (int corner = 0; corner < 3; ++corner) {
     words.expect("vertex");
     Vec3 vertex;
-    for (double& x : vertex) x = lines.number<double>(words.take());
+    for (double& x : vertex) x = lines.coordinate(words.take());
     surface.vertices.push_back(vertex);
   }
   if (is_keyword(words.peek(), "vertex")) {
@@ -95,6 +95,7 @@ MeshFile read_text_stl(std::string_view contents, const std::string& file) {
     }
     mesh.comments.push_back(words.name_after("endsolid"));
   } while (!words.peek().empty());
+  if (lines.has_only_floats()) mesh.round_to_floats();
   Polygons().cut_into(mesh, file);
   return mesh;
 }

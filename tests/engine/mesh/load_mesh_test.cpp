@@ -213,6 +213,38 @@ TEST_P(LoadMeshText, TextIsReadToTheNearestNumberAsDocumented) {
   }
 }
 
+TEST_P(LoadMeshText, WhatWasPrintedFromFloatsIsReadAsFloats) {
+  for (const int some : {3, 6, 7, 8, 9, 12, 17}) {
+    for (const double scale : {1e-3, 1.0, 320.0}) {
+      Surface surface = torus(20);
+      for (Vec3& v : surface.vertices) v = (scale * v).cast<float>().cast<double>();
+      digits = some;
+      const std::string contents = GetParam().write(surface);
+      digits = 9;
+      const LoadedMesh loaded = load_unchecked(GetParam().file, contents);
+      for (TriangleId t = 0; t < surface.triangles.size(); ++t) {
+        for (int i = 0; i < 3; ++i) {
+          const Vec3 read = loaded.mesh->triangle(t)[i];
+          ASSERT_EQ(read, (read.cast<float>().cast<double>().eval())) << some;
+          if (some < 9) continue;  // these digits tell a float from any other
+          ASSERT_EQ(read, surface.vertices[surface.triangles[t][i]]) << some;
+        }
+      }
+    }
+  }
+}
+
+TEST_P(LoadMeshText, ANumeralThatNoFloatIsPrintedInIsReadAsADouble) {
+  const std::string text = GetParam().write(moved(tetrahedron(), {0.25, 0, 0}));
+  const bool declares_floats = GetParam().name == "TextPly";
+  for (const std::string_view numeral :
+       {"-100.33333333", "-1003333.3333e-4", "-1.0033333333E+02"}) {
+    const double exact = std::strtod(numeral.data(), nullptr);
+    const LoadedMesh loaded = load(GetParam().file, replaced(text, "0.25", numeral));
+    EXPECT_EQ(loaded.mesh->bounds().low.x(), declares_floats ? static_cast<float>(exact) : exact);
+  }
+}
+
 TEST_F(LoadMesh, BinaryCoordinatesAreExact) {
   Surface surface = torus(30);
   for (Vec3& v : surface.vertices) v = v.cast<float>().cast<double>();
