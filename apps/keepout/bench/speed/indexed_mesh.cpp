@@ -8,7 +8,7 @@
 #include "bench/subject.h"
 #include "keepout/error.h"
 #include "keepout/fixtures/real_mesh.h"
-#include "keepout/fixtures/write_subdivided.h"
+#include "keepout/fixtures/resample_mesh.h"
 
 namespace keepout::app {
 namespace {
