@@ -35,16 +35,19 @@ void check_vertex(const Vec3& vertex, std::uint64_t v, const PlyBody& body) {
             " has a coordinate that is not finite; repair the mesh and export it again");
 }
 
-/// Takes the surface out of a body.
+/// Takes the surface out of a body. In binary files items are mostly of one size: these are read on
+/// all processors.
 class SurfaceReader {
  public:
-  SurfaceReader(const PlyHeader& header, const PlyLayout& layout, PlyBody& body)
-      : header_(header), layout_(layout), body_(body) {}
-  virtual ~SurfaceReader() = default;
+  /// `bytes` is the body if it is binary.
+  SurfaceReader(const PlyHeader& header, const PlyLayout& layout, PlyBody& body,
+                PlyBytes* bytes = nullptr)
+      : header_(header), layout_(layout), body_(body), bytes_(bytes) {}
 
   MeshFile read(const std::string& file) {
     for (const PlyElement& element : header_.elements) {
-      if (element.properties.empty() || read_at_once(element)) continue;
+      if (element.properties.empty()) continue;
+      if (bytes_ != nullptr && read_at_once(element)) continue;
       for (std::uint64_t i = 0; i < element.count; ++i) {
         body_.begin_item(element);
         read_item(element);
@@ -59,14 +62,6 @@ class SurfaceReader {
     mesh_.comments = header_.comments;
     return std::move(mesh_);
   }
-
- protected:
-  /// All items of an element, if there is a quick way; else nothing, and false.
-  virtual bool read_at_once(const PlyElement&) { return false; }
-
-  const PlyHeader& header_;
-  const PlyLayout& layout_;
-  MeshFile mesh_;
 
  private:
   void read_item(const PlyElement& element) {
@@ -99,38 +94,14 @@ class SurfaceReader {
     polygons_.end_polygon();
   }
 
-  PlyBody& body_;
-  Polygons polygons_;
-};
-
-/// The same of a binary file, whose items are mostly of one size: these are read on all processors.
-class BinaryReader final : public SurfaceReader {
- public:
-  BinaryReader(const PlyHeader& header, const PlyLayout& layout, PlyBytes& bytes,
-               const ReadOnlyFile& file)
-      : SurfaceReader(header, layout, bytes), bytes_(bytes), file_(file) {}
-
- private:
-  bool read_at_once(const PlyElement& element) override {
+  /// All items of an element, if they are of one size and all there; else nothing, and false.
+  bool read_at_once(const PlyElement& element) {
     if (&element == layout_.face && layout_.corners != nullptr) return read_triangles(element);
     const std::optional<std::size_t> size = fixed_size(element.properties);
-    // Where they are not all there, they are read one by one, up to the first that is not.
-    if (!size || element.count > bytes_.left() / *size) return false;
+    if (!size || element.count > bytes_->left() / *size) return false;
     if (&element == layout_.vertex) read_vertices(element, *size);
-    bytes_.move_on(element.count * *size);
+    bytes_->move_on(element.count * *size);
     return true;
-  }
-
-  /// Calls read(i, bytes) for each item on, each of `size` bytes.
-  template <class Read>
-  void share_items(const PlyElement& element, std::size_t size, const Read& read) const {
-    share_ranges(element.count, processors(), [&](std::size_t begin, std::size_t end) {
-      std::vector<char> items((end - begin) * size);
-      if (!file_.read(bytes_.position() + begin * size, items.data(), items.size())) {
-        bytes_.fail("cannot be read to its end; check the disk");
-      }
-      for (std::size_t i = begin; i < end; ++i) read(i, items.data() + (i - begin) * size);
-    });
   }
 
   void read_vertices(const PlyElement& element, std::size_t size) {
@@ -139,13 +110,18 @@ class BinaryReader final : public SurfaceReader {
       offsets[axis] = offset_of(element, layout_.coordinates[axis]);
     }
     mesh_.surface.vertices = vector_in_huge_pages<Vec3>(element.count);
-    share_items(element, size, [&](std::size_t v, const char* item) {
-      Vec3& vertex = mesh_.surface.vertices[v];
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        vertex[static_cast<Eigen::Index>(axis)] =
-            bytes_.real(item + offsets[axis], *layout_.coordinates[axis]->type);
+    share_ranges(element.count, processors(), [&](std::size_t begin, std::size_t end) {
+      const std::vector<char> items = bytes_->copy(begin * size, (end - begin) * size);
+      const char* item = items.data();
+      for (std::size_t v = begin; v < end; ++v, item += size) {
+        Vec3 vertex;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          vertex[static_cast<Eigen::Index>(axis)] =
+              bytes_->real(item + offsets[axis], *layout_.coordinates[axis]->type);
+        }
+        check_vertex(vertex, v, body_);
+        mesh_.surface.vertices[v] = vertex;
       }
-      check_vertex(vertex, v, bytes_);
     });
   }
 
@@ -159,30 +135,38 @@ class BinaryReader final : public SurfaceReader {
       if (p.is_list()) return false;
       size += p.type->size;
     }
-    if (element.count > bytes_.left() / size || element.count > no_triangle / 3) return false;
+    if (element.count > bytes_->left() / size || element.count > no_triangle / 3) return false;
     const std::size_t list = offset_of(element, layout_.corners);
     auto triangles = vector_in_huge_pages<Corners>(element.count);
     std::atomic<bool> good = true;
-    share_items(element, size, [&](std::size_t t, const char* item) {
-      if (!good.load(std::memory_order_relaxed)) return;
-      const char* place = item + list;
-      bool is_good = bytes_.whole(place, count_type) == 3;
-      for (std::size_t i = 0; i < 3; ++i) {
-        const auto vertex = static_cast<std::uint64_t>(
-            bytes_.whole(place + count_type.size + i * corner_type.size, corner_type));
-        is_good &= vertex < layout_.vertex->count;
-        triangles[t][i] = static_cast<VertexId>(vertex);
+    share_ranges(triangles.size(), processors(), [&](std::size_t begin, std::size_t end) {
+      if (!good) return;
+      const std::vector<char> items = bytes_->copy(begin * size, (end - begin) * size);
+      const char* place = items.data() + list;
+      bool all_good = true;
+      for (std::size_t t = begin; t < end; ++t, place += size) {
+        all_good &= bytes_->whole(place, count_type) == 3;
+        for (std::size_t i = 0; i < 3; ++i) {
+          const auto vertex = static_cast<std::uint64_t>(
+              bytes_->whole(place + count_type.size + i * corner_type.size, corner_type));
+          all_good &= vertex < layout_.vertex->count;
+          triangles[t][i] = static_cast<VertexId>(vertex);
+        }
       }
-      if (!is_good) good.store(false, std::memory_order_relaxed);
+      if (!all_good) good = false;
     });
     if (!good) return false;
     mesh_.surface.triangles = std::move(triangles);
-    bytes_.move_on(element.count * size);
+    bytes_->move_on(element.count * size);
     return true;
   }
 
-  PlyBytes& bytes_;
-  const ReadOnlyFile& file_;
+  const PlyHeader& header_;
+  const PlyLayout& layout_;
+  PlyBody& body_;
+  PlyBytes* bytes_;
+  Polygons polygons_;
+  MeshFile mesh_;
 };
 
 }  // namespace
@@ -194,7 +178,7 @@ MeshFile read_ply(const std::filesystem::path& path) {
   if (header.encoding != PlyEncoding::text) {
     const ReadOnlyFile file(path);
     PlyBytes bytes(file, name, header);
-    return BinaryReader(header, layout, bytes, file).read(name);
+    return SurfaceReader(header, layout, bytes, &bytes).read(name);
   }
   const std::string contents = contents_of(path);
   TextLines lines(contents, name);

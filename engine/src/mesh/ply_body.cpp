@@ -55,6 +55,14 @@ const char* PlyBytes::take(std::size_t size) {
   return bytes;
 }
 
+std::vector<char> PlyBytes::copy(std::uint64_t behind, std::size_t size) const {
+  std::vector<char> bytes(size);
+  if (!file_.read(position_ + behind, bytes.data(), size)) {
+    fail("cannot be read to its end; check the disk");
+  }
+  return bytes;
+}
+
 std::uint64_t PlyBytes::take_whole(const PlyScalar& type) {
   const std::int64_t value = whole(take(type.size), type);
   if (value < 0) {

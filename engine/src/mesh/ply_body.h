@@ -89,7 +89,8 @@ class PlyBytes final : public PlyBody {
 
   // For items that are all of one size, and are read at once.
 
-  std::uint64_t position() const noexcept { return position_; }
+  /// Bytes from so many behind the next one on.
+  std::vector<char> copy(std::uint64_t behind, std::size_t size) const;
   std::uint64_t left() const noexcept { return file_.size() - position_; }
   void move_on(std::uint64_t bytes) noexcept { position_ += bytes; }
 

@@ -24,14 +24,19 @@ std::errc parse(std::string_view word, Number& value) {
 
 /// A unit of a numeral's last digit.
 double last_place(std::string_view numeral) {
-  const std::size_t end = std::min(numeral.find_first_of("eE"), numeral.size());
-  const std::size_t point = std::min(numeral.find('.'), end);
-  int exponent = 0;
-  if (end < numeral.size()) parse(numeral.substr(end + 1), exponent);
   double unit = 1.0;
-  for (; exponent > 0 && unit < 1e300; --exponent) unit *= 10.0;
-  for (; exponent < 0 && unit > 0.0; ++exponent) unit /= 10.0;
-  for (std::size_t i = point + 1; i < end; ++i) unit /= 10.0;
+  bool is_behind_point = false;
+  for (std::size_t i = 0; i < numeral.size(); ++i) {
+    if (numeral[i] == '.') {
+      is_behind_point = true;
+    } else if (numeral[i] == 'e' || numeral[i] == 'E') {
+      int exponent = 0;
+      parse(numeral.substr(i + 1), exponent);
+      return unit * std::pow(10.0, exponent);
+    } else if (is_behind_point) {
+      unit *= 0.1;
+    }
+  }
   return unit;
 }
 
