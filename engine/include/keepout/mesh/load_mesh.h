@@ -57,10 +57,9 @@ struct LoadedMesh {
 /// mesh gets a warning for a size that is none of anatomy in mm, for an open surface, and for an
 /// inconsistent winding.
 ///
-/// Coordinates of binary files are exact. Those of text are the doubles nearest to the numerals.
-/// But they are the nearest floats where a PLY file declares floats, or where all numerals of a
-/// file may have been printed from floats: then it is the mesh of its binary twin, and as fast to
-/// guard.
+/// Coordinates of binary files are exact. Those of text are the doubles nearest to the numerals; or
+/// the nearest floats, where a PLY file declares floats, or where all numerals of a file may have
+/// been printed from floats: with nine digits, these are the floats of its binary twin.
 ///
 /// Throws Error, naming the file, the line where there is one, what is wrong and what to do. A file
 /// that was cut short is an error, except that an OBJ file cut at the end of a line cannot be told.
