@@ -24,8 +24,8 @@
 #include <vector>
 
 #include "bench/timing.h"
-#include "keepout/adapters/load_mesh.h"
 #include "keepout/fixtures/poses.h"
+#include "keepout/mesh/load_mesh.h"
 
 namespace {
 

@@ -7,8 +7,8 @@
 
 #include "keepout/activation/convex_tool_rule.h"
 #include "keepout/adapters/index_registry.h"
-#include "keepout/adapters/load_mesh.h"
 #include "keepout/error.h"
+#include "keepout/mesh/load_mesh.h"
 #include "keepout/solvers/registry.h"
 #include "keepout/step/motion_constraint.h"
 

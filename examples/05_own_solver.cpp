@@ -11,8 +11,8 @@
 
 #include "keepout/activation/registry.h"
 #include "keepout/adapters/index_registry.h"
-#include "keepout/adapters/load_mesh.h"
 #include "keepout/error.h"
+#include "keepout/mesh/load_mesh.h"
 #include "keepout/solvers/kkt.h"
 #include "keepout/solvers/recording_solver.h"
 #include "keepout/solvers/registry.h"

@@ -27,7 +27,7 @@ forbid(fixtures "${include}keepout/(adapters|solvers|factory|control)/" "fixture
 forbid(control "${include}keepout/(adapters|solvers|factory|fixtures)/" "control knows only the engine")
 
 # One folder a library: what two of them share is in adapters/src.
-set(libraries assimp bullet ccd cgal embree fcl ompl)
+set(libraries bullet ccd cgal embree fcl ompl)
 foreach(library IN LISTS libraries)
   set(others ${libraries})
   list(REMOVE_ITEM others ${library})
@@ -44,7 +44,7 @@ forbid(factory "${include}(ompl/|keepout/ompl/)" "the factory knows no planner")
 forbid(adapters/src "${include}(ompl/|keepout/ompl/)" "the other adapters know no planner")
 
 # What is under the GPL stays in its own folder, and in the target that gathers all indices.
-foreach(part engine solvers control factory fixtures oracle adapters/include adapters/src adapters/assimp
+foreach(part engine solvers control factory fixtures oracle adapters/include adapters/src
         adapters/bullet adapters/ccd adapters/embree adapters/fcl adapters/ompl)
   forbid(${part} "${include}(CGAL/|keepout/adapters/all_indices)"
          "the library is not to depend on the GPL")

@@ -14,7 +14,7 @@
 #include "keepout/index/pd_tree.h"
 #include "keepout/index/self_intersection.h"
 #include "keepout/mesh/doctor.h"
-#include "keepout/mesh/unit_guess.h"
+#include "keepout/mesh/quick_check.h"
 #include "named_mesh.h"
 #include "number_text.h"
 

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string_view>
 
-#include "keepout/adapters/load_mesh.h"
+#include "keepout/mesh/load_mesh.h"
 
 namespace keepout::app {
 

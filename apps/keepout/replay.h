@@ -7,8 +7,8 @@
 #include <iosfwd>
 #include <optional>
 
-#include "keepout/adapters/load_mesh.h"
 #include "keepout/factory/make_motion_constraint.h"
+#include "keepout/mesh/load_mesh.h"
 
 namespace keepout::app {
 

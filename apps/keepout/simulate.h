@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "hand.h"
-#include "keepout/adapters/load_mesh.h"
 #include "keepout/factory/make_motion_constraint.h"
+#include "keepout/mesh/load_mesh.h"
 
 namespace keepout::app {
 

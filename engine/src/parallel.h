@@ -75,17 +75,18 @@ void on_threads(unsigned threads, const Work& work) {
 }
 
 /// Works through blocks 0 to `blocks` - 1, handed out in this order. Each thread has a worker of
-/// its own, made by make_worker(), and calls worker(block). Throws what the lowest block threw that
-/// failed; later blocks may then have been left out.
-template <class MakeWorker>
-void share_blocks(std::size_t blocks, unsigned threads, const MakeWorker& make_worker) {
+/// its own, made by make_worker(), and calls work_on(worker, block, failures) as long as that is
+/// true. Throws what the lowest block threw that failed; later blocks may then have been left out.
+template <class MakeWorker, class WorkOn>
+void share_blocks(std::size_t blocks, unsigned threads, const MakeWorker& make_worker,
+                  const WorkOn& work_on) {
   std::atomic<std::size_t> next = 0;
   BlockFailures failures;
   const auto work = [&]() noexcept {
     std::size_t block = blocks;
     try {
-      auto&& worker = make_worker();
-      while ((block = next++) < blocks) worker(block);
+      auto worker = make_worker();
+      while ((block = next++) < blocks && work_on(worker, block, failures)) continue;
     } catch (...) {
       failures.add(block);
       next = blocks;
@@ -93,6 +94,15 @@ void share_blocks(std::size_t blocks, unsigned threads, const MakeWorker& make_w
   };
   on_threads(static_cast<unsigned>(std::min<std::size_t>(threads, blocks)), work);
   failures.rethrow();
+}
+
+/// The same for a worker that is called: worker(block).
+template <class MakeWorker>
+void share_blocks(std::size_t blocks, unsigned threads, const MakeWorker& make_worker) {
+  share_blocks(blocks, threads, make_worker, [](auto& worker, std::size_t block, BlockFailures&) {
+    worker(block);
+    return true;
+  });
 }
 
 /// Calls work(begin, end) for ranges that make up 0 to `size`, each of `share` items but for the
@@ -130,26 +140,15 @@ void run_both(unsigned threads, const One& one, const Other& other) {
 /// blocks.
 template <class MakeWorker>
 void share_blocks_in_order(std::size_t blocks, unsigned threads, const MakeWorker& make_worker) {
-  std::atomic<std::size_t> next = 0;
-  BlockFailures failures;
-  const auto work = [&]() noexcept {
-    std::size_t block = blocks;
-    try {
-      auto worker = make_worker();
-      while ((block = next++) < blocks) {
-        worker.prepare(block);
-        if (!failures.await_turn(block)) return;
-        worker.commit(block);
-        failures.end_turn();
-        worker.finish(block);
-      }
-    } catch (...) {
-      failures.add(block);
-      next = blocks;
-    }
-  };
-  on_threads(static_cast<unsigned>(std::min<std::size_t>(threads, blocks)), work);
-  failures.rethrow();
+  share_blocks(blocks, threads, make_worker,
+               [](auto& worker, std::size_t block, BlockFailures& failures) {
+                 worker.prepare(block);
+                 if (!failures.await_turn(block)) return false;
+                 worker.commit(block);
+                 failures.end_turn();
+                 worker.finish(block);
+                 return true;
+               });
 }
 
 }  // namespace keepout

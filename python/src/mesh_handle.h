@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "keepout/adapters/load_mesh.h"
+#include "keepout/mesh/load_mesh.h"
 #include "keepout/mesh/mesh.h"
 
 namespace keepout::python {

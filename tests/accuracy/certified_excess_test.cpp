@@ -11,13 +11,13 @@
 #include <vector>
 
 #include "accuracy/best_step.h"
-#include "keepout/adapters/load_mesh.h"
 #include "keepout/factory/make_motion_constraint.h"
 #include "keepout/fixtures/poses.h"
 #include "keepout/fixtures/real_mesh.h"
 #include "keepout/fixtures/shapes.h"
 #include "keepout/index/nearest.h"
 #include "keepout/index/pd_tree.h"
+#include "keepout/mesh/load_mesh.h"
 
 namespace keepout::test {
 namespace {

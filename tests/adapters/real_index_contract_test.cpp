@@ -10,8 +10,8 @@
 
 #include "adapters/index_contract.h"
 #include "keepout/adapters/all_indices.h"
-#include "keepout/adapters/load_mesh.h"
 #include "keepout/fixtures/real_mesh.h"
+#include "keepout/mesh/load_mesh.h"
 
 namespace keepout {
 namespace {

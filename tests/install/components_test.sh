@@ -36,7 +36,7 @@ answer=$(ask "REQUIRED")
 for part in engine solvers adapters keepout; do says "has $part"; done
 says "version $version, found 1"
 
-without_libraries=(-DCMAKE_DISABLE_FIND_PACKAGE_fcl=ON -DCMAKE_DISABLE_FIND_PACKAGE_assimp=ON
+without_libraries=(-DCMAKE_DISABLE_FIND_PACKAGE_fcl=ON
   -DCMAKE_DISABLE_FIND_PACKAGE_embree=ON -DCMAKE_DISABLE_FIND_PACKAGE_NLopt=ON)
 with_libraries=("${without_libraries[@]/%ON/OFF}")
 
@@ -59,7 +59,6 @@ fi
 if [ "$form" = static ]; then
   answer=$(ask "REQUIRED COMPONENTS adapters" "${without_libraries[@]}") && fail "adapters without FCL"
   says "keepout::adapters needs fcl, which was not found: install libfcl-dev"
-  says "keepout::adapters needs assimp, which was not found: install libassimp-dev"
   answer=$(ask "REQUIRED" "${without_libraries[@]}") && fail "the umbrella without FCL"
   says "install libfcl-dev"
   says "install libnlopt-dev"

@@ -12,7 +12,7 @@ mkdir -p "$work"
 options=()
 if [ "$kind" = bare ]; then
   options+=(-DCMAKE_CXX_COMPILER="$(bare_compiler "$work")")
-  for package in fcl ccd octomap assimp embree Bullet NLopt hwy CGAL Threads; do
+  for package in fcl ccd octomap embree Bullet NLopt hwy CGAL Threads; do
     options+=(-DCMAKE_DISABLE_FIND_PACKAGE_$package=ON)
   done
 fi

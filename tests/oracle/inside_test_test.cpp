@@ -10,7 +10,7 @@
 #include <numbers>
 
 #include "keepout/fixtures/poses.h"
-#include "keepout/fixtures/refine_mesh.h"
+#include "keepout/fixtures/resample_mesh.h"
 #include "keepout/fixtures/shapes.h"
 #include "keepout/oracle/volume_sign.h"
 #include "small_surfaces.h"

@@ -7,7 +7,6 @@
 
 #include "bench/used_cores.h"
 #include "keepout/error.h"
-#include "keepout/fixtures/refine_mesh.h"
 #include "keepout/fixtures/resample_mesh.h"
 #include "named_mesh.h"
 #include "number_text.h"

@@ -8,7 +8,7 @@
 #include <optional>
 #include <string_view>
 
-#include "keepout/adapters/load_mesh.h"
+#include "keepout/mesh/load_mesh.h"
 #include "serve/service.h"
 
 namespace keepout::app {

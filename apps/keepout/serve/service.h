@@ -7,8 +7,8 @@
 #include <memory>
 #include <string>
 
-#include "keepout/adapters/anatomical_space.h"
 #include "keepout/factory/make_motion_constraint.h"
+#include "keepout/mesh/load_mesh.h"
 #include "serve/line_reader.h"
 #include "serve/request.h"
 

@@ -5,10 +5,10 @@
 #include <utility>
 
 #include "../named_mesh.h"
-#include "keepout/adapters/load_mesh.h"
 #include "keepout/error.h"
 #include "keepout/fixtures/real_mesh.h"
 #include "keepout/fixtures/shapes.h"
+#include "keepout/mesh/load_mesh.h"
 
 namespace keepout::app {
 namespace {

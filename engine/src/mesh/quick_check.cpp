@@ -14,7 +14,6 @@
 #include "../parallel.h"
 #include "half_edges.h"
 #include "keepout/mesh/doctor.h"
-#include "keepout/mesh/unit_guess.h"
 
 namespace keepout {
 namespace {
@@ -43,36 +42,45 @@ std::size_t cell_count(std::size_t triangles) noexcept {
   return std::bit_ceil(std::clamp<std::size_t>(triangles / 20, 64, 65536));
 }
 
-/// Calls visit(edge, upwards) for each side of the triangles from begin to end. Which way a side
-/// runs is as good as random, so no branch depends on it: they would take most of the time.
-template <class Visit>
-void for_each_side(const Mesh& mesh, std::size_t begin, std::size_t end, Visit&& visit) {
-  for (const Corners& c : mesh.triangles().subspan(begin, end - begin)) {
-    if (repeats_a_vertex(c)) continue;
-    for (int i = 0; i < 3; ++i) {
-      const std::uint64_t from = c[i];
-      const std::uint64_t to = c[(i + 1) % 3];
-      const Upwards upwards = std::uint64_t{0} - ((from - to) >> 63);
-      const std::uint64_t swap = (from ^ to) & upwards;
-      visit((to ^ swap) << 32 | (from ^ swap), upwards);
+/// Calls visit(own, edge, upwards) for each side of the triangles, on as many threads, each of
+/// which has an `own` that begins as `empty`; and gather(own) for one of these after the other.
+/// Which way a side runs is as good as random, so no branch depends on it: they would take most of
+/// the time.
+template <class Own, class Visit, class Gather>
+void share_sides(const Mesh& mesh, unsigned threads, const Own& empty, const Visit& visit,
+                 const Gather& gather) {
+  std::mutex mutex;
+  const std::size_t share = std::max<std::size_t>(mesh.triangle_count() / threads + 1, share_size);
+  share_ranges(mesh.triangle_count(), threads, share, [&](std::size_t begin, std::size_t end) {
+    Own own = empty;
+    for (const Corners& c : mesh.triangles().subspan(begin, end - begin)) {
+      if (repeats_a_vertex(c)) continue;
+      for (int i = 0; i < 3; ++i) {
+        const std::uint64_t from = c[i];
+        const std::uint64_t to = c[(i + 1) % 3];
+        const Upwards upwards = std::uint64_t{0} - ((from - to) >> 63);
+        const std::uint64_t swap = (from ^ to) & upwards;
+        visit(own, (to ^ swap) << 32 | (from ^ swap), upwards);
+      }
     }
-  }
+    const std::lock_guard lock(mutex);
+    gather(own);
+  });
 }
 
 /// The sum of each cell.
 std::vector<std::uint64_t> sums_of_cells(const Mesh& mesh, std::size_t cells, unsigned threads) {
   std::vector<std::uint64_t> sums(cells, 0);
-  std::mutex mutex;
-  const std::size_t share = std::max<std::size_t>(mesh.triangle_count() / threads + 1, share_size);
-  share_ranges(mesh.triangle_count(), threads, share, [&](std::size_t begin, std::size_t end) {
-    std::vector<std::uint64_t> own(cells, 0);
-    for_each_side(mesh, begin, end, [&](Edge edge, Upwards upwards) {
-      const std::uint64_t hash = hash_of(edge);
-      own[hash & (cells - 1)] += (hash ^ upwards) - upwards;  // the negative, where it is all bits
-    });
-    const std::lock_guard lock(mutex);
-    for (std::size_t i = 0; i < cells; ++i) sums[i] += own[i];
-  });
+  share_sides(
+      mesh, threads, sums,
+      [cells](std::vector<std::uint64_t>& own, Edge edge, Upwards upwards) {
+        const std::uint64_t hash = hash_of(edge);
+        own[hash & (cells - 1)] +=
+            (hash ^ upwards) - upwards;  // the negative, where it is all bits
+      },
+      [&](const std::vector<std::uint64_t>& own) {
+        for (std::size_t i = 0; i < cells; ++i) sums[i] += own[i];
+      });
   return sums;
 }
 
@@ -85,16 +93,12 @@ std::vector<Side> suspects(const Mesh& mesh, const std::vector<std::uint64_t>& s
   std::vector<bool> is_suspect(sums.size());
   for (std::size_t i = 0; i < sums.size(); ++i) is_suspect[i] = sums[i] != 0;
   std::vector<Side> all;
-  std::mutex mutex;
-  const std::size_t share = std::max<std::size_t>(mesh.triangle_count() / threads + 1, share_size);
-  share_ranges(mesh.triangle_count(), threads, share, [&](std::size_t begin, std::size_t end) {
-    std::vector<Side> own;
-    for_each_side(mesh, begin, end, [&](Edge edge, Upwards upwards) {
-      if (is_suspect[hash_of(edge) & (sums.size() - 1)]) own.emplace_back(edge, upwards);
-    });
-    const std::lock_guard lock(mutex);
-    all.insert(all.end(), own.begin(), own.end());
-  });
+  share_sides(
+      mesh, threads, std::vector<Side>(),
+      [&](std::vector<Side>& own, Edge edge, Upwards upwards) {
+        if (is_suspect[hash_of(edge) & (sums.size() - 1)]) own.emplace_back(edge, upwards);
+      },
+      [&](const std::vector<Side>& own) { all.insert(all.end(), own.begin(), own.end()); });
   std::sort(all.begin(), all.end());
   return all;
 }
@@ -138,6 +142,20 @@ EdgeFaults find_edge_faults(const Mesh& mesh, unsigned threads) {
     side = next;
   }
   return faults;
+}
+
+std::vector<UnitGuess> other_units(double extent) {
+  // Sizes of organs and bones, and one from which on millimetres are not in doubt. [mm]
+  constexpr double smallest = 20.0, largest = 600.0, usual = 30.0;
+  constexpr std::array<UnitGuess, 4> units{
+      {{"m", 1000.0}, {"in", 25.4}, {"cm", 10.0}, {"um", 0.001}}};
+  std::vector<UnitGuess> guesses;
+  if (extent >= usual && extent <= MeshFindings::micrometres_above) return guesses;
+  for (const UnitGuess& guess : units) {
+    const double size = extent * guess.millimetres;
+    if (size >= smallest && size <= largest) guesses.push_back(guess);
+  }
+  return guesses;
 }
 
 std::vector<std::string> quick_check(const Mesh& mesh, unsigned threads) {

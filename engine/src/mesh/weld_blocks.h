@@ -3,8 +3,11 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
@@ -12,9 +15,119 @@
 #include "../huge_pages.h"
 #include "../parallel.h"
 #include "keepout/mesh/mesh.h"
-#include "point_numbers.h"
 
 namespace keepout {
+
+/// A point as bits, which decide whether two are equal: -0 must have become 0.
+template <class Scalar>
+using ExactPoint = std::array<Scalar, 3>;
+
+/// Multiplies two numbers and folds the product: each bit of it depends on many of both.
+inline std::uint64_t folded_product(std::uint64_t a, std::uint64_t b) noexcept {
+  __extension__ using Wide = unsigned __int128;
+  const Wide product = Wide{a} * b;
+  return static_cast<std::uint64_t>(product) ^ static_cast<std::uint64_t>(product >> 64);
+}
+
+// Any odd constants with bits all over will do.
+constexpr std::uint64_t hash_key[3] = {0x9e3779b97f4a7c15u, 0xbf58476d1ce4e5b9u,
+                                       0x94d049bb133111ebu};
+
+inline std::uint64_t hash(const ExactPoint<float>& point) noexcept {
+  const std::uint64_t xy = std::bit_cast<std::uint32_t>(point[0]) |
+                           std::uint64_t{std::bit_cast<std::uint32_t>(point[1])} << 32;
+  return folded_product(xy ^ hash_key[0], std::bit_cast<std::uint32_t>(point[2]) ^ hash_key[1]);
+}
+
+inline std::uint64_t hash(const ExactPoint<double>& point) noexcept {
+  const std::uint64_t xy = folded_product(std::bit_cast<std::uint64_t>(point[0]) ^ hash_key[0],
+                                          std::bit_cast<std::uint64_t>(point[1]) ^ hash_key[1]);
+  return folded_product(xy ^ std::bit_cast<std::uint64_t>(point[2]), hash_key[2]);
+}
+
+/// Numbers points by their first appearance; equal points get equal numbers.
+///
+/// An open table of (part of the hash, number); the points stand apart, so that a table of the same
+/// room is twice as dense in the caches, and in blocks, so that they need not move as it grows.
+template <class Scalar>
+class PointNumbers {
+ public:
+  using Point = ExactPoint<Scalar>;
+
+  /// `expected`: how many different points there may be; more are no error.
+  explicit PointNumbers(std::size_t expected)
+      : slots_(vector_in_huge_pages<Slot>(std::bit_ceil(expected + expected / 3 + 16))) {}
+
+  std::size_t size() const noexcept { return size_; }
+  const Point& operator[](std::size_t number) const noexcept {
+    return blocks_[number / block_size][number % block_size];
+  }
+
+  /// The numbers of points, given with their hashes. Precondition: there remain less than
+  /// no_triangle different ones.
+  void number(std::span<const Point> points, std::span<const std::uint64_t> hashes,
+              std::span<VertexId> numbers) {
+    make_room(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      // What will be looked at soon is fetched now: first the slot, then the point that it names.
+      if (i + 2 * ahead < points.size()) __builtin_prefetch(&slots_[home(hashes[i + 2 * ahead])]);
+      if (i + ahead < points.size()) {
+        const Slot& slot = slots_[home(hashes[i + ahead])];
+        if (slot.tag == tag(hashes[i + ahead])) __builtin_prefetch(&(*this)[slot.number]);
+      }
+      numbers[i] = number(points[i], hashes[i]);
+    }
+  }
+
+  /// Gives up the table and keeps the points.
+  void close() noexcept { slots_ = {}; }
+
+ private:
+  static constexpr std::size_t block_size = std::size_t{1} << 16;
+  static constexpr std::size_t ahead = 12;
+
+  struct Slot {
+    std::uint32_t tag = 0;  // 0: empty
+    VertexId number = 0;
+  };
+
+  std::size_t home(std::uint64_t hash) const noexcept { return hash & (slots_.size() - 1); }
+  static std::uint32_t tag(std::uint64_t hash) noexcept {
+    return static_cast<std::uint32_t>(hash >> 32) | 1u;
+  }
+
+  VertexId number(const Point& point, std::uint64_t hash) noexcept {
+    for (std::size_t s = home(hash);; s = (s + 1) & (slots_.size() - 1)) {
+      Slot& slot = slots_[s];
+      if (slot.tag == 0) {
+        slot = {tag(hash), static_cast<VertexId>(size_)};
+        blocks_[size_ / block_size][size_ % block_size] = point;
+        return static_cast<VertexId>(size_++);
+      }
+      if (slot.tag == tag(hash) && (*this)[slot.number] == point) return slot.number;
+    }
+  }
+
+  /// For that many more points.
+  void make_room(std::size_t more) {
+    while (blocks_.size() * block_size < size_ + more) {
+      blocks_.push_back(std::make_unique_for_overwrite<Point[]>(block_size));
+    }
+    if (4 * (size_ + more) <= 3 * slots_.size()) return;
+    slots_ = {};  // what the points tell need not be kept
+    slots_ = vector_in_huge_pages<Slot>(std::bit_ceil(2 * (size_ + more)));
+    for (std::size_t p = 0; p < size_; ++p) {
+      const std::uint64_t h = hash((*this)[p]);
+      std::size_t s = home(h);
+      while (slots_[s].tag != 0) s = (s + 1) & (slots_.size() - 1);
+      slots_[s] = {tag(h), static_cast<VertexId>(p)};
+    }
+  }
+
+  std::vector<Slot> slots_;
+  std::vector<std::unique_ptr<Point[]>> blocks_;
+  std::size_t size_ = 0;
+};
 
 /// Triangles that are welded at a time. Their corners can be numbered in 16 bits.
 constexpr std::size_t weld_block = 16'384;

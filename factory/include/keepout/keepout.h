@@ -3,6 +3,6 @@
 #pragma once
 
 // All that a program needs which takes keepout as it comes.
-#include "keepout/adapters/load_mesh.h"
 #include "keepout/error.h"
 #include "keepout/factory/make_motion_constraint.h"
+#include "keepout/mesh/load_mesh.h"

@@ -146,6 +146,16 @@ TEST_F(BinaryStl, WhatCannotBeWrittenIsAnErrorAndLeavesNothing) {
   EXPECT_TRUE(fs::is_empty(folder.path()));
 }
 
+TEST_F(BinaryStl, MoreTrianglesThanTheFormatCountsAreAnErrorAndLeaveNothing) {
+  EXPECT_THROW(BinaryStlWriter(file, std::uint64_t{1} << 32), Error);
+  EXPECT_TRUE(fs::is_empty(folder.path()));
+}
+
+TEST_F(BinaryStl, AWriterThatIsNotCommittedLeavesNothing) {
+  { BinaryStlWriter(file, 1).write({Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)}); }
+  EXPECT_TRUE(fs::is_empty(folder.path()));
+}
+
 TEST_F(BinaryStl, WritingOverAFolderIsAnErrorAndLeavesNothingElse) {
   fs::create_directories(file / "occupied");
   EXPECT_THROW(write_binary_stl(file, tetrahedron()), Error);

@@ -13,7 +13,7 @@
 #include "bench/speed/process.h"
 #include "bench/speed/speed_run.h"
 #include "bench/subject.h"
-#include "keepout/adapters/load_mesh.h"
+#include "keepout/mesh/load_mesh.h"
 #include "keepout/factory/make_motion_constraint.h"
 #include "keepout/fixtures/real_mesh.h"
 #include "keepout/index/index_cache.h"

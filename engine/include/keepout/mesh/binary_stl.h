@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <memory>
 
 #include "keepout/mesh/mesh.h"
 
@@ -29,5 +31,26 @@ Surface read_welded_stl(const std::filesystem::path& path, unsigned threads = 0)
 void write_binary_stl(const std::filesystem::path& path, const Surface& surface);
 /// The same for a mesh.
 void write_binary_stl(const std::filesystem::path& path, const Mesh& mesh);
+
+/// The same, triangle by triangle: for surfaces that no memory holds.
+class BinaryStlWriter {
+ public:
+  /// Of a file of so many triangles.
+  BinaryStlWriter(const std::filesystem::path& path, std::uint64_t triangles);
+  /// Without a commit nothing is left.
+  ~BinaryStlWriter();
+  BinaryStlWriter(const BinaryStlWriter&) = delete;
+  BinaryStlWriter& operator=(const BinaryStlWriter&) = delete;
+
+  /// The next triangle, and its normal.
+  void write(const Triangle& corners);
+
+  /// Puts the file into its place. Precondition: as many triangles were written as declared.
+  void commit();
+
+ private:
+  class File;
+  std::unique_ptr<File> file_;
+};
 
 }  // namespace keepout

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "keepout/mesh/mesh.h"
@@ -19,6 +20,16 @@ struct EdgeFaults {
 /// thirtieth of the time, some 5 ms for a million triangles and a processor. On `threads` threads
 /// at once; 0: as many as there are processors.
 EdgeFaults find_edge_faults(const Mesh& mesh, unsigned threads = 0);
+
+/// A unit that the numbers of a file may be in.
+struct UnitGuess {
+  std::string_view unit;  // "m", "cm", "in", "um"
+  double millimetres;     // that one is
+};
+
+/// The units other than millimetres in which something of that largest extent would be of the size
+/// that organs have, 20 to 600 mm. A size that is usual in millimetres has none: from 30 on.
+std::vector<UnitGuess> other_units(double extent);
 
 /// What a mesh should not guard anything without: a sentence each, for people, on a size that is
 /// none of anatomy in millimetres, on an open surface, and on an inconsistent winding. Empty when

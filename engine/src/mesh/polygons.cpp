@@ -1,14 +1,20 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "polygon.h"
+#include "polygons.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <span>
+
+#include "keepout/error.h"
 
 namespace keepout {
 namespace {
 
 using Vec2 = Eigen::Vector2d;
+
+/// Ears take a time that grows with the third power of the corners.
+constexpr std::size_t most_ear_corners = 1000;
 
 /// The corners as seen against their mean normal (Newell's), so that they run counter-clockwise.
 std::vector<Vec2> projected(std::span<const VertexId> polygon, std::span<const Vec3> vertices) {
@@ -73,8 +79,7 @@ bool is_ear(const std::vector<Vec2>& points, const std::vector<std::size_t>& lef
   });
 }
 
-}  // namespace
-
+/// False, and nothing is appended, if the polygon is not convex and has too many corners.
 bool cut_polygon(std::span<const VertexId> polygon, std::span<const Vec3> vertices,
                  std::vector<Corners>& triangles) {
   if (polygon.size() == 3) {
@@ -100,6 +105,49 @@ bool cut_polygon(std::span<const VertexId> polygon, std::span<const Vec3> vertic
     triangles.push_back({polygon[left[0]], polygon[left[i]], polygon[left[i + 1]]});
   }
   return true;
+}
+
+}  // namespace
+
+void MeshFile::round_to_floats() noexcept {
+  for (Vec3& vertex : surface.vertices) vertex = vertex.cast<float>().cast<double>().eval();
+}
+
+void Polygons::end_polygon() {
+  const std::size_t begin = ends_.empty() ? 0 : ends_.back();
+  if (corners_.size() - begin < 3) {
+    corners_.resize(begin);
+    ++left_out_;
+  } else {
+    ends_.push_back(corners_.size());
+  }
+}
+
+void Polygons::cut_into(MeshFile& mesh, const std::string& file) const {
+  const auto fail = [&](const std::string& what) { throw Error(file + ": " + what); };
+  std::vector<Corners>& triangles = mesh.surface.triangles;
+  const std::size_t count = triangles.size() + corners_.size() - 2 * ends_.size();
+  // Three vertices for each triangle must be countable.
+  if (count > no_triangle / 3 || mesh.surface.vertices.size() >= no_triangle) {
+    fail("has too many triangles to read; split or decimate it");
+  }
+  triangles.reserve(count);
+  std::size_t begin = 0;
+  for (const std::size_t end : ends_) {
+    const auto polygon = std::span(corners_).subspan(begin, end - begin);
+    if (!cut_polygon(polygon, mesh.surface.vertices, triangles)) {
+      fail("a face of " + std::to_string(polygon.size()) +
+           " corners that is not convex; export the mesh as triangles");
+    }
+    begin = end;
+  }
+  if (triangles.empty()) {
+    fail("has no faces, only points or lines; a surface must be made of them first");
+  }
+  if (left_out_ > 0) {
+    mesh.warnings.push_back("left out " + std::to_string(left_out_) +
+                            " faces with fewer than three corners");
+  }
 }
 
 }  // namespace keepout

@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace keepout {
@@ -30,14 +31,25 @@ class TextLines {
   std::size_t line() const noexcept { return line_; }
   /// Where the next line begins in the text.
   std::size_t position() const noexcept { return position_; }
+  /// What follows one of the words on its line, blanks included.
+  std::string_view after(std::string_view word) const noexcept;
   /// True if the text stops in the middle of a line: a sign that it may have been cut short.
   bool ends_within_a_line() const noexcept;
+  /// Of the lines so far, where the format has them.
+  std::vector<std::string> take_comments() noexcept { return std::move(comments_); }
 
-  /// Throws Error with the file and the current line before `what`.
+  /// The file and the current line, for errors.
+  std::string place() const { return file_ + ": line " + std::to_string(line_); }
+  /// Throws Error with these before `what`.
   [[noreturn]] void fail(const std::string& what) const;
 
-  /// Throws Error, unless the word is a decimal number that assimp reads as it is meant.
-  void expect_number(std::string_view word) const;
+  /// The word as a number, rounded but once. Throws Error unless it is decimal and finite.
+  template <class Real>
+  Real number(std::string_view word) const;
+  /// The same of a double, for which is noted whether it may have been printed from a float.
+  double coordinate(std::string_view word);
+  /// Whether all coordinates so far may have been: then the floats are what the file is about.
+  bool has_only_floats() const noexcept { return has_only_floats_; }
   /// The word as a whole number without a sign. Throws Error if it is none.
   std::uint64_t whole_number(std::string_view word) const;
 
@@ -48,9 +60,11 @@ class TextLines {
   std::string file_;
   LineRules rules_;
   std::vector<std::string_view> words_;
+  std::vector<std::string> comments_;
   std::size_t position_ = 0;
   std::size_t line_ = 0;
   std::size_t next_line_ = 1;
+  bool has_only_floats_ = true;
 };
 
 /// The word in quotes, fit for a message: short, and without control characters.

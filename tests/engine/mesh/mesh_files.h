@@ -14,9 +14,9 @@
 #include <string>
 #include <vector>
 
-#include "keepout/adapters/load_mesh.h"
 #include "keepout/error.h"
 #include "keepout/mesh/binary_stl.h"
+#include "keepout/mesh/load_mesh.h"
 #include "small_surfaces.h"
 #include "temporary_folder.h"
 
@@ -28,11 +28,12 @@ namespace fs = std::filesystem;
 
 /// How the writers write numbers: as short as 9 digits allow, unless told otherwise.
 inline std::ios_base::fmtflags notation{};
+inline int digits = 9;
 
 inline std::string number(double value) {
   std::ostringstream text;
   text.setf(notation, std::ios_base::floatfield);
-  text << std::setprecision(notation == std::ios_base::fixed ? 14 : 9) << value;
+  text << std::setprecision(notation == std::ios_base::fixed ? 14 : digits) << value;
   return text.str();
 }
 

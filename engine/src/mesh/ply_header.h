@@ -15,12 +15,8 @@ namespace keepout {
 // What a PLY file says of itself before its data. Source: Turk, "The PLY polygon file format",
 // 1994.
 
-/// How the data after the header are written.
-enum class PlyEncoding {
-  text,           // "ascii", one element a line
-  little_endian,  // binary
-  big_endian      // binary
-};
+/// How the data after the header are written: "ascii", one item a line, or binary.
+enum class PlyEncoding { text, little_endian, big_endian };
 
 /// A type of numbers.
 struct PlyScalar {
@@ -28,32 +24,31 @@ struct PlyScalar {
   std::string_view synonym;  // as others write it
   std::size_t size;          // [bytes]
   bool whole;                // an integer, not a floating-point number
-  bool is_signed;            // whether it may be below 0
+  bool is_signed;
 };
 
 /// What each item of an element has: one value, or a list of them.
 struct PlyProperty {
-  std::string name;                       // as the file has it
+  std::string name;
   const PlyScalar* type = nullptr;        // of the value, or of each one in a list
   const PlyScalar* count_type = nullptr;  // of a list; nullptr: a single value
 
-  /// Whether it is a count and as many values.
   bool is_list() const noexcept { return count_type != nullptr; }
 };
 
 /// A table of the file, such as its vertices or its faces.
 struct PlyElement {
-  std::string name;                     // as the file has it
+  std::string name;
   std::uint64_t count = 0;              // of items
   std::vector<PlyProperty> properties;  // of each item, in their order
 };
 
 /// All that is declared, in the order of the data.
 struct PlyHeader {
-  PlyEncoding encoding = PlyEncoding::text;  // of the data
-  std::vector<PlyElement> elements;          // in the order in which their items follow
-  std::vector<std::string> comments;         // and obj_info: what follows the word
-  std::size_t size = 0;                      // where the data begin [bytes]
+  PlyEncoding encoding = PlyEncoding::text;
+  std::vector<PlyElement> elements;
+  std::vector<std::string> comments;  // and obj_info: what follows the word
+  std::size_t size = 0;               // where the data begin [bytes]
 };
 
 /// Where the surface is among the elements of a header, which must outlive this.
@@ -65,11 +60,8 @@ struct PlyLayout {
 };
 
 /// Reads the header of a file. Throws Error, with the line, for what is malformed or not
-/// understood, and where more elements are declared than the file has bytes.
+/// understood, and where more items are declared than the file has bytes.
 PlyHeader read_ply_header(const std::filesystem::path& path);
-
-/// The same of a whole file in memory. `file` names it in errors.
-PlyHeader read_ply_header(std::string_view contents, const std::string& file);
 
 /// Throws Error where the vertices or corners of a surface are missing, or where it has strips.
 PlyLayout find_ply_layout(const PlyHeader& header, const std::string& file);

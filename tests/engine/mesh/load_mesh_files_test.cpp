@@ -6,7 +6,7 @@
 
 #include <thread>
 
-#include "adapters/mesh_files.h"
+#include "engine/mesh/mesh_files.h"
 
 namespace keepout {
 namespace {

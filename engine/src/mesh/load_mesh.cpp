@@ -1,26 +1,21 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-
-#include "keepout/adapters/load_mesh.h"
+#include "keepout/mesh/load_mesh.h"
 
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cstring>
-#include <fstream>
 #include <new>
-#include <string_view>
+#include <utility>
 
+#include "../read_only_file.h"
 #include "coordinate_notes.h"
 #include "keepout/error.h"
-#include "keepout/mesh/binary_ply.h"
 #include "keepout/mesh/binary_stl.h"
 #include "keepout/mesh/quick_check.h"
 #include "keepout/mesh/weld.h"
-
-#if KEEPOUT_WITH_ASSIMP
-#include "../assimp/read_with_assimp.h"
-#endif
+#include "mesh_file.h"
 
 namespace keepout {
 namespace {
@@ -42,18 +37,9 @@ void check_file(const std::filesystem::path& path) {
   if (!std::filesystem::exists(status)) fail(path, "there is no such file; check the name");
   if (std::filesystem::is_directory(status)) fail(path, "is a directory; name a mesh file in it");
   if (!std::filesystem::is_regular_file(status)) fail(path, "is not a regular file");
-  if (!std::ifstream(path, std::ios::binary)) fail(path, "cannot be read; check its permissions");
-  if (std::filesystem::file_size(path, error) == 0 || error) {
-    fail(path, "is empty; copy or export it again");
-  }
-}
-
-std::string beginning_of(const std::filesystem::path& path) {
-  std::string bytes(512, '\0');
-  std::ifstream file(path, std::ios::binary);
-  file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  bytes.resize(static_cast<std::size_t>(file.gcount()));
-  return bytes;
+  const ReadOnlyFile file(path);
+  if (!file.is_open()) fail(path, "cannot be read; check its permissions");
+  if (file.size() == 0) fail(path, "is empty; copy or export it again");
 }
 
 void refuse_compressed(const std::filesystem::path& path, std::string_view beginning) {
@@ -78,7 +64,7 @@ std::string_view extension_by_content(std::string_view beginning) {
 
 /// STL that is neither text nor of the length that its header declares.
 [[noreturn]] void refuse_stl(const std::filesystem::path& path, std::string_view beginning) {
-  constexpr std::size_t preamble = 84;
+  constexpr std::size_t preamble = stl_header_size + sizeof(std::uint32_t);
   const std::uintmax_t size = std::filesystem::file_size(path);
   if (beginning.size() < preamble) fail(path, "is too short to be an STL file");
   std::uint32_t count;
@@ -96,92 +82,43 @@ bool looks_like_text_stl(std::string_view beginning) {
   return word != std::string_view::npos && beginning.find('\0') == std::string_view::npos;
 }
 
-#if KEEPOUT_WITH_ASSIMP
+struct Format {
+  std::string_view extension;
+  MeshFile (*read)(const std::filesystem::path&);  // all that is not binary STL
+};
 
-std::string contents_of(const std::filesystem::path& path) {
-  std::string contents(std::filesystem::file_size(path), '\0');
-  std::ifstream file(path, std::ios::binary);
-  if (!file.read(contents.data(), static_cast<std::streamsize>(contents.size()))) {
-    fail(path, "cannot be read to its end; check the disk");
-  }
-  return contents;
+/// A reader of text, as one of files.
+template <MeshFile (*Read)(std::string_view, const std::string&)>
+MeshFile read_text(const std::filesystem::path& path) {
+  return Read(contents_of(path), path.string());
 }
 
-MeshFormat format_of(const std::string& extension) noexcept {
-  if (extension == ".ply") return MeshFormat::ply;
-  if (extension == ".obj") return MeshFormat::obj;
-  if (extension == ".off") return MeshFormat::off;
-  return MeshFormat::stl;
-}
+constexpr std::array<Format, 4> formats{{{".stl", read_text<read_text_stl>},
+                                         {".ply", read_ply},
+                                         {".obj", read_text<read_obj>},
+                                         {".off", read_text<read_off>}}};
 
-CoordinateNotes notes_of(MeshFormat format, std::string_view contents, const std::string& file) {
-  switch (format) {
-    case MeshFormat::stl:
-      return notes_of_text_stl(contents);
-    case MeshFormat::ply:
-      return notes_of_ply(read_ply_header(contents, file).comments);
-    case MeshFormat::obj:
-    case MeshFormat::off:
-      break;
-  }
-  return notes_after_hashes(contents);
-}
-
-Surface read_other(const std::filesystem::path& path, const std::string& extension,
-                   std::vector<std::string>& warnings, CoordinateNotes& notes) {
-  const MeshFormat format = format_of(extension);
-  const std::string contents = contents_of(path);
-  notes = notes_of(format, contents, path.string());
-  return read_with_assimp(format, contents, path.string(), warnings);
-}
-
-#else
-
-Surface read_other(const std::filesystem::path& path, const std::string&, std::vector<std::string>&,
-                   CoordinateNotes&) {
-  fail(path,
-       "only binary STL and PLY can be read, for keepout was built without assimp; convert the "
-       "mesh, "
-       "or build with KEEPOUT_WITH_ASSIMP=ON");
-}
-
-#endif
-
-/// A binary PLY file's surface, welded.
-Surface read_ply(const std::filesystem::path& path, const PlyHeader& header,
-                 std::vector<std::string>& warnings) {
-  PlySurface read = read_binary_ply(path, header);
-  warnings.insert(warnings.end(), read.warnings.begin(), read.warnings.end());
-  return weld(std::move(read.surface));
-}
-
-Surface read_welded(const std::filesystem::path& path, std::vector<std::string>& warnings,
-                    CoordinateNotes& notes) {
+/// A file's surface, welded.
+MeshFile read_welded(const std::filesystem::path& path) {
   check_file(path);
-  const std::string beginning = beginning_of(path);
+  const std::string beginning = contents_of(path, 512);
   refuse_compressed(path, beginning);
   const std::string extension = lower_extension(path);
-  constexpr std::array<std::string_view, 4> known{".stl", ".ply", ".obj", ".off"};
-  if (std::find(known.begin(), known.end(), extension) == known.end()) {
+  const auto format = std::ranges::find(formats, extension, &Format::extension);
+  if (format == formats.end()) {
     fail(path, "its extension is none of .stl, .ply, .obj, .off; convert the mesh to one of them");
   }
   if (extension == ".stl" && is_binary_stl(path)) {
-    notes = notes_of_binary_stl(beginning);
-    return read_welded_stl(path);
+    return {read_welded_stl(path), {beginning.substr(0, stl_header_size)}, {}};
   }
   const std::string_view expected = extension_by_content(beginning);
   if (!expected.empty() && expected != extension) {
     fail(path, "its content is " + std::string(expected) + "; give it that extension");
   }
   if (extension == ".stl" && !looks_like_text_stl(beginning)) refuse_stl(path, beginning);
-  if (extension == ".ply") {
-    const PlyHeader header = read_ply_header(path);
-    if (header.encoding != PlyEncoding::text) {
-      notes = notes_of_ply(header.comments);
-      return read_ply(path, header, warnings);
-    }
-  }
-  return weld(read_other(path, extension, warnings, notes));
+  MeshFile mesh = format->read(path);
+  mesh.surface = weld(std::move(mesh.surface));
+  return mesh;
 }
 
 /// Turns the surface into the space that is wanted, and takes down what is known of it. Throws
@@ -238,21 +175,41 @@ void warn_of_unit(const CoordinateNotes& notes, std::vector<std::string>& warnin
 
 }  // namespace
 
+std::string_view name(AnatomicalSpace space) noexcept {
+  constexpr std::array<std::string_view, 3> names{"unstated", "RAS", "LPS"};
+  return names[static_cast<std::size_t>(space)];
+}
+
+void swap_ras_and_lps(Surface& surface) noexcept {
+  // From 0, so that no 0 becomes -0.
+  for (Vec3& v : surface.vertices) v = Vec3(0.0 - v.x(), 0.0 - v.y(), v.z());
+}
+
+std::string contents_of(const std::filesystem::path& path, std::uint64_t at_most) {
+  const ReadOnlyFile file(path);
+  std::string contents(std::min(file.size(), at_most), '\0');
+  if (!file.is_open() || !file.read(0, contents.data(), contents.size())) {
+    fail(path, "cannot be read to its end; check the disk");
+  }
+  return contents;
+}
+
 LoadedMesh load_mesh(const std::filesystem::path& path, const LoadOptions& options) {
   LoadedMesh loaded;
-  Surface surface;
-  CoordinateNotes notes;
+  MeshFile read;
   try {
-    surface = read_welded(path, loaded.warnings, notes);
+    read = read_welded(path);
   } catch (const std::bad_alloc&) {
     fail(path, "there is not enough memory to read it; decimate the mesh, or use binary STL");
   } catch (const std::filesystem::filesystem_error& error) {
     fail(path, error.code().message());
   }
-  settle_space(path, notes, options, surface, loaded);
+  loaded.warnings = std::move(read.warnings);
+  const CoordinateNotes notes = notes_of(read.comments);
+  settle_space(path, notes, options, read.surface, loaded);
   warn_of_unit(notes, loaded.warnings);
   try {
-    loaded.mesh = std::make_shared<const Mesh>(std::move(surface));
+    loaded.mesh = std::make_shared<const Mesh>(std::move(read.surface));
   } catch (const Error& error) {
     fail(path, error.what());
   }

@@ -11,12 +11,12 @@
 #include <string_view>
 #include <vector>
 
-#include "keepout/adapters/load_mesh.h"
 #include "keepout/error.h"
 #include "keepout/fixtures/real_mesh.h"
 #include "keepout/index/pd_tree.h"
 #include "keepout/index/self_intersection.h"
 #include "keepout/mesh/doctor.h"
+#include "keepout/mesh/load_mesh.h"
 
 namespace keepout {
 namespace {

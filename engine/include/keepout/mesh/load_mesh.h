@@ -6,12 +6,23 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "keepout/adapters/anatomical_space.h"
 #include "keepout/mesh/mesh.h"
 
 namespace keepout {
+
+/// Which way the axes of a patient's coordinates point. RAS: x to the right, y to the front, z to
+/// the head. LPS: x to the left, y to the back, z to the head. One is the other turned by half a
+/// turn about z, so a mesh in the wrong one looks sound and is somewhere else.
+enum class AnatomicalSpace : std::uint8_t { unstated, ras, lps };
+
+/// "RAS", "LPS", or "unstated".
+std::string_view name(AnatomicalSpace space) noexcept;
+
+/// Turns coordinates from RAS to LPS, or back: x and y change signs, exactly. The winding stays.
+void swap_ras_and_lps(Surface& surface) noexcept;
 
 /// Whether load_mesh looks at the mesh that it has read.
 enum class MeshCheck : std::uint8_t {
@@ -46,10 +57,9 @@ struct LoadedMesh {
 /// mesh gets a warning for a size that is none of anatomy in mm, for an open surface, and for an
 /// inconsistent winding.
 ///
-/// Coordinates of binary files are exact, also doubles of PLY. Those of text files arrive in single
-/// precision: those of PLY are the nearest, and those of the others within 1 unit in the last
-/// place, or 2 when written with an exponent. The same mesh may differ by that much from one format
-/// to another.
+/// Coordinates of binary files are exact. Those of text are the doubles nearest to the numerals; or
+/// the nearest floats, where a PLY file declares floats, or where all numerals of a file may have
+/// been printed from floats: with nine digits, these are the floats of its binary twin.
 ///
 /// Throws Error, naming the file, the line where there is one, what is wrong and what to do. A file
 /// that was cut short is an error, except that an OBJ file cut at the end of a line cannot be told.

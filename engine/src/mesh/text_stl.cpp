@@ -1,11 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-
 #include <algorithm>
-#include <array>
-#include <span>
 
-#include "screen.h"
+#include "polygons.h"
 #include "text_lines.h"
 
 namespace keepout {
@@ -15,10 +12,9 @@ constexpr const char* cut_short =
     "the file ends without 'endsolid', so it was cut short; copy or export it again";
 
 bool is_keyword(std::string_view word, std::string_view lower) noexcept {
-  return word.size() == lower.size() &&
-         std::equal(word.begin(), word.end(), lower.begin(), [](char c, char l) {
-           return c == l || (c >= 'A' && c <= 'Z' && c - 'A' + 'a' == l);
-         });
+  return std::ranges::equal(word, lower, [](char c, char l) {
+    return c == l || (c >= 'A' && c <= 'Z' && c - 'A' + 'a' == l);
+  });
 }
 
 /// The words of the text one after the other, for line ends mean nothing between facets.
@@ -42,69 +38,66 @@ class Words {
     return word;
   }
 
-  void expect(std::string_view keyword) {
+  std::string_view expect(std::string_view keyword) {
     const std::string_view word = take();
     if (!is_keyword(word, keyword)) {
       lines_.fail("expected '" + std::string(keyword) + "', found " + quoted(word) +
                   "; the file is damaged");
     }
+    return word;
   }
 
-  void skip_line() { used_ = lines_.words().size(); }
+  /// The rest of the line behind a keyword, which names the solid.
+  std::string name_after(std::string_view keyword) {
+    const std::string_view word = expect(keyword);
+    used_ = lines_.words().size();
+    return std::string(lines_.after(word));
+  }
 
  private:
   TextLines& lines_;
   std::size_t used_ = 0;
 };
 
-void screen_facet(Words& words, TextLines& lines, std::string& text) {
+void read_facet(Words& words, TextLines& lines, Surface& surface) {
   words.expect("facet");
   words.expect("normal");
   // Normals are computed from the corners; files are full of wrong ones, and of nan.
   for (int i = 0; i < 3; ++i) words.take();
   words.expect("outer");
   words.expect("loop");
-  text += "facet normal 0 0 0\n";
+  const auto first = static_cast<VertexId>(surface.vertices.size());
   for (int corner = 0; corner < 3; ++corner) {
     words.expect("vertex");
-    text += "vertex";
-    for (int axis = 0; axis < 3; ++axis) {
-      const std::string_view number = words.take();
-      lines.expect_number(number);
-      text += ' ';
-      text += number;
-    }
-    text += '\n';
+    Vec3 vertex;
+    for (double& x : vertex) x = lines.coordinate(words.take());
+    surface.vertices.push_back(vertex);
   }
   if (is_keyword(words.peek(), "vertex")) {
     lines.fail("a facet has more than three corners; triangulate the mesh and export it again");
   }
   words.expect("endloop");
   words.expect("endfacet");
+  surface.triangles.push_back({first, first + 1, first + 2});
 }
 
 }  // namespace
 
-Screened screen_stl(std::string_view contents, const std::string& file) {
+MeshFile read_text_stl(std::string_view contents, const std::string& file) {
   TextLines lines(contents, file);
   Words words(lines);
-  Screened screened;
-  screened.text.reserve(contents.size());
-  screened.text = "solid\n";
+  MeshFile mesh;
   do {
-    words.expect("solid");
-    words.skip_line();  // the name
+    mesh.comments.push_back(words.name_after("solid"));
     while (!is_keyword(words.peek(), "endsolid")) {
       if (words.peek().empty()) lines.fail(cut_short);
-      screen_facet(words, lines, screened.text);
-      ++screened.faces;
+      read_facet(words, lines, mesh.surface);
     }
-    words.skip_line();
+    mesh.comments.push_back(words.name_after("endsolid"));
   } while (!words.peek().empty());
-  screened.text += "endsolid\n";
-  screened.vertices = 3 * screened.faces;
-  screened.triangles = screened.faces;
-  return screened;
+  if (lines.has_only_floats()) mesh.round_to_floats();
+  Polygons().cut_into(mesh, file);
+  return mesh;
 }
 
 }  // namespace keepout

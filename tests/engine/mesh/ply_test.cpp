@@ -1,23 +1,19 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "keepout/mesh/binary_ply.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 
-#include "adapters/mesh_files.h"
+#include "engine/mesh/mesh_files.h"
 #include "keepout/error.h"
+#include "mesh_file.h"
 
 namespace keepout {
 namespace {
 
 class BinaryPly : public testing::Test {
  protected:
-  PlySurface read(std::string_view contents) {
-    const fs::path file = folder.write("mesh.ply", contents);
-    return read_binary_ply(file, read_ply_header(file));
-  }
+  MeshFile read(std::string_view contents) { return read_ply(folder.write("mesh.ply", contents)); }
 
   std::string complaint(std::string_view contents) {
     try {
@@ -56,7 +52,7 @@ double doubled_area_of(const Surface& surface, std::size_t t) {
 TEST_F(BinaryPly, ManyTrianglesAreReadAsTheyAre) {
   const Surface expected = torus(150);  // several blocks, both of vertices and of triangles
   for (const bool big_endian : {false, true}) {
-    const PlySurface read = this->read(as_binary_ply<double>(expected, big_endian));
+    const MeshFile read = this->read(as_binary_ply<double>(expected, big_endian));
     EXPECT_EQ(read.surface.vertices, expected.vertices);
     EXPECT_EQ(read.surface.triangles, expected.triangles);
     EXPECT_TRUE(read.warnings.empty());
@@ -133,12 +129,12 @@ TEST_F(BinaryPly, ALargePolygonIsReadIfItIsConvex) {
 }
 
 TEST_F(BinaryPly, FacesOfFewerThanThreeCornersAreLeftOutWithAWarning) {
-  const PlySurface two = read(polygon_ply({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+  const MeshFile two = read(polygon_ply({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
   EXPECT_EQ(two.surface.triangles.size(), 2u);
   std::string ply = polygon_ply({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
   ply.resize(ply.size() - 4);
   ply[ply.size() - 12] = 2;
-  const PlySurface one = read(ply);
+  const MeshFile one = read(ply);
   EXPECT_EQ(one.surface.triangles.size(), 1u);
   ASSERT_EQ(one.warnings.size(), 1u);
   EXPECT_CONTAINS(one.warnings[0], "1 faces");
@@ -157,7 +153,7 @@ TEST_F(BinaryPly, FacesMayStandBeforeTheVerticesAndListsAnywhere) {
     append_bytes(ply, static_cast<std::int8_t>(p.y()), true);
     append_bytes(ply, p.z(), true);
   }
-  const PlySurface read = this->read(ply);
+  const MeshFile read = this->read(ply);
   EXPECT_EQ(read.surface.vertices, points);
   EXPECT_EQ(read.surface.triangles.size(), 2u);
   EXPECT_TRUE(read.warnings.empty());

@@ -3,7 +3,7 @@
 // RAS and LPS: what files say, and what becomes of it.
 #include <algorithm>
 
-#include "adapters/mesh_files.h"
+#include "engine/mesh/mesh_files.h"
 
 namespace keepout {
 namespace {

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "keepout/ids.h"
+#include "mesh_file.h"
+
+namespace keepout {
+
+/// The faces of a file as it has them, until all its vertices are known and they can be cut into
+/// triangles.
+class Polygons {
+ public:
+  void add_corner(VertexId corner) { corners_.push_back(corner); }
+
+  /// Ends a polygon. One of fewer than three corners is left out.
+  void end_polygon();
+
+  /// Cuts each polygon into two triangles less than it has corners, wound as it is, and appends
+  /// them to the surface: a fan where it is convex, else ears (Meisters 1975), as seen along its
+  /// mean normal. What crosses itself or has no area is cut somehow. Warns of what was left out.
+  ///
+  /// Throws Error if the surface then has no triangles, if it has too many to be numbered, and for
+  /// a polygon that is not convex and has more than 1000 corners, as ears take a time that grows
+  /// with the third power of the corners.
+  void cut_into(MeshFile& mesh, const std::string& file) const;
+
+ private:
+  std::vector<VertexId> corners_;  // one polygon after the other
+  std::vector<std::size_t> ends_;  // of each in them
+  std::size_t left_out_ = 0;
+};
+
+}  // namespace keepout
