@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "bench/bench_command.h"
-#include "compare/compare_command.h"
+#include "compare/compare.h"
 #include "inspect.h"
 #include "keepout/activation/registry.h"
 #include "keepout/adapters/index_registry.h"

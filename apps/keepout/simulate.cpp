@@ -11,6 +11,7 @@
 #include <ostream>
 #include <utility>
 
+#include "audit.h"
 #include "bench/bench.h"
 #include "bench/benchmark_table.h"
 #include "bench/used_cores.h"
@@ -25,7 +26,6 @@
 #include "named_mesh.h"
 #include "number_text.h"
 #include "output_file.h"
-#include "path_audit.h"
 #include "progress.h"
 #include "report/html_report.h"
 #include "shell_word.h"
@@ -79,17 +79,15 @@ Run run_strokes(std::string rule, std::string description, Tool& tool,
   Progress progress("simulate " + run.rule, hand.size());
   for (const std::vector<Vec3>& goals : hand) {
     Vec3 tip = goals.front();
-    double clearance = audit.clearance(tip);
     PathAudit path(audit, tip);
     Stroke& stroke = run.strokes.emplace_back();
     for (const Vec3& goal : goals) {
       const Tool::Move move = tool.move(tip, clipped(goal - tip, max_step));
       tip += move.motion;
-      clearance = audit.clearance(tip, std::abs(clearance) + move.motion.norm());
       if (path.follow(tip)) {
         run.crossings.push_back({run.strokes.size() - 1, stroke.cycles.size()});
       }
-      stroke.cycles.push_back({goal, tip, clearance, move.microseconds, move.outcome});
+      stroke.cycles.push_back({goal, tip, path.clearance(), move.microseconds, move.outcome});
     }
     progress.advance();
   }

@@ -1,15 +1,11 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-
 #include "keepout/oracle/safety_oracle.h"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
-
-#include "keepout/oracle/bracket_distance.h"
-#include "keepout/oracle/exact_distance.h"
 
 namespace keepout::oracle {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "compare/narrow_phase_agreement.h"
+#include "compare/agreement.h"
 
 #include <gtest/gtest.h>
 
