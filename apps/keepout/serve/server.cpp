@@ -7,14 +7,18 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <cerrno>
+#include <climits>
 #include <cstdlib>
+#include <cstring>
 #include <list>
 #include <ostream>
 #include <string>
 #include <vector>
 
 #include "serve/answer.h"
-#include "serve/connection.h"
+#include "serve/session.h"
 
 namespace keepout::app {
 namespace {
@@ -22,112 +26,146 @@ namespace {
 constexpr short gone = POLLERR | POLLHUP | POLLNVAL;
 constexpr int for_ever = -1;
 
-/// What is waited for, in the same memory each time.
-class Waiting {
+bool is_passing(int error) { return error == EINTR || error == EAGAIN || error == EWOULDBLOCK; }
+
+/// A session, and the open files that its bytes come from and go to. Never waits.
+class Connection {
  public:
-  void clear() noexcept { files_.clear(); }
-  void add(int file, short events) { files_.push_back({file, events, 0}); }  // -1: not waited for
+  enum class Kind : std::uint8_t {
+    files,  // such as stdin and stdout: they stay open, and blocking, since others may share them
+    socket  // one socket for both, which is closed at the end
+  };
+  Connection(Service& service, int in, int out, Kind kind)
+      : session_(service), in_(in), out_(out), kind_(kind) {}
+  ~Connection() {
+    if (kind_ == Kind::socket) ::close(in_);
+  }
+  Connection(const Connection&) = delete;
+  Connection& operator=(const Connection&) = delete;
 
-  /// Two places.
-  void add(const Connection& connection) {
-    add(connection.input(), POLLIN);
-    add(connection.output(), connection.wants_room() ? POLLOUT : short{0});
+  /// What to wait for: bytes, if any are wanted; and a reader who has gone, or, if there is
+  /// something unsent, room.
+  std::array<pollfd, 2> awaited() const noexcept {
+    const bool has_unsent = !session_.unsent().empty();
+    return {{{session_.wants_bytes() ? in_ : -1, POLLIN, 0},
+             {out_, static_cast<short>(has_unsent ? POLLOUT : 0), 0}}};
   }
 
-  void wait(int milliseconds) noexcept {
-    if (::poll(files_.data(), files_.size(), milliseconds) >= 0) return;
-    for (pollfd& file : files_) file.revents = 0;  // interrupted
+  /// One turn, after what was waited for: receives what there is, answers, sends what can be sent.
+  void serve(const pollfd* happened) {
+    has_gone_ = (happened[1].revents & gone) != 0;
+    if (!has_gone_ && happened[0].revents != 0) receive();
+    if (has_gone_) return;
+    if (session_.has_work()) session_.take_turn();
+    if (!session_.unsent().empty()) send();
   }
 
-  short what_happened(std::size_t place) const noexcept { return files_[place].revents; }
+  bool has_work() const noexcept { return session_.has_work(); }
+  bool is_done() const noexcept { return has_gone_ || session_.is_done(); }
 
-  /// What was waited for at the two places of a connection.
-  void serve(Connection& connection, std::size_t place) const {
-    if (what_happened(place + 1) & gone) {
-      connection.reader_gone();
-      return;
-    }
-    if (what_happened(place) != 0) connection.receive();
-    connection.serve();
-  }
+  /// What went wrong with the files; empty if nothing did, or if the client just left.
+  const std::string& trouble() const noexcept { return trouble_; }
 
  private:
+  void receive() {
+    const std::span<char> room = session_.room();
+    const ssize_t count = kind_ == Kind::socket
+                              ? ::recv(in_, room.data(), room.size(), MSG_DONTWAIT)
+                              : ::read(in_, room.data(), room.size());
+    if (count > 0) {
+      session_.added(static_cast<std::size_t>(count));
+    } else if (count == 0) {
+      session_.ended();
+    } else {
+      note_failure("stdin: ");
+    }
+  }
+
+  void send() {
+    const std::string_view text = session_.unsent();
+    pollfd file{out_, POLLOUT, 0};
+    if (kind_ == Kind::files && ::poll(&file, 1, 0) != 1) return;  // it would wait for room
+    // A pipe that has room takes as much as PIPE_BUF without waiting.
+    const ssize_t count =
+        kind_ == Kind::socket
+            ? ::send(out_, text.data(), text.size(), MSG_DONTWAIT | MSG_NOSIGNAL)
+            : ::write(out_, text.data(), std::min<std::size_t>(text.size(), PIPE_BUF));
+    if (count >= 0) {
+      session_.sent(static_cast<std::size_t>(count));
+    } else {
+      note_failure("stdout: ");
+    }
+  }
+
+  void note_failure(const char* file) {
+    if (is_passing(errno)) return;
+    has_gone_ = true;
+    if (kind_ == Kind::files && errno != EPIPE) trouble_ = file + std::string(std::strerror(errno));
+  }
+
+  Session session_;
+  int in_;
+  int out_;
+  Kind kind_;
+  bool has_gone_ = false;  // nobody will read an answer
+  std::string trouble_;
+};
+
+/// Waits for everyone, in the same memory each time, and serves them in turn.
+class Server {
+ public:
+  explicit Server(const StopSignal& stop) : stop_(stop) {}
+
+  std::list<Connection>& connections() noexcept { return connections_; }
+
+  /// One turn for all, once there is something to do for one. False: the end is asked for. `door`:
+  /// to wait at for others, -1 for none. `patience`: how long to wait. [ms]
+  bool take_turn(int door, int patience) {
+    files_.assign({{stop_.file(), POLLIN, 0}, {door, POLLIN, 0}});
+    for (const Connection& connection : connections_) {
+      if (connection.has_work()) patience = 0;
+      for (const pollfd& file : connection.awaited()) files_.push_back(file);
+    }
+    if (::poll(files_.data(), files_.size(), patience) < 0) {
+      for (pollfd& file : files_) file.revents = 0;  // interrupted
+    }
+    if (files_[0].revents != 0) return false;
+    const pollfd* happened = &files_[2];
+    for (Connection& connection : connections_) {
+      connection.serve(happened);
+      happened += 2;
+    }
+    return true;
+  }
+
+  /// Whether someone waits at the door.
+  bool is_called() const noexcept { return files_[1].revents != 0; }
+
+ private:
+  const StopSignal& stop_;
+  std::list<Connection> connections_;
   std::vector<pollfd> files_;
 };
 
-/// Clients of a socket, and who waits at the door.
-class Clients {
- public:
-  Clients(Service& service, UnixSocket& socket, std::size_t most)
-      : service_(service), socket_(socket), most_(most) {}
-
-  void add_to(Waiting& waiting) const {
-    waiting.add(is_out_of_files_ ? -1 : socket_.file(), POLLIN);
-    for (const Connection& connection : connections_) waiting.add(connection);
-  }
-
-  /// How long nothing need be done, if nothing happens.
-  int patience() const noexcept {
-    const bool has_work = std::any_of(connections_.begin(), connections_.end(),
-                                      [](const Connection& c) { return c.has_work(); });
-    // Without room for another open file, the door is tried again from time to time.
-    return has_work ? 0 : is_out_of_files_ ? 100 : for_ever;
-  }
-
-  /// `door`: the place from which on add_to() has added.
-  void serve(const Waiting& waiting, std::size_t door) {
-    std::size_t count = 1;
-    for (Connection& connection : connections_) {
-      waiting.serve(connection, door + count);
-      count += 2;
-    }
-    connections_.remove_if([](const Connection& c) { return c.is_done(); });
-    if (is_out_of_files_ || waiting.what_happened(door) != 0) admit();
-  }
-
- private:
-  void admit() {
-    for (int i = 0; i < 8; ++i) {  // at a time, so that nobody who is in waits for long
-      const int client = socket_.accept(is_out_of_files_);
-      if (client < 0) return;
-      if (connections_.size() < most_) {
-        connections_.emplace_back(service_, client, client, Connection::Kind::socket);
-      } else {
-        turn_away(client);
-      }
-    }
-  }
-
-  void turn_away(int client) const {
-    std::string out;
-    append_error(out, "null", "too_many_clients",
-                 "there are " + std::to_string(most_) +
-                     " clients already: close one, or start with a larger --max-clients");
-    // A new socket has room for it.
-    [[maybe_unused]] const ssize_t sent =
-        ::send(client, out.data(), out.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
-    ::close(client);
-  }
-
-  Service& service_;
-  UnixSocket& socket_;
-  std::size_t most_;
-  std::list<Connection> connections_;
-  bool is_out_of_files_ = false;
-};
+void turn_away(int client, std::size_t most_clients) {
+  std::string out;
+  append_error(out, "null", "too_many_clients",
+               "there are " + std::to_string(most_clients) +
+                   " clients already: close one, or start with a larger --max-clients");
+  // A new socket has room for it.
+  [[maybe_unused]] const ssize_t sent =
+      ::send(client, out.data(), out.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
+  ::close(client);
+}
 
 }  // namespace
 
 int serve_stdio(Service& service, const StopSignal& stop, std::ostream& log) {
-  Connection connection(service, STDIN_FILENO, STDOUT_FILENO, Connection::Kind::files);
-  Waiting waiting;
+  Server server(stop);
+  const Connection& connection = server.connections().emplace_back(
+      service, STDIN_FILENO, STDOUT_FILENO, Connection::Kind::files);
   while (!connection.is_done()) {
-    waiting.clear();
-    waiting.add(stop.file(), POLLIN);
-    waiting.add(connection);
-    waiting.wait(connection.has_work() ? 0 : for_ever);
-    if (waiting.what_happened(0) != 0) return EXIT_SUCCESS;
-    waiting.serve(connection, 1);
+    if (!server.take_turn(-1, for_ever)) return EXIT_SUCCESS;
   }
   if (connection.trouble().empty()) return EXIT_SUCCESS;
   log << "keepout: " << connection.trouble() << '\n';
@@ -136,16 +174,24 @@ int serve_stdio(Service& service, const StopSignal& stop, std::ostream& log) {
 
 int serve_socket(Service& service, const StopSignal& stop, UnixSocket& socket,
                  std::size_t most_clients) {
-  Clients clients(service, socket, most_clients);
-  Waiting waiting;
-  while (true) {
-    waiting.clear();
-    waiting.add(stop.file(), POLLIN);
-    clients.add_to(waiting);
-    waiting.wait(clients.patience());
-    if (waiting.what_happened(0) != 0) return EXIT_SUCCESS;
-    clients.serve(waiting, 1);
+  Server server(stop);
+  std::list<Connection>& clients = server.connections();
+  bool is_out_of_files = false;
+  // Without room for another open file, the door is tried again from time to time.
+  while (server.take_turn(is_out_of_files ? -1 : socket.file(), is_out_of_files ? 100 : for_ever)) {
+    clients.remove_if([](const Connection& client) { return client.is_done(); });
+    if (!is_out_of_files && !server.is_called()) continue;
+    for (int i = 0; i < 8; ++i) {  // at a time, so that nobody who is in waits for long
+      const int client = socket.accept(is_out_of_files);
+      if (client < 0) break;
+      if (clients.size() < most_clients) {
+        clients.emplace_back(service, client, client, Connection::Kind::socket);
+      } else {
+        turn_away(client, most_clients);
+      }
+    }
   }
+  return EXIT_SUCCESS;
 }
 
 }  // namespace keepout::app
