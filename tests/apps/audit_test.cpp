@@ -12,7 +12,6 @@
 
 #include "keepout/fixtures/poses.h"
 #include "keepout/fixtures/shapes.h"
-#include "path_audit.h"
 #include "trials.h"
 
 namespace keepout::app {

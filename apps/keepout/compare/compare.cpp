@@ -17,7 +17,7 @@
 #include "keepout/activation/registry.h"
 #include "machine.h"
 #include "output_file.h"
-#include "part_lists.h"
+#include "names.h"
 #include "progress.h"
 
 namespace keepout::app {

@@ -3,8 +3,8 @@
 #include "compare/compare_command.h"
 
 #include "named_mesh.h"
-#include "number_checks.h"
-#include "shell_word.h"
+#include "command_line.h"
+#include "names.h"
 
 namespace keepout::app {
 

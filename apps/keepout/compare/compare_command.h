@@ -2,12 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <iosfwd>
 #include <string>
 #include <vector>
 
 #include "compare/compare.h"
+
+namespace CLI {
+class App;
+}
 
 namespace keepout::app {
 
