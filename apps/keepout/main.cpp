@@ -12,8 +12,8 @@
 
 #include "bench/bench_command.h"
 #include "command_line.h"
+#include "commands.h"
 #include "compare/compare_command.h"
-#include "inspect.h"
 #include "keepout/activation/registry.h"
 #include "keepout/adapters/index_registry.h"
 #include "keepout/error.h"
@@ -23,9 +23,7 @@
 #include "named_mesh.h"
 #include "names.h"
 #include "plan/plan.h"
-#include "replay.h"
-#include "serve/serve_command.h"
-#include "simulate.h"
+#include "serve/serve.h"
 #include "verify/verify.h"
 
 namespace keepout::app {

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "simulate.h"
-
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -16,6 +14,7 @@
 #include "bench/benchmark_table.h"
 #include "bench/used_cores.h"
 #include "clip.h"
+#include "commands.h"
 #include "compare/compare.h"
 #include "compare/comparison_files.h"
 #include "keepout/activation/registry.h"
@@ -42,7 +41,7 @@ struct Move {
 };
 
 /// One cycle with a fixture, or, where there is none, freely.
-Move move(std::optional<MotionConstraint>& constraint, const Vec3& tip, const Vec3& desired) {
+Move run_cycle(std::optional<MotionConstraint>& constraint, const Vec3& tip, const Vec3& desired) {
   if (!constraint) return {desired, Outcome::moved_freely, 0.0F};
   StageTimes times;
   const Step step = constraint->step({.tip = tip, .desired = desired}, times);
@@ -65,7 +64,7 @@ Run run_strokes(std::string rule, std::string description,
     PathAudit path(audit, tip);
     Stroke& stroke = run.strokes.emplace_back();
     for (const Vec3& goal : goals) {
-      const Move moved = move(constraint, tip, clipped(goal - tip, max_step));
+      const Move moved = run_cycle(constraint, tip, clipped(goal - tip, max_step));
       tip += moved.motion;
       clearance = audit.clearance(tip, std::abs(clearance) + moved.motion.norm());
       if (path.follow(tip)) {

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "command_line.h"
+#include "keepout/error.h"
 #include "plan/plan.h"
 
 namespace keepout::app {
@@ -67,5 +68,13 @@ void add_plan(CLI::App& app, PlanOptions& options) {
       "The exit status is 0 only if no path that keepout let pass is invalid.\n"
       "How problems are chosen, and what the columns say: docs/planning.md.");
 }
+
+#ifndef KEEPOUT_HAS_OMPL
+int plan(const PlanOptions&, std::ostream&) {
+  throw Error(
+      "plan: keepout was built without OMPL. Install libompl-dev, then configure and build again "
+      "with -DKEEPOUT_WITH_OMPL=ON and no sanitizers");
+}
+#endif
 
 }  // namespace keepout::app
