@@ -10,16 +10,15 @@
 #include "bench/machine_record.h"
 #include "bench/parts.h"
 #include "bench/subject.h"
+#include "command_line.h"
 #include "compare/agreement.h"
 #include "compare/comparison_files.h"
 #include "compare/comparison_verdict.h"
 #include "keepout/activation/registry.h"
 #include "machine.h"
 #include "named_mesh.h"
-#include "number_checks.h"
+#include "names.h"
 #include "output_file.h"
-#include "part_lists.h"
-#include "shell_word.h"
 
 namespace keepout::app {
 namespace {
