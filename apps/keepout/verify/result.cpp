@@ -148,8 +148,9 @@ Json result_of(const CampaignRun& run, const Findings& findings) {
                                    KEEPOUT_COMPILER + ", " + KEEPOUT_BUILD_TYPE},
                    {"complete", is_whole}};
   Json meshes = Json::array();
-  for (const MeshTally& m : findings.meshes)
+  for (const MeshTally& m : findings.meshes) {
     meshes.push_back(json_of(m.mesh, m.triangles, m.tally));
+  }
   Json all_meshes = json_of("total", 0, total);
   all_meshes.erase("triangles");
   return {{"keepout_verify", file_format},

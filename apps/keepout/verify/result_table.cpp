@@ -87,8 +87,8 @@ void print(std::ostream& out, const Json& result) {
   out << "contact: share of limited steps. led out: of the recovering ones, those from the\n"
          "forbidden side, which may cross. other: steps without a motion. crossed, broken: "
          "breaches\n"
-         "of the theorem. least: smallest distance of any way, less tool radius and margin, in tau\n"
-         "and as it is.\n";
+         "of the theorem. least: smallest distance of any way, less tool radius and margin, in\n"
+         "tau and as it is.\n";
   for (const Json& mesh : result.at("missing")) {
     out << "missing: " << mesh.get<std::string>() << '\n';
   }
