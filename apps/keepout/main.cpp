@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <cstdlib>
 #include <exception>
@@ -12,8 +11,9 @@
 #include <vector>
 
 #include "bench/bench_command.h"
-#include "compare/compare_command.h"
-#include "inspect.h"
+#include "command_line.h"
+#include "commands.h"
+#include "compare/compare.h"
 #include "keepout/activation/registry.h"
 #include "keepout/adapters/index_registry.h"
 #include "keepout/error.h"
@@ -21,15 +21,10 @@
 #include "keepout/simd_target.h"
 #include "keepout/solvers/registry.h"
 #include "keepout/version.h"
-#include "name_checks.h"
 #include "named_mesh.h"
-#include "number_checks.h"
-#include "part_lists.h"
-#include "plan/plan_command.h"
-#include "replay.h"
-#include "serve/serve_command.h"
-#include "simulate.h"
-#include "usage_error.h"
+#include "names.h"
+#include "plan/plan.h"
+#include "serve/serve.h"
 #include "verify/verify.h"
 
 namespace keepout::app {
@@ -44,83 +39,6 @@ constexpr const char* exit_statuses =
     "2 if the command line is wrong; 130 if it was interrupted: bench, compare, plan and verify "
     "then "
     "keep\nwhat was finished.\n";
-
-/// The argument that every command shares.
-void add_mesh(CLI::App& command, std::filesystem::path& mesh) {
-  command.add_option("MESH", mesh, std::string(mesh_help))->type_name("")->required();
-}
-
-/// An option that takes the name of an anatomical space, in any case.
-CLI::Option* add_space(CLI::App& command, const char* name, AnatomicalSpace& space,
-                       const char* description) {
-  const auto take = [&space](const std::string& word) {
-    space =
-        word.front() == 'r' || word.front() == 'R' ? AnatomicalSpace::ras : AnatomicalSpace::lps;
-  };
-  return command.add_option_function<std::string>(name, take, description)
-      ->type_name("")
-      ->check(one_of({"ras", "lps", "RAS", "LPS"}));
-}
-
-/// The options of every command that places something in the frame of the mesh.
-void add_spaces(CLI::App& command, LoadOptions& load) {
-  add_space(command, "--space", load.space,
-            "Anatomical space to have the mesh in: turned if the file says SPACE=LPS or SPACE=RAS "
-            "and it is the other one. Without it: as it stands");
-  add_space(command, "--untagged", load.untagged,
-            "Anatomical space of a file that does not say which it is in");
-}
-
-/// The options that every command shares which builds a motion constraint.
-void add_constraint_options(CLI::App& command, MotionConstraintSettings& settings) {
-  command.add_option("--index", settings.index, "Spatial index that finds triangles")
-      ->check(one_of(names(index_backends())))
-      ->capture_default_str();
-  command
-      .add_option("--index-cache", settings.index_cache,
-                  "Keep what --index wide_bvh builds in this folder, for the next run")
-      ->type_name("FOLDER");
-  command.add_option("--solver", settings.solver, "Solver of the step problem")
-      ->check(one_of(names(solver_backends())))
-      ->capture_default_str();
-  command
-      .add_option("--radius", settings.radius,
-                  "Radius of the motion sphere: the farthest that the tip may go in one cycle. "
-                  "The other rules consider all triangles in it; the paper cut a skull with 5")
-      ->type_name("MM")
-      ->check(length(Zero::refused))
-      ->capture_default_str();
-  command
-      .add_option("--tool-radius", settings.tool_radius,
-                  "Radius of a ball around the tip that shall not touch the surface")
-      ->type_name("MM")
-      ->check(length(Zero::allowed))
-      ->capture_default_str();
-  command
-      .add_option("--margin", settings.margin,
-                  "Distance to keep between tool and surface; the certified rule needs one")
-      ->type_name("MM")
-      ->check(length(Zero::allowed))
-      ->capture_default_str();
-  command
-      .add_option("--refine", settings.refinements,
-                  "How often the certified rule improves upon a motion that it has found")
-      ->type_name("NUMBER")
-      ->transform(whole_number(0, 1000))
-      ->capture_default_str();
-  command
-      .add_option("--branches", settings.nodes,
-                  "Nodes of a search for a better motion still; 0: none, 16 find nearly the best")
-      ->type_name("NUMBER")
-      ->transform(whole_number(0, 4096))
-      ->capture_default_str();
-  command
-      .add_option("--query", settings.query,
-                  "How far around the tip the certified rule looks: as far as the motion asked for "
-                  "can lead, or always the motion sphere")
-      ->transform(one_of<Query>({{"motion", Query::motion}, {"sphere", Query::sphere}}))
-      ->default_str("motion");
-}
 
 void add_inspect(CLI::App& app, InspectOptions& options) {
   CLI::App& command = *app.add_subcommand(
@@ -151,20 +69,15 @@ void add_replay(CLI::App& app, ReplayOptions& options) {
       .add_option("--planes", options.planes,
                   "Where to write all planes that were posed, whether or not they limited the step")
       ->type_name("PLANES.csv");
-  command.add_option("--activation", options.constraint.activation, "Rule that chooses the planes")
-      ->check(one_of(names(activation_rules())))
-      ->capture_default_str();
+  add_activation(command, options.constraint.activation);
   add_constraint_options(command, options.constraint);
   CLI::Option* closed = command.add_flag_callback(
       "--closed-loop", [&options] { options.loop = Loop::closed; },
       "Lines are 'gx gy gz rx ry rz', goal and reset position: the tip starts at the first line's "
       "r, each step desires goal minus tip, and the tip follows what was solved");
-  command
-      .add_option("--max-step", options.max_step, "Longest increment to desire in a closed loop")
-      ->type_name("MM")
-      ->check(length(Zero::refused))
-      ->needs(closed)
-      ->capture_default_str();
+  add_length(command, "--max-step", options.max_step, Zero::refused,
+             "Longest increment to desire in a closed loop")
+      ->needs(closed);
   command.footer(
       "STEPS.csv: step, status, tip, desired increment, solved increment (u), triangles in reach,\n"
       "planes, what each stage took, and how far the tip was from the surface before the step; "
@@ -197,22 +110,13 @@ void add_simulate(CLI::App& app, SimulateOptions& options) {
       "--verbose", [&options] { options.tables = Tables::printed; },
       "Print the tables of the report as well");
   add_constraint_options(command, options.constraint);
-  command.add_option("--max-step", options.max_step, "Longest increment to desire in a cycle")
-      ->type_name("MM")
-      ->check(length(Zero::refused))
-      ->capture_default_str();
-  command.add_option("--seed", options.hand.seed, "Seed of the hand: same seed, same motion")
-      ->type_name("NUMBER")
-      ->transform(whole_number(0, largest_seed))
-      ->capture_default_str();
-  command.add_option("--strokes", options.hand.strokes, "How often the hand goes in")
-      ->type_name("NUMBER")
-      ->transform(whole_number(1, 100'000))
-      ->capture_default_str();
-  command.add_option("--cycles", options.hand.cycles, "Control cycles of each stroke, at 1 kHz")
-      ->type_name("NUMBER")
-      ->transform(whole_number(10, 1'000'000))
-      ->capture_default_str();
+  add_length(command, "--max-step", options.max_step, Zero::refused,
+             "Longest increment to desire in a cycle");
+  add_number(command, "--seed", options.hand.seed, 0, largest_seed,
+             "Seed of the hand: same seed, same motion");
+  add_number(command, "--strokes", options.hand.strokes, 1, 100'000, "How often the hand goes in");
+  add_number(command, "--cycles", options.hand.cycles, 10, 1'000'000,
+             "Control cycles of each stroke, at 1 kHz");
 }
 
 void add_verify(CLI::App& app, VerifyOptions& options) {
@@ -227,18 +131,14 @@ void add_verify(CLI::App& app, VerifyOptions& options) {
                          ->type_name("NUMBER")
                          ->transform(large_count())
                          ->capture_default_str());
-  of_a_run.push_back(
-      command.add_option("--seed", options.seed, "Seed: same seed and steps, same campaign")
-          ->type_name("NUMBER")
-          ->transform(whole_number(0, largest_seed))
-          ->capture_default_str());
+  of_a_run.push_back(add_number(command, "--seed", options.seed, 0, largest_seed,
+                                "Seed: same seed and steps, same campaign"));
   of_a_run.push_back(command.add_option("--shard", options.shard, "Do part I of N of the campaign")
                          ->type_name("I/N")
                          ->check(shard_text())
                          ->capture_default_str());
-  of_a_run.push_back(command.add_option("--index", options.index, "Index that finds triangles")
-                         ->check(one_of(names(index_backends())))
-                         ->capture_default_str());
+  of_a_run.push_back(add_name(command, "--index", options.index, names(index_backends()),
+                              "Index that finds triangles"));
   command.add_option("--json", options.json, "Where to write the results, every breach included")
       ->type_name("FILE");
   CLI::Option* merge =
@@ -261,33 +161,19 @@ void add_serve(CLI::App& app, ServeOptions& options) {
   CLI::Option* socket =
       command.add_option("--socket", options.socket, "Listen at this path instead of stdin")
           ->type_name("PATH");
-  command.add_option("--max-clients", options.most_clients, "Clients of the socket at a time")
-      ->type_name("NUMBER")
-      ->transform(whole_number(1, 256))
-      ->needs(socket)
-      ->capture_default_str();
-  command.add_option("--max-line", service.longest_line, "Longest request")
-      ->type_name("BYTES")
-      ->transform(whole_number(256, std::uint64_t{1} << 24))
-      ->capture_default_str();
-  command.add_option("--joints", service.limits.joints, "Columns of a Jacobian, at most")
-      ->type_name("NUMBER")
-      ->transform(whole_number(1, 64))
-      ->capture_default_str();
-  command.add_option("--rows", service.limits.rows, "Rows of a request's own, at most")
-      ->type_name("NUMBER")
-      ->transform(whole_number(0, 1024))
-      ->capture_default_str();
-  command
-      .add_option("--damping", service.constraint.damping,
-                  "Weight of the increment's square beside the task: above 0 for a Jacobian with "
-                  "more than three joints, or near a singularity")
-      ->type_name("NUMBER")
-      ->check(length(Zero::allowed))
-      ->capture_default_str();
-  command.add_option("--activation", service.constraint.activation, "Rule that chooses the planes")
-      ->check(one_of(names(activation_rules())))
-      ->capture_default_str();
+  add_number(command, "--max-clients", options.most_clients, 1, 256,
+             "Clients of the socket at a time")
+      ->needs(socket);
+  add_number(command, "--max-line", service.longest_line, 256, std::uint64_t{1} << 24,
+             "Longest request")
+      ->type_name("BYTES");
+  add_number(command, "--joints", service.limits.joints, 1, 64, "Columns of a Jacobian, at most");
+  add_number(command, "--rows", service.limits.rows, 0, 1024, "Rows of a request's own, at most");
+  add_length(command, "--damping", service.constraint.damping, Zero::allowed,
+             "Weight of the increment's square beside the task: above 0 for a Jacobian with "
+             "more than three joints, or near a singularity")
+      ->type_name("NUMBER");
+  add_activation(command, service.constraint.activation);
   add_constraint_options(command, service.constraint);
   command.footer(std::string(protocol_help));
 }
@@ -324,6 +210,7 @@ int run(int argc, char** argv) {
   SimulateOptions simulate_options;
   ServeOptions serve_options;
   VerifyOptions verify_options;
+  PlanOptions plan_options;
   simulate_options.rules = names(activation_rules());
   simulate_options.called_as = app.get_name();
   add_inspect(app, inspect_options);
@@ -333,7 +220,7 @@ int run(int argc, char** argv) {
   add_verify(app, verify_options);
   BenchCommand bench_command(app);
   CompareCommand compare_command(app);
-  PlanCommand plan_command(app);
+  add_plan(app, plan_options);
   for (CLI::App* command : app.get_subcommands([](CLI::App*) { return true; })) {
     command->group("Commands");
   }
@@ -354,7 +241,7 @@ int run(int argc, char** argv) {
     return bench_command.run({argv + 1, argv + argc}, std::cout, std::cerr);
   }
   if (app.got_subcommand("compare")) return compare_command.run({argv + 1, argv + argc}, std::cout);
-  if (app.got_subcommand("plan")) return plan_command.run(std::cout);
+  if (app.got_subcommand("plan")) return plan(plan_options, std::cout);
   if (app.got_subcommand("verify")) return verify(verify_options, std::cout);
   return EXIT_SUCCESS;
 }

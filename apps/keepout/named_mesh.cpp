@@ -13,9 +13,8 @@
 #include "keepout/fixtures/real_mesh.h"
 #include "keepout/fixtures/shapes.h"
 #include "keepout/mesh/quick_check.h"
-#include "part_lists.h"
+#include "names.h"
 #include "progress.h"
-#include "suggestion.h"
 
 namespace keepout::app {
 namespace {

@@ -3,6 +3,7 @@
 #include "pose_file.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <fstream>
@@ -18,74 +19,53 @@ constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";  // of UTF-8, as sp
 constexpr std::string_view blanks = " \t\r";
 constexpr std::string_view separators = " \t\r,";
 
-class LineReader {
- public:
-  LineReader(const std::filesystem::path& path, std::size_t number, std::string_view line)
-      : path_(path), number_(number), rest_(line) {}
-
-  bool is_blank_or_comment() {
-    skip_blanks();
-    return rest_.empty() || rest_.front() == '#';
-  }
-
-  Vec3 point() { return {number(), number(), number()}; }
-
-  void expect_end() {
-    if (const std::string_view word = next_word(); !word.empty()) {
-      fail("has more than six numbers: '" + std::string(word) + "' is too many");
+/// The words of a line, parted by blanks, or by a comma with or without blanks around it. Throws
+/// Error for an empty column.
+std::vector<std::string_view> words_in(std::string_view line) {
+  std::vector<std::string_view> words;
+  bool is_after_comma = true;
+  while (true) {
+    line.remove_prefix(std::min(line.find_first_not_of(blanks), line.size()));
+    if (line.empty()) return words;
+    if (line.starts_with(',')) {
+      if (is_after_comma) throw Error("has an empty column: no number before a comma");
+      is_after_comma = true;
+      line.remove_prefix(1);
+    } else {
+      is_after_comma = false;
+      words.push_back(line.substr(0, line.find_first_of(separators)));
+      line.remove_prefix(words.back().size());
     }
   }
+}
 
- private:
-  void skip_blanks() {
-    rest_.remove_prefix(std::min(rest_.find_first_not_of(blanks), rest_.size()));
+/// Throws Error for a word that is no finite number.
+double number_in(std::string_view word) {
+  const std::string quoted = "'" + std::string(word) + "'";
+  // from_chars knows no plus sign, but would take the minus after one.
+  if (word.starts_with('+') && !word.starts_with("+-")) word.remove_prefix(1);
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (error == std::errc::invalid_argument || end != word.data() + word.size()) {
+    throw Error(quoted + " is not a number");
   }
-
-  /// The next word, past the comma that may stand before it; empty at the end of the line.
-  std::string_view next_word() {
-    skip_blanks();
-    if (!at_start_ && rest_.starts_with(',')) {
-      rest_.remove_prefix(1);
-      skip_blanks();
-    }
-    if (rest_.starts_with(',')) fail("has an empty column: no number before a comma");
-    at_start_ = false;
-    const std::string_view word = rest_.substr(0, rest_.find_first_of(separators));
-    rest_.remove_prefix(word.size());
-    return word;
+  if (error == std::errc::result_out_of_range) {
+    throw Error(quoted + " is beyond the range of a double (1e-308 to 1e308)");
   }
+  if (!std::isfinite(value))
+    throw Error(quoted + " is not finite: a pose needs six finite numbers");
+  return value;
+}
 
-  double number() {
-    const std::string_view word = next_word();
-    if (word.empty()) fail("has fewer than six numbers");
-    // from_chars knows no plus sign, but would take the minus after one.
-    const bool has_plus = word.starts_with('+') && !word.starts_with("+-");
-    const std::string_view digits = has_plus ? word.substr(1) : word;
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    if (error == std::errc::invalid_argument || end != digits.data() + digits.size()) {
-      fail("'" + std::string(word) + "' is not a number");
-    }
-    if (error == std::errc::result_out_of_range) {
-      fail("'" + std::string(word) + "' is beyond the range of a double (1e-308 to 1e308)");
-    }
-    if (!std::isfinite(value)) {
-      fail("'" + std::string(word) + "' is not finite: a pose needs six finite numbers");
-    }
-    return value;
+PoseLine pose_of(const std::vector<std::string_view>& words) {
+  std::array<double, 6> n;
+  for (std::size_t i = 0; i < std::min(words.size(), n.size()); ++i) n[i] = number_in(words[i]);
+  if (words.size() < n.size()) throw Error("has fewer than six numbers");
+  if (words.size() > n.size()) {
+    throw Error("has more than six numbers: '" + std::string(words[6]) + "' is too many");
   }
-
-  [[noreturn]] void fail(const std::string& what) const {
-    throw Error(path_.string() + ":" + std::to_string(number_) + ": " + what +
-                "; each line is six numbers in mm, 'px py pz dx dy dz', or with --closed-loop "
-                "'gx gy gz rx ry rz'");
-  }
-
-  const std::filesystem::path& path_;
-  std::size_t number_;
-  std::string_view rest_;
-  bool at_start_ = true;
-};
+  return {{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
+}
 
 }  // namespace
 
@@ -98,14 +78,17 @@ std::vector<PoseLine> read_poses(const std::filesystem::path& path) {
   std::vector<PoseLine> poses;
   std::string line;
   for (std::size_t number = 1; std::getline(file, line); ++number) {
-    const bool marked = number == 1 && line.starts_with(byte_order_mark);
-    LineReader reader(path, number, std::string_view(line).substr(marked ? 3 : 0));
-    if (reader.is_blank_or_comment()) continue;
-    PoseLine pose;
-    pose.first = reader.point();
-    pose.second = reader.point();
-    reader.expect_end();
-    poses.push_back(pose);
+    const bool is_marked = number == 1 && line.starts_with(byte_order_mark);
+    const std::string_view text = std::string_view(line).substr(is_marked ? 3 : 0);
+    const std::size_t begin = text.find_first_not_of(blanks);
+    if (begin == std::string_view::npos || text[begin] == '#') continue;
+    try {
+      poses.push_back(pose_of(words_in(text)));
+    } catch (const Error& error) {
+      throw Error(path.string() + ":" + std::to_string(number) + ": " + error.what() +
+                  "; each line is six numbers in mm, 'px py pz dx dy dz', or with --closed-loop "
+                  "'gx gy gz rx ry rz'");
+    }
   }
   if (file.bad()) throw Error(path.string() + ": reading broke off; is the disk sound?");
   if (poses.empty()) throw Error(path.string() + ": holds no pose; give one line for each step");

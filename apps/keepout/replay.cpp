@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "replay.h"
-
 #include <array>
 #include <cinttypes>
 #include <cstdio>
@@ -10,6 +8,7 @@
 #include <vector>
 
 #include "clip.h"
+#include "commands.h"
 #include "named_mesh.h"
 #include "number_text.h"
 #include "output_file.h"

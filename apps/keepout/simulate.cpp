@@ -1,20 +1,21 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "simulate.h"
-
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cstdio>
 #include <cstdlib>
 #include <iostream>
+#include <optional>
 #include <ostream>
 #include <utility>
 
+#include "audit.h"
 #include "bench/bench.h"
 #include "bench/benchmark_table.h"
 #include "bench/used_cores.h"
 #include "clip.h"
+#include "commands.h"
 #include "compare/compare.h"
 #include "compare/comparison_files.h"
 #include "keepout/activation/registry.h"
@@ -23,73 +24,52 @@
 #include "keepout/version.h"
 #include "machine.h"
 #include "named_mesh.h"
+#include "names.h"
 #include "number_text.h"
 #include "output_file.h"
-#include "path_audit.h"
 #include "progress.h"
 #include "report/html_report.h"
-#include "shell_word.h"
 #include "simulation_record.h"
-#include "simulation_summary.h"
 
 namespace keepout::app {
 namespace {
 
-/// Moves a tip for one cycle: with a fixture, or freely.
-class Tool {
- public:
-  virtual ~Tool() = default;
-  struct Move {
-    Vec3 motion;
-    Outcome outcome;
-    float microseconds;
-  };
-  virtual Move move(const Vec3& tip, const Vec3& desired) = 0;
+/// Where a tip went in one cycle.
+struct Move {
+  Vec3 motion;
+  Outcome outcome;
+  float microseconds;
 };
 
-class FreeTool final : public Tool {
- public:
-  Move move(const Vec3&, const Vec3& desired) override {
-    return {desired, Outcome::moved_freely, 0.0F};
-  }
-};
+/// One cycle with a fixture, or, where there is none, freely.
+Move run_cycle(std::optional<MotionConstraint>& constraint, const Vec3& tip, const Vec3& desired) {
+  if (!constraint) return {desired, Outcome::moved_freely, 0.0F};
+  StageTimes times;
+  const Step step = constraint->step({.tip = tip, .desired = desired}, times);
+  // Less than a nanometre when more was asked for is standing still.
+  const bool still = step.motion.norm() < 1e-6 && desired.norm() > 1e-3;
+  const Outcome outcome = !step.ok() || still           ? Outcome::stopped
+                          : step.status != Status::free ? Outcome::limited
+                                                        : Outcome::moved_freely;
+  return {step.motion, outcome, static_cast<float>(1e-3 * static_cast<double>(times.total()))};
+}
 
-class GuardedTool final : public Tool {
- public:
-  explicit GuardedTool(MotionConstraint constraint) : constraint_(std::move(constraint)) {}
-
-  Move move(const Vec3& tip, const Vec3& desired) override {
-    StageTimes times;
-    const Step step = constraint_.step({.tip = tip, .desired = desired}, times);
-    // Less than a nanometre when more was asked for is standing still.
-    const bool still = step.motion.norm() < 1e-6 && desired.norm() > 1e-3;
-    const Outcome outcome = !step.ok() || still           ? Outcome::stopped
-                            : step.status != Status::free ? Outcome::limited
-                                                          : Outcome::moved_freely;
-    return {step.motion, outcome, static_cast<float>(1e-3 * static_cast<double>(times.total()))};
-  }
-
- private:
-  MotionConstraint constraint_;
-};
-
-Run run_strokes(std::string rule, std::string description, Tool& tool,
+Run run_strokes(std::string rule, std::string description,
+                std::optional<MotionConstraint>& constraint,
                 const std::vector<std::vector<Vec3>>& hand, double max_step, Audit& audit) {
   Run run{.rule = std::move(rule), .description = std::move(description)};
   Progress progress("simulate " + run.rule, hand.size());
   for (const std::vector<Vec3>& goals : hand) {
     Vec3 tip = goals.front();
-    double clearance = audit.clearance(tip);
     PathAudit path(audit, tip);
     Stroke& stroke = run.strokes.emplace_back();
     for (const Vec3& goal : goals) {
-      const Tool::Move move = tool.move(tip, clipped(goal - tip, max_step));
-      tip += move.motion;
-      clearance = audit.clearance(tip, std::abs(clearance) + move.motion.norm());
+      const Move moved = run_cycle(constraint, tip, clipped(goal - tip, max_step));
+      tip += moved.motion;
       if (path.follow(tip)) {
         run.crossings.push_back({run.strokes.size() - 1, stroke.cycles.size()});
       }
-      stroke.cycles.push_back({goal, tip, clearance, move.microseconds, move.outcome});
+      stroke.cycles.push_back({goal, tip, path.clearance(), moved.microseconds, moved.outcome});
     }
     progress.advance();
   }
@@ -237,14 +217,13 @@ int simulate(const SimulateOptions& options, std::ostream& out) {
   const LoadedMesh loaded = load_named_mesh(options.mesh, options.load);
   // Nor a mistyped name.
   const std::vector<std::string> rules = without_repeats(options.rules);
-  std::vector<std::pair<std::string, std::unique_ptr<Tool>>> tools;
-  tools.emplace_back(no_rule, std::make_unique<FreeTool>());
+  std::vector<std::pair<std::string, std::optional<MotionConstraint>>> fixtures;
+  fixtures.emplace_back(no_rule, std::nullopt);
   for (const std::string& rule : rules) {
     MotionConstraintSettings settings = options.constraint;
     settings.activation = rule;
     settings.warn = warn_on_stderr;
-    tools.emplace_back(
-        rule, std::make_unique<GuardedTool>(make_motion_constraint(loaded.mesh, settings)));
+    fixtures.emplace_back(rule, make_motion_constraint(loaded.mesh, settings));
   }
 
   Audit audit(loaded.mesh);
@@ -255,9 +234,9 @@ int simulate(const SimulateOptions& options, std::ostream& out) {
                         .cycle_seconds = options.hand.cycle_seconds,
                         .settings = settings_of(options, rules, *loaded.mesh)};
   const std::vector<std::vector<Vec3>> hand = hand_over(audit, options);
-  for (const auto& [rule, tool] : tools) {
+  for (auto& [rule, constraint] : fixtures) {
     simulation.runs.push_back(
-        run_strokes(rule, description_of(rule), *tool, hand, options.max_step, audit));
+        run_strokes(rule, description_of(rule), constraint, hand, options.max_step, audit));
   }
   // Those of the benchmark are many, and tell who does not know it of nothing but numbers.
   std::ostream tables(options.tables == Tables::printed ? out.rdbuf() : nullptr);

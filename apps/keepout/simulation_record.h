@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <iosfwd>
 #include <string>
 #include <utility>
 #include <vector>
@@ -88,5 +89,12 @@ struct Simulation {
   std::vector<std::pair<std::string, std::string>> settings = {};  // seed, radius, solver, cpu, ...
   std::vector<Run> runs = {};  // same strokes, same hand; the run without a fixture first
 };
+
+/// What was simulated and what came out, in a few lines for a terminal: what the report says at
+/// greater length.
+void print_summary(std::ostream& out, const Simulation& simulation);
+
+/// The figures of each run, a line each.
+void print_table(std::ostream& out, const Simulation& simulation);
 
 }  // namespace keepout::app

@@ -1,15 +1,13 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "keepout/oracle/bracket_distance.h"
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
-#include "keepout/oracle/exact_distance.h"
+#include "keepout/oracle/distance.h"
 
 namespace keepout::oracle {
 namespace {

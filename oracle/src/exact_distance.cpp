@@ -1,8 +1,5 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-
-#include "keepout/oracle/exact_distance.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,6 +7,7 @@
 #include <utility>
 
 #include "integer_frame.h"
+#include "keepout/oracle/distance.h"
 
 namespace keepout::oracle {
 namespace {

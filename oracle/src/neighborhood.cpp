@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-
 #include "keepout/oracle/neighborhood.h"
 
 #include <algorithm>
@@ -17,6 +16,7 @@ const Bounds nowhere{Vec3::Constant(std::numeric_limits<double>::infinity()),
 // costs are about even for steps along a fine mesh.
 constexpr std::size_t few = 24;
 constexpr std::size_t many = 96;
+constexpr std::size_t group_size = 8;
 constexpr double least_margin = 0.25;
 constexpr double largest_margin = 16.0;
 
@@ -34,6 +34,14 @@ void Neighborhood::fetch(const Bounds& box) {
   for (const TriangleId t : found_) {
     const Triangle triangle = tree_->mesh().triangle(t);
     neighbors_.push_back({bounds_of(triangle), triangle, t});
+  }
+  groups_.clear();
+  for (std::size_t first = 0; first < neighbors_.size(); first += group_size) {
+    const std::span<const Neighbor> all(neighbors_);
+    const auto group = all.subspan(first, std::min(group_size, all.size() - first));
+    Bounds bounds = group.front().bounds;
+    for (const Neighbor& neighbor : group) bounds = united(bounds, neighbor.bounds);
+    groups_.push_back({bounds, group});
   }
   // For the next time: neither too much to look through, nor too soon too little.
   if (found_.size() > many) margin_ = std::max(least_margin, 0.5 * margin_);

@@ -1,15 +1,11 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-
 #include "keepout/oracle/safety_oracle.h"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
-
-#include "keepout/oracle/bracket_distance.h"
-#include "keepout/oracle/exact_distance.h"
 
 namespace keepout::oracle {
 namespace {
@@ -48,20 +44,23 @@ Finding SafetyOracle::check(const Vec3& from, const Vec3& to, double threshold, 
   if (is_clear(segment, reach)) return finding;
 
   const Bounds box = inflated(bounds_of(segment), reach);
-  const std::span<const Neighborhood::Neighbor> neighbors = neighborhood_.around(box);
-  if (neighbors.empty()) clear_ball_ = {to, tree_->nearest(to).distance.low};
+  const std::span<const Neighborhood::Group> groups = neighborhood_.around(box);
+  if (groups.empty()) clear_ball_ = {to, tree_->nearest(to).distance.low};
 
   undecided_.clear();
-  for (const Neighborhood::Neighbor& neighbor : neighbors) {
-    if (!neighbor.bounds.overlaps(box)) continue;
-    const Bracket bracket = bracket_distance(segment, neighbor.triangle);
-    if (bracket.low > reach) continue;
-    const bool below = bracket.high < threshold;
-    finding.below = finding.below || below;
-    if (bracket.low > 0.0 && bracket.narrow() && (below || bracket.low >= threshold)) {
-      if (bracket.estimate <= reach) keep_nearer(finding, bracket.estimate, neighbor.id);
-    } else {
-      undecided_.push_back(&neighbor);
+  for (const Neighborhood::Group& group : groups) {
+    if (!group.bounds.overlaps(box)) continue;
+    for (const Neighborhood::Neighbor& neighbor : group.neighbors) {
+      if (!neighbor.bounds.overlaps(box)) continue;
+      const Bracket bracket = bracket_distance(segment, neighbor.triangle);
+      if (bracket.low > reach) continue;
+      const bool below = bracket.high < threshold;
+      finding.below = finding.below || below;
+      if (bracket.low > 0.0 && bracket.narrow() && (below || bracket.low >= threshold)) {
+        if (bracket.estimate <= reach) keep_nearer(finding, bracket.estimate, neighbor.id);
+      } else {
+        undecided_.push_back(&neighbor);
+      }
     }
   }
   for (const Neighborhood::Neighbor* neighbor : undecided_) {

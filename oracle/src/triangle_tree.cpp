@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-
 #include "keepout/oracle/triangle_tree.h"
 
 #include <algorithm>

@@ -27,8 +27,7 @@ from ._core import (
     load_mesh,
     solvers,
 )
-from ._results import Part, Simulation, Steps
-from ._status import Status
+from ._results import Part, Simulation, Status, Steps
 
 __all__ = [
     "Error",

@@ -9,8 +9,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from ._results import Part as Part
 from ._results import Simulation as Simulation
+from ._results import Status as Status
 from ._results import Steps as Steps
-from ._status import Status as Status
 
 __all__ = [
     "Error",

@@ -1,16 +1,15 @@
 # SPDX-FileCopyrightText: 2026 the keepout authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What batches write to, and what lists of parts hold."""
+"""How steps end, what batches write to, and what lists of parts hold."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from enum import IntEnum
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-
-from ._status import Status
 
 
 class Part(NamedTuple):
@@ -20,13 +19,70 @@ class Part(NamedTuple):
     description: str
 
 
-def _counts(status: NDArray[np.uint8]) -> dict[Status, int]:
-    values, counts = np.unique(status, return_counts=True)
-    return {Status(int(v)): int(n) for v, n in zip(values, counts)}
+class Status(IntEnum):
+    """How a step ended. The first four come with a motion, which may be carried out and may be
+    zero; the others with zero motion."""
+
+    free = 0  # no plane holds the motion back
+    limited = 1  # the motion is the best one that the planes allow
+    recovering = 2  # the tip was too close or inside: the motion leads it out
+    fallback = 3  # only a shorter motion could be proven, within the budget of work
+    infeasible = 4  # no motion satisfies all planes: the tip is too close on several sides
+    ill_posed = 5  # the Jacobian lacks full column rank and there is no damping
+    invalid_input = 6  # a number is not finite or out of range
+    beyond_reach = 7  # the motion asked for, or solved, is longer than the motion sphere's radius
+    over_capacity = 8  # more triangles, planes or variables than room was made for
+    unsolved = 9  # the solver gave up, or its answer does not satisfy the planes
+    inside = 10  # the tip is on the forbidden side, and joints or rows are in the way out
+    touching = 11  # the tip is on the surface, and which side is free cannot be told
+    margin_too_small = 12  # the margin is lost in the rounding of lengths this large
+
+    def __str__(self) -> str:
+        return self.name
+
+    def __format__(self, spec: str) -> str:
+        """The name; a number where a type of number is asked for, as in f"{status:d}"."""
+        return format(int(self), spec) if spec and spec[-1] in "bcdoxXn" else format(self.name, spec)
+
+    @property
+    def ok(self) -> bool:
+        """Whether a motion comes with it, which may be carried out."""
+        return self <= Status.fallback
+
+    @property
+    def reason(self) -> str:
+        """One line on what happened and what to do about it."""
+        from . import _core  # which imports this file first
+
+        return _core.status_reason(self)
+
+
+class _Batch:
+    """What the results of all batches have."""
+
+    status: NDArray[np.uint8]
+
+    @property
+    def ok(self) -> NDArray[np.bool_]:
+        """In the shape of `status`: whether the motion may be carried out."""
+        return self.status <= Status.fallback
+
+    def counts(self) -> dict[Status, int]:
+        """How many steps ended with each status."""
+        values, counts = np.unique(self.status, return_counts=True)
+        return {Status(int(v)): int(n) for v, n in zip(values, counts)}
+
+    def __len__(self) -> int:
+        return len(self.status)
+
+    def __repr__(self) -> str:
+        counted = ", ".join(f"{status.name}: {n}" for status, n in self.counts().items())
+        items = "poses" if self.status.ndim == 1 else "loops"
+        return f"<keepout.{type(self).__name__} of {len(self)} {items}: {counted or 'none'}>"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Steps:
+class Steps(_Batch):
     """What the steps of n poses came to. Give one as `out` and a batch writes to its arrays: make it
     with Steps.empty(n), or of arrays of your own, which must be C-contiguous and of these types."""
 
@@ -43,25 +99,9 @@ class Steps:
             np.zeros(poses, np.uint32),
         )
 
-    @property
-    def ok(self) -> NDArray[np.bool_]:
-        """(n,): whether the motion may be carried out."""
-        return self.status <= Status.fallback
-
-    def counts(self) -> dict[Status, int]:
-        """How many steps ended with each status."""
-        return _counts(self.status)
-
-    def __len__(self) -> int:
-        return len(self.status)
-
-    def __repr__(self) -> str:
-        counted = ", ".join(f"{status.name}: {n}" for status, n in self.counts().items())
-        return f"<keepout.Steps of {len(self)} poses: {counted or 'none'}>"
-
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Simulation:
+class Simulation(_Batch):
     """Where the tips of m closed loops went. May be given as `out`, as Steps may."""
 
     tips: NDArray[np.float64]  # (m, cycles + 1, 3): from the start to after the last cycle [length]
@@ -76,19 +116,3 @@ class Simulation:
             np.full((loops, cycles), Status.invalid_input, np.uint8),
             np.zeros((loops, cycles), np.uint32),
         )
-
-    @property
-    def ok(self) -> NDArray[np.bool_]:
-        """(m, cycles): whether the tip could move as the step says."""
-        return self.status <= Status.fallback
-
-    def counts(self) -> dict[Status, int]:
-        """How many steps ended with each status."""
-        return _counts(self.status)
-
-    def __len__(self) -> int:
-        return len(self.status)
-
-    def __repr__(self) -> str:
-        counted = ", ".join(f"{status.name}: {n}" for status, n in self.counts().items())
-        return f"<keepout.Simulation of {len(self)} loops: {counted or 'none'}>"

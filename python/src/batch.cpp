@@ -5,8 +5,11 @@
 #include <sched.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
+#include <future>
 #include <string>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -25,73 +28,6 @@ unsigned usable_processors() noexcept {
   }
   return std::max(1U, std::thread::hardware_concurrency());
 }
-
-/// Threads that share a list of chunks, and what became of them.
-class Crew {
- public:
-  Crew(std::size_t items, std::size_t chunk, const Work& work)
-      : items_(items), chunk_(chunk), work_(work) {}
-
-  /// If the system has no more threads, those that there are do it all.
-  void start(unsigned threads) {
-    running_ = threads;
-    for (unsigned worker = 0; worker < threads; ++worker) {
-      try {
-        threads_.emplace_back([this, worker] { labour(worker); });
-      } catch (const std::system_error&) {
-        const std::lock_guard lock(mutex_);
-        running_ -= threads - worker;
-        if (worker == 0) throw;
-        break;
-      }
-    }
-  }
-
-  /// Whether all have ended within a while.
-  bool has_ended_within(std::chrono::milliseconds while_waiting) {
-    std::unique_lock lock(mutex_);
-    return ended_.wait_for(lock, while_waiting, [&] { return running_ == 0; });
-  }
-
-  void stop() noexcept { stop_.ask(); }
-
-  void join() noexcept {
-    for (std::thread& thread : threads_) thread.join();
-    threads_.clear();
-  }
-
-  void rethrow() const {
-    if (failure_) std::rethrow_exception(failure_);
-  }
-
- private:
-  void labour(unsigned worker) noexcept {
-    try {
-      while (!stop_.asked()) {
-        const std::size_t begin = next_.fetch_add(chunk_, std::memory_order_relaxed);
-        if (begin >= items_) break;
-        work_(worker, begin, std::min(begin + chunk_, items_), stop_);
-      }
-    } catch (...) {
-      stop_.ask();
-      const std::lock_guard lock(mutex_);
-      if (!failure_) failure_ = std::current_exception();
-    }
-    const std::lock_guard lock(mutex_);
-    if (--running_ == 0) ended_.notify_one();
-  }
-
-  std::size_t items_;
-  std::size_t chunk_;
-  const Work& work_;
-  std::atomic<std::size_t> next_ = 0;
-  Stop stop_;
-  std::mutex mutex_;
-  std::condition_variable ended_;
-  unsigned running_ = 0;
-  std::exception_ptr failure_;
-  std::vector<std::thread> threads_;
-};
 
 /// Only Python's main thread hears of signals; elsewhere nothing is ever pending.
 void require_no_signal() {
@@ -113,17 +49,39 @@ unsigned threads_for(std::size_t items, std::optional<py::ssize_t> wanted) {
 
 void run_batch(std::size_t items, std::size_t chunk, unsigned threads, const Work& work) {
   if (items == 0) return;
-  Crew crew(items, chunk, work);
+  std::stop_source stop;
+  std::atomic<std::size_t> next = 0;
+  const auto labour = [&](unsigned worker) {
+    try {
+      while (!stop.stop_requested()) {
+        const std::size_t begin = next.fetch_add(chunk, std::memory_order_relaxed);
+        if (begin >= items) break;
+        work(worker, begin, std::min(begin + chunk, items), stop.get_token());
+      }
+    } catch (...) {
+      stop.request_stop();
+      throw;
+    }
+  };
+  std::vector<std::future<void>> crew;  // each waits for its thread to end when it is destroyed
   try {
-    crew.start(threads);
-    while (!crew.has_ended_within(std::chrono::milliseconds(50))) require_no_signal();
+    while (crew.size() < threads) {
+      crew.push_back(std::async(std::launch::async, labour, static_cast<unsigned>(crew.size())));
+    }
+  } catch (const std::system_error&) {
+    if (crew.empty()) throw;  // else those that there are do it all
+  }
+  try {
+    for (std::future<void>& worker : crew) {
+      while (worker.wait_for(std::chrono::milliseconds(50)) != std::future_status::ready) {
+        require_no_signal();
+      }
+    }
   } catch (...) {
-    crew.stop();
-    crew.join();
+    stop.request_stop();
     throw;
   }
-  crew.join();
-  crew.rethrow();
+  for (std::future<void>& worker : crew) worker.get();
 }
 
 }  // namespace keepout::python

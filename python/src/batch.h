@@ -4,35 +4,23 @@
 
 #include <pybind11/pybind11.h>
 
-#include <atomic>
-#include <condition_variable>
 #include <cstddef>
-#include <exception>
 #include <functional>
-#include <mutex>
 #include <optional>
+#include <stop_token>
 
 namespace keepout::python {
 
 namespace py = pybind11;
 
-/// Tells a worker whether to go on: not once the user has interrupted, or another worker has
-/// failed.
-class Stop {
- public:
-  bool asked() const noexcept { return asked_.load(std::memory_order_relaxed); }
-  void ask() noexcept { asked_.store(true, std::memory_order_relaxed); }
-
- private:
-  std::atomic<bool> asked_ = false;
-};
-
 /// How many threads a batch of `items` takes: the processors this process may use, or what the
 /// caller wants; never more than there are items. Throws Error for a number out of range.
 unsigned threads_for(std::size_t items, std::optional<py::ssize_t> wanted);
 
-/// Some of a batch: items begin to end, done by one worker at a time.
-using Work = std::function<void(unsigned worker, std::size_t begin, std::size_t end, const Stop&)>;
+/// Some of a batch: items begin to end, done by one worker at a time. It goes no further once
+/// `stop` is asked for: the user has interrupted, or another worker has failed.
+using Work = std::function<void(unsigned worker, std::size_t begin, std::size_t end,
+                                const std::stop_token& stop)>;
 
 /// Does a batch on `threads` workers, who take `chunk` items after another. Which worker does which
 /// items is left to chance: `work` must not let it matter.

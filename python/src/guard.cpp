@@ -57,11 +57,12 @@ void write(double* points, std::size_t i, const Vec3& point) {
 
 /// One loop: the tip follows the hand as far as the steps lead.
 void run_loop(MotionConstraint& constraint, Vec3 tip, const double* hand, std::size_t loop,
-              std::size_t cycles, double max_step, const StepColumns& to, const Stop& stop) {
+              std::size_t cycles, double max_step, const StepColumns& to,
+              const std::stop_token& stop) {
   constraint.forget();
   const std::size_t first_tip = loop * (cycles + 1);
   write(to.motions, first_tip, tip);
-  for (std::size_t cycle = 0; cycle < cycles && !stop.asked(); ++cycle) {
+  for (std::size_t cycle = 0; cycle < cycles && !stop.stop_requested(); ++cycle) {
     const std::size_t i = loop * cycles + cycle;
     const Step step =
         constraint.step({.tip = tip, .desired = clipped(row(hand, i) - tip, max_step)});
@@ -151,9 +152,10 @@ py::object Guard::steps(const py::object& tips, const py::object& desired,
     const py::gil_scoped_release release;
     const std::lock_guard in_use(workers_in_use_);
     std::deque<MotionConstraint>& constraints = workers(crew);
-    const Work work = [&](unsigned worker, std::size_t begin, std::size_t end, const Stop& stop) {
+    const Work work = [&](unsigned worker, std::size_t begin, std::size_t end,
+                          const std::stop_token& stop) {
       MotionConstraint& constraint = constraints[worker];
-      for (std::size_t i = begin; i < end && !stop.asked(); ++i) {
+      for (std::size_t i = begin; i < end && !stop.stop_requested(); ++i) {
         // Or the answer would depend on which pose this worker did before.
         constraint.forget();
         const Step step = constraint.step({.tip = tip[i], .desired = aim[i]});
@@ -164,7 +166,7 @@ py::object Guard::steps(const py::object& tips, const py::object& desired,
     constexpr std::size_t chunk = 64;
     if (poses <= chunk) {
       // A thread takes longer to start.
-      work(0, 0, poses, Stop());
+      work(0, 0, poses, std::stop_token());
     } else {
       run_batch(poses, chunk, crew, work);
     }
@@ -185,9 +187,9 @@ py::object Guard::replay(const py::object& poses, bool closed_loop, double max_s
     MotionConstraint& constraint = workers(1).front();
     constraint.forget();
     // One after another, whatever the number of processors: each step may depend on the last.
-    run_batch(1, 1, 1, [&](unsigned, std::size_t, std::size_t, const Stop& stop) {
+    run_batch(1, 1, 1, [&](unsigned, std::size_t, std::size_t, const std::stop_token& stop) {
       Vec3 tip = count > 0 ? row(data, 1) : Vec3::Zero();
-      for (std::size_t i = 0; i < count && !stop.asked(); ++i) {
+      for (std::size_t i = 0; i < count && !stop.stop_requested(); ++i) {
         const Vec3 first = row(data, 2 * i);
         const Motion motion = closed_loop
                                   ? Motion{.tip = tip, .desired = clipped(first - tip, max_step)}
@@ -218,12 +220,13 @@ py::object Guard::simulate(const py::object& starts, const py::object& hands, do
     const py::gil_scoped_release release;
     const std::lock_guard in_use(workers_in_use_);
     std::deque<MotionConstraint>& constraints = workers(crew);
-    run_batch(loops, 1, crew,
-              [&](unsigned worker, std::size_t begin, std::size_t end, const Stop& stop) {
-                for (std::size_t i = begin; i < end; ++i) {
-                  run_loop(constraints[worker], row(tips, i), hand, i, cycles, max_step, to, stop);
-                }
-              });
+    run_batch(
+        loops, 1, crew,
+        [&](unsigned worker, std::size_t begin, std::size_t end, const std::stop_token& stop) {
+          for (std::size_t i = begin; i < end; ++i) {
+            run_loop(constraints[worker], row(tips, i), hand, i, cycles, max_step, to, stop);
+          }
+        });
   }
   return to.result;
 }

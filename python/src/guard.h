@@ -14,8 +14,7 @@
 #include "index_handle.h"
 #include "keepout/factory/make_motion_constraint.h"
 #include "out_arrays.h"
-#include "planes.h"
-#include "step_result.h"
+#include "step.h"
 
 namespace keepout::python {
 

@@ -72,20 +72,6 @@ Hits hits_in(const IndexHandle& index, const py::object& center, double radius) 
   return {ball.center, {hits.begin(), hits.end()}};
 }
 
-/// A member of each hit, in place.
-template <class T>
-py::array column(const py::object& self, const T* first, py::ssize_t width) {
-  const auto size = static_cast<py::ssize_t>(self.cast<const Hits&>().hits.size());
-  if (width == 1) return view(first, {size}, {sizeof(Hit)}, self);
-  return view(first, {size, width}, {sizeof(Hit), sizeof(T)}, self);
-}
-
-const Hit* first_hit(const py::object& self) {
-  static const Hit none{};  // of an empty list no number is read, but an address is
-  const std::vector<Hit>& hits = self.cast<const Hits&>().hits;
-  return hits.empty() ? &none : hits.data();
-}
-
 py::array_t<double> points_of(const Hits& self) {
   py::array_t<double> points({static_cast<py::ssize_t>(self.hits.size()), py::ssize_t{3}});
   double* to = points.mutable_data();
@@ -106,16 +92,17 @@ py::array_t<double> distances(const IndexHandle& index, const py::object& points
   double* const to = result.mutable_data();
   const unsigned workers = threads_for(size, threads);
   const py::gil_scoped_release release;
-  run_batch(size, 64, workers, [&](unsigned, std::size_t begin, std::size_t end, const Stop& stop) {
-    NearestTriangle nearest(*index.mesh(), index.index());
-    double guess = 0.0;
-    for (std::size_t i = begin; i < end && !stop.asked(); ++i) {
-      const Vec3 tip = row(tips, i);
-      // The guess makes it faster, and no different: the nearest is the nearest.
-      guess = tip.allFinite() ? nearest(tip, guess).closest.distance : 0.0;
-      to[i] = tip.allFinite() ? guess : std::nan("");
-    }
-  });
+  run_batch(size, 64, workers,
+            [&](unsigned, std::size_t begin, std::size_t end, const std::stop_token& stop) {
+              NearestTriangle nearest(*index.mesh(), index.index());
+              double guess = 0.0;
+              for (std::size_t i = begin; i < end && !stop.stop_requested(); ++i) {
+                const Vec3 tip = row(tips, i);
+                // The guess makes it faster, and no different: the nearest is the nearest.
+                guess = tip.allFinite() ? nearest(tip, guess).closest.distance : 0.0;
+                to[i] = tip.allFinite() ? guess : std::nan("");
+              }
+            });
   return result;
 }
 
@@ -128,27 +115,21 @@ IndexHandle::IndexHandle(py::object mesh, std::string name, const std::filesyste
       index_(build(name_, mesh_, cache)) {}
 
 void bind_index(py::module_& module) {
-  py::class_<Hits>(module, "Hits",
-                   "The triangles that touch a ball, by ascending number, and of each the point\n"
-                   "nearest to the centre. Arrays are read-only views.")
-      .def_property_readonly(
-          "triangles",
-          [](const py::object& self) { return column(self, &first_hit(self)->triangle, 1); },
-          "(k,) uint32.")
-      .def_property_readonly(
-          "offsets",
-          [](const py::object& self) {
-            return column(self, first_hit(self)->closest.offset.data(), 3);
-          },
-          "(k, 3) float64 [length]: from the centre to the closest points; as exact as can be.")
-      .def_property_readonly("points", &points_of,
+  py::class_<Hits> hits(
+      module, "Hits",
+      "The triangles that touch a ball, by ascending number, and of each the point\n"
+      "nearest to the centre. Arrays are read-only views.");
+  add_view(
+      hits, "triangles", &Hits::hits, 1, [](const Hit& hit) { return &hit.triangle; },
+      "(k,) uint32.");
+  add_view(
+      hits, "offsets", &Hits::hits, 3, [](const Hit& hit) { return hit.closest.offset.data(); },
+      "(k, 3) float64 [length]: from the centre to the closest points; as exact as can be.");
+  add_view(
+      hits, "distances", &Hits::hits, 1, [](const Hit& hit) { return &hit.closest.distance; },
+      "(k,) float64 [length].");
+  hits.def_property_readonly("points", &points_of,
                              "(k, 3) float64 [length]: the closest points, centre + offset.")
-      .def_property_readonly(
-          "distances",
-          [](const py::object& self) {
-            return column(self, &first_hit(self)->closest.distance, 1);
-          },
-          "(k,) float64 [length].")
       .def("__len__", [](const Hits& self) { return self.hits.size(); })
       .def("__repr__", [](const Hits& self) {
         return "<keepout.Hits: " + std::to_string(self.hits.size()) + " triangles>";

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "inspection.h"
-
 #include <pybind11/stl.h>
 
 #include <optional>
@@ -10,10 +8,27 @@
 #include "bindings.h"
 #include "keepout/index/pd_tree.h"
 #include "keepout/index/self_intersection.h"
-#include "views.h"
+#include "keepout/mesh/doctor.h"
+#include "mesh_handle.h"
 
 namespace keepout::python {
 namespace {
+
+/// What the doctor found; the search for self-intersections takes longest and is made when asked
+/// for.
+struct Inspection {
+  MeshFindings findings;
+  std::optional<std::size_t> self_intersections;
+};
+
+Inspection inspect(const MeshHandle& mesh, bool self_intersections) {
+  const py::gil_scoped_release release;
+  Inspection inspection{examine(mesh.mesh()), std::nullopt};
+  if (self_intersections) {
+    inspection.self_intersections = count_self_intersections(mesh.mesh(), PdTree(mesh.shared()));
+  }
+  return inspection;
+}
 
 py::tuple tuple_of(const Vec3& v) { return py::make_tuple(v.x(), v.y(), v.z()); }
 
@@ -42,15 +57,6 @@ std::string summary(const Inspection& inspection) {
 }
 
 }  // namespace
-
-Inspection inspect(const std::shared_ptr<const Mesh>& mesh, bool self_intersections) {
-  const py::gil_scoped_release release;
-  Inspection inspection{examine(*mesh), std::nullopt};
-  if (self_intersections) {
-    inspection.self_intersections = count_self_intersections(*mesh, PdTree(mesh));
-  }
-  return inspection;
-}
 
 void bind_inspection(py::module_& module) {
   py::class_<Inspection> type(module, "Inspection",
@@ -119,6 +125,10 @@ void bind_inspection(py::module_& module) {
       .def("__str__", &summary)
       .def("__repr__",
            [](const Inspection& i) { return "<keepout.Inspection: " + summary(i) + ">"; });
+
+  py::class_<MeshHandle>(module.attr("Mesh"))
+      .def("inspect", &inspect, py::kw_only(), py::arg("self_intersections") = false,
+           "Examines the mesh; repairs nothing. The search for self-intersections takes longest.");
 }
 
 }  // namespace keepout::python

@@ -12,7 +12,6 @@
 
 #include "arguments.h"
 #include "bindings.h"
-#include "inspection.h"
 #include "keepout/error.h"
 #include "keepout/mesh/load_mesh.h"
 #include "keepout/mesh/weld.h"
@@ -89,13 +88,7 @@ MeshHandle load(const std::filesystem::path& path, const std::optional<std::stri
   return mesh;
 }
 
-py::ssize_t signed_size(std::size_t size) { return static_cast<py::ssize_t>(size); }
-
-py::array rows_of_three(const std::vector<Vec3>& rows, py::handle owner) {
-  static_assert(sizeof(Vec3) == 3 * sizeof(double));
-  return view(rows.empty() ? nullptr : rows.front().data(), {signed_size(rows.size()), 3},
-              {sizeof(Vec3), sizeof(double)}, owner);
-}
+const double* coordinates(const Vec3& point) { return point.data(); }
 
 }  // namespace
 
@@ -128,24 +121,22 @@ void bind_mesh(py::module_& module) {
       .def_property_readonly(
           "vertices",
           [](const py::object& self) {
-            const auto vertices = self.cast<const MeshHandle&>().mesh().vertices();
-            return view(vertices.data()->data(), {signed_size(vertices.size()), 3},
-                        {sizeof(Vec3), sizeof(double)}, self);
+            return view(self.cast<const MeshHandle&>().mesh().vertices(), 3, coordinates, self);
           },
           "(n, 3) float64 [length], read-only: the mesh's own memory.")
       .def_property_readonly(
           "triangles",
           [](const py::object& self) {
-            static_assert(sizeof(Corners) == 3 * sizeof(VertexId));
-            const auto triangles = self.cast<const MeshHandle&>().mesh().triangles();
-            return view(triangles.data()->data(), {signed_size(triangles.size()), 3},
-                        {sizeof(Corners), sizeof(VertexId)}, self);
+            return view(
+                self.cast<const MeshHandle&>().mesh().triangles(), 3,
+                [](const Corners& corners) { return corners.data(); }, self);
           },
           "(m, 3) uint32, read-only: the mesh's own memory.")
       .def_property_readonly(
           "normals",
           [](const py::object& self) {
-            return rows_of_three(self.cast<MeshHandle&>().normals(), self);
+            return view(std::span<const Vec3>(self.cast<MeshHandle&>().normals()), 3, coordinates,
+                        self);
           },
           "(m, 3) float64, read-only: unit normals of the triangles, towards the free side; zero\n"
           "for one without an area. Made when first asked for.")
@@ -172,13 +163,6 @@ void bind_mesh(py::module_& module) {
             return std::string(name(self.space()));
           },
           "The anatomical space of the coordinates, 'RAS' or 'LPS', if it is known; or None.")
-      .def(
-          "inspect",
-          [](const MeshHandle& self, bool self_intersections) {
-            return inspect(self.shared(), self_intersections);
-          },
-          py::kw_only(), py::arg("self_intersections") = false,
-          "Examines the mesh; repairs nothing. The search for self-intersections takes longest.")
       .def("__len__", [](const MeshHandle& self) { return self.mesh().triangle_count(); })
       .def("__repr__", [](const MeshHandle& self) {
         return "<keepout.Mesh of " + std::to_string(self.mesh().triangle_count()) + " triangles, " +

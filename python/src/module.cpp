@@ -6,10 +6,23 @@
 #include <string_view>
 
 #include "bindings.h"
+#include "keepout/activation/registry.h"
+#include "keepout/adapters/index_registry.h"
 #include "keepout/error.h"
+#include "keepout/solvers/registry.h"
 #include "keepout/version.h"
 
 namespace keepout::python {
+namespace {
+
+/// A table of parts as a list of keepout.Part.
+template <class Table>
+py::list parts_of(const Table& table) {
+  const py::object part = py::module_::import("keepout._results").attr("Part");
+  py::list parts;
+  for (const auto& entry : table) parts.append(part(entry.name, entry.description));
+  return parts;
+}
 
 void bind_error(py::module_& module) {
   auto error = py::register_exception<Error>(module, "Error", PyExc_ValueError);
@@ -28,6 +41,19 @@ void bind_error(py::module_& module) {
   error.doc() = "What is wrong with an argument, a file or a setting, and what to do about it.";
 }
 
+void bind_parts(py::module_& module) {
+  module.def(
+      "indices", [] { return parts_of(index_backends()); },
+      "The spatial indices of this build: a list of Part(name, description).");
+  module.def(
+      "activations", [] { return parts_of(activation_rules()); },
+      "The activation rules, which turn triangles into planes: a list of Part.");
+  module.def(
+      "solvers", [] { return parts_of(solver_backends()); },
+      "The solvers of the step problem in this build: a list of Part.");
+}
+
+}  // namespace
 }  // namespace keepout::python
 
 PYBIND11_MODULE(_core, module) {
@@ -36,8 +62,8 @@ PYBIND11_MODULE(_core, module) {
   module.attr("__version__") = KEEPOUT_VERSION;
   bind_error(module);
   bind_status(module);
-  bind_inspection(module);
   bind_mesh(module);
+  bind_inspection(module);
   bind_parts(module);
   bind_index(module);
   bind_planes(module);

@@ -16,22 +16,14 @@
 namespace keepout::python {
 namespace {
 
-Query query_named(const std::string& name) {
-  if (name == "motion") return Query::motion;
-  if (name == "sphere") return Query::sphere;
-  refuse("query", "'motion' or 'sphere'", "'" + name + "'");
-}
-
-Inside inside_named(const std::string& name) {
-  if (name == "led_out") return Inside::led_out;
-  if (name == "taken_as_is") return Inside::taken_as_is;
-  refuse("inside", "'led_out' or 'taken_as_is'", "'" + name + "'");
-}
-
-Distances distances_named(const std::string& name) {
-  if (name == "where_known") return Distances::where_known;
-  if (name == "always") return Distances::always;
-  refuse("distances", "'where_known' or 'always'", "'" + name + "'");
+/// One of two values, by name.
+template <class Enum>
+Enum named(std::string_view argument, const std::string& given,
+           const std::array<std::pair<std::string, Enum>, 2>& names) {
+  for (const auto& [name, value] : names) {
+    if (given == name) return value;
+  }
+  refuse(argument, "'" + names[0].first + "' or '" + names[1].first + "'", "'" + given + "'");
 }
 
 constexpr std::array<std::string_view, 20> arguments = {
@@ -182,9 +174,14 @@ void bind_motion_constraint(py::module_& module) {
              settings.deepest = deepest;
              settings.refinements = refinements;
              settings.nodes = nodes;
-             settings.query = query_named(query);
-             settings.distances = distances_named(distances);
-             settings.inside = inside_named(inside);
+             settings.query = named<Query>(
+                 "query", query, {{{"motion", Query::motion}, {"sphere", Query::sphere}}});
+             settings.distances = named<Distances>(
+                 "distances", distances,
+                 {{{"where_known", Distances::where_known}, {"always", Distances::always}}});
+             settings.inside = named<Inside>(
+                 "inside", inside,
+                 {{{"led_out", Inside::led_out}, {"taken_as_is", Inside::taken_as_is}}});
              settings.capacity.triangles = count(max_triangles, "max_triangles");
              settings.capacity.planes = count(max_planes, "max_planes");
              settings.capacity.variables = count(max_joints, "max_joints");

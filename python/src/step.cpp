@@ -1,15 +1,33 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "step.h"
+
 #include <pybind11/stl.h>
 
+#include <array>
 #include <string>
+#include <vector>
 
+#include "arguments.h"
 #include "bindings.h"
-#include "status_object.h"
-#include "step_result.h"
 #include "views.h"
 
 namespace keepout::python {
+namespace {
+
+constexpr std::size_t status_count = static_cast<std::size_t>(Status::margin_too_small) + 1;
+
+/// Of keepout.Status. Never released: the interpreter may be gone before our statics are.
+std::array<PyObject*, status_count> members{};
+
+Status status_from(py::ssize_t value) {
+  if (value < 0 || static_cast<std::size_t>(value) >= status_count) {
+    refuse("status", "0 to " + std::to_string(status_count - 1), std::to_string(value));
+  }
+  return static_cast<Status>(value);
+}
+
+}  // namespace
 
 StepResult::StepResult(const Step& step)
     : status(step.status),
@@ -20,11 +38,69 @@ StepResult::StepResult(const Step& step)
       triangles(step.triangles),
       distance(step.distance) {}
 
+void bind_status(py::module_& module) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < status_count; ++i) {
+    names.emplace_back(name(static_cast<Status>(i)));
+  }
+  module.attr("status_names") = py::tuple(py::cast(names));
+  module.def(
+      "status_reason", [](py::ssize_t value) { return reason(status_from(value)); },
+      py::arg("status"), "One line on what a status means and what to do about it.");
+  // The enumeration is Python's own, as that is what numpy compares quickly.
+  const py::object type = py::module_::import("keepout._results").attr("Status");
+  for (std::size_t i = 0; i < status_count; ++i) members[i] = type(i).release().ptr();
+}
+
+void bind_planes(py::module_& module) {
+  py::class_<Planes> planes(
+      module, "Planes",
+      "Half-spaces: allowed are the motions d with normals @ d >= offsets. Arrays are read-only\n"
+      "views.");
+  add_view(
+      planes, "normals", &Planes::planes, 3,
+      [](const HalfSpace& plane) { return plane.normal.data(); },
+      "(k, 3) float64: unit normals, towards the free side.");
+  add_view(
+      planes, "offsets", &Planes::planes, 1, [](const HalfSpace& plane) { return &plane.offset; },
+      "(k,) float64 [length], relative to the tip: above 0 a plane asks for a retreat.");
+  add_view(
+      planes, "sources", &Planes::planes, 1, [](const HalfSpace& plane) { return &plane.source; },
+      "(k,) uint32: the triangles that called for them.");
+  planes.def("__len__", [](const Planes& self) { return self.planes.size(); })
+      .def("__repr__", [](const Planes& self) {
+        return "<keepout.Planes: " + std::to_string(self.planes.size()) + ">";
+      });
+
+  py::class_<FreeSpace, Planes>(
+      module, "Polytope",
+      "The free space around a tip as planes: see MotionConstraint.free_polytope. One that is not\n"
+      "ok allows standing still only.")
+      .def_property_readonly(
+          "status", [](const FreeSpace& self) { return name(self.status); },
+          "'found', or what went wrong: 'touching', 'invalid_input', 'over_capacity', "
+          "'whole_tool'.")
+      .def_property_readonly(
+          "ok", [](const FreeSpace& self) { return self.status == PolytopeStatus::found; },
+          "Whether the planes are complete.")
+      .def_property_readonly(
+          "reason", [](const FreeSpace& self) { return reason(self.status); },
+          "One line on what happened and what to do about it.")
+      .def("__repr__", [](const FreeSpace& self) {
+        return "<keepout.Polytope: " + std::string(name(self.status)) + ", " +
+               std::to_string(self.planes.size()) + " planes>";
+      });
+}
+
 void bind_step(py::module_& module) {
   py::class_<StepResult>(module, "Step",
                          "What one control cycle may do. Arrays are read-only views of it.")
       .def_property_readonly(
-          "status", [](const StepResult& self) { return status_object(self.status); },
+          "status",
+          [](const StepResult& self) {
+            return py::reinterpret_borrow<py::object>(
+                members[static_cast<std::size_t>(self.status)]);
+          },
           "How the step ended: a Status.")
       .def_property_readonly(
           "ok", [](const StepResult& self) { return is_ok(self.status); },

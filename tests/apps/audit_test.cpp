@@ -12,7 +12,8 @@
 
 #include "keepout/fixtures/poses.h"
 #include "keepout/fixtures/shapes.h"
-#include "path_audit.h"
+#include "keepout/index/nearest.h"
+#include "keepout/index/pd_tree.h"
 #include "trials.h"
 
 namespace keepout::app {
@@ -22,34 +23,36 @@ std::shared_ptr<const Mesh> mesh_of(Surface surface) {
   return std::make_shared<const Mesh>(std::move(surface));
 }
 
-TEST(InsideTest, AgreesWithTheFormulaOfACube) {
+bool is_inside(Audit& audit, const Vec3& point) { return audit.side(point) == Side::behind; }
+
+TEST(Audit, AgreesOnTheInsideWithTheFormulaOfACube) {
   const auto mesh = mesh_of(make_cube(5.0));
-  const InsideTest inside(*mesh);
+  Audit audit(mesh);
   Random random(1);
   for (const Vec3& point : random_points(*mesh, 20'000, random)) {
-    ASSERT_EQ(inside(point), point.cwiseAbs().maxCoeff() < 50.0) << point.transpose();
+    ASSERT_EQ(is_inside(audit, point), point.cwiseAbs().maxCoeff() < 50.0) << point.transpose();
   }
 }
 
-TEST(InsideTest, HoldsOnRaysThroughVerticesAndEdges) {
+TEST(Audit, HoldsOnRaysThroughVerticesAndEdges) {
   // Coordinates of the vertices themselves: each ray runs through vertices and along faces.
   const auto mesh = mesh_of(make_cube(5.0));
-  const InsideTest inside(*mesh);
+  Audit audit(mesh);
   for (const Vec3& vertex : mesh->vertices()) {
     if (std::abs(vertex.y()) == 50.0 || std::abs(vertex.z()) == 50.0) continue;
-    EXPECT_TRUE(inside(Vec3(0.5, vertex.y(), vertex.z())));
-    EXPECT_FALSE(inside(Vec3(-51.0, vertex.y(), vertex.z())));
-    EXPECT_FALSE(inside(Vec3(50.1, vertex.y(), vertex.z())));
+    EXPECT_TRUE(is_inside(audit, Vec3(0.5, vertex.y(), vertex.z())));
+    EXPECT_FALSE(is_inside(audit, Vec3(-51.0, vertex.y(), vertex.z())));
+    EXPECT_FALSE(is_inside(audit, Vec3(50.1, vertex.y(), vertex.z())));
   }
 }
 
-TEST(InsideTest, AgreesWithTheSolidAngleOnFoldsAndHandles) {
+TEST(Audit, AgreesWithTheSolidAngleOnFoldsAndHandles) {
   // The solid angle of all triangles, seen from a point: 4 pi inside, 0 outside. Shares nothing
   // with counting rays.
   Random random(2);
   for (const char* name : {"cortex", "gear", "thin_plates", "star_bumps"}) {
     const auto mesh = mesh_of(make_shape(name));
-    const InsideTest inside(*mesh);
+    Audit audit(mesh);
     std::size_t insides = 0;
     for (const Vec3& point : random_points(*mesh, 200, random)) {
       double angle = 0.0;
@@ -61,7 +64,7 @@ TEST(InsideTest, AgreesWithTheSolidAngleOnFoldsAndHandles) {
                                   la * lb * ld + a.dot(b) * ld + b.dot(d) * la + d.dot(a) * lb);
       }
       const bool expected = angle > 2.0 * 3.14159265358979;
-      ASSERT_EQ(inside(point), expected) << name << " at " << point.transpose();
+      ASSERT_EQ(is_inside(audit, point), expected) << name << " at " << point.transpose();
       insides += expected;
     }
     EXPECT_GT(insides, 5u) << name;
@@ -93,6 +96,25 @@ TEST(Audit, TellsTheSidesOfASurface) {
   EXPECT_EQ(open.side({3, 4, 0.2}), Side::front);
   EXPECT_EQ(open.side({3, 4, -0.2}), Side::behind);
   EXPECT_NEAR(open.clearance({3, 4, -2.0}), 2.0, 1e-12) << "unsigned where there is no inside";
+}
+
+TEST(Audit, FindsTheNearestTriangleThatAnIndexFinds) {
+  Random random(4);
+  for (const char* name : {"cortex", "saddle_terrain", "far_cube", "needles"}) {
+    const auto mesh = mesh_of(make_shape(name));
+    const PdTree index(mesh);
+    NearestTriangle expected(*mesh, index);
+    Audit audit(mesh);
+    std::vector<Vec3> points = random_points(*mesh, 100, random);
+    // Where several are equally near.
+    for (VertexId v = 0; v < 100; ++v) points.push_back(mesh->vertex(v));
+    for (const Vec3& point : points) {
+      const Hit found = audit.nearest(point);
+      const Hit other = expected(point);
+      ASSERT_EQ(found.triangle, other.triangle) << name << " at " << point.transpose();
+      ASSERT_EQ(found.closest.offset, other.closest.offset);
+    }
+  }
 }
 
 /// How often a tip that goes straight from one point to the next passes through.

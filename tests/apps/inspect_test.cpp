@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "inspect.h"
+#include "commands.h"
 
 #include <gtest/gtest.h>
 

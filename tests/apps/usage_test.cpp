@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "apps/command_process.h"
-#include "suggestion.h"
+#include "names.h"
 
 namespace keepout::app {
 namespace {

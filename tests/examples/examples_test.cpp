@@ -53,20 +53,6 @@ TEST(Example01, EndsOutsideOfTheMeshByTheMargin) {
   EXPECT_GT(ending.tip.norm(), radius + 0.5);
 }
 
-TEST(Example02, ComposedStaticallyOrByNameTheMotionsAreTheSame) {
-  int different = -1;
-  double composed = 0.0, by_name = 0.0, searching = 0.0;  // [us]
-  const std::string text = output_of(KEEPOUT_EXAMPLE_STATIC_COMPOSITION);
-  ASSERT_EQ(
-      std::sscanf(text.c_str(),
-                  "%d motions differ; a step takes %lf us composed, %lf by name, %lf searching",
-                  &different, &composed, &by_name, &searching),
-      4)
-      << text;
-  EXPECT_EQ(different, 0);
-  for (const double time : {composed, by_name, searching}) EXPECT_GT(time, 0.0);
-}
-
 TEST(Example03, AnOwnIndexKeepsTheTipOutAsBruteForceDoes) {
   int held = 0, cycles = 0, different = 0;
   const std::string text = output_of(KEEPOUT_EXAMPLE_OWN_INDEX);
@@ -146,7 +132,7 @@ TEST(Example08, TheProxyKeepsTheMarginTheForceSaturatesAndTheEnergiesAddUp) {
   EXPECT_GE(active, 0.0);
 }
 
-TEST(Example09, TheJointsKeepTheTipOut) {
+TEST(Example02, TheJointsKeepTheTipOut) {
   int held = 0;
   double nearest = 0.0;
   Vec3 tip = Vec3::Zero();

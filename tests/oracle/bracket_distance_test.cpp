@@ -1,15 +1,13 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "keepout/oracle/bracket_distance.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
 
-#include "keepout/oracle/exact_distance.h"
+#include "keepout/oracle/distance.h"
 #include "keepout/oracle/safety_oracle.h"
 #include "oracle/hostile_pairs.h"
 #include "oracle/infinity.h"

@@ -1,13 +1,12 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "keepout/oracle/exact_distance.h"
-
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
 
+#include "keepout/oracle/distance.h"
 #include "oracle/hostile_pairs.h"
 #include "oracle/infinity.h"
 

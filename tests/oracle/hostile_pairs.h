@@ -7,7 +7,7 @@
 
 #include "keepout/fixtures/random.h"
 #include "keepout/geometry/triangle.h"
-#include "keepout/oracle/segment.h"
+#include "keepout/oracle/distance.h"
 
 namespace keepout::oracle {
 

@@ -12,7 +12,6 @@
 #include "keepout/fixtures/poses.h"
 #include "keepout/fixtures/resample_mesh.h"
 #include "keepout/fixtures/shapes.h"
-#include "keepout/oracle/volume_sign.h"
 #include "small_surfaces.h"
 
 namespace keepout::oracle {

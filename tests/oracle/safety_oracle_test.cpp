@@ -12,7 +12,7 @@
 
 #include "keepout/fixtures/poses.h"
 #include "keepout/fixtures/shapes.h"
-#include "keepout/oracle/exact_distance.h"
+#include "keepout/oracle/distance.h"
 #include "oracle/infinity.h"
 #include "trials.h"
 

@@ -10,7 +10,7 @@
 
 #include "keepout/fixtures/poses.h"
 #include "keepout/fixtures/shapes.h"
-#include "keepout/oracle/exact_distance.h"
+#include "keepout/oracle/distance.h"
 #include "trials.h"
 
 namespace keepout::oracle {

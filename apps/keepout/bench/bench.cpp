@@ -22,7 +22,7 @@
 #include "named_mesh.h"
 #include "number_text.h"
 #include "output_file.h"
-#include "part_lists.h"
+#include "names.h"
 #include "progress.h"
 #include "report/benchmark_report.h"
 #include "report/text.h"

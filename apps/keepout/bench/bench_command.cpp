@@ -7,12 +7,10 @@
 #include <ostream>
 
 #include "bench/parts.h"
+#include "command_line.h"
 #include "keepout/activation/registry.h"
 #include "keepout/error.h"
-#include "name_checks.h"
-#include "number_checks.h"
-#include "part_lists.h"
-#include "shell_word.h"
+#include "names.h"
 
 namespace keepout::app {
 

@@ -2,13 +2,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <iosfwd>
 #include <string>
 #include <vector>
 
 #include "bench/bench.h"
 #include "bench/speed/speed.h"
+
+namespace CLI {
+class App;
+}
 
 namespace keepout::app {
 

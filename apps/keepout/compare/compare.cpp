@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "compare/compare.h"
 
+#include <CLI/CLI.hpp>
 #include <array>
 #include <cstdlib>
 #include <ostream>
@@ -9,16 +10,15 @@
 #include "bench/machine_record.h"
 #include "bench/parts.h"
 #include "bench/subject.h"
+#include "command_line.h"
+#include "compare/agreement.h"
 #include "compare/comparison_files.h"
 #include "compare/comparison_verdict.h"
-#include "compare/index_agreement.h"
-#include "compare/narrow_phase_agreement.h"
-#include "compare/solver_agreement.h"
 #include "keepout/activation/registry.h"
 #include "machine.h"
+#include "named_mesh.h"
+#include "names.h"
 #include "output_file.h"
-#include "part_lists.h"
-#include "progress.h"
 
 namespace keepout::app {
 namespace {
@@ -70,7 +70,45 @@ Comparison compare_parts(const std::string& mesh_name, const std::shared_ptr<con
   return comparison;
 }
 
-int compare(const CompareOptions& options, std::ostream& out) {
+CompareCommand::CompareCommand(CLI::App& app) {
+  CompareOptions& options = options_;
+  CLI::App& command = *app.add_subcommand(
+      "compare",
+      "Hold all parts that can take each other's place to each other and to the truth, on the same "
+      "input: indices, solvers, narrow phases");
+  command.add_option("MESH", options.mesh, std::string(mesh_help))->capture_default_str();
+  command.add_option("--poses", options.extent.poses, "Poses for the indices, under each rule")
+      ->type_name("NUMBER")
+      ->transform(whole_number(6, 1'000'000))
+      ->capture_default_str();
+  command.add_option("--problems", options.extent.problems, "Recorded problems for the solvers")
+      ->type_name("NUMBER")
+      ->transform(whole_number(10, 1'000'000))
+      ->capture_default_str();
+  command
+      .add_option("--pairs", options.extent.pairs,
+                  "Pairs of tool and triangle for the narrow phases, of each kind: apart, "
+                  "overlapping, and touching, which is within " +
+                      std::string(touch_text) + " of a touch, on either side")
+      ->type_name("NUMBER")
+      ->transform(whole_number(10, 1'000'000))
+      ->capture_default_str();
+  command.add_option("--seed", options.extent.seed, "Seed of poses, problems and pairs")
+      ->type_name("NUMBER")
+      ->transform(whole_number(0, largest_seed))
+      ->capture_default_str();
+  command.add_option("--json", options.json, "Where to write the tables and the verdict")
+      ->type_name("FILE");
+  command.footer(
+      "The exit status is 0 only if all indices agree to the bit and no solver is wrong; 130 "
+      "after\n"
+      "Ctrl-C, which keeps the rows that are finished.");
+}
+
+int CompareCommand::run(const std::vector<std::string>& arguments, std::ostream& out) const {
+  const CompareOptions& options = options_;
+  std::string command = "keepout";
+  for (const std::string& argument : arguments) command += " " + shell_word(argument);
   std::unique_ptr<OutputFile> json;
   if (options.json) {
     refuse_shared_files(std::array{NamedPath{"MESH", options.mesh}},
@@ -80,7 +118,7 @@ int compare(const CompareOptions& options, std::ostream& out) {
   const Subject subject{.mesh = options.mesh};
   const std::shared_ptr<const Mesh> mesh = make_mesh(subject);
   ComparisonRecord record{.date = date_now(),
-                          .command = options.command,
+                          .command = command,
                           .mesh = label_of(subject),
                           .triangles = mesh->triangle_count(),
                           .extent = options.extent,

@@ -7,10 +7,15 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "compare/comparison.h"
 #include "keepout/mesh/mesh.h"
 #include "stop_signal.h"
+
+namespace CLI {
+class App;
+}
 
 namespace keepout::app {
 
@@ -18,7 +23,6 @@ struct CompareOptions {
   std::string mesh = "skull";  // a real fixture or a file
   CompareExtent extent;
   std::optional<std::filesystem::path> json;  // to be written
-  std::string command = "keepout compare";    // that does it again
 };
 
 /// Everything that can take another's place, on the same input; as much as is finished when `stop`,
@@ -26,8 +30,20 @@ struct CompareOptions {
 Comparison compare_parts(const std::string& mesh_name, const std::shared_ptr<const Mesh>& mesh,
                          const CompareExtent& extent, const StopSignal* stop = nullptr);
 
-/// Compares, and prints tables and a verdict. Throws Error. For the exit status: nonzero when parts
-/// disagree by more than they may, and exit_interrupted when a signal came first.
-int compare(const CompareOptions& options, std::ostream& out);
+/// keepout compare: its options, and what they lead to. Stays where it is once made.
+class CompareCommand {
+ public:
+  explicit CompareCommand(CLI::App& app);
+  CompareCommand(const CompareCommand&) = delete;
+  CompareCommand& operator=(const CompareCommand&) = delete;
+
+  /// After parsing: compares, and prints tables and a verdict. `arguments`: of the whole command
+  /// line, to be noted. Throws Error. For the exit status: nonzero when parts disagree by more than
+  /// they may, and exit_interrupted when a signal came first.
+  int run(const std::vector<std::string>& arguments, std::ostream& out) const;
+
+ private:
+  CompareOptions options_;
+};
 
 }  // namespace keepout::app

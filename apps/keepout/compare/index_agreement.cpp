@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "compare/index_agreement.h"
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -11,13 +9,14 @@
 #include <utility>
 
 #include "bench/parts.h"
+#include "compare/agreement.h"
 #include "keepout/activation/registry.h"
 #include "keepout/factory/make_motion_constraint.h"
 #include "keepout/fixtures/motions.h"
 #include "keepout/fixtures/poses.h"
 #include "keepout/index/brute_force.h"
 #include "keepout/index/pd_tree.h"
-#include "keepout/oracle/exact_distance.h"
+#include "keepout/oracle/distance.h"
 #include "keepout/registry.h"
 
 namespace keepout::app {

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "compare/narrow_phase_agreement.h"
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <chrono>
@@ -11,6 +9,7 @@
 #include <string_view>
 
 #include "bench/benchmark.h"
+#include "compare/agreement.h"
 #include "keepout/adapters/narrow_phase_registry.h"
 #include "keepout/fixtures/random.h"
 

@@ -1,12 +1,11 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "compare/solver_agreement.h"
-
 #include <algorithm>
 #include <chrono>
 #include <string_view>
 
 #include "bench/benchmark.h"
+#include "compare/agreement.h"
 #include "compare/recorded_problems.h"
 #include "keepout/solvers/active_set.h"
 #include "keepout/solvers/kkt.h"
@@ -14,7 +13,6 @@
 #if KEEPOUT_HAS_NLOPT
 #include "keepout/solvers/nlopt_solver.h"
 #endif
-#include "progress.h"
 
 namespace keepout::app {
 namespace {

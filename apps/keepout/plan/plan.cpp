@@ -15,7 +15,6 @@
 #include "named_mesh.h"
 #include "number_text.h"
 #include "output_file.h"
-#include "plan/planning_page.h"
 #include "plan/planning_result.h"
 #include "progress.h"
 #include "stop_signal.h"

@@ -10,6 +10,10 @@
 #include <string>
 #include <vector>
 
+namespace CLI {
+class App;
+}
+
 namespace keepout::app {
 
 /// The planners that can be asked for; all with the same settings under each checker.
@@ -30,6 +34,9 @@ struct PlanOptions {
   bool simplify = false;  // shorten each path by OMPL's simplifier, under the same checker
   std::optional<std::filesystem::path> json, csv, page;
 };
+
+/// Adds `keepout plan` and its options to the command line.
+void add_plan(CLI::App& app, PlanOptions& options);
 
 /// Plans under several checkers side by side and has an independent oracle judge the paths. The
 /// exit status: success only if all paths that keepout let pass are valid. Throws Error where

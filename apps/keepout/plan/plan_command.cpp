@@ -1,38 +1,29 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "plan/plan_command.h"
+#include <limits>
 
-#include "name_checks.h"
-#include "number_checks.h"
+#include "command_line.h"
+#include "keepout/error.h"
+#include "plan/plan.h"
 
 namespace keepout::app {
 namespace {
 
-/// A share of the extent to check motions at; CLI11's own range check lets 'nan' pass.
-CLI::Validator resolution() {
-  return {[](std::string& text) {
-            double value = 0.0;
-            const bool is_number = CLI::detail::lexical_cast(text, value);
-            if (is_number && value >= 1e-6 && value <= 1.0) return std::string();
-            return "expected a share of the extent from 0.000001 to 1, not '" + text + "'";
-          },
-          "SHARE"};
-}
-
-CLI::Validator seconds() {
-  return {[](std::string& text) {
-            double value = 0.0;
-            const bool is_number = CLI::detail::lexical_cast(text, value);
-            if (is_number && value > 0.0 && value <= 86400.0) return std::string();
-            return "expected seconds above 0 and not above 86400, not '" + text + "'";
-          },
-          "SECONDS"};
+/// A number from `low` to `high`; CLI11's own range check lets 'nan' pass.
+CLI::Validator number_within(double low, double high, const std::string& expected,
+                             const std::string& type) {
+  const auto check = [=](std::string& text) {
+    double value = 0.0;
+    const bool is_number = CLI::detail::lexical_cast(text, value);
+    if (is_number && value >= low && value <= high) return std::string();
+    return "expected " + expected + ", not '" + text + "'";
+  };
+  return {check, type};
 }
 
 }  // namespace
 
-PlanCommand::PlanCommand(CLI::App& app) {
-  PlanOptions& options = options_;
+void add_plan(CLI::App& app, PlanOptions& options) {
   CLI::App& command = *app.add_subcommand(
       "plan",
       "Plan through real anatomy with OMPL, under sampled and under certified checking side by "
@@ -41,48 +32,29 @@ PlanCommand::PlanCommand(CLI::App& app) {
       "MESH", options.mesh,
       "Mesh file in mm, or a fixture; without one, airway (within) and skull (around)");
   command.add_flag("--inside", options.inside, "Plan within MESH, not around it")->needs(mesh);
-  command.add_option("--problems", options.problems, "Problems of each mesh")
-      ->type_name("NUMBER")
-      ->transform(whole_number(1, 10'000))
-      ->capture_default_str();
-  command.add_option("--seed", options.seed, "Seed of problems and planners")
-      ->type_name("NUMBER")
-      ->transform(whole_number(0, largest_seed))
-      ->capture_default_str();
-  command.add_option("--planner", options.planner, "Planner of OMPL, the same under each checker")
-      ->check(one_of(ompl_planners))
-      ->capture_default_str();
+  add_number(command, "--problems", options.problems, 1, 10'000, "Problems of each mesh");
+  add_number(command, "--seed", options.seed, 0, largest_seed, "Seed of problems and planners");
+  add_name(command, "--planner", options.planner, ompl_planners,
+           "Planner of OMPL, the same under each checker");
   command.add_option("--seconds", options.seconds, "Time that a planner has for each problem")
-      ->check(seconds())
+      ->check(number_within(std::numeric_limits<double>::denorm_min(), 86400.0,
+                            "seconds above 0 and not above 86400", "SECONDS"))
       ->capture_default_str();
   command
       .add_option(
           "--resolution", options.resolutions,
           "How finely sampled checking samples, in shares of the extent; OMPL's own is 0.01")
       ->delimiter(',')
-      ->check(resolution())
+      ->check(number_within(1e-6, 1.0, "a share of the extent from 0.000001 to 1", "SHARE"))
       ->capture_default_str();
-  command.add_option("--tool-radius", options.tool_radius, "Radius of the ball around the tip")
-      ->type_name("MM")
-      ->check(length(Zero::allowed))
-      ->capture_default_str();
-  command.add_option("--margin", options.margin, "Distance to keep between tool and surface")
-      ->type_name("MM")
-      ->check(length(Zero::refused))
-      ->capture_default_str();
-  command
-      .add_option(
-          "--radius", options.radius,
-          "Radius of the motion sphere: certified checking cuts motions into pieces so long")
-      ->type_name("MM")
-      ->check(length(Zero::refused))
-      ->capture_default_str();
-  command
-      .add_option("--range", options.range,
-                  "Longest motion that a planner adds; 0: a fifth of the extent, as OMPL has it")
-      ->type_name("MM")
-      ->check(length(Zero::allowed))
-      ->capture_default_str();
+  add_length(command, "--tool-radius", options.tool_radius, Zero::allowed,
+             "Radius of the ball around the tip");
+  add_length(command, "--margin", options.margin, Zero::refused,
+             "Distance to keep between tool and surface");
+  add_length(command, "--radius", options.radius, Zero::refused,
+             "Radius of the motion sphere: certified checking cuts motions into pieces so long");
+  add_length(command, "--range", options.range, Zero::allowed,
+             "Longest motion that a planner adds; 0: a fifth of the extent, as OMPL has it");
   command.add_flag("--simplify", options.simplify,
                    "Shorten each path by OMPL's simplifier, under the same checker");
   command.add_option("--json", options.json, "Where to write every run, its path included")
@@ -96,5 +68,13 @@ PlanCommand::PlanCommand(CLI::App& app) {
       "The exit status is 0 only if no path that keepout let pass is invalid.\n"
       "How problems are chosen, and what the columns say: docs/planning.md.");
 }
+
+#ifndef KEEPOUT_HAS_OMPL
+int plan(const PlanOptions&, std::ostream&) {
+  throw Error(
+      "plan: keepout was built without OMPL. Install libompl-dev, then configure and build again "
+      "with -DKEEPOUT_WITH_OMPL=ON and no sanitizers");
+}
+#endif
 
 }  // namespace keepout::app

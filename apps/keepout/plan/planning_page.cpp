@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "plan/planning_page.h"
-
 #include <algorithm>
 #include <cmath>
 #include <ostream>
@@ -9,6 +7,7 @@
 #include <utility>
 
 #include "number_text.h"
+#include "plan/planning_result.h"
 #include "report/page.h"
 #include "report/png.h"
 #include "report/shading.h"
@@ -97,18 +96,11 @@ Table table_of(const std::vector<PlanningSummary>& rows) {
       "median (s)", "checking (s)", "motions asked", "length (mm)"};
   using Look = TableCell::Look;
   for (const PlanningSummary& row : rows) {
-    const bool none = row.solved == 0;
-    const std::string of = "/" + std::to_string(row.runs);
-    table.rows.push_back({{row.checker.name(), Look::name},
-                          {std::to_string(row.solved) + of},
-                          {std::to_string(row.valid) + "/" + std::to_string(row.solved),
-                           row.valid == row.solved ? Look::number : Look::bad},
-                          harm(row.entering),
-                          {none ? "-" : rounded(row.least_clearance, 4)},
-                          {rounded(row.median_seconds)},
-                          {rounded(row.median_checking)},
-                          {grouped(static_cast<std::size_t>(row.checks))},
-                          {none ? "-" : rounded(row.median_length)}});
+    std::vector<TableCell>& cells = table.rows.emplace_back();
+    cells.push_back({row.checker.name(), Look::name});
+    for (std::string& cell : cells_of(row)) cells.push_back({std::move(cell)});
+    if (row.valid != row.solved) cells[2].look = Look::bad;
+    if (row.solved > 0) cells[3] = harm(row.entering);
   }
   return table;
 }

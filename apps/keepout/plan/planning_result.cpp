@@ -8,6 +8,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <ostream>
+#include <sstream>
 #include <utility>
 
 #include "keepout/simd_target.h"
@@ -57,10 +58,6 @@ PlanningSummary summary(const std::vector<const PlanningRun*>& runs) {
   return row;
 }
 
-std::string number_or_dash(std::size_t of, double value, int digits = 3) {
-  return of == 0 ? "-" : rounded(value, digits);
-}
-
 /// A name as a field of CSV: in quotes where it must be.
 std::string field(const std::string& name) {
   if (name.find_first_of(",\"\n") == std::string::npos) return name;
@@ -70,6 +67,43 @@ std::string field(const std::string& name) {
 }
 
 Json json_of(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+
+Json json_of(const PlanningRun& run) {
+  Json entry{{"mesh", run.mesh},
+             {"problem", run.problem.number},
+             {"start", json_of(run.problem.start)},
+             {"goal", json_of(run.problem.goal)},
+             {"straight_mm", run.problem.straight},
+             {"detour", run.problem.detour},
+             {"checker", run.checker.name()},
+             {"planner", run.planner},
+             {"solved", run.path.solved},
+             {"seconds", run.path.seconds},
+             {"checking_seconds", run.path.checking_seconds},
+             {"checks", run.path.checks}};
+  if (!run.path.solved) return entry;
+  entry["valid"] = run.verdict.is_valid();
+  entry["enters"] = run.verdict.enters;
+  entry["bad_pieces"] = run.verdict.bad_pieces;
+  entry["pieces"] = run.path.points.size() - 1;
+  entry["clearance_mm"] = run.verdict.clearance;
+  entry["length_mm"] = run.verdict.length;
+  Json& path = entry["path"] = Json::array();
+  for (const Vec3& point : run.path.points) path.push_back(json_of(point));
+  return entry;
+}
+
+/// A value as a field of CSV; empty where there is none.
+std::string field(const Json& entry, const char* key) {
+  if (!entry.contains(key)) return "";
+  const Json& value = entry[key];
+  if (value.is_string()) return field(value.get<std::string>());
+  if (value.is_boolean()) return value.get<bool>() ? "1" : "0";
+  if (value.is_number_integer()) return value.dump();
+  std::ostringstream text;
+  text << std::setprecision(9) << value.get<double>();
+  return text.str();
+}
 
 }  // namespace
 
@@ -90,6 +124,46 @@ std::vector<PlanningSummary> summaries(const std::vector<PlanningRun>& runs) {
   return rows;
 }
 
+double least_distance(const Scene& scene, double margin, double radius) {
+  // As verify/judge.cpp has it; the tip may be 10 mm beyond the mesh along each axis.
+  const double lengths = scene.longest_edge() + radius * (1.0 + 1e-9) + margin;
+  const double tau = 2e-10 * lengths + 4e-16 * (scene.farthest() + 30.0);
+  return margin - 3.0 * tau;
+}
+
+PathVerdict judge_path(const Scene& scene, std::span<const Vec3> points, double least) {
+  PathVerdict verdict;
+  oracle::SafetyOracle oracle = scene.oracle();
+  // No piece is farther off than its ends, so the search for the nearest need not reach farther.
+  verdict.clearance = std::numeric_limits<double>::infinity();
+  for (const Vec3& point : points) {
+    verdict.clearance = std::min(verdict.clearance, oracle.distance(point));
+  }
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    const oracle::Finding finding =
+        oracle.check(points[i - 1], points[i], least, verdict.clearance);
+    verdict.clearance = std::min(verdict.clearance, finding.distance);
+    verdict.enters |= finding.crosses;
+    verdict.is_too_near |= finding.below;
+    verdict.bad_pieces += finding.crosses || finding.below;
+    verdict.length += (points[i] - points[i - 1]).norm();
+  }
+  return verdict;
+}
+
+std::vector<std::string> cells_of(const PlanningSummary& row) {
+  const bool none = row.solved == 0;
+  const std::string solved = std::to_string(row.solved);
+  return {solved + "/" + std::to_string(row.runs),
+          none ? "-" : std::to_string(row.valid) + "/" + solved,
+          none ? "-" : std::to_string(row.entering),
+          none ? "-" : rounded(row.least_clearance, 4),
+          rounded(row.median_seconds),
+          rounded(row.median_checking),
+          grouped(static_cast<std::size_t>(row.checks)),
+          none ? "-" : rounded(row.median_length)};
+}
+
 void print_table(std::ostream& out, const std::vector<PlanningSummary>& rows) {
   std::size_t mesh = 4;
   for (const PlanningSummary& row : rows) mesh = std::max(mesh, row.mesh.size());
@@ -104,15 +178,7 @@ void print_table(std::ostream& out, const std::vector<PlanningSummary>& rows) {
   line("mesh", "checker",
        {"solved", "valid", "enters", "clearance mm", "median s", "checking s", "checks",
         "length mm"});
-  for (const PlanningSummary& row : rows) {
-    line(row.mesh, row.checker.name(),
-         {std::to_string(row.solved) + "/" + std::to_string(row.runs),
-          row.solved == 0 ? "-" : std::to_string(row.valid) + "/" + std::to_string(row.solved),
-          row.solved == 0 ? "-" : std::to_string(row.entering),
-          number_or_dash(row.solved, row.least_clearance, 4), rounded(row.median_seconds),
-          rounded(row.median_checking), grouped(static_cast<std::size_t>(row.checks)),
-          number_or_dash(row.solved, row.median_length)});
-  }
+  for (const PlanningSummary& row : rows) line(row.mesh, row.checker.name(), cells_of(row));
 }
 
 void write_planning_json(std::ostream& out, const PlanOptions& options,
@@ -128,54 +194,24 @@ void write_planning_json(std::ostream& out, const PlanOptions& options,
             {"clearance_mm", options.tool_radius + options.margin},
             {"radius_mm", options.radius},
             {"range_mm", options.range},
-            {"simplified", options.simplify}};
-  Json list = Json::array();
-  for (const PlanningRun& run : runs) {
-    Json entry{{"mesh", run.mesh},
-               {"problem", run.problem.number},
-               {"start", json_of(run.problem.start)},
-               {"goal", json_of(run.problem.goal)},
-               {"straight_mm", run.problem.straight},
-               {"detour", run.problem.detour},
-               {"checker", run.checker.name()},
-               {"planner", run.planner},
-               {"solved", run.path.solved},
-               {"seconds", run.path.seconds},
-               {"checking_seconds", run.path.checking_seconds},
-               {"checks", run.path.checks}};
-    if (run.path.solved) {
-      entry["valid"] = run.verdict.is_valid();
-      entry["enters"] = run.verdict.enters;
-      entry["bad_pieces"] = run.verdict.bad_pieces;
-      entry["clearance_mm"] = run.verdict.clearance;
-      entry["length_mm"] = run.verdict.length;
-      Json points = Json::array();
-      for (const Vec3& point : run.path.points) points.push_back(json_of(point));
-      entry["path"] = std::move(points);
-    }
-    list.push_back(std::move(entry));
-  }
-  root["runs"] = std::move(list);
+            {"simplified", options.simplify},
+            {"runs", Json::array()}};
+  for (const PlanningRun& run : runs) root["runs"].push_back(json_of(run));
   out << root.dump(1) << '\n';
 }
 
 void write_planning_csv(std::ostream& out, const std::vector<PlanningRun>& runs) {
-  out << "mesh,problem,checker,planner,solved,seconds,checking_seconds,checks,valid,enters,"
-         "bad_pieces,pieces,clearance_mm,length_mm,straight_mm,detour\n"
-      << std::setprecision(9);
+  constexpr std::array columns{"mesh",         "problem",   "checker",          "planner",
+                               "solved",       "seconds",   "checking_seconds", "checks",
+                               "valid",        "enters",    "bad_pieces",       "pieces",
+                               "clearance_mm", "length_mm", "straight_mm",      "detour"};
+  for (const char* column : columns) out << (column == columns.front() ? "" : ",") << column;
   for (const PlanningRun& run : runs) {
-    out << field(run.mesh) << ',' << run.problem.number << ',' << run.checker.name() << ','
-        << run.planner << ',' << run.path.solved << ',' << run.path.seconds << ','
-        << run.path.checking_seconds << ',' << run.path.checks << ',';
-    if (run.path.solved) {
-      out << run.verdict.is_valid() << ',' << run.verdict.enters << ',' << run.verdict.bad_pieces
-          << ',' << run.path.points.size() - 1 << ',' << run.verdict.clearance << ','
-          << run.verdict.length;
-    } else {
-      out << ",,,,,";
-    }
-    out << ',' << run.problem.straight << ',' << run.problem.detour << '\n';
+    const Json entry = json_of(run);
+    char before = '\n';
+    for (const char* column : columns) out << std::exchange(before, ',') << field(entry, column);
   }
+  out << '\n';
 }
 
 }  // namespace keepout::app

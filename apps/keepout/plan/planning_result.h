@@ -5,16 +5,34 @@
 #include <cstddef>
 #include <cstdint>
 #include <iosfwd>
+#include <span>
 #include <string>
 #include <vector>
 
-#include "plan/checker.h"
-#include "plan/path_verdict.h"
 #include "plan/plan.h"
 #include "plan/problems.h"
 #include "plan/run_planner.h"
+#include "verify/scene.h"
 
 namespace keepout::app {
+
+/// What the oracle says of a path, over the whole of each straight piece.
+struct PathVerdict {
+  bool enters = false;         // some piece touches the mesh
+  bool is_too_near = false;    // some piece comes nearer than is allowed
+  std::size_t bad_pieces = 0;  // that do either
+  double clearance = 0.0;      // the least distance from the mesh [mm]
+  double length = 0.0;         // [mm]
+
+  bool is_valid() const noexcept { return !enters && !is_too_near; }
+};
+
+/// The least distance that docs/certified-step.md promises of a margin: m - 3 tau. [mm]
+double least_distance(const Scene& scene, double margin, double radius);
+
+/// `least`: the distance allowed; anything exactly below it is too near. [mm] Precondition: two
+/// points.
+PathVerdict judge_path(const Scene& scene, std::span<const Vec3> points, double least);
 
 /// One problem under one checker.
 struct PlanningRun {
@@ -44,9 +62,18 @@ struct PlanningSummary {
 /// In the order of the runs.
 std::vector<PlanningSummary> summaries(const std::vector<PlanningRun>& runs);
 
+/// A row of a table: solved, valid, enters, clearance, seconds, checking, checks and length.
+std::vector<std::string> cells_of(const PlanningSummary& row);
+
 void print_table(std::ostream& out, const std::vector<PlanningSummary>& rows);
 void write_planning_json(std::ostream& out, const PlanOptions& options,
                          const std::vector<PlanningRun>& runs);
 void write_planning_csv(std::ostream& out, const std::vector<PlanningRun>& runs);
+
+/// Writes a page that needs nothing but itself: the table, and for each mesh and checker a picture
+/// of all paths, with what comes too near the mesh or enters it in the colour of alarm.
+void write_planning_page(std::ostream& out, const PlanOptions& options,
+                         const std::vector<PlanningScene>& scenes,
+                         const std::vector<PlanningRun>& runs);
 
 }  // namespace keepout::app

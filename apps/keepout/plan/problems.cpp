@@ -3,12 +3,14 @@
 #include "plan/problems.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
 #include "keepout/error.h"
 #include "keepout/fixtures/random.h"
-#include "plan/free_cells.h"
 
 namespace keepout::app {
 namespace {
@@ -57,23 +59,114 @@ Vec3 widest_within(Scene& scene, const Box& bounds, Random& random) {
   return widest;
 }
 
+/// The places of a grid that a tip can reach from one of them. A cell is free when it is at least
+/// the clearance and half a spacing from the mesh: then the straight way between neighbours keeps
+/// the clearance, so what is reached can be reached indeed. No planner has a part in it.
+class FreeCells {
+ public:
+  using Cell = std::uint32_t;
+
+  /// Floods from the cell nearest to `from`. Nothing is reached when it is not free. `told`: up to
+  /// where distances from the mesh are of interest. [length]
+  FreeCells(Scene& scene, const Box& bounds, double spacing, double clearance, double told,
+            const Vec3& from)
+      : low_(bounds.low),
+        spacing_(spacing),
+        nx_(count(bounds.size().x(), spacing)),
+        ny_(count(bounds.size().y(), spacing)),
+        nz_(count(bounds.size().z(), spacing)),
+        distance_(std::size_t{nx_} * ny_ * nz_, not_looked_at) {
+    const double needed = clearance + 0.5 * spacing;
+    const double reach = std::max(needed, told);
+    TriangleBuffer candidates(scene.mesh()->triangle_count());
+    const auto distance_of = [&](const Vec3& point, double guess) {
+      candidates.clear();
+      scene.index().collect({point, reach}, candidates);  // far off, as most are: soon told
+      if (candidates.view().empty()) return std::numeric_limits<double>::infinity();
+      return scene.nearest(point, std::min(guess, reach)).closest.distance;
+    };
+    const auto look = [&](Cell cell, double guess) {
+      if (distance_[cell] != not_looked_at) return;
+      const double distance = distance_of(center(cell), guess);
+      distance_[cell] = distance >= needed ? static_cast<float>(distance) : not_free;
+      if (distance >= needed) reached_.push_back(cell);
+    };
+    const Vec3 at = ((from - low_) / spacing).array().round();
+    const auto clamped = [](double value, std::uint32_t size) {
+      return static_cast<std::uint32_t>(std::clamp(value, 0.0, static_cast<double>(size - 1)));
+    };
+    look(clamped(at.x(), nx_) + nx_ * (clamped(at.y(), ny_) + ny_ * clamped(at.z(), nz_)), 0.0);
+    for (std::size_t i = 0; i < reached_.size(); ++i) {
+      const double guess = distance_[reached_[i]] + spacing;
+      for_each_neighbor(reached_[i], [&](Cell next) { look(next, guess); });
+    }
+  }
+
+  const std::vector<Cell>& reached() const noexcept { return reached_; }
+  double distance(Cell cell) const noexcept { return distance_[cell]; }  // infinite: not told
+
+  Vec3 center(Cell cell) const noexcept {
+    const Place at = place(cell);
+    return low_ + spacing_ * Vec3(at[0], at[1], at[2]);
+  }
+
+  /// The length of the shortest way along the grid to each cell, in steps; max(): none.
+  std::vector<std::uint32_t> steps_from(Cell cell) const {
+    constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+    std::vector<std::uint32_t> steps(distance_.size(), none);
+    std::vector<Cell> queue{cell};
+    steps[cell] = 0;
+    for (std::size_t i = 0; i < queue.size(); ++i) {
+      for_each_neighbor(queue[i], [&](Cell next) {
+        if (distance_[next] < 0.0F || steps[next] != none) return;
+        steps[next] = steps[queue[i]] + 1;
+        queue.push_back(next);
+      });
+    }
+    return steps;
+  }
+
+  /// The steps between two cells if all were free.
+  std::uint32_t steps_in_the_open(Cell a, Cell b) const noexcept {
+    std::uint32_t steps = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto [low, high] = std::minmax(place(a)[i], place(b)[i]);
+      steps += high - low;
+    }
+    return steps;
+  }
+
+ private:
+  using Place = std::array<std::uint32_t, 3>;
+
+  static constexpr float not_looked_at = -1.0F;
+  static constexpr float not_free = -2.0F;
+
+  static std::uint32_t count(double length, double spacing) {
+    return 1 + static_cast<std::uint32_t>(std::floor(length / spacing));
+  }
+
+  Place place(Cell cell) const noexcept { return {cell % nx_, cell / nx_ % ny_, cell / nx_ / ny_}; }
+
+  template <class Visit>
+  void for_each_neighbor(Cell cell, const Visit& visit) const {
+    const auto [x, y, z] = place(cell);
+    if (x > 0) visit(cell - 1);
+    if (x + 1 < nx_) visit(cell + 1);
+    if (y > 0) visit(cell - nx_);
+    if (y + 1 < ny_) visit(cell + nx_);
+    if (z > 0) visit(cell - nx_ * ny_);
+    if (z + 1 < nz_) visit(cell + nx_ * ny_);
+  }
+
+  Vec3 low_;
+  double spacing_;
+  std::uint32_t nx_, ny_, nz_;
+  std::vector<float> distance_;  // of the reached; < 0: not looked at, or not free
+  std::vector<Cell> reached_;
+};
+
 using Cells = std::vector<FreeCells::Cell>;
-
-Cells near_the_mesh(const FreeCells& cells, double distance) {
-  Cells result;
-  for (const FreeCells::Cell cell : cells.reached()) {
-    if (cells.distance(cell) <= distance) result.push_back(cell);
-  }
-  return result;
-}
-
-Cells below(const FreeCells& cells, const Cells& from, double height) {
-  Cells result;
-  for (const FreeCells::Cell cell : from) {
-    if (cells.center(cell).z() <= height) result.push_back(cell);
-  }
-  return result;
-}
 
 }  // namespace
 
@@ -100,8 +193,13 @@ std::vector<Problem> draw_problems(PlanningScene& where, double clearance, std::
                         : widest_within(scene, start_box, random);
   const double near_enough = nearest_clearances * clearance;
   const FreeCells cells(scene, where.bounds, spacing, clearance, near_enough, from);
-  const Cells near = near_the_mesh(cells, near_enough);
-  const Cells starts = below(cells, near, start_box.high.z());
+  Cells near;
+  Cells starts;
+  for (const FreeCells::Cell cell : cells.reached()) {
+    if (cells.distance(cell) > near_enough) continue;
+    near.push_back(cell);
+    if (cells.center(cell).z() <= start_box.high.z()) starts.push_back(cell);
+  }
 
   std::vector<Problem> problems;
   oracle::SafetyOracle oracle = scene.oracle();

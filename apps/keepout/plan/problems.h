@@ -18,8 +18,8 @@ struct PlanningScene {
   enum class Space : std::uint8_t { within, around };
   enum class Starts : std::uint8_t {
     anywhere,
-    below
-  };  // below: in the lowest tenth of the bounds, along z
+    below  // in the lowest tenth of the bounds, along z
+  };
 
   std::unique_ptr<Scene> scene;
   Space space = Space::around;
@@ -41,8 +41,8 @@ struct Problem {
 /// Draws problems by a rule that knows no planner, each with a solution that keeps the clearance:
 ///
 /// 1. A grid of 1/200 of the mesh's diagonal is flooded (FreeCells): around the mesh from a corner
-///    of the bounds, within it from the widest of 1000 places drawn in it, in
-///    its lowest tenth where starts are below.
+///    of the bounds, within it from the widest of 1000 places drawn in it, in its lowest tenth
+///    where starts are below.
 /// 2. Start and goal are drawn evenly among the cells reached that are no farther from the mesh
 /// than
 ///    five times the clearance; starts as the scene has it.

@@ -24,6 +24,7 @@
 #include "keepout/error.h"
 #include "keepout/index/refine.h"
 #include "keepout/ompl/planning.h"
+#include "number_text.h"
 
 namespace keepout::app {
 namespace {
@@ -62,23 +63,15 @@ struct Timer {
 /// What a user of OMPL would write: no triangle within the clearance, by the fastest index here.
 /// Which side a place is on is not asked: that would only cost time, as a tree starts on the right
 /// one. For one thread.
-class SampledStates final : public base::StateValidityChecker {
+class ClearPlaces {
  public:
-  SampledStates(const base::SpaceInformationPtr& space, const Scene& scene, double clearance,
-                Timer& timer)
-      : StateValidityChecker(space),
-        scene_(&scene),
+  ClearPlaces(const Scene& scene, double clearance)
+      : scene_(&scene),
         clearance_(clearance),
-        timer_(&timer),
         candidates_(scene.mesh()->triangle_count()),
         hits_(scene.mesh()->triangle_count()) {}
 
-  bool isValid(const base::State* state) const override {
-    return timer_->time([&] { return si_->satisfiesBounds(state) && is_clear(point_of(state)); });
-  }
-
- private:
-  bool is_clear(const Vec3& point) const {
+  bool has(const Vec3& point) {
     const Ball ball{point, clearance_};
     candidates_.clear();
     scene_->index().collect(ball, candidates_);
@@ -88,26 +81,11 @@ class SampledStates final : public base::StateValidityChecker {
     return hits_.view().empty();
   }
 
+ private:
   const Scene* scene_;
   double clearance_;
-  Timer* timer_;
-  mutable TriangleBuffer candidates_;
-  mutable HitBuffer hits_;
-};
-
-class TimedStates final : public base::StateValidityChecker {
- public:
-  TimedStates(const base::SpaceInformationPtr& space, base::StateValidityCheckerPtr checker,
-              Timer& timer)
-      : StateValidityChecker(space), checker_(std::move(checker)), timer_(&timer) {}
-
-  bool isValid(const base::State* state) const override {
-    return timer_->time([&] { return checker_->isValid(state); });
-  }
-
- private:
-  base::StateValidityCheckerPtr checker_;
-  Timer* timer_;
+  TriangleBuffer candidates_;
+  HitBuffer hits_;
 };
 
 class TimedMotions final : public base::MotionValidator {
@@ -150,13 +128,18 @@ void set_checkers(const base::SpaceInformationPtr& space, const PlanningTask& ta
     const bool is_widened = task.checker.kind == Checker::Kind::widened;
     const double clearance = task.clearance + (is_widened ? 0.5 * apart : 0.0);
     space->setStateValidityCheckingResolution(task.checker.resolution);
-    space->setStateValidityChecker(
-        std::make_shared<SampledStates>(space, *task.where->scene, clearance, timer));
+    const auto places = std::make_shared<ClearPlaces>(*task.where->scene, clearance);
+    space->setStateValidityChecker([places, &timer, all = space.get()](const base::State* state) {
+      return timer.time(
+          [&] { return all->satisfiesBounds(state) && places->has(point_of(state)); });
+    });
     space->setMotionValidator(std::make_shared<TimedMotions>(
         space, std::make_shared<base::DiscreteMotionValidator>(space), timer));
   } else {
-    space->setStateValidityChecker(std::make_shared<TimedStates>(
-        space, make_state_validity_checker(space, task.guards), timer));
+    const auto checker = make_state_validity_checker(space, task.guards);
+    space->setStateValidityChecker([checker, &timer](const base::State* state) {
+      return timer.time([&] { return checker->isValid(state); });
+    });
     space->setMotionValidator(
         std::make_shared<TimedMotions>(space, make_motion_validator(space, task.guards), timer));
   }
@@ -195,6 +178,30 @@ void read_steering(const base::PlannerPtr& planner, PlannedPath& path) {
 }
 
 }  // namespace
+
+std::string Checker::name() const {
+  switch (kind) {
+    case Kind::sampled:
+      return "sampled " + trimmed(100.0 * resolution) + " %";
+    case Kind::widened:
+      return "widened " + trimmed(100.0 * resolution) + " %";
+    case Kind::certified:
+      return "certified";
+    case Kind::sliding:
+      return "sliding";
+  }
+  return {};
+}
+
+std::vector<Checker> checkers(std::span<const double> resolutions) {
+  std::vector<Checker> all;
+  for (const Checker::Kind kind : {Checker::Kind::sampled, Checker::Kind::widened}) {
+    for (const double resolution : resolutions) all.push_back({kind, resolution});
+  }
+  all.push_back({Checker::Kind::certified});
+  all.push_back({Checker::Kind::sliding});
+  return all;
+}
 
 PlannedPath run_planner(const PlanningTask& task, const std::function<bool()>& interrupted) {
   ompl::msg::noOutputHandler();  // also of its complaint that a seed is set anew, which is meant

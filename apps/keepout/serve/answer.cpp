@@ -2,30 +2,35 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "serve/answer.h"
 
-#include "serve/json_text.h"
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <ranges>
+#include <utility>
 
 namespace keepout::app {
 namespace {
 
-void append_vector(std::string& out, const Vec3& vector) {
-  out += '[';
-  append_number(out, vector.x());
-  out += ',';
-  append_number(out, vector.y());
-  out += ',';
-  append_number(out, vector.z());
-  out += ']';
+template <class Number>
+void append_digits(std::string& text, Number value) {
+  std::array<char, 32> digits;  // the longest double has 24
+  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
+  text.append(digits.data(), end);
 }
 
-/// Of a step that is not ok there is none to tell, but a client who looks at nothing else shall
-/// stand still.
-void append_increment(std::string& out, const Step& step, std::size_t joints) {
-  out += ",\"increment\":[";
-  for (std::size_t i = 0; i < joints; ++i) {
-    if (i > 0) out += ',';
-    append_number(out, i < step.increment.size() ? step.increment[i] : 0.0);
+template <class Items, class Append>
+void append_list(std::string& out, const Items& items, const Append& append) {
+  char before = '[';
+  for (const auto& item : items) {
+    out += std::exchange(before, ',');
+    append(item);
   }
-  out += ']';
+  out += before == '[' ? "[]" : "]";
+}
+
+template <class Numbers>
+void append_numbers(std::string& out, const Numbers& numbers) {
+  append_list(out, numbers, [&](double number) { append_number(out, number); });
 }
 
 template <class Ending>
@@ -34,22 +39,57 @@ void append_status(std::string& out, Ending status, bool is_ok) {
   append_string(out, name(status));
 }
 
+/// What became of a step or a polytope, with a reason unless it is ok.
+template <class Result>
+void append_outcome(std::string& out, const Result& result) {
+  append_status(out, result.status, result.ok());
+  if (result.ok()) return;
+  out += ",\"reason\":";
+  append_string(out, result.reason());
+}
+
 template <class Ending>
-void append_statuses(std::string& out, std::string_view key, Ending last, bool (*is_ok)(Ending)) {
-  append_string(out, key);
-  out += ":[";
-  for (unsigned i = 0; i <= static_cast<unsigned>(last); ++i) {
+void append_statuses(std::string& out, Ending last, bool (*is_ok)(Ending)) {
+  append_list(out, std::views::iota(0, static_cast<int>(last) + 1), [&](int i) {
     const auto status = static_cast<Ending>(i);
-    out += i == 0 ? "{" : ",{";
+    out += '{';
     append_status(out, status, is_ok(status));
     out += ",\"reason\":";
     append_string(out, reason(status));
     out += '}';
-  }
-  out += ']';
+  });
 }
 
 }  // namespace
+
+void append_number(std::string& text, double value) {
+  if (!std::isfinite(value)) {
+    text += "null";
+  } else if (value == 0.0) {
+    text += std::signbit(value) ? "-0.0" : "0";
+  } else {
+    append_digits(text, value);
+  }
+}
+
+void append_string(std::string& text, std::string_view value) {
+  constexpr std::string_view hex = "0123456789abcdef";
+  text += '"';
+  for (const char c : value) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (c == '"' || c == '\\') {
+      text += '\\';
+      text += c;
+    } else if (byte < 0x20) {
+      text += "\\u00";
+      text += hex[byte >> 4];
+      text += hex[byte & 15];
+    } else {
+      text += c;
+    }
+  }
+  text += '"';
+}
 
 void begin_answer(std::string& out, std::string_view id) {
   out += "{\"id\":";
@@ -59,18 +99,21 @@ void begin_answer(std::string& out, std::string_view id) {
 void end_answer(std::string& out) { out += "}\n"; }
 
 void append_step(std::string& out, const Step& step, std::size_t joints) {
-  append_status(out, step.status, step.ok());
-  if (!step.ok()) {
-    out += ",\"reason\":";
-    append_string(out, step.reason());
-  }
+  append_outcome(out, step);
   out += ",\"motion\":";
-  append_vector(out, step.motion);
-  if (joints > 0) append_increment(out, step, joints);
+  append_numbers(out, step.motion);
+  if (joints > 0) {
+    // Of a step that is not ok there is none to tell, but a client who looks at nothing else shall
+    // stand still.
+    out += ",\"increment\":";
+    append_list(out, std::views::iota(std::size_t{0}, joints), [&](std::size_t i) {
+      append_number(out, i < step.increment.size() ? step.increment[i] : 0.0);
+    });
+  }
   out += ",\"triangles\":";
-  append_count(out, step.triangles);
+  append_digits(out, step.triangles);
   out += ",\"planes\":";
-  append_count(out, step.planes.size());
+  append_digits(out, step.planes.size());
   if (step.distance) {
     out += ",\"distance\":";
     append_number(out, *step.distance);
@@ -78,22 +121,11 @@ void append_step(std::string& out, const Step& step, std::size_t joints) {
 }
 
 void append_polytope(std::string& out, const Polytope& polytope) {
-  append_status(out, polytope.status, polytope.ok());
-  if (!polytope.ok()) {
-    out += ",\"reason\":";
-    append_string(out, polytope.reason());
-  }
-  out += ",\"normals\":[";
-  for (const HalfSpace& plane : polytope.planes) {
-    if (&plane != polytope.planes.data()) out += ',';
-    append_vector(out, plane.normal);
-  }
-  out += "],\"offsets\":[";
-  for (const HalfSpace& plane : polytope.planes) {
-    if (&plane != polytope.planes.data()) out += ',';
-    append_number(out, plane.offset);
-  }
-  out += ']';
+  append_outcome(out, polytope);
+  out += ",\"normals\":";
+  append_list(out, polytope.planes, [&](const auto& plane) { append_numbers(out, plane.normal); });
+  out += ",\"offsets\":";
+  append_list(out, polytope.planes, [&](const auto& plane) { append_number(out, plane.offset); });
 }
 
 void append_error(std::string& out, std::string_view id, std::string_view kind,
@@ -108,10 +140,10 @@ void append_error(std::string& out, std::string_view id, std::string_view kind,
 }
 
 std::string status_members() {
-  std::string text;
-  append_statuses<Status>(text, "statuses", Status::margin_too_small, &is_ok);
-  text += ',';
-  append_statuses<PolytopeStatus>(text, "polytope_statuses", PolytopeStatus::whole_tool,
+  std::string text = "\"statuses\":";
+  append_statuses<Status>(text, Status::margin_too_small, &is_ok);
+  text += ",\"polytope_statuses\":";
+  append_statuses<PolytopeStatus>(text, PolytopeStatus::whole_tool,
                                   [](PolytopeStatus s) { return s == PolytopeStatus::found; });
   return text;
 }

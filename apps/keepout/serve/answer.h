@@ -10,7 +10,14 @@
 
 namespace keepout::app {
 
-// Answers, appended to what is to be sent: one line each.
+// Answers, appended to what is to be sent, in memory that it keeps: one line of JSON each.
+
+/// The shortest digits that read back as the same double; "-0.0" for a negative zero, so that no
+/// reader takes it for an integer; null for what is not finite.
+void append_number(std::string& text, double value);
+
+/// A string in quotes. `value`: UTF-8.
+void append_string(std::string& text, std::string_view value);
 
 /// Begins the answer to a request: {"id":7 and no more. `id`: JSON.
 void begin_answer(std::string& out, std::string_view id);

@@ -7,8 +7,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
-
-#include "serve/number_table.h"
+#include <vector>
 
 namespace keepout::app {
 
@@ -20,6 +19,25 @@ struct RequestLimits {
   std::size_t joints = 7;      // columns of a Jacobian
   std::size_t rows = 64;       // of the caller's own
   std::size_t motions = 1024;  // of one batch
+};
+
+/// How many rows of how many numbers a value may have.
+struct TableShape {
+  int rank;  // of the value: 0 a number, 1 an array, 2 an array of arrays
+  std::size_t fewest_rows, most_rows;
+  std::size_t fewest_columns, most_columns;
+};
+
+/// The numbers of one value of a request, row by row, in memory that is made once. A number is a
+/// table of one row and one column, an array one of one row.
+struct NumberTable {
+  std::string_view name;
+  TableShape shape;
+  std::string description;  // what the value must be, for messages
+  bool is_given = false;    // there is a value, whole
+  std::size_t rows = 0;
+  std::size_t columns = 0;
+  std::vector<double> numbers = {};
 };
 
 /// One request as it was read.
@@ -55,7 +73,7 @@ std::string_view name(Refusal refusal) noexcept;
 /// Reads requests into memory that is made once.
 class RequestReader {
  public:
-  explicit RequestReader(const RequestLimits& limits);
+  explicit RequestReader(const RequestLimits& limits) : request_(limits) {}
 
   /// Reads a line. Whatever the outcome, request().id is what is to be echoed; the rest of the
   /// request holds only after Refusal::none.

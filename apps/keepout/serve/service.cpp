@@ -9,7 +9,6 @@
 #include "keepout/mesh/watertight.h"
 #include "keepout/version.h"
 #include "serve/answer.h"
-#include "serve/json_text.h"
 
 namespace keepout::app {
 namespace {
@@ -110,10 +109,10 @@ std::size_t Service::carry_out(SideWatch& tip, std::string& out) {
       break;
     case Verb::steps:
       append_batch(tip, out);
-      return std::max<std::size_t>(request.motions.rows(), 1);
+      return std::max<std::size_t>(request.motions.rows, 1);
     case Verb::polytope:
-      append_polytope(out, constraint_.free_polytope(vector(request.tip.numbers()),
-                                                     request.radius.numbers()[0]));
+      append_polytope(
+          out, constraint_.free_polytope(vector(request.tip.numbers), request.radius.numbers[0]));
       break;
     case Verb::info:
       out += info_;
@@ -130,26 +129,26 @@ std::size_t Service::carry_out(SideWatch& tip, std::string& out) {
 
 void Service::append_single_step(SideWatch& tip, std::string& out) {
   const Request& request = reader_.request();
-  Motion motion{.tip = vector(request.tip.numbers()), .desired = vector(request.desired.numbers())};
-  const std::size_t joints = request.jacobian.columns();
+  Motion motion{.tip = vector(request.tip.numbers), .desired = vector(request.desired.numbers)};
+  const std::size_t joints = request.jacobian.columns;
   if (joints > 0) {
-    const double* row = request.jacobian.numbers().data();
+    const double* row = request.jacobian.numbers.data();
     for (Eigen::Index r = 0; r < 3; ++r) {
-      for (Eigen::Index c = 0; c < std::ssize(request.jacobian.numbers()) / 3; ++c) {
+      for (Eigen::Index c = 0; c < std::ssize(request.jacobian.numbers) / 3; ++c) {
         jacobian_(r, c) = *row++;
       }
     }
     motion.jacobian = TipJacobian(jacobian_.data(), static_cast<Eigen::Index>(joints));
   }
-  if (request.rows.is_given()) {
-    motion.rows = ExtraRows(request.rows.numbers().data(), request.bounds.numbers().data(),
-                            static_cast<Eigen::Index>(request.rows.rows()));
+  if (request.rows.is_given) {
+    motion.rows = ExtraRows(request.rows.numbers.data(), request.bounds.numbers.data(),
+                            static_cast<Eigen::Index>(request.rows.rows));
   }
   append_step(out, constraint_.step(motion, tip), joints);
 }
 
 void Service::append_batch(SideWatch& tip, std::string& out) {
-  const std::span<const double> numbers = reader_.request().motions.numbers();
+  const std::span<const double> numbers = reader_.request().motions.numbers;
   out += "\"steps\":[";
   for (std::size_t i = 0; i < numbers.size(); i += 6) {
     const Motion motion{.tip = vector(numbers.subspan(i)),

@@ -6,15 +6,21 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "keepout/factory/make_motion_constraint.h"
 #include "keepout/mesh/load_mesh.h"
-#include "serve/line_reader.h"
 #include "serve/request.h"
 
 namespace keepout::app {
 
 inline constexpr std::size_t default_longest_line = std::size_t{1} << 18;
+
+/// One line of input, without its end.
+struct Line {
+  bool is_too_long = false;  // it was skipped: there is no text
+  std::string_view text;
+};
 
 /// What a service is made from.
 struct ServiceSettings {

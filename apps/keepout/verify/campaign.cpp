@@ -4,11 +4,19 @@
 
 #include <algorithm>
 #include <chrono>
+#include <numeric>
+#include <optional>
+#include <string_view>
+#include <utility>
 
-#include "trajectory.h"
+#include "path.h"
+#include "setup.h"
 
 namespace keepout::app {
 namespace {
+
+// Steps without a motion, one after the other, until a tip is given up.
+constexpr int patience = 8;
 
 /// The numbers that one trajectory is drawn from: they have nothing to do with those of another.
 Random random_of(std::uint64_t seed, std::uint64_t trajectory) {
@@ -17,11 +25,104 @@ Random random_of(std::uint64_t seed, std::uint64_t trajectory) {
   return Random(of_trajectory.bits());
 }
 
-std::uint64_t length_of(std::uint64_t trajectory, std::uint64_t steps) {
-  return std::min(steps_of_a_trajectory, steps - trajectory * steps_of_a_trajectory);
+/// A tip, and who guides, guards and judges it.
+struct Attempt {
+  Attempt(Scene& scene, Guard& guard, Random& random)
+      : setup(draw_setup(scene, random)),
+        path(scene, random, setup),
+        joints(setup, random),
+        judge(scene, setup),
+        tip(setup.tip) {
+    guard.begin(setup.options, setup.inside);
+  }
+
+  Setup setup;
+  Path path;
+  Joints joints;
+  Judge judge;
+  Vec3 tip;
+  int failures = 0;  // since it last moved
+};
+
+/// Nobody promised these a motion: the tip was put down on the surface or inside, where the options
+/// allow no way out, or the joints cannot.
+bool is_expected(Status failure, const Setup& setup) noexcept {
+  const bool of_joints = failure == Status::ill_posed || failure == Status::infeasible;
+  return failure == Status::touching || failure == Status::inside ||
+         (setup.joints > 0 && of_joints);
+}
+
+void run_trajectory(Scene& scene, Guard& guard, std::uint64_t number, std::uint64_t steps,
+                    Random& random, Tally& tally, Findings& findings) {
+  ++tally.trajectories;
+  std::optional<Attempt> attempt;
+  for (std::uint64_t cycle = 0; cycle < steps; ++cycle) {
+    if (!attempt) {
+      attempt.emplace(scene, guard, random);
+      ++tally.tips;
+    }
+    Motion motion{.tip = attempt->tip, .desired = attempt->path.next(attempt->tip)};
+    attempt->joints.attach(motion);
+    const Step step = guard.step(motion);
+    const Verdict verdict = attempt->judge.judge(motion, step);
+    tally.add(verdict, step.status, distance_kept(attempt->setup.options));
+
+    const auto note = [&](std::string_view what, std::vector<Incident>& incidents,
+                          std::size_t most) {
+      if (incidents.size() >= most) return;
+      incidents.push_back(
+          make_incident(std::string(what), scene, attempt->setup, motion, step, verdict));
+      incidents.back().trajectory = number;
+      incidents.back().cycle = cycle;
+    };
+    if (!step.ok() && !is_expected(step.status, attempt->setup)) {
+      note(name(step.status), findings.anomalies, most_anomalies);
+    }
+    attempt->failures = step.ok() ? 0 : attempt->failures + 1;
+    if (verdict.breach) note(name(*verdict.breach), findings.breaches, most_breaches);
+    if (verdict.breach || attempt->failures >= patience) {
+      attempt.reset();
+      continue;
+    }
+    attempt->tip += step.motion;
+  }
 }
 
 }  // namespace
+
+std::uint64_t Tally::breach_count() const noexcept {
+  return std::accumulate(breaches.begin(), breaches.end(), std::uint64_t{0});
+}
+
+void Tally::add(const Verdict& verdict, Status status, double kept) noexcept {
+  ++steps;
+  ++statuses[static_cast<std::size_t>(status)];
+  led_out += verdict.was_led_out ? 1 : 0;
+  if (verdict.breach) ++breaches[static_cast<std::size_t>(*verdict.breach)];
+  if (verdict.was_led_out || !(verdict.tolerance > 0.0)) return;
+  const double beyond = verdict.distance - kept;
+  least = std::min(least, beyond);
+  least_in_tau = std::min(least_in_tau, beyond / verdict.tolerance);
+}
+
+Tally& Tally::operator+=(const Tally& other) noexcept {
+  trajectories += other.trajectories;
+  steps += other.steps;
+  tips += other.tips;
+  led_out += other.led_out;
+  for (std::size_t i = 0; i < statuses.size(); ++i) statuses[i] += other.statuses[i];
+  for (std::size_t i = 0; i < breaches.size(); ++i) breaches[i] += other.breaches[i];
+  least = std::min(least, other.least);
+  least_in_tau = std::min(least_in_tau, other.least_in_tau);
+  seconds += other.seconds;
+  return *this;
+}
+
+Tally Findings::total() const noexcept {
+  Tally sum;
+  for (const MeshTally& mesh : meshes) sum += mesh.tally;
+  return sum;
+}
 
 std::uint64_t trajectory_count(std::uint64_t steps) noexcept {
   return (steps + steps_of_a_trajectory - 1) / steps_of_a_trajectory;
@@ -39,7 +140,7 @@ Findings run_campaign(const CampaignSettings& settings, std::span<const Arena> a
   Findings findings;
   Next next = Next::go_on;
   for (std::size_t a = 0; a < arenas.size(); ++a) {
-    SceneResult result{.mesh = arenas[a].mesh};
+    MeshTally result{.mesh = arenas[a].mesh};
     if (!trajectories[a].empty() && next == Next::go_on) {
       const std::vector<std::unique_ptr<Scene>> scenes = arenas[a].load();
       std::vector<std::unique_ptr<Guard>> guards;
@@ -52,14 +153,15 @@ Findings run_campaign(const CampaignSettings& settings, std::span<const Arena> a
         // The first scene is where the mesh was made; others are a minority.
         const bool is_elsewhere = scenes.size() > 1 && random.uniform() < 0.125;
         const std::size_t s = is_elsewhere ? 1 + random.below(scenes.size() - 1) : 0;
-        const std::uint64_t steps = length_of(n, settings.steps);
+        const std::uint64_t steps =
+            std::min(steps_of_a_trajectory, settings.steps - n * steps_of_a_trajectory);
         run_trajectory(*scenes[s], *guards[s], n, steps, random, result.tally, findings);
         next = advanced(steps);
         if (next == Next::stop) break;
       }
       result.tally.seconds = std::chrono::duration<double>(Clock::now() - start).count();
     }
-    findings.scenes.push_back(std::move(result));
+    findings.meshes.push_back(std::move(result));
   }
   return findings;
 }

@@ -2,16 +2,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "guard.h"
+#include "incident.h"
+#include "judge.h"
 #include "scene.h"
-#include "tally.h"
 
 namespace keepout::app {
 
@@ -33,17 +37,63 @@ struct CampaignSettings {
   std::uint64_t seed = 1;
   std::uint64_t steps = 1'000'000;
   Shard shard = {};
-  std::unique_ptr<Guard> (*make_guard)(const Scene&) = make_certified_guard;
+  /// What is attacked; tests put something worse in its place.
+  std::function<std::unique_ptr<Guard>(const Scene&)> make_guard =
+      std::make_unique<Guard, const Scene&>;
 };
 
+/// A tip is followed for so many steps; after a breach, and when it is stuck, another is put down.
 inline constexpr std::uint64_t steps_of_a_trajectory = 500;
 std::uint64_t trajectory_count(std::uint64_t steps) noexcept;
+
+inline constexpr std::size_t status_count = static_cast<std::size_t>(Status::margin_too_small) + 1;
+
+/// What came out on one mesh. Sums of tallies do not depend on the order.
+struct Tally {
+  std::uint64_t trajectories = 0;
+  std::uint64_t steps = 0;
+  std::uint64_t tips = 0;     // put down: anew after a breach, and when stuck
+  std::uint64_t led_out = 0;  // steps from the forbidden side, which may cross
+  std::array<std::uint64_t, status_count> statuses{};
+  std::array<std::uint64_t, breach_kinds> breaches{};
+  /// Of all ways of tips that keep their distance, the least beyond it: as it is [length], and in
+  /// tau. Infinite when none came near.
+  double least = std::numeric_limits<double>::infinity();
+  double least_in_tau = std::numeric_limits<double>::infinity();
+  double seconds = 0.0;
+
+  std::uint64_t breach_count() const noexcept;
+  /// `kept`: the distance that the tip has to keep. [length]
+  void add(const Verdict& verdict, Status status, double kept) noexcept;
+  Tally& operator+=(const Tally& other) noexcept;
+};
+
+/// The tally of a mesh.
+struct MeshTally {
+  std::string mesh;
+  std::uint64_t triangles = 0;  // 0: no trajectory led here, and it was not loaded
+  Tally tally = {};
+};
+
+/// How many incidents of a kind are noted down; all are counted.
+inline constexpr std::size_t most_breaches = 1000;
+inline constexpr std::size_t most_anomalies = 200;
+
+/// Everything that a campaign, or a part of it, found out.
+struct Findings {
+  std::vector<MeshTally> meshes;
+  std::vector<Incident> breaches = {};   // the first ones
+  std::vector<Incident> anomalies = {};  // no motion was found though the tip kept its distance
+
+  Tally total() const noexcept;
+};
 
 /// Whether to go on after a trajectory of that many steps.
 enum class Next : std::uint8_t { go_on, stop };
 
-/// Runs trajectories, mesh by mesh, so that only one is in memory at a time; `advanced` is told the
-/// number of steps after each. Where it says stop, the findings are of those that were run.
+/// Runs trajectories, in closed loop, and has each step judged: mesh by mesh, so that only one is
+/// in memory at a time; `advanced` is told the number of steps after each. Where it says stop, the
+/// findings are of those that were run.
 Findings run_campaign(const CampaignSettings& settings, std::span<const Arena> arenas,
                       const std::function<Next(std::uint64_t)>& advanced);
 

@@ -2,22 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "incident.h"
 
+#include <algorithm>
 #include <array>
-#include <cstdio>
+#include <string_view>
 #include <utility>
 
 namespace keepout::app {
 namespace {
 
-std::string digits(double value) {
-  std::array<char, 40> text;
-  std::snprintf(text.data(), text.size(), "%.17g", value);
-  return text.data();
-}
-
-std::string digits(const Vec3& v) {
-  return digits(v.x()) + ' ' + digits(v.y()) + ' ' + digits(v.z());
-}
+Json json_of(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
 }  // namespace
 
@@ -44,21 +37,52 @@ Incident make_incident(std::string what, const Scene& scene, const Setup& setup,
   return incident;
 }
 
-std::string text(const Incident& i) {
-  const StepOptions& options = i.setup.options;
-  return i.what + ": " + i.scene + ", trajectory " + std::to_string(i.trajectory) + ", cycle " +
-         std::to_string(i.cycle) + " (" + std::string(name(i.setup.start)) + ", " +
-         std::string(name(i.setup.route)) + ")" + "\n  radius " + digits(options.radius) +
-         " margin " + digits(options.margin) + " damping " + digits(options.damping) +
-         " recovery " + digits(options.recovery) + " refinements " +
-         std::to_string(options.refinements) + " nodes " + std::to_string(options.nodes) +
-         " query " + (options.query == Query::sphere ? "sphere" : "motion") + " inside " +
-         (i.setup.inside == Inside::led_out ? "led_out" : "taken_as_is") + " joints " +
-         std::to_string(i.setup.joints) + (i.row_bounds.empty() ? "" : " with limits") +
-         "\n  tip " + digits(i.tip) + "\n  desired " + digits(i.desired) + "\n  motion " +
-         digits(i.motion) + " " + std::string(name(i.status)) + "\n  distance " +
-         digits(i.verdict.distance) + " allowed " + digits(i.verdict.threshold) + " tau " +
-         digits(i.verdict.tolerance) + " triangle " + std::to_string(i.verdict.triangle) + "\n";
+void to_json(Json& json, const Incident& i) {
+  const StepOptions& o = i.setup.options;
+  json = {{"what", i.what},
+          {"scene", i.scene},
+          {"trajectory", i.trajectory},
+          {"cycle", i.cycle},
+          {"start", i.setup.start->name},
+          {"route", name(i.setup.route)},
+          {"longest_step", i.setup.longest_step},
+          {"joints", i.setup.joints},
+          {"has_limits", i.setup.has_limits},
+          {"start_tip", json_of(i.setup.tip)},
+          {"radius", o.radius},
+          {"tool_radius", o.tool_radius},
+          {"margin", o.margin},
+          {"damping", o.damping},
+          {"recovery", o.recovery},
+          {"refinements", o.refinements},
+          {"nodes", o.nodes},
+          {"query", o.query == Query::sphere ? "sphere" : "motion"},
+          {"inside", i.setup.inside == Inside::led_out ? "led_out" : "taken_as_is"},
+          {"tip", json_of(i.tip)},
+          {"desired", json_of(i.desired)},
+          {"motion", json_of(i.motion)},
+          {"status", name(i.status)},
+          {"jacobian", i.jacobian},
+          {"row_matrix", i.row_matrix},
+          {"row_bounds", i.row_bounds},
+          {"distance", i.verdict.distance},
+          {"allowed", i.verdict.threshold},
+          {"tau", i.verdict.tolerance},
+          {"triangle", i.verdict.triangle}};
+}
+
+std::string text(const Json& incident) {
+  constexpr std::array<std::string_view, 6> first_of_a_line{"start",   "radius", "tip",
+                                                            "desired", "motion", "distance"};
+  constexpr std::array<std::string_view, 3> left_out{"jacobian", "row_matrix", "row_bounds"};
+  std::string text;
+  for (const auto& [key, value] : incident.items()) {
+    if (std::ranges::find(left_out, key) != left_out.end()) continue;
+    const bool begins_line = std::ranges::find(first_of_a_line, key) != first_of_a_line.end();
+    text += begins_line ? "\n  " : text.empty() ? "" : " ";
+    text += key + ' ' + (value.is_string() ? value.get<std::string>() : value.dump());
+  }
+  return text + '\n';
 }
 
 }  // namespace keepout::app

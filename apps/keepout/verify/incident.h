@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,8 @@
 #include "setup.h"
 
 namespace keepout::app {
+
+using Json = nlohmann::ordered_json;
 
 /// One step that should not have been, with everything that is needed to do it again.
 struct Incident {
@@ -31,7 +34,10 @@ struct Incident {
 Incident make_incident(std::string what, const Scene& scene, const Setup& setup,
                        const Motion& motion, const Step& step, const Verdict& verdict);
 
-/// In a few lines, every number to its last digit.
-std::string text(const Incident& incident);
+/// All of it, every number to its last digit; none (null) for what is not finite.
+void to_json(Json& json, const Incident& incident);
+
+/// An incident in a few lines, but without Jacobian and rows.
+std::string text(const Json& incident);
 
 }  // namespace keepout::app

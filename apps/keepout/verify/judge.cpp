@@ -14,7 +14,8 @@ std::string_view name(Breach breach) noexcept {
 }
 
 double tolerance(const Scene& scene, const StepOptions& options, const Vec3& tip) noexcept {
-  const double lengths = scene.longest_edge() + options.radius * (1.0 + 1e-9) + options.margin;
+  const double lengths =
+      scene.longest_edge() + options.radius * (1.0 + 1e-9) + distance_kept(options);
   return 2e-10 * lengths + 4e-16 * tip.lpNorm<1>();
 }
 
@@ -31,14 +32,14 @@ void Judge::take_in(const Vec3& tip) {
   distance_ = oracle_.distance(tip);
   is_touching_ = distance_ <= 4.0 * tau;
   is_forbidden_ = has_sides_ && scene_->is_forbidden(tip);
-  has_kept_ = !is_forbidden_ && distance_ >= options_.margin - 2.75 * tau;
+  has_kept_ = !is_forbidden_ && distance_ >= distance_kept(options_) - 2.75 * tau;
 }
 
 bool Judge::is_too_long(const Motion& motion, const Step& step) const noexcept {
   const double length = step.motion.norm();
   if (!(length <= options_.radius * (1.0 + 2e-9))) return true;
   const bool is_projection = !motion.jacobian && step.status != Status::recovering;
-  // A tip that lost some tau of its margin is led back by as much on top.
+  // A tip that lost some tau of its distance is led back by as much on top.
   const double tau = tolerance(*scene_, options_, motion.tip);
   return is_projection && length > motion.desired.norm() * (1.0 + 1e-9) + 3.0 * tau;
 }
@@ -65,7 +66,7 @@ Verdict Judge::judge(const Motion& motion, const Step& step) {
   if (to == motion.tip) return verdict;
 
   const double tau = tolerance(*scene_, options_, motion.tip);
-  const double margin = options_.margin;
+  const double kept = distance_kept(options_);
   verdict.tolerance = tau;
   if (is_too_long(motion, step)) {
     verdict.breach = Breach::too_long;
@@ -79,10 +80,10 @@ Verdict Judge::judge(const Motion& motion, const Step& step) {
     }
   }
 
-  const double due = has_kept_ ? margin : std::min(margin, distance_);
+  const double due = has_kept_ ? kept : std::min(kept, distance_);
   verdict.threshold = std::max(0.0, due - 3.0 * tau);
   const oracle::Finding finding =
-      oracle_.check(motion.tip, to, verdict.threshold, margin + 4.0 * tau);
+      oracle_.check(motion.tip, to, verdict.threshold, kept + 4.0 * tau);
   if (has_kept_) verdict.distance = finding.distance;
   verdict.triangle = finding.triangle;
   if (finding.crosses || finding.below) {

@@ -30,7 +30,7 @@ std::string_view name(Breach breach) noexcept;
 struct Verdict {
   std::optional<Breach> breach;
   bool was_led_out = false;  // from the forbidden side: a crossing was meant
-  /// Of the way from the mesh, when about the margin or less, and the margin had not been lost
+  /// Of the way from the mesh, when about what is to be kept or less, and that had not been lost
   /// before. [length]
   double distance = std::numeric_limits<double>::infinity();
   double threshold = 0.0;             // the least distance allowed [length]
@@ -42,9 +42,10 @@ struct Verdict {
 double tolerance(const Scene& scene, const StepOptions& options, const Vec3& tip) noexcept;
 
 /// Follows one tip and holds each of its steps to the theorem, in terms of the doubles that the tip
-/// consists of, as an independent oracle sees them:
+/// consists of, as an independent oracle sees them; m is the distance kept, tool radius and margin
+/// together:
 ///
-/// - A tip that ever was at least margin - 2.75 tau away stays at least margin - 3 tau away.
+/// - A tip that ever was at least m - 2.75 tau away stays at least m - 3 tau away.
 /// - One that is closer loses at most 3 tau in a step, and never reaches the surface.
 /// - Where the surface has sides and tips are to be led out, one on the forbidden side does not get
 ///   deeper; that it crosses the surface on its way out is meant.
@@ -66,7 +67,7 @@ class Judge {
   oracle::SafetyOracle oracle_;  // a fresh one, which remembers no other tip's surroundings
   StepOptions options_;
   bool has_sides_;             // and tips are to be led out
-  bool has_kept_ = false;      // the margin, at some time
+  bool has_kept_ = false;      // its distance, at some time
   bool is_forbidden_ = false;  // the tip is on the forbidden side
   bool is_touching_ = false;   // or so near that nobody can tell
   double distance_ = 0.0;      // of the tip, unless has_kept_ [length]

@@ -14,7 +14,7 @@ Path::Path(Scene& scene, Random& random, const Setup& setup)
       random_(&random),
       route_(setup.route),
       longest_(setup.longest_step),
-      margin_(setup.options.margin),
+      kept_(distance_kept(setup.options)),
       period_(10 + random.below(110)),
       has_all_lengths_(random.uniform() < 0.4) {
   const bool is_watchful = route_ == Route::aim || route_ == Route::slide;
@@ -56,7 +56,7 @@ Vec3 Path::wish(const Vec3& tip) {
       if (is_turn) heading_ = random_->direction();
       return longest_ * (inwards_ + random_->uniform(0.0, 2.0) * heading_);
     case Route::walk:
-      return margin_ * std::pow(10.0, random_->uniform(-3.0, 1.0)) * random_->direction();
+      return kept_ * std::pow(10.0, random_->uniform(-3.0, 1.0)) * random_->direction();
     case Route::aim:
       if (cycle_ % attention_ == 0) goal_ = target_on_triangle();
       // Beyond it, or short of it.
@@ -65,7 +65,7 @@ Vec3 Path::wish(const Vec3& tip) {
       if (cycle_ == 0) heading_ = inwards_;
       return (is_even ? longest_ : -longest_) * heading_;
     case Route::tremor:
-      if (is_turn) goal_ = tip + (guess_ + margin_ + longest_) * inwards_;
+      if (is_turn) goal_ = tip + (guess_ + kept_ + longest_) * inwards_;
       return goal_ - tip + longest_ * random_->uniform(0.0, 2.0) * random_->direction();
     case Route::come_back:
       if (is_turn) heading_ = (inwards_ + 0.3 * random_->direction()).normalized();

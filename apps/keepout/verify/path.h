@@ -31,7 +31,7 @@ class Path {
   Random* random_;
   Route route_;
   double longest_;  // step [length]
-  double margin_;   // [length]
+  double kept_;     // distance [length]
   std::size_t cycle_ = 0;
   std::size_t period_;     // of turning back, or choosing another goal [cycles]
   std::size_t attention_;  // how often it looks where the surface is [cycles]

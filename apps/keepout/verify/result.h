@@ -2,52 +2,40 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <iosfwd>
 #include <string>
 #include <vector>
 
-#include "tally.h"
+#include "campaign.h"
 
 namespace keepout::app {
 
-/// One run of a part of a campaign: which, where and how long.
-struct ShardRun {
-  std::uint64_t index = 1;
-  double seconds = 0.0;  // wall time, loading included
-  std::string machine;
-  bool is_whole = true;  // false: it was interrupted
-};
+// The result of a campaign, or of some of its shards, is a JSON document: it is written, read,
+// added up and printed as what it is.
 
-/// A campaign, as far as its shards are done.
-struct CampaignResult {
-  std::string version;  // of keepout
-  std::uint64_t seed = 1;
-  std::uint64_t steps = 0;  // of all shards
-  std::string index;        // that the engine searched with
-  std::uint64_t shard_count = 1;
-  std::vector<ShardRun> shards = {};      // done, in their order
+/// What was run, beside what came out.
+struct CampaignRun {
+  CampaignSettings settings;
+  std::string index;                      // that the engine searched with
   std::vector<std::string> missing = {};  // meshes that could not be had
-  Findings findings = {};
+  double seconds = 0.0;                   // wall time, loading included
 };
 
-void write_json(std::ostream& out, const CampaignResult& result);
+/// The result of one shard.
+Json result_of(const CampaignRun& run, const Findings& findings);
 
-/// Throws Error, naming the file, when it is not what write_json wrote.
-CampaignResult read_json(const std::filesystem::path& path);
+/// Adds up results of one campaign. Throws Error, naming files, when one is not such a result, when
+/// they are of different campaigns or versions, or share a shard.
+Json merged(const std::vector<std::filesystem::path>& files);
 
-/// Adds up results of one campaign. Throws Error, naming files, when they are of different
-/// campaigns or versions, or share a shard.
-CampaignResult merged(const std::vector<std::filesystem::path>& files);
-
-/// Which shards are not there.
-std::vector<std::uint64_t> missing_shards(const CampaignResult& result);
+/// How many steps broke the theorem.
+std::uint64_t breach_count(const Json& result);
 
 /// Whether all shards are there, none of them interrupted.
-bool is_complete(const CampaignResult& result);
+bool is_complete(const Json& result);
 
-/// The results as a table, the first breaches, and what machine it was.
-void print(std::ostream& out, const CampaignResult& result);
+/// The result as a table, the first breaches, and what machine it was.
+void print(std::ostream& out, const Json& result);
 
 }  // namespace keepout::app

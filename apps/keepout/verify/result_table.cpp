@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdio>
+#include <numeric>
 #include <ostream>
 
 #include "../number_text.h"
@@ -12,47 +12,52 @@
 namespace keepout::app {
 namespace {
 
-std::uint64_t count(const Tally& tally, Status status) {
-  return tally.statuses[static_cast<std::size_t>(status)];
-}
-std::uint64_t count(const Tally& tally, Breach breach) {
-  return tally.breaches[static_cast<std::size_t>(breach)];
+std::uint64_t count(const Json& counts, const char* name) {
+  return counts.at(name).get<std::uint64_t>();
 }
 
-std::string scientific(double value) {
-  if (!std::isfinite(value)) return "-";
-  std::array<char, 32> text;
-  std::snprintf(text.data(), text.size(), "%.2e", value);
-  return text.data();
-}
-
-std::string fixed(double value, int decimals) {
-  if (!std::isfinite(value)) return "-";
+/// "-" where there is none.
+std::string number(const char* format, const Json& value) {
+  if (value.is_null()) return "-";
   std::array<char, 64> text;
-  std::snprintf(text.data(), text.size(), "%.*f", decimals, value);
+  std::snprintf(text.data(), text.size(), format, value.get<double>());
   return text.data();
 }
 
-void print_row(std::ostream& out, const SceneResult& scene) {
-  const Tally& t = scene.tally;
-  const std::uint64_t limited = count(t, Status::limited);
-  const std::uint64_t known = count(t, Status::free) + limited + count(t, Status::recovering) +
-                              count(t, Status::fallback) + count(t, Status::unsolved);
-  const std::uint64_t crossed = count(t, Breach::penetration);
+/// The shards that are not there.
+std::vector<std::uint64_t> missing_shards(const Json& result) {
+  std::vector<std::uint64_t> missing(count(result, "shard_count"));
+  std::iota(missing.begin(), missing.end(), 1);
+  for (const Json& shard : result.at("shards")) std::erase(missing, count(shard, "index"));
+  return missing;
+}
+
+void print_row(std::ostream& out, const Json& mesh) {
+  const Json& statuses = mesh.at("statuses");
+  const std::uint64_t steps = count(mesh, "steps");
+  std::uint64_t other = steps;
+  for (const char* known : {"free", "limited", "recovering", "fallback", "unsolved"}) {
+    other -= count(statuses, known);
+  }
+  std::uint64_t broken = 0;
+  for (const Json& breaches : mesh.at("breaches")) broken += breaches.get<std::uint64_t>();
+  const std::uint64_t crossed = count(mesh.at("breaches"), "penetration");
+  const std::uint64_t limited = count(statuses, "limited");
   const double contact =
-      t.steps == 0 ? 0.0 : 100.0 * static_cast<double>(limited) / static_cast<double>(t.steps);
+      steps == 0 ? 0.0 : 100.0 * static_cast<double>(limited) / static_cast<double>(steps);
+  const std::uint64_t triangles = mesh.value("triangles", std::uint64_t{0});
   std::array<char, 320> line;
   std::snprintf(
       line.data(), line.size(),
       "%-16s %9s %8s %12s %6.1f%% %12s %12s %11s %9s %9s %9s %9s %7s %7s %8s %10s %8.1f\n",
-      scene.mesh.c_str(), scene.triangles == 0 ? "-" : grouped(scene.triangles).c_str(),
-      grouped(t.trajectories).c_str(), grouped(t.steps).c_str(), contact,
-      grouped(count(t, Status::free)).c_str(), grouped(limited).c_str(),
-      grouped(count(t, Status::recovering)).c_str(), grouped(t.led_out).c_str(),
-      grouped(count(t, Status::fallback)).c_str(), grouped(count(t, Status::unsolved)).c_str(),
-      grouped(t.steps - known).c_str(), grouped(crossed).c_str(),
-      grouped(t.breach_count() - crossed).c_str(), fixed(t.least_in_tau, 3).c_str(),
-      scientific(t.least).c_str(), t.seconds);
+      mesh.at("mesh").get<std::string>().c_str(), triangles == 0 ? "-" : grouped(triangles).c_str(),
+      grouped(count(mesh, "trajectories")).c_str(), grouped(steps).c_str(), contact,
+      grouped(count(statuses, "free")).c_str(), grouped(limited).c_str(),
+      grouped(count(statuses, "recovering")).c_str(), grouped(count(mesh, "led_out")).c_str(),
+      grouped(count(statuses, "fallback")).c_str(), grouped(count(statuses, "unsolved")).c_str(),
+      grouped(other).c_str(), grouped(crossed).c_str(), grouped(broken - crossed).c_str(),
+      number("%.3f", mesh.at("least_beyond_margin_in_tau")).c_str(),
+      number("%.2e", mesh.at("least_beyond_margin")).c_str(), mesh.at("seconds").get<double>());
   out << line.data();
 }
 
@@ -68,37 +73,48 @@ void print_header(std::ostream& out) {
 
 }  // namespace
 
-void print(std::ostream& out, const CampaignResult& result) {
+bool is_complete(const Json& result) {
+  return missing_shards(result).empty() &&
+         std::ranges::all_of(result.at("shards").get<std::vector<Json>>(),
+                             [](const Json& shard) { return shard.value("complete", true); });
+}
+
+void print(std::ostream& out, const Json& result) {
   print_header(out);
-  for (const SceneResult& scene : result.findings.scenes) print_row(out, scene);
-  const Tally total = result.findings.total();
-  print_row(out, {.mesh = "total", .tally = total});
+  for (const Json& mesh : result.at("meshes")) print_row(out, mesh);
+  const Json& total = result.at("total");
+  print_row(out, total);
   out << "contact: share of limited steps. led out: of the recovering ones, those from the\n"
          "forbidden side, which may cross. other: steps without a motion. crossed, broken: "
          "breaches\n"
-         "of the theorem. least: smallest distance - margin of any way, in tau and as it is.\n";
-  for (const std::string& mesh : result.missing) out << "missing: " << mesh << '\n';
-  for (const std::uint64_t shard : missing_shards(result)) {
-    out << "missing: shard " << shard << "/" << result.shard_count << '\n';
+         "of the theorem. least: smallest distance of any way, less tool radius and margin, in\n"
+         "tau and as it is.\n";
+  for (const Json& mesh : result.at("missing")) {
+    out << "missing: " << mesh.get<std::string>() << '\n';
   }
-  for (const ShardRun& shard : result.shards) {
-    out << "shard " << shard.index << "/" << result.shard_count << ": " << fixed(shard.seconds, 1)
-        << " s on " << shard.machine << (shard.is_whole ? "" : ", interrupted") << '\n';
+  const std::string shards = "/" + result.at("shard_count").dump();
+  for (const std::uint64_t shard : missing_shards(result)) {
+    out << "missing: shard " << shard << shards << '\n';
+  }
+  for (const Json& shard : result.at("shards")) {
+    out << "shard " << shard.at("index") << shards << ": " << number("%.1f", shard.at("seconds"))
+        << " s on " << shard.at("machine").get<std::string>()
+        << (shard.value("complete", true) ? "" : ", interrupted") << '\n';
   }
   constexpr std::size_t shown = 5;
-  const std::vector<Incident>& breaches = result.findings.breaches;
+  const Json& breaches = result.at("breaches");
   for (std::size_t i = 0; i < std::min(shown, breaches.size()); ++i) out << text(breaches[i]);
-  const std::uint64_t broken = total.breach_count();
+  const std::uint64_t broken = breach_count(result);
+  const std::uint64_t steps = count(total, "steps");
   if (broken == 0) {
-    out << "no breach in " << counted(total.steps, "step") << '\n';
+    out << "no breach in " << counted(steps, "step") << '\n';
   } else {
     out << grouped(broken) << (broken == 1 ? " breach in " : " breaches in ")
-        << counted(total.steps, "step") << "; --json keeps " << grouped(breaches.size())
-        << " of them\n";
+        << counted(steps, "step") << "; --json keeps " << grouped(breaches.size()) << " of them\n";
   }
   if (!is_complete(result)) {
-    out << "incomplete: " << grouped(total.steps) << " of the campaign's "
-        << counted(result.steps, "step") << " are done\n";
+    out << "incomplete: " << grouped(steps) << " of the campaign's "
+        << counted(count(result, "steps"), "step") << " are done\n";
   }
 }
 

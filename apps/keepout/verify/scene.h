@@ -23,6 +23,7 @@ class Scene {
   const std::string& name() const noexcept { return name_; }
   const std::shared_ptr<const Mesh>& mesh() const noexcept { return mesh_; }
   const SpatialIndex& index() const noexcept { return *index_; }
+  const std::shared_ptr<const SpatialIndex>& shared_index() const noexcept { return index_; }
   const oracle::SafetyOracle& oracle() const noexcept { return oracle_; }
 
   double mean_edge() const noexcept { return mean_edge_; }        // [length], > 0
@@ -42,7 +43,7 @@ class Scene {
  private:
   std::string name_;
   std::shared_ptr<const Mesh> mesh_;
-  std::unique_ptr<SpatialIndex> index_;
+  std::shared_ptr<const SpatialIndex> index_;
   oracle::SafetyOracle oracle_;
   NearestTriangle nearest_;
   double mean_edge_ = 0.0;

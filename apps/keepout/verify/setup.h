@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string_view>
 
 #include "keepout/fixtures/random.h"
@@ -11,19 +12,18 @@
 
 namespace keepout::app {
 
-/// Where a tip is put down.
-enum class Start : std::uint8_t {
-  vertex,      // off a vertex, at the margin or a little more
-  edge,        // off an edge
-  face,        // off a face
-  gap,         // in the middle between two walls, which the margin all but fills
-  open_space,  // anywhere
-  too_close,   // nearer than the margin
-  on_surface,  // exactly on a vertex, an edge or a face, up to rounding
-  behind       // on the side that the normals point away from
-};
+struct Setup;
 
-/// Where it is asked to go.
+/// A kind of place where a tip is put down.
+struct Start {
+  std::string_view name;
+  double weight;  // how often it is drawn, beside the others
+  /// Finds such a place. In a gap, the setup is changed to keep a distance that all but fills it.
+  Vec3 (*place)(Scene& scene, Setup& setup, Random& random);
+};
+std::span<const Start> starts() noexcept;
+
+/// Where a tip is asked to go.
 enum class Route : std::uint8_t {
   push,       // straight into the surface
   slide,      // into the surface and along it
@@ -34,21 +34,29 @@ enum class Route : std::uint8_t {
   come_back,  // away from the surface, and back into it
   through     // to places far away, through whatever is in between
 };
-
-std::string_view name(Start start) noexcept;
 std::string_view name(Route route) noexcept;
 
 /// What a tip is guarded with, and asked to do.
 struct Setup {
   StepOptions options;
   Inside inside = Inside::taken_as_is;
-  Start start = Start::vertex;
+  const Start* start = nullptr;
   Route route = Route::push;
+  double tool_share = 0.0;    // of the distance kept that is the tool's radius, 0 to 1
   double longest_step = 0.0;  // asked for [length], <= options.radius
   int joints = 0;             // columns of the Jacobian; 0: without one
   bool has_limits = false;    // on what each joint may do; only with joints
   Vec3 tip = Vec3::Zero();    // where it begins
+
+  /// Shares a distance out to tool radius and margin.
+  void keep(double distance) noexcept;
 };
+
+/// The largest StepOptions::nodes of any setup.
+inline constexpr int most_nodes = 16;
+
+/// The smallest distance to keep: well above what the engine refuses as lost in rounding. [length]
+double least_distance_kept(const Scene& scene, double radius) noexcept;
 
 /// Draws a setup. Never are more than some 1500 triangles in the motion sphere at the start, so
 /// that a step takes microseconds.

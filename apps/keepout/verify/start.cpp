@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "start.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
+
+#include "setup.h"
 
 namespace keepout::app {
 namespace {
@@ -75,26 +75,26 @@ Vec3 at_distance(Scene& scene, Vec3 point, double distance) {
   return point;
 }
 
-/// The margin, to the last digit or nearly so, or up to several of it.
-double draw_distance(double margin, Random& random) {
+/// What is to be kept, to the last digit or nearly so, or up to several of it.
+double draw_distance(double kept, Random& random) {
   const double kind = random.uniform();
-  if (kind < 0.3) return margin;
-  if (kind < 0.6) return margin * (1.0 + std::pow(10.0, random.uniform(-16.0, -6.0)));
-  return margin * std::pow(10.0, random.uniform(0.0, 0.8));
+  if (kind < 0.3) return kept;
+  if (kind < 0.6) return kept * (1.0 + std::pow(10.0, random.uniform(-16.0, -6.0)));
+  return kept * std::pow(10.0, random.uniform(0.0, 0.8));
 }
 
-Vec3 off_the_surface(Scene& scene, const Setup& setup, SurfacePoint (*place)(const Mesh&, Random&),
-                     Random& random) {
-  const double margin = setup.options.margin;
+template <SurfacePoint (*place)(const Mesh&, Random&)>
+Vec3 off_the_surface(Scene& scene, Setup& setup, Random& random) {
+  const double kept = distance_kept(setup.options);
   Vec3 tip = Vec3::Zero();
   for (int attempt = 0; attempt < 12; ++attempt) {
     const SurfacePoint on = place(*scene.mesh(), random);
-    const double distance = draw_distance(margin, random);
+    const double distance = draw_distance(kept, random);
     tip = on.point + distance * way_off(setup, on, random);
     // Other walls may be nearer than the one it was put off from.
     const double now = scene.nearest(tip, distance).closest.distance;
-    if (now < margin) tip = at_distance(scene, tip, distance);
-    if (scene.nearest(tip, distance).closest.distance >= margin * (1.0 - 1e-12)) break;
+    if (now < kept) tip = at_distance(scene, tip, distance);
+    if (scene.nearest(tip, distance).closest.distance >= kept * (1.0 - 1e-12)) break;
   }
   return tip;
 }
@@ -120,63 +120,61 @@ Vec3 in_a_gap(Scene& scene, Setup& setup, Random& random) {
       radius = next;
       has_shrunk = true;
     }
-    if (has_shrunk && radius > least_margin(scene, setup.options.radius)) break;
+    if (has_shrunk && radius > least_distance_kept(scene, setup.options.radius)) break;
   }
   constexpr std::array<double, 6> fills{1.0, 1.0 - 1e-12, 1.0 - 1e-9, 0.999, 0.9, 0.4};
   const double distance = scene.nearest(center, radius).closest.distance;
-  const double margin = fills[random.below(fills.size())] * distance;
-  const double least = least_margin(scene, setup.options.radius);
-  if (margin > least && margin < 5.0 * scene.mean_edge()) setup.options.margin = margin;
+  const double kept = fills[random.below(fills.size())] * distance;
+  const double least = least_distance_kept(scene, setup.options.radius);
+  if (kept > least && kept < 5.0 * scene.mean_edge()) setup.keep(kept);
   return center;
 }
 
-Vec3 too_close(Scene& scene, const Setup& setup, Random& random) {
+Vec3 too_close(Scene& scene, Setup& setup, Random& random) {
   const SurfacePoint on = on_any(*scene.mesh(), random);
   const double lost = std::pow(10.0, random.uniform(-9.0, 0.0));
   const double share = random.uniform() < 0.5 ? 1.0 - lost : lost;
-  const double distance = share * setup.options.margin;
+  const double distance = share * distance_kept(setup.options);
   return at_distance(scene, on.point + distance * way_off(setup, on, random), distance);
 }
 
-Vec3 anywhere(const Scene& scene, const Setup& setup, Random& random) {
+Vec3 on_surface(Scene& scene, Setup&, Random& random) {
+  return on_any(*scene.mesh(), random).point;
+}
+
+Vec3 behind(Scene& scene, Setup& setup, Random& random) {
+  const SurfacePoint on = on_any(*scene.mesh(), random);
+  const double depth = distance_kept(setup.options) * std::pow(10.0, random.uniform(-3.0, 0.7));
+  return on.point - depth * on.normal;
+}
+
+Vec3 anywhere(Scene& scene, Setup& setup, Random& random) {
   const Box& bounds = scene.mesh()->bounds();
   Vec3 tip;
   for (int axis = 0; axis < 3; ++axis) {
-    const double beyond = 3.0 * setup.options.margin + setup.options.radius;
+    const double beyond = 3.0 * distance_kept(setup.options) + setup.options.radius;
     tip[axis] = random.uniform(bounds.low[axis] - beyond, bounds.high[axis] + beyond);
   }
   return tip;
 }
 
+constexpr std::array<Start, 8> kinds{{
+    {"vertex", 0.18, off_the_surface<on_vertex>},  // at the distance to be kept or a little more
+    {"edge", 0.18, off_the_surface<on_edge>},
+    {"face", 0.14, off_the_surface<on_face>},
+    {"gap", 0.25, in_a_gap},  // in the middle between two walls, which what is kept all but fills
+    {"open_space", 0.1, anywhere},
+    {"too_close", 0.06, too_close},    // nearer than may be
+    {"on_surface", 0.03, on_surface},  // on a vertex, an edge or a face, up to rounding
+    {"behind", 0.06, behind},          // on the side that the normals point away from
+}};
+
 }  // namespace
 
-double least_margin(const Scene& scene, double radius) noexcept {
+double least_distance_kept(const Scene& scene, double radius) noexcept {
   return 1e-8 * (scene.longest_edge() + radius) + 1e-14 * (scene.farthest() + radius);
 }
 
-Vec3 place_tip(Scene& scene, Setup& setup, Random& random) {
-  switch (setup.start) {
-    case Start::vertex:
-      return off_the_surface(scene, setup, on_vertex, random);
-    case Start::edge:
-      return off_the_surface(scene, setup, on_edge, random);
-    case Start::face:
-      return off_the_surface(scene, setup, on_face, random);
-    case Start::gap:
-      return in_a_gap(scene, setup, random);
-    case Start::too_close:
-      return too_close(scene, setup, random);
-    case Start::on_surface:
-      return on_any(*scene.mesh(), random).point;
-    case Start::behind: {
-      const SurfacePoint on = on_any(*scene.mesh(), random);
-      return on.point -
-             setup.options.margin * std::pow(10.0, random.uniform(-3.0, 0.7)) * on.normal;
-    }
-    case Start::open_space:
-      break;
-  }
-  return anywhere(scene, setup, random);
-}
+std::span<const Start> starts() noexcept { return kinds; }
 
 }  // namespace keepout::app

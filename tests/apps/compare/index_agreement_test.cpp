@@ -1,11 +1,10 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "compare/index_agreement.h"
-
 #include <gtest/gtest.h>
 
 #include <csignal>
 
+#include "compare/agreement.h"
 #include "compare/compare.h"
 #include "keepout/fixtures/shapes.h"
 

@@ -1,11 +1,10 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "compare/narrow_phase_agreement.h"
-
 #include <gtest/gtest.h>
 
 #include <set>
 
+#include "compare/agreement.h"
 #include "keepout/adapters/narrow_phase_registry.h"
 #include "keepout/fixtures/shapes.h"
 

@@ -1,12 +1,11 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "compare/solver_agreement.h"
-
 #include <gtest/gtest.h>
 
 #include <memory>
 #include <numeric>
 
+#include "compare/agreement.h"
 #include "compare/recorded_problems.h"
 #include "keepout/error.h"
 #include "keepout/fixtures/shapes.h"

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "serve/json_text.h"
+#include "serve/answer.h"
 
 namespace keepout::app {
 namespace {
@@ -30,27 +30,23 @@ class RequestLine : public testing::Test {
   RequestReader reader_{{.joints = 4, .rows = 2, .motions = 3}};
 };
 
-std::vector<double> numbers(const NumberTable& table) {
-  return {table.numbers().begin(), table.numbers().end()};
-}
-
 TEST_F(RequestLine, AStepHasATipAndADesiredIncrement) {
   ASSERT_TRUE(is_read(R"( { "desired" : [4,5.5,-6e0] , "do":"step", "tip":[1,2,3], "id":9 } )"));
   EXPECT_EQ(request().verb, Verb::step);
   EXPECT_EQ(request().id, "9");
-  EXPECT_EQ(numbers(request().tip), (std::vector<double>{1, 2, 3}));
-  EXPECT_EQ(numbers(request().desired), (std::vector<double>{4, 5.5, -6}));
-  EXPECT_FALSE(request().jacobian.is_given());
-  EXPECT_FALSE(request().rows.is_given());
+  EXPECT_EQ(request().tip.numbers, (std::vector<double>{1, 2, 3}));
+  EXPECT_EQ(request().desired.numbers, (std::vector<double>{4, 5.5, -6}));
+  EXPECT_FALSE(request().jacobian.is_given);
+  EXPECT_FALSE(request().rows.is_given);
 }
 
 TEST_F(RequestLine, NothingIsLeftOfTheRequestBefore) {
   ASSERT_TRUE(
       is_read(R"({"id":1,"do":"step","tip":[1,2,3],"desired":[0,0,0],"jacobian":[[1],[2],[3]]})"));
-  EXPECT_TRUE(request().jacobian.is_given());
+  EXPECT_TRUE(request().jacobian.is_given);
   ASSERT_TRUE(is_read(R"({"do":"step","tip":[1,2,3],"desired":[0,0,0]})"));
-  EXPECT_FALSE(request().jacobian.is_given());
-  EXPECT_EQ(request().jacobian.columns(), 0u);
+  EXPECT_FALSE(request().jacobian.is_given);
+  EXPECT_EQ(request().jacobian.columns, 0u);
   EXPECT_EQ(request().id, "null");
   EXPECT_FALSE(is_read(R"({"do":"step","desired":[0,0,0]})"));
   EXPECT_FALSE(is_read(R"({"tip":[1,2,3],"desired":[0,0,0]})"));
@@ -60,9 +56,9 @@ TEST_F(RequestLine, RowsAndBoundsFitTheJacobianOrTheTip) {
   const std::string step = R"({"do":"step","tip":[1,2,3],"desired":[0,0,0],)";
   const std::string joints = R"("jacobian":[[1,2,3,4],[5,6,7,8],[9,10,11,12]])";
   ASSERT_TRUE(is_read(step + joints + R"(,"rows":[[1,2,3,4],[5,6,7,8]],"bounds":[-1,-2]})"));
-  EXPECT_EQ(request().jacobian.columns(), 4u);
-  EXPECT_EQ(request().rows.rows(), 2u);
-  EXPECT_EQ(numbers(request().bounds), (std::vector<double>{-1, -2}));
+  EXPECT_EQ(request().jacobian.columns, 4u);
+  EXPECT_EQ(request().rows.rows, 2u);
+  EXPECT_EQ(request().bounds.numbers, (std::vector<double>{-1, -2}));
   EXPECT_TRUE(is_read(step + R"("rows":[[1,2,3]],"bounds":[0]})"));
   EXPECT_TRUE(is_read(step + R"("rows":[],"bounds":[]})"));
   for (const char* wrong : {R"("rows":[[1,2,3]]})",
@@ -215,7 +211,7 @@ TEST_F(RequestLine, NumbersAreTheNearestDoubles) {
       {"2.2250738585072011e-308", 2.2250738585072011e-308}};
   for (const auto& [text, value] : table) {
     ASSERT_TRUE(is_read("{\"do\":\"polytope\",\"tip\":[0,0,0],\"radius\":" + text + "}")) << text;
-    EXPECT_EQ(std::bit_cast<std::uint64_t>(request().radius.numbers()[0]),
+    EXPECT_EQ(std::bit_cast<std::uint64_t>(request().radius.numbers[0]),
               std::bit_cast<std::uint64_t>(value))
         << text;
   }
@@ -230,7 +226,7 @@ TEST_F(RequestLine, NumbersWrittenReadBackBitForBit) {
     std::string line = "{\"do\":\"polytope\",\"tip\":[0,0,0],\"radius\":";
     append_number(line, value);
     ASSERT_TRUE(is_read(line + "}")) << line;
-    ASSERT_EQ(std::bit_cast<std::uint64_t>(request().radius.numbers()[0]),
+    ASSERT_EQ(std::bit_cast<std::uint64_t>(request().radius.numbers[0]),
               std::bit_cast<std::uint64_t>(value));
   }
 }

@@ -26,7 +26,7 @@
 #include "keepout/fixtures/poses.h"
 #include "keepout/fixtures/shapes.h"
 #include "keepout/mesh/binary_stl.h"
-#include "serve/json_text.h"
+#include "serve/answer.h"
 
 namespace keepout {
 namespace {

@@ -15,7 +15,7 @@
 #include "keepout/fixtures/poses.h"
 #include "keepout/fixtures/shapes.h"
 #include "keepout/version.h"
-#include "serve/json_text.h"
+#include "serve/answer.h"
 
 namespace keepout::app {
 namespace {

@@ -12,9 +12,15 @@
 namespace keepout::app {
 namespace {
 
-TEST(Campaign, NoStepBreaksTheTheoremOnAnyGeneratedShape) {
+/// On the index that users get, which searches along the motion, and on one that is asked for
+/// balls.
+class CampaignOnIndex : public testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Indices, CampaignOnIndex, testing::Values("wide_bvh", "pd_tree"),
+                         [](const auto& parameter) { return std::string(parameter.param); });
+
+TEST_P(CampaignOnIndex, NoStepBreaksTheTheoremOnAnyGeneratedShape) {
   std::uint64_t told = 0;
-  const std::vector<Arena> arenas = generated_arenas("pd_tree");
+  const std::vector<Arena> arenas = generated_arenas(GetParam());
   const Findings findings =
       run_campaign({.seed = 20261120, .steps = 200'000}, arenas, [&](std::uint64_t n) {
         told += n;
@@ -26,7 +32,7 @@ TEST(Campaign, NoStepBreaksTheTheoremOnAnyGeneratedShape) {
   EXPECT_EQ(total.steps, 200'000u);
   EXPECT_EQ(told, 200'000u);
   EXPECT_EQ(total.trajectories, 400u);
-  EXPECT_EQ(findings.scenes.size(), shapes().size());
+  EXPECT_EQ(findings.meshes.size(), shapes().size());
   // It is no walk in the park.
   EXPECT_GT(count(findings, Status::limited), 60'000u);
   EXPECT_GT(count(findings, Status::free), 20'000u);
@@ -55,9 +61,9 @@ TEST(Campaign, AnUnevenNumberOfStepsIsDoneToTheLast) {
   EXPECT_EQ(findings.total().trajectories, 3u);
 }
 
-TEST(Campaign, TheGuardMovesAsAMotionConstraintDoes) {
-  Scene scene("star_bumps", make_shape("star_bumps"), "pd_tree");
-  CertifiedGuard guard(scene);
+TEST(Campaign, EachTipIsGuardedAsByAMotionConstraintOfItsOwn) {
+  Scene scene("star_bumps", make_shape("star_bumps"), "wide_bvh");
+  Guard guard(scene);
   Random random(7);
   std::size_t limited = 0;
   std::size_t recovering = 0;
@@ -68,14 +74,15 @@ TEST(Campaign, TheGuardMovesAsAMotionConstraintDoes) {
     guard.begin(setup.options, setup.inside);
     MotionConstraint constraint =
         make_motion_constraint(scene.mesh(), {.radius = setup.options.radius,
+                                              .tool_radius = setup.options.tool_radius,
                                               .margin = setup.options.margin,
                                               .damping = setup.options.damping,
                                               .recovery = setup.options.recovery,
+                                              .deepest = setup.options.deepest,
                                               .refinements = setup.options.refinements,
                                               .nodes = setup.options.nodes,
                                               .query = setup.options.query,
-                                              .inside = setup.inside,
-                                              .capacity = {.planes = 256}});
+                                              .inside = setup.inside});
     Vec3 tip = setup.tip;
     for (int cycle = 0; cycle < 60; ++cycle) {
       Motion motion{.tip = tip, .desired = path.next(tip)};
@@ -91,6 +98,23 @@ TEST(Campaign, TheGuardMovesAsAMotionConstraintDoes) {
   }
   EXPECT_GT(limited, 2'000u);
   EXPECT_GT(recovering, 20u);
+}
+
+TEST(Campaign, ToolsOfAllRadiiAreDrawn) {
+  Scene scene("cortex", make_shape("cortex"), "wide_bvh");
+  Random random(8);
+  int points = 0, balls = 0, without_margin = 0;
+  for (int i = 0; i < 400; ++i) {
+    const StepOptions options = draw_setup(scene, random).options;
+    EXPECT_GE(options.margin, 0.0);
+    EXPECT_GE(distance_kept(options), least_distance_kept(scene, options.radius) * (1.0 - 1e-15));
+    points += options.tool_radius == 0.0;
+    balls += options.tool_radius > 0.0 && options.margin > 0.0;
+    without_margin += options.margin == 0.0;
+  }
+  EXPECT_GT(points, 100);
+  EXPECT_GT(balls, 100);
+  EXPECT_GT(without_margin, 10);
 }
 
 }  // namespace

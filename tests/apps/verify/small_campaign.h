@@ -14,12 +14,12 @@
 namespace keepout::app {
 
 inline Arena arena_of(std::string_view shape) {
-  return {
-      std::string(shape), [shape] {
-        std::vector<std::unique_ptr<Scene>> scenes;
-        scenes.push_back(std::make_unique<Scene>(std::string(shape), make_shape(shape), "pd_tree"));
-        return scenes;
-      }};
+  return {std::string(shape), [shape] {
+            std::vector<std::unique_ptr<Scene>> scenes;
+            scenes.push_back(
+                std::make_unique<Scene>(std::string(shape), make_shape(shape), "wide_bvh"));
+            return scenes;
+          }};
 }
 
 inline Findings campaign_on(std::string_view shape, const CampaignSettings& settings) {

@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "keepout/geometry/triangle.h"
-#include "keepout/oracle/segment.h"
+#include "keepout/oracle/distance.h"
 
 namespace keepout::oracle {
 

@@ -9,6 +9,11 @@
 
 namespace keepout::oracle {
 
+/// The sign, -1, 0 or 1, of det(b - a, c - a, d - a), which is > 0 for the origin and the three
+/// unit vectors in their order. Always right: double arithmetic where its bound allows, integers
+/// where not. Precondition: finite coordinates.
+int volume_sign(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
+
 /// Tells inside from outside of a closed surface, whichever way its triangles are wound: by the
 /// number of triangles that a ray in a random direction pierces, decided exactly.
 class InsideTest {

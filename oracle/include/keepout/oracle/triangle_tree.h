@@ -10,7 +10,6 @@
 #include "keepout/ids.h"
 #include "keepout/mesh/mesh.h"
 #include "keepout/oracle/bounds.h"
-#include "keepout/oracle/bracket_distance.h"
 
 namespace keepout::oracle {
 

@@ -10,6 +10,17 @@
 
 namespace keepout::app {
 
+// Names that a user may type, and how to tell of them.
+
+/// "; did you mean 'certified'?", to go on with after an error; empty where there is no such name.
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& names);
+
+/// "a, b, c".
+std::string enumerated(const std::vector<std::string>& names);
+
+/// As a shell needs it to be one word.
+std::string shell_word(const std::string& word);
+
 /// The names in a table of parts.
 template <class Table>
 std::vector<std::string> names(const Table& table) {

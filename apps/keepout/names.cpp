@@ -1,10 +1,22 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "shell_word.h"
+#include "names.h"
 
-#include <string_view>
+#include "keepout/nearest_name.h"
 
 namespace keepout::app {
+
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& names) {
+  const std::vector<std::string_view> views(names.begin(), names.end());
+  const auto nearest = nearest_name(word, views);
+  return nearest ? "; did you mean '" + std::string(*nearest) + "'?" : std::string();
+}
+
+std::string enumerated(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
 
 std::string shell_word(const std::string& word) {
   constexpr std::string_view plain =

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <iosfwd>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +14,39 @@
 #include "keepout/mesh/load_mesh.h"
 
 namespace keepout::app {
+
+// What the smaller commands do, and what each is told. The larger ones have folders of their own.
+
+struct InspectOptions {
+  std::filesystem::path mesh;
+  LoadOptions load = {};
+  bool json = false;
+  bool self_intersections = false;  // costs seconds where the rest costs a fraction of one
+};
+
+/// Reads a mesh file and prints what it is made of and what is wrong with it, in words or as JSON.
+/// Throws Error when the file cannot be read; whatever is found in it is no error.
+void inspect(const InspectOptions& options, std::ostream& out);
+
+enum class Loop : std::uint8_t {
+  open,   // each line is a tip and a desired increment
+  closed  // each line is a goal and a reset position; the tip follows the solved increments
+};
+
+struct ReplayOptions {
+  std::filesystem::path mesh;
+  LoadOptions load = {};
+  std::filesystem::path poses;
+  std::filesystem::path steps;                  // STEPS.csv, to be written
+  std::optional<std::filesystem::path> planes;  // PLANES.csv, to be written: all that were posed
+  MotionConstraintSettings constraint;
+  Loop loop = Loop::open;
+  double max_step = 1.0;  // longest increment asked for in a closed loop [mm]
+};
+
+/// Runs one step for each line of a pose file and writes what came out. A summary goes to `out`.
+/// Throws Error, also when one file would overwrite another; then neither is written.
+void replay(const ReplayOptions& options, std::ostream& out);
 
 enum class Timings {
   of_the_run,    // what its own steps took

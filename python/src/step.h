@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <span>
-#include <string_view>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "keepout/activation/free_polytope.h"
 #include "keepout/geometry/half_space.h"
+#include "keepout/step/motion.h"
 
 namespace keepout::python {
 
@@ -19,6 +21,19 @@ struct Planes {
 /// A free polytope, and whether it is one.
 struct FreeSpace : Planes {
   PolytopeStatus status = PolytopeStatus::invalid_input;
+};
+
+/// A step that outlives the next one.
+struct StepResult {
+  explicit StepResult(const Step& step);
+
+  Status status;
+  Vec3 motion;
+  std::vector<double> increment;
+  Planes planes;
+  std::vector<std::uint32_t> active;
+  std::size_t triangles;
+  std::optional<double> distance;
 };
 
 }  // namespace keepout::python

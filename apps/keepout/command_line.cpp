@@ -1,0 +1,259 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "command_line.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <system_error>
+
+#include "keepout/activation/registry.h"
+#include "keepout/adapters/index_registry.h"
+#include "keepout/solvers/registry.h"
+#include "named_mesh.h"
+#include "names.h"
+
+namespace keepout::app {
+namespace {
+
+/// A number option, whose value is a whole one of some type.
+template <class Number>
+CLI::Option* add_whole_number(CLI::App& command, const std::string& name, Number& value,
+                              std::uint64_t low, std::uint64_t high,
+                              const std::string& description) {
+  return command.add_option(name, value, description)
+      ->type_name("NUMBER")
+      ->transform(whole_number(low, high))
+      ->capture_default_str();
+}
+
+/// An option that takes the name of an anatomical space, in any case.
+CLI::Option* add_space(CLI::App& command, const char* name, AnatomicalSpace& space,
+                       const char* description) {
+  const auto take = [&space](const std::string& word) {
+    space =
+        word.front() == 'r' || word.front() == 'R' ? AnatomicalSpace::ras : AnatomicalSpace::lps;
+  };
+  return command.add_option_function<std::string>(name, take, description)
+      ->type_name("")
+      ->check(one_of({"ras", "lps", "RAS", "LPS"}));
+}
+
+std::vector<std::string> command_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    names.push_back(command->get_name());
+  }
+  return names;
+}
+
+std::vector<std::string> option_names(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  }
+  return names;
+}
+
+bool is_option(const std::string& word) { return word.size() > 1 && word.front() == '-'; }
+
+std::string unknown_command(const CLI::App& app, const std::string& word) {
+  const std::vector<std::string> commands = command_names(app);
+  const std::string hint = did_you_mean(word, commands);
+  return "there is no command '" + word + "'" +
+         (hint.empty() ? "; there are " + enumerated(commands) : hint);
+}
+
+std::string unknown_option(const CLI::App& app, const CLI::App& command, const std::string& word) {
+  const std::string name = word.substr(0, word.find('='));
+  if (app.get_option_no_throw(name) != nullptr) {
+    return name + " goes before the command: '" + app.get_name() + " " + name + " ... " +
+           command.get_name() + "'";
+  }
+  return "there is no option " + name + did_you_mean(name, option_names(command));
+}
+
+/// CLI11's own words, but where they do not say enough.
+std::string in_words(const CLI::App& app, const CLI::App& command, const CLI::ParseError& error) {
+  const std::string told = error.what();
+  const std::string kind = error.get_name();
+  // A mistyped option is the likeliest reason of whatever else seems to be missing.
+  const std::vector<std::string> extra = app.remaining(true);
+  const auto option = std::find_if(extra.begin(), extra.end(), is_option);
+  if (option != extra.end()) return unknown_option(app, command, *option);
+  if (&command == &app && !extra.empty()) return unknown_command(app, extra.front());
+  if (&command == &app && kind == "RequiredError") {
+    return "a command is missing; there are " + enumerated(command_names(app));
+  }
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {  // whose name is the command's
+    return "'" + extra.front() + "' is one argument too many for " + command.get_name();
+  }
+  if (kind == "RequiredError") return "an argument is missing: " + told;
+  if (kind == "ArgumentMismatch") {
+    // "--radius: 1 required MM missing"
+    const std::size_t colon = told.find(':');
+    if (colon != std::string::npos) return told.substr(0, colon) + ": a value is missing";
+  }
+  if (kind == "RequiresError") {
+    const std::size_t verb = told.find(" requires ");
+    if (verb != std::string::npos) {
+      return told.substr(0, verb) + " has a meaning only together with " + told.substr(verb + 10);
+    }
+  }
+  if (kind == "ExcludesError") {
+    const std::size_t verb = told.find(" excludes ");
+    if (verb != std::string::npos) {
+      return told.substr(0, verb) + " and " + told.substr(verb + 10) + " cannot be given together";
+    }
+  }
+  if (kind == "ConversionError") {
+    // "Could not convert: --json = 3"
+    constexpr std::string_view lead = "Could not convert: ";
+    const std::size_t equals = told.find(" = ");
+    if (told.starts_with(lead) && equals != std::string::npos) {
+      return told.substr(lead.size(), equals - lead.size()) + ": '" + told.substr(equals + 3) +
+             "' is not a value for it";
+    }
+  }
+  return told;
+}
+
+}  // namespace
+
+CLI::Validator one_of(std::vector<std::string> names) {
+  std::string description = '{' + enumerated(names) + '}';
+  const auto check = [names = std::move(names)](std::string& text) -> std::string {
+    if (std::find(names.begin(), names.end(), text) != names.end()) return {};
+    const std::string hint = did_you_mean(text, names);
+    return "there is no '" + text + "'" + (hint.empty() ? "; there are: " : hint + " There are: ") +
+           enumerated(names);
+  };
+  return {check, std::move(description)};
+}
+
+CLI::Validator length(Zero zero) {
+  const auto check = [zero](const std::string& text) -> std::string {
+    char* end = nullptr;
+    const double value = std::strtod(text.c_str(), &end);
+    const bool is_number = !text.empty() && *end == '\0';
+    const bool in_range = (zero == Zero::allowed ? value >= 0.0 : value > 0.0) && value <= 1e30;
+    if (is_number && in_range) return {};
+    return "expected a number " +
+           std::string(zero == Zero::allowed ? "from 0 to 1e30" : "above 0 and at most 1e30") +
+           ", not '" + text + "'";
+  };
+  return {check, zero == Zero::allowed ? "NONNEGATIVE" : "POSITIVE"};
+}
+
+CLI::Validator whole_number(std::uint64_t low, std::uint64_t high) {
+  const auto check = [low, high](std::string& text) -> std::string {
+    std::uint64_t value = 0;
+    const char* const last = text.data() + text.size();
+    const auto [end, error] = std::from_chars(text.data(), last, value);
+    if (error != std::errc{} || end != last || value < low || value > high) {
+      return "expected a whole number from " + std::to_string(low) + " to " + std::to_string(high) +
+             ", not '" + text + "'";
+    }
+    text = std::to_string(value);
+    return {};
+  };
+  return {check, ""};
+}
+
+CLI::Validator large_count() {
+  const auto check = [](std::string& text) -> std::string {
+    double value = 0.0;
+    const char* const last = text.data() + text.size();
+    const auto [end, error] = std::from_chars(text.data(), last, value);
+    if (error != std::errc{} || end != last || !(value >= 1.0 && value <= 1e12) ||
+        value != std::floor(value)) {
+      return "expected a whole number from 1 to 1e12, not '" + text + "'";
+    }
+    text = std::to_string(static_cast<std::uint64_t>(value));
+    return {};
+  };
+  return {check, ""};
+}
+
+CLI::Option* add_length(CLI::App& command, const std::string& name, double& value, Zero zero,
+                        const std::string& description) {
+  return command.add_option(name, value, description)
+      ->type_name("MM")
+      ->check(length(zero))
+      ->capture_default_str();
+}
+
+CLI::Option* add_number(CLI::App& command, const std::string& name, std::uint64_t& value,
+                        std::uint64_t low, std::uint64_t high, const std::string& description) {
+  return add_whole_number(command, name, value, low, high, description);
+}
+
+CLI::Option* add_number(CLI::App& command, const std::string& name, int& value, std::uint64_t low,
+                        std::uint64_t high, const std::string& description) {
+  return add_whole_number(command, name, value, low, high, description);
+}
+
+CLI::Option* add_name(CLI::App& command, const std::string& name, std::string& value,
+                      std::vector<std::string> names, const std::string& description) {
+  return command.add_option(name, value, description)
+      ->check(one_of(std::move(names)))
+      ->capture_default_str();
+}
+
+void add_mesh(CLI::App& command, std::filesystem::path& mesh) {
+  command.add_option("MESH", mesh, std::string(mesh_help))->type_name("")->required();
+}
+
+void add_spaces(CLI::App& command, LoadOptions& load) {
+  add_space(command, "--space", load.space,
+            "Anatomical space to have the mesh in: turned if the file says SPACE=LPS or SPACE=RAS "
+            "and it is the other one. Without it: as it stands");
+  add_space(command, "--untagged", load.untagged,
+            "Anatomical space of a file that does not say which it is in");
+}
+
+void add_constraint_options(CLI::App& command, MotionConstraintSettings& settings) {
+  add_name(command, "--index", settings.index, names(index_backends()),
+           "Spatial index that finds triangles");
+  command
+      .add_option("--index-cache", settings.index_cache,
+                  "Keep what --index wide_bvh builds in this folder, for the next run")
+      ->type_name("FOLDER");
+  add_name(command, "--solver", settings.solver, names(solver_backends()),
+           "Solver of the step problem");
+  add_length(command, "--radius", settings.radius, Zero::refused,
+             "Radius of the motion sphere: the farthest that the tip may go in one cycle. "
+             "The other rules consider all triangles in it; the paper cut a skull with 5");
+  add_length(command, "--tool-radius", settings.tool_radius, Zero::allowed,
+             "Radius of a ball around the tip that shall not touch the surface");
+  add_length(command, "--margin", settings.margin, Zero::allowed,
+             "Distance to keep between tool and surface; the certified rule needs one");
+  add_number(command, "--refine", settings.refinements, 0, 1000,
+             "How often the certified rule improves upon a motion that it has found");
+  add_number(command, "--branches", settings.nodes, 0, 4096,
+             "Nodes of a search for a better motion still; 0: none, 16 find nearly the best");
+  command
+      .add_option("--query", settings.query,
+                  "How far around the tip the certified rule looks: as far as the motion asked for "
+                  "can lead, or always the motion sphere")
+      ->transform(one_of<Query>({{"motion", Query::motion}, {"sphere", Query::sphere}}))
+      ->default_str("motion");
+}
+
+void add_activation(CLI::App& command, std::string& activation) {
+  add_name(command, "--activation", activation, names(activation_rules()),
+           "Rule that chooses the planes");
+}
+
+std::string usage_error(const CLI::App& app, const CLI::ParseError& error) {
+  const std::vector<CLI::App*> chosen = app.get_subcommands();
+  const CLI::App& command = chosen.empty() ? app : *chosen.front();
+  const std::string words = in_words(app, command, error);
+  const bool is_of_all =
+      app.get_option_no_throw(words.substr(0, words.find_first_of(": "))) != nullptr;
+  return words + "\nSee '" + app.get_name() +
+         (chosen.empty() || is_of_all ? "" : " " + command.get_name()) + " --help'.";
+}
+
+}  // namespace keepout::app

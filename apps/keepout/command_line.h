@@ -1,0 +1,86 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "keepout/mesh/load_mesh.h"
+#include "keepout/factory/make_motion_constraint.h"
+
+namespace keepout::app {
+
+// What the options of a command may be told.
+
+/// A name, with a hint at the one that was meant, and a list of all.
+CLI::Validator one_of(std::vector<std::string> names);
+
+/// The same, for transform(): names of the values of an enumeration.
+template <class Enum>
+CLI::Validator one_of(const std::vector<std::pair<std::string, Enum>>& values) {
+  std::vector<std::string> names;
+  for (const auto& [name, value] : values) names.push_back(name);
+  const CLI::Validator check = one_of(names);
+  const auto replace = [values, check](std::string& text) {
+    std::string problem = check(text);
+    for (const auto& [name, value] : values) {
+      if (problem.empty() && text == name) {
+        text = std::to_string(static_cast<std::underlying_type_t<Enum>>(value));
+        break;
+      }
+    }
+    return problem;
+  };
+  return {replace, check.get_description()};
+}
+
+/// Above it, whole numbers are not read back as they were written.
+inline constexpr std::uint64_t largest_seed = (std::uint64_t{1} << 63) - 1;
+
+enum class Zero { allowed, refused };
+
+/// A length in millimetres. CLI11's own checks let 'nan' pass and tell their range in 300 digits.
+/// The limit keeps squares of lengths, and sums of them, far from the end of a double's range.
+CLI::Validator length(Zero zero);
+
+/// A whole number in decimal digits. For transform(), which hands on what was read: CLI11 alone
+/// would take '-1' for 2^64 - 1, too many digits for the largest number, and '010' for 8.
+CLI::Validator whole_number(std::uint64_t low, std::uint64_t high);
+
+/// A count such as 20000 or 1e8. For transform(), which hands on its digits.
+CLI::Validator large_count();
+
+// Options of one kind; the value as it is stands in the help.
+
+CLI::Option* add_length(CLI::App& command, const std::string& name, double& value, Zero zero,
+                        const std::string& description);
+CLI::Option* add_number(CLI::App& command, const std::string& name, std::uint64_t& value,
+                        std::uint64_t low, std::uint64_t high, const std::string& description);
+CLI::Option* add_number(CLI::App& command, const std::string& name, int& value, std::uint64_t low,
+                        std::uint64_t high, const std::string& description);
+CLI::Option* add_name(CLI::App& command, const std::string& name, std::string& value,
+                      std::vector<std::string> names, const std::string& description);
+
+// What several commands take.
+
+/// The mesh: a file or a fixture.
+void add_mesh(CLI::App& command, std::filesystem::path& mesh);
+
+/// Of every command that places something in the frame of the mesh.
+void add_spaces(CLI::App& command, LoadOptions& load);
+
+/// Of every command that builds a motion constraint, but for the rule, of which one may take
+/// several.
+void add_constraint_options(CLI::App& command, MotionConstraintSettings& settings);
+void add_activation(CLI::App& command, std::string& activation);
+
+/// What is wrong with a command line, in words that name the option and its value, with a hint at
+/// what was meant and at the help. `error`: what app.parse() threw, and no call for help.
+std::string usage_error(const CLI::App& app, const CLI::ParseError& error);
+
+}  // namespace keepout::app

@@ -1,0 +1,265 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "serve/serve.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <climits>
+#include <cstdlib>
+#include <cstring>
+#include <list>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "keepout/error.h"
+#include "named_mesh.h"
+#include "number_text.h"
+#include "progress.h"
+#include "serve/answer.h"
+#include "serve/session.h"
+#include "serve/unix_socket.h"
+#include "stop_signal.h"
+
+namespace keepout::app {
+namespace {
+
+constexpr short gone = POLLERR | POLLHUP | POLLNVAL;
+constexpr int for_ever = -1;
+
+bool is_passing(int error) { return error == EINTR || error == EAGAIN || error == EWOULDBLOCK; }
+
+/// A session, and the open files that its bytes come from and go to. Never waits.
+class Connection {
+ public:
+  enum class Kind : std::uint8_t {
+    files,  // such as stdin and stdout: they stay open, and blocking, since others may share them
+    socket  // one socket for both, which is closed at the end
+  };
+  Connection(Service& service, int in, int out, Kind kind)
+      : session_(service), in_(in), out_(out), kind_(kind) {}
+  ~Connection() {
+    if (kind_ == Kind::socket) ::close(in_);
+  }
+  Connection(const Connection&) = delete;
+  Connection& operator=(const Connection&) = delete;
+
+  /// What to wait for: bytes, if any are wanted; and a reader who has gone, or, if there is
+  /// something unsent, room.
+  std::array<pollfd, 2> awaited() const noexcept {
+    const bool has_unsent = !session_.unsent().empty();
+    return {{{session_.wants_bytes() ? in_ : -1, POLLIN, 0},
+             {out_, static_cast<short>(has_unsent ? POLLOUT : 0), 0}}};
+  }
+
+  /// One turn, after what was waited for: receives what there is, answers, sends what can be sent.
+  void serve(const pollfd* happened) {
+    has_gone_ = (happened[1].revents & gone) != 0;
+    if (!has_gone_ && happened[0].revents != 0) receive();
+    if (has_gone_) return;
+    if (session_.has_work()) session_.take_turn();
+    if (!session_.unsent().empty()) send();
+  }
+
+  bool has_work() const noexcept { return session_.has_work(); }
+  bool is_done() const noexcept { return has_gone_ || session_.is_done(); }
+
+  /// What went wrong with the files; empty if nothing did, or if the client just left.
+  const std::string& trouble() const noexcept { return trouble_; }
+
+ private:
+  void receive() {
+    const std::span<char> room = session_.room();
+    const ssize_t count = kind_ == Kind::socket
+                              ? ::recv(in_, room.data(), room.size(), MSG_DONTWAIT)
+                              : ::read(in_, room.data(), room.size());
+    if (count > 0) {
+      session_.added(static_cast<std::size_t>(count));
+    } else if (count == 0) {
+      session_.ended();
+    } else {
+      note_failure("stdin: ");
+    }
+  }
+
+  void send() {
+    const std::string_view text = session_.unsent();
+    pollfd file{out_, POLLOUT, 0};
+    if (kind_ == Kind::files && ::poll(&file, 1, 0) != 1) return;  // it would wait for room
+    // A pipe that has room takes as much as PIPE_BUF without waiting.
+    const ssize_t count =
+        kind_ == Kind::socket
+            ? ::send(out_, text.data(), text.size(), MSG_DONTWAIT | MSG_NOSIGNAL)
+            : ::write(out_, text.data(), std::min<std::size_t>(text.size(), PIPE_BUF));
+    if (count >= 0) {
+      session_.sent(static_cast<std::size_t>(count));
+    } else {
+      note_failure("stdout: ");
+    }
+  }
+
+  void note_failure(const char* file) {
+    if (is_passing(errno)) return;
+    has_gone_ = true;
+    if (kind_ == Kind::files && errno != EPIPE) trouble_ = file + std::string(std::strerror(errno));
+  }
+
+  Session session_;
+  int in_;
+  int out_;
+  Kind kind_;
+  bool has_gone_ = false;  // nobody will read an answer
+  std::string trouble_;
+};
+
+/// Waits for everyone, in the same memory each time, and serves them in turn.
+class Server {
+ public:
+  explicit Server(const StopSignal& stop) : stop_(stop) {}
+
+  std::list<Connection>& connections() noexcept { return connections_; }
+
+  /// One turn for all, once there is something to do for one. False: the end is asked for. `door`:
+  /// to wait at for others, -1 for none. `patience`: how long to wait. [ms]
+  bool take_turn(int door, int patience) {
+    files_.assign({{stop_.file(), POLLIN, 0}, {door, POLLIN, 0}});
+    for (const Connection& connection : connections_) {
+      if (connection.has_work()) patience = 0;
+      for (const pollfd& file : connection.awaited()) files_.push_back(file);
+    }
+    if (::poll(files_.data(), files_.size(), patience) < 0) {
+      for (pollfd& file : files_) file.revents = 0;  // interrupted
+    }
+    if (files_[0].revents != 0) return false;
+    const pollfd* happened = &files_[2];
+    for (Connection& connection : connections_) {
+      connection.serve(happened);
+      happened += 2;
+    }
+    return true;
+  }
+
+  /// Whether someone waits at the door.
+  bool is_called() const noexcept { return files_[1].revents != 0; }
+
+ private:
+  const StopSignal& stop_;
+  std::list<Connection> connections_;
+  std::vector<pollfd> files_;
+};
+
+void turn_away(int client, std::size_t most_clients) {
+  std::string out;
+  append_error(out, "null", "too_many_clients",
+               "there are " + std::to_string(most_clients) +
+                   " clients already: close one, or start with a larger --max-clients");
+  // A new socket has room for it.
+  [[maybe_unused]] const ssize_t sent =
+      ::send(client, out.data(), out.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
+  ::close(client);
+}
+
+/// Serves one client over stdin and stdout until he ends, or `stop`.
+int serve_stdio(Service& service, const StopSignal& stop, std::ostream& log) {
+  Server server(stop);
+  const Connection& connection = server.connections().emplace_back(
+      service, STDIN_FILENO, STDOUT_FILENO, Connection::Kind::files);
+  while (!connection.is_done()) {
+    if (!server.take_turn(-1, for_ever)) return EXIT_SUCCESS;
+  }
+  if (connection.trouble().empty()) return EXIT_SUCCESS;
+  log << "keepout: " << connection.trouble() << '\n';
+  return EXIT_FAILURE;
+}
+
+/// Serves clients of a socket, in turn, until `stop`. One more than `most_clients` at a time is
+/// told so, and left.
+int serve_socket(Service& service, const StopSignal& stop, UnixSocket& socket,
+                 std::size_t most_clients) {
+  Server server(stop);
+  std::list<Connection>& clients = server.connections();
+  bool is_out_of_files = false;
+  // Without room for another open file, the door is tried again from time to time.
+  while (server.take_turn(is_out_of_files ? -1 : socket.file(), is_out_of_files ? 100 : for_ever)) {
+    clients.remove_if([](const Connection& client) { return client.is_done(); });
+    if (!is_out_of_files && !server.is_called()) continue;
+    for (int i = 0; i < 8; ++i) {  // at a time, so that nobody who is in waits for long
+      const int client = socket.accept(is_out_of_files);
+      if (client < 0) break;
+      if (clients.size() < most_clients) {
+        clients.emplace_back(service, client, client, Connection::Kind::socket);
+      } else {
+        turn_away(client, most_clients);
+      }
+    }
+  }
+  return EXIT_SUCCESS;
+}
+
+/// Otherwise the next file that is opened would be taken for it.
+void require_stdio() {
+  for (const int file : {STDIN_FILENO, STDOUT_FILENO}) {
+    if (::fcntl(file, F_GETFD) < 0) {
+      throw Error(
+          "stdin or stdout is closed: 'keepout serve' reads requests from the one and answers on "
+          "the other; connect both, or give --socket");
+    }
+  }
+}
+
+}  // namespace
+
+int serve(const ServeOptions& options, std::ostream& log) {
+  if (!options.socket) require_stdio();
+  const LoadedMesh loaded = load_named_mesh(options.service.mesh, options.load);
+  ServiceSettings settings = options.service;
+  settings.constraint.warn = warn_on_stderr;
+  settings.space = loaded.space;
+  Service service(loaded.mesh, settings);
+  const StopSignal stop;
+  ::signal(SIGPIPE, SIG_IGN);  // a client who has gone is an error of write() alone
+  const auto tell_where = [&](const std::string& where) {
+    log << "keepout: serving " << options.service.mesh.string() << " ("
+        << counted(loaded.mesh->triangle_count(), "triangle") << ") on " << where << std::endl;
+  };
+  if (!options.socket) {
+    tell_where("stdin and stdout");
+    return serve_stdio(service, stop, log);
+  }
+  UnixSocket socket(*options.socket);
+  tell_where(options.socket->string());
+  return serve_socket(service, stop, socket, options.most_clients);
+}
+
+const std::string_view protocol_help =
+    R"(One JSON object a line, answered in order by one line with the same id. Lengths in mm, in the
+frame of the mesh. Lines for people go to stderr.
+
+  {"id":1,"do":"step","tip":[0,0,60],"desired":[0,0,-0.5]}
+  {"id":1,"ok":true,"status":"free","motion":[0,0,-0.5],"triangles":0,"planes":0,"distance":10}
+
+step      tip, desired: the motion that the tip may make instead of the desired one; zero unless ok.
+          'distance' is that of the tip from the surface, before it.
+          With jacobian, three rows of n numbers: 'increment' is that of the joints.
+          With rows and bounds: rows . u >= bounds holds for the increment u.
+steps     motions, an array of [px,py,pz,dx,dy,dz]: as many steps, answered as "steps".
+polytope  tip, radius: normals and offsets of the free space around it, normal . d >= offset.
+info      version, mesh, settings and limits.
+statuses  all statuses by name, each with its reason.
+ping      whether it is there.
+
+A line that cannot be carried out is answered, moves nothing and ends nothing:
+
+  {"id":2,"error":{"kind":"not_a_request","message":"'tip' must be an array of three numbers"}}
+
+kinds: line_too_long, not_json, not_a_request, too_many_clients. All of it: docs/serve.md
+)";
+
+}  // namespace keepout::app

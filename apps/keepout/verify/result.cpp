@@ -1,0 +1,199 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "result.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+
+#include "../machine.h"
+#include "keepout/error.h"
+#include "keepout/simd_target.h"
+#include "keepout/version.h"
+
+namespace keepout::app {
+namespace {
+
+constexpr int file_format = 2;  // raised whenever the trajectories of a seed, or this file, change
+
+template <class Enum, std::size_t n>
+Json json_of(const std::array<std::uint64_t, n>& counts) {
+  Json json = Json::object();
+  for (std::size_t i = 0; i < n; ++i) json[std::string(name(static_cast<Enum>(i)))] = counts[i];
+  return json;
+}
+
+/// JSON has no infinity.
+Json or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json json_of(const std::string& mesh, std::uint64_t triangles, const Tally& t) {
+  return {{"mesh", mesh},
+          {"triangles", triangles},
+          {"trajectories", t.trajectories},
+          {"steps", t.steps},
+          {"tips", t.tips},
+          {"led_out", t.led_out},
+          {"statuses", json_of<Status>(t.statuses)},
+          {"breaches", json_of<Breach>(t.breaches)},
+          {"least_beyond_margin", or_null(t.least)},
+          {"least_beyond_margin_in_tau", or_null(t.least_in_tau)},
+          {"seconds", t.seconds}};
+}
+
+/// Adds the tally of a mesh to another of the same, number by number; of what is least the lesser
+/// counts.
+void add(Json& sum, const Json& part) {
+  for (const auto& [key, value] : part.items()) {
+    Json& so_far = sum.at(key);
+    if (value.is_object()) {
+      add(so_far, value);
+    } else if (key == "triangles") {
+      so_far = std::max(so_far.get<std::uint64_t>(), value.get<std::uint64_t>());
+    } else if (key.starts_with("least")) {
+      if (so_far.is_null() || (!value.is_null() && value < so_far)) so_far = value;
+    } else if (value.is_number_float()) {
+      so_far = so_far.get<double>() + value.get<double>();
+    } else if (value.is_number()) {
+      so_far = so_far.get<std::uint64_t>() + value.get<std::uint64_t>();
+    }
+  }
+}
+
+/// Appends as many incidents as are kept of a kind.
+void append(Json& to, const Json& from, std::size_t most) {
+  for (const Json& incident : from) {
+    if (to.size() < most) to.push_back(incident);
+  }
+}
+
+/// What the two do not agree on though one campaign would; empty when they do.
+std::string difference(const Json& a, const Json& b) {
+  using Named = std::pair<const char*, const char*>;
+  for (const auto& [key, what] : {Named{"version", "versions of keepout"}, Named{"seed", "seeds"},
+                                  Named{"steps", "numbers of steps"}, Named{"index", "indices"},
+                                  Named{"shard_count", "numbers of shards"}}) {
+    if (a.at(key) != b.at(key)) return what;
+  }
+  const Json& some = a.at("meshes");
+  const Json& others = b.at("meshes");
+  const auto same_name = [](const Json& one, const Json& other) {
+    return one.at("mesh") == other.at("mesh");
+  };
+  if (!std::ranges::equal(some, others, same_name)) return "meshes";
+  for (std::size_t i = 0; i < some.size(); ++i) {
+    const auto one = some[i].at("triangles").get<std::uint64_t>();
+    const auto other = others[i].at("triangles").get<std::uint64_t>();
+    if (one != other && one != 0 && other != 0) {
+      return "numbers of triangles of " + some[i].at("mesh").get<std::string>();
+    }
+  }
+  return {};
+}
+
+/// The shard that both have; 0 for none.
+std::uint64_t common_shard(const Json& a, const Json& b) {
+  for (const Json& one : a.at("shards")) {
+    for (const Json& other : b.at("shards")) {
+      if (one.at("index") == other.at("index")) return one.at("index").get<std::uint64_t>();
+    }
+  }
+  return 0;
+}
+
+/// Precondition: the two are of one campaign.
+void add_result(Json& sum, const Json& part) {
+  for (std::size_t i = 0; i < part.at("meshes").size(); ++i) {
+    add(sum.at("meshes")[i], part.at("meshes")[i]);
+  }
+  add(sum.at("total"), part.at("total"));
+  append(sum.at("breaches"), part.at("breaches"), most_breaches);
+  append(sum.at("anomalies"), part.at("anomalies"), most_anomalies);
+  auto shards = sum.at("shards").get<std::vector<Json>>();
+  for (const Json& shard : part.at("shards")) shards.push_back(shard);
+  std::ranges::sort(shards, {}, [](const Json& s) { return s.at("index").get<std::uint64_t>(); });
+  sum.at("shards") = shards;
+  sum.at("steps_done") = sum.at("total").at("steps");
+  sum.at("complete") = is_complete(sum);
+}
+
+Json read(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  if (!file) throw Error(path.string() + ": cannot be read; is it there?");
+  try {
+    Json result = Json::parse(file);
+    const int written = result.at("keepout_verify").get<int>();
+    if (written != file_format) {
+      throw Error(path.string() + ": written by another version of keepout verify (format " +
+                  std::to_string(written) + ", not " + std::to_string(file_format) + ")");
+    }
+    std::ostream nowhere(nullptr);
+    print(nowhere, result);  // which misses what is not there
+    return result;
+  } catch (const Json::exception&) {
+    throw Error(path.string() + ": is not a whole result of 'keepout verify --json'");
+  }
+}
+
+}  // namespace
+
+Json result_of(const CampaignRun& run, const Findings& findings) {
+  const auto& [index, count] = run.settings.shard;
+  const std::uint64_t all = trajectory_count(run.settings.steps);
+  const Tally total = findings.total();
+  // A signal that came after the last trajectory has interrupted nothing.
+  const bool is_whole = total.trajectories == (all + count - index) / count;
+  const Json shard{{"index", index},
+                   {"seconds", run.seconds},
+                   {"machine", processor() + ", " + std::string(simd_target()) + ", " +
+                                   KEEPOUT_COMPILER + ", " + KEEPOUT_BUILD_TYPE},
+                   {"complete", is_whole}};
+  Json meshes = Json::array();
+  for (const MeshTally& m : findings.meshes) {
+    meshes.push_back(json_of(m.mesh, m.triangles, m.tally));
+  }
+  Json all_meshes = json_of("total", 0, total);
+  all_meshes.erase("triangles");
+  return {{"keepout_verify", file_format},
+          {"version", KEEPOUT_VERSION},
+          {"seed", run.settings.seed},
+          {"steps", run.settings.steps},
+          {"steps_done", total.steps},
+          {"complete", is_whole && count == 1},
+          {"index", run.index},
+          {"shard_count", count},
+          {"shards", Json::array({shard})},
+          {"missing", run.missing},
+          {"meshes", meshes},
+          {"total", all_meshes},
+          {"breaches", findings.breaches},
+          {"anomalies", findings.anomalies}};
+}
+
+Json merged(const std::vector<std::filesystem::path>& files) {
+  std::vector<Json> parts;
+  for (const std::filesystem::path& file : files) {
+    const Json part = read(file);
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      const std::string both = files[i].string() + " and " + file.string();
+      if (const std::string what = difference(parts[i], part); !what.empty()) {
+        throw Error(both + " are not of one campaign: their " + what + " differ");
+      }
+      if (const std::uint64_t shard = common_shard(parts[i], part); shard != 0) {
+        throw Error(both + " both hold shard " + std::to_string(shard) + "/" +
+                    part.at("shard_count").dump() + ": it would count twice");
+      }
+    }
+    parts.push_back(part);
+  }
+  Json sum = parts.front();
+  for (std::size_t i = 1; i < parts.size(); ++i) add_result(sum, parts[i]);
+  return sum;
+}
+
+std::uint64_t breach_count(const Json& result) {
+  std::uint64_t sum = 0;
+  for (const Json& count : result.at("total").at("breaches")) sum += count.get<std::uint64_t>();
+  return sum;
+}
+
+}  // namespace keepout::app
