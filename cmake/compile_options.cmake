@@ -11,23 +11,36 @@ if(PROJECT_IS_TOP_LEVEL AND NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYP
   set(CMAKE_BUILD_TYPE Release CACHE STRING "Debug, Release, RelWithDebInfo" FORCE)
 endif()
 
-# keepout_precompile_headers(TARGET): reads the headers that most sources include once. Only under
-# sanitizers, whose builds begin from nothing: elsewhere a source shall not compile by what another
-# needs. Worth it for large targets alone: it takes as long as a few sources.
-function(keepout_precompile_headers target)
-  get_target_property(sources ${target} SOURCES)
-  list(LENGTH sources count)
-  if(count GREATER 30)
-    target_precompile_headers(${target} PRIVATE
-      <algorithm> <array> <cmath> <cstdint> <filesystem> <fstream> <limits> <memory> <optional> <span>
-      <sstream> <string> <string_view> <utility> <vector> <Eigen/Dense>)
+# So that headers are read once and not for each source: those that most sources include are compiled
+# before, and sources of tests and command several at a time, which instantiate once what all of them
+# use. Off where nobody asks for it, which is how others compile the library: there each source must
+# name what it needs (`./test --long` builds the preset bench so).
+option(KEEPOUT_SHARE_HEADERS "Precompile headers; compile several sources of tests and command as one" OFF)
+
+# keepout_precompile_headers(TARGET OWNER [HEADERS...]): those of the standard library, Eigen's, and
+# HEADERS. Once for all targets that name the same OWNER, which is the first of them: their flags must
+# agree. Not with ccache, which finds again what was compiled in another folder only without.
+function(keepout_precompile_headers target owner)
+  if(NOT KEEPOUT_SHARE_HEADERS OR CMAKE_CXX_COMPILER_LAUNCHER MATCHES ccache)
+    return()
   endif()
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+    # std::string again, as of -Wrestrict below. The preset bench, without such headers, has them.
+    target_compile_options(${target} PRIVATE -Wno-array-bounds -Wno-stringop-overflow
+                                             -Wno-stringop-overread)
+  endif()
+  if(NOT target STREQUAL owner)
+    target_precompile_headers(${target} REUSE_FROM ${owner})
+    return()
+  endif()
+  target_precompile_headers(${target} PRIVATE
+    <algorithm> <array> <cmath> <cstdint> <filesystem> <fstream> <functional> <limits> <map> <memory>
+    <numeric> <optional> <random> <span> <sstream> <string> <string_view> <utility> <vector>
+    <Eigen/Dense> ${ARGN})
 endfunction()
 
-# keepout_share_headers(TARGET COUNT): compiles so many sources of the target as one, which read once
-# the headers that all of them include, and instantiate once what all of them use. For tests and for
+# keepout_share_headers(TARGET COUNT): compiles so many sources of the target as one. For tests and for
 # the command; each source of the library compiles alone.
-option(KEEPOUT_SHARE_HEADERS "Compile several sources of tests and command as one" OFF)
 function(keepout_share_headers target count)
   if(KEEPOUT_SHARE_HEADERS)
     set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${count})
@@ -62,6 +75,20 @@ function(keepout_compile_options target)
     # Both have vectors of the length that SSE2 has, and so run the same lines.
     target_compile_definitions(${target} PRIVATE "HWY_DISABLED_TARGETS=(HWY_SSSE3|HWY_SSE4)")
     target_link_options(${target} PUBLIC -fsanitize=${KEEPOUT_SANITIZE})
-    keepout_precompile_headers(${target})
+  endif()
+  # Position-independent all of them, which programs are in another way.
+  get_target_property(type ${target} TYPE)
+  if(type MATCHES "LIBRARY" AND NOT type STREQUAL "MODULE_LIBRARY")
+    keepout_precompile_headers(${target} keepout_headers)
   endif()
 endfunction()
+
+# The precompiled headers of the libraries: a target without definitions of its own, which would have
+# to be those of all.
+if(KEEPOUT_SHARE_HEADERS)
+  find_package(Eigen3 3.4 REQUIRED)
+  file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/headers.cpp CONTENT "")
+  add_library(keepout_headers OBJECT ${PROJECT_BINARY_DIR}/headers.cpp)
+  target_link_libraries(keepout_headers PRIVATE Eigen3::Eigen)
+  keepout_compile_options(keepout_headers)
+endif()

@@ -55,7 +55,7 @@ TEST(BracketDistance, IsNarrowForNearlyAllFairPairs) {
   Random random(3);
   const auto point = [&random]() -> Vec3 { return 10.0 * random.direction() * random.uniform(); };
   int wide = 0;
-  constexpr int count = test::trials(1'000'000);
+  const int count = test::trials(1'000'000);
   for (int i = 0; i < count; ++i) {
     HostilePair pair;
     pair.triangle = {point(), point(), point()};

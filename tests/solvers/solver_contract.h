@@ -81,7 +81,7 @@ inline Allowance allowance_of(std::string_view solver) {
   if (solver == "nlopt_slsqp") return {7, 2000, {0.01, 0.02, 0.35}};
   if (solver == "nlopt_cobyla") return {163, 400, {0.1, 0.3, 0.6}};
   if (solver == "nlopt_mma") return {797, 20, {0.3, 0.5, 0.9}};
-  return {.stride = under_sanitizers ? 11 : 1};  // no factor of the kinds that take turns
+  return {.stride = few_trials() ? 11 : 1};  // no factor of the kinds that take turns
 }
 
 /// What every solver of the registry must do. A solver's own claim of optimality is never trusted:

@@ -43,6 +43,7 @@ TEST(IndexAgreement, KeepsTheRowsThatWereFinishedWhenItIsStopped) {
 }
 
 TEST(Compare, EndsAtOnceWhenTheSignalHasCome) {
+  std::signal(SIGINT, SIG_DFL);  // which is ignored where tests run in the background
   const StopSignal stop;
   ASSERT_EQ(std::raise(SIGINT), 0);
   const IndexComparison on = on_a_cube();

@@ -209,7 +209,7 @@ TEST_P(FacetOfKind, ThePlaneOfAContactExcludesTheMotion) {
 
 TEST_P(FacetOfKind, TheSearchForALateContactIsGivenUpOnlyBeyondTheLatest) {
   Random random(6);
-  for (int i = 0; i < 20'000; ++i) {
+  for (int i = 0; i < test::trials(20'000); ++i) {
     const Case c = random_case(random, GetParam().height);
     const Facet facet(c.triangle, Vec3::Zero(), 7);
     if (keeps_clear(facet, c.z, c.level, c.slack)) continue;
@@ -228,7 +228,7 @@ TEST_P(FacetOfKind, TheSearchForALateContactIsGivenUpOnlyBeyondTheLatest) {
 
 TEST_P(FacetOfKind, TheOrderOfTheCornersDoesNotMatter) {
   Random random(7);
-  for (int i = 0; i < 5'000; ++i) {
+  for (int i = 0; i < test::trials(5'000); ++i) {
     const Case c = random_case(random, GetParam().height);
     const Facet facet(c.triangle, Vec3::Zero(), 7);
     std::array<int, 3> order{0, 1, 2};
@@ -249,7 +249,7 @@ TEST_P(FacetOfKind, TheOrderOfTheCornersDoesNotMatter) {
 
 TEST_P(FacetOfKind, TheNormalPointsFromTheClosestPoint) {
   Random random(8);
-  for (int i = 0; i < 20'000; ++i) {
+  for (int i = 0; i < test::trials(20'000); ++i) {
     const Case c = random_case(random, GetParam().height);
     const Facet facet(c.triangle, Vec3::Zero(), 7);
     double distance = 0.0;
@@ -310,7 +310,7 @@ TEST(Facet, AMotionPastACornerTouchesItFromTheSide) {
 
 TEST(Facet, StandingStillAndLeavingAreAlwaysClear) {
   Random random(9);
-  for (int i = 0; i < 10'000; ++i) {
+  for (int i = 0; i < test::trials(10'000); ++i) {
     const Triangle triangle = random_triangle(random, 1.0, i % 2 == 0 ? 1.0 : 1e-3);
     const Facet facet(triangle, Vec3::Zero(), 0);
     ASSERT_TRUE(keeps_clear(facet, Vec3::Zero(), facet.distance(), 1e-12));
@@ -321,7 +321,7 @@ TEST(Facet, StandingStillAndLeavingAreAlwaysClear) {
 TEST(Facet, WhatSeparatesKeepsClear) {
   Random random(10);
   std::size_t separated = 0;
-  for (int i = 0; i < 100'000; ++i) {
+  for (int i = 0; i < test::trials(100'000); ++i) {
     const Case c = random_case(random, 1.0);
     const Facet facet(c.triangle, Vec3::Zero(), 0);
     if (!separates(random.direction(), facet.corners(), c.z, c.level, c.slack)) continue;
@@ -329,7 +329,7 @@ TEST(Facet, WhatSeparatesKeepsClear) {
     ASSERT_GE(c.distance, c.level - c.slack - 1e-13 * c.size);
     ASSERT_TRUE(keeps_clear(facet, c.z, c.level, 2.0 * c.slack));
   }
-  EXPECT_GT(separated, 1'000u);
+  EXPECT_GT(separated, test::trials(1'000u));
 }
 
 TEST(Facet, TheOrderOfFacetsIsThatOfTheirCorners) {
@@ -345,7 +345,7 @@ TEST(Facet, TheOrderOfFacetsIsThatOfTheirCorners) {
 TEST(Facet, TheOriginMayBeFarOff) {
   Random random(12);
   const Vec3 far(1e6, -2e6, 5e5);
-  for (int i = 0; i < 10'000; ++i) {
+  for (int i = 0; i < test::trials(10'000); ++i) {
     const Case c = random_case(random, 1.0);
     Triangle moved;
     for (int k = 0; k < 3; ++k) moved[k] = c.triangle[k] + far;

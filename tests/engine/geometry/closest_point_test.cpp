@@ -135,7 +135,7 @@ TEST(ClosestPoint, DistanceAgreesWithAnIndependentComputationInQuadruplePrecisio
 
 TEST(ClosestPoint, OffsetIsAPointOfTheTriangleAtTheDistanceGiven) {
   Random random(3);
-  for (int i = 0; i < 100'000; ++i) {
+  for (int i = 0; i < test::trials(100'000); ++i) {
     const Triangle triangle = random_triangle(random);
     const Vec3 query = random_query(triangle, random);
     const ClosestPoint closest = closest_point(triangle, query);
@@ -149,7 +149,7 @@ TEST(ClosestPoint, IsTheSameToTheBitInWhateverOrderTheCornersAreGiven) {
   Random random(4);
   constexpr std::array<std::array<int, 3>, 6> orders{
       {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}}};
-  for (int i = 0; i < 20'000; ++i) {
+  for (int i = 0; i < test::trials(20'000); ++i) {
     const Triangle t = random_triangle(random);
     const Vec3 query = random_query(t, random);
     const ClosestPoint expected = closest_point(t, query);
@@ -164,7 +164,7 @@ TEST(ClosestPoint, IsTheSameToTheBitInWhateverOrderTheCornersAreGiven) {
 TEST(ClosestPoint, NeighborsAgreeToTheBitOnAClosestPointOfTheirEdge) {
   Random random(5);
   int on_edge = 0;
-  for (int i = 0; i < 20'000; ++i) {
+  for (int i = 0; i < test::trials(20'000); ++i) {
     const Vec3 a = random.direction(), b = random.direction();
     const Triangle one{a, b, a + 0.5 * random.direction()};
     const Triangle other{b, a, b + 0.5 * random.direction()};
@@ -175,7 +175,7 @@ TEST(ClosestPoint, NeighborsAgreeToTheBitOnAClosestPointOfTheirEdge) {
     ++on_edge;
     ASSERT_EQ(first.offset, second.offset);
   }
-  EXPECT_GT(on_edge, 1000);
+  EXPECT_GT(on_edge, test::trials(1000));
 }
 
 const Triangle right_angle{Vec3(0, 0, 0), Vec3(4, 0, 0), Vec3(0, 4, 0)};
