@@ -151,9 +151,9 @@ TEST(Example02, TheJointsKeepTheTipOut) {
 
 TEST(Examples, SayWhatIsWrongWhenTheMeshIsMissing) {
   for (const std::string example :
-       {KEEPOUT_EXAMPLE, KEEPOUT_EXAMPLE_STATIC_COMPOSITION, KEEPOUT_EXAMPLE_OWN_INDEX,
-        KEEPOUT_EXAMPLE_CONVEX_TOOL, KEEPOUT_EXAMPLE_OWN_SOLVER, KEEPOUT_EXAMPLE_OWN_QP,
-        KEEPOUT_EXAMPLE_CRTK_LOOP, KEEPOUT_EXAMPLE_JOINTS}) {
+       {KEEPOUT_EXAMPLE, KEEPOUT_EXAMPLE_OWN_INDEX, KEEPOUT_EXAMPLE_CONVEX_TOOL,
+        KEEPOUT_EXAMPLE_OWN_SOLVER, KEEPOUT_EXAMPLE_OWN_QP, KEEPOUT_EXAMPLE_CRTK_LOOP,
+        KEEPOUT_EXAMPLE_JOINTS}) {
     const auto said = [&](const std::string& arguments, int status) {
       FILE* pipe = ::popen(("'" + example + "' " + arguments + " 2>&1").c_str(), "r");
       EXPECT_NE(pipe, nullptr);

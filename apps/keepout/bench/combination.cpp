@@ -6,7 +6,7 @@
 
 #include "bench/parts.h"
 #include "keepout/activation/registry.h"
-#include "part_lists.h"
+#include "names.h"
 
 namespace keepout::app {
 namespace {

@@ -137,7 +137,7 @@ class Asker {
     MotionConstraint guard =
         make_motion_constraint(mesh, index, {.activation = rule, .radius = comparison_.radius});
     Findings findings;
-    findings.searched = make_activation(rule, mesh)->searching(*index) != nullptr;
+    findings.searched = !guard.makes_queries();
     for (const Motion& motion : motions_) {
       if (stopped_()) return std::nullopt;
       const StepOptions& options = guard.options();

@@ -15,8 +15,7 @@
 
 #include "keepout/fixtures/random.h"
 #include "keepout/geometry/closest_point.h"
-#include "keepout/oracle/bracket_distance.h"
-#include "keepout/oracle/exact_distance.h"
+#include "keepout/oracle/distance.h"
 #include "trials.h"
 
 namespace keepout {

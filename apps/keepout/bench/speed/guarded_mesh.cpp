@@ -11,7 +11,7 @@
 #include "keepout/error.h"
 #include "keepout/factory/make_motion_constraint.h"
 #include "keepout/fixtures/real_mesh.h"
-#include "keepout/fixtures/write_subdivided.h"
+#include "keepout/fixtures/resample_mesh.h"
 #include "keepout/index/wide_bvh.h"
 #include "number_text.h"
 
