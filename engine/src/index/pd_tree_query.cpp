@@ -92,7 +92,7 @@ HWY_INLINE Overlap overlap(const PdNode& node, const OrientedScreen& screen) {
 
 /// Shows a visitor the leaves that the ball reaches.
 template <class Visitor>
-HWY_INLINE void walk(const PdNode* nodes, const OrientedScreen& screen, const Visitor& visitor) {
+HWY_NOINLINE void walk(const PdNode* nodes, const OrientedScreen& screen, const Visitor& visitor) {
   struct Subtree {
     std::uint32_t node;
     std::uint32_t first_leaf;

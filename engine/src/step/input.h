@@ -3,9 +3,9 @@
 #pragma once
 
 #include "keepout/activation/activation.h"
+#include "keepout/status.h"
 #include "keepout/step/motion.h"
 #include "keepout/step/options.h"
-#include "keepout/step/status.h"
 
 namespace keepout {
 

@@ -73,7 +73,7 @@ TEST_F(BenchCommand, WritesOneRowForEachCombinationWithAllThatIsAskedOfIt) {
     EXPECT_TRUE(row["verified"]);
     EXPECT_EQ(row["mesh"], "cube.stl");
     EXPECT_EQ(row["queries"], 300);
-    const bool searched = row["index"] == "wide_bvh";
+    const bool searched = row["index"] == "wide_bvh" || row["activation"] == "paper";
     EXPECT_EQ(row["step_query_us"].is_null(), searched) << row;
     EXPECT_GT(row["build_cores"], 0.0);
     EXPECT_GT(row["load_cores"], 0.0);

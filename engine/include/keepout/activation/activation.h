@@ -11,7 +11,7 @@
 #include "keepout/geometry/ball.h"
 #include "keepout/geometry/half_space.h"
 #include "keepout/index/neighborhood.h"
-#include "keepout/step/status.h"
+#include "keepout/status.h"
 
 namespace keepout {
 

@@ -69,6 +69,8 @@ class MotionWalk {
   /// others, but for those that it surely meets later than matters. True if it is known that the
   /// motion, and any other that ends within `alike` of it, comes near none, as a share of it.
   virtual bool walk(const Vec3& motion, EncounterVisitor& visitor) noexcept = 0;
+
+  /// How near two motions end to each other that are as free, as a share of the first.
   static constexpr double alike = 1e-7;
 
   /// Whether the work since the walk began was more than its budget, so that triangles may have

@@ -9,7 +9,7 @@
 
 #include "keepout/geometry/half_space.h"
 #include "keepout/geometry/vec3.h"
-#include "keepout/step/status.h"
+#include "keepout/status.h"
 #include "keepout/step/tip_jacobian.h"
 
 namespace keepout {

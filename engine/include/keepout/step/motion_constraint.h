@@ -57,7 +57,9 @@ class MotionConstraint {
                    std::unique_ptr<Activation> activation, std::unique_ptr<Solver> solver,
                    const StepOptions& options, const Capacity& capacity = {},
                    Inside inside = Inside::taken_as_is);
+  /// Takes over all that another one has, which is of no use any more.
   MotionConstraint(MotionConstraint&&) noexcept;
+  /// The same.
   MotionConstraint& operator=(MotionConstraint&&) noexcept;
   ~MotionConstraint();
 

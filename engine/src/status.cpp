@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "keepout/step/status.h"
+#include "keepout/status.h"
 
 #include <array>
 #include <cstddef>
