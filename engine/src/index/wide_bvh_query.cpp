@@ -63,10 +63,9 @@ HWY_INLINE std::size_t all_children(const NodeBlock& node, std::uint32_t* childr
   return count;
 }
 
-/// Shows a visitor the leaves that the ball reaches. Not inline: two of them in one function make
-/// each a little slower.
+/// Shows a visitor the leaves that the ball reaches.
 template <class Visitor>
-HWY_NOINLINE void walk(const NodeBlock* nodes, const BallScreen& ball, const Visitor& visitor) {
+HWY_INLINE void walk(const NodeBlock* nodes, const BallScreen& ball, const Visitor& visitor) {
   // Seven levels of sixteen children hold the most triangles there can be.
   std::uint32_t stack[9 * NodeBlock::lanes];
   std::size_t waiting = 0;
@@ -97,11 +96,13 @@ HWY_NOINLINE void walk(const NodeBlock* nodes, const BallScreen& ball, const Vis
 }
 
 void walk_wide_bvh(const NodeBlock* nodes, const LeafBlock* leaves, const Mesh& mesh,
-                   const BallScreen& ball, TriangleBuffer& out, QueryCounts* counts) {
-  if (counts == nullptr) {
-    return walk(nodes, ball, TouchingTriangles<false>{leaves, mesh, ball, out, counts});
-  }
-  walk(nodes, ball, TouchingTriangles<true>{leaves, mesh, ball, out, counts});
+                   const BallScreen& ball, TriangleBuffer& out) {
+  walk(nodes, ball, TouchingTriangles<false>{leaves, mesh, ball, out, nullptr});
+}
+
+void walk_and_count(const NodeBlock* nodes, const LeafBlock* leaves, const Mesh& mesh,
+                    const BallScreen& ball, TriangleBuffer& out, QueryCounts& counts) {
+  walk(nodes, ball, TouchingTriangles<true>{leaves, mesh, ball, out, &counts});
 }
 
 void walk_to_leaves(const NodeBlock* nodes, const BallScreen& ball, LeafBuffer& found) {
@@ -116,6 +117,7 @@ HWY_AFTER_NAMESPACE();
 namespace keepout {
 
 HWY_EXPORT(walk_wide_bvh);
+HWY_EXPORT(walk_and_count);
 HWY_EXPORT(walk_to_leaves);
 
 void WideBvh::collect(const Ball& ball, TriangleBuffer& candidates,
@@ -125,8 +127,12 @@ void WideBvh::collect(const Ball& ball, TriangleBuffer& candidates,
     if (counts != nullptr) counts->triangles += mesh_->triangle_count();
     return BruteForce(mesh_).collect(ball, candidates);
   }
-  HWY_DYNAMIC_DISPATCH(walk_wide_bvh)
-  (nodes_.data(), leaves_.data(), *mesh_, screen, candidates, counts);
+  if (counts != nullptr) {
+    HWY_DYNAMIC_DISPATCH(walk_and_count)
+    (nodes_.data(), leaves_.data(), *mesh_, screen, candidates, *counts);
+  } else {
+    HWY_DYNAMIC_DISPATCH(walk_wide_bvh)(nodes_.data(), leaves_.data(), *mesh_, screen, candidates);
+  }
 }
 
 void WideBvh::collect_leaves(const Ball& ball, LeafBuffer& found) const noexcept {
