@@ -82,7 +82,7 @@ void require_at_most(std::size_t most, std::size_t count, std::string_view items
   if (count <= most) return;
   throw Error("the index '" + std::string(index) + "' holds at most " + std::to_string(most) + " " +
               std::string(items) + ", and the mesh has " + std::to_string(count) +
-              "; use 'pd_tree', which holds more, or decimate the mesh");
+              "; use 'wide_bvh', which holds more, or decimate the mesh");
 }
 
 }  // namespace keepout

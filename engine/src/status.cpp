@@ -16,7 +16,7 @@ struct Outcome {
 // In the order of the enumeration.
 constexpr std::array outcomes{
     Outcome{"free", "nothing holds the motion back"},
-    Outcome{"limited", "planes of nearby triangles hold the motion back"},
+    Outcome{"limited", "planes of nearby triangles, or rows of the caller's, hold the motion back"},
     Outcome{"recovering", "the tip was closer than the margin, or inside: the motion leads it out"},
     Outcome{"fallback",
             "the best motion could not be proven within the budget of work: this is a shorter one "
@@ -39,12 +39,15 @@ constexpr std::array outcomes{
             "the capacity (of joints: Capacity::variables, max_joints in Python); or is the mesh "
             "in "
             "metres, so that a radius in mm holds all of it?"},
-    Outcome{"unsolved",
-            "the solver gave up within its budget of work, or its answer did not satisfy the "
-            "planes"},
-    Outcome{"inside",
-            "the tip is on the forbidden side: lead it out by steps without a Jacobian and rows, "
-            "or by hand; if it is outside, the mesh is wound inside out"},
+    Outcome{
+        "unsolved",
+        "no motion could be proven within the budget of work, the rule's or the solver's: ask for "
+        "a shorter one"},
+    Outcome{
+        "inside",
+        "the tip is on the forbidden side, deeper than `deepest`, or a Jacobian, rows or too small "
+        "a recovery keep it from being led out: lead it out by hand, or by steps without them; if "
+        "it is outside, the mesh is wound inside out"},
     Outcome{"touching",
             "the tip touches the surface, and which side is free cannot be told: move it off by "
             "hand"},

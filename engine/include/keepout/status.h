@@ -19,8 +19,8 @@ enum class Status : std::uint8_t {
   invalid_input,     // a number is not finite or out of range
   beyond_reach,      // the motion asked for, or solved, is longer than the motion sphere's radius
   over_capacity,     // more triangles, planes or variables than room was made for
-  unsolved,          // the solver gave up, or its answer does not satisfy the planes
-  inside,            // the tip is on the forbidden side, and joints or rows are in the way out
+  unsolved,          // nothing could be proven within the budget of work, the rule's or the solver's
+  inside,            // the tip is on the forbidden side, and is not led out
   touching,          // the tip is on the surface, and which side is free cannot be told
   margin_too_small,  // the margin is lost in the rounding of lengths this large
 };

@@ -36,8 +36,8 @@ Status status_of(SolveStatus solved) noexcept {
   return Status::unsolved;
 }
 
-/// A projection of the aim as exact as its planes: what a solver left undone is made up for, and
-/// the motion ends in the ball over the aim, where triangles were looked for.
+/// Makes a solver's projection of the aim as exact as the planes are: what it left undone is made
+/// up for, and the motion ends in the ball over the aim, where triangles were looked for.
 Vec3 sharpened(const Vec3& motion, const Vec3& aim, std::span<const HalfSpace> planes) noexcept {
   // Solvers differ in their last digits; alternating projections on the planes that are violated
   // settle them. Each is at most a last digit for an exact solver.
@@ -88,9 +88,7 @@ Cycle::Cycle(Activation& rule, Solver& solver, Workspace& work, const StepOption
   // With joints, rows or damping the answer is none.
   around_.is_projected =
       !motion.jacobian && !motion.rows && options.damping == 0.0 && solver.reads_planes();
-  if (times_ == nullptr) return;
-  *times_ = {};
-  last_ = std::chrono::steady_clock::now();
+  if (times_ != nullptr) last_ = std::chrono::steady_clock::now();
 }
 
 void Cycle::run(Step& result) noexcept {
@@ -99,13 +97,13 @@ void Cycle::run(Step& result) noexcept {
     result.status = Status::over_capacity;
     return;
   }
-  // The motion sphere is not for less than was asked for.
+  // Halving the aim helps only where the region shrinks with it.
   Opening opening = around_.reach == Reach::thales ? open_as_far_as_fits() : open();
   result.distance = opening.distance;
   const bool recovering = opening.status == Status::recovering;
   if (recovering) {
-    // The way out is the aim, and has surroundings of its own. What leads out is no projection of
-    // it; but it need not lead much farther.
+    // The way out is the aim now, and the rule begins once more with what is around that. The
+    // motion that leads out is no projection of the aim, but need not be much longer than it.
     around_.aim = opening.aim;
     around_.reach = around_.searched = Reach::sphere;
     around_.longest = std::min(around_.longest, 2.0 * around_.aim.norm());
@@ -182,7 +180,7 @@ Cycle::Trial Cycle::find() noexcept {
     }
     const Judgement judgement = rule_.judge(around_, trial.motion, work_.planes);
     if (judgement.verdict == Verdict::accepted) {
-      work_.note(motion_, trial.motion, 1.0);
+      work_.keep_answer(motion_, trial.motion, 1.0);
       if (!work_.solution.active.empty()) trial.status = Status::limited;
       return trial;
     }
@@ -200,7 +198,7 @@ Cycle::Trial Cycle::fall_back(const Trial& trial, double free_share) noexcept {
       rule_.judge(around_, part, work_.planes).verdict != Verdict::accepted) {
     return {Status::unsolved, Vec3::Zero()};
   }
-  work_.note(motion_, part, share);
+  work_.keep_answer(motion_, part, share);
   return {Status::fallback, part};
 }
 
@@ -279,7 +277,7 @@ Cycle::Trial Cycle::branch(const Trial& best) noexcept {
       // Solved once more: the solver has gone on since.
       const Trial trial = solve();
       if (!is_ok(trial.status) || trial.motion != nearest->motion) break;
-      work_.note(motion_, trial.motion, 1.0);
+      work_.keep_answer(motion_, trial.motion, 1.0);
       return {Status::limited, trial.motion};
     }
     if (verdict == Verdict::blocked) continue;

@@ -26,7 +26,7 @@ namespace keepout {
 class Cycle {
  public:
   /// Preconditions: rule and solver are prepared for the workspace's capacity; the motion is
-  /// checked. `times`, unless null, are set to what each stage took.
+  /// checked. What each stage takes is added to `times`, unless null.
   Cycle(Activation& rule, Solver& solver, Workspace& work, const StepOptions& options,
         const Motion& motion, StageTimes* times) noexcept;
 
@@ -47,7 +47,7 @@ class Cycle {
   Trial find() noexcept;
   Trial fall_back(const Trial& trial, double free_share) noexcept;
   Trial solve() noexcept;
-  Status attempt(std::optional<Vec3>& tip_motion) noexcept;
+  Status attempt(std::optional<Vec3>& answer) noexcept;
   Trial refine(Trial best) noexcept;
   Trial branch(const Trial& best) noexcept;
   void open_branch(const Trial& best) noexcept;

@@ -49,7 +49,7 @@ Status check(const Motion& motion, const StepOptions& options) noexcept {
   if (motion.rows && !are_usable(*motion.rows, variables)) return Status::invalid_input;
   // So far from the origin that a step is lost in the digits of the tip.
   if (position_rounding(motion.tip, options) > 1e-3 * options.radius) return Status::invalid_input;
-  if (!(motion.desired.norm() <= reach(options))) return Status::beyond_reach;
+  if (!(motion.desired.norm() <= longest_motion(options))) return Status::beyond_reach;
   return Status::free;
 }
 
@@ -61,7 +61,7 @@ Surroundings surroundings_of(const Motion& motion, const StepOptions& options,
           .aim = motion.desired,
           .kept = Vec3::Zero(),
           .radius = options.radius,
-          .longest = reach(options),
+          .longest = longest_motion(options),
           .margin = distance_kept(options),
           .recovery = options.recovery,
           .rounding = position_rounding(motion.tip, options),

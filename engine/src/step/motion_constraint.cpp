@@ -34,7 +34,7 @@ std::unique_ptr<Neighborhood> neighborhood_of(std::shared_ptr<const Mesh> mesh,
   return std::make_unique<Neighborhood>(std::move(mesh), std::move(index), capacity.triangles);
 }
 
-/// Throws before any memory is asked for.
+/// Throws for what cannot be held.
 Capacity checked(Capacity capacity, const StepOptions& options) {
   require_in_range(options);
   constexpr std::size_t most = std::numeric_limits<int>::max();

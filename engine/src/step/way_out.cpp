@@ -29,7 +29,7 @@ Step led_out(const Placement& placement, Neighborhood& near, const Motion& motio
   result.motion = lead_out(near.mesh(), near.index(), motion.tip, placement, longest_way(options),
                            well_off(near.mesh(), options), near.candidates());
   work.solution = {};
-  work.note(motion, result.motion, 1.0);
+  work.keep_answer(motion, result.motion, 1.0);
   result.increment = work.increment();
   return result;
 }

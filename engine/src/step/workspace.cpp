@@ -76,7 +76,7 @@ void Workspace::write_rows_of_planes(const double* jacobian, Eigen::Index variab
   }
 }
 
-void Workspace::note(const Motion& motion, const Vec3& tip_motion, double share) noexcept {
+void Workspace::keep_answer(const Motion& motion, const Vec3& tip_motion, double share) noexcept {
   answer_.increment.clear();
   if (motion.jacobian) {
     for (const double u : solution.u) answer_.increment.push(share * u);

@@ -31,7 +31,7 @@ class Workspace {
 
   /// Takes down the last solution as the answer, which outlives the solver's next one: `share` of
   /// it, or where the tip itself is what moves, `tip_motion`.
-  void note(const Motion& motion, const Vec3& tip_motion, double share) noexcept;
+  void keep_answer(const Motion& motion, const Vec3& tip_motion, double share) noexcept;
 
   HalfSpaceBuffer planes;          // that the trial at hand has to satisfy
   HalfSpaceBuffer earlier_planes;  // of the motion that is to be improved upon

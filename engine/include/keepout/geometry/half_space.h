@@ -12,7 +12,7 @@ namespace keepout {
 struct HalfSpace {
   Vec3 normal;        // unit, towards the free side
   double offset;      // [length]
-  TriangleId source;  // the triangle that called for it
+  TriangleId source;  // the triangle that called for it; no_triangle if none did
 };
 
 }  // namespace keepout

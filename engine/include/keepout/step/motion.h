@@ -49,13 +49,14 @@ struct Motion {
   inline static const Vec3 unset = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
 };
 
-/// What one control cycle may do. Views stay valid until the next step of the same workspace.
+/// What one control cycle may do. Views stay valid until the next step of the same
+/// MotionConstraint, or until its options are set.
 struct Step {
   Status status = Status::invalid_input;   // how it ended
   Vec3 motion = Vec3::Zero();              // of the tip; zero unless ok() [length]
   std::span<const double> increment = {};  // u: the tip's, or the joints' (n); empty unless ok()
-  /// All that were posed to the solver. A rule that searches an index by itself may leave out those
-  /// that no motion in question comes near: see NeededPlanes.
+  /// All that were posed to the solver. A rule may leave out those on which the answer cannot
+  /// depend: see Surroundings::is_projected.
   std::span<const HalfSpace> planes = {};
   /// Which of them hold the motion back; empty unless ok(). From planes.size() on, extra rows.
   std::span<const std::uint32_t> active = {};

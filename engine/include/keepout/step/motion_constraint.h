@@ -43,6 +43,9 @@ struct Polytope {
 ///
 ///     mesh -> index -> candidates -> exact hits -> planes -> problem -> step
 ///
+/// By default, under the rule certified on a WideBvh, candidates and hits are passed by: the index
+/// shows the rule the triangles in the way of each motion that is tried (MotionWalk).
+///
 /// Not thread-safe: one for each control loop; mesh and index may be shared.
 ///
 /// A tip that the last step did not lead to is placed anew: on a watertight mesh its side is found

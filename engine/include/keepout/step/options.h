@@ -42,14 +42,14 @@ constexpr double distance_kept(const StepOptions& options) noexcept {
 }
 
 /// How far the tip may go, all told: a step clipped to the radius may be longer by its rounding.
-constexpr double reach(const StepOptions& options) noexcept {
+constexpr double longest_motion(const StepOptions& options) noexcept {
   return options.radius * (1.0 + 1e-9);
 }
 
 /// Room for the largest step that shall be solved; a step that needs more ends with over_capacity.
 struct Capacity {
   /// Candidates of one query. An index that walks along motions by itself makes no such query for
-  /// the certified rule and does not heed it; it has budgets of its own: 4096 triangles asked about
+  /// the certified rule, but to place a tip; it has budgets of its own: 4096 triangles asked about
   /// in double, and 131072 looks at leaves a cycle.
   std::size_t triangles = std::size_t{1} << 16;
   std::size_t planes = std::size_t{1} << 14;  // that a rule may pose at the same time

@@ -26,7 +26,7 @@ class SideWatch {
     return is_on_ && !((tip - free_tip_).norm() <= free_around_);
   }
 
-  /// Takes down where a certified step from the free side has led to.
+  /// Takes down where a step from the free side has led to.
   void after(const Motion& motion, const Step& step, const StepOptions& options) noexcept;
 
   /// Forgets it: the next tip is placed anew.

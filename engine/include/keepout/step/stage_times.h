@@ -9,7 +9,7 @@ namespace keepout {
 /// The time that each part of a step took, to know them apart. What a failed step does not reach
 /// stays at zero. [ns]
 struct StageTimes {
-  std::int64_t query = 0;       // the index is asked what is around
+  std::int64_t query = 0;       // the index is asked what is around; of a walk, its beginning
   std::int64_t activation = 0;  // the rule begins
   std::int64_t solve = 0;       // trials are solved and judged
 

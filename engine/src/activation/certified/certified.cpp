@@ -40,7 +40,8 @@ class CertifiedRule::FirstMeeting final : public EncounterVisitor {
     if (facet.distance() - length_ > terms_.demand(facet)) return first.time;
     if (facet.distance() < too_close_) return first.time = at_once;
     if (terms_.is_clear_at_once(facet, trial_)) return first.time;
-    // When it would meet the trial is told sooner than whether it does; most that come this far do.
+    // When the trial would meet it takes less to find than whether it does, and most triangles that
+    // come this far are met.
     const Contact contact = terms_.contact(facet, trial_, first.time);
     if (!is_sooner(contact, facet)) return first.time;
     if (!terms_.is_beyond_doubt(contact, facet, trial_)) {
@@ -81,6 +82,7 @@ CertifiedRule::CertifiedRule(std::shared_ptr<const Mesh> mesh)
 CertifiedRule::~CertifiedRule() = default;
 
 void CertifiedRule::prepare(Neighborhood& near) {
+  Activation::prepare(near);
   walk_ = make_motion_walk(near);
   facets_ = Buffer<Facet>(walk_->room());
 }
@@ -141,7 +143,7 @@ bool CertifiedRule::meet(const Vec3& trial, std::span<const HalfSpace> planes, d
   return walk_->walk(trial, visitor);
 }
 
-/// Then nothing is known.
+/// Then triangles may have been left out, and nothing may be concluded.
 bool CertifiedRule::is_over_budget() const noexcept {
   return walk_->is_exhausted() || facets_.overflowed();
 }

@@ -80,7 +80,7 @@ bool is_idle(const HalfSpace& plane, const Surroundings& around) noexcept;
 /// What an opening tells of the distance: that of the nearest facet at hand, unless the tip is
 /// farther off than the margin, or than what a motion along a plane leaves of rounding. So near all
 /// forms ask about all triangles: the ball of the region goes `region_beyond` tolerances farther,
-/// and the screen of floats, which clears no triangle nearer than its margin, a share of 9e-7. Of
+/// and the filter of floats clears no triangle nearer than its margin, less a share of 9e-7. Of
 /// those beyond, one form may have met what another has not. Null if there is no facet.
 std::optional<double> known_distance(const Facet* nearest, double margin,
                                      double tolerance) noexcept;

@@ -8,8 +8,8 @@
 
 namespace keepout {
 
-/// A motion from the tip, to be looked at in float: the tip as the sum of two floats, so that what
-/// is near it keeps its digits.
+/// The tip as the sum of two floats, so that what is near it keeps its digits when it is looked at
+/// in float.
 struct FloatTip {
   float high[3];
   float low[3];

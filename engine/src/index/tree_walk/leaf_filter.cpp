@@ -71,24 +71,24 @@ HWY_INLINE Proof proof_at(Float d, const Corners& t, const Vector& p, const Floa
 }
 
 void LookAtLeaf(const LeafBlock& leaf, const FloatTip& tip, const FloatReach& reach,
-                LeafFilter& screen) {
+                LeafFilter& filter) {
   const Float d;
   const V zero = hn::Zero(d);
   for (std::size_t lane = 0; lane < LeafBlock::lanes; lane += hn::Lanes(d)) {
     const Corners t = corners(d, leaf, tip, lane);
     const Proof proof = proof_at(d, t, {zero, zero, zero}, reach);
-    store(d, proof, lane, screen.at_tip);
-    store(d, proof, lane, screen.last);
+    store(d, proof, lane, filter.at_tip);
+    store(d, proof, lane, filter.last);
   }
 }
 
-void FindSuspects(const LeafFilter& screen, const float* motion, Suspects& suspects) {
+void FindSuspects(const LeafFilter& filter, const float* motion, Suspects& suspects) {
   const Float d;
   const Vector z = all(d, motion);
   suspects.mask = 0;
   for (std::size_t lane = 0; lane < LeafBlock::lanes; lane += hn::Lanes(d)) {
-    const Proof first = load(d, screen.at_tip, lane);
-    const Proof last = load(d, screen.last, lane);
+    const Proof first = load(d, filter.at_tip, lane);
+    const Proof last = load(d, filter.last, lane);
     const V along_first = dot(first.n, z);
     const V along_last = dot(last.n, z);
     const M clear = hn::Or(holds(d, first, along_first), holds(d, last, along_last));
@@ -111,7 +111,7 @@ HWY_INLINE M in_time(Float d, const Suspects& suspects, V time, float latest, st
 }
 
 void RefineSuspects(const LeafBlock& leaf, const FloatTip& tip, const float* motion,
-                    const FloatReach& reach, float latest, LeafFilter& screen, Suspects& suspects) {
+                    const FloatReach& reach, float latest, LeafFilter& filter, Suspects& suspects) {
   constexpr int cuts = 2;
   const Float d;
   const Vector z = all(d, motion);
@@ -122,9 +122,9 @@ void RefineSuspects(const LeafBlock& leaf, const FloatTip& tip, const float* mot
     V time = hn::Load(d, suspects.time + lane);
     M asked = in_time(d, suspects, time, latest, lane);
     if (hn::AllFalse(d, asked)) continue;
-    Proof left = load(d, screen.at_tip, lane);
+    Proof left = load(d, filter.at_tip, lane);
     V fall = dot(left.n, z);
-    Proof best = load(d, screen.last, lane);
+    Proof best = load(d, filter.last, lane);
     M clear = hn::Or(holds(d, left, fall), holds(d, best, dot(best.n, z)));
     const Corners t = corners(d, leaf, tip, lane);
     const auto consider = [&](const Proof& proof, V along) {
@@ -155,7 +155,7 @@ void RefineSuspects(const LeafBlock& leaf, const FloatTip& tip, const float* mot
       right = select(falls, right, next);
       rise = hn::IfThenElse(falls, rise, along);
     }
-    store(d, best, lane, screen.last);
+    store(d, best, lane, filter.last);
     hn::Store(time, d, suspects.time + lane);
     proven |= bits(d, clear, lane);
   }
@@ -192,18 +192,18 @@ HWY_EXPORT(RefineSuspects);
 HWY_EXPORT(DelaySuspects);
 
 void look(const LeafBlock& leaf, const FloatTip& tip, const FloatReach& reach,
-          LeafFilter& screen) noexcept {
-  HWY_DYNAMIC_DISPATCH(LookAtLeaf)(leaf, tip, reach, screen);
+          LeafFilter& filter) noexcept {
+  HWY_DYNAMIC_DISPATCH(LookAtLeaf)(leaf, tip, reach, filter);
 }
 
-void find_suspects(const LeafFilter& screen, const float* motion, Suspects& suspects) noexcept {
-  HWY_DYNAMIC_DISPATCH(FindSuspects)(screen, motion, suspects);
+void find_suspects(const LeafFilter& filter, const float* motion, Suspects& suspects) noexcept {
+  HWY_DYNAMIC_DISPATCH(FindSuspects)(filter, motion, suspects);
 }
 
 void refine_suspects(const LeafBlock& leaf, const FloatTip& tip, const float* motion,
-                     const FloatReach& reach, float latest, LeafFilter& screen,
+                     const FloatReach& reach, float latest, LeafFilter& filter,
                      Suspects& suspects) noexcept {
-  HWY_DYNAMIC_DISPATCH(RefineSuspects)(leaf, tip, motion, reach, latest, screen, suspects);
+  HWY_DYNAMIC_DISPATCH(RefineSuspects)(leaf, tip, motion, reach, latest, filter, suspects);
 }
 
 void delay_suspects(const LeafBlock& leaf, const FloatTip& tip, const float* motion,

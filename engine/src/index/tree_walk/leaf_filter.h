@@ -17,7 +17,7 @@ struct LeafFilter {
 
 /// Looks at a leaf for the first time from this tip.
 void look(const LeafBlock& leaf, const FloatTip& tip, const FloatReach& reach,
-          LeafFilter& screen) noexcept;
+          LeafFilter& filter) noexcept;
 
 /// Triangles that a motion is not sure to keep clear of: a bit for each, and when it may meet them,
 /// never late: a share of the motion, or minus infinity for those that may be too close already.
@@ -26,12 +26,12 @@ struct Suspects {
   std::uint32_t mask;
 };
 
-void find_suspects(const LeafFilter& screen, const float* motion, Suspects& suspects) noexcept;
+void find_suspects(const LeafFilter& filter, const float* motion, Suspects& suspects) noexcept;
 
 /// The same, after some cutting-plane steps for those that are left over: dearer, and sharper.
 /// Those that come later than `latest`, a share of the motion, may be left as they are.
 void refine_suspects(const LeafBlock& leaf, const FloatTip& tip, const float* motion,
-                     const FloatReach& reach, float latest, LeafFilter& screen,
+                     const FloatReach& reach, float latest, LeafFilter& filter,
                      Suspects& suspects) noexcept;
 
 /// A Newton step towards the times when the suspects are met: makes them later. As far as `latest`.
