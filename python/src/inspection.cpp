@@ -83,15 +83,17 @@ void bind_inspection(py::module_& module) {
                     "Parts held together by shared vertices.")
       .def_readonly("edge_components", &Inspection::edge_components,
                     "Parts held together by shared edges.")
-      .def_property_readonly("closed", &Inspection::is_closed,
-                             "Whether every edge has two triangles or more.")
       .def_property_readonly(
-          "watertight", &Inspection::is_watertight,
+          "closed", [](const Inspection& i) { return i.is_closed(); },
+          "Whether every edge has two triangles or more.")
+      .def_property_readonly(
+          "watertight", [](const Inspection& i) { return i.is_watertight(); },
           "Whether every edge has two triangles, wound alike: then there is an inside.")
-      .def_property_readonly("inside_out", &Inspection::is_inside_out,
-                             "Whether it is watertight with normals that point into the solid.")
       .def_property_readonly(
-          "looks_like_metres", &Inspection::looks_like_metres,
+          "inside_out", [](const Inspection& i) { return i.is_inside_out(); },
+          "Whether it is watertight with normals that point into the solid.")
+      .def_property_readonly(
+          "looks_like_metres", [](const Inspection& i) { return i.looks_like_metres(); },
           "Whether it is smaller than 3 in every direction, where millimetres are expected.")
       .def_readonly("euler_characteristic", &Inspection::euler_characteristic,
                     "Vertices - edges + triangles.")
