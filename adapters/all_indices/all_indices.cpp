@@ -7,17 +7,16 @@
 namespace keepout {
 
 std::vector<IndexBackend> all_index_backends() {
-  std::vector<IndexBackend> all;
-  append(index_backends(), all);
+  return joined<IndexBackend>({
+    index_backends(),
 #if KEEPOUT_HAS_CGAL
-  append(cgal_indices(), all);
+        cgal_indices(),
 #endif
-  return all;
+  });
 }
 
 std::vector<AbsentPart> all_absent_index_backends() {
-  std::vector<AbsentPart> all;
-  append(absent_index_backends(), all);
+  std::vector<AbsentPart> all = joined<AbsentPart>({absent_index_backends()});
 #if !KEEPOUT_HAS_CGAL
   all.push_back(
       {"cgal", "CGAL (install libcgal-dev, configure with KEEPOUT_WITH_CGAL=ON; under the GPL)"});

@@ -27,7 +27,7 @@ class CcdNarrowPhase final : public NarrowPhase {
 
   NarrowPhaseAnswer separation(const Vec3& position, const Triangle& triangle) noexcept override {
     if (!is_in_range(position, triangle)) return NarrowPhaseAnswer::failed("out of range");
-    const Triangle local{triangle[0] - position, triangle[1] - position, triangle[2] - position};
+    const Triangle local = relative(triangle, position);
     const NarrowPhaseAnswer overlap = depth(local, 0.0);
     if (overlap.answered() || overlap.failure != apart) return moved(overlap, position);
     // No more than from any one point of the tool.

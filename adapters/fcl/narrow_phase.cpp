@@ -30,10 +30,6 @@ constexpr double tolerance = 1e-12;
 // never end.
 constexpr double tolerance_of_depth = 1e-6;
 
-Triangle relative(const Triangle& triangle, const Vec3& position) {
-  return {triangle[0] - position, triangle[1] - position, triangle[2] - position};
-}
-
 /// From what both solvers give: the signed distance of the cores, and the way from the triangle's
 /// point to the core's, or the reverse where they overlap.
 NarrowPhaseAnswer answer(double distance, const Vec3& direction, const Vec3& on_triangle,
@@ -126,8 +122,6 @@ class FclGjkIndep final : public NarrowPhase {
       }
       // The depth comes with either sign.
       return answer(-std::abs(distance), normal, on_triangle, tool_, position);
-    } catch (const std::exception&) {
-      return NarrowPhaseAnswer::failed("FCL threw");
     } catch (...) {
       return NarrowPhaseAnswer::failed("FCL threw");
     }

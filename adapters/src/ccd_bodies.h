@@ -33,6 +33,11 @@ struct CcdTriangle {
   CcdBudget* budget;
 };
 
+/// In the frame of a tool at that position.
+inline Triangle relative(const Triangle& triangle, const Vec3& position) {
+  return {triangle[0] - position, triangle[1] - position, triangle[2] - position};
+}
+
 inline Vec3 from_ccd(const ccd_vec3_t& v) noexcept { return Vec3(v.v[0], v.v[1], v.v[2]); }
 
 inline void to_ccd(const Vec3& v, ccd_vec3_t* out) noexcept {

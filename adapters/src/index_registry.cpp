@@ -5,7 +5,6 @@
 
 #include <iterator>
 #include <utility>
-#include <vector>
 
 #include "keepout/index/brute_force.h"
 #include "keepout/index/pd_tree.h"
@@ -52,19 +51,18 @@ constexpr AbsentPart absent[] = {
 }  // namespace
 
 std::span<const IndexBackend> index_backends() noexcept {
-  static const std::vector<IndexBackend> all = [] {
-    std::vector<IndexBackend> rows(std::begin(ours), std::end(ours));
+  static const std::vector<IndexBackend> all = joined<IndexBackend>({
+    ours,
 #if KEEPOUT_HAS_FCL
-    append(fcl_indices(), rows);
+        fcl_indices(),
 #endif
 #if KEEPOUT_HAS_BULLET
-    append(bullet_indices(), rows);
+        bullet_indices(),
 #endif
 #if KEEPOUT_HAS_EMBREE
-    append(embree_indices(), rows);
+        embree_indices(),
 #endif
-    return rows;
-  }();
+  });
   return all;
 }
 

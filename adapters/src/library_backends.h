@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <initializer_list>
+#include <vector>
+
 #include "keepout/adapters/index_registry.h"
 #include "keepout/adapters/narrow_phase_registry.h"
 
@@ -29,10 +32,12 @@ std::unique_ptr<SpatialIndex> make_index_of(std::shared_ptr<const Mesh> mesh) {
 void require_at_most(std::size_t most, std::size_t count, std::string_view items,
                      std::string_view index);
 
-/// Appends the rows of one table to another.
+/// The rows of several tables, one after the other.
 template <class Row>
-void append(std::span<const Row> rows, std::vector<Row>& to) {
-  to.insert(to.end(), rows.begin(), rows.end());
+std::vector<Row> joined(std::initializer_list<std::span<const Row>> tables) {
+  std::vector<Row> all;
+  for (const std::span<const Row> rows : tables) all.insert(all.end(), rows.begin(), rows.end());
+  return all;
 }
 
 }  // namespace keepout

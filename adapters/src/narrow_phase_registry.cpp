@@ -3,7 +3,6 @@
 #include "keepout/adapters/narrow_phase_registry.h"
 
 #include <iterator>
-#include <vector>
 
 #include "library_backends.h"
 
@@ -32,16 +31,15 @@ constexpr AbsentPart absent[] = {
 }  // namespace
 
 std::span<const NarrowPhaseBackend> narrow_phase_backends() noexcept {
-  static const std::vector<NarrowPhaseBackend> all = [] {
-    std::vector<NarrowPhaseBackend> rows{exact};
+  static const std::vector<NarrowPhaseBackend> all = joined<NarrowPhaseBackend>({
+    {&exact, 1},
 #if KEEPOUT_HAS_CCD
-    append(ccd_narrow_phases(), rows);
+        ccd_narrow_phases(),
 #endif
 #if KEEPOUT_HAS_FCL
-    append(fcl_narrow_phases(), rows);
+        fcl_narrow_phases(),
 #endif
-    return rows;
-  }();
+  });
   return all;
 }
 

@@ -43,22 +43,22 @@ Vec3 PassivityObserver::brake(const Vec3& hand_way, double period) const noexcep
   return (-alpha / period) * hand_way;
 }
 
-void EnergyAccount::book(const HeldForce& held, const Vec3& hand_way, const Vec3& proxy_way,
-                         double stored) noexcept {
-  const double braked = -held.brake.dot(hand_way);
-  report_.to_hand += held.total().dot(hand_way);
-  report_.from_proxy += held.spring.dot(proxy_way);
-  report_.dissipated += held.spring.dot(proxy_way - hand_way) - (stored - report_.stored) + braked;
-  report_.braked += braked;
-  report_.stored = stored;
-  ++report_.cycles;
+void EnergyReport::book(const HeldForce& held, const Vec3& hand_way, const Vec3& proxy_way,
+                        double now_stored) noexcept {
+  const double brake_work = -held.brake.dot(hand_way);
+  to_hand += held.total().dot(hand_way);
+  from_proxy += held.spring.dot(proxy_way);
+  dissipated += held.spring.dot(proxy_way - hand_way) - (now_stored - stored) + brake_work;
+  braked += brake_work;
+  stored = now_stored;
+  ++cycles;
 }
 
-void EnergyAccount::book_blind(double stored) noexcept {
-  report_.dissipated -= stored - report_.stored;
-  report_.stored = stored;
-  ++report_.cycles;
-  ++report_.blind_cycles;
+void EnergyReport::book_blind(double now_stored) noexcept {
+  dissipated -= now_stored - stored;
+  stored = now_stored;
+  ++cycles;
+  ++blind_cycles;
 }
 
 }  // namespace keepout

@@ -71,7 +71,7 @@ HapticProxy::HapticProxy(MotionConstraint guard, const HapticOptions& options)
 CycleStatus HapticProxy::engage(const Vec3& tip) noexcept {
   release();
   if (!is_place(tip)) return CycleStatus::invalid_pose;
-  account_.restart();
+  energy_ = {};
   proxy_ = hand_ = tip;
   engaged_ = seen_ = true;
   return CycleStatus::guarded;
@@ -137,7 +137,7 @@ HapticCycle HapticProxy::stand(CycleStatus why) noexcept {
   fade(0.0);
   held_.spring *= before > 0.0 ? share_ / before : 0.0;
   held_.brake = Vec3::Zero();
-  account_.book_blind(share_ * options_.spring.stored(stretch_));
+  energy_.book_blind(share_ * options_.spring.stored(stretch_));
   seen_ = false;
   return finish(why, Status::invalid_input);
 }
@@ -156,10 +156,10 @@ void HapticProxy::book(const Vec3& hand, const Vec3& proxy_way) noexcept {
     hand_way_ = hand - hand_;
     rate_ = (stretch - stretch_) / options_.period;
     passivity_.observe(held_.total(), hand_way_);
-    account_.book(held_, hand_way_, proxy_way, stored);
-    account_.note_active(-passivity_.energy());
+    energy_.book(held_, hand_way_, proxy_way, stored);
+    energy_.active = std::max(energy_.active, -passivity_.energy());
   } else {
-    account_.book_blind(stored);
+    energy_.book_blind(stored);
   }
   hand_ = hand;
   stretch_ = stretch;
@@ -183,7 +183,7 @@ void HapticProxy::update_force() noexcept {
     held_.spring *= spring.largest_force / total;
     held_.brake *= spring.largest_force / total;
   }
-  account_.note_force(held_.total().norm());
+  energy_.largest_force = std::max(energy_.largest_force, held_.total().norm());
 }
 
 HapticCycle HapticProxy::finish(CycleStatus status, Status step) const noexcept {

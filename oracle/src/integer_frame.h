@@ -5,7 +5,11 @@
 
 #include <gmpxx.h>
 
+#include <algorithm>
 #include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include "keepout/geometry/vec3.h"
@@ -27,6 +31,19 @@ inline IntegerVec cross(const IntegerVec& a, const IntegerVec& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
+/// value = digits * 2^exponent, the digits odd.
+struct Binary {
+  std::int64_t digits;
+  int exponent;
+};
+
+inline Binary binary(double value) {
+  int exponent = 0;
+  const auto digits = static_cast<std::int64_t>(std::ldexp(std::frexp(value, &exponent), 53));
+  const int zeros = std::countr_zero(static_cast<std::uint64_t>(digits));
+  return {digits / (std::int64_t{1} << zeros), exponent - 53 + zeros};
+}
+
 /// A unit of length, a power of two, in which each of the included doubles is a whole number.
 class IntegerFrame {
  public:
@@ -45,5 +62,15 @@ class IntegerFrame {
  private:
   int exponent_ = std::numeric_limits<int>::max();
 };
+
+inline void IntegerFrame::include(double value) {
+  if (value != 0.0) exponent_ = std::min(exponent_, binary(value).exponent);
+}
+
+inline Integer IntegerFrame::integer(double value) const {
+  if (value == 0.0) return 0;
+  const Binary b = binary(value);
+  return Integer(static_cast<long>(b.digits)) << static_cast<unsigned long>(b.exponent - exponent_);
+}
 
 }  // namespace keepout::oracle

@@ -29,26 +29,7 @@ from ._core import (
 )
 from ._results import Part, Simulation, Status, Steps
 
-__all__ = [
-    "Error",
-    "Hits",
-    "Index",
-    "Inspection",
-    "Mesh",
-    "MotionConstraint",
-    "Part",
-    "Planes",
-    "Polytope",
-    "Simulation",
-    "Status",
-    "Step",
-    "Steps",
-    "__version__",
-    "activations",
-    "indices",
-    "load_mesh",
-    "solvers",
-]
+__all__ = ["__version__", *(name for name in dir() if not name.startswith("_"))]
 
 # Where things are documented is where they are to be imported from.
 for _name in __all__:

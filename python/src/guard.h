@@ -11,7 +11,7 @@
 #include <optional>
 
 #include "batch.h"
-#include "index_handle.h"
+#include "handles.h"
 #include "keepout/factory/make_motion_constraint.h"
 #include "out_arrays.h"
 #include "step.h"

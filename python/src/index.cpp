@@ -11,7 +11,7 @@
 #include "arguments.h"
 #include "batch.h"
 #include "bindings.h"
-#include "index_handle.h"
+#include "handles.h"
 #include "keepout/adapters/index_registry.h"
 #include "keepout/index/index_cache.h"
 #include "keepout/index/nearest.h"
@@ -23,13 +23,13 @@ namespace {
 
 std::shared_ptr<const SpatialIndex> build(const std::string& name,
                                           const std::shared_ptr<const Mesh>& mesh,
-                                          const std::filesystem::path& cache) {
+                                          const std::optional<std::filesystem::path>& cache) {
   const auto tell = [](const std::string& text) {
     const py::gil_scoped_acquire acquire;
     warn(text);
   };
   const py::gil_scoped_release release;
-  if (name == "wide_bvh" && !cache.empty()) return load_or_build(mesh, cache, tell);
+  if (name == "wide_bvh" && cache && !cache->empty()) return load_or_build(mesh, *cache, tell);
   return make_index(name, mesh);
 }
 
@@ -108,9 +108,10 @@ py::array_t<double> distances(const IndexHandle& index, const py::object& points
 
 }  // namespace
 
-IndexHandle::IndexHandle(py::object mesh, std::string name, const std::filesystem::path& cache)
+IndexHandle::IndexHandle(py::object mesh, std::string name,
+                         const std::optional<std::filesystem::path>& cache)
     : mesh_object_(std::move(mesh)),
-      mesh_(mesh_object_.cast<const MeshHandle&>().shared()),
+      mesh_(mesh_of(mesh_object_)),
       name_(std::move(name)),
       index_(build(name_, mesh_, cache)) {}
 
@@ -141,14 +142,7 @@ void bind_index(py::module_& module) {
       "share one.\n\n"
       "name: one of indices(). cache: a folder that keeps built indices for the next start; only\n"
       "wide_bvh is kept.")
-      .def(py::init([](const py::object& mesh, std::string name,
-                       const std::optional<std::filesystem::path>& cache) {
-             if (!py::isinstance<MeshHandle>(mesh)) {
-               refuse("mesh", "a keepout.Mesh", Py_TYPE(mesh.ptr())->tp_name);
-             }
-             return std::make_shared<IndexHandle>(mesh, std::move(name),
-                                                  cache.value_or(std::filesystem::path()));
-           }),
+      .def(py::init<py::object, std::string, const std::optional<std::filesystem::path>&>(),
            py::arg("mesh"), py::arg("name") = "wide_bvh", py::kw_only(),
            py::arg("cache") = py::none())
       .def("query", &query, py::arg("center"), py::arg("radius"),
@@ -164,8 +158,7 @@ void bind_index(py::module_& module) {
            "finite.\n"
            "Runs without Python's lock, on every processor unless `threads` says fewer.\n\n"
            "points: (n, 3) [length].")
-      .def_property_readonly(
-          "mesh", [](const IndexHandle& self) { return self.mesh_object(); }, "The mesh.")
+      .def_property_readonly("mesh", &IndexHandle::mesh_object, "The mesh.")
       .def_property_readonly("name", &IndexHandle::name, "As in indices().")
       .def_property_readonly(
           "memory", [](const IndexHandle& self) { return self.index().memory(); },

@@ -12,10 +12,10 @@
 
 #include "arguments.h"
 #include "bindings.h"
+#include "handles.h"
 #include "keepout/error.h"
 #include "keepout/mesh/load_mesh.h"
 #include "keepout/mesh/weld.h"
-#include "mesh_handle.h"
 #include "views.h"
 
 namespace keepout::python {
@@ -96,6 +96,13 @@ MeshHandle::MeshHandle(std::shared_ptr<const Mesh> mesh) : mesh_(std::move(mesh)
 
 MeshHandle::MeshHandle(LoadedMesh loaded)
     : mesh_(std::move(loaded.mesh)), warnings_(std::move(loaded.warnings)), space_(loaded.space) {}
+
+const std::shared_ptr<const Mesh>& mesh_of(const py::object& mesh) {
+  if (!py::isinstance<MeshHandle>(mesh)) {
+    refuse("mesh", "a keepout.Mesh", Py_TYPE(mesh.ptr())->tp_name);
+  }
+  return mesh.cast<const MeshHandle&>().shared();
+}
 
 const std::vector<Vec3>& MeshHandle::normals() {
   if (normals_.empty()) {

@@ -48,12 +48,10 @@ void refuse_others(const py::kwargs& others) {
 /// The one given, or one made for this constraint.
 std::shared_ptr<IndexHandle> index_from(const py::object& mesh, const py::object& index,
                                         const std::optional<std::filesystem::path>& cache) {
-  if (!py::isinstance<MeshHandle>(mesh)) {
-    refuse("mesh", "a keepout.Mesh", Py_TYPE(mesh.ptr())->tp_name);
-  }
+  const std::shared_ptr<const Mesh>& surface = mesh_of(mesh);
   if (py::isinstance<IndexHandle>(index)) {
     auto shared = index.cast<std::shared_ptr<IndexHandle>>();
-    if (shared->mesh() != mesh.cast<const MeshHandle&>().shared()) {
+    if (shared->mesh() != surface) {
       refuse("index", "an Index of the same Mesh object", "one of another mesh");
     }
     return shared;
@@ -61,8 +59,7 @@ std::shared_ptr<IndexHandle> index_from(const py::object& mesh, const py::object
   if (!py::isinstance<py::str>(index)) {
     refuse("index", "a name of indices(), or a keepout.Index", Py_TYPE(index.ptr())->tp_name);
   }
-  return std::make_shared<IndexHandle>(mesh, index.cast<std::string>(),
-                                       cache.value_or(std::filesystem::path()));
+  return std::make_shared<IndexHandle>(mesh, index.cast<std::string>(), cache);
 }
 
 std::string repr(const Guard& guard) {
@@ -216,9 +213,7 @@ void bind_motion_constraint(py::module_& module) {
            simulate_doc)
       .def_property_readonly(
           "mesh", [](const Guard& self) { return self.index()->mesh_object(); }, "The mesh.")
-      .def_property_readonly(
-          "index", [](const Guard& self) { return self.index(); },
-          "Its Index, which others may share.")
+      .def_property_readonly("index", &Guard::index, "Its Index, which others may share.")
       .def_property_readonly(
           "radius", [](const Guard& self) { return self.settings().radius; },
           "Of the motion sphere [length].")

@@ -1,15 +1,144 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// The one file that sees NLopt.
 #include "keepout/solvers/nlopt_solver.h"
 
+#include <nlopt.h>
+
 #include <array>
+#include <memory>
 #include <new>
+#include <string>
+#include <type_traits>
 
 #include "answer_check.h"
-#include "minimize.h"
 #include "nearest_point.h"
 
 namespace keepout {
+namespace {
+
+struct Destroy {
+  void operator()(nlopt_opt opt) const noexcept { nlopt_destroy(opt); }
+};
+using Optimizer = std::unique_ptr<std::remove_pointer_t<nlopt_opt>, Destroy>;
+
+/// How a method is run: when it counts as converged, in multiples of the scale, and what it may
+/// spend.
+struct Schedule {
+  nlopt_algorithm algorithm;
+  double x_tolerance;
+  int most_evaluations;
+};
+
+Schedule schedule_of(NloptMethod method) noexcept {
+  switch (method) {
+    case NloptMethod::slsqp:
+      return {NLOPT_LD_SLSQP, 1e-12, 100};
+    case NloptMethod::cobyla:
+      return {NLOPT_LN_COBYLA, 1e-9, 5000};
+    case NloptMethod::mma:
+      break;
+  }
+  return {NLOPT_LD_MMA, 1e-9, 300};
+}
+
+std::string_view claim_of(nlopt_result result) noexcept {
+  const char* const text = nlopt_result_to_string(result);
+  return text != nullptr ? text : "unknown";
+}
+
+/// What NLopt calls back with. Counts for itself: not every loop of NLopt minds its own limit, nor
+/// stops at what is not a number (its issues 28 and 350).
+struct Callback {
+  const nlopt::NearestPoint& problem;
+  nlopt_opt optimizer;
+  int most_evaluations;
+  int evaluations = 0;
+
+  static double cost(unsigned n, const double* x, double* gradient, void* data) {
+    Callback& self = *static_cast<Callback*>(data);
+    const Eigen::Map<const Eigen::VectorXd> z(x, n);
+    if (++self.evaluations > self.most_evaluations || !z.allFinite()) {
+      nlopt_force_stop(self.optimizer);
+    }
+    if (gradient != nullptr) Eigen::Map<Eigen::VectorXd>(gradient, n) = z;
+    return 0.5 * z.squaredNorm();
+  }
+
+  static void violations(unsigned m, double* result, unsigned n, const double* x, double* gradient,
+                         void* data) {
+    const nlopt::NearestPoint& problem = static_cast<Callback*>(data)->problem;
+    const Eigen::Map<const Eigen::VectorXd> z(x, n);
+    Eigen::Map<Eigen::VectorXd> violations(result, m);  // no temporary: C cannot be thrown through
+    violations = problem.bounds;
+    violations.noalias() -= problem.normals * z;
+    if (gradient != nullptr) {
+      Eigen::Map<StepProblem::RowMatrix>(gradient, m, n) = -problem.normals;
+    }
+  }
+};
+
+/// Rest, or somewhere inside of all rows that is reached from there by projecting on one violated
+/// row after the other, if it is soon: MMA rarely recovers from a start that violates a row, were
+/// it by the last digit.
+Eigen::VectorXd start_of(const nlopt::NearestPoint& problem) {
+  constexpr int most_projections = 64;
+  constexpr double inside = 1e-3;
+  Eigen::VectorXd z = problem.rest;
+  for (int i = 0; i < most_projections && problem.bounds.size() > 0; ++i) {
+    Eigen::Index row = 0;
+    const double violation = (problem.bounds - problem.normals * z).maxCoeff(&row);
+    if (!(violation > 0)) break;
+    z += (violation + inside) * problem.normals.row(row).transpose();
+  }
+  return z;
+}
+
+/// What NLopt makes of a problem; nothing of it is checked.
+struct Attempt {
+  std::string_view claim;  // as NLopt spells it
+  Eigen::VectorXd z;
+  int evaluations = 0;
+};
+
+/// Runs a method of NLopt. Deterministic: limited in evaluations, never in time.
+Attempt minimize(NloptMethod method, const nlopt::NearestPoint& problem) {
+  const auto n = static_cast<unsigned>(problem.normals.cols());
+  const auto m = static_cast<unsigned>(problem.normals.rows());
+  const Schedule schedule = schedule_of(method);
+  const Optimizer optimizer(nlopt_create(schedule.algorithm, n));
+  Attempt attempt{.claim = {}, .z = start_of(problem)};
+  if (!optimizer) {
+    attempt.claim = claim_of(NLOPT_OUT_OF_MEMORY);
+    return attempt;
+  }
+  nlopt_opt opt = optimizer.get();
+  Callback callback{problem, opt, 2 * schedule.most_evaluations};
+  // A row counts as satisfied a little early; the check does not take that from it.
+  const Eigen::VectorXd tolerances = Eigen::VectorXd::Constant(m, 1e-13);
+  bool set = nlopt_set_min_objective(opt, Callback::cost, &callback) == NLOPT_SUCCESS &&
+             nlopt_set_xtol_abs1(opt, schedule.x_tolerance) == NLOPT_SUCCESS &&
+             nlopt_set_maxeval(opt, schedule.most_evaluations) == NLOPT_SUCCESS &&
+             nlopt_set_initial_step1(opt, 0.5) == NLOPT_SUCCESS &&
+             // Of the problem in the multipliers that MMA solves in each of its steps, by default
+             // 100000: seconds.
+             nlopt_set_param(opt, "dual_maxeval", 500) == NLOPT_SUCCESS;
+  if (m > 0) {
+    set = set && nlopt_add_inequality_mconstraint(opt, m, Callback::violations, &callback,
+                                                  tolerances.data()) == NLOPT_SUCCESS;
+  }
+  if (!set) {
+    attempt.claim = claim_of(NLOPT_INVALID_ARGS);
+    return attempt;
+  }
+  double least = 0;
+  attempt.claim = claim_of(nlopt_optimize(opt, attempt.z.data(), &least));
+  attempt.evaluations = callback.evaluations;
+  return attempt;
+}
+
+}  // namespace
 
 struct NloptSolver::Workspace {
   explicit Workspace(NloptMethod which) : method(which) {}
@@ -37,7 +166,7 @@ SolveStatus NloptSolver::solve(const StepProblem& problem, Solution& solution) n
   if (status != SolveStatus::optimal && status != SolveStatus::infeasible) return status;
   try {
     const nlopt::NearestPoint posed(problem);
-    const nlopt::Attempt attempt = nlopt::minimize(work_->method, posed);
+    const Attempt attempt = minimize(work_->method, posed);
     report = {attempt.claim, NloptFinding::infeasible};
     if (status == SolveStatus::optimal) {
       report.finding = work_->check.judge(posed.variables_at(attempt.z), problem, best,
@@ -50,6 +179,12 @@ SolveStatus NloptSolver::solve(const StepProblem& problem, Solution& solution) n
   }
   if (status == SolveStatus::infeasible) return status;
   return report.finding == NloptFinding::optimal ? status : SolveStatus::iteration_limit;
+}
+
+std::string NloptSolver::library() {
+  int major = 0, minor = 0, fix = 0;
+  nlopt_version(&major, &minor, &fix);
+  return "NLopt " + std::to_string(major) + '.' + std::to_string(minor) + '.' + std::to_string(fix);
 }
 
 NloptReport NloptSolver::last_report() const noexcept { return work_->report; }

@@ -100,7 +100,7 @@ struct Fall {
   /// Energy of the mass after so many cycles over that at the start. [N mm] / [N mm]
   double energy_gain(int cycles, EnergyReport* report = nullptr) const {
     PassivityObserver observer(largest_brake);
-    EnergyAccount account;
+    EnergyReport account;
     HeldForce held;
     double x = 0.0, v = -50.0, seen = 0.0;
     constexpr int substeps = 200;
@@ -110,7 +110,7 @@ struct Fall {
       const double stretch = std::max(0.0, -x);
       account.book(held, way, Vec3(0, 0, std::max(x, 0.0) - std::max(seen, 0.0)),
                    spring.stored(stretch));
-      account.note_active(-observer.energy());
+      account.active = std::max(account.active, -observer.energy());
       seen = x;
       held = {};
       if (stretch > 0.0) {
@@ -126,7 +126,7 @@ struct Fall {
         x += v * period / substeps;
       }
     }
-    if (report != nullptr) *report = account.report();
+    if (report != nullptr) *report = account;
     return (0.5 * mass * v * v + spring.stored(std::max(0.0, -x))) / (0.5 * mass * 50.0 * 50.0);
   }
 };

@@ -17,7 +17,6 @@
 #include "keepout/fixtures/poses.h"
 #include "keepout/fixtures/shapes.h"
 #include "keepout/ompl/guard_pool.h"
-#include "keepout/ompl/straight_only.h"
 #include "keepout/ompl/straight_way.h"
 #include "keepout/oracle/safety_oracle.h"
 

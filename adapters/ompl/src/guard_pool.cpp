@@ -22,13 +22,12 @@ GuardPool::GuardPool(std::function<MotionConstraint()> make, std::size_t most)
   options_ = free_.front()->options();
 }
 
-GuardPool::Loan::~Loan() {
-  if (!guard_) return;  // moved from
+void GuardPool::GiveBack::operator()(MotionConstraint* guard) const noexcept {
   {
-    const std::lock_guard lock(pool_->mutex_);
-    pool_->free_.push_back(std::move(guard_));
+    const std::lock_guard lock(pool->mutex_);
+    pool->free_.emplace_back(guard);
   }
-  pool_->returned_.notify_one();
+  pool->returned_.notify_one();
 }
 
 std::unique_ptr<MotionConstraint> GuardPool::made_anew(std::unique_lock<std::mutex>& lock) {
@@ -49,12 +48,12 @@ GuardPool::Loan GuardPool::borrow() {
   std::unique_lock lock(mutex_);
   while (true) {
     if (!free_.empty()) {
-      std::unique_ptr<MotionConstraint> guard = std::move(free_.back());
+      Loan guard(free_.back().release(), {this});
       free_.pop_back();
-      return {*this, std::move(guard)};
+      return guard;
     }
     if (made_ < most_) {
-      if (auto guard = made_anew(lock)) return {*this, std::move(guard)};
+      if (auto guard = made_anew(lock)) return {guard.release(), {this}};
       continue;
     }
     returned_.wait(lock, [this] { return !free_.empty(); });

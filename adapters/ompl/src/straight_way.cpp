@@ -15,9 +15,6 @@ bool steps_to(MotionConstraint& guard, const Vec3& from, const Vec3& to) noexcep
   return step.ok() && step.status != Status::recovering && step.motion == desired;
 }
 
-/// Halvings of the first piece that is not proven.
-constexpr int halvings = 8;
-
 /// More than any planner asks for; it bounds the time that a way of absurd length takes.
 constexpr double most_pieces = 1e6;
 
@@ -28,39 +25,19 @@ struct Pieces {
   Vec3 to;
   double count;
 
-  double share(double end) const noexcept { return end / count; }
   Vec3 at(double share) const noexcept {
     return share == 1.0 ? to : Vec3(from + share * (to - from));
   }
 };
 
-Pieces cut(const MotionConstraint& guard, const Vec3& from, const Vec3& to) noexcept {
+/// One piece after the other, as far as each is proven; of the first that is not, so many halvings
+/// are tried. `from` itself is not asked about.
+ProvenPrefix walk(MotionConstraint& guard, const Vec3& from, const Vec3& to,
+                  int halvings) noexcept {
   const double length = (to - from).norm();
-  return {from, to, std::max(1.0, std::ceil(length / guard.options().radius))};
-}
-
-}  // namespace
-
-bool keeps_margin(MotionConstraint& guard, const Vec3& point) noexcept {
-  return steps_to(guard, point, point);
-}
-
-bool proves(MotionConstraint& guard, const Vec3& from, const Vec3& to) noexcept {
-  const Pieces pieces = cut(guard, from, to);
-  if (!(pieces.count <= most_pieces)) return false;
-  Vec3 start = from;
-  for (double k = 1.0; k <= pieces.count; k += 1.0) {
-    const Vec3 end = pieces.at(pieces.share(k));
-    if (!steps_to(guard, start, end)) return false;
-    start = end;
-  }
-  return true;
-}
-
-ProvenPrefix proven_prefix(MotionConstraint& guard, const Vec3& from, const Vec3& to) noexcept {
-  ProvenPrefix prefix{.share = 0.0, .end = from, .may_start = keeps_margin(guard, from)};
-  const Pieces pieces = cut(guard, from, to);
-  if (!prefix.may_start || !(pieces.count <= most_pieces)) return prefix;
+  const Pieces pieces{from, to, std::max(1.0, std::ceil(length / guard.options().radius))};
+  ProvenPrefix prefix{.share = 0.0, .end = from, .may_start = true};
+  if (!(pieces.count <= most_pieces)) return prefix;
   const auto extend_to = [&](double share) {
     const Vec3 end = pieces.at(share);
     if (!steps_to(guard, prefix.end, end)) return false;
@@ -69,7 +46,7 @@ ProvenPrefix proven_prefix(MotionConstraint& guard, const Vec3& from, const Vec3
     return true;
   };
   for (double k = 1.0; k <= pieces.count; k += 1.0) {
-    if (extend_to(pieces.share(k))) continue;
+    if (extend_to(k / pieces.count)) continue;
     double step = 0.5 / pieces.count;
     for (int i = 0; i < halvings; ++i) {
       // Equal shares would say that nothing was gained.
@@ -79,6 +56,21 @@ ProvenPrefix proven_prefix(MotionConstraint& guard, const Vec3& from, const Vec3
     break;
   }
   return prefix;
+}
+
+}  // namespace
+
+bool keeps_margin(MotionConstraint& guard, const Vec3& point) noexcept {
+  return steps_to(guard, point, point);
+}
+
+bool proves(MotionConstraint& guard, const Vec3& from, const Vec3& to) noexcept {
+  return walk(guard, from, to, 0).whole();
+}
+
+ProvenPrefix proven_prefix(MotionConstraint& guard, const Vec3& from, const Vec3& to) noexcept {
+  if (!keeps_margin(guard, from)) return {.end = from};
+  return walk(guard, from, to, 8);
 }
 
 }  // namespace keepout

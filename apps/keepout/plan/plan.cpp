@@ -11,7 +11,7 @@
 #include "keepout/adapters/index_registry.h"
 #include "keepout/error.h"
 #include "keepout/factory/make_motion_constraint.h"
-#include "keepout/ompl/straight_only.h"
+#include "keepout/ompl/straight_way.h"
 #include "named_mesh.h"
 #include "number_text.h"
 #include "output_file.h"

@@ -70,6 +70,15 @@ class PassivityObserver {
   double energy_ = 0.0;
 };
 
+/// What acts in a cycle, until the next one.
+struct HeldForce {
+  Vec3 spring = Vec3::Zero();  // between the proxy and the hand, on the hand [N]
+  Vec3 brake = Vec3::Zero();   // between the ground and the hand, on the hand [N]
+
+  /// What the hand feels. [N]
+  Vec3 total() const noexcept { return spring + brake; }
+};
+
 /// Where the energy of a haptic display went since it was engaged. [N length]: millijoules, when
 /// the mesh is in millimetres. It adds up, to rounding:
 ///
@@ -88,44 +97,16 @@ struct EnergyReport {
   double largest_force = 0.0;    // [N]
   std::size_t cycles = 0;        // all of them
   std::size_t blind_cycles = 0;  // without a hand to observe: their work is not in the sums
-};
 
-/// What acts in a cycle, until the next one.
-struct HeldForce {
-  Vec3 spring = Vec3::Zero();  // between the proxy and the hand, on the hand [N]
-  Vec3 brake = Vec3::Zero();   // between the ground and the hand, on the hand [N]
-
-  /// What the hand feels. [N]
-  Vec3 total() const noexcept { return spring + brake; }
-};
-
-/// Adds the energies up. A force is held for a cycle, so its work on the way of the hand is exact.
-class EnergyAccount {
- public:
-  /// Starts anew, with nothing stored.
-  void restart() noexcept { *this = {}; }
-
-  /// Books what was held over the cycle past, in which hand and proxy went so far. `stored`: what
-  /// the spring holds now.
+  /// Books what was held over the cycle past, in which hand and proxy went so far. A force is held
+  /// for a cycle, so its work on the way of the hand is exact. `now_stored`: what the spring holds
+  /// now.
   void book(const HeldForce& held, const Vec3& hand_way, const Vec3& proxy_way,
-            double stored) noexcept;
+            double now_stored) noexcept;
 
   /// A cycle in which the hand was not seen. What the spring holds less or more since is taken to
   /// be lost to, or made by, damping.
-  void book_blind(double stored) noexcept;
-
-  /// Takes down what the hand is owed; the report keeps the most. [N length]
-  void note_active(double energy) noexcept { report_.active = std::max(report_.active, energy); }
-  /// Takes down how large the force is; the report keeps the largest. [N]
-  void note_force(double newtons) noexcept {
-    report_.largest_force = std::max(report_.largest_force, newtons);
-  }
-
-  /// The sums so far.
-  const EnergyReport& report() const noexcept { return report_; }
-
- private:
-  EnergyReport report_;
+  void book_blind(double now_stored) noexcept;
 };
 
 }  // namespace keepout

@@ -94,7 +94,7 @@ class HapticProxy {
   /// Whether it has been placed, and not been let go since.
   bool engaged() const noexcept { return engaged_; }
   /// What went to and fro since it was engaged.
-  const EnergyReport& energy() const noexcept { return account_.report(); }
+  const EnergyReport& energy() const noexcept { return energy_; }
   /// As they were given.
   const HapticOptions& options() const noexcept { return options_; }
   /// What the proxy is kept out of.
@@ -111,7 +111,7 @@ class HapticProxy {
   HapticOptions options_;
   double longest_;  // way of the proxy in a cycle [length]
   PassivityObserver passivity_;
-  EnergyAccount account_;
+  EnergyReport energy_;
   HeldForce held_;  // since the last cycle
   Vec3 proxy_ = Vec3::Zero();
   Vec3 hand_ = Vec3::Zero();      // where it was last seen

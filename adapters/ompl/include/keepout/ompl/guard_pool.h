@@ -28,26 +28,13 @@ class GuardPool {
   GuardPool(const GuardPool&) = delete;
   GuardPool& operator=(const GuardPool&) = delete;
 
-  /// A constraint for as long as this lives. It must not outlive the pool.
-  class Loan {
-   public:
-    /// Hands the constraint on; `other` has none any more.
-    Loan(Loan&& other) noexcept = default;
-    Loan& operator=(Loan&&) = delete;
-    ~Loan();
-
-    /// The constraint that is lent. Precondition: it was not handed on.
-    MotionConstraint& operator*() const noexcept { return *guard_; }
-    /// The same.
-    MotionConstraint* operator->() const noexcept { return guard_.get(); }
-
-   private:
-    friend class GuardPool;
-    Loan(GuardPool& pool, std::unique_ptr<MotionConstraint> guard) noexcept
-        : pool_(&pool), guard_(std::move(guard)) {}
-    GuardPool* pool_;
-    std::unique_ptr<MotionConstraint> guard_;
+  /// Gives a constraint back to the pool that it is of.
+  struct GiveBack {
+    GuardPool* pool;
+    void operator()(MotionConstraint* guard) const noexcept;
   };
+  /// A constraint for as long as this lives. It must not outlive the pool.
+  using Loan = std::unique_ptr<MotionConstraint, GiveBack>;
 
   /// Waits while `most` are out. A thread that borrows a second one before it has given back the
   /// first may wait for ever.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "keepout/step/motion_constraint.h"
+#include "keepout/step/solver.h"
 
 namespace keepout {
 
@@ -31,5 +32,18 @@ bool proves(MotionConstraint& guard, const Vec3& from, const Vec3& to) noexcept;
 
 /// The same, and how far it is proven if not to the end: to within 2^-8 of a piece.
 ProvenPrefix proven_prefix(MotionConstraint& guard, const Vec3& from, const Vec3& to) noexcept;
+
+/// A solver for a guard that only validates: it gives up on every problem. A motion that nothing
+/// holds back needs no solver; one that something does is refused at the first contact, without a
+/// search for the best motion in its place. With the certified rule, what is proven is the same;
+/// such a guard is of no use to steer.
+class StraightOnly final : public Solver {
+ public:
+  void reserve(int, int) override {}
+  bool reads_planes() const noexcept override { return true; }
+  SolveStatus solve(const StepProblem&, Solution&) noexcept override {
+    return SolveStatus::iteration_limit;
+  }
+};
 
 }  // namespace keepout
