@@ -1,12 +1,11 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "compare/comparison_verdict.h"
+#include "compare/comparison.h"
 
 #include <gtest/gtest.h>
 
 #include <string>
 
-#include "compare/comparison_files.h"
 
 namespace keepout::app {
 namespace {
