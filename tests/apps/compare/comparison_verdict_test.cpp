@@ -1,11 +1,10 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "compare/comparison.h"
-
 #include <gtest/gtest.h>
 
 #include <string>
 
+#include "compare/comparison.h"
 
 namespace keepout::app {
 namespace {
