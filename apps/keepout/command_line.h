@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "keepout/mesh/load_mesh.h"
 #include "keepout/factory/make_motion_constraint.h"
+#include "keepout/mesh/load_mesh.h"
 
 namespace keepout::app {
 

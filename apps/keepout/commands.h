@@ -67,6 +67,7 @@ struct SimulateOptions {
   Timings timings = Timings::of_the_run;
   Tables tables = Tables::in_the_report;
   std::string called_as = "keepout";  // what the user is told to type next
+  std::string command;                // that does it again
 };
 
 /// Pushes the tool over and into the anatomy in closed loop, without a fixture and with each rule;

@@ -2,11 +2,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "machine.h"
 
+#include <Eigen/Core>
+#include <algorithm>
 #include <array>
+#include <chrono>
 #include <ctime>
 #include <fstream>
 #include <sstream>
 #include <string_view>
+#include <thread>
+
+#include "bench/parts.h"
+#include "keepout/simd_target.h"
+#include "keepout/version.h"
 
 namespace keepout::app {
 namespace {
@@ -29,6 +37,38 @@ std::size_t kibibytes(std::string_view key) {
   return count << 10;
 }
 
+std::string operating_system() {
+  std::string name = value_of("/etc/os-release", "PRETTY_NAME", "=");
+  std::erase(name, '"');
+  return name.empty() ? "unknown system" : name;
+}
+
+/// What one reading of the clock takes, of many.
+double clock_cost() {
+  using Clock = std::chrono::steady_clock;
+  constexpr int readings = 100'000;
+  const Clock::time_point start = Clock::now();
+  Clock::time_point last = start;
+  for (int i = 0; i < readings; ++i) last = Clock::now();
+  return std::chrono::duration<double, std::nano>(last - start).count() / readings;
+}
+
+std::vector<std::string> libraries() {
+  std::vector<std::string> names = {"Eigen " + std::to_string(EIGEN_WORLD_VERSION) + "." +
+                                    std::to_string(EIGEN_MAJOR_VERSION) + "." +
+                                    std::to_string(EIGEN_MINOR_VERSION)};
+  const auto add = [&](const auto& table) {
+    for (const auto& entry : table) {
+      if (entry.library == nullptr) continue;
+      const std::string name = entry.library();
+      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    }
+  };
+  add(indices());
+  add(solver_backends());
+  return names;
+}
+
 }  // namespace
 
 std::string processor() {
@@ -36,15 +76,21 @@ std::string processor() {
   return name.empty() ? "unknown processor" : name;
 }
 
-std::string operating_system() {
-  std::string name = value_of("/etc/os-release", "PRETTY_NAME", "=");
-  std::erase(name, '"');
-  return name.empty() ? "unknown system" : name;
+Machine this_machine() {
+  return {.processor = processor(),
+          .cores = std::thread::hardware_concurrency(),
+          .memory_gib = static_cast<double>(kibibytes("MemTotal")) / static_cast<double>(1 << 30),
+          .simd = std::string(simd_target()),
+          .system = operating_system(),
+          .compiler = KEEPOUT_COMPILER,
+          .flags = KEEPOUT_FLAGS,
+          .build_type = KEEPOUT_BUILD_TYPE,
+          .keepout = KEEPOUT_VERSION,
+          .libraries = libraries(),
+          .clock_ns = clock_cost()};
 }
 
 std::size_t available_memory() { return kibibytes("MemAvailable"); }
-
-std::size_t total_memory() { return kibibytes("MemTotal"); }
 
 std::string date_now() {
   const std::time_t now = std::time(nullptr);

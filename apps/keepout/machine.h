@@ -4,20 +4,31 @@
 
 #include <cstddef>
 #include <string>
+#include <vector>
 
 namespace keepout::app {
+
+/// Where something ran: the machine, how keepout was built, and the libraries in it.
+struct Machine {
+  std::string processor;
+  unsigned cores = 0;
+  double memory_gib = 0.0;
+  std::string simd;  // the instruction set that keepout ran on
+  std::string system;
+  std::string compiler;
+  std::string flags;
+  std::string build_type;
+  std::string keepout;                 // version
+  std::vector<std::string> libraries;  // name and version
+  double clock_ns = 0.0;               // what reading the clock adds to each time
+};
+Machine this_machine();
 
 /// The processor's name, as the system tells it.
 std::string processor();
 
-/// The name and version of the system.
-std::string operating_system();
-
 /// Memory that a process could still take. [bytes]
 std::size_t available_memory();
-
-/// All of the machine's memory. [bytes]
-std::size_t total_memory();
 
 /// The time now in UTC, as ISO 8601 has it.
 std::string date_now();

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "bench/bench_command.h"
+#include "bench/bench.h"
 #include "command_line.h"
 #include "commands.h"
 #include "compare/compare.h"
@@ -211,6 +211,8 @@ int run(int argc, char** argv) {
   ServeOptions serve_options;
   VerifyOptions verify_options;
   PlanOptions plan_options;
+  BenchOptions bench_options;
+  CompareOptions compare_options;
   simulate_options.rules = names(activation_rules());
   simulate_options.called_as = app.get_name();
   add_inspect(app, inspect_options);
@@ -218,8 +220,8 @@ int run(int argc, char** argv) {
   add_simulate(app, simulate_options);
   add_serve(app, serve_options);
   add_verify(app, verify_options);
-  BenchCommand bench_command(app);
-  CompareCommand compare_command(app);
+  add_bench(app, bench_options);
+  add_compare(app, compare_options);
   add_plan(app, plan_options);
   for (CLI::App* command : app.get_subcommands([](CLI::App*) { return true; })) {
     command->group("Commands");
@@ -233,14 +235,16 @@ int run(int argc, char** argv) {
     return exit_usage;
   }
 
+  // For the record, so that it can be done again.
+  std::string command_line = "keepout";
+  for (int i = 1; i < argc; ++i) command_line += " " + shell_word(argv[i]);
+  bench_options.command = compare_options.command = simulate_options.command = command_line;
   if (app.got_subcommand("inspect")) inspect(inspect_options, std::cout);
   if (app.got_subcommand("replay")) replay(replay_options, std::cout);
   if (app.got_subcommand("serve")) return serve(serve_options, std::cerr);
   if (app.got_subcommand("simulate")) return simulate(simulate_options, std::cout);
-  if (app.got_subcommand("bench")) {
-    return bench_command.run({argv + 1, argv + argc}, std::cout, std::cerr);
-  }
-  if (app.got_subcommand("compare")) return compare_command.run({argv + 1, argv + argc}, std::cout);
+  if (app.got_subcommand("bench")) return bench(bench_options, std::cout, std::cerr);
+  if (app.got_subcommand("compare")) return compare(compare_options, std::cout);
   if (app.got_subcommand("plan")) return plan(plan_options, std::cout);
   if (app.got_subcommand("verify")) return verify(verify_options, std::cout);
   return EXIT_SUCCESS;

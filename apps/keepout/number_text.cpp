@@ -31,9 +31,7 @@ std::string rounded(double value, int digits) {
   if (value == 0.0) return "0";
   const int magnitude = static_cast<int>(std::floor(std::log10(std::abs(value))));
   const int decimals = std::clamp(digits - 1 - magnitude, 0, 9);
-  std::array<char, 512> text;  // the largest double has 309 digits
-  std::snprintf(text.data(), text.size(), "%.*f", decimals, value);
-  return text.data();
+  return formatted("%.*f", decimals, value);  // the largest double has 309 digits
 }
 
 std::string trimmed(double value, int digits) {

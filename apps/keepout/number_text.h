@@ -2,11 +2,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <cstdio>
 #include <string>
 #include <string_view>
 
 namespace keepout::app {
+
+/// By the rules of printf, up to 511 bytes.
+template <class... Values>
+std::string formatted(const char* format, Values... values) {
+  std::array<char, 512> text;
+  std::snprintf(text.data(), text.size(), format, values...);
+  return text.data();
+}
 
 /// A count with its thousands set apart: 24,000.
 std::string grouped(std::size_t count);

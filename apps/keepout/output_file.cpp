@@ -10,6 +10,7 @@
 #include <atomic>
 #include <string>
 #include <system_error>
+#include <vector>
 
 #include "keepout/error.h"
 
@@ -138,6 +139,7 @@ void OutputFile::finish() {
 }
 
 void OutputFile::commit() {
+  if (partial_.empty()) return;  // it is there
   finish();
   std::error_code error;
   std::filesystem::rename(partial_, path_, error);
@@ -150,6 +152,31 @@ void refuse_shared_files(std::span<const NamedPath> inputs, std::span<const Name
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     for (const NamedPath& input : inputs) refuse_if_same(outputs[i], input);
     for (std::size_t j = 0; j < i; ++j) refuse_if_same(outputs[i], outputs[j]);
+  }
+}
+
+OutputFiles::OutputFiles(std::span<const NamedPath> inputs, std::initializer_list<Asked> outputs) {
+  std::vector<NamedPath> paths;
+  for (const auto& [name, path] : outputs) {
+    if (path) paths.push_back({name, *path});
+  }
+  refuse_shared_files(inputs, paths);
+  for (const auto& [name, path] : paths) outputs_.emplace_back(name, path);
+}
+
+std::ostream* OutputFiles::stream(std::string_view name) {
+  const auto output = std::ranges::find(outputs_, name, &Output::name);
+  if (output == outputs_.end()) return nullptr;
+  output->is_written = true;
+  return &output->file.stream();
+}
+
+void OutputFiles::commit() {
+  for (Output& output : outputs_) {
+    if (output.is_written) output.file.finish();
+  }
+  for (Output& output : outputs_) {
+    if (output.is_written) output.file.commit();
   }
 }
 

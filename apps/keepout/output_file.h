@@ -4,8 +4,12 @@
 
 #include <filesystem>
 #include <fstream>
+#include <initializer_list>
+#include <list>
+#include <optional>
 #include <span>
 #include <string_view>
+#include <utility>
 
 namespace keepout::app {
 
@@ -48,5 +52,33 @@ struct NamedPath {
 /// Throws Error, naming both, when an output is the same file as an input or as another output, by
 /// whatever names and links, and whether or not it exists yet.
 void refuse_shared_files(std::span<const NamedPath> inputs, std::span<const NamedPath> outputs);
+
+/// The files that a command was asked for, made before any work: what cannot be written shall not
+/// be told of after an hour.
+class OutputFiles {
+ public:
+  /// What the user calls a file, and its path if he asked for it.
+  using Asked = std::pair<std::string_view, std::optional<std::filesystem::path>>;
+
+  /// Throws Error where OutputFile and refuse_shared_files do.
+  OutputFiles(std::span<const NamedPath> inputs, std::initializer_list<Asked> outputs);
+
+  /// Where to write; null where it was not asked for.
+  std::ostream* stream(std::string_view name);
+
+  /// Moves to their places those of which the stream was asked for, once all of them are whole.
+  /// Throws Error when one cannot be. The others may follow later.
+  void commit();
+
+ private:
+  struct Output {
+    Output(std::string_view called, const std::filesystem::path& path) : name(called), file(path) {}
+
+    std::string_view name;
+    OutputFile file;
+    bool is_written = false;
+  };
+  std::list<Output> outputs_;
+};
 
 }  // namespace keepout::app

@@ -12,12 +12,12 @@
 
 #include "audit.h"
 #include "bench/bench.h"
-#include "bench/benchmark_table.h"
+#include "bench/benchmark.h"
 #include "bench/used_cores.h"
 #include "clip.h"
 #include "commands.h"
 #include "compare/compare.h"
-#include "compare/comparison_files.h"
+#include "compare/comparison.h"
 #include "keepout/activation/registry.h"
 #include "keepout/error.h"
 #include "keepout/simd_target.h"
@@ -82,28 +82,10 @@ std::string number(double value) {
   return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
 }
 
-/// The command line that does all this again.
-std::string command_of(const SimulateOptions& options, const std::vector<std::string>& rules) {
-  std::string listed_rules;
-  for (const std::string& rule : rules) listed_rules += (listed_rules.empty() ? "" : ",") + rule;
-  return "keepout simulate " + shell_word(options.mesh.string()) + " --out " +
-         shell_word(options.report.string()) + " --activation " + listed_rules + " --index " +
-         options.constraint.index + " --solver " + options.constraint.solver + " --radius " +
-         number(options.constraint.radius) + " --tool-radius " +
-         number(options.constraint.tool_radius) + " --margin " + number(options.constraint.margin) +
-         " --refine " + std::to_string(options.constraint.refinements) + " --branches " +
-         std::to_string(options.constraint.nodes) + " --query " +
-         (options.constraint.query == Query::motion ? "motion" : "sphere") + " --max-step " +
-         number(options.max_step) + " --seed " + std::to_string(options.hand.seed) + " --strokes " +
-         std::to_string(options.hand.strokes) + " --cycles " + std::to_string(options.hand.cycles) +
-         (options.timings == Timings::of_every_part ? " --bench" : "");
-}
-
 std::vector<std::pair<std::string, std::string>> settings_of(const SimulateOptions& options,
-                                                             const std::vector<std::string>& rules,
                                                              const Mesh& mesh) {
   return {{"date", date_now()},
-          {"command", command_of(options, rules)},
+          {"command", options.command},
           {"triangles", std::to_string(mesh.triangle_count())},
           {"vertices", std::to_string(mesh.vertex_count())},
           {"index", options.constraint.index},
@@ -161,7 +143,7 @@ Measured timings_of(const SimulateOptions& options, const std::shared_ptr<const 
   if (options.timings == Timings::of_the_run) return measured;
   const Subject subject{.mesh = options.mesh.string()};
   const std::vector<Combination> combinations = quick_combinations();
-  measured.benchmark = new_benchmark(command_of(options, options.rules), 1, combinations, 1);
+  measured.benchmark = new_benchmark(options.command, 1, combinations, 1);
   const StopSignal stop;
   const UsedCores used;
   print_machine(out, measured.benchmark.machine);
@@ -209,11 +191,9 @@ void print_next(const SimulateOptions& options, std::ostream& out) {
 }  // namespace
 
 int simulate(const SimulateOptions& options, std::ostream& out) {
-  // Before any work: what cannot be written shall not be told of after minutes.
   require_within_reach(options.max_step, options.constraint.radius);
-  refuse_shared_files(std::array{NamedPath{"MESH", file_of_mesh(options.mesh)}},
-                      std::array{NamedPath{"--out", options.report}});
-  OutputFile report(options.report);
+  OutputFiles outputs(std::array{NamedPath{"MESH", file_of_mesh(options.mesh)}},
+                      {{"--out", options.report}});
   const LoadedMesh loaded = load_named_mesh(options.mesh, options.load);
   // Nor a mistyped name.
   const std::vector<std::string> rules = without_repeats(options.rules);
@@ -232,7 +212,7 @@ int simulate(const SimulateOptions& options, std::ostream& out) {
                         .surface = audit.surface(),
                         .margin = options.constraint.tool_radius + options.constraint.margin,
                         .cycle_seconds = options.hand.cycle_seconds,
-                        .settings = settings_of(options, rules, *loaded.mesh)};
+                        .settings = settings_of(options, *loaded.mesh)};
   const std::vector<std::vector<Vec3>> hand = hand_over(audit, options);
   for (auto& [rule, constraint] : fixtures) {
     simulation.runs.push_back(
@@ -242,8 +222,8 @@ int simulate(const SimulateOptions& options, std::ostream& out) {
   std::ostream tables(options.tables == Tables::printed ? out.rdbuf() : nullptr);
   print_table(tables, simulation);
   const auto [benchmark, comparison] = timings_of(options, loaded.mesh, tables);
-  print_report(report.stream(), simulation, benchmark, comparison);
-  report.commit();
+  print_report(*outputs.stream("--out"), simulation, benchmark, comparison);
+  outputs.commit();
   if (options.tables == Tables::printed) out << '\n';
   print_summary(out, simulation);
   if (!benchmark.rows.empty()) {

@@ -3,13 +3,11 @@
 #include "simulation_record.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdio>
 #include <limits>
 #include <ostream>
 #include <sstream>
 
+#include "bench/timing.h"
 #include "number_text.h"
 #include "report/text.h"
 #include "report/verdict.h"
@@ -17,31 +15,20 @@
 namespace keepout::app {
 namespace {
 
-/// The smallest value that at least the given part of the values does not exceed.
-double nearest_rank(const std::vector<float>& sorted, double part) {
-  const auto rank = static_cast<std::size_t>(std::ceil(part * static_cast<double>(sorted.size())));
-  return static_cast<double>(sorted[std::clamp<std::size_t>(rank, 1, sorted.size()) - 1]);
-}
-
 void add_step_times(const Run& run, RunSummary& summary) {
-  std::vector<float> times;
+  std::vector<double> times;
   times.reserve(summary.cycles);
   for (const Stroke& stroke : run.strokes) {
     for (const Cycle& cycle : stroke.cycles) times.push_back(cycle.step_us);
   }
   if (times.empty()) return;
-  std::sort(times.begin(), times.end());
-  summary.p50_us = nearest_rank(times, 0.50);
-  summary.p99_us = nearest_rank(times, 0.99);
-  summary.p999_us = nearest_rank(times, 0.999);
-  summary.max_us = static_cast<double>(times.back());
+  const Timing timing = timing_of(times);
+  summary.p50_us = timing.p50;
+  summary.max_us = timing.max;
+  // Of so few that it is missing the rank is that of the last.
+  summary.p99_us = timing.p99.value_or(timing.max);
+  summary.p999_us = timing.p999.value_or(timing.max);
   if (summary.p50_us > 0.0) summary.rate_khz = 1000.0 / summary.p50_us;
-}
-
-std::string fixed(double value, int decimals) {
-  std::array<char, 64> text;
-  std::snprintf(text.data(), text.size(), "%.*f", decimals, value);
-  return text.data();
 }
 
 /// Not bytes: our texts are in UTF-8.
@@ -145,24 +132,21 @@ void print_summary(std::ostream& out, const Simulation& simulation) {
 }
 
 void print_table(std::ostream& out, const Simulation& simulation) {
-  std::array<char, 256> line;
-  std::snprintf(line.data(), line.size(), "%-10s %8s %9s %9s %9s %12s %12s %8s %10s %9s\n", "rule",
-                "cycles", "kHz", "p50 us", "p99 us", "closest mm", "deepest mm", "inside",
-                "crossings", "stopped");
-  out << line.data();
+  out << formatted("%-10s %8s %9s %9s %9s %12s %12s %8s %10s %9s\n", "rule", "cycles", "kHz",
+                   "p50 us", "p99 us", "closest mm", "deepest mm", "inside", "crossings",
+                   "stopped");
   const bool closed = simulation.surface == SurfaceKind::closed;  // an open one has no inside
   for (const Run& run : simulation.runs) {
     const RunSummary s = summarize(run);
     // Without a fixture there is no step to be timed.
     const auto time = [&](double value, int decimals) {
-      return s.max_us > 0.0 ? fixed(value, decimals) : "-";
+      return s.max_us > 0.0 ? formatted("%.*f", decimals, value) : "-";
     };
-    std::snprintf(line.data(), line.size(), "%-10s %8zu %9s %9s %9s %12.4f %12s %8s %10zu %9zu\n",
-                  run.rule.c_str(), s.cycles, time(s.rate_khz, 1).c_str(),
-                  time(s.p50_us, 2).c_str(), time(s.p99_us, 2).c_str(), s.closest_approach,
-                  closed ? fixed(s.deepest_penetration, 4).c_str() : "-",
-                  closed ? std::to_string(s.cycles_inside).c_str() : "-", s.crossings, s.stopped);
-    out << line.data();
+    out << formatted(
+        "%-10s %8zu %9s %9s %9s %12.4f %12s %8s %10zu %9zu\n", run.rule.c_str(), s.cycles,
+        time(s.rate_khz, 1).c_str(), time(s.p50_us, 2).c_str(), time(s.p99_us, 2).c_str(),
+        s.closest_approach, closed ? formatted("%.4f", s.deepest_penetration).c_str() : "-",
+        closed ? std::to_string(s.cycles_inside).c_str() : "-", s.crossings, s.stopped);
   }
 }
 

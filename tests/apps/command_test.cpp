@@ -399,7 +399,7 @@ TEST_F(Command, TheReportTellsTheDateAndTheCommandThatMakesItAgain) {
   };
   const std::string table = untimed(
       "simulate cube.stl --out r.html --strokes 2 --cycles 50 --margin 0.1 --radius 1.25 "
-      "--activation certified --seed 12");
+      "--activation certified --untagged lps --seed 12");
   std::ifstream stream(file("r.html"));
   const std::string page{std::istreambuf_iterator<char>(stream), {}};
   const std::regex tag("<[^>]*>");
@@ -416,7 +416,9 @@ TEST_F(Command, TheReportTellsTheDateAndTheCommandThatMakesItAgain) {
   EXPECT_EQ(setting("SIMD target"), simd_target());
   const std::string command = setting("command");
   ASSERT_TRUE(command.starts_with("keepout simulate ")) << command;
-  EXPECT_NE(command.find("--seed 12 "), std::string::npos) << command;
+  for (const char* given : {"--seed 12 ", "--untagged lps "}) {
+    EXPECT_NE(command.find(given), std::string::npos) << command;
+  }
   EXPECT_NE(table.find("\nnone "), std::string::npos) << table;
   EXPECT_EQ(untimed(command.substr(8)), table);
 }

@@ -9,20 +9,19 @@
 #include <new>
 #include <ostream>
 
-#include "bench/benchmark_table.h"
-#include "bench/machine_record.h"
+#include "bench/benchmark.h"
 #include "bench/parts.h"
 #include "bench/used_cores.h"
 #include "compare/compare.h"
-#include "compare/comparison_files.h"
+#include "compare/comparison.h"
 #include "keepout/activation/registry.h"
 #include "keepout/error.h"
 #include "keepout/fixtures/real_mesh.h"
 #include "machine.h"
 #include "named_mesh.h"
+#include "names.h"
 #include "number_text.h"
 #include "output_file.h"
-#include "names.h"
 #include "progress.h"
 #include "report/benchmark_report.h"
 #include "report/text.h"
@@ -62,25 +61,13 @@ TrialSettings settings_of(const BenchOptions& options) {
           .seed = options.seed};
 }
 
-std::unique_ptr<OutputFile> open(const std::optional<std::filesystem::path>& path) {
-  return path ? std::make_unique<OutputFile>(*path) : nullptr;
-}
-
-std::vector<NamedPath> outputs_of(const BenchOptions& options) {
-  std::vector<NamedPath> outputs;
-  if (options.json) outputs.push_back({"--json", *options.json});
-  if (options.csv) outputs.push_back({"--csv", *options.csv});
-  outputs.push_back({"--out", options.report});
-  return outputs;
-}
-
 /// Refuses a mesh of which there is none, too: a mistyped name is told of before the first row.
-void refuse_overwriting(const BenchOptions& options, const std::vector<Subject>& subjects) {
+OutputFiles outputs_of(const BenchOptions& options, const std::vector<Subject>& subjects) {
   std::vector<NamedPath> inputs;
   for (const Subject& subject : subjects) {
     inputs.push_back({"--mesh", file_of_mesh(subject.mesh)});
   }
-  refuse_shared_files(inputs, outputs_of(options));
+  return {inputs, {{"--json", options.json}, {"--csv", options.csv}, {"--out", options.report}}};
 }
 
 void list_absent(std::ostream& out, std::span<const AbsentPart> parts) {
@@ -114,8 +101,7 @@ std::string_view remark_of(const Entry& entry) {
   return {};
 }
 
-}  // namespace
-
+/// Says what there is to measure, and what this build was made without.
 void list_parts(std::ostream& out) {
   out << listing("Indices (--index)", indices());
   list_absent(out, absent_indices());
@@ -126,6 +112,19 @@ void list_parts(std::ostream& out) {
   for (const std::string_view mesh : real_meshes()) out << ' ' << mesh;
   out << "\n  --triangles resamples " << resampled_mesh << " to any number of triangles\n";
 }
+
+int measure_speed(const BenchOptions& options, std::ostream& out) {
+  if (options.triangles.size() > 1) throw Error("--speed: give --triangles one size");
+  SpeedOptions speed = options.speed;
+  if (!options.triangles.empty()) speed.triangles = options.triangles.front();
+  speed.seed = options.seed;
+  speed.report = options.report;
+  speed.json = options.json;
+  speed.command = options.command;
+  return bench_speed(speed, out);
+}
+
+}  // namespace
 
 void run_trial(const Subject& subject, const std::vector<Combination>& combinations,
                const TrialSettings& settings, MemoryTaken& memory, const StopSignal& stop,
@@ -174,12 +173,15 @@ Benchmark new_benchmark(const std::string& command, std::uint64_t seed,
 }
 
 int bench(const BenchOptions& options, std::ostream& out, std::ostream& notes) {
+  if (options.list) {
+    list_parts(out);
+    return EXIT_SUCCESS;
+  }
+  if (options.is_speed) return measure_speed(options, out);
   const std::vector<Subject> subjects = chosen_subjects(options);
   const std::vector<Combination> combinations = combinations_of(options.selection);
   if (combinations.empty()) throw Error("there is nothing to measure: see 'keepout bench --list'");
-  refuse_overwriting(options, subjects);
-  OutputFile report(options.report);
-  const std::unique_ptr<OutputFile> json = open(options.json), csv = open(options.csv);
+  OutputFiles outputs = outputs_of(options, subjects);
 
   const StopSignal stop;
   Benchmark benchmark = new_benchmark(options.command, options.seed, combinations, subjects.size());
@@ -203,25 +205,21 @@ int bench(const BenchOptions& options, std::ostream& out, std::ostream& notes) {
     return exit_interrupted;
   }
   // What has been measured is safe before anything else is tried.
-  if (json) write_json(json->stream(), benchmark);
-  if (csv) write_csv(csv->stream(), benchmark);
-  for (OutputFile* file : {json.get(), csv.get()}) {
-    if (file != nullptr) file->finish();
-  }
-  for (OutputFile* file : {json.get(), csv.get()}) {
-    if (file != nullptr) file->commit();
-  }
+  if (auto* const json = outputs.stream("--json")) write_json(*json, benchmark);
+  if (auto* const csv = outputs.stream("--csv")) write_csv(*csv, benchmark);
+  outputs.commit();
   const bool ended_early = failure || stop.has_come();
   print_benchmark_report(
-      report.stream(), benchmark,
+      *outputs.stream("--out"), benchmark,
       ended_early ? Comparison{} : comparison_for(options, subjects.front(), stop, out));
-  report.commit();
+  outputs.commit();
   print_verdict(out, benchmark);
   out << "report: " << options.report.string() << '\n';
   if (!failure && !stop.has_come()) return EXIT_SUCCESS;
-  std::vector<std::string> kept;
-  for (const NamedPath& output : outputs_of(options)) kept.push_back(output.path.string());
-  std::ranges::rotate(kept, kept.end() - 1);  // the report first
+  std::vector<std::string> kept{options.report.string()};
+  for (const auto& path : {options.json, options.csv}) {
+    if (path) kept.push_back(path->string());
+  }
   notes << "keepout: stopped; " << grouped(benchmark.rows.size()) << " of "
         << counted(benchmark.planned, "row") << " were finished, and are kept in " << listed(kept)
         << '\n';

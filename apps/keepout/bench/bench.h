@@ -9,8 +9,13 @@
 #include <vector>
 
 #include "bench/combination.h"
+#include "bench/speed/speed.h"
 #include "bench/trial.h"
 #include "stop_signal.h"
+
+namespace CLI {
+class App;
+}
 
 namespace keepout::app {
 
@@ -20,7 +25,10 @@ enum class Extent {
 };
 
 struct BenchOptions {
-  std::vector<std::string> meshes;     // fixtures or files; empty: up to the extent
+  bool list = false;                // what there is to measure, and no more
+  bool is_speed = false;            // the table of ratios instead, to be measured as `speed` says
+  SpeedOptions speed;               // but for what follows
+  std::vector<std::string> meshes;  // fixtures or files; empty: up to the extent
   std::vector<std::size_t> triangles;  // sizes of the bunny; empty: up to the extent
   Selection selection;
   Extent extent = Extent::standard;
@@ -33,6 +41,9 @@ struct BenchOptions {
   std::string command;                                  // that does it again
 };
 
+/// Adds `keepout bench` and its options to the command line.
+void add_bench(CLI::App& app, BenchOptions& options);
+
 /// Measures every combination that was asked for on every mesh, prints a table as it goes, compares
 /// the parts' answers on the first mesh, and writes a report and files. Throws Error before any
 /// work when one could not be written, or there is no mesh of a name.
@@ -42,9 +53,6 @@ struct BenchOptions {
 /// and where; where there is none, nothing is written. The same goes for a mesh that turns out to
 /// be broken: its error is thrown after the rows of those before it are written.
 int bench(const BenchOptions& options, std::ostream& out, std::ostream& notes);
-
-/// Says what there is to measure, and what this build was made without.
-void list_parts(std::ostream& out);
 
 /// An empty record of this machine, for those rows on so many meshes.
 Benchmark new_benchmark(const std::string& command, std::uint64_t seed,

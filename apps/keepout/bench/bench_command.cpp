@@ -1,26 +1,59 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/bench_command.h"
-
-#include <cstdlib>
-#include <map>
-#include <ostream>
-
+#include "bench/bench.h"
 #include "bench/parts.h"
 #include "command_line.h"
 #include "keepout/activation/registry.h"
-#include "keepout/error.h"
 #include "names.h"
 
 namespace keepout::app {
 
-BenchCommand::BenchCommand(CLI::App& app) {
-  BenchOptions& options = options_;
+namespace {
+
+/// To be called last: it has no use for most of the others.
+void add_speed_options(CLI::App& command, BenchOptions& options) {
+  SpeedOptions& speed_options = options.speed;
+  CLI::Option* speed = command.add_flag(
+      "--speed", options.is_speed,
+      "Measure the table of ratios that keepout is held to, in one process on one core; some "
+      "minutes. With --triangles: one size, for meshes of about a million");
+  for (const char* name : {"--list", "--index", "--activation", "--solver", "--mesh", "--radius",
+                           "--full", "--queries", "--seconds", "--poses", "--csv"}) {
+    speed->excludes(name);
+  }
+  command
+      .add_option("--steps", speed_options.histogram_steps, "Of --speed: steps of the histogram")
+      ->type_name("NUMBER")
+      ->transform(large_count())
+      ->needs(speed)
+      ->capture_default_str();
+  command
+      .add_option(
+          "--largest", speed_options.largest,
+          "Of --speed: also a mesh of so many triangles. 100000000 need 14 GiB, 5 GB of the "
+          "disk, and some minutes")
+      ->type_name("NUMBER")
+      ->transform(whole_number(1000, 200'000'000))
+      ->needs(speed);
+  command
+      .add_flag_callback(
+          "--quick",
+          [&speed_options] {
+            speed_options.effort = quick;
+            speed_options.file = "bunny";
+          },
+          "Of --speed: few of everything, to see that it works")
+      ->needs(speed);
+}
+
+}  // namespace
+
+void add_bench(CLI::App& app, BenchOptions& options) {
   CLI::App& command = *app.add_subcommand(
       "bench",
       "Time every stage of the step, for indices, rules and solvers side by side; each is held to "
       "brute force and to our own solver as it is timed");
-  command.add_flag("--list", list_, "Say what there is to measure, and stop");
+  command.add_flag("--list", options.list, "Say what there is to measure, and stop");
   const auto add_list = [&](const char* name, std::vector<std::string>& list, const auto& table,
                             const char* text) {
     command.add_option(name, list, text)
@@ -65,75 +98,17 @@ BenchCommand::BenchCommand(CLI::App& app) {
                   "contact: a tool that slides along the surface; unrelated: as a planner asks")
       ->transform(one_of<Poses>({{"contact", Poses::contact}, {"unrelated", Poses::unrelated}}))
       ->default_str("contact");
-  command.add_option("--seed", options.seed, "Seed of the motions")
-      ->type_name("NUMBER")
-      ->transform(whole_number(0, largest_seed))
-      ->capture_default_str();
+  add_number(command, "--seed", options.seed, 0, largest_seed, "Seed of the motions");
   command.add_option("--json", options.json, "Where to write all figures")->type_name("FILE");
   command.add_option("--csv", options.csv, "Where to write them as a table")->type_name("FILE");
   command.add_option("--out", options.report, "Where to write a report with plots")
       ->type_name("REPORT.html")
       ->capture_default_str();
-  add_speed_options(command);
+  add_speed_options(command, options);
   command.footer(
       "Each list is crossed with the others; what is not named is wide_bvh, paper and certified,\n"
       "active_set, and radii of 5, 1 and 0.25. Without --index, --activation and\n"
       "--solver: each index, then each solver, with those; and FCL's tree with SLSQP.");
-}
-
-void BenchCommand::add_speed_options(CLI::App& command) {
-  CLI::Option* speed = command.add_flag(
-      "--speed", is_speed_,
-      "Measure the table of ratios that keepout is held to, in one process on one core; some "
-      "minutes. With --triangles: one size, for meshes of about a million");
-  for (const char* name : {"--list", "--index", "--activation", "--solver", "--mesh", "--radius",
-                           "--full", "--queries", "--seconds", "--poses", "--csv"}) {
-    speed->excludes(name);
-  }
-  command.add_option("--steps", speed_.histogram_steps, "Of --speed: steps of the histogram")
-      ->type_name("NUMBER")
-      ->transform(large_count())
-      ->needs(speed)
-      ->capture_default_str();
-  command
-      .add_option(
-          "--largest", speed_.largest,
-          "Of --speed: also a mesh of so many triangles. 100000000 need 14 GiB, 5 GB of the "
-          "disk, and some minutes")
-      ->type_name("NUMBER")
-      ->transform(whole_number(1000, 200'000'000))
-      ->needs(speed);
-  command
-      .add_flag_callback(
-          "--quick",
-          [this] {
-            speed_.effort = quick;
-            speed_.file = "bunny";
-          },
-          "Of --speed: few of everything, to see that it works")
-      ->needs(speed);
-}
-
-int BenchCommand::run_speed(std::ostream& out) {
-  if (options_.triangles.size() > 1) throw Error("--speed: give --triangles one size");
-  if (!options_.triangles.empty()) speed_.triangles = options_.triangles.front();
-  speed_.seed = options_.seed;
-  speed_.report = options_.report;
-  speed_.json = options_.json;
-  speed_.command = options_.command;
-  return bench_speed(speed_, out);
-}
-
-int BenchCommand::run(const std::vector<std::string>& arguments, std::ostream& out,
-                      std::ostream& notes) {
-  if (list_) {
-    list_parts(out);
-    return EXIT_SUCCESS;
-  }
-  options_.command = "keepout";
-  for (const std::string& argument : arguments) options_.command += " " + shell_word(argument);
-  if (is_speed_) return run_speed(out);
-  return bench(options_, out, notes);
 }
 
 }  // namespace keepout::app

@@ -4,12 +4,14 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <iosfwd>
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "bench/timing.h"
+#include "machine.h"
 
 namespace keepout::app {
 
@@ -54,21 +56,6 @@ struct BenchmarkRow {
   std::string remark = {};                    // why it was not timed, or anything else worth saying
 };
 
-/// Where it ran.
-struct Machine {
-  std::string processor;
-  unsigned cores = 0;
-  double memory_gib = 0.0;
-  std::string simd;  // the instruction set that keepout ran on
-  std::string system;
-  std::string compiler;
-  std::string flags;
-  std::string build_type;
-  std::string keepout;                 // version
-  std::vector<std::string> libraries;  // name and version
-  double clock_ns = 0.0;               // what reading the clock adds to each time
-};
-
 struct Benchmark {
   std::string date;     // ISO 8601, UTC
   std::string command;  // that does it again
@@ -80,5 +67,20 @@ struct Benchmark {
   std::optional<double> others_cores = {};  // that other processes kept busy meanwhile, if known
   std::vector<BenchmarkRow> rows = {};
 };
+
+/// What is printed for a terminal: where it ran and what the columns mean; line by line as the rows
+/// come in; and what was found in the end.
+void print_machine(std::ostream& out, const Machine& machine);
+void print_table_head(std::ostream& out);
+void print_table_row(std::ostream& out, const BenchmarkRow& row);
+void print_verdict(std::ostream& out, const Benchmark& benchmark);
+
+/// All of it: {"machine": {...}, "rows": [{"mesh": ..., "query_us": {"p50": ..., ...}, ...}, ...]}.
+/// null stands for what was not measured; a radius of null is as far as the motions lead.
+void write_json(std::ostream& out, const Benchmark& benchmark);
+
+/// The rows, one a line, below a line of names; what was not measured is empty. Each says where it
+/// was measured, so that files can be put together.
+void write_csv(std::ostream& out, const Benchmark& benchmark);
 
 }  // namespace keepout::app

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/benchmark_table.h"
-
 #include <array>
 #include <charconv>
 #include <cstdio>
@@ -9,6 +7,7 @@
 #include <sstream>
 #include <string>
 
+#include "bench/benchmark.h"
 #include "bench/json_parts.h"
 #include "number_text.h"
 #include "report/benchmark_verdict.h"
@@ -29,9 +28,7 @@ std::string share(double value, const char* of_what) {
 
 /// JSON has no 64-bit whole numbers that every reader keeps.
 std::string hexadecimal(std::uint64_t value) {
-  std::array<char, 20> text;
-  std::snprintf(text.data(), text.size(), "%016llx", static_cast<unsigned long long>(value));
-  return text.data();
+  return formatted("%016llx", static_cast<unsigned long long>(value));
 }
 
 Json json_of(const std::optional<Timing>& timing) {

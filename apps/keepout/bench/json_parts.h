@@ -2,16 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "bench/benchmark.h"
+#include "columns.h"
 
 namespace keepout::app {
 
 // What the JSON of all benchmarks is made of.
-
-using Json = nlohmann::ordered_json;
 
 template <class T>
 Json or_null(const std::optional<T>& value) {

@@ -2,18 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "compare/compare.h"
 
-#include <CLI/CLI.hpp>
 #include <array>
 #include <cstdlib>
 #include <ostream>
 
-#include "bench/machine_record.h"
 #include "bench/parts.h"
 #include "bench/subject.h"
 #include "command_line.h"
 #include "compare/agreement.h"
-#include "compare/comparison_files.h"
-#include "compare/comparison_verdict.h"
+#include "compare/comparison.h"
 #include "keepout/activation/registry.h"
 #include "machine.h"
 #include "named_mesh.h"
@@ -70,33 +67,22 @@ Comparison compare_parts(const std::string& mesh_name, const std::shared_ptr<con
   return comparison;
 }
 
-CompareCommand::CompareCommand(CLI::App& app) {
-  CompareOptions& options = options_;
+void add_compare(CLI::App& app, CompareOptions& options) {
   CLI::App& command = *app.add_subcommand(
       "compare",
       "Hold all parts that can take each other's place to each other and to the truth, on the same "
       "input: indices, solvers, narrow phases");
   command.add_option("MESH", options.mesh, std::string(mesh_help))->capture_default_str();
-  command.add_option("--poses", options.extent.poses, "Poses for the indices, under each rule")
-      ->type_name("NUMBER")
-      ->transform(whole_number(6, 1'000'000))
-      ->capture_default_str();
-  command.add_option("--problems", options.extent.problems, "Recorded problems for the solvers")
-      ->type_name("NUMBER")
-      ->transform(whole_number(10, 1'000'000))
-      ->capture_default_str();
-  command
-      .add_option("--pairs", options.extent.pairs,
-                  "Pairs of tool and triangle for the narrow phases, of each kind: apart, "
-                  "overlapping, and touching, which is within " +
-                      std::string(touch_text) + " of a touch, on either side")
-      ->type_name("NUMBER")
-      ->transform(whole_number(10, 1'000'000))
-      ->capture_default_str();
-  command.add_option("--seed", options.extent.seed, "Seed of poses, problems and pairs")
-      ->type_name("NUMBER")
-      ->transform(whole_number(0, largest_seed))
-      ->capture_default_str();
+  add_number(command, "--poses", options.extent.poses, 6, 1'000'000,
+             "Poses for the indices, under each rule");
+  add_number(command, "--problems", options.extent.problems, 10, 1'000'000,
+             "Recorded problems for the solvers");
+  add_number(command, "--pairs", options.extent.pairs, 10, 1'000'000,
+             "Pairs of tool and triangle for the narrow phases, of each kind: apart, overlapping, "
+             "and touching, which is within " +
+                 std::string(touch_text) + " of a touch, on either side");
+  add_number(command, "--seed", options.extent.seed, 0, largest_seed,
+             "Seed of poses, problems and pairs");
   command.add_option("--json", options.json, "Where to write the tables and the verdict")
       ->type_name("FILE");
   command.footer(
@@ -105,20 +91,12 @@ CompareCommand::CompareCommand(CLI::App& app) {
       "Ctrl-C, which keeps the rows that are finished.");
 }
 
-int CompareCommand::run(const std::vector<std::string>& arguments, std::ostream& out) const {
-  const CompareOptions& options = options_;
-  std::string command = "keepout";
-  for (const std::string& argument : arguments) command += " " + shell_word(argument);
-  std::unique_ptr<OutputFile> json;
-  if (options.json) {
-    refuse_shared_files(std::array{NamedPath{"MESH", options.mesh}},
-                        std::array{NamedPath{"--json", *options.json}});
-    json = std::make_unique<OutputFile>(*options.json);
-  }
+int compare(const CompareOptions& options, std::ostream& out) {
+  OutputFiles outputs(std::array{NamedPath{"MESH", options.mesh}}, {{"--json", options.json}});
   const Subject subject{.mesh = options.mesh};
   const std::shared_ptr<const Mesh> mesh = make_mesh(subject);
   ComparisonRecord record{.date = date_now(),
-                          .command = command,
+                          .command = options.command,
                           .mesh = label_of(subject),
                           .triangles = mesh->triangle_count(),
                           .extent = options.extent,
@@ -126,10 +104,8 @@ int CompareCommand::run(const std::vector<std::string>& arguments, std::ostream&
   const StopSignal stop;
   record.comparison = compare_parts(record.mesh, mesh, options.extent, &stop);
   print(out, record.comparison);
-  if (json) {
-    write_json(json->stream(), record);
-    json->commit();
-  }
+  if (auto* const json = outputs.stream("--json")) write_json(*json, record);
+  outputs.commit();
   if (!record.comparison.complete) return exit_interrupted;
   return agree(record.comparison) ? EXIT_SUCCESS : EXIT_FAILURE;
 }

@@ -23,6 +23,7 @@ struct CompareOptions {
   std::string mesh = "skull";  // a real fixture or a file
   CompareExtent extent;
   std::optional<std::filesystem::path> json;  // to be written
+  std::string command;                        // that does it again
 };
 
 /// Everything that can take another's place, on the same input; as much as is finished when `stop`,
@@ -30,20 +31,11 @@ struct CompareOptions {
 Comparison compare_parts(const std::string& mesh_name, const std::shared_ptr<const Mesh>& mesh,
                          const CompareExtent& extent, const StopSignal* stop = nullptr);
 
-/// keepout compare: its options, and what they lead to. Stays where it is once made.
-class CompareCommand {
- public:
-  explicit CompareCommand(CLI::App& app);
-  CompareCommand(const CompareCommand&) = delete;
-  CompareCommand& operator=(const CompareCommand&) = delete;
+/// Adds `keepout compare` and its options to the command line.
+void add_compare(CLI::App& app, CompareOptions& options);
 
-  /// After parsing: compares, and prints tables and a verdict. `arguments`: of the whole command
-  /// line, to be noted. Throws Error. For the exit status: nonzero when parts disagree by more than
-  /// they may, and exit_interrupted when a signal came first.
-  int run(const std::vector<std::string>& arguments, std::ostream& out) const;
-
- private:
-  CompareOptions options_;
-};
+/// Compares, and prints tables and a verdict. Throws Error. For the exit status: nonzero when parts
+/// disagree by more than they may, and exit_interrupted when a signal came first.
+int compare(const CompareOptions& options, std::ostream& out);
 
 }  // namespace keepout::app

@@ -1,10 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "compare/comparison_verdict.h"
-
 #include <algorithm>
 #include <set>
 
+#include "compare/comparison.h"
 #include "number_text.h"
 #include "report/text.h"
 

@@ -1,11 +1,10 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "compare/recorded_problems.h"
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "compare/agreement.h"
 #include "keepout/activation/registry.h"
 #include "keepout/error.h"
 #include "keepout/fixtures/poses.h"

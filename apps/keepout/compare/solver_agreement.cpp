@@ -6,7 +6,6 @@
 
 #include "bench/benchmark.h"
 #include "compare/agreement.h"
-#include "compare/recorded_problems.h"
 #include "keepout/solvers/active_set.h"
 #include "keepout/solvers/kkt.h"
 #include "keepout/solvers/registry.h"

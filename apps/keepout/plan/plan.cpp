@@ -71,40 +71,11 @@ std::shared_ptr<GuardPool> validating_guards(const PlanOptions& options, const P
   });
 }
 
-class Outputs {
- public:
-  explicit Outputs(const PlanOptions& options) {
-    std::vector<NamedPath> inputs, outputs;
-    if (options.mesh) inputs.push_back({"MESH", file_of_mesh(*options.mesh)});
-    const auto add = [&](const char* name, const std::optional<std::filesystem::path>& path) {
-      if (path) outputs.push_back({name, *path});
-    };
-    add("--json", options.json);
-    add("--csv", options.csv);
-    add("--out", options.page);
-    refuse_shared_files(inputs, outputs);
-    // Before any work: what cannot be written shall not be told of after an hour.
-    if (options.json) json_ = std::make_unique<OutputFile>(*options.json);
-    if (options.csv) csv_ = std::make_unique<OutputFile>(*options.csv);
-    if (options.page) page_ = std::make_unique<OutputFile>(*options.page);
-  }
-
-  void write(const PlanOptions& options, const std::vector<PlanningScene>& scenes,
-             const std::vector<PlanningRun>& runs) {
-    if (json_) write_planning_json(json_->stream(), options, runs);
-    if (csv_) write_planning_csv(csv_->stream(), runs);
-    if (page_) write_planning_page(page_->stream(), options, scenes, runs);
-    for (OutputFile* file : {json_.get(), csv_.get(), page_.get()}) {
-      if (file != nullptr) file->finish();
-    }
-    for (OutputFile* file : {json_.get(), csv_.get(), page_.get()}) {
-      if (file != nullptr) file->commit();
-    }
-  }
-
- private:
-  std::unique_ptr<OutputFile> json_, csv_, page_;
-};
+OutputFiles outputs_of(const PlanOptions& options) {
+  std::vector<NamedPath> inputs;
+  if (options.mesh) inputs.push_back({"MESH", file_of_mesh(*options.mesh)});
+  return {inputs, {{"--json", options.json}, {"--csv", options.csv}, {"--out", options.page}}};
+}
 
 void run_scene(const PlanOptions& options, PlanningScene& where, Progress& progress,
                const StopSignal& stop, std::vector<PlanningRun>& runs) {
@@ -167,7 +138,7 @@ void print_lead(std::ostream& out, const PlanOptions& options) {
 }  // namespace
 
 int plan(const PlanOptions& options, std::ostream& out) {
-  Outputs outputs(options);
+  OutputFiles outputs = outputs_of(options);
   const StopSignal stop;  // after the files, which a second signal removes
   std::vector<PlanningScene> scenes = scenes_of(options);
   std::vector<PlanningRun> runs;
@@ -178,7 +149,10 @@ int plan(const PlanOptions& options, std::ostream& out) {
       if (!stop.has_come()) run_scene(options, where, progress, stop, runs);
     }
   }
-  outputs.write(options, scenes, runs);
+  if (auto* const json = outputs.stream("--json")) write_planning_json(*json, options, runs);
+  if (auto* const csv = outputs.stream("--csv")) write_planning_csv(*csv, runs);
+  if (auto* const page = outputs.stream("--out")) write_planning_page(*page, options, scenes, runs);
+  outputs.commit();
   print_lead(out, options);
   print_table(out, summaries(runs));
   if (stop.has_come()) {

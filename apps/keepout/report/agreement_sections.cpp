@@ -9,7 +9,7 @@
 #include <ostream>
 #include <vector>
 
-#include "compare/comparison_verdict.h"
+#include "compare/comparison.h"
 #include "number_text.h"
 #include "report/mark.h"
 #include "report/page.h"

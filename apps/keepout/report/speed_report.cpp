@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "bench/speed/speed_table.h"
+#include "bench/speed/speed_record.h"
 #include "number_text.h"
 #include "report/benchmark_style.h"
 #include "report/histogram_plots.h"

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <utility>
 
+#include "keepout/factory/make_motion_constraint.h"
 #include "path.h"
 #include "setup.h"
 
@@ -88,7 +89,26 @@ void run_trajectory(Scene& scene, Guard& guard, std::uint64_t number, std::uint6
   }
 }
 
+/// Options follow with each tip: at first any will do that are not refused.
+MotionConstraintSettings any_settings(const Scene& scene) {
+  const double radius = scene.mean_edge();
+  return {.radius = radius,
+          .margin = scene.longest_edge() + least_distance_kept(scene, radius),
+          .capacity = {.nodes = most_nodes}};
+}
+
 }  // namespace
+
+Guard::Guard(const Scene& scene)
+    : constraint_(make_motion_constraint(scene.mesh(), scene.shared_index(), any_settings(scene))) {
+}
+
+void Guard::begin(const StepOptions& options, Inside inside) {
+  constraint_.set_options(options);
+  sides_ = inside == Inside::led_out ? constraint_.new_watch() : SideWatch();
+}
+
+Step Guard::step(const Motion& motion) noexcept { return constraint_.step(motion, sides_); }
 
 std::uint64_t Tally::breach_count() const noexcept {
   return std::accumulate(breaches.begin(), breaches.end(), std::uint64_t{0});

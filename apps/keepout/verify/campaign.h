@@ -12,12 +12,31 @@
 #include <string>
 #include <vector>
 
-#include "guard.h"
 #include "incident.h"
 #include "judge.h"
+#include "keepout/step/motion_constraint.h"
 #include "scene.h"
 
 namespace keepout::app {
+
+/// What is put to the test: the motion constraint that users get, on one tip after the other. Tests
+/// put worse ones in its place.
+class Guard {
+ public:
+  /// The scene must outlive the guard.
+  explicit Guard(const Scene& scene);
+  virtual ~Guard() = default;
+
+  /// From here on another tip, under other options.
+  virtual void begin(const StepOptions& options, Inside inside);
+
+  /// Views in the result stay valid until the next step.
+  virtual Step step(const Motion& motion) noexcept;
+
+ private:
+  MotionConstraint constraint_;
+  SideWatch sides_;
+};
 
 /// A mesh that a campaign may load: the same, maybe in several places, one scene each.
 struct Arena {

@@ -1,8 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <numeric>
 #include <ostream>
 
@@ -18,10 +16,7 @@ std::uint64_t count(const Json& counts, const char* name) {
 
 /// "-" where there is none.
 std::string number(const char* format, const Json& value) {
-  if (value.is_null()) return "-";
-  std::array<char, 64> text;
-  std::snprintf(text.data(), text.size(), format, value.get<double>());
-  return text.data();
+  return value.is_null() ? "-" : formatted(format, value.get<double>());
 }
 
 /// The shards that are not there.
@@ -46,9 +41,7 @@ void print_row(std::ostream& out, const Json& mesh) {
   const double contact =
       steps == 0 ? 0.0 : 100.0 * static_cast<double>(limited) / static_cast<double>(steps);
   const std::uint64_t triangles = mesh.value("triangles", std::uint64_t{0});
-  std::array<char, 320> line;
-  std::snprintf(
-      line.data(), line.size(),
+  out << formatted(
       "%-16s %9s %8s %12s %6.1f%% %12s %12s %11s %9s %9s %9s %9s %7s %7s %8s %10s %8.1f\n",
       mesh.at("mesh").get<std::string>().c_str(), triangles == 0 ? "-" : grouped(triangles).c_str(),
       grouped(count(mesh, "trajectories")).c_str(), grouped(steps).c_str(), contact,
@@ -58,17 +51,13 @@ void print_row(std::ostream& out, const Json& mesh) {
       grouped(other).c_str(), grouped(crossed).c_str(), grouped(broken - crossed).c_str(),
       number("%.3f", mesh.at("least_beyond_margin_in_tau")).c_str(),
       number("%.2e", mesh.at("least_beyond_margin")).c_str(), mesh.at("seconds").get<double>());
-  out << line.data();
 }
 
 void print_header(std::ostream& out) {
-  std::array<char, 320> line;
-  std::snprintf(line.data(), line.size(),
-                "%-16s %9s %8s %12s %7s %12s %12s %11s %9s %9s %9s %9s %7s %7s %8s %10s %8s\n",
-                "mesh", "triangles", "traject.", "steps", "contact", "free", "limited",
-                "recovering", "led out", "fallback", "unsolved", "other", "crossed", "broken",
-                "least/tau", "least", "seconds");
-  out << line.data();
+  out << formatted("%-16s %9s %8s %12s %7s %12s %12s %11s %9s %9s %9s %9s %7s %7s %8s %10s %8s\n",
+                   "mesh", "triangles", "traject.", "steps", "contact", "free", "limited",
+                   "recovering", "led out", "fallback", "unsolved", "other", "crossed", "broken",
+                   "least/tau", "least", "seconds");
 }
 
 }  // namespace

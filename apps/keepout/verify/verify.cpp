@@ -82,21 +82,15 @@ CLI::Validator shard_text() {
 }
 
 int verify(const VerifyOptions& options, std::ostream& out) {
-  // Before any work: what cannot be written shall not be told of after an hour.
-  std::unique_ptr<OutputFile> json;
-  if (options.json) {
-    std::vector<NamedPath> inputs;
-    for (const auto& mesh : options.meshes) inputs.push_back({"MESH", file_of_mesh(mesh)});
-    for (const auto& file : options.merge) inputs.push_back({"--merge", file});
-    const NamedPath output{"--json", *options.json};
-    refuse_shared_files(inputs, {&output, 1});
-    json = std::make_unique<OutputFile>(*options.json);
-  }
+  std::vector<NamedPath> inputs;
+  for (const auto& mesh : options.meshes) inputs.push_back({"MESH", file_of_mesh(mesh)});
+  for (const auto& file : options.merge) inputs.push_back({"--merge", file});
+  OutputFiles outputs(inputs, {{"--json", options.json}});
   const Json result = options.merge.empty() ? run(options, out) : merged(options.merge);
-  if (json) {
-    json->stream() << result.dump(1, ' ', false, Json::error_handler_t::replace) << '\n';
-    json->commit();
+  if (auto* const json = outputs.stream("--json")) {
+    *json << result.dump(1, ' ', false, Json::error_handler_t::replace) << '\n';
   }
+  outputs.commit();
   print(out, result);
   if (breach_count(result) > 0) return EXIT_FAILURE;
   const bool interrupted = options.merge.empty() && !result["shards"][0]["complete"].get<bool>();

@@ -1,12 +1,10 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "compare/comparison_verdict.h"
-
 #include <gtest/gtest.h>
 
 #include <string>
 
-#include "compare/comparison_files.h"
+#include "compare/comparison.h"
 
 namespace keepout::app {
 namespace {

@@ -6,7 +6,6 @@
 #include <numeric>
 
 #include "compare/agreement.h"
-#include "compare/recorded_problems.h"
 #include "keepout/error.h"
 #include "keepout/fixtures/shapes.h"
 #include "keepout/solvers/active_set.h"

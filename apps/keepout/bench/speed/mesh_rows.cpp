@@ -13,11 +13,11 @@
 #include "bench/speed/process.h"
 #include "bench/speed/speed_run.h"
 #include "bench/subject.h"
-#include "keepout/mesh/load_mesh.h"
 #include "keepout/factory/make_motion_constraint.h"
 #include "keepout/fixtures/real_mesh.h"
 #include "keepout/index/index_cache.h"
 #include "keepout/index/wide_bvh.h"
+#include "keepout/mesh/load_mesh.h"
 #include "number_text.h"
 
 #if KEEPOUT_WITH_ASSIMP

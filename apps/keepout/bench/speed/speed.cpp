@@ -8,10 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "bench/machine_record.h"
 #include "bench/speed/process.h"
+#include "bench/speed/speed_record.h"
 #include "bench/speed/speed_run.h"
-#include "bench/speed/speed_table.h"
 #include "bench/speed/trajectories.h"
 #include "keepout/fixtures/real_mesh.h"
 #include "machine.h"
@@ -91,14 +90,10 @@ Attempt in_contact(SpeedRun& run, const IndexedMesh& on, const MotionKind& kind)
 }
 
 int bench_speed(const SpeedOptions& options, std::ostream& out) {
-  std::vector<NamedPath> outputs{{"--out", options.report}};
-  if (options.json) outputs.push_back({"--json", *options.json});
-  refuse_shared_files({}, outputs);
+  OutputFiles outputs({}, {{"--out", options.report}, {"--json", options.json}});
   for (const std::string& fixture : {std::string("bunny"), options.file}) {
     fixture_path(fixture);  // throws if it is missing
   }
-  OutputFile report(options.report);
-  const auto json = options.json ? std::make_unique<OutputFile>(*options.json) : nullptr;
 
   Progress progress("bench --speed", std::size(on_the_bunny) + std::size(on_their_own));
   SpeedRun run{.options = options,
@@ -119,12 +114,9 @@ int bench_speed(const SpeedOptions& options, std::ostream& out) {
   progress.interrupt();
   print_queries(out, run.record);
   print_summary(out, run.record);
-  if (json) {
-    write_json(json->stream(), run.record);
-    json->commit();
-  }
-  print_speed_report(report.stream(), run.record);
-  report.commit();
+  if (auto* const json = outputs.stream("--json")) write_json(*json, run.record);
+  print_speed_report(*outputs.stream("--out"), run.record);
+  outputs.commit();
   out << "report: " << options.report.string() << '\n';
   return run.record.complete ? EXIT_SUCCESS : exit_interrupted;
 }

@@ -1,15 +1,11 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/speed/speed_table.h"
-
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <ostream>
 #include <utility>
 
-#include "bench/benchmark_table.h"
 #include "bench/json_parts.h"
+#include "bench/speed/speed_record.h"
 #include "number_text.h"
 
 namespace keepout::app {

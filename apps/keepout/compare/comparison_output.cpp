@@ -1,0 +1,119 @@
+// SPDX-FileCopyrightText: 2026 the keepout authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <ostream>
+#include <string>
+
+#include "bench/json_parts.h"
+#include "columns.h"
+#include "compare/comparison.h"
+#include "number_text.h"
+
+namespace keepout::app {
+namespace {
+
+/// An error in two digits, and "0" where there is none at all.
+std::string small(const Json& value) {
+  return value == 0.0 ? "0" : formatted("%.1e", value.get<double>());
+}
+
+std::string us(const Json& value) { return rounded(value); }
+
+using Index = IndexAgreement;
+const Columns<Index> index_columns = {
+    {"mesh", &Index::mesh, "mesh", -10, [](const Json& v) { return plain(v).substr(0, 10); }},
+    {"index", &Index::index, "index", -17},
+    {"activation", &Index::activation, "rule", -10},
+    {"searched_by_the_rule", &Index::searched, "form", -8,
+     [](const Json& v) { return std::string(v.get<bool>() ? "searches" : "plain"); }},
+    {"poses", &Index::poses, "poses", 6},
+    {"missed", &Index::missed, "missed", 7},
+    {"invented", &Index::invented, "invented", 9},
+    {"closest_point_error_mm", &Index::closest_point_error, "closest p. mm", 13, small},
+    {"plane_angle_rad", &Index::plane_angle, "plane rad", 10, small},
+    {"step_difference_mm", &Index::step_difference, "step mm", 10, small},
+    {"steps_that_differ", &Index::steps_that_differ, "differ", 9}};
+
+using Solved = SolverAgreement;
+const Columns<Solved> solver_columns = {
+    {"solver", &Solved::solver, "solver", -13},
+    {"activation", &Solved::activation, "rule", -10},
+    {"posed", &Solved::posed},
+    {"problems", &Solved::problems, "problems", 9},
+    {"optimal", &Solved::optimal, "optimal", 9},
+    {"infeasible", &Solved::infeasible, "infeasible", 11},
+    {"gave_up", &Solved::gave_up, "gave up", 8},
+    {"wrong", &Solved::wrong, "wrong", 6},
+    {"step_difference", &Solved::step_difference, "step", 10, small},
+    {"kkt_residual", &Solved::kkt_residual, "KKT", 10, small},
+    {"p50_us", &Solved::median_us, "p50 us", 9, us},
+    {"p99_us", &Solved::p99_us, "p99 us", 9, us},
+    {"outcomes", &Solved::outcomes}};
+
+using Phase = NarrowPhaseAgreement;
+const Columns<Phase> narrow_phase_columns = {
+    {"backend", &Phase::backend, "narrow phase", -16},
+    {"tool", &Phase::tool, "tool", -9},
+    {"relation", &Phase::relation, "relation", -12},
+    {"pairs", &Phase::pairs, "pairs", 7},
+    {"failed", &Phase::failed, "failed", 7},
+    {"contradicted", &Phase::contradicted, "contradicted", 13},
+    {"median_error_mm", &Phase::median_error, "median mm", 12, small},
+    {"worst_error_mm", &Phase::worst_error, "worst mm", 12, small},
+    {"worst_unproven_mm", &Phase::worst_unproven, "unproven mm", 12, small},
+    {"p50_us", &Phase::median_us, "p50 us", 9, us},
+    {"p99_us", &Phase::p99_us, "p99 us", 9, us}};
+
+void print_outcomes(std::ostream& out, const std::vector<SolverAgreement>& solvers) {
+  out << "  What the library said -> what we found:\n";
+  for (const SolverAgreement& a : solvers) {
+    for (const auto& [outcome, count] : a.outcomes) {
+      out << formatted("  %-13s %-10s %9zu  %s\n", a.solver.c_str(), a.activation.c_str(), count,
+                       outcome.c_str());
+    }
+  }
+}
+
+}  // namespace
+
+void print(std::ostream& out, const Comparison& comparison) {
+  if (!comparison.indices.empty()) {
+    out << "\nIndices in motion constraints, held to brute force (closest points: to exact "
+           "arithmetic)\n";
+    print_rows(out, index_columns, comparison.indices);
+  }
+  if (!comparison.solvers.empty()) {
+    out << "\nSolvers on recorded problems, held to active_set and the KKT conditions\n";
+    print_rows(out, solver_columns, comparison.solvers);
+    print_outcomes(out, comparison.solvers);
+  }
+  if (!comparison.narrow_phases.empty()) {
+    out << "\nNarrow phases, held to our exact kernel; touching: to within " << touch_text
+        << ", on either side\n";
+    print_rows(out, narrow_phase_columns, comparison.narrow_phases);
+  }
+  out << "\nVerdict\n";
+  for (const std::string& paragraph : verdict(comparison)) out << "  " << paragraph << '\n';
+}
+
+void write_json(std::ostream& out, const ComparisonRecord& record) {
+  const Comparison& comparison = record.comparison;
+  const CompareExtent& extent = record.extent;
+  const Json all = {
+      {"date", record.date},
+      {"command", record.command},
+      {"seed", extent.seed},
+      {"machine", json_of(record.machine)},
+      {"mesh", record.mesh},
+      {"triangles", record.triangles},
+      {"asked_for",
+       {{"poses", extent.poses}, {"problems", extent.problems}, {"pairs", extent.pairs}}},
+      {"complete", comparison.complete},
+      {"agree", agree(comparison)},
+      {"verdict", verdict(comparison)},
+      {"indices", json_of(index_columns, comparison.indices)},
+      {"solvers", json_of(solver_columns, comparison.solvers)},
+      {"narrow_phases", json_of(narrow_phase_columns, comparison.narrow_phases)}};
+  out << all.dump(2) << '\n';
+}
+
+}  // namespace keepout::app
