@@ -16,7 +16,7 @@ struct Outcome {
 // In the order of the enumeration.
 constexpr std::array outcomes{
     Outcome{"free", "nothing holds the motion back"},
-    Outcome{"limited", "planes of nearby triangles, or rows of the caller's, hold the motion back"},
+    Outcome{"limited", "planes of nearby triangles hold the motion back"},
     Outcome{"recovering", "the tip was closer than the margin, or inside: the motion leads it out"},
     Outcome{"fallback",
             "the best motion could not be proven within the budget of work: this is a shorter one "

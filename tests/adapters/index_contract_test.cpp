@@ -278,7 +278,7 @@ TEST(IndexCapacity, AMeshThatIsTooLargeIsRefusedByTheLimitAndTheWayOut) {
     FAIL() << "no error";
   } catch (const Error& error) {
     const std::string text = error.what();
-    for (const std::string_view part : {"'bullet'", "1000 triangles", "1001", "'pd_tree'"}) {
+    for (const std::string_view part : {"'bullet'", "1000 triangles", "1001", "'wide_bvh'"}) {
       EXPECT_NE(text.find(part), std::string::npos) << text;
     }
   }

@@ -30,7 +30,8 @@ class GuardPool {
 
   /// Gives a constraint back to the pool that it is of.
   struct GiveBack {
-    GuardPool* pool;
+    GuardPool* pool;  // where it belongs
+    /// To the pool it goes.
     void operator()(MotionConstraint* guard) const noexcept;
   };
   /// A constraint for as long as this lives. It must not outlive the pool.
