@@ -1,8 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "commands.h"
-
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -10,6 +8,7 @@
 #include <set>
 #include <sstream>
 
+#include "commands.h"
 #include "keepout/error.h"
 #include "keepout/mesh/binary_stl.h"
 #include "small_surfaces.h"

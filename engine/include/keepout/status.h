@@ -10,18 +10,18 @@ namespace keepout {
 /// How a step ended. The first four come with a motion, which may be carried out and may be zero;
 /// the others with zero motion.
 enum class Status : std::uint8_t {
-  free,              // no plane holds the motion back
-  limited,           // the motion is the best one that the planes allow
-  recovering,        // the tip was too close or inside: the motion leads it out
-  fallback,          // only a shorter motion could be proven, within the budget of work
-  infeasible,        // no motion satisfies all planes: the tip is too close on several sides
-  ill_posed,         // the Jacobian lacks full column rank and there is no damping
-  invalid_input,     // a number is not finite or out of range
-  beyond_reach,      // the motion asked for, or solved, is longer than the motion sphere's radius
-  over_capacity,     // more triangles, planes or variables than room was made for
-  unsolved,          // nothing could be proven within the budget of work, the rule's or the solver's
-  inside,            // the tip is on the forbidden side, and is not led out
-  touching,          // the tip is on the surface, and which side is free cannot be told
+  free,           // no plane holds the motion back
+  limited,        // the motion is the best one that the planes allow
+  recovering,     // the tip was too close or inside: the motion leads it out
+  fallback,       // only a shorter motion could be proven, within the budget of work
+  infeasible,     // no motion satisfies all planes: the tip is too close on several sides
+  ill_posed,      // the Jacobian lacks full column rank and there is no damping
+  invalid_input,  // a number is not finite or out of range
+  beyond_reach,   // the motion asked for, or solved, is longer than the motion sphere's radius
+  over_capacity,  // more triangles, planes or variables than room was made for
+  unsolved,       // nothing could be proven within the budget of work, the rule's or the solver's
+  inside,         // the tip is on the forbidden side, and is not led out
+  touching,       // the tip is on the surface, and which side is free cannot be told
   margin_too_small,  // the margin is lost in the rounding of lengths this large
 };
 
