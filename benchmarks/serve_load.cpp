@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // How long a client of `keepout serve` waits for an answer, and whether its memory stays flat: a
 // hand that presses a tool over the mesh, one request at a time, in closed loop.

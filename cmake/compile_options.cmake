@@ -1,4 +1,3 @@
-# SPDX-FileCopyrightText: 2026 the keepout authors
 # SPDX-License-Identifier: BSD-3-Clause
 #
 # keepout_compile_options(TARGET): what every target of ours is compiled with. Nothing is global, so

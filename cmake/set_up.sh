@@ -1,5 +1,4 @@
 # Sourced by ./run and ./test: installs what is missing, configures and builds.
-# SPDX-FileCopyrightText: 2026 the keepout authors
 # SPDX-License-Identifier: BSD-3-Clause
 
 say() {

@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // The whole of it: a mesh, a motion constraint, and one step each control cycle.
 #include <cstdio>

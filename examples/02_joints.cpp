@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // An arm of seven joints that moves the tip: keepout gives the increments of the joints. With more
 // than three of them there are many that move the tip alike; damping above 0 picks the smallest.

@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // An index of your own: a uniform grid, in a motion constraint, and held to brute force.
 #include <algorithm>

@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // A tool that is more than a tip: a burr and its shaft, kept out of a mesh with the parts of a
 // motion constraint put together by hand.

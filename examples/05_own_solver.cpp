@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // A solver of your own: Hildreth's method, in a motion constraint, and held to the conditions of
 // Karush, Kuhn and Tucker and to active_set.

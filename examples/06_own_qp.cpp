@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // The free space around the tip in a quadratic program of your own: a controller that plans some
 // cycles ahead, smoothly, within the polytope. Every motion within it keeps the margin.
@@ -7,7 +6,7 @@
 #include <cstdio>
 #include <vector>
 
-#include "keepout/index/nearest.h"
+#include "keepout/index/query.h"
 #include "keepout/index/wide_bvh.h"
 #include "keepout/keepout.h"
 #include "keepout/solvers/active_set.h"

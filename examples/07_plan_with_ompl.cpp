@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // A planner of OMPL around a mesh: two lines make every motion of its tree a proven one.
 #include <ompl/base/spaces/RealVectorStateSpace.h>

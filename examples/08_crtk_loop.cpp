@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // A teleoperation loop at 1 kHz under the names of CRTK, with a simulated hand and robot: where a
 // dVRK has topics, here are two structs. docs/controllers.md says what goes where.
@@ -6,7 +5,7 @@
 #include <cstdio>
 
 #include "keepout/control/crtk_guard.h"
-#include "keepout/index/nearest.h"
+#include "keepout/index/query.h"
 #include "keepout/index/wide_bvh.h"
 #include "keepout/keepout.h"
 

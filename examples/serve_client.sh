@@ -1,6 +1,5 @@
 #!/usr/bin/env bash
 # Three requests to 'keepout serve' from a shell. Usage: serve_client.sh KEEPOUT MESH
-# SPDX-FileCopyrightText: 2026 the keepout authors
 # SPDX-License-Identifier: BSD-3-Clause
 set -euo pipefail
 coproc GUARD { exec "$1" serve "$2"; }

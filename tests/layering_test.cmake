@@ -1,4 +1,3 @@
-# SPDX-FileCopyrightText: 2026 the keepout authors
 # SPDX-License-Identifier: BSD-3-Clause
 #
 # Dependencies point one way, and public headers show nobody else's but Eigen's.

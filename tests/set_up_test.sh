@@ -1,7 +1,6 @@
 #!/usr/bin/env bash
 # What ./run and ./test say before they build: no colours in pipes, and a clear word to a second user.
 #   set_up_test.sh SOURCE WORK
-# SPDX-FileCopyrightText: 2026 the keepout authors
 # SPDX-License-Identifier: BSD-3-Clause
 set -euo pipefail
 source=$1 work=$2

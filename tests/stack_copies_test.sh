@@ -5,7 +5,6 @@
 # of the stack next to each other, a register each. Constants that are put aside lie scattered.
 #   stack_copies_test.sh BUILD LIBRARY...
 # BUILD is "Release" where the compiler optimises as for users; elsewhere the test is skipped.
-# SPDX-FileCopyrightText: 2026 the keepout authors
 # SPDX-License-Identifier: BSD-3-Clause
 set -euo pipefail
 build=$1

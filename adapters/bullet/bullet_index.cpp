@@ -1,11 +1,10 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <vector>
 
 #include "../src/library_backends.h"
 #include "bullet_trees.h"
-#include "keepout/geometry/ball_against_box.h"
+#include "keepout/geometry/shapes.h"
 
 namespace keepout {
 namespace {

@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // libccd tells the depth of an overlap, and of bodies apart only that they are: their distance is
 // asked for as the depth of a tool that is grown by more than it.

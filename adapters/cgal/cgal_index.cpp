@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include <CGAL/AABB_traits.h>
 #include <CGAL/AABB_tree.h>
@@ -9,7 +8,7 @@
 #include <utility>
 
 #include "../src/library_backends.h"
-#include "keepout/geometry/ball_against_box.h"
+#include "keepout/geometry/shapes.h"
 
 namespace keepout {
 namespace {

@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include <embree3/rtcore.h>
 
@@ -10,7 +9,7 @@
 #include "../src/centered_frame.h"
 #include "../src/library_backends.h"
 #include "keepout/error.h"
-#include "keepout/geometry/ball_against_box.h"
+#include "keepout/geometry/shapes.h"
 
 namespace keepout {
 namespace {

@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -16,7 +15,7 @@
 
 #include "../src/library_backends.h"
 #include "keepout/error.h"
-#include "keepout/geometry/ball_against_box.h"
+#include "keepout/geometry/shapes.h"
 #include "keepout/mesh/mesh.h"
 
 namespace keepout {

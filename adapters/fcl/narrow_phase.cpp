@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // FCL's GJK after libccd is full of assertions that fail near a touch, and Debian's library was
 // built with them: they end the process. Its functions are static ones of a header, so that they

@@ -1,4 +1,3 @@
-# SPDX-FileCopyrightText: 2026 the keepout authors
 # SPDX-License-Identifier: BSD-3-Clause
 #
 # Makes the target ompl_only of what find_package(ompl) has found: here, and where the installed

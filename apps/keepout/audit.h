@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -7,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "keepout/index/refine.h"
+#include "keepout/index/query.h"
 #include "keepout/oracle/inside_test.h"
 #include "keepout/oracle/triangle_tree.h"
 #include "simulation_record.h"

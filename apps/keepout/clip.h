@@ -1,9 +1,8 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include "keepout/error.h"
-#include "keepout/geometry/vec3.h"
+#include "keepout/geometry/shapes.h"
 
 namespace keepout::app {
 

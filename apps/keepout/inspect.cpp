@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include <iomanip>
@@ -13,7 +12,6 @@
 #include "keepout/index/pd_tree.h"
 #include "keepout/index/self_intersection.h"
 #include "keepout/mesh/doctor.h"
-#include "keepout/mesh/quick_check.h"
 #include "named_mesh.h"
 #include "number_text.h"
 

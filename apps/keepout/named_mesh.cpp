@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "named_mesh.h"
 
@@ -12,7 +11,7 @@
 #include "keepout/error.h"
 #include "keepout/fixtures/real_mesh.h"
 #include "keepout/fixtures/shapes.h"
-#include "keepout/mesh/quick_check.h"
+#include "keepout/mesh/doctor.h"
 #include "names.h"
 #include "progress.h"
 

@@ -1,8 +1,7 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "names.h"
 
-#include "keepout/nearest_name.h"
+#include "keepout/registry.h"
 
 namespace keepout::app {
 

@@ -1,11 +1,10 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <filesystem>
 #include <vector>
 
-#include "keepout/geometry/vec3.h"
+#include "keepout/geometry/shapes.h"
 
 namespace keepout::app {
 

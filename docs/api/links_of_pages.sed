@@ -1,4 +1,3 @@
-# SPDX-FileCopyrightText: 2026 the keepout authors
 # SPDX-License-Identifier: BSD-3-Clause
 #
 # What doxygen 1.9.4 reads in place of a page of docs/. It knows no anchors of headings: links lead to

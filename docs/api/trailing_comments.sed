@@ -1,4 +1,3 @@
-# SPDX-FileCopyrightText: 2026 the keepout authors
 # SPDX-License-Identifier: BSD-3-Clause
 #
 # What doxygen reads in place of a header: a comment that follows a member on its line belongs to it,

@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // For docs/pictures/draw: the planes of a free polytope, 'nx ny nz offset' a line.
 //   draw_polytope MESH TOOL_RADIUS MARGIN RADIUS X Y Z

@@ -1,4 +1,3 @@
-# SPDX-FileCopyrightText: 2026 the keepout authors
 # SPDX-License-Identifier: BSD-3-Clause
 """What the pictures of `draw` are made with: vectors of the plane, steps that keepout makes, SVG."""
 

@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Brings chosen lanes to the front. Included once for each kind of processor: see foreach_target.h

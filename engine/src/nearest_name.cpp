@@ -1,10 +1,9 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "keepout/nearest_name.h"
-
 #include <algorithm>
 #include <string>
 #include <vector>
+
+#include "keepout/registry.h"
 
 namespace keepout {
 namespace {

@@ -1,5 +1,4 @@
 #!/usr/bin/env python3
-# SPDX-FileCopyrightText: 2026 the keepout authors
 # SPDX-License-Identifier: BSD-3-Clause
 """A tip that is pressed towards the middle of a mesh and stays outside, by 'keepout serve'.
 

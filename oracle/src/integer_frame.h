@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // Internal: the only place where GMP comes in.
 #pragma once
@@ -12,7 +11,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "keepout/geometry/vec3.h"
+#include "keepout/geometry/shapes.h"
 
 namespace keepout::oracle {
 

@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // The loop that the Python module is held against, bit for bit and in time: steps over poses from a
 // file, in C++ and on one thread.

@@ -1,5 +1,4 @@
 #!/usr/bin/python3
-# SPDX-FileCopyrightText: 2026 the keepout authors
 # SPDX-License-Identifier: BSD-3-Clause
 """What a step costs from Python beside the same step from C++, and what two threads gain.
 

@@ -1,4 +1,3 @@
-# SPDX-FileCopyrightText: 2026 the keepout authors
 # SPDX-License-Identifier: BSD-3-Clause
 """What pip calls (PEP 517): builds the module with CMake, and zips it into a wheel. Needs nothing
 from PyPI.

@@ -1,4 +1,3 @@
-# SPDX-FileCopyrightText: 2026 the keepout authors
 # SPDX-License-Identifier: BSD-3-Clause
 # What the package needs for itself; all else is in __init__.pyi.
 status_names: tuple[str, ...]

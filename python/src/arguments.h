@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -10,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "keepout/geometry/vec3.h"
+#include "keepout/geometry/shapes.h"
 
 namespace keepout::python {
 

@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
@@ -14,8 +13,7 @@
 #include "handles.h"
 #include "keepout/adapters/index_registry.h"
 #include "keepout/index/index_cache.h"
-#include "keepout/index/nearest.h"
-#include "keepout/index/refine.h"
+#include "keepout/index/query.h"
 #include "views.h"
 
 namespace keepout::python {

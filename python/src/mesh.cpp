@@ -1,5 +1,6 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "keepout/mesh/mesh.h"
+
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
@@ -15,7 +16,6 @@
 #include "handles.h"
 #include "keepout/error.h"
 #include "keepout/mesh/load_mesh.h"
-#include "keepout/mesh/weld.h"
 #include "views.h"
 
 namespace keepout::python {

@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
@@ -11,7 +10,7 @@
 #include "arguments.h"
 #include "bindings.h"
 #include "guard.h"
-#include "keepout/nearest_name.h"
+#include "keepout/registry.h"
 
 namespace keepout::python {
 namespace {

@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -8,7 +7,7 @@
 #include <vector>
 
 #include "keepout/activation/free_polytope.h"
-#include "keepout/geometry/half_space.h"
+#include "keepout/geometry/shapes.h"
 #include "keepout/step/motion.h"
 
 namespace keepout::python {

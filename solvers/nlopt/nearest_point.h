@@ -1,9 +1,8 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include "active_set_task.h"
-#include "keepout/step/problem.h"
+#include "keepout/step/solver.h"
 
 namespace keepout::nlopt {
 

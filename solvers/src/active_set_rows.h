@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -9,7 +8,6 @@
 #include <vector>
 
 #include "active_set_tolerances.h"
-#include "keepout/step/problem.h"
 #include "keepout/step/solver.h"
 #include "unit_planes.h"
 

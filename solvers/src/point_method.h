@@ -1,12 +1,11 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <array>
 #include <span>
 
-#include "keepout/geometry/half_space.h"
-#include "keepout/step/problem.h"
+#include "keepout/geometry/shapes.h"
+#include "keepout/step/solver.h"
 #include "unit_planes.h"
 
 namespace keepout::active_set {

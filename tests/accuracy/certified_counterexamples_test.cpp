@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // Where the paper's rule fails, the certified one holds: whatever the order and the winding.
 #include <gtest/gtest.h>

@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // The same motions, bit for bit, whatever finds, numbers or winds the triangles.
 #include <gtest/gtest.h>
@@ -12,7 +11,7 @@
 #include "each_simd_target.h"
 #include "keepout/adapters/index_registry.h"
 #include "keepout/fixtures/shapes.h"
-#include "keepout/index/nearest.h"
+#include "keepout/index/query.h"
 
 namespace keepout::test {
 namespace {

@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // A million cycles in contact: what a cycle may lose never adds up.
 #include <gtest/gtest.h>

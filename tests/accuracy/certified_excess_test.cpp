@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // How much of the motion asked for the certified step gives away, against the best step there is:
 // excess = (cost - best cost) / length of the increment asked for.
@@ -15,8 +14,8 @@
 #include "keepout/fixtures/poses.h"
 #include "keepout/fixtures/real_mesh.h"
 #include "keepout/fixtures/shapes.h"
-#include "keepout/index/nearest.h"
 #include "keepout/index/pd_tree.h"
+#include "keepout/index/query.h"
 #include "keepout/mesh/load_mesh.h"
 
 namespace keepout::test {

@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // Joints, rows of the caller's own, and too little room: as safe, and honest about it.
 #include <gtest/gtest.h>

@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // A tip that is inside or too close gets out, and no deeper on its way.
 #include <gtest/gtest.h>

@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // Contact as a hand feels it: no bumps at inner edges, nothing held back that leads away.
 #include <gtest/gtest.h>

@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // Whatever a solver answers, a certified motion keeps its distance.
 #include <gtest/gtest.h>

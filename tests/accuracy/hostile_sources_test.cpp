@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // Ten million hostile steps of the certified rule, each made with the walk of a tree and with all
 // hits around: status, motion, increment, planes and distance are the same, bit for bit, on every
@@ -15,7 +14,7 @@
 #include "keepout/fixtures/poses.h"
 #include "keepout/fixtures/random.h"
 #include "keepout/fixtures/shapes.h"
-#include "keepout/index/nearest.h"
+#include "keepout/index/query.h"
 #include "names_of_shapes.h"
 
 namespace keepout {

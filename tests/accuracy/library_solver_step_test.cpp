@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // The whole step with a solver of a library agrees with the step with our own, or stands still and
 // says so.

@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // What the paper's rule does where some reading of it fails: on record, for comparison with rules
 // that do not.

@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // Neither Embree nor TBB, whose threads it builds with, is compiled with the thread sanitizer. What
 // they do to hand memory from one thread to another it cannot see, and takes for a race.

@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // Every index is held to brute force: the same triangles, whatever the place and the radius.
 #include "adapters/index_contract.h"

@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // More triangles than 21 bits can number: where Bullet by itself takes some for others, silently.
 #include <gtest/gtest.h>

@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // Every narrow phase answers or says why not, whatever it is asked; how well libraries answer is
 // measured by `keepout compare`, and docs/convex_tools.md tells.

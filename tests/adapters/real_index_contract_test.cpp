@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // The contract of every index on real anatomy, scans and parts.
 #include <gtest/gtest.h>

@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // The independent check is itself checked: against shapes whose inside is known by formula.
 #include "audit.h"
@@ -12,8 +11,8 @@
 
 #include "keepout/fixtures/poses.h"
 #include "keepout/fixtures/shapes.h"
-#include "keepout/index/nearest.h"
 #include "keepout/index/pd_tree.h"
+#include "keepout/index/query.h"
 #include "trials.h"
 
 namespace keepout::app {

@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // The keepout command as a user meets it: run as a process, judged by what it prints and leaves.
 #include <gtest/gtest.h>

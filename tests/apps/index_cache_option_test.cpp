@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // --index-cache as a user meets it: the answers are the same, whatever is in the folder.
 #include <gtest/gtest.h>

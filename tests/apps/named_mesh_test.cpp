@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // Meshes as a user names them: files, and fixtures that are prepared or generated.
 #include <gtest/gtest.h>

@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // What the command says to a mistyped command line, and what it ends with.
 #include <gtest/gtest.h>

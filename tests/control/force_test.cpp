@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // The force, its energy and its passivity, apart from any mesh.
 #include <gtest/gtest.h>

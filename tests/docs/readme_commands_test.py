@@ -1,5 +1,4 @@
 #!/usr/bin/env python3
-# SPDX-FileCopyrightText: 2026 the keepout authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs every command that README.md shows: readme_commands_test.py ROOT FOLDER KEEPOUT
 

@@ -1,5 +1,4 @@
 #!/usr/bin/env python3
-# SPDX-FileCopyrightText: 2026 the keepout authors
 # SPDX-License-Identifier: BSD-3-Clause
 """The dialogue on docs/serve.md is what the command answers. Usage: serve_page_test.py PAGE KEEPOUT"""
 import fnmatch

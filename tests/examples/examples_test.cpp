@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // The examples do what they say: on a sphere, whose top they come down upon.
 #include <gtest/gtest.h>

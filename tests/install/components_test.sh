@@ -2,7 +2,6 @@
 # find_package(keepout) brings the components asked for, looks for what these need and nothing else,
 # and says what is missing.
 #   components_test.sh PREFIX static|shared WORK VERSION
-# SPDX-FileCopyrightText: 2026 the keepout authors
 # SPDX-License-Identifier: BSD-3-Clause
 . "$(dirname "$0")/common.sh"
 prefix=$1 form=$2 work=$3 version=$4

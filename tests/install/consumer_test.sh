@@ -2,7 +2,6 @@
 # A project outside of ours finds keepout in a prefix, builds and runs.
 # With `bare`: though nothing else is there but Eigen.
 #   consumer_test.sh PREFIX WORK [bare]
-# SPDX-FileCopyrightText: 2026 the keepout authors
 # SPDX-License-Identifier: BSD-3-Clause
 . "$(dirname "$0")/common.sh"
 prefix=$1 work=$2 kind=${3:-}

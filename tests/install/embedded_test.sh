@@ -2,7 +2,6 @@
 # A project that takes keepout in by add_subdirectory gets its targets, and neither its tests nor its
 # files among those that it installs.
 #   embedded_test.sh SOURCE WORK
-# SPDX-FileCopyrightText: 2026 the keepout authors
 # SPDX-License-Identifier: BSD-3-Clause
 . "$(dirname "$0")/common.sh"
 source=$1 work=$2

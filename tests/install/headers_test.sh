@@ -2,7 +2,6 @@
 # Public headers compile though no third-party header but Eigen's is there: all of them together,
 # and each alone.
 #   headers_test.sh INCLUDE WORK
-# SPDX-FileCopyrightText: 2026 the keepout authors
 # SPDX-License-Identifier: BSD-3-Clause
 . "$(dirname "$0")/common.sh"
 include=$1 work=$2

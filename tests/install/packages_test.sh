@@ -1,7 +1,6 @@
 #!/usr/bin/env bash
 # The Debian packages hold what they should, and nothing that may not be passed on; unpacks them.
 #   packages_test.sh WORK SOURCE
-# SPDX-FileCopyrightText: 2026 the keepout authors
 # SPDX-License-Identifier: BSD-3-Clause
 . "$(dirname "$0")/common.sh"
 work=$1 source=$2

@@ -1,7 +1,6 @@
 #!/usr/bin/env bash
 # The same by pkg-config and the compiler alone.
 #   pkg_config_test.sh PREFIX WORK [bare]
-# SPDX-FileCopyrightText: 2026 the keepout authors
 # SPDX-License-Identifier: BSD-3-Clause
 . "$(dirname "$0")/common.sh"
 prefix=$1 work=$2 kind=${3:-}

@@ -1,7 +1,6 @@
 #!/usr/bin/env bash
 # `cmake --install` leaves nothing that is not to be passed on, and no path of the source.
 #   prefix_test.sh PREFIX SOURCE
-# SPDX-FileCopyrightText: 2026 the keepout authors
 # SPDX-License-Identifier: BSD-3-Clause
 . "$(dirname "$0")/common.sh"
 prefix=$1 source=$2

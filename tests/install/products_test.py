@@ -1,5 +1,4 @@
 #!/usr/bin/env python3
-# SPDX-FileCopyrightText: 2026 the keepout authors
 # SPDX-License-Identifier: BSD-3-Clause
 """`cmake --install` takes nothing that ./run has not built: products_test.py BUILD
 

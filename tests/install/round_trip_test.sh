@@ -2,7 +2,6 @@
 # dpkg installs the packages, runs their scripts, and removes them without a trace: in a root of its
 # own, whose record of packages is a copy of this system's, so that dependencies are truly checked.
 #   round_trip_test.sh WORK
-# SPDX-FileCopyrightText: 2026 the keepout authors
 # SPDX-License-Identifier: BSD-3-Clause
 . "$(dirname "$0")/common.sh"
 work=$1 root=$1/root

@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // What is plugged into OMPL, held to an independent oracle. The only test that sees OMPL's headers.
 #include "keepout/ompl/planning.h"

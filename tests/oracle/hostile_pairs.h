@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -6,7 +5,7 @@
 #include <cmath>
 
 #include "keepout/fixtures/random.h"
-#include "keepout/geometry/triangle.h"
+#include "keepout/geometry/shapes.h"
 #include "keepout/oracle/distance.h"
 
 namespace keepout::oracle {

@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // That an index takes nothing from the heap while it answers, unless its row says that it does.
 #include <gtest/gtest.h>

@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // Problems whose rows come from planes: read from the planes they are solved as from the rows, on
 // every instruction set there is.

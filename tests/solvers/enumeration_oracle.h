@@ -1,11 +1,10 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <Eigen/Core>
 #include <optional>
 
-#include "keepout/step/problem.h"
+#include "keepout/step/solver.h"
 
 namespace keepout::test {
 

@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The judge of all solvers is judged here: it accepts an optimum worked out by hand, and objects to

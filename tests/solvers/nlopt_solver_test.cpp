@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // What the contract of all solvers does not say: what NLopt claims, and that it is not believed.
 #include "keepout/solvers/nlopt_solver.h"

@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // Problems without a solution are recognised, and those with one are not mistaken for them.
 #include "solvers/solver_contract.h"

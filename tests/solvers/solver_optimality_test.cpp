@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // Problems solved by hand, and many that are held to the conditions of optimality.
 #include "solvers/enumeration_oracle.h"

@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // What must not change the answer: units, lengths and order of rows, what was solved before.
 #include <numeric>

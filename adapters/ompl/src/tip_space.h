@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -7,7 +6,7 @@
 
 #include <memory>
 
-#include "keepout/geometry/box.h"
+#include "keepout/geometry/shapes.h"
 #include "keepout/ompl/guard_pool.h"
 
 namespace keepout {

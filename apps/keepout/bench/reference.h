@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -9,7 +8,7 @@
 #include <vector>
 
 #include "keepout/factory/make_motion_constraint.h"
-#include "keepout/index/refine.h"
+#include "keepout/index/query.h"
 
 namespace keepout::app {
 

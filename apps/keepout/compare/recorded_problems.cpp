@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
@@ -8,8 +7,8 @@
 #include "keepout/activation/registry.h"
 #include "keepout/error.h"
 #include "keepout/fixtures/poses.h"
-#include "keepout/index/nearest.h"
 #include "keepout/index/pd_tree.h"
+#include "keepout/index/query.h"
 #include "keepout/solvers/active_set.h"
 #include "keepout/step/motion_constraint.h"
 

@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -8,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "keepout/geometry/box.h"
+#include "keepout/geometry/shapes.h"
 #include "verify/scene.h"
 
 namespace keepout::app {

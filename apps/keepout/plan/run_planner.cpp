@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plan/run_planner.h"
 
@@ -22,7 +21,7 @@
 #include <utility>
 
 #include "keepout/error.h"
-#include "keepout/index/refine.h"
+#include "keepout/index/query.h"
 #include "keepout/ompl/planning.h"
 #include "number_text.h"
 

@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -7,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "keepout/geometry/vec3.h"
+#include "keepout/geometry/shapes.h"
 #include "report/image.h"
 
 namespace keepout::app {

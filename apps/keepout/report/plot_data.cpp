@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // What a plot draws, as numbers: which points and which ticks. How it draws them is in plot.cpp.
 #include <algorithm>

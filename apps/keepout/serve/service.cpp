@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "serve/service.h"
 
@@ -6,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "keepout/mesh/watertight.h"
+#include "keepout/mesh/doctor.h"
 #include "keepout/version.h"
 #include "serve/answer.h"
 

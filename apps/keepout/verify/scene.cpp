@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene.h"
 
@@ -7,7 +6,7 @@
 #include <utility>
 
 #include "keepout/adapters/index_registry.h"
-#include "keepout/mesh/watertight.h"
+#include "keepout/mesh/doctor.h"
 
 namespace keepout::app {
 

@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -6,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "keepout/index/nearest.h"
+#include "keepout/index/query.h"
 #include "keepout/mesh/mesh.h"
 #include "keepout/oracle/safety_oracle.h"
 

@@ -1,8 +1,7 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "keepout/geometry/vec3.h"
+#include "keepout/geometry/shapes.h"
 
 namespace keepout {
 

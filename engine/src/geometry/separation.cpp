@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "keepout/geometry/separation.h"
 
@@ -6,7 +5,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "keepout/geometry/narrow_phase.h"
 #include "nearest_points.h"
 
 namespace keepout {

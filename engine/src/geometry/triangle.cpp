@@ -1,10 +1,8 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "keepout/geometry/triangle.h"
-
 #include <Eigen/Geometry>
 
 #include "corner_order.h"
+#include "keepout/geometry/shapes.h"
 
 namespace keepout {
 

@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Why floats may decide. Let u = 2^-24 be the rounding of a float, c the ball's centre and r its

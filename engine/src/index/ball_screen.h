@@ -1,11 +1,9 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <cmath>
 
-#include "keepout/geometry/ball.h"
-#include "keepout/geometry/box.h"
+#include "keepout/geometry/shapes.h"
 
 namespace keepout {
 

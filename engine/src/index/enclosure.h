@@ -1,12 +1,10 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <array>
 #include <cstddef>
 
-#include "keepout/index/cylinder_block.h"
-#include "keepout/index/leaf_block.h"
+#include "keepout/index/triangle_blocks.h"
 #include "keepout/index/wide_bvh.h"
 
 namespace keepout {

@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -6,7 +5,7 @@
 #include <span>
 
 #include "keepout/index/block_memory.h"
-#include "keepout/index/leaf_block.h"
+#include "keepout/index/triangle_blocks.h"
 #include "keepout/mesh/mesh.h"
 #include "median_split.h"
 

@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Which triangles of a leaf touch a ball, sixteen at a time or as many as the processor can. Every
@@ -24,7 +23,6 @@
 #include "ball_screen.h"
 #include "keepout/buffer.h"
 #include "keepout/geometry/closest_point.h"
-#include "keepout/index/leaf_block.h"
 #include "keepout/index/spatial_index.h"
 #include "keepout/index/triangle_blocks.h"
 #include "keepout/mesh/mesh.h"

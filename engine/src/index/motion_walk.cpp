@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "keepout/index/motion_walk.h"
 
@@ -6,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "keepout/index/neighborhood.h"
+#include "keepout/index/query.h"
 
 namespace keepout {
 namespace {

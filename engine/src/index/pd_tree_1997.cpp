@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "keepout/index/pd_tree_1997.h"
 
@@ -10,8 +9,8 @@
 #include <utility>
 
 #include "keepout/error.h"
-#include "keepout/geometry/ball_against_box.h"
 #include "keepout/geometry/closest_point.h"
+#include "keepout/geometry/shapes.h"
 #include "median_split.h"
 
 namespace keepout {

@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include "keepout/index/self_intersection.h"
@@ -7,8 +6,8 @@
 #include <array>
 #include <vector>
 
-#include "keepout/geometry/box.h"
 #include "keepout/geometry/orientation.h"
+#include "keepout/geometry/shapes.h"
 
 namespace keepout {
 namespace {

@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The nearest triangle by branch and bound: the nearest boxes first, and none that is farther away

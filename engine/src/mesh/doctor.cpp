@@ -1,6 +1,4 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-
 #include "keepout/mesh/doctor.h"
 
 #include <Eigen/Geometry>
@@ -13,6 +11,7 @@
 #include "keepout/geometry/orientation.h"
 
 namespace keepout {
+
 namespace {
 
 /// Sets of numbers that grow together (union-find, with path halving).
@@ -136,6 +135,16 @@ MeshFindings examine(const Mesh& mesh) {
   count_edges(mesh, findings, fans, patches);
   count_parts(mesh, findings, fans, patches);
   return findings;
+}
+
+bool is_watertight(const Mesh& mesh) {
+  bool has_edges = false;
+  bool all_paired = true;
+  for_each_edge(mesh, [&](VertexId, std::span<const HalfEdge> sides) {
+    has_edges = true;
+    all_paired = all_paired && sides.size() == 2 && sides[0].upwards != sides[1].upwards;
+  });
+  return has_edges && all_paired;
 }
 
 }  // namespace keepout

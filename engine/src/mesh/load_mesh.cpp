@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "keepout/mesh/load_mesh.h"
 
@@ -13,8 +12,8 @@
 #include "coordinate_notes.h"
 #include "keepout/error.h"
 #include "keepout/mesh/binary_stl.h"
-#include "keepout/mesh/quick_check.h"
-#include "keepout/mesh/weld.h"
+#include "keepout/mesh/doctor.h"
+#include "keepout/mesh/mesh.h"
 #include "mesh_file.h"
 
 namespace keepout {

@@ -1,7 +1,4 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "keepout/mesh/quick_check.h"
-
 #include <algorithm>
 #include <array>
 #include <bit>

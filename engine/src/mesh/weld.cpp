@@ -1,12 +1,10 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-
-#include "keepout/mesh/weld.h"
 
 #include <string>
 #include <utility>
 
 #include "keepout/error.h"
+#include "keepout/mesh/mesh.h"
 #include "weld_blocks.h"
 
 namespace keepout {

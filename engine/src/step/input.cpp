@@ -1,8 +1,7 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "input.h"
 
-#include "keepout/step/problem.h"
+#include "keepout/step/solver.h"
 
 namespace keepout {
 namespace {

@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "keepout/step/motion_constraint.h"
 
@@ -9,8 +8,8 @@
 #include "cycle.h"
 #include "input.h"
 #include "keepout/error.h"
-#include "keepout/index/nearest.h"
-#include "keepout/mesh/watertight.h"
+#include "keepout/index/query.h"
+#include "keepout/mesh/doctor.h"
 #include "way_out.h"
 
 namespace keepout {

@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "placement.h"
 
@@ -10,7 +9,7 @@
 #include <numbers>
 
 #include "../geometry/corner_order.h"
-#include "keepout/index/nearest.h"
+#include "keepout/index/query.h"
 
 namespace keepout {
 namespace {

@@ -1,8 +1,7 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "keepout/index/neighborhood.h"
+#include "keepout/index/query.h"
 #include "keepout/step/motion.h"
 #include "keepout/step/options.h"
 #include "workspace.h"

@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -10,7 +9,6 @@
 #include "keepout/activation/activation.h"
 #include "keepout/step/motion.h"
 #include "keepout/step/options.h"
-#include "keepout/step/problem.h"
 #include "keepout/step/solver.h"
 
 namespace keepout {

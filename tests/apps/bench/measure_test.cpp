@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // What is wrong is not timed, by whatever part, and however rarely.
 #include "bench/measure.h"

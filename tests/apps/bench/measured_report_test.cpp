@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // What keepout bench says in words and pictures of what it has really measured: each number is one
 // of the record's, or follows from it.

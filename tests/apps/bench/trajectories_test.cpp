@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // The motions on which bench --speed is measured are what they claim to be.
 #include "bench/speed/trajectories.h"
@@ -10,7 +9,7 @@
 
 #include "keepout/error.h"
 #include "keepout/fixtures/shapes.h"
-#include "keepout/index/nearest.h"
+#include "keepout/index/query.h"
 
 namespace keepout::app {
 namespace {

@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // 'keepout serve' as other programs meet it: a process at the end of a pipe or a socket.
 #include <fcntl.h>

@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // Lines that are broken in every way at hand: each is answered once, by what it is, and moves
 // nothing unless it is a request.

@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // The campaign can fail: each guard here is broken in a way of its own, and each is found out.
 #include <gtest/gtest.h>

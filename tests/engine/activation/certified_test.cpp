@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "keepout/activation/certified.h"
 
@@ -13,7 +12,7 @@
 #include "keepout/fixtures/poses.h"
 #include "keepout/fixtures/shapes.h"
 #include "keepout/index/brute_force.h"
-#include "keepout/index/neighborhood.h"
+#include "keepout/index/query.h"
 #include "small_surfaces.h"
 #include "step/input.h"
 

@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // Closed loops: tools pushed at shapes, each motion judged by an arithmetic of its own.
 #include "engine/activation/convex_tool_loop.h"

@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // Against the oracle, whose distances share nothing with the engine, and dense samples.
 #include "keepout/activation/facet.h"

@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // The sources of triangles that indices offer, held to each other by the certified rule bit for
 // bit: the walk of a WideBvh, and all hits around.
@@ -17,9 +16,8 @@
 #include "keepout/fixtures/random.h"
 #include "keepout/fixtures/shapes.h"
 #include "keepout/index/motion_walk.h"
-#include "keepout/index/nearest.h"
-#include "keepout/index/neighborhood.h"
 #include "keepout/index/pd_tree.h"
+#include "keepout/index/query.h"
 #include "names_of_shapes.h"
 #include "trials.h"
 

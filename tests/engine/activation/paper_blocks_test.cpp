@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // The paper's rule on an index that has its triangles in blocks, held to the plain rule bit for
 // bit.

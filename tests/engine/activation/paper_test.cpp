@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // The paper's Table I, corrected as its errata say, case by case; then what it leaves open.
 #include "keepout/activation/paper.h"

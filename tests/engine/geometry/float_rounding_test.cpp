@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Screens in float stand on a tip being the sum of two floats. GCC 12 once dropped the second.

@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // The same triangles and leaves in the same order, the same trees and the same work, whatever
 // processor answers: all kinds that this one can stand in for, down to one lane at a time.

@@ -1,7 +1,4 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "keepout/index/nearest.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,6 +7,7 @@
 #include "keepout/fixtures/shapes.h"
 #include "keepout/index/brute_force.h"
 #include "keepout/index/pd_tree.h"
+#include "keepout/index/query.h"
 #include "keepout/index/wide_bvh.h"
 #include "keepout/simd_target.h"
 

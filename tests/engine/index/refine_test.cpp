@@ -1,7 +1,4 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "keepout/index/refine.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,6 +9,7 @@
 #include "keepout/fixtures/poses.h"
 #include "keepout/fixtures/shapes.h"
 #include "keepout/geometry/closest_point.h"
+#include "keepout/index/query.h"
 
 namespace keepout {
 namespace {

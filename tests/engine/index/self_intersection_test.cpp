@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include "keepout/index/self_intersection.h"
@@ -12,7 +11,7 @@
 #include "keepout/fixtures/shapes.h"
 #include "keepout/index/brute_force.h"
 #include "keepout/index/pd_tree.h"
-#include "keepout/mesh/weld.h"
+#include "keepout/mesh/mesh.h"
 #include "small_surfaces.h"
 
 namespace keepout {

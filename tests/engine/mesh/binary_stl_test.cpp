@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include "keepout/mesh/binary_stl.h"
@@ -10,7 +9,7 @@
 #include <sstream>
 
 #include "keepout/error.h"
-#include "keepout/mesh/weld.h"
+#include "keepout/mesh/mesh.h"
 #include "small_surfaces.h"
 #include "temporary_folder.h"
 

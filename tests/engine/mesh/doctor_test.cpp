@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include "keepout/mesh/doctor.h"
@@ -7,7 +6,7 @@
 
 #include <numbers>
 
-#include "keepout/mesh/weld.h"
+#include "keepout/mesh/mesh.h"
 #include "small_surfaces.h"
 
 namespace keepout {

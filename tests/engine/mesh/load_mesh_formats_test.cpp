@@ -1,10 +1,9 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // What is particular to one format, well-formed and not.
 #include <Eigen/Geometry>
 
 #include "engine/mesh/mesh_files.h"
-#include "keepout/mesh/weld.h"
+#include "keepout/mesh/mesh.h"
 
 namespace keepout {
 namespace {

@@ -1,7 +1,4 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
-
-#include "keepout/mesh/weld.h"
 
 #include <gtest/gtest.h>
 
@@ -11,6 +8,7 @@
 #include <random>
 
 #include "keepout/error.h"
+#include "keepout/mesh/mesh.h"
 #include "small_surfaces.h"
 
 namespace keepout {

@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // Step::distance, held to brute force: of every rule, on every index of the engine, whether the
 // rule searches or not, and whatever the processor.

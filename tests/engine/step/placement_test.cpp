@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "step/placement.h"
 
@@ -16,7 +15,7 @@
 #include "keepout/fixtures/poses.h"
 #include "keepout/fixtures/shapes.h"
 #include "keepout/index/pd_tree.h"
-#include "keepout/mesh/watertight.h"
+#include "keepout/mesh/doctor.h"
 #include "keepout/oracle/safety_oracle.h"
 #include "small_surfaces.h"
 #include "trials.h"

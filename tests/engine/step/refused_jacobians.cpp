@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // Compiled with one of these names defined: each is to be refused, with a word on what to do.
 #include "keepout/step/motion.h"

@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 // No part is taken at its word: whatever a solver, a rule or a caller gets wrong, nothing moves.
 #include <gtest/gtest.h>

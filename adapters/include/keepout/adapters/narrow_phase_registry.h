@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -7,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "keepout/geometry/narrow_phase.h"
+#include "keepout/geometry/separation.h"
 #include "keepout/registry.h"
 
 namespace keepout {

@@ -1,10 +1,9 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/speed/trajectories.h"
 
 #include "keepout/error.h"
 #include "keepout/fixtures/poses.h"
-#include "keepout/index/nearest.h"
+#include "keepout/index/query.h"
 #include "number_text.h"
 
 namespace keepout::app {

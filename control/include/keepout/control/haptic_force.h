@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -6,7 +5,7 @@
 #include <cstddef>
 #include <limits>
 
-#include "keepout/geometry/vec3.h"
+#include "keepout/geometry/shapes.h"
 
 namespace keepout {
 

@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -8,9 +7,8 @@
 #include <span>
 
 #include "keepout/buffer.h"
-#include "keepout/geometry/ball.h"
-#include "keepout/geometry/half_space.h"
-#include "keepout/index/neighborhood.h"
+#include "keepout/geometry/shapes.h"
+#include "keepout/index/query.h"
 #include "keepout/status.h"
 
 namespace keepout {

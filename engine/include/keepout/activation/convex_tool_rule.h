@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -8,7 +7,7 @@
 
 #include "keepout/activation/activation.h"
 #include "keepout/geometry/convex_tool.h"
-#include "keepout/geometry/narrow_phase.h"
+#include "keepout/geometry/separation.h"
 #include "keepout/mesh/mesh.h"
 
 namespace keepout {

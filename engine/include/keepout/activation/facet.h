@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -6,9 +5,7 @@
 #include <optional>
 
 #include "keepout/geometry/closest_point.h"
-#include "keepout/geometry/half_space.h"
-#include "keepout/geometry/triangle.h"
-#include "keepout/geometry/vec3.h"
+#include "keepout/geometry/shapes.h"
 
 namespace keepout {
 

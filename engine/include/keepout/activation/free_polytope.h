@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -12,7 +11,7 @@
 #include <vector>
 
 #include "keepout/activation/activation.h"
-#include "keepout/index/refine.h"
+#include "keepout/index/query.h"
 #include "keepout/mesh/mesh.h"
 
 namespace keepout {

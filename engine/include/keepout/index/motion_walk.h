@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -6,8 +5,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "keepout/geometry/ball.h"
-#include "keepout/geometry/triangle.h"
+#include "keepout/geometry/shapes.h"
 #include "keepout/ids.h"
 
 namespace keepout {

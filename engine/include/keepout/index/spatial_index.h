@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -6,7 +5,7 @@
 #include <memory>
 
 #include "keepout/buffer.h"
-#include "keepout/geometry/ball.h"
+#include "keepout/geometry/shapes.h"
 #include "keepout/ids.h"
 #include "keepout/index/motion_walk.h"
 

@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -7,8 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "keepout/geometry/box.h"
-#include "keepout/geometry/triangle.h"
+#include "keepout/geometry/shapes.h"
 #include "keepout/ids.h"
 
 namespace keepout {
@@ -66,5 +64,12 @@ class Mesh {
   Box bounds_;
   double longest_edge_ = 0.0;
 };
+
+/// Merges the vertices whose coordinates are exactly equal (0 and -0 are), and leaves all others
+/// apart, however close. Triangles keep their order and winding; none is dropped, degenerate ones
+/// neither. Vertices are numbered by their first use; vertices that no triangle uses disappear.
+///
+/// `threads`: at most; 0 for as many as there are processors. The result is the same.
+Surface weld(Surface surface, unsigned threads = 0);
 
 }  // namespace keepout

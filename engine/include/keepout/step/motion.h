@@ -1,14 +1,13 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <span>
 
-#include "keepout/geometry/half_space.h"
-#include "keepout/geometry/vec3.h"
+#include "keepout/geometry/shapes.h"
 #include "keepout/status.h"
 #include "keepout/step/tip_jacobian.h"
 
@@ -72,6 +71,17 @@ struct Step {
   bool ok() const noexcept { return is_ok(status); }
   /// One line on what happened and what to do about it; a literal.
   std::string_view reason() const noexcept { return keepout::reason(status); }
+};
+
+/// The time that each part of a step took, to know them apart. What a failed step does not reach
+/// stays at zero. [ns]
+struct StageTimes {
+  std::int64_t query = 0;       // the index is asked what is around; of a walk, its beginning
+  std::int64_t activation = 0;  // the rule begins
+  std::int64_t solve = 0;       // trials are solved and judged
+
+  /// Of all stages. [ns]
+  std::int64_t total() const noexcept { return query + activation + solve; }
 };
 
 }  // namespace keepout

@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -15,7 +14,6 @@
 #include "keepout/step/options.h"
 #include "keepout/step/side_watch.h"
 #include "keepout/step/solver.h"
-#include "keepout/step/stage_times.h"
 
 namespace keepout {
 

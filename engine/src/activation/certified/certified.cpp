@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "keepout/activation/certified.h"
 
@@ -8,7 +7,7 @@
 #include "../tolerance_ladder.h"
 #include "certified_terms.h"
 #include "keepout/activation/planes.h"
-#include "keepout/index/neighborhood.h"
+#include "keepout/index/query.h"
 
 namespace keepout {
 

@@ -1,11 +1,9 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <cstdint>
 
 #include "float_motion.h"
-#include "keepout/index/cylinder_block.h"
 #include "keepout/index/wide_bvh.h"
 
 namespace keepout {

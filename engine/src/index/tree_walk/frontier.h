@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -7,7 +6,7 @@
 #include <cstdint>
 #include <span>
 
-#include "keepout/geometry/ball.h"
+#include "keepout/geometry/shapes.h"
 #include "keepout/index/wide_bvh.h"
 
 namespace keepout {

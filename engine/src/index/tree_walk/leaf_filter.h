@@ -1,11 +1,10 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <cstdint>
 
 #include "float_motion.h"
-#include "keepout/index/leaf_block.h"
+#include "keepout/index/triangle_blocks.h"
 
 namespace keepout {
 

@@ -1,10 +1,9 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <compare>
 
-#include "keepout/geometry/triangle.h"
+#include "keepout/geometry/shapes.h"
 
 namespace keepout::oracle {
 

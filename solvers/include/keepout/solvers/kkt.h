@@ -1,8 +1,6 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "keepout/step/problem.h"
 #include "keepout/step/solver.h"
 
 namespace keepout {

@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -6,7 +5,6 @@
 #include <memory>
 #include <vector>
 
-#include "keepout/step/problem.h"
 #include "keepout/step/solver.h"
 
 namespace keepout {

@@ -1,4 +1,3 @@
-// SPDX-FileCopyrightText: 2026 the keepout authors
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -8,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "keepout/geometry/box.h"
+#include "keepout/geometry/shapes.h"
 #include "keepout/step/motion_constraint.h"
 
 namespace keepout {

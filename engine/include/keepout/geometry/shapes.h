@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+
+#include "keepout/ids.h"
+
+namespace keepout {
+
+/// A point, or a displacement, in the frame of the mesh. [length]
+using Vec3 = Eigen::Vector3d;
+
+/// All points within `radius` of `center`, the boundary included. The paper's motion sphere is one:
+/// it holds every place that the tip can reach in one control cycle.
+struct Ball {
+  Vec3 center;    // [length]
+  double radius;  // [length], >= 0
+};
+
+/// An axis-aligned box. [length]
+struct Box {
+  Vec3 low;   // the corner with the least coordinates
+  Vec3 high;  // the corner with the largest
+
+  /// Halfway between the corners. [length]
+  Vec3 center() const noexcept { return 0.5 * (low + high); }
+  /// The lengths of its sides, >= 0 unless it is empty. [length]
+  Vec3 size() const noexcept { return high - low; }
+};
+
+/// From a point to a box, 0 within it. [length]
+inline double distance_to(const Box& box, const Vec3& point) noexcept {
+  return (point - point.cwiseMax(box.low).cwiseMin(box.high)).norm();
+}
+
+/// The radius within which boxes around parts of a mesh with these bounds, tested in double, are
+/// not to be passed over: the ball's, and what the exact kernel and the test may round differently.
+/// Each loses some 1e-15 of the lengths involved, which are at most the ball's radius and its way
+/// to the far end of the mesh. [length]
+inline double padded_radius(const Ball& ball, const Box& bounds) noexcept {
+  constexpr double rounding = 1e-13;
+  const Vec3 from_middle = ball.center - bounds.center();
+  return ball.radius +
+         rounding * (ball.radius + from_middle.cwiseAbs().sum() + bounds.size().sum());
+}
+
+/// The square of the distance from a point to a box, 0 inside.
+inline double squared_distance(const Box& box, const Vec3& point) noexcept {
+  return (box.low - point).cwiseMax(point - box.high).cwiseMax(0.0).squaredNorm();
+}
+
+/// The three corners of a triangle, in the order of its winding. [length]
+/// Edge e runs from corner e to corner (e + 1) % 3.
+using Triangle = std::array<Vec3, 3>;
+
+/// Unit normal by the right-hand rule; zero for a triangle without an area.
+Vec3 unit_normal(const Triangle& triangle) noexcept;
+
+/// The corners of a triangle in lexicographic order, relative to the tip. Ordered before the tip is
+/// taken off, whose rounding could make different coordinates equal.
+Triangle ordered_relative(const Triangle& triangle, const Vec3& tip) noexcept;
+
+/// The motions that one plane allows: all d with normal . d >= offset. The plane is placed relative
+/// to the tip, so `offset` <= 0 means that standing still is allowed.
+struct HalfSpace {
+  Vec3 normal;        // unit, towards the free side
+  double offset;      // [length]
+  TriangleId source;  // the triangle that called for it; no_triangle if none did
+};
+
+}  // namespace keepout

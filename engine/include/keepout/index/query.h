@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "keepout/buffer.h"
+#include "keepout/geometry/closest_point.h"
+#include "keepout/geometry/shapes.h"
+#include "keepout/index/spatial_index.h"
+#include "keepout/mesh/mesh.h"
+
+namespace keepout {
+
+/// A triangle that touches the query ball, and its point nearest to the centre.
+struct Hit {
+  TriangleId triangle;   // its number
+  ClosestPoint closest;  // relative to the ball's centre
+};
+
+/// Hits, with a declared capacity.
+using HitBuffer = Buffer<Hit>;
+
+/// From candidates to exact hits: keeps the triangles within the ball (distance <= radius) and
+/// sorts them by id, so that nothing downstream depends on the order of a traversal.
+void refine(const Mesh& mesh, const Ball& ball, std::span<const TriangleId> candidates,
+            HitBuffer& hits) noexcept;
+
+/// The triangles around a place, exactly, from whatever index: asks it for candidates and refines
+/// them. All memory is made at construction. One for each thread; mesh and index are shared.
+class Neighborhood {
+ public:
+  /// With room for so many candidates in a query, or all triangles if they are fewer. Throws Error
+  /// without a mesh or an index.
+  Neighborhood(std::shared_ptr<const Mesh> mesh, std::shared_ptr<const SpatialIndex> index,
+               std::size_t room);
+
+  /// Finds all triangles that touch the ball. False, and no hits, if the index proposes more than
+  /// there is room for, or the ball is none.
+  [[nodiscard]] bool look(const Ball& ball) noexcept;
+
+  /// What the last look found, sorted by number; closest points are relative to the ball's centre.
+  std::span<const Hit> hits() const noexcept { return hits_.view(); }
+  /// Where it looked.
+  const Ball& ball() const noexcept { return ball_; }
+
+  /// For queries of another kind, which leave hits and ball as they are.
+  TriangleBuffer& candidates() noexcept { return candidates_; }
+  /// How many candidates there is room for.
+  std::size_t room() const noexcept { return candidates_.capacity(); }
+  /// What is looked at.
+  const Mesh& mesh() const noexcept { return *mesh_; }
+  /// What is asked.
+  const SpatialIndex& index() const noexcept { return *index_; }
+
+ private:
+  std::shared_ptr<const Mesh> mesh_;
+  std::shared_ptr<const SpatialIndex> index_;
+  Ball ball_{Vec3::Zero(), -1.0};
+  TriangleBuffer candidates_;
+  HitBuffer hits_;
+};
+
+/// The triangle nearest to a point, and its closest point, relative to `point`; ties go to the
+/// lowest id. Of every index the same, bit for bit. One that has no search of its own for it
+/// (SpatialIndex::nearest) is asked about a ball around the point that grows until it touches the
+/// mesh: far from it that may be a large part of it, and there is no answer when it is more than
+/// `candidates` has room for. Allocates nothing.
+///
+/// `guess`: for such an index a radius worth trying first, such as the last distance plus the way
+/// since. [length] Precondition: the point is finite.
+std::optional<Hit> find_nearest(const Mesh& mesh, const SpatialIndex& index, const Vec3& point,
+                                double guess, TriangleBuffer& candidates) noexcept;
+
+/// The same with memory that grows as needed: for measuring, not for the control path.
+class NearestTriangle {
+ public:
+  /// Both must outlive this object.
+  NearestTriangle(const Mesh& mesh, const SpatialIndex& index);
+
+  /// The nearest triangle; ties, `guess` and precondition as for find_nearest. Allocates.
+  Hit operator()(const Vec3& point, double guess = 0.0);
+
+ private:
+  const Mesh* mesh_;
+  const SpatialIndex* index_;
+  TriangleBuffer candidates_;
+};
+
+}  // namespace keepout
