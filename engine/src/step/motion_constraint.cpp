@@ -10,7 +10,7 @@
 #include "keepout/error.h"
 #include "keepout/index/query.h"
 #include "keepout/mesh/doctor.h"
-#include "way_out.h"
+#include "placement.h"
 
 namespace keepout {
 namespace {

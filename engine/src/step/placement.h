@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstdint>
 #include <optional>
 
-#include "keepout/index/spatial_index.h"
-#include "keepout/mesh/mesh.h"
+#include "keepout/index/query.h"
+#include "keepout/step/motion.h"
+#include "keepout/step/options.h"
+#include "workspace.h"
 
 namespace keepout {
 
@@ -37,5 +38,18 @@ std::optional<Placement> place(const Mesh& mesh, const SpatialIndex& index, cons
 Vec3 lead_out(const Mesh& mesh, const SpatialIndex& index, const Vec3& tip,
               const Placement& placement, double longest, double off,
               TriangleBuffer& candidates) noexcept;
+
+/// Whether a tip is on the forbidden side; then `step` becomes the one that leads it out, in place
+/// of the one asked for. It is `inside`, with zero motion, when the tip is deeper than
+/// options.deepest, and with a Jacobian or rows, as there is no straight way out. Preconditions:
+/// the mesh is watertight; the motion is checked.
+bool lead_out_from_inside(Neighborhood& near, const Motion& motion, const StepOptions& options,
+                          Workspace& work, Step& step) noexcept;
+
+/// Whether there is a short way to a place that is found to be free, for a tip that touches the
+/// surface, so that the rule cannot tell its side; then `step` becomes that. The same
+/// preconditions.
+bool lead_off_surface(Neighborhood& near, const Motion& motion, const StepOptions& options,
+                      Workspace& work, Step& step) noexcept;
 
 }  // namespace keepout

@@ -8,7 +8,7 @@
 #include "keepout/fixtures/poses.h"
 #include "keepout/fixtures/shapes.h"
 #include "keepout/oracle/safety_oracle.h"
-#include "step/branches.h"
+#include "step/workspace.h"
 
 namespace keepout {
 namespace {

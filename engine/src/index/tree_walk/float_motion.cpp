@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "float_motion.h"
+#include "filters.h"
 
 namespace keepout {
 

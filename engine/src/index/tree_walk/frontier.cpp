@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "box_filter.h"
+#include "filters.h"
 
 namespace keepout {
 

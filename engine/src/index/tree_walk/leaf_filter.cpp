@@ -3,7 +3,7 @@
 #define HWY_TARGET_INCLUDE "index/tree_walk/leaf_filter.cpp"
 #include <hwy/foreach_target.h>
 // After it, for it tells for whom to compile.
-#include "leaf_filter.h"
+#include "filters.h"
 #include "proof_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();

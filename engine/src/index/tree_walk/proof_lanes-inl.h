@@ -14,7 +14,7 @@
 #endif
 
 #include "../../lanes-inl.h"
-#include "float_motion.h"
+#include "filters.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace keepout::HWY_NAMESPACE {

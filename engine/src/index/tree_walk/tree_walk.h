@@ -6,11 +6,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "box_filter.h"
+#include "filters.h"
 #include "frontier.h"
 #include "keepout/index/motion_walk.h"
 #include "keepout/index/wide_bvh.h"
-#include "leaf_filter.h"
 
 namespace keepout {
 
