@@ -15,7 +15,11 @@ class SideWatch {
   SideWatch() = default;
 
   /// Precondition: the mesh that is asked about is watertight.
-  static SideWatch of_watertight() noexcept;
+  static SideWatch of_watertight() noexcept {
+    SideWatch watch;
+    watch.is_on_ = true;
+    return watch;
+  }
 
   /// Whether sides are asked about.
   bool is_on() const noexcept { return is_on_; }
@@ -26,7 +30,12 @@ class SideWatch {
   }
 
   /// Takes down where a step from the free side has led to.
-  void after(const Motion& motion, const Step& step, const StepOptions& options) noexcept;
+  void after(const Motion& motion, const Step& step, const StepOptions& options) noexcept {
+    free_tip_ = motion.tip + step.motion;
+    // A margin that is kept leaves more than half of itself free, whatever the tolerance.
+    const bool keeps_the_margin = step.ok() && step.status != Status::recovering;
+    free_around_ = keeps_the_margin ? 0.5 * distance_kept(options) : 0.0;
+  }
 
   /// Forgets it: the next tip is placed anew.
   void forget() noexcept { free_tip_ = Motion::unset; }
