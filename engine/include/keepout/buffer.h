@@ -41,14 +41,6 @@ class Buffer {
     overflowed_ = false;
   }
 
-  /// Lets go of all but the first ones, `size` or fewer. An overflow is forgotten with what
-  /// overflowed.
-  void truncate(std::size_t size) noexcept {
-    if (size >= size_) return;
-    size_ = size;
-    overflowed_ = false;
-  }
-
   /// True if anything was pushed beyond the capacity since the last clear().
   bool overflowed() const noexcept { return overflowed_; }
   /// Whether nothing is in it.

@@ -250,8 +250,9 @@ TEST_P(FacetOfKind, TheNormalPointsFromTheClosestPoint) {
   for (int i = 0; i < test::trials(20'000); ++i) {
     const Case c = random_case(random, GetParam().height);
     const Facet facet(c.triangle, Vec3::Zero(), 7);
-    double distance = 0.0;
-    const Vec3 n = facet.normal_at(c.z, distance);
+    const auto nearest = facet.nearest_to(c.z);
+    const double distance = nearest.distance;
+    const Vec3& n = nearest.normal;
     if (distance < 1e-3 * c.size) continue;
     ASSERT_NEAR(distance, closest_point(c.triangle, c.z).distance, 1e-14 * c.size);
     // All of the facet is behind: that is what makes the point the closest one.

@@ -58,15 +58,20 @@ class Sources {
         walking_(guard(mesh, tree, harmless())),
         asking_(guard(mesh, std::make_shared<PdTree>(mesh), harmless())) {}
 
+  Outcome walking(const Motion& motion) { return Outcome(walking_->step(motion)); }
+  Outcome asking(const Motion& motion) { return Outcome(asking_->step(motion)); }
   Outcome walking(const Motion& motion, const StepOptions& options) {
-    return step(*walking_, motion, options);
+    walking_->set_options(options);
+    return walking(motion);
   }
   Outcome asking(const Motion& motion, const StepOptions& options) {
-    return step(*asking_, motion, options);
+    asking_->set_options(options);
+    return asking(motion);
   }
-  static Outcome step(MotionConstraint& guard, const Motion& motion, const StepOptions& options) {
-    guard.set_options(options);
-    return Outcome(guard.step(motion));
+  /// Of all steps to come.
+  void set_options(const StepOptions& options) {
+    walking_->set_options(options);
+    asking_->set_options(options);
   }
 
   std::shared_ptr<const Mesh> mesh;

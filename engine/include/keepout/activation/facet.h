@@ -48,13 +48,6 @@ class Facet {
   /// The same, sooner where the closest point lies on the feature that it is `likely` to lie on.
   Nearest nearest_to(const Vec3& point, Feature likely) const noexcept;
 
-  /// Its normal. `distance` is set to the distance of the point. [length]
-  Vec3 normal_at(const Vec3& point, double& distance) const noexcept {
-    const Nearest nearest = nearest_to(point);
-    distance = nearest.distance;
-    return nearest.normal;
-  }
-
   /// nearest_to the tip.
   const Nearest& at_tip() const noexcept { return at_tip_; }
   /// Of the tip. [length]
