@@ -22,8 +22,6 @@
 namespace keepout::app {
 namespace {
 
-constexpr double radius = 1.0;  // of the motion sphere [mm]
-
 /// What an index came to at one pose.
 struct Finding {
   std::vector<Hit> hits;  // after the exact kernel, sorted
@@ -149,6 +147,7 @@ std::vector<IndexAgreement> compare_indices(const IndexComparison& comparison,
   // One pose after the other, as a program would ask; nothing when it was stopped.
   const auto ask = [&](const std::shared_ptr<const SpatialIndex>& index,
                        const std::string& rule) -> std::optional<Findings> {
+    constexpr double radius = 1.0;  // of the motion sphere [mm]
     MotionConstraint guard =
         make_motion_constraint(mesh, index, {.activation = rule, .radius = radius});
     const double reach = guard.options().radius + guard.options().margin;

@@ -9,7 +9,6 @@
 #include "bench/speed/process.h"
 #include "bench/speed/speed_record.h"
 #include "bench/speed/speed_run.h"
-#include "bench/speed/trajectories.h"
 #include "keepout/fixtures/real_mesh.h"
 #include "machine.h"
 #include "number_text.h"

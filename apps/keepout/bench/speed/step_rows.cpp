@@ -10,7 +10,6 @@
 #include "bench/parts.h"
 #include "bench/speed/process.h"
 #include "bench/speed/speed_run.h"
-#include "bench/speed/trajectories.h"
 #include "keepout/fixtures/shapes.h"
 #include "keepout/solvers/registry.h"
 #include "number_text.h"
