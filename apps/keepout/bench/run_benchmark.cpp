@@ -211,11 +211,13 @@ void run_benchmark(const BenchmarkPlan& plan, const StopSignal& stop, Benchmark&
   const UsedCores used;
   print_machine(out, benchmark.machine);
   out.flush();
+  // Also where a mesh is broken.
+  const std::shared_ptr<void> at_the_end(nullptr,
+                                         [&](void*) { benchmark.others_cores = used.others(); });
   MemoryTaken memory;
   for (const Subject& subject : plan.subjects) {
     if (stop.has_come()) return;
     run_trial(subject, plan, memory, stop, benchmark, out);
-    benchmark.others_cores = used.others();
   }
 }
 
