@@ -29,8 +29,9 @@ std::string value_of(const char* file, std::string_view key, std::string_view se
   return {};
 }
 
-std::size_t kibibytes(std::string_view key) {
-  std::istringstream text(value_of("/proc/meminfo", key, ":"));
+/// A number of kibibytes there. [bytes]
+std::size_t memory_of(const char* file, std::string_view key) {
+  std::istringstream text(value_of(file, key, ":"));
   std::size_t count = 0;
   text >> count;
   return count << 10;
@@ -78,7 +79,8 @@ std::string processor() {
 Machine this_machine() {
   return {.processor = processor(),
           .cores = std::thread::hardware_concurrency(),
-          .memory_gib = static_cast<double>(kibibytes("MemTotal")) / static_cast<double>(1 << 30),
+          .memory_gib = static_cast<double>(memory_of("/proc/meminfo", "MemTotal")) /
+                        static_cast<double>(1 << 30),
           .simd = std::string(simd_target()),
           .system = operating_system(),
           .compiler = KEEPOUT_COMPILER,
@@ -89,7 +91,9 @@ Machine this_machine() {
           .clock_ns = clock_cost()};
 }
 
-std::size_t available_memory() { return kibibytes("MemAvailable"); }
+std::size_t available_memory() { return memory_of("/proc/meminfo", "MemAvailable"); }
+
+std::size_t peak_memory() { return memory_of("/proc/self/status", "VmHWM"); }
 
 std::string date_now() {
   const std::time_t now = std::time(nullptr);

@@ -29,6 +29,10 @@ std::string processor();
 /// Memory that a process could still take. [bytes]
 std::size_t available_memory();
 
+/// The most memory that the process has held at once since it began, or since reset_peak_memory().
+/// [bytes] 0 where the system does not tell.
+std::size_t peak_memory();
+
 /// The time now in UTC, as ISO 8601 has it.
 std::string date_now();
 

@@ -12,7 +12,6 @@
 #include "audit.h"
 #include "bench/bench.h"
 #include "bench/benchmark.h"
-#include "bench/used_cores.h"
 #include "clip.h"
 #include "commands.h"
 #include "compare/compare.h"
@@ -140,17 +139,13 @@ Measured timings_of(const SimulateOptions& options, const std::shared_ptr<const 
                     std::ostream& out) {
   Measured measured;
   if (options.timings == Timings::of_the_run) return measured;
-  const Subject subject{.mesh = options.mesh.string()};
-  const std::vector<Combination> combinations = quick_combinations();
-  measured.benchmark = new_benchmark(options.command, 1, combinations, 1);
   const StopSignal stop;
-  const UsedCores used;
-  print_machine(out, measured.benchmark.machine);
-  out.flush();
-  MemoryTaken memory;
-  run_trial(subject, combinations, {.queries = 1500, .seconds = 0.3}, memory, stop,
-            measured.benchmark, out);
-  measured.benchmark.others_cores = used.others();
+  run_benchmark({.command = options.command,
+                 .subjects = {{.mesh = options.mesh.string()}},
+                 .combinations = combinations_of({.radii = {5.0, 1.0}}),
+                 .queries = 1500,
+                 .seconds = 0.3},
+                stop, measured.benchmark, out);
   if (stop.has_come()) {
     const std::size_t rows = measured.benchmark.rows.size();
     if (rows == 0) {
@@ -165,7 +160,8 @@ Measured timings_of(const SimulateOptions& options, const std::shared_ptr<const 
     return measured;
   }
   measured.comparison = compare_parts(options.mesh.stem().string(), mesh,
-                                      {.poses = 12, .problems = 400, .pairs = 100}, &stop);
+                                      {.poses = 12, .problems = 400, .pairs = 100},
+                                      [&stop] { return stop.has_come(); });
   print(out, measured.comparison);
   return measured;
 }

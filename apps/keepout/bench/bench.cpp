@@ -4,60 +4,58 @@
 #include <algorithm>
 #include <cstdlib>
 #include <exception>
-#include <memory>
 #include <new>
 #include <ostream>
 
 #include "bench/benchmark.h"
 #include "bench/parts.h"
-#include "bench/used_cores.h"
+#include "command_line.h"
 #include "compare/compare.h"
 #include "compare/comparison.h"
 #include "keepout/activation/registry.h"
 #include "keepout/error.h"
 #include "keepout/fixtures/real_mesh.h"
-#include "machine.h"
 #include "named_mesh.h"
 #include "names.h"
 #include "number_text.h"
 #include "output_file.h"
-#include "progress.h"
 #include "report/benchmark_report.h"
 #include "report/text.h"
 
 namespace keepout::app {
 namespace {
 
-/// From the paper's smallest bunny to its largest, and on.
-std::vector<std::size_t> sizes_of(Extent extent) {
-  if (extent == Extent::standard) return {51'978, 278'664, 989'376};
-  return {51'978, 104'000, 278'664, 557'000, 989'376, 4'458'624, 17'834'496};
-}
-
+/// Each mesh once, and the bunny once for each of the sizes.
 std::vector<Subject> chosen_subjects(const BenchOptions& options) {
-  const bool is_default = options.meshes.empty();
-  const bool own_sizes = !options.triangles.empty() || !is_default;
-  std::vector<Subject> subjects =
-      subjects_of(is_default ? std::vector{std::string(resampled_mesh)} : options.meshes,
-                  own_sizes ? options.triangles : sizes_of(options.extent));
-  if (options.extent == Extent::full && !own_sizes) subjects.push_back({"skull_1m", 0});
-  // Tables and pictures know a mesh by its name.
-  for (const Subject& one : subjects) {
-    for (const Subject& other : subjects) {
-      if (one.mesh == other.mesh || label_of(one) != label_of(other)) continue;
-      throw Error("--mesh: '" + one.mesh + "' and '" + other.mesh +
+  const bool is_default = options.meshes.empty() && options.triangles.empty();
+  std::vector<std::string> meshes = options.meshes;
+  if (meshes.empty()) meshes.emplace_back(resampled_mesh);
+  std::vector<std::size_t> sizes = options.triangles;
+  // From the paper's smallest bunny to its largest, and on.
+  if (is_default) sizes = {51'978, 278'664, 989'376};
+  if (is_default && options.full) {
+    sizes = {51'978, 104'000, 278'664, 557'000, 989'376, 4'458'624, 17'834'496};
+  }
+  if (!sizes.empty() && std::ranges::find(meshes, resampled_mesh) == meshes.end()) {
+    throw Error("--triangles is for the mesh that is resampled: name " +
+                std::string(resampled_mesh) + " among the meshes, or leave --triangles out");
+  }
+  std::vector<Subject> subjects;
+  for (const std::string& mesh : meshes) {
+    if (std::ranges::find(subjects, mesh, &Subject::mesh) != subjects.end()) continue;
+    // Tables and pictures know a mesh by its name.
+    const auto other = std::ranges::find(subjects, label_of({mesh}), label_of);
+    if (other != subjects.end()) {
+      throw Error("--mesh: '" + other->mesh + "' and '" + mesh +
                   "' could not be told apart in the report: give one of them another name");
     }
+    if (mesh == resampled_mesh) {
+      for (const std::size_t size : sizes) subjects.push_back({mesh, size});
+    }
+    if (mesh != resampled_mesh || sizes.empty()) subjects.push_back({mesh});
   }
+  if (is_default && options.full) subjects.push_back({"skull_1m"});
   return subjects;
-}
-
-TrialSettings settings_of(const BenchOptions& options) {
-  const bool full = options.extent == Extent::full;
-  return {.queries = options.queries.value_or(full ? 5'000 : 2'500),
-          .seconds = options.seconds.value_or(full ? 1.5 : 1.0),
-          .poses = options.poses,
-          .seed = options.seed};
 }
 
 /// Refuses a mesh of which there is none, too: a mistyped name is told of before the first row.
@@ -69,12 +67,6 @@ OutputFiles outputs_of(const BenchOptions& options, const std::vector<Subject>& 
   return {inputs, {{"--json", options.json}, {"--csv", options.csv}, {"--out", options.report}}};
 }
 
-void list_absent(std::ostream& out, std::span<const AbsentPart> parts) {
-  for (const AbsentPart& part : parts) {
-    out << "  " << part.name << " is not in this build: needs " << part.needs << '\n';
-  }
-}
-
 /// How well all parts agree; nothing, where the user wants to know about some only, or no more.
 Comparison comparison_for(const BenchOptions& options, const Subject& subject,
                           const StopSignal& stop, std::ostream& out) {
@@ -82,7 +74,8 @@ Comparison comparison_for(const BenchOptions& options, const Subject& subject,
   out << "\ncomparing answers on " << title_of(subject) << '\n';
   try {
     const Comparison comparison =
-        compare_parts(label_of(subject), make_mesh(subject), {.seed = options.seed}, &stop);
+        compare_parts(label_of(subject), make_mesh(subject), {.seed = options.seed},
+                      [&stop] { return stop.has_come(); });
     print(out, comparison);
     return comparison;
   } catch (const Error& error) {
@@ -93,82 +86,117 @@ Comparison comparison_for(const BenchOptions& options, const Subject& subject,
   return {};
 }
 
-/// What there is to say beside its times; only some tables of parts have such.
-template <class Entry>
-std::string_view remark_of(const Entry& entry) {
-  if constexpr (requires { entry.remark; }) return entry.remark;
-  return {};
-}
-
 /// Says what there is to measure, and what this build was made without.
 void list_parts(std::ostream& out) {
+  const auto list_absent = [&](std::span<const AbsentPart> parts) {
+    for (const AbsentPart& part : parts) {
+      out << "  " << part.name << " is not in this build: needs " << part.needs << '\n';
+    }
+  };
   out << listing("Indices (--index)", indices());
-  list_absent(out, absent_indices());
+  list_absent(absent_indices());
   out << listing("Rules (--activation)", activation_rules());
   out << listing("Solvers (--solver)", solver_backends());
-  list_absent(out, absent_solver_backends());
+  list_absent(absent_solver_backends());
   out << "Meshes (--mesh; a file will do as well):\n ";
   for (const std::string_view mesh : real_meshes()) out << ' ' << mesh;
   out << "\n  --triangles resamples " << resampled_mesh << " to any number of triangles\n";
 }
 
-int measure_speed(const BenchOptions& options, std::ostream& out) {
-  if (options.triangles.size() > 1) throw Error("--speed: give --triangles one size");
-  SpeedOptions speed = options.speed;
-  if (!options.triangles.empty()) speed.triangles = options.triangles.front();
-  speed.seed = options.seed;
-  speed.report = options.report;
-  speed.json = options.json;
-  speed.command = options.command;
-  return bench_speed(speed, out);
+/// To be called last: it has no use for most of the others.
+void add_speed_options(CLI::App& command, BenchOptions& options) {
+  SpeedOptions& speed_options = options.speed;
+  CLI::Option* speed = command.add_flag(
+      "--speed", options.is_speed,
+      "Measure the table of ratios that keepout is held to, in one process on one core; some "
+      "minutes. With --triangles: one size, for meshes of about a million");
+  for (const char* name : {"--list", "--index", "--activation", "--solver", "--mesh", "--radius",
+                           "--full", "--queries", "--seconds", "--poses", "--csv"}) {
+    speed->excludes(name);
+  }
+  command
+      .add_option("--steps", speed_options.histogram_steps, "Of --speed: steps of the histogram")
+      ->type_name("NUMBER")
+      ->transform(large_count())
+      ->needs(speed)
+      ->capture_default_str();
+  command
+      .add_option(
+          "--largest", speed_options.largest,
+          "Of --speed: also a mesh of so many triangles. 100000000 need 14 GiB, 5 GB of the "
+          "disk, and some minutes")
+      ->type_name("NUMBER")
+      ->transform(whole_number(1000, 200'000'000))
+      ->needs(speed);
+  command
+      .add_flag("--quick", speed_options.quick,
+                "Of --speed: few of everything, to see that it works")
+      ->needs(speed);
 }
 
 }  // namespace
 
-void run_trial(const Subject& subject, const std::vector<Combination>& combinations,
-               const TrialSettings& settings, MemoryTaken& memory, const StopSignal& stop,
-               Benchmark& benchmark, std::ostream& out) {
-  Progress progress("bench " + title_of(subject), combinations.size());
-  Trial trial(subject, settings, memory, stop);
-  progress.interrupt();
-  out << '\n'
-      << label_of(subject) << ", " << counted(trial.mesh().triangle_count(), "triangle") << ", "
-      << grouped(trial.mesh().vertex_count()) << " vertices; its file was read in "
-      << rounded(trial.loaded().seconds, 2) << " s with " << rounded(trial.loaded().cores, 2)
-      << " cores busy\n";
-  print_table_head(out);
-  for (const Combination& combination : combinations) {
-    progress.show(combination.index + " " + combination.activation + " " + combination.solver);
-    BenchmarkRow row = trial.measure(combination);
-    progress.interrupt();
-    if (stop.has_come()) return;
-    benchmark.rows.push_back(std::move(row));
-    print_table_row(out, benchmark.rows.back());
-    out.flush();
-    progress.advance();
-  }
-}
-
-Benchmark new_benchmark(const std::string& command, std::uint64_t seed,
-                        const std::vector<Combination>& combinations, std::size_t meshes) {
-  Benchmark benchmark{.date = date_now(),
-                      .command = command,
-                      .seed = seed,
-                      .machine = this_machine(),
-                      .planned = combinations.size() * meshes};
-  const auto describe = [&](const auto& table, std::string Combination::*part) {
-    for (const auto& entry : table) {
-      if (std::ranges::find(combinations, entry.name, part) != combinations.end()) {
-        benchmark.parts.emplace(entry.name, entry.description);
-        const std::string_view remark = remark_of(entry);
-        if (!remark.empty()) benchmark.remarks.emplace(entry.name, remark);
-      }
-    }
+void add_bench(CLI::App& app, BenchOptions& options) {
+  CLI::App& command = *app.add_subcommand(
+      "bench",
+      "Time every stage of the step, for indices, rules and solvers side by side; each is held to "
+      "brute force and to our own solver as it is timed");
+  command.add_flag("--list", options.list, "Say what there is to measure, and stop");
+  const auto add_list = [&](const char* name, std::vector<std::string>& list, const auto& table,
+                            const char* text) {
+    command.add_option(name, list, text)
+        ->delimiter(',')
+        ->type_name("NAMES")
+        ->check(one_of(names(table)));
   };
-  describe(indices(), &Combination::index);
-  describe(activation_rules(), &Combination::activation);
-  describe(solver_backends(), &Combination::solver);
-  return benchmark;
+  add_list("--index", options.selection.indices, indices(), "Indices to measure");
+  add_list("--activation", options.selection.activations, activation_rules(), "Rules to measure");
+  add_list("--solver", options.selection.solvers, solver_backends(), "Solvers to measure");
+  command.add_option("--mesh", options.meshes, "Fixtures, or mesh files")
+      ->delimiter(',')
+      ->type_name("NAMES");
+  command
+      .add_option("--triangles", options.triangles,
+                  "Sizes to which the bunny is resampled, 150 mm large as in the paper")
+      ->delimiter(',')
+      ->type_name("NUMBERS")
+      ->transform(whole_number(1000, 200'000'000));
+  command
+      .add_option("--radius", options.selection.radii,
+                  "Radii of the motion sphere, in mm; certified looks as far as the motion leads, "
+                  "whatever the radius")
+      ->delimiter(',')
+      ->type_name("MM")
+      ->check(length(Zero::refused));
+  command.add_flag(
+      "--full", options.full,
+      "To 18 million triangles, and the skull of a million: tens of minutes, and 14 GB");
+  command.add_option("--queries", options.queries, "Steps of each combination, at most")
+      ->type_name("NUMBER")
+      ->transform(whole_number(5, 10'000'000));
+  command
+      .add_option(
+          "--seconds", options.seconds,
+          "How long a combination is asked, at most, in each of two rounds: stage by stage, "
+          "and as a whole")
+      ->type_name("S")
+      ->check(length(Zero::refused));
+  command
+      .add_option("--poses", options.poses,
+                  "contact: a tool that slides along the surface; unrelated: as a planner asks")
+      ->transform(one_of<Poses>({{"contact", Poses::contact}, {"unrelated", Poses::unrelated}}))
+      ->default_str("contact");
+  add_number(command, "--seed", options.seed, 0, largest_seed, "Seed of the motions");
+  command.add_option("--json", options.json, "Where to write all figures")->type_name("FILE");
+  command.add_option("--csv", options.csv, "Where to write them as a table")->type_name("FILE");
+  command.add_option("--out", options.report, "Where to write a report with plots")
+      ->type_name("REPORT.html")
+      ->capture_default_str();
+  add_speed_options(command, options);
+  command.footer(
+      "Each list is crossed with the others; what is not named is wide_bvh, paper and certified,\n"
+      "active_set, and radii of 5, 1 and 0.25. Without --index, --activation and\n"
+      "--solver: each index, then each solver, with those; and FCL's tree with SLSQP.");
 }
 
 int bench(const BenchOptions& options, std::ostream& out, std::ostream& notes) {
@@ -176,29 +204,28 @@ int bench(const BenchOptions& options, std::ostream& out, std::ostream& notes) {
     list_parts(out);
     return EXIT_SUCCESS;
   }
-  if (options.is_speed) return measure_speed(options, out);
-  const std::vector<Subject> subjects = chosen_subjects(options);
-  const std::vector<Combination> combinations = combinations_of(options.selection);
-  if (combinations.empty()) throw Error("there is nothing to measure: see 'keepout bench --list'");
-  OutputFiles outputs = outputs_of(options, subjects);
+  if (options.is_speed) return bench_speed(options, out);
+  const BenchmarkPlan plan{.command = options.command,
+                           .subjects = chosen_subjects(options),
+                           .combinations = combinations_of(options.selection),
+                           .queries = options.queries.value_or(options.full ? 5'000 : 2'500),
+                           .seconds = options.seconds.value_or(options.full ? 1.5 : 1.0),
+                           .poses = options.poses,
+                           .seed = options.seed};
+  if (plan.combinations.empty()) {
+    throw Error("there is nothing to measure: see 'keepout bench --list'");
+  }
+  OutputFiles outputs = outputs_of(options, plan.subjects);
 
   const StopSignal stop;
-  Benchmark benchmark = new_benchmark(options.command, options.seed, combinations, subjects.size());
-  const UsedCores used;
-  print_machine(out, benchmark.machine);
-  out.flush();
-  MemoryTaken memory;
+  Benchmark benchmark;
   std::exception_ptr failure;  // of a mesh, after the rows of others
-  for (const Subject& subject : subjects) {
-    if (stop.has_come() || failure) break;
-    try {
-      run_trial(subject, combinations, settings_of(options), memory, stop, benchmark, out);
-    } catch (const std::exception&) {
-      if (benchmark.rows.empty()) throw;
-      failure = std::current_exception();
-    }
+  try {
+    run_benchmark(plan, stop, benchmark, out);
+  } catch (const std::exception&) {
+    if (benchmark.rows.empty()) throw;
+    failure = std::current_exception();
   }
-  benchmark.others_cores = used.others();
   if (benchmark.rows.empty()) {
     notes << "keepout: stopped before any row was finished: nothing was written\n";
     return exit_interrupted;
@@ -210,7 +237,7 @@ int bench(const BenchOptions& options, std::ostream& out, std::ostream& notes) {
   const bool ended_early = failure || stop.has_come();
   print_benchmark_report(
       *outputs.stream("--out"), benchmark,
-      ended_early ? Comparison{} : comparison_for(options, subjects.front(), stop, out));
+      ended_early ? Comparison{} : comparison_for(options, plan.subjects.front(), stop, out));
   outputs.commit();
   print_verdict(out, benchmark);
   out << "report: " << options.report.string() << '\n';

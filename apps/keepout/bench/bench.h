@@ -8,9 +8,7 @@
 #include <vector>
 
 #include "bench/combination.h"
-#include "bench/speed/speed.h"
-#include "bench/trial.h"
-#include "stop_signal.h"
+#include "bench/run_benchmark.h"
 
 namespace CLI {
 class App;
@@ -18,19 +16,21 @@ class App;
 
 namespace keepout::app {
 
-enum class Extent {
-  standard,  // three sizes of the bunny; some minutes
-  full       // to 18 million triangles, and the skull; tens of minutes
+/// Of `bench --speed` alone.
+struct SpeedOptions {
+  std::optional<std::size_t> largest = {};  // triangles of a third mesh; none: left out
+  std::size_t histogram_steps = 10'000'000;
+  bool quick = false;  // few of everything
 };
 
 struct BenchOptions {
-  bool list = false;                // what there is to measure, and no more
-  bool is_speed = false;            // the table of ratios instead, to be measured as `speed` says
-  SpeedOptions speed;               // but for what follows
-  std::vector<std::string> meshes;  // fixtures or files; empty: up to the extent
-  std::vector<std::size_t> triangles;  // sizes of the bunny; empty: up to the extent
+  bool list = false;      // what there is to measure, and no more
+  bool is_speed = false;  // the table of ratios instead: see bench_speed()
+  SpeedOptions speed;
+  std::vector<std::string> meshes;     // fixtures or files; empty: the bunny
+  std::vector<std::size_t> triangles;  // sizes of the bunny; empty: up to `full`
   Selection selection;
-  Extent extent = Extent::standard;
+  bool full = false;  // to 18 million triangles, and the skull; tens of minutes
   std::optional<std::size_t> queries;
   std::optional<double> seconds;
   Poses poses = Poses::contact;
@@ -53,13 +53,10 @@ void add_bench(CLI::App& app, BenchOptions& options);
 /// be broken: its error is thrown after the rows of those before it are written.
 int bench(const BenchOptions& options, std::ostream& out, std::ostream& notes);
 
-/// An empty record of this machine, for those rows on so many meshes.
-Benchmark new_benchmark(const std::string& command, std::uint64_t seed,
-                        const std::vector<Combination>& combinations, std::size_t meshes);
-
-/// The combinations on one mesh, until it is stopped; `out` gets the table.
-void run_trial(const Subject& subject, const std::vector<Combination>& combinations,
-               const TrialSettings& settings, MemoryTaken& memory, const StopSignal& stop,
-               Benchmark& benchmark, std::ostream& out);
+/// Measures the table of ratios that the engine is held to, prints it as it goes, and writes a
+/// report and JSON, if asked for. What falls short is said, and is no error. A wish to stop ends it
+/// after the family of rows at hand: what is measured is written, and said to be a part. The exit
+/// status. Throws Error before any work when a file could not be written, or a fixture is missing.
+int bench_speed(const BenchOptions& options, std::ostream& out);
 
 }  // namespace keepout::app

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <array>
 #include <charconv>
-#include <cstdio>
 #include <ostream>
 #include <sstream>
 #include <string>
@@ -30,21 +29,19 @@ std::string hexadecimal(std::uint64_t value) {
   return formatted("%016llx", static_cast<unsigned long long>(value));
 }
 
-Json json_of(const std::optional<Timing>& timing) {
-  return timing ? app::json_of(*timing) : Json(nullptr);
-}
+}  // namespace
 
-Json json_of(const BenchmarkRow& row) {
+void to_json(Json& json, const BenchmarkRow& row) {
   Json first_hashes = Json::object();
   for (std::size_t k = 0; k < row.first_hashes.size(); ++k) {
     first_hashes[std::to_string(std::size_t{1} << k)] = hexadecimal(row.first_hashes[k]);
   }
-  return {{"mesh", row.mesh},
+  json = {{"mesh", row.mesh},
           {"triangles", row.triangles},
           {"vertices", row.vertices},
           {"load_s", row.load_s},
           {"load_cores", row.load_cores},
-          {"radius", or_null(row.radius)},
+          {"radius", row.radius},
           {"queries", row.queries},
           {"index", row.index},
           {"activation", row.activation},
@@ -58,17 +55,19 @@ Json json_of(const BenchmarkRow& row) {
           {"planes_mean", row.planes_mean},
           {"unsolved_share", row.unsolved_share},
           {"worse_share", row.worse_share},
-          {"collect_us", json_of(row.collect)},
-          {"query_us", json_of(row.query)},
-          {"step_us", json_of(row.step)},
-          {"step_query_us", json_of(row.step_query)},
-          {"activate_us", json_of(row.activate)},
-          {"solve_us", json_of(row.solve)},
+          {"collect_us", row.collect},
+          {"query_us", row.query},
+          {"step_us", row.step},
+          {"step_query_us", row.step_query},
+          {"activate_us", row.activate},
+          {"solve_us", row.solve},
           {"hash", hexadecimal(row.hash)},
           {"hashes_of_first", std::move(first_hashes)},
           {"verified", row.verified},
           {"remark", row.remark}};
 }
+
+namespace {
 
 /// A cell of the table: numbers with the fewest digits that read back exactly, and text, of which
 /// the name of a file may hold anything, in quotes where it has to be.
@@ -142,20 +141,18 @@ void print_table_row(std::ostream& out, const BenchmarkRow& row) {
 }
 
 void write_json(std::ostream& out, const Benchmark& benchmark) {
-  Json rows = Json::array();
-  for (const BenchmarkRow& row : benchmark.rows) rows.push_back(json_of(row));
   const Json all = {{"date", benchmark.date},
                     {"command", benchmark.command},
                     {"seed", benchmark.seed},
-                    {"machine", json_of(benchmark.machine)},
-                    {"others_cores", or_null(benchmark.others_cores)},
+                    {"machine", benchmark.machine},
+                    {"others_cores", benchmark.others_cores},
                     {"complete", benchmark.rows.size() >= benchmark.planned},
                     {"planned_rows", benchmark.planned},
                     {"headline", headline(benchmark)},
                     {"account", account(benchmark)},
                     {"parts", benchmark.parts},
                     {"remarks", benchmark.remarks},
-                    {"rows", std::move(rows)}};
+                    {"rows", benchmark.rows}};
   out << all.dump(2) << '\n';
 }
 
@@ -166,7 +163,7 @@ void write_csv(std::ostream& out, const Benchmark& benchmark) {
   }
   out << "hash,verified,remark,date,processor,simd,keepout,others_cores\n";
   for (const BenchmarkRow& row : benchmark.rows) {
-    const Json values = json_of(row);
+    const Json values = row;
     std::istringstream names(columns);
     for (std::string column; std::getline(names, column, ',');) out << cell(values[column]) << ',';
     for (const char* stage : stages) {
@@ -178,7 +175,7 @@ void write_csv(std::ostream& out, const Benchmark& benchmark) {
     out << std::hex << row.hash << std::dec << ',' << cell(row.verified) << ',' << cell(row.remark)
         << ',' << benchmark.date << ',' << cell(benchmark.machine.processor) << ','
         << benchmark.machine.simd << ',' << benchmark.machine.keepout << ','
-        << cell(or_null(benchmark.others_cores)) << '\n';
+        << cell(benchmark.others_cores) << '\n';
   }
 }
 

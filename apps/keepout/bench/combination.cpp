@@ -19,11 +19,6 @@ constexpr const char* usual_solver = "nlopt_slsqp";
 using Names = std::vector<std::string>;
 using Radii = std::vector<double>;
 
-template <class Table>
-bool has(const Table& table, const std::string& name) {
-  return std::ranges::any_of(table, [&](const auto& entry) { return entry.name == name; });
-}
-
 /// Appends every combination of these, each once, of parts that there are.
 void add(std::vector<Combination>& all, const Names& index_names, const Names& rules,
          const Names& solvers, const Radii& radii) {
@@ -83,7 +78,5 @@ std::vector<Combination> combinations_of(const Selection& selection) {
       or_else(selection.solvers, {reference_solver}), radii);
   return sorted(std::move(all));
 }
-
-std::vector<Combination> quick_combinations() { return default_matrix({5.0, 1.0}); }
 
 }  // namespace keepout::app

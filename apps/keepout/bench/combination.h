@@ -17,8 +17,8 @@ struct Combination {
 
 /// What the user asked for; empty lists are up to us.
 struct Selection {
-  std::vector<std::string> indices, activations, solvers;
-  std::vector<double> radii;
+  std::vector<std::string> indices = {}, activations = {}, solvers = {};
+  std::vector<double> radii = {};  // [mm]
 };
 
 /// Whether any part was asked for by name.
@@ -32,8 +32,5 @@ bool names_parts(const Selection& selection);
 /// The certified rule looks as far as the motion leads whatever the radius: it is listed once.
 /// Only parts that this build has; sorted by index, so that each is built once.
 std::vector<Combination> combinations_of(const Selection& selection);
-
-/// The same for a quick look: with motion spheres of 5 and 1 mm only.
-std::vector<Combination> quick_combinations();
 
 }  // namespace keepout::app

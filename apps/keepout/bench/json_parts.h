@@ -6,24 +6,28 @@
 #include "bench/benchmark.h"
 #include "columns.h"
 
-namespace keepout::app {
-
 // What the JSON of all benchmarks is made of.
 
+/// null stands for what there is none of.
 template <class T>
-Json or_null(const std::optional<T>& value) {
-  return value ? Json(*value) : Json(nullptr);
+struct nlohmann::adl_serializer<std::optional<T>> {
+  static void to_json(auto& json, const std::optional<T>& value) {
+    if (value) {
+      json = *value;
+    } else {
+      json = nullptr;
+    }
+  }
+};
+
+namespace keepout::app {
+
+inline void to_json(Json& json, const Timing& timing) {
+  json = {{"p50", timing.p50}, {"p99", timing.p99}, {"p999", timing.p999}, {"max", timing.max}};
 }
 
-inline Json json_of(const Timing& timing) {
-  return {{"p50", timing.p50},
-          {"p99", or_null(timing.p99)},
-          {"p999", or_null(timing.p999)},
-          {"max", timing.max}};
-}
-
-inline Json json_of(const Machine& machine) {
-  return {{"processor", machine.processor},   {"cores", machine.cores},
+inline void to_json(Json& json, const Machine& machine) {
+  json = {{"processor", machine.processor},   {"cores", machine.cores},
           {"memory_gib", machine.memory_gib}, {"simd", machine.simd},
           {"system", machine.system},         {"compiler", machine.compiler},
           {"flags", machine.flags},           {"build_type", machine.build_type},

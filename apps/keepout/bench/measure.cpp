@@ -11,7 +11,10 @@
 namespace keepout::app {
 namespace {
 
-using Times = std::vector<double>;  // [us]
+/// Of each query and step. [us]
+struct Times {
+  std::vector<double> collect, query, step, step_query, activate, solve;
+};
 
 /// So many steps are asked for whatever the time, that medians and 99.9 % compare; unless it takes
 /// so many times the time that there is.
@@ -37,24 +40,20 @@ bool is_worse(const Answer& got, const Answer& expected, const Motion& motion) {
              (expected.motion - motion.desired).norm() + 1e-3 * motion.desired.norm();
 }
 
-struct Stages {
-  Times query, activate, solve;
-};
-
 /// As many as there is time for.
 std::vector<Answer> ask_by_stages(MotionConstraint& constraint, std::span<const Motion> motions,
-                                  double seconds, const StopSignal& stop, Stages& stages) {
+                                  double seconds, const StopSignal& stop, Times& times) {
   std::vector<Answer> answers;
   double spent = 0.0;  // [us]
   for (const Motion& motion : motions) {
     const double limit = answers.size() < enough_steps ? patience * seconds : seconds;
     if ((answers.size() >= fewest_steps && spent > 1e6 * limit) || stop.has_come()) break;
-    StageTimes times;
-    answers.push_back(constraint.step(motion, times));
-    stages.query.push_back(1e-3 * static_cast<double>(times.query));
-    stages.activate.push_back(1e-3 * static_cast<double>(times.activation));
-    stages.solve.push_back(1e-3 * static_cast<double>(times.solve));
-    spent += 1e-3 * static_cast<double>(times.total());
+    StageTimes stages;  // [ns]
+    answers.push_back(constraint.step(motion, stages));
+    times.step_query.push_back(1e-3 * static_cast<double>(stages.query));
+    times.activate.push_back(1e-3 * static_cast<double>(stages.activation));
+    times.solve.push_back(1e-3 * static_cast<double>(stages.solve));
+    spent += 1e-3 * static_cast<double>(stages.total());
   }
   return answers;
 }
@@ -68,7 +67,7 @@ std::vector<Answer> ask(MotionConstraint& constraint, std::span<const Motion> mo
     if (stop.has_come()) break;
     const BenchClock::time_point start = BenchClock::now();
     const Step step = constraint.step(motion);
-    times.push_back(microseconds_since(start));
+    times.step.push_back(microseconds_since(start));
     answers.push_back(step);
     planes += step.planes.size();
   }
@@ -98,14 +97,10 @@ std::size_t judge(std::span<const Answer> answers, std::span<const Motion> motio
   return wrong;
 }
 
-struct QueryTimes {
-  Times collect, query;
-};
-
 /// How many queries found something else than the reference. Whatever the index has decided or
 /// computed already, all do the same work: candidates, exact test, closest points, sorted.
 std::size_t ask_for_triangles(const SpatialIndex& index, std::size_t count, Reference& reference,
-                              const StopSignal& stop, QueryTimes& times, BenchmarkRow& row) {
+                              const StopSignal& stop, Times& times, BenchmarkRow& row) {
   // Before any is timed, so that caches are the same for the first index as for the last.
   std::vector<std::uint64_t> expected;
   for (std::size_t i = 0; i < count; ++i) expected.push_back(reference.hits_hash(i));
@@ -133,26 +128,23 @@ std::size_t ask_for_triangles(const SpatialIndex& index, std::size_t count, Refe
 
 }  // namespace
 
-void measure(const Assembly& assembly, std::span<const Motion> motions, Reference& reference,
-             double seconds, const StopSignal& stop, BenchmarkRow& row) {
-  if (!reference.is_found_by(assembly.constraint.index())) {
+void measure(MotionConstraint& constraint, double accuracy, std::span<const Motion> motions,
+             Reference& reference, double seconds, const StopSignal& stop, BenchmarkRow& row) {
+  if (!reference.is_found_by(constraint.index())) {
     row.remark = "not timed: the triangles are not those of brute force";
     return;
   }
-  Stages stages;
-  const std::vector<Answer> staged =
-      ask_by_stages(assembly.constraint, motions, seconds, stop, stages);
+  Times times;
+  const std::vector<Answer> staged = ask_by_stages(constraint, motions, seconds, stop, times);
   const std::span<const Motion> asked = motions.first(staged.size());
-  Times steps;
-  const std::vector<Answer> answers = ask(assembly.constraint, asked, stop, steps, row.planes_mean);
+  const std::vector<Answer> answers = ask(constraint, asked, stop, times, row.planes_mean);
   if (stop.has_come()) return;
   row.queries = asked.size();
-  std::size_t wrong = judge(answers, asked, reference, assembly.accuracy, row);
+  std::size_t wrong = judge(answers, asked, reference, accuracy, row);
   // The same parts that were asked for the same: whatever differs is wrong in one of the two.
   for (std::size_t i = 0; i < asked.size(); ++i) wrong += staged[i] == answers[i] ? 0 : 1;
-  QueryTimes queries;
   const std::size_t missed =
-      ask_for_triangles(assembly.constraint.index(), asked.size(), reference, stop, queries, row);
+      ask_for_triangles(constraint.index(), asked.size(), reference, stop, times, row);
   if (stop.has_come()) return;
   if (missed > 0) {
     row.remark = "not timed: " + grouped(missed) + " of " + grouped(asked.size()) +
@@ -164,12 +156,12 @@ void measure(const Assembly& assembly, std::span<const Motion> motions, Referenc
   }
   row.verified = wrong == 0 && missed == 0;
   if (!row.verified) return;
-  row.collect = timing_of(queries.collect);
-  row.query = timing_of(queries.query);
-  row.step = timing_of(steps);
-  if (assembly.constraint.makes_queries()) row.step_query = timing_of(stages.query);
-  row.activate = timing_of(stages.activate);
-  row.solve = timing_of(stages.solve);
+  row.collect = timing_of(times.collect);
+  row.query = timing_of(times.query);
+  row.step = timing_of(times.step);
+  if (constraint.makes_queries()) row.step_query = timing_of(times.step_query);
+  row.activate = timing_of(times.activate);
+  row.solve = timing_of(times.solve);
 }
 
 }  // namespace keepout::app

@@ -9,24 +9,19 @@
 
 namespace keepout::app {
 
-/// What a row is about: parts put together as any user has them.
-struct Assembly {
-  MotionConstraint& constraint;  // its tips taken as they are: the motions do not follow its steps
-  double accuracy;               // of its solver; 0: its steps are the reference's, bit for bit
-};
-
-/// Asks the constraint for the motions, in order and for so many seconds (or up to four times as
-/// many, to come to 1000 steps), stage by stage; then for the same steps as a whole; then the index
-/// for all triangles where the rule looks for them at first. Each answer of each time is held to
-/// the reference afterwards, and unless all are right no time is taken down.
+/// Asks the constraint, which is put together as any user has it but takes tips as they are, for
+/// the motions, in order and for so many seconds (or up to four times as many, to come to 1000
+/// steps), stage by stage; then for the same steps as a whole; then the index for all triangles
+/// where the rule looks for them at first. Each answer of each time is held to the reference
+/// afterwards, and unless all are right no time is taken down.
 ///
-/// Steps must be those of the reference bit for bit if the accuracy is 0; else within so much of
-/// the length of the motion. A solver may give up, but not be wrong. Under a rule that proves each
-/// motion, another solver's may be worse, of which the row tells. Triangles and their closest
-/// points must be those of the reference bit for bit.
+/// Steps must be those of the reference bit for bit if the accuracy of the solver is 0; else within
+/// so much of the length of the motion. A solver may give up, but not be wrong. Under a rule that
+/// proves each motion, another solver's may be worse, of which the row tells. Triangles and their
+/// closest points must be those of the reference bit for bit.
 ///
 /// Fills the row from its queries on. Of no use when it was stopped meanwhile.
-void measure(const Assembly& assembly, std::span<const Motion> motions, Reference& reference,
-             double seconds, const StopSignal& stop, BenchmarkRow& row);
+void measure(MotionConstraint& constraint, double accuracy, std::span<const Motion> motions,
+             Reference& reference, double seconds, const StopSignal& stop, BenchmarkRow& row);
 
 }  // namespace keepout::app

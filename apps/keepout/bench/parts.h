@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
+#include <string_view>
 #include <vector>
 
 #include "keepout/adapters/all_indices.h"
+#include "keepout/registry.h"
 #include "keepout/solvers/registry.h"
 
 namespace keepout::app {
@@ -18,6 +21,16 @@ inline const std::vector<IndexBackend>& indices() {
 inline const std::vector<AbsentPart>& absent_indices() {
   static const std::vector<AbsentPart> all = all_absent_index_backends();
   return all;
+}
+
+/// The index of that name. Throws Error when there is none.
+inline const IndexBackend& index_named(std::string_view name) {
+  return entry_named(name, indices(), "index", absent_indices());
+}
+
+/// Whether a table of parts has one of that name.
+bool has(const auto& table, std::string_view name) {
+  return std::ranges::any_of(table, [&](const auto& entry) { return entry.name == name; });
 }
 
 }  // namespace keepout::app

@@ -4,10 +4,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "keepout/activation/registry.h"
 #include "keepout/error.h"
 #include "keepout/index/brute_force.h"
-#include "keepout/solvers/active_set.h"
 
 namespace keepout::app {
 namespace {
@@ -15,13 +13,13 @@ namespace {
 /// Brute force is asked about so many of the motions: tens of milliseconds each.
 constexpr std::size_t sample_count = 8;
 
+}  // namespace
+
 bool is_same(const Hit& one, const Hit& other) {
   return one.triangle == other.triangle && one.closest.offset == other.closest.offset &&
          one.closest.distance == other.closest.distance &&
          one.closest.feature == other.closest.feature;
 }
-
-}  // namespace
 
 std::uint64_t hash_of(std::span<const Hit> hits) {
   BitHash hash;
@@ -34,18 +32,6 @@ std::uint64_t hash_of(std::span<const Hit> hits) {
   return hash.value();
 }
 
-MotionConstraint make_reference_guard(std::shared_ptr<const Mesh> mesh,
-                                      std::shared_ptr<const SpatialIndex> index,
-                                      const MotionConstraintSettings& settings) {
-  auto rule = make_activation(settings.activation, mesh);
-  return {std::move(mesh),
-          std::move(index),
-          std::move(rule),
-          std::make_unique<ActiveSet>(),
-          {.radius = settings.radius, .margin = settings.margin},
-          settings.capacity};
-}
-
 Reference::Reference(MotionConstraint& guard, std::shared_ptr<const Mesh> mesh,
                      const MotionConstraintSettings& settings, std::span<const Motion> motions)
     : candidates(std::min(settings.capacity.triangles, mesh->triangle_count())),
@@ -55,7 +41,7 @@ Reference::Reference(MotionConstraint& guard, std::shared_ptr<const Mesh> mesh,
       proves_motions_(settings.activation == "certified"),
       motions_(motions) {
   const auto brute_force = std::make_shared<const BruteForce>(mesh);
-  MotionConstraint exhaustive = make_reference_guard(std::move(mesh), brute_force, settings);
+  MotionConstraint exhaustive = make_motion_constraint(std::move(mesh), brute_force, settings);
   guard.set_options(options_);
   for (const Motion& motion : motions_) balls_.push_back(guard.region(motion));
   for (std::size_t s = 0; s < sample_count; ++s) {

@@ -27,6 +27,9 @@ class BitHash {
   std::uint64_t value_ = 0xCBF29CE484222325;
 };
 
+/// Whether two queries found the same there, to the last bit.
+bool is_same(const Hit& one, const Hit& other);
+
 /// Of what a query finds, to the last bit.
 std::uint64_t hash_of(std::span<const Hit> hits);
 
@@ -39,19 +42,13 @@ struct Answer {
   Vec3 motion;
 };
 
-/// On an index that is right and with our own solver: what others are held to, at any radius. With
-/// the rule, margin and capacity of the settings. Throws Error.
-MotionConstraint make_reference_guard(std::shared_ptr<const Mesh> mesh,
-                                      std::shared_ptr<const SpatialIndex> index,
-                                      const MotionConstraintSettings& settings);
-
 /// What every index and solver is held to, for one rule and radius on one mesh: brute force, in a
 /// sample of the places; everywhere, the reference's guard, which is held to brute force too.
 class Reference {
  public:
-  /// Of the settings radius and margin are those in question; the rest is the guard's. Guard and
-  /// motions must outlive this. Throws Error when the guard's own parts are not right: a fault
-  /// of ours.
+  /// The guard is one with these settings, but that its radius may be another, on an index that is
+  /// right and with our own solver. Guard and motions must outlive this. Throws Error when the
+  /// guard's own parts are not right: a fault of ours.
   Reference(MotionConstraint& guard, std::shared_ptr<const Mesh> mesh,
             const MotionConstraintSettings& settings, std::span<const Motion> motions);
 

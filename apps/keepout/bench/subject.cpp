@@ -1,37 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/subject.h"
 
-#include <algorithm>
 #include <filesystem>
 
 #include "bench/used_cores.h"
-#include "keepout/error.h"
 #include "keepout/fixtures/resample_mesh.h"
 #include "named_mesh.h"
 #include "number_text.h"
 
 namespace keepout::app {
-std::vector<Subject> subjects_of(std::span<const std::string> meshes,
-                                 std::span<const std::size_t> sizes) {
-  std::vector<Subject> subjects;
-  bool resampled = false;
-  for (const std::string& mesh : meshes) {
-    const auto is_there = [&](const Subject& subject) { return subject.mesh == mesh; };
-    if (std::any_of(subjects.begin(), subjects.end(), is_there)) continue;
-    if (mesh != resampled_mesh) {
-      subjects.push_back({mesh, 0});
-      continue;
-    }
-    resampled = true;
-    for (const std::size_t size : sizes) subjects.push_back({mesh, size});
-    if (sizes.empty()) subjects.push_back({mesh, 0});
-  }
-  if (!sizes.empty() && !resampled) {
-    throw Error("--triangles is for the mesh that is resampled: name " +
-                std::string(resampled_mesh) + " among the meshes, or leave --triangles out");
-  }
-  return subjects;
-}
 
 std::string label_of(const Subject& subject) {
   return std::filesystem::path(subject.mesh).filename().string();

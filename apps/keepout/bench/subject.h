@@ -3,9 +3,8 @@
 
 #include <cstddef>
 #include <memory>
-#include <span>
 #include <string>
-#include <vector>
+#include <string_view>
 
 #include "keepout/mesh/mesh.h"
 
@@ -19,11 +18,6 @@ struct Subject {
 
 /// The mesh of which a curve over the number of triangles is made: the paper's.
 inline constexpr std::string_view resampled_mesh = "bunny";
-
-/// Each mesh once, and the bunny once for each of the sizes. Throws Error for sizes of nothing that
-/// can be resampled.
-std::vector<Subject> subjects_of(std::span<const std::string> meshes,
-                                 std::span<const std::size_t> sizes);
 
 /// What to call its mesh: a file without its folder.
 std::string label_of(const Subject& subject);

@@ -7,6 +7,7 @@
 namespace keepout::app {
 
 Timing timing_of(std::vector<double>& samples) {
+  if (samples.empty()) return {};
   std::sort(samples.begin(), samples.end());
   const auto at = [&](double share) {
     const auto rank = std::ceil(share * static_cast<double>(samples.size()));

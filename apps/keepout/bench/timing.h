@@ -27,7 +27,7 @@ struct Timing {
   std::size_t samples = 0;
 };
 
-/// Sorts the samples. [us] Precondition: there is one.
+/// Sorts the samples. [us] All zero where there are none.
 Timing timing_of(std::vector<double>& samples);
 
 /// The lesser of each percentile of two passes over the same work: what else the machine did

@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -13,12 +12,11 @@
 #include "keepout/fixtures/random.h"
 #include "keepout/mesh/mesh.h"
 #include "keepout/solvers/recording_solver.h"
-#include "progress.h"
 
 namespace keepout::app {
 
-// How well parts agree that can take each other's place. Each function gives the rows that were
-// finished when it was stopped.
+// How well parts agree that can take each other's place. Each function shows on stderr how far it
+// has come, and gives the rows that were finished when it was stopped.
 
 /// What the indices are compared on.
 struct IndexComparison {
@@ -26,17 +24,15 @@ struct IndexComparison {
   std::shared_ptr<const Mesh> mesh;
   std::vector<std::string> indices, activations;
   std::size_t poses = 100;
-  double radius = 1.0;  // of the motion sphere [mm]
   std::uint64_t seed = 1;
 };
 
 /// Builds the motion constraint that make_motion_constraint gives, with each index and each rule,
 /// and holds what the index finds around the tip, the planes and the steps to brute force, and
 /// closest points to exact arithmetic. Half of the poses are in contact, the others off the
-/// surface, on vertices and on edges. `done` is told of each pose, of brute force and of each
-/// index, under each rule.
+/// surface, on vertices and on edges. `stopped` is asked before each pose, of brute force and of
+/// each index, under each rule.
 std::vector<IndexAgreement> compare_indices(const IndexComparison& comparison,
-                                            const std::function<void()>& done,
                                             const Stopped& stopped = never);
 
 /// The problems that closed-loop steps in contact pose: a hand presses the tip against the mesh and
@@ -55,8 +51,7 @@ void contradict(RecordedProblem& problem, Random& random);
 struct SolverComparison {
   std::vector<std::string> rules;
   std::vector<std::string> solvers;
-  std::size_t problems = 1000;              // recorded under each rule
-  double contradictory = 0.1;               // share of them that is made infeasible
+  std::size_t problems = 1000;              // recorded under each rule; a tenth made infeasible
   std::uint64_t seed = 1;                   // same seed, same problems
   std::map<std::string, std::size_t> most;  // problems for a slow solver: evenly from all
 };
@@ -68,14 +63,11 @@ std::vector<SolverAgreement> compare_solvers(const std::shared_ptr<const Mesh>& 
                                              const SolverComparison& comparison,
                                              const Stopped& stopped = never);
 
-/// How many rows compare_narrow_phases() has: what its progress advances to.
-std::size_t narrow_phase_rows() noexcept;
-
 /// Holds each narrow phase of this build to the exact kernel: instrument-like tools of 2 mm to 5
 /// mm, turned at random, at triangles of the mesh picked at random; as many pairs apart (up to 5
 /// mm), touching (within 1e-6 mm) and overlapping (by 0.001 mm or more). All get the same pairs.
 std::vector<NarrowPhaseAgreement> compare_narrow_phases(const Mesh& mesh, std::size_t pairs,
-                                                        std::uint64_t seed, Progress& progress,
+                                                        std::uint64_t seed,
                                                         const Stopped& stopped = never);
 
 }  // namespace keepout::app

@@ -15,6 +15,7 @@
 #include "named_mesh.h"
 #include "names.h"
 #include "output_file.h"
+#include "stop_signal.h"
 
 namespace keepout::app {
 namespace {
@@ -26,27 +27,19 @@ std::vector<std::string> indices_to_compare() {
   return all;
 }
 
-bool has_come(const StopSignal* stop) { return stop != nullptr && stop->has_come(); }
-
 }  // namespace
 
 Comparison compare_parts(const std::string& mesh_name, const std::shared_ptr<const Mesh>& mesh,
-                         const CompareExtent& extent, const StopSignal* stop) {
-  Comparison comparison;
+                         const CompareExtent& extent, const Stopped& stopped) {
   const std::vector<std::string> rules = names(activation_rules());
-  const Stopped stopped = [stop] { return has_come(stop); };
-  {
-    const std::vector<std::string> compared = indices_to_compare();
-    Progress progress("compare indices", extent.poses * rules.size() * (compared.size() + 1));
-    comparison.indices = compare_indices(
-        {.mesh_name = mesh_name,
-         .mesh = mesh,
-         .indices = compared,
-         .activations = rules,
-         .poses = extent.poses,
-         .seed = extent.seed},
-        [&] { progress.advance(); }, stopped);
-  }
+  Comparison comparison;
+  comparison.indices = compare_indices({.mesh_name = mesh_name,
+                                        .mesh = mesh,
+                                        .indices = indices_to_compare(),
+                                        .activations = rules,
+                                        .poses = extent.poses,
+                                        .seed = extent.seed},
+                                       stopped);
   if (!stopped()) {
     comparison.solvers = compare_solvers(
         mesh,
@@ -58,9 +51,7 @@ Comparison compare_parts(const std::string& mesh_name, const std::shared_ptr<con
         stopped);
   }
   if (!stopped()) {
-    Progress progress("compare narrow phases", narrow_phase_rows());
-    comparison.narrow_phases =
-        compare_narrow_phases(*mesh, extent.pairs, extent.seed, progress, stopped);
+    comparison.narrow_phases = compare_narrow_phases(*mesh, extent.pairs, extent.seed, stopped);
   }
   comparison.complete = !stopped();
   return comparison;
@@ -101,7 +92,8 @@ int compare(const CompareOptions& options, std::ostream& out) {
                           .extent = options.extent,
                           .machine = this_machine()};
   const StopSignal stop;
-  record.comparison = compare_parts(record.mesh, mesh, options.extent, &stop);
+  record.comparison =
+      compare_parts(record.mesh, mesh, options.extent, [&stop] { return stop.has_come(); });
   print(out, record.comparison);
   if (auto* const json = outputs.stream("--json")) write_json(*json, record);
   outputs.commit();

@@ -10,7 +10,6 @@
 
 #include "compare/comparison.h"
 #include "keepout/mesh/mesh.h"
-#include "stop_signal.h"
 
 namespace CLI {
 class App;
@@ -25,10 +24,10 @@ struct CompareOptions {
   std::string command;                        // that does it again
 };
 
-/// Everything that can take another's place, on the same input; as much as is finished when `stop`,
-/// which may be null, has come.
+/// Everything that can take another's place, on the same input; as much as is finished when it is
+/// stopped.
 Comparison compare_parts(const std::string& mesh_name, const std::shared_ptr<const Mesh>& mesh,
-                         const CompareExtent& extent, const StopSignal* stop = nullptr);
+                         const CompareExtent& extent, const Stopped& stopped);
 
 /// Adds `keepout compare` and its options to the command line.
 void add_compare(CLI::App& app, CompareOptions& options);

@@ -101,7 +101,7 @@ void write_json(std::ostream& out, const ComparisonRecord& record) {
       {"date", record.date},
       {"command", record.command},
       {"seed", extent.seed},
-      {"machine", json_of(record.machine)},
+      {"machine", record.machine},
       {"mesh", record.mesh},
       {"triangles", record.triangles},
       {"asked_for",

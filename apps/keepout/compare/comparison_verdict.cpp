@@ -15,16 +15,20 @@ std::size_t sum(const auto& rows, auto count) {
   return result;
 }
 
-/// The names of those that have any, and how many.
-std::string guilty(const auto& rows, auto name, auto count) {
+/// What the rows with any call themselves, each name once, in the order of the rows.
+std::vector<std::string> names_of(const auto& rows, auto name, auto any) {
   std::vector<std::string> result;
   for (const auto& row : rows) {
-    if (row.*count == 0) continue;
-    if (std::find(result.begin(), result.end(), row.*name) == result.end()) {
+    if (row.*any && std::ranges::find(result, row.*name) == result.end()) {
       result.push_back(row.*name);
     }
   }
-  return listed(result);
+  return result;
+}
+
+/// The same as one text; empty where there are none.
+std::string guilty(const auto& rows, auto name, auto count) {
+  return listed(names_of(rows, name, count));
 }
 
 /// Beside the first solver, which all are held to.
@@ -84,12 +88,8 @@ std::string index_agreement_by_construction(const std::vector<IndexAgreement>& r
   std::string text =
       "By construction the exact kernel decides, whichever index proposes: a plain rule can only "
       "come to another step by a triangle that the index missed or gave twice.";
-  std::vector<std::string> indices, rules;
-  for (const IndexAgreement& row : rows) {
-    if (!row.searched) continue;
-    if (std::ranges::find(indices, row.index) == indices.end()) indices.push_back(row.index);
-    if (std::ranges::find(rules, row.activation) == rules.end()) rules.push_back(row.activation);
-  }
+  const auto indices = names_of(rows, &IndexAgreement::index, &IndexAgreement::searched);
+  const auto rules = names_of(rows, &IndexAgreement::activation, &IndexAgreement::searched);
   if (indices.empty()) return text;
   return text + " Not so where the rule searches the index by itself, which is what " +
          listed(rules) + (rules.size() == 1 ? " does" : " do") + " on " + listed(indices) +

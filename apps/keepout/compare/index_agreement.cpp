@@ -8,15 +8,16 @@
 #include <utility>
 
 #include "bench/parts.h"
+#include "bench/reference.h"
 #include "compare/agreement.h"
 #include "keepout/activation/registry.h"
-#include "keepout/factory/make_motion_constraint.h"
 #include "keepout/fixtures/motions.h"
 #include "keepout/fixtures/poses.h"
 #include "keepout/index/brute_force.h"
 #include "keepout/index/pd_tree.h"
 #include "keepout/oracle/distance.h"
 #include "keepout/registry.h"
+#include "progress.h"
 
 namespace keepout::app {
 namespace {
@@ -32,8 +33,8 @@ struct Finding {
 
 /// What one index came to under one rule.
 struct Findings {
-  std::vector<Finding> at;           // each pose
   bool searched = false;             // by the rule
+  std::vector<Finding> at = {};      // each pose
   double closest_point_error = 0.0;  // the worst [mm]
 };
 
@@ -123,110 +124,78 @@ void compare(const Finding& got, const Finding& expected, bool searched,
   }
 }
 
-/// One after the other, as a program would ask; nothing when it was stopped.
-class Asker {
- public:
-  Asker(const IndexComparison& comparison, const std::function<void()>& done,
-        const Stopped& stopped)
-      : comparison_(comparison), motions_(motions_of(comparison)), done_(done), stopped_(stopped) {}
-
-  std::optional<Findings> ask(const std::shared_ptr<const SpatialIndex>& index,
-                              const std::string& rule) {
-    const std::shared_ptr<const Mesh>& mesh = comparison_.mesh;
-    MotionConstraint guard =
-        make_motion_constraint(mesh, index, {.activation = rule, .radius = comparison_.radius});
-    Findings findings;
-    findings.searched = !guard.makes_queries();
-    for (const Motion& motion : motions_) {
-      if (stopped_()) return std::nullopt;
-      const StepOptions& options = guard.options();
-      Finding finding = query(*index, {motion.tip, options.radius + options.margin});
-      const Step step = guard.step(motion);
-      finding.status = step.status;
-      finding.motion = step.motion;
-      finding.planes.assign(step.planes.begin(), step.planes.end());
-      findings.at.push_back(std::move(finding));
-      done_();
-    }
-    return findings;
+/// Sets the error of the closest points, which takes long: once where they are the same as known.
+void judge_closest_points(const Mesh& mesh, std::span<const Motion> motions, Findings& findings,
+                          const Findings* known = nullptr) {
+  double& worst = findings.closest_point_error;
+  if (known != nullptr) worst = known->closest_point_error;
+  for (std::size_t i = 0; i < motions.size(); ++i) {
+    const std::vector<Hit>& hits = findings.at[i].hits;
+    if (known != nullptr && std::ranges::equal(hits, known->at[i].hits, is_same)) continue;
+    worst = std::max(worst, closest_point_error(mesh, motions[i].tip, hits));
   }
-
-  /// Sets the error of the closest points, which takes long: once where they are the same.
-  void judge_closest_points(Findings& findings, const Findings* known = nullptr) const {
-    for (std::size_t i = 0; i < findings.at.size(); ++i) {
-      if (known != nullptr && are_same_hits(findings.at[i].hits, known->at[i].hits)) continue;
-      findings.closest_point_error =
-          std::max(findings.closest_point_error,
-                   closest_point_error(*comparison_.mesh, motions_[i].tip, findings.at[i].hits));
-    }
-    if (known != nullptr) {
-      findings.closest_point_error =
-          std::max(findings.closest_point_error, known->closest_point_error);
-    }
-  }
-
- private:
-  static bool are_same_hits(const std::vector<Hit>& some, const std::vector<Hit>& others) {
-    return std::ranges::equal(some, others, [](const Hit& a, const Hit& b) {
-      return a.triangle == b.triangle && a.closest.offset == b.closest.offset &&
-             a.closest.distance == b.closest.distance;
-    });
-  }
-
-  Finding query(const SpatialIndex& index, const Ball& ball) {
-    candidates_.clear();
-    hits_.clear();
-    index.collect(ball, candidates_);
-    refine(*comparison_.mesh, ball, candidates_.view(), hits_);
-    Finding finding;
-    finding.hits.assign(hits_.begin(), hits_.end());
-    std::sort(candidates_.begin(), candidates_.end());
-    finding.repeats =
-        std::adjacent_find(candidates_.begin(), candidates_.end()) != candidates_.end();
-    return finding;
-  }
-
-  const IndexComparison& comparison_;
-  std::vector<Motion> motions_;
-  const std::function<void()>& done_;
-  const Stopped& stopped_;
-  TriangleBuffer candidates_{comparison_.mesh->triangle_count()};
-  HitBuffer hits_{comparison_.mesh->triangle_count()};
-};
+}
 
 }  // namespace
 
 std::vector<IndexAgreement> compare_indices(const IndexComparison& comparison,
-                                            const std::function<void()>& done,
                                             const Stopped& stopped) {
-  Asker asker(comparison, done, stopped);
-  std::vector<IndexAgreement> agreements;
+  const std::shared_ptr<const Mesh>& mesh = comparison.mesh;
+  const std::vector<Motion> motions = motions_of(comparison);
+  Progress progress("compare indices", motions.size() * comparison.activations.size() *
+                                           (comparison.indices.size() + 1));
+  // One pose after the other, as a program would ask; nothing when it was stopped.
+  const auto ask = [&](const std::shared_ptr<const SpatialIndex>& index,
+                       const std::string& rule) -> std::optional<Findings> {
+    constexpr double radius = 1.0;  // of the motion sphere [mm]
+    MotionConstraint guard =
+        make_motion_constraint(mesh, index, {.activation = rule, .radius = radius});
+    const double reach = guard.options().radius + guard.options().margin;
+    Neighborhood around(mesh, index, mesh->triangle_count());
+    Findings findings{.searched = !guard.makes_queries()};
+    for (const Motion& motion : motions) {
+      if (stopped()) return std::nullopt;
+      const bool fits = around.look({motion.tip, reach});  // unless some come twice
+      const Step step = guard.step(motion);
+      TriangleBuffer& candidates = around.candidates();
+      std::ranges::sort(candidates);
+      findings.at.push_back(
+          {.hits = {around.hits().begin(), around.hits().end()},
+           .planes = {step.planes.begin(), step.planes.end()},
+           .status = step.status,
+           .motion = step.motion,
+           .repeats = !fits || std::ranges::adjacent_find(candidates) != candidates.end()});
+      progress.advance();
+    }
+    return findings;
+  };
+
   std::map<std::string, Findings> expected;  // of brute force, by rule
-  const auto brute_force = std::make_shared<const BruteForce>(comparison.mesh);
+  const auto brute_force = std::make_shared<const BruteForce>(mesh);
+  std::vector<IndexAgreement> agreements;
   for (const std::string& rule : comparison.activations) {
-    std::optional<Findings> findings = asker.ask(brute_force, rule);
+    std::optional<Findings> findings = ask(brute_force, rule);
     if (!findings) return agreements;
-    asker.judge_closest_points(*findings);
+    judge_closest_points(*mesh, motions, *findings);
     expected.emplace(rule, *std::move(findings));
   }
   for (const std::string& name : comparison.indices) {
     // One at a time: of a large mesh they need not fit all at once.
-    const std::shared_ptr<const SpatialIndex> index =
-        entry_named(name, indices(), "index", absent_indices()).make(comparison.mesh);
+    const std::shared_ptr<const SpatialIndex> index = index_named(name).make(mesh);
     for (const std::string& rule : comparison.activations) {
-      std::optional<Findings> got = asker.ask(index, rule);
+      std::optional<Findings> got = ask(index, rule);
       if (!got) return agreements;
       const Findings& truth = expected.at(rule);
-      asker.judge_closest_points(*got, &truth);
-      IndexAgreement agreement{.mesh = comparison.mesh_name,
-                               .index = name,
-                               .activation = rule,
-                               .searched = got->searched,
-                               .closest_point_error = got->closest_point_error};
-      for (std::size_t i = 0; i < got->at.size(); ++i) {
+      judge_closest_points(*mesh, motions, *got, &truth);
+      IndexAgreement& agreement =
+          agreements.emplace_back(IndexAgreement{.mesh = comparison.mesh_name,
+                                                 .index = name,
+                                                 .activation = rule,
+                                                 .searched = got->searched,
+                                                 .closest_point_error = got->closest_point_error});
+      for (std::size_t i = 0; i < motions.size(); ++i) {
         compare(got->at[i], truth.at[i], got->searched, agreement);
       }
-      agreements.push_back(std::move(agreement));
     }
   }
   return agreements;

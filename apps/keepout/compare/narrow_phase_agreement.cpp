@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <iterator>
 #include <memory>
@@ -11,6 +10,7 @@
 #include "compare/agreement.h"
 #include "keepout/adapters/narrow_phase_registry.h"
 #include "keepout/fixtures/random.h"
+#include "progress.h"
 
 namespace keepout::app {
 namespace {
@@ -100,7 +100,6 @@ std::vector<Pair> make_pairs(const Mesh& mesh, const std::vector<ConvexTool>& to
 NarrowPhaseAgreement agreement_of(const NarrowPhaseBackend& backend,
                                   const std::vector<ConvexTool>& tools,
                                   const std::vector<Pair>& pairs) {
-  using Clock = std::chrono::steady_clock;
   std::vector<std::unique_ptr<NarrowPhase>> narrow_phases;
   for (const ConvexTool& tool : tools) narrow_phases.push_back(backend.make(tool));
 
@@ -109,10 +108,10 @@ NarrowPhaseAgreement agreement_of(const NarrowPhaseBackend& backend,
   std::vector<double> errors;
   std::vector<double> times;
   for (const Pair& pair : pairs) {
-    const Clock::time_point start = Clock::now();
+    const BenchClock::time_point start = BenchClock::now();
     const NarrowPhaseAnswer answer =
         narrow_phases[pair.tool]->separation(pair.position, pair.triangle);
-    times.push_back(std::chrono::duration<double, std::micro>(Clock::now() - start).count());
+    times.push_back(microseconds_since(start));
     if (!answer.answered() || !std::isfinite(answer.separation.distance)) {
       ++row.failed;
       continue;
@@ -124,28 +123,22 @@ NarrowPhaseAgreement agreement_of(const NarrowPhaseBackend& backend,
         separation_along(told.normal, tools[pair.tool], pair.position, pair.triangle);
     row.worst_unproven = std::max(row.worst_unproven, pair.exact.distance - proven);
   }
-  if (!errors.empty()) {
-    const Timing spread = timing_of(errors);  // errors have ranks as times do
-    row.median_error = spread.p50;
-    row.worst_error = spread.max;
-  }
-  if (!times.empty()) {
-    const Timing timing = timing_of(times);
-    row.median_us = timing.p50;
-    row.p99_us = timing.p99.value_or(timing.max);
-  }
+  const Timing spread = timing_of(errors);  // errors have ranks as times do
+  row.median_error = spread.p50;
+  row.worst_error = spread.max;
+  const Timing timing = timing_of(times);
+  row.median_us = timing.p50;
+  row.p99_us = timing.p99.value_or(timing.max);
   return row;
 }
 
 }  // namespace
 
-std::size_t narrow_phase_rows() noexcept {
-  return std::size(kinds) * std::size(relations) * narrow_phase_backends().size();
-}
-
 std::vector<NarrowPhaseAgreement> compare_narrow_phases(const Mesh& mesh, std::size_t pairs,
-                                                        std::uint64_t seed, Progress& progress,
+                                                        std::uint64_t seed,
                                                         const Stopped& stopped) {
+  Progress progress("compare narrow phases",
+                    std::size(kinds) * std::size(relations) * narrow_phase_backends().size());
   std::vector<NarrowPhaseAgreement> rows;
   Random random(seed);
   for (const Kind& kind : kinds) {

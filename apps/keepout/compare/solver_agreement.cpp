@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <chrono>
 #include <string_view>
 
 #include "bench/benchmark.h"
@@ -8,6 +7,7 @@
 #include "keepout/solvers/active_set.h"
 #include "keepout/solvers/kkt.h"
 #include "keepout/solvers/registry.h"
+#include "progress.h"
 #if KEEPOUT_HAS_NLOPT
 #include "keepout/solvers/nlopt_solver.h"
 #endif
@@ -16,7 +16,7 @@ namespace keepout::app {
 namespace {
 
 /// What the solver that all are compared to makes of a problem.
-struct Reference {
+struct Expected {
   SolveStatus status;
   Eigen::VectorXd u;
 };
@@ -43,15 +43,16 @@ std::vector<RecordedProblem> problems_of(const std::shared_ptr<const Mesh>& mesh
       record_problems(mesh, rule, comparison.problems, comparison.seed);
   Random random(comparison.seed + 1);
   for (RecordedProblem& problem : problems) {
-    if (random.uniform() < comparison.contradictory) contradict(problem, random);
+    constexpr double contradictory = 0.1;  // share of them
+    if (random.uniform() < contradictory) contradict(problem, random);
   }
   return problems;
 }
 
-std::vector<Reference> references_of(const std::vector<RecordedProblem>& problems) {
+std::vector<Expected> references_of(const std::vector<RecordedProblem>& problems) {
   ActiveSet solver;
   reserve(solver, problems);
-  std::vector<Reference> references;
+  std::vector<Expected> references;
   for (const RecordedProblem& problem : problems) {
     Solution solution;
     const SolveStatus status = solver.solve(problem.view(), solution);
@@ -62,7 +63,7 @@ std::vector<Reference> references_of(const std::vector<RecordedProblem>& problem
 
 /// How far the tip ends from where the reference leads it, relative to the motion.
 double difference(const RecordedProblem& problem, const Solution& solution,
-                  const Reference& reference) {
+                  const Expected& reference) {
   if (reference.status != SolveStatus::optimal) return 0.0;
   const double apart = (problem.jacobian * (vector_of(solution.u) - reference.u)).norm();
   const double reach = std::max((problem.jacobian * reference.u).norm(), problem.desired.norm());
@@ -83,7 +84,7 @@ std::string outcome(const Solver& solver, SolveStatus status) {
 }
 
 /// Takes one answer down.
-void judge(const RecordedProblem& problem, const Reference& reference, SolveStatus status,
+void judge(const RecordedProblem& problem, const Expected& reference, SolveStatus status,
            const Solution& solution, double accuracy, SolverAgreement& row) {
   switch (status) {
     case SolveStatus::optimal: {
@@ -108,12 +109,10 @@ void judge(const RecordedProblem& problem, const Reference& reference, SolveStat
 std::vector<SolverAgreement> compare_solvers(const std::shared_ptr<const Mesh>& mesh,
                                              const SolverComparison& comparison,
                                              const Stopped& stopped) {
-  using Clock = std::chrono::steady_clock;
-  using Microseconds = std::chrono::duration<double, std::micro>;
   std::vector<SolverAgreement> rows;
   for (const std::string& rule : comparison.rules) {
     const std::vector<RecordedProblem> problems = problems_of(mesh, rule, comparison);
-    const std::vector<Reference> references = references_of(problems);
+    const std::vector<Expected> references = references_of(problems);
     for (const std::string& name : comparison.solvers) {
       const SolverBackend& backend =
           entry_named(name, solver_backends(), "solver", absent_solver_backends());
@@ -135,18 +134,16 @@ std::vector<SolverAgreement> compare_solvers(const std::shared_ptr<const Mesh>& 
         const std::size_t at = i * problems.size() / count;
         const StepProblem problem = problems[at].view();
         Solution solution;
-        const Clock::time_point start = Clock::now();
+        const BenchClock::time_point start = BenchClock::now();
         const SolveStatus status = solver->solve(problem, solution);
-        times.push_back(Microseconds(Clock::now() - start).count());
+        times.push_back(microseconds_since(start));
         ++row.outcomes[outcome(*solver, status)];
         judge(problems[at], references[at], status, solution, backend.accuracy, row);
         progress.advance();
       }
-      if (!times.empty()) {
-        const Timing timing = timing_of(times);
-        row.median_us = timing.p50;
-        row.p99_us = timing.p99.value_or(timing.max);
-      }
+      const Timing timing = timing_of(times);
+      row.median_us = timing.p50;
+      row.p99_us = timing.p99.value_or(timing.max);
       rows.push_back(std::move(row));
     }
   }

@@ -57,8 +57,9 @@ TEST(Combinations, ListTheCertifiedRuleOnceWhateverTheRadii) {
 }
 
 TEST(Combinations, OfAQuickLookAreFewer) {
-  EXPECT_LT(quick_combinations().size(), combinations_of({}).size());
-  EXPECT_GE(quick_combinations().size(), 5u);
+  const std::vector<Combination> quick = combinations_of({.radii = {5.0, 1.0}});
+  EXPECT_LT(quick.size(), combinations_of({}).size());
+  EXPECT_GE(quick.size(), 5u);
 }
 
 }  // namespace

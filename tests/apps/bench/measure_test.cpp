@@ -93,7 +93,7 @@ class Measure : public testing::TestWithParam<const char*> {
     MotionConstraint constraint(mesh, index, make_activation(GetParam(), mesh), std::move(solver),
                                 guard.options());
     BenchmarkRow row;
-    measure({constraint, accuracy}, motions, *reference, 10.0, stop, row);
+    measure(constraint, accuracy, motions, *reference, 10.0, stop, row);
     return row;
   }
 
@@ -104,8 +104,9 @@ class Measure : public testing::TestWithParam<const char*> {
   MotionConstraintSettings settings{
       .activation = GetParam(),
       .radius = 1.0,
-      .margin = std::string_view(GetParam()) == "certified" ? 0.2 : 0.0};
-  MotionConstraint guard = make_reference_guard(mesh, tree, settings);
+      .margin = std::string_view(GetParam()) == "certified" ? 0.2 : 0.0,
+      .inside = Inside::taken_as_is};
+  MotionConstraint guard = make_motion_constraint(mesh, tree, settings);
   std::vector<Motion> motions;
   std::unique_ptr<Reference> reference;
 };

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The motions on which bench --speed is measured are what they claim to be.
-#include "bench/speed/trajectories.h"
-
 #include <gtest/gtest.h>
 
 #include <memory>
 #include <vector>
 
+#include "bench/speed/guarded_mesh.h"
 #include "keepout/error.h"
 #include "keepout/fixtures/shapes.h"
 #include "keepout/index/query.h"

@@ -12,9 +12,8 @@ namespace {
 
 TEST(NarrowPhaseAgreement, EveryNarrowPhaseIsHeldToTheSamePairs) {
   const Mesh mesh(make_sphere(3.0));
-  Progress progress("narrow phases", narrow_phase_rows());
-  const auto rows = compare_narrow_phases(mesh, 40, 1, progress);
-  ASSERT_EQ(rows.size(), narrow_phase_rows());
+  const auto rows = compare_narrow_phases(mesh, 40, 1);
+  ASSERT_EQ(rows.size(), 4 * 3 * narrow_phase_backends().size());
   std::set<std::string> backends, tools, relations;
   for (const NarrowPhaseAgreement& row : rows) {
     SCOPED_TRACE(row.backend + " " + row.tool + " " + row.relation);

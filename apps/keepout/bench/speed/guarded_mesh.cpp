@@ -9,8 +9,10 @@
 #include "bench/subject.h"
 #include "keepout/error.h"
 #include "keepout/factory/make_motion_constraint.h"
+#include "keepout/fixtures/poses.h"
 #include "keepout/fixtures/real_mesh.h"
 #include "keepout/fixtures/resample_mesh.h"
+#include "keepout/index/query.h"
 #include "keepout/index/wide_bvh.h"
 #include "number_text.h"
 
@@ -49,6 +51,51 @@ std::vector<Motion> sample_of(std::span<const Motion> motions) {
     sample.push_back(motions[s * motions.size() / in_a_row]);
   }
   return sample;
+}
+
+constexpr int most_rounds = 50;  // about ten are enough where most tips find room
+
+/// Presses: half of what it asks for leads to the surface, half along it.
+class Hand {
+ public:
+  Hand(const IndexedMesh& on, const MotionKind& kind, Random& random)
+      : nearest_(*on.mesh, *on.index), kind_(kind), random_(random) {}
+
+  /// From above a place to the clearance. Whether there is room.
+  bool set_down(Vec3& tip) {
+    const ClosestPoint closest = nearest_(tip, 2.0 * kind_.clearance).closest;
+    if (closest.distance < kind_.clearance) return false;
+    constexpr double not_quite = 0.999;  // or rounding would make it too close
+    tip += not_quite * (1.0 - kind_.clearance / closest.distance) * closest.offset;
+    heading_ = random_.direction();
+    return true;
+  }
+
+  Vec3 next(const Vec3& tip) {
+    const ClosestPoint closest = nearest_(tip, 1.01 * kind_.clearance).closest;
+    const Vec3 down = closest.offset / closest.distance;
+    Vec3 along = heading_ - heading_.dot(down) * down;
+    if (along.norm() > 0.0) along.normalize();
+    const Vec3 way = down + along + 0.3 * random_.direction();
+    return random_.uniform(kind_.shortest, kind_.longest) * way.normalized();
+  }
+
+ private:
+  NearestTriangle nearest_;
+  const MotionKind& kind_;
+  Random& random_;
+  Vec3 heading_ = Vec3::UnitX();
+};
+
+Vec3 somewhere_free(const Mesh& mesh, NearestTriangle& nearest, const FreeSpace& space,
+                    Random& random) {
+  constexpr std::size_t most_tries = 1000;
+  const double middle = 0.5 * (space.nearest + space.farthest);
+  for (const Vec3& tip : surface_points(mesh, most_tries, middle, random)) {
+    const double distance = nearest(tip, middle).closest.distance;
+    if (distance > space.nearest && distance < space.farthest) return tip;
+  }
+  throw Error("hardly anywhere has the mesh free space around it; is it in another unit?");
 }
 
 }  // namespace
@@ -111,6 +158,88 @@ std::string disagreement(MotionConstraint& one, MotionConstraint& other,
   if (wrong == 0) return {};
   return "not timed: " + grouped(wrong) + " of " + counted(sample.size(), "step") +
          " are not the same";
+}
+
+std::vector<Motion> pressed_motions(const IndexedMesh& on, std::size_t count,
+                                    const MotionKind& kind, Random random) {
+  constexpr std::size_t cycles_of_a_stroke = 50;
+  MotionConstraint guard = certified(on, kind.clearance);
+  Hand hand(on, kind, random);
+  std::vector<Motion> motions;
+  motions.reserve(count);
+  const std::size_t strokes = count / cycles_of_a_stroke + 1;
+  for (int round = 0; round < most_rounds && motions.size() < count; ++round) {
+    for (Vec3 tip : surface_points(*on.mesh, strokes, 1.5 * kind.clearance, random)) {
+      if (!hand.set_down(tip)) continue;
+      for (std::size_t cycle = 0; cycle < cycles_of_a_stroke && motions.size() < count; ++cycle) {
+        const Motion motion{.tip = tip, .desired = hand.next(tip)};
+        const Step step = guard.step(motion);
+        if (!step.ok()) break;
+        if (step.status == Status::limited) motions.push_back(motion);
+        tip += step.motion;
+      }
+    }
+  }
+  if (motions.size() < count) {
+    throw Error("hardly anywhere has the mesh room for a tip that is " +
+                length_text(kind.clearance) + " off it");
+  }
+  return motions;
+}
+
+std::vector<Motion> free_motions(const IndexedMesh& on, std::size_t count, const FreeSpace& space,
+                                 const MotionKind& kind, Random random) {
+  NearestTriangle nearest(*on.mesh, *on.index);
+  std::vector<Motion> motions;
+  Vec3 tip = somewhere_free(*on.mesh, nearest, space, random);
+  Vec3 heading = random.direction();
+  double distance = nearest(tip, space.farthest).closest.distance;
+  while (motions.size() < count) {
+    heading = (heading + 0.1 * random.direction()).normalized();
+    const double length = random.uniform(kind.shortest, kind.longest);
+    const Hit hit = nearest(tip, distance + kind.longest);
+    distance = hit.closest.distance;
+    // At the bounds of the space it turns around, gently.
+    const Vec3 away = -hit.closest.offset / distance;
+    constexpr double gentle = 0.3;
+    if (distance < space.nearest + 5.0 * kind.longest) heading += gentle * away;
+    if (distance > space.farthest - 5.0 * kind.longest) heading -= gentle * away;
+    heading.normalize();
+    // Where that is not enough it turns on the spot.
+    if (distance < space.nearest + kind.longest) heading = away;
+    if (distance > space.farthest - kind.longest) heading = -away;
+    motions.push_back({.tip = tip, .desired = length * heading});
+    tip += motions.back().desired;
+  }
+  return motions;
+}
+
+std::vector<Motion> held_back_motions(const IndexedMesh& on, std::size_t count,
+                                      const MotionKind& kind, Random random) {
+  MotionConstraint guard = certified(on, kind.clearance);
+  std::vector<Motion> motions;
+  for (int round = 0; round < most_rounds && motions.size() < count; ++round) {
+    for (const Motion& motion : unrelated_motions(*on.mesh, count, kind, random)) {
+      if (motions.size() == count) break;
+      if (guard.step(motion).status == Status::limited) motions.push_back(motion);
+    }
+  }
+  if (motions.empty()) throw Error("hardly anywhere does the mesh hold a motion back");
+  return motions;
+}
+
+std::vector<Motion> central_motions(std::size_t count, const MotionKind& kind, Random random) {
+  std::vector<Motion> motions;
+  constexpr double nearness = 1.0;  // [mm]
+  Vec3 tip = Vec3::Zero();
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec3 step = random.uniform(kind.shortest, kind.longest) * random.direction();
+    const Vec3 desired = (tip + step).norm() < nearness ? step : Vec3(-step);
+    motions.push_back({.tip = tip, .desired = desired});
+    tip += desired;
+    if (tip.norm() > nearness) tip = Vec3::Zero();
+  }
+  return motions;
 }
 
 }  // namespace keepout::app

@@ -17,6 +17,7 @@
 #include "keepout/index/index_cache.h"
 #include "keepout/index/wide_bvh.h"
 #include "keepout/mesh/load_mesh.h"
+#include "machine.h"
 #include "number_text.h"
 
 #if KEEPOUT_WITH_ASSIMP
@@ -32,7 +33,7 @@ namespace {
 MeasuredSide time_build(const SpeedRun& run, const IndexedMesh& on, std::string name,
                         unsigned threads) {
   const OnCores cores(threads);
-  return timed_whole(std::move(name), run.options.effort.builds,
+  return timed_whole(std::move(name), run.effort.builds,
                      [&] { const WideBvh index(on.mesh, threads); });
 }
 
@@ -42,7 +43,7 @@ void measure_builds(SpeedRun& run, const IndexedMesh& on) {
   for (const Rival& rival : rivals) {
     const std::string name(rival.name);
     const Attempt theirs = attempted([&] {
-      const IndexBackend& backend = entry_named(rival.index, indices(), "index", absent_indices());
+      const IndexBackend& backend = index_named(rival.index);
       return timed_whole(name, 1, [&] { backend.make(on.mesh); });
     });
     SpeedRow row =
@@ -67,7 +68,7 @@ void measure_refit(SpeedRun& run, const IndexedMesh& on) {
   const auto index = std::make_shared<WideBvh>(on.mesh, 1);
   // There and back, so that each time all have moved.
   bool is_moved = false;
-  const MeasuredSide refit = timed_whole("refit", 2 * run.options.effort.builds + 1, [&] {
+  const MeasuredSide refit = timed_whole("refit", 2 * run.effort.builds + 1, [&] {
     index->refit(is_moved ? on.mesh : moved, 1);
     is_moved = !is_moved;
   });
@@ -124,8 +125,8 @@ void add_contact(SpeedRun& run, const IndexedMesh& on, std::size_t triangles, do
   Attempt contact = in_contact(run, on);
   if (contact.side) contact.side->name = millions(triangles) + " triangles";
   run.add(ratio("certified in contact, margin .2 mm",
-                millions(triangles) + " / " + millions(run.options.triangles) + " triangles",
-                at_most(most), contact, run.baselines.contact));
+                millions(triangles) + " / " + millions(run.triangles) + " triangles", at_most(most),
+                contact, run.baselines.contact));
 }
 
 /// Large steps over a fine mesh, in microseconds.
@@ -202,7 +203,7 @@ void measure_index_costs(SpeedRun& run, const IndexedMesh& on) {
 }
 
 void measure_large_meshes(SpeedRun& run) {
-  const std::size_t triangles = run.options.larger * run.options.triangles;
+  const std::size_t triangles = 16 * run.triangles;
   MeasuredSide time;
   {
     const Loaded large = load(run, triangles);
@@ -225,18 +226,17 @@ void measure_large_meshes(SpeedRun& run) {
 
 void measure_first_step(SpeedRun& run) {
   run.show("from a file to the first step");
-  const std::filesystem::path file = fixture_path(run.options.file);
+  const std::filesystem::path file = fixture_path(run.effort.file);
   const OnCores two(cores);
   const std::size_t count = load_mesh(file).mesh->triangle_count();  // and the file is in memory
   const std::string work = "binary STL, " + counted(count, "triangle") + ", to first step, 2 cores";
   const Attempt theirs = attempted([&] {
     return timed_whole("assimp + FCL OBBRSS", 1, [&] {
       const auto mesh = std::make_shared<const Mesh>(assimp_surface(file));
-      const auto fcl = entry_named("fcl_obbrss", indices(), "index", absent_indices()).make(mesh);
+      const auto fcl = index_named("fcl_obbrss").make(mesh);
     });
   });
-  const MeasuredSide mine =
-      timed_whole("ours", run.options.effort.builds, [&] { first_step(file); });
+  const MeasuredSide mine = timed_whole("ours", run.effort.builds, [&] { first_step(file); });
   run.add(ratio(work, "(assimp + FCL's tree) / ours", at_least(8.0), theirs, {mine}));
 
   const std::filesystem::path folder =
@@ -246,8 +246,8 @@ void measure_first_step(SpeedRun& run) {
     std::filesystem::remove_all(folder, ignored);
   });
   first_step(file, folder);  // builds the index, and puts it there
-  const MeasuredSide with_cache = timed_whole(
-      "ours, index from the cache", run.options.effort.builds, [&] { first_step(file, folder); });
+  const MeasuredSide with_cache = timed_whole("ours, index from the cache", run.effort.builds,
+                                              [&] { first_step(file, folder); });
   run.add(ratio(work, "(assimp + FCL's tree) / ours, with the index cache", at_least(50.0), theirs,
                 {with_cache}));
 }

@@ -8,7 +8,6 @@
 #include <atomic>
 #include <cerrno>
 #include <fstream>
-#include <string>
 
 namespace keepout::app {
 namespace {
@@ -40,15 +39,6 @@ OnCores::OnCores(unsigned count) noexcept : before_(allowed_cores()) {
 
 OnCores::~OnCores() {
   if (holds_) sched_setaffinity(0, sizeof before_, &before_);
-}
-
-std::size_t peak_memory() {
-  std::ifstream status("/proc/self/status");
-  for (std::string word; status >> word;) {
-    std::size_t kibibytes = 0;
-    if (word == "VmHWM:" && status >> kibibytes) return kibibytes * 1024;
-  }
-  return 0;
 }
 
 void reset_peak_memory() {

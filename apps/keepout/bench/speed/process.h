@@ -27,11 +27,8 @@ class OnCores {
   bool holds_ = false;
 };
 
-/// The most memory that the process has held at once since the last reset. [bytes] 0 where the
-/// system does not tell.
-std::size_t peak_memory();
-
-/// Begins anew. Where the system refuses, the peak is that since the process began.
+/// Begins anew what peak_memory() tells. Where the system refuses, the peak is that since the
+/// process began.
 void reset_peak_memory();
 
 /// Of this thread since it began.

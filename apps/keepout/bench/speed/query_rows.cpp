@@ -181,8 +181,8 @@ void hold_to_brute_force(const IndexedMesh& on, Random random) {
 
 void measure_sphere_queries(SpeedRun& run, const IndexedMesh& on) {
   constexpr std::array radii{5.0, 1.0};
-  const int passes = run.options.effort.passes;
-  const std::vector<Vec3> places = places_near(*on.mesh, run.options.effort.queries, run.random());
+  const int passes = run.effort.passes;
+  const std::vector<Vec3> places = places_near(*on.mesh, run.effort.queries, run.random());
   std::vector<Question> questions;
   std::vector<Queried> ours;
   for (const double radius : radii) {

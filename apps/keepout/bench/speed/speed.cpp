@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/speed/speed.h"
-
 #include <cstdlib>
 #include <memory>
 #include <ostream>
 #include <utility>
 #include <vector>
 
+#include "bench/bench.h"
 #include "bench/speed/process.h"
 #include "bench/speed/speed_record.h"
 #include "bench/speed/speed_run.h"
-#include "bench/speed/trajectories.h"
 #include "keepout/fixtures/real_mesh.h"
 #include "machine.h"
 #include "number_text.h"
@@ -20,6 +18,9 @@
 
 namespace keepout::app {
 namespace {
+
+constexpr Effort thorough{2000, 20'000, 1500, 500, 3, 3, "skull_1m"};
+constexpr Effort quick{200, 1000, 100, 100, 1, 1, "bunny"};
 
 constexpr void (*on_the_bunny[])(SpeedRun&, const IndexedMesh&) = {
     measure_sphere_queries, measure_paper_steps, measure_certified_steps, measure_unrelated_states,
@@ -31,7 +32,7 @@ constexpr void (*on_their_own[])(SpeedRun&) = {measure_concave_sphere, measure_f
 /// As far as nobody wishes to stop. Whether it came to the end.
 bool measure_all(SpeedRun& run, const StopSignal& stop) {
   {
-    const IndexedMesh bunny = with_index(bunny_of(run.options.triangles));
+    const IndexedMesh bunny = with_index(bunny_of(run.triangles));
     for (const auto family : on_the_bunny) {
       if (stop.has_come()) return false;
       family(run, bunny);
@@ -49,7 +50,7 @@ bool measure_all(SpeedRun& run, const StopSignal& stop) {
 }  // namespace
 
 std::vector<Motion> SpeedRun::contact(const IndexedMesh& on, const MotionKind& kind) const {
-  return pressed_motions(on, options.effort.steps, kind, random());
+  return pressed_motions(on, effort.steps, kind, random());
 }
 
 void SpeedRun::add(SpeedRow row) {
@@ -70,15 +71,20 @@ SpeedRow ratio(std::string work, std::string compared, const Demand& demand,
   return row;
 }
 
+Attempt time_steps(std::string name, MotionConstraint& one, MotionConstraint& other,
+                   std::span<const Motion> motions, int passes, double accuracy) {
+  if (std::string refusal = disagreement(one, other, motions, accuracy); !refusal.empty()) {
+    return {.refusal = std::move(refusal)};
+  }
+  return {
+      timed(std::move(name), motions.size(), passes, [&](std::size_t i) { one.step(motions[i]); })};
+}
+
 Attempt time_certified(const SpeedRun& run, const IndexedMesh& on, const std::string& name,
                        double margin, std::span<const Motion> motions) {
   MotionConstraint ours = certified(on, margin);
   MotionConstraint plain = certified(queried(on), margin);
-  if (std::string refusal = disagreement(ours, plain, motions); !refusal.empty()) {
-    return {.refusal = std::move(refusal)};
-  }
-  return {timed(name, motions.size(), run.options.effort.passes,
-                [&](std::size_t i) { ours.step(motions[i]); })};
+  return time_steps(name, ours, plain, motions, run.effort.passes);
 }
 
 Attempt in_contact(SpeedRun& run, const IndexedMesh& on, const MotionKind& kind) {
@@ -88,21 +94,24 @@ Attempt in_contact(SpeedRun& run, const IndexedMesh& on, const MotionKind& kind)
   return time_certified(run, on, name, kind.clearance, run.contact(on, kind));
 }
 
-int bench_speed(const SpeedOptions& options, std::ostream& out) {
+int bench_speed(const BenchOptions& options, std::ostream& out) {
+  if (options.triangles.size() > 1) throw Error("--speed: give --triangles one size");
+  const std::size_t triangles = options.triangles.empty() ? 1'000'000 : options.triangles.front();
+  const Effort& effort = options.speed.quick ? quick : thorough;
   OutputFiles outputs({}, {{"--out", options.report}, {"--json", options.json}});
-  for (const std::string& fixture : {std::string("bunny"), options.file}) {
-    fixture_path(fixture);  // throws if it is missing
-  }
+  for (const char* fixture : {"bunny", effort.file}) fixture_path(fixture);  // throws if missing
 
   Progress progress("bench --speed", std::size(on_the_bunny) + std::size(on_their_own));
-  SpeedRun run{.options = options,
+  SpeedRun run{.options = options.speed,
+               .effort = effort,
+               .triangles = triangles,
                .progress = progress,
                .out = out,
                .record = {.date = date_now(),
                           .command = options.command,
                           .seed = options.seed,
                           .machine = this_machine(),
-                          .mesh = "bunny, " + counted(options.triangles, "triangle")}};
+                          .mesh = "bunny, " + counted(triangles, "triangle")}};
   const OnCores one(1);
   progress.interrupt();
   print_head(out, run.record);

@@ -9,14 +9,25 @@
 #include <string_view>
 #include <vector>
 
+#include "bench/bench.h"
 #include "bench/speed/guarded_mesh.h"
-#include "bench/speed/speed.h"
 #include "bench/speed/speed_record.h"
 #include "keepout/error.h"
 #include "keepout/fixtures/motions.h"
 #include "progress.h"
 
 namespace keepout::app {
+
+/// How much of everything is measured.
+struct Effort {
+  std::size_t queries;     // places of a sphere query
+  std::size_t steps;       // of ours
+  std::size_t slow_steps;  // of the libraries
+  std::size_t cold_steps;  // between which the caches are emptied
+  std::size_t builds;      // of an index
+  int passes;              // over the same work, of which the least counts
+  const char* file;        // fixture that is loaded
+};
 
 /// What became of an attempt to time something: its times, or why there are none.
 struct Attempt {
@@ -44,13 +55,15 @@ struct Baselines {
 /// One run of the table, as its families of rows are measured one after the other.
 struct SpeedRun {
   const SpeedOptions& options;
+  const Effort& effort;
+  std::size_t triangles;  // of the bunny, on which all is measured unless said
   Progress& progress;
   std::ostream& out;
   SpeedRecord record = {};
   Baselines baselines = {};
 
   /// The same motions for whoever asks for them.
-  Random random() const { return Random(options.seed); }
+  Random random() const { return Random(record.seed); }
 
   /// As many motions in contact as our steps are timed on.
   std::vector<Motion> contact(const IndexedMesh& on, const MotionKind& kind = {}) const;
@@ -69,6 +82,11 @@ SpeedRow ratio(std::string work, std::string compared, const Demand& demand,
 
 constexpr Demand at_least(double value) { return {Demand::Sense::at_least, value}; }
 constexpr Demand at_most(double value) { return {Demand::Sense::at_most, value}; }
+
+/// The steps of one on these motions; refused where the other's are not the same: see
+/// disagreement().
+Attempt time_steps(std::string name, MotionConstraint& one, MotionConstraint& other,
+                   std::span<const Motion> motions, int passes, double accuracy = 0.0);
 
 /// Our certified step on these motions; refused where it is not the same on the same index that
 /// only answers queries, bit for bit.

@@ -10,9 +10,9 @@
 namespace keepout::app {
 namespace {
 
-std::string in_unit(double value, const std::string& unit, int digits) {
-  if (unit == "x") return rounded(value, digits) + "x";
-  return trimmed(value, digits) + (unit.empty() ? "" : " " + unit);
+/// As it stands behind a number.
+std::string unit_of(const SpeedRow& row) {
+  return row.unit == "x" || row.unit.empty() ? row.unit : " " + row.unit;
 }
 
 std::string name_of(const SpeedRow& row) { return row.work + ": " + row.compared; }
@@ -23,68 +23,60 @@ void list(std::ostream& out, const std::string& title, const std::vector<std::st
   for (const std::string& name : names) out << "  " << name << '\n';
 }
 
-Json json_of(const MeasuredSide& side) {
-  return {{"name", side.name}, {"us", json_of(side.us)}, {"batch", side.batch}};
+}  // namespace
+
+void to_json(Json& json, const MeasuredSide& side) {
+  json = {{"name", side.name}, {"us", side.us}, {"batch", side.batch}};
 }
 
-Json json_of(const SpeedRow& row) {
-  Json sides = Json::array();
-  for (const MeasuredSide& side : row.sides) sides.push_back(json_of(side));
-  const bool least = row.demand.sense == Demand::Sense::at_least;
-  return {{"work", row.work},
-          {"compared", row.compared},
-          {"demanded", {{least ? "at_least" : "at_most", row.demand.value}}},
-          {"unit", row.unit},
-          {"figure", or_null(row.figure)},
-          {"met", row.figure ? Json(row.is_met()) : Json(nullptr)},
-          {"sides", std::move(sides)},
-          {"remark", row.remark}};
+void to_json(Json& json, const SpeedRow& row) {
+  json = {
+      {"work", row.work},
+      {"compared", row.compared},
+      {"demanded",
+       {{row.demand.sense == Demand::Sense::at_least ? "at_least" : "at_most", row.demand.value}}},
+      {"unit", row.unit},
+      {"figure", row.figure},
+      {"met", row.figure ? Json(row.is_met()) : Json(nullptr)},
+      {"sides", row.sides},
+      {"remark", row.remark}};
 }
 
-Json json_of(const QueryFigures& figures) {
-  return {{"index", figures.index},
-          {"radius", figures.radius},
-          {"found_mean", figures.found_mean},
-          {"candidates_us", json_of(figures.candidates)},
-          {"answer_us", json_of(figures.answer)},
-          {"lean_answer_us", json_of(figures.lean_answer)}};
+void to_json(Json& json, const QueryFigures& figures) {
+  json = {{"index", figures.index},           {"radius", figures.radius},
+          {"found_mean", figures.found_mean}, {"candidates_us", figures.candidates},
+          {"answer_us", figures.answer},      {"lean_answer_us", figures.lean_answer}};
 }
 
-Json json_of(const TimeHistogram& histogram) {
+void to_json(Json& json, const TimeHistogram& histogram) {
   Json bins = Json::array();
   for (std::size_t bin = 0; bin < TimeHistogram::bins; ++bin) {
     if (histogram.count(bin) == 0) continue;
     bins.push_back(Json::array({TimeHistogram::beginning_of(bin), histogram.count(bin)}));
   }
-  Json shares = Json::object();
-  for (const auto& [name, share] :
-       {std::pair{"p50", 0.5}, std::pair{"p99", 0.99}, std::pair{"p999", 0.999},
-        std::pair{"p9999", 0.9999}, std::pair{"p99999", 0.99999}}) {
-    shares[name] = or_null(histogram.percentile(share));
-  }
-  return {{"total", histogram.total()},
+  json = {{"total", histogram.total()},
           {"longest_ns", histogram.longest()},
-          {"at_most_ns", std::move(shares)},
+          {"at_most_ns",
+           {{"p50", histogram.percentile(0.5)},
+            {"p99", histogram.percentile(0.99)},
+            {"p999", histogram.percentile(0.999)},
+            {"p9999", histogram.percentile(0.9999)},
+            {"p99999", histogram.percentile(0.99999)}}},
           {"bins", std::move(bins)}};
 }
 
-template <class T>
-Json list_of(const std::vector<T>& items) {
-  Json list = Json::array();
-  for (const T& item : items) list.push_back(json_of(item));
-  return list;
+void to_json(Json& json, const StepHistogram& histogram) {
+  json = {{"steps", histogram.steps}, {"nothing", histogram.nothing}};
 }
-
-}  // namespace
 
 std::string demand_text(const SpeedRow& row) {
   const bool least = row.demand.sense == Demand::Sense::at_least;
-  const std::string unit = row.unit == "x" ? "x" : row.unit.empty() ? "" : " " + row.unit;
-  return (least ? "at least " : "at most ") + trimmed(row.demand.value) + unit;
+  return (least ? "at least " : "at most ") + trimmed(row.demand.value) + unit_of(row);
 }
 
 std::string figure_text(const SpeedRow& row) {
-  return row.figure ? in_unit(*row.figure, row.unit, 3) : "-";
+  if (!row.figure) return "-";
+  return (row.unit == "x" ? rounded(*row.figure) : trimmed(*row.figure, 3)) + unit_of(row);
 }
 
 std::string verdict_text(const SpeedRow& row) {
@@ -159,17 +151,9 @@ void print_summary(std::ostream& out, const SpeedRecord& record) {
 
 void write_json(std::ostream& out, const SpeedRecord& record) {
   const Json all = {
-      {"date", record.date},
-      {"command", record.command},
-      {"complete", record.complete},
-      {"seed", record.seed},
-      {"machine", json_of(record.machine)},
-      {"mesh", record.mesh},
-      {"rows", list_of(record.rows)},
-      {"queries", list_of(record.queries)},
-      {"histogram", record.histogram ? Json{{"steps", json_of(record.histogram->steps)},
-                                            {"nothing", json_of(record.histogram->nothing)}}
-                                     : Json(nullptr)}};
+      {"date", record.date}, {"command", record.command}, {"complete", record.complete},
+      {"seed", record.seed}, {"machine", record.machine}, {"mesh", record.mesh},
+      {"rows", record.rows}, {"queries", record.queries}, {"histogram", record.histogram}};
   out << all.dump(2) << '\n';
 }
 

@@ -10,7 +10,6 @@
 #include "bench/parts.h"
 #include "bench/speed/process.h"
 #include "bench/speed/speed_run.h"
-#include "bench/speed/trajectories.h"
 #include "keepout/fixtures/shapes.h"
 #include "keepout/solvers/registry.h"
 #include "number_text.h"
@@ -19,24 +18,6 @@ namespace keepout::app {
 namespace {
 
 constexpr std::string_view their_index = "fcl_obbrss", their_solver = "nlopt_slsqp";
-
-bool has(std::string_view name, const auto& table) {
-  return std::ranges::any_of(table, [&](const auto& entry) { return entry.name == name; });
-}
-
-/// SLSQP on FCL's tree, held to our own answers.
-Attempt time_libraries(const SpeedRun& run, const IndexedMesh& on, double radius,
-                       MotionConstraint& right, std::span<const Motion> motions) {
-  const std::string solver(their_solver);
-  MotionConstraint libraries = paper(on, radius, solver);
-  const double accuracy = entry_named(solver, solver_backends(), "solver").accuracy;
-  const auto few = motions.first(std::min(run.options.effort.slow_steps, motions.size()));
-  if (std::string refusal = disagreement(libraries, right, few, accuracy); !refusal.empty()) {
-    return {.refusal = std::move(refusal)};
-  }
-  return {
-      timed("FCL's tree + SLSQP", few.size(), 1, [&](std::size_t i) { libraries.step(few[i]); })};
-}
 
 /// Twice the last cache. What a virtual machine tells of it may be the whole machine's. [bytes]
 std::size_t more_than_caches_hold() {
@@ -62,11 +43,12 @@ void fill(TimeHistogram& histogram, std::size_t times, Work&& work) {
 
 void measure_paper_steps(SpeedRun& run, const IndexedMesh& on) {
   const std::vector<Motion> motions = run.contact(on);
+  const auto few = std::span(motions).first(std::min(run.effort.slow_steps, motions.size()));
   run.show("building FCL's tree");
   IndexedMesh fcl{on.mesh, nullptr};
   Attempt theirs;
-  if (!has(their_index, indices())) theirs.refusal = "this build has no FCL";
-  if (!has(their_solver, solver_backends())) theirs.refusal = "this build has no NLopt";
+  if (!has(indices(), their_index)) theirs.refusal = "this build has no FCL";
+  if (!has(solver_backends(), their_solver)) theirs.refusal = "this build has no NLopt";
   if (theirs.refusal.empty()) fcl.index = make_index(their_index, on.mesh);
 
   constexpr std::array demands{std::pair{5.0, 60.0}, std::pair{1.0, 25.0}};
@@ -74,12 +56,13 @@ void measure_paper_steps(SpeedRun& run, const IndexedMesh& on) {
     run.show("the paper's rule, r = " + trimmed(radius) + " mm");
     MotionConstraint ours = paper(on, radius, "active_set");
     MotionConstraint plain = paper(queried(on), radius, "active_set");
-    Attempt mine{.refusal = disagreement(ours, plain, motions)};
-    if (mine.refusal.empty()) {
-      mine.side = timed("wide_bvh + active_set", motions.size(), run.options.effort.passes,
-                        [&](std::size_t i) { ours.step(motions[i]); });
+    const Attempt mine =
+        time_steps("wide_bvh + active_set", ours, plain, motions, run.effort.passes);
+    if (fcl.index) {
+      MotionConstraint libraries = paper(fcl, radius, std::string(their_solver));
+      const double accuracy = entry_named(their_solver, solver_backends(), "solver").accuracy;
+      theirs = time_steps("FCL's tree + SLSQP", libraries, plain, few, 1, accuracy);
     }
-    if (fcl.index) theirs = time_libraries(run, fcl, radius, plain, motions);
     if (radius == 5.0) run.baselines.libraries = theirs;
     run.add(ratio("whole step, paper's rule, r = " + trimmed(radius) + " mm, contact",
                   "(FCL's tree + SLSQP) / ours", at_least(least), theirs, mine));
@@ -93,7 +76,7 @@ void measure_certified_steps(SpeedRun& run, const IndexedMesh& on) {
                 at_least(500.0), run.baselines.libraries, contact));
 
   run.show("certified, free space");
-  const std::vector<Motion> path = free_motions(on, run.options.effort.steps, {}, {}, run.random());
+  const std::vector<Motion> path = free_motions(on, run.effort.steps, {}, {}, run.random());
   run.baselines.free = time_certified(run, on, "free space", MotionKind{}.clearance, path);
   run.add(ratio("certified step in free space, 2-20 mm off the surface", to_the_libraries,
                 at_least(5000.0), run.baselines.libraries, run.baselines.free));
@@ -107,16 +90,15 @@ void measure_certified_steps(SpeedRun& run, const IndexedMesh& on) {
 void measure_unrelated_states(SpeedRun& run, const IndexedMesh& on) {
   run.show("certified, unrelated states");
   const MotionKind kind;
-  const std::vector<Motion> motions =
-      held_back_motions(on, run.options.effort.steps, kind, run.random());
+  const std::vector<Motion> motions = held_back_motions(on, run.effort.steps, kind, run.random());
   const auto time_plain = [&](const std::string& name, const IndexedMesh& plain) {
     MotionConstraint guard = certified(plain, kind.clearance);
-    return timed("plain form on " + name, motions.size(), run.options.effort.passes,
+    return timed("plain form on " + name, motions.size(), run.effort.passes,
                  [&](std::size_t i) { guard.step(motions[i]); });
   };
   const Attempt ours = time_certified(run, on, "ours", kind.clearance, motions);
   Attempt theirs{.refusal = "this build has no FCL"};
-  if (has(their_index, indices())) {  // which has no wide instructions anywhere
+  if (has(indices(), their_index)) {  // which has no wide instructions anywhere
     theirs = {time_plain(std::string(their_index), {on.mesh, make_index(their_index, on.mesh)})};
   }
   SpeedRow row = ratio("certified, unrelated states that are held back, margin .2 mm",
@@ -128,13 +110,12 @@ void measure_unrelated_states(SpeedRun& run, const IndexedMesh& on) {
 void measure_concave_sphere(SpeedRun& run) {
   run.show("concave sphere");
   constexpr double icosahedron = 52.57;  // its edge, in a sphere of radius 50 [mm]
-  const double edge = icosahedron / std::sqrt(static_cast<double>(run.options.triangles) / 20.0);
+  const double edge = icosahedron / std::sqrt(static_cast<double>(run.triangles) / 20.0);
   const IndexedMesh sphere =
       with_index(std::make_shared<const Mesh>(in_single_precision(make_concave_sphere(edge))));
   const MotionKind kind;
-  const Attempt centre =
-      time_certified(run, sphere, "centre", kind.clearance,
-                     central_motions(run.options.effort.steps, kind, run.random()));
+  const Attempt centre = time_certified(run, sphere, "centre", kind.clearance,
+                                        central_motions(run.effort.steps, kind, run.random()));
   run.add(ratio("certified in a concave sphere", "tip at the centre / free space", at_most(3.0),
                 centre, run.baselines.free));
   Attempt wall = in_contact(run, sphere);
@@ -146,7 +127,7 @@ void measure_concave_sphere(SpeedRun& run) {
 void measure_cold_caches(SpeedRun& run, const IndexedMesh& on) {
   run.show("certified, cold caches");
   std::vector<Motion> motions = run.contact(on);
-  motions.resize(std::min(motions.size(), run.options.effort.cold_steps));
+  motions.resize(std::min(motions.size(), run.effort.cold_steps));
   MotionConstraint ours = certified(on, MotionKind{}.clearance);
   for (const Motion& motion : motions) ours.step(motion);
   std::vector<unsigned char> other_data(more_than_caches_hold());

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/run_benchmark.h"
+
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <new>
+#include <optional>
+#include <ostream>
+#include <utility>
+
+#include "bench/measure.h"
+#include "bench/parts.h"
+#include "bench/used_cores.h"
+#include "keepout/activation/registry.h"
+#include "keepout/error.h"
+#include "keepout/fixtures/motions.h"
+#include "keepout/index/pd_tree.h"
+#include "machine.h"
+#include "number_text.h"
+#include "progress.h"
+
+namespace keepout::app {
+namespace {
+
+/// Room for every step that shall be timed.
+constexpr Capacity room{
+    .triangles = std::size_t{1} << 18, .planes = std::size_t{1} << 16, .variables = 3};
+
+constexpr double margin = 0.2;  // of the certified rule, and from the tip to the surface [mm]
+
+/// What an index takes, by its name, as seen on another mesh. [bytes per triangle]
+using MemoryTaken = std::map<std::string, double>;
+
+/// One mesh, and the same motions for every combination.
+class Trial {
+ public:
+  /// All but the subject must outlive this; `memory` is added to. Throws Error when there is no
+  /// such mesh.
+  Trial(const Subject& subject, const BenchmarkPlan& plan, MemoryTaken& memory,
+        const StopSignal& stop);
+
+  /// Builds the index unless the combination before had the same. Of no use once it was stopped.
+  BenchmarkRow measure(const Combination& combination);
+
+  /// The mesh, and what reading its file took.
+  const LoadedSubject& loaded() const noexcept { return loaded_; }
+
+ private:
+  void build(const std::string& index);
+  Reference& reference(const MotionConstraintSettings& settings);
+
+  Subject subject_;
+  const BenchmarkPlan& plan_;
+  MemoryTaken& memory_;
+  const StopSignal& stop_;
+  LoadedSubject loaded_;
+  std::vector<Motion> motions_;
+  std::shared_ptr<const SpatialIndex> reference_index_;
+  std::map<std::string, MotionConstraint> guards_;                  // of each rule
+  std::map<std::pair<std::string, double>, Reference> references_;  // of each rule and radius
+  std::shared_ptr<const SpatialIndex> index_;                       // at hand; null: not built
+  BenchmarkRow row_;  // so much of it as is the same for all combinations with that index
+};
+
+Trial::Trial(const Subject& subject, const BenchmarkPlan& plan, MemoryTaken& memory,
+             const StopSignal& stop)
+    : subject_(subject),
+      plan_(plan),
+      memory_(memory),
+      stop_(stop),
+      loaded_(load(subject)),
+      reference_index_(std::make_shared<const PdTree>(loaded_.mesh)) {
+  Random random(plan.seed);
+  const MotionKind kind{.clearance = margin};
+  motions_ = plan.poses == Poses::contact
+                 ? contact_motions(*loaded_.mesh, *reference_index_, plan.queries, kind, random)
+                 : unrelated_motions(*loaded_.mesh, plan.queries, kind, random);
+}
+
+Reference& Trial::reference(const MotionConstraintSettings& settings) {
+  auto guard = guards_.find(settings.activation);
+  if (guard == guards_.end()) {
+    guard = guards_
+                .emplace(settings.activation,
+                         make_motion_constraint(loaded_.mesh, reference_index_, settings))
+                .first;
+  }
+  return references_
+      .try_emplace({settings.activation, settings.radius}, guard->second, loaded_.mesh, settings,
+                   motions_)
+      .first->second;
+}
+
+void Trial::build(const std::string& index) {
+  if (row_.index == index) return;
+  index_.reset();  // two large ones need not fit
+  row_ = {.mesh = label_of(subject_),
+          .triangles = loaded_.mesh->triangle_count(),
+          .vertices = loaded_.mesh->vertex_count(),
+          .load_s = loaded_.seconds,
+          .load_cores = loaded_.cores,
+          .index = index};
+  const IndexBackend& backend = index_named(index);
+  const auto count = static_cast<double>(row_.triangles);
+  constexpr double while_building = 1.5;  // some hold more then
+  if (const auto taken = memory_.find(index); taken != memory_.end()) {
+    const double needed = while_building * taken->second * count;
+    const auto available = static_cast<double>(available_memory());
+    if (needed > available) {
+      row_.remark = "not built: needs up to " + rounded(1e-9 * needed, 2) + " GB, and " +
+                    rounded(1e-9 * available, 2) + " GB are free";
+      return;
+    }
+  }
+  try {
+    const UsedCores used;
+    index_ = backend.make(loaded_.mesh);
+    row_.build_s = used.seconds();
+    row_.build_cores = used.own();
+    row_.bytes_per_triangle = memory_[index] = static_cast<double>(index_->memory()) / count;
+  } catch (const Error& error) {
+    row_.remark = std::string("not built: ") + error.what();
+  } catch (const std::bad_alloc&) {
+    row_.remark = "not built: out of memory";
+  }
+}
+
+BenchmarkRow Trial::measure(const Combination& combination) {
+  build(combination.index);
+  BenchmarkRow row = row_;
+  row.radius = combination.radius;
+  row.activation = combination.activation;
+  row.solver = combination.solver;
+  if (!index_) return row;
+
+  // The certified rule looks only where the motion leads, and the paper's take the tip as it is.
+  MotionConstraintSettings settings{.activation = combination.activation,
+                                    .radius = combination.radius.value_or(5.0),
+                                    .margin = combination.activation == "certified" ? margin : 0.0,
+                                    .inside = Inside::taken_as_is,
+                                    .capacity = room};
+  Reference& expected = reference(settings);
+  if (!expected.fits()) {
+    row.remark = "not timed: more than " + grouped(expected.candidates.capacity()) +
+                 " triangles are in reach; ask for a smaller radius";
+    return row;
+  }
+  const double accuracy =
+      combination.solver == settings.solver
+          ? 0.0
+          : entry_named(combination.solver, solver_backends(), "solver").accuracy;
+  settings.solver = combination.solver;
+  MotionConstraint constraint = make_motion_constraint(loaded_.mesh, index_, settings);
+  app::measure(constraint, accuracy, motions_, expected, plan_.seconds, stop_, row);
+  return row;
+}
+
+void run_trial(const Subject& subject, const BenchmarkPlan& plan, MemoryTaken& memory,
+               const StopSignal& stop, Benchmark& benchmark, std::ostream& out) {
+  Progress progress("bench " + title_of(subject), plan.combinations.size());
+  Trial trial(subject, plan, memory, stop);
+  const LoadedSubject& loaded = trial.loaded();
+  progress.interrupt();
+  out << '\n'
+      << label_of(subject) << ", " << counted(loaded.mesh->triangle_count(), "triangle") << ", "
+      << grouped(loaded.mesh->vertex_count()) << " vertices; its file was read in "
+      << rounded(loaded.seconds, 2) << " s with " << rounded(loaded.cores, 2) << " cores busy\n";
+  print_table_head(out);
+  for (const Combination& combination : plan.combinations) {
+    progress.show(combination.index + " " + combination.activation + " " + combination.solver);
+    BenchmarkRow row = trial.measure(combination);
+    progress.interrupt();
+    if (stop.has_come()) return;
+    print_table_row(out, row);
+    out.flush();
+    benchmark.rows.push_back(std::move(row));
+    progress.advance();
+  }
+}
+
+/// An empty record of this machine, and of the parts that are measured.
+Benchmark new_benchmark(const BenchmarkPlan& plan) {
+  Benchmark benchmark{.date = date_now(),
+                      .command = plan.command,
+                      .seed = plan.seed,
+                      .machine = this_machine(),
+                      .planned = plan.combinations.size() * plan.subjects.size()};
+  const auto describe = [&](const auto& table, std::string Combination::*part) {
+    for (const auto& entry : table) {
+      if (std::ranges::find(plan.combinations, entry.name, part) == plan.combinations.end()) {
+        continue;
+      }
+      benchmark.parts.emplace(entry.name, entry.description);
+      if constexpr (requires { entry.remark; }) {
+        if (!entry.remark.empty()) benchmark.remarks.emplace(entry.name, entry.remark);
+      }
+    }
+  };
+  describe(indices(), &Combination::index);
+  describe(activation_rules(), &Combination::activation);
+  describe(solver_backends(), &Combination::solver);
+  return benchmark;
+}
+
+}  // namespace
+
+void run_benchmark(const BenchmarkPlan& plan, const StopSignal& stop, Benchmark& benchmark,
+                   std::ostream& out) {
+  benchmark = new_benchmark(plan);
+  const UsedCores used;
+  print_machine(out, benchmark.machine);
+  out.flush();
+  // Also where a mesh is broken.
+  const std::shared_ptr<void> at_the_end(nullptr,
+                                         [&](void*) { benchmark.others_cores = used.others(); });
+  MemoryTaken memory;
+  for (const Subject& subject : plan.subjects) {
+    if (stop.has_come()) return;
+    run_trial(subject, plan, memory, stop, benchmark, out);
+  }
+}
+
+}  // namespace keepout::app
