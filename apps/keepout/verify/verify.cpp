@@ -13,7 +13,6 @@
 #include "../output_file.h"
 #include "../progress.h"
 #include "../stop_signal.h"
-#include "arenas.h"
 #include "campaign.h"
 #include "keepout/error.h"
 #include "result.h"
