@@ -26,8 +26,8 @@ struct PathVerdict {
   bool is_valid() const noexcept { return !enters && !is_too_near; }
 };
 
-/// The least distance that docs/certified-step.md promises of a margin: m - 3 tau. [mm]
-double least_distance(const Scene& scene, double margin, double radius);
+/// The least distance that docs/certified-step.md promises of the clearance: m - 3 tau. [mm]
+double least_distance(const Scene& scene, const PlanOptions& options);
 
 /// `least`: the distance allowed; anything exactly below it is too near. [mm] Precondition: two
 /// points.
@@ -57,6 +57,9 @@ struct PlanningSummary {
   double median_length = 0.0;    // of the solved [mm]
   double checks = 0.0;           // median
 };
+
+/// Planner, time, clearance and seed, in words.
+std::string lead(const PlanOptions& options);
 
 /// In the order of the runs.
 std::vector<PlanningSummary> summaries(const std::vector<PlanningRun>& runs);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "keepout/ompl/guard_pool.h"
+#include "plan/plan.h"
 #include "plan/problems.h"
 
 namespace keepout::app {
@@ -27,24 +28,23 @@ struct Checker {
   /// "sampled 1 %", "widened 1 %", "certified", "sliding".
   std::string name() const;
   /// Whether keepout answers for its paths.
-  bool is_keepouts() const noexcept { return kind == Kind::certified || kind == Kind::sliding; }
+  bool is_keepouts() const noexcept { return kind == Kind::certified || slides(); }
+  bool slides() const noexcept { return kind == Kind::sliding; }
 };
 
 /// Sampled at each resolution, the same widened, then both of keepout's.
 std::vector<Checker> checkers(std::span<const double> resolutions);
 
-/// One planner on one problem under one checker.
+/// One planner on one problem under one checker. What it refers to must outlive it.
 struct PlanningTask {
-  const PlanningScene* where = nullptr;
-  const Problem* problem = nullptr;
+  const PlanOptions& options;
+  const PlanningScene& where;
+  const Problem& problem;
   Checker checker;
-  std::string planner;  // of ompl_planners; the sliding checker brings its own
-  std::uint64_t seed = 1;
-  double seconds = 5.0;
-  double range = 0.0;  // [mm]; 0: OMPL's own
-  bool simplify = false;
-  double clearance = 0.0;             // for the sampled kinds [mm]
-  std::shared_ptr<GuardPool> guards;  // of the others; the same clearance
+  std::shared_ptr<GuardPool> guards;  // of keepout's checkers, for the options' clearance
+
+  /// The sliding checker brings a planner of its own.
+  std::string planner() const { return checker.slides() ? "SlidingConnect" : options.planner; }
 };
 
 struct PlannedPath {
