@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include <iomanip>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <ostream>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "columns.h"
 #include "commands.h"
 #include "keepout/index/pd_tree.h"
 #include "keepout/index/self_intersection.h"
@@ -125,7 +125,7 @@ std::string space_text(const LoadedMesh& loaded) {
 }
 
 /// As JSON has it: null where nothing is known.
-nlohmann::ordered_json to_json(AnatomicalSpace space) {
+Json or_null(AnatomicalSpace space) {
   if (space == AnatomicalSpace::unstated) return nullptr;
   return name(space);
 }
@@ -171,47 +171,44 @@ void print_text(const InspectOptions& options, const Inspection& inspection, std
   }
 }
 
-nlohmann::ordered_json to_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
-
 template <class T>
-nlohmann::ordered_json to_json(const std::optional<T>& value) {
-  return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
+Json or_null(const std::optional<T>& value) {
+  return value ? Json(*value) : Json(nullptr);
 }
 
 void print_json(const InspectOptions& options, const Inspection& inspection, std::ostream& out) {
   const MeshFindings& mesh = inspection.mesh;
-  nlohmann::ordered_json json{
-      {"mesh", options.mesh.string()},
-      {"unit", "mm"},
-      {"other_units", nlohmann::ordered_json::array()},
-      {"space", to_json(inspection.loaded.space)},
-      {"stated_space", to_json(inspection.loaded.stated)},
-      {"triangles", mesh.triangles},
-      {"vertices", mesh.vertices},
-      {"edges", mesh.edges},
-      {"components", mesh.components},
-      {"edge_components", mesh.edge_components},
-      {"boundary_edges", mesh.boundary_edges},
-      {"non_manifold_edges", mesh.non_manifold_edges},
-      {"inconsistent_edges", mesh.inconsistent_edges},
-      {"pinched_vertices", mesh.pinched_vertices},
-      {"repeated_vertex_triangles", mesh.repeated_vertex_triangles},
-      {"collinear_triangles", mesh.collinear_triangles},
-      {"duplicate_triangles", mesh.duplicate_triangles},
-      {"closed", mesh.is_closed()},
-      {"watertight", mesh.is_watertight()},
-      {"inside_out", mesh.is_inside_out()},
-      {"looks_like_metres", mesh.looks_like_metres()},
-      {"looks_like_micrometres", mesh.looks_like_micrometres()},
-      {"euler_characteristic", mesh.euler_characteristic},
-      {"genus", to_json(mesh.genus)},
-      {"area", mesh.area},
-      // Of an open surface it would depend on where the origin is.
-      {"signed_volume", mesh.is_watertight() ? nlohmann::json(mesh.signed_volume) : nullptr},
-      {"bounds", {{"low", to_json(mesh.bounds.low)}, {"high", to_json(mesh.bounds.high)}}},
-      {"self_intersections", to_json(inspection.self_intersections)},
-      {"warnings", inspection.loaded.warnings},
-      {"findings", nlohmann::ordered_json::array()}};
+  Json json{{"mesh", options.mesh.string()},
+            {"unit", "mm"},
+            {"other_units", Json::array()},
+            {"space", or_null(inspection.loaded.space)},
+            {"stated_space", or_null(inspection.loaded.stated)},
+            {"triangles", mesh.triangles},
+            {"vertices", mesh.vertices},
+            {"edges", mesh.edges},
+            {"components", mesh.components},
+            {"edge_components", mesh.edge_components},
+            {"boundary_edges", mesh.boundary_edges},
+            {"non_manifold_edges", mesh.non_manifold_edges},
+            {"inconsistent_edges", mesh.inconsistent_edges},
+            {"pinched_vertices", mesh.pinched_vertices},
+            {"repeated_vertex_triangles", mesh.repeated_vertex_triangles},
+            {"collinear_triangles", mesh.collinear_triangles},
+            {"duplicate_triangles", mesh.duplicate_triangles},
+            {"closed", mesh.is_closed()},
+            {"watertight", mesh.is_watertight()},
+            {"inside_out", mesh.is_inside_out()},
+            {"looks_like_metres", mesh.looks_like_metres()},
+            {"looks_like_micrometres", mesh.looks_like_micrometres()},
+            {"euler_characteristic", mesh.euler_characteristic},
+            {"genus", or_null(mesh.genus)},
+            {"area", mesh.area},
+            // Of an open surface it would depend on where the origin is.
+            {"signed_volume", mesh.is_watertight() ? Json(mesh.signed_volume) : nullptr},
+            {"bounds", {{"low", json_of(mesh.bounds.low)}, {"high", json_of(mesh.bounds.high)}}},
+            {"self_intersections", or_null(inspection.self_intersections)},
+            {"warnings", inspection.loaded.warnings},
+            {"findings", Json::array()}};
   for (const UnitGuess& guess : other_units(mesh.bounds.size().maxCoeff())) {
     json["other_units"].push_back({{"unit", guess.unit}, {"scale", guess.millimetres}});
   }
@@ -222,7 +219,7 @@ void print_json(const InspectOptions& options, const Inspection& inspection, std
                                 {"advice", finding.advice}});
   }
   // A file name need not be UTF-8, and JSON must.
-  out << json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
+  out << json.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
 }
 
 }  // namespace
