@@ -23,7 +23,7 @@ struct PartialFile {
 };
 static_assert(std::atomic<bool>::is_always_lock_free);
 
-// A command has two at most. One that found no room would merely outlive a signal.
+// A command has three at most. One that found no room would merely outlive a signal.
 std::array<PartialFile, 8> partial_files;
 
 /// Calls nothing but what POSIX calls async-signal-safe.

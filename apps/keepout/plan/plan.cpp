@@ -13,7 +13,7 @@
 #include "named_mesh.h"
 #include "number_text.h"
 #include "output_file.h"
-#include "plan/planning_result.h"
+#include "plan/planning_run.h"
 #include "progress.h"
 #include "stop_signal.h"
 

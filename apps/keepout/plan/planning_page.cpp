@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "number_text.h"
-#include "plan/planning_result.h"
+#include "plan/planning_run.h"
 #include "report/page.h"
 #include "report/png.h"
 #include "report/shading.h"

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "plan/planning_result.h"
-
 #include <algorithm>
 #include <array>
 #include <iomanip>
@@ -14,6 +12,7 @@
 #include "keepout/version.h"
 #include "machine.h"
 #include "number_text.h"
+#include "plan/planning_run.h"
 #include "verify/judge.h"
 
 namespace keepout::app {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "plan/run_planner.h"
-
 #include <ompl/base/DiscreteMotionValidator.h>
 #include <ompl/base/SpaceInformation.h>
 #include <ompl/base/objectives/PathLengthOptimizationObjective.h>
@@ -14,16 +12,14 @@
 #include <ompl/util/Console.h>
 #include <ompl/util/RandomNumbers.h>
 
-#include <algorithm>
 #include <chrono>
-#include <limits>
-#include <mutex>
 #include <utility>
 
 #include "keepout/error.h"
 #include "keepout/index/query.h"
 #include "keepout/ompl/planning.h"
 #include "number_text.h"
+#include "plan/planning_run.h"
 
 namespace keepout::app {
 namespace {
