@@ -50,16 +50,13 @@ Inspection examine_file(const InspectOptions& options) {
 /// The worst first.
 std::vector<Finding> findings_of(const Inspection& inspection) {
   const MeshFindings& mesh = inspection.mesh;
-  const std::size_t hints_at_metres = mesh.looks_like_metres() ? 1 : 0;
-  const std::size_t hints_at_micrometres = mesh.looks_like_micrometres() ? 1 : 0;
-  const std::size_t inside_out = mesh.is_inside_out() ? 1 : 0;
   const std::vector<Finding> all{
-      {"inside_out", inside_out, "", "",
+      {"inside_out", mesh.is_inside_out(), "", "",
        "the normals point into the solid: tissue and free space are swapped", "flip all triangles"},
-      {"looks_like_metres", hints_at_metres, "", "",
+      {"looks_like_metres", mesh.looks_like_metres(), "", "",
        "smaller than 3 in every direction: in millimetres that is tiny, so these may be metres",
        "scale by 1000 if so, or by what 'unit' above names; nothing is rescaled here"},
-      {"looks_like_micrometres", hints_at_micrometres, "", "",
+      {"looks_like_micrometres", mesh.looks_like_micrometres(), "", "",
        "larger than 3000 in some direction: 3 m in millimetres, so these may be micrometres, or "
        "something lies far from the rest",
        "divide by 1000 if so; nothing is rescaled here"},
