@@ -33,13 +33,15 @@ std::uint64_t sum(const Json& counts) {
   return total;
 }
 
-/// A count that stands at some place in the tally of a mesh.
-Column<Json> count_column(const char* place, const char* heading, int width) {
+std::string grouped_count(const Json& value) { return grouped(value.get<std::uint64_t>()); }
+
+/// What stands at some place in the tally of a mesh: a count, unless it is told of otherwise.
+Column<Json> column(const char* place, const char* heading, int width,
+                    std::string (*text)(const Json&) = &grouped_count) {
   return {"", [at = Json::json_pointer(place)](const Json& mesh) { return mesh.at(at); }, heading,
-          width, [](const Json& value) { return grouped(value.get<std::uint64_t>()); }};
+          width, text};
 }
 
-/// Of the tally of a mesh.
 Columns<Json> columns() {
   const auto contact = [](const Json& mesh) -> Json {
     const auto steps = mesh.at("steps").get<double>();
@@ -60,26 +62,25 @@ Columns<Json> columns() {
     const std::uint64_t known = mesh.value("triangles", std::uint64_t{0});
     return known == 0 ? "-" : grouped(known);
   };
-  return {{"", [](const Json& mesh) { return mesh.at("mesh"); }, "mesh", -16},
-          {"", triangles, "triangles", 9},
-          count_column("/trajectories", "traject.", 8),
-          count_column("/steps", "steps", 12),
-          {"", contact, "contact", 7, [](const Json& v) { return number("%.1f%%", v); }},
-          count_column("/statuses/free", "free", 12),
-          count_column("/statuses/limited", "limited", 12),
-          count_column("/statuses/recovering", "recovering", 11),
-          count_column("/led_out", "led out", 9),
-          count_column("/statuses/fallback", "fallback", 9),
-          count_column("/statuses/unsolved", "unsolved", 9),
-          {"", other, "other", 9},
-          count_column("/breaches/penetration", "crossed", 7),
-          {"", broken, "broken", 7},
-          {"", [](const Json& mesh) { return mesh.at("least_beyond_margin_in_tau"); }, "least/tau",
-           8, [](const Json& v) { return number("%.3f", v); }},
-          {"", [](const Json& mesh) { return mesh.at("least_beyond_margin"); }, "least", 10,
-           [](const Json& v) { return number("%.2e", v); }},
-          {"", [](const Json& mesh) { return mesh.at("seconds"); }, "seconds", 8,
-           [](const Json& v) { return number("%.1f", v); }}};
+  return {
+      column("/mesh", "mesh", -16, &plain),
+      {"", triangles, "triangles", 9},
+      column("/trajectories", "traject.", 8),
+      column("/steps", "steps", 12),
+      {"", contact, "contact", 7, [](const Json& v) { return number("%.1f%%", v); }},
+      column("/statuses/free", "free", 12),
+      column("/statuses/limited", "limited", 12),
+      column("/statuses/recovering", "recovering", 11),
+      column("/led_out", "led out", 9),
+      column("/statuses/fallback", "fallback", 9),
+      column("/statuses/unsolved", "unsolved", 9),
+      {"", other, "other", 9},
+      column("/breaches/penetration", "crossed", 7),
+      {"", broken, "broken", 7},
+      column("/least_beyond_margin_in_tau", "least/tau", 8,
+             [](const Json& v) { return number("%.3f", v); }),
+      column("/least_beyond_margin", "least", 10, [](const Json& v) { return number("%.2e", v); }),
+      column("/seconds", "seconds", 8, [](const Json& v) { return number("%.1f", v); })};
 }
 
 /// An incident in a few lines, but without Jacobian and rows.
