@@ -10,9 +10,14 @@
 #include <utility>
 #include <vector>
 
+#include "keepout/geometry/shapes.h"
+
 namespace keepout::app {
 
 using Json = nlohmann::ordered_json;
+
+/// [x, y, z]
+inline Json json_of(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
 /// As a table shows what has no form of its own: text as it is, numbers with all their digits.
 inline std::string plain(const Json& value) {

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <system_error>
 
 #include "keepout/activation/registry.h"
@@ -15,17 +16,6 @@
 
 namespace keepout::app {
 namespace {
-
-/// A number option, whose value is a whole one of some type.
-template <class Number>
-CLI::Option* add_whole_number(CLI::App& command, const std::string& name, Number& value,
-                              std::uint64_t low, std::uint64_t high,
-                              const std::string& description) {
-  return command.add_option(name, value, description)
-      ->type_name("NUMBER")
-      ->transform(whole_number(low, high))
-      ->capture_default_str();
-}
 
 /// An option that takes the name of an anatomical space, in any case.
 CLI::Option* add_space(CLI::App& command, const char* name, AnatomicalSpace& space,
@@ -131,18 +121,22 @@ CLI::Validator one_of(std::vector<std::string> names) {
   return {check, std::move(description)};
 }
 
-CLI::Validator length(Zero zero) {
-  const auto check = [zero](const std::string& text) -> std::string {
+CLI::Validator number_within(double low, double high, std::string expected, std::string type) {
+  const auto check = [=](const std::string& text) -> std::string {
     char* end = nullptr;
     const double value = std::strtod(text.c_str(), &end);
-    const bool is_number = !text.empty() && *end == '\0';
-    const bool in_range = (zero == Zero::allowed ? value >= 0.0 : value > 0.0) && value <= 1e30;
-    if (is_number && in_range) return {};
-    return "expected a number " +
-           std::string(zero == Zero::allowed ? "from 0 to 1e30" : "above 0 and at most 1e30") +
-           ", not '" + text + "'";
+    if (!text.empty() && *end == '\0' && value >= low && value <= high) return {};
+    return "expected " + expected + ", not '" + text + "'";
   };
-  return {check, zero == Zero::allowed ? "NONNEGATIVE" : "POSITIVE"};
+  return {check, std::move(type)};
+}
+
+CLI::Validator length(Zero zero) {
+  if (zero == Zero::allowed) {
+    return number_within(0.0, 1e30, "a number from 0 to 1e30", "NONNEGATIVE");
+  }
+  return number_within(std::numeric_limits<double>::denorm_min(), 1e30,
+                       "a number above 0 and at most 1e30", "POSITIVE");
 }
 
 CLI::Validator whole_number(std::uint64_t low, std::uint64_t high) {
@@ -181,16 +175,6 @@ CLI::Option* add_length(CLI::App& command, const std::string& name, double& valu
       ->type_name("MM")
       ->check(length(zero))
       ->capture_default_str();
-}
-
-CLI::Option* add_number(CLI::App& command, const std::string& name, std::uint64_t& value,
-                        std::uint64_t low, std::uint64_t high, const std::string& description) {
-  return add_whole_number(command, name, value, low, high, description);
-}
-
-CLI::Option* add_number(CLI::App& command, const std::string& name, int& value, std::uint64_t low,
-                        std::uint64_t high, const std::string& description) {
-  return add_whole_number(command, name, value, low, high, description);
 }
 
 CLI::Option* add_name(CLI::App& command, const std::string& name, std::string& value,

@@ -43,8 +43,12 @@ inline constexpr std::uint64_t largest_seed = (std::uint64_t{1} << 63) - 1;
 
 enum class Zero { allowed, refused };
 
-/// A length in millimetres. CLI11's own checks let 'nan' pass and tell their range in 300 digits.
-/// The limit keeps squares of lengths, and sums of them, far from the end of a double's range.
+/// A number from `low` to `high`, which `expected` tells in words; CLI11's own checks let 'nan'
+/// pass and tell their range in 300 digits. `type`: what the help calls it.
+CLI::Validator number_within(double low, double high, std::string expected, std::string type);
+
+/// A length in millimetres. The limit keeps squares of lengths, and sums of them, far from the end
+/// of a double's range.
 CLI::Validator length(Zero zero);
 
 /// A whole number in decimal digits. For transform(), which hands on what was read: CLI11 alone
@@ -58,10 +62,14 @@ CLI::Validator large_count();
 
 CLI::Option* add_length(CLI::App& command, const std::string& name, double& value, Zero zero,
                         const std::string& description);
-CLI::Option* add_number(CLI::App& command, const std::string& name, std::uint64_t& value,
-                        std::uint64_t low, std::uint64_t high, const std::string& description);
-CLI::Option* add_number(CLI::App& command, const std::string& name, int& value, std::uint64_t low,
-                        std::uint64_t high, const std::string& description);
+template <class Number>
+CLI::Option* add_number(CLI::App& command, const std::string& name, Number& value,
+                        std::uint64_t low, std::uint64_t high, const std::string& description) {
+  return command.add_option(name, value, description)
+      ->type_name("NUMBER")
+      ->transform(whole_number(low, high))
+      ->capture_default_str();
+}
 CLI::Option* add_name(CLI::App& command, const std::string& name, std::string& value,
                       std::vector<std::string> names, const std::string& description);
 

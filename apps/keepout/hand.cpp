@@ -16,6 +16,12 @@
 namespace keepout::app {
 namespace {
 
+// On a mesh of 100 mm and more; on a smaller one the hand is as much smaller. [mm]
+constexpr double start_height = 8.0;      // above the surface at both ends of a stroke
+constexpr double deepest = 5.0;           // how far below the surface the hand aims, at most
+constexpr double slide_length = 30.0;     // over the surface, at most
+constexpr double tremor_amplitude = 0.1;  // root of the sum of the squared amplitudes of its waves
+
 struct SurfacePoint {
   Vec3 point;
   Vec3 normal;
@@ -110,8 +116,10 @@ std::vector<SurfacePoint> slide_over(Audit& audit, const SurfacePoint& start, do
   return way;
 }
 
-std::vector<Vec3> make_stroke(Audit& audit, const HandSettings& settings, double height,
-                              Places& places, Random& random) {
+/// `scale`: of the lengths.
+std::vector<Vec3> make_stroke(Audit& audit, std::size_t cycles, double scale, Places& places,
+                              Random& random) {
+  const double height = start_height * scale;
   const std::optional<SurfacePoint> start = place_to_start(audit, places, height);
   if (!start) {
     throw Error("no free place to start a stroke from: nowhere is there room for " +
@@ -119,14 +127,14 @@ std::vector<Vec3> make_stroke(Audit& audit, const HandSettings& settings, double
                 " mm above the surface, on the side that its normals point to; if they point into "
                 "the solid, flip all triangles ('keepout inspect' tells whether they do)");
   }
-  const double depth = random.uniform(0.2, 1.0) * settings.deepest;
+  const double depth = random.uniform(0.2, 1.0) * (deepest * scale);
   const std::vector<SurfacePoint> way =
-      slide_over(audit, *start, random.uniform(0.3, 1.0) * settings.slide_length, random);
-  const Tremor tremor(settings.tremor, random);
+      slide_over(audit, *start, random.uniform(0.3, 1.0) * (slide_length * scale), random);
+  const Tremor tremor(tremor_amplitude * scale, random);
 
   std::vector<Vec3> hand;
-  for (std::size_t cycle = 0; cycle < settings.cycles; ++cycle) {
-    const double t = static_cast<double>(cycle) / static_cast<double>(settings.cycles);
+  for (std::size_t cycle = 0; cycle < cycles; ++cycle) {
+    const double t = static_cast<double>(cycle) / static_cast<double>(cycles);
     const double along = smooth((t - 0.25) / 0.5) * static_cast<double>(way.size() - 1);
     const auto station = std::min(static_cast<std::size_t>(along), way.size() - 2);
     const double blend = along - static_cast<double>(station);
@@ -134,7 +142,7 @@ std::vector<Vec3> make_stroke(Audit& audit, const HandSettings& settings, double
     const Vec3 up = ((1.0 - blend) * way[station].normal + blend * way[station + 1].normal);
     const double lowered = smooth(t / 0.25) * smooth((1.0 - t) / 0.25);
     const double above = height - lowered * (height + depth);
-    const double seconds = static_cast<double>(cycle) * settings.cycle_seconds;
+    const double seconds = static_cast<double>(cycle) * cycle_seconds;
     hand.push_back(point + above * up + tremor.at(seconds));
   }
   return hand;
@@ -144,17 +152,11 @@ std::vector<Vec3> make_stroke(Audit& audit, const HandSettings& settings, double
 
 std::vector<std::vector<Vec3>> make_hand(Audit& audit, const HandSettings& settings) {
   Random random(settings.seed);
-  // On a small mesh the hand is as much smaller.
-  const double size = audit.mesh().bounds().size().norm();
-  HandSettings scaled = settings;
-  const double scale = std::min(1.0, size / 100.0);
-  scaled.deepest *= scale;
-  scaled.slide_length *= scale;
-  scaled.tremor *= scale;
+  const double scale = std::min(1.0, audit.mesh().bounds().size().norm() / 100.0);
   Places places(audit, random);
   std::vector<std::vector<Vec3>> strokes;
   while (strokes.size() < settings.strokes) {
-    strokes.push_back(make_stroke(audit, scaled, settings.start_height * scale, places, random));
+    strokes.push_back(make_stroke(audit, settings.cycles, scale, places, random));
   }
   return strokes;
 }

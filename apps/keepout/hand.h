@@ -9,17 +9,13 @@
 
 namespace keepout::app {
 
-/// How a simulated hand moves. [mm], one position each cycle
+/// How often and how long a simulated hand moves: one position each cycle.
 struct HandSettings {
   std::uint64_t seed = 1;
   std::size_t strokes = 24;
-  std::size_t cycles = 1000;   // of each stroke
-  double start_height = 8.0;   // above the surface at both ends of a stroke
-  double deepest = 5.0;        // how far below the surface the hand aims, at most
-  double slide_length = 30.0;  // over the surface, at most
-  double tremor = 0.1;         // root of the sum of the squared amplitudes of its waves
-  double cycle_seconds = 0.001;
+  std::size_t cycles = 1000;  // of each stroke
 };
+inline constexpr double cycle_seconds = 0.001;
 
 /// Where a surgeon's hand would have the tip, cycle by cycle, were there no fixture: down from free
 /// space to below the surface, along underneath it, and back up, with a tremor. It does not feel

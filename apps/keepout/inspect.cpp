@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include <iomanip>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <ostream>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "columns.h"
 #include "commands.h"
 #include "keepout/index/pd_tree.h"
 #include "keepout/index/self_intersection.h"
@@ -50,16 +50,13 @@ Inspection examine_file(const InspectOptions& options) {
 /// The worst first.
 std::vector<Finding> findings_of(const Inspection& inspection) {
   const MeshFindings& mesh = inspection.mesh;
-  const std::size_t hints_at_metres = mesh.looks_like_metres() ? 1 : 0;
-  const std::size_t hints_at_micrometres = mesh.looks_like_micrometres() ? 1 : 0;
-  const std::size_t inside_out = mesh.is_inside_out() ? 1 : 0;
   const std::vector<Finding> all{
-      {"inside_out", inside_out, "", "",
+      {"inside_out", mesh.is_inside_out(), "", "",
        "the normals point into the solid: tissue and free space are swapped", "flip all triangles"},
-      {"looks_like_metres", hints_at_metres, "", "",
+      {"looks_like_metres", mesh.looks_like_metres(), "", "",
        "smaller than 3 in every direction: in millimetres that is tiny, so these may be metres",
        "scale by 1000 if so, or by what 'unit' above names; nothing is rescaled here"},
-      {"looks_like_micrometres", hints_at_micrometres, "", "",
+      {"looks_like_micrometres", mesh.looks_like_micrometres(), "", "",
        "larger than 3000 in some direction: 3 m in millimetres, so these may be micrometres, or "
        "something lies far from the rest",
        "divide by 1000 if so; nothing is rescaled here"},
@@ -125,7 +122,7 @@ std::string space_text(const LoadedMesh& loaded) {
 }
 
 /// As JSON has it: null where nothing is known.
-nlohmann::ordered_json to_json(AnatomicalSpace space) {
+Json or_null(AnatomicalSpace space) {
   if (space == AnatomicalSpace::unstated) return nullptr;
   return name(space);
 }
@@ -171,47 +168,44 @@ void print_text(const InspectOptions& options, const Inspection& inspection, std
   }
 }
 
-nlohmann::ordered_json to_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
-
 template <class T>
-nlohmann::ordered_json to_json(const std::optional<T>& value) {
-  return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
+Json or_null(const std::optional<T>& value) {
+  return value ? Json(*value) : Json(nullptr);
 }
 
 void print_json(const InspectOptions& options, const Inspection& inspection, std::ostream& out) {
   const MeshFindings& mesh = inspection.mesh;
-  nlohmann::ordered_json json{
-      {"mesh", options.mesh.string()},
-      {"unit", "mm"},
-      {"other_units", nlohmann::ordered_json::array()},
-      {"space", to_json(inspection.loaded.space)},
-      {"stated_space", to_json(inspection.loaded.stated)},
-      {"triangles", mesh.triangles},
-      {"vertices", mesh.vertices},
-      {"edges", mesh.edges},
-      {"components", mesh.components},
-      {"edge_components", mesh.edge_components},
-      {"boundary_edges", mesh.boundary_edges},
-      {"non_manifold_edges", mesh.non_manifold_edges},
-      {"inconsistent_edges", mesh.inconsistent_edges},
-      {"pinched_vertices", mesh.pinched_vertices},
-      {"repeated_vertex_triangles", mesh.repeated_vertex_triangles},
-      {"collinear_triangles", mesh.collinear_triangles},
-      {"duplicate_triangles", mesh.duplicate_triangles},
-      {"closed", mesh.is_closed()},
-      {"watertight", mesh.is_watertight()},
-      {"inside_out", mesh.is_inside_out()},
-      {"looks_like_metres", mesh.looks_like_metres()},
-      {"looks_like_micrometres", mesh.looks_like_micrometres()},
-      {"euler_characteristic", mesh.euler_characteristic},
-      {"genus", to_json(mesh.genus)},
-      {"area", mesh.area},
-      // Of an open surface it would depend on where the origin is.
-      {"signed_volume", mesh.is_watertight() ? nlohmann::json(mesh.signed_volume) : nullptr},
-      {"bounds", {{"low", to_json(mesh.bounds.low)}, {"high", to_json(mesh.bounds.high)}}},
-      {"self_intersections", to_json(inspection.self_intersections)},
-      {"warnings", inspection.loaded.warnings},
-      {"findings", nlohmann::ordered_json::array()}};
+  Json json{{"mesh", options.mesh.string()},
+            {"unit", "mm"},
+            {"other_units", Json::array()},
+            {"space", or_null(inspection.loaded.space)},
+            {"stated_space", or_null(inspection.loaded.stated)},
+            {"triangles", mesh.triangles},
+            {"vertices", mesh.vertices},
+            {"edges", mesh.edges},
+            {"components", mesh.components},
+            {"edge_components", mesh.edge_components},
+            {"boundary_edges", mesh.boundary_edges},
+            {"non_manifold_edges", mesh.non_manifold_edges},
+            {"inconsistent_edges", mesh.inconsistent_edges},
+            {"pinched_vertices", mesh.pinched_vertices},
+            {"repeated_vertex_triangles", mesh.repeated_vertex_triangles},
+            {"collinear_triangles", mesh.collinear_triangles},
+            {"duplicate_triangles", mesh.duplicate_triangles},
+            {"closed", mesh.is_closed()},
+            {"watertight", mesh.is_watertight()},
+            {"inside_out", mesh.is_inside_out()},
+            {"looks_like_metres", mesh.looks_like_metres()},
+            {"looks_like_micrometres", mesh.looks_like_micrometres()},
+            {"euler_characteristic", mesh.euler_characteristic},
+            {"genus", or_null(mesh.genus)},
+            {"area", mesh.area},
+            // Of an open surface it would depend on where the origin is.
+            {"signed_volume", mesh.is_watertight() ? Json(mesh.signed_volume) : nullptr},
+            {"bounds", {{"low", json_of(mesh.bounds.low)}, {"high", json_of(mesh.bounds.high)}}},
+            {"self_intersections", or_null(inspection.self_intersections)},
+            {"warnings", inspection.loaded.warnings},
+            {"findings", Json::array()}};
   for (const UnitGuess& guess : other_units(mesh.bounds.size().maxCoeff())) {
     json["other_units"].push_back({{"unit", guess.unit}, {"scale", guess.millimetres}});
   }
@@ -222,7 +216,7 @@ void print_json(const InspectOptions& options, const Inspection& inspection, std
                                 {"advice", finding.advice}});
   }
   // A file name need not be UTF-8, and JSON must.
-  out << json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
+  out << json.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
 }
 
 }  // namespace

@@ -118,37 +118,6 @@ void add_simulate(CLI::App& app, SimulateOptions& options) {
              "Control cycles of each stroke, at 1 kHz");
 }
 
-void add_verify(CLI::App& app, VerifyOptions& options) {
-  CLI::App& command = *app.add_subcommand(
-      "verify",
-      "Try to break the certified step: adversarial closed-loop motion over many meshes, each step "
-      "judged by an independent, exact oracle");
-  std::vector<CLI::Option*> of_a_run;
-  of_a_run.push_back(command.add_option(
-      "MESH", options.meshes, "Mesh files in mm, or fixtures; without one, all fixtures"));
-  of_a_run.push_back(command.add_option("--steps", options.steps, "Steps of the whole campaign")
-                         ->type_name("NUMBER")
-                         ->transform(large_count())
-                         ->capture_default_str());
-  of_a_run.push_back(add_number(command, "--seed", options.seed, 0, largest_seed,
-                                "Seed: same seed and steps, same campaign"));
-  of_a_run.push_back(command.add_option("--shard", options.shard, "Do part I of N of the campaign")
-                         ->type_name("I/N")
-                         ->check(shard_text())
-                         ->capture_default_str());
-  of_a_run.push_back(add_name(command, "--index", options.index, names(index_backends()),
-                              "Index that finds triangles"));
-  command.add_option("--json", options.json, "Where to write the results, every breach included")
-      ->type_name("FILE");
-  CLI::Option* merge =
-      command.add_option("--merge", options.merge, "Add up the results of a campaign's shards")
-          ->type_name("FILES");
-  for (CLI::Option* option : of_a_run) merge->excludes(option);
-  command.footer(
-      "Ctrl-C ends it early: what is finished is printed and written.\n"
-      "The exit status is 0 only if no step broke what docs/certified-step.md promises.");
-}
-
 void add_serve(CLI::App& app, ServeOptions& options) {
   CLI::App& command = *app.add_subcommand(
       "serve",

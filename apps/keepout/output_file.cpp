@@ -23,7 +23,7 @@ struct PartialFile {
 };
 static_assert(std::atomic<bool>::is_always_lock_free);
 
-// A command has two at most. One that found no room would merely outlive a signal.
+// A command has three at most. One that found no room would merely outlive a signal.
 std::array<PartialFile, 8> partial_files;
 
 /// Calls nothing but what POSIX calls async-signal-safe.
@@ -147,20 +147,16 @@ void OutputFile::commit() {
   partial_.clear();
 }
 
-void refuse_shared_files(std::span<const NamedPath> inputs, std::span<const NamedPath> outputs) {
-  for (std::size_t i = 0; i < outputs.size(); ++i) {
-    for (const NamedPath& input : inputs) refuse_if_same(outputs[i], input);
-    for (std::size_t j = 0; j < i; ++j) refuse_if_same(outputs[i], outputs[j]);
-  }
-}
-
 OutputFiles::OutputFiles(std::span<const NamedPath> inputs, std::initializer_list<Asked> outputs) {
-  std::vector<NamedPath> paths;
+  std::vector<NamedPath> paths(inputs.begin(), inputs.end());
   for (const auto& [name, path] : outputs) {
-    if (path) paths.push_back({name, *path});
+    if (!path) continue;
+    for (const NamedPath& other : paths) refuse_if_same({name, *path}, other);
+    paths.push_back({name, *path});
   }
-  refuse_shared_files(inputs, paths);
-  for (const auto& [name, path] : paths) outputs_.emplace_back(name, path);
+  for (const auto& [name, path] : std::span(paths).subspan(inputs.size())) {
+    outputs_.emplace_back(name, path);
+  }
 }
 
 std::ostream* OutputFiles::stream(std::string_view name) {

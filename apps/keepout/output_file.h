@@ -48,10 +48,6 @@ struct NamedPath {
   std::filesystem::path path;
 };
 
-/// Throws Error, naming both, when an output is the same file as an input or as another output, by
-/// whatever names and links, and whether or not it exists yet.
-void refuse_shared_files(std::span<const NamedPath> inputs, std::span<const NamedPath> outputs);
-
 /// The files that a command was asked for, made before any work: what cannot be written shall not
 /// be told of after an hour.
 class OutputFiles {
@@ -59,7 +55,8 @@ class OutputFiles {
   /// What the user calls a file, and its path if he asked for it.
   using Asked = std::pair<std::string_view, std::optional<std::filesystem::path>>;
 
-  /// Throws Error where OutputFile and refuse_shared_files do.
+  /// Throws Error where OutputFile does, and, naming both, when an output is the same file as an
+  /// input or as another output, by whatever names and links, and whether or not it exists yet.
   OutputFiles(std::span<const NamedPath> inputs, std::initializer_list<Asked> outputs);
 
   /// Where to write; null where it was not asked for.

@@ -206,7 +206,7 @@ int simulate(const SimulateOptions& options, std::ostream& out) {
                         .mesh = loaded.mesh.get(),
                         .surface = audit.surface(),
                         .margin = options.constraint.tool_radius + options.constraint.margin,
-                        .cycle_seconds = options.hand.cycle_seconds,
+                        .cycle_seconds = cycle_seconds,
                         .settings = settings_of(options, *loaded.mesh)};
   const std::vector<std::vector<Vec3>> hand = hand_over(audit, options);
   for (auto& [rule, constraint] : fixtures) {

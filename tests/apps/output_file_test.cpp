@@ -113,26 +113,32 @@ TEST_F(OutputFileTest, AnOutputThatIsAnInputIsRefusedByWhateverName) {
   fs::create_hard_link(file("mesh.stl"), file("hard.stl"));
   const std::array inputs{NamedPath{"MESH", file("mesh.stl")}};
   for (const char* name : {"mesh.stl", "./mesh.stl", "link.stl", "hard.stl"}) {
-    const std::array outputs{NamedPath{"--out", file(name)}};
-    const std::string message = error_of([&] { refuse_shared_files(inputs, outputs); });
+    const std::string message = error_of([&] {
+      OutputFiles outputs(inputs, {{"--out", file(name)}});
+    });
     EXPECT_NE(message.find("MESH"), std::string::npos) << name << ": " << message;
     EXPECT_NE(message.find("--out"), std::string::npos) << name << ": " << message;
   }
-  EXPECT_NO_THROW(refuse_shared_files(inputs, std::array{NamedPath{"--out", file("report")}}));
+  EXPECT_EQ(error_of([&] {
+              OutputFiles outputs(inputs, {{"--out", file("report")}});
+            }),
+            "no error");
 }
 
 TEST_F(OutputFileTest, TwoOutputsAreRefusedWhenTheyWouldBeTheSameFile) {
   fs::create_symlink("new.csv", file("link.csv"));
   fs::create_directory_symlink(".", file("here"));
   for (const char* name : {"new.csv", "none/../new.csv", "link.csv", "here/new.csv"}) {
-    const std::array outputs{NamedPath{"--out", file("new.csv")},
-                             NamedPath{"--planes", file(name)}};
-    const std::string message = error_of([&] { refuse_shared_files({}, outputs); });
+    const std::string message = error_of([&] {
+      OutputFiles outputs({}, {{"--out", file("new.csv")}, {"--planes", file(name)}});
+    });
     EXPECT_NE(message.find("--out"), std::string::npos) << name << ": " << message;
     EXPECT_NE(message.find("--planes"), std::string::npos) << name << ": " << message;
   }
-  const std::array two{NamedPath{"--out", file("a.csv")}, NamedPath{"--planes", file("b.csv")}};
-  EXPECT_NO_THROW(refuse_shared_files({}, two));
+  const auto make_two = [&] {
+    OutputFiles outputs({}, {{"--out", file("a.csv")}, {"--planes", file("b.csv")}});
+  };
+  EXPECT_EQ(error_of(make_two), "no error");
 }
 
 /// The exit status, as waitpid tells it, of a child process.

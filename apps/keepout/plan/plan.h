@@ -32,6 +32,8 @@ struct PlanOptions {
   double range = 0.0;     // of the planner [mm]; 0: a fifth of the extent, as OMPL has it
   bool simplify = false;  // shorten each path by OMPL's simplifier, under the same checker
   std::optional<std::filesystem::path> json, csv, page;
+
+  double clearance() const noexcept { return tool_radius + margin; }
 };
 
 /// Adds `keepout plan` and its options to the command line.

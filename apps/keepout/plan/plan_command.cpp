@@ -6,21 +6,6 @@
 #include "plan/plan.h"
 
 namespace keepout::app {
-namespace {
-
-/// A number from `low` to `high`; CLI11's own range check lets 'nan' pass.
-CLI::Validator number_within(double low, double high, const std::string& expected,
-                             const std::string& type) {
-  const auto check = [=](std::string& text) {
-    double value = 0.0;
-    const bool is_number = CLI::detail::lexical_cast(text, value);
-    if (is_number && value >= low && value <= high) return std::string();
-    return "expected " + expected + ", not '" + text + "'";
-  };
-  return {check, type};
-}
-
-}  // namespace
 
 void add_plan(CLI::App& app, PlanOptions& options) {
   CLI::App& command = *app.add_subcommand(

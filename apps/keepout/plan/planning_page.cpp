@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "number_text.h"
-#include "plan/planning_result.h"
+#include "plan/planning_run.h"
 #include "report/page.h"
 #include "report/png.h"
 #include "report/shading.h"
@@ -25,7 +25,7 @@ void add_tubes(const PlanningScene& where, const PlanningRun& run, double least,
                std::vector<Tube>& tubes) {
   constexpr double longest = 0.5;  // of what is judged at once [mm]
   const bool is_within = where.space == PlanningScene::Space::within;
-  oracle::SafetyOracle oracle = where.scene->oracle();
+  oracle::SafetyOracle oracle = where.scene.oracle();
   std::optional<bool> was_bad;
   for (std::size_t i = 1; i < run.path.points.size(); ++i) {
     const Vec3 from = run.path.points[i - 1];
@@ -52,7 +52,7 @@ void add_tubes(const PlanningScene& where, const PlanningRun& run, double least,
 
 /// From the side and a little above, z upwards, as the fixtures stand.
 Camera camera_of(const PlanningScene& where) {
-  const Mesh& mesh = *where.scene->mesh();
+  const Mesh& mesh = *where.scene.mesh();
   Camera camera = look_from(Vec3(0.9, -0.5, 0.35), Vec3::UnitZ(), mesh.bounds().center(), 1.0);
   const std::vector<Vec3> points(mesh.vertices().begin(), mesh.vertices().end());
   fit(camera, picture_size, points);
@@ -61,8 +61,8 @@ Camera camera_of(const PlanningScene& where) {
 
 void print_pictures(std::ostream& out, const PlanOptions& options, const PlanningScene& where,
                     const std::vector<PlanningRun>& runs) {
-  const Scene& scene = *where.scene;
-  const double least = least_distance(scene, options.tool_radius + options.margin, options.radius);
+  const Scene& scene = where.scene;
+  const double least = least_distance(scene, options);
   const Camera camera = camera_of(where);
   const Samples samples = rasterize(*scene.mesh(), camera, picture_size, Interior::hollow);
   const Image anatomy = shade(samples);
@@ -111,17 +111,15 @@ void write_planning_page(std::ostream& out, const PlanOptions& options,
                          const std::vector<PlanningRun>& runs) {
   open_page(out, "keepout plan", "");
   out << "<h1>Plans through anatomy, judged by an exact oracle</h1>\n<p class=\"lead\">"
-      << escape(options.planner) << ", " << trimmed(options.seconds)
-      << " s for each problem, clearance " << trimmed(options.tool_radius + options.margin)
-      << " mm, seed " << options.seed << ". The sliding checker has a planner of its own.</p>\n";
+      << escape(lead(options)) << ". The sliding checker has a planner of its own.</p>\n";
   const std::vector<PlanningSummary> rows = summaries(runs);
   for (const PlanningScene& where : scenes) {
     std::vector<PlanningSummary> of_mesh;
     for (const PlanningSummary& row : rows) {
-      if (row.mesh == where.scene->name()) of_mesh.push_back(row);
+      if (row.mesh == where.scene.name()) of_mesh.push_back(row);
     }
     if (of_mesh.empty()) continue;
-    open_section(out, escape(where.scene->name()),
+    open_section(out, escape(where.scene.name()),
                  "All paths found under each checker. Red: nearer to the mesh than allowed, or "
                  "through it.");
     print_table(out, table_of(of_mesh));

@@ -1,24 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "plan/planning_result.h"
-
 #include <algorithm>
 #include <array>
 #include <iomanip>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <ostream>
 #include <sstream>
 #include <utility>
 
+#include "columns.h"
 #include "keepout/simd_target.h"
 #include "keepout/version.h"
 #include "machine.h"
 #include "number_text.h"
+#include "plan/planning_run.h"
+#include "verify/judge.h"
 
 namespace keepout::app {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 double median(std::vector<double> values) {
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
@@ -65,9 +63,7 @@ std::string field(const std::string& name) {
   return quoted + '"';
 }
 
-Json json_of(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
-
-Json json_of(const PlanningRun& run) {
+Json entry_of(const PlanningRun& run) {
   Json entry{{"mesh", run.mesh},
              {"problem", run.problem.number},
              {"start", json_of(run.problem.start)},
@@ -106,6 +102,11 @@ std::string field(const Json& entry, const char* key) {
 
 }  // namespace
 
+std::string lead(const PlanOptions& options) {
+  return options.planner + ", " + trimmed(options.seconds) + " s for each problem, clearance " +
+         trimmed(options.clearance()) + " mm, seed " + std::to_string(options.seed);
+}
+
 std::vector<PlanningSummary> summaries(const std::vector<PlanningRun>& runs) {
   std::vector<std::vector<const PlanningRun*>> groups;
   for (const PlanningRun& run : runs) {
@@ -123,11 +124,11 @@ std::vector<PlanningSummary> summaries(const std::vector<PlanningRun>& runs) {
   return rows;
 }
 
-double least_distance(const Scene& scene, double margin, double radius) {
-  // As verify/judge.cpp has it; the tip may be 10 mm beyond the mesh along each axis.
-  const double lengths = scene.longest_edge() + radius * (1.0 + 1e-9) + margin;
-  const double tau = 2e-10 * lengths + 4e-16 * (scene.farthest() + 30.0);
-  return margin - 3.0 * tau;
+double least_distance(const Scene& scene, const PlanOptions& options) {
+  // The tip may be 10 mm beyond the mesh along each axis.
+  const Vec3 farthest(scene.farthest() + 30.0, 0.0, 0.0);
+  const double margin = options.clearance();
+  return margin - 3.0 * tolerance(scene, {.radius = options.radius, .margin = margin}, farthest);
 }
 
 PathVerdict judge_path(const Scene& scene, std::span<const Vec3> points, double least) {
@@ -190,12 +191,12 @@ void write_planning_json(std::ostream& out, const PlanOptions& options,
             {"seed", options.seed},
             {"planner", options.planner},
             {"seconds_allowed", options.seconds},
-            {"clearance_mm", options.tool_radius + options.margin},
+            {"clearance_mm", options.clearance()},
             {"radius_mm", options.radius},
             {"range_mm", options.range},
             {"simplified", options.simplify},
             {"runs", Json::array()}};
-  for (const PlanningRun& run : runs) root["runs"].push_back(json_of(run));
+  for (const PlanningRun& run : runs) root["runs"].push_back(entry_of(run));
   out << root.dump(1) << '\n';
 }
 
@@ -206,7 +207,7 @@ void write_planning_csv(std::ostream& out, const std::vector<PlanningRun>& runs)
                                "clearance_mm", "length_mm", "straight_mm",      "detour"};
   for (const char* column : columns) out << (column == columns.front() ? "" : ",") << column;
   for (const PlanningRun& run : runs) {
-    const Json entry = json_of(run);
+    const Json entry = entry_of(run);
     char before = '\n';
     for (const char* column : columns) out << std::exchange(before, ',') << field(entry, column);
   }

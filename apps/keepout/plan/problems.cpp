@@ -10,6 +10,7 @@
 
 #include "keepout/error.h"
 #include "keepout/fixtures/random.h"
+#include "named_mesh.h"
 
 namespace keepout::app {
 namespace {
@@ -169,9 +170,10 @@ using Cells = std::vector<FreeCells::Cell>;
 
 }  // namespace
 
-PlanningScene planning_scene(std::unique_ptr<Scene> scene, PlanningScene::Space space,
-                             PlanningScene::Starts starts) {
-  Box bounds = scene->mesh()->bounds();
+PlanningScene load_planning_scene(const std::filesystem::path& mesh, PlanningScene::Space space,
+                                  PlanningScene::Starts starts) {
+  Scene scene(mesh.filename().string(), load_named_mesh(mesh).mesh, "wide_bvh");
+  Box bounds = scene.mesh()->bounds();
   if (space == PlanningScene::Space::around) {
     bounds.low.array() -= room_around;
     bounds.high.array() += room_around;
@@ -182,7 +184,7 @@ PlanningScene planning_scene(std::unique_ptr<Scene> scene, PlanningScene::Space 
 std::vector<Problem> draw_problems(PlanningScene& where, double clearance, std::size_t count,
                                    std::uint64_t seed) {
   Random random(seed);
-  Scene& scene = *where.scene;
+  Scene& scene = where.scene;
   const double diagonal = scene.mesh()->bounds().size().norm();
   const double spacing = diagonal / cells_of_diagonal;
   const Box start_box =

@@ -3,8 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
-#include <string>
+#include <filesystem>
 #include <vector>
 
 #include "keepout/geometry/shapes.h"
@@ -20,15 +19,16 @@ struct PlanningScene {
     below  // in the lowest tenth of the bounds, along z
   };
 
-  std::unique_ptr<Scene> scene;
-  Space space = Space::around;
-  Starts starts = Starts::anywhere;
+  Scene scene;
+  Space space;
+  Starts starts;
   Box bounds;  // of the state space [mm]
 };
 
-/// Sets the bounds: those of the mesh, and 10 mm more on all sides where it is planned around.
-PlanningScene planning_scene(std::unique_ptr<Scene> scene, PlanningScene::Space space,
-                             PlanningScene::Starts starts);
+/// Loads a mesh or a fixture (named_mesh.h). The bounds are its own, and 10 mm more on all sides
+/// where it is planned around.
+PlanningScene load_planning_scene(const std::filesystem::path& mesh, PlanningScene::Space space,
+                                  PlanningScene::Starts starts = PlanningScene::Starts::anywhere);
 
 struct Problem {
   std::size_t number = 0;  // from 1
@@ -43,11 +43,10 @@ struct Problem {
 ///    of the bounds, within it from the widest of 1000 places drawn in it, in its lowest tenth
 ///    where starts are below.
 /// 2. Start and goal are drawn evenly among the cells reached that are no farther from the mesh
-/// than
-///    five times the clearance; starts as the scene has it.
-/// 3. A pair is taken when the way along the grid is at least a quarter of the diagonal long
-/// and 1.3
-///    times as long as in the open, and the straight way from one to the other touches the mesh.
+///    than five times the clearance; starts as the scene has it.
+/// 3. A pair is taken when the way along the grid is at least a quarter of the diagonal long and
+///    1.3 times as long as in the open, and the straight way from one to the other touches the
+///    mesh.
 ///
 /// Throws Error when the rule finds too few.
 std::vector<Problem> draw_problems(PlanningScene& where, double clearance, std::size_t count,

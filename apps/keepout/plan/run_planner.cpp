@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "plan/run_planner.h"
-
 #include <ompl/base/DiscreteMotionValidator.h>
 #include <ompl/base/SpaceInformation.h>
 #include <ompl/base/objectives/PathLengthOptimizationObjective.h>
@@ -14,16 +12,14 @@
 #include <ompl/util/Console.h>
 #include <ompl/util/RandomNumbers.h>
 
-#include <algorithm>
 #include <chrono>
-#include <limits>
-#include <mutex>
 #include <utility>
 
 #include "keepout/error.h"
 #include "keepout/index/query.h"
 #include "keepout/ompl/planning.h"
 #include "number_text.h"
+#include "plan/planning_run.h"
 
 namespace keepout::app {
 namespace {
@@ -125,9 +121,9 @@ void set_checkers(const base::SpaceInformationPtr& space, const PlanningTask& ta
     // Between two places so far apart no distance falls by more than half of it.
     const double apart = task.checker.resolution * space->getStateSpace()->getMaximumExtent();
     const bool is_widened = task.checker.kind == Checker::Kind::widened;
-    const double clearance = task.clearance + (is_widened ? 0.5 * apart : 0.0);
+    const double clearance = task.options.clearance() + (is_widened ? 0.5 * apart : 0.0);
     space->setStateValidityCheckingResolution(task.checker.resolution);
-    const auto places = std::make_shared<ClearPlaces>(*task.where->scene, clearance);
+    const auto places = std::make_shared<ClearPlaces>(task.where.scene, clearance);
     space->setStateValidityChecker([places, &timer, all = space.get()](const base::State* state) {
       return timer.time(
           [&] { return all->satisfiesBounds(state) && places->has(point_of(state)); });
@@ -145,26 +141,24 @@ void set_checkers(const base::SpaceInformationPtr& space, const PlanningTask& ta
   space->setup();
 }
 
-template <class Planner>
-base::PlannerPtr with_range(std::shared_ptr<Planner> planner, double range) {
-  if (range > 0.0) planner->setRange(range);
-  return planner;
-}
-
 base::PlannerPtr planner_of(const PlanningTask& task, const base::SpaceInformationPtr& space) {
-  if (task.checker.kind == Checker::Kind::sliding) {
+  const double range = task.options.range;
+  const auto with_range = [range](const auto& planner) -> base::PlannerPtr {
+    if (range > 0.0) planner->setRange(range);
+    return planner;
+  };
+  const std::string name = task.planner();
+  if (name == "SlidingConnect") {
     base::PlannerPtr planner = make_sliding_connect(space, task.guards);
-    if (task.range > 0.0) planner->params().setParam("range", std::to_string(task.range));
+    if (range > 0.0) planner->params().setParam("range", std::to_string(range));
     return planner;
   }
-  if (task.planner == "RRTConnect") {
-    return with_range(std::make_shared<geometric::RRTConnect>(space), task.range);
-  }
-  if (task.planner == "RRT") return with_range(std::make_shared<geometric::RRT>(space), task.range);
+  if (name == "RRTConnect") return with_range(std::make_shared<geometric::RRTConnect>(space));
+  if (name == "RRT") return with_range(std::make_shared<geometric::RRT>(space));
   // These have no range.
-  if (task.planner == "PRM") return std::make_shared<geometric::PRM>(space);
-  if (task.planner == "BITstar") return std::make_shared<geometric::BITstar>(space);
-  throw Error("plan: there is no planner '" + task.planner + "'");
+  if (name == "PRM") return std::make_shared<geometric::PRM>(space);
+  if (name == "BITstar") return std::make_shared<geometric::BITstar>(space);
+  throw Error("plan: there is no planner '" + name + "'");
 }
 
 /// What the planner that steers by itself tells of it.
@@ -203,17 +197,18 @@ std::vector<Checker> checkers(std::span<const double> resolutions) {
 }
 
 PlannedPath run_planner(const PlanningTask& task, const std::function<bool()>& interrupted) {
+  const std::uint64_t seed = task.options.seed + task.problem.number;
   ompl::msg::noOutputHandler();  // also of its complaint that a seed is set anew, which is meant
   // All generators that OMPL makes from here on have their seeds from this one; 0 would be none.
-  ompl::RNG::setSeed(static_cast<std::uint_fast32_t>(1 + task.seed % 0x7FFFFFFF));
-  const auto space = std::make_shared<base::SpaceInformation>(space_of(task.where->bounds));
+  ompl::RNG::setSeed(static_cast<std::uint_fast32_t>(1 + seed % 0x7FFFFFFF));
+  const auto space = std::make_shared<base::SpaceInformation>(space_of(task.where.bounds));
   Timer timer;
   set_checkers(space, task, timer);
 
   base::ScopedState<base::RealVectorStateSpace> start(space), goal(space);
   for (unsigned int i = 0; i < 3; ++i) {
-    start[i] = task.problem->start[i];
-    goal[i] = task.problem->goal[i];
+    start[i] = task.problem.start[i];
+    goal[i] = task.problem.goal[i];
   }
   const auto definition = std::make_shared<base::ProblemDefinition>(space);
   definition->setStartAndGoalStates(start, goal);
@@ -227,19 +222,17 @@ PlannedPath run_planner(const PlanningTask& task, const std::function<bool()>& i
   planner->setup();
   const Clock::time_point begin = Clock::now();
   const base::PlannerTerminationCondition stop(
-      [&] { return seconds_since(begin) > task.seconds || interrupted(); });
+      [&] { return seconds_since(begin) > task.options.seconds || interrupted(); });
   planner->solve(stop);
 
   PlannedPath result;
   result.solved = definition->hasExactSolution();
   if (result.solved) {
     auto& path = *definition->getSolutionPath()->as<geometric::PathGeometric>();
-    if (task.simplify) geometric::PathSimplifier(space).simplify(path, stop);
-    result.seconds = seconds_since(begin);
+    if (task.options.simplify) geometric::PathSimplifier(space).simplify(path, stop);
     for (const base::State* state : path.getStates()) result.points.push_back(point_of(state));
-  } else {
-    result.seconds = seconds_since(begin);
   }
+  result.seconds = seconds_since(begin);
   result.checking_seconds = timer.seconds;
   result.checks = timer.motions;
   read_steering(planner, result);

@@ -3,14 +3,12 @@
 
 #include <algorithm>
 #include <chrono>
-#include <numeric>
 #include <optional>
 #include <string_view>
 #include <utility>
 
 #include "keepout/factory/make_motion_constraint.h"
 #include "path.h"
-#include "setup.h"
 
 namespace keepout::app {
 namespace {
@@ -52,6 +50,55 @@ bool is_expected(Status failure, const Setup& setup) noexcept {
          (setup.joints > 0 && of_joints);
 }
 
+/// A step that should not have been. `what`: a breach, or the status of a step that found no
+/// motion.
+Json incident(std::string_view what, const Scene& scene, std::uint64_t trajectory,
+              std::uint64_t cycle, const Setup& setup, const Motion& motion, const Step& step,
+              const Verdict& verdict) {
+  std::vector<double> jacobian, row_matrix, row_bounds;
+  if (motion.jacobian) {
+    const double* const first = motion.jacobian->data();
+    jacobian.assign(first, first + 3 * motion.jacobian->joints());
+  }
+  if (motion.rows) {
+    const auto columns = motion.jacobian ? motion.jacobian->joints() : 3;
+    const auto rows = motion.rows->count();
+    row_matrix.assign(motion.rows->matrix(), motion.rows->matrix() + rows * columns);
+    row_bounds.assign(motion.rows->bounds(), motion.rows->bounds() + rows);
+  }
+  const StepOptions& options = setup.options;
+  return {{"what", what},
+          {"scene", scene.name()},
+          {"trajectory", trajectory},
+          {"cycle", cycle},
+          {"start", setup.start},
+          {"route", name(setup.route)},
+          {"longest_step", setup.longest_step},
+          {"joints", setup.joints},
+          {"has_limits", setup.has_limits},
+          {"start_tip", json_of(setup.tip)},
+          {"radius", options.radius},
+          {"tool_radius", options.tool_radius},
+          {"margin", options.margin},
+          {"damping", options.damping},
+          {"recovery", options.recovery},
+          {"refinements", options.refinements},
+          {"nodes", options.nodes},
+          {"query", options.query == Query::sphere ? "sphere" : "motion"},
+          {"inside", setup.inside == Inside::led_out ? "led_out" : "taken_as_is"},
+          {"tip", json_of(motion.tip)},
+          {"desired", json_of(motion.desired)},
+          {"motion", json_of(step.motion)},
+          {"status", name(step.status)},
+          {"jacobian", jacobian},      // 3 x n, column by column; empty without one
+          {"row_matrix", row_matrix},  // of the extra rows, row by row
+          {"row_bounds", row_bounds},
+          {"distance", verdict.distance},
+          {"allowed", verdict.threshold},
+          {"tau", verdict.tolerance},
+          {"triangle", verdict.triangle}};
+}
+
 void run_trajectory(Scene& scene, Guard& guard, std::uint64_t number, std::uint64_t steps,
                     Random& random, Tally& tally, Findings& findings) {
   ++tally.trajectories;
@@ -67,13 +114,10 @@ void run_trajectory(Scene& scene, Guard& guard, std::uint64_t number, std::uint6
     const Verdict verdict = attempt->judge.judge(motion, step);
     tally.add(verdict, step.status, distance_kept(attempt->setup.options));
 
-    const auto note = [&](std::string_view what, std::vector<Incident>& incidents,
-                          std::size_t most) {
+    const auto note = [&](std::string_view what, Json& incidents, std::size_t most) {
       if (incidents.size() >= most) return;
       incidents.push_back(
-          make_incident(std::string(what), scene, attempt->setup, motion, step, verdict));
-      incidents.back().trajectory = number;
-      incidents.back().cycle = cycle;
+          incident(what, scene, number, cycle, attempt->setup, motion, step, verdict));
     };
     if (!step.ok() && !is_expected(step.status, attempt->setup)) {
       note(name(step.status), findings.anomalies, most_anomalies);
@@ -109,10 +153,6 @@ void Guard::begin(const StepOptions& options, Inside inside) {
 
 Step Guard::step(const Motion& motion) noexcept { return constraint_.step(motion, sides_); }
 
-std::uint64_t Tally::breach_count() const noexcept {
-  return std::accumulate(breaches.begin(), breaches.end(), std::uint64_t{0});
-}
-
 void Tally::add(const Verdict& verdict, Status status, double kept) noexcept {
   ++steps;
   ++statuses[static_cast<std::size_t>(status)];
@@ -122,25 +162,6 @@ void Tally::add(const Verdict& verdict, Status status, double kept) noexcept {
   const double beyond = verdict.distance - kept;
   least = std::min(least, beyond);
   least_in_tau = std::min(least_in_tau, beyond / verdict.tolerance);
-}
-
-Tally& Tally::operator+=(const Tally& other) noexcept {
-  trajectories += other.trajectories;
-  steps += other.steps;
-  tips += other.tips;
-  led_out += other.led_out;
-  for (std::size_t i = 0; i < statuses.size(); ++i) statuses[i] += other.statuses[i];
-  for (std::size_t i = 0; i < breaches.size(); ++i) breaches[i] += other.breaches[i];
-  least = std::min(least, other.least);
-  least_in_tau = std::min(least_in_tau, other.least_in_tau);
-  seconds += other.seconds;
-  return *this;
-}
-
-Tally Findings::total() const noexcept {
-  Tally sum;
-  for (const MeshTally& mesh : meshes) sum += mesh.tally;
-  return sum;
 }
 
 std::uint64_t trajectory_count(std::uint64_t steps) noexcept {
@@ -159,12 +180,12 @@ Findings run_campaign(const CampaignSettings& settings, std::span<const Arena> a
   Findings findings;
   Next next = Next::go_on;
   for (std::size_t a = 0; a < arenas.size(); ++a) {
-    MeshTally result{.mesh = arenas[a].mesh};
+    Tally tally{.mesh = arenas[a].mesh};
     if (!trajectories[a].empty() && next == Next::go_on) {
-      const std::vector<std::unique_ptr<Scene>> scenes = arenas[a].load();
+      std::vector<Scene> scenes = arenas[a].load();
       std::vector<std::unique_ptr<Guard>> guards;
-      for (const auto& scene : scenes) guards.push_back(settings.make_guard(*scene));
-      result.triangles = scenes.front()->mesh()->triangle_count();
+      for (const Scene& scene : scenes) guards.push_back(settings.make_guard(scene));
+      tally.triangles = scenes.front().mesh()->triangle_count();
       const Clock::time_point start = Clock::now();
       for (const std::uint64_t n : trajectories[a]) {
         Random random = random_of(settings.seed, n);
@@ -174,13 +195,13 @@ Findings run_campaign(const CampaignSettings& settings, std::span<const Arena> a
         const std::size_t s = is_elsewhere ? 1 + random.below(scenes.size() - 1) : 0;
         const std::uint64_t steps =
             std::min(steps_of_a_trajectory, settings.steps - n * steps_of_a_trajectory);
-        run_trajectory(*scenes[s], *guards[s], n, steps, random, result.tally, findings);
+        run_trajectory(scenes[s], *guards[s], n, steps, random, tally, findings);
         next = advanced(steps);
         if (next == Next::stop) break;
       }
-      result.tally.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+      tally.seconds = std::chrono::duration<double>(Clock::now() - start).count();
     }
-    findings.meshes.push_back(std::move(result));
+    findings.meshes.push_back(std::move(tally));
   }
   return findings;
 }

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -11,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "incident.h"
+#include "../columns.h"
 #include "judge.h"
 #include "keepout/step/motion_constraint.h"
 #include "scene.h"
@@ -37,12 +36,6 @@ class Guard {
   SideWatch sides_;
 };
 
-/// A mesh that a campaign may load: the same, maybe in several places, one scene each.
-struct Arena {
-  std::string mesh;
-  std::function<std::vector<std::unique_ptr<Scene>>()> load;
-};
-
 /// A part of a campaign: the trajectories whose number, divided by `count`, leaves `index` - 1.
 struct Shard {
   std::uint64_t index = 1;
@@ -66,8 +59,10 @@ std::uint64_t trajectory_count(std::uint64_t steps) noexcept;
 
 inline constexpr std::size_t status_count = static_cast<std::size_t>(Status::margin_too_small) + 1;
 
-/// What came out on one mesh. Sums of tallies do not depend on the order.
+/// What came out on one mesh.
 struct Tally {
+  std::string mesh;
+  std::uint64_t triangles = 0;  // 0: no trajectory led here, and it was not loaded
   std::uint64_t trajectories = 0;
   std::uint64_t steps = 0;
   std::uint64_t tips = 0;     // put down: anew after a breach, and when stuck
@@ -80,31 +75,22 @@ struct Tally {
   double least_in_tau = std::numeric_limits<double>::infinity();
   double seconds = 0.0;
 
-  std::uint64_t breach_count() const noexcept;
   /// `kept`: the distance that the tip has to keep. [length]
   void add(const Verdict& verdict, Status status, double kept) noexcept;
-  Tally& operator+=(const Tally& other) noexcept;
 };
 
-/// The tally of a mesh.
-struct MeshTally {
-  std::string mesh;
-  std::uint64_t triangles = 0;  // 0: no trajectory led here, and it was not loaded
-  Tally tally = {};
+/// Everything that a campaign, or a part of it, found out. An incident is a JSON object that has
+/// everything that is needed to do the step again, every number to its last digit; null for what is
+/// not finite.
+struct Findings {
+  std::vector<Tally> meshes = {};
+  Json breaches = Json::array();   // incidents: the first ones
+  Json anomalies = Json::array();  // no motion was found though the tip kept its distance
 };
 
 /// How many incidents of a kind are noted down; all are counted.
 inline constexpr std::size_t most_breaches = 1000;
 inline constexpr std::size_t most_anomalies = 200;
-
-/// Everything that a campaign, or a part of it, found out.
-struct Findings {
-  std::vector<MeshTally> meshes;
-  std::vector<Incident> breaches = {};   // the first ones
-  std::vector<Incident> anomalies = {};  // no motion was found though the tip kept its distance
-
-  Tally total() const noexcept;
-};
 
 /// Whether to go on after a trajectory of that many steps.
 enum class Next : std::uint8_t { go_on, stop };

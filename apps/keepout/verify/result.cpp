@@ -25,9 +25,9 @@ Json json_of(const std::array<std::uint64_t, n>& counts) {
 /// JSON has no infinity.
 Json or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-Json json_of(const std::string& mesh, std::uint64_t triangles, const Tally& t) {
-  return {{"mesh", mesh},
-          {"triangles", triangles},
+Json json_of(const Tally& t) {
+  return {{"mesh", t.mesh},
+          {"triangles", t.triangles},
           {"trajectories", t.trajectories},
           {"steps", t.steps},
           {"tips", t.tips},
@@ -138,32 +138,32 @@ Json read(const std::filesystem::path& path) {
 Json result_of(const CampaignRun& run, const Findings& findings) {
   const auto& [index, count] = run.settings.shard;
   const std::uint64_t all = trajectory_count(run.settings.steps);
-  const Tally total = findings.total();
+  Json meshes = Json::array();
+  Json total = json_of(Tally{.mesh = "total"});
+  for (const Tally& tally : findings.meshes) {
+    meshes.push_back(json_of(tally));
+    add(total, meshes.back());
+  }
+  total.erase("triangles");
   // A signal that came after the last trajectory has interrupted nothing.
-  const bool is_whole = total.trajectories == (all + count - index) / count;
+  const bool is_whole = total.at("trajectories") == (all + count - index) / count;
   const Json shard{{"index", index},
                    {"seconds", run.seconds},
                    {"machine", processor() + ", " + std::string(simd_target()) + ", " +
                                    KEEPOUT_COMPILER + ", " + KEEPOUT_BUILD_TYPE},
                    {"complete", is_whole}};
-  Json meshes = Json::array();
-  for (const MeshTally& m : findings.meshes) {
-    meshes.push_back(json_of(m.mesh, m.triangles, m.tally));
-  }
-  Json all_meshes = json_of("total", 0, total);
-  all_meshes.erase("triangles");
   return {{"keepout_verify", file_format},
           {"version", KEEPOUT_VERSION},
           {"seed", run.settings.seed},
           {"steps", run.settings.steps},
-          {"steps_done", total.steps},
+          {"steps_done", total.at("steps")},
           {"complete", is_whole && count == 1},
           {"index", run.index},
           {"shard_count", count},
           {"shards", Json::array({shard})},
           {"missing", run.missing},
           {"meshes", meshes},
-          {"total", all_meshes},
+          {"total", total},
           {"breaches", findings.breaches},
           {"anomalies", findings.anomalies}};
 }
@@ -186,12 +186,6 @@ Json merged(const std::vector<std::filesystem::path>& files) {
   }
   Json sum = parts.front();
   for (std::size_t i = 1; i < parts.size(); ++i) add_result(sum, parts[i]);
-  return sum;
-}
-
-std::uint64_t breach_count(const Json& result) {
-  std::uint64_t sum = 0;
-  for (const Json& count : result.at("total").at("breaches")) sum += count.get<std::uint64_t>();
   return sum;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <array>
 #include <numeric>
 #include <ostream>
 
@@ -26,40 +27,80 @@ std::vector<std::uint64_t> missing_shards(const Json& result) {
   return missing;
 }
 
-void print_row(std::ostream& out, const Json& mesh) {
-  const Json& statuses = mesh.at("statuses");
-  const std::uint64_t steps = count(mesh, "steps");
-  std::uint64_t other = steps;
-  for (const char* known : {"free", "limited", "recovering", "fallback", "unsolved"}) {
-    other -= count(statuses, known);
-  }
-  std::uint64_t broken = 0;
-  for (const Json& breaches : mesh.at("breaches")) broken += breaches.get<std::uint64_t>();
-  const std::uint64_t crossed = count(mesh.at("breaches"), "penetration");
-  const std::uint64_t limited = count(statuses, "limited");
-  const double contact =
-      steps == 0 ? 0.0 : 100.0 * static_cast<double>(limited) / static_cast<double>(steps);
-  const std::uint64_t triangles = mesh.value("triangles", std::uint64_t{0});
-  out << formatted(
-      "%-16s %9s %8s %12s %6.1f%% %12s %12s %11s %9s %9s %9s %9s %7s %7s %8s %10s %8.1f\n",
-      mesh.at("mesh").get<std::string>().c_str(), triangles == 0 ? "-" : grouped(triangles).c_str(),
-      grouped(count(mesh, "trajectories")).c_str(), grouped(steps).c_str(), contact,
-      grouped(count(statuses, "free")).c_str(), grouped(limited).c_str(),
-      grouped(count(statuses, "recovering")).c_str(), grouped(count(mesh, "led_out")).c_str(),
-      grouped(count(statuses, "fallback")).c_str(), grouped(count(statuses, "unsolved")).c_str(),
-      grouped(other).c_str(), grouped(crossed).c_str(), grouped(broken - crossed).c_str(),
-      number("%.3f", mesh.at("least_beyond_margin_in_tau")).c_str(),
-      number("%.2e", mesh.at("least_beyond_margin")).c_str(), mesh.at("seconds").get<double>());
+std::uint64_t sum(const Json& counts) {
+  std::uint64_t total = 0;
+  for (const Json& part : counts) total += part.get<std::uint64_t>();
+  return total;
 }
 
-void print_header(std::ostream& out) {
-  out << formatted("%-16s %9s %8s %12s %7s %12s %12s %11s %9s %9s %9s %9s %7s %7s %8s %10s %8s\n",
-                   "mesh", "triangles", "traject.", "steps", "contact", "free", "limited",
-                   "recovering", "led out", "fallback", "unsolved", "other", "crossed", "broken",
-                   "least/tau", "least", "seconds");
+std::string grouped_count(const Json& value) { return grouped(value.get<std::uint64_t>()); }
+
+/// What stands at some place in the tally of a mesh: a count, unless it is told of otherwise.
+Column<Json> column(const char* place, const char* heading, int width,
+                    std::string (*text)(const Json&) = &grouped_count) {
+  return {"", [at = Json::json_pointer(place)](const Json& mesh) { return mesh.at(at); }, heading,
+          width, text};
+}
+
+Columns<Json> columns() {
+  const auto contact = [](const Json& mesh) -> Json {
+    const auto steps = mesh.at("steps").get<double>();
+    return steps == 0.0 ? 0.0 : 100.0 * mesh.at("statuses").at("limited").get<double>() / steps;
+  };
+  const auto other = [](const Json& mesh) -> Json {
+    std::uint64_t others = count(mesh, "steps");
+    for (const char* known : {"free", "limited", "recovering", "fallback", "unsolved"}) {
+      others -= count(mesh.at("statuses"), known);
+    }
+    return grouped(others);
+  };
+  const auto broken = [](const Json& mesh) -> Json {
+    const Json& breaches = mesh.at("breaches");
+    return grouped(sum(breaches) - count(breaches, "penetration"));
+  };
+  const auto triangles = [](const Json& mesh) -> Json {
+    const std::uint64_t known = mesh.value("triangles", std::uint64_t{0});
+    return known == 0 ? "-" : grouped(known);
+  };
+  return {
+      column("/mesh", "mesh", -16, &plain),
+      {"", triangles, "triangles", 9},
+      column("/trajectories", "traject.", 8),
+      column("/steps", "steps", 12),
+      {"", contact, "contact", 7, [](const Json& v) { return number("%.1f%%", v); }},
+      column("/statuses/free", "free", 12),
+      column("/statuses/limited", "limited", 12),
+      column("/statuses/recovering", "recovering", 11),
+      column("/led_out", "led out", 9),
+      column("/statuses/fallback", "fallback", 9),
+      column("/statuses/unsolved", "unsolved", 9),
+      {"", other, "other", 9},
+      column("/breaches/penetration", "crossed", 7),
+      {"", broken, "broken", 7},
+      column("/least_beyond_margin_in_tau", "least/tau", 8,
+             [](const Json& v) { return number("%.3f", v); }),
+      column("/least_beyond_margin", "least", 10, [](const Json& v) { return number("%.2e", v); }),
+      column("/seconds", "seconds", 8, [](const Json& v) { return number("%.1f", v); })};
+}
+
+/// An incident in a few lines, but without Jacobian and rows.
+std::string text(const Json& incident) {
+  constexpr std::array<std::string_view, 6> first_of_a_line{"start",   "radius", "tip",
+                                                            "desired", "motion", "distance"};
+  constexpr std::array<std::string_view, 3> left_out{"jacobian", "row_matrix", "row_bounds"};
+  std::string text;
+  for (const auto& [key, value] : incident.items()) {
+    if (std::ranges::find(left_out, key) != left_out.end()) continue;
+    const bool begins_line = std::ranges::find(first_of_a_line, key) != first_of_a_line.end();
+    text += begins_line ? "\n  " : text.empty() ? "" : " ";
+    text += key + ' ' + (value.is_string() ? value.get<std::string>() : value.dump());
+  }
+  return text + '\n';
 }
 
 }  // namespace
+
+std::uint64_t breach_count(const Json& result) { return sum(result.at("total").at("breaches")); }
 
 bool is_complete(const Json& result) {
   return missing_shards(result).empty() &&
@@ -68,10 +109,9 @@ bool is_complete(const Json& result) {
 }
 
 void print(std::ostream& out, const Json& result) {
-  print_header(out);
-  for (const Json& mesh : result.at("meshes")) print_row(out, mesh);
-  const Json& total = result.at("total");
-  print_row(out, total);
+  auto rows = result.at("meshes").get<std::vector<Json>>();
+  rows.push_back(result.at("total"));
+  print_rows(out, columns(), rows);
   out << "contact: share of limited steps. led out: of the recovering ones, those from the\n"
          "forbidden side, which may cross. other: steps without a motion. crossed, broken: "
          "breaches\n"
@@ -93,7 +133,7 @@ void print(std::ostream& out, const Json& result) {
   const Json& breaches = result.at("breaches");
   for (std::size_t i = 0; i < std::min(shown, breaches.size()); ++i) out << text(breaches[i]);
   const std::uint64_t broken = breach_count(result);
-  const std::uint64_t steps = count(total, "steps");
+  const std::uint64_t steps = count(result.at("total"), "steps");
   if (broken == 0) {
     out << "no breach in " << counted(steps, "step") << '\n';
   } else {

@@ -5,7 +5,11 @@
 #include <algorithm>
 #include <utility>
 
+#include "../named_mesh.h"
 #include "keepout/adapters/index_registry.h"
+#include "keepout/error.h"
+#include "keepout/fixtures/real_mesh.h"
+#include "keepout/fixtures/shapes.h"
 #include "keepout/mesh/doctor.h"
 
 namespace keepout::app {
@@ -40,6 +44,44 @@ Scene::Scene(std::string name, std::shared_ptr<const Mesh> mesh, std::string_vie
 
 bool Scene::is_forbidden(const Vec3& point) const {
   return oracle_.inside(point).value() != free_inside_;
+}
+
+std::vector<Arena> generated_arenas(const std::string& index) {
+  const Vec3 far_away(10'000.3, -7'000.7, 9'000.1);
+  std::vector<Arena> arenas;
+  for (const Shape& shape : shapes()) {
+    const std::string name(shape.name);
+    arenas.push_back({name, [&shape, name, index, far_away] {
+                        Surface moved = shape.make();
+                        for (Vec3& vertex : moved.vertices) vertex += far_away;
+                        const std::string moved_name = name + " + (10000.3, -7000.7, 9000.1)";
+                        return std::vector{Scene(name, shape.make(), index),
+                                           Scene(moved_name, std::move(moved), index)};
+                      }});
+  }
+  return arenas;
+}
+
+std::vector<Arena> real_arenas(const std::string& index, std::vector<std::string>& missing) {
+  std::vector<Arena> arenas;
+  for (const std::string_view fixture : real_meshes()) {
+    try {
+      const std::string name(fixture);
+      arenas.push_back({name, [name, path = fixture_path(name), index] {
+                          // What is wrong with these is known, and why they are here.
+                          const LoadedMesh loaded = load_mesh(path, {.check = MeshCheck::none});
+                          return std::vector{Scene(name, loaded.mesh, index)};
+                        }});
+    } catch (const Error& error) {
+      missing.emplace_back(error.what());
+    }
+  }
+  return arenas;
+}
+
+Arena named_arena(const std::string& mesh, const std::string& index) {
+  return {mesh,
+          [mesh, index] { return std::vector{Scene(mesh, load_named_mesh(mesh).mesh, index)}; }};
 }
 
 }  // namespace keepout::app

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "keepout/index/query.h"
 #include "keepout/mesh/mesh.h"
@@ -51,5 +53,20 @@ class Scene {
   bool has_sides_;
   bool free_inside_ = false;  // the normals point into what is enclosed
 };
+
+/// A mesh that a campaign may load: the same, maybe in several places, one scene each.
+struct Arena {
+  std::string mesh;
+  std::function<std::vector<Scene>()> load;
+};
+
+/// Each generated shape, where it was made and 1e4 mm away.
+std::vector<Arena> generated_arenas(const std::string& index);
+
+/// The real meshes in the cache; `missing` is told the others.
+std::vector<Arena> real_arenas(const std::string& index, std::vector<std::string>& missing);
+
+/// A mesh that the user names (named_mesh.h). It is read when it is its turn.
+Arena named_arena(const std::string& mesh, const std::string& index);
 
 }  // namespace keepout::app

@@ -68,7 +68,178 @@ void limit_reach(const Scene& scene, Setup& setup) {
   }
 }
 
+struct SurfacePoint {
+  Vec3 point;
+  Vec3 normal;  // of a triangle there, to the free side
+};
+
+TriangleId any_triangle(const Mesh& mesh, Random& random) {
+  return static_cast<TriangleId>(random.below(mesh.triangle_count()));
+}
+
+SurfacePoint on_vertex(const Mesh& mesh, Random& random) {
+  const TriangleId t = any_triangle(mesh, random);
+  return {mesh.triangle(t)[random.below(3)], mesh.normal(t)};
+}
+
+SurfacePoint on_edge(const Mesh& mesh, Random& random) {
+  const TriangleId t = any_triangle(mesh, random);
+  const Triangle c = mesh.triangle(t);
+  const std::size_t e = random.below(3);
+  const double share = random.uniform() < 0.5 ? 0.5 : random.uniform();
+  return {c[e] + share * (c[(e + 1) % 3] - c[e]), mesh.normal(t)};
+}
+
+SurfacePoint on_face(const Mesh& mesh, Random& random) {
+  const TriangleId t = any_triangle(mesh, random);
+  const Triangle c = mesh.triangle(t);
+  double a = random.uniform();
+  double b = random.uniform();
+  if (a + b > 1.0) {
+    a = 1.0 - a;
+    b = 1.0 - b;
+  }
+  return {c[0] + a * (c[1] - c[0]) + b * (c[2] - c[0]), mesh.normal(t)};
+}
+
+SurfacePoint on_any(const Mesh& mesh, Random& random) {
+  switch (random.below(3)) {
+    case 0:
+      return on_vertex(mesh, random);
+    case 1:
+      return on_edge(mesh, random);
+    default:
+      return on_face(mesh, random);
+  }
+}
+
+/// Off the surface at some slant: half of the time straight. Either side, if the surface has none.
+Vec3 way_off(const Setup& setup, const SurfacePoint& place, Random& random) {
+  const bool two_sided = setup.inside == Inside::taken_as_is;
+  const double sign = two_sided && random.uniform() < 0.5 ? -1.0 : 1.0;
+  const double slant = random.uniform() < 0.5 ? 0.0 : random.uniform(0.0, 1.5);
+  const Vec3 way = sign * place.normal + slant * random.direction();
+  const double length = way.norm();
+  return length > 0.0 ? Vec3(way / length) : random.direction();
+}
+
+/// Moves the point until its nearest triangle is `distance` away, if that comes to an end.
+Vec3 at_distance(Scene& scene, Vec3 point, double distance) {
+  for (int i = 0; i < 6; ++i) {
+    const Hit hit = scene.nearest(point, 1.01 * distance);
+    const double now = hit.closest.distance;
+    if (now == distance || !(now > 0.0)) break;
+    point += hit.closest.offset * ((now - distance) / now);
+  }
+  return point;
+}
+
+/// What is to be kept, to the last digit or nearly so, or up to several of it.
+double draw_distance(double kept, Random& random) {
+  const double kind = random.uniform();
+  if (kind < 0.3) return kept;
+  if (kind < 0.6) return kept * (1.0 + std::pow(10.0, random.uniform(-16.0, -6.0)));
+  return kept * std::pow(10.0, random.uniform(0.0, 0.8));
+}
+
+template <SurfacePoint (*place)(const Mesh&, Random&)>
+Vec3 off_the_surface(Scene& scene, Setup& setup, Random& random) {
+  const double kept = distance_kept(setup.options);
+  Vec3 tip = Vec3::Zero();
+  for (int attempt = 0; attempt < 12; ++attempt) {
+    const SurfacePoint on = place(*scene.mesh(), random);
+    const double distance = draw_distance(kept, random);
+    tip = on.point + distance * way_off(setup, on, random);
+    // Other walls may be nearer than the one it was put off from.
+    const double now = scene.nearest(tip, distance).closest.distance;
+    if (now < kept) tip = at_distance(scene, tip, distance);
+    if (scene.nearest(tip, distance).closest.distance >= kept * (1.0 - 1e-12)) break;
+  }
+  return tip;
+}
+
+/// The centre of the largest ball that touches the surface in a point and nowhere cuts it: as far
+/// from another wall. Source: Ma, Bae, Choi, "3D medial axis point approximation using nearest
+/// neighbors and the normal field", The Visual Computer 28, 2012 (shrinking balls).
+Vec3 in_a_gap(Scene& scene, Setup& setup, Random& random) {
+  Vec3 center = Vec3::Zero();
+  double radius = 0.0;
+  for (int attempt = 0; attempt < 12; ++attempt) {
+    const SurfacePoint on = on_any(*scene.mesh(), random);
+    const Vec3 way = way_off(setup, on, random);
+    radius = 20.0 * scene.mean_edge();
+    bool has_shrunk = false;
+    for (int i = 0; i < 40; ++i) {
+      center = on.point + radius * way;
+      const Hit hit = scene.nearest(center, radius);
+      if (hit.closest.distance >= radius * (1.0 - 1e-10)) break;
+      const Vec3 chord = center + hit.closest.offset - on.point;
+      const double next = chord.squaredNorm() / (2.0 * way.dot(chord));
+      if (!(next > 0.0) || !(next < radius)) break;
+      radius = next;
+      has_shrunk = true;
+    }
+    if (has_shrunk && radius > least_distance_kept(scene, setup.options.radius)) break;
+  }
+  constexpr std::array<double, 6> fills{1.0, 1.0 - 1e-12, 1.0 - 1e-9, 0.999, 0.9, 0.4};
+  const double distance = scene.nearest(center, radius).closest.distance;
+  const double kept = fills[random.below(fills.size())] * distance;
+  const double least = least_distance_kept(scene, setup.options.radius);
+  if (kept > least && kept < 5.0 * scene.mean_edge()) setup.keep(kept);
+  return center;
+}
+
+Vec3 too_close(Scene& scene, Setup& setup, Random& random) {
+  const SurfacePoint on = on_any(*scene.mesh(), random);
+  const double lost = std::pow(10.0, random.uniform(-9.0, 0.0));
+  const double share = random.uniform() < 0.5 ? 1.0 - lost : lost;
+  const double distance = share * distance_kept(setup.options);
+  return at_distance(scene, on.point + distance * way_off(setup, on, random), distance);
+}
+
+Vec3 on_surface(Scene& scene, Setup&, Random& random) {
+  return on_any(*scene.mesh(), random).point;
+}
+
+Vec3 behind(Scene& scene, Setup& setup, Random& random) {
+  const SurfacePoint on = on_any(*scene.mesh(), random);
+  const double depth = distance_kept(setup.options) * std::pow(10.0, random.uniform(-3.0, 0.7));
+  return on.point - depth * on.normal;
+}
+
+Vec3 anywhere(Scene& scene, Setup& setup, Random& random) {
+  const Box& bounds = scene.mesh()->bounds();
+  Vec3 tip;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double beyond = 3.0 * distance_kept(setup.options) + setup.options.radius;
+    tip[axis] = random.uniform(bounds.low[axis] - beyond, bounds.high[axis] + beyond);
+  }
+  return tip;
+}
+
+/// A kind of place where a tip is put down.
+struct Start {
+  std::string_view name;
+  double weight;  // how often it is drawn, beside the others
+  /// Finds such a place. In a gap, the setup is changed to keep a distance that all but fills it.
+  Vec3 (*place)(Scene& scene, Setup& setup, Random& random);
+};
+constexpr std::array<Start, 8> starts{{
+    {"vertex", 0.18, off_the_surface<on_vertex>},  // at the distance to be kept or a little more
+    {"edge", 0.18, off_the_surface<on_edge>},
+    {"face", 0.14, off_the_surface<on_face>},
+    {"gap", 0.25, in_a_gap},  // in the middle between two walls, which what is kept all but fills
+    {"open_space", 0.1, anywhere},
+    {"too_close", 0.06, too_close},    // nearer than may be
+    {"on_surface", 0.03, on_surface},  // on a vertex, an edge or a face, up to rounding
+    {"behind", 0.06, behind},          // on the side that the normals point away from
+}};
+
 }  // namespace
+
+double least_distance_kept(const Scene& scene, double radius) noexcept {
+  return 1e-8 * (scene.longest_edge() + radius) + 1e-14 * (scene.farthest() + radius);
+}
 
 std::string_view name(Route route) noexcept { return routes[static_cast<std::size_t>(route)].name; }
 
@@ -79,7 +250,8 @@ void Setup::keep(double distance) noexcept {
 
 Setup draw_setup(Scene& scene, Random& random) {
   Setup setup;
-  setup.start = &draw(starts(), random);
+  const Start& start = draw(starts, random);
+  setup.start = start.name;
   setup.route = draw(routes, random).route;
   setup.options.refinements = draw(refinements, random).value;
   setup.options.nodes = draw(nodes, random).value;
@@ -104,7 +276,7 @@ Setup draw_setup(Scene& scene, Random& random) {
   setup.keep(kept);
   setup.options.recovery = log_uniform(1e-2, 2.0, random) * kept;
 
-  setup.tip = setup.start->place(scene, setup, random);
+  setup.tip = start.place(scene, setup, random);
   limit_reach(scene, setup);
   setup.options.deepest = scene.mesh()->bounds().size().norm();
   return setup;

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <string_view>
 
 #include "keepout/fixtures/random.h"
@@ -10,17 +9,6 @@
 #include "scene.h"
 
 namespace keepout::app {
-
-struct Setup;
-
-/// A kind of place where a tip is put down.
-struct Start {
-  std::string_view name;
-  double weight;  // how often it is drawn, beside the others
-  /// Finds such a place. In a gap, the setup is changed to keep a distance that all but fills it.
-  Vec3 (*place)(Scene& scene, Setup& setup, Random& random);
-};
-std::span<const Start> starts() noexcept;
 
 /// Where a tip is asked to go.
 enum class Route : std::uint8_t {
@@ -39,7 +27,7 @@ std::string_view name(Route route) noexcept;
 struct Setup {
   StepOptions options;
   Inside inside = Inside::taken_as_is;
-  const Start* start = nullptr;
+  std::string_view start;  // the kind of place where the tip is put down
   Route route = Route::push;
   double tool_share = 0.0;    // of the distance kept that is the tool's radius, 0 to 1
   double longest_step = 0.0;  // asked for [length], <= options.radius

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "verify.h"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
-#include <memory>
 #include <ostream>
 #include <sstream>
 
+#include "../command_line.h"
 #include "../named_mesh.h"
+#include "../names.h"
 #include "../output_file.h"
 #include "../progress.h"
 #include "../stop_signal.h"
-#include "arenas.h"
 #include "campaign.h"
+#include "keepout/adapters/index_registry.h"
 #include "keepout/error.h"
 #include "result.h"
 
@@ -70,14 +70,43 @@ Json run(const VerifyOptions& options, std::ostream& out) {
   return result_of(run, findings);
 }
 
+/// What --shard may be told; nothing is wrong with it when the text is empty.
+std::string check_shard(const std::string& text) {
+  if (parse_shard(text)) return {};
+  return "expected I/N, part I of N, such as 1/2 or 2/2; not '" + text + "'";
+}
+
 }  // namespace
 
-CLI::Validator shard_text() {
-  const auto check = [](std::string& text) {
-    return parse_shard(text) ? std::string()
-                             : "expected I/N, part I of N, such as 1/2 or 2/2; not '" + text + "'";
-  };
-  return {check, ""};
+void add_verify(CLI::App& app, VerifyOptions& options) {
+  CLI::App& command = *app.add_subcommand(
+      "verify",
+      "Try to break the certified step: adversarial closed-loop motion over many meshes, each step "
+      "judged by an independent, exact oracle");
+  std::vector<CLI::Option*> of_a_run;
+  of_a_run.push_back(command.add_option(
+      "MESH", options.meshes, "Mesh files in mm, or fixtures; without one, all fixtures"));
+  of_a_run.push_back(command.add_option("--steps", options.steps, "Steps of the whole campaign")
+                         ->type_name("NUMBER")
+                         ->transform(large_count())
+                         ->capture_default_str());
+  of_a_run.push_back(add_number(command, "--seed", options.seed, 0, largest_seed,
+                                "Seed: same seed and steps, same campaign"));
+  of_a_run.push_back(command.add_option("--shard", options.shard, "Do part I of N of the campaign")
+                         ->type_name("I/N")
+                         ->check(check_shard)
+                         ->capture_default_str());
+  of_a_run.push_back(add_name(command, "--index", options.index, names(index_backends()),
+                              "Index that finds triangles"));
+  command.add_option("--json", options.json, "Where to write the results, every breach included")
+      ->type_name("FILE");
+  CLI::Option* merge =
+      command.add_option("--merge", options.merge, "Add up the results of a campaign's shards")
+          ->type_name("FILES");
+  for (CLI::Option* option : of_a_run) merge->excludes(option);
+  command.footer(
+      "Ctrl-C ends it early: what is finished is printed and written.\n"
+      "The exit status is 0 only if no step broke what docs/certified-step.md promises.");
 }
 
 int verify(const VerifyOptions& options, std::ostream& out) {

@@ -9,7 +9,7 @@
 #include <vector>
 
 namespace CLI {
-class Validator;
+class App;
 }
 
 namespace keepout::app {
@@ -24,8 +24,8 @@ struct VerifyOptions {
   std::vector<std::filesystem::path> merge;   // results to add up, instead of a campaign
 };
 
-/// What --shard may be told.
-CLI::Validator shard_text();
+/// Adds `keepout verify` and its options to the command line.
+void add_verify(CLI::App& app, VerifyOptions& options);
 
 /// Tries by all means to break what docs/certified-step.md promises, or adds up earlier tries, and
 /// prints a table. A StopSignal ends it early, and what is done is printed and written. The exit

@@ -161,13 +161,26 @@ TEST(Sabotage, ABreachIsNotedWithAllThatIsNeededToRepeatIt) {
       campaign_on("cube", {.steps = 20'000, .make_guard = make<CarelessGuard>});
   ASSERT_FALSE(findings.breaches.empty());
   Scene scene("cube", make_shape("cube"), "wide_bvh");
-  for (const Incident& breach : findings.breaches) {
-    if (breach.setup.joints > 0) continue;
+  const auto vector = [](const Json& json) {
+    const auto xyz = json.get<std::array<double, 3>>();
+    return Vec3(xyz[0], xyz[1], xyz[2]);
+  };
+  for (const Json& breach : findings.breaches) {
+    if (breach["joints"] > 0) continue;
     CarelessGuard guard(scene);
-    guard.begin(breach.setup.options, Inside::taken_as_is);
-    const Step step = guard.step({.tip = breach.tip, .desired = breach.desired});
-    EXPECT_EQ(step.motion, breach.motion) << text(breach);
-    EXPECT_EQ(step.status, breach.status);
+    guard.begin({.radius = breach["radius"],
+                 .tool_radius = breach["tool_radius"],
+                 .margin = breach["margin"],
+                 .damping = breach["damping"],
+                 .recovery = breach["recovery"],
+                 .refinements = breach["refinements"],
+                 .nodes = breach["nodes"],
+                 .query = breach["query"] == "sphere" ? Query::sphere : Query::motion},
+                Inside::taken_as_is);
+    const Step step =
+        guard.step({.tip = vector(breach["tip"]), .desired = vector(breach["desired"])});
+    EXPECT_EQ(step.motion, vector(breach["motion"])) << breach;
+    EXPECT_EQ(name(step.status), breach["status"]);
   }
 }
 

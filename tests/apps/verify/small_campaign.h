@@ -2,22 +2,19 @@
 #pragma once
 
 #include <array>
-#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "keepout/fixtures/shapes.h"
 #include "verify/campaign.h"
+#include "verify/result.h"
 
 namespace keepout::app {
 
 inline Arena arena_of(std::string_view shape) {
   return {std::string(shape), [shape] {
-            std::vector<std::unique_ptr<Scene>> scenes;
-            scenes.push_back(
-                std::make_unique<Scene>(std::string(shape), make_shape(shape), "wide_bvh"));
-            return scenes;
+            return std::vector{Scene(std::string(shape), make_shape(shape), "wide_bvh")};
           }};
 }
 
@@ -26,11 +23,14 @@ inline Findings campaign_on(std::string_view shape, const CampaignSettings& sett
                       [](std::uint64_t) { return Next::go_on; });
 }
 
+/// Over all meshes.
+inline Json total(const Findings& findings) { return result_of({}, findings).at("total"); }
+
 inline std::uint64_t count(const Findings& findings, Breach breach) {
-  return findings.total().breaches[static_cast<std::size_t>(breach)];
+  return total(findings).at("breaches").at(std::string(name(breach))).get<std::uint64_t>();
 }
 inline std::uint64_t count(const Findings& findings, Status status) {
-  return findings.total().statuses[static_cast<std::size_t>(status)];
+  return total(findings).at("statuses").at(std::string(name(status))).get<std::uint64_t>();
 }
 
 }  // namespace keepout::app
