@@ -5,7 +5,6 @@
 #include <sstream>
 
 #include "bindings.h"
-#include "handles.h"
 #include "keepout/index/pd_tree.h"
 #include "keepout/index/self_intersection.h"
 #include "keepout/mesh/doctor.h"
@@ -21,9 +20,9 @@ struct Inspection : MeshFindings {
 
 Inspection inspect(const MeshHandle& mesh, bool self_intersections) {
   const py::gil_scoped_release release;
-  Inspection inspection{examine(mesh.mesh()), std::nullopt};
+  Inspection inspection{examine(*mesh.mesh), std::nullopt};
   if (self_intersections) {
-    inspection.self_intersections = count_self_intersections(mesh.mesh(), PdTree(mesh.shared()));
+    inspection.self_intersections = count_self_intersections(*mesh.mesh, PdTree(mesh.mesh));
   }
   return inspection;
 }

@@ -4,6 +4,7 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <optional>
@@ -11,12 +12,10 @@
 #include <string>
 #include <utility>
 
-#include "arguments.h"
+#include "arrays.h"
 #include "bindings.h"
-#include "handles.h"
 #include "keepout/error.h"
 #include "keepout/mesh/load_mesh.h"
-#include "views.h"
 
 namespace keepout::python {
 namespace {
@@ -58,10 +57,10 @@ MeshHandle mesh_from(const py::object& vertices, const py::object& triangles, bo
   surface.vertices = vertices_from(vertices);
   surface.triangles = triangles_from(triangles, surface.vertices.size());
   const py::gil_scoped_release release;
-  if (!welded) return MeshHandle(std::make_shared<const Mesh>(std::move(surface)));
+  if (!welded) return {{.mesh = std::make_shared<const Mesh>(std::move(surface))}};
   // Checked as they were given: what is not finite cannot be welded.
   const Mesh checked(surface);
-  return MeshHandle(std::make_shared<const Mesh>(weld(std::move(surface))));
+  return {{.mesh = std::make_shared<const Mesh>(weld(std::move(surface)))}};
 }
 
 AnatomicalSpace space_from(const char* argument, const std::optional<std::string>& given) {
@@ -80,9 +79,9 @@ MeshHandle load(const std::filesystem::path& path, const std::optional<std::stri
     const py::gil_scoped_release release;
     return load_mesh(path, options);
   };
-  MeshHandle mesh(loaded());
+  MeshHandle mesh{loaded()};
   // Nobody looks at warnings who does not know of any.
-  for (const std::string& warning : mesh.warnings()) {
+  for (const std::string& warning : mesh.warnings) {
     warn(path.filename().string() + ": " + warning);
   }
   return mesh;
@@ -90,28 +89,22 @@ MeshHandle load(const std::filesystem::path& path, const std::optional<std::stri
 
 const double* coordinates(const Vec3& point) { return point.data(); }
 
+/// Made on the first call, which Python's lock keeps from being two.
+py::array normals_of(const py::object& self) {
+  auto& mesh = self.cast<MeshHandle&>();
+  for (std::size_t t = mesh.normals.size(); t < mesh.mesh->triangle_count(); ++t) {
+    mesh.normals.push_back(mesh.mesh->normal(static_cast<TriangleId>(t)));
+  }
+  return view(std::span<const Vec3>(mesh.normals), 3, coordinates, self);
+}
+
 }  // namespace
-
-MeshHandle::MeshHandle(std::shared_ptr<const Mesh> mesh) : mesh_(std::move(mesh)) {}
-
-MeshHandle::MeshHandle(LoadedMesh loaded)
-    : mesh_(std::move(loaded.mesh)), warnings_(std::move(loaded.warnings)), space_(loaded.space) {}
 
 const std::shared_ptr<const Mesh>& mesh_of(const py::object& mesh) {
   if (!py::isinstance<MeshHandle>(mesh)) {
     refuse("mesh", "a keepout.Mesh", Py_TYPE(mesh.ptr())->tp_name);
   }
-  return mesh.cast<const MeshHandle&>().shared();
-}
-
-const std::vector<Vec3>& MeshHandle::normals() {
-  if (normals_.empty()) {
-    normals_.reserve(mesh_->triangle_count());
-    for (std::size_t t = 0; t < mesh_->triangle_count(); ++t) {
-      normals_.push_back(mesh_->normal(static_cast<TriangleId>(t)));
-    }
-  }
-  return normals_;
+  return mesh.cast<const MeshHandle&>().mesh;
 }
 
 void bind_mesh(py::module_& module) {
@@ -128,64 +121,56 @@ void bind_mesh(py::module_& module) {
       .def_property_readonly(
           "vertices",
           [](const py::object& self) {
-            return view(self.cast<const MeshHandle&>().mesh().vertices(), 3, coordinates, self);
+            return view(self.cast<const MeshHandle&>().mesh->vertices(), 3, coordinates, self);
           },
           "(n, 3) float64 [length], read-only: the mesh's own memory.")
       .def_property_readonly(
           "triangles",
           [](const py::object& self) {
             return view(
-                self.cast<const MeshHandle&>().mesh().triangles(), 3,
+                self.cast<const MeshHandle&>().mesh->triangles(), 3,
                 [](const Corners& corners) { return corners.data(); }, self);
           },
           "(m, 3) uint32, read-only: the mesh's own memory.")
       .def_property_readonly(
-          "normals",
-          [](const py::object& self) {
-            return view(std::span<const Vec3>(self.cast<MeshHandle&>().normals()), 3, coordinates,
-                        self);
-          },
+          "normals", &normals_of,
           "(m, 3) float64, read-only: unit normals of the triangles, towards the free side; zero\n"
           "for one without an area. Made when first asked for.")
       .def_property_readonly(
           "bounds",
           [](const MeshHandle& self) {
-            const Box& box = self.mesh().bounds();
+            const Box& box = self.mesh->bounds();
             py::array_t<double> bounds({2, 3});
-            for (int i = 0; i < 3; ++i) {
-              bounds.mutable_at(0, i) = box.low[i];
-              bounds.mutable_at(1, i) = box.high[i];
-            }
+            std::copy_n(box.low.data(), 3, bounds.mutable_data(0, 0));
+            std::copy_n(box.high.data(), 3, bounds.mutable_data(1, 0));
             return bounds;
           },
           "(2, 3) float64 [length]: the lowest and the highest corner of the smallest box around.")
-      .def_property_readonly(
-          "warnings", &MeshHandle::warnings,
-          "What the file had to say, if it came from one: a list of lines, which "
-          "load_mesh\nshows as Python's warnings, too.")
+      .def_readonly("warnings", &MeshHandle::warnings,
+                    "What the file had to say, if it came from one: a list of lines, which "
+                    "load_mesh\nshows as Python's warnings, too.")
       .def_property_readonly(
           "space",
           [](const MeshHandle& self) -> std::optional<std::string> {
-            if (self.space() == AnatomicalSpace::unstated) return std::nullopt;
-            return std::string(name(self.space()));
+            if (self.space == AnatomicalSpace::unstated) return std::nullopt;
+            return std::string(name(self.space));
           },
           "The anatomical space of the coordinates, 'RAS' or 'LPS', if it is known; or None.")
-      .def("__len__", [](const MeshHandle& self) { return self.mesh().triangle_count(); })
+      .def("__len__", [](const MeshHandle& self) { return self.mesh->triangle_count(); })
       .def("__repr__", [](const MeshHandle& self) {
-        return "<keepout.Mesh of " + std::to_string(self.mesh().triangle_count()) + " triangles, " +
-               std::to_string(self.mesh().vertex_count()) + " vertices>";
+        return "<keepout.Mesh of " + std::to_string(self.mesh->triangle_count()) + " triangles, " +
+               std::to_string(self.mesh->vertex_count()) + " vertices>";
       });
 
-  module.def(
-      "load_mesh", &load, py::arg("path"), py::kw_only(), py::arg("space") = py::none(),
-      py::arg("untagged") = py::none(),
-      "Reads a mesh from an STL, PLY, OBJ or OFF file, and welds it exactly. Nothing is\n"
-      "rescaled and nothing repaired: see Mesh.inspect. What is odd about it is a UserWarning, "
-      "and\n"
-      "in Mesh.warnings.\n\n"
-      "space: 'RAS' or 'LPS', which the coordinates shall be in; they are turned if the file\n"
-      "says the other one (SPACE=...). None: as they stand.\n"
-      "untagged: the space of a file that does not say. One that does is believed.");
+  module.def("load_mesh", &load, py::arg("path"), py::kw_only(), py::arg("space") = py::none(),
+             py::arg("untagged") = py::none(),
+             R"(Reads a mesh from an STL, PLY, OBJ or OFF file, and welds it exactly. Nothing is
+rescaled and nothing repaired: see Mesh.inspect. What is odd about it is a UserWarning, and
+in Mesh.warnings.
+
+space: 'RAS' or 'LPS', which the coordinates shall be in; they are turned if the file
+says the other one (SPACE=...). None: as they stand.
+untagged: the space of a file that does not say. One that does is believed.)");
 }
 
 }  // namespace keepout::python

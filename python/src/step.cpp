@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "step.h"
-
 #include <pybind11/stl.h>
 
 #include <array>
 #include <string>
 #include <vector>
 
-#include "arguments.h"
+#include "arrays.h"
 #include "bindings.h"
-#include "views.h"
 
 namespace keepout::python {
 namespace {
