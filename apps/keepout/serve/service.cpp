@@ -75,43 +75,43 @@ Service::Service(std::shared_ptr<const Mesh> mesh, const ServiceSettings& settin
     : constraint_(
           make_motion_constraint(mesh, with_room_for(settings.constraint, settings.limits))),
       longest_line_(settings.longest_line),
-      reader_(settings.limits),
+      request_(settings.limits),
       jacobian_(3, static_cast<Eigen::Index>(settings.limits.joints)),
       info_(info_members(*mesh, settings)),
       statuses_(status_members()) {}
 
 std::size_t Service::answer(const Line& line, SideWatch& tip, std::string& out) {
   if (line.is_too_long) {
-    append_error(out, "null", name(Refusal::line_too_long),
+    append_error(out, "null", "line_too_long",
                  "the line has more than " + std::to_string(longest_line_) +
                      " bytes and was skipped: send less at a time, or raise --max-line");
     return 1;
   }
   if (is_blank(line.text)) return 0;
-  const Refusal refusal = reader_.read(line.text);
-  if (refusal != Refusal::none) {
-    append_error(out, reader_.request().id, name(refusal), reader_.message());
+  try {
+    read_request(line.text, request_);
+  } catch (const Refusal& refusal) {
+    append_error(out, request_.id, refusal.kind, refusal.message);
     return 1;
   }
-  begin_answer(out, reader_.request().id);
+  begin_answer(out, request_.id);
   const std::size_t work = carry_out(tip, out);
   end_answer(out);
   return work;
 }
 
 std::size_t Service::carry_out(SideWatch& tip, std::string& out) {
-  const Request& request = reader_.request();
   out += ',';
-  switch (request.verb) {
+  switch (request_.verb) {
     case Verb::step:
       append_single_step(tip, out);
       break;
     case Verb::steps:
       append_batch(tip, out);
-      return std::max<std::size_t>(request.motions.rows, 1);
+      return std::max<std::size_t>(request_.motions.rows, 1);
     case Verb::polytope:
       append_polytope(
-          out, constraint_.free_polytope(vector(request.tip.numbers), request.radius.numbers[0]));
+          out, constraint_.free_polytope(vector(request_.tip.numbers), request_.radius.numbers[0]));
       break;
     case Verb::info:
       out += info_;
@@ -127,27 +127,23 @@ std::size_t Service::carry_out(SideWatch& tip, std::string& out) {
 }
 
 void Service::append_single_step(SideWatch& tip, std::string& out) {
-  const Request& request = reader_.request();
-  Motion motion{.tip = vector(request.tip.numbers), .desired = vector(request.desired.numbers)};
-  const std::size_t joints = request.jacobian.columns;
+  Motion motion{.tip = vector(request_.tip.numbers), .desired = vector(request_.desired.numbers)};
+  const auto joints = static_cast<Eigen::Index>(request_.jacobian.columns);
   if (joints > 0) {
-    const double* row = request.jacobian.numbers.data();
-    for (Eigen::Index r = 0; r < 3; ++r) {
-      for (Eigen::Index c = 0; c < std::ssize(request.jacobian.numbers) / 3; ++c) {
-        jacobian_(r, c) = *row++;
-      }
-    }
-    motion.jacobian = TipJacobian(jacobian_.data(), static_cast<Eigen::Index>(joints));
+    using RowByRow = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor>;
+    jacobian_.leftCols(joints) =
+        Eigen::Map<const RowByRow>(request_.jacobian.numbers.data(), 3, joints);
+    motion.jacobian = TipJacobian(jacobian_.data(), joints);
   }
-  if (request.rows.is_given) {
-    motion.rows = ExtraRows(request.rows.numbers.data(), request.bounds.numbers.data(),
-                            static_cast<Eigen::Index>(request.rows.rows));
+  if (request_.rows.is_given) {
+    motion.rows = ExtraRows(request_.rows.numbers.data(), request_.bounds.numbers.data(),
+                            static_cast<Eigen::Index>(request_.rows.rows));
   }
-  append_step(out, constraint_.step(motion, tip), joints);
+  append_step(out, constraint_.step(motion, tip), request_.jacobian.columns);
 }
 
 void Service::append_batch(SideWatch& tip, std::string& out) {
-  const std::span<const double> numbers = reader_.request().motions.numbers;
+  const std::span<const double> numbers = request_.motions.numbers;
   out += "\"steps\":[";
   for (std::size_t i = 0; i < numbers.size(); i += 6) {
     const Motion motion{.tip = vector(numbers.subspan(i)),

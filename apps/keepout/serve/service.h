@@ -53,7 +53,7 @@ class Service {
 
   MotionConstraint constraint_;
   std::size_t longest_line_;
-  RequestReader reader_;
+  Request request_;               // in hand, or done
   TipJacobian::Matrix jacobian_;  // of a request: (3, most joints)
   std::string info_;              // members of an answer
   std::string statuses_;          // members of an answer
