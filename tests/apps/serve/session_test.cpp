@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "serve/session.h"
+#include "serve/service.h"
 
 #include <gtest/gtest.h>
 
