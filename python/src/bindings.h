@@ -66,8 +66,8 @@ struct StepResult {
 
 // Each adds one concept to the module; the order matters where one is an argument of the next.
 void bind_status(py::module_& module);
+void bind_inspection(py::module_& module);
 void bind_mesh(py::module_& module);
-void bind_inspection(py::module_& module);  // adds Mesh.inspect
 void bind_index(py::module_& module);
 void bind_planes(py::module_& module);
 void bind_step(py::module_& module);
