@@ -13,6 +13,8 @@
 namespace keepout::app {
 namespace {
 
+using OrderedJson = nlohmann::ordered_json;
+
 constexpr int protocol = 1;             // goes up when an old client would no longer be understood
 constexpr std::size_t longest_end = 2;  // of a line: "\r\n" [bytes]
 constexpr std::size_t most_work = 16;   // of a turn, in steps
@@ -27,44 +29,57 @@ MotionConstraintSettings with_room_for(MotionConstraintSettings settings,
   return settings;
 }
 
-std::string info_members(const Mesh& mesh, const ServiceSettings& settings) {
-  using OrderedJson = nlohmann::ordered_json;
+/// Without its braces.
+std::string members_of(const OrderedJson& object) {
+  // A path need not be UTF-8.
+  const std::string text = object.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
+  return text.substr(1, text.size() - 2);
+}
+
+template <class Ending>
+OrderedJson statuses(Ending last, bool (*is_ok)(Ending)) {
+  OrderedJson list = OrderedJson::array();
+  for (int i = 0; i <= static_cast<int>(last); ++i) {
+    const auto status = static_cast<Ending>(i);
+    list.push_back({{"ok", is_ok(status)}, {"status", name(status)}, {"reason", reason(status)}});
+  }
+  return list;
+}
+
+OrderedJson info(const Mesh& mesh, const ServiceSettings& settings) {
   const MotionConstraintSettings& c = settings.constraint;
   const auto array = [](const Vec3& v) { return OrderedJson{v.x(), v.y(), v.z()}; };
   const std::string space(name(settings.space));
-  OrderedJson info{{"version", KEEPOUT_VERSION},
-                   {"protocol", protocol},
-                   {"unit", "mm"},
-                   {"frame", "of the mesh"},
-                   {"mesh",
-                    {{"file", settings.mesh.string()},
-                     {"space", space},
-                     {"triangles", mesh.triangle_count()},
-                     {"vertices", mesh.vertex_count()},
-                     {"low", array(mesh.bounds().low)},
-                     {"high", array(mesh.bounds().high)},
-                     {"watertight", is_watertight(mesh)}}},
-                   {"settings",
-                    {{"index", c.index},
-                     {"activation", c.activation},
-                     {"solver", c.solver},
-                     {"radius", c.radius},
-                     {"tool_radius", c.tool_radius},
-                     {"margin", c.margin},
-                     {"damping", c.damping},
-                     {"recovery", c.recovery},
-                     {"deepest", c.deepest},
-                     {"refinements", c.refinements},
-                     {"branches", c.nodes},
-                     {"query", c.query == Query::motion ? "motion" : "sphere"}}},
-                   {"limits",
-                    {{"line", settings.longest_line},
-                     {"joints", settings.limits.joints},
-                     {"rows", settings.limits.rows},
-                     {"motions", settings.limits.motions}}}};
-  // A path need not be UTF-8.
-  const std::string text = info.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
-  return text.substr(1, text.size() - 2);
+  return {{"version", KEEPOUT_VERSION},
+          {"protocol", protocol},
+          {"unit", "mm"},
+          {"frame", "of the mesh"},
+          {"mesh",
+           {{"file", settings.mesh.string()},
+            {"space", space},
+            {"triangles", mesh.triangle_count()},
+            {"vertices", mesh.vertex_count()},
+            {"low", array(mesh.bounds().low)},
+            {"high", array(mesh.bounds().high)},
+            {"watertight", is_watertight(mesh)}}},
+          {"settings",
+           {{"index", c.index},
+            {"activation", c.activation},
+            {"solver", c.solver},
+            {"radius", c.radius},
+            {"tool_radius", c.tool_radius},
+            {"margin", c.margin},
+            {"damping", c.damping},
+            {"recovery", c.recovery},
+            {"deepest", c.deepest},
+            {"refinements", c.refinements},
+            {"branches", c.nodes},
+            {"query", c.query == Query::motion ? "motion" : "sphere"}}},
+          {"limits",
+           {{"line", settings.longest_line},
+            {"joints", settings.limits.joints},
+            {"rows", settings.limits.rows},
+            {"motions", settings.limits.motions}}}};
 }
 
 Vec3 vector(std::span<const double> numbers) { return {numbers[0], numbers[1], numbers[2]}; }
@@ -121,8 +136,13 @@ Service::Service(std::shared_ptr<const Mesh> mesh, const ServiceSettings& settin
       longest_line_(settings.longest_line),
       request_(settings.limits),
       jacobian_(3, static_cast<Eigen::Index>(settings.limits.joints)),
-      info_(info_members(*mesh, settings)),
-      statuses_(status_members()) {}
+      info_(members_of(info(*mesh, settings))),
+      statuses_(
+          members_of({{"statuses", statuses<Status>(Status::margin_too_small, &is_ok)},
+                      {"polytope_statuses",
+                       statuses<PolytopeStatus>(PolytopeStatus::whole_tool, [](PolytopeStatus s) {
+                         return s == PolytopeStatus::found;
+                       })}})) {}
 
 std::size_t Service::answer(const Line& line, SideWatch& tip, std::string& out) {
   if (line.is_too_long) {
