@@ -161,8 +161,8 @@ points: (n, 3) [length].)")
           "memory", [](const IndexHandle& self) { return self.index->memory(); },
           "What it holds beside the mesh [bytes].")
       .def("__repr__", [](const IndexHandle& self) {
-        return "<keepout.Index '" + self.name + "' of " +
-               std::to_string(self.mesh->triangle_count()) + " triangles>";
+        return py::str("<keepout.Index '{}' of {} triangles>")
+            .format(self.name, self.mesh->triangle_count());
       });
 }
 

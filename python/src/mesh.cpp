@@ -264,8 +264,8 @@ void bind_mesh(py::module_& module) {
            "Examines the mesh; repairs nothing. The search for self-intersections takes longest.")
       .def("__len__", [](const MeshHandle& self) { return self.mesh->triangle_count(); })
       .def("__repr__", [](const MeshHandle& self) {
-        return "<keepout.Mesh of " + std::to_string(self.mesh->triangle_count()) + " triangles, " +
-               std::to_string(self.mesh->vertex_count()) + " vertices>";
+        return py::str("<keepout.Mesh of {} triangles, {} vertices>")
+            .format(self.mesh->triangle_count(), self.mesh->vertex_count());
       });
 
   module.def("load_mesh", &load, py::arg("path"), py::kw_only(), py::arg("space") = py::none(),

@@ -3,7 +3,6 @@
 #include <pybind11/stl/filesystem.h>
 
 #include <array>
-#include <sstream>
 #include <string>
 #include <utility>
 
@@ -60,14 +59,13 @@ std::shared_ptr<IndexHandle> index_from(const py::object& mesh, const py::object
   return std::make_shared<IndexHandle>(mesh, index.cast<std::string>(), cache);
 }
 
-std::string repr(const Guard& guard) {
+py::str repr(const Guard& guard) {
   const MotionConstraintSettings& s = guard.settings();
-  std::ostringstream text;
-  text << "<keepout.MotionConstraint index='" << guard.index()->name << "' activation='"
-       << s.activation << "' solver='" << s.solver << "' radius=" << s.radius
-       << " tool_radius=" << s.tool_radius << " margin=" << s.margin << " on "
-       << guard.index()->mesh->triangle_count() << " triangles>";
-  return text.str();
+  return py::str(
+             "<keepout.MotionConstraint index='{}' activation='{}' solver='{}' radius={:g} "
+             "tool_radius={:g} margin={:g} on {} triangles>")
+      .format(guard.index()->name, s.activation, s.solver, s.radius, s.tool_radius, s.margin,
+              guard.index()->mesh->triangle_count());
 }
 
 constexpr const char* class_doc =
