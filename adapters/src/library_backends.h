@@ -34,6 +34,12 @@ std::unique_ptr<SpatialIndex> make_index_of(std::shared_ptr<const Mesh> mesh) {
   return std::make_unique<Index>(std::move(mesh));
 }
 
+/// A narrow phase of a tool, in the form that the registry knows.
+template <class Phase>
+std::unique_ptr<NarrowPhase> make_narrow_phase_of(const ConvexTool& tool) {
+  return std::make_unique<Phase>(tool);
+}
+
 /// Throws Error when `count` is more than `most`, what the data structure of the index of that name
 /// can hold. `items` says what is counted: triangles or vertices.
 void require_at_most(std::size_t most, std::size_t count, std::string_view items,

@@ -6,12 +6,9 @@
 namespace keepout {
 namespace {
 
-constexpr NarrowPhaseBackend exact{"exact",
-                                   "the engine's own kernel: proven distances, exact depths",
-                                   [](const ConvexTool& tool) -> std::unique_ptr<NarrowPhase> {
-                                     return std::make_unique<ExactNarrowPhase>(tool);
-                                   },
-                                   Allocation::never, nullptr};
+constexpr NarrowPhaseBackend exact{
+    "exact", "the engine's own kernel: proven distances, exact depths",
+    make_narrow_phase_of<ExactNarrowPhase>, Allocation::never, nullptr};
 
 }  // namespace
 

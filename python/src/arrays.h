@@ -50,25 +50,6 @@ py::array numbers(py::handle argument, const Expected& expected);
 /// The same in double precision.
 Doubles doubles(py::handle argument, const Expected& expected);
 
-/// Points, or one that stands for as many as are asked for.
-class Points {
- public:
-  /// A view of an array of shape (n, 3) or (3,), which must outlive this.
-  explicit Points(const Doubles& array) noexcept
-      : data_(array.data()), count_(array.ndim() == 1 ? 1 : array.shape(0)) {}
-
-  py::ssize_t count() const noexcept { return count_; }
-  /// Of a single one, that one.
-  Vec3 operator[](std::size_t i) const noexcept {
-    const double* at = data_ + (count_ == 1 ? 0 : 3 * i);
-    return {at[0], at[1], at[2]};
-  }
-
- private:
-  const double* data_;
-  py::ssize_t count_;
-};
-
 /// Tells the user, as a UserWarning. Throws what Python makes of it where warnings are errors.
 void warn(const std::string& text);
 

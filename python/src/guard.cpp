@@ -27,6 +27,14 @@ class InUse {
 /// Column by column.
 using Jacobian = py::array_t<double, py::array::f_style | py::array::forcecast>;
 
+// Of points (n, 3), or of one (3,) that stands for as many as are asked for.
+
+py::ssize_t count_of(const Doubles& points) { return points.ndim() == 1 ? 1 : points.shape(0); }
+
+Vec3 point_of(const Doubles& points, std::size_t i) {
+  return row(points.data(), count_of(points) == 1 ? 0 : i);
+}
+
 /// The increment, shortened to at most `longest`: as the keepout command does. [length]
 Vec3 clipped(const Vec3& increment, double longest) {
   const double length = increment.norm();
@@ -168,24 +176,23 @@ void Guard::forget() {
 py::object Guard::steps(const py::object& tips, const py::object& desired,
                         std::optional<py::ssize_t> threads, const py::object& out) {
   const Doubles from = doubles(tips, {"tips", {any, 3}, "(n, 3) or (3,)", OneForAll::allowed});
-  const Points tip(from);
-  const py::ssize_t many = tip.count() == 1 ? any : tip.count();
+  const py::ssize_t many = count_of(from) == 1 ? any : count_of(from);
   const std::string shape = many == any
                                 ? "(n, 3) or (3,)"
                                 : "(" + std::to_string(many) + ", 3), as many as tips, or (3,)";
   const Doubles wanted = doubles(desired, {"desired", {any, 3}, shape, OneForAll::allowed});
-  const Points aim(wanted);
-  if (many != any && aim.count() != 1 && aim.count() != many) {
+  if (many != any && count_of(wanted) != 1 && count_of(wanted) != many) {
     refuse("desired", "numbers of shape " + shape, "shape " + shape_text(wanted));
   }
-  const py::ssize_t count = tip.count() == 1 ? aim.count() : tip.count();
+  const py::ssize_t count = many == any ? count_of(wanted) : many;
   const auto poses = static_cast<std::size_t>(count);
   const StepColumns to = columns("Steps", py::make_tuple(count), out, py::make_tuple(from, wanted));
   do_each(poses, 64, threads_for(poses, threads),
           [&](MotionConstraint& constraint, std::size_t i, const std::stop_token&) {
             // Or the answer would depend on which pose this worker did before.
             constraint.forget();
-            const Step step = constraint.step({.tip = tip[i], .desired = aim[i]});
+            const Step step =
+                constraint.step({.tip = point_of(from, i), .desired = point_of(wanted, i)});
             write(to.points, i, step.motion);
             write(to, i, step);
           });
