@@ -53,8 +53,6 @@ struct FreeSpace : Planes {
 
 /// A step that outlives the next one.
 struct StepResult {
-  explicit StepResult(const Step& step);
-
   Status status;
   Vec3 motion;
   std::vector<double> increment;

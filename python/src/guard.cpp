@@ -158,7 +158,14 @@ StepResult Guard::step(const py::object& tip, const py::object& desired, const p
     if (count > 0) motion.rows.emplace(matrix.data(), bounds.data(), count);
   }
   const InUse in_use(constraint_in_use_);
-  return StepResult(constraint_.step(motion));
+  const Step step = constraint_.step(motion);
+  return {.status = step.status,
+          .motion = step.motion,
+          .increment = {step.increment.begin(), step.increment.end()},
+          .planes = {{step.planes.begin(), step.planes.end()}},
+          .active = {step.active.begin(), step.active.end()},
+          .triangles = step.triangles,
+          .distance = step.distance};
 }
 
 FreeSpace Guard::free_polytope(const py::object& tip, double radius) {

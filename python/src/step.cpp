@@ -25,15 +25,6 @@ Status status_from(py::ssize_t value) {
 
 }  // namespace
 
-StepResult::StepResult(const Step& step)
-    : status(step.status),
-      motion(step.motion),
-      increment(step.increment.begin(), step.increment.end()),
-      planes{{step.planes.begin(), step.planes.end()}},
-      active(step.active.begin(), step.active.end()),
-      triangles(step.triangles),
-      distance(step.distance) {}
-
 void bind_status(py::module_& module) {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < status_count; ++i) {
