@@ -54,13 +54,9 @@ class Server {
       ::dup2(from[1], STDOUT_FILENO);
       for (const int file : {to[0], to[1], from[0], from[1]}) ::close(file);
       const char* command = load.command.c_str();
-      const char* mesh = load.mesh.c_str();
-      if (is_pipe) {
-        ::execl(command, command, "serve", mesh, "--radius", "1", nullptr);
-      } else {
-        ::execl(command, command, "serve", mesh, "--radius", "1", "--socket", socket.c_str(),
-                nullptr);
-      }
+      // Without a socket its option is where the arguments end.
+      ::execl(command, command, "serve", load.mesh.c_str(), "--radius", "1",
+              is_pipe ? nullptr : "--socket", socket.c_str(), nullptr);
       std::_Exit(127);
     }
     ::close(to[0]);

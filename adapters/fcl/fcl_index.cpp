@@ -1,44 +1,167 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fcl/config.h>
+#include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/geometry/shape/sphere.h>
+#include <fcl/math/bv/AABB.h>
+#include <fcl/math/bv/OBB.h>
+#include <fcl/math/bv/OBBRSS.h>
 #include <fcl/narrowphase/collision.h>
 
 #include <algorithm>
 #include <exception>
+#include <limits>
+#include <memory>
+#include <span>
 #include <string_view>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
-#include "fcl_model.h"
+#include "../src/library_backends.h"
+#include "keepout/error.h"
 #include "keepout/geometry/closest_point.h"
+#include "keepout/geometry/shapes.h"
 #include "keepout/index/brute_force.h"
+#include "keepout/mesh/mesh.h"
 
 namespace keepout {
 namespace {
 
+/// FCL counts the nodes by an int, as 2 n - 1 of n triangles, of which 2 n must not overflow.
+constexpr std::size_t fcl_most_triangles = (std::size_t{1} << 30) - 1;
+
+/// Grows FCL's box until it holds the vertex.
+void include(fcl::AABBd& box, const Vec3& vertex) {
+  box.min_ = box.min_.cwiseMin(vertex);
+  box.max_ = box.max_.cwiseMax(vertex);
+}
+
+void include(fcl::OBBd& box, const Vec3& vertex) {
+  const Vec3 local = box.axis.transpose() * (vertex - box.To);
+  box.extent = box.extent.cwiseMax(local.cwiseAbs());
+}
+
+/// Makes a box of what need not be one: an empty box around the vertex.
+void start_anew(fcl::AABBd& box, const Vec3& vertex) { box = fcl::AABBd(vertex); }
+
+void start_anew(fcl::OBBd& box, const Vec3& vertex) {
+  box = fcl::OBBd(Eigen::Matrix3d::Identity(), vertex, Vec3::Zero());
+}
+
+/// Whether distances to the box mean what they say.
+bool is_sound(const fcl::AABBd& box) { return box.min_.allFinite() && box.max_.allFinite(); }
+
+/// Lengths in the frame of the box are those of the mesh, to the rounding that the radius is padded
+/// by. FCL's axes are, unless the squares of the coordinates overflow.
+bool is_sound(const fcl::OBBd& box) {
+  const Eigen::Matrix3d gram = box.axis.transpose() * box.axis;
+  const double skew = (gram - Eigen::Matrix3d::Identity()).cwiseAbs().sum();
+  // Written so that a NaN fails.
+  return skew <= 3e-14 && box.To.allFinite() && box.extent.allFinite();
+}
+
+double squared_distance(const fcl::AABBd& box, const Vec3& point) noexcept {
+  return (box.min_ - point).cwiseMax(point - box.max_).cwiseMax(0.0).squaredNorm();
+}
+
+double squared_distance(const fcl::OBBd& box, const Vec3& point) noexcept {
+  const Vec3 local = box.axis.transpose() * (point - box.To);
+  return (local.cwiseAbs() - box.extent).cwiseMax(0.0).squaredNorm();
+}
+
+// Of an OBBRSS the box is used.
+void include(fcl::OBBRSSd& volume, const Vec3& vertex) { include(volume.obb, vertex); }
+void start_anew(fcl::OBBRSSd& volume, const Vec3& vertex) { start_anew(volume.obb, vertex); }
+bool is_sound(const fcl::OBBRSSd& volume) { return is_sound(volume.obb); }
+double squared_distance(const fcl::OBBRSSd& volume, const Vec3& point) noexcept {
+  return squared_distance(volume.obb, point);
+}
+
+/// FCL's tree over a mesh, each box made to hold its triangles, and walked by others.
+template <class Volume>
+class FclModel : public SpatialIndex {
+ public:
+  /// `name`: of the index that it is for.
+  FclModel(std::shared_ptr<const Mesh> mesh, std::string_view name) : mesh_(std::move(mesh)) {
+    require_at_most(fcl_most_triangles, mesh_->triangle_count(), "triangles", name);
+    require_at_most(std::numeric_limits<int>::max(), mesh_->vertex_count(), "vertices", name);
+    build();
+    std::vector<TriangleId> triangles;
+    triangles.reserve(mesh_->triangle_count());
+    hold_triangles(0, triangles);
+    if (triangles.size() != mesh_->triangle_count()) throw Error("FCL lost triangles of the mesh");
+  }
+
+  std::size_t memory() const noexcept override {
+    const auto nodes = static_cast<std::size_t>(model_.getNumBVs());
+    return nodes * (sizeof(fcl::BVNode<Volume>) + sizeof(unsigned)) +
+           static_cast<std::size_t>(model_.num_tris) * sizeof(fcl::Triangle) +
+           static_cast<std::size_t>(model_.num_vertices) * sizeof(fcl::Vector3d);
+  }
+
+ protected:
+  const std::shared_ptr<const Mesh>& mesh() const noexcept { return mesh_; }
+  const fcl::BVHModel<Volume>& tree() const noexcept { return model_; }
+
+ private:
+  void build() {
+    const std::vector<fcl::Vector3d> vertices(mesh_->vertices().begin(), mesh_->vertices().end());
+    std::vector<fcl::Triangle> triangles;
+    triangles.reserve(mesh_->triangle_count());
+    for (const Corners& corners : mesh_->triangles()) {
+      triangles.emplace_back(corners[0], corners[1], corners[2]);
+    }
+    // The counts are declared, or FCL allocates more than it needs.
+    if (model_.beginModel(static_cast<int>(triangles.size()), static_cast<int>(vertices.size())) !=
+            fcl::BVH_OK ||
+        model_.addSubModel(vertices, triangles) != fcl::BVH_OK ||
+        model_.endModel() != fcl::BVH_OK) {
+      throw Error("FCL could not build its tree; is there enough memory?");
+    }
+  }
+
+  /// FCL's boxes are not taken on trust: the oriented ones leave corners out by up to 1e-10 of
+  /// their size, one in eight of those of a CT skull. Each is made to hold its triangles. Appends
+  /// the triangles of the subtree.
+  void hold_triangles(int node, std::vector<TriangleId>& triangles) {
+    fcl::BVNode<Volume>& at = model_.getBV(node);
+    const std::size_t first = triangles.size();
+    if (at.isLeaf()) {
+      triangles.push_back(static_cast<TriangleId>(at.primitiveId()));
+    } else {
+      hold_triangles(at.leftChild(), triangles);
+      hold_triangles(at.rightChild(), triangles);
+    }
+    if (!is_sound(at.bv)) start_anew(at.bv, mesh_->triangle(triangles[first])[0]);
+    for (const TriangleId t : std::span(triangles).subspan(first)) {
+      for (const Vec3& corner : mesh_->triangle(t)) include(at.bv, corner);
+    }
+  }
+
+  std::shared_ptr<const Mesh> mesh_;
+  fcl::BVHModel<Volume> model_;
+};
+
 /// FCL's tree, walked by us: its own collide() tests the triangles as well, and takes memory.
 template <class Volume>
-class FclIndex final : public SpatialIndex {
+class FclIndex final : public FclModel<Volume> {
  public:
   static constexpr std::string_view name =
       std::is_same_v<Volume, fcl::AABBd> ? "fcl_aabb" : "fcl_obbrss";
 
-  explicit FclIndex(std::shared_ptr<const Mesh> mesh) : model_(std::move(mesh), name) {}
+  explicit FclIndex(std::shared_ptr<const Mesh> on) : FclModel<Volume>(std::move(on), name) {}
 
   void collect(const Ball& ball, TriangleBuffer& candidates) const noexcept override {
-    const double reach = padded_radius(ball, model_.mesh()->bounds());
+    const double reach = padded_radius(ball, this->mesh()->bounds());
     visit(0, ball.center, reach * reach, candidates);
   }
-
-  std::size_t memory() const noexcept override { return model_.memory(); }
 
  private:
   // Recursive, as FCL's own build is: it splits at the mean, so that a depth has no bound but the
   // range of a double, some two thousand halvings.
   void visit(int node, const Vec3& point, double squared_reach,
              TriangleBuffer& candidates) const noexcept {
-    const fcl::BVNode<Volume>& at = model_.tree().getBV(node);
+    const fcl::BVNode<Volume>& at = this->tree().getBV(node);
     if (squared_distance(at.bv, point) > squared_reach) return;
     if (at.isLeaf()) {
       candidates.push(static_cast<TriangleId>(at.primitiveId()));
@@ -47,8 +170,6 @@ class FclIndex final : public SpatialIndex {
     visit(at.leftChild(), point, squared_reach, candidates);
     visit(at.rightChild(), point, squared_reach, candidates);
   }
-
-  FclModel<Volume> model_;
 };
 
 // FCL tests a triangle by the distance to its plane, whose normal it gets from two edges: off by up
@@ -74,13 +195,13 @@ bool is_thin(const Triangle& corners) {
 /// FCL's tree, asked by FCL's own collide() for all triangles that a sphere touches. Oriented boxes
 /// alone: of an OBBRSS collide() uses no more than those, and fits one to each sphere. Takes memory
 /// while it answers: for comparison, not for real time.
-class FclCollideIndex final : public SpatialIndex {
+class FclCollideIndex final : public FclModel<fcl::OBBd> {
  public:
   static constexpr std::string_view name = "fcl_collide";
 
-  explicit FclCollideIndex(std::shared_ptr<const Mesh> on) : model_(std::move(on), name) {
-    for (TriangleId t = 0; t < mesh().triangle_count(); ++t) {
-      if (is_thin(mesh().triangle(t))) thin_.push_back(t);
+  explicit FclCollideIndex(std::shared_ptr<const Mesh> on) : FclModel(std::move(on), name) {
+    for (TriangleId t = 0; t < mesh()->triangle_count(); ++t) {
+      if (is_thin(mesh()->triangle(t))) thin_.push_back(t);
     }
   }
 
@@ -90,19 +211,17 @@ class FclCollideIndex final : public SpatialIndex {
     } catch (const std::exception&) {
       // No memory for FCL's list, and nothing is in ours yet: it is not for a query to throw.
     }
-    BruteForce(model_.mesh()).collect(ball, candidates);
+    BruteForce(mesh()).collect(ball, candidates);
   }
 
   std::size_t memory() const noexcept override {
-    return model_.memory() + thin_.capacity() * sizeof(TriangleId);
+    return FclModel::memory() + thin_.capacity() * sizeof(TriangleId);
   }
 
  private:
-  const Mesh& mesh() const noexcept { return *model_.mesh(); }
-
   /// False where FCL cannot tell.
   bool ask(const Ball& ball, TriangleBuffer& candidates) const {
-    const Box& bounds = mesh().bounds();
+    const Box& bounds = mesh()->bounds();
     const double lengths =
         ball.radius + (ball.center - bounds.center()).cwiseAbs().sum() + bounds.size().sum();
     if (!(ball.radius >= 0.0 && lengths < farthest)) return false;
@@ -113,22 +232,21 @@ class FclCollideIndex final : public SpatialIndex {
     // One more than there is room for, so that an overflow shows.
     const std::size_t room = candidates.capacity() - candidates.size();
     const fcl::CollisionRequestd request(
-        std::min(mesh().triangle_count(), room + 1 + thin_.size()));
+        std::min(mesh()->triangle_count(), room + 1 + thin_.size()));
     fcl::CollisionResultd result;
-    fcl::collide(&model_.tree(), fcl::Transform3d::Identity(), &sphere, pose, request, result);
+    fcl::collide(&tree(), fcl::Transform3d::Identity(), &sphere, pose, request, result);
     for (std::size_t i = 0; i < result.numContacts(); ++i) {
       const auto t = static_cast<TriangleId>(result.getContact(i).b1);
       if (!std::ranges::binary_search(thin_, t)) candidates.push(t);
     }
     for (const TriangleId t : thin_) {
-      if (closest_point(mesh().triangle(t), ball.center).distance <= ball.radius) {
+      if (closest_point(mesh()->triangle(t), ball.center).distance <= ball.radius) {
         candidates.push(t);
       }
     }
     return true;
   }
 
-  FclModel<fcl::OBBd> model_;
   std::vector<TriangleId> thin_;  // sorted
 };
 

@@ -17,7 +17,15 @@ namespace keepout {
 class CenteredFrame {
  public:
   /// Precondition: reach is a power of two.
-  CenteredFrame(const Box& bounds, double reach) noexcept;
+  CenteredFrame(const Box& bounds, double reach) noexcept {
+    // Halved before they are added: the bounds may span more than a double can.
+    center_ = 0.5 * bounds.low + 0.5 * bounds.high;
+    const double half = (bounds.high - center_).cwiseMax(center_ - bounds.low).maxCoeff();
+    int exponent = 0;  // of the power of two above half; a mesh in one point keeps its unit
+    if (half > 0.0) std::frexp(half, &exponent);
+    // Beyond these the scale, or its inverse, were no ordinary number.
+    scale_ = reach * std::ldexp(1.0, std::clamp(-exponent, -1000, 900));
+  }
 
   Vec3 from_mesh(const Vec3& point) const noexcept { return scale_ * (point - center_); }
   double from_mesh(double length) const noexcept { return scale_ * length; }
@@ -27,15 +35,5 @@ class CenteredFrame {
   Vec3 center_;   // in the mesh frame [length]
   double scale_;  // [1 / length], a power of two
 };
-
-inline CenteredFrame::CenteredFrame(const Box& bounds, double reach) noexcept {
-  // Halved before they are added: the bounds may span more than a double can.
-  center_ = 0.5 * bounds.low + 0.5 * bounds.high;
-  const double half = (bounds.high - center_).cwiseMax(center_ - bounds.low).maxCoeff();
-  int exponent = 0;  // of the power of two above half; a mesh in one point keeps its unit
-  if (half > 0.0) std::frexp(half, &exponent);
-  // Beyond these the scale, or its inverse, were no ordinary number.
-  scale_ = reach * std::ldexp(1.0, std::clamp(-exponent, -1000, 900));
-}
 
 }  // namespace keepout

@@ -2,7 +2,6 @@
 
 #include "keepout/adapters/index_registry.h"
 
-#include <iterator>
 #include <utility>
 
 #include "keepout/index/brute_force.h"
@@ -26,27 +25,6 @@ constexpr IndexBackend ours[] = {
      "The tree of Williams et al. 1997 and Li et al. 2020: pd_tree without our split and leaves."},
 };
 
-[[maybe_unused]] constexpr std::string_view needs_bullet =
-    "Bullet (install libbullet-dev and pkg-config, configure with KEEPOUT_WITH_BULLET=ON)";
-
-// Its last entry is not one of them, for an array cannot be empty.
-constexpr AbsentPart absent[] = {
-#if !KEEPOUT_HAS_FCL
-    {"fcl_obbrss", "FCL (install libfcl-dev, configure with KEEPOUT_WITH_FCL=ON)"},
-    {"fcl_aabb", "FCL (install libfcl-dev, configure with KEEPOUT_WITH_FCL=ON)"},
-    {"fcl_collide", "FCL (install libfcl-dev, configure with KEEPOUT_WITH_FCL=ON)"},
-#endif
-#if !KEEPOUT_HAS_BULLET
-    {"bullet_quantized", needs_bullet},
-    {"bullet", needs_bullet},
-    {"bullet_callback", needs_bullet},
-#endif
-#if !KEEPOUT_HAS_EMBREE
-    {"embree", "Embree 3 (install libembree-dev, configure with KEEPOUT_WITH_EMBREE=ON)"},
-#endif
-    {},
-};
-
 }  // namespace
 
 std::span<const IndexBackend> index_backends() noexcept {
@@ -66,7 +44,19 @@ std::span<const IndexBackend> index_backends() noexcept {
 }
 
 std::span<const AbsentPart> absent_index_backends() noexcept {
-  return std::span(absent).first(std::size(absent) - 1);
+  static const std::vector<AbsentPart> absent {
+#if !KEEPOUT_HAS_FCL
+    {"fcl_obbrss", needs_fcl}, {"fcl_aabb", needs_fcl}, {"fcl_collide", needs_fcl},
+#endif
+#if !KEEPOUT_HAS_BULLET
+        {"bullet_quantized", needs_bullet}, {"bullet", needs_bullet},
+        {"bullet_callback", needs_bullet},
+#endif
+#if !KEEPOUT_HAS_EMBREE
+        {"embree", "Embree 3 (install libembree-dev, configure with KEEPOUT_WITH_EMBREE=ON)"},
+#endif
+  };
+  return absent;
 }
 
 std::unique_ptr<SpatialIndex> make_index(std::string_view name, std::shared_ptr<const Mesh> mesh) {

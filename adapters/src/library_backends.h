@@ -20,10 +20,24 @@ std::span<const IndexBackend> cgal_indices() noexcept;
 std::span<const NarrowPhaseBackend> ccd_narrow_phases() noexcept;
 std::span<const NarrowPhaseBackend> fcl_narrow_phases() noexcept;
 
+// What an absent part needs.
+inline constexpr std::string_view needs_fcl =
+    "FCL (install libfcl-dev, configure with KEEPOUT_WITH_FCL=ON)";
+inline constexpr std::string_view needs_bullet =
+    "Bullet (install libbullet-dev and pkg-config, configure with KEEPOUT_WITH_BULLET=ON)";
+inline constexpr std::string_view needs_ccd =
+    "libccd (install libccd-dev, configure with KEEPOUT_WITH_CCD=ON)";
+
 /// An index on a mesh that it holds on to, in the form that the registry knows.
 template <class Index>
 std::unique_ptr<SpatialIndex> make_index_of(std::shared_ptr<const Mesh> mesh) {
   return std::make_unique<Index>(std::move(mesh));
+}
+
+/// A narrow phase of a tool, in the form that the registry knows.
+template <class Phase>
+std::unique_ptr<NarrowPhase> make_narrow_phase_of(const ConvexTool& tool) {
+  return std::make_unique<Phase>(tool);
 }
 
 /// Throws Error when `count` is more than `most`, what the data structure of the index of that name

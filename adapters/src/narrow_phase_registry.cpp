@@ -1,31 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "keepout/adapters/narrow_phase_registry.h"
 
-#include <iterator>
-
 #include "library_backends.h"
 
 namespace keepout {
 namespace {
 
-constexpr NarrowPhaseBackend exact{"exact",
-                                   "the engine's own kernel: proven distances, exact depths",
-                                   [](const ConvexTool& tool) -> std::unique_ptr<NarrowPhase> {
-                                     return std::make_unique<ExactNarrowPhase>(tool);
-                                   },
-                                   Allocation::never, nullptr};
-
-// Its last entry is not one of them, for an array cannot be empty.
-constexpr AbsentPart absent[] = {
-#if !KEEPOUT_HAS_CCD
-    {"ccd_gjk", "libccd (install libccd-dev, configure with KEEPOUT_WITH_CCD=ON)"},
-    {"ccd_mpr", "libccd (install libccd-dev, configure with KEEPOUT_WITH_CCD=ON)"},
-#endif
-#if !KEEPOUT_HAS_FCL
-    {"fcl_gjk_libccd", "FCL (install libfcl-dev, configure with KEEPOUT_WITH_FCL=ON)"},
-    {"fcl_gjk_indep", "FCL (install libfcl-dev, configure with KEEPOUT_WITH_FCL=ON)"},
-#endif
-    {}};
+constexpr NarrowPhaseBackend exact{
+    "exact", "the engine's own kernel: proven distances, exact depths",
+    make_narrow_phase_of<ExactNarrowPhase>, Allocation::never, nullptr};
 
 }  // namespace
 
@@ -43,7 +26,15 @@ std::span<const NarrowPhaseBackend> narrow_phase_backends() noexcept {
 }
 
 std::span<const AbsentPart> absent_narrow_phase_backends() noexcept {
-  return {absent, std::size(absent) - 1};
+  static const std::vector<AbsentPart> absent {
+#if !KEEPOUT_HAS_CCD
+    {"ccd_gjk", needs_ccd}, {"ccd_mpr", needs_ccd},
+#endif
+#if !KEEPOUT_HAS_FCL
+        {"fcl_gjk_libccd", needs_fcl}, {"fcl_gjk_indep", needs_fcl},
+#endif
+  };
+  return absent;
 }
 
 std::unique_ptr<NarrowPhase> make_narrow_phase(std::string_view name, const ConvexTool& tool) {

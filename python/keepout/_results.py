@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import IntEnum
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -115,3 +115,43 @@ class Simulation(_Batch):
             np.full((loops, cycles), Status.invalid_input, np.uint8),
             np.zeros((loops, cycles), np.uint32),
         )
+
+
+def room_for(
+    kind: Any, size: tuple[int, ...], out: Any, inputs: tuple[NDArray[Any], ...]
+) -> tuple[Any, ...]:
+    """`out`, or a new result of that kind and size when it is None, and its three arrays. Raises
+    Error unless each is of its type and shape, writeable, without gaps, and shares no memory with
+    another or with an input."""
+    from . import _core
+
+    if out is None:
+        out = kind.empty(*size)
+    if kind is Steps:
+        points = "motion", (*size, 3)
+    else:
+        points = "tips", (size[0], size[1] + 1, 3)
+    taken = list(inputs)
+    columns = (*points, "float64"), ("status", size, "uint8"), ("planes", size, "uint32")
+    for name, shape, dtype in columns:
+        array = getattr(out, name, None)
+        expected = f"an array of {dtype} of shape {shape}"
+        if not isinstance(array, np.ndarray):
+            got = type(array).__name__
+        elif array.dtype != dtype:
+            got = f"dtype {array.dtype}"
+        elif array.shape != shape:
+            got = f"shape {array.shape}"
+        elif not (array.flags.c_contiguous and array.flags.aligned):
+            expected = "an array without gaps, row by row (C-contiguous)"
+            got = "one with strides"
+        elif not array.flags.writeable:
+            expected, got = "an array to write to", "a read-only one"
+        elif any(np.may_share_memory(array, other) for other in taken):
+            expected = "memory of its own"
+            got = "an array that shares it with another or an input"
+        else:
+            taken.append(array)
+            continue
+        raise _core.Error(f"out.{name}: expected {expected}, got {got}")
+    return out, *taken[len(inputs) :]

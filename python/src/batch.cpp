@@ -12,7 +12,7 @@
 #include <thread>
 #include <vector>
 
-#include "arguments.h"
+#include "arrays.h"
 
 namespace keepout::python {
 namespace {

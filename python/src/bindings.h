@@ -3,14 +3,69 @@
 
 #include <pybind11/pybind11.h>
 
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "keepout/activation/free_polytope.h"
+#include "keepout/geometry/shapes.h"
+#include "keepout/index/spatial_index.h"
+#include "keepout/mesh/load_mesh.h"
+#include "keepout/step/motion.h"
+
 namespace keepout::python {
 
 namespace py = pybind11;
 
+/// A mesh as Python holds it: with what its file had to say, and normals once they are asked for.
+struct MeshHandle : LoadedMesh {
+  std::vector<Vec3> normals = {};  // one for each triangle, or none yet
+};
+
+/// The mesh of a keepout.Mesh. Throws Error for anything else.
+const std::shared_ptr<const Mesh>& mesh_of(const py::object& mesh);
+
+/// An index and the mesh it is built on, shared by all that use it.
+struct IndexHandle {
+  /// `on`: a keepout.Mesh. Builds the index of the name `part`, without Python's lock. `cache`: a
+  /// folder for built indices, if they are to be kept. Throws Error where mesh_of does.
+  IndexHandle(py::object on, std::string part, const std::optional<std::filesystem::path>& cache);
+
+  const py::object mesh_object;
+  const std::shared_ptr<const Mesh> mesh;
+  const std::string name;
+  const std::shared_ptr<const SpatialIndex> index;
+};
+
+/// Half-spaces that outlive the step they are of.
+struct Planes {
+  std::vector<HalfSpace> planes;
+};
+
+/// A free polytope, and whether it is one.
+struct FreeSpace : Planes {
+  PolytopeStatus status = PolytopeStatus::invalid_input;
+};
+
+/// A step that outlives the next one.
+struct StepResult {
+  Status status;
+  Vec3 motion;
+  std::vector<double> increment;
+  Planes planes;
+  std::vector<std::uint32_t> active;
+  std::size_t triangles;
+  std::optional<double> distance;
+};
+
 // Each adds one concept to the module; the order matters where one is an argument of the next.
 void bind_status(py::module_& module);
+void bind_inspection(py::module_& module);
 void bind_mesh(py::module_& module);
-void bind_inspection(py::module_& module);  // adds Mesh.inspect
 void bind_index(py::module_& module);
 void bind_planes(py::module_& module);
 void bind_step(py::module_& module);

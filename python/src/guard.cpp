@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include "arguments.h"
-#include "keepout/error.h"
+#include "arrays.h"
+#include "batch.h"
 
 namespace keepout::python {
 namespace {
@@ -27,6 +27,14 @@ class InUse {
 /// Column by column.
 using Jacobian = py::array_t<double, py::array::f_style | py::array::forcecast>;
 
+// Of points (n, 3), or of one (3,) that stands for as many as are asked for.
+
+py::ssize_t count_of(const Doubles& points) { return points.ndim() == 1 ? 1 : points.shape(0); }
+
+Vec3 point_of(const Doubles& points, std::size_t i) {
+  return row(points.data(), count_of(points) == 1 ? 0 : i);
+}
+
 /// The increment, shortened to at most `longest`: as the keepout command does. [length]
 Vec3 clipped(const Vec3& increment, double longest) {
   const double length = increment.norm();
@@ -38,6 +46,28 @@ void require_max_step(double max_step, double radius) {
     refuse("max_step", "0 to the radius of the motion sphere, " + std::to_string(radius),
            std::to_string(max_step));
   }
+}
+
+/// Where a batch writes. The pointers are into arrays that `room` holds.
+struct StepColumns {
+  py::tuple room;
+  double* points;  // motions (count, 3); of a simulation, the tips (loops, cycles + 1, 3)
+  std::uint8_t* status;
+  std::uint32_t* planes;
+
+  /// A keepout.Steps or keepout.Simulation.
+  py::object result() const { return room[0]; }
+};
+
+/// The columns of `out`, or of a new one of that type and size when it is None: see room_for in
+/// _results.py, which throws Error for what cannot be written to.
+StepColumns columns(const char* type, const py::tuple& size, const py::object& out,
+                    const py::tuple& inputs) {
+  const py::module_ results = py::module_::import("keepout._results");
+  const py::tuple room = results.attr("room_for")(results.attr(type), size, out, inputs);
+  const auto memory = [&](int i) { return py::array(room[i]).mutable_data(); };
+  return {room, static_cast<double*>(memory(1)), static_cast<std::uint8_t*>(memory(2)),
+          static_cast<std::uint32_t*>(memory(3))};
 }
 
 /// What there is to know of a step in a batch, but for its motion. How many triangles it rests on
@@ -60,13 +90,13 @@ void run_loop(MotionConstraint& constraint, Vec3 tip, const double* hand, std::s
               const std::stop_token& stop) {
   constraint.forget();
   const std::size_t first_tip = loop * (cycles + 1);
-  write(to.motions, first_tip, tip);
+  write(to.points, first_tip, tip);
   for (std::size_t cycle = 0; cycle < cycles && !stop.stop_requested(); ++cycle) {
     const std::size_t i = loop * cycles + cycle;
     const Step step =
         constraint.step({.tip = tip, .desired = clipped(row(hand, i) - tip, max_step)});
     tip += step.motion;
-    write(to.motions, first_tip + cycle + 1, tip);
+    write(to.points, first_tip + cycle + 1, tip);
     write(to, i, step);
   }
 }
@@ -78,14 +108,27 @@ Guard::Guard(std::shared_ptr<IndexHandle> index, MotionConstraintSettings settin
 
 MotionConstraint Guard::make() const {
   const py::gil_scoped_release release;
-  return make_motion_constraint(index_->mesh(), index_->shared(), settings_);
+  return make_motion_constraint(index_->mesh, index_->index, settings_);
 }
 
-std::deque<MotionConstraint>& Guard::workers(unsigned threads) {
+template <class Item>
+void Guard::do_each(std::size_t items, std::size_t chunk, unsigned threads, const Item& item) {
+  const py::gil_scoped_release release;
+  const std::lock_guard in_use(workers_in_use_);
   while (workers_.size() < threads) {
-    workers_.push_back(make_motion_constraint(index_->mesh(), index_->shared(), settings_));
+    workers_.push_back(make_motion_constraint(index_->mesh, index_->index, settings_));
   }
-  return workers_;
+  const Work work = [&](unsigned worker, std::size_t begin, std::size_t end,
+                        const std::stop_token& stop) {
+    for (std::size_t i = begin; i < end && !stop.stop_requested(); ++i) {
+      item(workers_[worker], i, stop);
+    }
+  };
+  if (chunk > 1 && items <= chunk) {
+    work(0, 0, items, std::stop_token());  // a thread takes longer to start
+  } else {
+    run_batch(items, chunk, threads, work);
+  }
 }
 
 StepResult Guard::step(const py::object& tip, const py::object& desired, const py::object& jacobian,
@@ -115,7 +158,14 @@ StepResult Guard::step(const py::object& tip, const py::object& desired, const p
     if (count > 0) motion.rows.emplace(matrix.data(), bounds.data(), count);
   }
   const InUse in_use(constraint_in_use_);
-  return StepResult(constraint_.step(motion));
+  const Step step = constraint_.step(motion);
+  return {.status = step.status,
+          .motion = step.motion,
+          .increment = {step.increment.begin(), step.increment.end()},
+          .planes = {{step.planes.begin(), step.planes.end()}},
+          .active = {step.active.begin(), step.active.end()},
+          .triangles = step.triangles,
+          .distance = step.distance};
 }
 
 FreeSpace Guard::free_polytope(const py::object& tip, double radius) {
@@ -133,44 +183,27 @@ void Guard::forget() {
 py::object Guard::steps(const py::object& tips, const py::object& desired,
                         std::optional<py::ssize_t> threads, const py::object& out) {
   const Doubles from = doubles(tips, {"tips", {any, 3}, "(n, 3) or (3,)", OneForAll::allowed});
-  const Points tip(from);
-  const py::ssize_t many = tip.count() == 1 ? any : tip.count();
+  const py::ssize_t many = count_of(from) == 1 ? any : count_of(from);
   const std::string shape = many == any
                                 ? "(n, 3) or (3,)"
                                 : "(" + std::to_string(many) + ", 3), as many as tips, or (3,)";
   const Doubles wanted = doubles(desired, {"desired", {any, 3}, shape, OneForAll::allowed});
-  const Points aim(wanted);
-  if (many != any && aim.count() != 1 && aim.count() != many) {
+  if (many != any && count_of(wanted) != 1 && count_of(wanted) != many) {
     refuse("desired", "numbers of shape " + shape, "shape " + shape_text(wanted));
   }
-  const py::ssize_t count = tip.count() == 1 ? aim.count() : tip.count();
+  const py::ssize_t count = many == any ? count_of(wanted) : many;
   const auto poses = static_cast<std::size_t>(count);
-  const StepColumns to = steps_columns(out, count, {from, wanted});
-  const unsigned crew = threads_for(poses, threads);
-  {
-    const py::gil_scoped_release release;
-    const std::lock_guard in_use(workers_in_use_);
-    std::deque<MotionConstraint>& constraints = workers(crew);
-    const Work work = [&](unsigned worker, std::size_t begin, std::size_t end,
-                          const std::stop_token& stop) {
-      MotionConstraint& constraint = constraints[worker];
-      for (std::size_t i = begin; i < end && !stop.stop_requested(); ++i) {
-        // Or the answer would depend on which pose this worker did before.
-        constraint.forget();
-        const Step step = constraint.step({.tip = tip[i], .desired = aim[i]});
-        write(to.motions, i, step.motion);
-        write(to, i, step);
-      }
-    };
-    constexpr std::size_t chunk = 64;
-    if (poses <= chunk) {
-      // A thread takes longer to start.
-      work(0, 0, poses, std::stop_token());
-    } else {
-      run_batch(poses, chunk, crew, work);
-    }
-  }
-  return to.result;
+  const StepColumns to = columns("Steps", py::make_tuple(count), out, py::make_tuple(from, wanted));
+  do_each(poses, 64, threads_for(poses, threads),
+          [&](MotionConstraint& constraint, std::size_t i, const std::stop_token&) {
+            // Or the answer would depend on which pose this worker did before.
+            constraint.forget();
+            const Step step =
+                constraint.step({.tip = point_of(from, i), .desired = point_of(wanted, i)});
+            write(to.points, i, step.motion);
+            write(to, i, step);
+          });
+  return to.result();
 }
 
 py::object Guard::replay(const py::object& poses, bool closed_loop, double max_step,
@@ -178,29 +211,25 @@ py::object Guard::replay(const py::object& poses, bool closed_loop, double max_s
   const Doubles lines = doubles(poses, {"poses", {any, 6}, "(n, 6)"});
   const auto count = static_cast<std::size_t>(lines.shape(0));
   if (closed_loop) require_max_step(max_step, settings_.radius);
-  const StepColumns to = steps_columns(out, lines.shape(0), {lines});
+  const StepColumns to =
+      columns("Steps", py::make_tuple(lines.shape(0)), out, py::make_tuple(lines));
   const double* const data = lines.data();
-  {
-    const py::gil_scoped_release release;
-    const std::lock_guard in_use(workers_in_use_);
-    MotionConstraint& constraint = workers(1).front();
+  // One item on one thread, whatever the number of processors: each step may depend on the last.
+  do_each(1, 1, 1, [&](MotionConstraint& constraint, std::size_t, const std::stop_token& stop) {
     constraint.forget();
-    // One after another, whatever the number of processors: each step may depend on the last.
-    run_batch(1, 1, 1, [&](unsigned, std::size_t, std::size_t, const std::stop_token& stop) {
-      Vec3 tip = count > 0 ? row(data, 1) : Vec3::Zero();
-      for (std::size_t i = 0; i < count && !stop.stop_requested(); ++i) {
-        const Vec3 first = row(data, 2 * i);
-        const Motion motion = closed_loop
-                                  ? Motion{.tip = tip, .desired = clipped(first - tip, max_step)}
-                                  : Motion{.tip = first, .desired = row(data, 2 * i + 1)};
-        const Step step = constraint.step(motion);
-        write(to.motions, i, step.motion);
-        write(to, i, step);
-        tip += step.motion;
-      }
-    });
-  }
-  return to.result;
+    Vec3 tip = count > 0 ? row(data, 1) : Vec3::Zero();
+    for (std::size_t i = 0; i < count && !stop.stop_requested(); ++i) {
+      const Vec3 first = row(data, 2 * i);
+      const Motion motion = closed_loop
+                                ? Motion{.tip = tip, .desired = clipped(first - tip, max_step)}
+                                : Motion{.tip = first, .desired = row(data, 2 * i + 1)};
+      const Step step = constraint.step(motion);
+      write(to.points, i, step.motion);
+      write(to, i, step);
+      tip += step.motion;
+    }
+  });
+  return to.result();
 }
 
 py::object Guard::simulate(const py::object& starts, const py::object& hands, double max_step,
@@ -211,23 +240,15 @@ py::object Guard::simulate(const py::object& starts, const py::object& hands, do
   require_max_step(max_step, settings_.radius);
   const auto loops = static_cast<std::size_t>(paths.shape(0));
   const auto cycles = static_cast<std::size_t>(paths.shape(1));
-  const StepColumns to = simulation_columns(out, paths.shape(0), paths.shape(1), {from, paths});
-  const unsigned crew = threads_for(loops, threads);
+  const StepColumns to = columns("Simulation", py::make_tuple(paths.shape(0), paths.shape(1)), out,
+                                 py::make_tuple(from, paths));
   const double* const tips = from.data();
   const double* const hand = paths.data();
-  {
-    const py::gil_scoped_release release;
-    const std::lock_guard in_use(workers_in_use_);
-    std::deque<MotionConstraint>& constraints = workers(crew);
-    run_batch(
-        loops, 1, crew,
-        [&](unsigned worker, std::size_t begin, std::size_t end, const std::stop_token& stop) {
-          for (std::size_t i = begin; i < end; ++i) {
-            run_loop(constraints[worker], row(tips, i), hand, i, cycles, max_step, to, stop);
-          }
-        });
-  }
-  return to.result;
+  do_each(loops, 1, threads_for(loops, threads),
+          [&](MotionConstraint& constraint, std::size_t i, const std::stop_token& stop) {
+            run_loop(constraint, row(tips, i), hand, i, cycles, max_step, to, stop);
+          });
+  return to.result();
 }
 
 }  // namespace keepout::python

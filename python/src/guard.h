@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
 #include <deque>
@@ -9,15 +8,10 @@
 #include <mutex>
 #include <optional>
 
-#include "batch.h"
-#include "handles.h"
+#include "bindings.h"
 #include "keepout/factory/make_motion_constraint.h"
-#include "out_arrays.h"
-#include "step.h"
 
 namespace keepout::python {
-
-namespace py = pybind11;
 
 /// A motion constraint as Python holds it: one for its own steps, and one for each worker of its
 /// batches. All share mesh and index. A batch changes nothing for the steps: they remember where
@@ -44,8 +38,10 @@ class Guard {
  private:
   MotionConstraint make() const;
 
-  /// As many motion constraints for workers. Without Python's lock, with ours.
-  std::deque<MotionConstraint>& workers(unsigned threads);
+  /// Calls `item(constraint, i, stop)` for each of a batch, without Python's lock, each worker with
+  /// a constraint of its own. For the rest see run_batch.
+  template <class Item>
+  void do_each(std::size_t items, std::size_t chunk, unsigned threads, const Item& item);
 
   std::shared_ptr<IndexHandle> index_;
   MotionConstraintSettings settings_;

@@ -7,14 +7,12 @@
 #include <optional>
 #include <utility>
 
-#include "arguments.h"
+#include "arrays.h"
 #include "batch.h"
 #include "bindings.h"
-#include "handles.h"
 #include "keepout/adapters/index_registry.h"
 #include "keepout/index/index_cache.h"
 #include "keepout/index/query.h"
-#include "views.h"
 
 namespace keepout::python {
 namespace {
@@ -42,10 +40,10 @@ Ball ball_of(py::handle center, double radius) {
 
 /// With as much room as it takes.
 TriangleBuffer candidates_in(const IndexHandle& index, const Ball& ball) {
-  const std::size_t all = index.mesh()->triangle_count();
+  const std::size_t all = index.mesh->triangle_count();
   for (std::size_t room = std::min<std::size_t>(all, 1024);; room = std::min(all, 8 * room)) {
     TriangleBuffer candidates(room);
-    index.index().collect(ball, candidates);
+    index.index->collect(ball, candidates);
     if (!candidates.overflowed() || room == all) return candidates;
   }
 }
@@ -66,7 +64,7 @@ Hits hits_in(const IndexHandle& index, const py::object& center, double radius) 
   const Ball ball = ball_of(center, radius);
   const TriangleBuffer candidates = candidates_in(index, ball);
   HitBuffer hits(std::max<std::size_t>(candidates.size(), 1));
-  refine(*index.mesh(), ball, candidates.view(), hits);
+  refine(*index.mesh, ball, candidates.view(), hits);
   return {ball.center, {hits.begin(), hits.end()}};
 }
 
@@ -92,7 +90,7 @@ py::array_t<double> distances(const IndexHandle& index, const py::object& points
   const py::gil_scoped_release release;
   run_batch(size, 64, workers,
             [&](unsigned, std::size_t begin, std::size_t end, const std::stop_token& stop) {
-              NearestTriangle nearest(*index.mesh(), index.index());
+              NearestTriangle nearest(*index.mesh, *index.index);
               double guess = 0.0;
               for (std::size_t i = begin; i < end && !stop.stop_requested(); ++i) {
                 const Vec3 tip = row(tips, i);
@@ -106,12 +104,12 @@ py::array_t<double> distances(const IndexHandle& index, const py::object& points
 
 }  // namespace
 
-IndexHandle::IndexHandle(py::object mesh, std::string name,
+IndexHandle::IndexHandle(py::object on, std::string part,
                          const std::optional<std::filesystem::path>& cache)
-    : mesh_object_(std::move(mesh)),
-      mesh_(mesh_of(mesh_object_)),
-      name_(std::move(name)),
-      index_(build(name_, mesh_, cache)) {}
+    : mesh_object(std::move(on)),
+      mesh(mesh_of(mesh_object)),
+      name(std::move(part)),
+      index(build(name, mesh, cache)) {}
 
 void bind_index(py::module_& module) {
   py::class_<Hits> hits(
@@ -150,20 +148,21 @@ void bind_index(py::module_& module) {
           "hits", &hits_in, py::arg("center"), py::arg("radius"),
           "Exactly the triangles that touch the ball, and their closest points: the same of every\n"
           "index, bit for bit.\n\ncenter: (3,) [length]; radius >= 0 [length].")
-      .def("distances", &distances, py::arg("points"), py::kw_only(),
-           py::arg("threads") = py::none(),
-           "(n,) float64 [length]: from each point to the mesh; nan for a point that is not "
-           "finite.\n"
-           "Runs without Python's lock, on every processor unless `threads` says fewer.\n\n"
-           "points: (n, 3) [length].")
-      .def_property_readonly("mesh", &IndexHandle::mesh_object, "The mesh.")
-      .def_property_readonly("name", &IndexHandle::name, "As in indices().")
+      .def(
+          "distances", &distances, py::arg("points"), py::kw_only(),
+          py::arg("threads") = py::none(),
+          R"((n,) float64 [length]: from each point to the mesh; nan for a point that is not finite.
+Runs without Python's lock, on every processor unless `threads` says fewer.
+
+points: (n, 3) [length].)")
+      .def_readonly("mesh", &IndexHandle::mesh_object, "The mesh.")
+      .def_readonly("name", &IndexHandle::name, "As in indices().")
       .def_property_readonly(
-          "memory", [](const IndexHandle& self) { return self.index().memory(); },
+          "memory", [](const IndexHandle& self) { return self.index->memory(); },
           "What it holds beside the mesh [bytes].")
       .def("__repr__", [](const IndexHandle& self) {
-        return "<keepout.Index '" + self.name() + "' of " +
-               std::to_string(self.mesh()->triangle_count()) + " triangles>";
+        return py::str("<keepout.Index '{}' of {} triangles>")
+            .format(self.name, self.mesh->triangle_count());
       });
 }
 

@@ -4,6 +4,7 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <optional>
@@ -11,12 +12,11 @@
 #include <string>
 #include <utility>
 
-#include "arguments.h"
+#include "arrays.h"
 #include "bindings.h"
-#include "handles.h"
-#include "keepout/error.h"
-#include "keepout/mesh/load_mesh.h"
-#include "views.h"
+#include "keepout/index/pd_tree.h"
+#include "keepout/index/self_intersection.h"
+#include "keepout/mesh/doctor.h"
 
 namespace keepout::python {
 namespace {
@@ -58,10 +58,10 @@ MeshHandle mesh_from(const py::object& vertices, const py::object& triangles, bo
   surface.vertices = vertices_from(vertices);
   surface.triangles = triangles_from(triangles, surface.vertices.size());
   const py::gil_scoped_release release;
-  if (!welded) return MeshHandle(std::make_shared<const Mesh>(std::move(surface)));
+  if (!welded) return {{.mesh = std::make_shared<const Mesh>(std::move(surface))}};
   // Checked as they were given: what is not finite cannot be welded.
   const Mesh checked(surface);
-  return MeshHandle(std::make_shared<const Mesh>(weld(std::move(surface))));
+  return {{.mesh = std::make_shared<const Mesh>(weld(std::move(surface)))}};
 }
 
 AnatomicalSpace space_from(const char* argument, const std::optional<std::string>& given) {
@@ -80,9 +80,9 @@ MeshHandle load(const std::filesystem::path& path, const std::optional<std::stri
     const py::gil_scoped_release release;
     return load_mesh(path, options);
   };
-  MeshHandle mesh(loaded());
+  MeshHandle mesh{loaded()};
   // Nobody looks at warnings who does not know of any.
-  for (const std::string& warning : mesh.warnings()) {
+  for (const std::string& warning : mesh.warnings) {
     warn(path.filename().string() + ": " + warning);
   }
   return mesh;
@@ -90,28 +90,125 @@ MeshHandle load(const std::filesystem::path& path, const std::optional<std::stri
 
 const double* coordinates(const Vec3& point) { return point.data(); }
 
+/// Made on the first call, which Python's lock keeps from being two.
+py::array normals_of(const py::object& self) {
+  auto& mesh = self.cast<MeshHandle&>();
+  for (std::size_t t = mesh.normals.size(); t < mesh.mesh->triangle_count(); ++t) {
+    mesh.normals.push_back(mesh.mesh->normal(static_cast<TriangleId>(t)));
+  }
+  return view(std::span<const Vec3>(mesh.normals), 3, coordinates, self);
+}
+
+/// What the doctor found; the search for self-intersections takes longest and is made when asked
+/// for.
+struct Inspection : MeshFindings {
+  std::optional<std::size_t> self_intersections;
+};
+
+Inspection inspect(const MeshHandle& mesh, bool self_intersections) {
+  const py::gil_scoped_release release;
+  Inspection inspection{examine(*mesh.mesh), std::nullopt};
+  if (self_intersections) {
+    inspection.self_intersections = count_self_intersections(*mesh.mesh, PdTree(mesh.mesh));
+  }
+  return inspection;
+}
+
+py::tuple tuple_of(const Vec3& v) { return py::make_tuple(v.x(), v.y(), v.z()); }
+
+std::string summary(const Inspection& mesh) {
+  std::ostringstream text;
+  text << mesh.triangles << " triangles, " << mesh.vertices << " vertices, " << mesh.components
+       << (mesh.components == 1 ? " component; " : " components; ")
+       << (mesh.is_inside_out()   ? "watertight, but inside out"
+           : mesh.is_watertight() ? "watertight"
+           : mesh.is_closed()     ? "closed, but not a manifold with one orientation"
+                                  : "open");
+  const auto tell = [&](std::size_t count, const char* what) {
+    if (count > 0) text << "; " << what << ": " << count;
+  };
+  tell(mesh.boundary_edges, "boundary edges");
+  tell(mesh.non_manifold_edges, "non-manifold edges");
+  tell(mesh.inconsistent_edges, "inconsistently wound edges");
+  tell(mesh.pinched_vertices, "pinched vertices");
+  tell(mesh.degenerate_triangles(), "degenerate triangles");
+  tell(mesh.duplicate_triangles, "duplicate triangles");
+  tell(mesh.unused_vertices, "unused vertices");
+  tell(mesh.self_intersections.value_or(0), "self-intersecting pairs");
+  if (mesh.looks_like_metres()) text << "; smaller than 3 in every direction: metres, not mm?";
+  return text.str();
+}
+
 }  // namespace
-
-MeshHandle::MeshHandle(std::shared_ptr<const Mesh> mesh) : mesh_(std::move(mesh)) {}
-
-MeshHandle::MeshHandle(LoadedMesh loaded)
-    : mesh_(std::move(loaded.mesh)), warnings_(std::move(loaded.warnings)), space_(loaded.space) {}
 
 const std::shared_ptr<const Mesh>& mesh_of(const py::object& mesh) {
   if (!py::isinstance<MeshHandle>(mesh)) {
     refuse("mesh", "a keepout.Mesh", Py_TYPE(mesh.ptr())->tp_name);
   }
-  return mesh.cast<const MeshHandle&>().shared();
+  return mesh.cast<const MeshHandle&>().mesh;
 }
 
-const std::vector<Vec3>& MeshHandle::normals() {
-  if (normals_.empty()) {
-    normals_.reserve(mesh_->triangle_count());
-    for (std::size_t t = 0; t < mesh_->triangle_count(); ++t) {
-      normals_.push_back(mesh_->normal(static_cast<TriangleId>(t)));
-    }
-  }
-  return normals_;
+void bind_inspection(py::module_& module) {
+  py::class_<Inspection>(module, "Inspection",
+                         "What there is to know about a mesh before it guards anything. The "
+                         "attributes are those of 'keepout inspect --json'.")
+      .def_readonly("vertices", &Inspection::vertices, "Vertices that a triangle uses.")
+      .def_readonly("unused_vertices", &Inspection::unused_vertices,
+                    "Vertices that no triangle uses.")
+      .def_readonly("triangles", &Inspection::triangles, "Triangles.")
+      .def_readonly("edges", &Inspection::edges, "Edges, each once.")
+      .def_readonly("boundary_edges", &Inspection::boundary_edges,
+                    "Edges of one triangle: holes and rims.")
+      .def_readonly("non_manifold_edges", &Inspection::non_manifold_edges,
+                    "Edges of three triangles or more.")
+      .def_readonly("inconsistent_edges", &Inspection::inconsistent_edges,
+                    "Edges whose two triangles are wound against each other.")
+      .def_readonly("pinched_vertices", &Inspection::pinched_vertices,
+                    "Vertices by which alone parts of the surface hang together.")
+      .def_readonly("repeated_vertex_triangles", &Inspection::repeated_vertex_triangles,
+                    "Triangles that name a vertex twice.")
+      .def_readonly("collinear_triangles", &Inspection::collinear_triangles,
+                    "Triangles whose three vertices are on one line, exactly.")
+      .def_readonly("duplicate_triangles", &Inspection::duplicate_triangles,
+                    "Triangles of the same three vertices as an earlier one.")
+      .def_readonly("components", &Inspection::components,
+                    "Parts held together by shared vertices.")
+      .def_readonly("edge_components", &Inspection::edge_components,
+                    "Parts held together by shared edges.")
+      .def_property_readonly(
+          "closed", [](const Inspection& i) { return i.is_closed(); },
+          "Whether every edge has two triangles or more.")
+      .def_property_readonly(
+          "watertight", [](const Inspection& i) { return i.is_watertight(); },
+          "Whether every edge has two triangles, wound alike: then there is an inside.")
+      .def_property_readonly(
+          "inside_out", [](const Inspection& i) { return i.is_inside_out(); },
+          "Whether it is watertight with normals that point into the solid.")
+      .def_property_readonly(
+          "looks_like_metres", [](const Inspection& i) { return i.looks_like_metres(); },
+          "Whether it is smaller than 3 in every direction, where millimetres are expected.")
+      .def_readonly("euler_characteristic", &Inspection::euler_characteristic,
+                    "Vertices - edges + triangles.")
+      .def_readonly("genus", &Inspection::genus,
+                    "Handles in all; None unless watertight and without pinched vertices.")
+      .def_readonly("area", &Inspection::area, "Area [length^2].")
+      .def_property_readonly(
+          "signed_volume",
+          [](const Inspection& i) {
+            return i.is_watertight() ? std::optional(i.signed_volume) : std::nullopt;
+          },
+          "Volume [length^3], below 0 if inside out; None unless watertight.")
+      .def_property_readonly(
+          "low", [](const Inspection& i) { return tuple_of(i.bounds.low); },
+          "Lowest corner of the bounds [length].")
+      .def_property_readonly(
+          "high", [](const Inspection& i) { return tuple_of(i.bounds.high); },
+          "Highest corner of the bounds [length].")
+      .def_readonly("self_intersections", &Inspection::self_intersections,
+                    "Pairs of triangles that cut through each other; None unless asked for.")
+      .def("__str__", &summary)
+      .def("__repr__",
+           [](const Inspection& i) { return "<keepout.Inspection: " + summary(i) + ">"; });
 }
 
 void bind_mesh(py::module_& module) {
@@ -128,64 +225,58 @@ void bind_mesh(py::module_& module) {
       .def_property_readonly(
           "vertices",
           [](const py::object& self) {
-            return view(self.cast<const MeshHandle&>().mesh().vertices(), 3, coordinates, self);
+            return view(self.cast<const MeshHandle&>().mesh->vertices(), 3, coordinates, self);
           },
           "(n, 3) float64 [length], read-only: the mesh's own memory.")
       .def_property_readonly(
           "triangles",
           [](const py::object& self) {
             return view(
-                self.cast<const MeshHandle&>().mesh().triangles(), 3,
+                self.cast<const MeshHandle&>().mesh->triangles(), 3,
                 [](const Corners& corners) { return corners.data(); }, self);
           },
           "(m, 3) uint32, read-only: the mesh's own memory.")
       .def_property_readonly(
-          "normals",
-          [](const py::object& self) {
-            return view(std::span<const Vec3>(self.cast<MeshHandle&>().normals()), 3, coordinates,
-                        self);
-          },
+          "normals", &normals_of,
           "(m, 3) float64, read-only: unit normals of the triangles, towards the free side; zero\n"
           "for one without an area. Made when first asked for.")
       .def_property_readonly(
           "bounds",
           [](const MeshHandle& self) {
-            const Box& box = self.mesh().bounds();
+            const Box& box = self.mesh->bounds();
             py::array_t<double> bounds({2, 3});
-            for (int i = 0; i < 3; ++i) {
-              bounds.mutable_at(0, i) = box.low[i];
-              bounds.mutable_at(1, i) = box.high[i];
-            }
+            std::copy_n(box.low.data(), 3, bounds.mutable_data(0, 0));
+            std::copy_n(box.high.data(), 3, bounds.mutable_data(1, 0));
             return bounds;
           },
           "(2, 3) float64 [length]: the lowest and the highest corner of the smallest box around.")
-      .def_property_readonly(
-          "warnings", &MeshHandle::warnings,
-          "What the file had to say, if it came from one: a list of lines, which "
-          "load_mesh\nshows as Python's warnings, too.")
+      .def_readonly("warnings", &MeshHandle::warnings,
+                    "What the file had to say, if it came from one: a list of lines, which "
+                    "load_mesh\nshows as Python's warnings, too.")
       .def_property_readonly(
           "space",
           [](const MeshHandle& self) -> std::optional<std::string> {
-            if (self.space() == AnatomicalSpace::unstated) return std::nullopt;
-            return std::string(name(self.space()));
+            if (self.space == AnatomicalSpace::unstated) return std::nullopt;
+            return std::string(name(self.space));
           },
           "The anatomical space of the coordinates, 'RAS' or 'LPS', if it is known; or None.")
-      .def("__len__", [](const MeshHandle& self) { return self.mesh().triangle_count(); })
+      .def("inspect", &inspect, py::kw_only(), py::arg("self_intersections") = false,
+           "Examines the mesh; repairs nothing. The search for self-intersections takes longest.")
+      .def("__len__", [](const MeshHandle& self) { return self.mesh->triangle_count(); })
       .def("__repr__", [](const MeshHandle& self) {
-        return "<keepout.Mesh of " + std::to_string(self.mesh().triangle_count()) + " triangles, " +
-               std::to_string(self.mesh().vertex_count()) + " vertices>";
+        return py::str("<keepout.Mesh of {} triangles, {} vertices>")
+            .format(self.mesh->triangle_count(), self.mesh->vertex_count());
       });
 
-  module.def(
-      "load_mesh", &load, py::arg("path"), py::kw_only(), py::arg("space") = py::none(),
-      py::arg("untagged") = py::none(),
-      "Reads a mesh from an STL, PLY, OBJ or OFF file, and welds it exactly. Nothing is\n"
-      "rescaled and nothing repaired: see Mesh.inspect. What is odd about it is a UserWarning, "
-      "and\n"
-      "in Mesh.warnings.\n\n"
-      "space: 'RAS' or 'LPS', which the coordinates shall be in; they are turned if the file\n"
-      "says the other one (SPACE=...). None: as they stand.\n"
-      "untagged: the space of a file that does not say. One that does is believed.");
+  module.def("load_mesh", &load, py::arg("path"), py::kw_only(), py::arg("space") = py::none(),
+             py::arg("untagged") = py::none(),
+             R"(Reads a mesh from an STL, PLY, OBJ or OFF file, and welds it exactly. Nothing is
+rescaled and nothing repaired: see Mesh.inspect. What is odd about it is a UserWarning, and
+in Mesh.warnings.
+
+space: 'RAS' or 'LPS', which the coordinates shall be in; they are turned if the file
+says the other one (SPACE=...). None: as they stand.
+untagged: the space of a file that does not say. One that does is believed.)");
 }
 
 }  // namespace keepout::python

@@ -61,8 +61,8 @@ PYBIND11_MODULE(_core, module) {
   module.attr("__version__") = KEEPOUT_VERSION;
   bind_error(module);
   bind_status(module);
-  bind_mesh(module);
   bind_inspection(module);
+  bind_mesh(module);
   bind_parts(module);
   bind_index(module);
   bind_planes(module);

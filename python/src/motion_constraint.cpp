@@ -3,12 +3,10 @@
 #include <pybind11/stl/filesystem.h>
 
 #include <array>
-#include <sstream>
 #include <string>
 #include <utility>
 
-#include "arguments.h"
-#include "bindings.h"
+#include "arrays.h"
 #include "guard.h"
 #include "keepout/registry.h"
 
@@ -50,7 +48,7 @@ std::shared_ptr<IndexHandle> index_from(const py::object& mesh, const py::object
   const std::shared_ptr<const Mesh>& surface = mesh_of(mesh);
   if (py::isinstance<IndexHandle>(index)) {
     auto shared = index.cast<std::shared_ptr<IndexHandle>>();
-    if (shared->mesh() != surface) {
+    if (shared->mesh != surface) {
       refuse("index", "an Index of the same Mesh object", "one of another mesh");
     }
     return shared;
@@ -61,89 +59,79 @@ std::shared_ptr<IndexHandle> index_from(const py::object& mesh, const py::object
   return std::make_shared<IndexHandle>(mesh, index.cast<std::string>(), cache);
 }
 
-std::string repr(const Guard& guard) {
+py::str repr(const Guard& guard) {
   const MotionConstraintSettings& s = guard.settings();
-  std::ostringstream text;
-  text << "<keepout.MotionConstraint index='" << guard.index()->name() << "' activation='"
-       << s.activation << "' solver='" << s.solver << "' radius=" << s.radius
-       << " tool_radius=" << s.tool_radius << " margin=" << s.margin << " on "
-       << guard.index()->mesh()->triangle_count() << " triangles>";
-  return text.str();
+  return py::str(
+             "<keepout.MotionConstraint index='{}' activation='{}' solver='{}' radius={:g} "
+             "tool_radius={:g} margin={:g} on {} triangles>")
+      .format(guard.index()->name, s.activation, s.solver, s.radius, s.tool_radius, s.margin,
+              guard.index()->mesh->triangle_count());
 }
 
 constexpr const char* class_doc =
-    "Keeps a tool tip out of a mesh, step by step. It is safe to use from several threads, which\n"
-    "then wait for each other; for loops of their own give each a constraint, and let them share\n"
-    "the Index.\n\n"
-    "index: a name of indices(), or an Index of this mesh. index_cache: a folder that keeps built\n"
-    "indices for the next start. activation, solver: a name of activations(), solvers().\n"
-    "radius: of the motion sphere, the farthest that the tip may go in a step [length].\n"
-    "tool_radius: of the ball around the tip that shall not touch the mesh [length].\n"
-    "margin: distance to keep beyond that [length].\n"
-    "damping: weight of |u|^2 beside the task; above 0 with more than three joints, such as 1e-6 "
-    "of\n"
-    "a squared column of the Jacobian.\n"
-    "recovery: how far a tip that is too close is led away in a step [length].\n"
-    "deepest: no tip is led out from deeper inside [length].\n"
-    "refinements: how often a certified motion is improved upon.\n"
-    "nodes: of a branch and bound for a better motion still; 0: none.\n"
-    "query: 'motion' looks for triangles as far as the motion can lead, 'sphere' in the whole "
-    "ball.\n"
-    "distances: of which tips Step.distance is told, 'where_known' or 'always'.\n"
-    "inside: a tip that starts on the forbidden side is 'led_out' or 'taken_as_is'.\n"
-    "max_triangles, max_planes, max_joints, max_rows: room for a step; one that needs more ends\n"
-    "with Status.over_capacity.";
+    R"(Keeps a tool tip out of a mesh, step by step. It is safe to use from several threads, which
+then wait for each other; for loops of their own give each a constraint, and let them share
+the Index.
+
+index: a name of indices(), or an Index of this mesh. index_cache: a folder that keeps built
+indices for the next start. activation, solver: a name of activations(), solvers().
+radius: of the motion sphere, the farthest that the tip may go in a step [length].
+tool_radius: of the ball around the tip that shall not touch the mesh [length].
+margin: distance to keep beyond that [length].
+damping: weight of |u|^2 beside the task; above 0 with more than three joints, such as 1e-6 of
+a squared column of the Jacobian.
+recovery: how far a tip that is too close is led away in a step [length].
+deepest: no tip is led out from deeper inside [length].
+refinements: how often a certified motion is improved upon.
+nodes: of a branch and bound for a better motion still; 0: none.
+query: 'motion' looks for triangles as far as the motion can lead, 'sphere' in the whole ball.
+distances: of which tips Step.distance is told, 'where_known' or 'always'.
+inside: a tip that starts on the forbidden side is 'led_out' or 'taken_as_is'.
+max_triangles, max_planes, max_joints, max_rows: room for a step; one that needs more ends
+with Status.over_capacity.)";
 
 constexpr const char* step_doc =
-    "The allowed motion nearest to the one desired: a Step. It remembers where the last step led; "
-    "a\n"
-    "tip from elsewhere is placed anew. A number that is not finite gives Status.invalid_input.\n\n"
-    "tip: (3,) in the frame of the mesh [length]. desired: (3,), the increment asked for "
-    "[length].\n"
-    "jacobian: (3, n), of the tip in the joints that move it [length / unit of the joint]; with n\n"
-    "above 3 give the constraint a damping above 0, or the step is Status.ill_posed.\n"
-    "rows: a pair, matrix (m, n) and bounds (m,), which the increment u of the joints (or of the\n"
-    "tip, n = 3) must satisfy: matrix @ u >= bounds.";
+    R"(The allowed motion nearest to the one desired: a Step. It remembers where the last step led; a
+tip from elsewhere is placed anew. A number that is not finite gives Status.invalid_input.
+
+tip: (3,) in the frame of the mesh [length]. desired: (3,), the increment asked for [length].
+jacobian: (3, n), of the tip in the joints that move it [length / unit of the joint]; with n
+above 3 give the constraint a damping above 0, or the step is Status.ill_posed.
+rows: a pair, matrix (m, n) and bounds (m,), which the increment u of the joints (or of the
+tip, n = 3) must satisfy: matrix @ u >= bounds.)";
 
 constexpr const char* steps_doc =
-    "One step for each pose, each for itself: every tip is placed anew, so that the result does "
-    "not\n"
-    "depend on the order or on the number of threads. Runs without Python's lock. Placing a tip "
-    "may\n"
-    "take longer than its step; where sides are known, inside='taken_as_is' does without.\n\n"
-    "tips: (n, 3) [length]. desired: (n, 3) [length]. A single one of either, (3,), serves all of\n"
-    "the other. Taken without a copy if they are float64 "
-    "and\n"
-    "C-contiguous. threads: 1 to 1024; None for one a processor. out: a Steps to write to; None "
-    "for\n"
-    "a new one. A pose that is not finite has Status.invalid_input and zero motion.";
+    R"(One step for each pose, each for itself: every tip is placed anew, so that the result does not
+depend on the order or on the number of threads. Runs without Python's lock. Placing a tip may
+take longer than its step; where sides are known, inside='taken_as_is' does without.
+
+tips: (n, 3) [length]. desired: (n, 3) [length]. A single one of either, (3,), serves all of
+the other. Taken without a copy if they are float64 and
+C-contiguous. threads: 1 to 1024; None for one a processor. out: a Steps to write to; None for
+a new one. A pose that is not finite has Status.invalid_input and zero motion.)";
 
 constexpr const char* replay_doc =
-    "The steps of 'keepout replay', one after another: a Steps. Runs without Python's lock, on "
-    "one\n"
-    "processor, as each step may depend on the last.\n\n"
-    "poses: (n, 6) [length]: a tip and a desired increment a row; with closed_loop, a goal and a\n"
-    "reset position, of which the first is where the tip starts. max_step: longest increment "
-    "asked\n"
-    "for in a closed loop [length]. out: a Steps to write to; None for a new one.";
+    R"(The steps of 'keepout replay', one after another: a Steps. Runs without Python's lock, on one
+processor, as each step may depend on the last.
+
+poses: (n, 6) [length]: a tip and a desired increment a row; with closed_loop, a goal and a
+reset position, of which the first is where the tip starts. max_step: longest increment asked
+for in a closed loop [length]. out: a Steps to write to; None for a new one.)";
 
 constexpr const char* simulate_doc =
-    "Closed loops: in each cycle the tip makes for where the hand is, as far as the step allows.\n"
-    "Loops share nothing; each is done by one thread. Runs without Python's lock.\n\n"
-    "starts: (m, 3), where the tips start [length]. hands: (m, cycles, 3), where the hand is in "
-    "each\n"
-    "cycle [length]. max_step: longest increment asked for in a cycle [length], at most the "
-    "radius.\n"
-    "threads: 1 to 1024; None for one a processor. out: a Simulation to write to; None for a new "
-    "one.";
+    R"(Closed loops: in each cycle the tip makes for where the hand is, as far as the step allows.
+Loops share nothing; each is done by one thread. Runs without Python's lock.
+
+starts: (m, 3), where the tips start [length]. hands: (m, cycles, 3), where the hand is in each
+cycle [length]. max_step: longest increment asked for in a cycle [length], at most the radius.
+threads: 1 to 1024; None for one a processor. out: a Simulation to write to; None for a new one.)";
 
 constexpr const char* polytope_doc =
-    "The free space around a tip as one convex polytope, for a QP, an MPC or a sampler of your "
-    "own:\n"
-    "every motion that stays within all planes and within `radius` keeps the margin. Sides are "
-    "not\n"
-    "asked about: around a tip inside it is the space inside.\n\n"
-    "tip: (3,) [length]; radius >= 0 [length].";
+    R"(The free space around a tip as one convex polytope, for a QP, an MPC or a sampler of your own:
+every motion that stays within all planes and within `radius` keeps the margin. Sides are not
+asked about: around a tip inside it is the space inside.
+
+tip: (3,) [length]; radius >= 0 [length].)";
 
 }  // namespace
 
@@ -211,7 +199,7 @@ void bind_motion_constraint(py::module_& module) {
            py::arg("max_step") = 0.5, py::arg("threads") = py::none(), py::arg("out") = py::none(),
            simulate_doc)
       .def_property_readonly(
-          "mesh", [](const Guard& self) { return self.index()->mesh_object(); }, "The mesh.")
+          "mesh", [](const Guard& self) { return self.index()->mesh_object; }, "The mesh.")
       .def_property_readonly("index", &Guard::index, "Its Index, which others may share.")
       .def_property_readonly(
           "radius", [](const Guard& self) { return self.settings().radius; },

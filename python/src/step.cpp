@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "step.h"
-
 #include <pybind11/stl.h>
 
 #include <array>
 #include <string>
 #include <vector>
 
-#include "arguments.h"
+#include "arrays.h"
 #include "bindings.h"
-#include "views.h"
 
 namespace keepout::python {
 namespace {
@@ -27,15 +24,6 @@ Status status_from(py::ssize_t value) {
 }
 
 }  // namespace
-
-StepResult::StepResult(const Step& step)
-    : status(step.status),
-      motion(step.motion),
-      increment(step.increment.begin(), step.increment.end()),
-      planes{{step.planes.begin(), step.planes.end()}},
-      active(step.active.begin(), step.active.end()),
-      triangles(step.triangles),
-      distance(step.distance) {}
 
 void bind_status(py::module_& module) {
   std::vector<std::string> names;
@@ -86,8 +74,8 @@ void bind_planes(py::module_& module) {
           "reason", [](const FreeSpace& self) { return reason(self.status); },
           "One line on what happened and what to do about it.")
       .def("__repr__", [](const FreeSpace& self) {
-        return "<keepout.Polytope: " + std::string(name(self.status)) + ", " +
-               std::to_string(self.planes.size()) + " planes>";
+        return py::str("<keepout.Polytope: {}, {} planes>")
+            .format(name(self.status), self.planes.size());
       });
 }
 
@@ -133,12 +121,9 @@ void bind_step(py::module_& module) {
           "rule does not come by it, unless the constraint was made with "
           "distances='always'.")
       .def("__repr__", [](const StepResult& self) {
-        const auto number = [](double value) {
-          return py::repr(py::float_(value)).cast<std::string>();
-        };
-        return "<keepout.Step: " + std::string(name(self.status)) + ", motion (" +
-               number(self.motion.x()) + ", " + number(self.motion.y()) + ", " +
-               number(self.motion.z()) + ")>";
+        const Vec3& u = self.motion;
+        return py::str("<keepout.Step: {}, motion ({}, {}, {})>")
+            .format(name(self.status), u.x(), u.y(), u.z());
       });
 }
 

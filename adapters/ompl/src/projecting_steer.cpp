@@ -9,8 +9,6 @@
 namespace keepout {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 bool is_within(const Box& box, const Vec3& point) noexcept {
   return (point.array() >= box.low.array()).all() && (point.array() <= box.high.array()).all();
 }
@@ -32,10 +30,6 @@ ProjectingSteer::ProjectingSteer(MotionConstraint& guard, const SteerOptions& op
         "a steer needs a sliding step above zero and not above the radius of its guard, a least "
         "gain from 0 to below 1, and one step at least");
   }
-}
-
-ProjectingSteer::Way ProjectingSteer::steer(const Vec3& from, const Vec3& towards, double longest) {
-  return steer(from, towards, longest, {Vec3::Constant(-infinity), Vec3::Constant(infinity)});
 }
 
 ProjectingSteer::Way ProjectingSteer::steer(const Vec3& from, const Vec3& towards, double longest,

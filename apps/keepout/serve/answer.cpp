@@ -32,31 +32,14 @@ void append_numbers(std::string& out, const Numbers& numbers) {
   append_list(out, numbers, [&](double number) { append_number(out, number); });
 }
 
-template <class Ending>
-void append_status(std::string& out, Ending status, bool is_ok) {
-  out += is_ok ? "\"ok\":true,\"status\":" : "\"ok\":false,\"status\":";
-  append_string(out, name(status));
-}
-
 /// What became of a step or a polytope, with a reason unless it is ok.
 template <class Result>
 void append_outcome(std::string& out, const Result& result) {
-  append_status(out, result.status, result.ok());
+  out += result.ok() ? "\"ok\":true,\"status\":" : "\"ok\":false,\"status\":";
+  append_string(out, name(result.status));
   if (result.ok()) return;
   out += ",\"reason\":";
   append_string(out, result.reason());
-}
-
-template <class Ending>
-void append_statuses(std::string& out, Ending last, bool (*is_ok)(Ending)) {
-  append_list(out, std::views::iota(0, static_cast<int>(last) + 1), [&](int i) {
-    const auto status = static_cast<Ending>(i);
-    out += '{';
-    append_status(out, status, is_ok(status));
-    out += ",\"reason\":";
-    append_string(out, reason(status));
-    out += '}';
-  });
 }
 
 }  // namespace
@@ -136,15 +119,6 @@ void append_error(std::string& out, std::string_view id, std::string_view kind,
   append_string(out, message);
   out += '}';
   end_answer(out);
-}
-
-std::string status_members() {
-  std::string text = "\"statuses\":";
-  append_statuses<Status>(text, Status::margin_too_small, &is_ok);
-  text += ",\"polytope_statuses\":";
-  append_statuses<PolytopeStatus>(text, PolytopeStatus::whole_tool,
-                                  [](PolytopeStatus s) { return s == PolytopeStatus::found; });
-  return text;
 }
 
 }  // namespace keepout::app

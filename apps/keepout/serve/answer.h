@@ -32,7 +32,4 @@ void append_polytope(std::string& out, const Polytope& polytope);
 void append_error(std::string& out, std::string_view id, std::string_view kind,
                   std::string_view message);
 
-/// Every status that a step or a polytope may end with, as members of an object.
-std::string status_members();
-
 }  // namespace keepout::app

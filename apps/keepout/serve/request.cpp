@@ -18,9 +18,13 @@ constexpr int deepest = 8;                    // more than any request needs
 constexpr std::size_t longest_excerpt = 200;  // of somebody else's text in a message [bytes]
 
 /// JSON, but no request.
-struct NotARequest {
-  std::string message;
-};
+[[noreturn]] void refuse(std::string message) {
+  throw Refusal{"not_a_request", std::move(message)};
+}
+
+[[noreturn]] void refuse_as_json(const std::string& why) {
+  throw Refusal{"not_json", "the line is not JSON: " + why};
+}
 
 /// What a request to do something has beside it; unused places are empty.
 struct VerbKeys {
@@ -59,7 +63,7 @@ std::string verb_list() {
 
 template <class Names>
 bool contains(const Names& names, std::string_view name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
+  return std::ranges::find(names, name) != names.end();
 }
 
 bool is_id(const Json& value) {
@@ -92,95 +96,89 @@ bool fill(NumberTable& table, const Json& value) {
     }
     if (table.rows++ > 0 && row.size() != table.columns) return false;
     table.columns = row.size();
-    return std::all_of(row.begin(), row.end(), add);
+    return std::ranges::all_of(row, add);
   };
   if (shape.rank == 1) return add_row(value);
   if (shape.rank == 2) {
     return value.is_array() && value.size() >= shape.fewest_rows &&
-           value.size() <= shape.most_rows && std::all_of(value.begin(), value.end(), add_row);
+           value.size() <= shape.most_rows && std::ranges::all_of(value, add_row);
   }
   table.rows = table.columns = 1;
   return add(value);
 }
 
 /// Fills the request with a line; what a request must have beside is checked by check(). Throws
-/// NotARequest.
+/// Refusal.
 void take(const Json& line, Request& request) {
   if (!line.is_object()) {
-    throw NotARequest{"a request is one object on a line: {\"id\":1,\"do\":\"ping\"}"};
+    refuse("a request is one object on a line: {\"id\":1,\"do\":\"ping\"}");
   }
   for (const auto& [key, value] : line.get_ref<const Json::object_t&>()) {
     if (key == "id") {
       if (is_id(value)) continue;
-      throw NotARequest{"'id' must be a whole number of at most 64 bits, a string of at most " +
-                        std::to_string(longest_id) + " bytes, or null"};
+      refuse("'id' must be a whole number of at most 64 bits, a string of at most " +
+             std::to_string(longest_id) + " bytes, or null");
     }
     if (key == "do") {
-      if (!value.is_string()) throw NotARequest{"'do' must be one of " + verb_list()};
+      if (!value.is_string()) refuse("'do' must be one of " + verb_list());
       continue;
     }
     const auto tables = request.tables();
-    const auto table = std::find_if(tables.begin(), tables.end(),
-                                    [&](const NumberTable* t) { return t->name == key; });
+    const auto table = std::ranges::find(tables, key, [](const NumberTable* t) { return t->name; });
     if (table == tables.end()) {
-      throw NotARequest{"there is no key " + in_quotes(key) +
-                        " in a request; see 'keepout serve --help'"};
+      refuse("there is no key " + in_quotes(key) + " in a request; see 'keepout serve --help'");
     }
     (*table)->is_given = fill(**table, value);
-    if (!(*table)->is_given)
-      throw NotARequest{in_quotes(key) + " must be " + (*table)->description};
+    if (!(*table)->is_given) refuse(in_quotes(key) + " must be " + (*table)->description);
   }
 }
 
-/// Whether a table is there just where the verb wants it. Throws NotARequest.
+/// Whether a table is there just where the verb wants it. Throws Refusal.
 void check(const NumberTable& table, const VerbKeys& verb) {
   const bool is_needed = contains(verb.needed, table.name);
   if (is_needed && !table.is_given) {
-    throw NotARequest{in_quotes(table.name) + " is missing: " + in_quotes(verb.name) +
-                      " needs it, " + table.description};
+    refuse(in_quotes(table.name) + " is missing: " + in_quotes(verb.name) + " needs it, " +
+           table.description);
   }
   if (is_needed || !table.is_given || contains(verb.optional, table.name)) return;
   std::string takes = "'id', 'do'";
   for (const std::string_view name : verb.needed) add_to_list(takes, name);
   for (const std::string_view name : verb.optional) add_to_list(takes, name);
-  throw NotARequest{in_quotes(table.name) + " is nothing that " + in_quotes(verb.name) +
-                    " takes; it takes " + takes};
+  refuse(in_quotes(table.name) + " is nothing that " + in_quotes(verb.name) + " takes; it takes " +
+         takes);
 }
 
 /// Whether all is there that `asked`, the value of 'do', needs, and fits together. Throws
-/// NotARequest.
+/// Refusal.
 void check(Request& request, const std::string& asked) {
-  const auto known = std::find_if(verbs.begin(), verbs.end(),
-                                  [&](const VerbKeys& keys) { return keys.name == asked; });
+  const auto known = std::ranges::find(verbs, asked, &VerbKeys::name);
   if (known == verbs.end()) {
-    throw NotARequest{asked.empty() ? "'do' is missing: say what to do, one of " + verb_list()
-                                    : "there is nothing to do by the name " + in_quotes(asked) +
-                                          "; 'do' must be one of " + verb_list()};
+    refuse(asked.empty() ? "'do' is missing: say what to do, one of " + verb_list()
+                         : "there is nothing to do by the name " + in_quotes(asked) +
+                               "; 'do' must be one of " + verb_list());
   }
   request.verb = known->verb;
   for (const NumberTable* table : request.tables()) check(*table, *known);
   const auto& [rows, bounds, jacobian] = std::tie(request.rows, request.bounds, request.jacobian);
   if (rows.is_given != bounds.is_given) {
-    throw NotARequest{"'rows' and 'bounds' belong together: rows . u >= bounds"};
+    refuse("'rows' and 'bounds' belong together: rows . u >= bounds");
   }
-  if (rows.rows != bounds.columns) {
-    throw NotARequest{"'bounds' must have one number for each of the 'rows'"};
-  }
+  if (rows.rows != bounds.columns) refuse("'bounds' must have one number for each of the 'rows'");
   if (rows.rows > 0 && rows.columns != (jacobian.is_given ? jacobian.columns : 3)) {
-    throw NotARequest{
+    refuse(
         "each of the 'rows' must have one number for each column of the 'jacobian', or three "
-        "without one"};
+        "without one");
   }
 }
 
 /// The line as JSON. The id is taken as soon as it is read, for a line that breaks off. Throws what
-/// the library throws, and NotARequest, for what its value no longer tells.
+/// the library throws, and Refusal, for what its value no longer tells.
 Json parsed(std::string_view line, Request& request) {
   std::set<std::string> keys;
   std::string key;
   std::string given_twice;
   const auto listen = [&](int depth, Json::parse_event_t event, const Json& value) {
-    if (depth > deepest) throw NotARequest{"the line is nested more deeply than any request"};
+    if (depth > deepest) refuse("the line is nested more deeply than any request");
     if (depth == 1 && event == Json::parse_event_t::key) {
       key = value.get_ref<const std::string&>();
       if (!keys.insert(key).second) given_twice = key;
@@ -190,7 +188,7 @@ Json parsed(std::string_view line, Request& request) {
     return true;
   };
   Json json = Json::parse(line.begin(), line.end(), listen);
-  if (!given_twice.empty()) throw NotARequest{in_quotes(given_twice) + " is given twice"};
+  if (!given_twice.empty()) refuse(in_quotes(given_twice) + " is given twice");
   return json;
 }
 
@@ -233,36 +231,24 @@ Request::Request(const RequestLimits& limits)
   id.reserve(6 * longest_id + 2);
 }
 
-std::string_view name(Refusal refusal) noexcept {
-  constexpr std::array<std::string_view, 4> names{"none", "line_too_long", "not_json",
-                                                  "not_a_request"};
-  return names[static_cast<std::size_t>(refusal)];
-}
-
-Refusal RequestReader::read(std::string_view line) {
-  request_.id = "null";
-  for (NumberTable* table : request_.tables()) {
+void read_request(std::string_view line, Request& request) {
+  request.id = "null";
+  for (NumberTable* table : request.tables()) {
     table->is_given = false;
     table->rows = table->columns = 0;
     table->numbers.clear();
   }
   // The library would take it for the end of the line.
   if (const std::size_t at = line.find('\0'); at != std::string_view::npos) {
-    message_ = "the line is not JSON: column " + std::to_string(at + 1) + ": a NUL byte";
-    return Refusal::not_json;
+    refuse_as_json("column " + std::to_string(at + 1) + ": a NUL byte");
   }
   try {
-    const Json json = parsed(line, request_);
-    take(json, request_);
-    check(request_, json.value("do", std::string()));
-  } catch (const NotARequest& wrong) {
-    message_ = wrong.message;
-    return Refusal::not_a_request;
+    const Json json = parsed(line, request);
+    take(json, request);
+    check(request, json.value("do", std::string()));
   } catch (const Json::exception& error) {
-    message_ = "the line is not JSON: " + cause(error.what());
-    return Refusal::not_json;
+    refuse_as_json(cause(error.what()));
   }
-  return Refusal::none;
 }
 
 }  // namespace keepout::app

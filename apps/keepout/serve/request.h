@@ -58,34 +58,15 @@ struct Request {
   }
 };
 
-/// Why a line was not carried out.
-enum class Refusal : std::uint8_t {
-  none,
-  line_too_long,
-  not_json,
-  not_a_request,  // JSON, but with another key, type, size or value than a request has
+/// Thrown for a line that is not carried out: what the client is told.
+struct Refusal {
+  std::string_view kind;  // see --help
+  std::string message;    // what is wrong and what to do
 };
 
-/// The name as it stands in the enumeration, for answers.
-std::string_view name(Refusal refusal) noexcept;
-
-/// Reads requests into memory that is made once.
-class RequestReader {
- public:
-  explicit RequestReader(const RequestLimits& limits) : request_(limits) {}
-
-  /// Reads a line. Whatever the outcome, request().id is what is to be echoed; the rest of the
-  /// request holds only after Refusal::none.
-  Refusal read(std::string_view line);
-
-  const Request& request() const noexcept { return request_; }
-
-  /// What is wrong with the line and what to do, unless Refusal::none.
-  const std::string& message() const noexcept { return message_; }
-
- private:
-  Request request_;
-  std::string message_;
-};
+/// Reads a line into memory that is made once. Throws Refusal: "not_json", or "not_a_request" for
+/// JSON with another key, type, size or value than a request has. Whatever the outcome, request.id
+/// is what is to be echoed.
+void read_request(std::string_view line, Request& request);
 
 }  // namespace keepout::app

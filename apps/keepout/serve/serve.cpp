@@ -23,7 +23,7 @@
 #include "number_text.h"
 #include "progress.h"
 #include "serve/answer.h"
-#include "serve/session.h"
+#include "serve/service.h"
 #include "serve/unix_socket.h"
 #include "stop_signal.h"
 
@@ -118,42 +118,6 @@ class Connection {
   std::string trouble_;
 };
 
-/// Waits for everyone, in the same memory each time, and serves them in turn.
-class Server {
- public:
-  explicit Server(const StopSignal& stop) : stop_(stop) {}
-
-  std::list<Connection>& connections() noexcept { return connections_; }
-
-  /// One turn for all, once there is something to do for one. False: the end is asked for. `door`:
-  /// to wait at for others, -1 for none. `patience`: how long to wait. [ms]
-  bool take_turn(int door, int patience) {
-    files_.assign({{stop_.file(), POLLIN, 0}, {door, POLLIN, 0}});
-    for (const Connection& connection : connections_) {
-      if (connection.has_work()) patience = 0;
-      for (const pollfd& file : connection.awaited()) files_.push_back(file);
-    }
-    if (::poll(files_.data(), files_.size(), patience) < 0) {
-      for (pollfd& file : files_) file.revents = 0;  // interrupted
-    }
-    if (files_[0].revents != 0) return false;
-    const pollfd* happened = &files_[2];
-    for (Connection& connection : connections_) {
-      connection.serve(happened);
-      happened += 2;
-    }
-    return true;
-  }
-
-  /// Whether someone waits at the door.
-  bool is_called() const noexcept { return files_[1].revents != 0; }
-
- private:
-  const StopSignal& stop_;
-  std::list<Connection> connections_;
-  std::vector<pollfd> files_;
-};
-
 void turn_away(int client, std::size_t most_clients) {
   std::string out;
   append_error(out, "null", "too_many_clients",
@@ -165,32 +129,40 @@ void turn_away(int client, std::size_t most_clients) {
   ::close(client);
 }
 
-/// Serves one client over stdin and stdout until he ends, or `stop`.
-int serve_stdio(Service& service, const StopSignal& stop, std::ostream& log) {
-  Server server(stop);
-  const Connection& connection = server.connections().emplace_back(
-      service, STDIN_FILENO, STDOUT_FILENO, Connection::Kind::files);
-  while (!connection.is_done()) {
-    if (!server.take_turn(-1, for_ever)) return EXIT_SUCCESS;
+/// Serves clients in turn until `stop`: of a socket, one more than `most_clients` at a time is told
+/// so, and left; without a socket the one client of stdin and stdout, until he ends. Returns what
+/// went wrong with these.
+std::string serve_clients(Service& service, const StopSignal& stop, UnixSocket* socket,
+                          std::size_t most_clients) {
+  std::list<Connection> clients;
+  if (socket == nullptr) {
+    clients.emplace_back(service, STDIN_FILENO, STDOUT_FILENO, Connection::Kind::files);
   }
-  if (connection.trouble().empty()) return EXIT_SUCCESS;
-  log << "keepout: " << connection.trouble() << '\n';
-  return EXIT_FAILURE;
-}
-
-/// Serves clients of a socket, in turn, until `stop`. One more than `most_clients` at a time is
-/// told so, and left.
-int serve_socket(Service& service, const StopSignal& stop, UnixSocket& socket,
-                 std::size_t most_clients) {
-  Server server(stop);
-  std::list<Connection>& clients = server.connections();
+  std::vector<pollfd> files;  // the same memory each time
   bool is_out_of_files = false;
-  // Without room for another open file, the door is tried again from time to time.
-  while (server.take_turn(is_out_of_files ? -1 : socket.file(), is_out_of_files ? 100 : for_ever)) {
+  while (true) {
+    // Without room for another open file, the door is tried again from time to time.
+    const int door = socket == nullptr || is_out_of_files ? -1 : socket->file();
+    int patience = is_out_of_files ? 100 : for_ever;  // [ms]
+    files.assign({{stop.file(), POLLIN, 0}, {door, POLLIN, 0}});
+    for (const Connection& client : clients) {
+      if (client.has_work()) patience = 0;
+      for (const pollfd& file : client.awaited()) files.push_back(file);
+    }
+    if (::poll(files.data(), files.size(), patience) < 0) {
+      for (pollfd& file : files) file.revents = 0;  // interrupted
+    }
+    if (files[0].revents != 0) return {};
+    const pollfd* happened = &files[2];
+    for (Connection& client : clients) {
+      client.serve(happened);
+      happened += 2;
+    }
+    if (socket == nullptr && clients.front().is_done()) return clients.front().trouble();
     clients.remove_if([](const Connection& client) { return client.is_done(); });
-    if (!is_out_of_files && !server.is_called()) continue;
+    if (!is_out_of_files && files[1].revents == 0) continue;
     for (int i = 0; i < 8; ++i) {  // at a time, so that nobody who is in waits for long
-      const int client = socket.accept(is_out_of_files);
+      const int client = socket->accept(is_out_of_files);
       if (client < 0) break;
       if (clients.size() < most_clients) {
         clients.emplace_back(service, client, client, Connection::Kind::socket);
@@ -199,7 +171,6 @@ int serve_socket(Service& service, const StopSignal& stop, UnixSocket& socket,
       }
     }
   }
-  return EXIT_SUCCESS;
 }
 
 /// Otherwise the next file that is opened would be taken for it.
@@ -224,17 +195,16 @@ int serve(const ServeOptions& options, std::ostream& log) {
   Service service(loaded.mesh, settings);
   const StopSignal stop;
   ::signal(SIGPIPE, SIG_IGN);  // a client who has gone is an error of write() alone
-  const auto tell_where = [&](const std::string& where) {
-    log << "keepout: serving " << options.service.mesh.string() << " ("
-        << counted(loaded.mesh->triangle_count(), "triangle") << ") on " << where << std::endl;
-  };
-  if (!options.socket) {
-    tell_where("stdin and stdout");
-    return serve_stdio(service, stop, log);
-  }
-  UnixSocket socket(*options.socket);
-  tell_where(options.socket->string());
-  return serve_socket(service, stop, socket, options.most_clients);
+  std::optional<UnixSocket> socket;
+  if (options.socket) socket.emplace(*options.socket);
+  log << "keepout: serving " << options.service.mesh.string() << " ("
+      << counted(loaded.mesh->triangle_count(), "triangle") << ") on "
+      << (socket ? options.socket->string() : "stdin and stdout") << std::endl;
+  const std::string trouble =
+      serve_clients(service, stop, socket ? &*socket : nullptr, options.most_clients);
+  if (trouble.empty()) return EXIT_SUCCESS;
+  log << "keepout: " << trouble << '\n';
+  return EXIT_FAILURE;
 }
 
 const std::string_view protocol_help =

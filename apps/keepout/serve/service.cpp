@@ -2,6 +2,7 @@
 #include "serve/service.h"
 
 #include <algorithm>
+#include <cstring>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -12,7 +13,12 @@
 namespace keepout::app {
 namespace {
 
-constexpr int protocol = 1;  // goes up when an old client would no longer be understood
+using OrderedJson = nlohmann::ordered_json;
+
+constexpr int protocol = 1;             // goes up when an old client would no longer be understood
+constexpr std::size_t longest_end = 2;  // of a line: "\r\n" [bytes]
+constexpr std::size_t most_work = 16;   // of a turn, in steps
+constexpr std::size_t enough_output = std::size_t{1} << 16;  // for a turn [bytes]
 
 /// With room for the largest request. A client has no other way to a distance than a step.
 MotionConstraintSettings with_room_for(MotionConstraintSettings settings,
@@ -23,44 +29,57 @@ MotionConstraintSettings with_room_for(MotionConstraintSettings settings,
   return settings;
 }
 
-std::string info_members(const Mesh& mesh, const ServiceSettings& settings) {
-  using OrderedJson = nlohmann::ordered_json;
+/// Without its braces.
+std::string members_of(const OrderedJson& object) {
+  // A path need not be UTF-8.
+  const std::string text = object.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
+  return text.substr(1, text.size() - 2);
+}
+
+template <class Ending>
+OrderedJson statuses(Ending last, bool (*is_ok)(Ending)) {
+  OrderedJson list = OrderedJson::array();
+  for (int i = 0; i <= static_cast<int>(last); ++i) {
+    const auto status = static_cast<Ending>(i);
+    list.push_back({{"ok", is_ok(status)}, {"status", name(status)}, {"reason", reason(status)}});
+  }
+  return list;
+}
+
+OrderedJson info(const Mesh& mesh, const ServiceSettings& settings) {
   const MotionConstraintSettings& c = settings.constraint;
   const auto array = [](const Vec3& v) { return OrderedJson{v.x(), v.y(), v.z()}; };
   const std::string space(name(settings.space));
-  OrderedJson info{{"version", KEEPOUT_VERSION},
-                   {"protocol", protocol},
-                   {"unit", "mm"},
-                   {"frame", "of the mesh"},
-                   {"mesh",
-                    {{"file", settings.mesh.string()},
-                     {"space", space},
-                     {"triangles", mesh.triangle_count()},
-                     {"vertices", mesh.vertex_count()},
-                     {"low", array(mesh.bounds().low)},
-                     {"high", array(mesh.bounds().high)},
-                     {"watertight", is_watertight(mesh)}}},
-                   {"settings",
-                    {{"index", c.index},
-                     {"activation", c.activation},
-                     {"solver", c.solver},
-                     {"radius", c.radius},
-                     {"tool_radius", c.tool_radius},
-                     {"margin", c.margin},
-                     {"damping", c.damping},
-                     {"recovery", c.recovery},
-                     {"deepest", c.deepest},
-                     {"refinements", c.refinements},
-                     {"branches", c.nodes},
-                     {"query", c.query == Query::motion ? "motion" : "sphere"}}},
-                   {"limits",
-                    {{"line", settings.longest_line},
-                     {"joints", settings.limits.joints},
-                     {"rows", settings.limits.rows},
-                     {"motions", settings.limits.motions}}}};
-  // A path need not be UTF-8.
-  const std::string text = info.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
-  return text.substr(1, text.size() - 2);
+  return {{"version", KEEPOUT_VERSION},
+          {"protocol", protocol},
+          {"unit", "mm"},
+          {"frame", "of the mesh"},
+          {"mesh",
+           {{"file", settings.mesh.string()},
+            {"space", space},
+            {"triangles", mesh.triangle_count()},
+            {"vertices", mesh.vertex_count()},
+            {"low", array(mesh.bounds().low)},
+            {"high", array(mesh.bounds().high)},
+            {"watertight", is_watertight(mesh)}}},
+          {"settings",
+           {{"index", c.index},
+            {"activation", c.activation},
+            {"solver", c.solver},
+            {"radius", c.radius},
+            {"tool_radius", c.tool_radius},
+            {"margin", c.margin},
+            {"damping", c.damping},
+            {"recovery", c.recovery},
+            {"deepest", c.deepest},
+            {"refinements", c.refinements},
+            {"branches", c.nodes},
+            {"query", c.query == Query::motion ? "motion" : "sphere"}}},
+          {"limits",
+           {{"line", settings.longest_line},
+            {"joints", settings.limits.joints},
+            {"rows", settings.limits.rows},
+            {"motions", settings.limits.motions}}}};
 }
 
 Vec3 vector(std::span<const double> numbers) { return {numbers[0], numbers[1], numbers[2]}; }
@@ -71,47 +90,92 @@ bool is_blank(std::string_view text) {
 
 }  // namespace
 
+LineReader::LineReader(std::size_t longest) : longest_(longest), buffer_(longest + longest_end) {}
+
+std::span<char> LineReader::room() noexcept {
+  if (begin_ == end_) {
+    begin_ = searched_ = end_ = 0;
+  } else if (begin_ > 0 && end_ == buffer_.size()) {
+    std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
+    searched_ -= begin_;
+    end_ -= begin_;
+    begin_ = 0;
+  }
+  return {buffer_.data() + end_, buffer_.size() - end_};
+}
+
+std::optional<Line> LineReader::next() noexcept {
+  const auto first = buffer_.begin() + static_cast<std::ptrdiff_t>(searched_);
+  const auto last = buffer_.begin() + static_cast<std::ptrdiff_t>(end_);
+  const auto newline = std::find(first, last, '\n');
+  if (newline != last) {
+    const auto at = static_cast<std::size_t>(newline - buffer_.begin());
+    return finished(at, at + 1);
+  }
+  searched_ = end_;
+  if (has_ended_ && (begin_ < end_ || is_skipping_)) return finished(end_, end_);
+  if (is_skipping_ || end_ - begin_ == buffer_.size()) {
+    is_skipping_ = true;
+    begin_ = searched_ = end_ = 0;
+  }
+  return std::nullopt;
+}
+
+std::optional<Line> LineReader::finished(std::size_t line_end, std::size_t next_begin) noexcept {
+  std::string_view text(buffer_.data() + begin_, line_end - begin_);
+  if (text.ends_with('\r')) text.remove_suffix(1);
+  begin_ = searched_ = next_begin;
+  const bool is_too_long = is_skipping_ || text.size() > longest_;
+  is_skipping_ = false;
+  return Line{is_too_long, is_too_long ? std::string_view() : text};
+}
+
 Service::Service(std::shared_ptr<const Mesh> mesh, const ServiceSettings& settings)
     : constraint_(
           make_motion_constraint(mesh, with_room_for(settings.constraint, settings.limits))),
       longest_line_(settings.longest_line),
-      reader_(settings.limits),
+      request_(settings.limits),
       jacobian_(3, static_cast<Eigen::Index>(settings.limits.joints)),
-      info_(info_members(*mesh, settings)),
-      statuses_(status_members()) {}
+      info_(members_of(info(*mesh, settings))),
+      statuses_(
+          members_of({{"statuses", statuses<Status>(Status::margin_too_small, &is_ok)},
+                      {"polytope_statuses",
+                       statuses<PolytopeStatus>(PolytopeStatus::whole_tool, [](PolytopeStatus s) {
+                         return s == PolytopeStatus::found;
+                       })}})) {}
 
 std::size_t Service::answer(const Line& line, SideWatch& tip, std::string& out) {
   if (line.is_too_long) {
-    append_error(out, "null", name(Refusal::line_too_long),
+    append_error(out, "null", "line_too_long",
                  "the line has more than " + std::to_string(longest_line_) +
                      " bytes and was skipped: send less at a time, or raise --max-line");
     return 1;
   }
   if (is_blank(line.text)) return 0;
-  const Refusal refusal = reader_.read(line.text);
-  if (refusal != Refusal::none) {
-    append_error(out, reader_.request().id, name(refusal), reader_.message());
+  try {
+    read_request(line.text, request_);
+  } catch (const Refusal& refusal) {
+    append_error(out, request_.id, refusal.kind, refusal.message);
     return 1;
   }
-  begin_answer(out, reader_.request().id);
+  begin_answer(out, request_.id);
   const std::size_t work = carry_out(tip, out);
   end_answer(out);
   return work;
 }
 
 std::size_t Service::carry_out(SideWatch& tip, std::string& out) {
-  const Request& request = reader_.request();
   out += ',';
-  switch (request.verb) {
+  switch (request_.verb) {
     case Verb::step:
       append_single_step(tip, out);
       break;
     case Verb::steps:
       append_batch(tip, out);
-      return std::max<std::size_t>(request.motions.rows, 1);
+      return std::max<std::size_t>(request_.motions.rows, 1);
     case Verb::polytope:
       append_polytope(
-          out, constraint_.free_polytope(vector(request.tip.numbers), request.radius.numbers[0]));
+          out, constraint_.free_polytope(vector(request_.tip.numbers), request_.radius.numbers[0]));
       break;
     case Verb::info:
       out += info_;
@@ -127,27 +191,23 @@ std::size_t Service::carry_out(SideWatch& tip, std::string& out) {
 }
 
 void Service::append_single_step(SideWatch& tip, std::string& out) {
-  const Request& request = reader_.request();
-  Motion motion{.tip = vector(request.tip.numbers), .desired = vector(request.desired.numbers)};
-  const std::size_t joints = request.jacobian.columns;
+  Motion motion{.tip = vector(request_.tip.numbers), .desired = vector(request_.desired.numbers)};
+  const auto joints = static_cast<Eigen::Index>(request_.jacobian.columns);
   if (joints > 0) {
-    const double* row = request.jacobian.numbers.data();
-    for (Eigen::Index r = 0; r < 3; ++r) {
-      for (Eigen::Index c = 0; c < std::ssize(request.jacobian.numbers) / 3; ++c) {
-        jacobian_(r, c) = *row++;
-      }
-    }
-    motion.jacobian = TipJacobian(jacobian_.data(), static_cast<Eigen::Index>(joints));
+    using RowByRow = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor>;
+    jacobian_.leftCols(joints) =
+        Eigen::Map<const RowByRow>(request_.jacobian.numbers.data(), 3, joints);
+    motion.jacobian = TipJacobian(jacobian_.data(), joints);
   }
-  if (request.rows.is_given) {
-    motion.rows = ExtraRows(request.rows.numbers.data(), request.bounds.numbers.data(),
-                            static_cast<Eigen::Index>(request.rows.rows));
+  if (request_.rows.is_given) {
+    motion.rows = ExtraRows(request_.rows.numbers.data(), request_.bounds.numbers.data(),
+                            static_cast<Eigen::Index>(request_.rows.rows));
   }
-  append_step(out, constraint_.step(motion, tip), joints);
+  append_step(out, constraint_.step(motion, tip), request_.jacobian.columns);
 }
 
 void Service::append_batch(SideWatch& tip, std::string& out) {
-  const std::span<const double> numbers = reader_.request().motions.numbers;
+  const std::span<const double> numbers = request_.motions.numbers;
   out += "\"steps\":[";
   for (std::size_t i = 0; i < numbers.size(); i += 6) {
     const Motion motion{.tip = vector(numbers.subspan(i)),
@@ -157,6 +217,29 @@ void Service::append_batch(SideWatch& tip, std::string& out) {
     out += '}';
   }
   out += ']';
+}
+
+Session::Session(Service& service)
+    : service_(service), lines_(service.longest_line()), tip_(service.new_watch()) {
+  out_.reserve(enough_output / 4);
+}
+
+void Session::take_turn() {
+  std::size_t work = 0;
+  while (work < most_work && out_.size() < enough_output) {
+    const std::optional<Line> line = lines_.next();
+    may_have_line_ = line.has_value();
+    if (!line) return;
+    // A blank line is no work, but a sea of them must not hold up the others.
+    work += std::max<std::size_t>(service_.answer(*line, tip_, out_), 1);
+  }
+}
+
+void Session::sent(std::size_t count) noexcept {
+  sent_ += count;
+  if (sent_ < out_.size()) return;
+  out_.clear();
+  sent_ = 0;
 }
 
 }  // namespace keepout::app

@@ -41,6 +41,10 @@ class OpenFile {
   throw Error("--socket " + path.string() + ": " + why);
 }
 
+[[noreturn]] void fail(const std::filesystem::path& path, const std::string& why, int error) {
+  fail(path, why + ": " + std::strerror(error));
+}
+
 sockaddr_un address_of(const std::filesystem::path& path) {
   sockaddr_un address = {};
   address.sun_family = AF_UNIX;
@@ -75,11 +79,10 @@ void make_way(const std::filesystem::path& path, const sockaddr_un& address) {
     fail(path, "another server answers there: end it, or take another path");
   }
   if (errno != ECONNREFUSED) {
-    fail(path, std::string("a socket is there that cannot be asked: ") + std::strerror(errno));
+    fail(path, "a socket is there that cannot be asked", errno);
   }
   if (::unlink(path.c_str()) != 0 && errno != ENOENT) {
-    fail(path,
-         std::string("what an earlier server has left cannot be removed: ") + std::strerror(errno));
+    fail(path, "what an earlier server has left cannot be removed", errno);
   }
 }
 
@@ -91,7 +94,7 @@ UnixSocket::UnixSocket(std::filesystem::path path) : path_(std::move(path)) {
   // Of two servers that start at once, each might remove the other's new socket for an old one.
   const OpenFile lock(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (lock.get() < 0) {
-    fail(path_, "its folder " + folder.string() + " cannot be used: " + std::strerror(errno));
+    fail(path_, "its folder " + folder.string() + " cannot be used", errno);
   }
   ::flock(lock.get(), LOCK_EX);
 
@@ -100,7 +103,7 @@ UnixSocket::UnixSocket(std::filesystem::path path) : path_(std::move(path)) {
   // Before there is a file, so that it never is open to others: Linux makes it with this mode.
   ::fchmod(listener.get(), S_IRUSR | S_IWUSR);
   if (listener.get() < 0 || ::bind(listener.get(), generic(address), sizeof address) != 0) {
-    fail(path_, std::string("the socket cannot be made: ") + std::strerror(errno));
+    fail(path_, "the socket cannot be made", errno);
   }
   struct stat made = {};
   const bool is_ours = ::chmod(path_.c_str(), S_IRUSR | S_IWUSR) == 0 &&
@@ -109,7 +112,7 @@ UnixSocket::UnixSocket(std::filesystem::path path) : path_(std::move(path)) {
   if (!is_ours) {
     const int error = errno;
     ::unlink(path_.c_str());
-    fail(path_, std::string("the socket cannot be listened to: ") + std::strerror(error));
+    fail(path_, "the socket cannot be listened to", error);
   }
   device_ = made.st_dev;
   inode_ = made.st_ino;

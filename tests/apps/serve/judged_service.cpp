@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "keepout/fixtures/shapes.h"
-#include "serve/session.h"
 
 namespace keepout::test {
 namespace {

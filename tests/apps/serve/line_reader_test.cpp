@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "serve/session.h"
+#include "serve/service.h"
 
 namespace keepout::app {
 namespace {

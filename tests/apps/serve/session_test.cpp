@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "serve/session.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,6 +13,7 @@
 #include "keepout/fixtures/shapes.h"
 #include "keepout/version.h"
 #include "serve/answer.h"
+#include "serve/service.h"
 
 namespace keepout::app {
 namespace {

@@ -55,14 +55,14 @@ class ProjectingSteer {
   };
 
   /// A way towards a target. `longest` bounds its length; the last step is cut to it. [length]
-  Way steer(const Vec3& from, const Vec3& towards,
-            double longest = std::numeric_limits<double>::infinity());
-
-  /// The same, within a box: the way ends before the first step that leads out of it. The box is
-  /// convex, so all of the way is in it. The target need not be.
-  Way steer(const Vec3& from, const Vec3& towards, double longest, const Box& bounds);
+  /// `bounds`: the way ends before the first step that leads out of this box. It is convex, so all
+  /// of the way is in it. The target need not be.
+  Way steer(const Vec3& from, const Vec3& towards, double longest = infinity,
+            const Box& bounds = {Vec3::Constant(-infinity), Vec3::Constant(infinity)});
 
  private:
+  static constexpr double infinity = std::numeric_limits<double>::infinity();
+
   MotionConstraint* guard_;
   SteerOptions options_;
   std::vector<Vec3> points_;

@@ -4,13 +4,67 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
+#include <cstddef>
+#include <initializer_list>
 #include <span>
+#include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
+
+#include "keepout/geometry/shapes.h"
 
 namespace keepout::python {
 
 namespace py = pybind11;
+
+// What comes in: arrays and all that numpy makes arrays of, checked.
+
+/// Row by row, without gaps.
+using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+inline constexpr py::ssize_t any = -1;
+
+/// Whether an argument may leave out its first axis: then what there is stands for all.
+enum class OneForAll { refused, allowed };
+
+/// What an argument shall look like: its name, an extent for each axis, and how to write that.
+struct Expected {
+  std::string_view name;
+  std::initializer_list<py::ssize_t> shape;  // `any` where the caller decides
+  std::string_view text;                     // "(n, 3)"
+  OneForAll one_for_all = OneForAll::refused;
+};
+
+/// "(4, 3)"
+std::string shape_text(const py::array& array);
+
+/// Throws Error, naming the argument, what was expected and what came.
+[[noreturn]] void refuse(std::string_view name, const std::string& expected,
+                         const std::string& got);
+
+/// Anything that numpy makes an array of, of numbers and of the shape expected. Throws Error
+/// otherwise. A copy only where it is not that already.
+py::array numbers(py::handle argument, const Expected& expected);
+
+/// The same in double precision.
+Doubles doubles(py::handle argument, const Expected& expected);
+
+/// Tells the user, as a UserWarning. Throws what Python makes of it where warnings are errors.
+void warn(const std::string& text);
+
+/// Three numbers. Fast for an array, a list or a tuple of floats.
+Vec3 point(py::handle argument, std::string_view name);
+
+/// A count that must not be negative.
+std::size_t count(py::ssize_t value, std::string_view name);
+
+/// As the index of a row in an array of points. Precondition: the array has three columns.
+inline Vec3 row(const double* points, std::size_t i) noexcept {
+  return {points[3 * i], points[3 * i + 1], points[3 * i + 2]};
+}
+
+// What goes out: views of what we hold.
 
 /// A read-only array over memory that `owner` keeps: no copy, and the owner lives as long as any
 /// view does.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "arguments.h"
+#include "arrays.h"
 
 #include <algorithm>
 
@@ -23,11 +23,12 @@ std::string dtype_text(const py::array& array) {
   return py::str(array.dtype()).cast<std::string>();
 }
 
-/// Whether it was three floats; no number is converted.
-template <class Item>
-bool read_floats(Item item, Vec3& values) {
+/// Whether it was a list or a tuple of three floats; no number is converted.
+bool read_floats(PyObject* object, Vec3& values) {
+  if (!PyTuple_CheckExact(object) && !PyList_CheckExact(object)) return false;
+  if (PySequence_Fast_GET_SIZE(object) != 3) return false;
   for (py::ssize_t i = 0; i < 3; ++i) {
-    PyObject* value = item(i);
+    PyObject* const value = PySequence_Fast_GET_ITEM(object, i);
     if (!PyFloat_CheckExact(value)) return false;
     values[i] = PyFloat_AS_DOUBLE(value);
   }
@@ -54,11 +55,7 @@ void warn(const std::string& text) {
 }
 
 std::string shape_text(const py::array& array) {
-  std::string text = "(";
-  for (py::ssize_t i = 0; i < array.ndim(); ++i) {
-    text += (i > 0 ? ", " : "") + std::to_string(array.shape(i));
-  }
-  return text + (array.ndim() == 1 ? ",)" : ")");
+  return py::str(array.attr("shape")).cast<std::string>();
 }
 
 void refuse(std::string_view name, const std::string& expected, const std::string& got) {
@@ -100,16 +97,7 @@ Doubles doubles(py::handle argument, const Expected& expected) {
 
 Vec3 point(py::handle argument, std::string_view name) {
   Vec3 values;
-  PyObject* const object = argument.ptr();
-  if (read_array(argument, values)) return values;
-  if (PyTuple_CheckExact(object) && PyTuple_GET_SIZE(object) == 3 &&
-      read_floats([&](py::ssize_t i) { return PyTuple_GET_ITEM(object, i); }, values)) {
-    return values;
-  }
-  if (PyList_CheckExact(object) && PyList_GET_SIZE(object) == 3 &&
-      read_floats([&](py::ssize_t i) { return PyList_GET_ITEM(object, i); }, values)) {
-    return values;
-  }
+  if (read_array(argument, values) || read_floats(argument.ptr(), values)) return values;
   const Doubles three = doubles(argument, {name, {3}, "(3,)"});
   return row(three.data(), 0);
 }
