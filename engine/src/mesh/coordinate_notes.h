@@ -5,8 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "keepout/mesh/load_mesh.h"
-
 namespace keepout {
 
 /// What the comments of a mesh file say of its coordinates.
@@ -15,8 +13,7 @@ namespace keepout {
 /// SPACE=LPS"), in a comment of a PLY or OBJ file. Mimics writes into OBJ files "vertex coordinates
 /// are measured in units, where 1 unit = 1000.000000 mm".
 struct CoordinateNotes {
-  AnatomicalSpace space = AnatomicalSpace::unstated;
-  std::string other_space;            // stated, but neither RAS nor LPS: such as "LAS"
+  std::string space;                  // that is stated: "RAS", "LPS", or another such as "LAS"
   std::string contradiction;          // two spaces that were both stated
   std::optional<double> millimetres;  // that one unit is
 };

@@ -13,15 +13,8 @@ namespace {
 /// Calls file(triangle, edge, from, to) for every side of a triangle, on all threads at once.
 template <class File>
 void share_sides(const Mesh& mesh, const File& file) {
-  share_ranges(mesh.triangle_count(), processors(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t t = begin; t < end; ++t) {
-      const Corners& c = mesh.corners(static_cast<TriangleId>(t));
-      if (repeats_a_vertex(c)) continue;
-      for (std::uint8_t e = 0; e < 3; ++e) {
-        file(static_cast<TriangleId>(t), e, c[e], c[(e + 1) % 3]);
-      }
-    }
-  });
+  share_ranges(mesh.triangle_count(), processors(),
+               [&](std::size_t begin, std::size_t end) { for_each_side(mesh, begin, end, file); });
 }
 
 std::size_t next(std::size_t& count) noexcept {

@@ -16,12 +16,11 @@ bool is_one_of(std::string_view word, std::initializer_list<std::string_view> wo
 
 Vec3 read_vertex(TextLines& lines) {
   const Words words = lines.words();
-  if (words.size() < 4) lines.fail("a vertex needs three coordinates; the file is damaged");
   // A weight; with more numbers, they are a colour.
   if (words.size() == 5 && lines.number<double>(words[4]) != 1.0) {
     lines.fail("weighted vertices are not read; export a plain mesh");
   }
-  return {lines.coordinate(words[1]), lines.coordinate(words[2]), lines.coordinate(words[3])};
+  return lines.vertex(1);
 }
 
 /// The vertex that a corner such as 7, -1, 7/2, 7//3 or 7/2/3 names, counted from 0.
@@ -39,8 +38,8 @@ VertexId vertex_of(const TextLines& lines, std::string_view corner, std::uint64_
 
 }  // namespace
 
-MeshFile read_obj(std::string_view contents, const std::string& file) {
-  TextLines lines(contents, file, {.comment = '#', .backslash_joins = true});
+MeshFile read_obj(const MeshSource& source) {
+  TextLines lines(source, {.comment = '#', .backslash_joins = true});
   MeshFile mesh;
   Polygons polygons;
   std::vector<Vec3>& vertices = mesh.surface.vertices;
@@ -68,7 +67,7 @@ MeshFile read_obj(std::string_view contents, const std::string& file) {
     lines.fail("no vertices and no faces, so this is hardly an OBJ file; check its extension");
   }
   if (lines.has_only_floats()) mesh.round_to_floats();
-  polygons.cut_into(mesh, file);
+  polygons.cut_into(mesh, source);
   mesh.comments = lines.take_comments();
   if (left_out > 0) {
     mesh.warnings.push_back("left out " + std::to_string(left_out) + " lines or points");

@@ -32,20 +32,15 @@ void read_face(const TextLines& lines, std::uint64_t vertices, Polygons& polygon
     lines.fail("a face has fewer corners than it declares; the file is damaged");
   }
   for (const std::string_view word : words.subspan(1, corners)) {
-    const std::uint64_t vertex = lines.whole_number(word);
-    if (vertex >= vertices) {
-      lines.fail("a face names vertex " + std::to_string(vertex) + ", but there are only " +
-                 std::to_string(vertices) + "; the file is damaged");
-    }
-    polygons.add_corner(static_cast<VertexId>(vertex));
+    polygons.add_corner(lines.whole_number(word), vertices, lines);
   }
   polygons.end_polygon();
 }
 
 }  // namespace
 
-MeshFile read_off(std::string_view contents, const std::string& file) {
-  TextLines lines(contents, file, {.comment = '#'});
+MeshFile read_off(const MeshSource& source) {
+  TextLines lines(source, {.comment = '#'});
   const auto advance = [&](const char* what) {
     if (lines.next()) return;
     lines.fail(std::string("the file ends before ") + what +
@@ -64,10 +59,7 @@ MeshFile read_off(std::string_view contents, const std::string& file) {
   MeshFile mesh;
   for (std::uint64_t v = 0; v < vertices; ++v) {
     advance("its last vertex");
-    const Words words = lines.words();
-    if (words.size() < 3) lines.fail("a vertex needs three coordinates; the file is damaged");
-    mesh.surface.vertices.emplace_back(lines.coordinate(words[0]), lines.coordinate(words[1]),
-                                       lines.coordinate(words[2]));
+    mesh.surface.vertices.push_back(lines.vertex(0));
   }
   Polygons polygons;
   for (std::uint64_t f = 0; f < faces; ++f) {
@@ -75,7 +67,7 @@ MeshFile read_off(std::string_view contents, const std::string& file) {
     read_face(lines, vertices, polygons);
   }
   if (lines.has_only_floats()) mesh.round_to_floats();
-  polygons.cut_into(mesh, file);
+  polygons.cut_into(mesh, source);
   if (lines.next()) {
     mesh.warnings.push_back("there is more in the file than its header declares, from line " +
                             std::to_string(lines.line()) + " on: left out");

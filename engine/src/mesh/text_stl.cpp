@@ -82,8 +82,8 @@ void read_facet(Words& words, TextLines& lines, Surface& surface) {
 
 }  // namespace
 
-MeshFile read_text_stl(std::string_view contents, const std::string& file) {
-  TextLines lines(contents, file);
+MeshFile read_text_stl(const MeshSource& source) {
+  TextLines lines(source);
   Words words(lines);
   MeshFile mesh;
   do {
@@ -95,7 +95,7 @@ MeshFile read_text_stl(std::string_view contents, const std::string& file) {
     mesh.comments.push_back(words.name_after("endsolid"));
   } while (!words.peek().empty());
   if (lines.has_only_floats()) mesh.round_to_floats();
-  Polygons().cut_into(mesh, file);
+  Polygons().cut_into(mesh, source);
   return mesh;
 }
 
