@@ -40,7 +40,7 @@ void for_each_side(const Mesh& mesh, std::size_t begin, std::size_t end, const V
 /// The sides of all triangles of a mesh, in the order of low vertex, high vertex, triangle.
 class HalfEdges {
  public:
-  /// Built on as many threads as there are processors.
+  /// Built on as many threads as there are processors (in adjacency.cpp).
   explicit HalfEdges(const Mesh& mesh);
 
   std::size_t vertex_count() const noexcept { return begin_.size() - 1; }

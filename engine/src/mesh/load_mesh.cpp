@@ -8,7 +8,6 @@
 #include <new>
 #include <utility>
 
-#include "coordinate_notes.h"
 #include "keepout/error.h"
 #include "keepout/mesh/doctor.h"
 #include "keepout/mesh/mesh.h"
