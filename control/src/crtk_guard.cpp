@@ -52,18 +52,13 @@ void CrtkGuard::release() noexcept {
   setpoint_.reset();
   wrench_ = {};
   cycle_ = {};
-  has_measured_ = Measured::not_given;
+  measured_.reset();
   silence_ = 0.0;
 }
 
 void CrtkGuard::set_registration(const Registration& registration) noexcept {
   release();
   registration_ = registration;
-}
-
-void CrtkGuard::measured_cp(const Pose& pose) noexcept {
-  has_measured_ = is_valid(pose) ? Measured::given : Measured::invalid;
-  measured_ = registration_.point_to_mesh(pose.position);
 }
 
 CycleStatus CrtkGuard::servo_cp(const Pose& goal) noexcept {
@@ -78,18 +73,20 @@ CycleStatus CrtkGuard::await_cp() noexcept {
 }
 
 CycleStatus CrtkGuard::go() noexcept {
-  const Measured measured = std::exchange(has_measured_, Measured::not_given);
+  const std::optional<Pose> measured = std::exchange(measured_, std::nullopt);
   // To within a rounding of the sum.
   if (silence_ > options_.longest_silence * (1.0 + 1e-9)) {
     return take(proxy_.stand(CycleStatus::stale));
   }
-  if (!is_valid(goal_) || measured == Measured::invalid) {
+  if (!is_valid(goal_) || (measured && !is_valid(*measured))) {
     return take(proxy_.stand(CycleStatus::invalid_pose));
   }
   const Vec3 hand = registration_.point_to_mesh(goal_.position);
-  if (measured == Measured::given &&
-      !((measured_ - proxy_.proxy()).norm() <= options_.farthest_lag)) {
-    return take(proxy_.stand(CycleStatus::lagging, hand));
+  if (measured) {
+    const Vec3 lag = registration_.point_to_mesh(measured->position) - proxy_.proxy();
+    if (!(lag.norm() <= options_.farthest_lag)) {
+      return take(proxy_.stand(CycleStatus::lagging, hand));
+    }
   }
   return take(proxy_.cycle(hand));
 }

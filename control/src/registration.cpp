@@ -59,13 +59,13 @@ Mat3 rotation_of(const Mat3& matrix) {
                 "it is a reflection; an axis has the wrong sign, or the frame is left-handed. From "
                 "LPS to RAS two axes change signs, not one");
   }
-  const Mat3 rotation = svd.matrixU() * svd.matrixV().transpose();
-  return rotation;
+  return svd.matrixU() * svd.matrixV().transpose();
 }
 
 void check_matrix(const Eigen::Matrix4d& matrix) {
-  if (!matrix.allFinite())
+  if (!matrix.allFinite()) {
     throw Error("registration: the matrix has an element that is not finite");
+  }
   const Eigen::RowVector4d last(0.0, 0.0, 0.0, 1.0);
   if ((matrix.row(3) - last).cwiseAbs().maxCoeff() > 1e-9) {
     throw Error(
@@ -92,9 +92,7 @@ std::optional<Mat3> to_rotation(const Quaternion& quaternion) noexcept {
   const double x = quaternion.x, y = quaternion.y, z = quaternion.z, w = quaternion.w;
   const double length = std::sqrt(x * x + y * y + z * z + w * w);
   if (!(std::abs(length - 1.0) <= rotation_tolerance)) return std::nullopt;
-  const Mat3 rotation =
-      Eigen::Quaterniond(w / length, x / length, y / length, z / length).toRotationMatrix();
-  return rotation;
+  return Eigen::Quaterniond(w / length, x / length, y / length, z / length).toRotationMatrix();
 }
 
 Quaternion to_quaternion(const Mat3& rotation) noexcept {

@@ -58,8 +58,6 @@ Vec3 straightened(const Vec3& offset, const Vec3& way, double squared_way, doubl
   return offset - offset.dot(way) / squared_way * way;
 }
 
-Vec3 corner_weights(int corner) noexcept { return Vec3::Unit(corner); }
-
 Vec3 edge_weights(int edge, double along) noexcept {
   Vec3 weights = Vec3::Zero();
   weights[edge] = 1.0 - along;
@@ -76,7 +74,7 @@ struct Scene {
   Pair corner_to_way(int i) const noexcept {
     const double s = foot(corners[i], way, squared_way);
     const Vec3 offset = straightened(s * way - corners[i], way, squared_way, s);
-    return {offset.squaredNorm(), s, corner_weights(i), offset};
+    return {offset.squaredNorm(), s, Vec3::Unit(i), offset};
   }
 
   /// The ends of the segment, and the common perpendicular, against edge i.

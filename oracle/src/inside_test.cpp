@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
 #include <random>
 #include <utility>
 #include <vector>
@@ -30,17 +31,13 @@ int exact_sign(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   return sgn(dot(frame.integer(b) - apex, cross(frame.integer(c) - apex, frame.integer(d) - apex)));
 }
 
-/// For each vertex the least id of those at the same place. (-0 equals 0.)
+/// For each vertex one of those at the same place, and for all of these the same. (-0 equals 0.)
 std::vector<VertexId> places(const Mesh& mesh) {
   std::vector<VertexId> order(mesh.vertex_count());
-  for (VertexId v = 0; v < order.size(); ++v) order[v] = v;
-  const auto coordinates = [&mesh](VertexId v) {
+  std::iota(order.begin(), order.end(), VertexId{0});
+  std::ranges::sort(order, {}, [&mesh](VertexId v) {
     const Vec3& p = mesh.vertex(v);
     return std::array<double, 3>{p[0], p[1], p[2]};
-  };
-  std::sort(order.begin(), order.end(), [&coordinates](VertexId a, VertexId b) {
-    const auto one = coordinates(a), other = coordinates(b);
-    return one != other ? one < other : a < b;
   });
   std::vector<VertexId> place(order.size());
   for (std::size_t i = 0; i < order.size(); ++i) {

@@ -46,13 +46,20 @@ inline Binary binary(double value) {
 /// A unit of length, a power of two, in which each of the included doubles is a whole number.
 class IntegerFrame {
  public:
-  void include(double value);
+  void include(double value) {
+    if (value != 0.0) exponent_ = std::min(exponent_, binary(value).exponent);
+  }
   void include(const Vec3& v) {
     for (int i = 0; i < 3; ++i) include(v[i]);
   }
 
   /// Exact. Precondition: `value` was included.
-  Integer integer(double value) const;
+  Integer integer(double value) const {
+    if (value == 0.0) return 0;
+    const Binary b = binary(value);
+    return Integer(static_cast<long>(b.digits))
+           << static_cast<unsigned long>(b.exponent - exponent_);
+  }
   IntegerVec integer(const Vec3& v) const { return {integer(v[0]), integer(v[1]), integer(v[2])}; }
 
   /// The unit is 2 to this power.
@@ -61,15 +68,5 @@ class IntegerFrame {
  private:
   int exponent_ = std::numeric_limits<int>::max();
 };
-
-inline void IntegerFrame::include(double value) {
-  if (value != 0.0) exponent_ = std::min(exponent_, binary(value).exponent);
-}
-
-inline Integer IntegerFrame::integer(double value) const {
-  if (value == 0.0) return 0;
-  const Binary b = binary(value);
-  return Integer(static_cast<long>(b.digits)) << static_cast<unsigned long>(b.exponent - exponent_);
-}
 
 }  // namespace keepout::oracle

@@ -35,7 +35,6 @@ Neighborhood::Neighborhood(std::shared_ptr<const TriangleTree> tree)
     : tree_(std::move(tree)), region_(nowhere) {}
 
 void Neighborhood::fetch(const Bounds& box) {
-  ++fetches_;
   region_ = inflated(box, margin_ * (box.high - box.low).maxCoeff());
   found_.clear();
   tree_->collect(region_, found_);
@@ -102,7 +101,6 @@ Finding SafetyOracle::check(const Vec3& from, const Vec3& to, double threshold, 
   }
   for (const Neighborhood::Neighbor* neighbor : undecided_) {
     const ExactDistance exact = exact_distance(segment, neighbor->triangle, threshold);
-    ++exact_decisions_;
     const bool below = exact.against_threshold < 0;
     finding.crosses = finding.crosses || exact.against_zero == 0;
     finding.below = finding.below || below;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "accuracy/certified_loop.h"
+#include "random_places.h"
 
 namespace keepout::test {
 namespace {

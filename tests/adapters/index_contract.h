@@ -15,6 +15,7 @@
 #include "keepout/geometry/closest_point.h"
 #include "keepout/index/spatial_index.h"
 #include "keepout/mesh/mesh.h"
+#include "random_places.h"
 #include "trials.h"
 
 namespace keepout {

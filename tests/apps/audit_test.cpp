@@ -13,6 +13,7 @@
 #include "keepout/fixtures/shapes.h"
 #include "keepout/index/pd_tree.h"
 #include "keepout/index/query.h"
+#include "random_places.h"
 #include "trials.h"
 
 namespace keepout::app {

@@ -9,6 +9,7 @@
 
 #include "keepout/error.h"
 #include "keepout/fixtures/random.h"
+#include "random_places.h"
 
 namespace keepout {
 namespace {
@@ -58,7 +59,7 @@ TEST(Registration, RoundTripsAreExactToRounding) {
   Random random(3);
   for (int i = 0; i < 1000; ++i) {
     const Eigen::Matrix4d matrix =
-        matrix_of(turned(3.0 * random.normal(), random.direction()), 300.0 * random.direction());
+        matrix_of(turned(3.0 * normal(random), random.direction()), 300.0 * random.direction());
     const auto there = Registration::mesh_from_robot(matrix, metres_to_millimetres);
     const auto back = Registration::robot_from_mesh(matrix.inverse(), metres_to_millimetres);
     const Vec3 point = 0.2 * random.direction();
@@ -137,7 +138,7 @@ TEST(Registration, AForgottenUnitIsAskedFor) {
 TEST(Pose, QuaternionsAndRotationsAgree) {
   Random random(5);
   for (int i = 0; i < 1000; ++i) {
-    const Mat3 rotation = turned(3.2 * random.normal(), random.direction());
+    const Mat3 rotation = turned(3.2 * normal(random), random.direction());
     const Quaternion q = to_quaternion(rotation);
     EXPECT_GE(q.w, 0.0);
     const auto back = to_rotation(q);

@@ -18,6 +18,7 @@
 #include "keepout/ompl/guard_pool.h"
 #include "keepout/ompl/straight_way.h"
 #include "keepout/oracle/safety_oracle.h"
+#include "random_places.h"
 
 namespace keepout {
 namespace {

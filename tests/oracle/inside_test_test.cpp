@@ -11,6 +11,7 @@
 #include "keepout/fixtures/poses.h"
 #include "keepout/fixtures/resample_mesh.h"
 #include "keepout/fixtures/shapes.h"
+#include "random_places.h"
 #include "small_surfaces.h"
 
 namespace keepout::oracle {

@@ -13,6 +13,7 @@
 #include "keepout/fixtures/shapes.h"
 #include "keepout/oracle/distance.h"
 #include "oracle/infinity.h"
+#include "random_places.h"
 #include "trials.h"
 
 namespace keepout::oracle {

@@ -10,6 +10,7 @@
 #include "keepout/fixtures/poses.h"
 #include "keepout/fixtures/shapes.h"
 #include "keepout/oracle/distance.h"
+#include "random_places.h"
 #include "trials.h"
 
 namespace keepout::oracle {

@@ -9,6 +9,7 @@
 #include "keepout/adapters/all_indices.h"
 #include "keepout/fixtures/poses.h"
 #include "keepout/fixtures/shapes.h"
+#include "random_places.h"
 #include "realtime/counted_allocations.h"
 
 namespace keepout {

@@ -11,6 +11,7 @@
 #include "keepout/fixtures/poses.h"
 #include "keepout/fixtures/shapes.h"
 #include "keepout/solvers/registry.h"
+#include "random_places.h"
 #include "realtime/counted_allocations.h"
 
 namespace keepout {
@@ -49,7 +50,7 @@ TEST(Step, AllocatesNothingWhateverItsPartsAndItsOutcome) {
   Random random(1);
   const std::vector<Vec3> tips = surface_points(*mesh, 60, 0.5, random);
   Eigen::Matrix<double, 3, Eigen::Dynamic> jacobian(3, 7);
-  for (int i = 0; i < jacobian.size(); ++i) jacobian.data()[i] = random.normal();
+  for (int i = 0; i < jacobian.size(); ++i) jacobian.data()[i] = normal(random);
   Eigen::Matrix<double, 6, 7, Eigen::RowMajor> of_a_frame;
   of_a_frame << jacobian, jacobian;
   const std::vector<double> limits(14, -1.0);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "coordinate_notes.h"
-
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <string_view>
+
+#include "mesh_file.h"
 
 namespace keepout {
 namespace {
@@ -61,27 +61,14 @@ std::string abbreviated(std::string_view value) {
   return initials;
 }
 
-void note_space(const std::string& orientation, CoordinateNotes& notes) {
-  const bool is_first = notes.space == AnatomicalSpace::unstated && notes.other_space.empty();
-  const std::string known =
-      notes.other_space.empty() ? std::string(name(notes.space)) : notes.other_space;
-  if (!is_first && known != orientation) {
-    notes.contradiction = known + " and " + orientation;
-  } else if (orientation == "RAS") {
-    notes.space = AnatomicalSpace::ras;
-  } else if (orientation == "LPS") {
-    notes.space = AnatomicalSpace::lps;
-  } else {
-    notes.other_space = orientation;
-  }
-}
-
 void read_space(std::string_view after_space, CoordinateNotes& notes) {
   if (!take(after_space, "=")) return;
   const auto end = std::find_if_not(after_space.begin(), after_space.end(), is_of_a_word);
   const auto size = static_cast<std::size_t>(end - after_space.begin());
   const std::string orientation = abbreviated(after_space.substr(0, size));
-  if (is_orientation(orientation)) note_space(orientation, notes);
+  if (!is_orientation(orientation)) return;
+  if (notes.space.empty()) notes.space = orientation;
+  if (notes.space != orientation) notes.contradiction = notes.space + " and " + orientation;
 }
 
 void read_unit(std::string_view after_one, CoordinateNotes& notes) {

@@ -25,10 +25,22 @@ inline bool repeats_a_vertex(const Corners& c) noexcept {
   return c[0] == c[1] || c[1] == c[2] || c[2] == c[0];
 }
 
+/// Calls visit(triangle, edge, from, to) for each side of the triangles begin to end - 1.
+template <class Visit>
+void for_each_side(const Mesh& mesh, std::size_t begin, std::size_t end, const Visit& visit) {
+  for (std::size_t t = begin; t < end; ++t) {
+    const Corners& c = mesh.corners(static_cast<TriangleId>(t));
+    if (repeats_a_vertex(c)) continue;
+    for (std::uint8_t e = 0; e < 3; ++e) {
+      visit(static_cast<TriangleId>(t), e, c[e], c[(e + 1) % 3]);
+    }
+  }
+}
+
 /// The sides of all triangles of a mesh, in the order of low vertex, high vertex, triangle.
 class HalfEdges {
  public:
-  /// Built on as many threads as there are processors.
+  /// Built on as many threads as there are processors (in adjacency.cpp).
   explicit HalfEdges(const Mesh& mesh);
 
   std::size_t vertex_count() const noexcept { return begin_.size() - 1; }

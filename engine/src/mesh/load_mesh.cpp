@@ -8,10 +8,7 @@
 #include <new>
 #include <utility>
 
-#include "../read_only_file.h"
-#include "coordinate_notes.h"
 #include "keepout/error.h"
-#include "keepout/mesh/binary_stl.h"
 #include "keepout/mesh/doctor.h"
 #include "keepout/mesh/mesh.h"
 #include "mesh_file.h"
@@ -19,35 +16,19 @@
 namespace keepout {
 namespace {
 
-[[noreturn]] void fail(const std::filesystem::path& path, const std::string& what) {
-  throw Error(path.string() + ": " + what);
-}
-
 std::string lower_extension(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
   for (char& c : extension) c = (c >= 'A' && c <= 'Z') ? static_cast<char>(c - 'A' + 'a') : c;
   return extension;
 }
 
-/// Throws unless there is a file with something in it.
-void check_file(const std::filesystem::path& path) {
-  std::error_code error;
-  const std::filesystem::file_status status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status)) fail(path, "there is no such file; check the name");
-  if (std::filesystem::is_directory(status)) fail(path, "is a directory; name a mesh file in it");
-  if (!std::filesystem::is_regular_file(status)) fail(path, "is not a regular file");
-  const ReadOnlyFile file(path);
-  if (!file.is_open()) fail(path, "cannot be read; check its permissions");
-  if (file.size() == 0) fail(path, "is empty; copy or export it again");
-}
-
-void refuse_compressed(const std::filesystem::path& path, std::string_view beginning) {
+void refuse_compressed(const MeshSource& source, std::string_view beginning) {
   constexpr std::array<std::string_view, 5> magics{"\x1f\x8b", "PK\x03\x04", "BZh",
                                                    "\xfd"
                                                    "7zXZ",
                                                    "\x28\xb5\x2f\xfd"};
   for (const std::string_view magic : magics) {
-    if (beginning.starts_with(magic)) fail(path, "is compressed; unpack it first");
+    if (beginning.starts_with(magic)) source.fail("is compressed; unpack it first");
   }
 }
 
@@ -62,18 +43,16 @@ std::string_view extension_by_content(std::string_view beginning) {
 }
 
 /// STL that is neither text nor of the length that its header declares.
-[[noreturn]] void refuse_stl(const std::filesystem::path& path, std::string_view beginning) {
-  constexpr std::size_t preamble = stl_header_size + sizeof(std::uint32_t);
-  const std::uintmax_t size = std::filesystem::file_size(path);
-  if (beginning.size() < preamble) fail(path, "is too short to be an STL file");
+[[noreturn]] void refuse_stl(const MeshSource& source, std::string_view beginning) {
+  if (beginning.size() < stl_preamble_size) source.fail("is too short to be an STL file");
   std::uint32_t count;
-  std::memcpy(&count, beginning.data() + preamble - sizeof count, sizeof count);
-  const std::uintmax_t needed = preamble + 50 * std::uintmax_t{count};
-  fail(path, "is no text, and as binary STL declares " + std::to_string(count) +
-                 " triangles, which take " + std::to_string(needed) + " bytes, but it has " +
-                 std::to_string(size) +
-                 (size < needed ? ": it was cut short, or is damaged; copy or export it again"
-                                : ": something follows the mesh; export it again"));
+  std::memcpy(&count, beginning.data() + stl_header_size, sizeof count);
+  const std::uint64_t needed = stl_preamble_size + stl_record_size * std::uint64_t{count};
+  source.fail("is no text, and as binary STL declares " + std::to_string(count) +
+              " triangles, which take " + std::to_string(needed) + " bytes, but it has " +
+              std::to_string(source.size()) +
+              (source.size() < needed ? ": it was cut short, or is damaged; copy or export it again"
+                                      : ": something follows the mesh; export it again"));
 }
 
 bool looks_like_text_stl(std::string_view beginning) {
@@ -83,79 +62,73 @@ bool looks_like_text_stl(std::string_view beginning) {
 
 struct Format {
   std::string_view extension;
-  MeshFile (*read)(const std::filesystem::path&);  // all that is not binary STL
+  MeshFile (*read)(const MeshSource&);  // all that is not binary STL
 };
 
-/// A reader of text, as one of files.
-template <MeshFile (*Read)(std::string_view, const std::string&)>
-MeshFile read_text(const std::filesystem::path& path) {
-  return Read(contents_of(path), path.string());
-}
-
-constexpr std::array<Format, 4> formats{{{".stl", read_text<read_text_stl>},
-                                         {".ply", read_ply},
-                                         {".obj", read_text<read_obj>},
-                                         {".off", read_text<read_off>}}};
+constexpr std::array<Format, 4> formats{
+    {{".stl", read_text_stl}, {".ply", read_ply}, {".obj", read_obj}, {".off", read_off}}};
 
 /// A file's surface, welded.
-MeshFile read_welded(const std::filesystem::path& path) {
-  check_file(path);
-  const std::string beginning = contents_of(path, 512);
-  refuse_compressed(path, beginning);
-  const std::string extension = lower_extension(path);
+MeshFile read_welded(const MeshSource& source, const std::string& extension) {
+  const std::string beginning = source.contents(512);
+  refuse_compressed(source, beginning);
   const auto format = std::ranges::find(formats, extension, &Format::extension);
   if (format == formats.end()) {
-    fail(path, "its extension is none of .stl, .ply, .obj, .off; convert the mesh to one of them");
+    source.fail("its extension is none of .stl, .ply, .obj, .off; convert the mesh to one of them");
   }
-  if (extension == ".stl" && is_binary_stl(path)) {
-    return {read_welded_stl(path), {beginning.substr(0, stl_header_size)}, {}};
+  if (extension == ".stl") {
+    if (auto surface = read_binary_stl(source)) {
+      return {*std::move(surface), {beginning.substr(0, stl_header_size)}};
+    }
   }
   const std::string_view expected = extension_by_content(beginning);
   if (!expected.empty() && expected != extension) {
-    fail(path, "its content is " + std::string(expected) + "; give it that extension");
+    source.fail("its content is " + std::string(expected) + "; give it that extension");
   }
-  if (extension == ".stl" && !looks_like_text_stl(beginning)) refuse_stl(path, beginning);
-  MeshFile mesh = format->read(path);
+  if (extension == ".stl" && !looks_like_text_stl(beginning)) refuse_stl(source, beginning);
+  MeshFile mesh = format->read(source);
   mesh.surface = weld(std::move(mesh.surface));
   return mesh;
 }
 
 /// Turns the surface into the space that is wanted, and takes down what is known of it. Throws
 /// Error when that cannot be done without guessing.
-void settle_space(const std::filesystem::path& path, const CoordinateNotes& notes,
+void settle_space(const MeshSource& source, const CoordinateNotes& notes,
                   const LoadOptions& options, Surface& surface, LoadedMesh& loaded) {
   constexpr AnatomicalSpace unstated = AnatomicalSpace::unstated;
   if (!notes.contradiction.empty()) {
-    fail(path, "states that its space is " + notes.contradiction +
-                   ", which cannot both be; correct its comments, or export it again");
+    source.fail("states that its space is " + notes.contradiction +
+                ", which cannot both be; correct its comments, or export it again");
   }
-  loaded.stated = notes.space;
-  loaded.space = notes.space;
-  if (loaded.space == unstated && notes.other_space.empty()) loaded.space = options.untagged;
+  loaded.stated = notes.space == name(AnatomicalSpace::ras)   ? AnatomicalSpace::ras
+                  : notes.space == name(AnatomicalSpace::lps) ? AnatomicalSpace::lps
+                                                              : unstated;
+  loaded.space = notes.space.empty() ? options.untagged : loaded.stated;
+  const bool is_another = !notes.space.empty() && loaded.stated == unstated;
   if (options.space == unstated) {
-    if (!notes.other_space.empty()) {
-      loaded.warnings.push_back("states SPACE=" + notes.other_space +
+    if (is_another) {
+      loaded.warnings.push_back("states SPACE=" + notes.space +
                                 ", which is neither RAS nor LPS: taken as it stands");
-    } else if (notes.space != unstated) {
-      const std::string stated(name(notes.space));
-      const std::string other(
-          name(notes.space == AnatomicalSpace::ras ? AnatomicalSpace::lps : AnatomicalSpace::ras));
-      loaded.warnings.push_back(
-          "states SPACE=" + stated + ": taken as it stands, so tips must be in " + stated +
-          " too; ask for the space " + stated + ", or for " + other + " to have it turned");
+    } else if (loaded.stated != unstated) {
+      const std::string other(name(loaded.stated == AnatomicalSpace::ras ? AnatomicalSpace::lps
+                                                                         : AnatomicalSpace::ras));
+      loaded.warnings.push_back("states SPACE=" + notes.space +
+                                ": taken as it stands, so tips must be in " + notes.space +
+                                " too; ask for the space " + notes.space + ", or for " + other +
+                                " to have it turned");
     }
     return;
   }
   const std::string wanted(name(options.space));
-  if (!notes.other_space.empty()) {
-    fail(path, "states SPACE=" + notes.other_space + ", and only RAS and LPS are turned into " +
-                   wanted + "; export it in one of them");
+  if (is_another) {
+    source.fail("states SPACE=" + notes.space + ", and only RAS and LPS are turned into " + wanted +
+                "; export it in one of them");
   }
   if (loaded.space == unstated) {
-    fail(path, "does not state its space, so it cannot be told whether it is in " + wanted +
-                   "; say what a file without SPACE=RAS or SPACE=LPS is in (LoadOptions::untagged, "
-                   "--untagged). 3D Slicer saved RAS before 4.11 and saves LPS since; most other "
-                   "programs for DICOM images use LPS");
+    source.fail("does not state its space, so it cannot be told whether it is in " + wanted +
+                "; say what a file without SPACE=RAS or SPACE=LPS is in (LoadOptions::untagged, "
+                "--untagged). 3D Slicer saved RAS before 4.11 and saves LPS since; most other "
+                "programs for DICOM images use LPS");
   }
   if (loaded.space != options.space) {
     swap_ras_and_lps(surface);
@@ -184,33 +157,45 @@ void swap_ras_and_lps(Surface& surface) noexcept {
   for (Vec3& v : surface.vertices) v = Vec3(0.0 - v.x(), 0.0 - v.y(), v.z());
 }
 
-std::string contents_of(const std::filesystem::path& path, std::uint64_t at_most) {
-  const ReadOnlyFile file(path);
-  std::string contents(std::min(file.size(), at_most), '\0');
-  if (!file.is_open() || !file.read(0, contents.data(), contents.size())) {
-    fail(path, "cannot be read to its end; check the disk");
-  }
+MeshSource::MeshSource(const std::filesystem::path& path) : name_(path.string()), file_(path) {
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status)) fail("there is no such file; check the name");
+  if (std::filesystem::is_directory(status)) fail("is a directory; name a mesh file in it");
+  if (!std::filesystem::is_regular_file(status)) fail("is not a regular file");
+  if (!file_.is_open()) fail("cannot be read; check its permissions");
+  if (size() == 0) fail("is empty; copy or export it again");
+}
+
+void MeshSource::read(std::uint64_t offset, void* to, std::size_t size) const {
+  if (!try_read(offset, to, size)) fail("cannot be read to its end; check the disk");
+}
+
+std::string MeshSource::contents(std::uint64_t at_most) const {
+  std::string contents(std::min(size(), at_most), '\0');
+  read(0, contents.data(), contents.size());
   return contents;
 }
 
+void MeshSource::fail(const std::string& what) const { throw Error(name_ + ": " + what); }
+
 LoadedMesh load_mesh(const std::filesystem::path& path, const LoadOptions& options) {
+  const MeshSource source(path);
   LoadedMesh loaded;
   MeshFile read;
   try {
-    read = read_welded(path);
+    read = read_welded(source, lower_extension(path));
   } catch (const std::bad_alloc&) {
-    fail(path, "there is not enough memory to read it; decimate the mesh, or use binary STL");
-  } catch (const std::filesystem::filesystem_error& error) {
-    fail(path, error.code().message());
+    source.fail("there is not enough memory to read it; decimate the mesh, or use binary STL");
   }
   loaded.warnings = std::move(read.warnings);
   const CoordinateNotes notes = notes_of(read.comments);
-  settle_space(path, notes, options, read.surface, loaded);
+  settle_space(source, notes, options, read.surface, loaded);
   warn_of_unit(notes, loaded.warnings);
   try {
     loaded.mesh = std::make_shared<const Mesh>(std::move(read.surface));
   } catch (const Error& error) {
-    fail(path, error.what());
+    source.fail(error.what());
   }
   if (options.check == MeshCheck::quick) {
     for (std::string& warning : quick_check(*loaded.mesh)) {

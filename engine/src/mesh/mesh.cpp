@@ -10,6 +10,7 @@
 
 #include "../parallel.h"
 #include "keepout/error.h"
+#include "weld_blocks.h"
 
 namespace keepout {
 namespace {
@@ -89,6 +90,25 @@ Mesh::Mesh(Surface surface) : surface_(std::move(surface)) {
   }
   bounds_ = all.bounds;
   longest_edge_ = std::sqrt(all.longest2);
+}
+
+Surface weld(Surface surface, unsigned threads) {
+  const auto make_reader = [&] {
+    return [&](std::size_t, std::span<Corners> triangles, auto&& number) {
+      for (Corners& corners : triangles) {
+        for (VertexId& v : corners) {
+          if (v >= surface.vertices.size()) {
+            throw Error("a triangle names vertex " + std::to_string(v) + ", but there are only " +
+                        std::to_string(surface.vertices.size()) + ": the file is damaged");
+          }
+          const Vec3& given = surface.vertices[v];
+          // -0 becomes 0
+          v = number(ExactPoint<double>{given.x() + 0.0, given.y() + 0.0, given.z() + 0.0});
+        }
+      }
+    };
+  };
+  return weld_blocks<double>(std::move(surface.triangles), thread_count(threads), make_reader);
 }
 
 }  // namespace keepout

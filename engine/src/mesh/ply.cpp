@@ -1,16 +1,172 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <atomic>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
 #include <optional>
 #include <span>
+#include <string>
+#include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "../huge_pages.h"
 #include "../parallel.h"
-#include "ply_body.h"
+#include "mesh_file.h"
+#include "ply_header.h"
 #include "polygons.h"
+#include "text_lines.h"
 
 namespace keepout {
 namespace {
+
+// The values behind the header of a PLY file, one after the other: as text and as bytes. Each
+// function throws Error for a file that is damaged, or that ends too early.
+
+std::string cut_short(const PlyElement& element) {
+  return "the file ends before its last " + element.name +
+         ", so it was cut short; copy or export it again";
+}
+
+/// An item a line, whose values are its words.
+class PlyText {
+ public:
+  /// `lines` are at the end of the header.
+  explicit PlyText(TextLines& lines) : lines_(lines) {}
+
+  /// Comes to the next item of an element, and to its end.
+  void begin_item(const PlyElement& element) {
+    element_ = &element;
+    used_ = 0;
+    if (!lines_.next()) fail(cut_short(element));
+  }
+  void end_item() const {
+    if (used_ != lines_.words().size()) {
+      fail("more values than the header declares for a " + element_->name);
+    }
+  }
+
+  /// The next value: a coordinate, or a length or an index.
+  double take_real(const PlyScalar& type) {
+    const bool is_single = !type.whole && type.size == sizeof(float);
+    return is_single ? lines_.number<float>(take_word()) : lines_.coordinate(take_word());
+  }
+  std::uint64_t take_whole(const PlyScalar&) { return lines_.whole_number(take_word()); }
+
+  /// Passes over values. What they are is no concern of ours.
+  void skip(const PlyScalar&, std::uint64_t count) {
+    for (std::uint64_t i = 0; i < count; ++i) lines_.number<double>(take_word());
+  }
+
+  /// Whether anything follows.
+  bool has_more() { return lines_.next(); }
+
+  /// Whether the coordinates are to be rounded to floats.
+  bool is_of_floats() const { return lines_.has_only_floats(); }
+
+  [[noreturn]] void fail(const std::string& what) const { lines_.fail(what); }
+
+ private:
+  std::string_view take_word() {
+    if (used_ == lines_.words().size()) {
+      fail("fewer values than the header declares for a " + element_->name +
+           "; the file is damaged");
+    }
+    return lines_.words()[used_++];
+  }
+
+  TextLines& lines_;
+  const PlyElement* element_ = nullptr;
+  std::size_t used_ = 0;
+};
+
+/// Bytes of either order. The functions are those of PlyText.
+class PlyBytes {
+ public:
+  /// `source` must outlive this.
+  PlyBytes(const MeshSource& source, const PlyHeader& header)
+      : source_(source),
+        swapped_((header.encoding == PlyEncoding::big_endian) !=
+                 (std::endian::native == std::endian::big)),
+        position_(header.size) {}
+
+  void begin_item(const PlyElement& element) { element_ = &element; }
+  void end_item() const {}
+  double take_real(const PlyScalar& type) { return real(take(type.size), type); }
+  std::uint64_t take_whole(const PlyScalar& type) {
+    const std::int64_t value = whole(take(type.size), type);
+    if (value < 0) {
+      fail("a negative length or index at a " + element_->name + "; the file is damaged");
+    }
+    return static_cast<std::uint64_t>(value);
+  }
+  void skip(const PlyScalar& type, std::uint64_t count) {
+    if (count > left() / type.size) fail(cut_short(*element_));
+    position_ += count * type.size;
+  }
+  bool has_more() const { return left() > 0; }
+  bool is_of_floats() const { return false; }
+  [[noreturn]] void fail(const std::string& what) const { source_.fail(what); }
+
+  // For items that are all of one size, and are read at once.
+
+  /// Bytes from so many behind the next one on.
+  std::vector<char> copy(std::uint64_t behind, std::size_t size) const {
+    std::vector<char> bytes(size);
+    source_.read(position_ + behind, bytes.data(), size);
+    return bytes;
+  }
+  std::uint64_t left() const noexcept { return source_.size() - position_; }
+  void move_on(std::uint64_t bytes) noexcept { position_ += bytes; }
+
+  double real(const char* bytes, const PlyScalar& type) const noexcept {
+    if (type.whole) return static_cast<double>(whole(bytes, type));
+    return type.size == 4 ? double{get<float>(bytes)} : get<double>(bytes);
+  }
+
+  std::int64_t whole(const char* bytes, const PlyScalar& type) const noexcept {
+    switch (type.size) {
+      case 1:
+        return type.is_signed ? std::int64_t{get<std::int8_t>(bytes)} : get<std::uint8_t>(bytes);
+      case 2:
+        return type.is_signed ? std::int64_t{get<std::int16_t>(bytes)} : get<std::uint16_t>(bytes);
+      default:
+        return type.is_signed ? std::int64_t{get<std::int32_t>(bytes)} : get<std::uint32_t>(bytes);
+    }
+  }
+
+ private:
+  /// The next bytes, up to eight.
+  const char* take(std::size_t size) {
+    constexpr std::uint64_t at_once = std::uint64_t{1} << 20;
+    if (size > left()) fail(cut_short(*element_));
+    if (position_ < begin_ || position_ + size > begin_ + buffer_.size()) {
+      begin_ = position_;
+      buffer_.resize(std::min(at_once, left()));
+      if (!source_.try_read(begin_, buffer_.data(), buffer_.size())) fail(cut_short(*element_));
+    }
+    const char* bytes = buffer_.data() + (position_ - begin_);
+    position_ += size;
+    return bytes;
+  }
+
+  template <class T>
+  T get(const char* bytes) const noexcept {
+    char ordered[sizeof(T)];
+    std::memcpy(ordered, bytes, sizeof(T));
+    if (swapped_) std::reverse(ordered, ordered + sizeof(T));
+    return std::bit_cast<T>(ordered);
+  }
+
+  const MeshSource& source_;
+  bool swapped_;
+  const PlyElement* element_ = nullptr;
+  std::uint64_t position_;
+  std::uint64_t begin_ = 0;  // of the buffer, in the file
+  std::vector<char> buffer_;
+};
 
 /// How many bytes an item takes; nothing if it has lists.
 std::optional<std::size_t> fixed_size(std::span<const PlyProperty> properties) {
@@ -28,25 +184,20 @@ std::size_t offset_of(const PlyElement& element, const PlyProperty* property) {
   return fixed_size(std::span(element.properties).first(before)).value_or(0);
 }
 
-void check_vertex(const Vec3& vertex, std::uint64_t v, const PlyBody& body) {
-  if (vertex.allFinite()) return;
-  body.fail("vertex " + std::to_string(v) +
-            " has a coordinate that is not finite; repair the mesh and export it again");
-}
-
-/// Takes the surface out of a body. In binary files items are mostly of one size: these are read on
-/// all processors.
+/// Takes the surface out of a body: PlyText, or PlyBytes, whose items are mostly of one size and
+/// are then read on all processors.
+template <class Body>
 class SurfaceReader {
  public:
-  /// `bytes` is the body if it is binary.
-  SurfaceReader(const PlyHeader& header, const PlyLayout& layout, PlyBody& body,
-                PlyBytes* bytes = nullptr)
-      : header_(header), layout_(layout), body_(body), bytes_(bytes) {}
+  SurfaceReader(const PlyHeader& header, const PlyLayout& layout, Body body)
+      : header_(header), layout_(layout), body_(std::move(body)) {}
 
-  MeshFile read(const std::string& file) {
+  MeshFile read(const MeshSource& source) {
     for (const PlyElement& element : header_.elements) {
       if (element.properties.empty()) continue;
-      if (bytes_ != nullptr && read_at_once(element)) continue;
+      if constexpr (std::is_same_v<Body, PlyBytes>) {
+        if (read_at_once(element)) continue;
+      }
       for (std::uint64_t i = 0; i < element.count; ++i) {
         body_.begin_item(element);
         read_item(element);
@@ -54,7 +205,7 @@ class SurfaceReader {
       }
     }
     if (body_.is_of_floats()) mesh_.round_to_floats();
-    polygons_.cut_into(mesh_, file);  // only now: the vertices may stand after the faces
+    polygons_.cut_into(mesh_, source);  // only now: the vertices may stand after the faces
     if (body_.has_more()) {
       mesh_.warnings.push_back("there is more in the file than its header declares: left out");
     }
@@ -76,30 +227,31 @@ class SurfaceReader {
       }
     }
     if (&element != layout_.vertex) return;
-    check_vertex(vertex, mesh_.surface.vertices.size(), body_);
+    check_vertex(vertex, mesh_.surface.vertices.size());
     mesh_.surface.vertices.push_back(vertex);
   }
 
   void read_polygon() {
     const std::uint64_t count = body_.take_whole(*layout_.corners->count_type);
     for (std::uint64_t c = 0; c < count; ++c) {
-      const std::uint64_t vertex = body_.take_whole(*layout_.corners->type);
-      if (vertex >= layout_.vertex->count) {
-        body_.fail("a face names vertex " + std::to_string(vertex) + ", but there are only " +
-                   std::to_string(layout_.vertex->count) + "; the file is damaged");
-      }
-      polygons_.add_corner(static_cast<VertexId>(vertex));
+      polygons_.add_corner(body_.take_whole(*layout_.corners->type), layout_.vertex->count, body_);
     }
     polygons_.end_polygon();
+  }
+
+  void check_vertex(const Vec3& vertex, std::uint64_t v) const {
+    if (vertex.allFinite()) return;
+    body_.fail("vertex " + std::to_string(v) +
+               " has a coordinate that is not finite; repair the mesh and export it again");
   }
 
   /// All items of an element, if they are of one size and all there; else nothing, and false.
   bool read_at_once(const PlyElement& element) {
     if (&element == layout_.face && layout_.corners != nullptr) return read_triangles(element);
     const std::optional<std::size_t> size = fixed_size(element.properties);
-    if (!size || element.count > bytes_->left() / *size) return false;
+    if (!size || element.count > body_.left() / *size) return false;
     if (&element == layout_.vertex) read_vertices(element, *size);
-    bytes_->move_on(element.count * *size);
+    body_.move_on(element.count * *size);
     return true;
   }
 
@@ -110,15 +262,15 @@ class SurfaceReader {
     }
     mesh_.surface.vertices = vector_in_huge_pages<Vec3>(element.count);
     share_ranges(element.count, processors(), [&](std::size_t begin, std::size_t end) {
-      const std::vector<char> items = bytes_->copy(begin * size, (end - begin) * size);
+      const std::vector<char> items = body_.copy(begin * size, (end - begin) * size);
       const char* item = items.data();
       for (std::size_t v = begin; v < end; ++v, item += size) {
         Vec3 vertex;
         for (std::size_t axis = 0; axis < 3; ++axis) {
           vertex[static_cast<Eigen::Index>(axis)] =
-              bytes_->real(item + offsets[axis], *layout_.coordinates[axis]->type);
+              body_.real(item + offsets[axis], *layout_.coordinates[axis]->type);
         }
-        check_vertex(vertex, v, body_);
+        check_vertex(vertex, v);
         mesh_.surface.vertices[v] = vertex;
       }
     });
@@ -134,20 +286,20 @@ class SurfaceReader {
       if (p.is_list()) return false;
       size += p.type->size;
     }
-    if (element.count > bytes_->left() / size || element.count > no_triangle / 3) return false;
+    if (element.count > body_.left() / size || element.count > no_triangle / 3) return false;
     const std::size_t list = offset_of(element, layout_.corners);
     auto triangles = vector_in_huge_pages<Corners>(element.count);
     std::atomic<bool> good = true;
     share_ranges(triangles.size(), processors(), [&](std::size_t begin, std::size_t end) {
       if (!good) return;
-      const std::vector<char> items = bytes_->copy(begin * size, (end - begin) * size);
+      const std::vector<char> items = body_.copy(begin * size, (end - begin) * size);
       const char* place = items.data() + list;
       bool all_good = true;
       for (std::size_t t = begin; t < end; ++t, place += size) {
-        all_good &= bytes_->whole(place, count_type) == 3;
+        all_good &= body_.whole(place, count_type) == 3;
         for (std::size_t i = 0; i < 3; ++i) {
           const auto vertex = static_cast<std::uint64_t>(
-              bytes_->whole(place + count_type.size + i * corner_type.size, corner_type));
+              body_.whole(place + count_type.size + i * corner_type.size, corner_type));
           all_good &= vertex < layout_.vertex->count;
           triangles[t][i] = static_cast<VertexId>(vertex);
         }
@@ -156,34 +308,28 @@ class SurfaceReader {
     });
     if (!good) return false;
     mesh_.surface.triangles = std::move(triangles);
-    bytes_->move_on(element.count * size);
+    body_.move_on(element.count * size);
     return true;
   }
 
   const PlyHeader& header_;
   const PlyLayout& layout_;
-  PlyBody& body_;
-  PlyBytes* bytes_;
+  Body body_;
   Polygons polygons_;
   MeshFile mesh_;
 };
 
 }  // namespace
 
-MeshFile read_ply(const std::filesystem::path& path) {
-  const std::string name = path.string();
-  const PlyHeader header = read_ply_header(path);
-  const PlyLayout layout = find_ply_layout(header, name);
+MeshFile read_ply(const MeshSource& source) {
+  const PlyHeader header = read_ply_header(source);
+  const PlyLayout layout = find_ply_layout(header, source);
   if (header.encoding != PlyEncoding::text) {
-    const ReadOnlyFile file(path);
-    PlyBytes bytes(file, name, header);
-    return SurfaceReader(header, layout, bytes, &bytes).read(name);
+    return SurfaceReader(header, layout, PlyBytes(source, header)).read(source);
   }
-  const std::string contents = contents_of(path);
-  TextLines lines(contents, name);
+  TextLines lines(source);
   while (lines.position() < header.size && lines.next()) continue;
-  PlyText text(lines);
-  return SurfaceReader(header, layout, text).read(name);
+  return SurfaceReader(header, layout, PlyText(lines)).read(source);
 }
 
 }  // namespace keepout

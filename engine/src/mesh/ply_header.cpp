@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <optional>
 
-#include "../read_only_file.h"
-#include "keepout/error.h"
 #include "text_lines.h"
 
 namespace keepout {
@@ -89,52 +87,45 @@ std::optional<PlyHeader> parse_header(TextLines& lines, std::uint64_t file_size)
 
 }  // namespace
 
-PlyHeader read_ply_header(const std::filesystem::path& path) {
-  const std::string name = path.string();
-  const ReadOnlyFile file(path);
-  if (!file.is_open()) throw Error(name + ": cannot be opened; check the name and the permissions");
+PlyHeader read_ply_header(const MeshSource& source) {
   // Headers are short, but for their comments.
   for (std::uint64_t size = 1 << 16;; size *= 4) {
-    std::string beginning(std::min(size, file.size()), '\0');
-    if (!file.read(0, beginning.data(), beginning.size())) {
-      throw Error(name + ": cannot be read to its end; check the disk");
-    }
-    const bool is_all = beginning.size() == file.size();
+    std::string beginning = source.contents(size);
+    const bool is_all = beginning.size() == source.size();
     if (!is_all) {
       if (beginning.back() == '\r') beginning.pop_back();  // it may be half of a line end
       beginning.resize(beginning.find_last_of("\r\n") + 1);
       if (beginning.empty()) continue;
     }
-    TextLines lines(beginning, name);
-    if (auto header = parse_header(lines, file.size())) return *std::move(header);
+    TextLines lines(std::move(beginning), source.name());
+    if (auto header = parse_header(lines, source.size())) return *std::move(header);
     if (is_all) {
       lines.fail("the file ends within its header, so it was cut short; copy or export it again");
     }
   }
 }
 
-PlyLayout find_ply_layout(const PlyHeader& header, const std::string& file) {
-  const auto fail = [&](const std::string& what) { throw Error(file + ": " + what); };
+PlyLayout find_ply_layout(const PlyHeader& header, const MeshSource& source) {
   PlyLayout layout;
   for (const PlyElement& element : header.elements) {
     const PlyElement** role = element.name == "vertex" ? &layout.vertex
                               : element.name == "face" ? &layout.face
                                                        : nullptr;
     if (element.name == "tristrips" && element.count > 0) {
-      fail("triangle strips are not read; export the mesh as triangles");
+      source.fail("triangle strips are not read; export the mesh as triangles");
     }
     if (role == nullptr) continue;
-    if (*role != nullptr) fail("declares its " + element.name + " twice");
+    if (*role != nullptr) source.fail("declares its " + element.name + " twice");
     *role = &element;
   }
-  if (layout.vertex == nullptr) fail("has no vertices; check the export");
+  if (layout.vertex == nullptr) source.fail("has no vertices; check the export");
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::string_view name = std::string_view("xyz").substr(axis, 1);
     for (const PlyProperty& p : layout.vertex->properties) {
       if (p.name == name && !p.is_list()) layout.coordinates[axis] = &p;
     }
     if (layout.coordinates[axis] == nullptr) {
-      fail("its vertices have no " + std::string(name) + "; check the export");
+      source.fail("its vertices have no " + std::string(name) + "; check the export");
     }
   }
   if (layout.face == nullptr || layout.face->count == 0) return layout;
@@ -142,7 +133,7 @@ PlyLayout find_ply_layout(const PlyHeader& header, const std::string& file) {
     const bool has_the_name = p.name == "vertex_indices" || p.name == "vertex_index";
     if (has_the_name && p.is_list() && p.type->whole) layout.corners = &p;
   }
-  if (layout.corners == nullptr) fail("its faces have no list of vertex_indices");
+  if (layout.corners == nullptr) source.fail("its faces have no list of vertex_indices");
   return layout;
 }
 

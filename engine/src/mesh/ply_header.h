@@ -4,10 +4,11 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "mesh_file.h"
 
 namespace keepout {
 
@@ -60,9 +61,9 @@ struct PlyLayout {
 
 /// Reads the header of a file. Throws Error, with the line, for what is malformed or not
 /// understood, and where more items are declared than the file has bytes.
-PlyHeader read_ply_header(const std::filesystem::path& path);
+PlyHeader read_ply_header(const MeshSource& source);
 
 /// Throws Error where the vertices or corners of a surface are missing, or where it has strips.
-PlyLayout find_ply_layout(const PlyHeader& header, const std::string& file);
+PlyLayout find_ply_layout(const PlyHeader& header, const MeshSource& source);
 
 }  // namespace keepout

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <span>
 
-#include "keepout/error.h"
-
 namespace keepout {
 namespace {
 
@@ -122,26 +120,25 @@ void Polygons::end_polygon() {
   }
 }
 
-void Polygons::cut_into(MeshFile& mesh, const std::string& file) const {
-  const auto fail = [&](const std::string& what) { throw Error(file + ": " + what); };
+void Polygons::cut_into(MeshFile& mesh, const MeshSource& source) const {
   std::vector<Corners>& triangles = mesh.surface.triangles;
   const std::size_t count = triangles.size() + corners_.size() - 2 * ends_.size();
   // Three vertices for each triangle must be countable.
   if (count > no_triangle / 3 || mesh.surface.vertices.size() >= no_triangle) {
-    fail("has too many triangles to read; split or decimate it");
+    source.fail("has too many triangles to read; split or decimate it");
   }
   triangles.reserve(count);
   std::size_t begin = 0;
   for (const std::size_t end : ends_) {
     const auto polygon = std::span(corners_).subspan(begin, end - begin);
     if (!cut_polygon(polygon, mesh.surface.vertices, triangles)) {
-      fail("a face of " + std::to_string(polygon.size()) +
-           " corners that is not convex; export the mesh as triangles");
+      source.fail("a face of " + std::to_string(polygon.size()) +
+                  " corners that is not convex; export the mesh as triangles");
     }
     begin = end;
   }
   if (triangles.empty()) {
-    fail("has no faces, only points or lines; a surface must be made of them first");
+    source.fail("has no faces, only points or lines; a surface must be made of them first");
   }
   if (left_out_ > 0) {
     mesh.warnings.push_back("left out " + std::to_string(left_out_) +

@@ -14,7 +14,17 @@ namespace keepout {
 /// triangles.
 class Polygons {
  public:
-  void add_corner(VertexId corner) { corners_.push_back(corner); }
+  /// The next corner of a polygon.
+  void add_corner(VertexId vertex) { corners_.push_back(vertex); }
+  /// The same as a file has it, one of `vertices`. If it is none, `place` fails.
+  template <class Place>
+  void add_corner(std::uint64_t vertex, std::uint64_t vertices, const Place& place) {
+    if (vertex >= vertices) {
+      place.fail("a face names vertex " + std::to_string(vertex) + ", but there are only " +
+                 std::to_string(vertices) + "; the file is damaged");
+    }
+    add_corner(static_cast<VertexId>(vertex));
+  }
 
   /// Ends a polygon. One of fewer than three corners is left out.
   void end_polygon();
@@ -26,7 +36,7 @@ class Polygons {
   /// Throws Error if the surface then has no triangles, if it has too many to be numbered, and for
   /// a polygon that is not convex and has more than 1000 corners, as ears take a time that grows
   /// with the third power of the corners.
-  void cut_into(MeshFile& mesh, const std::string& file) const;
+  void cut_into(MeshFile& mesh, const MeshSource& source) const;
 
  private:
   std::vector<VertexId> corners_;  // one polygon after the other

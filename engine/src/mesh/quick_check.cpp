@@ -50,16 +50,11 @@ void share_sides(const Mesh& mesh, unsigned threads, const Own& empty, const Vis
   const std::size_t share = std::max<std::size_t>(mesh.triangle_count() / threads + 1, share_size);
   share_ranges(mesh.triangle_count(), threads, share, [&](std::size_t begin, std::size_t end) {
     Own own = empty;
-    for (const Corners& c : mesh.triangles().subspan(begin, end - begin)) {
-      if (repeats_a_vertex(c)) continue;
-      for (int i = 0; i < 3; ++i) {
-        const std::uint64_t from = c[i];
-        const std::uint64_t to = c[(i + 1) % 3];
-        const Upwards upwards = std::uint64_t{0} - ((from - to) >> 63);
-        const std::uint64_t swap = (from ^ to) & upwards;
-        visit(own, (to ^ swap) << 32 | (from ^ swap), upwards);
-      }
-    }
+    for_each_side(mesh, begin, end, [&](TriangleId, int, std::uint64_t from, std::uint64_t to) {
+      const Upwards upwards = std::uint64_t{0} - ((from - to) >> 63);
+      const std::uint64_t swap = (from ^ to) & upwards;
+      visit(own, (to ^ swap) << 32 | (from ^ swap), upwards);
+    });
     const std::lock_guard lock(mutex);
     gather(own);
   });

@@ -41,8 +41,8 @@ double last_place(std::string_view numeral) {
 
 }  // namespace
 
-TextLines::TextLines(std::string_view text, std::string file, LineRules rules)
-    : text_(text), file_(std::move(file)), rules_(rules) {
+TextLines::TextLines(std::string text, std::string file, LineRules rules)
+    : contents_(std::move(text)), file_(std::move(file)), rules_(rules) {
   constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
   if (text_.starts_with(byte_order_mark)) position_ = byte_order_mark.size();
 }
@@ -94,7 +94,9 @@ bool TextLines::ends_within_a_line() const noexcept {
   return !text_.empty() && !is_line_end(text_.back());
 }
 
-void TextLines::fail(const std::string& what) const { throw Error(place() + ": " + what); }
+void TextLines::fail(const std::string& what) const {
+  throw Error(file_ + ": line " + std::to_string(line_) + ": " + what);
+}
 
 template <class Real>
 Real TextLines::number(std::string_view word) const {
@@ -125,6 +127,11 @@ double TextLines::coordinate(std::string_view word) {
   constexpr double half = 0.5 * (1.0 + 1e-6);  // with what doubles are rounded by
   if (off > 0.0 && has_only_floats_ && !(off <= half * last_place(word))) has_only_floats_ = false;
   return value;
+}
+
+Vec3 TextLines::vertex(std::size_t first) {
+  if (words_.size() < first + 3) fail("a vertex needs three coordinates; the file is damaged");
+  return {coordinate(words_[first]), coordinate(words_[first + 1]), coordinate(words_[first + 2])};
 }
 
 std::uint64_t TextLines::whole_number(std::string_view word) const {

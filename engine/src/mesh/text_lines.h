@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "mesh_file.h"
+
 namespace keepout {
 
 /// What a text format allows in its lines.
@@ -21,7 +23,12 @@ struct LineRules {
 class TextLines {
  public:
   /// `file` names the text in errors.
-  TextLines(std::string_view text, std::string file, LineRules rules = {});
+  TextLines(std::string text, std::string file, LineRules rules = {});
+  /// Of all that is in a file.
+  explicit TextLines(const MeshSource& source, LineRules rules = {})
+      : TextLines(source.contents(), source.name(), rules) {}
+  TextLines(const TextLines&) = delete;
+  TextLines& operator=(const TextLines&) = delete;
 
   /// Moves on to the next line that has a word; false at the end of the text.
   bool next();
@@ -37,9 +44,7 @@ class TextLines {
   /// Of the lines so far, where the format has them.
   std::vector<std::string> take_comments() noexcept { return std::move(comments_); }
 
-  /// The file and the current line, for errors.
-  std::string place() const { return file_ + ": line " + std::to_string(line_); }
-  /// Throws Error with these before `what`.
+  /// Throws Error with the file and the current line before `what`.
   [[noreturn]] void fail(const std::string& what) const;
 
   /// The word as a number, rounded but once. Throws Error unless it is decimal and finite.
@@ -47,6 +52,8 @@ class TextLines {
   Real number(std::string_view word) const;
   /// The same of a double, for which is noted whether it may have been printed from a float.
   double coordinate(std::string_view word);
+  /// Three of these, the words of the line from `first` on. Throws Error also if they are fewer.
+  Vec3 vertex(std::size_t first);
   /// Whether all coordinates so far may have been: then the floats are what the file is about.
   bool has_only_floats() const noexcept { return has_only_floats_; }
   /// The word as a whole number without a sign. Throws Error if it is none.
@@ -55,7 +62,8 @@ class TextLines {
  private:
   void split_line();
 
-  std::string_view text_;
+  std::string contents_;
+  std::string_view text_ = contents_;
   std::string file_;
   LineRules rules_;
   std::vector<std::string_view> words_;

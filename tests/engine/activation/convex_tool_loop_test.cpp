@@ -10,6 +10,7 @@
 #include "engine/geometry/tools.h"
 #include "keepout/adapters/narrow_phase_registry.h"
 #include "keepout/fixtures/random.h"
+#include "random_places.h"
 
 namespace keepout {
 namespace {
@@ -143,7 +144,7 @@ TEST(ConvexToolLoop, JointsAreHeldToTheSamePlanes) {
   const auto mesh = shape("gear");
   Random random(8);
   Eigen::Matrix<double, 3, Eigen::Dynamic> jacobian(3, 7);
-  for (int i = 0; i < jacobian.size(); ++i) jacobian.data()[i] = random.normal();
+  for (int i = 0; i < jacobian.size(); ++i) jacobian.data()[i] = normal(random);
   for (const test::NamedTool& named : test::tools_of_each_kind(3.0, random)) {
     SCOPED_TRACE(named.name);
     MotionConstraint constraint =

@@ -20,6 +20,7 @@
 #include "keepout/step/motion_constraint.h"
 #include "names_of_shapes.h"
 #include "queries_only.h"
+#include "random_places.h"
 #include "step/input.h"
 
 namespace keepout {
@@ -249,7 +250,7 @@ TEST(PaperBlocks, WithJointsOrRowsAllPlanesArePosed) {
   PaperForms forms(make_shape("cortex"));
   Random random(1);
   Eigen::Matrix<double, 3, Eigen::Dynamic> jacobian(3, 6);
-  for (int i = 0; i < jacobian.size(); ++i) jacobian.data()[i] = random.normal();
+  for (int i = 0; i < jacobian.size(); ++i) jacobian.data()[i] = normal(random);
   const std::array<double, 3> row{1.0, 0.0, 0.0};
   const double bound = -0.01;
   for (const Vec3& tip : surface_points(*forms.mesh, 20, 0.2, random)) {

@@ -10,6 +10,7 @@
 #include "keepout/fixtures/shapes.h"
 #include "keepout/geometry/closest_point.h"
 #include "keepout/index/query.h"
+#include "random_places.h"
 
 namespace keepout {
 namespace {

@@ -12,7 +12,9 @@ namespace {
 
 class BinaryPly : public testing::Test {
  protected:
-  MeshFile read(std::string_view contents) { return read_ply(folder.write("mesh.ply", contents)); }
+  MeshFile read(std::string_view contents) {
+    return read_ply(MeshSource(folder.write("mesh.ply", contents)));
+  }
 
   std::string complaint(std::string_view contents) {
     try {

@@ -17,6 +17,7 @@
 #include "keepout/index/pd_tree.h"
 #include "keepout/mesh/doctor.h"
 #include "keepout/oracle/safety_oracle.h"
+#include "random_places.h"
 #include "small_surfaces.h"
 #include "trials.h"
 

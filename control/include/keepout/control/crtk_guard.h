@@ -57,7 +57,7 @@ class CrtkGuard {
   void set_registration(const Registration& registration) noexcept;
 
   /// Where the robot is, for the next cycle to compare with where it was sent.
-  void measured_cp(const Pose& pose) noexcept;
+  void measured_cp(const Pose& pose) noexcept { measured_ = pose; }
 
   /// One cycle towards a goal.
   CycleStatus servo_cp(const Pose& goal) noexcept;
@@ -83,8 +83,6 @@ class CrtkGuard {
   const Registration& registration() const noexcept { return registration_; }
 
  private:
-  enum class Measured : std::uint8_t { not_given, given, invalid };
-
   CycleStatus go() noexcept;
   CycleStatus take(const HapticCycle& cycle) noexcept;
 
@@ -95,9 +93,8 @@ class CrtkGuard {
   Wrench wrench_;
   HapticCycle cycle_;
   Pose goal_;
-  Vec3 measured_ = Vec3::Zero();  // in the frame of the mesh [length]
-  Measured has_measured_ = Measured::not_given;
-  double silence_ = 0.0;  // [s]
+  std::optional<Pose> measured_;  // since the last cycle
+  double silence_ = 0.0;          // [s]
 };
 
 }  // namespace keepout

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstddef>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -37,8 +36,6 @@ class Neighborhood {
     return groups_;
   }
 
-  std::size_t fetches() const noexcept { return fetches_; }
-
  private:
   void fetch(const Bounds& box);
 
@@ -48,7 +45,6 @@ class Neighborhood {
   std::vector<TriangleId> found_;
   std::vector<Neighbor> neighbors_;  // in the order of the tree, so those close by are near
   std::vector<Group> groups_;
-  std::size_t fetches_ = 0;
 };
 
 /// What became of a way.
@@ -93,10 +89,6 @@ class SafetyOracle {
   /// has an odd number of triangles. Some 10 us to 100 us.
   std::optional<bool> inside(const Vec3& point) const { return inside_test_->inside(point); }
 
-  /// How many pairs double arithmetic could not decide so far, and searches of the whole mesh.
-  std::size_t exact_decisions() const noexcept { return exact_decisions_; }
-  std::size_t searches() const noexcept { return neighborhood_.fetches(); }
-
  private:
   /// No triangle is nearer to the center than the radius.
   struct ClearBall {
@@ -111,7 +103,6 @@ class SafetyOracle {
   Neighborhood neighborhood_;
   ClearBall clear_ball_;
   std::vector<const Neighborhood::Neighbor*> undecided_;
-  std::size_t exact_decisions_ = 0;
 };
 
 }  // namespace keepout::oracle
