@@ -16,11 +16,11 @@ inline bool few_trials() {
 #endif
 }
 
-/// How many of so many random trials are made: all of them, or a fifth and at least one. What a
+/// How many of so many random trials are made: all of them, or a tenth and at least one. What a
 /// test expects to have seen in them is told in the same way.
 template <class Count>
 Count trials(Count all) {
-  return few_trials() ? static_cast<Count>((all + 4) / 5) : all;
+  return few_trials() ? static_cast<Count>((all + 9) / 10) : all;
 }
 
 }  // namespace keepout::test
