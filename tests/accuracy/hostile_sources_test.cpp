@@ -17,7 +17,7 @@
 #include "keepout/fixtures/shapes.h"
 #include "keepout/index/query.h"
 #include "keepout/simd_target.h"
-#include "names_of_shapes.h"
+#include "shapes_to_try.h"
 
 namespace keepout {
 namespace {

@@ -18,7 +18,7 @@
 #include "keepout/index/motion_walk.h"
 #include "keepout/index/pd_tree.h"
 #include "keepout/index/query.h"
-#include "names_of_shapes.h"
+#include "shapes_to_try.h"
 #include "trials.h"
 
 namespace keepout {

@@ -18,9 +18,9 @@
 #include "keepout/index/wide_bvh.h"
 #include "keepout/solvers/active_set.h"
 #include "keepout/step/motion_constraint.h"
-#include "names_of_shapes.h"
 #include "queries_only.h"
 #include "random_places.h"
+#include "shapes_to_try.h"
 #include "step/input.h"
 
 namespace keepout {
