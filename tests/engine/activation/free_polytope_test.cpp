@@ -403,7 +403,7 @@ TEST(FreePolytope, NumberingAndWindingChangeNoBit) {
       }
     }
   }
-  EXPECT_GT(compared, 500u);
+  EXPECT_GT(compared, test::trials(500u));
 }
 
 TEST(FreePolytope, FarFromTheOriginNothingIsLost) {

@@ -13,6 +13,7 @@
 #include "keepout/fixtures/poses.h"
 #include "keepout/fixtures/shapes.h"
 #include "shapes_to_try.h"
+#include "trials.h"
 
 namespace keepout {
 
@@ -57,7 +58,7 @@ TEST_P(RuleContract, NormalsAreUnitVectorsAndSourcesAreTrianglesInReach) {
       ++seen;
     }
   });
-  EXPECT_GT(seen, 1000u);
+  EXPECT_GT(seen, test::trials(1000u));
 }
 
 TEST_P(RuleContract, WithoutAMarginStandingStillIsAlwaysAllowed) {
