@@ -6,24 +6,9 @@
 #include <span>
 
 #include "../../geometry/closest_on_segment.h"
-#include "../../geometry/corner_order.h"
 #include "keepout/activation/planes.h"
 
 namespace keepout {
-namespace {
-
-/// What the exact kernel says of a triangle whose closest point is at this one of the `places`.
-ClosestPoint closest_point_at(std::size_t place, const Triangle& triangle,
-                              const Vec3& tip) noexcept {
-  const auto corner = corner_order(triangle).corner;
-  const auto from_tip = [&](std::size_t c) -> Vec3 { return triangle[corner[c]] - tip; };
-  const auto [a, b] = corners_at[place];
-  const Vec3 offset = closest_on_segment(from_tip(a), from_tip(b)).point;
-  return {offset, offset.norm(), Feature::face};
-}
-
-}  // namespace
-
 PaperBlocks::PaperBlocks(const PaperRule& rule, const TriangleBlocks& blocks, std::size_t room)
     : rule_(rule),
       blocks_(blocks),
@@ -76,14 +61,14 @@ bool PaperBlocks::gather(const Surroundings& around, const Ball& ball, IdlePlane
       const std::uint32_t plane = unfinished_->plane[i];
       const LeafBlock& leaf = blocks_.leaves()[which / LeafBlock::lanes];
       const TriangleId t = leaf.triangle(which % LeafBlock::lanes);
-      const Triangle triangle = rule_.mesh()->triangle(t);
       if ((plane & (Unfinished::faces_tip | Unfinished::of_face)) == 0) {
-        const Hit hit{t, closest_point(triangle, ball.center)};
+        const Hit hit{t, closest_point(rule_.mesh()->triangle(t), ball.center)};
         if (!(hit.closest.distance <= ball.radius)) continue;
         ++triangles_;
         if (const std::optional<HalfSpace> its = rule_.plane_of(around, hit)) found_.push(*its);
       } else {
-        const Hit hit{t, closest_point_at(plane >> Unfinished::plane_bits, triangle, around.tip)};
+        const std::size_t place = plane >> Unfinished::plane_bits;
+        const Hit hit{t, closest_point_at(place, leaf, which % LeafBlock::lanes, around.tip)};
         const bool faces_tip = (plane & Unfinished::faces_tip) != 0;
         found_.push(plane_through(hit, faces_tip ? away_from(hit) : normals_[t], around.margin));
       }
@@ -94,6 +79,22 @@ bool PaperBlocks::gather(const Surroundings& around, const Ball& ball, IdlePlane
     }
   }
   return true;
+}
+
+/// What the exact kernel says of a triangle whose closest point is at this one of the `places`.
+/// Where the mesh's corners are floats the leaf, which was just looked at, has them.
+ClosestPoint PaperBlocks::closest_point_at(std::size_t place, const LeafBlock& leaf,
+                                           std::size_t lane, const Vec3& tip) const noexcept {
+  const auto corner = [&](std::size_t c) -> Vec3 {
+    if (blocks_.coordinate_error() > 0.0) {
+      return ordered_relative(rule_.mesh()->triangle(leaf.triangle(lane)), tip)[c];
+    }
+    return Vec3(leaf.corner[c][0][lane], leaf.corner[c][1][lane], leaf.corner[c][2][lane]) - tip;
+  };
+  const auto [a, b] = corners_at[place];
+  Vec3 offset = corner(a);
+  if (a != b) offset = closest_on_segment(offset, corner(b)).point;
+  return {offset, offset.norm(), Feature::face};
 }
 
 bool PaperBlocks::covers(const Surroundings& around, const Vec3& motion) const noexcept {

@@ -40,6 +40,8 @@ class PaperBlocks {
 
  private:
   bool gather(const Surroundings& around, const Ball& ball, IdlePlanes idle) noexcept;
+  ClosestPoint closest_point_at(std::size_t place, const LeafBlock& leaf, std::size_t lane,
+                                const Vec3& tip) const noexcept;
 
   const PaperRule& rule_;
   const TriangleBlocks& blocks_;
