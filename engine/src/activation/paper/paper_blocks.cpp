@@ -9,6 +9,7 @@
 #include "keepout/activation/planes.h"
 
 namespace keepout {
+
 PaperBlocks::PaperBlocks(const PaperRule& rule, const TriangleBlocks& blocks, std::size_t room)
     : rule_(rule),
       blocks_(blocks),
