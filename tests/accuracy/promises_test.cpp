@@ -1,0 +1,328 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What docs/safety.md promises beside the certified step itself: each was broken once.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "accuracy/certified_loop.h"
+#include "keepout/error.h"
+#include "keepout/index/brute_force.h"
+#include "keepout/index/pd_tree_1997.h"
+#include "keepout/index/wide_bvh.h"
+#include "random_places.h"
+#include "small_surfaces.h"
+#include "trials.h"
+
+namespace keepout::test {
+namespace {
+
+std::shared_ptr<const Mesh> mesh_of(Surface surface) {
+  return std::make_shared<const Mesh>(std::move(surface));
+}
+
+/// The same surface in another unit.
+Surface scaled(Surface surface, double factor) {
+  for (Vec3& v : surface.vertices) v *= factor;
+  return surface;
+}
+
+/// A cone around the z axis, its tip at the origin, open at its base.
+Surface cone(VertexId faces, double slope) {
+  Surface surface;
+  surface.vertices.emplace_back(0.0, 0.0, 0.0);
+  for (VertexId i = 0; i < faces; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / faces;
+    surface.vertices.emplace_back(10.0 * std::cos(angle), 10.0 * std::sin(angle), -10.0 * slope);
+    surface.triangles.push_back({0, i + 1, (i + 1) % faces + 1});
+  }
+  return surface;
+}
+
+// Lengths beyond what is computed with are refused, whatever they are of.
+
+TEST(Range, LengthsOutsideAreRefusedWithAWordOnThem) {
+  for (const double unit : {1e-80, 1e-29, 1e-17, 1e17, 1e19, 1e25}) {
+    SCOPED_TRACE(unit);
+    const auto mesh = mesh_of(scaled(make_cube(5.0), unit));
+    EXPECT_THROW(make_motion_constraint(mesh, {.radius = 5.0 * unit, .margin = 0.2 * unit}), Error);
+  }
+  const auto mesh = mesh_of(make_cube(5.0));
+  EXPECT_THROW(make_motion_constraint(mesh, {.radius = 1e16}), Error);
+  EXPECT_THROW(make_motion_constraint(mesh, {.radius = 1e-16, .margin = 1e-6}), Error);
+  EXPECT_THROW(make_motion_constraint(mesh, {.tool_radius = 1e16}), Error);
+  EXPECT_THROW(make_motion_constraint(mesh, {.activation = "paper", .margin = 1e-16}), Error);
+  auto guard = make_motion_constraint(mesh, {.radius = 5.0, .margin = 0.2});
+  const Step far = guard.step({.tip = Vec3(2e15, 0.0, 0.0), .desired = Vec3(1.0, 0.0, 0.0)});
+  EXPECT_EQ(far.status, Status::invalid_input);
+}
+
+class RangeWithin : public testing::TestWithParam<double> {};
+
+TEST_P(RangeWithin, StepsAreCertifiedInWhateverUnit) {
+  const double unit = GetParam();
+  Random random(7);
+  for (const char* shape : {"gear", "sphere", "needles"}) {
+    SCOPED_TRACE(shape);
+    Loop loop(scaled(make_shape(shape), unit), {.radius = 2.0 * unit, .margin = 0.2 * unit});
+    std::size_t held = 0;
+    for (const Vec3& place : places(loop, 40, 0.5 * unit, random)) {
+      Vec3 tip = place;
+      for (int cycle = 0; cycle < 5; ++cycle) {
+        const double before = loop.distance(tip);
+        const Vec3 desired = 2.0 * unit * random.direction() * random.uniform();
+        const Step step = loop.step(tip, desired);
+        ASSERT_LE(loop.loss(tip, tip + step.motion, before), 3.0);
+        held += step.status == Status::limited;
+        tip += step.motion;
+      }
+    }
+    EXPECT_GT(held, 10u);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Units, RangeWithin, testing::Values(1e-13, 1e-9, 1e-3, 1e3, 1e9, 1e12));
+
+// Once its index is of another mesh a guard moves nothing.
+
+class AfterRefit : public testing::TestWithParam<const char*> {};
+
+TEST_P(AfterRefit, NoStepMovesAndNoPolytopeIsFound) {
+  const Surface cube = make_cube(5.0);
+  const auto mesh = mesh_of(cube);
+  auto tree = std::make_shared<WideBvh>(mesh);
+  const bool is_certified = std::string_view(GetParam()) == "certified";
+  auto guard = make_motion_constraint(
+      mesh, tree, {.activation = GetParam(), .radius = 5.0, .margin = is_certified ? 0.2 : 0.0});
+  const double top = mesh->bounds().high.z();
+  const Vec3 down(0.0, 0.0, -1.0);
+  for (const double off : {2.0, 0.5, 0.1, -0.5}) {
+    static_cast<void>(guard.step({.tip = Vec3(0.3, 0.2, top + off), .desired = down}));
+  }
+  tree->refit(mesh_of(moved(cube, Vec3(0.0, 0.0, 3.0))));
+  for (const double off : {-1.0, 0.1, 0.5, 2.0, 2.9, 3.0, 3.1, 3.5, 5.0, 8.0, 40.0}) {
+    SCOPED_TRACE(off);
+    const Vec3 tip(0.3, 0.2, top + off);
+    for (const Vec3& desired : {down, Vec3(-down)}) {
+      const Step step = guard.step({.tip = tip, .desired = desired});
+      EXPECT_FALSE(step.ok()) << name(step.status);
+      EXPECT_EQ(step.motion, Vec3::Zero());
+    }
+    EXPECT_FALSE(guard.free_polytope(tip, 2.0).ok());
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Rules, AfterRefit, testing::Values("certified", "paper", "all_faces"));
+
+// What a running guard holds on to cannot be replaced behind its back.
+
+TEST(WhatAGuardRestsOn, IsNotAssignedTo) {
+  EXPECT_FALSE(std::is_copy_assignable_v<WideBvh>);
+  EXPECT_FALSE(std::is_move_assignable_v<WideBvh>);
+  EXPECT_FALSE(std::is_copy_assignable_v<Mesh>);
+  EXPECT_FALSE(std::is_move_assignable_v<Mesh>);
+}
+
+// An index of another mesh is not accepted.
+
+TEST(IndexOfAnotherMesh, IsRefused) {
+  const auto mesh = mesh_of(make_cube(5.0));
+  const auto other = mesh_of(moved(make_cube(5.0), Vec3(0.0, 0.0, 3.0)));
+  const std::vector<std::shared_ptr<const SpatialIndex>> indices{
+      std::make_shared<WideBvh>(other), std::make_shared<PdTree>(other),
+      std::make_shared<PdTree1997>(other), std::make_shared<BruteForce>(other)};
+  for (const auto& index : indices) {
+    EXPECT_THROW(make_motion_constraint(mesh, index, {.radius = 5.0}), Error);
+    EXPECT_NO_THROW(make_motion_constraint(other, index, {.radius = 5.0}));
+  }
+}
+
+// What is far off, and used by no triangle, changes nothing; nor does the origin.
+
+TEST(CoordinatesOf, VerticesThatNoTriangleUsesChangeNothing) {
+  Surface surface = scaled(make_shape("gear"), 1.0 / 3.0);  // in no floats
+  Surface with_one_more = surface;
+  with_one_more.vertices.emplace_back(3e7 / 7.0, -3e7, 3e7);
+  const MotionConstraintSettings settings{.radius = 1.0, .margin = 0.01};
+  Loop loop(surface, settings);
+  Loop other(with_one_more, settings);
+  Random random(3);
+  for (const Vec3& tip : places(loop, 300, 0.05, random)) {
+    const Vec3 desired = random.uniform() * random.direction();
+    const Step expected = loop.step(tip, desired);
+    const Step step = other.step(tip, desired);
+    ASSERT_EQ(step.status, expected.status);
+    ASSERT_EQ(step.motion, expected.motion);
+    ASSERT_EQ(step.triangles, expected.triangles);
+  }
+}
+
+TEST(CoordinatesOf, AMeshFarFromTheOriginLimitNoMore) {
+  const Surface surface = scaled(make_shape("gear"), 1.0 / 3.0);
+  const Vec3 offset(1e7 / 3.0, -1e7, 1e7 / 7.0);
+  const MotionConstraintSettings settings{.radius = 1.0, .margin = 0.01};
+  Loop loop(surface, settings);
+  Loop far(moved(surface, offset), settings);
+  Random random(3);
+  std::size_t asked = 0, asked_far = 0;
+  for (const Vec3& tip : places(loop, 300, 0.05, random)) {
+    const Vec3 desired = random.uniform() * random.direction();
+    const Step expected = loop.step(tip, desired);
+    const Step step = far.step(tip + offset, desired);
+    ASSERT_EQ(step.ok(), expected.ok());
+    ASSERT_LE(std::abs((step.motion - desired).norm() - (expected.motion - desired).norm()), 1e-6);
+    asked += expected.triangles;
+    asked_far += step.triangles;
+  }
+  EXPECT_LE(asked_far, asked + asked / 4);
+}
+
+// One budget for a cycle, whatever happens in it.
+
+/// Counts the triangles that a walk shows, and is otherwise the walk of a tree.
+class CountedTree final : public SpatialIndex {
+ public:
+  explicit CountedTree(std::shared_ptr<const Mesh> mesh) : tree_(std::move(mesh)) {}
+
+  void collect(const Ball& ball, TriangleBuffer& candidates) const noexcept override {
+    tree_.collect(ball, candidates);
+  }
+  TriangleId nearest(const Vec3& point) const noexcept override { return tree_.nearest(point); }
+  std::size_t memory() const noexcept override { return tree_.memory(); }
+  std::unique_ptr<MotionWalk> walk_along_motions() const override {
+    return std::make_unique<Walk>(tree_.walk_along_motions(), *this);
+  }
+
+  mutable std::size_t visits = 0;
+
+ private:
+  class Walk final : public MotionWalk, private EncounterVisitor {
+   public:
+    Walk(std::unique_ptr<MotionWalk> walk, const CountedTree& tree)
+        : walk_(std::move(walk)), tree_(tree) {}
+
+    bool begin(const Start& start) noexcept override { return walk_->begin(start); }
+    void begin_again(double level) noexcept override { walk_->begin_again(level); }
+    bool is_free() const noexcept override { return walk_->is_free(); }
+    bool walk(const Vec3& motion, EncounterVisitor& visitor) noexcept override {
+      visitor_ = &visitor;
+      return walk_->walk(motion, *this);
+    }
+    bool is_exhausted() const noexcept override { return walk_->is_exhausted(); }
+    std::size_t room() const noexcept override { return walk_->room(); }
+
+   private:
+    double visit(const Encounter& its) noexcept override {
+      ++tree_.visits;
+      return visitor_->visit(its);
+    }
+
+    std::unique_ptr<MotionWalk> walk_;
+    const CountedTree& tree_;
+    EncounterVisitor* visitor_ = nullptr;
+  };
+
+  WideBvh tree_;
+};
+
+TEST(BudgetOfACycle, HoldsUnderTheTipOfACone) {
+  constexpr std::size_t stated = 65'536;
+  for (const VertexId faces : {400u, 4'000u, 20'000u}) {
+    for (const double slope : {0.3, 1.0, 3.0}) {
+      SCOPED_TRACE(testing::Message() << faces << " faces, slope " << slope);
+      const auto mesh = mesh_of(cone(faces, slope));
+      const auto tree = std::make_shared<CountedTree>(mesh);
+      auto guard = make_motion_constraint(mesh, tree, {.radius = 5.0, .margin = 1.0});
+      for (const double off : {0.5, 0.99, 1.0, 1.5, 3.0}) {
+        tree->visits = 0;
+        const Step step =
+            guard.step({.tip = Vec3(1e-4, 2e-4, off), .desired = Vec3(0.01, 0.02, -4.0)});
+        EXPECT_LE(tree->visits, stated) << name(step.status);
+      }
+    }
+  }
+}
+
+// However little a tip is led off that is too close, it comes no closer.
+
+/// Pushes a tip towards what is nearest to it by what a plane may be missed by without a word,
+/// again and again. Returns how much nearer it came, in tolerances.
+double creep(Loop& loop, Vec3 tip, const Vec3& inwards, int cycles, Random& random) {
+  NearestTriangle nearest(loop.mesh(), loop.guard().index());
+  const double tau = loop.tolerance(tip);
+  const double at_first = loop.distance(tip);
+  for (int cycle = 0; cycle < cycles; ++cycle) {
+    const Vec3 towards = (nearest(tip).closest.offset.normalized() + inwards).normalized();
+    tip += loop.step(tip, random.uniform(0.0, 0.06) * tau * towards).motion;
+  }
+  return (at_first - loop.distance(tip)) / tau;
+}
+
+class LittleRecovery : public testing::TestWithParam<double> {};
+
+TEST_P(LittleRecovery, NothingAddsUp) {
+  Random random(11);
+  const MotionConstraintSettings settings{.radius = 1.0, .margin = 0.5, .recovery = GetParam()};
+  for (const char* shape : {"cube", "sphere", "gear"}) {
+    SCOPED_TRACE(shape);
+    Loop loop(make_shape(shape), settings);
+    for (const Vec3& tip : places(loop, 3, 0.4, random)) {
+      EXPECT_LE(creep(loop, tip, Vec3::Zero(), 5'000, random), 3.0);
+    }
+  }
+}
+
+/// A groove along the y axis, open upwards, whose walls meet at an angle.
+Surface groove(double angle) {
+  const double x = 20.0 * std::sin(0.5 * angle), z = 20.0 * std::cos(0.5 * angle);
+  return {{{0, -20, 0}, {0, 20, 0}, {x, -20, z}, {x, 20, z}, {-x, -20, z}, {-x, 20, z}},
+          {{0, 2, 1}, {1, 2, 3}, {0, 1, 4}, {1, 5, 4}}};
+}
+
+/// Where a way off one wall is a way to the other.
+TEST_P(LittleRecovery, NothingAddsUpBetweenWalls) {
+  Random random(12);
+  const MotionConstraintSettings settings{.radius = 1.0, .margin = 0.5, .recovery = GetParam()};
+  for (const double angle : {0.001, 0.02, 0.3, 1.0, 1.5, 2.5}) {
+    SCOPED_TRACE(angle);
+    Loop loop(groove(angle), settings);
+    const double height = std::min(0.4 / std::sin(0.5 * angle), 15.0);
+    for (const double beside : {0.0, 1e-9, 1e-4}) {
+      EXPECT_LE(creep(loop, Vec3(beside, 0.3, height), Vec3(0.0, 0.0, -3.0), 5'000, random), 3.0)
+          << beside;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Recoveries, LittleRecovery, testing::Values(0.0, 1e-30, 1e-12, 0.05));
+
+// Zero has one sign in what comes out.
+
+TEST(SignOfZero, IsPlusWhateverItWasInWhatGoesIn) {
+  auto guard = make_motion_constraint(mesh_of(make_cube(5.0)), {.radius = 5.0});
+  const auto expect_plus = [&](const Motion& motion) {
+    const Step step = guard.step(motion);
+    for (int axis = 0; axis < 3; ++axis) {
+      EXPECT_FALSE(step.motion[axis] == 0.0 && std::signbit(step.motion[axis]));
+    }
+    for (const double u : step.increment) EXPECT_FALSE(u == 0.0 && std::signbit(u));
+  };
+  const Eigen::Matrix3d jacobian = Vec3(1.0, -1.0, 1.0).asDiagonal();
+  for (const double x : {0.0, -0.0}) {
+    for (const double z : {60.0, 50.5, 50.1, 40.0, 1000.0}) {
+      for (const Vec3& desired : {Vec3(-0.0, x, -0.0), Vec3(x, 1.0, -0.0), Vec3(-x, -0.0, -4.0)}) {
+        expect_plus({.tip = Vec3(x, -0.0, z), .desired = desired});
+        expect_plus({.tip = Vec3(x, -0.0, z), .desired = desired, .jacobian = jacobian});
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace keepout::test
