@@ -20,10 +20,9 @@ int main(int argc, char** argv) try {
 
   // 12 mm of a shaft 3 mm thick, leaning by 45 degrees; the tip is the centre of its lower end.
   const auto shaft = keepout::ConvexTool::capsule({0, 0, 0}, {8.5, 0, 8.5}, 1.5);
-  keepout::MotionConstraint guard(mesh, keepout::make_index("wide_bvh", mesh),
-                                  std::make_unique<keepout::ConvexToolRule>(mesh, shaft),
-                                  keepout::make_solver("active_set"),
-                                  {.radius = 5.0, .margin = 0.2});
+  keepout::MotionConstraint guard(
+      mesh, keepout::make_index("wide_bvh", mesh), std::make_unique<keepout::ConvexToolRule>(shaft),
+      keepout::make_solver("active_set"), {.radius = 5.0, .margin = 0.2});
 
   // A hand that comes from above and wants to go straight through to below.
   const keepout::Box& box = mesh->bounds();

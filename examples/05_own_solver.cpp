@@ -77,7 +77,7 @@ keepout::MotionConstraint guard_with(std::unique_ptr<keepout::Solver> solver,
                                      const std::shared_ptr<const keepout::Mesh>& mesh) {
   return {mesh,
           keepout::make_index("wide_bvh", mesh),
-          keepout::make_activation("certified", mesh),
+          keepout::make_activation("certified"),
           std::move(solver),
           {.radius = 2.0, .margin = 0.5}};
 }

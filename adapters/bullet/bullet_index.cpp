@@ -155,12 +155,15 @@ class BulletModel : public SpatialIndex {
   static constexpr std::string_view name = Tree::name;
   static constexpr std::size_t most_triangles = Tree::most_triangles;
 
-  explicit BulletModel(const Mesh& mesh)
-      : frame_(mesh.bounds(), reach_of_frame),
-        bounds_(frame_.from_mesh(mesh.bounds())),
-        tree_(tree_of(mesh, frame_)) {
-    check(mesh);
+  explicit BulletModel(std::shared_ptr<const Mesh> mesh)
+      : mesh_(std::move(mesh)),
+        frame_(mesh_->bounds(), reach_of_frame),
+        bounds_(frame_.from_mesh(mesh_->bounds())),
+        tree_(tree_of(*mesh_, frame_)) {
+    check(*mesh_);
   }
+
+  const Mesh& mesh() const noexcept final { return *mesh_; }
 
   std::size_t memory() const noexcept override { return tree_.memory(); }
 
@@ -222,6 +225,7 @@ class BulletModel : public SpatialIndex {
     throw Error("Bullet's tree does not hold the mesh; use the index 'pd_tree'");
   }
 
+  std::shared_ptr<const Mesh> mesh_;
   CenteredFrame frame_;
   Box bounds_;  // of the mesh, in the frame
   Tree tree_;
@@ -236,7 +240,7 @@ class BulletIndex final : public BulletModel<Tree> {
   void collect(const Ball& ball, TriangleBuffer& candidates) const noexcept override {
     const Ball padded = this->padded(ball);
     const Tree& tree = this->tree();
-    for (int n = 0; n < tree.node_count();) {
+    for (int n = 0; n < tree.node_count() && !candidates.overflowed();) {
       if (squared_distance(tree.box(n), padded.center) > padded.radius * padded.radius) {
         n += tree.subtree_size(n);
         continue;
@@ -278,7 +282,7 @@ class BulletCallbackIndex final : public BulletModel<BulletQuantizedTree> {
 template <class Index>
 std::unique_ptr<SpatialIndex> make(std::shared_ptr<const Mesh> mesh) {
   require_at_most(Index::most_triangles, mesh->triangle_count(), "triangles", Index::name);
-  return std::make_unique<Index>(*mesh);
+  return std::make_unique<Index>(std::move(mesh));
 }
 
 std::string library() {

@@ -70,6 +70,8 @@ class CgalIndex final : public SpatialIndex {
     tree_.build();  // now, not in the first query
   }
 
+  const Mesh& mesh() const noexcept override { return *mesh_; }
+
   void collect(const Ball& ball, TriangleBuffer& candidates) const noexcept override {
     const double reach = padded_radius(ball, mesh_->bounds());
     BallTraversal traversal{reach * reach, candidates};

@@ -51,6 +51,8 @@ class EmbreeIndex final : public SpatialIndex {
     build();
   }
 
+  const Mesh& mesh() const noexcept override { return *mesh_; }
+
   void collect(const Ball& ball, TriangleBuffer& candidates) const noexcept override {
     const double reach = padded_radius(ball, mesh_->bounds());
     // Decided in double, before a distance is more than a float can tell from another.

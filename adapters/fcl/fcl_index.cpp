@@ -81,6 +81,8 @@ double squared_distance(const fcl::OBBRSSd& volume, const Vec3& point) noexcept 
 template <class Volume>
 class FclModel : public SpatialIndex {
  public:
+  const Mesh& mesh() const noexcept final { return *mesh_; }
+
   /// `name`: of the index that it is for.
   FclModel(std::shared_ptr<const Mesh> mesh, std::string_view name) : mesh_(std::move(mesh)) {
     require_at_most(fcl_most_triangles, mesh_->triangle_count(), "triangles", name);
@@ -100,7 +102,7 @@ class FclModel : public SpatialIndex {
   }
 
  protected:
-  const std::shared_ptr<const Mesh>& mesh() const noexcept { return mesh_; }
+  const std::shared_ptr<const Mesh>& shared_mesh() const noexcept { return mesh_; }
   const fcl::BVHModel<Volume>& tree() const noexcept { return model_; }
 
  private:
@@ -152,7 +154,7 @@ class FclIndex final : public FclModel<Volume> {
   explicit FclIndex(std::shared_ptr<const Mesh> on) : FclModel<Volume>(std::move(on), name) {}
 
   void collect(const Ball& ball, TriangleBuffer& candidates) const noexcept override {
-    const double reach = padded_radius(ball, this->mesh()->bounds());
+    const double reach = padded_radius(ball, this->mesh().bounds());
     visit(0, ball.center, reach * reach, candidates);
   }
 
@@ -167,6 +169,7 @@ class FclIndex final : public FclModel<Volume> {
       candidates.push(static_cast<TriangleId>(at.primitiveId()));
       return;
     }
+    if (candidates.overflowed()) return;
     visit(at.leftChild(), point, squared_reach, candidates);
     visit(at.rightChild(), point, squared_reach, candidates);
   }
@@ -200,8 +203,8 @@ class FclCollideIndex final : public FclModel<fcl::OBBd> {
   static constexpr std::string_view name = "fcl_collide";
 
   explicit FclCollideIndex(std::shared_ptr<const Mesh> on) : FclModel(std::move(on), name) {
-    for (TriangleId t = 0; t < mesh()->triangle_count(); ++t) {
-      if (is_thin(mesh()->triangle(t))) thin_.push_back(t);
+    for (TriangleId t = 0; t < mesh().triangle_count(); ++t) {
+      if (is_thin(mesh().triangle(t))) thin_.push_back(t);
     }
   }
 
@@ -211,7 +214,7 @@ class FclCollideIndex final : public FclModel<fcl::OBBd> {
     } catch (const std::exception&) {
       // No memory for FCL's list, and nothing is in ours yet: it is not for a query to throw.
     }
-    BruteForce(mesh()).collect(ball, candidates);
+    BruteForce(shared_mesh()).collect(ball, candidates);
   }
 
   std::size_t memory() const noexcept override {
@@ -221,7 +224,7 @@ class FclCollideIndex final : public FclModel<fcl::OBBd> {
  private:
   /// False where FCL cannot tell.
   bool ask(const Ball& ball, TriangleBuffer& candidates) const {
-    const Box& bounds = mesh()->bounds();
+    const Box& bounds = mesh().bounds();
     const double lengths =
         ball.radius + (ball.center - bounds.center()).cwiseAbs().sum() + bounds.size().sum();
     if (!(ball.radius >= 0.0 && lengths < farthest)) return false;
@@ -232,7 +235,7 @@ class FclCollideIndex final : public FclModel<fcl::OBBd> {
     // One more than there is room for, so that an overflow shows.
     const std::size_t room = candidates.capacity() - candidates.size();
     const fcl::CollisionRequestd request(
-        std::min(mesh()->triangle_count(), room + 1 + thin_.size()));
+        std::min(mesh().triangle_count(), room + 1 + thin_.size()));
     fcl::CollisionResultd result;
     fcl::collide(&tree(), fcl::Transform3d::Identity(), &sphere, pose, request, result);
     for (std::size_t i = 0; i < result.numContacts(); ++i) {
@@ -240,7 +243,7 @@ class FclCollideIndex final : public FclModel<fcl::OBBd> {
       if (!std::ranges::binary_search(thin_, t)) candidates.push(t);
     }
     for (const TriangleId t : thin_) {
-      if (closest_point(mesh()->triangle(t), ball.center).distance <= ball.radius) {
+      if (closest_point(mesh().triangle(t), ball.center).distance <= ball.radius) {
         candidates.push(t);
       }
     }

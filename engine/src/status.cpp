@@ -27,9 +27,9 @@ constexpr std::array outcomes{
             "the Jacobian lacks full column rank, or all but, as it does with more than three "
             "joints: set damping above 0"},
     Outcome{"invalid_input",
-            "a number is missing, not finite, beyond 1e30, or so far from the origin that the "
-            "step is lost in its digits, or a Jacobian has other than 3 rows: check the tip, the "
-            "increment and the Jacobian"},
+            "a number is missing, not finite, beyond 1e15 (of a Jacobian or rows 1e30), or so far "
+            "from the origin that the step is lost in its digits, or a Jacobian has other than 3 "
+            "rows: check the tip, the increment and the Jacobian"},
     Outcome{"beyond_reach",
             "the motion is longer than the radius of the motion sphere: ask for less in a cycle, "
             "or declare a larger radius; are motion, radius and mesh in one unit, as mm?"},
@@ -40,7 +40,7 @@ constexpr std::array outcomes{
             "metres, so that a radius in mm holds all of it?"},
     Outcome{
         "unsolved",
-        "no motion could be proven within the budget of work, the rule's or the solver's: ask for "
+        "no motion could be proven within the budget of work, the cycle's or the solver's: ask for "
         "a shorter one"},
     Outcome{
         "inside",
@@ -53,8 +53,11 @@ constexpr std::array outcomes{
     Outcome{"margin_too_small",
             "the margin is lost in the rounding of lengths this large: raise the margin or the "
             "tool radius, or move the origin closer; or is the mesh in micrometres?"},
+    Outcome{"mesh_changed",
+            "the index was refit to another mesh: have the motion constraint follow it, and look "
+            "where the tip is now"},
 };
-static_assert(outcomes.size() == static_cast<std::size_t>(Status::margin_too_small) + 1);
+static_assert(outcomes.size() == status_count);
 
 constexpr Outcome unknown{"unknown", "unknown status"};
 

@@ -86,7 +86,7 @@ class Liar final : public Solver {
 MotionConstraint guard_of(const std::shared_ptr<const Mesh>& mesh, std::unique_ptr<Solver> solver) {
   return {mesh,
           std::make_unique<PdTree>(mesh),
-          std::make_unique<CertifiedRule>(mesh),
+          std::make_unique<CertifiedRule>(),
           std::move(solver),
           {.radius = radius, .margin = margin},
           {.planes = 200}};
@@ -155,8 +155,7 @@ TEST_P(CertifiedSolver, ASloppyOneIsSafeAndOfUse) {
 
 TEST_P(CertifiedSolver, ASloppyOneIsSafeWithJoints) {
   MotionConstraint guard(loop.shared_mesh(), std::make_unique<PdTree>(loop.shared_mesh()),
-                         std::make_unique<CertifiedRule>(loop.shared_mesh()),
-                         std::make_unique<Sloppy>(1e-8),
+                         std::make_unique<CertifiedRule>(), std::make_unique<Sloppy>(1e-8),
                          {.radius = radius, .margin = margin, .damping = 1e-6}, {.planes = 200});
   std::size_t cycles = 0, not_ok = 0, fallbacks = 0;
   const double worst = run(guard, true, 30, [&](const Motion&, const Step& step) {

@@ -87,8 +87,9 @@ inline void expect_brute_force_sets(const Mesh& mesh, const SpatialIndex& index,
   TriangleBuffer candidates(mesh.triangle_count());
   std::vector<std::size_t> found(mesh.triangle_count(), 0);  // in which question
   std::size_t question = 0;
+  Budget unlimited;
   for (const Probe& probe : probes) {
-    if (const TriangleId nearest = index.nearest(probe.point); nearest != no_triangle) {
+    if (const TriangleId nearest = index.nearest(probe.point, unlimited); nearest != no_triangle) {
       const auto least = std::min_element(probe.distances.begin(), probe.distances.end());
       ASSERT_EQ(nearest, least - probe.distances.begin())
           << "nearest to " << probe.point.transpose();

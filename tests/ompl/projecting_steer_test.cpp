@@ -124,9 +124,8 @@ TEST(StraightWay, ASolverThatGivesUpProvesTheSame) {
     const auto mesh = mesh_of(shape);
     MotionConstraint guard =
         make_motion_constraint(mesh, {.margin = margin, .inside = Inside::taken_as_is});
-    MotionConstraint quick(mesh, make_index("wide_bvh", mesh),
-                           std::make_unique<CertifiedRule>(mesh), std::make_unique<StraightOnly>(),
-                           {.radius = 5.0, .margin = margin});
+    MotionConstraint quick(mesh, make_index("wide_bvh", mesh), std::make_unique<CertifiedRule>(),
+                           std::make_unique<StraightOnly>(), {.radius = 5.0, .margin = margin});
     Random random(4);
     const auto from = random_points(*mesh, 400, random);
     const auto to = random_points(*mesh, 400, random);

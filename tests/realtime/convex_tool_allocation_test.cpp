@@ -22,7 +22,7 @@ TEST(ConvexToolAllocation, AStepAllocatesNothingWhateverItsOutcome) {
   Random random(1);
   for (const test::NamedTool& named : test::tools_of_each_kind(2.0, random)) {
     MotionConstraint constraint(mesh, std::make_unique<PdTree>(mesh),
-                                std::make_unique<ConvexToolRule>(mesh, named.tool),
+                                std::make_unique<ConvexToolRule>(named.tool),
                                 std::make_unique<ActiveSet>(), {.radius = 2.0, .margin = 0.3});
     const double reach = named.tool.bounding_ball().center.norm() + named.tool.radius();
     std::size_t of_each[16] = {};

@@ -38,7 +38,7 @@ std::vector<RecordedProblem> record_problems(const std::shared_ptr<const Mesh>& 
   std::vector<RecordedProblem> posed, kept;
   // Both record into one: damped for the joints, not so for the tip.
   const auto guard_of = [&](double damping) {
-    return MotionConstraint(mesh, std::make_unique<PdTree>(mesh), make_activation(rule, mesh),
+    return MotionConstraint(mesh, std::make_unique<PdTree>(mesh), make_activation(rule),
                             std::make_unique<RecordingSolver>(std::make_unique<ActiveSet>(), posed),
                             {.radius = radius, .margin = margin, .damping = damping});
   };

@@ -51,8 +51,7 @@ std::shared_ptr<GuardPool> steering_guards(const PlanOptions& options, const Sce
 /// The same, but for a solver that does not search where a motion is held back.
 std::shared_ptr<GuardPool> validating_guards(const PlanOptions& options, const Scene& scene) {
   return std::make_shared<GuardPool>([&options, &scene] {
-    return MotionConstraint(scene.mesh(), scene.shared_index(),
-                            std::make_unique<CertifiedRule>(scene.mesh()),
+    return MotionConstraint(scene.mesh(), scene.shared_index(), std::make_unique<CertifiedRule>(),
                             std::make_unique<StraightOnly>(),
                             {.radius = options.radius, .margin = options.clearance()}, {}, sides);
   });

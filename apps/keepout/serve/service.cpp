@@ -138,9 +138,9 @@ Service::Service(std::shared_ptr<const Mesh> mesh, const ServiceSettings& settin
       jacobian_(3, static_cast<Eigen::Index>(settings.limits.joints)),
       info_(members_of(info(*mesh, settings))),
       statuses_(
-          members_of({{"statuses", statuses<Status>(Status::margin_too_small, &is_ok)},
+          members_of({{"statuses", statuses<Status>(Status::mesh_changed, &is_ok)},
                       {"polytope_statuses",
-                       statuses<PolytopeStatus>(PolytopeStatus::whole_tool, [](PolytopeStatus s) {
+                       statuses<PolytopeStatus>(PolytopeStatus::mesh_changed, [](PolytopeStatus s) {
                          return s == PolytopeStatus::found;
                        })}})) {}
 

@@ -57,8 +57,6 @@ struct CampaignSettings {
 inline constexpr std::uint64_t steps_of_a_trajectory = 500;
 std::uint64_t trajectory_count(std::uint64_t steps) noexcept;
 
-inline constexpr std::size_t status_count = static_cast<std::size_t>(Status::margin_too_small) + 1;
-
 /// What came out on one mesh.
 struct Tally {
   std::string mesh;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string_view>
 
@@ -18,11 +19,15 @@ enum class Status : std::uint8_t {
   invalid_input,  // a number is not finite or out of range
   beyond_reach,   // the motion asked for, or solved, is longer than the motion sphere's radius
   over_capacity,  // more triangles, planes or variables than room was made for
-  unsolved,       // nothing could be proven within the budget of work, the rule's or the solver's
+  unsolved,       // nothing could be proven within the budget of work, the cycle's or the solver's
   inside,         // the tip is on the forbidden side, and is not led out
   touching,       // the tip is on the surface, and which side is free cannot be told
   margin_too_small,  // the margin is lost in the rounding of lengths this large
+  mesh_changed,      // the index was refit to another mesh, which is not followed yet
 };
+
+/// How many there are.
+inline constexpr std::size_t status_count = static_cast<std::size_t>(Status::mesh_changed) + 1;
 
 /// A motion comes with it, which may be carried out.
 constexpr bool is_ok(Status status) noexcept { return status <= Status::fallback; }

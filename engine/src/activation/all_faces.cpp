@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "keepout/activation/all_faces.h"
 
-#include <utility>
-
 #include "keepout/activation/planes.h"
 
 namespace keepout {
 
-AllFaces::AllFaces(std::shared_ptr<const Mesh> mesh) : mesh_(std::move(mesh)) {}
-
 Opening AllFaces::start(const Surroundings& around, HalfSpaceBuffer& planes) noexcept {
   for (const Hit& hit : hits()) {
-    const Vec3 normal = mesh_->normal(hit.triangle);
+    const Vec3 normal = mesh().normal(hit.triangle);
     if (normal.isZero(0.0) || !on_positive_side(around, hit, normal)) continue;
     planes.push(plane_through(hit, normal, around.margin));
   }

@@ -2,7 +2,6 @@
 #include "keepout/activation/registry.h"
 
 #include <array>
-#include <utility>
 
 #include "keepout/activation/all_faces.h"
 #include "keepout/activation/certified.h"
@@ -13,8 +12,8 @@ namespace keepout {
 namespace {
 
 template <class Rule>
-std::unique_ptr<Activation> make(std::shared_ptr<const Mesh> mesh) {
-  return std::make_unique<Rule>(std::move(mesh));
+std::unique_ptr<Activation> make() {
+  return std::make_unique<Rule>();
 }
 
 constexpr std::array rules{
@@ -30,9 +29,8 @@ constexpr std::array rules{
 
 std::span<const ActivationEntry> activation_rules() noexcept { return rules; }
 
-std::unique_ptr<Activation> make_activation(std::string_view name,
-                                            std::shared_ptr<const Mesh> mesh) {
-  return entry_named(name, rules, "activation rule").make(std::move(mesh));
+std::unique_ptr<Activation> make_activation(std::string_view name) {
+  return entry_named(name, rules, "activation rule").make();
 }
 
 }  // namespace keepout

@@ -4,14 +4,15 @@
 #include <cmath>
 
 #include "keepout/geometry/shapes.h"
+#include "keepout/index/triangle_blocks.h"
 
 namespace keepout {
 
 /// A ball as floats see it, with bounds so drawn that what a float says of a box or a triangle
 /// beyond them is what the exact kernel says. How they are drawn: ball_screen.cpp.
 struct BallScreen {
-  /// Of a mesh within `bounds`, whose coordinates the floats miss by up to `coordinate_error`.
-  BallScreen(const Ball& ball, const Box& bounds, double coordinate_error) noexcept;
+  /// Of a mesh within `bounds`, whose floats are in `frame`.
+  BallScreen(const Ball& ball, const Box& bounds, const LeafFrame& frame) noexcept;
 
   /// False where a float would overflow: then nothing else here is to be used.
   bool fits;
@@ -19,7 +20,7 @@ struct BallScreen {
   Ball ball;
   double off;          // how far all corners may be moved, as floats see them [length]
   double pad;          // how far the exact kernel may be off [length]
-  float high_part[3];  // of the centre: the floats nearest to its coordinates [length]
+  float high_part[3];  // of the centre in the frame: the floats nearest to its coordinates [length]
   float low_part[3];   // and to what they leave of them [length]
   float below[3];      // floats around the centre [length]
   float above[3];

@@ -2,9 +2,9 @@
 #include "leaf_fill.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cstdint>
 #include <cstring>
-#include <vector>
 
 #include "../parallel.h"
 
@@ -44,7 +44,7 @@ HWY_INLINE Place<Number> choose(Choice<Number> first, const Place<Number>& a,
           hn::IfThenElse(first, a.z, b.z)};
 }
 
-HWY_INLINE void store(const Place<float>& place, float (&corner)[3][LeafBlock::lanes],
+HWY_INLINE void store(const Place<float>& place, const Vec3&, float (&corner)[3][LeafBlock::lanes],
                       std::size_t first) {
   const Lanes<float> d;
   hn::Store(place.x, d, corner[0] + first);
@@ -52,12 +52,17 @@ HWY_INLINE void store(const Place<float>& place, float (&corner)[3][LeafBlock::l
   hn::Store(place.z, d, corner[2] + first);
 }
 
-HWY_INLINE void store(const Place<double>& place, float (&corner)[3][LeafBlock::lanes],
-                      std::size_t first) {
+HWY_INLINE void store(const Place<double>& place, const Vec3& origin,
+                      float (&corner)[3][LeafBlock::lanes], std::size_t first) {
+  const Lanes<double> d;
   const hn::Rebind<float, Lanes<double>> floats;
-  hn::Store(hn::DemoteTo(floats, place.x), floats, corner[0] + first);
-  hn::Store(hn::DemoteTo(floats, place.y), floats, corner[1] + first);
-  hn::Store(hn::DemoteTo(floats, place.z), floats, corner[2] + first);
+  const auto write = [&](hn::Vec<Lanes<double>> x, int axis) HWY_ATTR {
+    const auto from_origin = hn::Sub(x, hn::Set(d, origin[axis]));
+    hn::Store(hn::DemoteTo(floats, from_origin), floats, corner[axis] + first);
+  };
+  write(place.x, 0);
+  write(place.y, 1);
+  write(place.z, 2);
 }
 
 /// The corners of a leaf's triangles, each beside a number that is not looked at. [length]
@@ -85,9 +90,10 @@ HWY_INLINE void copy(const Vec3& from, double (&to)[4]) {
   to[3] = 0.0;
 }
 
-/// Writes the corners in lexicographic order: as corner_order does, equal ones keep theirs.
+/// Writes the corners in lexicographic order: as corner_order does, equal ones keep theirs. They
+/// are ordered before the origin is taken off, whose rounding could make different ones equal.
 template <class Number>
-HWY_INLINE void write_in_order(const Gathered<Number>& from, LeafBlock& leaf) {
+HWY_INLINE void write_in_order(const Gathered<Number>& from, const Vec3& origin, LeafBlock& leaf) {
   const Lanes<Number> d;
   std::uint32_t odd = 0;
   for (std::size_t first = 0; first < LeafBlock::lanes; first += hn::Lanes(d)) {
@@ -103,10 +109,10 @@ HWY_INLINE void write_in_order(const Gathered<Number>& from, LeafBlock& leaf) {
         hn::Or(hn::And(b_before_a, c_before_b), hn::AndNot(b_before_a, c_before_a));
     const Choice<Number> c_is_not_last =
         hn::Or(hn::And(b_before_a, c_before_a), hn::AndNot(b_before_a, c_before_b));
-    store(choose<Number>(c_is_first, c, lower), leaf.corner[0], first);
-    store(choose<Number>(c_is_first, lower, choose<Number>(c_is_not_last, c, upper)),
+    store(choose<Number>(c_is_first, c, lower), origin, leaf.corner[0], first);
+    store(choose<Number>(c_is_first, lower, choose<Number>(c_is_not_last, c, upper)), origin,
           leaf.corner[1], first);
-    store(choose<Number>(c_is_not_last, upper, c), leaf.corner[2], first);
+    store(choose<Number>(c_is_not_last, upper, c), origin, leaf.corner[2], first);
 
     std::uint8_t bits[8] = {};
     hn::StoreMaskBits(d, hn::Xor(hn::Xor(b_before_a, c_before_a), c_before_b), bits);
@@ -139,7 +145,7 @@ HWY_INLINE void look_up(const Corners* triangles, const LeafBlock& leaf, Vertice
 /// Nearly every read would be waited for: what names a leaf's triangles is fetched many leaves
 /// ahead, triangles when that has come, and vertices when those have.
 template <class Number, class Vertex>
-HWY_INLINE void fill_leaves(const Corners* triangles, const Vertex* vertices,
+HWY_INLINE void fill_leaves(const Corners* triangles, const Vertex* vertices, const Vec3& origin,
                             std::span<LeafBlock> leaves, std::size_t first, std::size_t last) {
   constexpr std::size_t vertices_ahead = 4;
   constexpr std::size_t triangles_ahead = 12;
@@ -172,32 +178,32 @@ HWY_INLINE void fill_leaves(const Corners* triangles, const Vertex* vertices,
         for (const auto& coordinates : corner) __builtin_prefetch(coordinates, 1);  // to be written
       }
     }
-    write_in_order(gathered, leaves[i]);
+    write_in_order(gathered, origin, leaves[i]);
   }
 }
 
 void FillFromFloats(const Corners* triangles, const LeafFill::FloatVertex* vertices,
                     std::span<LeafBlock> leaves, std::size_t first, std::size_t last) {
-  fill_leaves<float>(triangles, vertices, leaves, first, last);
+  fill_leaves<float>(triangles, vertices, Vec3::Zero(), leaves, first, last);
 }
 
-void FillFromDoubles(const Corners* triangles, const Vec3* vertices, std::span<LeafBlock> leaves,
-                     std::size_t first, std::size_t last) {
-  fill_leaves<double>(triangles, vertices, leaves, first, last);
+void FillFromDoubles(const Corners* triangles, const Vec3* vertices, const Vec3& origin,
+                     std::span<LeafBlock> leaves, std::size_t first, std::size_t last) {
+  fill_leaves<double>(triangles, vertices, origin, leaves, first, last);
 }
 
-/// Rounds vertices to floats. Returns how far the worst coordinate is from its float.
-double RoundVertices(std::span<const Vec3> from, LeafFill::FloatVertex* to) {
+/// Rounds vertices to floats. Whether they are the same numbers.
+bool RoundVertices(std::span<const Vec3> from, LeafFill::FloatVertex* to) {
   // A vertex and the coordinate behind it, which does no harm.
   const hn::CappedTag<double, 4> d;
   const hn::Rebind<float, decltype(d)> floats;
-  auto error = hn::Zero(d);
+  auto off = hn::Zero(d);
   const auto round = [&](const double* x, float* rounded) HWY_ATTR {
     for (std::size_t i = 0; i < 4; i += hn::Lanes(d)) {
       const auto exact = hn::LoadU(d, x + i);
       const auto nearest = hn::DemoteTo(floats, exact);
       hn::StoreU(nearest, floats, rounded + i);
-      error = hn::Max(error, hn::Abs(hn::Sub(exact, hn::PromoteTo(d, nearest))));
+      off = hn::Max(off, hn::Abs(hn::Sub(exact, hn::PromoteTo(d, nearest))));
     }
   };
   static_assert(sizeof(Vec3) == 3 * sizeof(double));
@@ -205,7 +211,7 @@ double RoundVertices(std::span<const Vec3> from, LeafFill::FloatVertex* to) {
   for (std::size_t v = 0; v < last; ++v) round(from[v].data(), to[v].x);
   const double copied[4] = {from[last].x(), from[last].y(), from[last].z(), from[last].z()};
   round(copied, to[last].x);
-  return hn::GetLane(hn::MaxOfLanes(d, error));
+  return hn::GetLane(hn::MaxOfLanes(d, off)) == 0.0;
 }
 
 }  // namespace keepout::HWY_NAMESPACE
@@ -221,24 +227,32 @@ HWY_EXPORT(RoundVertices);
 
 LeafFill::LeafFill(const Mesh& mesh, unsigned threads)
     : mesh_(mesh), vertices_(mesh.vertex_count()) {
-  std::vector<double> errors(mesh.vertex_count() / share_size + 1, 0.0);
+  std::atomic<bool> are_floats = true;
   share_ranges(mesh.vertex_count(), threads, [&](std::size_t begin, std::size_t end) {
-    errors[begin / share_size] = HWY_DYNAMIC_DISPATCH(RoundVertices)(
-        mesh.vertices().subspan(begin, end - begin), &vertices_[begin]);
+    if (!are_floats) return;
+    const auto share = mesh.vertices().subspan(begin, end - begin);
+    if (!HWY_DYNAMIC_DISPATCH(RoundVertices)(share, &vertices_[begin])) are_floats = false;
   });
-  coordinate_error_ = *std::max_element(errors.begin(), errors.end());
+  if (are_floats) return;
   // Corners that are one float may be in an order all the same: then the doubles are asked.
-  if (coordinate_error_ > 0.0) vertices_ = {};
+  vertices_ = {};
+  const Box& bounds = mesh.bounds();
+  frame_.origin = bounds.center();
+  // Half of a float's last digit, and of a double's where it is taken off the origin. Below the
+  // range of floats the last digit stays as large.
+  const double farthest =
+      std::max((bounds.high - frame_.origin).maxCoeff(), (frame_.origin - bounds.low).maxCoeff());
+  frame_.error = 0x1p-24 * (1.0 + 0x1p-20) * farthest + 0x1p-149;
 }
 
 void LeafFill::fill(std::span<LeafBlock> leaves, std::size_t first,
                     std::size_t last) const noexcept {
   const Corners* triangles = mesh_.triangles().data();
-  if (coordinate_error_ == 0.0) {
+  if (frame_.is_exact()) {
     HWY_DYNAMIC_DISPATCH(FillFromFloats)(triangles, vertices_.data(), leaves, first, last);
   } else {
     HWY_DYNAMIC_DISPATCH(FillFromDoubles)
-    (triangles, mesh_.vertices().data(), leaves, first, last);
+    (triangles, mesh_.vertices().data(), frame_.origin, leaves, first, last);
   }
 }
 

@@ -13,15 +13,15 @@ namespace keepout {
 
 /// Writes the corners of a mesh's triangles to leaves. A mesh is in an order of its own and each of
 /// its vertices is asked for six times, so where they are floats they are put into a table of
-/// floats first, four to a cache line.
+/// floats first, four to a cache line. Others are measured from the middle of the triangles, so
+/// that neither the origin nor vertices that no triangle uses cost digits.
 class LeafFill {
  public:
   /// Goes over the vertices once. `mesh` must outlive this.
   LeafFill(const Mesh& mesh, unsigned threads);
 
-  /// How far a coordinate of the mesh may be from the float nearest to it; 0 where all are floats.
-  /// [length]
-  double coordinate_error() const noexcept { return coordinate_error_; }
+  /// What a leaf's coordinates are to the mesh's.
+  const LeafFrame& frame() const noexcept { return frame_; }
 
   /// Fills leaves first .. last - 1, whose `source` says which triangles are theirs, and has what
   /// those behind them need brought nearer. The bits `odd` are set anew.
@@ -35,7 +35,7 @@ class LeafFill {
  private:
   const Mesh& mesh_;
   BlockVector<FloatVertex> vertices_;  // none where the mesh's are no floats
-  double coordinate_error_ = 0.0;
+  LeafFrame frame_;
 };
 
 /// Writes the numbers of the triangles to the lanes of a leaf.

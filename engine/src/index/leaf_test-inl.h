@@ -255,6 +255,7 @@ struct TouchingTriangles {
   HWY_INLINE void count_node() const {
     if constexpr (counting) ++counts->nodes;
   }
+  HWY_INLINE bool is_full() const { return out.overflowed(); }
 };
 
 /// Appends the numbers of the leaves.
@@ -267,6 +268,7 @@ struct TouchedLeaves {
     for (std::size_t i = 0; i < count; ++i) out.push(found[i] & leaf_number);
   }
   HWY_INLINE void count_node() const {}
+  HWY_INLINE bool is_full() const { return out.overflowed(); }
 };
 
 }  // namespace keepout::HWY_NAMESPACE

@@ -17,7 +17,6 @@ class WalkOfHits final : public MotionWalk {
 
   bool begin(const Start& start) noexcept override {
     tip_ = start.tip;
-    visits_ = 0;
     if (!near_.look(start.region)) return false;
     begin_again(start.level);
     return true;
@@ -31,8 +30,7 @@ class WalkOfHits final : public MotionWalk {
 
   bool walk(const Vec3&, EncounterVisitor& visitor) noexcept override {
     const std::span<const Hit> hits = near_.hits();
-    visits_ += hits.size();
-    for (std::size_t i = 0; i < hits.size() && !is_exhausted(); ++i) {
+    for (std::size_t i = 0; i < hits.size() && !near_.budget().is_spent(); ++i) {
       const TriangleId t = hits[i].triangle;
       if (notes_[i] == Encounter::no_note) {
         const Triangle corners = ordered_relative(near_.mesh().triangle(t), tip_);
@@ -44,23 +42,18 @@ class WalkOfHits final : public MotionWalk {
     return false;
   }
 
-  bool is_exhausted() const noexcept override { return visits_ > most_visits; }
   std::size_t room() const noexcept override { return near_.room(); }
 
  private:
-  // Some hundreds of milliseconds: who is in a hurry has an index with a walk of its own.
-  static constexpr std::size_t most_visits = std::size_t{1} << 22;
-
   Neighborhood& near_;
   Vec3 tip_ = Vec3::Zero();
-  std::size_t visits_ = 0;
   std::vector<std::uint32_t> notes_;  // of each hit
 };
 
 }  // namespace
 
 std::unique_ptr<MotionWalk> make_motion_walk(Neighborhood& near) {
-  if (auto own = near.index().walk_along_motions()) return own;
+  if (auto own = near.index().walk_along_motions(near.budget())) return own;
   return std::make_unique<WalkOfHits>(near);
 }
 

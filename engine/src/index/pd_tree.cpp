@@ -66,28 +66,24 @@ constexpr std::size_t worth_a_thread = 4096;  // triangles
 class Builder {
  public:
   Builder(const Mesh& mesh, std::span<PdNode> nodes, std::span<LeafBlock> leaves)
-      : mesh_(mesh),
-        middle_(0.5 * (mesh.bounds().low + mesh.bounds().high)),
-        nodes_(nodes),
-        leaves_(leaves) {}
+      : mesh_(mesh), nodes_(nodes), leaves_(leaves) {}
 
-  /// Returns how far a corner in a leaf may be from the mesh's. [length]
-  double build(unsigned threads) {
+  /// Returns what a leaf's coordinates are to the mesh's.
+  LeafFrame build(unsigned threads) {
     {
+      const LeafFill fill(mesh_, threads);
+      frame_ = fill.frame();
+      middle_ = mesh_.bounds().center() - frame_.origin;
       BlockVector<Center> centers = centers_of(mesh_, threads);
       BlockVector<Center> spare(centers.size());
       divide(centers, spare, 0, 0, threads);
-    }
-    {
-      const LeafFill fill(mesh_, threads);
-      coordinate_error_ = fill.coordinate_error();
       constexpr std::size_t share = 1024;  // leaves, worked on at a time
       share_ranges(leaves_.size(), threads, share, [&](std::size_t begin, std::size_t end) {
         fill.fill(leaves_.first(end), begin, end);
       });
     }
     enclose(0, 0, threads);
-    return coordinate_error_;
+    return frame_;
   }
 
  private:
@@ -161,7 +157,7 @@ class Builder {
       double along = 0.0;
       for (int axis = 0; axis < 3; ++axis) along += shift[axis] * double{node.across[axis][k]};
       const double half = std::max(double{high[k]} - along, along - double{low[k]});
-      node.half[k] = static_cast<float>(half + outward * reach + 2.0 * coordinate_error_) + 1e-36f;
+      node.half[k] = static_cast<float>(half + outward * reach + 2.0 * frame_.error) + 1e-36f;
     }
     if (node.leaves == 1) return;
     const std::size_t near = node.leaves / 2;
@@ -176,8 +172,8 @@ class Builder {
   static constexpr double outward = 64 * 0x1p-24;
 
   const Mesh& mesh_;
-  const Vec3 middle_;  // of the mesh's bounds: where centers are measured from [length]
-  double coordinate_error_ = 0.0;
+  LeafFrame frame_;
+  Vec3 middle_;  // of the mesh's bounds, from there: where centers are measured from [length]
   std::span<PdNode> nodes_;
   std::span<LeafBlock> leaves_;
 };
@@ -192,7 +188,7 @@ PdTree::PdTree(std::shared_ptr<const Mesh> mesh, unsigned threads) : mesh_(std::
   threads = thread_count(threads);
   leaves_.resize((count + LeafBlock::lanes - 1) / LeafBlock::lanes);
   nodes_.resize(2 * leaves_.size() - 1);
-  coordinate_error_ = Builder(*mesh_, nodes_, leaves_).build(threads);
+  frame_ = Builder(*mesh_, nodes_, leaves_).build(threads);
 }
 
 std::size_t PdTree::memory() const noexcept {

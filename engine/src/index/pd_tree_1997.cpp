@@ -100,7 +100,7 @@ void PdTree1997::collect(const Ball& ball, TriangleBuffer& candidates) const noe
   std::array<std::uint32_t, most_levels> waiting;
   std::size_t count = 0;
   waiting[count++] = 0;
-  while (count > 0) {
+  while (count > 0 && !candidates.overflowed()) {
     const std::uint32_t at = waiting[--count];
     const Node& node = nodes_[at];
     const Vec3 along = node.across * (ball.center - node.from);

@@ -101,7 +101,7 @@ HWY_NOINLINE void walk(const PdNode* nodes, const OrientedScreen& screen, const 
   std::size_t waiting = 0;
   LeafList list;
   stack[waiting++] = {0, 0};
-  while (waiting > 0) {
+  while (waiting > 0 && !visitor.is_full()) {
     Subtree at = stack[--waiting];
     while (true) {
       const PdNode& node = nodes[at.node];
@@ -152,7 +152,7 @@ HWY_EXPORT(walk_pd_tree_to_leaves);
 
 void PdTree::collect(const Ball& ball, TriangleBuffer& candidates,
                      QueryCounts* counts) const noexcept {
-  const BallScreen screen(ball, mesh_->bounds(), coordinate_error_);
+  const BallScreen screen(ball, mesh_->bounds(), frame_);
   if (!screen.fits) {
     if (counts != nullptr) counts->triangles += mesh_->triangle_count();
     return BruteForce(mesh_).collect(ball, candidates);
@@ -162,7 +162,7 @@ void PdTree::collect(const Ball& ball, TriangleBuffer& candidates,
 }
 
 void PdTree::collect_leaves(const Ball& ball, LeafBuffer& found) const noexcept {
-  const BallScreen screen(ball, mesh_->bounds(), coordinate_error_);
+  const BallScreen screen(ball, mesh_->bounds(), frame_);
   if (!screen.fits) return collect_all_leaves(found);
   HWY_DYNAMIC_DISPATCH(walk_pd_tree_to_leaves)(nodes_.data(), screen, found);
 }

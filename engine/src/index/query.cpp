@@ -19,23 +19,42 @@ void refine(const Mesh& mesh, const Ball& ball, std::span<const TriangleId> cand
             [](const Hit& a, const Hit& b) { return a.triangle < b.triangle; });
 }
 
-namespace {
-
-std::size_t room_for(const Mesh* mesh, const SpatialIndex* index, std::size_t asked) {
+void require_of(const Mesh* mesh, const SpatialIndex* index) {
   if (mesh == nullptr || index == nullptr) {
     throw Error("a query needs a mesh and an index: one of them was not given");
   }
+  if (index->mesh().id() != mesh->id()) {
+    throw Error("the index is of another mesh: build it on this one, or refit it to this one");
+  }
+}
+
+namespace {
+
+std::size_t room_for(const Mesh* mesh, const SpatialIndex* index, std::size_t asked) {
+  require_of(mesh, index);
   return std::min(asked, mesh->triangle_count());
 }
 
 }  // namespace
 
 Neighborhood::Neighborhood(std::shared_ptr<const Mesh> mesh,
-                           std::shared_ptr<const SpatialIndex> index, std::size_t room)
+                           std::shared_ptr<const SpatialIndex> index, std::size_t room,
+                           std::size_t looks)
     : mesh_(std::move(mesh)),
       index_(std::move(index)),
       candidates_(room_for(mesh_.get(), index_.get(), room)),
-      hits_(candidates_.capacity()) {}
+      hits_(candidates_.capacity()),
+      budget_(looks) {}
+
+void Neighborhood::follow(std::shared_ptr<const Mesh> moved,
+                          std::shared_ptr<const SpatialIndex> index) {
+  require_of(moved.get(), index.get());
+  mesh_ = std::move(moved);
+  index_ = std::move(index);
+  ball_ = nowhere;
+  candidates_.clear();
+  hits_.clear();
+}
 
 bool Neighborhood::look(const Ball& ball) noexcept {
   ball_ = ball;
@@ -43,7 +62,8 @@ bool Neighborhood::look(const Ball& ball) noexcept {
   hits_.clear();
   if (!ball.center.allFinite() || !(ball.radius >= 0.0)) return false;
   index_->collect(ball, candidates_);
-  if (candidates_.overflowed()) return false;
+  budget_.spend(candidates_.size());
+  if (candidates_.overflowed() || budget_.is_spent()) return false;
   refine(*mesh_, ball, candidates_.view(), hits_);
   return true;
 }
@@ -64,11 +84,9 @@ std::optional<Hit> nearest_of(const Mesh& mesh, const Ball& ball,
   return best;
 }
 
-}  // namespace
-
 std::optional<Hit> find_nearest(const Mesh& mesh, const SpatialIndex& index, const Vec3& point,
-                                double guess, TriangleBuffer& candidates) noexcept {
-  if (const TriangleId its = index.nearest(point); its != no_triangle) {
+                                double guess, TriangleBuffer& candidates, Budget& budget) noexcept {
+  if (const TriangleId its = index.nearest(point, budget); its != no_triangle) {
     return Hit{its, closest_point(mesh.triangle(its), point)};
   }
   const Box& bounds = mesh.bounds();
@@ -79,9 +97,10 @@ std::optional<Hit> find_nearest(const Mesh& mesh, const SpatialIndex& index, con
   double crowded = std::numeric_limits<double>::infinity();
   // Doubling ends within some tens of rounds, and so does halving, at neighbouring numbers.
   constexpr int most_rounds = 80;
-  for (int round = 0; round < most_rounds; ++round) {
+  for (int round = 0; round < most_rounds && !budget.is_spent(); ++round) {
     candidates.clear();
     index.collect({point, radius}, candidates);
+    budget.spend(1 + candidates.size());
     if (candidates.overflowed()) {
       crowded = radius;
     } else if (const auto best = nearest_of(mesh, {point, radius}, candidates.view())) {
@@ -96,12 +115,21 @@ std::optional<Hit> find_nearest(const Mesh& mesh, const SpatialIndex& index, con
   return std::nullopt;
 }
 
+}  // namespace
+
+std::optional<Hit> find_nearest(Neighborhood& near, const Vec3& point) noexcept {
+  return find_nearest(near.mesh(), near.index(), point, 0.0, near.candidates(), near.budget());
+}
+
 NearestTriangle::NearestTriangle(const Mesh& mesh, const SpatialIndex& index)
     : mesh_(&mesh), index_(&index), candidates_(4096) {}
 
 Hit NearestTriangle::operator()(const Vec3& point, double guess) {
+  Budget unlimited;
   while (true) {
-    if (const auto hit = find_nearest(*mesh_, *index_, point, guess, candidates_)) return *hit;
+    if (const auto hit = find_nearest(*mesh_, *index_, point, guess, candidates_, unlimited)) {
+      return *hit;
+    }
     candidates_ = TriangleBuffer(2 * candidates_.capacity());
   }
 }

@@ -184,8 +184,13 @@ std::vector<TriangleId> WideBvh::order() const {
   return order;
 }
 
-void WideBvh::refit(std::shared_ptr<const Mesh> moved, unsigned threads) {
-  threads = thread_count(threads);
+std::unique_ptr<SpatialIndex> WideBvh::refitted(std::shared_ptr<const Mesh> moved) const {
+  require_same_triangles(moved.get(), thread_count(0));
+  return std::make_unique<WideBvh>(std::move(moved), order());
+}
+
+void WideBvh::require_same_triangles(const Mesh* moved, unsigned threads) const {
+  if (moved == nullptr) throw Error("a refit is to a mesh: none was given");
   const auto corners = mesh_->triangles();
   const auto others = moved->triangles();
   std::atomic<bool> same =
@@ -195,14 +200,18 @@ void WideBvh::refit(std::shared_ptr<const Mesh> moved, unsigned threads) {
     if (std::memcmp(&corners[begin], &others[begin], bytes) != 0) same = false;
   });
   if (!same) throw Error("a refit is for moved vertices: the triangles are to be the same");
+}
+
+void WideBvh::refit(std::shared_ptr<const Mesh> moved, unsigned threads) {
+  threads = thread_count(threads);
+  require_same_triangles(moved.get(), threads);
   const LeafFill fill(*moved, threads);
   mesh_ = std::move(moved);
-  ++generation_;
   fit(fill, threads);
 }
 
 void WideBvh::fit(const LeafFill& fill, unsigned threads) {
-  coordinate_error_ = fill.coordinate_error();
+  frame_ = fill.frame();
 
   // Each level stands behind the one above it: the lowest is the last.
   std::size_t size = rounded_up_quotient(leaves_.size(), NodeBlock::lanes);
@@ -244,7 +253,7 @@ void WideBvh::enclose_leaves(std::size_t self, std::size_t first, std::size_t la
     node.child[lane] = static_cast<std::uint32_t>(leaf) | NodeBlock::leaf;
   }
   enclose(leaves, node, cylinders_[self]);
-  if (coordinate_error_ > 0.0) widen(node);
+  if (!frame_.is_exact()) widen(node);
   close_lanes(node, cylinders_[self], last - first);
 }
 

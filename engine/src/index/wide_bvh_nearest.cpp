@@ -83,7 +83,7 @@ HWY_INLINE void ask(const LeafBlock& leaf, std::size_t lane, const WideBvh& tree
     return {leaf.corner[c][0][lane], leaf.corner[c][1][lane], leaf.corner[c][2][lane]};
   };
   const double distance =
-      tree.coordinate_error() == 0.0
+      tree.frame().is_exact()
           ? closest_point_of_ordered({corner(0), corner(1), corner(2)}, ball.center).distance
           : closest_point(tree.mesh().triangle(t), ball.center).distance;
   if (distance > ball.radius) return;
@@ -91,19 +91,21 @@ HWY_INLINE void ask(const LeafBlock& leaf, std::size_t lane, const WideBvh& tree
     best.triangle = std::min(best.triangle, t);
     return;
   }
-  best = {t, BallScreen({ball.center, distance}, tree.mesh().bounds(), tree.coordinate_error())};
+  best = {t, BallScreen({ball.center, distance}, tree.mesh().bounds(), tree.frame())};
 }
 
 /// Looks at a leaf: first at its likely nearest, which leaves few others to ask about.
-HWY_INLINE void look(const LeafBlock& leaf, const WideBvh& tree, Best& best) {
+HWY_INLINE void look(const LeafBlock& leaf, const WideBvh& tree, Budget& budget, Best& best) {
   std::size_t likely = 0;
   std::uint32_t left = no_farther(leaf, best.reach, likely);
   if (left == 0) return;
   const double before = best.reach.ball.radius;
+  budget.spend(1);
   ask(leaf, likely, tree, best);
   const std::uint32_t asked = std::uint32_t{1} << likely;
   if (best.reach.ball.radius < before) left = no_farther(leaf, best.reach, likely);
   for (left &= ~asked; left != 0; left &= left - 1) {
+    budget.spend(1);
     ask(leaf, static_cast<std::size_t>(std::countr_zero(left)), tree, best);
   }
 }
@@ -119,10 +121,10 @@ HWY_INLINE void fetch(const WideBvh& tree, std::uint32_t what) {
 }
 
 /// Looks into boxes, the nearest first, but not into what `is_beyond`. `measure` tells how far the
-/// boxes of a node are at least, and `look` looks at a leaf.
+/// boxes of a node are at least, and `look` looks at a leaf. Whether the budget was enough.
 template <class Distance, class IsBeyond, class Measure, class Look>
-HWY_INLINE void walk(const WideBvh& tree, const IsBeyond& is_beyond, const Measure& measure,
-                     const Look& look) {
+HWY_INLINE bool walk(const WideBvh& tree, Budget& budget, const IsBeyond& is_beyond,
+                     const Measure& measure, const Look& look) {
   struct Waiting {
     Distance distance;
     std::uint32_t what;  // as NodeBlock::child
@@ -134,6 +136,8 @@ HWY_INLINE void walk(const WideBvh& tree, const IsBeyond& is_beyond, const Measu
   while (waiting > 0) {
     const Waiting next = stack[--waiting];
     if (is_beyond(next.distance)) continue;
+    budget.spend(1);
+    if (budget.is_spent()) return false;
     if ((next.what & NodeBlock::leaf) != 0) {
       look(tree.leaves()[next.what & ~NodeBlock::leaf]);
       continue;
@@ -156,33 +160,36 @@ HWY_INLINE void walk(const WideBvh& tree, const IsBeyond& is_beyond, const Measu
       fetch(tree, stack[i - 1].what);
     }
   }
+  return true;
 }
 
-TriangleId nearest_in_floats(const WideBvh& tree, const BallScreen& around_all) {
+TriangleId nearest_in_floats(const WideBvh& tree, const BallScreen& around_all, Budget& budget) {
   Best best{no_triangle, around_all};
-  walk<float>(
-      tree, [&](float distance2) HWY_ATTR { return distance2 > best.reach.box_reach2; },
+  const bool is_found = walk<float>(
+      tree, budget, [&](float distance2) HWY_ATTR { return distance2 > best.reach.box_reach2; },
       [&](const NodeBlock& node, float* distance2)
           HWY_ATTR { measure_boxes(node, best.reach, distance2); },
-      [&](const LeafBlock& leaf) HWY_ATTR { look(leaf, tree, best); });
-  return best.triangle;
+      [&](const LeafBlock& leaf) HWY_ATTR { look(leaf, tree, budget, best); });
+  return is_found ? best.triangle : no_triangle;
 }
 
 /// The same for a point so far off that floats cannot tell one box from the next: in double, a box
 /// and a triangle at a time.
-TriangleId nearest_from_afar(const WideBvh& tree, const Vec3& point) {
+TriangleId nearest_from_afar(const WideBvh& tree, const Vec3& point, Budget& budget) {
   TriangleId best = no_triangle;
   double least = std::numeric_limits<double>::infinity();
+  const Vec3 from_origin = point - tree.frame().origin;
   const auto measure = [&](const NodeBlock& node, double* distance) {
     for (std::size_t lane = 0; lane < NodeBlock::lanes && node.is_used(lane); ++lane) {
       const Vec3 low(node.low[0][lane], node.low[1][lane], node.low[2][lane]);
       const Vec3 high(node.high[0][lane], node.high[1][lane], node.high[2][lane]);
       // Less by far more than what the kernel and this lose to rounding.
       distance[lane] =
-          distance_to({low, high}, point) * (1.0 - 1e-12) - 2.0 * tree.coordinate_error();
+          distance_to({low, high}, from_origin) * (1.0 - 1e-12) - 2.0 * tree.frame().error;
     }
   };
   const auto look = [&](const LeafBlock& leaf) {
+    budget.spend(LeafBlock::lanes);
     for (std::size_t lane = 0; lane < LeafBlock::lanes && leaf.is_used(lane); ++lane) {
       const TriangleId t = leaf.triangle(lane);
       const double distance = closest_point(tree.mesh().triangle(t), point).distance;
@@ -191,9 +198,9 @@ TriangleId nearest_from_afar(const WideBvh& tree, const Vec3& point) {
       least = distance;
     }
   };
-  walk<double>(
-      tree, [&](double distance) { return distance > least; }, measure, look);
-  return best;
+  const bool is_found = walk<double>(
+      tree, budget, [&](double distance) { return distance > least; }, measure, look);
+  return is_found ? best : no_triangle;
 }
 
 }  // namespace keepout::HWY_NAMESPACE
@@ -206,17 +213,17 @@ namespace keepout {
 HWY_EXPORT(nearest_in_floats);
 HWY_EXPORT(nearest_from_afar);
 
-TriangleId WideBvh::nearest(const Vec3& point) const noexcept {
+TriangleId WideBvh::nearest(const Vec3& point, Budget& budget) const noexcept {
   // No triangle is farther away than the far corner of the box around them.
   const Box& bounds = mesh_->bounds();
   const double farthest =
       (point - bounds.low).cwiseAbs().cwiseMax((bounds.high - point).cwiseAbs()).norm();
-  const BallScreen around_all({point, farthest * (1.0 + 1e-12)}, bounds, coordinate_error_);
+  const BallScreen around_all({point, farthest * (1.0 + 1e-12)}, bounds, frame_);
   constexpr double afar = 32.0;  // times the mesh: from there on it is the faster one
   if (!around_all.fits || farthest > afar * bounds.size().norm()) {
-    return HWY_DYNAMIC_DISPATCH(nearest_from_afar)(*this, point);
+    return HWY_DYNAMIC_DISPATCH(nearest_from_afar)(*this, point, budget);
   }
-  return HWY_DYNAMIC_DISPATCH(nearest_in_floats)(*this, around_all);
+  return HWY_DYNAMIC_DISPATCH(nearest_in_floats)(*this, around_all, budget);
 }
 
 }  // namespace keepout

@@ -70,7 +70,7 @@ HWY_INLINE void walk(const NodeBlock* nodes, const BallScreen& ball, const Visit
   std::size_t waiting = 0;
   LeafList list;
   stack[waiting++] = 0;
-  while (waiting > 0) {
+  while (waiting > 0 && !visitor.is_full()) {
     const std::uint32_t at = stack[--waiting];
     const NodeBlock& node = nodes[at & ~whole_leaf];
     visitor.count_node();
@@ -121,7 +121,7 @@ HWY_EXPORT(walk_to_leaves);
 
 void WideBvh::collect(const Ball& ball, TriangleBuffer& candidates,
                       QueryCounts* counts) const noexcept {
-  const BallScreen screen(ball, mesh_->bounds(), coordinate_error_);
+  const BallScreen screen(ball, mesh_->bounds(), frame_);
   if (!screen.fits) {
     if (counts != nullptr) counts->triangles += mesh_->triangle_count();
     return BruteForce(mesh_).collect(ball, candidates);
@@ -135,7 +135,7 @@ void WideBvh::collect(const Ball& ball, TriangleBuffer& candidates,
 }
 
 void WideBvh::collect_leaves(const Ball& ball, LeafBuffer& found) const noexcept {
-  const BallScreen screen(ball, mesh_->bounds(), coordinate_error_);
+  const BallScreen screen(ball, mesh_->bounds(), frame_);
   if (!screen.fits) return collect_all_leaves(found);
   HWY_DYNAMIC_DISPATCH(walk_to_leaves)(nodes_.data(), screen, found);
 }

@@ -3,6 +3,7 @@
 #include "keepout/mesh/mesh.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -43,6 +44,11 @@ void check_vertices(const Surface& surface, std::size_t begin, std::size_t end) 
   }
 }
 
+std::uint64_t next_id() noexcept {
+  static std::atomic<std::uint64_t> last{0};
+  return ++last;
+}
+
 /// What is measured of some triangles.
 struct Extent {
   Box bounds{Vec3::Constant(infinity), Vec3::Constant(-infinity)};
@@ -74,7 +80,7 @@ Extent extent_of(const Surface& surface, std::size_t begin, std::size_t end) {
 
 }  // namespace
 
-Mesh::Mesh(Surface surface) : surface_(std::move(surface)) {
+Mesh::Mesh(Surface surface) : surface_(std::move(surface)), id_(next_id()) {
   check_size(surface_);
   share_ranges(vertex_count(), processors(),
                [&](std::size_t begin, std::size_t end) { check_vertices(surface_, begin, end); });

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "input.h"
 
@@ -61,6 +62,14 @@ Vec3 sharpened(const Vec3& motion, const Vec3& aim, std::span<const HalfSpace> p
   return z;
 }
 
+/// Of a solve, in looks: each iteration goes over all rows.
+std::size_t work_of(const StepProblem& problem, const Solution& solution) noexcept {
+  constexpr std::size_t numbers_in_a_look = 48;
+  const auto numbers = static_cast<std::size_t>(problem.rows.rows() * problem.rows.cols());
+  const auto iterations = static_cast<std::size_t>(std::max(solution.iterations, 0));
+  return (1 + iterations) * (4 + numbers / numbers_in_a_look);
+}
+
 /// The plane that bounds motions in one direction, just short of the longest.
 HalfSpace bound_of(const Vec3& motion, double longest) noexcept {
   return {-motion / motion.norm(), -longest * (1.0 - 1e-9), no_triangle};
@@ -75,11 +84,12 @@ bool allow_parts(const std::optional<ExtraRows>& rows) noexcept {
 
 }  // namespace
 
-Cycle::Cycle(Activation& rule, Solver& solver, Workspace& work, const StepOptions& options,
-             const Motion& motion, StageTimes* times) noexcept
+Cycle::Cycle(Activation& rule, Solver& solver, Workspace& work, Budget& budget,
+             const StepOptions& options, const Motion& motion, StageTimes* times) noexcept
     : rule_(rule),
       solver_(solver),
       work_(work),
+      budget_(budget),
       options_(options),
       motion_(motion),
       around_(surroundings_of(motion, options, rule.reach())),
@@ -137,13 +147,14 @@ Opening Cycle::open() noexcept {
 
 /// Where there are more triangles than room: a shorter way has fewer.
 Opening Cycle::open_as_far_as_fits() noexcept {
-  Opening opening = open();
+  const auto attempt = [&] { return budget_.halved([&] { return open(); }); };
+  Opening opening = attempt();
   while (opening.status == Status::over_capacity && halvings_ < most_halvings) {
     around_.searched = around_.reach;
     around_.aim *= 0.5;
     if (around_.reach == Reach::sphere) around_.longest *= 0.5;
     ++halvings_;
-    opening = open();
+    opening = attempt();
   }
   return opening;
 }
@@ -158,19 +169,27 @@ Cycle::Trial Cycle::settle() noexcept {
   return other.motion == best.motion ? best : refine(other);
 }
 
-/// Solves, and as long as the rule objects to the trial motion, solves again with its plane.
+/// Solves, and as long as the rule objects to the trial motion, solves again with its plane. What
+/// that leaves of the budget is for a part of the last trial.
 Cycle::Trial Cycle::find() noexcept {
-  Trial trial{Status::unsolved, Vec3::Zero()};
-  double free_share = 0.0;  // of the trial
+  Trial last{Status::unsolved, Vec3::Zero()};
+  double free_share = 0.0;  // of the last trial
+  const std::optional<Trial> found = budget_.halved([&] { return try_in_turn(last, free_share); });
+  return found ? *found : fall_back(last, free_share);
+}
+
+/// Nothing if it comes to no end; then `last` is the last trial that was judged, and `free_share`
+/// how much of it nothing speaks against.
+std::optional<Cycle::Trial> Cycle::try_in_turn(Trial& last, double& free_share) noexcept {
   for (int round = 0; round < most_rounds; ++round) {
-    const Trial next = solve();
-    if (!is_ok(next.status)) {
-      // Part of the last trial may be made all the same. With joints its increment is gone.
-      if (!(free_share > 0.0) || motion_.jacobian) return next;
+    const Trial trial = solve();
+    // Part of the last trial may be made all the same. With joints its increment is gone.
+    const bool has_part = free_share > 0.0 && !motion_.jacobian;
+    if (!is_ok(trial.status)) {
+      if (!has_part) return trial;
       work_.solution = {};
       break;
     }
-    trial = next;
     // Beyond the sphere nothing was looked at.
     if (trial.motion.norm() > around_.longest) {
       work_.planes.push(bound_of(trial.motion, around_.longest));
@@ -180,13 +199,17 @@ Cycle::Trial Cycle::find() noexcept {
     const Judgement judgement = rule_.judge(around_, trial.motion, work_.planes);
     if (judgement.verdict == Verdict::accepted) {
       work_.keep_answer(motion_, trial.motion, 1.0);
-      if (!work_.solution.active.empty()) trial.status = Status::limited;
-      return trial;
+      return Trial{work_.solution.active.empty() ? trial.status : Status::limited, trial.motion};
     }
+    if (budget_.is_spent() && has_part) {  // nothing is known of this one
+      work_.solution = {};
+      break;
+    }
+    last = trial;
     free_share = judgement.free_share;
     if (judgement.verdict == Verdict::blocked) break;
   }
-  return fall_back(trial, free_share);
+  return std::nullopt;
 }
 
 /// The part of the last trial up to the first contact, provided that it stands the same test.
@@ -221,9 +244,11 @@ Cycle::Trial Cycle::solve() noexcept {
 }
 
 Status Cycle::attempt(std::optional<Vec3>& answer) noexcept {
+  if (budget_.is_spent()) return Status::unsolved;
   const StepProblem problem = work_.pose(motion_, around_.aim, options_.damping);
   work_.solution = {};
   const SolveStatus solved = solver_.solve(problem, work_.solution);
+  budget_.spend(work_of(problem, work_.solution));
   if (solved != SolveStatus::optimal) return status_of(solved);
   if (work_.solution.u.size() != static_cast<std::size_t>(problem.jacobian.cols())) {
     return Status::unsolved;
@@ -267,7 +292,7 @@ Cycle::Trial Cycle::branch(const Trial& best) noexcept {
   work_.set_aside();
   work_.branches.clear();
   open_branch(best);
-  for (int node = 0; node < options_.nodes; ++node) {
+  for (int node = 0; node < options_.nodes && !budget_.is_spent(); ++node) {
     const Branch* nearest = work_.branches.pop_nearest();
     if (nearest == nullptr) break;
     work_.planes.assign(nearest->planes());
@@ -318,7 +343,9 @@ void Cycle::ended(std::int64_t StageTimes::*stage) noexcept {
 
 std::optional<Vec3> tip_motion(const StepProblem& problem, const Solution& solution,
                                double rounding) noexcept {
-  constexpr double digits = 5e-16;  // of the sum below, relative to the way
+  // Of the sum below, relative to the way: each of its products and sums rounds by half of that.
+  const double digits = std::numeric_limits<double>::epsilon() *
+                        (1.0 + 0.5 * static_cast<double>(problem.jacobian.cols()));
   if (moves_a_point(problem)) {
     const double* u = solution.u.data();
     const double way = std::abs(u[0]) + std::abs(u[1]) + std::abs(u[2]);

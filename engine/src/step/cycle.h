@@ -24,9 +24,10 @@ namespace keepout {
 class Cycle {
  public:
   /// Preconditions: rule and solver are prepared for the workspace's capacity; the motion is
-  /// checked. What each stage takes is added to `times`, unless null.
-  Cycle(Activation& rule, Solver& solver, Workspace& work, const StepOptions& options,
-        const Motion& motion, StageTimes* times) noexcept;
+  /// checked. Work is taken from the budget. What each stage takes is added to `times`, unless
+  /// null.
+  Cycle(Activation& rule, Solver& solver, Workspace& work, Budget& budget,
+        const StepOptions& options, const Motion& motion, StageTimes* times) noexcept;
 
   /// Fills a step that is empty so far. Its views are of the workspace. Allocates nothing, throws
   /// nothing.
@@ -43,6 +44,7 @@ class Cycle {
   Opening open_as_far_as_fits() noexcept;
   Trial settle() noexcept;
   Trial find() noexcept;
+  std::optional<Trial> try_in_turn(Trial& last, double& free_share) noexcept;
   Trial fall_back(const Trial& trial, double free_share) noexcept;
   Trial solve() noexcept;
   Status attempt(std::optional<Vec3>& answer) noexcept;
@@ -55,6 +57,7 @@ class Cycle {
   Activation& rule_;
   Solver& solver_;
   Workspace& work_;
+  Budget& budget_;
   const StepOptions& options_;
   const Motion& motion_;
   Surroundings around_;

@@ -6,7 +6,7 @@
 namespace keepout {
 namespace {
 
-// Squares and cubes of lengths must stay finite; the mesh keeps to the same limit.
+// Of what is no length: products of it and of lengths must stay finite.
 constexpr double largest_number = 1e30;
 
 // So that the work of a step stays bounded.
@@ -14,33 +14,41 @@ constexpr int most_refinements = 1000;
 constexpr int most_nodes = 1 << 16;
 
 template <class Numbers>
-bool are_usable(const Numbers& numbers) noexcept {
-  return (numbers.array().abs() <= largest_number).all();  // false for NaN
+bool are_within(double largest, const Numbers& numbers) noexcept {
+  return (numbers.array().abs() <= largest).all();  // false for NaN
 }
 
-bool is_usable(double length) noexcept { return length >= 0.0 && length <= largest_number; }
+bool is_length(double x) noexcept {
+  return x == 0.0 || (x >= shortest_length && x <= longest_length);
+}
 
 bool are_usable(const ExtraRows& rows, Eigen::Index variables) noexcept {
   if (rows.count() < 0) return false;
   if (rows.count() == 0) return true;
   if (rows.matrix() == nullptr || rows.bounds() == nullptr) return false;
   using Numbers = Eigen::Map<const StepProblem::Vector>;
-  return are_usable(Numbers(rows.matrix(), rows.count() * variables)) &&
-         are_usable(Numbers(rows.bounds(), rows.count()));
+  return are_within(largest_number, Numbers(rows.matrix(), rows.count() * variables)) &&
+         are_within(largest_number, Numbers(rows.bounds(), rows.count()));
 }
 
 }  // namespace
 
+bool are_in_range(const StepOptions& options) noexcept {
+  return options.radius > 0.0 && is_length(options.radius) && is_length(options.tool_radius) &&
+         is_length(options.margin) && is_length(distance_kept(options)) && options.damping >= 0.0 &&
+         options.damping <= largest_number && options.recovery >= 0.0 &&
+         options.recovery <= longest_length && is_length(options.deepest) &&
+         options.refinements >= 0 && options.refinements <= most_refinements &&
+         options.nodes >= 0 && options.nodes <= most_nodes &&
+         position_rounding(Vec3::Zero(), options) <= 1e-3 * options.radius;
+}
+
 Status check(const Motion& motion, const StepOptions& options) noexcept {
-  const bool usable =
-      are_usable(motion.tip) && are_usable(motion.desired) && options.radius > 0.0 &&
-      is_usable(options.radius) && is_usable(options.tool_radius) && is_usable(options.margin) &&
-      is_usable(distance_kept(options)) && is_usable(options.damping) &&
-      is_usable(options.recovery) && is_usable(options.deepest) && options.refinements >= 0 &&
-      options.refinements <= most_refinements && options.nodes >= 0 && options.nodes <= most_nodes;
-  if (!usable) return Status::invalid_input;
+  if (!are_within(longest_length, motion.tip) || !are_within(longest_length, motion.desired)) {
+    return Status::invalid_input;
+  }
   if (const auto& j = motion.jacobian) {
-    if (j->joints() < 1 || j->data() == nullptr || !are_usable(j->matrix())) {
+    if (j->joints() < 1 || j->data() == nullptr || !are_within(largest_number, j->matrix())) {
       return Status::invalid_input;
     }
   }

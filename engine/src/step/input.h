@@ -8,7 +8,11 @@
 
 namespace keepout {
 
+/// Whether the lengths are such as are computed with, and the work is bounded.
+bool are_in_range(const StepOptions& options) noexcept;
+
 /// invalid_input or beyond_reach for a motion that must not be attempted; free otherwise.
+/// Precondition: the options are in range.
 Status check(const Motion& motion, const StepOptions& options) noexcept;
 
 /// What a position may be off by after a step: the rounding of tip + motion, some 1e-16 of the

@@ -16,10 +16,22 @@ namespace keepout {
 namespace {
 
 void require_in_range(const StepOptions& options) {
-  if (!is_ok(check({.tip = Vec3::Zero(), .desired = Vec3::Zero()}, options))) {
+  if (!are_in_range(options)) {
     throw Error(
         "the radius must be above zero and not lost beside the margin; tool radius, margin, "
-        "damping, recovery, depth, refinements and nodes not below zero; no length above 1e30");
+        "damping, recovery, depth, refinements and nodes not below zero; each length 0 or from "
+        "1e-15 to 1e15, whatever the unit");
+  }
+}
+
+void require_in_range(const Mesh& mesh) {
+  const double farthest =
+      std::max(mesh.bounds().low.cwiseAbs().maxCoeff(), mesh.bounds().high.cwiseAbs().maxCoeff());
+  const double longest = mesh.longest_edge();
+  if (farthest > longest_length || (longest > 0.0 && longest < shortest_length)) {
+    throw Error(
+        "the mesh is too large, too small or too far from the origin: its coordinates must be "
+        "within 1e15, and its longest edge above 1e-15; bring it into a unit that suits it, as mm");
   }
 }
 
@@ -30,7 +42,15 @@ std::unique_ptr<Neighborhood> neighborhood_of(std::shared_ptr<const Mesh> mesh,
   if (!mesh || !index || activation == nullptr || solver == nullptr) {
     throw Error("a motion constraint needs a mesh, an index, an activation rule and a solver");
   }
-  return std::make_unique<Neighborhood>(std::move(mesh), std::move(index), capacity.triangles);
+  require_in_range(*mesh);
+  std::size_t looks = capacity.looks;
+  if (looks == 0) {
+    Budget unused;
+    const bool walks = index->walk_along_motions(unused) != nullptr;
+    looks = walks ? Capacity::looks_of_a_walk : Capacity::looks_of_queries;
+  }
+  return std::make_unique<Neighborhood>(std::move(mesh), std::move(index), capacity.triangles,
+                                        looks);
 }
 
 /// Throws for what cannot be held.
@@ -60,6 +80,7 @@ MotionConstraint::MotionConstraint(std::shared_ptr<const Mesh> mesh,
       polytope_(mesh, near_->room()),
       polytope_planes_(std::max(work_->planes.capacity(), planes_to_hold_still)),
       makes_queries_(false),
+      inside_(inside),
       watch_(inside == Inside::led_out && is_watertight(*mesh)),
       sides_(new_watch()) {
   if (inside == Inside::led_out && activation_->guards_a_tool()) {
@@ -67,11 +88,31 @@ MotionConstraint::MotionConstraint(std::shared_ptr<const Mesh> mesh,
         "a tip that starts inside is led out without regard to the rest of a tool: with a rule "
         "that guards a whole tool, ask for Inside::taken_as_is");
   }
-  activation_->prepare(*near_);
+  prepare();
   solver_->reserve(static_cast<int>(std::max<std::size_t>(capacity.variables, 3)),
                    static_cast<int>(capacity.planes + capacity.extra_rows));
   require_usable(options_);
   makes_queries_ = near_->ball().radius >= 0.0;  // once it has been asked at all
+}
+
+/// Makes what is made of a mesh.
+void MotionConstraint::prepare() {
+  is_prepared_ = false;
+  activation_->prepare(*near_);
+  is_prepared_ = true;
+}
+
+void MotionConstraint::follow(std::shared_ptr<const Mesh> moved,
+                              std::shared_ptr<const SpatialIndex> index) {
+  require_of(moved.get(), index.get());
+  require_in_range(*moved);
+  FreePolytope polytope(moved, near_->room());
+  const bool has_same_triangles = std::ranges::equal(moved->triangles(), mesh().triangles());
+  if (!has_same_triangles) watch_ = inside_ == Inside::led_out && is_watertight(*moved);
+  near_->follow(std::move(moved), std::move(index));
+  polytope_ = std::move(polytope);
+  sides_ = new_watch();
+  prepare();
 }
 
 MotionConstraint::MotionConstraint(MotionConstraint&&) noexcept = default;
@@ -91,6 +132,7 @@ void MotionConstraint::require_usable(const StepOptions& options) {
   }
   // At the tip nearest to the origin that there can be, where rounding is least.
   const Box& bounds = mesh().bounds();
+  near_->budget().renew();
   const Vec3 tip = bounds.low.cwiseMax(Vec3::Zero()).cwiseMin(bounds.high);
   const Surroundings around =
       surroundings_of({.tip = tip, .desired = Vec3::Zero()}, options, activation_->reach());
@@ -122,13 +164,18 @@ Step MotionConstraint::step(const Motion& motion, SideWatch& sides) noexcept {
 Step MotionConstraint::step(const Motion& motion, SideWatch& sides, StageTimes* times) noexcept {
   Step result;
   if (times != nullptr) *times = {};
+  if (!is_current()) {
+    result.status = Status::mesh_changed;
+    return result;
+  }
+  near_->budget().renew();
   result.status = check(motion, options_);
   // What is refused says nothing of where the tip is.
   if (is_ok(result.status)) step_as_checked(motion, sides, times, result);
+  result.motion.array() += 0.0;  // as its increment: no zero has a sign
   const bool is_asked = options_.distances == Distances::always && !result.distance;
   if (is_asked && result.status != Status::invalid_input) {
-    const auto nearest =
-        find_nearest(near_->mesh(), near_->index(), motion.tip, 0.0, near_->candidates());
+    const auto nearest = find_nearest(*near_, motion.tip);
     if (nearest) result.distance = nearest->closest.distance;
   }
   return result;
@@ -137,26 +184,30 @@ Step MotionConstraint::step(const Motion& motion, SideWatch& sides, StageTimes* 
 /// A tip on the forbidden side is led out; any other steps as the rule allows.
 void MotionConstraint::step_as_checked(const Motion& motion, SideWatch& sides, StageTimes* times,
                                        Step& result) noexcept {
-  if (sides.has_to_place(motion.tip) &&
+  if (sides.has_to_place(motion.tip, mesh()) &&
       lead_out_from_inside(*near_, motion, options_, *work_, result)) {
     return;
   }
-  Cycle(*activation_, *solver_, *work_, options_, motion, times).run(result);
+  Cycle(*activation_, *solver_, *work_, near_->budget(), options_, motion, times).run(result);
   if (result.status == Status::touching && sides.is_on() &&
       lead_off_surface(*near_, motion, options_, *work_, result)) {
     return;
   }
-  sides.after(motion, result, options_);
+  sides.after(motion, result, options_, mesh());
 }
 
 Polytope MotionConstraint::free_polytope(const Vec3& tip, double radius) noexcept {
   PolytopeStatus status = PolytopeStatus::whole_tool;
-  if (!activation_->guards_a_tool()) {
-    // What is no number finds nothing, and is refused there.
+  if (!is_current()) {
+    status = PolytopeStatus::mesh_changed;
+  } else if (!activation_->guards_a_tool()) {
+    near_->budget().renew();
     const double kept = distance_kept(options_);
-    const bool fits = near_->look({tip, radius + kept}) || !near_->candidates().overflowed();
-    status = fits ? polytope_.around(tip, radius, kept, near_->hits(), polytope_planes_)
-                  : PolytopeStatus::over_capacity;
+    // What is no ball is refused there.
+    const bool fits = near_->look({tip, radius + kept}) || !(radius >= 0.0 && tip.allFinite());
+    status =
+        fits ? polytope_.around(tip, radius, kept, near_->hits(), near_->budget(), polytope_planes_)
+             : PolytopeStatus::over_capacity;
   }
   if (status != PolytopeStatus::found) hold_still(polytope_planes_);
   return {status, polytope_planes_.view()};

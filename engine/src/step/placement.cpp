@@ -58,16 +58,24 @@ struct Nearest {
   Triangle faced;  // of all that meets there, what faces the tip the most
 };
 
-std::optional<Nearest> look_around(const Mesh& mesh, const SpatialIndex& index, const Vec3& tip,
-                                   double rounding, TriangleBuffer& candidates) noexcept {
-  const std::optional<Hit> hit = find_nearest(mesh, index, tip, 0.0, candidates);
-  if (!hit) return std::nullopt;
-  const double near = hit->closest.distance * (1.0 + 1e-13) + rounding;
+/// Asks the index for what touches a ball. Whether there was room, and work left to look at it.
+bool collect(Neighborhood& near, const Ball& ball) noexcept {
+  TriangleBuffer& candidates = near.candidates();
   candidates.clear();
-  index.collect({tip, near}, candidates);
-  if (candidates.overflowed()) return std::nullopt;
+  near.index().collect(ball, candidates);
+  near.budget().spend(2 * candidates.size());
+  return !candidates.overflowed() && !near.budget().is_spent();
+}
+
+std::optional<Nearest> look_around(Neighborhood& near, const Vec3& tip, double rounding) noexcept {
+  const std::optional<Hit> hit = find_nearest(near, tip);
+  if (!hit) return std::nullopt;
+  const double as_near = hit->closest.distance * (1.0 + 1e-13) + rounding;
+  if (!collect(near, {tip, as_near})) return std::nullopt;
+  const Mesh& mesh = near.mesh();
+  TriangleBuffer& candidates = near.candidates();
   const auto last = std::partition(candidates.begin(), candidates.end(), [&](TriangleId t) {
-    return closest_point(mesh.triangle(t), tip).distance <= near;
+    return closest_point(mesh.triangle(t), tip).distance <= as_near;
   });
   std::sort(candidates.begin(), last, [&](TriangleId a, TriangleId b) {
     return comes_before(mesh.triangle(a), mesh.triangle(b));
@@ -93,16 +101,16 @@ std::optional<Nearest> look_around(const Mesh& mesh, const SpatialIndex& index, 
 
 }  // namespace
 
-std::optional<Placement> place(const Mesh& mesh, const SpatialIndex& index, const Vec3& tip,
-                               TriangleBuffer& candidates) noexcept {
+std::optional<Placement> place(Neighborhood& near, const Vec3& tip) noexcept {
+  const Mesh& mesh = near.mesh();
   // Beyond the box around the mesh all is one side. From far off, where rounding makes all
   // triangles alike, it is asked about not so far off.
   const Vec3 room = Vec3::Constant(4.0 * mesh.bounds().size().norm());
   const Vec3 nearer = tip.cwiseMax(mesh.bounds().low - room).cwiseMin(mesh.bounds().high + room);
   if (nearer != tip) {
-    auto placement = place(mesh, index, nearer, candidates);
+    auto placement = place(near, nearer);
     if (!placement || placement->is_free) return placement;
-    const std::optional<Hit> hit = find_nearest(mesh, index, tip, 0.0, candidates);
+    const std::optional<Hit> hit = find_nearest(near, tip);
     if (!hit) return std::nullopt;
     placement->distance = hit->closest.distance;
     placement->way_out = hit->closest.offset / hit->closest.distance;
@@ -110,7 +118,7 @@ std::optional<Placement> place(const Mesh& mesh, const SpatialIndex& index, cons
   }
   const double size = (mesh.bounds().high - mesh.bounds().low).norm() + tip.lpNorm<1>();
   const double rounding = 1e-15 * size;
-  const auto nearest = look_around(mesh, index, tip, rounding, candidates);
+  const auto nearest = look_around(near, tip, rounding);
   if (!nearest) return std::nullopt;
   Placement placement{false, 0.0, nearest->normal, nearest->normal};
   if (nearest->distance <= 1e3 * rounding) return placement;
@@ -123,18 +131,16 @@ std::optional<Placement> place(const Mesh& mesh, const SpatialIndex& index, cons
   const Vec3 inwards = middle - nearest->offset;
   const double share = std::min(1e-3, 0.5 * nearest->distance / inwards.norm());
   const Vec3 way = nearest->offset + share * inwards;
-  candidates.clear();
-  index.collect({tip, way.norm() * (1.0 + 1e-9)}, candidates);
-  if (candidates.overflowed()) return std::nullopt;
+  if (!collect(near, {tip, way.norm() * (1.0 + 1e-9)})) return std::nullopt;
   double first = std::numeric_limits<double>::infinity();
-  for (const TriangleId t : candidates) {
+  for (const TriangleId t : near.candidates()) {
     const Triangle triangle = mesh.triangle(t);
     if (are_slivers_asked || !is_sliver(triangle))
       first = std::min(first, met_at(triangle, tip, way));
   }
   // Above 0: the back of what is met first; at an edge, of what faces the tip more.
   double facing = 0.0;
-  for (const TriangleId t : candidates) {
+  for (const TriangleId t : near.candidates()) {
     const Triangle triangle = mesh.triangle(t);
     if (!are_slivers_asked && is_sliver(triangle)) continue;
     if (!(met_at(triangle, tip, way) <= first + 1e-12)) continue;
@@ -147,9 +153,8 @@ std::optional<Placement> place(const Mesh& mesh, const SpatialIndex& index, cons
   return placement;
 }
 
-Vec3 lead_out(const Mesh& mesh, const SpatialIndex& index, const Vec3& tip,
-              const Placement& placement, double longest, double off,
-              TriangleBuffer& candidates) noexcept {
+Vec3 lead_out(Neighborhood& near, const Vec3& tip, const Placement& placement, double longest,
+              double off) noexcept {
   // What cannot get through in one go stops short of the surface.
   if (placement.distance + off > longest) {
     const double rest = std::max(placement.distance - off, 0.5 * placement.distance);
@@ -161,7 +166,7 @@ Vec3 lead_out(const Mesh& mesh, const SpatialIndex& index, const Vec3& tip,
   double most = 0.0;
   const auto consider = [&](const Vec3& motion) {
     if (most >= 0.5 * off) return;
-    const auto there = place(mesh, index, tip + motion, candidates);
+    const auto there = place(near, tip + motion);
     if (!there || !there->is_free || there->distance <= most) return;
     most = there->distance;
     best = motion;
@@ -195,8 +200,8 @@ bool may_be_led(const Motion& motion, const StepOptions& options, const Mesh& me
 Step led_out(const Placement& placement, Neighborhood& near, const Motion& motion,
              const StepOptions& options, Workspace& work) noexcept {
   Step result{.status = Status::recovering, .distance = placement.distance};
-  result.motion = lead_out(near.mesh(), near.index(), motion.tip, placement, longest_way(options),
-                           well_off(near.mesh(), options), near.candidates());
+  result.motion =
+      lead_out(near, motion.tip, placement, longest_way(options), well_off(near.mesh(), options));
   work.solution = {};
   work.keep_answer(motion, result.motion, 1.0);
   result.increment = work.increment();
@@ -207,7 +212,7 @@ Step led_out(const Placement& placement, Neighborhood& near, const Motion& motio
 
 bool lead_out_from_inside(Neighborhood& near, const Motion& motion, const StepOptions& options,
                           Workspace& work, Step& step) noexcept {
-  const auto placement = place(near.mesh(), near.index(), motion.tip, near.candidates());
+  const auto placement = place(near, motion.tip);
   if (!placement) {
     step.status = Status::over_capacity;
     return true;
@@ -225,7 +230,7 @@ bool lead_out_from_inside(Neighborhood& near, const Motion& motion, const StepOp
 bool lead_off_surface(Neighborhood& near, const Motion& motion, const StepOptions& options,
                       Workspace& work, Step& step) noexcept {
   if (!may_be_led(motion, options, near.mesh())) return false;
-  const auto placement = place(near.mesh(), near.index(), motion.tip, near.candidates());
+  const auto placement = place(near, motion.tip);
   if (!placement) return false;
   const Step off = led_out(*placement, near, motion, options, work);
   if (off.motion.isZero(0.0)) return false;

@@ -27,17 +27,16 @@ struct Placement {
 /// trusted, and no decision of rounding about which of several triangles is the nearest.
 ///
 /// The same whatever the order of triangles and corners. Nothing when more triangles are about as
-/// near than `candidates` has room for. Allocates nothing. Precondition: is_watertight(mesh).
-std::optional<Placement> place(const Mesh& mesh, const SpatialIndex& index, const Vec3& tip,
-                               TriangleBuffer& candidates) noexcept;
+/// near than there is room for, or the budget is spent. Allocates nothing. Precondition: the mesh
+/// is watertight.
+std::optional<Placement> place(Neighborhood& near, const Vec3& tip) noexcept;
 
 /// A cycle's way from the forbidden side out through the nearest point of the surface, straight: at
 /// most `longest`, and no farther than to `off` the surface. The depth falls by as much. From the
 /// surface itself, or closer to it than `off`: as short a way to a place that is found to be free,
 /// or none. [length]
-Vec3 lead_out(const Mesh& mesh, const SpatialIndex& index, const Vec3& tip,
-              const Placement& placement, double longest, double off,
-              TriangleBuffer& candidates) noexcept;
+Vec3 lead_out(Neighborhood& near, const Vec3& tip, const Placement& placement, double longest,
+              double off) noexcept;
 
 /// Whether a tip is on the forbidden side; then `step` becomes the one that leads it out, in place
 /// of the one asked for. It is `inside`, with zero motion, when the tip is deeper than

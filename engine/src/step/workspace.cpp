@@ -97,10 +97,11 @@ void Workspace::write_rows_of_planes(const double* jacobian, Eigen::Index variab
 
 void Workspace::keep_answer(const Motion& motion, const Vec3& tip_motion, double share) noexcept {
   answer_.increment.clear();
+  // The sum with 0 takes the sign off a zero, which else that of some zero in the input decides.
   if (motion.jacobian) {
-    for (const double u : solution.u) answer_.increment.push(share * u);
+    for (const double u : solution.u) answer_.increment.push(share * u + 0.0);
   } else {
-    answer_.increment.assign({tip_motion.data(), 3});
+    for (const double u : tip_motion) answer_.increment.push(u + 0.0);
   }
   answer_.active.assign(solution.active);
 }

@@ -28,6 +28,7 @@ class Forgetful final : public SpatialIndex {
     std::replace(candidates.begin(), candidates.end(), forgotten_, TriangleId{0});
   }
   std::size_t memory() const noexcept override { return tree_.memory(); }
+  const Mesh& mesh() const noexcept override { return tree_.mesh(); }
 
  private:
   PdTree tree_;
@@ -90,7 +91,7 @@ class Measure : public testing::TestWithParam<const char*> {
 
   BenchmarkRow measured(const std::shared_ptr<const SpatialIndex>& index,
                         std::unique_ptr<Solver> solver, double accuracy) {
-    MotionConstraint constraint(mesh, index, make_activation(GetParam(), mesh), std::move(solver),
+    MotionConstraint constraint(mesh, index, make_activation(GetParam()), std::move(solver),
                                 guard.options());
     BenchmarkRow row;
     measure(constraint, accuracy, motions, *reference, 10.0, stop, row);
@@ -184,7 +185,7 @@ TEST_P(Measure, VerifiesTheVeryStepsThatItTimes) {
   EXPECT_TRUE(std::equal(given.begin(), half, half, given.end()));
   // As the assembly that users have gives it.
   std::vector<Watchful::Given> shipped;
-  MotionConstraint constraint(mesh, index, make_activation(GetParam(), mesh),
+  MotionConstraint constraint(mesh, index, make_activation(GetParam()),
                               std::make_unique<Watchful>(shipped), guard.options());
   for (const Motion& motion : motions) constraint.step(motion);
   EXPECT_TRUE(std::equal(given.begin(), half, shipped.begin(), shipped.end()));
@@ -215,6 +216,7 @@ class Tiring final : public SpatialIndex {
     if (--left_ < 0 && !candidates.empty()) candidates.begin()[0] = TriangleId{0};
   }
   std::size_t memory() const noexcept override { return tree_.memory(); }
+  const Mesh& mesh() const noexcept override { return tree_.mesh(); }
   int left() const { return left_; }
 
  private:

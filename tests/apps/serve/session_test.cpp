@@ -137,7 +137,7 @@ TEST_F(SessionTest, InfoAndStatusesTellWhatThereIs) {
   const Json statuses = Json::parse(ask(session, R"({"do":"statuses"})"));
   EXPECT_EQ(statuses["statuses"].size(), 13u);
   for (const Json& status : statuses["statuses"]) EXPECT_NE(status["status"], "unknown");
-  EXPECT_EQ(statuses["statuses"].back()["status"], "margin_too_small");
+  EXPECT_EQ(statuses["statuses"].back()["status"], "mesh_changed");
   EXPECT_EQ(statuses["polytope_statuses"].size(), 5u);
 }
 

@@ -35,8 +35,8 @@ class PaperGuard final : public Guard {
     bare.tool_radius = 0.0;
     bare.margin = 0.0;
     constraint_.emplace(scene_->mesh(), std::make_unique<PdTree>(scene_->mesh()),
-                        std::make_unique<PaperRule>(scene_->mesh()), std::make_unique<ActiveSet>(),
-                        bare, Capacity{.triangles = 4096});
+                        std::make_unique<PaperRule>(), std::make_unique<ActiveSet>(), bare,
+                        Capacity{.triangles = 4096});
   }
   Step step(const Motion& motion) noexcept override { return constraint_->step(motion); }
 

@@ -11,7 +11,7 @@ namespace {
 
 TEST(AllFaces, EveryFaceInReachWhosePositiveSideTheTipIsOnIsActive) {
   const auto mesh = std::make_shared<const Mesh>(make_shape("star_bumps"));
-  AllFaces rule(mesh);
+  AllFaces rule;
   const Vec3 tip = mesh->vertex(17) * 1.02;
   const double radius = 15.0;
   const std::vector<HalfSpace> planes = planes_at(mesh, rule, tip, radius);
@@ -35,7 +35,7 @@ TEST(AllFaces, TrianglesWithoutAnAreaArePassedOver) {
   const auto mesh = std::make_shared<const Mesh>(
       Surface{{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(2, 0, 0), Vec3(0, 1, 0)},
               {{0, 1, 2}, {0, 0, 1}, {0, 1, 3}}});
-  AllFaces rule(mesh);
+  AllFaces rule;
   const auto planes = planes_at(mesh, rule, {0.2, 0.2, 0.5}, 5.0);
   ASSERT_EQ(planes.size(), 1u);
   EXPECT_EQ(planes[0].source, 2u);

@@ -26,7 +26,6 @@ class Scene {
  public:
   Scene(Surface surface, const StepOptions& options, std::size_t room = 100'000)
       : mesh(std::make_shared<const Mesh>(std::move(surface))),
-        rule(mesh),
         planes(100),
         turned(100),
         options_(options),
@@ -214,7 +213,7 @@ TEST(CertifiedRule, StandingStillIsAlwaysAccepted) {
 }
 
 TEST(CertifiedRule, OnlyOffsetsThatAskForMotionAreRelaxed) {
-  const CertifiedRule rule(std::make_shared<const Mesh>(table()));
+  CertifiedRule rule;
   HalfSpaceBuffer planes(3);
   planes.push({Vec3::UnitZ(), -0.5, 0});
   planes.push({Vec3::UnitX(), 0.0, 1});

@@ -30,7 +30,7 @@ inline MotionConstraint guard(const std::shared_ptr<const Mesh>& mesh, const Con
                               std::unique_ptr<NarrowPhase> narrow_phase = nullptr,
                               StepOptions options = {.radius = radius, .margin = margin}) {
   return {mesh, std::make_unique<PdTree>(mesh),
-          std::make_unique<ConvexToolRule>(mesh, tool, std::move(narrow_phase)),
+          std::make_unique<ConvexToolRule>(tool, std::move(narrow_phase)),
           std::make_unique<ActiveSet>(), options};
 }
 

@@ -28,7 +28,7 @@ TEST(ConvexToolRule, ASphereMovesAsAPointWithAsMuchMoreMargin) {
                                   {.radius = radius, .margin = margin, .refinements = 0});
     MotionConstraint points{mesh,
                             std::make_unique<PdTree>(mesh),
-                            std::make_unique<CertifiedRule>(mesh),
+                            std::make_unique<CertifiedRule>(),
                             std::make_unique<ActiveSet>(),
                             {.radius = radius, .margin = margin + r, .refinements = 0}};
     Random random(9);
@@ -62,7 +62,7 @@ TEST(ConvexToolRule, IsNotLedOutByItsTip) {
   const auto mesh = shape("cube");
   const auto make = [&](Inside inside) {
     return MotionConstraint(mesh, std::make_unique<PdTree>(mesh),
-                            std::make_unique<ConvexToolRule>(mesh, ConvexTool::sphere(1.0)),
+                            std::make_unique<ConvexToolRule>(ConvexTool::sphere(1.0)),
                             std::make_unique<ActiveSet>(), {.radius = radius, .margin = margin}, {},
                             inside);
   };
@@ -73,13 +73,13 @@ TEST(ConvexToolRule, IsNotLedOutByItsTip) {
 TEST(ConvexToolRule, ASpheresPlanesAreThoseThroughTheClosestPoints) {
   const auto mesh = shape("star_bumps");
   const double r = 1.5;
-  ConvexToolRule rule(mesh, ConvexTool::sphere(r));
+  ConvexToolRule rule(ConvexTool::sphere(r));
   const Vec3 tip = mesh->vertex(17) * 1.1;
   const Surroundings around = surroundings_of({.tip = tip, .desired = Vec3::Zero()},
                                               {.radius = 5.0, .margin = margin}, Reach::sphere);
-  EXPECT_GT(rule.region(around).radius, 5.0 + margin + r);
   Neighborhood near(mesh, std::make_shared<BruteForce>(mesh), mesh->triangle_count());
   rule.prepare(near);
+  EXPECT_GT(rule.region(around).radius, 5.0 + margin + r);
   ASSERT_TRUE(rule.look_around(around));
   HalfSpaceBuffer planes(mesh->triangle_count());
   ASSERT_EQ(rule.start(around, planes).status, Status::free);
@@ -167,7 +167,6 @@ TEST(ConvexToolRule, WhatCannotBeKeptIsRefusedWhenItIsMade) {
   const ConvexTool tool = ConvexTool::sphere(1.0);
   EXPECT_THROW(guard(mesh, tool, nullptr, {.radius = radius, .margin = 0.0}), Error);
   EXPECT_THROW(guard(mesh, tool, nullptr, {.radius = radius, .margin = 1e-12}), Error);
-  EXPECT_THROW(ConvexToolRule(nullptr, tool), Error);
 }
 
 }  // namespace

@@ -49,7 +49,8 @@ Answer polytope(const std::shared_ptr<const Mesh>& mesh, const Question& q,
   FreePolytope free(mesh, mesh->triangle_count());
   HalfSpaceBuffer planes(planes_capacity);
   std::vector<Hit> hits = hits_of(mesh, q);
-  const PolytopeStatus status = free.around(q.tip, q.radius, q.margin, hits, planes);
+  Budget unlimited;
+  const PolytopeStatus status = free.around(q.tip, q.radius, q.margin, hits, unlimited, planes);
   return {status, {planes.begin(), planes.end()}, std::move(hits)};
 }
 
@@ -464,41 +465,49 @@ TEST(FreePolytope, WhatDoesNotFitIsAStatusAndHoldsStill) {
   EXPECT_FALSE(is_within(short_by_one.planes, Vec3(0, 0, -1e-9)));
 
   HalfSpaceBuffer planes(100);
+  Budget unlimited;
   FreePolytope two_hits(mesh, 2);
-  EXPECT_EQ(two_hits.around(question.tip, 5.0, 0.5, hits_of(mesh, question), planes),
+  EXPECT_EQ(two_hits.around(question.tip, 5.0, 0.5, hits_of(mesh, question), unlimited, planes),
             PolytopeStatus::over_capacity);
   EXPECT_EQ(planes.size(), 6u);
 
   HalfSpaceBuffer tiny(2);
   FreePolytope free(mesh, 1000);
-  EXPECT_EQ(free.around(question.tip, 5.0, 0.5, hits_of(mesh, question), tiny),
+  EXPECT_EQ(free.around(question.tip, 5.0, 0.5, hits_of(mesh, question), unlimited, tiny),
             PolytopeStatus::over_capacity);
   EXPECT_TRUE(tiny.overflowed());
+
+  Budget too_little(needed);
+  EXPECT_EQ(free.around(question.tip, 5.0, 0.5, hits_of(mesh, question), too_little, planes),
+            PolytopeStatus::over_capacity);
+  EXPECT_EQ(planes.size(), 6u);
 }
 
 TEST(FreePolytope, WhatIsNoNumberIsRefused) {
   const auto mesh = std::make_shared<const Mesh>(tetrahedron());
   FreePolytope free(mesh, 4);
   HalfSpaceBuffer planes(10);
+  Budget unlimited;
   const double nan = std::nan("");
   const Vec3 tip(2, 2, 2);
-  EXPECT_EQ(free.around(tip, 1.0, 0.1, {}, planes), PolytopeStatus::found);
+  EXPECT_EQ(free.around(tip, 1.0, 0.1, {}, unlimited, planes), PolytopeStatus::found);
   EXPECT_TRUE(planes.empty());
-  EXPECT_EQ(free.around({nan, 0, 0}, 1.0, 0.1, {}, planes), PolytopeStatus::invalid_input);
+  EXPECT_EQ(free.around({nan, 0, 0}, 1.0, 0.1, {}, unlimited, planes),
+            PolytopeStatus::invalid_input);
   EXPECT_EQ(planes.size(), 6u);
-  EXPECT_EQ(free.around(tip, -1.0, 0.1, {}, planes), PolytopeStatus::invalid_input);
-  EXPECT_EQ(free.around(tip, 1.0, nan, {}, planes), PolytopeStatus::invalid_input);
+  EXPECT_EQ(free.around(tip, -1.0, 0.1, {}, unlimited, planes), PolytopeStatus::invalid_input);
+  EXPECT_EQ(free.around(tip, 1.0, nan, {}, unlimited, planes), PolytopeStatus::invalid_input);
   std::vector<Hit> hits{{4, {Vec3::UnitX(), 1.0, Feature::face}}};
-  EXPECT_EQ(free.around(tip, 1.0, 0.1, hits, planes), PolytopeStatus::invalid_input);
+  EXPECT_EQ(free.around(tip, 1.0, 0.1, hits, unlimited, planes), PolytopeStatus::invalid_input);
   hits[0] = {0, {Vec3::UnitX(), nan, Feature::face}};
-  EXPECT_EQ(free.around(tip, 1.0, 0.1, hits, planes), PolytopeStatus::invalid_input);
+  EXPECT_EQ(free.around(tip, 1.0, 0.1, hits, unlimited, planes), PolytopeStatus::invalid_input);
   EXPECT_THROW(FreePolytope(nullptr, 4), Error);
 }
 
 TEST(FreePolytope, EveryStatusHasANameAndAReason) {
   for (const PolytopeStatus status :
        {PolytopeStatus::found, PolytopeStatus::touching, PolytopeStatus::invalid_input,
-        PolytopeStatus::over_capacity, PolytopeStatus::whole_tool}) {
+        PolytopeStatus::over_capacity, PolytopeStatus::whole_tool, PolytopeStatus::mesh_changed}) {
     EXPECT_NE(name(status), "unknown");
     EXPECT_NE(reason(status), "unknown status");
   }

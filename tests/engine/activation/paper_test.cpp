@@ -36,7 +36,7 @@ struct Bracket {
 
 void expect_planes(const std::shared_ptr<const Mesh>& mesh, const Vec3& tip,
                    const std::vector<Bracket>& expected) {
-  PaperRule rule(mesh);
+  PaperRule rule;
   const std::vector<HalfSpace> planes = planes_at(mesh, rule, tip, far_enough);
   ASSERT_EQ(planes.size(), expected.size());
   for (std::size_t i = 0; i < planes.size(); ++i) {
@@ -141,7 +141,7 @@ TEST(PaperRule, BelowTheSurfaceEveryPlaneVanishes) {
 
 TEST(PaperRule, AToolThatSlidesOnAFaceIsHeldAlthoughRoundingPutsItAHairBelow) {
   const auto mesh = ridge(0.0);
-  PaperRule rule(mesh);
+  PaperRule rule;
   const std::vector<HalfSpace> planes = planes_at(mesh, rule, {1, 0, -1e-13}, far_enough);
   ASSERT_EQ(planes.size(), 1u);
   EXPECT_EQ(planes[0].source, t2);
@@ -168,7 +168,7 @@ TEST(PaperRuleAtAVertex, ASummitWithValleysKeepsThePlaneOfTheRidge) {
   // Condition 2 goes first.
   const auto mesh = fan(0.5, -4);
   const Vec3 tip(-0.2, 0, 1);
-  PaperRule rule(mesh);
+  PaperRule rule;
   const std::vector<HalfSpace> planes = planes_at(mesh, rule, tip, 3.0);
   ASSERT_FALSE(planes.empty());
   for (TriangleId t = 0; t < 4; ++t) {
@@ -199,7 +199,7 @@ TEST(PaperRuleAtAVertex, AValleyAtEitherEdgeKeepsTheFace) {
 
 TEST(PaperRule, TheMarginSetsEveryPlaneBack) {
   const auto mesh = ridge(0.5);
-  PaperRule rule(mesh);
+  PaperRule rule;
   for (const Vec3& tip : {Vec3(0, 0, 1), Vec3(1, 0, 0.5), Vec3(-1, 0.2, 0.4)}) {
     const auto near = planes_at(mesh, rule, tip, 3.0, 0.0);
     const auto far = planes_at(mesh, rule, tip, 3.0, 0.25);
@@ -218,7 +218,7 @@ TEST(PaperRule, DoesNotDependOnHowTrianglesAreRotated) {
   Surface rotated{{mesh->vertices().begin(), mesh->vertices().end()}, {}};
   for (const Corners& c : mesh->triangles()) rotated.triangles.push_back({c[1], c[2], c[0]});
   const auto other = std::make_shared<const Mesh>(rotated);
-  PaperRule rule(mesh), other_rule(other);
+  PaperRule rule, other_rule;
   for (int i = 0; i < 1000; ++i) {
     const Vec3 tip = 2.0 * random.direction() * random.uniform();
     const auto expected = planes_at(mesh, rule, tip, 3.0);

@@ -30,7 +30,7 @@ class RuleContract : public testing::TestWithParam<ActivationEntry> {
     for (const Shape& shape : shapes_to_try()) {
       SCOPED_TRACE(shape.name);
       const auto mesh = std::make_shared<const Mesh>(shape.make());
-      const auto rule = GetParam().make(mesh);
+      const auto rule = GetParam().make();
       Random random(1);
       for (const Vec3& tip : surface_points(*mesh, 20, 0.5, random)) {
         check(*mesh, tip, planes_at(mesh, *rule, tip, 3.0, margin));
@@ -83,7 +83,7 @@ TEST_P(RuleContract, EachPlaneHasItsOwnTriangleBehindIt) {
 
 TEST_P(RuleContract, TheSameQuestionGetsTheSameAnswer) {
   const auto mesh = std::make_shared<const Mesh>(make_shape("cortex"));
-  const auto rule = GetParam().make(mesh);
+  const auto rule = GetParam().make();
   Random random(2);
   for (const Vec3& tip : surface_points(*mesh, 50, 0.5, random)) {
     const auto first = planes_at(mesh, *rule, tip, 4.0);
@@ -103,7 +103,7 @@ INSTANTIATE_TEST_SUITE_P(Rules, RuleContract, testing::ValuesIn(activation_rules
 TEST(RuleRegistry, AnUnknownNameListsTheKnownOnes) {
   const auto mesh = std::make_shared<const Mesh>(make_shape("cube"));
   try {
-    make_activation("papr", mesh);
+    make_activation("papr");
     FAIL() << "no error";
   } catch (const Error& error) {
     for (const ActivationEntry& rule : activation_rules()) {

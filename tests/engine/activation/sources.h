@@ -45,7 +45,7 @@ inline std::unique_ptr<MotionConstraint> guard(const std::shared_ptr<const Mesh>
                                                std::shared_ptr<const SpatialIndex> index,
                                                const StepOptions& options) {
   return std::make_unique<MotionConstraint>(
-      mesh, std::move(index), std::make_unique<CertifiedRule>(mesh), std::make_unique<ActiveSet>(),
+      mesh, std::move(index), std::make_unique<CertifiedRule>(), std::make_unique<ActiveSet>(),
       options, Capacity{.nodes = 16});
 }
 

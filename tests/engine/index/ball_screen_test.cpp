@@ -19,7 +19,7 @@ TEST(BallScreen, SplitsTheCentreIntoTwoFloatsThatMeanIt) {
   for (int i = 0; i < 1000; ++i) {
     const double size = std::pow(10.0, random.uniform(-6.0, 6.0));
     const Ball ball{size * random.direction(), 1.0};
-    const BallScreen screen(ball, bounds, 0.0);
+    const BallScreen screen(ball, bounds, LeafFrame());
     ASSERT_TRUE(screen.fits);
     for (int axis = 0; axis < 3; ++axis) {
       const double x = ball.center[axis];
@@ -36,7 +36,7 @@ TEST(BallScreen, DrawsItsBoundsOnTheSafeSide) {
   Random random(10);
   for (int i = 0; i < 1000; ++i) {
     const double radius = std::pow(10.0, random.uniform(-12.0, 12.0));
-    const BallScreen screen({100.0 * random.direction(), radius}, bounds, 0.0);
+    const BallScreen screen({100.0 * random.direction(), radius}, bounds, LeafFrame());
     EXPECT_LE(double{screen.inside2}, radius * radius);
     EXPECT_GE(double{screen.outside2}, radius * radius);
     EXPECT_LE(double{screen.box_inside2}, radius * radius);
@@ -45,7 +45,7 @@ TEST(BallScreen, DrawsItsBoundsOnTheSafeSide) {
 }
 
 TEST(BallScreen, IsSureOfNothingInABallWithoutASize) {
-  const BallScreen screen({Vec3(1, 2, 3), 0.0}, bounds, 0.0);
+  const BallScreen screen({Vec3(1, 2, 3), 0.0}, bounds, LeafFrame());
   EXPECT_TRUE(screen.fits);
   EXPECT_LT(screen.inside2, 0.0f);
   EXPECT_LT(screen.box_inside2, 0.0f);
@@ -56,7 +56,7 @@ TEST(BallScreen, SaysWhereFloatsDoNotReach) {
   for (const Ball& ball :
        {Ball{Vec3(1e31, 0, 0), 1.0}, Ball{Vec3::Zero(), 1e19}, Ball{Vec3(0, nan, 0), 1.0},
         Ball{Vec3::Zero(), nan}, Ball{Vec3::Zero(), std::numeric_limits<double>::infinity()}}) {
-    EXPECT_FALSE(BallScreen(ball, bounds, 0.0).fits);
+    EXPECT_FALSE(BallScreen(ball, bounds, LeafFrame()).fits);
   }
 }
 

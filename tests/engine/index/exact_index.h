@@ -57,7 +57,9 @@ std::shared_ptr<const Mesh> moved(const Mesh& mesh, const Move& vertex) {
 
 /// Fails unless each triangle of the mesh is in one lane of one leaf, with its corners in
 /// lexicographic order and its parity, no farther off than `error`; full leaves but for the last.
-inline void expect_leaves_hold(const Mesh& mesh, std::span<const LeafBlock> leaves, double error) {
+inline void expect_leaves_hold(const Mesh& mesh, const TriangleBlocks& blocks) {
+  const std::span<const LeafBlock> leaves = blocks.leaves();
+  const LeafFrame& frame = blocks.frame();
   std::vector<int> times(mesh.triangle_count(), 0);
   ASSERT_EQ(leaves.size(), (mesh.triangle_count() + LeafBlock::lanes - 1) / LeafBlock::lanes);
   for (std::size_t i = 0; i < leaves.size(); ++i) {
@@ -88,7 +90,8 @@ inline void expect_leaves_hold(const Mesh& mesh, std::span<const LeafBlock> leav
       for (std::size_t c = 0; c < 3; ++c) {
         for (std::size_t axis = 0; axis < 3; ++axis) {
           const double there = leaf.corner[c][axis][lane];
-          ASSERT_LE(std::abs(there - corners[c].first[axis]), error);
+          const double from_origin = corners[c].first[axis] - frame.origin[static_cast<int>(axis)];
+          ASSERT_LE(std::abs(there - from_origin), frame.error);
         }
       }
     }

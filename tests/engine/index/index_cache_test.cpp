@@ -30,7 +30,7 @@ std::string bytes_of(std::span<const T> items) {
 bool have_equal_blocks(const WideBvh& one, const WideBvh& other) {
   return bytes_of(one.nodes()) == bytes_of(other.nodes()) &&
          bytes_of(one.leaves()) == bytes_of(other.leaves()) &&
-         one.coordinate_error() == other.coordinate_error();
+         one.frame().error == other.frame().error && one.frame().origin == other.frame().origin;
 }
 
 /// A torus of 1152 triangles, so that nodes are below nodes, whose coordinates are no floats.

@@ -66,14 +66,32 @@ TEST(NearestTriangle, IsFoundHoweverFarOffThePointIs) {
     const auto mesh = std::make_shared<const Mesh>(in_odd_numbers(make_shape(shape)));
     const WideBvh tree(mesh);
     const BruteForce brute(mesh);
+    Budget unlimited;
     Random random(4);
     for (double times = 1.0; times < 1e13; times *= 3.0) {
       const Vec3 way = times * mesh->bounds().size().norm() * random.direction();
       const Vec3 point = mesh->bounds().center() + way;
-      ASSERT_EQ(tree.nearest(point), brute.nearest(point)) << shape << ", " << times;
+      ASSERT_EQ(tree.nearest(point, unlimited), brute.nearest(point, unlimited))
+          << shape << ", " << times;
       const Vec3 along(point.x(), 0.0, 0.0);  // of many triangles as far off
-      ASSERT_EQ(tree.nearest(along), brute.nearest(along)) << shape << ", " << times;
+      ASSERT_EQ(tree.nearest(along, unlimited), brute.nearest(along, unlimited))
+          << shape << ", " << times;
     }
+  }
+}
+
+TEST(NearestTriangle, IsNotLookedForOnceTheBudgetIsSpent) {
+  const auto mesh = std::make_shared<const Mesh>(make_shape("sphere"));
+  const WideBvh tree(mesh);
+  for (const Vec3& point : {Vec3(0, 0, 0), Vec3(0, 0, 60), Vec3(1e9, 0, 0)}) {
+    Budget unlimited;
+    const TriangleId nearest = tree.nearest(point, unlimited);
+    ASSERT_NE(nearest, no_triangle);
+    Budget enough(unlimited.spent() + 1);
+    EXPECT_EQ(tree.nearest(point, enough), nearest);
+    Budget too_little(unlimited.spent() / 2);
+    EXPECT_EQ(tree.nearest(point, too_little), no_triangle);
+    EXPECT_LE(too_little.spent(), unlimited.spent() / 2 + LeafBlock::lanes);
   }
 }
 
@@ -84,10 +102,11 @@ TEST(NearestTriangle, IsFoundWhereFloatsOverflow) {
     const auto mesh = std::make_shared<const Mesh>(std::move(surface));
     const WideBvh tree(mesh);
     const BruteForce brute(mesh);
+    Budget unlimited;
     Random random(4);
     for (int i = 0; i < 200; ++i) {
       const Vec3 point = random.uniform(0.0, 200.0) * scale * random.direction();
-      ASSERT_EQ(tree.nearest(point), brute.nearest(point)) << scale;
+      ASSERT_EQ(tree.nearest(point, unlimited), brute.nearest(point, unlimited)) << scale;
     }
   }
 }

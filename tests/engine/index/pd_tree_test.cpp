@@ -39,7 +39,7 @@ TEST(PdTree, IsExactForEveryNumberOfTrianglesAboutFullLeaves) {
     SCOPED_TRACE(count);
     const auto mesh = beginning_of("cortex", count);
     const PdTree index(mesh);
-    expect_leaves_hold(*mesh, index.leaves(), index.coordinate_error());
+    expect_leaves_hold(*mesh, index);
     expect_exact(*mesh, index, 2);
     if (HasFatalFailure()) return;
   }
@@ -60,7 +60,7 @@ void expect_boxes_hold(const PdTree& tree, std::size_t self, std::size_t first_l
   for (const LeafBlock& leaf : tree.leaves().subspan(first_leaf, node.leaves)) {
     for (std::size_t lane = 0; lane < LeafBlock::lanes && leaf.is_used(lane); ++lane) {
       for (const Vec3& corner : tree.mesh().triangle(leaf.triangle(lane))) {
-        const Vec3 along = axes * (corner - center);
+        const Vec3 along = axes * (corner - tree.frame().origin - center);
         ASSERT_TRUE((along.cwiseAbs().array() <= half.array()).all());
       }
     }

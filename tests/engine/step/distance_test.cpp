@@ -45,9 +45,8 @@ std::vector<MotionConstraint> forms_of(std::string_view rule,
       .radius = 3.0, .tool_radius = tool_radius, .margin = margin, .distances = distances};
   std::vector<MotionConstraint> forms;
   for (const auto& index : indices) {
-    forms.emplace_back(mesh, index, make_activation(rule, mesh), std::make_unique<ActiveSet>(),
-                       options, Capacity{},
-                       rule == "certified" ? Inside::led_out : Inside::taken_as_is);
+    forms.emplace_back(mesh, index, make_activation(rule), std::make_unique<ActiveSet>(), options,
+                       Capacity{}, rule == "certified" ? Inside::led_out : Inside::taken_as_is);
   }
   return forms;
 }

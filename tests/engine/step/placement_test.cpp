@@ -28,24 +28,20 @@ class Placing {
  public:
   explicit Placing(Surface surface)
       : mesh_(std::make_shared<const Mesh>(std::move(surface))),
-        tree_(mesh_),
-        candidates_(mesh_->triangle_count()),
+        near_(mesh_, std::make_shared<PdTree>(mesh_), mesh_->triangle_count()),
         oracle_(mesh_) {}
 
   const Mesh& mesh() const { return *mesh_; }
   bool inside(const Vec3& tip) const { return oracle_.inside(tip).value(); }
   double distance(const Vec3& tip) const { return oracle_.distance(tip); }
-  std::optional<Placement> operator()(const Vec3& tip) {
-    return place(*mesh_, tree_, tip, candidates_);
-  }
+  std::optional<Placement> operator()(const Vec3& tip) { return place(near_, tip); }
   Vec3 way_out(const Vec3& tip, double longest, double off) {
-    return lead_out(*mesh_, tree_, tip, (*this)(tip).value(), longest, off, candidates_);
+    return lead_out(near_, tip, (*this)(tip).value(), longest, off);
   }
 
  private:
   std::shared_ptr<const Mesh> mesh_;
-  PdTree tree_;
-  TriangleBuffer candidates_;
+  Neighborhood near_;
   oracle::SafetyOracle oracle_;
 };
 
@@ -268,9 +264,8 @@ TEST(Placement, FarOffIsTheSideThatIsOutsideWhicheverThatIs) {
 
 TEST(Placement, MoreTrianglesThanThereIsRoomForIsNoPlacement) {
   const auto mesh = std::make_shared<const Mesh>(make_cube(50));
-  const PdTree tree(mesh);
-  TriangleBuffer none(0);
-  EXPECT_FALSE(place(*mesh, tree, Vec3(0, 0, 51), none).has_value());
+  Neighborhood none(mesh, std::make_shared<PdTree>(mesh), 0);
+  EXPECT_FALSE(place(none, Vec3(0, 0, 51)).has_value());
 }
 
 TEST(LeadOut, GoesJustBeyondTheSurface) {

@@ -27,7 +27,7 @@ MotionConstraint with(std::unique_ptr<Activation> rule, std::unique_ptr<Solver> 
 }
 
 MotionConstraint guard(const std::shared_ptr<const Mesh>& mesh) {
-  return with(std::make_unique<PaperRule>(mesh), std::make_unique<ActiveSet>(), mesh);
+  return with(std::make_unique<PaperRule>(), std::make_unique<ActiveSet>(), mesh);
 }
 
 const Vec3 above_the_cube(3, 4, 50.5);  // its faces are at +-50
@@ -42,7 +42,7 @@ TEST(StepSafety, ASolverThatClaimsOptimalityForAMotionIntoTheMeshIsNotBelieved) 
     }
   };
   const auto mesh = cube();
-  auto constraint = with(std::make_unique<PaperRule>(mesh), std::make_unique<Liar>(), mesh);
+  auto constraint = with(std::make_unique<PaperRule>(), std::make_unique<Liar>(), mesh);
   const Step step = constraint.step({.tip = above_the_cube, .desired = {0, 0, -1}});
   EXPECT_EQ(step.status, Status::unsolved);
   EXPECT_EQ(step.motion, Vec3::Zero());
@@ -64,7 +64,7 @@ TEST(StepSafety, ASolverThatReturnsNoNumberIsNotBelieved) {
     std::array<double, 3> u_{0.0, std::nan(""), 0.0};
   };
   const auto mesh = cube();
-  auto constraint = with(std::make_unique<PaperRule>(mesh), std::make_unique<Broken>(), mesh);
+  auto constraint = with(std::make_unique<PaperRule>(), std::make_unique<Broken>(), mesh);
   for (const Vec3& tip : {above_the_cube, Vec3(0, 0, 90)}) {
     const Step step = constraint.step({.tip = tip, .desired = {0, 0, -1}});
     EXPECT_FALSE(step.ok());
@@ -81,7 +81,7 @@ TEST(StepSafety, ASolverThatClaimsOptimalityAndGivesNothingIsNotBelieved) {
     }
   };
   const auto mesh = cube();
-  auto constraint = with(std::make_unique<PaperRule>(mesh), std::make_unique<Silent>(), mesh);
+  auto constraint = with(std::make_unique<PaperRule>(), std::make_unique<Silent>(), mesh);
   const Step step = constraint.step({.tip = above_the_cube, .desired = {0, 0, -1}});
   EXPECT_EQ(step.status, Status::unsolved);
   EXPECT_EQ(step.motion, Vec3::Zero());
@@ -151,10 +151,9 @@ TEST(StepSafety, WhatIsForgottenIsRefused) {
   EXPECT_EQ(constraint.step({.desired = Vec3(0, 0, 1)}).status, Status::invalid_input);
   EXPECT_EQ(constraint.step({}).status, Status::invalid_input);
   const auto mesh = cube();
-  EXPECT_THROW(
-      MotionConstraint(mesh, std::make_unique<PdTree>(mesh), std::make_unique<PaperRule>(mesh),
-                       std::make_unique<ActiveSet>(), {.margin = 0.5}),
-      Error);
+  EXPECT_THROW(MotionConstraint(mesh, std::make_unique<PdTree>(mesh), std::make_unique<PaperRule>(),
+                                std::make_unique<ActiveSet>(), {.margin = 0.5}),
+               Error);
   EXPECT_THROW(make_motion_constraint(nullptr, {}), Error);
 }
 
@@ -173,9 +172,8 @@ TEST(StepSafety, AJacobianWithoutJointsIsNoFreeTip) {
 
 TEST(StepSafety, AStepClippedToTheRadiusIsNotRefusedForItsRounding) {
   const auto mesh = cube();
-  MotionConstraint constraint(mesh, std::make_unique<PdTree>(mesh),
-                              std::make_unique<PaperRule>(mesh), std::make_unique<ActiveSet>(),
-                              {.radius = 0.3});
+  MotionConstraint constraint(mesh, std::make_unique<PdTree>(mesh), std::make_unique<PaperRule>(),
+                              std::make_unique<ActiveSet>(), {.radius = 0.3});
   Random random(2);
   for (int i = 0; i < 10'000; ++i) {
     const Vec3 way = 7.0 * random.direction();
@@ -193,9 +191,8 @@ TEST(StepSafety, ATipSoFarAwayThatAStepIsLostInItsDigitsIsRefused) {
 
 TEST(StepSafety, AFailedSolveIsTimedAsWell) {
   const auto mesh = std::make_shared<const Mesh>(make_shape("thin_plates"));
-  MotionConstraint constraint(mesh, std::make_unique<PdTree>(mesh),
-                              std::make_unique<PaperRule>(mesh), std::make_unique<ActiveSet>(),
-                              {.radius = 2.0, .margin = 0.75});
+  MotionConstraint constraint(mesh, std::make_unique<PdTree>(mesh), std::make_unique<PaperRule>(),
+                              std::make_unique<ActiveSet>(), {.radius = 2.0, .margin = 0.75});
   StageTimes times;
   const Vec3 in_the_gap(0, 0, mesh->bounds().low.z() + 1.5);
   ASSERT_EQ(constraint.step({.tip = in_the_gap, .desired = {0.1, 0, 0}}, times).status,

@@ -27,7 +27,7 @@ MotionConstraint guard(const std::shared_ptr<const Mesh>& mesh, const StepOption
                        const Capacity& capacity = {}) {
   return {mesh,
           std::make_unique<PdTree>(mesh),
-          std::make_unique<Rule>(mesh),
+          std::make_unique<Rule>(),
           std::make_unique<ActiveSet>(),
           options,
           capacity};
@@ -164,7 +164,7 @@ TEST(Step, DoesNotDependOnTheIndex) {
   const StepOptions options{.radius = 5.0, .margin = 0.1};
   auto with_tree = guard<PaperRule>(mesh, options);
   MotionConstraint with_brute(mesh, std::make_unique<BruteForce>(mesh),
-                              std::make_unique<PaperRule>(mesh), std::make_unique<ActiveSet>(),
+                              std::make_unique<PaperRule>(), std::make_unique<ActiveSet>(),
                               options);
   Random random(8);
   for (const Vec3& tip : surface_points(*mesh, 300, 1.0, random)) {
@@ -189,8 +189,7 @@ TEST(Step, DoesNotDependOnTheIndex) {
 /// against the most. Must come to what the eager rule comes to.
 class LazyFaces final : public Activation {
  public:
-  explicit LazyFaces(std::shared_ptr<const Mesh> mesh)
-      : eager_(std::move(mesh)), planes_(100'000) {}
+  LazyFaces() : planes_(100'000) {}
 
   void prepare(Neighborhood& near) override { eager_.prepare(near); }
 

@@ -22,7 +22,7 @@ MotionConstraint guard_with(double damping) {
   const auto mesh = std::make_shared<const Mesh>(make_shape("cube"));
   return {mesh,
           std::make_shared<WideBvh>(mesh),
-          std::make_unique<CertifiedRule>(mesh),
+          std::make_unique<CertifiedRule>(),
           std::make_unique<ActiveSet>(),
           {.radius = 5.0, .margin = 0.5, .damping = damping}};
 }

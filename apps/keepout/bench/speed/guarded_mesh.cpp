@@ -33,6 +33,7 @@ class QueriesOnly final : public SpatialIndex {
     index_->collect(ball, candidates);
   }
   std::size_t memory() const noexcept override { return index_->memory(); }
+  const Mesh& mesh() const noexcept override { return index_->mesh(); }
 
  private:
   std::shared_ptr<const SpatialIndex> index_;

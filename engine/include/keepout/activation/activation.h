@@ -73,8 +73,9 @@ class Activation {
  public:
   virtual ~Activation() = default;
 
-  /// Says where to ask for triangles, once and before all else. The neighbourhood must outlive the
-  /// rule. Allocates; everything after it does not.
+  /// Says where to ask for triangles, and of which mesh, before all else; and again once that has
+  /// become another one. The neighbourhood must outlive the rule. Allocates; everything after it
+  /// does not.
   virtual void prepare(Neighborhood& near) { near_ = &near; }
 
   /// Whether it keeps off more than the tip: a tool of which the tip is but a point. What can be
@@ -86,11 +87,11 @@ class Activation {
   virtual Reach reach() const noexcept { return Reach::sphere; }
 
   /// Where triangles matter: where motions end, and as much farther as planes are set back by the
-  /// margin, unless the rule says otherwise.
+  /// margin, unless the rule says otherwise. Precondition: prepare.
   virtual Ball region(const Surroundings& around) const noexcept;
 
-  /// Asks the index about the region. False if it holds more than there is room for, or if the
-  /// index is no longer the one that the rule was prepared for.
+  /// Asks the index about the region. False if it holds more than there is room for, or than the
+  /// budget allows to look at.
   [[nodiscard]] virtual bool look_around(const Surroundings& around) noexcept;
 
   /// Appends the planes that hold whatever the trial. Precondition: look_around.
@@ -102,7 +103,7 @@ class Activation {
                           HalfSpaceBuffer& planes) noexcept;
 
   /// The planes contradict each other: sets back those that may be. Whether any was.
-  virtual bool relax(HalfSpaceBuffer& /*planes*/) const noexcept { return false; }
+  virtual bool relax(HalfSpaceBuffer& /*planes*/) noexcept { return false; }
 
   /// Fills `turned` with planes that allow around.kept, an accepted motion, as well as `planes`
   /// did, and may allow a better one. Whether they differ.
@@ -119,6 +120,10 @@ class Activation {
   virtual std::size_t triangles() const noexcept { return hits().size(); }
 
  protected:
+  /// What is kept from. Precondition: prepare.
+  const Mesh& mesh() const noexcept { return near_->mesh(); }
+  /// For what the rule does itself. Precondition: prepare.
+  Budget& budget() const noexcept { return near_->budget(); }
   /// What the last look_around found; empty before it.
   std::span<const Hit> hits() const noexcept {
     return near_ != nullptr ? near_->hits() : std::span<const Hit>();

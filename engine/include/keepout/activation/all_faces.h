@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <memory>
-
 #include "keepout/activation/activation.h"
-#include "keepout/mesh/mesh.h"
 
 namespace keepout {
 
@@ -13,13 +10,7 @@ namespace keepout {
 /// an area have no face and are passed over.
 class AllFaces final : public Activation {
  public:
-  /// The rule on a mesh. Precondition: it is not null.
-  explicit AllFaces(std::shared_ptr<const Mesh> mesh);
-
   Opening start(const Surroundings& around, HalfSpaceBuffer& planes) noexcept override;
-
- private:
-  std::shared_ptr<const Mesh> mesh_;
 };
 
 }  // namespace keepout

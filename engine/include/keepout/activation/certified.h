@@ -30,8 +30,7 @@ struct CertifiedTerms;
 /// Guarantee: dist(x + s dx, mesh) >= min(margin, dist(x, mesh)) - 3 tolerance for all s in [0, 1].
 class CertifiedRule final : public Activation {
  public:
-  /// The rule on a mesh. Precondition: it is not null.
-  explicit CertifiedRule(std::shared_ptr<const Mesh> mesh);
+  CertifiedRule();
   ~CertifiedRule() override;
 
   void prepare(Neighborhood& near) override;
@@ -41,14 +40,15 @@ class CertifiedRule final : public Activation {
   Opening start(const Surroundings& around, HalfSpaceBuffer& planes) noexcept override;
   Judgement judge(const Surroundings& around, const Vec3& trial,
                   HalfSpaceBuffer& planes) noexcept override;
-  bool relax(HalfSpaceBuffer& planes) const noexcept override;
+  bool relax(HalfSpaceBuffer& planes) noexcept override;
   bool turn(const Surroundings& around, std::span<const HalfSpace> planes,
             HalfSpaceBuffer& turned) noexcept override;
   void ways_around(TriangleId source, HalfSpaceBuffer& ways) const noexcept override;
   std::size_t triangles() const noexcept override { return facets_.size(); }
 
   /// Distances are told apart down to this: some 1e-10 of the largest lengths at hand. It comes
-  /// from the whole mesh, not from the triangles found, so that no index can change it. [length]
+  /// from the whole mesh, not from the triangles found, so that no index can change it.
+  /// Precondition: prepare. [length]
   double tolerance(const Surroundings& around) const noexcept;
 
  private:
@@ -61,12 +61,9 @@ class CertifiedRule final : public Activation {
 
   bool meet(const Vec3& trial, std::span<const HalfSpace> planes, double too_close,
             Meeting& meeting) noexcept;
-  bool is_over_budget() const noexcept;
   const Facet* nearest() const noexcept;
   const Facet& facet(TriangleId source) const noexcept;
 
-  std::shared_ptr<const Mesh> mesh_;
-  double longest_edge_;  // [length]
   std::unique_ptr<MotionWalk> walk_;
 
   // Of this cycle.

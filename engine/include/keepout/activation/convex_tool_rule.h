@@ -34,9 +34,7 @@ namespace keepout {
 class ConvexToolRule final : public Activation {
  public:
   /// Precondition: a narrow phase that is given is one of this tool; the exact one by default.
-  /// Throws Error without a mesh.
-  ConvexToolRule(std::shared_ptr<const Mesh> mesh, ConvexTool tool,
-                 std::unique_ptr<NarrowPhase> narrow_phase = nullptr);
+  explicit ConvexToolRule(ConvexTool tool, std::unique_ptr<NarrowPhase> narrow_phase = nullptr);
 
   void prepare(Neighborhood& near) override;
   bool guards_a_tool() const noexcept override { return true; }
@@ -45,10 +43,10 @@ class ConvexToolRule final : public Activation {
   Opening start(const Surroundings& around, HalfSpaceBuffer& planes) noexcept override;
   Judgement judge(const Surroundings& around, const Vec3& trial,
                   HalfSpaceBuffer& planes) noexcept override;
-  bool relax(HalfSpaceBuffer& planes) const noexcept override;
+  bool relax(HalfSpaceBuffer& planes) noexcept override;
 
   /// Distances are told apart down to this: some 1e-12 of the lengths at hand, and the rounding of
-  /// a position. [length]
+  /// a position. Precondition: prepare. [length]
   double tolerance(const Surroundings& around) const noexcept;
 
   /// What is kept out.
@@ -82,11 +80,9 @@ class ConvexToolRule final : public Activation {
   std::optional<Contact> first_contact(const Near& near, const Surroundings& around,
                                        const Vec3& trial, double level) noexcept;
 
-  std::shared_ptr<const Mesh> mesh_;
   ConvexTool tool_;
   std::unique_ptr<NarrowPhase> narrow_phase_;
-  double longest_edge_;  // of the mesh [length]
-  Buffer<Near> near_;    // sorted by triangle
+  Buffer<Near> near_;  // sorted by triangle
 };
 
 }  // namespace keepout

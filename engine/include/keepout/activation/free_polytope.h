@@ -24,8 +24,9 @@ enum class PolytopeStatus : std::uint8_t {
   found,          // the planes are complete
   touching,       // the tip is on the mesh, to within rounding: no side of it is certain
   invalid_input,  // a number is not finite or out of range, or a hit is of no triangle of the mesh
-  over_capacity,  // more hits or planes than room was made for
-  whole_tool      // the rule guards more than the tip, which is all that the planes are for
+  over_capacity,  // more hits or planes than room was made for, or work than the budget allows
+  whole_tool,     // the rule guards more than the tip, which is all that the planes are for
+  mesh_changed    // the index was refit to another mesh, which is not followed yet
 };
 
 /// The name as it stands in the enumeration, for files and logs.
@@ -67,12 +68,13 @@ class FreePolytope {
   ///
   /// `radius`, `margin` [length], >= 0. `hits`: all triangles within the ball of radius + margin
   /// around the tip, in any order; closest points relative to the tip (refine). `planes` needs room
-  /// for at least six; with less, a failure leaves it overflowed.
+  /// for at least six; with less, a failure leaves it overflowed. `budget`: work is taken from it.
   ///
   /// The normals, the offsets and their order are the same, bit for bit, however the triangles are
   /// numbered, wound and rotated. Allocates nothing.
   [[nodiscard]] PolytopeStatus around(const Vec3& tip, double radius, double margin,
-                                      std::span<const Hit> hits, HalfSpaceBuffer& planes) noexcept;
+                                      std::span<const Hit> hits, Budget& budget,
+                                      HalfSpaceBuffer& planes) noexcept;
 
  private:
   /// A hit, and what it is sorted by.
@@ -84,7 +86,7 @@ class FreePolytope {
 
   PolytopeStatus prepare(Query& query, std::span<const Hit> hits) const noexcept;
   std::span<const Turn> by_distance(std::span<const Hit> hits) noexcept;
-  PolytopeStatus separate(const Query& query, std::span<const Hit> hits,
+  PolytopeStatus separate(const Query& query, std::span<const Hit> hits, Budget& budget,
                           HalfSpaceBuffer& planes) noexcept;
   std::optional<HalfSpace> plane_for(const Query& query, const Hit& hit,
                                      const TriangleFromTip& seen) const noexcept;

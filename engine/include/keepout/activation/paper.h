@@ -28,16 +28,11 @@ class PaperBlocks;
 /// - The sign of N_i^T (x - CP_i) is read to within rounding.
 class PaperRule final : public Activation {
  public:
-  /// Builds the adjacency of the mesh.
-  explicit PaperRule(std::shared_ptr<const Mesh> mesh);
+  PaperRule();
   ~PaperRule() override;
 
-  /// What it was built on.
-  const std::shared_ptr<const Mesh>& mesh() const noexcept { return mesh_; }
-  /// The neighbours that its conditions are about.
-  const Adjacency& adjacency() const noexcept { return *adjacency_; }
-
-  /// Looks at the leaves by itself where the index has its triangles in blocks.
+  /// Builds the adjacency of the mesh. Looks at the leaves by itself where the index has its
+  /// triangles in blocks.
   void prepare(Neighborhood& near) override;
   bool look_around(const Surroundings& around) noexcept override;
   std::size_t triangles() const noexcept override;
@@ -45,7 +40,7 @@ class PaperRule final : public Activation {
   Judgement judge(const Surroundings& around, const Vec3& trial,
                   HalfSpaceBuffer& planes) noexcept override;
 
-  /// The plane that one triangle calls for, if it does. Asks no hits.
+  /// The plane that one triangle calls for, if it does. Asks no hits. Precondition: prepare.
   std::optional<HalfSpace> plane_of(const Surroundings& around, const Hit& hit) const noexcept;
 
  private:
@@ -54,8 +49,7 @@ class PaperRule final : public Activation {
   Role role_in_condition_2(const Surroundings& around, const Hit& hit) const noexcept;
   bool touches_a_valley(const Hit& hit) const noexcept;
 
-  std::shared_ptr<const Mesh> mesh_;
-  std::shared_ptr<const Adjacency> adjacency_;
+  std::unique_ptr<const Adjacency> adjacency_;
   std::unique_ptr<PaperBlocks> blocks_;  // where the index offers some
 };
 

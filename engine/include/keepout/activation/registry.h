@@ -6,7 +6,6 @@
 #include <string_view>
 
 #include "keepout/activation/activation.h"
-#include "keepout/mesh/mesh.h"
 
 namespace keepout {
 
@@ -14,15 +13,14 @@ namespace keepout {
 struct ActivationEntry {
   std::string_view name;         // to ask for it by
   std::string_view description;  // one line, for lists
-  /// A new rule on a mesh; as make_activation.
-  std::unique_ptr<Activation> (*make)(std::shared_ptr<const Mesh> mesh);
+  /// A new rule.
+  std::unique_ptr<Activation> (*make)();
 };
 
 /// All rules, in the order in which they should be listed.
 std::span<const ActivationEntry> activation_rules() noexcept;
 
 /// Throws Error, listing the known names, for an unknown one.
-std::unique_ptr<Activation> make_activation(std::string_view name,
-                                            std::shared_ptr<const Mesh> mesh);
+std::unique_ptr<Activation> make_activation(std::string_view name);
 
 }  // namespace keepout

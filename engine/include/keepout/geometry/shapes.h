@@ -6,7 +6,18 @@
 
 #include "keepout/ids.h"
 
+#if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) || \
+    defined(_M_FP_FAST) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__ > 0)
+#error "compile without -ffast-math or a part of it: proofs count on each rounding, and on NaN"
+#endif
+
 namespace keepout {
+
+/// Lengths that are computed with, whatever their unit. Those of a guard and of its mesh that are
+/// shorter, but for 0, or longer are refused: their squares would leave the range of a float.
+inline constexpr double shortest_length = 1e-15;
+/// See shortest_length.
+inline constexpr double longest_length = 1e15;
 
 /// A point, or a displacement, in the frame of the mesh. [length]
 using Vec3 = Eigen::Vector3d;

@@ -53,8 +53,8 @@ class MotionWalk {
   virtual ~MotionWalk() = default;
 
   /// From here on motions are these, and no triangle has a note. False if the region holds more
-  /// than there is room for, or the index has become that of another mesh: then nothing may be
-  /// concluded until a walk begins well.
+  /// than there is room for, or than the budget allows to look at: then nothing may be concluded
+  /// until a walk begins well.
   [[nodiscard]] virtual bool begin(const Start& start) noexcept = 0;
 
   /// The same motions again, with another level and without notes.
@@ -65,22 +65,19 @@ class MotionWalk {
 
   /// Shows the visitor each triangle that the motion may come within the level of, and perhaps
   /// others, but for those that it surely meets later than matters. True if it is known that the
-  /// motion, and any other that ends within `alike` of it, comes near none, as a share of it.
+  /// motion, and any other that ends within `alike` of it, comes near none, as a share of it. Once
+  /// the budget is spent it stops, and triangles may have been left out.
   virtual bool walk(const Vec3& motion, EncounterVisitor& visitor) noexcept = 0;
 
   /// How near two motions end to each other that are as free, as a share of the first.
   static constexpr double alike = 1e-7;
 
-  /// Whether the work since the walk began was more than its budget, so that triangles may have
-  /// been left out.
-  virtual bool is_exhausted() const noexcept = 0;
-
   /// How many triangles may be given notes between two beginnings.
   virtual std::size_t room() const noexcept = 0;
 };
 
-/// The index's own walk, or, of one that has none, a visit to all of its exact hits in the region.
-/// The neighbourhood must outlive it.
+/// The index's own walk, or, of one that has none, a visit to all of its exact hits in the region;
+/// within the neighbourhood's budget. The neighbourhood must outlive it.
 std::unique_ptr<MotionWalk> make_motion_walk(Neighborhood& near);
 
 }  // namespace keepout

@@ -18,7 +18,7 @@ struct alignas(64) PdNode {
   /// rounding of floats. across[axis][direction], so that the three directions are together.
   float across[3][3];
 
-  float center[3];  // of the box, in the mesh frame [length]
+  float center[3];  // of the box, from the origin of the tree's frame [length]
   float half[3];    // half of the box's size along each direction, rounded outward [length]
 
   /// How many leaves are in the box. Where more than one, the first half of them, rounded down, is
@@ -56,8 +56,7 @@ class PdTree final : public SpatialIndex, public TriangleBlocks {
   bool is_exact() const noexcept override { return true; }
   std::size_t memory() const noexcept override;
 
-  /// What it was built on.
-  const Mesh& mesh() const noexcept { return *mesh_; }
+  const Mesh& mesh() const noexcept override { return *mesh_; }
 
   /// A parent stands before its children; the first is the root.
   std::span<const PdNode> nodes() const noexcept { return nodes_; }
@@ -65,14 +64,13 @@ class PdTree final : public SpatialIndex, public TriangleBlocks {
   /// In the order in which the nodes hold them.
   std::span<const LeafBlock> leaves() const noexcept override { return leaves_; }
 
-  /// How far a corner in a leaf may be from the mesh's, in each coordinate. [length]
-  double coordinate_error() const noexcept override { return coordinate_error_; }
+  const LeafFrame& frame() const noexcept override { return frame_; }
 
  private:
   std::shared_ptr<const Mesh> mesh_;
   BlockVector<PdNode> nodes_;
   BlockVector<LeafBlock> leaves_;
-  double coordinate_error_ = 0.0;
+  LeafFrame frame_;
 };
 
 }  // namespace keepout

@@ -42,6 +42,7 @@ class PdTree1997 final : public SpatialIndex {
 
   void collect(const Ball& ball, TriangleBuffer& candidates) const noexcept override;
   bool is_exact() const noexcept override { return true; }
+  const Mesh& mesh() const noexcept override { return *mesh_; }
   std::size_t memory() const noexcept override;
 
   /// How many nodes there are one below the other, at most.

@@ -28,17 +28,20 @@ using HitBuffer = Buffer<Hit>;
 void refine(const Mesh& mesh, const Ball& ball, std::span<const TriangleId> candidates,
             HitBuffer& hits) noexcept;
 
+/// Throws Error unless there are both and the index is of the mesh.
+void require_of(const Mesh* mesh, const SpatialIndex* index);
+
 /// The triangles around a place, exactly, from whatever index: asks it for candidates and refines
 /// them. All memory is made at construction. One for each thread; mesh and index are shared.
 class Neighborhood {
  public:
-  /// With room for so many candidates in a query, or all triangles if they are fewer. Throws Error
-  /// without a mesh or an index.
+  /// With room for so many candidates in a query, or all triangles if they are fewer, and a budget
+  /// of so many looks. Throws Error without a mesh or an index, or if the index is of another mesh.
   Neighborhood(std::shared_ptr<const Mesh> mesh, std::shared_ptr<const SpatialIndex> index,
-               std::size_t room);
+               std::size_t room, std::size_t looks = Budget::unlimited);
 
   /// Finds all triangles that touch the ball. False, and no hits, if the index proposes more than
-  /// there is room for, or the ball is none.
+  /// there is room for, or than the budget allows to look at, or the ball is none.
   [[nodiscard]] bool look(const Ball& ball) noexcept;
 
   /// What the last look found, sorted by number; closest points are relative to the ball's centre.
@@ -50,6 +53,14 @@ class Neighborhood {
   TriangleBuffer& candidates() noexcept { return candidates_; }
   /// How many candidates there is room for.
   std::size_t room() const noexcept { return candidates_.capacity(); }
+  /// For all that is asked here, and what is made of it. Whose cycles it is for renews it.
+  Budget& budget() noexcept { return budget_; }
+  /// Whether the index is still of the mesh: not so once it was refit to another.
+  bool is_current() const noexcept { return index_->mesh().id() == mesh_->id(); }
+  /// The same on another mesh and its index: with as much room, and what was found forgotten.
+  /// Throws Error, and stays as it is, as the constructor does.
+  void follow(std::shared_ptr<const Mesh> moved, std::shared_ptr<const SpatialIndex> index);
+
   /// What is looked at.
   const Mesh& mesh() const noexcept { return *mesh_; }
   /// What is asked.
@@ -58,21 +69,20 @@ class Neighborhood {
  private:
   std::shared_ptr<const Mesh> mesh_;
   std::shared_ptr<const SpatialIndex> index_;
-  Ball ball_{Vec3::Zero(), -1.0};
+  inline static const Ball nowhere{Vec3::Zero(), -1.0};
+  Ball ball_ = nowhere;
   TriangleBuffer candidates_;
   HitBuffer hits_;
+  Budget budget_;
 };
 
 /// The triangle nearest to a point, and its closest point, relative to `point`; ties go to the
 /// lowest id. Of every index the same, bit for bit. One that has no search of its own for it
 /// (SpatialIndex::nearest) is asked about a ball around the point that grows until it touches the
-/// mesh: far from it that may be a large part of it, and there is no answer when it is more than
-/// `candidates` has room for. Allocates nothing.
-///
-/// `guess`: for such an index a radius worth trying first, such as the last distance plus the way
-/// since. [length] Precondition: the point is finite.
-std::optional<Hit> find_nearest(const Mesh& mesh, const SpatialIndex& index, const Vec3& point,
-                                double guess, TriangleBuffer& candidates) noexcept;
+/// mesh: far from it that may be a large part of it. There is no answer when it is more than there
+/// is room for, or when the budget is spent. What was looked for before stays found. Allocates
+/// nothing. Precondition: the point is finite.
+std::optional<Hit> find_nearest(Neighborhood& near, const Vec3& point) noexcept;
 
 /// The same with memory that grows as needed: for measuring, not for the control path.
 class NearestTriangle {
@@ -80,7 +90,9 @@ class NearestTriangle {
   /// Both must outlive this object.
   NearestTriangle(const Mesh& mesh, const SpatialIndex& index);
 
-  /// The nearest triangle; ties, `guess` and precondition as for find_nearest. Allocates.
+  /// The nearest triangle; ties and precondition as for find_nearest. `guess`: for an index without
+  /// a search of its own a radius worth trying first, such as the last distance plus the way since.
+  /// [length] Allocates.
   Hit operator()(const Vec3& point, double guess = 0.0);
 
  private:

@@ -7,7 +7,9 @@
 #include "keepout/buffer.h"
 #include "keepout/geometry/shapes.h"
 #include "keepout/ids.h"
+#include "keepout/index/budget.h"
 #include "keepout/index/motion_walk.h"
+#include "keepout/mesh/mesh.h"
 
 namespace keepout {
 
@@ -18,12 +20,20 @@ using TriangleBuffer = Buffer<TriangleId>;
 
 /// Finds the triangles near a place. An index proposes candidates; the engine's exact kernel
 /// decides (refine), so every index gives the same hits.
+///
+/// What is built on it holds on to it: it is neither copied nor assigned to.
 class SpatialIndex {
  public:
+  SpatialIndex(const SpatialIndex&) = delete;
+  SpatialIndex& operator=(const SpatialIndex&) = delete;
   virtual ~SpatialIndex() = default;
 
+  /// What its triangles are of: what it was built on, or last refit to.
+  virtual const Mesh& mesh() const noexcept = 0;
+
   /// Appends, once each and in any order, every triangle that touches the ball. Extra triangles are
-  /// allowed, missing ones never. Thread-safe.
+  /// allowed, missing ones never, unless there is no room for them all: then it may stop.
+  /// Thread-safe.
   virtual void collect(const Ball& ball, TriangleBuffer& candidates) const noexcept = 0;
 
   /// Whether the candidates are exactly the triangles that touch the ball by the engine's kernel,
@@ -31,19 +41,34 @@ class SpatialIndex {
   virtual bool is_exact() const noexcept { return false; }
 
   /// The triangle nearest to a point by the engine's kernel, of equals the lowest number, whatever
-  /// the distance; no_triangle of an index that has no search of its own for it: see find_nearest.
-  /// Thread-safe. Precondition: the point is finite.
-  virtual TriangleId nearest(const Vec3& /*point*/) const noexcept { return no_triangle; }
+  /// the distance. no_triangle of an index that has no search of its own for it (see find_nearest),
+  /// and once the budget is spent. Thread-safe. Precondition: the point is finite.
+  virtual TriangleId nearest(const Vec3& /*point*/, Budget& /*budget*/) const noexcept {
+    return no_triangle;
+  }
 
   /// A walk of its own along motions, which asks about far fewer triangles than are near; null of
-  /// an index that has none: see make_motion_walk. The index must outlive it.
-  virtual std::unique_ptr<MotionWalk> walk_along_motions() const { return nullptr; }
+  /// an index that has none: see make_motion_walk. Its work is taken from the budget. Index and
+  /// budget must outlive it, and the index must not be refit.
+  virtual std::unique_ptr<MotionWalk> walk_along_motions(Budget& /*budget*/) const {
+    return nullptr;
+  }
+
+  /// An index of a mesh whose triangles are the same, of as many vertices that are elsewhere, made
+  /// from this one in a fraction of the time of a build, while this one is asked; null of an index
+  /// that has no faster way than a build. Throws Error if the corners of a triangle differ.
+  virtual std::unique_ptr<SpatialIndex> refitted(std::shared_ptr<const Mesh> /*moved*/) const {
+    return nullptr;
+  }
 
   /// Its triangles in leaf blocks; null of an index that has none. They live as long as the index.
   virtual const TriangleBlocks* blocks() const noexcept { return nullptr; }
 
   /// Memory that the index holds beside the mesh. [bytes]
   virtual std::size_t memory() const noexcept = 0;
+
+ protected:
+  SpatialIndex() = default;
 };
 
 /// What a query of ours had to look at. Unlike its time it is the same on every run, so that a

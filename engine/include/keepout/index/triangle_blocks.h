@@ -11,8 +11,21 @@
 
 namespace keepout {
 
+/// What the floats of a tree are to the mesh's coordinates.
+struct LeafFrame {
+  /// What they are measured from: the mesh's own origin where its coordinates are floats already,
+  /// as those of STL files are; else the middle of its triangles, wherever that is. [length]
+  Vec3 origin = Vec3::Zero();
+  /// How far a corner in a leaf may be from the mesh's, in each coordinate; 0 where they are the
+  /// same numbers. [length]
+  double error = 0.0;
+
+  /// Whether the coordinates are the mesh's own.
+  bool is_exact() const noexcept { return error == 0.0; }
+};
+
 /// Sixteen triangles, coordinate by coordinate, so that one instruction looks at all of them: the
-/// leaf of our trees. Numbers are the mesh's, rounded to float: the tree knows by how much at most.
+/// leaf of our trees. Numbers are the mesh's, from the frame's origin, rounded to float.
 struct alignas(64) LeafBlock {
   /// In a block.
   static constexpr std::size_t lanes = 16;
@@ -45,11 +58,8 @@ class TriangleBlocks {
   /// All blocks; what is numbered is their place here.
   virtual std::span<const LeafBlock> leaves() const noexcept = 0;
 
-  /// How far a corner in a leaf may be from the mesh's, in each coordinate. [length]
-  virtual double coordinate_error() const noexcept = 0;
-
-  /// Changes with the mesh: what was remembered of another generation holds no more.
-  virtual std::uint64_t generation() const noexcept { return 0; }
+  /// What their coordinates are to the mesh's.
+  virtual const LeafFrame& frame() const noexcept = 0;
 
   /// Appends the number of every leaf with a triangle that touches the ball, once each and in any
   /// order. Extra leaves are allowed, missing ones never. Thread-safe.

@@ -35,8 +35,9 @@ struct alignas(64) NodeBlock {
   /// The bit of `child` that tells a leaf from a node.
   static constexpr std::uint32_t leaf = std::uint32_t{1} << 31;
 
-  /// Hold their triangles, as the mesh has them, rounded outward. Unused lanes, which are the last
-  /// ones, hold a box at infinity that nothing reaches. [length]
+  /// Hold their triangles, as the mesh has them, rounded outward; from the origin of the tree's
+  /// frame. Unused lanes, which are the last ones, hold a box at infinity that nothing reaches.
+  /// [length]
   float low[3][lanes];   // [axis][lane]
   float high[3][lanes];  // [axis][lane]
 
@@ -68,13 +69,10 @@ class WideBvh final : public SpatialIndex, public TriangleBlocks {
 
   /// Makes it the index of a mesh whose triangles are the same, of as many vertices that are
   /// elsewhere: in about a tenth of the time of a new one, and nearly as good while neighbours stay
-  /// neighbours. Not to be called while others ask. Rules that search the index know the old mesh:
-  /// they stop every step from then on, and are to be made anew on the moved mesh. Throws Error,
-  /// and stays as it is, if the corners of a triangle differ.
+  /// neighbours. Not to be called while others ask. Every motion constraint on it stops its steps
+  /// from then on, until it is told to go on with the moved mesh: see MotionConstraint::follow.
+  /// Throws Error, and stays as it is, if the corners of a triangle differ, or without a mesh.
   void refit(std::shared_ptr<const Mesh> moved, unsigned threads = 0);
-
-  /// How often it was refit: what was remembered of another generation holds no more.
-  std::uint64_t generation() const noexcept override { return generation_; }
 
   /// From the order() of an earlier build: the same tree in about a tenth of the time. Whatever the
   /// order, boxes are put around the mesh's triangles, so that none is lost. Throws Error unless it
@@ -90,10 +88,12 @@ class WideBvh final : public SpatialIndex, public TriangleBlocks {
   void collect(const Ball& ball, TriangleBuffer& candidates, QueryCounts* counts) const noexcept;
 
   /// By branch and bound: however far off the point is, few triangles are asked about.
-  TriangleId nearest(const Vec3& point) const noexcept override;
+  TriangleId nearest(const Vec3& point, Budget& budget) const noexcept override;
 
   /// Through the boxes along the motion, to the first triangle in its way.
-  std::unique_ptr<MotionWalk> walk_along_motions() const override;
+  std::unique_ptr<MotionWalk> walk_along_motions(Budget& budget) const override;
+
+  std::unique_ptr<SpatialIndex> refitted(std::shared_ptr<const Mesh> moved) const override;
 
   void collect_leaves(const Ball& ball, LeafBuffer& found) const noexcept override;
   const TriangleBlocks* blocks() const noexcept override { return this; }
@@ -101,8 +101,7 @@ class WideBvh final : public SpatialIndex, public TriangleBlocks {
   bool is_exact() const noexcept override { return true; }
   std::size_t memory() const noexcept override;
 
-  /// What it was built on, or last refit to.
-  const Mesh& mesh() const noexcept { return *mesh_; }
+  const Mesh& mesh() const noexcept override { return *mesh_; }
 
   /// A parent stands before its children; the first is the root.
   std::span<const NodeBlock> nodes() const noexcept { return nodes_; }
@@ -117,11 +116,10 @@ class WideBvh final : public SpatialIndex, public TriangleBlocks {
   /// the mesh anew is taken away. Allocates.
   std::vector<TriangleId> order() const;
 
-  /// How far a corner in a leaf may be from the mesh's, in each coordinate: 0 where the mesh's are
-  /// floats, as those of STL files are. [length]
-  double coordinate_error() const noexcept override { return coordinate_error_; }
+  const LeafFrame& frame() const noexcept override { return frame_; }
 
  private:
+  void require_same_triangles(const Mesh* moved, unsigned threads) const;
   void make_room();
   void fit(const LeafFill& fill, unsigned threads);
   void enclose_leaves(std::size_t self, std::size_t first, std::size_t last) noexcept;
@@ -131,8 +129,7 @@ class WideBvh final : public SpatialIndex, public TriangleBlocks {
   BlockVector<NodeBlock> nodes_;          // level by level, the root first
   BlockVector<LeafBlock> leaves_;         // neighbours near each other
   BlockVector<CylinderBlock> cylinders_;  // as nodes_
-  double coordinate_error_ = 0.0;
-  std::uint64_t generation_ = 0;
+  LeafFrame frame_;
 };
 
 }  // namespace keepout

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -28,6 +29,14 @@ class Mesh {
   /// Throws Error when there is no triangle, when a coordinate is not finite, when a triangle names
   /// a vertex that does not exist, or when there are more than 2^32 - 2 triangles.
   explicit Mesh(Surface surface);
+  /// The same triangles.
+  Mesh(const Mesh&) = default;
+  /// There is none: what was built on it would be of another mesh.
+  Mesh& operator=(const Mesh&) = delete;
+  ~Mesh() = default;
+
+  /// A number that tells it, and its copies, apart from every other mesh of this process.
+  std::uint64_t id() const noexcept { return id_; }
 
   /// At least 1.
   std::size_t triangle_count() const noexcept { return surface_.triangles.size(); }
@@ -63,6 +72,7 @@ class Mesh {
   Surface surface_;
   Box bounds_;
   double longest_edge_ = 0.0;
+  std::uint64_t id_;
 };
 
 /// Merges the vertices whose coordinates are exactly equal (0 and -0 are), and leaves all others

@@ -50,10 +50,10 @@ struct Polytope {
 /// by the winding. From there on no certified step changes sides.
 class MotionConstraint {
  public:
-  /// Index and rule must be built on `mesh`. An index may be shared with other motion constraints,
-  /// of other threads too; rule and solver may not. Throws Error when a part is missing, or an
-  /// option or capacity is out of range, and when tips are to be led out under a rule that guards a
-  /// whole tool. Makes all memory here.
+  /// The index must be built on `mesh`. It may be shared with other motion constraints,
+  /// of other threads too; rule and solver may not. Throws Error when a part is missing, when the
+  /// index is of another mesh, when the mesh, an option or a capacity is out of range, and when
+  /// tips are to be led out under a rule that guards a whole tool. Makes all memory here.
   MotionConstraint(std::shared_ptr<const Mesh> mesh, std::shared_ptr<const SpatialIndex> index,
                    std::unique_ptr<Activation> activation, std::unique_ptr<Solver> solver,
                    const StepOptions& options, const Capacity& capacity = {},
@@ -86,6 +86,20 @@ class MotionConstraint {
   /// inside it is the space inside. With a rule that guards a whole tool it is refused.
   Polytope free_polytope(const Vec3& tip, double radius) noexcept;
 
+  /// Goes on with anatomy that has moved: with a mesh and an index of it, which may be the one at
+  /// hand, refit, or one that was made ready elsewhere in the meantime. What the rule knows is made
+  /// anew, and all tips are placed anew; nothing tells whether a surface has moved over a tip whose
+  /// side is not asked about: of an open mesh, or with Inside::taken_as_is. Once an index is refit,
+  /// every step is `mesh_changed` until it is followed. Allocates, and is not for the control path.
+  /// Throws Error, and stays as it is, if the index is not of this mesh, or the mesh out of range.
+  void follow(std::shared_ptr<const Mesh> moved, std::shared_ptr<const SpatialIndex> index);
+
+  /// Whether the index is of the mesh that is kept out of: not so from a refit until follow.
+  bool is_current() const noexcept { return is_prepared_ && near_->is_current(); }
+
+  /// How much work the last step or polytope was: see Budget and Capacity::looks.
+  std::size_t looks() const noexcept { return near_->budget().spent(); }
+
   /// Forgets where the last step led, so that the next tip is placed anew however near it is, as at
   /// the start: for motions that have nothing to do with each other.
   void forget() noexcept { sides_.forget(); }
@@ -115,6 +129,7 @@ class MotionConstraint {
   Step step(const Motion& motion, SideWatch& sides, StageTimes* times) noexcept;
   void step_as_checked(const Motion& motion, SideWatch& sides, StageTimes* times,
                        Step& result) noexcept;
+  void prepare();
   void require_usable(const StepOptions& options);
 
   std::unique_ptr<Neighborhood> near_;  // the rule holds on to it, wherever this is moved
@@ -126,6 +141,8 @@ class MotionConstraint {
   FreePolytope polytope_;
   HalfSpaceBuffer polytope_planes_;
   bool makes_queries_;
+  bool is_prepared_ = false;
+  Inside inside_;
   bool watch_;  // whether sides are asked about
   SideWatch sides_;
 };

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
+
+#include "keepout/mesh/mesh.h"
 #include "keepout/step/motion.h"
 #include "keepout/step/options.h"
 
@@ -24,13 +27,15 @@ class SideWatch {
   /// Whether sides are asked about.
   bool is_on() const noexcept { return is_on_; }
 
-  /// Whether it has to be asked on which side a tip is: whether no step has led there.
-  bool has_to_place(const Vec3& tip) const noexcept {
-    return is_on_ && !((tip - free_tip_).norm() <= free_around_);
+  /// Whether it has to be asked on which side of a mesh a tip is: whether no step has led there.
+  bool has_to_place(const Vec3& tip, const Mesh& mesh) const noexcept {
+    return is_on_ && !((tip - free_tip_).norm() <= free_around_ && mesh.id() == mesh_id_);
   }
 
-  /// Takes down where a step from the free side has led to.
-  void after(const Motion& motion, const Step& step, const StepOptions& options) noexcept {
+  /// Takes down where a step from the free side of a mesh has led to.
+  void after(const Motion& motion, const Step& step, const StepOptions& options,
+             const Mesh& mesh) noexcept {
+    mesh_id_ = mesh.id();
     free_tip_ = motion.tip + step.motion;
     // A margin that is kept leaves more than half of itself free, whatever the tolerance.
     const bool keeps_the_margin = step.ok() && step.status != Status::recovering;
@@ -44,6 +49,7 @@ class SideWatch {
   bool is_on_ = false;
   Vec3 free_tip_ = Motion::unset;  // where the last step ended; at first nowhere
   double free_around_ = 0.0;       // how far around it all is free as well [length]
+  std::uint64_t mesh_id_ = 0;      // of which mesh that is said
 };
 
 }  // namespace keepout

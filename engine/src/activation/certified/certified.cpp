@@ -2,7 +2,6 @@
 #include "keepout/activation/certified.h"
 
 #include <algorithm>
-#include <utility>
 
 #include "../tolerance_ladder.h"
 #include "certified_terms.h"
@@ -17,21 +16,29 @@ class CertifiedRule::FirstMeeting final : public EncounterVisitor {
   /// A triangle nearer to the tip than `too_close` ends the search: what speaks against the trial
   /// does not matter then, and `facets` gets all that are as near.
   FirstMeeting(const CertifiedTerms& terms, const Vec3& trial, std::span<const HalfSpace> planes,
-               double too_close, Buffer<Facet>& facets, Meeting& meeting) noexcept
+               double too_close, Buffer<Facet>& facets, Budget& budget, Meeting& meeting) noexcept
       : terms_(terms),
         trial_(trial),
         length_(trial.norm()),
         planes_(planes),
         too_close_(too_close),
         facets_(facets),
+        budget_(budget),
+        work_of_planes_(1 + planes.size() / 16),
         meeting_(meeting) {}
 
   double visit(const Encounter& its) noexcept override {
     Contact& first = meeting_.contact;
+    budget_.spend(work_of_planes_);
     const bool is_known = its.note != Encounter::no_note;
     const Triangle& corners = is_known ? facets_[its.note].corners() : *its.corners;
     if (terms_.is_covered(corners, trial_, planes_)) return first.time;
     if (!is_known) {
+      if (facets_.size() == facets_.capacity()) {
+        budget_.spend_all();
+        return first.time;
+      }
+      budget_.spend(work_of_facet);
       facets_.push(Facet(corners, its.triangle));
       its.note = static_cast<std::uint32_t>(facets_.size() - 1);
     }
@@ -39,6 +46,7 @@ class CertifiedRule::FirstMeeting final : public EncounterVisitor {
     if (facet.distance() - length_ > terms_.demand(facet)) return first.time;
     if (facet.distance() < too_close_) return first.time = at_once;
     if (terms_.is_clear_at_once(facet, trial_)) return first.time;
+    budget_.spend(work_of_contact);
     // When the trial would meet it takes less to find than whether it does, and most triangles that
     // come this far are met.
     const Contact contact = terms_.contact(facet, trial_, first.time);
@@ -55,6 +63,10 @@ class CertifiedRule::FirstMeeting final : public EncounterVisitor {
  private:
   static constexpr double at_once = 0.0;
 
+  // In looks, about as long as each takes.
+  static constexpr std::size_t work_of_facet = 2;
+  static constexpr std::size_t work_of_contact = 6;
+
   /// Of equals the first by its corners.
   bool is_sooner(const Contact& contact, const Facet& facet) const noexcept {
     const Contact& first = meeting_.contact;
@@ -69,14 +81,12 @@ class CertifiedRule::FirstMeeting final : public EncounterVisitor {
   std::span<const HalfSpace> planes_;
   double too_close_;
   Buffer<Facet>& facets_;
+  Budget& budget_;
+  std::size_t work_of_planes_;
   Meeting& meeting_;
 };
 
-CertifiedRule::CertifiedRule(std::shared_ptr<const Mesh> mesh)
-    : mesh_(std::move(mesh)),
-      longest_edge_(mesh_->longest_edge()),
-      terms_(std::make_unique<CertifiedTerms>()),
-      facets_(0) {}
+CertifiedRule::CertifiedRule() : terms_(std::make_unique<CertifiedTerms>()), facets_(0) {}
 
 CertifiedRule::~CertifiedRule() = default;
 
@@ -87,7 +97,8 @@ void CertifiedRule::prepare(Neighborhood& near) {
 }
 
 double CertifiedRule::tolerance(const Surroundings& around) const noexcept {
-  return 2e-10 * (longest_edge_ + around.radius + around.margin) + 4e-16 * around.tip.lpNorm<1>();
+  return 2e-10 * (mesh().longest_edge() + around.radius + around.margin) +
+         4e-16 * around.tip.lpNorm<1>();
 }
 
 Ball CertifiedRule::region(const Surroundings& around) const noexcept {
@@ -116,7 +127,7 @@ Opening CertifiedRule::start(const Surroundings& around, HalfSpaceBuffer&) noexc
   // motion asked for, should the tip keep the margin: it is the first trial.
   const double least = around.margin - lost_below * tau;
   aim_is_free_ = meet(around.aim, {}, least, at_aim_.emplace());
-  if (is_over_budget()) return {Status::over_capacity};
+  if (budget().is_spent()) return {Status::over_capacity};
   const Facet* near = nearest();
   const std::optional<double> distance = known_distance(near, around.margin, tau);
   if (near == nullptr || near->distance() >= least) return {.distance = distance};
@@ -126,7 +137,9 @@ Opening CertifiedRule::start(const Surroundings& around, HalfSpaceBuffer&) noexc
     return {.status = Status::touching, .distance = distance};
   }
   // Too close already: the mesh shall not come closer, and what comes as close is led off as well.
-  const double lift = std::min(around.recovery, around.margin - near->distance());
+  // By a tolerance at least, so that what was lost to rounding comes back and nothing adds up.
+  const double missing = around.margin - near->distance();
+  const double lift = std::max(std::min(around.recovery, missing), tau);
   const Vec3 aim = way_out(around, near->normal(), lift);
   *terms_ = CertifiedTerms::leading_off(near->distance(), lift, tau);
   walk_->begin_again(terms_->target);
@@ -138,13 +151,8 @@ Opening CertifiedRule::start(const Surroundings& around, HalfSpaceBuffer&) noexc
 /// are as free.
 bool CertifiedRule::meet(const Vec3& trial, std::span<const HalfSpace> planes, double too_close,
                          Meeting& meeting) noexcept {
-  FirstMeeting visitor(*terms_, trial, planes, too_close, facets_, meeting);
+  FirstMeeting visitor(*terms_, trial, planes, too_close, facets_, budget(), meeting);
   return walk_->walk(trial, visitor);
-}
-
-/// Then triangles may have been left out, and nothing may be concluded.
-bool CertifiedRule::is_over_budget() const noexcept {
-  return walk_->is_exhausted() || facets_.overflowed();
 }
 
 /// Of the facets that were asked about; of equals the first by their corners.
@@ -169,7 +177,8 @@ Judgement CertifiedRule::judge(const Surroundings& around, const Vec3& trial,
   } else {
     meet(trial, planes.view(), 0.0, meeting);
   }
-  if (is_over_budget()) return {Verdict::blocked, 0.0};
+  // Then triangles may have been left out, and nothing may be concluded.
+  if (budget().is_spent()) return {Verdict::blocked, 0.0};
   if (meeting.facet == Encounter::no_note) return {Verdict::accepted};
   const HalfSpace& plane = meeting.contact.plane;
   const double free_share = std::clamp(meeting.contact.time, 0.0, 1.0);
@@ -180,14 +189,16 @@ Judgement CertifiedRule::judge(const Surroundings& around, const Vec3& trial,
   return {Verdict::objected, free_share};
 }
 
-bool CertifiedRule::relax(HalfSpaceBuffer& planes) const noexcept {
+bool CertifiedRule::relax(HalfSpaceBuffer& planes) noexcept {
   // Offsets above 0 lead back to the full margin. Standing still is always allowed.
+  terms_->most_demand = terms_->relaxed_demand;
   return let_stand_still(planes);
 }
 
 bool CertifiedRule::turn(const Surroundings& around, std::span<const HalfSpace> planes,
                          HalfSpaceBuffer& turned) noexcept {
   bool changed = false;
+  budget().spend(planes.size() * (4 + facets_.size() / 64));
   for (const HalfSpace& plane : planes) {
     if (is_idle(plane, around)) continue;
     // One that is not a triangle's but the motion sphere's stays.

@@ -94,11 +94,12 @@ class Turn {
 }  // namespace
 
 CertifiedTerms CertifiedTerms::keeping(double margin, double tolerance) noexcept {
-  return {tolerance, margin, margin - demand_below * tolerance, margin - floor_below * tolerance};
+  const double demand = margin - demand_below * tolerance;
+  return {tolerance, margin, demand, margin - floor_below * tolerance, demand};
 }
 
 CertifiedTerms CertifiedTerms::leading_off(double nearest, double lift, double tolerance) noexcept {
-  return {tolerance, nearest + lift, nearest, nearest};
+  return {tolerance, nearest + lift, nearest + 0.5 * tolerance, nearest, nearest};
 }
 
 bool CertifiedTerms::is_covered(const Triangle& corners, const Vec3& trial,

@@ -25,12 +25,15 @@ struct CertifiedTerms {
   double most_demand;  // a trial that comes closer than this is objected to, [length]
   double most_floor;   // ... and one that a triangle's plane allows may come down to this; [length]
                        // neither is asked of a triangle that is closer already
+  double relaxed_demand;  // what is demanded once the planes were found to contradict each other
 
   /// For a tip that keeps the margin.
   static CertifiedTerms keeping(double margin, double tolerance) noexcept;
 
   /// For a tip that is too close: the mesh shall not come closer than its nearest triangle, and
-  /// what is as close shall be led off by `lift`.
+  /// what is as close shall be led off by `lift`, a tolerance or more. What is a little farther off
+  /// shall not come as close, either: what is lost to rounding at one triangle comes back before it
+  /// is lost at another.
   static CertifiedTerms leading_off(double nearest, double lift, double tolerance) noexcept;
 
   double demand(const Facet& facet) const noexcept {

@@ -8,7 +8,6 @@
 
 #include "../tolerance_ladder.h"
 #include "keepout/activation/planes.h"
-#include "keepout/error.h"
 
 namespace keepout {
 namespace {
@@ -23,20 +22,10 @@ std::unique_ptr<NarrowPhase> or_exact(std::unique_ptr<NarrowPhase> given, const 
   return std::make_unique<ExactNarrowPhase>(tool);
 }
 
-double longest_edge_of(const Mesh* mesh) {
-  if (mesh == nullptr) throw Error("a rule for a convex tool needs a mesh");
-  return mesh->longest_edge();
-}
-
 }  // namespace
 
-ConvexToolRule::ConvexToolRule(std::shared_ptr<const Mesh> mesh, ConvexTool tool,
-                               std::unique_ptr<NarrowPhase> narrow_phase)
-    : mesh_(std::move(mesh)),
-      tool_(std::move(tool)),
-      narrow_phase_(or_exact(std::move(narrow_phase), tool_)),
-      longest_edge_(longest_edge_of(mesh_.get())),
-      near_(0) {}
+ConvexToolRule::ConvexToolRule(ConvexTool tool, std::unique_ptr<NarrowPhase> narrow_phase)
+    : tool_(std::move(tool)), narrow_phase_(or_exact(std::move(narrow_phase), tool_)), near_(0) {}
 
 void ConvexToolRule::prepare(Neighborhood& near) {
   Activation::prepare(near);
@@ -46,7 +35,7 @@ void ConvexToolRule::prepare(Neighborhood& near) {
 double ConvexToolRule::tolerance(const Surroundings& around) const noexcept {
   const Ball& bounds = tool_.bounding_ball();
   return around.rounding +
-         1e-12 * (longest_edge_ + bounds.center.norm() + bounds.radius + around.margin);
+         1e-12 * (mesh().longest_edge() + bounds.center.norm() + bounds.radius + around.margin);
 }
 
 Ball ConvexToolRule::region(const Surroundings& around) const noexcept {
@@ -58,13 +47,13 @@ Ball ConvexToolRule::region(const Surroundings& around) const noexcept {
 
 ConvexToolRule::Proof ConvexToolRule::proof_along(const Vec3& normal, const Vec3& position,
                                                   TriangleId triangle) const noexcept {
-  return {normal, separation_along(normal, tool_, position, mesh_->triangle(triangle))};
+  return {normal, separation_along(normal, tool_, position, mesh().triangle(triangle))};
 }
 
 /// By the normal that is proposed, if it proves more than `enough`; else by the exact one.
 ConvexToolRule::Proof ConvexToolRule::proof_of(double enough, const Vec3& position,
                                                TriangleId triangle) noexcept {
-  const Triangle corners = mesh_->triangle(triangle);
+  const Triangle corners = mesh().triangle(triangle);
   const NarrowPhaseAnswer proposed = narrow_phase_->separation(position, corners);
   if (proposed.answered()) {
     const Vec3 n = proposed.separation.normal.normalized();
@@ -173,8 +162,6 @@ Judgement ConvexToolRule::judge(const Surroundings& around, const Vec3& trial,
   return {Verdict::objected, first->time};
 }
 
-bool ConvexToolRule::relax(HalfSpaceBuffer& planes) const noexcept {
-  return let_stand_still(planes);
-}
+bool ConvexToolRule::relax(HalfSpaceBuffer& planes) noexcept { return let_stand_still(planes); }
 
 }  // namespace keepout

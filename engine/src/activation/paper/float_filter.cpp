@@ -328,9 +328,9 @@ namespace keepout {
 
 Ball idle_ball(const Vec3& aim) noexcept { return {0.5 * aim, 0.51 * aim.norm()}; }
 
-FilterQuery filter_query(const Surroundings& around, const Ball& ball, double error,
+FilterQuery filter_query(const Surroundings& around, const Ball& ball, const LeafFrame& frame,
                          IdlePlanes idle_planes) noexcept {
-  const Vec3& tip = ball.center;
+  const Vec3 tip = ball.center - frame.origin;
   const Ball idle = idle_ball(around.aim);
   FilterQuery query;
   for (int axis = 0; axis < 3; ++axis) {
@@ -343,7 +343,7 @@ FilterQuery filter_query(const Surroundings& around, const Ball& ball, double er
   query.rounding = at_least(around.rounding);
   // What two floats leave of the tip, and the rounding of a difference as small as `low`.
   const double split = 0x1p-46 * tip.cwiseAbs().maxCoeff();
-  query.error = at_least(std::sqrt(3.0) * (error + split));
+  query.error = at_least(std::sqrt(3.0) * (frame.error + split));
   query.idle_height = query.idle = std::numeric_limits<float>::infinity();
   if (idle_planes == IdlePlanes::left_out) {
     // A share of the height makes up for the rounding of the middle's.

@@ -33,8 +33,8 @@ Ball idle_ball(const Vec3& aim) noexcept;
 /// What becomes of planes that no motion in idle_ball violates.
 enum class IdlePlanes : std::uint8_t { found, left_out };
 
-/// Of the triangles in the ball. `error`: of each coordinate in leaves.
-FilterQuery filter_query(const Surroundings& around, const Ball& ball, double error,
+/// Of the triangles in the ball. `frame`: of the leaves.
+FilterQuery filter_query(const Surroundings& around, const Ball& ball, const LeafFrame& frame,
                          IdlePlanes idle_planes) noexcept;
 
 /// The triangles that floats are not done with. There is room for a whole vector beyond the last.

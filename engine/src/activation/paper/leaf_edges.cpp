@@ -32,7 +32,8 @@ void write(const Vec3& vector, float (&to)[3][LeafBlock::lanes], std::size_t lan
 
 }  // namespace
 
-LeafEdges edges_of(const LeafBlock& leaf, const Mesh& mesh, const Adjacency& adjacency) noexcept {
+LeafEdges edges_of(const LeafBlock& leaf, const LeafFrame& frame, const Mesh& mesh,
+                   const Adjacency& adjacency) noexcept {
   LeafEdges edges{};
   for (std::size_t lane = 0; lane < LeafBlock::lanes && leaf.is_used(lane); ++lane) {
     const TriangleId t = leaf.triangle(lane);
@@ -58,7 +59,7 @@ LeafEdges edges_of(const LeafBlock& leaf, const Mesh& mesh, const Adjacency& adj
         apex = apex_across(mesh, t, edge, neighbor);
         span = std::max(span, (apex - first).norm());
       }
-      write(apex, edges.apex[side], lane);
+      write(apex - frame.origin, edges.apex[side], lane);
     }
     write(unit_normal(triangle), edges.normal, lane);
     edges.span[lane] = static_cast<float>(span * (1.0 + 1e-6));

@@ -52,7 +52,8 @@ struct alignas(64) LeafEdges {
   float apex[3][3][LeafBlock::lanes];  // [side][axis][lane]
 };
 
-/// `adjacency` is that of the mesh that the leaf is of.
-LeafEdges edges_of(const LeafBlock& leaf, const Mesh& mesh, const Adjacency& adjacency) noexcept;
+/// `adjacency` is that of the mesh that the leaf is of, and `frame` that of the leaf.
+LeafEdges edges_of(const LeafBlock& leaf, const LeafFrame& frame, const Mesh& mesh,
+                   const Adjacency& adjacency) noexcept;
 
 }  // namespace keepout

@@ -26,15 +26,15 @@ struct EdgesAt {
 
 }  // namespace
 
-PaperRule::PaperRule(std::shared_ptr<const Mesh> mesh)
-    : mesh_(std::move(mesh)), adjacency_(std::make_shared<const Adjacency>(*mesh_)) {}
-
+PaperRule::PaperRule() = default;
 PaperRule::~PaperRule() = default;
 
 void PaperRule::prepare(Neighborhood& near) {
   Activation::prepare(near);
+  adjacency_ = std::make_unique<const Adjacency>(mesh());
+  blocks_ = nullptr;
   if (const TriangleBlocks* const blocks = near.index().blocks()) {
-    blocks_ = std::make_unique<PaperBlocks>(*this, *blocks, near.room());
+    blocks_ = std::make_unique<PaperBlocks>(*this, mesh(), *adjacency_, *blocks, near.room());
   }
 }
 
@@ -62,7 +62,7 @@ Judgement PaperRule::judge(const Surroundings& around, const Vec3& trial,
 
 std::optional<HalfSpace> PaperRule::plane_of(const Surroundings& around,
                                              const Hit& hit) const noexcept {
-  const Vec3 normal = mesh_->normal(hit.triangle);
+  const Vec3 normal = mesh().normal(hit.triangle);
   const bool positive = on_positive_side(around, hit, normal);
 
   // Condition 1: the closest point is in the triangle.
@@ -96,7 +96,7 @@ PaperRule::Role PaperRule::role_in_condition_2(const Surroundings& around,
     const EdgeKind kind = adjacency_->kind(hit.triangle, edge);
     if (kind != EdgeKind::convex && kind != EdgeKind::coplanar) continue;
     const TriangleId neighbor = adjacency_->neighbor(hit.triangle, edge);
-    const ClosestPoint theirs = closest_point(mesh_->triangle(neighbor), around.tip);
+    const ClosestPoint theirs = closest_point(mesh().triangle(neighbor), around.tip);
     if (is_face(theirs.feature) || theirs.offset != hit.closest.offset) continue;
     // On the surface each face speaks for itself, as there is no shared plane.
     if (neighbor < hit.triangle && !touches(around, hit)) return Role::leaves_it_to_a_neighbor;

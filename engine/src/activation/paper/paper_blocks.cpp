@@ -10,25 +10,24 @@
 
 namespace keepout {
 
-PaperBlocks::PaperBlocks(const PaperRule& rule, const TriangleBlocks& blocks, std::size_t room)
+PaperBlocks::PaperBlocks(const PaperRule& rule, const Mesh& mesh, const Adjacency& adjacency,
+                         const TriangleBlocks& blocks, std::size_t room)
     : rule_(rule),
+      mesh_(mesh),
       blocks_(blocks),
-      generation_(blocks.generation()),
       leaves_(blocks.leaves().size()),
       unfinished_(std::make_unique<Unfinished>()),
       found_(room) {
-  const Mesh& mesh = *rule.mesh();
   normals_.reserve(mesh.triangle_count());
   for (TriangleId t = 0; t < mesh.triangle_count(); ++t) normals_.push_back(mesh.normal(t));
   edges_.reserve(blocks.leaves().size());
   for (const LeafBlock& leaf : blocks.leaves()) {
-    edges_.push_back(edges_of(leaf, mesh, rule.adjacency()));
+    edges_.push_back(edges_of(leaf, blocks.frame(), mesh, adjacency));
   }
 }
 
 bool PaperBlocks::find(const Surroundings& around, HalfSpaceBuffer& planes) noexcept {
   triangles_ = 0;
-  if (blocks_.generation() != generation_) return false;
   leaves_.clear();
   const Ball ball = rule_.region(around);
   blocks_.collect_leaves(ball, leaves_);
@@ -49,7 +48,7 @@ bool PaperBlocks::find(const Surroundings& around, HalfSpaceBuffer& planes) noex
 
 /// Finds the planes in no order. False if there are more triangles than room was made for.
 bool PaperBlocks::gather(const Surroundings& around, const Ball& ball, IdlePlanes idle) noexcept {
-  const FilterQuery query = filter_query(around, ball, blocks_.coordinate_error(), idle);
+  const FilterQuery query = filter_query(around, ball, blocks_.frame(), idle);
   idle_planes_ = idle;
   found_.clear();
   triangles_ = 0;
@@ -63,7 +62,7 @@ bool PaperBlocks::gather(const Surroundings& around, const Ball& ball, IdlePlane
       const LeafBlock& leaf = blocks_.leaves()[which / LeafBlock::lanes];
       const TriangleId t = leaf.triangle(which % LeafBlock::lanes);
       if ((plane & (Unfinished::faces_tip | Unfinished::of_face)) == 0) {
-        const Hit hit{t, closest_point(rule_.mesh()->triangle(t), ball.center)};
+        const Hit hit{t, closest_point(mesh_.triangle(t), ball.center)};
         if (!(hit.closest.distance <= ball.radius)) continue;
         ++triangles_;
         if (const std::optional<HalfSpace> its = rule_.plane_of(around, hit)) found_.push(*its);
@@ -87,8 +86,8 @@ bool PaperBlocks::gather(const Surroundings& around, const Ball& ball, IdlePlane
 ClosestPoint PaperBlocks::closest_point_at(std::size_t place, const LeafBlock& leaf,
                                            std::size_t lane, const Vec3& tip) const noexcept {
   const auto corner = [&](std::size_t c) -> Vec3 {
-    if (blocks_.coordinate_error() > 0.0) {
-      return ordered_relative(rule_.mesh()->triangle(leaf.triangle(lane)), tip)[c];
+    if (!blocks_.frame().is_exact()) {
+      return ordered_relative(mesh_.triangle(leaf.triangle(lane)), tip)[c];
     }
     return Vec3(leaf.corner[c][0][lane], leaf.corner[c][1][lane], leaf.corner[c][2][lane]) - tip;
   };

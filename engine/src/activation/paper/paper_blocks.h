@@ -22,13 +22,12 @@ namespace keepout {
 /// gets them all.
 class PaperBlocks {
  public:
-  /// With room for so many triangles in a ball. Both must outlive this; `blocks` are of the rule's
-  /// mesh.
-  PaperBlocks(const PaperRule& rule, const TriangleBlocks& blocks, std::size_t room);
+  /// With room for so many triangles in a ball. All must outlive this; they are of one mesh.
+  PaperBlocks(const PaperRule& rule, const Mesh& mesh, const Adjacency& adjacency,
+              const TriangleBlocks& blocks, std::size_t room);
 
   /// Appends the planes that the rule has in its region. False if there are more triangles than
-  /// room was made for; and once the blocks have become those of another mesh, whose edges and
-  /// normals are not known here.
+  /// room was made for.
   bool find(const Surroundings& around, HalfSpaceBuffer& planes) noexcept;
 
   /// How many triangles were in the ball when planes were last found.
@@ -44,8 +43,8 @@ class PaperBlocks {
                                 const Vec3& tip) const noexcept;
 
   const PaperRule& rule_;
+  const Mesh& mesh_;
   const TriangleBlocks& blocks_;
-  std::uint64_t generation_;      // of the blocks that are known here
   std::vector<LeafEdges> edges_;  // of each leaf
   std::vector<Vec3> normals_;     // of each triangle
 

@@ -14,14 +14,12 @@
 namespace keepout {
 namespace {
 
-constexpr double largest_number = 1e30;  // squares and cubes of lengths must stay finite
-
 // How far a plane stands off from what it separates, to have its neighbours behind it as well: a
 // share of the radius, but no more than a share of its room, so that the tip still gets close.
 constexpr double standoff_of_radius = 0.01;
 constexpr double standoff_of_room = 0.25;
 
-bool is_length(double x) noexcept { return x >= 0.0 && x <= largest_number; }  // false for NaN
+bool is_length(double x) noexcept { return x >= 0.0 && x <= longest_length; }  // false for NaN
 
 /// Points spread evenly in the unit ball. Source: Roberts, "The unreasonable effectiveness of
 /// quasirandom sequences", 2018: multiples of powers of 1 / g, where g^4 = g + 1.
@@ -104,22 +102,23 @@ FreePolytope::FreePolytope(std::shared_ptr<const Mesh> mesh, std::size_t triangl
 }
 
 PolytopeStatus FreePolytope::around(const Vec3& tip, double radius, double margin,
-                                    std::span<const Hit> hits, HalfSpaceBuffer& planes) noexcept {
+                                    std::span<const Hit> hits, Budget& budget,
+                                    HalfSpaceBuffer& planes) noexcept {
   planes.clear();
   Query query{.tip = tip, .radius = radius, .margin = margin};
   PolytopeStatus status = prepare(query, hits);
-  if (status == PolytopeStatus::found) status = separate(query, hits, planes);
+  if (status == PolytopeStatus::found) status = separate(query, hits, budget, planes);
   if (status != PolytopeStatus::found) hold_still(planes);
   return status;
 }
 
 PolytopeStatus FreePolytope::prepare(Query& query, std::span<const Hit> hits) const noexcept {
-  if (!(query.tip.array().abs() <= largest_number).all() || !is_length(query.radius) ||
+  if (!(query.tip.array().abs() <= longest_length).all() || !is_length(query.radius) ||
       !is_length(query.margin)) {
     return PolytopeStatus::invalid_input;
   }
   if (hits.size() > turns_.size()) return PolytopeStatus::over_capacity;
-  double nearest = largest_number;
+  double nearest = longest_length;
   double size2 = 0.0;
   for (const Hit& hit : hits) {
     if (hit.triangle >= mesh_->triangle_count() || !is_length(hit.closest.distance)) {
@@ -152,12 +151,16 @@ std::span<const FreePolytope::Turn> FreePolytope::by_distance(std::span<const Hi
   return turns;
 }
 
-PolytopeStatus FreePolytope::separate(const Query& query, std::span<const Hit> hits,
+PolytopeStatus FreePolytope::separate(const Query& query, std::span<const Hit> hits, Budget& budget,
                                       HalfSpaceBuffer& planes) noexcept {
+  // Beside a triangle's own, in looks: a plane and its probes, and each plane asked about it.
+  constexpr std::size_t work_of_plane = 16;
   is_left_.fill(true);
   std::size_t latest = 0;  // neighbours tend to be behind the same plane
   for (const Turn& turn : by_distance(hits)) {
     if (turn.distance > query.reach) break;
+    budget.spend(1);
+    if (budget.is_spent()) return PolytopeStatus::over_capacity;
     const Hit& hit = hits[turn.hit];
     const TriangleFromTip seen = triangle_from_tip(mesh_->triangle(hit.triangle), query.tip);
     const auto is_behind = [&](const HalfSpace& plane) {
@@ -166,9 +169,11 @@ PolytopeStatus FreePolytope::separate(const Query& query, std::span<const Hit> h
     if (latest < planes.size() && is_behind(planes[latest])) continue;
     const HalfSpace* const behind = std::find_if(planes.begin(), planes.end(), is_behind);
     latest = static_cast<std::size_t>(behind - planes.begin());
+    budget.spend(latest / 4);
     if (behind != planes.end()) continue;
 
     const std::optional<HalfSpace> plane = plane_for(query, hit, seen);
+    budget.spend(work_of_plane);
     if (!plane) return PolytopeStatus::touching;
     if (planes.size() == planes.capacity()) return PolytopeStatus::over_capacity;
     planes.push(*plane);
@@ -218,6 +223,8 @@ std::string_view name(PolytopeStatus status) noexcept {
       return "over_capacity";
     case PolytopeStatus::whole_tool:
       return "whole_tool";
+    case PolytopeStatus::mesh_changed:
+      return "mesh_changed";
   }
   return "unknown";
 }
@@ -230,13 +237,15 @@ std::string_view reason(PolytopeStatus status) noexcept {
       return "the tip is on the mesh, to within rounding, and no side of it is certain: go back to "
              "the last place that was free";
     case PolytopeStatus::invalid_input:
-      return "a number is not finite, negative or beyond 1e30, or a hit is of another mesh";
+      return "a number is not finite, negative or beyond 1e15, or a hit is of another mesh";
     case PolytopeStatus::over_capacity:
-      return "more triangles or planes than room was made for: lower the radius or raise the "
-             "capacity";
+      return "more triangles or planes than room was made for, or more work than a cycle's: lower "
+             "the radius or raise the capacity";
     case PolytopeStatus::whole_tool:
       return "the rule guards a whole tool, and planes around its tip would say nothing of the "
              "rest";
+    case PolytopeStatus::mesh_changed:
+      return "the index was refit to another mesh: have the motion constraint follow it";
   }
   return "unknown status";
 }

@@ -74,8 +74,9 @@ std::size_t Frontier::gather(const WideBvh& tree, const Ball& ball) noexcept {
   size_ = 0;
   is_opened_ = true;
   has_cylinders_.fill(false);
-  const FloatTip center = float_tip(ball.center);
-  const double rounding = 1e-13 * ball.center.lpNorm<1>();
+  const Vec3 from_origin = ball.center - tree.frame().origin;
+  const FloatTip center = float_tip(from_origin);
+  const double rounding = 1e-13 * from_origin.lpNorm<1>();
   const auto radius = static_cast<float>(ball.radius * (1.0 + 4e-6) + rounding);
   std::size_t looks = 0;
   const auto open = [&](std::uint32_t number) {

@@ -12,6 +12,13 @@ constexpr std::size_t most_leaves = 256;
 constexpr std::size_t most_waiting = 4096;
 constexpr std::size_t most_deferred = 1024;
 
+// In looks, about as long as each takes: see Budget.
+constexpr std::size_t work_of_boxes = 1;
+constexpr std::size_t work_of_cylinders = 2;
+constexpr std::size_t work_of_leaf = 4;
+constexpr std::size_t work_of_suspects = 1;
+constexpr std::size_t work_of_closer_look = 4;
+
 /// Whether more than so many bits are set. Not every processor that this is compiled for has
 /// an instruction that counts them.
 bool are_more(std::uint32_t bits, int count) noexcept {
@@ -28,32 +35,31 @@ std::uint32_t lanes_used(const LeafBlock& leaf) noexcept {
 
 }  // namespace
 
-std::unique_ptr<MotionWalk> WideBvh::walk_along_motions() const {
-  return std::make_unique<TreeWalk>(*this);
+std::unique_ptr<MotionWalk> WideBvh::walk_along_motions(Budget& budget) const {
+  return std::make_unique<TreeWalk>(*this, budget);
 }
 
-TreeWalk::TreeWalk(const WideBvh& tree)
+TreeWalk::TreeWalk(const WideBvh& tree, Budget& budget)
     : tree_(tree),
-      generation_(tree.generation()),
+      budget_(budget),
       leaves_(most_leaves),
       waiting_(most_waiting),
       deferred_(most_deferred) {}
 
 bool TreeWalk::begin(const Start& start) noexcept {
-  if (tree_.generation() != generation_) return false;
-  looks_ = 0;
   locate(start);
   is_free_ = frontier_.is_free(start.region);
   if (is_free_) return true;
   tip_ = start.tip;
   longest_ = start.longest;
-  float_tip_ = float_tip(tip_);
+  float_tip_ = float_tip(tip_ - tree_.frame().origin);
   begin_again(start.level);
   return true;
 }
 
 void TreeWalk::begin_again(double level) noexcept {
-  reach_ = float_reach(level, longest_, tip_, tree_.coordinate_error());
+  const LeafFrame& frame = tree_.frame();
+  reach_ = float_reach(level, longest_, tip_ - frame.origin, frame.error);
   is_long_ = longest_ > level;
   if (++cycle_ == 0) {  // the counter went round: forget the leaves of cycles long gone
     for (Leaf& each : leaves_) each.cycle = 0;
@@ -104,7 +110,7 @@ bool TreeWalk::walk(const Vec3& motion, EncounterVisitor& visitor) noexcept {
     enter(frontier_.blocks()[i],
           [&]() -> const CylinderBlock& { return frontier_.cylinders(tree_, i); });
   }
-  while (!is_exhausted()) {
+  while (!budget_.is_spent()) {
     if (begun_size_ > 0) {
       open(begun_[--begun_size_]);
       continue;
@@ -134,9 +140,11 @@ void TreeWalk::open(std::uint32_t box) noexcept {
 template <class Cylinders>
 void TreeWalk::enter(const NodeBlock& node, Cylinders&& cylinders) noexcept {
   BoxEntries entries;
+  budget_.spend(work_of_boxes);
   enter_boxes(node, float_tip_, motion_.data(), reach_, entries);
   // To look closer is cheaper than to look into more boxes than this.
   if (are_more(entries.reached, is_long_ ? 1 : 4)) {
+    budget_.spend(work_of_cylinders);
     enter_cylinders(cylinders(), float_tip_, motion_.data(), reach_, entries);
   }
   for (std::uint32_t reached = entries.reached; reached != 0; reached &= reached - 1) {
@@ -161,6 +169,7 @@ void TreeWalk::look_at(std::uint32_t number) noexcept {
   Leaf& seen = leaf(number);
   Deferred& found = deferred_[deferred_size_];
   found.leaf = number;
+  budget_.spend(work_of_suspects);
   find_suspects(seen.filter, motion_.data(), found.suspects);
   std::uint32_t& mask = found.suspects.mask;
   mask &= seen.used;
@@ -210,6 +219,7 @@ void TreeWalk::resume(std::uint32_t number) noexcept {
 void TreeWalk::look_closer(Deferred& deferred) noexcept {
   const LeafBlock& block = tree_.leaves()[deferred.leaf];
   const auto until = static_cast<float>(latest_ * (1.0 + 1e-6));  // not before it, when rounded
+  budget_.spend(work_of_closer_look);
   if (deferred.looks_left-- == closer_looks) {
     refine_suspects(block, float_tip_, motion_.data(), reach_, until, leaf(deferred.leaf).filter,
                     deferred.suspects);
@@ -232,7 +242,7 @@ void TreeWalk::visit(Leaf& seen, std::uint32_t lane) noexcept {
 /// Relative to the tip, in lexicographic order.
 Triangle TreeWalk::corners(std::uint32_t number, std::size_t lane) const noexcept {
   const LeafBlock& block = tree_.leaves()[number];
-  if (tree_.coordinate_error() > 0.0) {
+  if (!tree_.frame().is_exact()) {
     return ordered_relative(tree_.mesh().triangle(block.triangle(lane)), tip_);
   }
   Triangle corners;
@@ -246,7 +256,7 @@ Triangle TreeWalk::corners(std::uint32_t number, std::size_t lane) const noexcep
 TreeWalk::Leaf& TreeWalk::leaf(std::uint32_t number) noexcept {
   Leaf& seen = leaves_[number % most_leaves];
   if (seen.number == number && seen.cycle == cycle_) return seen;
-  ++looks_;
+  budget_.spend(work_of_leaf);
   const LeafBlock& block = tree_.leaves()[number];
   seen.number = number;
   seen.cycle = cycle_;

@@ -19,14 +19,13 @@ namespace keepout {
 /// and changes nothing else.
 class TreeWalk final : public MotionWalk {
  public:
-  /// `tree` must outlive this. After a refit of it no walk begins: the mesh is another one.
-  explicit TreeWalk(const WideBvh& tree);
+  /// Both must outlive this. Precondition: the tree is not refit.
+  TreeWalk(const WideBvh& tree, Budget& budget);
 
   bool begin(const Start& start) noexcept override;
   void begin_again(double level) noexcept override;
   bool is_free() const noexcept override { return is_free_; }
   bool walk(const Vec3& motion, EncounterVisitor& visitor) noexcept override;
-  bool is_exhausted() const noexcept override { return looks_ > most_looks; }
   std::size_t room() const noexcept override { return most_notes; }
 
   /// Where the walks of the last cycle began.
@@ -34,7 +33,6 @@ class TreeWalk final : public MotionWalk {
 
  private:
   static constexpr std::size_t most_notes = 4096;
-  static constexpr std::size_t most_looks = std::size_t{1} << 17;  // at leaves: some milliseconds
 
   /// A leaf as it is seen from the tip.
   struct Leaf {
@@ -82,7 +80,7 @@ class TreeWalk final : public MotionWalk {
   bool comes_too_late(float time) const noexcept { return static_cast<double>(time) > latest_; }
 
   const WideBvh& tree_;
-  std::uint64_t generation_;  // of the tree that is known here
+  Budget& budget_;
   Frontier frontier_;
   double padding_ = 0.0;  // gathered beyond what is needed, for cycles to come [length]
 
@@ -94,7 +92,6 @@ class TreeWalk final : public MotionWalk {
   bool is_free_ = false;
   bool is_long_ = false;  // motions lead far beyond the level
   std::uint32_t cycle_ = 0;
-  std::size_t looks_ = 0;
   std::vector<Leaf> leaves_;  // some that were looked at
 
   // Of this motion.

@@ -15,8 +15,9 @@ struct MotionConstraintSettings {
   std::string index = "wide_bvh";  // see index_backends(); fcl_collide is not for real time
   /// The folder where built indices are kept; only wide_bvh is. Empty: none is kept.
   std::filesystem::path index_cache = {};
-  /// Told while building of what does no harm but should be known: that an index could not be kept.
-  /// Empty: nobody is told.
+  /// Told while building of what does no harm but should be known: that an index could not be kept,
+  /// or that the mesh is so large beside the distance kept that steps are slow. Empty: nobody is
+  /// told.
   std::function<void(const std::string&)> warn = {};
   std::string activation = "certified";  // see activation_rules()
   std::string solver = "active_set";     // see solver_backends()

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <utility>
+
+namespace keepout {
+
+/// The work that a control cycle may do, whatever happens in it: counted in looks, so that it is
+/// the same on every run and every processor. A look is one at sixteen boxes or triangles in single
+/// precision, at one triangle in double, or at sixteen planes: some 50 ns to 100 ns.
+///
+/// Whoever works spends, before or after, and stops once all is spent. What was not looked at then
+/// is not known, so no motion is accepted that could depend on it.
+class Budget {
+ public:
+  /// As much as nobody spends: for measuring, and where there is no control cycle.
+  static constexpr std::size_t unlimited = std::numeric_limits<std::int64_t>::max() / 4;
+
+  /// For so many looks in a cycle, at most `unlimited`.
+  explicit Budget(std::size_t looks = unlimited) noexcept
+      : all_(static_cast<std::int64_t>(looks < unlimited ? looks : unlimited)), left_(all_) {}
+
+  /// A new cycle begins.
+  void renew() noexcept { left_ = all_; }
+
+  /// Takes so many looks away.
+  void spend(std::size_t looks) noexcept { left_ -= static_cast<std::int64_t>(looks); }
+
+  /// Takes all away: nothing more is to be looked at.
+  void spend_all() noexcept { left_ = 0; }
+
+  /// Whether nothing is left.
+  bool is_spent() const noexcept { return left_ <= 0; }
+
+  /// How many looks were taken in this cycle; the last one may have taken more than were left.
+  std::size_t spent() const noexcept { return static_cast<std::size_t>(all_ - left_); }
+
+  /// Leaves half of what is left to `attempt`, and what that leaves with the other half to those
+  /// that come after it. Returns what the attempt does.
+  template <class Attempt>
+  auto halved(const Attempt& attempt) noexcept(noexcept(attempt())) {
+    const std::int64_t aside = left_ / 2;
+    left_ -= aside;
+    auto result = attempt();
+    left_ += aside;
+    return result;
+  }
+
+ private:
+  std::int64_t all_;
+  std::int64_t left_;
+};
+
+}  // namespace keepout

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Anatomy that moves under a running loop: no step is made on what it was.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <mutex>
+#include <numbers>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "accuracy/certified_loop.h"
+#include "keepout/error.h"
+#include "keepout/index/wide_bvh.h"
+#include "small_surfaces.h"
+#include "trials.h"
+
+namespace keepout::test {
+namespace {
+
+constexpr double margin = 0.5;
+constexpr double radius = 2.0;
+constexpr double beat = 0.3;  // how far the surface comes and goes [length]
+
+/// As it is at some time, in beats.
+std::shared_ptr<const Mesh> at(const Surface& still, double time) {
+  Surface surface = still;
+  const double swing = beat * std::sin(2.0 * std::numbers::pi * time);
+  for (Vec3& v : surface.vertices) v += swing * v.normalized();
+  return std::make_shared<const Mesh>(std::move(surface));
+}
+
+MotionConstraint guard_of(const std::shared_ptr<const Mesh>& mesh,
+                          const std::shared_ptr<const SpatialIndex>& index) {
+  return make_motion_constraint(mesh, index, {.radius = radius, .margin = margin});
+}
+
+/// Fails if a step does what it must not, by an oracle of the mesh as it is now. Returns where it
+/// led.
+Vec3 stepped(MotionConstraint& guard, oracle::SafetyOracle& oracle, const Vec3& tip,
+             const Vec3& desired) {
+  const Step step = guard.step({.tip = tip, .desired = desired});
+  const double before = oracle.distance(tip);
+  const bool was_inside = oracle.inside(tip).value();
+  const Vec3 to = tip + step.motion;
+  if (was_inside) {
+    EXPECT_TRUE(step.status == Status::recovering || step.motion.isZero(0.0));
+    EXPECT_TRUE(!oracle.inside(to).value() || oracle.distance(to) <= before + 1e-9);
+  } else {
+    const double due = std::min(margin, before) - 1e-7;
+    EXPECT_FALSE(oracle.check(tip, to, std::max(due, 0.0)).below) << name(step.status);
+  }
+  return to;
+}
+
+TEST(MovingAnatomy, IsFollowedOnAnIndexThatIsRefit) {
+  for (const char* shape : {"sphere", "cortex"}) {
+    SCOPED_TRACE(shape);
+    const Surface still = make_shape(shape);
+    auto mesh = at(still, 0.0);
+    const auto tree = std::make_shared<WideBvh>(mesh);
+    MotionConstraint guard = guard_of(mesh, tree);
+    Random random(1);
+    Vec3 tip = surface_points(*mesh, 1, 2.0 * margin, random).front();
+    std::size_t held = 0;
+    for (int beats = 1; beats <= trials(20); ++beats) {
+      mesh = at(still, 0.1 * beats);
+      tree->refit(mesh);
+      const Step stale = guard.step({.tip = tip, .desired = Vec3(0.1, 0.0, 0.0)});
+      ASSERT_EQ(stale.status, Status::mesh_changed);
+      ASSERT_EQ(stale.motion, Vec3::Zero());
+      ASSERT_FALSE(guard.is_current());
+      ASSERT_EQ(guard.free_polytope(tip, radius).status, PolytopeStatus::mesh_changed);
+      ASSERT_EQ(guard.free_polytope(tip, radius).planes.size(), planes_to_hold_still);
+
+      guard.follow(mesh, tree);
+      ASSERT_TRUE(guard.is_current());
+      ASSERT_EQ(&guard.mesh(), mesh.get());
+      MotionConstraint anew = guard_of(mesh, tree);
+      oracle::SafetyOracle oracle(mesh);
+      for (int cycle = 0; cycle < 20; ++cycle) {
+        const Vec3 desired = 0.5 * (random.direction() - tip.normalized());
+        const Vec3 to = stepped(guard, oracle, tip, desired);
+        ASSERT_EQ(to, tip + anew.step({.tip = tip, .desired = desired}).motion);
+        held += to != tip + desired;
+        tip = to;
+        if (HasFatalFailure()) return;
+      }
+    }
+    EXPECT_GT(held, 50u);
+  }
+}
+
+/// What makes the next index ready while the loop goes on with the last one.
+class Watcher {
+ public:
+  struct Anatomy {
+    std::shared_ptr<const Mesh> mesh;
+    std::shared_ptr<const SpatialIndex> index;
+  };
+
+  Watcher(Surface still, Anatomy now, std::chrono::milliseconds period)
+      : still_(std::move(still)), now_(std::move(now)), thread_([this, period] { run(period); }) {}
+  ~Watcher() {
+    stop_ = true;
+    thread_.join();
+  }
+
+  Anatomy now() {
+    const std::lock_guard lock(mutex_);
+    return now_;
+  }
+
+ private:
+  void run(std::chrono::milliseconds period) {
+    Anatomy last = now();
+    auto due = std::chrono::steady_clock::now();
+    for (int i = 1; !stop_; ++i) {
+      const auto mesh = at(still_, 0.1 * i);
+      last = {mesh, last.index->refitted(mesh)};
+      std::this_thread::sleep_until(due += period);
+      const std::lock_guard lock(mutex_);
+      now_ = last;
+    }
+  }
+
+  Surface still_;
+  std::mutex mutex_;
+  Anatomy now_;
+  std::atomic<bool> stop_ = false;
+  std::thread thread_;
+};
+
+TEST(MovingAnatomy, IsFollowedTenTimesASecondUnderARunningLoop) {
+  const Surface still = make_shape("cortex");
+  const auto mesh = at(still, 0.0);
+  const auto tree = std::make_shared<WideBvh>(mesh);
+  MotionConstraint guard = guard_of(mesh, tree);
+  Watcher watcher(still, {mesh, tree}, std::chrono::milliseconds(100));
+  Random random(2);
+  Vec3 tip = surface_points(*mesh, 1, 2.0 * margin, random).front();
+  auto oracle = std::make_unique<oracle::SafetyOracle>(mesh);
+  int follows = 0, held = 0;
+  while (follows < trials(20)) {
+    const Watcher::Anatomy now = watcher.now();
+    if (&guard.mesh() != now.mesh.get()) {
+      guard.follow(now.mesh, now.index);
+      oracle = std::make_unique<oracle::SafetyOracle>(now.mesh);
+      ++follows;
+    }
+    const Vec3 desired = 0.2 * (random.direction() - tip.normalized());
+    const Vec3 to = stepped(guard, *oracle, tip, desired);
+    held += to != tip + desired;
+    tip = to;
+    if (HasFailure()) return;
+  }
+  EXPECT_GT(held, 10 * follows);
+}
+
+TEST(MovingAnatomy, WatchesOfTheCallersOwnAreOfTheMeshTheyWereMadeOn) {
+  // The wall of a cube comes over a tip that a step has left on the free side, close by.
+  const Surface cube = make_cube(5.0);
+  const auto mesh = std::make_shared<const Mesh>(cube);
+  const auto tree = std::make_shared<WideBvh>(mesh);
+  MotionConstraint guard = guard_of(mesh, tree);
+  SideWatch sides = guard.new_watch();
+  const Vec3 tip(0.3, 0.2, mesh->bounds().high.z() + 2.0 * margin);
+  ASSERT_EQ(guard.step({.tip = tip, .desired = Vec3::Zero()}, sides).status, Status::free);
+  const auto risen = std::make_shared<const Mesh>(moved(cube, Vec3(0.0, 0.0, 3.0)));
+  guard.follow(risen, tree->refitted(risen));
+  const Step out = guard.step({.tip = tip, .desired = Vec3(0.0, 0.0, -0.1)}, sides);
+  EXPECT_EQ(out.status, Status::recovering);
+  EXPECT_GT(out.motion.z(), 0.0);
+}
+
+TEST(MovingAnatomy, WhatCannotBeFollowedIsRefusedAndTheGuardGoesOn) {
+  const auto mesh = std::make_shared<const Mesh>(make_cube(5.0));
+  const auto tree = std::make_shared<WideBvh>(mesh);
+  MotionConstraint guard = guard_of(mesh, tree);
+  const auto risen = std::make_shared<const Mesh>(moved(make_cube(5.0), Vec3(0.0, 0.0, 3.0)));
+  const auto huge = std::make_shared<const Mesh>(moved(make_cube(5.0), Vec3(0.0, 0.0, 1e20)));
+  EXPECT_THROW(guard.follow(risen, tree), Error);
+  EXPECT_THROW(guard.follow(nullptr, tree), Error);
+  EXPECT_THROW(guard.follow(risen, nullptr), Error);
+  EXPECT_THROW(guard.follow(huge, std::make_shared<WideBvh>(huge)), Error);
+  EXPECT_THROW(tree->refitted(nullptr), Error);
+  EXPECT_THROW(tree->refitted(std::make_shared<const Mesh>(make_cube(3.0))), Error);
+  EXPECT_TRUE(guard.is_current());
+  const Vec3 tip(0.3, 0.2, mesh->bounds().high.z() + 2.0);
+  EXPECT_TRUE(guard.step({.tip = tip, .desired = Vec3(0.0, 0.0, -5.0)}).status != Status::free);
+}
+
+TEST(MovingAnatomy, AnotherMeshAltogetherMayBeFollowed) {
+  const auto open =
+      std::make_shared<const Mesh>(Surface{{{-50, -50, 0}, {50, -50, 0}, {0, 50, 0}}, {{0, 1, 2}}});
+  MotionConstraint guard = guard_of(open, std::make_shared<WideBvh>(open));
+  const auto closed = std::make_shared<const Mesh>(make_cube(5.0));
+  guard.follow(closed, std::make_shared<WideBvh>(closed));
+  const double top = closed->bounds().high.z();
+  EXPECT_EQ(guard.step({.tip = Vec3(0.3, 0.2, top - 1.0), .desired = Vec3::Zero()}).status,
+            Status::recovering);
+  guard.follow(open, std::make_shared<WideBvh>(open));
+  EXPECT_EQ(guard.step({.tip = Vec3(0.3, 0.2, -2.0), .desired = Vec3::Zero()}).status,
+            Status::free);
+}
+
+}  // namespace
+}  // namespace keepout::test
