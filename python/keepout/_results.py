@@ -35,6 +35,7 @@ class Status(IntEnum):
     inside = 10  # the tip is on the forbidden side, and joints or rows are in the way out
     touching = 11  # the tip is on the surface, and which side is free cannot be told
     margin_too_small = 12  # the margin is lost in the rounding of lengths this large
+    mesh_changed = 13  # the index was refit to another mesh, which is not followed yet
 
     def __str__(self) -> str:
         return self.name

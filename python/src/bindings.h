@@ -34,6 +34,10 @@ struct IndexHandle {
   /// `on`: a keepout.Mesh. Builds the index of the name `part`, without Python's lock. `cache`: a
   /// folder for built indices, if they are to be kept. Throws Error where mesh_of does.
   IndexHandle(py::object on, std::string part, const std::optional<std::filesystem::path>& cache);
+  /// The index of the same name on a keepout.Mesh whose vertices have moved, made from `before`
+  /// where that is faster than a build. Throws Error where mesh_of does, and if the triangles
+  /// differ.
+  IndexHandle(py::object moved, const IndexHandle& before);
 
   const py::object mesh_object;
   const std::shared_ptr<const Mesh> mesh;

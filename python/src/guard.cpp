@@ -180,6 +180,18 @@ void Guard::forget() {
   constraint_.forget();
 }
 
+void Guard::follow(std::shared_ptr<IndexHandle> index) {
+  if (!index) refuse("index", "a keepout.Index", "None");
+  const InUse no_batch(workers_in_use_);
+  const InUse no_step(constraint_in_use_);
+  {
+    const py::gil_scoped_release release;
+    constraint_.follow(index->mesh, index->index);
+    workers_.clear();
+  }
+  index_ = std::move(index);
+}
+
 py::object Guard::steps(const py::object& tips, const py::object& desired,
                         std::optional<py::ssize_t> threads, const py::object& out) {
   const Doubles from = doubles(tips, {"tips", {any, 3}, "(n, 3) or (3,)", OneForAll::allowed});

@@ -25,6 +25,7 @@ class Guard {
                   const py::object& rows);
   FreeSpace free_polytope(const py::object& tip, double radius);
   void forget();
+  void follow(std::shared_ptr<IndexHandle> index);
   py::object steps(const py::object& tips, const py::object& desired,
                    std::optional<py::ssize_t> threads, const py::object& out);
   py::object replay(const py::object& poses, bool closed_loop, double max_step,
@@ -33,7 +34,7 @@ class Guard {
                       std::optional<py::ssize_t> threads, const py::object& out);
 
   const MotionConstraintSettings& settings() const noexcept { return settings_; }
-  const std::shared_ptr<IndexHandle>& index() const noexcept { return index_; }
+  std::shared_ptr<IndexHandle> index() const { return index_; }
 
  private:
   MotionConstraint make() const;

@@ -29,6 +29,13 @@ std::shared_ptr<const SpatialIndex> build(const std::string& name,
   return make_index(name, mesh);
 }
 
+std::shared_ptr<const SpatialIndex> refit(const IndexHandle& before,
+                                          const std::shared_ptr<const Mesh>& mesh) {
+  const py::gil_scoped_release release;
+  if (auto index = before.index->refitted(mesh)) return index;
+  return make_index(before.name, mesh);
+}
+
 Ball ball_of(py::handle center, double radius) {
   const Ball ball{point(center, "center"), radius};
   if (!ball.center.allFinite()) refuse("center", "finite numbers", "one that is not");
@@ -111,6 +118,12 @@ IndexHandle::IndexHandle(py::object on, std::string part,
       name(std::move(part)),
       index(build(name, mesh, cache)) {}
 
+IndexHandle::IndexHandle(py::object moved, const IndexHandle& before)
+    : mesh_object(std::move(moved)),
+      mesh(mesh_of(mesh_object)),
+      name(before.name),
+      index(refit(before, mesh)) {}
+
 void bind_index(py::module_& module) {
   py::class_<Hits> hits(
       module, "Hits",
@@ -155,6 +168,15 @@ void bind_index(py::module_& module) {
 Runs without Python's lock, on every processor unless `threads` says fewer.
 
 points: (n, 3) [length].)")
+      .def(
+          "refitted",
+          [](const IndexHandle& self, py::object mesh) {
+            return std::make_shared<IndexHandle>(std::move(mesh), self);
+          },
+          py::arg("mesh"),
+          "An index of the same name on a mesh with the same triangles whose vertices have moved;\n"
+          "of wide_bvh in about a tenth of the time of a build. This one stays as it is: see\n"
+          "MotionConstraint.follow.")
       .def_readonly("mesh", &IndexHandle::mesh_object, "The mesh.")
       .def_readonly("name", &IndexHandle::name, "As in indices().")
       .def_property_readonly(

@@ -11,8 +11,6 @@
 namespace keepout::python {
 namespace {
 
-constexpr std::size_t status_count = static_cast<std::size_t>(Status::margin_too_small) + 1;
-
 /// Of keepout.Status. Never released: the interpreter may be gone before our statics are.
 std::array<PyObject*, status_count> members{};
 

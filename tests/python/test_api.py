@@ -127,6 +127,26 @@ def test_steps_remember_and_forget():
     assert guard.step((0, 0, 30), (0, 0, 0.1)).status is Status.inside
 
 
+def test_a_guard_follows_anatomy_that_moves():
+    vertices, triangles = sphere()
+    guard = keepout.MotionConstraint(keepout.Mesh(vertices, triangles), margin=0.5)
+    before = guard.index
+    top = (0, 0, 11.5)
+    assert guard.step(top, (0, 0, 0)).status is Status.free
+    for swollen, status in ((1.1, Status.recovering), (1.2, Status.recovering), (1.0, Status.free)):
+        mesh = keepout.Mesh(swollen * vertices, triangles)
+        guard.follow(guard.index.refitted(mesh))
+        assert guard.mesh is mesh and guard.index.mesh is mesh and guard.index.name == before.name
+        step = guard.step(top, (0, 0, 0))
+        assert step.status is status and step.motion[2] >= 0
+        assert guard.steps(top, np.zeros((2, 3))).status[1] == status
+    assert before.mesh is not guard.mesh  # and stays as it is
+    grid = keepout.Index(guard.mesh, "pd_tree").refitted(keepout.Mesh(2 * vertices, triangles))
+    assert grid.name == "pd_tree" and grid.distances([(0, 0, 0)])[0] > 15
+    with pytest.raises(keepout.Error, match="triangles are to be the same"):
+        before.refitted(keepout.Mesh(vertices, triangles[1:]))
+
+
 def test_the_free_polytope_keeps_the_distance(guard):
     polytope = guard.free_polytope((0, 0, 11.0), radius=2.0)
     assert polytope.ok and polytope.status == "found" and len(polytope) > 0
