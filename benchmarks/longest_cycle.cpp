@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The longest control cycles that could be provoked: on each scene, the most looks (Budget) that
+// any call took and the longest time of any, the least of three tries counting, so that what the
+// machine did besides is left out. Prints the table of docs/safety.md.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <exception>
+#include <functional>
+#include <map>
+#include <memory>
+#include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "keepout/factory/make_motion_constraint.h"
+#include "keepout/fixtures/random.h"
+#include "keepout/fixtures/shapes.h"
+#include "keepout/simd_target.h"
+
+namespace keepout {
+namespace {
+
+/// A cone around the z axis, its tip at the origin, open at its base.
+Surface cone(VertexId faces, double slope) {
+  Surface surface;
+  surface.vertices.emplace_back(0.0, 0.0, 0.0);
+  for (VertexId i = 0; i < faces; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / faces;
+    surface.vertices.emplace_back(10.0 * std::cos(angle), 10.0 * std::sin(angle), -10.0 * slope);
+    surface.triangles.push_back({0, i + 1, (i + 1) % faces + 1});
+  }
+  return surface;
+}
+
+/// A sphere around the origin, of 2 n^2 triangles.
+Surface sphere(VertexId n, double radius) {
+  Surface surface;
+  for (VertexId i = 0; i <= n; ++i) {
+    const double polar = std::numbers::pi * i / n;
+    for (VertexId j = 0; j < n; ++j) {
+      const double angle = 2.0 * std::numbers::pi * j / n;
+      surface.vertices.emplace_back(radius * std::sin(polar) * std::cos(angle),
+                                    radius * std::sin(polar) * std::sin(angle),
+                                    radius * std::cos(polar));
+    }
+  }
+  for (VertexId i = 0; i < n; ++i) {
+    for (VertexId j = 0; j < n; ++j) {
+      const VertexId a = i * n + j, b = i * n + (j + 1) % n;
+      surface.triangles.push_back({a, a + n, b});
+      surface.triangles.push_back({b, a + n, b + n});
+    }
+  }
+  return weld(std::move(surface));
+}
+
+/// Triangles in all directions through a box, as no anatomy has them.
+Surface soup(std::size_t triangles, double size) {
+  Surface surface;
+  Random random(5);
+  for (VertexId t = 0; t < triangles; ++t) {
+    const Vec3 middle = 10.0 * random.uniform() * random.direction();
+    for (int c = 0; c < 3; ++c) surface.vertices.push_back(middle + size * random.direction());
+    surface.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
+  }
+  return surface;
+}
+
+/// One triangle again and again.
+Surface copies(std::size_t triangles) {
+  Surface surface{{{-5, -5, 0}, {5, -5, 0}, {0, 5, 0}}, {}};
+  surface.triangles.assign(triangles, {0, 1, 2});
+  return surface;
+}
+
+struct Scene {
+  std::string name;
+  Surface surface;
+  MotionConstraintSettings settings = {.radius = 5.0, .margin = 1.0};
+  double near = 1.0;  // tips are so far from the middle at most [length]
+  Vec3 middle = Vec3::Zero();
+  bool with_joints = false;
+};
+
+std::vector<Scene> scenes() {
+  std::vector<Scene> all;
+  for (const VertexId faces : {400u, 4'000u, 20'000u, 200'000u}) {
+    for (const double slope : {0.1, 1.0, 5.0}) {
+      char name[64];
+      std::snprintf(name, sizeof name, "tip of a cone, %u faces, slope %g", unsigned{faces}, slope);
+      all.push_back({name, cone(faces, slope), {.radius = 5.0, .margin = 1.0}, 1.5, {0, 0, 1}});
+    }
+  }
+  all.push_back({"the same, 7 joints",
+                 cone(4'000, 1.0),
+                 {.radius = 5.0, .margin = 1.0, .damping = 1e-6},
+                 1.5,
+                 {0, 0, 1},
+                 true});
+  all.push_back({"the same, 65,536 nodes, 1,000 refinements",
+                 cone(4'000, 1.0),
+                 {.radius = 5.0, .margin = 1.0, .refinements = 1'000, .nodes = 65'536},
+                 1.5,
+                 {0, 0, 1}});
+  all.push_back({"centre of a sphere of 1 M triangles", sphere(700, 50.0), {}, 1e-3});
+  all.push_back({"the same, margin as far as the wall",
+                 sphere(700, 50.0),
+                 {.radius = 5.0, .margin = 49.0},
+                 3.0});
+  all.push_back(
+      {"the same, distances always", sphere(700, 50.0), {.distances = Distances::always}, 1e-3});
+  all.push_back({"200,000 triangles crossing each other",
+                 soup(200'000, 3.0),
+                 {.radius = 5.0, .margin = 0.01},
+                 10.0});
+  all.push_back({"2 M small ones", soup(2'000'000, 0.02), {.radius = 5.0, .margin = 0.01}, 10.0});
+  all.push_back({"100,000 times the same triangle", copies(100'000), {}, 3.0});
+  for (const Shape& shape : shapes()) {
+    const Mesh mesh(shape.make());
+    const double size = mesh.bounds().size().norm();
+    all.push_back({std::string(shape.name),
+                   shape.make(),
+                   {.radius = 0.2 * size, .margin = 0.02 * size},
+                   0.5 * size,
+                   mesh.bounds().center()});
+  }
+  return all;
+}
+
+struct Longest {
+  std::size_t looks = 0;
+  double us = 0.0;
+  std::map<std::string, int> statuses;
+};
+
+using Call = std::function<std::string_view()>;
+
+/// Takes down what the longest of three tries at least took.
+void measure(MotionConstraint& guard, const Call& call, Longest& longest) {
+  double least = 1e300;
+  for (int attempt = 0; attempt < 3; ++attempt) {
+    guard.forget();
+    const auto begin = std::chrono::steady_clock::now();
+    const std::string_view status = call();
+    const std::chrono::duration<double, std::micro> took = std::chrono::steady_clock::now() - begin;
+    least = std::min(least, took.count());
+    if (attempt == 0) ++longest.statuses[std::string(status)];
+  }
+  longest.looks = std::max(longest.looks, guard.looks());
+  longest.us = std::max(longest.us, least);
+}
+
+void print(const std::string& name, const Longest& longest) {
+  std::printf("| %s | %zu | %.0f |", name.c_str(), longest.looks, longest.us);
+  for (const auto& [status, count] : longest.statuses) {
+    std::printf(" %s %d", status.c_str(), count);
+  }
+  std::printf(" |\n");
+  std::fflush(stdout);
+}
+
+void measure(const Scene& scene, Longest& of_steps, Longest& of_polytopes) {
+  const auto mesh = std::make_shared<const Mesh>(scene.surface);
+  MotionConstraint guard = make_motion_constraint(mesh, scene.settings);
+  Random random(1);
+  Longest steps, polytopes;
+  Eigen::Matrix<double, 3, 7> jacobian;
+  for (int trial = 0; trial < 150; ++trial) {
+    // Both close to the middle and far from it.
+    const double off = scene.near * std::pow(10.0, random.uniform(-6.0, 0.0));
+    const Vec3 tip = scene.middle + off * random.direction();
+    const Vec3 desired = scene.settings.radius * random.uniform() *
+                         (trial % 2 == 0 ? random.direction() : Vec3(0.0, 0.0, -1.0));
+    Motion motion{.tip = tip, .desired = desired};
+    if (scene.with_joints) {
+      for (int c = 0; c < 7; ++c) jacobian.col(c) = random.direction();
+      motion.jacobian = jacobian;
+    }
+    measure(
+        guard, [&] { return name(guard.step(motion).status); }, steps);
+    measure(
+        guard, [&] { return name(guard.free_polytope(tip, desired.norm()).status); }, polytopes);
+  }
+  print(scene.name, steps);
+  for (const auto& [one, all] : {std::pair(&steps, &of_steps), {&polytopes, &of_polytopes}}) {
+    all->looks = std::max(all->looks, one->looks);
+    all->us = std::max(all->us, one->us);
+    for (const auto& [status, count] : one->statuses) all->statuses[status] += count;
+  }
+}
+
+}  // namespace
+}  // namespace keepout
+
+int main() try {
+  using namespace keepout;
+  std::printf("SIMD target %s; stated: %zu looks\n\n", std::string(simd_target()).c_str(),
+              Capacity::looks_of_a_walk);
+  std::printf("| scene | most looks | longest, us | how they ended |\n|---|--:|--:|---|\n");
+  Longest steps, polytopes;
+  for (const Scene& scene : scenes()) measure(scene, steps, polytopes);
+  print("**all steps**", steps);
+  print("**all free polytopes**", polytopes);
+  return 0;
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "longest_cycle: %s\n", error.what());
+  return 1;
+}
