@@ -93,6 +93,14 @@ TEST_F(Crtk, AScaledTeleoperationGivesTheHandWhatItPutsIn) {
   EXPECT_LT((guard.servo_cf().force - 0.25 * (device * on_the_tool)).norm(), 1e-6);
 }
 
+TEST_F(Crtk, ADevicesFrameOfFourDigitsMakesTheForceNoLarger) {
+  const Mat3 device = 1.00004 * Mat3::Identity();
+  CrtkGuard guard = make({.haptic = {.spring = {.largest_force = 2.0}}, .hand_from_robot = device});
+  guard.engage(pose_at(above));
+  press(guard, top + kept - 6.0);
+  EXPECT_NEAR(guard.servo_cf().force.norm(), 2.0, 1e-12);
+}
+
 TEST_F(Crtk, WithoutEngagingThereIsNothingToSend) {
   CrtkGuard guard = make();
   EXPECT_EQ(guard.servo_cp(pose_at(above)), CycleStatus::not_engaged);

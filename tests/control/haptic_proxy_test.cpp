@@ -9,6 +9,7 @@
 #include "control/guarded_shapes.h"
 #include "keepout/error.h"
 #include "keepout/fixtures/random.h"
+#include "trials.h"
 
 namespace keepout {
 namespace {
@@ -222,6 +223,23 @@ TEST(HapticProxy, AProxyThatMayNotGoFasterPullsTheHandBack) {
   EXPECT_NEAR(cycle.force.z(), -1.0, 1e-12);
 }
 
+TEST(HapticProxy, ATipThatIsLedOffGoesNoFasterThanTheTopSpeed) {
+  for (const double recovery : {0.05, 2.0}) {
+    for (const double start : {top + 0.1, top, top - 3.0}) {
+      HapticProxy proxy(guard_of(cube(), {.margin = kept, .recovery = recovery}),
+                        {.top_speed = 50.0});
+      proxy.engage(Vec3(3, 4, start));
+      for (int i = 0; i < 200; ++i) {
+        const Vec3 before = proxy.proxy();
+        const HapticCycle cycle = proxy.cycle(Vec3(13, 4, top + 2.0));
+        ASSERT_TRUE(cycle.ok());
+        ASSERT_LE((cycle.proxy - before).norm(), 0.05 * (1.0 + 1e-9)) << recovery << ' ' << start;
+      }
+      EXPECT_GT(proxy.proxy().z(), top + kept - accuracy);
+    }
+  }
+}
+
 TEST(HapticProxy, TheForceRisesNoFasterThanItMay) {
   HapticProxy proxy(guard_of(cube()), {.spring = {.largest_rise = 20.0}});
   proxy.engage(Vec3(3, 4, top + kept));
@@ -286,6 +304,38 @@ TEST(HapticProxy, OfASlowLoopAndAStiffSpringThePassivityControllerTakesTheEnergy
   expect_balance(braked);
 }
 
+TEST(HapticProxy, WhateverOptionsAreTakenForceAndEnergyAreFiniteAndTheForceIsBounded) {
+  Random random(3);
+  for (int options = 0; options < 256; ++options) {
+    const auto either = [options](int bit, double low, double high) {
+      return (options >> bit & 1) == 0 ? low : high;
+    };
+    const SpringDamper spring{.stiffness = either(0, 1e-300, 1e9),
+                              .damping = either(1, 0.0, 1e9),
+                              .largest_force = either(2, 1e-300, 1e9),
+                              .largest_rise = either(3, 1e-300, 1e300)};
+    HapticProxy proxy(guard_of(cube()), {.period = either(4, 1e-6, 1.0),
+                                         .spring = spring,
+                                         .top_speed = either(5, 1e-6, 1e30),
+                                         .farthest = either(6, 10.0, 1e30),
+                                         .fade = 1.0,
+                                         .largest_brake = either(7, 0.0, 1e30)});
+    proxy.engage(above);
+    for (int i = 0; i < test::trials(40); ++i) {
+      const double far = std::pow(10.0, random.uniform(-200.0, i % 3 == 0 ? 30.0 : 1.0));
+      const HapticCycle cycle = proxy.cycle(above + far * random.direction());
+      ASSERT_TRUE(cycle.proxy.allFinite());
+      ASSERT_TRUE(cycle.force.allFinite()) << options;
+      ASSERT_LE(cycle.force.norm(), spring.largest_force * (1.0 + 1e-12)) << options;
+      const EnergyReport& energy = proxy.energy();
+      for (const double part : {energy.to_hand, energy.stored, energy.dissipated, energy.from_proxy,
+                                energy.active, energy.braked}) {
+        ASSERT_TRUE(std::isfinite(part)) << options;
+      }
+    }
+  }
+}
+
 TEST(HapticProxy, OptionsOutOfRangeAreRefused) {
   const auto expect_refused = [](const HapticOptions& options) {
     EXPECT_THROW(HapticProxy(guard_of(cube()), options), Error);
@@ -298,6 +348,8 @@ TEST(HapticProxy, OptionsOutOfRangeAreRefused) {
     expect_refused({.spring = {.stiffness = bad}});
   }
   expect_refused({.period = 1.5});
+  expect_refused({.period = 1e-9});
+  expect_refused({.period = std::numeric_limits<double>::denorm_min()});
   expect_refused({.largest_brake = -1.0});
 }
 

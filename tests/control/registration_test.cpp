@@ -106,6 +106,13 @@ TEST(Registration, AScaleIsRefusedAndMetresForMillimetresSuspected) {
   EXPECT_SAYS(complaint(matrix_of(1.001 * rotation, Vec3::Zero())), "it scales by 1.001;");
 }
 
+TEST(Registration, WhatJustMissesARotationIsNotCalledAReflection) {
+  EXPECT_SAYS(complaint(matrix_of(1.00007 * Mat3::Identity(), Vec3::Zero())),
+              "it scales by 1.00007;");
+  EXPECT_SAYS(complaint(matrix_of(Vec3(1.00007, 1, 1).asDiagonal(), Vec3::Zero())),
+              "it stretches by 1.00007");
+}
+
 TEST(Registration, OtherMatricesAreRefusedForWhatTheyAre) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_SAYS(complaint(matrix_of(Vec3(1, 1, 2).asDiagonal(), Vec3::Zero())), "it stretches by 2");

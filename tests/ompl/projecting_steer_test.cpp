@@ -157,6 +157,9 @@ TEST(GuardPool, MakesOneAtOnceAndNoMoreThanItMay) {
       8);
   EXPECT_EQ(pool.made(), 1u);
   EXPECT_EQ(pool.options().margin, margin);
+  GuardPool unbounded([&] { return guard_of(mesh); }, std::numeric_limits<std::size_t>::max());
+  const GuardPool::Loan one = unbounded.borrow(), other = unbounded.borrow();
+  EXPECT_EQ(unbounded.made(), 2u);
   EXPECT_THROW(GuardPool({}, 1), Error);
   EXPECT_THROW(GuardPool([&] { return guard_of(mesh); }, 0), Error);
   EXPECT_THROW(GuardPool([&] { return make_motion_constraint(mesh, {.margin = -1.0}); }), Error);

@@ -92,6 +92,34 @@ def test_a_point_comes_in_many_forms(guard):
             np.testing.assert_array_equal(guard.step(tip, desired).motion, exact)
 
 
+def test_what_memory_cannot_hold_is_a_memory_error(guard):
+    def many(*shape):
+        return np.broadcast_to(1.0, shape)
+
+    for call in (
+        lambda: keepout.Mesh(many(2**45, 3), triangles),
+        lambda: keepout.Mesh(vertices, np.broadcast_to(np.int32(0), (2**45, 3))),
+        lambda: guard.steps(many(2**45, 3), (0, 0, 1)),
+        lambda: guard.step((0, 0, 14), (0, 0, 1), jacobian=many(3, 2**45)),
+        lambda: guard.step((0, 0, 14), (0, 0, 1), rows=(many(2**45, 3), [])),
+    ):
+        with pytest.raises(MemoryError):
+            call()
+
+
+@pytest.mark.skipif(np.finfo(np.longdouble).maxexp < 16384, reason="as wide as a double")
+def test_numbers_that_fit_no_double_are_refused_where_numpy_is_asked_to(guard):
+    wide = np.full((3, 3), np.longdouble("1e4000"))
+    with np.errstate(over="raise"):
+        for name, arguments in (
+            ("tip", (wide[0], (0, 0, 1))),
+            ("jacobian", ((0, 0, 14), (0, 0, 1), wide)),
+            (r"rows\[0\]", ((0, 0, 14), (0, 0, 1), None, (wide, [0, 0, 0]))),
+        ):
+            with refused(name + ": expected numbers that fit a double, got dtype"):
+                guard.step(*arguments)
+
+
 def test_masks_are_not_lost(guard, outside):
     hidden = np.ma.masked_array([0.0, 0, 14], mask=[False, True, False])
     with refused("tip: .* masked array"):

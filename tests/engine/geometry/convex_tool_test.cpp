@@ -65,6 +65,22 @@ TEST(ConvexTool, WhatIsNoToolIsRefused) {
   EXPECT_THROW(ConvexTool::hull(many), Error);
 }
 
+TEST(ConvexTool, DirectionsAreOfUnitLengthAndPointsTooNearForThatAreRefused) {
+  for (int exponent = -320; exponent <= 30; ++exponent) {
+    const double size = std::pow(10.0, exponent);
+    const std::vector<Vec3> points{Vec3::Zero(), size * Vec3(1, 0, 0), size * Vec3(0.3, 0.9, 0)};
+    if (exponent < -29) {
+      EXPECT_THROW(ConvexTool::hull(points), Error) << exponent;
+      continue;
+    }
+    const ConvexTool tool = ConvexTool::hull(points);
+    EXPECT_EQ(tool.face_normals().size(), 1u) << exponent;
+    EXPECT_EQ(tool.edge_directions().size(), 3u) << exponent;
+    for (const Vec3& n : tool.face_normals()) EXPECT_NEAR(n.norm(), 1.0, 1e-15) << exponent;
+    for (const Vec3& n : tool.edge_directions()) EXPECT_NEAR(n.norm(), 1.0, 1e-15) << exponent;
+  }
+}
+
 TEST(ConvexTool, OnlyARotationTurnsIt) {
   const ConvexTool box = ConvexTool::box(unit_box);
   EXPECT_THROW(box.rotated(2.0 * Eigen::Matrix3d::Identity()), Error);

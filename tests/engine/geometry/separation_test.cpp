@@ -9,6 +9,7 @@
 #include "engine/geometry/reference_separation.h"
 #include "engine/geometry/tools.h"
 #include "keepout/geometry/closest_point.h"
+#include "trials.h"
 
 namespace keepout {
 namespace {
@@ -229,6 +230,24 @@ TEST(Separation, AHullOfManyPointsIsHandled) {
     EXPECT_NEAR(separation(hull, position + way, triangle).distance, 0.0, 1e-13);
     for (int k = 0; k < 1000; ++k) {
       EXPECT_LE(separation_along(random.direction(), hull, position, triangle), s.distance + 1e-14);
+    }
+  }
+}
+
+TEST(Separation, ItsNormalIsOfUnitLengthHoweverThinATriangleIs) {
+  Random random(9);
+  for (int i = 0; i < test::trials(2000); ++i) {
+    const auto thin = [&] { return std::pow(10.0, random.uniform(-320.0, -140.0)); };
+    Triangle t = random_triangle(random, 2.0);
+    for (Vec3& corner : t) {
+      for (double& x : corner) {
+        if (random.below(2) == 0) x = thin();
+      }
+    }
+    for (const NamedTool& named : tools_of_each_kind(2.0, random)) {
+      const Separation found = separation(named.tool, {0, 0, i % 2 == 0 ? thin() : 1.0}, t);
+      ASSERT_NEAR(found.normal.norm(), 1.0, 1e-14) << named.name << ' ' << i;
+      ASSERT_TRUE(std::isfinite(found.distance) && found.on_triangle.allFinite()) << named.name;
     }
   }
 }

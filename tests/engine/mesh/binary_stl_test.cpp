@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <filesystem>
 #include <limits>
 #include <optional>
 #include <sstream>
@@ -249,6 +250,19 @@ TEST_F(BinaryStl, ReadAndWeldedAtOnceHasTheSameErrorsOnAnyNumberOfThreads) {
     EXPECT_NE(message_of_reading(file, 2).find("triangle " + std::to_string(triangle) + " "),
               std::string::npos);
   }
+}
+
+TEST_F(BinaryStl, AVertexThatDoesNotExistIsNotWritten) {
+  Surface surface = single_triangle();
+  surface.triangles.push_back({0, 1, 3});
+  try {
+    write_binary_stl(file, surface);
+    ADD_FAILURE() << "written";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("triangle 1 names vertex 3"), std::string::npos)
+        << error.what();
+  }
+  EXPECT_FALSE(std::filesystem::exists(file));
 }
 
 }  // namespace
