@@ -29,7 +29,9 @@ CrtkGuard::CrtkGuard(MotionConstraint guard, const Registration& registration,
                      const CrtkOptions& options)
     : proxy_(std::move(guard), options.haptic),
       registration_(registration),
-      options_(checked(options)) {}
+      options_(checked(options)) {
+  options_.hand_from_robot = nearest_rotation(options_.hand_from_robot);  // forces keep their size
+}
 
 CycleStatus CrtkGuard::engage(const Pose& setpoint) noexcept {
   release();

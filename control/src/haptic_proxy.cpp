@@ -42,8 +42,8 @@ const HapticOptions& checked(const HapticOptions& options) {
     if (!holds) throw Error(std::string("haptic proxy: ") + what);
   };
   check(options.spring);
-  require(options.period > 0.0 && options.period <= 1.0,
-          "the period must be above 0 and at most 1 s; it is in seconds");
+  require(options.period >= 1e-6 && options.period <= 1.0,
+          "the period must be 1e-6 s at least and 1 s at most; it is in seconds");
   require(options.top_speed > 0.0 && options.top_speed <= longest_length,
           "the top speed must be above 0");
   require(options.farthest > 0.0 && options.farthest <= longest_length,
@@ -65,7 +65,11 @@ HapticProxy::HapticProxy(MotionConstraint guard, const HapticOptions& options)
     : guard_(std::move(guard)),
       options_(checked(options)),
       longest_(std::min(options.top_speed * options.period, guard_.options().radius)),
-      passivity_(options.largest_brake) {}
+      passivity_(options.largest_brake) {
+  StepOptions slowed = guard_.options();
+  slowed.recovery = std::min(slowed.recovery, longest_);
+  guard_.set_options(slowed);
+}
 
 CycleStatus HapticProxy::engage(const Vec3& tip) noexcept {
   release();
@@ -113,8 +117,11 @@ HapticCycle HapticProxy::cycle(const Vec3& hand) noexcept {
   }
   // Free motion arrives, to the last bit: no force is left in free space.
   const bool arrives = !is_cut && !is_slowed && step.motion == motion.desired;
+  // A tip that is too close is led off beside what was asked for, and so farther. Of that way any
+  // part is proven; what leads out from inside alone is not, and is no longer than the recovery.
+  const double share = std::min(1.0, longest_ / step.motion.norm());  // 1 where nothing moves
   const Vec3 before = proxy_;
-  proxy_ = arrives ? hand : Vec3(proxy_ + step.motion);
+  proxy_ = arrives ? hand : Vec3(proxy_ + share * step.motion);
   fade(1.0);
   book(hand, proxy_ - before);
   update_force();

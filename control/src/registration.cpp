@@ -33,33 +33,37 @@ std::string text_of(double value) {
   return text;
 }
 
-/// The rotation nearest to a matrix which is one to within the tolerance. Throws Error otherwise,
-/// saying what the matrix is instead.
-Mat3 rotation_of(const Mat3& matrix) {
-  const Eigen::JacobiSVD<Mat3> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Vec3 scales = svd.singularValues();  // the largest first
-  if (!is_rotation(matrix)) {
-    const std::string start = "registration: the matrix is no rotation: ";
-    if (scales[0] == 0.0) throw Error(start + "it is all zeros; has it been filled in?");
-    if (scales[2] < 1e-3 * scales[0]) {
-      throw Error(start + "it flattens space; check its nine elements");
-    }
-    if (scales[0] - scales[2] > rotation_tolerance * scales[0]) {
-      throw Error(start + "it stretches by " + text_of(scales[0]) + " one way and by " +
-                  text_of(scales[2]) +
-                  " another; register rigidly, without scale or shear, and write four digits or "
-                  "more");
-    }
-    if (std::abs(scales[0] - 1.0) > rotation_tolerance) {
-      throw Error(start + "it scales by " + text_of(scales[0]) +
-                  "; leave the scale out of it: what is metres and what is millimetres is told by "
-                  "RegistrationUnits");
-    }
+/// Says what a matrix is instead of a rotation.
+[[noreturn]] void refuse(const Mat3& matrix) {
+  const Vec3 scales = Eigen::JacobiSVD<Mat3>(matrix).singularValues();  // the largest first
+  const std::string start = "registration: the matrix is no rotation: ";
+  if (scales[0] == 0.0) throw Error(start + "it is all zeros; has it been filled in?");
+  if (scales[2] < 1e-3 * scales[0]) {
+    throw Error(start + "it flattens space; check its nine elements");
+  }
+  // Below the tolerance as well, where neither alone is at fault: what is larger is told.
+  const double spread = scales[0] - scales[2];
+  const double off = std::abs(scales[0] - 1.0);
+  const bool is_rigid = spread <= rotation_tolerance * scales[0] && off <= rotation_tolerance;
+  if (is_rigid && matrix.determinant() < 0.0) {
     throw Error(start +
                 "it is a reflection; an axis has the wrong sign, or the frame is left-handed. From "
                 "LPS to RAS two axes change signs, not one");
   }
-  return svd.matrixU() * svd.matrixV().transpose();
+  if (spread > (is_rigid ? 0.5 * off : rotation_tolerance * scales[0])) {
+    throw Error(start + "it stretches by " + text_of(scales[0]) + " one way and by " +
+                text_of(scales[2]) +
+                " another; register rigidly, without scale or shear, and write four digits or "
+                "more");
+  }
+  throw Error(start + "it scales by " + text_of(scales[0]) +
+              "; leave the scale out of it: what is metres and what is millimetres is told by "
+              "RegistrationUnits");
+}
+
+Mat3 rotation_of(const Mat3& matrix) {
+  if (!is_rotation(matrix)) refuse(matrix);
+  return nearest_rotation(matrix);
 }
 
 void check_matrix(const Eigen::Matrix4d& matrix) {
@@ -82,6 +86,11 @@ bool is_rotation(const Mat3& matrix) noexcept {
   // Of a finite matrix the product may still overflow: what is not a number is not below.
   return off.cwiseAbs().maxCoeff() <= rotation_tolerance && off.allFinite() &&
          matrix.determinant() > 0.0;
+}
+
+Mat3 nearest_rotation(const Mat3& matrix) noexcept {
+  const Eigen::JacobiSVD<Mat3> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  return svd.matrixU() * svd.matrixV().transpose();
 }
 
 bool is_valid(const Pose& pose) noexcept {

@@ -19,10 +19,6 @@ bool fits(const py::array& array, const Expected& expected) {
 
 std::string type_name(py::handle object) { return Py_TYPE(object.ptr())->tp_name; }
 
-std::string dtype_text(const py::array& array) {
-  return py::str(array.dtype()).cast<std::string>();
-}
-
 /// Whether it was a list or a tuple of three floats; no number is converted.
 bool read_floats(PyObject* object, Vec3& values) {
   if (!PyTuple_CheckExact(object) && !PyList_CheckExact(object)) return false;
@@ -58,6 +54,10 @@ std::string shape_text(const py::array& array) {
   return py::str(array.attr("shape")).cast<std::string>();
 }
 
+std::string dtype_text(const py::array& array) {
+  return py::str(array.dtype()).cast<std::string>();
+}
+
 void refuse(std::string_view name, const std::string& expected, const std::string& got) {
   throw Error(std::string(name) + ": expected " + expected + ", got " + got);
 }
@@ -87,12 +87,8 @@ py::array numbers(py::handle argument, const Expected& expected) {
 }
 
 Doubles doubles(py::handle argument, const Expected& expected) {
-  const py::array array = numbers(argument, expected);
-  Doubles converted = Doubles::ensure(array);
-  if (!converted) {
-    refuse(expected.name, "numbers that fit a double", "dtype " + dtype_text(array));
-  }
-  return converted;
+  return converted<Doubles>(numbers(argument, expected), expected.name,
+                            "numbers that fit a double");
 }
 
 Vec3 point(py::handle argument, std::string_view name) {

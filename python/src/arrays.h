@@ -38,6 +38,8 @@ struct Expected {
 
 /// "(4, 3)"
 std::string shape_text(const py::array& array);
+/// "float64"
+std::string dtype_text(const py::array& array);
 
 /// Throws Error, naming the argument, what was expected and what came.
 [[noreturn]] void refuse(std::string_view name, const std::string& expected,
@@ -46,6 +48,18 @@ std::string shape_text(const py::array& array);
 /// Anything that numpy makes an array of, of numbers and of the shape expected. Throws Error
 /// otherwise. A copy only where it is not that already.
 py::array numbers(py::handle argument, const Expected& expected);
+
+/// The same, as an array of one type: converted only where it is not that already. Throws Error
+/// when it cannot be, naming what would `fit`; and MemoryError, as it is.
+template <class Array>
+Array converted(const py::array& array, std::string_view name, const char* fit) {
+  try {
+    return Array(array);
+  } catch (py::error_already_set& error) {
+    if (error.matches(PyExc_MemoryError) || !error.matches(PyExc_Exception)) throw;
+    refuse(name, fit, "dtype " + dtype_text(array));
+  }
+}
 
 /// The same in double precision.
 Doubles doubles(py::handle argument, const Expected& expected);

@@ -139,7 +139,8 @@ StepResult Guard::step(const py::object& tip, const py::object& desired, const p
   Doubles bounds;
   py::ssize_t variables = 3;
   if (!jacobian.is_none()) {
-    j = Jacobian::ensure(numbers(jacobian, {"jacobian", {3, any}, "(3, n)"}));
+    j = converted<Jacobian>(numbers(jacobian, {"jacobian", {3, any}, "(3, n)"}), "jacobian",
+                            "numbers that fit a double");
     variables = j.shape(1);
     if (variables == 0) refuse("jacobian", "a column for each joint, (3, n)", "none, (3, 0)");
     motion.jacobian.emplace(j.data(), variables);

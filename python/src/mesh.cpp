@@ -34,10 +34,9 @@ std::vector<Corners> triangles_from(py::handle argument, std::size_t vertices) {
   const py::array given = numbers(argument, {"triangles", {any, 3}, "(m, 3)"});
   if (given.size() > 0 && given.dtype().kind() == 'f') {
     refuse("triangles", "integers, which count vertices from 0",
-           "an array of dtype " + py::str(given.dtype()).cast<std::string>());
+           "an array of dtype " + dtype_text(given));
   }
-  const Ids ids = Ids::ensure(given);
-  if (!ids) refuse("triangles", "integers", "what numpy cannot make integers of");
+  const auto ids = converted<Ids>(given, "triangles", "integers of at most 64 bits");
   std::vector<Corners> triangles(static_cast<std::size_t>(ids.shape(0)));
   const std::int64_t* id = ids.data();
   for (std::size_t t = 0; t < triangles.size(); ++t) {

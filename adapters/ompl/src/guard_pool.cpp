@@ -15,7 +15,6 @@ GuardPool::GuardPool(std::function<MotionConstraint()> make, std::size_t most)
     throw Error(
         "a pool of guards needs a function that makes a MotionConstraint, and room for one");
   }
-  free_.reserve(most_);  // giving back shall not throw
   free_.push_back(std::make_unique<MotionConstraint>(make_()));
   made_ = 1;
   options_ = free_.front()->options();
@@ -39,6 +38,11 @@ std::unique_ptr<MotionConstraint> GuardPool::made_anew(std::unique_lock<std::mut
     // A planner's thread has nobody who would catch it, and there is one to wait for.
   }
   lock.lock();
+  try {
+    free_.reserve(made_);  // giving back shall not throw
+  } catch (...) {
+    guard.reset();
+  }
   if (!guard) most_ = --made_;
   return guard;
 }

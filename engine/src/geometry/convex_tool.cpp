@@ -16,6 +16,9 @@ namespace {
 // Squares and cubes of lengths must stay finite; a step keeps to the same limit.
 constexpr double largest_length = 1e30;
 
+// And must not be lost: cubes of what lies between two points neither.
+constexpr double least_gap = 1e-30;
+
 /// Each place once: two points in the same place span no edge. Ends where there are too many, for
 /// its time grows with the square of what it keeps.
 std::vector<Vec3> distinct(std::vector<Vec3> points) {
@@ -39,6 +42,13 @@ void check(const std::vector<Vec3>& points, double radius) {
   for (const Vec3& p : points) {
     if (!(p.array().abs() <= largest_length).all()) {
       throw Error("the coordinates of a convex tool must be numbers of at most 1e30");
+    }
+    for (const Vec3* other = &points.front(); other != &p; ++other) {
+      if ((p - *other).cwiseAbs().maxCoeff() < least_gap) {
+        throw Error(
+            "two points of a convex tool are nearer than 1e-30 to each other, and yet not in the "
+            "same place: leave one of them out");
+      }
     }
   }
 }

@@ -6,6 +6,7 @@
 #include <array>
 #include <limits>
 
+#include "direction_of.h"
 #include "keepout/geometry/closest_point.h"
 #include "keepout/geometry/orientation.h"
 
@@ -146,10 +147,10 @@ Vec3 sharpened(const Nearest& nearest) noexcept {
   }
   Vec3 n = nearest.at;
   if (nearest.simplex.size == 2) {
-    const Vec3 edge = (v[1].at - v[0].at).normalized();
+    const Vec3 edge = direction_of(v[1].at - v[0].at);
     for (int i = 0; i < 2; ++i) n -= n.dot(edge) * edge;
   }
-  return n.normalized();
+  return direction_of(n);
 }
 
 }  // namespace
@@ -184,7 +185,7 @@ NearestPoints nearest_points(std::span<const Vec3> points, const Triangle& trian
                        nearest.distance,     overlap,
                        Vec3::Zero(),         -std::numeric_limits<double>::infinity()};
   if (overlap) return result;
-  for (const Vec3& n : {sharpened(nearest), Vec3(nearest.at / nearest.distance)}) {
+  for (const Vec3& n : {sharpened(nearest), direction_of(nearest.at)}) {
     if (!(n.squaredNorm() > 0.5)) continue;  // a simplex without an area has no normal
     const double proven = difference.lowest(n).at.dot(n);
     if (!(proven > result.proven)) continue;

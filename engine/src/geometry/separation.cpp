@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "direction_of.h"
 #include "nearest_points.h"
 
 namespace keepout {
@@ -65,14 +66,12 @@ void consider_all(const ConvexTool& tool, const Triangle& triangle, BestDirectio
   Vec3 some_edge = Vec3::Zero();
   for (const Vec3& edge : tool.edge_directions()) some_edge = edge;
   for (int e = 0; e < 3; ++e) {
-    const Vec3 side = triangle[(e + 1) % 3] - triangle[e];
-    const double length = side.norm();
-    if (!(length > 0.0)) continue;
-    some_edge = side / length;
+    const Vec3 side = direction_of(triangle[(e + 1) % 3] - triangle[e]);
+    if (side.isZero(0.0)) continue;
+    some_edge = side;
     for (const Vec3& edge : tool.edge_directions()) {
-      const Vec3 cross = edge.cross(some_edge);
-      const double sine = cross.norm();
-      if (sine > 0.0) best.consider(cross / sine);
+      const Vec3 across = direction_of(edge.cross(side));
+      if (!across.isZero(0.0)) best.consider(across);
     }
   }
   // Where all is on a line, any direction across will do; where all is a point, any at all.

@@ -74,6 +74,13 @@ std::optional<Surface> read_binary_stl(const MeshSource& source, unsigned thread
 void write_binary_stl(const std::filesystem::path& path, const Surface& surface) {
   write_binary_stl(path, surface.triangles.size(), [&](std::uint64_t t) -> Triangle {
     const Corners& c = surface.triangles[t];
+    for (const VertexId v : c) {
+      if (v >= surface.vertices.size()) {
+        throw Error(path.string() + ": triangle " + std::to_string(t) + " names vertex " +
+                    std::to_string(v) + ", but there are only " +
+                    std::to_string(surface.vertices.size()) + ": give it all of them");
+      }
+    }
     return {surface.vertices[c[0]], surface.vertices[c[1]], surface.vertices[c[2]]};
   });
 }

@@ -33,7 +33,7 @@ std::string_view reason(CycleStatus status) noexcept;
 
 /// How a proxy is led, and how it pulls the hand.
 struct HapticOptions {
-  double period = 0.001;     // of a cycle [s], > 0
+  double period = 0.001;     // of a cycle [s], 1e-6 to 1
   SpringDamper spring = {};  // between proxy and hand
   double top_speed = 200.0;  // of the proxy, which the robot follows [length / s], > 0
   double farthest = 50.0;    // of the hand from the proxy; beyond it is refused [length], > 0
@@ -69,7 +69,7 @@ struct HapticCycle {
 class HapticProxy {
  public:
   /// Throws Error for an option out of range. The step of a cycle, top_speed * period, is cut to
-  /// the radius of the motion sphere.
+  /// the radius of the motion sphere; and the guard's recovery to that step.
   HapticProxy(MotionConstraint guard, const HapticOptions& options);
 
   /// Places proxy and hand at a tip: at the start, and whenever the hand has moved on its own

@@ -34,6 +34,9 @@ inline constexpr double rotation_tolerance = 1e-4;
 /// Whether a matrix is a rotation, to within the tolerance: finite, orthonormal, no reflection.
 bool is_rotation(const Mat3& matrix) noexcept;
 
+/// The rotation nearest to what is one to within the tolerance. Precondition: is_rotation(matrix).
+Mat3 nearest_rotation(const Mat3& matrix) noexcept;
+
 /// Whether a pose may be acted upon: its position is finite and its rotation is one.
 bool is_valid(const Pose& pose) noexcept;
 

@@ -20,7 +20,8 @@ class ConvexTool {
   static constexpr std::size_t most_points = 64;
 
   /// A ball around the origin. Like the others below it throws Error when a length is not finite or
-  /// above 1e30, a radius is below 0, or there is no point or more than most_points. [length]
+  /// above 1e30, a radius is below 0, two points are nearer than 1e-30 to each other but not in the
+  /// same place, or there is no point or more than most_points. [length]
   static ConvexTool sphere(double radius);
   /// A cylinder with round ends: all within `radius` of a segment. [length]
   static ConvexTool capsule(const Vec3& from, const Vec3& to, double radius);
