@@ -252,5 +252,29 @@ TEST(Separation, ItsNormalIsOfUnitLengthHoweverThinATriangleIs) {
   }
 }
 
+TEST(Separation, NoDistanceIsToldThatNoPlaneProvesHoweverMixedTheLengths) {
+  Random random(10);
+  const auto coordinate = [&] {
+    constexpr double sizes[] = {0.0, 1e-9, 1e-3, 1.0, 7.0, 1e3, 1e9, -1.0};
+    const double size = sizes[random.below(8)];
+    return random.below(2) == 0 ? size : size * random.uniform();
+  };
+  const auto place = [&] { return Vec3(coordinate(), coordinate(), coordinate()); };
+  for (int i = 0; i < test::trials(20'000); ++i) {
+    std::vector<Vec3> points(2 + random.below(4));
+    for (Vec3& p : points) p = place();
+    const ConvexTool tool = ConvexTool::hull(points);
+    if (tool.points().size() == 1) continue;  // of a ball it is the kernel's
+    const Triangle t{place(), place(), place()};
+    const Vec3 position = place();
+    double size =
+        position.norm() + tool.bounding_ball().center.norm() + tool.bounding_ball().radius;
+    for (const Vec3& corner : t) size = std::max(size, corner.norm());
+    const Separation found = separation(tool, position, t);
+    ASSERT_LE(found.distance, separation_along(found.normal, tool, position, t) + 1e-14 * size)
+        << i;
+  }
+}
+
 }  // namespace
 }  // namespace keepout
