@@ -107,15 +107,19 @@ Separation separation(const ConvexTool& tool, const Vec3& position,
   BestDirection best(tool, local);
   consider_all(tool, local, best);
   if (!nearest.overlap) best.take(nearest.normal, nearest.proven);
-  if (!nearest.overlap && best.separation() > 0.0) {
+  // Of a point the kernel's distance holds, however badly its normal is known.
+  const bool is_point = tool.points().size() == 1;
+  if (is_point && !nearest.overlap && best.separation() > 0.0) {
     return {nearest.distance - tool.radius(), best.normal(), position + nearest.on_triangle};
   }
+  // Of others, where lengths are mixed, the search may have ended too far off: told is what the
+  // best plane proves, or the depth.
+  const double apart = nearest.overlap ? std::min(best.separation(), 0.0) : best.separation();
 
   // Taken apart along the normal by more than the depth, the deepest points are the nearest ones.
   const Vec3 way = (size - best.separation()) * best.normal();
   const NearestPoints parted = nearest_points(tool.points(), moved(local, -way));
-  return {std::min(best.separation(), 0.0) - tool.radius(), best.normal(),
-          position + (parted.on_triangle + way)};
+  return {apart - tool.radius(), best.normal(), position + (parted.on_triangle + way)};
 }
 
 bool is_in_range(const Vec3& position, const Triangle& triangle) noexcept {

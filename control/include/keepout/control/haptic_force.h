@@ -44,7 +44,7 @@ void check(const SpringDamper& spring);
 /// next; what is left over is dropped, as it would hide the activity of the next.
 class PassivityObserver {
  public:
-  /// `largest_brake`: damping that the controller may use at most [N s / length]; 0: it only
+  /// `largest_brake`: damping that the controller may use at most [N s / length], >= 0; 0: it only
   /// observes.
   explicit PassivityObserver(double largest_brake = 0.0) noexcept : largest_brake_(largest_brake) {}
 
