@@ -35,7 +35,7 @@ Surface cone(VertexId faces, double slope) {
   return surface;
 }
 
-/// A sphere around the origin, of 2 n^2 triangles.
+/// A watertight sphere around the origin, of 2 n (n - 1) triangles.
 Surface sphere(VertexId n, double radius) {
   Surface surface;
   for (VertexId i = 0; i <= n; ++i) {
@@ -50,8 +50,8 @@ Surface sphere(VertexId n, double radius) {
   for (VertexId i = 0; i < n; ++i) {
     for (VertexId j = 0; j < n; ++j) {
       const VertexId a = i * n + j, b = i * n + (j + 1) % n;
-      surface.triangles.push_back({a, a + n, b});
-      surface.triangles.push_back({b, a + n, b + n});
+      if (i > 0) surface.triangles.push_back({a, a + n, b});
+      if (i + 1 < n) surface.triangles.push_back({b, a + n, b + n});
     }
   }
   return weld(std::move(surface));

@@ -94,18 +94,21 @@ HWY_INLINE void ask(const LeafBlock& leaf, std::size_t lane, const WideBvh& tree
   best = {t, BallScreen({ball.center, distance}, tree.mesh().bounds(), tree.frame())};
 }
 
+/// In looks: mostly a wait for the leaf, which nothing has brought nearer.
+constexpr std::size_t work_of_asking = 2;
+
 /// Looks at a leaf: first at its likely nearest, which leaves few others to ask about.
 HWY_INLINE void look(const LeafBlock& leaf, const WideBvh& tree, Budget& budget, Best& best) {
   std::size_t likely = 0;
   std::uint32_t left = no_farther(leaf, best.reach, likely);
   if (left == 0) return;
   const double before = best.reach.ball.radius;
-  budget.spend(1);
+  budget.spend(work_of_asking);
   ask(leaf, likely, tree, best);
   const std::uint32_t asked = std::uint32_t{1} << likely;
   if (best.reach.ball.radius < before) left = no_farther(leaf, best.reach, likely);
   for (left &= ~asked; left != 0; left &= left - 1) {
-    budget.spend(1);
+    budget.spend(work_of_asking);
     ask(leaf, static_cast<std::size_t>(std::countr_zero(left)), tree, best);
   }
 }

@@ -153,13 +153,12 @@ std::span<const FreePolytope::Turn> FreePolytope::by_distance(std::span<const Hi
 
 PolytopeStatus FreePolytope::separate(const Query& query, std::span<const Hit> hits, Budget& budget,
                                       HalfSpaceBuffer& planes) noexcept {
-  // Beside a triangle's own, in looks: a plane and its probes, and each plane asked about it.
-  constexpr std::size_t work_of_plane = 16;
+  constexpr std::size_t work_of_plane = 24;  // and its probes, in looks
   is_left_.fill(true);
   std::size_t latest = 0;  // neighbours tend to be behind the same plane
   for (const Turn& turn : by_distance(hits)) {
     if (turn.distance > query.reach) break;
-    budget.spend(1);
+    budget.spend(2);
     if (budget.is_spent()) return PolytopeStatus::over_capacity;
     const Hit& hit = hits[turn.hit];
     const TriangleFromTip seen = triangle_from_tip(mesh_->triangle(hit.triangle), query.tip);
@@ -169,7 +168,7 @@ PolytopeStatus FreePolytope::separate(const Query& query, std::span<const Hit> h
     if (latest < planes.size() && is_behind(planes[latest])) continue;
     const HalfSpace* const behind = std::find_if(planes.begin(), planes.end(), is_behind);
     latest = static_cast<std::size_t>(behind - planes.begin());
-    budget.spend(latest / 4);
+    budget.spend(2 * latest);
     if (behind != planes.end()) continue;
 
     const std::optional<HalfSpace> plane = plane_for(query, hit, seen);
