@@ -83,6 +83,30 @@ TEST_F(PoseFile, AByteOrderMarkAtTheStartIsPassedOver) {
       ":2:", "is not a number");
 }
 
+TEST_F(PoseFile, WhatAFileSaysIsQuotedShortAndWithoutControlCharacters) {
+  expect_error("1 2 \x1b[2J 4 5 6\n", ":1:", "'?[2J' is not a number");
+  expect_error("1 2 3 4 5 6 \x07\n", ":1:", "'?' is too many");
+  expect_error("1 2 " + std::string(300, 'x') + " 4 5 6\n",
+               ":1:", "'" + std::string(200, 'x') + "...'");
+}
+
+TEST_F(PoseFile, ALineThatDoesNotEndIsReadNoFurtherThanLinesGo) {
+  const std::filesystem::path file = write("1 2 3 4 5 6\n#");
+  std::filesystem::resize_file(file, std::uintmax_t{1} << 28);  // a hole, which takes no room
+  try {
+    read_poses(file);
+    ADD_FAILURE() << "no error";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("poses.txt:2: is longer"), std::string::npos)
+        << error.what();
+  }
+}
+
+TEST_F(PoseFile, ALineMayBeAsLongAsItsCommentIs) {
+  const auto poses = read_poses(write("#" + std::string(60'000, 'x') + "\n1 2 3 4 5 6"));
+  EXPECT_EQ(poses.size(), 1u);
+}
+
 TEST_F(PoseFile, AMissingFileAndAFolderAreErrors) {
   EXPECT_THROW(read_poses(folder_.path() / "none.txt"), Error);
   EXPECT_THROW(read_poses(folder_.path()), Error);

@@ -130,6 +130,33 @@ TEST_F(Verify, WhatDoesNotBelongTogetherIsNotMerged) {
   }
 }
 
+TEST_F(Verify, AResultWhoseNumbersCannotBeIsNotMerged) {
+  ASSERT_EQ(run("cube.stl --steps 1000 --json whole.json").status, 0);
+  const std::vector<std::pair<std::string, nlohmann::json>> damages{
+      {"/total/breaches/penetration", -1},
+      {"/total/breaches/penetration", 0.5},
+      {"/meshes/0/breaches/penetration", 1},  // that the total does not have
+      {"/meshes/0/statuses/free", -1},
+      {"/meshes/0/seconds", -1.0},
+      {"/total/steps", 1},
+      {"/shard_count", -1},
+      {"/shard_count", 1'000'000'000'000},
+      {"/shards/0/index", 0},
+      {"/shards/0/index", 2}};
+  folder_.write("again.json", read("whole.json").dump());
+  ASSERT_EQ(run("--merge again.json").status, 0);
+  for (const auto& [place, value] : damages) {
+    nlohmann::json damaged = read("whole.json");
+    damaged[nlohmann::json::json_pointer(place)] = value;
+    folder_.write("damaged.json", damaged.dump());
+    const Outcome outcome = run("--merge damaged.json");
+    EXPECT_EQ(outcome.status, 1) << place << value;
+    EXPECT_NE(outcome.output.find("damaged.json: is not a whole"), std::string::npos)
+        << place << value << "\n"
+        << outcome.output;
+  }
+}
+
 TEST_F(Verify, MistakesAreToldOf) {
   const std::vector<std::pair<std::string, std::string>> mistakes{
       {"none.stl", "none.stl"},

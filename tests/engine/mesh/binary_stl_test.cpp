@@ -3,6 +3,7 @@
 #include "keepout/mesh/binary_stl.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <cstring>
 #include <filesystem>
@@ -76,6 +77,13 @@ TEST_F(BinaryStl, GivesBackTheTrianglesThatWereWritten) {
       }
     }
   }
+}
+
+TEST_F(BinaryStl, APipeOrDeviceIsNotReplacedByAFile) {
+  ASSERT_EQ(mkfifo(file.c_str(), 0600), 0);
+  EXPECT_THROW(write_binary_stl(file, single_triangle()), Error);
+  EXPECT_TRUE(fs::is_fifo(file));
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 1);
 }
 
 TEST_F(BinaryStl, WritesTriangleByTriangleTheSameAsAtOnce) {

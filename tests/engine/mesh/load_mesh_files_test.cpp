@@ -16,7 +16,22 @@ TEST_F(LoadMesh, WhatIsNotAReadableFileIsAnError) {
   EXPECT_CONTAINS(complaint("mesh.obj", ""), "empty");
   const fs::path pipe = folder.path() / "pipe.stl";
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
-  EXPECT_CONTAINS(complaint(pipe), "not a regular file");
+  EXPECT_CONTAINS(complaint(pipe), "not a regular file; copy");
+  const fs::path circle = folder.path() / "circle.stl";
+  fs::create_symlink(circle, circle);
+  EXPECT_CONTAINS(complaint(circle), "symbolic links");
+}
+
+TEST_F(LoadMesh, WhatAFileSaysIsQuotedWithoutControlCharacters) {
+  const std::string name = "\x1b[2J" + std::string(1000, 'n');
+  const Surface triangle = single_triangle();
+  for (const std::string& ply : {as_text_ply(triangle), as_binary_ply<float>(triangle, false)}) {
+    const std::string element = "element " + name + " 9\nproperty list uint double q\n";
+    const std::string message =
+        complaint("mesh.ply", replaced(ply, "element vertex", element + "element vertex"));
+    EXPECT_CONTAINS(message, "'?[2Jnnn");
+    EXPECT_LT(message.size(), 200u);
+  }
 }
 
 TEST_F(LoadMesh, AFileWithoutPermissionIsAnError) {

@@ -167,6 +167,25 @@ TEST_F(LoadMesh, ObjFreeFormSurfacesAreAnError) {
   EXPECT_CONTAINS(complaint("mesh.obj", "v 0 0 0\ncstype bspline\nsurf 0 1 0 1 1\n"), "free-form");
 }
 
+TEST_F(LoadMesh, ObjStatementsThatAreUnknownAreLeftOutWithAWarning) {
+  const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  for (const char* known :
+       {"mtllib a.mtl", "o a", "g a b", "s off", "usemtl a", "vt 0 0", "vn 0 0 1", "vp 0 0",
+        "lod 1", "bevel on", "shadow_obj a", "maplib a"}) {
+    EXPECT_TRUE(load_unchecked("mesh.obj", triangle + known + "\n").warnings.empty()) << known;
+  }
+  const LoadedMesh loaded = load_unchecked("mesh.obj", triangle + "F 1 3 2\n\x1b 3 2 1\n");
+  ASSERT_EQ(loaded.warnings.size(), 1u);
+  EXPECT_CONTAINS(loaded.warnings[0], "2 lines");
+  EXPECT_CONTAINS(loaded.warnings[0], "line 5: 'F'");
+  EXPECT_CONTAINS(complaint("mesh.obj", triangle + "call other.obj\n"), "line 5: ");
+}
+
+TEST_F(LoadMesh, AnObjVertexWithMoreThanNumbersIsAnError) {
+  EXPECT_CONTAINS(complaint("mesh.obj", "v 0 0 0\nv 1 0 0 v 0 1 0\nv 5 5 5\nf 1 2 3\n"),
+                  "line 2: ");
+}
+
 TEST_F(LoadMesh, OffMayCarryCommentsAndColours) {
   const LoadedMesh loaded =
       load("mesh.off",
@@ -215,6 +234,21 @@ TEST_F(LoadMesh, PlyHeadersThatAreNotUnderstoodAreErrorsWithTheirLine) {
   EXPECT_CONTAINS(message("element vertex", "element point"), "no vertices");
   EXPECT_CONTAINS(complaint("mesh.ply", ply.substr(0, ply.find("end_header"))),
                   "within its header");
+}
+
+TEST_F(LoadMesh, APlyPropertyThatIsDeclaredTwiceIsAnError) {
+  const std::string ply = as_text_ply(single_triangle());
+  EXPECT_CONTAINS(complaint("mesh.ply", replaced(ply, "uchar red", "float x")), "its x twice");
+  EXPECT_CONTAINS(
+      complaint("mesh.ply", replaced(ply, "short quality", "list uchar int vertex_index")),
+      "its vertex_indices twice");
+}
+
+TEST_F(LoadMesh, APlyHeaderThatDoesNotEndIsReadNoFurtherThanHeadersGo) {
+  const fs::path file = folder.write("mesh.ply", "ply\nformat ascii 1.0\ncomment ");
+  fs::resize_file(file, std::uintmax_t{1} << 28);  // a hole, which takes no room on the disk
+  EXPECT_CONTAINS(complaint(file), "header");
+  EXPECT_CONTAINS(complaint(file), "16 MiB");
 }
 
 TEST_F(LoadMesh, PlyElementsThatAreNotAskedForArePassedOver) {

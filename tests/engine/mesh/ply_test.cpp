@@ -167,5 +167,16 @@ TEST_F(BinaryPly, CutShortAnywhereItIsAnError) {
   }
 }
 
+TEST_F(BinaryPly, AnErrorNamesTheFaceThatItIsIn) {
+  const std::string whole = polygon_ply({{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {0, 1, 0}});
+  std::string names_none = whole;
+  names_none[whole.size() - 1] = '\x01';  // of its last corner
+  std::string negative = whole;
+  for (std::size_t i = 17; i <= 20; ++i) negative[whole.size() - i] = '\xff';
+  for (const std::string& damaged : {names_none, negative, whole.substr(0, whole.size() - 1)}) {
+    EXPECT_CONTAINS(complaint(damaged), "'face' 1: ");
+  }
+}
+
 }  // namespace
 }  // namespace keepout
