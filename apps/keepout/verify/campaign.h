@@ -40,6 +40,8 @@ class Guard {
 struct Shard {
   std::uint64_t index = 1;
   std::uint64_t count = 1;
+
+  static constexpr std::uint64_t most = 10'000;  // of them; more than anybody has processors for
 };
 
 /// What a campaign does. With the same seed, steps and arenas each trajectory is the same, whatever

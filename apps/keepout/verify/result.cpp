@@ -2,6 +2,7 @@
 #include "result.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 
@@ -115,9 +116,58 @@ void add_result(Json& sum, const Json& part) {
   sum.at("complete") = is_complete(sum);
 }
 
+/// JSON has negative numbers and fractions, which get() would turn into counts, and which could
+/// hide a breach in a sum.
+bool is_count(const Json& value) {
+  constexpr std::uint64_t most = std::uint64_t{1} << 53;
+  return value.is_number_unsigned() && value.get<std::uint64_t>() <= most;
+}
+
+/// Of the numbers in a tally; none is missing, or print() would miss it.
+bool are_possible(const Json& tally) {
+  const auto entries = tally.items();
+  return std::all_of(entries.begin(), entries.end(), [](const auto& entry) {
+    const Json& value = entry.value();
+    if (value.is_object()) return are_possible(value);
+    if (entry.key() == "mesh") return value.is_string();
+    if (entry.key() == "seconds") return value.is_number() && value.template get<double>() >= 0.0;
+    if (entry.key().starts_with("least")) return value.is_null() || value.is_number();
+    return is_count(value);
+  });
+}
+
+/// Whether what a file says agrees with itself.
+bool is_sound(const Json& result) {
+  Json total = json_of(Tally{.mesh = "total"});
+  for (const Json& mesh : result.at("meshes")) {
+    if (!are_possible(mesh)) return false;
+    add(total, mesh);
+  }
+  const auto agrees = [&](const char* key) {
+    using Unordered = nlohmann::json;  // whatever order another program may have put them in
+    return Unordered(total.at(key)) == Unordered(result.at("total").at(key));
+  };
+  const auto& shards = result.at("shards");
+  std::vector<std::uint64_t> indices;
+  for (const Json& shard : shards) {
+    if (!is_count(shard.at("index"))) return false;
+    indices.push_back(shard.at("index").get<std::uint64_t>());
+  }
+  std::ranges::sort(indices);
+  const Json& count = result.at("shard_count");
+  return are_possible(result.at("total")) && result.at("steps_done") == total.at("steps") &&
+         std::ranges::all_of(
+             std::array{"trajectories", "steps", "tips", "led_out", "statuses", "breaches"},
+             agrees) &&
+         is_count(count) && count <= Shard::most && !indices.empty() && indices.front() >= 1 &&
+         indices.back() <= count.get<std::uint64_t>() &&
+         std::ranges::adjacent_find(indices) == indices.end();
+}
+
 Json read(const std::filesystem::path& path) {
   std::ifstream file(path);
   if (!file) throw Error(path.string() + ": cannot be read; is it there?");
+  const Error damaged(path.string() + ": is not a whole result of 'keepout verify --json'");
   try {
     Json result = Json::parse(file);
     const int written = result.at("keepout_verify").get<int>();
@@ -125,11 +175,12 @@ Json read(const std::filesystem::path& path) {
       throw Error(path.string() + ": written by another version of keepout verify (format " +
                   std::to_string(written) + ", not " + std::to_string(file_format) + ")");
     }
+    if (!is_sound(result)) throw damaged;
     std::ostream nowhere(nullptr);
     print(nowhere, result);  // which misses what is not there
     return result;
   } catch (const Json::exception&) {
-    throw Error(path.string() + ": is not a whole result of 'keepout verify --json'");
+    throw damaged;
   }
 }
 

@@ -24,8 +24,9 @@ struct CampaignRun {
 /// The result of one shard.
 Json result_of(const CampaignRun& run, const Findings& findings);
 
-/// Adds up results of one campaign. Throws Error, naming files, when one is not such a result, when
-/// they are of different campaigns or versions, or share a shard.
+/// Adds up results of one campaign. Throws Error, naming files, when one is not such a result, or
+/// its numbers do not agree with each other, when they are of different campaigns or versions, or
+/// share a shard.
 Json merged(const std::vector<std::filesystem::path>& files);
 
 /// How many steps broke the theorem.

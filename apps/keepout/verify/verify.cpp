@@ -28,7 +28,9 @@ std::optional<Shard> parse_shard(const std::string& text) {
   char slash = ' ';
   in >> shard.index >> slash >> shard.count;
   const bool is_read = in && in.peek() == std::istringstream::traits_type::eof() && slash == '/';
-  if (!is_read || shard.index < 1 || shard.index > shard.count) return std::nullopt;
+  if (!is_read || shard.index < 1 || shard.index > shard.count || shard.count > Shard::most) {
+    return std::nullopt;
+  }
   return shard;
 }
 
@@ -73,7 +75,8 @@ Json run(const VerifyOptions& options, std::ostream& out) {
 /// What --shard may be told; nothing is wrong with it when the text is empty.
 std::string check_shard(const std::string& text) {
   if (parse_shard(text)) return {};
-  return "expected I/N, part I of N, such as 1/2 or 2/2; not '" + text + "'";
+  return "expected I/N, part I of N, such as 1/2 or 2/2, of at most " +
+         std::to_string(Shard::most) + "; not '" + text + "'";
 }
 
 }  // namespace
