@@ -16,10 +16,23 @@ std::filesystem::path temporary_beside(const std::filesystem::path& path) {
   return temporary;
 }
 
+/// Why no file can be put there: a pipe or a device would be gone, and with it what others know by
+/// its name. No error if there is a file, or nothing.
+std::errc what_stands_at(const std::filesystem::path& path) {
+  std::error_code ignored;
+  const std::filesystem::file_status status = std::filesystem::status(path, ignored);
+  if (!std::filesystem::exists(status) || std::filesystem::is_regular_file(status)) return {};
+  return std::filesystem::is_directory(status) ? std::errc::is_a_directory : std::errc::file_exists;
+}
+
 }  // namespace
 
 FileReplacement::FileReplacement(const std::filesystem::path& path)
     : path_(path), temporary_(temporary_beside(path)) {
+  if (const std::errc error = what_stands_at(path); error != std::errc{}) {
+    error_ = std::make_error_code(error);
+    return;
+  }
   errno = 0;
   file_.open(temporary_, std::ios::binary | std::ios::trunc);
   note_failure();
