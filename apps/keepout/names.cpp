@@ -17,6 +17,15 @@ std::string enumerated(const std::vector<std::string>& names) {
   return text;
 }
 
+std::string printable(std::string_view text) {
+  constexpr std::size_t longest = 200;
+  std::string result;
+  for (const char c : text.substr(0, longest)) result += c >= ' ' && c <= '~' ? c : '?';
+  return text.size() > longest ? result + "..." : result;
+}
+
+std::string in_quotes(std::string_view text) { return "'" + printable(text) + "'"; }
+
 std::string shell_word(const std::string& word) {
   constexpr std::string_view plain =
       "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=.,/:@%";

@@ -17,6 +17,13 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string>& 
 /// "a, b, c".
 std::string enumerated(const std::vector<std::string>& names);
 
+/// The beginning of somebody else's text, other bytes than printable ASCII as '?': up to 200 bytes,
+/// and "..." where there are more.
+std::string printable(std::string_view text);
+
+/// The same in quotes.
+std::string in_quotes(std::string_view text);
+
 /// As a shell needs it to be one word.
 std::string shell_word(const std::string& word);
 

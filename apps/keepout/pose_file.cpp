@@ -8,8 +8,10 @@
 #include <fstream>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "keepout/error.h"
+#include "names.h"
 
 namespace keepout::app {
 namespace {
@@ -17,6 +19,7 @@ namespace {
 constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";  // of UTF-8, as spreadsheets write
 constexpr std::string_view blanks = " \t\r";
 constexpr std::string_view separators = " \t\r,";
+constexpr std::size_t longest_line = (1 << 16) - 1;  // [bytes]
 
 /// The words of a line, parted by blanks, or by a comma with or without blanks around it. Throws
 /// Error for an empty column.
@@ -40,7 +43,7 @@ std::vector<std::string_view> words_in(std::string_view line) {
 
 /// Throws Error for a word that is no finite number.
 double number_in(std::string_view word) {
-  const std::string quoted = "'" + std::string(word) + "'";
+  const std::string quoted = in_quotes(word);
   // from_chars knows no plus sign, but would take the minus after one.
   if (word.starts_with('+') && !word.starts_with("+-")) word.remove_prefix(1);
   double value = 0.0;
@@ -61,7 +64,7 @@ PoseLine pose_of(const std::vector<std::string_view>& words) {
   for (std::size_t i = 0; i < std::min(words.size(), n.size()); ++i) n[i] = number_in(words[i]);
   if (words.size() < n.size()) throw Error("has fewer than six numbers");
   if (words.size() > n.size()) {
-    throw Error("has more than six numbers: '" + std::string(words[6]) + "' is too many");
+    throw Error("has more than six numbers: " + in_quotes(words[6]) + " is too many");
   }
   return {{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
 }
@@ -75,10 +78,13 @@ std::vector<PoseLine> read_poses(const std::filesystem::path& path) {
     throw Error(path.string() + ": cannot be read; check the path given to --poses");
   }
   std::vector<PoseLine> poses;
-  std::string line;
-  for (std::size_t number = 1; std::getline(file, line); ++number) {
-    const bool is_marked = number == 1 && line.starts_with(byte_order_mark);
-    const std::string_view text = std::string_view(line).substr(is_marked ? 3 : 0);
+  std::vector<char> line(longest_line + 1);
+  std::size_t number = 1;
+  for (; file.getline(line.data(), std::ssize(line)); ++number) {
+    // A line end has been counted as well.
+    const auto length = static_cast<std::size_t>(file.gcount()) - (file.eof() ? 0 : 1);
+    std::string_view text(line.data(), length);
+    if (number == 1 && text.starts_with(byte_order_mark)) text.remove_prefix(3);
     const std::size_t begin = text.find_first_not_of(blanks);
     if (begin == std::string_view::npos || text[begin] == '#') continue;
     try {
@@ -90,6 +96,10 @@ std::vector<PoseLine> read_poses(const std::filesystem::path& path) {
     }
   }
   if (file.bad()) throw Error(path.string() + ": reading broke off; is the disk sound?");
+  if (!file.eof()) {
+    throw Error(path.string() + ":" + std::to_string(number) + ": is longer than " +
+                std::to_string(longest_line) + " bytes; is this a pose file?");
+  }
   if (poses.empty()) throw Error(path.string() + ": holds no pose; give one line for each step");
   return poses;
 }

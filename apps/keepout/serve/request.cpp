@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include "names.h"
 #include "serve/answer.h"
 
 namespace keepout::app {
@@ -13,9 +14,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t longest_id = 128;       // [bytes]
-constexpr int deepest = 8;                    // more than any request needs
-constexpr std::size_t longest_excerpt = 200;  // of somebody else's text in a message [bytes]
+constexpr std::size_t longest_id = 128;  // [bytes]
+constexpr int deepest = 8;               // more than any request needs
 
 /// JSON, but no request.
 [[noreturn]] void refuse(std::string message) {
@@ -41,15 +41,6 @@ constexpr std::array<VerbKeys, 6> verbs{
      {"info", Verb::info, {}, {}},
      {"statuses", Verb::statuses, {}, {}},
      {"ping", Verb::ping, {}, {}}}};
-
-/// The beginning of somebody else's text, other bytes than printable ASCII as '?'.
-std::string printable(std::string_view text) {
-  std::string result;
-  for (const char c : text.substr(0, longest_excerpt)) result += c >= ' ' && c <= '~' ? c : '?';
-  return text.size() > longest_excerpt ? result + "..." : result;
-}
-
-std::string in_quotes(std::string_view text) { return "'" + printable(text) + "'"; }
 
 void add_to_list(std::string& list, std::string_view name) {
   if (!name.empty()) list += (list.empty() ? "" : ", ") + in_quotes(name);
