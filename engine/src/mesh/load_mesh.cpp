@@ -160,9 +160,13 @@ void swap_ras_and_lps(Surface& surface) noexcept {
 MeshSource::MeshSource(const std::filesystem::path& path) : name_(path.string()), file_(path) {
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(path, error);
+  if (status.type() == std::filesystem::file_type::none) {
+    fail("cannot be reached (" + error.message() + "); check its folders and links");
+  }
   if (!std::filesystem::exists(status)) fail("there is no such file; check the name");
   if (std::filesystem::is_directory(status)) fail("is a directory; name a mesh file in it");
-  if (!std::filesystem::is_regular_file(status)) fail("is not a regular file");
+  if (!std::filesystem::is_regular_file(status))
+    fail("is not a regular file; copy what it gives to one");
   if (!file_.is_open()) fail("cannot be read; check its permissions");
   if (size() == 0) fail("is empty; copy or export it again");
 }

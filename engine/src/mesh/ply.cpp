@@ -26,7 +26,7 @@ namespace {
 // function throws Error for a file that is damaged, or that ends too early.
 
 std::string cut_short(const PlyElement& element) {
-  return "the file ends before its last " + element.name +
+  return "the file ends before its last " + in_quotes(element.name) +
          ", so it was cut short; copy or export it again";
 }
 
@@ -37,14 +37,14 @@ class PlyText {
   explicit PlyText(TextLines& lines) : lines_(lines) {}
 
   /// Comes to the next item of an element, and to its end.
-  void begin_item(const PlyElement& element) {
+  void begin_item(const PlyElement& element, std::uint64_t) {
     element_ = &element;
     used_ = 0;
     if (!lines_.next()) fail(cut_short(element));
   }
   void end_item() const {
     if (used_ != lines_.words().size()) {
-      fail("more values than the header declares for a " + element_->name);
+      fail("more values than the header declares for a " + in_quotes(element_->name));
     }
   }
 
@@ -54,6 +54,9 @@ class PlyText {
     return is_single ? lines_.number<float>(take_word()) : lines_.coordinate(take_word());
   }
   std::uint64_t take_whole(const PlyScalar&) { return lines_.whole_number(take_word()); }
+
+  /// Nothing: take_real() has looked at each coordinate.
+  void check_vertex(const Vec3&, std::uint64_t) const {}
 
   /// Passes over values. What they are is no concern of ours.
   void skip(const PlyScalar&, std::uint64_t count) {
@@ -71,7 +74,7 @@ class PlyText {
  private:
   std::string_view take_word() {
     if (used_ == lines_.words().size()) {
-      fail("fewer values than the header declares for a " + element_->name +
+      fail("fewer values than the header declares for a " + in_quotes(element_->name) +
            "; the file is damaged");
     }
     return lines_.words()[used_++];
@@ -92,14 +95,15 @@ class PlyBytes {
                  (std::endian::native == std::endian::big)),
         position_(header.size) {}
 
-  void begin_item(const PlyElement& element) { element_ = &element; }
+  void begin_item(const PlyElement& element, std::uint64_t item) {
+    element_ = &element;
+    item_ = item;
+  }
   void end_item() const {}
   double take_real(const PlyScalar& type) { return real(take(type.size), type); }
   std::uint64_t take_whole(const PlyScalar& type) {
     const std::int64_t value = whole(take(type.size), type);
-    if (value < 0) {
-      fail("a negative length or index at a " + element_->name + "; the file is damaged");
-    }
+    if (value < 0) fail("a negative length or index; the file is damaged");
     return static_cast<std::uint64_t>(value);
   }
   void skip(const PlyScalar& type, std::uint64_t count) {
@@ -108,7 +112,16 @@ class PlyBytes {
   }
   bool has_more() const { return left() > 0; }
   bool is_of_floats() const { return false; }
-  [[noreturn]] void fail(const std::string& what) const { source_.fail(what); }
+  /// Throws Error with the item that is being read before `what`.
+  [[noreturn]] void fail(const std::string& what) const {
+    source_.fail(in_quotes(element_->name) + " " + std::to_string(item_) + ": " + what);
+  }
+
+  void check_vertex(const Vec3& vertex, std::uint64_t v) const {
+    if (vertex.allFinite()) return;
+    source_.fail("vertex " + std::to_string(v) +
+                 " has a coordinate that is not finite; repair the mesh and export it again");
+  }
 
   // For items that are all of one size, and are read at once.
 
@@ -163,6 +176,7 @@ class PlyBytes {
   const MeshSource& source_;
   bool swapped_;
   const PlyElement* element_ = nullptr;
+  std::uint64_t item_ = 0;  // of the element
   std::uint64_t position_;
   std::uint64_t begin_ = 0;  // of the buffer, in the file
   std::vector<char> buffer_;
@@ -199,7 +213,7 @@ class SurfaceReader {
         if (read_at_once(element)) continue;
       }
       for (std::uint64_t i = 0; i < element.count; ++i) {
-        body_.begin_item(element);
+        body_.begin_item(element, i);
         read_item(element);
         body_.end_item();
       }
@@ -227,7 +241,7 @@ class SurfaceReader {
       }
     }
     if (&element != layout_.vertex) return;
-    check_vertex(vertex, mesh_.surface.vertices.size());
+    body_.check_vertex(vertex, mesh_.surface.vertices.size());
     mesh_.surface.vertices.push_back(vertex);
   }
 
@@ -237,12 +251,6 @@ class SurfaceReader {
       polygons_.add_corner(body_.take_whole(*layout_.corners->type), layout_.vertex->count, body_);
     }
     polygons_.end_polygon();
-  }
-
-  void check_vertex(const Vec3& vertex, std::uint64_t v) const {
-    if (vertex.allFinite()) return;
-    body_.fail("vertex " + std::to_string(v) +
-               " has a coordinate that is not finite; repair the mesh and export it again");
   }
 
   /// All items of an element, if they are of one size and all there; else nothing, and false.
@@ -270,7 +278,7 @@ class SurfaceReader {
           vertex[static_cast<Eigen::Index>(axis)] =
               body_.real(item + offsets[axis], *layout_.coordinates[axis]->type);
         }
-        check_vertex(vertex, v);
+        body_.check_vertex(vertex, v);
         mesh_.surface.vertices[v] = vertex;
       }
     });

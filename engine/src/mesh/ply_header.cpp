@@ -18,11 +18,13 @@ constexpr std::array<PlyScalar, 8> scalars{{{"char", "int8", 1, true, true},
                                             {"float", "float32", 4, false, true},
                                             {"double", "float64", 8, false, true}}};
 
+constexpr std::uint64_t longest_header = std::uint64_t{16} << 20;  // [bytes]
+
 const PlyScalar* scalar(const TextLines& lines, std::string_view word) {
   for (const PlyScalar& type : scalars) {
     if (word == type.name || word == type.synonym) return &type;
   }
-  lines.fail("unknown type " + quoted(word) + "; the file is damaged, or not PLY 1.0");
+  lines.fail("unknown type " + in_quotes(word) + "; the file is damaged, or not PLY 1.0");
 }
 
 PlyEncoding parse_encoding(const TextLines& lines) {
@@ -40,7 +42,7 @@ PlyElement parse_element(const TextLines& lines, std::uint64_t file_size) {
   const std::uint64_t count = lines.whole_number(words[2]);
   // Every item takes a byte or a line end, so more than this cannot be there.
   if (count > file_size) {
-    lines.fail("declares " + std::string(words[2]) + " " + quoted(words[1]) +
+    lines.fail("declares " + std::string(words[2]) + " " + in_quotes(words[1]) +
                ", more than the file has room for; the file is damaged, or was cut short");
   }
   return {std::string(words[1]), count, {}};
@@ -79,17 +81,26 @@ std::optional<PlyHeader> parse_header(TextLines& lines, std::uint64_t file_size)
       header.size = lines.position();
       return header;
     } else {
-      lines.fail("a header line that is not understood: " + quoted(words[0]));
+      lines.fail("a header line that is not understood: " + in_quotes(words[0]));
     }
   }
   return std::nullopt;
+}
+
+/// Takes a property for what it is named. Of two, one would be lost, whichever is taken.
+void choose(const PlyProperty*& chosen, const PlyProperty& property, std::string_view name,
+            const MeshSource& source) {
+  if (chosen != nullptr) {
+    source.fail("declares its " + std::string(name) + " twice; check the export");
+  }
+  chosen = &property;
 }
 
 }  // namespace
 
 PlyHeader read_ply_header(const MeshSource& source) {
   // Headers are short, but for their comments.
-  for (std::uint64_t size = 1 << 16;; size *= 4) {
+  for (std::uint64_t size = 1 << 16; size <= longest_header; size *= 4) {
     std::string beginning = source.contents(size);
     const bool is_all = beginning.size() == source.size();
     if (!is_all) {
@@ -103,6 +114,7 @@ PlyHeader read_ply_header(const MeshSource& source) {
       lines.fail("the file ends within its header, so it was cut short; copy or export it again");
     }
   }
+  source.fail("its header does not end within 16 MiB; the file is damaged");
 }
 
 PlyLayout find_ply_layout(const PlyHeader& header, const MeshSource& source) {
@@ -115,14 +127,14 @@ PlyLayout find_ply_layout(const PlyHeader& header, const MeshSource& source) {
       source.fail("triangle strips are not read; export the mesh as triangles");
     }
     if (role == nullptr) continue;
-    if (*role != nullptr) source.fail("declares its " + element.name + " twice");
+    if (*role != nullptr) source.fail("declares its " + element.name + " twice; check the export");
     *role = &element;
   }
   if (layout.vertex == nullptr) source.fail("has no vertices; check the export");
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::string_view name = std::string_view("xyz").substr(axis, 1);
     for (const PlyProperty& p : layout.vertex->properties) {
-      if (p.name == name && !p.is_list()) layout.coordinates[axis] = &p;
+      if (p.name == name && !p.is_list()) choose(layout.coordinates[axis], p, name, source);
     }
     if (layout.coordinates[axis] == nullptr) {
       source.fail("its vertices have no " + std::string(name) + "; check the export");
@@ -131,7 +143,9 @@ PlyLayout find_ply_layout(const PlyHeader& header, const MeshSource& source) {
   if (layout.face == nullptr || layout.face->count == 0) return layout;
   for (const PlyProperty& p : layout.face->properties) {
     const bool has_the_name = p.name == "vertex_indices" || p.name == "vertex_index";
-    if (has_the_name && p.is_list() && p.type->whole) layout.corners = &p;
+    if (has_the_name && p.is_list() && p.type->whole) {
+      choose(layout.corners, p, "vertex_indices", source);
+    }
   }
   if (layout.corners == nullptr) source.fail("its faces have no list of vertex_indices");
   return layout;

@@ -60,10 +60,12 @@ struct PlyLayout {
 };
 
 /// Reads the header of a file. Throws Error, with the line, for what is malformed or not
-/// understood, and where more items are declared than the file has bytes.
+/// understood, where more items are declared than the file has bytes, and for a header of more than
+/// 16 MiB.
 PlyHeader read_ply_header(const MeshSource& source);
 
-/// Throws Error where the vertices or corners of a surface are missing, or where it has strips.
+/// Throws Error where the vertices or corners of a surface are missing, or declared twice, or where
+/// it has strips.
 PlyLayout find_ply_layout(const PlyHeader& header, const MeshSource& source);
 
 }  // namespace keepout

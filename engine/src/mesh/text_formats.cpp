@@ -23,7 +23,26 @@ Vec3 read_obj_vertex(TextLines& lines) {
   if (words.size() == 5 && lines.number<double>(words[4]) != 1.0) {
     lines.fail("weighted vertices are not read; export a plain mesh");
   }
+  // Else a lost line end would take the next vertex with it, and shift the numbers of all others.
+  for (const std::string_view word : words.subspan(std::min<std::size_t>(words.size(), 4))) {
+    lines.number<double>(word);
+  }
   return lines.vertex(1);
+}
+
+/// Statements that say nothing of where the surface is.
+bool is_harmless(std::string_view statement) noexcept {
+  return is_one_of(statement,
+                   {"vn", "vt", "usemtl", "s", "g", "o", "mtllib", "vp", "mg", "bevel", "lod",
+                    "c_interp", "d_interp", "usemap", "maplib", "shadow_obj", "trace_obj"});
+}
+
+void warn_of_unknown(std::uint64_t count, const std::string& first,
+                     std::vector<std::string>& warnings) {
+  if (count == 0) return;
+  warnings.push_back("left out " + std::to_string(count) +
+                     " lines that are no statements of OBJ, " + "the first in " + first +
+                     ": if the file is damaged, part of the mesh is " + "missing");
 }
 
 /// The vertex that a corner such as 7, -1, 7/2, 7//3 or 7/2/3 names, counted from 0.
@@ -33,7 +52,7 @@ VertexId vertex_of(const TextLines& lines, std::string_view corner, std::uint64_
   if (from_the_end) index.remove_prefix(1);
   const std::uint64_t given = lines.whole_number(index);
   if (given == 0 || given > vertices) {
-    lines.fail("a face names vertex " + quoted(corner) + ", but there are " +
+    lines.fail("a face names vertex " + in_quotes(corner) + ", but there are " +
                std::to_string(vertices) + " so far; the file is damaged");
   }
   return static_cast<VertexId>(from_the_end ? vertices - given : given - 1);
@@ -50,7 +69,7 @@ Words after_keyword(const TextLines& lines) {
     if (keyword.starts_with(prefix)) keyword.remove_prefix(prefix.size());
   }
   if (keyword != "OFF") {
-    lines.fail("expected 'OFF', found " + quoted(words[0]) +
+    lines.fail("expected 'OFF', found " + in_quotes(words[0]) +
                "; if the file has another format, give it that extension");
   }
   if (words.size() > 1 && words[1] == "BINARY") {
@@ -106,7 +125,7 @@ class StlWords {
   std::string_view expect(std::string_view keyword) {
     const std::string_view word = take();
     if (!is_keyword(word, keyword)) {
-      lines_.fail("expected '" + std::string(keyword) + "', found " + quoted(word) +
+      lines_.fail("expected '" + std::string(keyword) + "', found " + in_quotes(word) +
                   "; the file is damaged");
     }
     return word;
@@ -154,6 +173,8 @@ MeshFile read_obj(const MeshSource& source) {
   Polygons polygons;
   std::vector<Vec3>& vertices = mesh.surface.vertices;
   std::uint64_t left_out = 0;
+  std::uint64_t unknown = 0;
+  std::string first_unknown;
   while (lines.next()) {
     const std::string_view statement = lines.words()[0];
     const Words corners = lines.words().subspan(1);
@@ -169,8 +190,12 @@ MeshFile read_obj(const MeshSource& source) {
       polygons.end_polygon();
     } else if (is_one_of(statement, {"l", "p"})) {
       ++left_out;
-    } else if (is_one_of(statement, {"cstype", "curv", "curv2", "surf"})) {
+    } else if (is_one_of(statement, {"cstype", "curv", "curv2", "surf", "bzp", "bsp", "cdp"})) {
       lines.fail("free-form curves and surfaces are not read; export a triangle mesh");
+    } else if (is_one_of(statement, {"call", "csh"})) {
+      lines.fail("other files are not read; export the mesh as one file");
+    } else if (!is_harmless(statement) && unknown++ == 0) {
+      first_unknown = "line " + std::to_string(lines.line()) + ": " + in_quotes(statement);
     }
   }
   if (vertices.empty()) {
@@ -182,6 +207,7 @@ MeshFile read_obj(const MeshSource& source) {
   if (left_out > 0) {
     mesh.warnings.push_back("left out " + std::to_string(left_out) + " lines or points");
   }
+  warn_of_unknown(unknown, first_unknown, mesh.warnings);
   if (lines.ends_within_a_line()) {
     mesh.warnings.push_back(
         "the last line has no line end: if the file was cut short, part of the mesh is missing, "

@@ -108,11 +108,11 @@ Real TextLines::number(std::string_view word) const {
     value = static_cast<Real>(wide);
   }
   if (error != std::errc{}) {
-    fail("expected a number, found " + quoted(word) +
+    fail("expected a number, found " + in_quotes(word) +
          "; numbers need a decimal point, and no comma");
   }
   if (!std::isfinite(value)) {
-    fail("a coordinate is not finite, or too large for its type: " + quoted(word) +
+    fail("a coordinate is not finite, or too large for its type: " + in_quotes(word) +
          "; repair the mesh and export it again");
   }
   return value;
@@ -138,12 +138,12 @@ std::uint64_t TextLines::whole_number(std::string_view word) const {
   std::uint64_t value = 0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
   if (error != std::errc{} || end != word.data() + word.size()) {
-    fail("expected a whole number, found " + quoted(word) + "; the file is damaged");
+    fail("expected a whole number, found " + in_quotes(word) + "; the file is damaged");
   }
   return value;
 }
 
-std::string quoted(std::string_view word) {
+std::string in_quotes(std::string_view word) {
   constexpr std::size_t longest = 24;
   std::string text = "'";
   for (const char c : word.substr(0, longest)) text += (c >= ' ' && c <= '~') ? c : '?';

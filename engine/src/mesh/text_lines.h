@@ -75,6 +75,6 @@ class TextLines {
 };
 
 /// The word in quotes, fit for a message: short, and without control characters.
-std::string quoted(std::string_view word);
+std::string in_quotes(std::string_view word);
 
 }  // namespace keepout
