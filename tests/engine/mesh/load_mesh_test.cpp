@@ -39,6 +39,8 @@ TEST_P(LoadMeshFormat, TakesTheExtensionInAnyCase) {
 TEST_P(LoadMeshFormat, CutShortAnywhereItIsAnErrorOrWarnsOfIt) {
   const std::string whole = GetParam().write(tetrahedron());
   const bool has_counts = GetParam().name != "Obj";
+  const bool ends_with_a_number =
+      !has_counts || GetParam().name == "Off" || GetParam().name == "TextPly";
   for (std::size_t length = 0; length < whole.size(); ++length) {
     const std::string contents = whole.substr(0, length);
     // White space is all that a text may lack; nothing is lost with it.
@@ -46,10 +48,10 @@ TEST_P(LoadMeshFormat, CutShortAnywhereItIsAnErrorOrWarnsOfIt) {
     const bool lacks_nothing = lacking.find_first_not_of(" \n") == std::string_view::npos;
     std::size_t triangles = 0;
     try {
-      const LoadedMesh loaded = load(GetParam().file, contents);
+      const LoadedMesh loaded = load_unchecked(GetParam().file, contents);
       triangles = loaded.mesh->triangle_count();
       // OBJ has no counts: cut within a line it warns, and at the end of one nothing can tell.
-      if (!has_counts && !contents.ends_with('\n')) {
+      if (ends_with_a_number && !contents.ends_with('\n')) {
         ASSERT_FALSE(loaded.warnings.empty()) << length;
       }
     } catch (const Error& error) {
