@@ -65,6 +65,9 @@ class PlyText {
 
   /// Whether anything follows.
   bool has_more() { return lines_.next(); }
+  void warn_of_open_end(std::vector<std::string>& warnings) const {
+    lines_.warn_of_open_end(last_number_lost, warnings);
+  }
 
   /// Whether the coordinates are to be rounded to floats.
   bool is_of_floats() const { return lines_.has_only_floats(); }
@@ -111,6 +114,7 @@ class PlyBytes {
     position_ += count * type.size;
   }
   bool has_more() const { return left() > 0; }
+  void warn_of_open_end(std::vector<std::string>&) const {}
   bool is_of_floats() const { return false; }
   /// Throws Error with the item that is being read before `what`.
   [[noreturn]] void fail(const std::string& what) const {
@@ -223,6 +227,7 @@ class SurfaceReader {
     if (body_.has_more()) {
       mesh_.warnings.push_back("there is more in the file than its header declares: left out");
     }
+    body_.warn_of_open_end(mesh_.warnings);
     mesh_.comments = header_.comments;
     return std::move(mesh_);
   }

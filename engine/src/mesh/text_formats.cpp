@@ -208,11 +208,8 @@ MeshFile read_obj(const MeshSource& source) {
     mesh.warnings.push_back("left out " + std::to_string(left_out) + " lines or points");
   }
   warn_of_unknown(unknown, first_unknown, mesh.warnings);
-  if (lines.ends_within_a_line()) {
-    mesh.warnings.push_back(
-        "the last line has no line end: if the file was cut short, part of the mesh is missing, "
-        "and OBJ has no counts to tell by");
-  }
+  lines.warn_of_open_end("part of the mesh is missing, and OBJ has no counts to tell by",
+                         mesh.warnings);
   return mesh;
 }
 
@@ -250,6 +247,7 @@ MeshFile read_off(const MeshSource& source) {
                             std::to_string(lines.line()) + " on: left out");
   }
   while (lines.next()) continue;  // for their comments
+  lines.warn_of_open_end(last_number_lost, mesh.warnings);
   mesh.comments = lines.take_comments();
   return mesh;
 }

@@ -90,8 +90,10 @@ std::string_view TextLines::after(std::string_view word) const noexcept {
   return text_.substr(begin, text_.find_first_of("\r\n", begin) - begin);
 }
 
-bool TextLines::ends_within_a_line() const noexcept {
-  return !text_.empty() && !is_line_end(text_.back());
+void TextLines::warn_of_open_end(std::string_view lost, std::vector<std::string>& warnings) const {
+  if (text_.empty() || is_line_end(text_.back())) return;
+  warnings.push_back("the last line has no line end: if the file was cut short, " +
+                     std::string(lost));
 }
 
 void TextLines::fail(const std::string& what) const {

@@ -39,8 +39,9 @@ class TextLines {
   std::size_t position() const noexcept { return position_; }
   /// What follows one of the words on its line, blanks included.
   std::string_view after(std::string_view word) const noexcept;
-  /// True if the text stops in the middle of a line: a sign that it may have been cut short.
-  bool ends_within_a_line() const noexcept;
+  /// Warns if the text stops in the middle of a line: a sign that it may have been cut short, with
+  /// which `lost` would be.
+  void warn_of_open_end(std::string_view lost, std::vector<std::string>& warnings) const;
   /// Of the lines so far, where the format has them.
   std::vector<std::string> take_comments() noexcept { return std::move(comments_); }
 
@@ -73,6 +74,9 @@ class TextLines {
   std::size_t next_line_ = 1;
   bool has_only_floats_ = true;
 };
+
+/// Where counts tell of all other losses.
+inline constexpr std::string_view last_number_lost = "its last number may be another";
 
 /// The word in quotes, fit for a message: short, and without control characters.
 std::string in_quotes(std::string_view word);

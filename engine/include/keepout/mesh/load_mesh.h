@@ -61,7 +61,8 @@ struct LoadedMesh {
 /// been printed from floats: with nine digits, these are the floats of its binary twin.
 ///
 /// Throws Error, naming the file, the line where there is one, what is wrong and what to do. A file
-/// that was cut short is an error, except that an OBJ file cut at the end of a line cannot be told.
+/// that was cut short is an error; or a warning, where only the last number of a text, or the end
+/// of an OBJ file, can be missing; and an OBJ file cut at the end of a line cannot be told.
 LoadedMesh load_mesh(const std::filesystem::path& path, const LoadOptions& options = {});
 
 }  // namespace keepout
