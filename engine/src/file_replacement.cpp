@@ -18,7 +18,7 @@ std::filesystem::path temporary_beside(const std::filesystem::path& path) {
 
 /// Why no file can be put there: a pipe or a device would be gone, and with it what others know by
 /// its name. No error if there is a file, or nothing.
-std::errc what_stands_at(const std::filesystem::path& path) {
+std::errc obstacle_at(const std::filesystem::path& path) {
   std::error_code ignored;
   const std::filesystem::file_status status = std::filesystem::status(path, ignored);
   if (!std::filesystem::exists(status) || std::filesystem::is_regular_file(status)) return {};
@@ -29,7 +29,7 @@ std::errc what_stands_at(const std::filesystem::path& path) {
 
 FileReplacement::FileReplacement(const std::filesystem::path& path)
     : path_(path), temporary_(temporary_beside(path)) {
-  if (const std::errc error = what_stands_at(path); error != std::errc{}) {
+  if (const std::errc error = obstacle_at(path); error != std::errc{}) {
     error_ = std::make_error_code(error);
     return;
   }

@@ -11,6 +11,7 @@ namespace keepout {
 /// writer will choose, then renamed.
 class FileReplacement {
  public:
+  /// A folder, a pipe or a device is not replaced; commit() tells of it.
   explicit FileReplacement(const std::filesystem::path& path);
   /// Without a commit nothing is left.
   ~FileReplacement();
