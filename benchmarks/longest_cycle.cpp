@@ -153,11 +153,10 @@ void measure(MotionConstraint& guard, const Call& call, Longest& longest) {
   longest.us = std::max(longest.us, least);
 }
 
-void print(const std::string& name, const Longest& longest) {
-  std::printf("| %s | %zu | %.0f |", name.c_str(), longest.looks, longest.us);
-  for (const auto& [status, count] : longest.statuses) {
-    std::printf(" %s %d", status.c_str(), count);
-  }
+void print(const std::string& name, const Longest& steps, const Longest& polytopes) {
+  std::printf("| %s | %zu | %.0f | %zu | %.0f |", name.c_str(), steps.looks, steps.us,
+              polytopes.looks, polytopes.us);
+  for (const auto& [status, count] : steps.statuses) std::printf(" %s %d", status.c_str(), count);
   std::printf(" |\n");
   std::fflush(stdout);
 }
@@ -184,7 +183,7 @@ void measure(const Scene& scene, Longest& of_steps, Longest& of_polytopes) {
     measure(
         guard, [&] { return name(guard.free_polytope(tip, desired.norm()).status); }, polytopes);
   }
-  print(scene.name, steps);
+  print(scene.name, steps, polytopes);
   for (const auto& [one, all] : {std::pair(&steps, &of_steps), {&polytopes, &of_polytopes}}) {
     all->looks = std::max(all->looks, one->looks);
     all->us = std::max(all->us, one->us);
@@ -199,11 +198,12 @@ int main() try {
   using namespace keepout;
   std::printf("SIMD target %s; stated: %zu looks\n\n", std::string(simd_target()).c_str(),
               Capacity::looks_of_a_walk);
-  std::printf("| scene | most looks | longest, us | how they ended |\n|---|--:|--:|---|\n");
+  std::printf(
+      "| scene | looks of a step | us | looks of a polytope | us | how steps ended |\n"
+      "|---|--:|--:|--:|--:|---|\n");
   Longest steps, polytopes;
   for (const Scene& scene : scenes()) measure(scene, steps, polytopes);
-  print("**all steps**", steps);
-  print("**all free polytopes**", polytopes);
+  print("**all**", steps, polytopes);
   return 0;
 } catch (const std::exception& error) {
   std::fprintf(stderr, "longest_cycle: %s\n", error.what());

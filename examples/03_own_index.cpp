@@ -15,10 +15,10 @@
 /// a query looks farther by half of the largest box, so that none is missed.
 class UniformGrid final : public keepout::SpatialIndex {
  public:
-  explicit UniformGrid(std::shared_ptr<const keepout::Mesh> mesh)
-      : mesh_(std::move(mesh)), box_(mesh_->bounds()), cells_(side * side * side) {
-    for (keepout::TriangleId t = 0; t < mesh_->triangle_count(); ++t) {
-      const keepout::Triangle c = mesh_->triangle(t);
+  explicit UniformGrid(std::shared_ptr<const keepout::Mesh> on)
+      : SpatialIndex(std::move(on)), box_(mesh().bounds()), cells_(side * side * side) {
+    for (keepout::TriangleId t = 0; t < mesh().triangle_count(); ++t) {
+      const keepout::Triangle c = mesh().triangle(t);
       const keepout::Vec3 low = c[0].cwiseMin(c[1]).cwiseMin(c[2]);
       const keepout::Vec3 high = c[0].cwiseMax(c[1]).cwiseMax(c[2]);
       const keepout::Vec3 middle = 0.5 * (low + high);
@@ -26,8 +26,6 @@ class UniformGrid final : public keepout::SpatialIndex {
       cells_[cell(place(middle, 0), place(middle, 1), place(middle, 2))].push_back(t);
     }
   }
-
-  const keepout::Mesh& mesh() const noexcept override { return *mesh_; }
 
   void collect(const keepout::Ball& ball,
                keepout::TriangleBuffer& candidates) const noexcept override {
@@ -63,7 +61,6 @@ class UniformGrid final : public keepout::SpatialIndex {
     return static_cast<std::size_t>((x * side + y) * side + z);
   }
 
-  std::shared_ptr<const keepout::Mesh> mesh_;
   keepout::Box box_;
   keepout::Vec3 half_ = keepout::Vec3::Zero();  // of the largest box of a triangle
   std::vector<std::vector<keepout::TriangleId>> cells_;

@@ -11,13 +11,13 @@ namespace keepout {
 /// An index that only answers queries, whatever else the one behind it offers.
 class QueriesOnly final : public SpatialIndex {
  public:
-  explicit QueriesOnly(std::shared_ptr<const SpatialIndex> index) : index_(std::move(index)) {}
+  explicit QueriesOnly(const std::shared_ptr<const SpatialIndex>& index)
+      : SpatialIndex(index->shared_mesh()), index_(index) {}
 
   void collect(const Ball& ball, TriangleBuffer& candidates) const noexcept override {
     index_->collect(ball, candidates);
   }
   std::size_t memory() const noexcept override { return index_->memory(); }
-  const Mesh& mesh() const noexcept override { return index_->mesh(); }
 
  private:
   std::shared_ptr<const SpatialIndex> index_;

@@ -156,14 +156,12 @@ class BulletModel : public SpatialIndex {
   static constexpr std::size_t most_triangles = Tree::most_triangles;
 
   explicit BulletModel(std::shared_ptr<const Mesh> mesh)
-      : mesh_(std::move(mesh)),
-        frame_(mesh_->bounds(), reach_of_frame),
-        bounds_(frame_.from_mesh(mesh_->bounds())),
-        tree_(tree_of(*mesh_, frame_)) {
-    check(*mesh_);
+      : SpatialIndex(std::move(mesh)),
+        frame_(this->mesh().bounds(), reach_of_frame),
+        bounds_(frame_.from_mesh(this->mesh().bounds())),
+        tree_(tree_of(this->mesh(), frame_)) {
+    check(this->mesh());
   }
-
-  const Mesh& mesh() const noexcept final { return *mesh_; }
 
   std::size_t memory() const noexcept override { return tree_.memory(); }
 
@@ -225,7 +223,6 @@ class BulletModel : public SpatialIndex {
     throw Error("Bullet's tree does not hold the mesh; use the index 'pd_tree'");
   }
 
-  std::shared_ptr<const Mesh> mesh_;
   CenteredFrame frame_;
   Box bounds_;  // of the mesh, in the frame
   Tree tree_;

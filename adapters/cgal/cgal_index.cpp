@@ -63,17 +63,15 @@ struct BallTraversal {
 
 class CgalIndex final : public SpatialIndex {
  public:
-  explicit CgalIndex(std::shared_ptr<const Mesh> mesh) : mesh_(std::move(mesh)) {
-    const auto count = static_cast<TriangleId>(mesh_->triangle_count());
+  explicit CgalIndex(std::shared_ptr<const Mesh> on) : SpatialIndex(std::move(on)) {
+    const auto count = static_cast<TriangleId>(mesh().triangle_count());
     tree_.insert(boost::counting_iterator<TriangleId>(0),
-                 boost::counting_iterator<TriangleId>(count), mesh_.get());
+                 boost::counting_iterator<TriangleId>(count), &mesh());
     tree_.build();  // now, not in the first query
   }
 
-  const Mesh& mesh() const noexcept override { return *mesh_; }
-
   void collect(const Ball& ball, TriangleBuffer& candidates) const noexcept override {
-    const double reach = padded_radius(ball, mesh_->bounds());
+    const double reach = padded_radius(ball, mesh().bounds());
     BallTraversal traversal{reach * reach, candidates};
     tree_.traversal(ball.center, traversal);
   }
@@ -83,7 +81,6 @@ class CgalIndex final : public SpatialIndex {
   }
 
  private:
-  std::shared_ptr<const Mesh> mesh_;
   Tree tree_;
 };
 

@@ -44,19 +44,19 @@ using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Release>;
 /// Embree's tree, walked by its point query.
 class EmbreeIndex final : public SpatialIndex {
  public:
-  explicit EmbreeIndex(std::shared_ptr<const Mesh> mesh)
-      : mesh_(std::move(mesh)), frame_(mesh_->bounds(), 1.0), device_(rtcNewDevice(nullptr)) {
+  explicit EmbreeIndex(std::shared_ptr<const Mesh> on)
+      : SpatialIndex(std::move(on)),
+        frame_(mesh().bounds(), 1.0),
+        device_(rtcNewDevice(nullptr)) {
     if (!device_) fail(rtcGetDeviceError(nullptr));
     rtcSetDeviceMemoryMonitorFunction(device_.get(), count_memory, &memory_);
     build();
   }
 
-  const Mesh& mesh() const noexcept override { return *mesh_; }
-
   void collect(const Ball& ball, TriangleBuffer& candidates) const noexcept override {
-    const double reach = padded_radius(ball, mesh_->bounds());
+    const double reach = padded_radius(ball, mesh().bounds());
     // Decided in double, before a distance is more than a float can tell from another.
-    if (squared_distance(mesh_->bounds(), ball.center) > reach * reach) return;
+    if (squared_distance(mesh().bounds(), ball.center) > reach * reach) return;
     const Vec3 center = frame_.from_mesh(ball.center);
     const double radius = frame_.from_mesh(ball.radius);
     const double pad = float_rounding * (1.0 + center.cwiseAbs().maxCoeff() + radius);
@@ -65,7 +65,7 @@ class EmbreeIndex final : public SpatialIndex {
     // From farther away all triangles are alike to a float. Written so that a NaN is far, too.
     const bool is_far = !(pad < 1.0);
     if (holds_all || is_far) {
-      for (TriangleId t = 0; t < mesh_->triangle_count(); ++t) candidates.push(t);
+      for (TriangleId t = 0; t < mesh().triangle_count(); ++t) candidates.push(t);
       return;
     }
     RTCPointQuery query;
@@ -103,17 +103,17 @@ class EmbreeIndex final : public SpatialIndex {
     check();
     auto* vertices = static_cast<std::array<float, 3>*>(
         rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                sizeof(std::array<float, 3>), mesh_->vertex_count()));
+                                sizeof(std::array<float, 3>), mesh().vertex_count()));
     check();
-    for (const Vec3& vertex : mesh_->vertices()) {
+    for (const Vec3& vertex : mesh().vertices()) {
       const Vec3 local = frame_.from_mesh(vertex);
       *vertices++ = {static_cast<float>(local.x()), static_cast<float>(local.y()),
                      static_cast<float>(local.z())};
     }
     static_assert(sizeof(Corners) == 3 * sizeof(unsigned));
     rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                               mesh_->triangles().data(), 0, sizeof(Corners),
-                               mesh_->triangle_count());
+                               mesh().triangles().data(), 0, sizeof(Corners),
+                               mesh().triangle_count());
     rtcCommitGeometry(geometry.get());
     check();
     scene_.reset(rtcNewScene(device_.get()));
@@ -128,7 +128,6 @@ class EmbreeIndex final : public SpatialIndex {
     if (error != RTC_ERROR_NONE) fail(error);
   }
 
-  std::shared_ptr<const Mesh> mesh_;
   CenteredFrame frame_;
   Memory memory_;
   // One of its own for each index: then the memory counted is this index's.

@@ -81,17 +81,16 @@ double squared_distance(const fcl::OBBRSSd& volume, const Vec3& point) noexcept 
 template <class Volume>
 class FclModel : public SpatialIndex {
  public:
-  const Mesh& mesh() const noexcept final { return *mesh_; }
-
   /// `name`: of the index that it is for.
-  FclModel(std::shared_ptr<const Mesh> mesh, std::string_view name) : mesh_(std::move(mesh)) {
-    require_at_most(fcl_most_triangles, mesh_->triangle_count(), "triangles", name);
-    require_at_most(std::numeric_limits<int>::max(), mesh_->vertex_count(), "vertices", name);
+  FclModel(std::shared_ptr<const Mesh> mesh, std::string_view name)
+      : SpatialIndex(std::move(mesh)) {
+    require_at_most(fcl_most_triangles, mesh().triangle_count(), "triangles", name);
+    require_at_most(std::numeric_limits<int>::max(), mesh().vertex_count(), "vertices", name);
     build();
     std::vector<TriangleId> triangles;
-    triangles.reserve(mesh_->triangle_count());
+    triangles.reserve(mesh().triangle_count());
     hold_triangles(0, triangles);
-    if (triangles.size() != mesh_->triangle_count()) throw Error("FCL lost triangles of the mesh");
+    if (triangles.size() != mesh().triangle_count()) throw Error("FCL lost triangles of the mesh");
   }
 
   std::size_t memory() const noexcept override {
@@ -102,15 +101,14 @@ class FclModel : public SpatialIndex {
   }
 
  protected:
-  const std::shared_ptr<const Mesh>& shared_mesh() const noexcept { return mesh_; }
   const fcl::BVHModel<Volume>& tree() const noexcept { return model_; }
 
  private:
   void build() {
-    const std::vector<fcl::Vector3d> vertices(mesh_->vertices().begin(), mesh_->vertices().end());
+    const std::vector<fcl::Vector3d> vertices(mesh().vertices().begin(), mesh().vertices().end());
     std::vector<fcl::Triangle> triangles;
-    triangles.reserve(mesh_->triangle_count());
-    for (const Corners& corners : mesh_->triangles()) {
+    triangles.reserve(mesh().triangle_count());
+    for (const Corners& corners : mesh().triangles()) {
       triangles.emplace_back(corners[0], corners[1], corners[2]);
     }
     // The counts are declared, or FCL allocates more than it needs.
@@ -134,13 +132,12 @@ class FclModel : public SpatialIndex {
       hold_triangles(at.leftChild(), triangles);
       hold_triangles(at.rightChild(), triangles);
     }
-    if (!is_sound(at.bv)) start_anew(at.bv, mesh_->triangle(triangles[first])[0]);
+    if (!is_sound(at.bv)) start_anew(at.bv, mesh().triangle(triangles[first])[0]);
     for (const TriangleId t : std::span(triangles).subspan(first)) {
-      for (const Vec3& corner : mesh_->triangle(t)) include(at.bv, corner);
+      for (const Vec3& corner : mesh().triangle(t)) include(at.bv, corner);
     }
   }
 
-  std::shared_ptr<const Mesh> mesh_;
   fcl::BVHModel<Volume> model_;
 };
 

@@ -229,7 +229,7 @@ TEST(CoordinatesOf, AMeshTooLargeForItsMarginIsWarnedOf) {
 /// Counts the triangles that a walk shows, and is otherwise the walk of a tree.
 class CountedTree final : public SpatialIndex {
  public:
-  explicit CountedTree(std::shared_ptr<const Mesh> mesh) : tree_(std::move(mesh)) {}
+  explicit CountedTree(const std::shared_ptr<const Mesh>& mesh) : SpatialIndex(mesh), tree_(mesh) {}
 
   void collect(const Ball& ball, TriangleBuffer& candidates) const noexcept override {
     tree_.collect(ball, candidates);
@@ -237,7 +237,6 @@ class CountedTree final : public SpatialIndex {
   TriangleId nearest(const Vec3& point, Budget& budget) const noexcept override {
     return tree_.nearest(point, budget);
   }
-  const Mesh& mesh() const noexcept override { return tree_.mesh(); }
   std::size_t memory() const noexcept override { return tree_.memory(); }
   std::unique_ptr<MotionWalk> walk_along_motions(Budget& budget) const override {
     return std::make_unique<Walk>(tree_.walk_along_motions(budget), *this);

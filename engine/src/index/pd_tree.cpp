@@ -180,15 +180,15 @@ class Builder {
 
 }  // namespace
 
-PdTree::PdTree(std::shared_ptr<const Mesh> mesh, unsigned threads) : mesh_(std::move(mesh)) {
-  const std::size_t count = mesh_->triangle_count();
+PdTree::PdTree(std::shared_ptr<const Mesh> mesh, unsigned threads) : SpatialIndex(std::move(mesh)) {
+  const std::size_t count = this->mesh().triangle_count();
   if (count > most_triangles) {
     throw Error("a pd_tree holds at most 2^31 - 1 triangles: split or decimate the mesh");
   }
   threads = thread_count(threads);
   leaves_.resize((count + LeafBlock::lanes - 1) / LeafBlock::lanes);
   nodes_.resize(2 * leaves_.size() - 1);
-  frame_ = Builder(*mesh_, nodes_, leaves_).build(threads);
+  frame_ = Builder(this->mesh(), nodes_, leaves_).build(threads);
 }
 
 std::size_t PdTree::memory() const noexcept {

@@ -19,7 +19,7 @@ class PdTree1997::Builder {
  public:
   explicit Builder(PdTree1997& tree)
       : tree_(tree),
-        mesh_(*tree.mesh_),
+        mesh_(tree.mesh()),
         mean_levels_(2 * static_cast<std::size_t>(std::bit_width(mesh_.triangle_count()))) {}
 
   /// Of the node, and of all below it.
@@ -85,18 +85,18 @@ class PdTree1997::Builder {
   const std::size_t mean_levels_;
 };
 
-PdTree1997::PdTree1997(std::shared_ptr<const Mesh> mesh) : mesh_(std::move(mesh)) {
-  if (mesh_->triangle_count() > most_triangles) {
+PdTree1997::PdTree1997(std::shared_ptr<const Mesh> mesh) : SpatialIndex(std::move(mesh)) {
+  if (this->mesh().triangle_count() > most_triangles) {
     throw Error("a pd_tree_1997 holds at most 2^31 - 1 triangles: split or decimate the mesh");
   }
-  triangles_.reserve(mesh_->triangle_count());
-  BlockVector<Center> centers = centers_of(*mesh_, 1);
+  triangles_.reserve(this->mesh().triangle_count());
+  BlockVector<Center> centers = centers_of(this->mesh(), 1);
   Builder(*this).build(centers, 1);
   nodes_.shrink_to_fit();
 }
 
 void PdTree1997::collect(const Ball& ball, TriangleBuffer& candidates) const noexcept {
-  const double reach = padded_radius(ball, mesh_->bounds());
+  const double reach = padded_radius(ball, mesh().bounds());
   std::array<std::uint32_t, most_levels> waiting;
   std::size_t count = 0;
   waiting[count++] = 0;
@@ -112,7 +112,7 @@ void PdTree1997::collect(const Ball& ball, TriangleBuffer& candidates) const noe
     }
     for (std::uint32_t i = node.next; i < node.next + node.in_leaf; ++i) {
       const TriangleId t = triangles_[i];
-      if (closest_point(mesh_->triangle(t), ball.center).distance <= ball.radius) {
+      if (closest_point(mesh().triangle(t), ball.center).distance <= ball.radius) {
         candidates.push(t);
       }
     }

@@ -23,7 +23,7 @@ void require_of(const Mesh* mesh, const SpatialIndex* index) {
   if (mesh == nullptr || index == nullptr) {
     throw Error("a query needs a mesh and an index: one of them was not given");
   }
-  if (index->mesh().id() != mesh->id()) {
+  if (&index->mesh() != mesh) {
     throw Error("the index is of another mesh: build it on this one, or refit it to this one");
   }
 }
@@ -62,7 +62,7 @@ bool Neighborhood::look(const Ball& ball) noexcept {
   hits_.clear();
   if (!ball.center.allFinite() || !(ball.radius >= 0.0)) return false;
   index_->collect(ball, candidates_);
-  budget_.spend(candidates_.size());
+  budget_.spend(work_of_hit * candidates_.size());
   if (candidates_.overflowed() || budget_.is_spent()) return false;
   refine(*mesh_, ball, candidates_.view(), hits_);
   return true;
@@ -100,7 +100,7 @@ std::optional<Hit> find_nearest(const Mesh& mesh, const SpatialIndex& index, con
   for (int round = 0; round < most_rounds && !budget.is_spent(); ++round) {
     candidates.clear();
     index.collect({point, radius}, candidates);
-    budget.spend(1 + candidates.size());
+    budget.spend(1 + work_of_hit * candidates.size());
     if (candidates.overflowed()) {
       crowded = radius;
     } else if (const auto best = nearest_of(mesh, {point, radius}, candidates.view())) {

@@ -123,17 +123,18 @@ void close_lanes(NodeBlock& node, CylinderBlock& cylinders, std::size_t first) n
 
 }  // namespace
 
-WideBvh::WideBvh(std::shared_ptr<const Mesh> mesh, unsigned threads) : mesh_(std::move(mesh)) {
+WideBvh::WideBvh(std::shared_ptr<const Mesh> mesh, unsigned threads)
+    : SpatialIndex(std::move(mesh)) {
   make_room();
   threads = thread_count(threads);
-  Division(*mesh_, threads, leaves_);
-  fit(LeafFill(*mesh_, threads), threads);
+  Division(this->mesh(), threads, leaves_);
+  fit(LeafFill(this->mesh(), threads), threads);
 }
 
 WideBvh::WideBvh(std::shared_ptr<const Mesh> mesh, std::span<const TriangleId> order,
                  unsigned threads)
-    : mesh_(std::move(mesh)) {
-  const std::size_t count = mesh_->triangle_count();
+    : SpatialIndex(std::move(mesh)) {
+  const std::size_t count = this->mesh().triangle_count();
   threads = thread_count(threads);
   std::vector<std::uint8_t> named(count);
   std::atomic<bool> known = order.size() == count;
@@ -155,12 +156,12 @@ WideBvh::WideBvh(std::shared_ptr<const Mesh> mesh, std::span<const TriangleId> o
   for (std::size_t i = 0; i < leaves_.size() * LeafBlock::lanes; ++i) {
     leaves_[i / LeafBlock::lanes].source[i % LeafBlock::lanes] = i < count ? order[i] : no_triangle;
   }
-  fit(LeafFill(*mesh_, threads), threads);
+  fit(LeafFill(this->mesh(), threads), threads);
 }
 
 /// For the blocks of the mesh, whose places follow from the number of its triangles.
 void WideBvh::make_room() {
-  const std::size_t count = mesh_->triangle_count();
+  const std::size_t count = mesh().triangle_count();
   if (count > most_triangles) {
     throw Error("a wide_bvh holds at most 2^31 - 1 triangles: split or decimate the mesh");
   }
@@ -175,7 +176,7 @@ void WideBvh::make_room() {
 
 std::vector<TriangleId> WideBvh::order() const {
   std::vector<TriangleId> order;
-  order.reserve(mesh_->triangle_count());
+  order.reserve(mesh().triangle_count());
   for (const LeafBlock& leaf : leaves_) {
     for (std::size_t lane = 0; lane < LeafBlock::lanes && leaf.is_used(lane); ++lane) {
       order.push_back(leaf.triangle(lane));
@@ -191,10 +192,10 @@ std::unique_ptr<SpatialIndex> WideBvh::refitted(std::shared_ptr<const Mesh> move
 
 void WideBvh::require_same_triangles(const Mesh* moved, unsigned threads) const {
   if (moved == nullptr) throw Error("a refit is to a mesh: none was given");
-  const auto corners = mesh_->triangles();
+  const auto corners = mesh().triangles();
   const auto others = moved->triangles();
   std::atomic<bool> same =
-      corners.size() == others.size() && mesh_->vertex_count() == moved->vertex_count();
+      corners.size() == others.size() && mesh().vertex_count() == moved->vertex_count();
   share_ranges(same ? corners.size() : 0, threads, [&](std::size_t begin, std::size_t end) {
     const std::size_t bytes = (end - begin) * sizeof(Corners);
     if (std::memcmp(&corners[begin], &others[begin], bytes) != 0) same = false;
@@ -206,7 +207,7 @@ void WideBvh::refit(std::shared_ptr<const Mesh> moved, unsigned threads) {
   threads = thread_count(threads);
   require_same_triangles(moved.get(), threads);
   const LeafFill fill(*moved, threads);
-  mesh_ = std::move(moved);
+  set_mesh(std::move(moved));
   fit(fill, threads);
 }
 

@@ -218,7 +218,7 @@ HWY_EXPORT(nearest_from_afar);
 
 TriangleId WideBvh::nearest(const Vec3& point, Budget& budget) const noexcept {
   // No triangle is farther away than the far corner of the box around them.
-  const Box& bounds = mesh_->bounds();
+  const Box& bounds = mesh().bounds();
   const double farthest =
       (point - bounds.low).cwiseAbs().cwiseMax((bounds.high - point).cwiseAbs()).norm();
   const BallScreen around_all({point, farthest * (1.0 + 1e-12)}, bounds, frame_);

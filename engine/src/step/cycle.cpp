@@ -127,7 +127,8 @@ void Cycle::run(Step& result) noexcept {
   result.status = settled.status;
   result.triangles = rule_.triangles();
   if (!is_ok(settled.status)) return;
-  result.motion = settled.motion;
+  // Number by number, as the increment: no zero has a sign.
+  for (int axis = 0; axis < 3; ++axis) result.motion[axis] = settled.motion[axis] + 0.0;
   result.increment = work_.increment();
   result.active = work_.active();
   if (halvings_ > 0) result.status = Status::fallback;

@@ -172,7 +172,6 @@ Step MotionConstraint::step(const Motion& motion, SideWatch& sides, StageTimes* 
   result.status = check(motion, options_);
   // What is refused says nothing of where the tip is.
   if (is_ok(result.status)) step_as_checked(motion, sides, times, result);
-  result.motion.array() += 0.0;  // as its increment: no zero has a sign
   const bool is_asked = options_.distances == Distances::always && !result.distance;
   if (is_asked && result.status != Status::invalid_input) {
     const auto nearest = find_nearest(*near_, motion.tip);

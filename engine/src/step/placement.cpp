@@ -63,7 +63,7 @@ bool collect(Neighborhood& near, const Ball& ball) noexcept {
   TriangleBuffer& candidates = near.candidates();
   candidates.clear();
   near.index().collect(ball, candidates);
-  near.budget().spend(2 * candidates.size());
+  near.budget().spend(work_of_hit * candidates.size());
   return !candidates.overflowed() && !near.budget().is_spent();
 }
 
@@ -203,6 +203,7 @@ Step led_out(const Placement& placement, Neighborhood& near, const Motion& motio
   result.motion =
       lead_out(near, motion.tip, placement, longest_way(options), well_off(near.mesh(), options));
   work.solution = {};
+  result.motion.array() += 0.0;  // no zero has a sign
   work.keep_answer(motion, result.motion, 1.0);
   result.increment = work.increment();
   return result;

@@ -21,14 +21,13 @@ namespace {
 class Forgetful final : public SpatialIndex {
  public:
   Forgetful(std::shared_ptr<const Mesh> mesh, TriangleId forgotten)
-      : tree_(std::move(mesh)), forgotten_(forgotten) {}
+      : SpatialIndex(mesh), tree_(std::move(mesh)), forgotten_(forgotten) {}
 
   void collect(const Ball& ball, TriangleBuffer& candidates) const noexcept override {
     tree_.collect(ball, candidates);
     std::replace(candidates.begin(), candidates.end(), forgotten_, TriangleId{0});
   }
   std::size_t memory() const noexcept override { return tree_.memory(); }
-  const Mesh& mesh() const noexcept override { return tree_.mesh(); }
 
  private:
   PdTree tree_;
@@ -209,14 +208,13 @@ TEST_P(Measure, HasNoTimeOfAQueryThatTheRuleDoesNotMake) {
 class Tiring final : public SpatialIndex {
  public:
   Tiring(std::shared_ptr<const Mesh> mesh, int strength)
-      : tree_(std::move(mesh)), left_(strength) {}
+      : SpatialIndex(mesh), tree_(std::move(mesh)), left_(strength) {}
 
   void collect(const Ball& ball, TriangleBuffer& candidates) const noexcept override {
     tree_.collect(ball, candidates);
     if (--left_ < 0 && !candidates.empty()) candidates.begin()[0] = TriangleId{0};
   }
   std::size_t memory() const noexcept override { return tree_.memory(); }
-  const Mesh& mesh() const noexcept override { return tree_.mesh(); }
   int left() const { return left_; }
 
  private:

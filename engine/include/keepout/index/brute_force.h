@@ -16,11 +16,7 @@ class BruteForce final : public SpatialIndex {
 
   void collect(const Ball& ball, TriangleBuffer& candidates) const noexcept override;
   TriangleId nearest(const Vec3& point, Budget& budget) const noexcept override;
-  const Mesh& mesh() const noexcept override { return *mesh_; }
   std::size_t memory() const noexcept override { return 0; }
-
- private:
-  std::shared_ptr<const Mesh> mesh_;
 };
 
 }  // namespace keepout

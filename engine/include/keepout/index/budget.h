@@ -35,8 +35,10 @@ class Budget {
   /// Whether nothing is left.
   bool is_spent() const noexcept { return left_ <= 0; }
 
-  /// How many looks were taken in this cycle; the last one may have taken more than were left.
-  std::size_t spent() const noexcept { return static_cast<std::size_t>(all_ - left_); }
+  /// How many looks were taken in this cycle.
+  std::size_t spent() const noexcept {
+    return static_cast<std::size_t>(left_ > 0 ? all_ - left_ : all_);
+  }
 
   /// Leaves half of what is left to `attempt`, and what that leaves with the other half to those
   /// that come after it. Returns what the attempt does.

@@ -56,8 +56,6 @@ class PdTree final : public SpatialIndex, public TriangleBlocks {
   bool is_exact() const noexcept override { return true; }
   std::size_t memory() const noexcept override;
 
-  const Mesh& mesh() const noexcept override { return *mesh_; }
-
   /// A parent stands before its children; the first is the root.
   std::span<const PdNode> nodes() const noexcept { return nodes_; }
 
@@ -67,7 +65,6 @@ class PdTree final : public SpatialIndex, public TriangleBlocks {
   const LeafFrame& frame() const noexcept override { return frame_; }
 
  private:
-  std::shared_ptr<const Mesh> mesh_;
   BlockVector<PdNode> nodes_;
   BlockVector<LeafBlock> leaves_;
   LeafFrame frame_;

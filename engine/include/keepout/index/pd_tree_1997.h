@@ -42,7 +42,6 @@ class PdTree1997 final : public SpatialIndex {
 
   void collect(const Ball& ball, TriangleBuffer& candidates) const noexcept override;
   bool is_exact() const noexcept override { return true; }
-  const Mesh& mesh() const noexcept override { return *mesh_; }
   std::size_t memory() const noexcept override;
 
   /// How many nodes there are one below the other, at most.
@@ -59,7 +58,6 @@ class PdTree1997 final : public SpatialIndex {
     std::uint32_t in_leaf = 0;  // triangles; none: it has children
   };
 
-  std::shared_ptr<const Mesh> mesh_;
   std::vector<Node> nodes_;  // a parent stands before its children; the first is the root
   std::vector<TriangleId> triangles_;
   std::size_t levels_ = 0;

@@ -20,6 +20,9 @@ struct Hit {
   ClosestPoint closest;  // relative to the ball's centre
 };
 
+/// What it takes to find one, in looks (Budget): mostly a wait for its corners.
+inline constexpr std::size_t work_of_hit = 4;
+
 /// Hits, with a declared capacity.
 using HitBuffer = Buffer<Hit>;
 
@@ -56,7 +59,7 @@ class Neighborhood {
   /// For all that is asked here, and what is made of it. Whose cycles it is for renews it.
   Budget& budget() noexcept { return budget_; }
   /// Whether the index is still of the mesh: not so once it was refit to another.
-  bool is_current() const noexcept { return index_->mesh().id() == mesh_->id(); }
+  bool is_current() const noexcept { return &index_->mesh() == mesh_.get(); }
   /// The same on another mesh and its index: with as much room, and what was found forgotten.
   /// Throws Error, and stays as it is, as the constructor does.
   void follow(std::shared_ptr<const Mesh> moved, std::shared_ptr<const SpatialIndex> index);

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <utility>
 
 #include "keepout/buffer.h"
 #include "keepout/geometry/shapes.h"
@@ -29,7 +30,9 @@ class SpatialIndex {
   virtual ~SpatialIndex() = default;
 
   /// What its triangles are of: what it was built on, or last refit to.
-  virtual const Mesh& mesh() const noexcept = 0;
+  const Mesh& mesh() const noexcept { return *mesh_; }
+  /// The same, to hold on to.
+  const std::shared_ptr<const Mesh>& shared_mesh() const noexcept { return mesh_; }
 
   /// Appends, once each and in any order, every triangle that touches the ball. Extra triangles are
   /// allowed, missing ones never, unless there is no room for them all: then it may stop.
@@ -68,7 +71,14 @@ class SpatialIndex {
   virtual std::size_t memory() const noexcept = 0;
 
  protected:
-  SpatialIndex() = default;
+  /// Of a mesh. Throws Error without one.
+  explicit SpatialIndex(std::shared_ptr<const Mesh> mesh);
+
+  /// It has become the index of another mesh.
+  void set_mesh(std::shared_ptr<const Mesh> moved) noexcept { mesh_ = std::move(moved); }
+
+ private:
+  std::shared_ptr<const Mesh> mesh_;
 };
 
 /// What a query of ours had to look at. Unlike its time it is the same on every run, so that a

@@ -101,8 +101,6 @@ class WideBvh final : public SpatialIndex, public TriangleBlocks {
   bool is_exact() const noexcept override { return true; }
   std::size_t memory() const noexcept override;
 
-  const Mesh& mesh() const noexcept override { return *mesh_; }
-
   /// A parent stands before its children; the first is the root.
   std::span<const NodeBlock> nodes() const noexcept { return nodes_; }
 
@@ -125,7 +123,6 @@ class WideBvh final : public SpatialIndex, public TriangleBlocks {
   void enclose_leaves(std::size_t self, std::size_t first, std::size_t last) noexcept;
   void enclose_nodes(std::size_t self, std::size_t first, std::size_t last) noexcept;
 
-  std::shared_ptr<const Mesh> mesh_;
   BlockVector<NodeBlock> nodes_;          // level by level, the root first
   BlockVector<LeafBlock> leaves_;         // neighbours near each other
   BlockVector<CylinderBlock> cylinders_;  // as nodes_

@@ -153,12 +153,14 @@ std::span<const FreePolytope::Turn> FreePolytope::by_distance(std::span<const Hi
 
 PolytopeStatus FreePolytope::separate(const Query& query, std::span<const Hit> hits, Budget& budget,
                                       HalfSpaceBuffer& planes) noexcept {
-  constexpr std::size_t work_of_plane = 24;  // and its probes, in looks
+  // In looks; that of a hit is mostly for the memory of its corners, and for sorting.
+  constexpr std::size_t work_of_plane = 24;
+  budget.spend(2 * work_of_hit * hits.size());
+  if (budget.is_spent()) return PolytopeStatus::over_capacity;
   is_left_.fill(true);
   std::size_t latest = 0;  // neighbours tend to be behind the same plane
   for (const Turn& turn : by_distance(hits)) {
     if (turn.distance > query.reach) break;
-    budget.spend(2);
     if (budget.is_spent()) return PolytopeStatus::over_capacity;
     const Hit& hit = hits[turn.hit];
     const TriangleFromTip seen = triangle_from_tip(mesh_->triangle(hit.triangle), query.tip);
