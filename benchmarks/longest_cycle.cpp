@@ -40,10 +40,10 @@ Surface sphere(VertexId n, double radius) {
   Surface surface;
   for (VertexId i = 0; i <= n; ++i) {
     const double polar = std::numbers::pi * i / n;
+    const double across = i % n == 0 ? 0.0 : radius * std::sin(polar);
     for (VertexId j = 0; j < n; ++j) {
       const double angle = 2.0 * std::numbers::pi * j / n;
-      surface.vertices.emplace_back(radius * std::sin(polar) * std::cos(angle),
-                                    radius * std::sin(polar) * std::sin(angle),
+      surface.vertices.emplace_back(across * std::cos(angle), across * std::sin(angle),
                                     radius * std::cos(polar));
     }
   }
@@ -106,6 +106,7 @@ std::vector<Scene> scenes() {
                  1.5,
                  {0, 0, 1}});
   all.push_back({"centre of a sphere of 1 M triangles", sphere(700, 50.0), {}, 1e-3});
+  all.push_back({"the same of 2 M, about the centre", sphere(1'000, 60.0), {}, 0.5});
   all.push_back({"the same, margin as far as the wall",
                  sphere(700, 50.0),
                  {.radius = 5.0, .margin = 49.0},

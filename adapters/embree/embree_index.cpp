@@ -45,9 +45,7 @@ using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Release>;
 class EmbreeIndex final : public SpatialIndex {
  public:
   explicit EmbreeIndex(std::shared_ptr<const Mesh> on)
-      : SpatialIndex(std::move(on)),
-        frame_(mesh().bounds(), 1.0),
-        device_(rtcNewDevice(nullptr)) {
+      : SpatialIndex(std::move(on)), frame_(mesh().bounds(), 1.0), device_(rtcNewDevice(nullptr)) {
     if (!device_) fail(rtcGetDeviceError(nullptr));
     rtcSetDeviceMemoryMonitorFunction(device_.get(), count_memory, &memory_);
     build();

@@ -82,8 +82,7 @@ template <class Volume>
 class FclModel : public SpatialIndex {
  public:
   /// `name`: of the index that it is for.
-  FclModel(std::shared_ptr<const Mesh> mesh, std::string_view name)
-      : SpatialIndex(std::move(mesh)) {
+  FclModel(std::shared_ptr<const Mesh> on, std::string_view name) : SpatialIndex(std::move(on)) {
     require_at_most(fcl_most_triangles, mesh().triangle_count(), "triangles", name);
     require_at_most(std::numeric_limits<int>::max(), mesh().vertex_count(), "vertices", name);
     build();

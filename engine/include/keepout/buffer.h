@@ -25,6 +25,9 @@ class Buffer {
     }
   }
 
+  /// Marks the overflow: there is more than is written here.
+  void give_up() noexcept { overflowed_ = true; }
+
   /// Takes in the first `count` items of those that the caller wrote at end(): a way to append many
   /// at once. Precondition: there is room, size() + count <= capacity().
   void grow(std::size_t count) noexcept { size_ += count; }

@@ -173,7 +173,7 @@ HWY_INLINE void append_all(const LeafBlock& leaf, TriangleBuffer& out) {
 /// Appends the triangles of a leaf that touch the ball.
 template <bool counting>
 HWY_INLINE void append_touching(const LeafBlock& leaf, const BallScreen& ball, const Mesh& mesh,
-                                TriangleBuffer& out, QueryCounts* counts) {
+                                TriangleBuffer& out, QueryCounts* counts, std::size_t& asked) {
   const Float d;
   std::uint32_t doubts = 0;
   for (std::size_t first = 0; first < LeafBlock::lanes; first += hn::Lanes(d)) {
@@ -187,6 +187,7 @@ HWY_INLINE void append_touching(const LeafBlock& leaf, const BallScreen& ball, c
     const auto lane = static_cast<std::size_t>(std::countr_zero(doubts));
     if (!leaf.is_used(lane)) break;
     if constexpr (counting) ++counts->triangles;
+    ++asked;
     const TriangleId t = leaf.triangle(lane);
     if (closest_point(mesh.triangle(t), ball.ball.center).distance <= ball.ball.radius) {
       out.push(t);
@@ -218,7 +219,9 @@ class LeafList {
   std::size_t size_ = 0;
 };
 
-/// Appends what touches the ball.
+/// Appends what touches the ball. Once the kernel has been asked about more triangles than there is
+/// room for, it gives up as if there were no room: else a ball that all but touches a whole mesh
+/// would take as long as that is large.
 template <bool counting>
 struct TouchingTriangles {
   const LeafBlock* leaves;
@@ -226,6 +229,8 @@ struct TouchingTriangles {
   const BallScreen& ball;
   TriangleBuffer& out;
   QueryCounts* counts;
+
+  mutable std::size_t asked = 0;  // triangles, of the exact kernel
 
   static constexpr bool wants_whole_leaves = true;  // marked as such
 
@@ -238,7 +243,7 @@ struct TouchingTriangles {
       if ((found[i] & whole_leaf) != 0) {
         append_all(leaf, out);
       } else {
-        append_touching<counting>(leaf, ball, mesh, out, counts);
+        append_touching<counting>(leaf, ball, mesh, out, counts, asked);
       }
     }
   }
@@ -255,7 +260,10 @@ struct TouchingTriangles {
   HWY_INLINE void count_node() const {
     if constexpr (counting) ++counts->nodes;
   }
-  HWY_INLINE bool is_full() const { return out.overflowed(); }
+  HWY_INLINE bool is_full() const {
+    if (HWY_UNLIKELY(asked > out.capacity())) out.give_up();
+    return out.overflowed();
+  }
 };
 
 /// Appends the numbers of the leaves.

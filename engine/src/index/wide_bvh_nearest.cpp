@@ -94,8 +94,9 @@ HWY_INLINE void ask(const LeafBlock& leaf, std::size_t lane, const WideBvh& tree
   best = {t, BallScreen({ball.center, distance}, tree.mesh().bounds(), tree.frame())};
 }
 
-/// In looks: mostly a wait for the leaf, which nothing has brought nearer.
-constexpr std::size_t work_of_asking = 2;
+// In looks: mostly a wait for what nothing has brought nearer.
+constexpr std::size_t work_of_looking = 3;
+constexpr std::size_t work_of_asking = 3;
 
 /// Looks at a leaf: first at its likely nearest, which leaves few others to ask about.
 HWY_INLINE void look(const LeafBlock& leaf, const WideBvh& tree, Budget& budget, Best& best) {
@@ -139,7 +140,7 @@ HWY_INLINE bool walk(const WideBvh& tree, Budget& budget, const IsBeyond& is_bey
   while (waiting > 0) {
     const Waiting next = stack[--waiting];
     if (is_beyond(next.distance)) continue;
-    budget.spend(1);
+    budget.spend(work_of_looking);
     if (budget.is_spent()) return false;
     if ((next.what & NodeBlock::leaf) != 0) {
       look(tree.leaves()[next.what & ~NodeBlock::leaf]);
