@@ -166,7 +166,7 @@ TEST(MovingAnatomy, WatchesOfTheCallersOwnAreOfTheMeshTheyWereMadeOn) {
   const auto mesh = std::make_shared<const Mesh>(cube);
   const auto tree = std::make_shared<WideBvh>(mesh);
   MotionConstraint guard = guard_of(mesh, tree);
-  SideWatch sides = guard.new_watch();
+  SideWatch sides;
   const Vec3 tip(0.3, 0.2, mesh->bounds().high.z() + 2.0 * margin);
   ASSERT_EQ(guard.step({.tip = tip, .desired = Vec3::Zero()}, sides).status, Status::free);
   const auto risen = std::make_shared<const Mesh>(moved(cube, Vec3(0.0, 0.0, 3.0)));
@@ -174,6 +174,45 @@ TEST(MovingAnatomy, WatchesOfTheCallersOwnAreOfTheMeshTheyWereMadeOn) {
   const Step out = guard.step({.tip = tip, .desired = Vec3(0.0, 0.0, -0.1)}, sides);
   EXPECT_EQ(out.status, Status::recovering);
   EXPECT_GT(out.motion.z(), 0.0);
+}
+
+TEST(MovingAnatomy, WatchesAskWhatTheGuardAsks) {
+  const Surface cube = make_cube(5.0);
+  Surface lidless = cube;
+  lidless.triangles.pop_back();
+  const auto closed = std::make_shared<const Mesh>(cube);
+  const auto open = std::make_shared<const Mesh>(std::move(lidless));
+  const Vec3 inside(0.3, 0.2, closed->bounds().high.z() - 2.0);
+  for (const bool is_first_open : {true, false}) {
+    const auto& first = is_first_open ? open : closed;
+    const auto& then = is_first_open ? closed : open;
+    MotionConstraint guard = guard_of(first, std::make_shared<WideBvh>(first));
+    SideWatch sides;
+    const Vec3 outside = inside + Vec3(0.0, 0.0, 5.0);
+    static_cast<void>(guard.step({.tip = outside, .desired = Vec3::Zero()}, sides));
+    guard.follow(then, std::make_shared<WideBvh>(then));
+    const Step step = guard.step({.tip = inside, .desired = Vec3::Zero()}, sides);
+    EXPECT_EQ(step.status, is_first_open ? Status::recovering : Status::free);
+  }
+}
+
+TEST(MovingAnatomy, TheBudgetIsThatOfTheIndexThatIsFollowed) {
+  const auto mesh = std::make_shared<const Mesh>(make_shape("cortex"));
+  const auto tree = std::make_shared<WideBvh>(mesh);
+  const auto slow = std::make_shared<PdTree>(mesh);
+  const Vec3 far = mesh->bounds().center() + Vec3(1.0, 2.0, 3.0);
+  const auto looks = [&](MotionConstraint& guard) {
+    static_cast<void>(guard.free_polytope(far, mesh->bounds().size().norm()));
+    return guard.looks();
+  };
+  MotionConstraint guard = make_motion_constraint(
+      mesh, slow, {.radius = radius, .margin = margin, .capacity = {.triangles = 1 << 20}});
+  const std::size_t of_queries = looks(guard);
+  EXPECT_GT(of_queries, Capacity::looks_of_a_walk);
+  guard.follow(mesh, tree);
+  EXPECT_LE(looks(guard), Capacity::looks_of_a_walk);
+  guard.follow(mesh, slow);
+  EXPECT_EQ(looks(guard), of_queries);
 }
 
 TEST(MovingAnatomy, WhatCannotBeFollowedIsRefusedAndTheGuardGoesOn) {

@@ -6,6 +6,7 @@
 #include <immintrin.h>
 #endif
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -343,7 +344,57 @@ TEST_P(LittleRecovery, NothingAddsUpBetweenWalls) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Recoveries, LittleRecovery, testing::Values(0.0, 1e-30, 1e-12, 0.05));
+/// A joint that cannot lift the tip within its reach takes a little away each cycle.
+TEST_P(LittleRecovery, NothingAddsUpWhereAJointCannotLeadOff) {
+  const MotionConstraintSettings settings{.radius = 1.0, .margin = 1.0, .recovery = GetParam()};
+  Loop loop({{{-50, 0, -50}, {50, 0, -50}, {0, 0, 80}}, {{0, 1, 2}}}, settings);
+  for (const double share : {0.003, 0.012, 0.0155, 0.03}) {
+    SCOPED_TRACE(share);
+    Vec3 tip(-1.0, 1.0, 0.0);
+    const double tau = loop.tolerance(tip);
+    const Eigen::Matrix<double, 3, 1> jacobian(1.0, -share * tau / 1e-4, 0.0);
+    for (int cycle = 0; cycle < 20'000; ++cycle) {
+      const Vec3 desired = 1e-4 * jacobian;
+      tip += loop.guard().step({.tip = tip, .desired = desired, .jacobian = jacobian}).motion;
+    }
+    EXPECT_GE(loop.distance(tip), 1.0 - 3.5 * tau);
+  }
+}
+
+/// Two walls, each nearer to the middle than the margin.
+TEST_P(LittleRecovery, LeadsToTheMiddleOfASlotAndKeepsItThere) {
+  const MotionConstraintSettings settings{.radius = 1.0, .margin = 1.0, .recovery = GetParam()};
+  const Eigen::AngleAxisd turn(0.7, Vec3(1, 2, 3).normalized());
+  for (const double off : {0.0, 1e3, 1e6}) {
+    SCOPED_TRACE(off);
+    const Vec3 origin = off * Vec3(1.0, -0.7, 0.3);
+    Surface slot;
+    for (const double y : {0.5, -0.5}) {
+      const auto first = static_cast<VertexId>(slot.vertices.size());
+      for (const auto& [x, z] : {std::pair(-10, -10), {10, -10}, {-10, 10}, {10, 10}}) {
+        slot.vertices.push_back(turn * Vec3(x, y, z) + origin);
+      }
+      slot.triangles.push_back({first, first + 1, first + 2});
+      slot.triangles.push_back({first + 1, first + 3, first + 2});
+    }
+    Loop loop(std::move(slot), settings);
+    for (const double beside : {0.0, 0.05, 0.2}) {
+      Vec3 tip = turn * Vec3(0.0, beside, 0.0) + origin;
+      const double tau = loop.tolerance(tip);
+      const double at_first = loop.distance(tip);
+      for (int cycle = 0; cycle < 10'000; ++cycle) {
+        const Vec3 along = turn * Vec3(cycle % 2 == 0 ? 1.3e-4 : -1.3e-4, 0.0, 0.0);
+        tip += loop.step(tip, along).motion;
+      }
+      EXPECT_GE(loop.distance(tip), at_first - 3.0 * tau) << beside;
+      const double due = GetParam() > 1e-3 ? 0.499 : 0.0;
+      EXPECT_GE(loop.distance(tip), due) << beside;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Recoveries, LittleRecovery,
+                         testing::Values(0.0, 1e-30, 1e-12, 0.007, 0.05, 0.2));
 
 // Zero has one sign in what comes out.
 

@@ -219,8 +219,7 @@ void Service::append_batch(SideWatch& tip, std::string& out) {
   out += ']';
 }
 
-Session::Session(Service& service)
-    : service_(service), lines_(service.longest_line()), tip_(service.new_watch()) {
+Session::Session(Service& service) : service_(service), lines_(service.longest_line()) {
   out_.reserve(enough_output / 4);
 }
 

@@ -76,9 +76,6 @@ class Service {
   /// asks. Returns how many steps the work was worth.
   std::size_t answer(const Line& line, SideWatch& tip, std::string& out);
 
-  /// For a client who has asked nothing yet.
-  SideWatch new_watch() const noexcept { return constraint_.new_watch(); }
-
   std::size_t longest_line() const noexcept { return longest_line_; }
 
  private:

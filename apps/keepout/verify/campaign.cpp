@@ -148,7 +148,7 @@ Guard::Guard(const Scene& scene)
 
 void Guard::begin(const StepOptions& options, Inside inside) {
   constraint_.set_options(options);
-  sides_ = inside == Inside::led_out ? constraint_.new_watch() : SideWatch();
+  sides_ = inside == Inside::led_out ? SideWatch() : SideWatch::off();
 }
 
 Step Guard::step(const Motion& motion) noexcept { return constraint_.step(motion, sides_); }

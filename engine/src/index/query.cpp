@@ -19,19 +19,15 @@ void refine(const Mesh& mesh, const Ball& ball, std::span<const TriangleId> cand
             [](const Hit& a, const Hit& b) { return a.triangle < b.triangle; });
 }
 
-void require_of(const Mesh* mesh, const SpatialIndex* index) {
+namespace {
+
+std::size_t room_for(const Mesh* mesh, const SpatialIndex* index, std::size_t asked) {
   if (mesh == nullptr || index == nullptr) {
     throw Error("a query needs a mesh and an index: one of them was not given");
   }
   if (&index->mesh() != mesh) {
     throw Error("the index is of another mesh: build it on this one, or refit it to this one");
   }
-}
-
-namespace {
-
-std::size_t room_for(const Mesh* mesh, const SpatialIndex* index, std::size_t asked) {
-  require_of(mesh, index);
   return std::min(asked, mesh->triangle_count());
 }
 
@@ -45,16 +41,6 @@ Neighborhood::Neighborhood(std::shared_ptr<const Mesh> mesh,
       candidates_(room_for(mesh_.get(), index_.get(), room)),
       hits_(candidates_.capacity()),
       budget_(looks) {}
-
-void Neighborhood::follow(std::shared_ptr<const Mesh> moved,
-                          std::shared_ptr<const SpatialIndex> index) {
-  require_of(moved.get(), index.get());
-  mesh_ = std::move(moved);
-  index_ = std::move(index);
-  ball_ = nowhere;
-  candidates_.clear();
-  hits_.clear();
-}
 
 bool Neighborhood::look(const Ball& ball) noexcept {
   ball_ = ball;

@@ -239,8 +239,10 @@ Cycle::Trial Cycle::solve() noexcept {
   std::optional<Vec3> answer;
   Status solved = attempt(answer);
   // Planes that contradict each other, or all but, so that what satisfies them is out of the world.
-  const bool contradict = solved == Status::infeasible || solved == Status::ill_posed;
-  if (contradict && rule_.relax(work_.planes)) solved = attempt(answer);
+  const auto contradict = [&] {
+    return solved == Status::infeasible || solved == Status::ill_posed;
+  };
+  while (contradict() && rule_.relax(work_.planes)) solved = attempt(answer);
   if (is_ok(solved) && !answer->allFinite()) solved = Status::unsolved;
   if (!is_ok(solved)) return {solved, Vec3::Zero()};
   if (around_.reach == Reach::sphere) return {Status::free, *answer};

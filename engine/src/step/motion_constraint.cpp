@@ -75,14 +75,13 @@ MotionConstraint::MotionConstraint(std::shared_ptr<const Mesh> mesh,
       activation_(std::move(activation)),
       solver_(std::move(solver)),
       options_(options),
-      most_nodes_(checked(capacity, options).nodes),
-      work_(std::make_unique<Workspace>(checked(capacity, options), *solver_)),
+      capacity_(checked(capacity, options)),
+      work_(std::make_unique<Workspace>(capacity_, *solver_)),
       polytope_(mesh, near_->room()),
       polytope_planes_(std::max(work_->planes.capacity(), planes_to_hold_still)),
       makes_queries_(false),
       inside_(inside),
-      watch_(inside == Inside::led_out && is_watertight(*mesh)),
-      sides_(new_watch()) {
+      watch_(inside == Inside::led_out && is_watertight(*mesh)) {
   if (inside == Inside::led_out && activation_->guards_a_tool()) {
     throw Error(
         "a tip that starts inside is led out without regard to the rest of a tool: with a rule "
@@ -104,14 +103,13 @@ void MotionConstraint::prepare() {
 
 void MotionConstraint::follow(std::shared_ptr<const Mesh> moved,
                               std::shared_ptr<const SpatialIndex> index) {
-  require_of(moved.get(), index.get());
-  require_in_range(*moved);
-  FreePolytope polytope(moved, near_->room());
+  auto near = neighborhood_of(moved, std::move(index), activation_.get(), solver_.get(), capacity_);
+  FreePolytope polytope(moved, near->room());
   const bool has_same_triangles = std::ranges::equal(moved->triangles(), mesh().triangles());
   if (!has_same_triangles) watch_ = inside_ == Inside::led_out && is_watertight(*moved);
-  near_->follow(std::move(moved), std::move(index));
+  *near_ = std::move(*near);
   polytope_ = std::move(polytope);
-  sides_ = new_watch();
+  forget();
   prepare();
 }
 
@@ -127,7 +125,7 @@ void MotionConstraint::set_options(const StepOptions& options) {
 /// In range, and so that rounding leaves something of the margin.
 void MotionConstraint::require_usable(const StepOptions& options) {
   require_in_range(options);
-  if (static_cast<std::size_t>(options.nodes) > most_nodes_) {
+  if (static_cast<std::size_t>(options.nodes) > capacity_.nodes) {
     throw Error("more nodes than room was made for: see Capacity::nodes");
   }
   // At the tip nearest to the origin that there can be, where rounding is least.
@@ -183,12 +181,12 @@ Step MotionConstraint::step(const Motion& motion, SideWatch& sides, StageTimes* 
 /// A tip on the forbidden side is led out; any other steps as the rule allows.
 void MotionConstraint::step_as_checked(const Motion& motion, SideWatch& sides, StageTimes* times,
                                        Step& result) noexcept {
-  if (sides.has_to_place(motion.tip, mesh()) &&
+  if (watch_ && sides.has_to_place(motion.tip, mesh()) &&
       lead_out_from_inside(*near_, motion, options_, *work_, result)) {
     return;
   }
   Cycle(*activation_, *solver_, *work_, near_->budget(), options_, motion, times).run(result);
-  if (result.status == Status::touching && sides.is_on() &&
+  if (result.status == Status::touching && watch_ && sides.is_on() &&
       lead_off_surface(*near_, motion, options_, *work_, result)) {
     return;
   }

@@ -212,7 +212,7 @@ std::string JudgedService::converse(std::string_view bytes, std::mt19937_64& ran
   take_all();
   if (!session.is_done()) return "it does not end";
 
-  SideWatch tip = reference_.new_watch();
+  SideWatch tip;
   std::string_view rest = answers;
   for (const std::string_view line : lines_of(bytes, settings_.longest_line)) {
     const std::size_t end = rest.find('\n');

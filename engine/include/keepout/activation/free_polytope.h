@@ -70,8 +70,8 @@ class FreePolytope {
   /// around the tip, in any order; closest points relative to the tip (refine). `planes` needs room
   /// for at least six; with less, a failure leaves it overflowed. `budget`: work is taken from it.
   ///
-  /// The normals, the offsets and their order are the same, bit for bit, however the triangles are
-  /// numbered, wound and rotated. Allocates nothing.
+  /// The normals, the offsets and their order are the same, bit for bit but for the sign of a zero,
+  /// however the triangles are numbered, wound and rotated. Allocates nothing.
   [[nodiscard]] PolytopeStatus around(const Vec3& tip, double radius, double margin,
                                       std::span<const Hit> hits, Budget& budget,
                                       HalfSpaceBuffer& planes) noexcept;

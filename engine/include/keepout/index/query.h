@@ -31,9 +31,6 @@ using HitBuffer = Buffer<Hit>;
 void refine(const Mesh& mesh, const Ball& ball, std::span<const TriangleId> candidates,
             HitBuffer& hits) noexcept;
 
-/// Throws Error unless there are both and the index is of the mesh.
-void require_of(const Mesh* mesh, const SpatialIndex* index);
-
 /// The triangles around a place, exactly, from whatever index: asks it for candidates and refines
 /// them. All memory is made at construction. One for each thread; mesh and index are shared.
 class Neighborhood {
@@ -60,9 +57,6 @@ class Neighborhood {
   Budget& budget() noexcept { return budget_; }
   /// Whether the index is still of the mesh: not so once it was refit to another.
   bool is_current() const noexcept { return &index_->mesh() == mesh_.get(); }
-  /// The same on another mesh and its index: with as much room, and what was found forgotten.
-  /// Throws Error, and stays as it is, as the constructor does.
-  void follow(std::shared_ptr<const Mesh> moved, std::shared_ptr<const SpatialIndex> index);
 
   /// What is looked at.
   const Mesh& mesh() const noexcept { return *mesh_; }

@@ -72,12 +72,9 @@ class MotionConstraint {
   /// The same, and what each stage took; not so looking for a distance, see Distances::always.
   Step step(const Motion& motion, StageTimes& times) noexcept;
 
-  /// The same for one of several tips that are stepped in turn, with one memory: each is watched by
-  /// itself, and gets the answers that a MotionConstraint of its own would give.
+  /// The same for one of several tips that are stepped in turn, with one memory: each has a
+  /// SideWatch of its own, and gets the answers that a MotionConstraint of its own would give.
   Step step(const Motion& motion, SideWatch& sides) noexcept;
-
-  /// For a tip that no step has led to.
-  SideWatch new_watch() const noexcept { return watch_ ? SideWatch::of_watertight() : SideWatch(); }
 
   /// The free space around a tip as one convex polytope, whatever the direction of the motion: for
   /// a caller's own QP, MPC or sampler. Every motion that stays within all planes and within
@@ -136,7 +133,7 @@ class MotionConstraint {
   std::unique_ptr<Activation> activation_;
   std::unique_ptr<Solver> solver_;
   StepOptions options_;
-  std::size_t most_nodes_;
+  Capacity capacity_;
   std::unique_ptr<Workspace> work_;
   FreePolytope polytope_;
   HalfSpaceBuffer polytope_planes_;

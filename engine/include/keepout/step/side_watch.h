@@ -14,17 +14,18 @@ namespace keepout {
 /// is found on the forbidden side is led out.
 class SideWatch {
  public:
-  /// Asks nothing: the surface is kept from on whichever side the tip is.
+  /// Of a tip that no step has led to. Sides are asked about where the motion constraint does.
   SideWatch() = default;
 
-  /// Precondition: the mesh that is asked about is watertight.
-  static SideWatch of_watertight() noexcept {
+  /// Asks nothing, whatever the motion constraint does: the surface is kept from on whichever side
+  /// the tip is.
+  static SideWatch off() noexcept {
     SideWatch watch;
-    watch.is_on_ = true;
+    watch.is_on_ = false;
     return watch;
   }
 
-  /// Whether sides are asked about.
+  /// Whether it asks.
   bool is_on() const noexcept { return is_on_; }
 
   /// Whether it has to be asked on which side of a mesh a tip is: whether no step has led there.
@@ -46,7 +47,7 @@ class SideWatch {
   void forget() noexcept { free_tip_ = Motion::unset; }
 
  private:
-  bool is_on_ = false;
+  bool is_on_ = true;
   Vec3 free_tip_ = Motion::unset;  // where the last step ended; at first nowhere
   double free_around_ = 0.0;       // how far around it all is free as well [length]
   std::uint64_t mesh_id_ = 0;      // of which mesh that is said

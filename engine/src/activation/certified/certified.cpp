@@ -191,8 +191,7 @@ Judgement CertifiedRule::judge(const Surroundings& around, const Vec3& trial,
 
 bool CertifiedRule::relax(HalfSpaceBuffer& planes) noexcept {
   // Offsets above 0 lead back to the full margin. Standing still is always allowed.
-  terms_->most_demand = terms_->relaxed_demand;
-  return let_stand_still(planes);
+  return terms_->relax(planes);
 }
 
 bool CertifiedRule::turn(const Surroundings& around, std::span<const HalfSpace> planes,

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "../tolerance_ladder.h"
+#include "keepout/activation/planes.h"
 
 namespace keepout {
 namespace {
@@ -94,12 +95,32 @@ class Turn {
 }  // namespace
 
 CertifiedTerms CertifiedTerms::keeping(double margin, double tolerance) noexcept {
-  const double demand = margin - demand_below * tolerance;
-  return {tolerance, margin, demand, margin - floor_below * tolerance, demand};
+  return {tolerance, margin, margin - demand_below * tolerance, margin - floor_below * tolerance,
+          0.0,       0.0};
 }
 
 CertifiedTerms CertifiedTerms::leading_off(double nearest, double lift, double tolerance) noexcept {
-  return {tolerance, nearest + lift, nearest + 0.5 * tolerance, nearest, nearest};
+  // But for a share that the rounding of doubles is small beside.
+  const double strict = (proof_slack - 1e-5) * tolerance;
+  return {tolerance, nearest + lift, nearest + 0.5 * tolerance, nearest + strict, lift, strict};
+}
+
+bool CertifiedTerms::relax(HalfSpaceBuffer& planes) noexcept {
+  const double less = lift > 8.0 * tolerance ? 0.125 * lift : 0.0;
+  if (less == 0.0) {
+    if (lift > 0.0) most_demand = most_floor;
+    lift = 0.0;
+    return let_stand_still(planes);
+  }
+  bool changed = false;
+  for (HalfSpace& plane : planes) {
+    if (plane.source == no_triangle) continue;  // the motion sphere's
+    changed = changed || plane.offset > 0.0;
+    plane.offset -= lift - less;
+  }
+  target -= lift - less;
+  lift = less;
+  return changed;
 }
 
 bool CertifiedTerms::is_covered(const Triangle& corners, const Vec3& trial,

@@ -25,7 +25,9 @@ struct CertifiedTerms {
   double most_demand;  // a trial that comes closer than this is objected to, [length]
   double most_floor;   // ... and one that a triangle's plane allows may come down to this; [length]
                        // neither is asked of a triangle that is closer already
-  double relaxed_demand;  // what is demanded once the planes were found to contradict each other
+  double lift;         // how far a tip is led off that is too close; else 0 [length]
+  double
+      strict;  // how much of what proofs forgive is made up for, so that nothing is lost [length]
 
   /// For a tip that keeps the margin.
   static CertifiedTerms keeping(double margin, double tolerance) noexcept;
@@ -36,10 +38,16 @@ struct CertifiedTerms {
   /// is lost at another.
   static CertifiedTerms leading_off(double nearest, double lift, double tolerance) noexcept;
 
-  double demand(const Facet& facet) const noexcept {
-    return std::min(most_demand, facet.distance());
+  double demand(const Facet& facet) const noexcept { return std::min(most_demand, held(facet)); }
+  double floor(const Facet& facet) const noexcept { return std::min(most_floor, held(facet)); }
+
+  /// What of a facet's distance a motion shall not take away.
+  double held(const Facet& facet) const noexcept {
+    return strict == 0.0 ? facet.distance() : strict - facet.at_tip().support;
   }
-  double floor(const Facet& facet) const noexcept { return std::min(most_floor, facet.distance()); }
+
+  /// The planes contradict each other: leads off by an eighth, and in the end not at all.
+  bool relax(HalfSpaceBuffer& planes) noexcept;
 
   /// Whether a plane at hand proves that the trial keeps clear of a triangle, given by its corners
   /// relative to the tip.
