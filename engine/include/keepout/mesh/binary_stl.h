@@ -11,8 +11,9 @@ namespace keepout {
 
 /// Writes a binary STL file: whole or not at all, for it is renamed into place when complete.
 /// Coordinates are rounded to single precision, which is all that the format holds. Throws Error,
-/// also when a coordinate does not fit, when a triangle names a vertex that does not exist, and when
-/// something else than a file stands there, such as a pipe or a device. load_mesh() reads it back.
+/// also when a coordinate does not fit, when a triangle names a vertex that does not exist, and
+/// when something else than a file stands there, such as a pipe or a device. load_mesh() reads it
+/// back.
 void write_binary_stl(const std::filesystem::path& path, const Surface& surface);
 
 /// The same, triangle by triangle, for surfaces that no memory holds: triangle(t) is called for 0
