@@ -23,10 +23,10 @@ Enum named(std::string_view argument, const std::string& given,
   refuse(argument, "'" + names[0].first + "' or '" + names[1].first + "'", "'" + given + "'");
 }
 
-constexpr std::array<std::string_view, 20> arguments = {
-    "mesh",      "index",   "index_cache",   "activation", "solver",      "radius",  "tool_radius",
-    "margin",    "damping", "recovery",      "deepest",    "refinements", "nodes",   "query",
-    "distances", "inside",  "max_triangles", "max_planes", "max_joints",  "max_rows"};
+constexpr std::array<std::string_view, 21> arguments = {
+    "mesh",      "index",   "index_cache",   "activation", "solver",      "radius",   "tool_radius",
+    "margin",    "damping", "recovery",      "deepest",    "refinements", "nodes",    "query",
+    "distances", "inside",  "max_triangles", "max_planes", "max_joints",  "max_rows", "max_looks"};
 
 /// What Python says of a keyword that there is not, and which one may have been meant.
 void refuse_others(const py::kwargs& others) {

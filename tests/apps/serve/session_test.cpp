@@ -135,10 +135,10 @@ TEST_F(SessionTest, InfoAndStatusesTellWhatThereIs) {
   EXPECT_EQ(info["settings"]["radius"], 1.0);
   EXPECT_EQ(info["limits"]["line"], 4096);
   const Json statuses = Json::parse(ask(session, R"({"do":"statuses"})"));
-  EXPECT_EQ(statuses["statuses"].size(), 13u);
+  EXPECT_EQ(statuses["statuses"].size(), 14u);
   for (const Json& status : statuses["statuses"]) EXPECT_NE(status["status"], "unknown");
   EXPECT_EQ(statuses["statuses"].back()["status"], "mesh_changed");
-  EXPECT_EQ(statuses["polytope_statuses"].size(), 5u);
+  EXPECT_EQ(statuses["polytope_statuses"].size(), 6u);
 }
 
 TEST_F(SessionTest, AClientWhoDoesNotReadIsNotAnsweredAnyFurther) {
