@@ -46,7 +46,7 @@ inline std::unique_ptr<MotionConstraint> guard(const std::shared_ptr<const Mesh>
                                                const StepOptions& options) {
   return std::make_unique<MotionConstraint>(
       mesh, std::move(index), std::make_unique<CertifiedRule>(), std::make_unique<ActiveSet>(),
-      options, Capacity{.nodes = 16});
+      options, Capacity{.nodes = 16, .looks = Budget::unlimited});
 }
 
 /// The rule on one mesh and two indices: one that walks along motions, and one that does not.
