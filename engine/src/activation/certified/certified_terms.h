@@ -26,8 +26,7 @@ struct CertifiedTerms {
   double most_floor;   // ... and one that a triangle's plane allows may come down to this; [length]
                        // neither is asked of a triangle that is closer already
   double lift;         // how far a tip is led off that is too close; else 0 [length]
-  double
-      strict;  // how much of what proofs forgive is made up for, so that nothing is lost [length]
+  double strict;  // what of a proof's slack is taken back then, so that nothing adds up [length]
 
   /// For a tip that keeps the margin.
   static CertifiedTerms keeping(double margin, double tolerance) noexcept;
