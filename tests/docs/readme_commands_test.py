@@ -24,6 +24,7 @@ SMALL = {
     "bench": {"--triangles": "20000", "--queries": "5", "--seconds": "0.01"},
     "bench --speed": {"--quick": None, "--steps": "1000"},
     "compare": {"--poses": "6", "--problems": "30", "--pairs": "10"},
+    "live": {"--no-open": None},
     "plan": {"--problems": "1", "--seconds": "2"},
 }
 

@@ -74,11 +74,10 @@ void write_anatomy(std::ostream& page, const LiveOptions& options,
                 {"margin", constraint.margin}, {"max_step", options.max_step},
                 {"meshes", Json::array()}};
   for (const Anatomy& one : anatomy) settings["meshes"].push_back(one.facts);
-  page << R"(<script type="application/json" id="settings">)" << in_script(settings)
-       << "</script>\n";
+  page << R"(<script type="application/json" id="settings">)" << in_script(settings) << "</script>";
   for (std::size_t i = 0; i < anatomy.size(); ++i) {
-    page << R"(<script type="application/octet-stream" id="mesh-)" << i << "\">" << anatomy[i].text
-         << "</script>\n";
+    page << "\n<script type=\"application/octet-stream\" id=\"mesh-" << i << "\">"
+         << anatomy[i].text << "</script>";
   }
 }
 

@@ -4,20 +4,15 @@
 #include <zlib.h>
 
 #include <algorithm>
-#include <array>
 #include <bit>
-#include <cmath>
 #include <cstddef>
-#include <limits>
 #include <new>
 
 namespace keepout::app {
 namespace {
 
-bool is_float(double number) {
-  return std::abs(number) <= std::numeric_limits<float>::max() &&
-         static_cast<double>(static_cast<float>(number)) == number;
-}
+/// No coordinate of a mesh is beyond what floats reach.
+bool is_float(double number) { return static_cast<double>(static_cast<float>(number)) == number; }
 
 /// The lowest byte first, whatever the order on this machine.
 template <class Bits>
