@@ -28,16 +28,19 @@ Otherwise work in a copy of the sources of your own:
     tar -C ~/keepout -x && ~/keepout/run"
 }
 
-# Installs the Debian packages of cmake/debian_packages.txt that are missing. Offline when none is.
+# install_packages [LIST [PURPOSE]]: installs the Debian packages of cmake/LIST that are missing, those
+# for a purpose only where it is this one. LIST: debian_packages.txt. Offline when none is missing.
 install_packages() {
+  local list=${1:-debian_packages.txt} purpose=${2:-}
   command -v apt-get >/dev/null || fail "this needs Debian 12 (apt-get); on another system install
-the counterparts of cmake/debian_packages.txt yourself and use the CMake presets (README, Build)"
-  local package unless command missing=()
-  while read -r package unless command; do
-    [ "$unless" = unless ] && command -v "$command" >/dev/null && continue
+the counterparts of cmake/$list yourself and use the CMake presets (README, Build)"
+  local package condition word missing=()
+  while read -r package condition word; do
+    [ "$condition" = unless ] && command -v "$word" >/dev/null && continue
+    [ "$condition" = for ] && [ "$word" != "$purpose" ] && continue
     [ "$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null)" = installed ] ||
       missing+=("$package")
-  done < <(grep -v '^#' "$root/cmake/debian_packages.txt")
+  done < <(grep -v '^#' "$root/cmake/$list")
   [ ${#missing[@]} -eq 0 ] && return
   say "installing ${missing[*]}"
   local as_root=()

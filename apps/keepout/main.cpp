@@ -20,6 +20,7 @@
 #include "keepout/simd_target.h"
 #include "keepout/solvers/registry.h"
 #include "keepout/version.h"
+#include "live/live.h"
 #include "named_mesh.h"
 #include "names.h"
 #include "plan/plan.h"
@@ -176,6 +177,7 @@ int run(int argc, char** argv) {
   InspectOptions inspect_options;
   ReplayOptions replay_options;
   SimulateOptions simulate_options;
+  LiveOptions live_options;
   ServeOptions serve_options;
   VerifyOptions verify_options;
   PlanOptions plan_options;
@@ -186,6 +188,7 @@ int run(int argc, char** argv) {
   add_inspect(app, inspect_options);
   add_replay(app, replay_options);
   add_simulate(app, simulate_options);
+  add_live(app, live_options);
   add_serve(app, serve_options);
   add_verify(app, verify_options);
   add_bench(app, bench_options);
@@ -209,6 +212,7 @@ int run(int argc, char** argv) {
   bench_options.command = compare_options.command = simulate_options.command = command_line;
   if (app.got_subcommand("inspect")) inspect(inspect_options, std::cout);
   if (app.got_subcommand("replay")) replay(replay_options, std::cout);
+  if (app.got_subcommand("live")) live(live_options, std::cout);
   if (app.got_subcommand("serve")) return serve(serve_options, std::cerr);
   if (app.got_subcommand("simulate")) return simulate(simulate_options, std::cout);
   if (app.got_subcommand("bench")) return bench(bench_options, std::cout, std::cerr);

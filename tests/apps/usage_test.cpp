@@ -42,10 +42,11 @@ void expect_told(const std::vector<Mistake>& mistakes) {
 
 TEST(Usage, EachCommandMistypedIsSuggested) {
   std::vector<Mistake> mistakes;
-  for (const auto& [typed, meant] : std::array<std::array<std::string, 2>, 8>{{
+  for (const auto& [typed, meant] : std::array<std::array<std::string, 2>, 9>{{
            {"inspec", "inspect"},
            {"relpay", "replay"},
            {"simulat", "simulate"},
+           {"liev", "live"},
            {"server", "serve"},
            {"verfiy", "verify"},
            {"bnech", "bench"},
@@ -69,6 +70,7 @@ TEST(Usage, AnOptionOfEachCommandMistypedIsSuggested) {
       {"replay cube --pose p --out s.csv", told("--pose", "--poses")},
       {"simulate cube --raduis 1", told("--raduis", "--radius")},
       {"simulate cube --raduis=1", told("--raduis", "--radius")},
+      {"live cube --no-opne", told("--no-opne", "--no-open")},
       {"serve cube --joint 3", told("--joint", "--joints")},
       {"verify cube --step 10", told("--step", "--steps")},
       {"bench --spead", told("--spead", "--speed")},

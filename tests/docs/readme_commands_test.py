@@ -24,6 +24,7 @@ SMALL = {
     "bench": {"--triangles": "20000", "--queries": "5", "--seconds": "0.01"},
     "bench --speed": {"--quick": None, "--steps": "1000"},
     "compare": {"--poses": "6", "--problems": "30", "--pairs": "10"},
+    "live": {"--no-open": None},
     "plan": {"--problems": "1", "--seconds": "2"},
 }
 
@@ -46,6 +47,17 @@ def made_small(command):
     return command
 
 
+def web_page(root, folder):
+    """The folder of the page that ./run live makes; where it is not made, of one without content."""
+    made = root / "build/web"
+    if (made / "live.html").exists():
+        return made
+    bare = folder / "web"
+    bare.mkdir()
+    (bare / "live.html").write_text("<!-- keepout live: the anatomy goes here -->\n")
+    return bare
+
+
 def main():
     root, folder, keepout = (pathlib.Path(argument).resolve() for argument in sys.argv[1:4])
     shutil.rmtree(folder, ignore_errors=True)
@@ -54,7 +66,8 @@ def main():
     run = folder / "run"
     run.write_text(f'#!/bin/bash\nexec -a ./run "{keepout}" "$@"\n')
     run.chmod(0o755)
-    environment = dict(os.environ, KEEPOUT_PREPARE=str(root / "fixtures/prepare"))
+    environment = dict(os.environ, KEEPOUT_PREPARE=str(root / "fixtures/prepare"),
+                       KEEPOUT_WEB=str(web_page(root, folder)))
     commands = commands_of((root / "README.md").read_text(encoding="utf-8"))
     missing = [n for n in ("inspect", "replay", "simulate", "serve", "verify", "bench", "compare", "plan")
                if not any(c.startswith(f"./run {n}") for c in commands)]

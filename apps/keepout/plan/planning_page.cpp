@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "base64.h"
 #include "number_text.h"
 #include "plan/planning_run.h"
 #include "report/page.h"

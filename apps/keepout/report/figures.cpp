@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <limits>
 
+#include "base64.h"
 #include "number_text.h"
 #include "report/plot.h"
 #include "report/png.h"

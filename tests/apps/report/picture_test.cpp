@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "base64.h"
 #include "report/png.h"
 #include "report/raster.h"
 #include "report/shading.h"
@@ -39,7 +40,7 @@ TEST(Png, DecodesBackToTheSamePixels) {
   EXPECT_EQ(pixels, image.rgba);
 }
 
-TEST(Png, Base64IsThatOfTheStandard) {
+TEST(Base64, IsThatOfTheStandard) {
   const auto encode = [](const std::string& text) {
     return to_base64(std::vector<std::uint8_t>(text.begin(), text.end()));
   };

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "live/live.h"
+
+#include <string>
+#include <string_view>
+
+#include "base64.h"
+#include "clip.h"
+#include "columns.h"
+#include "command_line.h"
+#include "keepout/activation/registry.h"
+#include "keepout/version.h"
+#include "live/browser.h"
+#include "live/packed_mesh.h"
+#include "live/page_parts.h"
+#include "named_mesh.h"
+#include "names.h"
+#include "number_text.h"
+#include "output_file.h"
+#include "progress.h"
+
+namespace keepout::app {
+namespace {
+
+constexpr std::string_view no_fixture = "none";
+
+/// A mesh in the page: what the page is told of it, and the mesh itself.
+struct Anatomy {
+  Json facts;
+  std::string text;  // gzipped, in base64
+};
+
+/// What is wrong with the settings on this mesh, and what should be known, is told here, and not
+/// by the page: the constraint itself is not kept.
+std::vector<std::string> warnings_of(const LoadedMesh& loaded, const LiveOptions& options) {
+  std::vector<std::string> warnings = loaded.warnings;
+  MotionConstraintSettings settings = options.constraint;
+  if (settings.activation == no_fixture) settings.activation = "all_faces";  // which asks for least
+  settings.warn = [&warnings](const std::string& text) {
+    warn_on_stderr(text);
+    warnings.push_back(text);
+  };
+  make_motion_constraint(loaded.mesh, settings);
+  return warnings;
+}
+
+Anatomy anatomy_of(const std::filesystem::path& name, const LiveOptions& options) {
+  const LoadedMesh loaded = load_named_mesh(name, options.load);
+  const PackedMesh bytes = packed(*loaded.mesh);
+  return {.facts = {{"name", name.filename().string()},
+                    {"command_name", shell_word(name.string())},
+                    {"vertices", loaded.mesh->vertex_count()},
+                    {"triangles", loaded.mesh->triangle_count()},
+                    {"coordinates", bytes.coordinates},
+                    {"warnings", warnings_of(loaded, options)}},
+          .text = to_base64(gzipped(bytes.bytes))};
+}
+
+/// As it may stand in a script element: nothing in it is read as the element's end.
+std::string in_script(const Json& json) {
+  // A file name need not be UTF-8, and JSON must.
+  const std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  std::string safe;
+  for (const char c : text) safe += c == '<' ? std::string("\\u003c") : std::string(1, c);
+  return safe;
+}
+
+void write_anatomy(std::ostream& page, const LiveOptions& options,
+                   const std::vector<Anatomy>& anatomy) {
+  const MotionConstraintSettings& constraint = options.constraint;
+  Json settings{{"format", "keepout live"},    {"version", 1},
+                {"keepout", KEEPOUT_VERSION},  {"activation", constraint.activation},
+                {"radius", constraint.radius}, {"tool_radius", constraint.tool_radius},
+                {"margin", constraint.margin}, {"max_step", options.max_step},
+                {"meshes", Json::array()}};
+  for (const Anatomy& one : anatomy) settings["meshes"].push_back(one.facts);
+  page << R"(<script type="application/json" id="settings">)" << in_script(settings) << "</script>";
+  for (std::size_t i = 0; i < anatomy.size(); ++i) {
+    page << "\n<script type=\"application/octet-stream\" id=\"mesh-" << i << "\">"
+         << anatomy[i].text << "</script>";
+  }
+}
+
+/// The last lines on the terminal.
+void print_page(std::ostream& out, const LiveOptions& options, const std::string& url,
+                std::uintmax_t size, bool opened) {
+  out << options.page.string() << ", " << formatted("%.1f MB", 1e-6 * static_cast<double>(size))
+      << (opened ? ", is being opened in a browser; by hand:" : "; open it in a browser:") << "\n  "
+      << url << '\n'
+      << "Drag the red ball, which is the hand, into the anatomy: the blue ball is the tool, which "
+         "goes\nas far as keepout lets it. Drag beside it to turn, and use the wheel to zoom.\n";
+}
+
+}  // namespace
+
+void add_live(CLI::App& app, LiveOptions& options) {
+  CLI::App& command = *app.add_subcommand(
+      "live",
+      "Make a page in which you drag the tool over the anatomy, with keepout itself in it, and "
+      "open it in the browser");
+  command.add_option("MESH", options.meshes, std::string(mesh_help) + "; several to choose from")
+      ->type_name("")
+      ->capture_default_str();
+  add_spaces(command, options.load);
+  command.add_option("--out", options.page, "Where to write the page")
+      ->type_name("PAGE.html")
+      ->capture_default_str();
+  command.add_flag_callback(
+      "--no-open", [&options] { options.opening = Opening::by_hand; }, "Write it only");
+  std::vector<std::string> rules = names(activation_rules());
+  rules.emplace_back(no_fixture);
+  add_name(command, "--activation", options.constraint.activation, std::move(rules),
+           "Rule that the page begins with");
+  add_length(command, "--tool-radius", options.constraint.tool_radius, Zero::allowed,
+             "Radius of the ball around the tip that shall not touch the surface");
+  add_length(command, "--margin", options.constraint.margin, Zero::allowed,
+             "Distance to keep between tool and surface; the certified rule needs one");
+  add_length(command, "--radius", options.constraint.radius, Zero::refused,
+             "Radius of the motion sphere");
+  add_length(command, "--max-step", options.max_step, Zero::refused,
+             "Longest way of the tool in a cycle of 1 ms");
+  command.footer(
+      "The page is one file that needs no server and no network, and holds the meshes: pass it on "
+      "as you\nmay pass these on.");
+}
+
+void live(const LiveOptions& options, std::ostream& out) {
+  require_within_reach(options.max_step, options.constraint.radius);
+  const std::filesystem::path parts_file = page_parts_file();
+  const PageParts parts = read_page_parts(parts_file);
+  std::vector<NamedPath> inputs{{"the page without an anatomy", parts_file}};
+  for (const std::filesystem::path& mesh : options.meshes) {
+    inputs.push_back({"MESH", file_of_mesh(mesh)});
+  }
+  OutputFiles outputs(inputs, {{"--out", options.page}});
+  std::vector<Anatomy> anatomy;
+  for (const std::filesystem::path& mesh : options.meshes) {
+    anatomy.push_back(anatomy_of(mesh, options));
+  }
+  std::ostream& page = *outputs.stream("--out");
+  page << parts.before;
+  write_anatomy(page, options, anatomy);
+  page << parts.after;
+  outputs.commit();
+  const std::string url = file_url(options.page);
+  const bool opened = options.opening == Opening::by_the_desktop && open_in_browser(url);
+  print_page(out, options, url, std::filesystem::file_size(options.page), opened);
+}
+
+}  // namespace keepout::app

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The page that `keepout live` writes, what it says, and what it refuses.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <thread>
+
+#include "apps/command_process.h"
+#include "apps/live/unpacked_page.h"
+#include "keepout/fixtures/shapes.h"
+#include "keepout/mesh/binary_stl.h"
+#include "keepout/mesh/load_mesh.h"
+#include "keepout/version.h"
+#include "live/browser.h"
+
+namespace keepout::app {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+using Outcome = test::ProcessOutcome;
+
+const std::string place = "<!-- keepout live: the anatomy goes here -->\n";
+
+class Live : public testing::Test {
+ protected:
+  void SetUp() override {
+    fs::create_directory(folder_.file("web"));
+    folder_.write("web/live.html", "<p>before</p>\n" + place + "<p>after</p>\n");
+  }
+  Outcome run(const std::string& arguments, const std::string& environment = {}) const {
+    return folder_.run("live " + arguments,
+                       "env -u DISPLAY -u WAYLAND_DISPLAY KEEPOUT_WEB=web " + environment);
+  }
+  std::string contents(const std::string& name) const {
+    std::ifstream stream(folder_.file(name), std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+  }
+  /// What stands in the element with this id, up to the first that a browser takes for its end.
+  std::string element(const std::string& id, const std::string& page = "keepout-live.html") const {
+    const std::string text = contents(page);
+    const std::string start = "id=\"" + id + "\">";
+    const std::size_t at = text.find(start);
+    if (at == std::string::npos) return {};
+    const std::size_t from = at + start.size();
+    return text.substr(from, text.find("</script", from) - from);
+  }
+  Json settings() const { return Json::parse(element("settings")); }
+  void expect_refused(const std::string& arguments, const std::string& told, int status = 1,
+                      const std::string& environment = {}) const {
+    const Outcome outcome = run(arguments, environment);
+    EXPECT_EQ(outcome.status, status) << arguments << '\n' << outcome.output;
+    EXPECT_NE(outcome.output.find(told), std::string::npos) << arguments << '\n' << outcome.output;
+    EXPECT_FALSE(fs::exists(folder_.file("keepout-live.html"))) << arguments;
+  }
+
+  test::CommandFolder folder_;
+};
+
+TEST_F(Live, ThePageHasTheSettingsAndEveryBitOfTheMeshes) {
+  write_binary_stl(folder_.file("heart of a pig.stl"), make_shape("sphere"));
+  const Outcome outcome =
+      run("cube 'heart of a pig.stl' --activation none --radius 4 --tool-radius 0.5 --margin 0.25 "
+          "--max-step 0.125");
+  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  Json told = settings();
+  const Json meshes = told.at("meshes");
+  told.erase("meshes");
+  EXPECT_EQ(told, Json::parse(R"({"format": "keepout live", "version": 1, "activation": "none",
+      "radius": 4.0, "tool_radius": 0.5, "margin": 0.25, "max_step": 0.125,
+      "keepout": ")" KEEPOUT_VERSION R"("})"));
+  ASSERT_EQ(meshes.size(), 2U);
+  EXPECT_EQ(meshes[0].at("name"), "cube");
+  EXPECT_EQ(meshes[0].at("command_name"), "cube");
+  EXPECT_EQ(meshes[0].at("warnings"), Json::array());
+  EXPECT_EQ(meshes[1].at("name"), "heart of a pig.stl");
+  EXPECT_EQ(meshes[1].at("command_name"), "'heart of a pig.stl'");
+  const Mesh cube(make_shape("cube"));
+  const auto sphere = load_mesh(folder_.file("heart of a pig.stl")).mesh;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Mesh& mesh = i == 0 ? cube : *sphere;
+    const Json& facts = meshes[i];
+    EXPECT_EQ(facts.at("vertices"), mesh.vertex_count());
+    EXPECT_EQ(facts.at("triangles"), mesh.triangle_count());
+    const auto bytes = test::gunzipped(test::from_base64(element("mesh-" + std::to_string(i))));
+    EXPECT_TRUE(test::same_bits(test::unpacked(facts.at("coordinates").get<std::string>(), bytes,
+                                               mesh.vertex_count(), mesh.triangle_count()),
+                                mesh))
+        << facts;
+  }
+  const std::string page = contents("keepout-live.html");
+  EXPECT_TRUE(page.starts_with("<p>before</p>\n<script")) << page.substr(0, 100);
+  EXPECT_TRUE(page.ends_with("</script>\n<p>after</p>\n"));
+}
+
+TEST_F(Live, BeginsWithTheCertifiedRule) {
+  ASSERT_EQ(run("cube").status, 0);
+  const Json told = settings();
+  EXPECT_EQ(told.at("activation"), "certified");
+  EXPECT_EQ(told.at("radius"), 5.0);
+  EXPECT_EQ(told.at("tool_radius"), 1.0);
+  EXPECT_EQ(told.at("margin"), 0.2);
+  EXPECT_EQ(told.at("max_step"), 0.5);
+}
+
+TEST_F(Live, WarningsOfAMeshAreInThePageToo) {
+  const Outcome outcome = run("flat_plate");
+  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  const Json warnings = settings().at("meshes").at(0).at("warnings");
+  ASSERT_FALSE(warnings.empty());
+  for (const Json& warning : warnings) {
+    EXPECT_NE(outcome.output.find(warning.get<std::string>()), std::string::npos) << outcome.output;
+  }
+}
+
+TEST_F(Live, NoNameOfAFileEndsAScriptOrIsLost) {
+  // A slash is in no name, but is in a path.
+  for (const std::string name : {"<!--<script>.stl", "<", "a\"b\\c'.stl"}) {
+    fs::create_directories(folder_.file(name + "<"));
+    const std::string path = name + "</script><b>.stl";
+    write_binary_stl(folder_.file(path), make_shape("cube"));
+    const std::string quoted = [&] {
+      std::string text;
+      for (const char c : path) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+      return "'" + text + "'";
+    }();
+    ASSERT_EQ(run(quoted).status, 0) << path;
+    EXPECT_EQ(settings().at("meshes").at(0).at("name"), "script><b>.stl");
+    EXPECT_EQ(settings().at("meshes").at(0).at("command_name"), quoted);
+    EXPECT_EQ(element("settings").find('<'), std::string::npos);
+  }
+}
+
+TEST_F(Live, ANameThatIsNotUtf8IsReplacedWhereJsonCannotHaveIt) {
+  write_binary_stl(folder_.file("caf\xe9.stl"), make_shape("cube"));
+  ASSERT_EQ(run("'caf\xe9.stl'").status, 0);
+  EXPECT_EQ(settings().at("meshes").at(0).at("name"), "caf\xef\xbf\xbd.stl");
+}
+
+TEST_F(Live, SaysWhereThePageIsAndWhatToDoInIt) {
+  const Outcome outcome = run("cube --out 'my page.html'");
+  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  EXPECT_TRUE(outcome.output.starts_with("my page.html, 0.0 MB; open it in a browser:\n"))
+      << outcome.output;
+  EXPECT_NE(outcome.output.find("\n  " + file_url(folder_.file("my page.html")) + '\n'),
+            std::string::npos)
+      << outcome.output;
+  EXPECT_NE(outcome.output.find("Drag the red ball"), std::string::npos) << outcome.output;
+}
+
+TEST_F(Live, WhatIsWrongIsToldAndNoPageIsWritten) {
+  expect_refused("cube --activation certifed", "there is no 'certifed'; did you mean 'certified'?",
+                 2);
+  expect_refused("cube --tool-raduis 1", "did you mean '--tool-radius'?", 2);
+  expect_refused("skul", "did you mean 'skull'?");
+  expect_refused("cube no_such.stl", "no_such.stl: there is no such file");
+  expect_refused("cube --max-step 5.5", "--max-step is longer than --radius");
+  expect_refused("cube --radius 1e-200 --max-step 1e-200", "radius");
+  expect_refused("cube --radius 1e-200 --max-step 1e-200 --activation none", "radius");
+  expect_refused("cube --out no/such/folder.html", "cannot write here");
+}
+
+TEST_F(Live, NeitherAMeshNorThePagesOwnPartsAreOverwritten) {
+  write_binary_stl(folder_.file("mesh.stl"), make_shape("cube"));
+  for (const std::string name : {"mesh.stl", "web/live.html"}) {
+    const std::string before = contents(name);
+    expect_refused("cube ./mesh.stl --out " + name, "would overwrite it");
+    EXPECT_EQ(contents(name), before) << name;
+  }
+}
+
+TEST_F(Live, WithoutThePagesPartsItSaysWhatToDo) {
+  expect_refused("cube", "there is no elsewhere/live.html", 1, "KEEPOUT_WEB=elsewhere");
+  expect_refused("cube", "share/keepout/web/live.html. In a checkout of keepout, `./run live`", 1,
+                 "KEEPOUT_WEB=");
+  for (const std::string& page : {std::string("<p>no place</p>\n"), place + place}) {
+    folder_.write("web/live.html", page);
+    expect_refused("cube", "is not the page of this keepout");
+  }
+}
+
+TEST_F(Live, TheDesktopIsAskedToOpenThePageWhereThereIsOne) {
+  fs::create_directory(folder_.file("bin"));
+  folder_.write("bin/xdg-open",
+                "#!/bin/sh\nprintf '%s\\n' \"$*\" > asked.new\nmv asked.new asked\n");
+  fs::permissions(folder_.file("bin/xdg-open"), fs::perms::owner_all);
+  const std::string desktop = "PATH=\"$PWD/bin:$PATH\" WAYLAND_DISPLAY=wayland-7 ";
+  EXPECT_EQ(run("cube --no-open", desktop).status, 0);
+  EXPECT_EQ(run("cube", "PATH=\"$PWD/bin:$PATH\" ").status, 0);
+  const Outcome outcome = run("cube --out 'that one.html'", desktop);
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_NE(outcome.output.find("is being opened in a browser"), std::string::npos)
+      << outcome.output;
+  for (int i = 0; i < 1000 && !fs::exists(folder_.file("asked")); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  EXPECT_EQ(contents("asked"), file_url(folder_.file("that one.html")) + '\n');
+}
+
+TEST_F(Live, WithoutAnOpenerThePageIsToBeOpenedByHand) {
+  const Outcome outcome = run("cube", "DISPLAY=:7 PATH=/nowhere ");
+  EXPECT_EQ(outcome.status, 0) << outcome.output;
+  EXPECT_NE(outcome.output.find("; open it in a browser:"), std::string::npos) << outcome.output;
+}
+
+TEST(FileUrl, IsAnAddressWhateverThePath) {
+  EXPECT_EQ(file_url("/tmp/a.html"), "file:///tmp/a.html");
+  EXPECT_EQ(file_url("/tmp/./b/../a-b_c.~1"), "file:///tmp/a-b_c.~1");
+  EXPECT_EQ(file_url("/t p/50%#?&\"<\n"), "file:///t%20p/50%25%23%3F%26%22%3C%0A");
+  EXPECT_EQ(file_url("/\xc3\xa9\xff"), "file:///%C3%A9%FF");
+  EXPECT_EQ(file_url("page.html"), file_url(fs::current_path() / "page.html"));
+}
+
+}  // namespace
+}  // namespace keepout::app

@@ -1,0 +1,110 @@
+#!/usr/bin/env bash
+# How ./run comes by the page of `keepout live`: what it fetches, when, and what it says when it
+# cannot. The programs that fetch, compile and bundle are played by scripts of this test.
+#   page_build_test.sh SOURCE WORK
+# SPDX-License-Identifier: BSD-3-Clause
+set -euo pipefail
+source=$1 work=$2
+fault() { printf '%s\n' "$*" >&2; exit 1; }
+
+rm -rf "$work"
+mkdir -p "$work"/{apps/web,build/release/apps/keepout,build/wasm,programs}
+cp "$source/run" "$work"
+cp -r "$source/cmake" "$work"
+cp "$source/apps/web/build" "$work/apps/web"
+touch "$work"/build/{release,wasm}/build.ninja
+echo '{}' > "$work/apps/web/package.json"
+echo 'first' > "$work/apps/web/package-lock.json"
+export calls=$work/calls page=$work/build/web/live.html
+
+# program NAME: is played by the script on stdin, which tells how it was called.
+program() {
+  { printf '#!/bin/bash\necho "%s $*" >> "$calls"\n' "${1##*/}"; cat; } > "$1"
+  chmod +x "$1"
+}
+for name in em++ node cmake; do program "$work/programs/$name" <<< ''; done
+program "$work/programs/sudo" <<< 'exec "$@"'
+program "$work/programs/apt-get" <<< 'exit 1'
+program "$work/programs/dpkg-query" <<< '[ "${*: -1}" = "${not_installed:-}" ] || echo installed'
+program "$work/programs/npm" <<'PROGRAM'
+[ "$1" != ci ] || rm -rf node_modules/*  # as npm does: what begins with a dot stays
+[ -z "${npm_fails:-}" ] || exit 1
+if [ "$1" = ci ]; then
+  mkdir -p node_modules
+  cp package-lock.json node_modules/what_it_names
+else
+  cmp package-lock.json node_modules/what_it_names || exit 1
+  [ -d "$KEEPOUT_WASM" ] || exit 1
+  printf '%s\n' "${bundled-<!-- keepout live: the anatomy goes here -->}" > "$KEEPOUT_PAGE"
+fi
+PROGRAM
+program "$work/build/release/apps/keepout/keepout" <<< 'echo "in ${KEEPOUT_WEB:-nowhere}"'
+
+# run STATUS ARGS...: ./run ends so; what it said is in told, what it called in called.
+run() {
+  local expected=$1 status=0
+  shift
+  : > "$calls"
+  told=$(cd "$work" && PATH=$work/programs:$PATH ./run "$@" 2>&1) || status=$?
+  called=$(grep -v ^dpkg-query "$calls")
+  if [ "$expected" = fails ]; then
+    [ "$status" -ne 0 ] || fault "./run $* goes on: $told"
+    [[ $called != *"keepout $*"* ]] || fault "./run $* goes on to the command"
+  else
+    [ "$status" -eq 0 ] || fault "./run $* fails: $told"
+    [[ $called == *"keepout $*"* ]] || fault "./run $* does not come to the command"
+  fi
+}
+calls_it() { [[ $called == *"$1"* ]] || fault "does not call '$1', but: $called"; }
+calls_no() { [[ $called != *"$1"* ]] || fault "calls '$1': $called"; }
+says() { [[ $told == *"$1"* ]] || fault "does not say '$1', but: $told"; }
+
+for words in "" "inspect cube" "inspect live" "live --help"; do
+  # shellcheck disable=SC2086
+  run well $words
+  calls_no npm
+  calls_no wasm
+  says "in nowhere"
+done
+
+run well live cube
+calls_it "cmake --build --preset wasm"
+calls_it "npm ci"
+says "in $work/build/web"
+[ -s "$page" ] || fault "there is no page"
+[ -L "$work/apps/web/node_modules" ] || fault "the libraries are among the sources"
+
+run well --simd AVX2 live
+calls_it "npm run"
+calls_no "npm ci"
+
+echo second > "$work/apps/web/package-lock.json"
+npm_fails=yes run fails live
+says "could not be fetched: is there a network?"
+[ -s "$page" ] || fault "the page of before is gone"
+npm_fails=yes run well inspect cube
+echo first > "$work/apps/web/package-lock.json"
+run well live
+calls_it "npm ci"
+
+npm_fails=yes run fails live
+calls_no "npm ci"
+says "could not be bundled"
+bundled=nothing run fails live
+says "has not one line"
+grep -qF "anatomy goes here" "$page" || fault "the page of before is gone"
+
+not_installed=emscripten run fails live
+says "installing emscripten"
+says "is there a network?"
+not_installed=emscripten run well inspect cube
+not_installed=chromium run well live
+rm "$work/programs/npm"
+mkdir "$work/few"
+for name in bash cat cmp cp dirname env find grep id ln mkdir mv rm stat; do
+  ln -s "$(command -v $name)" "$work/few/$name"
+done
+PATH=$work/few
+run fails live
+says "is made with npm, which is not here"
+run well inspect cube
