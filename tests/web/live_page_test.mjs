@@ -109,6 +109,10 @@ const linesOf = (file) =>
     .filter((line) => line !== "" && !line.startsWith("#"))
     .map((line) => line.split(" ").map(Number));
 
+/** What a path was made with. */
+const headOf = (file) =>
+  JSON.parse(readFileSync(join(folder, file), "utf8").match(/^# path: (.*)$/m)[1]);
+
 /** Types what the head of a path says, and gives the rows of STEPS.csv. */
 function replayed(file, mesh, rule) {
   const line = readFileSync(join(folder, file), "utf8")
@@ -157,11 +161,13 @@ test("a drag into the skull: limited, out of it, and the same as keepout replay"
   const rows = replayed(certified, skull, "certified");
   assert.equal(differing(lines, rows), 0, "the page and keepout replay differ");
   const limited = rows.filter((row) => row[1] === "limited").length;
-  const verdict = JSON.parse(run(judge, skull, "steps.csv", "2.2"));
+  const { toolRadius, margin } = headOf(certified).settings;
+  const kept = toolRadius + margin;
+  const verdict = JSON.parse(run(judge, skull, "steps.csv", String(kept)));
   note(`${lines.length} cycles kept, ${limited} of them limited: ${JSON.stringify(verdict)}`);
   assert.ok(limited >= 1000, `${limited} limited cycles`);
   assert.deepEqual([verdict.inside, verdict.crossing, verdict.nearer], [0, 0, 0]);
-  assert.ok(verdict.nearest < 2.21, `nearest ${verdict.nearest}: it never came to the margin`);
+  assert.ok(verdict.nearest < kept + 0.01, `nearest ${verdict.nearest}: it never came to the margin`);
 
   // Opened again, the path is played, and goes the same way.
   const file = await tab.$("#file");
@@ -187,7 +193,7 @@ test("the same drag without a fixture goes in", async () => {
     return [i, "free", ...tip, ...motion, ...motion].join(",");
   });
   writeFileSync(join(folder, "free.csv"), `head\n${steps.join("\n")}\n`);
-  const verdict = JSON.parse(run(judge, skull, "free.csv", "2.2"));
+  const verdict = JSON.parse(run(judge, skull, "free.csv", "0"));
   note(JSON.stringify(verdict));
   assert.ok(verdict.inside > 100, `${verdict.inside} motions end inside`);
   assert.equal(await limitedCycles(tab), 0);

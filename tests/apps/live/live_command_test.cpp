@@ -103,7 +103,7 @@ TEST_F(Live, BeginsWithTheCertifiedRule) {
   const Json told = settings();
   EXPECT_EQ(told.at("activation"), "certified");
   EXPECT_EQ(told.at("radius"), 5.0);
-  EXPECT_EQ(told.at("tool_radius"), 1.0);
+  EXPECT_EQ(told.at("tool_radius"), 3.0);
   EXPECT_EQ(told.at("margin"), 0.2);
   EXPECT_EQ(told.at("max_step"), 0.5);
 }

@@ -11,18 +11,18 @@ type Shown = Extract<FromWorker, { kind: "counterexamples" }>;
 const words: Readonly<Record<string, readonly [title: string, why: string]>> = {
   CE2_boundary: [
     "At a rim",
-    "The tip is just outside the rim of an open surface. The nearest edge has no neighbour, so none " +
-      "of the paper’s conditions holds, no plane is posed, and the motion goes through.",
+    "The tip is just beside the rim of an open surface. The edge that it is nearest to has no " +
+      "neighbour, so none of the paper’s conditions holds: no plane is posed, and the motion goes through.",
   ],
   CE5_closed_octahedron: [
     "In a closed solid",
     "The nearest point of the triangle in the way lies on a ridge. The paper’s rule hands the triangle over to its " +
       "neighbour there, whose plane does not cover it: the tool ends inside.",
   ],
-  CE6b_saddle: [
+  CE6c_larger_saddle: [
     "Over a saddle",
-    "Ridge and valley meet. The nearest point is shared with a neighbour that is posed instead; its " +
-      "plane leaves the way through the other face open.",
+    "The motion asked for is free, and the certified rule lets it pass as it is. The paper’s rule poses a " +
+      "plane of a triangle that is not in the way, and sliding along it leads into another one.",
   ],
 };
 
@@ -81,7 +81,7 @@ export class CounterexampleView {
       caption.textContent = stage.goesThrough ? "goes through the surface" : "stays out";
     });
     element("why", HTMLElement).textContent =
-      `${words[chosen.example.name]?.[1] ?? ""} Both keep a margin of ${this.margin}, where the ` +
+      `${words[chosen.example.name]?.[1] ?? ""} Both are to keep a margin of ${this.margin}; the ` +
       `way asked for is ${Math.hypot(...chosen.example.desired).toFixed(2)} long.`;
     this.begun = performance.now();
   }
@@ -125,7 +125,7 @@ class Stage {
     this.end = vector(trial.end);
     const wanted = this.begin.clone().add(vector(example.desired));
     // What happens fills the view; the mesh may be larger.
-    this.reach = 1.6 * this.begin.distanceTo(wanted);
+    this.reach = this.begin.distanceTo(wanted);
 
     const geometry = new three.BufferGeometry().setFromPoints(example.vertices.map(vector));
     geometry.setIndex(example.triangles.flat());
@@ -184,7 +184,7 @@ class Stage {
   /** `share` of the way gone; the view turns with the seconds. */
   arrange(share: number, seconds: number, aspect: number): void {
     this.tip.position.lerpVectors(this.begin, this.end, share);
-    const middle = this.begin.clone().lerp(this.end, 0.5);
+    const middle = this.begin.clone().lerp(this.end, 0.7);
     const turn = 0.5 * Math.sin(0.4 * seconds) + 0.6;
     const side = this.end
       .clone()
@@ -193,7 +193,7 @@ class Stage {
       .normalize();
     const eye = side.applyAxisAngle(new three.Vector3(0, 0, 1), turn).setZ(0.45);
     this.camera.up.set(0, 0, 1);
-    this.camera.position.copy(middle).addScaledVector(eye, this.reach * 2.1);
+    this.camera.position.copy(middle).addScaledVector(eye, this.reach * 2.6);
     this.camera.aspect = aspect;
     this.camera.lookAt(middle);
     this.camera.updateProjectionMatrix();

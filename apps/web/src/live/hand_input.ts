@@ -75,7 +75,7 @@ export class HandInput {
     if (pixels > (event.pointerType === "mouse" ? reach.mouse : reach.touch)) return;
     event.stopPropagation();
     event.preventDefault();
-    this.view.focus({ preventScroll: true });
+    this.view.focus({ preventScroll: true, focusVisible: false } as FocusOptions);
     this.view.setPointerCapture(event.pointerId);
     this.view.classList.add("dragging");
     this.pointer = event.pointerId;

@@ -33,8 +33,8 @@ export class Scene {
   private readonly still: StillPicture;
   private readonly anatomy: three.Mesh<three.BufferGeometry, three.MeshStandardMaterial>;
   private readonly moving = new three.Scene();
-  private readonly hand = new Ball(colors.hand);
-  private readonly tool = new Ball(colors.tool);
+  private readonly hand = new Ball(colors.hand, 0.35);
+  private readonly tool = new Ball(colors.tool, 1);
   private readonly spring: three.Mesh<three.CylinderGeometry, three.MeshBasicMaterial>;
   private readonly planes: three.Group[] = [];
   private readonly edges = new three.LineSegments(
@@ -42,6 +42,7 @@ export class Scene {
     new three.LineBasicMaterial({ color: colors.plane, depthTest: false, transparent: true }),
   );
   private readonly trail = new Trail(colors.tool);
+  private readonly lit: three.Group[] = [];
   private corners = new Uint32Array();
   private origin = new three.Vector3();
   private size = 100; // of the anatomy's box: its diagonal [mm]
@@ -72,7 +73,7 @@ export class Scene {
     });
     this.anatomy = new three.Mesh(new three.BufferGeometry(), material);
     this.anatomy.frustumCulled = false;
-    light.add(this.anatomy, ...this.lights());
+    light.add(this.anatomy, this.lights());
     this.still = new StillPicture(light, this.camera, antialias ? 4 : 0);
 
     this.spring = new three.Mesh(
@@ -82,7 +83,7 @@ export class Scene {
     this.spring.material.depthTest = false;
     for (let i = 0; i < mostPlanes; ++i) this.planes.push(sheet());
     this.moving.add(
-      ...this.lights(),
+      this.lights(),
       ...this.hand.parts,
       ...this.tool.parts,
       this.spring,
@@ -128,7 +129,7 @@ export class Scene {
     this.controls.maxDistance = 4 * this.size;
     this.controls.target.set(0, 0, 0);
     this.camera.position
-      .set(-0.75, -0.5, 0.2)
+      .set(0.55, 0.8, 0.22)
       .normalize()
       .multiplyScalar((this.size * 1.15) / Math.min(1, 0.4 + 0.6 * this.camera.aspect));
     this.controls.update();
@@ -139,10 +140,11 @@ export class Scene {
   }
 
   /**
-   * A place for the tool to begin: beside the anatomy as it is seen, where a motion across the view
-   * leads into it; nearer to it in the view, and so in sight at first.
+   * A place for the tool to begin: beside the half of the anatomy that is seen, where a motion across
+   * the view leads into it and stays in sight.
    */
   placeBeside(distance: number): Vec3 {
+    this.camera.updateMatrixWorld();
     const right = new three.Vector3().setFromMatrixColumn(this.camera.matrixWorld, 0);
     const up = new three.Vector3().setFromMatrixColumn(this.camera.matrixWorld, 1);
     const caster = new three.Raycaster();
@@ -213,6 +215,7 @@ export class Scene {
   }
 
   private draw(): void {
+    for (const lights of this.lit) lights.quaternion.copy(this.camera.quaternion);
     this.arrange();
     this.still.draw(this.renderer);
     this.renderer.render(this.moving, this.camera);
@@ -227,7 +230,7 @@ export class Scene {
     const tip = this.inside(this.moment.tip);
     const seen = tip.distanceTo(this.camera.position);
     const radius = Math.max(this.toolRadius, smallestBall * seen);
-    this.hand.place(hand, radius);
+    this.hand.place(hand, 1.3 * radius);
     this.tool.place(tip, radius);
 
     const way = tip.clone().sub(hand);
@@ -280,14 +283,17 @@ export class Scene {
     this.redraw();
   }
 
-  private lights(): three.Light[] {
-    const sky = new three.HemisphereLight("#ffffff", "#8b7f72", 1.1);
-    sky.position.set(0, 0, 1);
-    const key = new three.DirectionalLight("#fff6e8", 2.1);
-    key.position.set(1, -1.2, 1.4);
-    const rim = new three.DirectionalLight("#cfe2ff", 0.9);
-    rim.position.set(-1.4, 0.8, 0.4);
-    return [sky, key, rim];
+  /** Lights that stay with the view: from its upper left, and faintly from all sides. */
+  private lights(): three.Group {
+    const group = new three.Group();
+    const sky = new three.HemisphereLight("#ffffff", "#6b6259", 0.9);
+    const key = new three.DirectionalLight("#fff3e2", 2.6);
+    key.position.set(-0.9, 1.1, 0.9);
+    const rim = new three.DirectionalLight("#cfe2ff", 0.7);
+    rim.position.set(1.6, 0.1, 0.1);
+    group.add(sky, key, rim);
+    this.lit.push(group);
+    return group;
   }
 
   /** From the frame of the mesh to that of the scene, whose origin is the middle of the anatomy. */
@@ -304,16 +310,16 @@ export class Scene {
 class Ball {
   readonly parts: three.Mesh[];
 
-  constructor(color: string) {
+  constructor(color: string, opacity: number) {
     const geometry = new three.SphereGeometry(1, 40, 24);
-    const solid = new three.MeshStandardMaterial({ color, roughness: 0.35 });
-    const ghost = new three.MeshBasicMaterial({
-      color,
-      transparent: true,
-      opacity: 0.4,
-      depthTest: false,
-      depthWrite: false,
+    const faint = { color, transparent: true, depthWrite: false };
+    const solid = new three.MeshStandardMaterial({
+      ...faint,
+      opacity,
+      roughness: 0.35,
+      depthWrite: opacity === 1,
     });
+    const ghost = new three.MeshBasicMaterial({ ...faint, opacity: 0.3, depthTest: false });
     this.parts = [new three.Mesh(geometry, solid), new three.Mesh(geometry, ghost)];
   }
 

@@ -1,0 +1,15 @@
+#!/usr/bin/env bash
+# Runs a test of the page where what it needs is there; else says what is missing, and is skipped.
+#   where_it_is_built.sh ROOT COMMAND...
+# SPDX-License-Identifier: BSD-3-Clause
+set -euo pipefail
+root=$1
+shift
+for needed in "$root/build/web/live.html" "$root/build/wasm/keepout.wasm"; do
+  [ -f "$needed" ] || { echo "skipped: there is no $needed; ./run live makes it"; exit 77; }
+done
+for program in node npm chromium; do
+  command -v "$program" >/dev/null ||
+    { echo "skipped: there is no $program; cmake/debian_packages_web.txt has what the tests need"; exit 77; }
+done
+exec "$@"
