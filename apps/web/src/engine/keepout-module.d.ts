@@ -1,0 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/** What emscripten makes: build/wasm/keepout.js. */
+declare module "keepout-module" {
+  const makeModule: import("./keepout.ts").ModuleFactory;
+  export default makeModule;
+}

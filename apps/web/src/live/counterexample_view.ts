@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: BSD-3-Clause
+import * as three from "three";
+import type { Counterexample, Vec3 } from "../engine/keepout.ts";
+import { element } from "./page.ts";
+import type { FromWorker, Trial } from "./protocol.ts";
+import { colors } from "./scene.ts";
+
+type Shown = Extract<FromWorker, { kind: "counterexamples" }>;
+
+/** Of each: what it is called here, and why the paper's rule fails (docs/activation.md). */
+const words: Readonly<Record<string, readonly [title: string, why: string]>> = {
+  CE2_boundary: [
+    "At a rim",
+    "The tip is just outside the rim of an open surface. The nearest edge has no neighbour, so none " +
+      "of the paper’s conditions holds, no plane is posed, and the motion goes through.",
+  ],
+  CE5_closed_octahedron: [
+    "In a closed solid",
+    "The nearest point of the triangle in the way lies on a ridge. The paper’s rule hands the triangle over to its " +
+      "neighbour there, whose plane does not cover it: the tool ends inside.",
+  ],
+  CE6b_saddle: [
+    "Over a saddle",
+    "Ridge and valley meet. The nearest point is shared with a neighbour that is posed instead; its " +
+      "plane leaves the way through the other face open.",
+  ],
+};
+
+/** How long the way takes, and how long it then rests. [ms] */
+const way = 1600;
+const rest = 1400;
+
+/**
+ * The dialog that plays counterexamples side by side: on the left under the paper's rule, on the
+ * right under the certified one.
+ */
+export class CounterexampleView {
+  private readonly dialog = element("failures", HTMLDialogElement);
+  private readonly duel = element("duel", HTMLElement);
+  private readonly figures = [...this.duel.querySelectorAll("figure")];
+  private renderer: three.WebGLRenderer | null = null;
+  private stages: Stage[] = [];
+  private shown: Shown["examples"] = [];
+  private margin = 0;
+  private begun = 0;
+
+  /** Opens it: at first with the first counterexample. */
+  open({ examples, margin }: Shown): void {
+    this.shown = examples;
+    this.margin = margin;
+    this.dialog.showModal();
+    if (this.renderer === null) {
+      this.renderer = new three.WebGLRenderer({ antialias: true, alpha: true });
+      this.duel.prepend(this.renderer.domElement);
+    }
+    element("examples", HTMLElement).replaceChildren(
+      ...examples.map(({ example }, i) => {
+        const button = document.createElement("button");
+        button.type = "button";
+        button.textContent = words[example.name]?.[0] ?? example.name;
+        button.onclick = () => this.choose(i);
+        return button;
+      }),
+    );
+    this.choose(0);
+    requestAnimationFrame(() => this.play());
+  }
+
+  private choose(number: number): void {
+    const chosen = this.shown[number];
+    if (chosen === undefined) return;
+    const buttons = element("examples", HTMLElement).querySelectorAll("button");
+    for (const [i, button] of buttons.entries()) {
+      button.setAttribute("aria-pressed", String(i === number));
+    }
+    this.stages = chosen.trials.map((trial) => new Stage(chosen.example, trial));
+    this.stages.forEach((stage, i) => {
+      const caption = this.figures[i]?.querySelector("span");
+      if (!caption) return;
+      caption.className = stage.goesThrough ? "bad" : "good";
+      caption.textContent = stage.goesThrough ? "goes through the surface" : "stays out";
+    });
+    element("why", HTMLElement).textContent =
+      `${words[chosen.example.name]?.[1] ?? ""} Both keep a margin of ${this.margin}, where the ` +
+      `way asked for is ${Math.hypot(...chosen.example.desired).toFixed(2)} long.`;
+    this.begun = performance.now();
+  }
+
+  private play(): void {
+    const { renderer } = this;
+    if (!this.dialog.open || renderer === null) return;
+    const now = performance.now() - this.begun;
+    const share = Math.min((now % (way + rest)) / way, 1);
+    const box = this.duel.getBoundingClientRect();
+    renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+    renderer.setSize(box.width, box.height);
+    renderer.setScissorTest(true);
+    this.stages.forEach((stage, i) => {
+      const figure = this.figures[i];
+      if (figure === undefined) return;
+      const { left, bottom, width, height } = figure.getBoundingClientRect();
+      const area = [left - box.left, box.bottom - bottom, width, height] as const;
+      renderer.setViewport(...area);
+      renderer.setScissor(...area);
+      stage.arrange(share * share * (3 - 2 * share), now / 1000, width / height);
+      renderer.render(stage.scene, stage.camera);
+    });
+    requestAnimationFrame(() => this.play());
+  }
+}
+
+/** One counterexample under one rule. */
+class Stage {
+  readonly scene = new three.Scene();
+  readonly camera = new three.PerspectiveCamera(30, 1, 0.01, 1000);
+  /** Whether the way of the tip crosses a triangle. */
+  readonly goesThrough: boolean;
+  private readonly tip: three.Mesh;
+  private readonly begin: three.Vector3;
+  private readonly end: three.Vector3;
+  private readonly reach: number;
+
+  constructor(example: Counterexample, trial: Trial) {
+    this.begin = vector(example.tip);
+    this.end = vector(trial.end);
+    const wanted = this.begin.clone().add(vector(example.desired));
+    // What happens fills the view; the mesh may be larger.
+    this.reach = 1.6 * this.begin.distanceTo(wanted);
+
+    const geometry = new three.BufferGeometry().setFromPoints(example.vertices.map(vector));
+    geometry.setIndex(example.triangles.flat());
+    const flat = geometry.toNonIndexed();
+    flat.computeVertexNormals();
+    const bone = new three.Mesh(
+      flat,
+      new three.MeshStandardMaterial({
+        color: colors.bone,
+        roughness: 0.8,
+        side: three.DoubleSide,
+        transparent: true,
+        opacity: 0.82,
+      }),
+    );
+    const rims = new three.LineSegments(
+      new three.WireframeGeometry(flat),
+      new three.LineBasicMaterial({ color: "#7d6f5c" }),
+    );
+
+    const ball = this.reach * 0.035;
+    this.tip = new three.Mesh(
+      new three.SphereGeometry(ball, 32, 16),
+      new three.MeshStandardMaterial({ color: colors.tool, roughness: 0.35 }),
+    );
+    const asked = new three.Line(
+      new three.BufferGeometry().setFromPoints([this.begin, wanted]),
+      new three.LineDashedMaterial({ color: colors.hand, dashSize: ball, gapSize: ball * 0.7 }),
+    );
+    asked.computeLineDistances();
+    const gone = new three.Line(
+      new three.BufferGeometry().setFromPoints([this.begin, this.end]),
+      new three.LineBasicMaterial({ color: colors.tool }),
+    );
+    for (const line of [asked, gone]) {
+      line.material.depthTest = false;
+      line.renderOrder = 1;
+    }
+    const key = new three.DirectionalLight("#ffffff", 2.2);
+    key.position.set(2, -1, 3);
+    this.scene.add(bone, rims, this.tip, asked, gone, key, new three.AmbientLight("#ffffff", 1.3));
+
+    const crossings = crossingsOf(example, this.begin, this.end);
+    this.goesThrough = crossings.length > 0;
+    for (const crossing of crossings) {
+      const mark = new three.Mesh(
+        new three.SphereGeometry(ball * 0.7, 24, 12),
+        new three.MeshBasicMaterial({ color: colors.hand, depthTest: false, transparent: true }),
+      );
+      mark.position.copy(crossing);
+      mark.renderOrder = 2;
+      this.scene.add(mark);
+    }
+  }
+
+  /** `share` of the way gone; the view turns with the seconds. */
+  arrange(share: number, seconds: number, aspect: number): void {
+    this.tip.position.lerpVectors(this.begin, this.end, share);
+    const middle = this.begin.clone().lerp(this.end, 0.5);
+    const turn = 0.5 * Math.sin(0.4 * seconds) + 0.6;
+    const side = this.end
+      .clone()
+      .sub(this.begin)
+      .cross(new three.Vector3(0.2, 0.3, 1))
+      .normalize();
+    const eye = side.applyAxisAngle(new three.Vector3(0, 0, 1), turn).setZ(0.45);
+    this.camera.up.set(0, 0, 1);
+    this.camera.position.copy(middle).addScaledVector(eye, this.reach * 2.1);
+    this.camera.aspect = aspect;
+    this.camera.lookAt(middle);
+    this.camera.updateProjectionMatrix();
+  }
+}
+
+function vector(place: Vec3): three.Vector3 {
+  return new three.Vector3(...place);
+}
+
+/** Where a way crosses the triangles of a mesh. */
+function crossingsOf(
+  mesh: Counterexample,
+  begin: three.Vector3,
+  end: three.Vector3,
+): three.Vector3[] {
+  const length = begin.distanceTo(end);
+  const ray = new three.Ray(begin, end.clone().sub(begin).normalize());
+  return mesh.triangles.flatMap((triangle) => {
+    const [a, b, c] = triangle.map((corner) => vector(mesh.vertices[corner] as Vec3));
+    const at = new three.Vector3();
+    const met = ray.intersectTriangle(
+      a as three.Vector3,
+      b as three.Vector3,
+      c as three.Vector3,
+      false,
+      at,
+    );
+    return met !== null && at.distanceTo(begin) < length ? [at] : [];
+  });
+}

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+import type { EmbeddedMesh } from "./protocol.ts";
+import { unpacked } from "./unpacked.ts";
+
+/**
+ * Unpacks a mesh as `keepout live` packs it (apps/keepout/live): base64 of gzip of all x, all y and
+ * all z, and of a code for each corner, in four planes of bytes. A corner's code is how far back its
+ * vertex is from the first one not named yet; 0 is that one. All bits of all coordinates come back.
+ */
+export async function decodeSurface(
+  mesh: EmbeddedMesh,
+  base64: string,
+): Promise<{ vertices: Float64Array; corners: Uint32Array }> {
+  const buffer = await unpacked(base64);
+  const count = mesh.vertices;
+  const columns =
+    mesh.coordinates === "float32"
+      ? new Float32Array(buffer, 0, 3 * count)
+      : new Float64Array(buffer, 0, 3 * count);
+  const vertices = new Float64Array(3 * count);
+  for (let i = 0; i < count; ++i) {
+    for (let axis = 0; axis < 3; ++axis) {
+      vertices[3 * i + axis] = columns[axis * count + i] as number;
+    }
+  }
+
+  const codes = new Uint8Array(buffer, columns.byteLength);
+  const corners = new Uint32Array(3 * mesh.triangles);
+  let next = 0;
+  for (let i = 0; i < corners.length; ++i) {
+    let code = 0;
+    for (let plane = 3; plane >= 0; --plane) {
+      code = 256 * code + (codes[plane * corners.length + i] as number);
+    }
+    corners[i] = next - code; // modulo 2^32
+    if (code === 0) ++next;
+  }
+  return { vertices, corners };
+}

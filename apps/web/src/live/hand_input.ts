@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: BSD-3-Clause
+import type { Vec3 } from "../engine/keepout.ts";
+import type { Scene } from "./scene.ts";
+
+/** How near a pointer must be to take hold. [px] */
+const reach = { mouse: 30, touch: 52 } as const;
+/** How fast arrow keys lead the hand, and by how much slower with Shift. [mm/s] */
+const keySpeed = { usual: 40, slow: 8 } as const;
+/** How far the wheel leads the hand into the view. [mm per px of it] */
+const wheelDepth = 0.02;
+
+/** Which way each key leads: to the right, up, and into the view. */
+const ways: Readonly<Record<string, Vec3>> = {
+  ArrowRight: [1, 0, 0],
+  ArrowLeft: [-1, 0, 0],
+  ArrowUp: [0, 1, 0],
+  ArrowDown: [0, -1, 0],
+  PageUp: [0, 0, 1],
+  PageDown: [0, 0, -1],
+};
+
+/**
+ * The hand, led by mouse, touch or keys. A pointer that takes hold of it leads it across the view,
+ * at the depth where it was taken; the wheel meanwhile leads it deeper. Elsewhere a pointer turns
+ * the view. Let go, the hand follows the tool; keys hold it until Escape.
+ */
+export class HandInput {
+  private hand: Vec3 = [0, 0, 0];
+  private pointer: number | null = null;
+  private grip: { dx: number; dy: number } = { dx: 0, dy: 0 };
+  private isHeld = false;
+  private readonly keys = new Set<string>();
+  private isSlow = false;
+  private keyClock = 0;
+
+  /** `hold`: told where the hand is, or null when it lets go. */
+  constructor(
+    private readonly scene: Scene,
+    private readonly view: HTMLElement,
+    private readonly hold: (place: Vec3 | null) => void,
+  ) {
+    // Before the camera's own controls see it.
+    view.addEventListener("pointerdown", (event) => this.take(event), { capture: true });
+    view.addEventListener("pointermove", (event) => this.lead(event), { capture: true });
+    view.addEventListener("pointerup", (event) => this.letGo(event), { capture: true });
+    view.addEventListener("pointercancel", (event) => this.letGo(event), { capture: true });
+    view.addEventListener("wheel", (event) => this.deepen(event), {
+      capture: true,
+      passive: false,
+    });
+    view.addEventListener("keydown", (event) => this.press(event));
+    view.addEventListener("keyup", (event) => this.keys.delete(event.key));
+    view.addEventListener("blur", () => this.keys.clear());
+  }
+
+  /** Where the hand is while nothing leads it. */
+  rest(hand: Vec3): void {
+    if (!this.isHeld) this.hand = hand;
+  }
+
+  /** The hand is taken away from whatever leads it. */
+  drop(): void {
+    this.pointer = null;
+    this.keys.clear();
+    this.isHeld = false;
+  }
+
+  private take(event: PointerEvent): void {
+    if (event.button !== 0 || this.pointer !== null) return;
+    const at = this.inView(event);
+    const hand = this.scene.project(this.hand);
+    const dx = hand.x - at.x;
+    const dy = hand.y - at.y;
+    const pixels = Math.hypot(dx * 0.5 * this.view.clientWidth, dy * 0.5 * this.view.clientHeight);
+    if (pixels > (event.pointerType === "mouse" ? reach.mouse : reach.touch)) return;
+    event.stopPropagation();
+    event.preventDefault();
+    this.view.focus({ preventScroll: true });
+    this.view.setPointerCapture(event.pointerId);
+    this.view.classList.add("dragging");
+    this.pointer = event.pointerId;
+    this.grip = { dx, dy };
+    this.go(this.hand);
+  }
+
+  private lead(event: PointerEvent): void {
+    if (this.pointer === null) return;
+    event.stopPropagation();
+    if (event.pointerId !== this.pointer) return;
+    const at = this.inView(event);
+    this.go(this.scene.unproject(at.x + this.grip.dx, at.y + this.grip.dy, this.hand));
+  }
+
+  private letGo(event: PointerEvent): void {
+    if (event.pointerId !== this.pointer) return;
+    event.stopPropagation();
+    this.view.classList.remove("dragging");
+    this.release();
+  }
+
+  private release(): void {
+    this.drop();
+    this.hold(null);
+  }
+
+  private deepen(event: WheelEvent): void {
+    if (this.pointer === null) return;
+    event.stopPropagation();
+    event.preventDefault();
+    this.move([0, 0, -wheelDepth * event.deltaY]);
+  }
+
+  private press(event: KeyboardEvent): void {
+    this.isSlow = event.shiftKey;
+    if (event.key === "Escape") this.release();
+    if (ways[event.key] === undefined) return;
+    event.preventDefault();
+    if (this.keys.size === 0) {
+      this.keyClock = performance.now();
+      requestAnimationFrame(() => this.leadByKeys());
+    }
+    this.keys.add(event.key);
+  }
+
+  private leadByKeys(): void {
+    const now = performance.now();
+    // No leap after a frame that took long.
+    const seconds = Math.min(now - this.keyClock, 50) / 1000;
+    this.keyClock = now;
+    if (this.keys.size === 0) return;
+    const distance = seconds * (this.isSlow ? keySpeed.slow : keySpeed.usual);
+    const way = [0, 1, 2].map((axis) =>
+      [...this.keys].reduce((sum, key) => sum + distance * (ways[key]?.[axis] ?? 0), 0),
+    );
+    this.move(way as unknown as Vec3);
+    requestAnimationFrame(() => this.leadByKeys());
+  }
+
+  private move(way: Vec3): void {
+    const across = this.scene.across(...way);
+    this.go(this.hand.map((value, i) => value + (across[i] as number)) as unknown as Vec3);
+  }
+
+  private go(hand: Vec3): void {
+    this.hand = hand;
+    this.isHeld = true;
+    this.hold(hand);
+  }
+
+  /** From -1 to 1 both ways. */
+  private inView(event: PointerEvent): { x: number; y: number } {
+    const box = this.view.getBoundingClientRect();
+    return {
+      x: (2 * (event.clientX - box.left)) / box.width - 1,
+      y: 1 - (2 * (event.clientY - box.top)) / box.height,
+    };
+  }
+}

@@ -1,0 +1,336 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/** The page of `keepout live`: puts its parts together. */
+import type { GuardSettings, Rule, Vec3 } from "../engine/keepout.ts";
+import { ClearanceChart } from "./clearance_chart.ts";
+import { CounterexampleView } from "./counterexample_view.ts";
+import { HandInput } from "./hand_input.ts";
+import { element, embeddedText, grouped, type PageSettings, toast } from "./page.ts";
+import { type PathHeader, parsePath, pathText, replayCommand } from "./path_file.ts";
+import type { FromWorker, Source, State, ToWorker } from "./protocol.ts";
+import { Readings, showFindings } from "./readings.ts";
+import { Scene } from "./scene.ts";
+
+/** How far beside the surface the tool begins. [mm] */
+const beginsAt = 10;
+
+const page: PageSettings = JSON.parse(embeddedText("settings"));
+let settings: GuardSettings = {
+  rule: page.activation as Rule,
+  radius: page.radius,
+  toolRadius: page.tool_radius,
+  margin: page.margin,
+  maxStep: page.max_step,
+};
+/** What is in the view: its name, and what to call it on a command line. */
+let shown = { name: "", command: "" };
+let triangles = 0;
+/** That which is being loaded, until it is there or has failed. */
+let awaited: { command: string } | null = null;
+let state: State | null = null;
+let readings: Readings | null = null;
+/** A path that is to be played, once its mesh is there; and the last one that was. */
+let last: { header: PathHeader | null; lines: Float64Array } | null = null;
+/** What to do with the path that the worker was asked for. */
+let pathFor: "save" | "replay" = "save";
+
+const view = element("view", HTMLElement);
+const grip = element("grip", HTMLElement);
+const scene = new Scene(view, () => placeGrip());
+const chart = new ClearanceChart(element("chart", HTMLElement));
+const failures = new CounterexampleView();
+const input = new HandInput(scene, view, (place) => {
+  grip.classList.remove("new");
+  tell({ kind: "hand", place });
+});
+
+const worker = new Worker(
+  URL.createObjectURL(new Blob([embeddedText("worker")], { type: "text/javascript" })),
+);
+worker.onmessage = ({ data }: MessageEvent<FromWorker>) => hear(data);
+worker.onerror = () => toast("keepout itself has failed in this page: reload it.");
+
+function tell(message: ToWorker): void {
+  worker.postMessage(message);
+}
+
+function hear(message: FromWorker): void {
+  switch (message.kind) {
+    case "ready":
+      readings = new Readings(message.statuses);
+      fillMeshes(message.shapes);
+      chooseMesh();
+      return;
+    case "surface":
+      scene.show(message.positions, message.corners, message.origin);
+      chart.clear();
+      state = null;
+      shown = { name: message.name, command: awaited?.command ?? message.name };
+      document.title = `${message.name} – keepout live`;
+      triangles = message.corners.length / 3;
+      return;
+    case "findings":
+      showFindings(message.findings, triangles);
+      return;
+    case "guarded":
+      awaited = null;
+      element("loading", HTMLElement).hidden = true;
+      grip.hidden = false;
+      begin();
+      if (last !== null) play();
+      return;
+    case "state":
+      show(message.state);
+      return;
+    case "path":
+      takePath(message.lines, message.settings);
+      return;
+    case "replayed":
+      toast(
+        message.differs < 0
+          ? `Replayed: ${grouped(message.cycles)} cycles, and the tool went the same way, bit for bit.`
+          : `Replayed: ${grouped(message.cycles)} cycles; from cycle ${grouped(message.differs + 1)} ` +
+              "on the tool went another way than on record.",
+      );
+      return;
+    case "counterexamples":
+      failures.open(message);
+      return;
+    case "failure":
+      awaited = null;
+      element("loading", HTMLElement).hidden = true;
+      toast(`${message.what === "" ? "" : `${message.what}: `}${message.message}`);
+      selectShown();
+      return;
+  }
+}
+
+/** The tool begins beside the anatomy, and the view comes near. */
+function begin(): void {
+  const place = scene.placeBeside(beginsAt + settings.toolRadius + settings.margin);
+  tell({ kind: "place", tip: place });
+}
+
+function show(now: State): void {
+  state = now;
+  input.rest(now.hand);
+  scene.update({ hand: now.hand, tip: now.tip, planes: now.planes });
+  chart.add(now.time, now.handClearance, now.toolClearance);
+  readings?.show(now, settings, scene.frames);
+}
+
+/** The ring around the hand, where the view has it. */
+function placeGrip(): void {
+  if (state === null) return;
+  const { x, y } = scene.project(state.hand);
+  grip.style.transform = `translate(${0.5 * (1 + x) * view.clientWidth}px, ${0.5 * (1 - y) * view.clientHeight}px)`;
+}
+
+// What is chosen.
+
+const meshes = element("mesh", HTMLSelectElement);
+
+function fillMeshes(shapes: readonly string[]): void {
+  const group = (label: string, names: readonly string[], kind: string) => {
+    const options = document.createElement("optgroup");
+    options.label = label;
+    options.append(
+      ...names.map((name, i) => new Option(name, `${kind} ${kind === "shape" ? name : i}`)),
+    );
+    return options;
+  };
+  meshes.append(
+    group(
+      "In this page",
+      page.meshes.map(({ name }) => name),
+      "embedded",
+    ),
+    group("Generated", shapes, "shape"),
+  );
+}
+
+function chooseMesh(): void {
+  const [kind, which] = meshes.value.split(" ") as [string, string];
+  if (kind === "shape") load({ kind: "shape", name: which }, which);
+  if (kind !== "embedded") return;
+  const mesh = page.meshes[Number(which)];
+  if (mesh === undefined) return;
+  load({ kind: "embedded", mesh, data: embeddedText(`mesh-${which}`) }, mesh.command_name);
+}
+
+/** The list says what is in the view, also when what was chosen could not be. */
+function selectShown(): void {
+  const option = [...meshes.options].find(({ text }) => text === shown.name);
+  if (option) meshes.value = option.value;
+}
+
+function load(source: Source, command: string): void {
+  awaited = { command };
+  const line = element("loading", HTMLElement);
+  line.textContent = `Reading ${source.kind === "embedded" ? source.mesh.name : source.name} …`;
+  line.hidden = false;
+  input.drop();
+  tell({ kind: "load", source, settings });
+}
+
+async function openFile(file: File): Promise<void> {
+  if (/\.(txt|csv)$/i.test(file.name)) {
+    try {
+      last = parsePath(await file.text());
+    } catch (error) {
+      toast(`${file.name}: ${(error as Error).message}`);
+      return;
+    }
+    adopt(last.header);
+    return;
+  }
+  last = null;
+  load(
+    { kind: "file", name: file.name, bytes: new Uint8Array(await file.arrayBuffer()) },
+    /^[\w.-]+$/.test(file.name) ? file.name : `'${file.name.replaceAll("'", "'\\''")}'`,
+  );
+  const own = [...meshes.options].find(({ value }) => value === "file");
+  own?.remove();
+  meshes.append(new Option(file.name, "file"));
+  meshes.value = "file";
+}
+
+/** What a path was made with, as far as it is at hand; then plays it. */
+function adopt(header: PathHeader | null): void {
+  if (header !== null) {
+    settings = header.settings;
+    showSettings();
+    tell({ kind: "settings", settings });
+    if (header.mesh !== shown.command) {
+      const number = page.meshes.findIndex(({ command_name }) => command_name === header.mesh);
+      const shape = [...meshes.options].find(({ value }) => value === `shape ${header.mesh}`);
+      if (number >= 0 || shape) {
+        meshes.value = shape?.value ?? `embedded ${number}`;
+        chooseMesh();
+        return; // it is played once that is there
+      }
+      toast(`This path is over ${header.mesh}, which is not in this page: open that file first.`);
+      return;
+    }
+  }
+  play();
+}
+
+function play(): void {
+  if (last !== null) tell({ kind: "replay", lines: last.lines });
+  last = null;
+}
+
+function takePath(lines: Float64Array, made: GuardSettings): void {
+  if (lines.length === 0) return;
+  if (pathFor === "replay") {
+    tell({ kind: "replay", lines });
+    return;
+  }
+  const header: PathHeader = { keepout: page.keepout, mesh: shown.command, settings: made };
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(new Blob([pathText(header, lines)], { type: "text/plain" }));
+  link.download = `keepout-path-${shown.name.replaceAll(/[^\w.-]/g, "_")}.txt`;
+  link.click();
+  URL.revokeObjectURL(link.href);
+  toast(
+    `${grouped(lines.length / 6)} cycles saved. ` +
+      (made.rule === "none"
+        ? "Open the file here to see them again."
+        : `To do them again outside: ${replayCommand(header, link.download)}`),
+  );
+}
+
+// Controls.
+
+const sliders = [
+  ["tool-radius", "toolRadius"],
+  ["margin", "margin"],
+  ["radius", "radius"],
+] as const;
+
+function showSettings(): void {
+  for (const radio of document.querySelectorAll<HTMLInputElement>("#rules input")) {
+    radio.checked = radio.value === settings.rule;
+  }
+  for (const [id, key] of sliders) {
+    const slider = element(id, HTMLInputElement);
+    slider.value = String(settings[key]);
+    const output = slider.parentElement?.querySelector("output");
+    if (output) output.textContent = `${settings[key]} mm`;
+  }
+  scene.setToolRadius(settings.toolRadius);
+  chart.setMargin(settings.margin);
+}
+
+function change(part: Partial<GuardSettings>): void {
+  settings = { ...settings, ...part };
+  showSettings();
+  tell({ kind: "settings", settings });
+}
+
+element("rules", HTMLElement).addEventListener("change", (event) => {
+  change({ rule: (event.target as HTMLInputElement).value as Rule });
+});
+for (const [id, key] of sliders) {
+  const slider = element(id, HTMLInputElement);
+  slider.addEventListener("input", () => change({ [key]: Number(slider.value) }));
+}
+meshes.addEventListener("change", chooseMesh);
+element("open", HTMLButtonElement).onclick = () => element("file", HTMLInputElement).click();
+element("again", HTMLButtonElement).onclick = () => {
+  input.drop();
+  begin();
+};
+element("file", HTMLInputElement).onchange = ({ target }) => {
+  const field = target as HTMLInputElement;
+  const file = field.files?.[0];
+  if (file) void openFile(file);
+  field.value = "";
+};
+for (const [id, use] of [
+  ["save", "save"],
+  ["replay", "replay"],
+] as const) {
+  element(id, HTMLButtonElement).onclick = () => {
+    pathFor = use;
+    tell({ kind: "ask for path" });
+  };
+}
+element("fail", HTMLButtonElement).onclick = () => tell({ kind: "ask for counterexamples" });
+
+// The tool is put where the anatomy is double-clicked.
+view.addEventListener("dblclick", (event) => {
+  const box = view.getBoundingClientRect();
+  const x = (2 * (event.clientX - box.left)) / box.width - 1;
+  const y = 1 - (2 * (event.clientY - box.top)) / box.height;
+  const place: Vec3 | null = scene.placeBefore(
+    x,
+    y,
+    beginsAt / 2 + settings.toolRadius + settings.margin,
+  );
+  if (place === null) return;
+  input.drop();
+  tell({ kind: "place", tip: place });
+});
+
+// Files that are dropped.
+const dropHint = element("drop", HTMLElement);
+window.addEventListener("dragover", (event) => {
+  event.preventDefault();
+  dropHint.hidden = false;
+});
+window.addEventListener("dragleave", (event) => {
+  if (event.relatedTarget === null) dropHint.hidden = true;
+});
+window.addEventListener("drop", (event) => {
+  event.preventDefault();
+  dropHint.hidden = true;
+  const file = event.dataTransfer?.files[0];
+  if (file) void openFile(file);
+});
+document.addEventListener("visibilitychange", () => {
+  tell({ kind: "pause", paused: document.hidden });
+});
+
+showSettings();
+tell({ kind: "start", engine: embeddedText("engine") });

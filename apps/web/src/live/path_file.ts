@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+import type { GuardSettings, Rule } from "../engine/keepout.ts";
+
+/** What a path was made with; stands in its file as JSON, after "# path: ". */
+export interface PathHeader {
+  readonly keepout: string;
+  /** As `keepout replay` takes it: a file, or the name of a fixture. */
+  readonly mesh: string;
+  readonly settings: GuardSettings;
+}
+
+const mark = "# path: ";
+const rules: readonly string[] = ["none", "all_faces", "paper", "certified"] satisfies Rule[];
+
+/**
+ * A pose file of `keepout replay --closed-loop`: a line a cycle, where the hand was, and where the
+ * tool was before the cycle, of which replay takes the first. All bits are kept.
+ */
+export function pathText(header: PathHeader, lines: Float64Array): string {
+  const { settings } = header;
+  const rows: string[] = [];
+  for (let i = 0; i < lines.length; i += 6) {
+    rows.push([...lines.subarray(i, i + 6)].map(numberText).join(" "));
+  }
+  return [
+    "# A path of keepout live: gx gy gz rx ry rz [mm], a line for each cycle of a millisecond: where",
+    "# the hand was, and where the tool was before it. A cycle like the one before is left out.",
+    settings.rule === "none"
+      ? "# There was no fixture; to replay it, choose a rule with --activation."
+      : "# To do it again, and find the tool in columns px py pz, bit for bit:",
+    `#   ${replayCommand(header, "THIS_FILE")}`,
+    mark + JSON.stringify(header),
+    ...rows,
+    "",
+  ].join("\n");
+}
+
+/** What to type to do a path again. */
+export function replayCommand({ mesh, settings }: PathHeader, file: string): string {
+  const rule = settings.rule === "none" ? "RULE" : settings.rule;
+  return (
+    `keepout replay ${mesh} --closed-loop --poses ${file} --out steps.csv --activation ${rule}` +
+    ` --radius ${settings.radius} --tool-radius ${settings.toolRadius} --margin ${settings.margin}` +
+    ` --max-step ${settings.maxStep}`
+  );
+}
+
+/** Reads a path, or any pose file of a closed loop, which has no header. Throws for what is none. */
+export function parsePath(text: string): { header: PathHeader | null; lines: Float64Array } {
+  let header: PathHeader | null = null;
+  const numbers: number[] = [];
+  text.split(/\r?\n/).forEach((line, i) => {
+    if (line.startsWith(mark)) header = parseHeader(line.slice(mark.length), i + 1);
+    if (line.trim() === "" || line.startsWith("#")) return;
+    const words = line.trim().split(/[\s,]+/);
+    const values = words.map(Number);
+    if (values.length !== 6 || !values.every(Number.isFinite)) {
+      throw new Error(`line ${i + 1}: six numbers are needed, 'gx gy gz rx ry rz', in mm`);
+    }
+    numbers.push(...values);
+  });
+  if (numbers.length === 0) throw new Error("there is no cycle in it: is this a path?");
+  return { header, lines: Float64Array.from(numbers) };
+}
+
+function parseHeader(text: string, line: number): PathHeader {
+  const wrong = new Error(`line ${line}: its header is none of a path of keepout live`);
+  let header: Partial<PathHeader>;
+  try {
+    header = JSON.parse(text);
+  } catch {
+    throw wrong;
+  }
+  const settings: Partial<GuardSettings> = header.settings ?? {};
+  const lengths = [settings.radius, settings.toolRadius, settings.margin, settings.maxStep];
+  if (!rules.includes(settings.rule ?? "") || !lengths.every(Number.isFinite)) throw wrong;
+  return header as PathHeader;
+}
+
+/** The fewest digits that read back exactly; JavaScript would lose the sign of zero. */
+function numberText(value: number): string {
+  return Object.is(value, -0) ? "-0" : String(value);
+}

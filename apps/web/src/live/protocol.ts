@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/** What the page and its worker, in which keepout runs, tell each other. */
+import type { Counterexample, Findings, GuardSettings, Plane, Vec3 } from "../engine/keepout.ts";
+
+/** A mesh that `keepout live` has put into the page: see apps/keepout/live. */
+export interface EmbeddedMesh {
+  readonly name: string;
+  /** What to give to `keepout replay` as MESH. */
+  readonly command_name: string;
+  readonly vertices: number;
+  readonly triangles: number;
+  readonly coordinates: "float32" | "float64";
+  readonly warnings: readonly string[];
+}
+
+/** Where an anatomy comes from. */
+export type Source =
+  | { readonly kind: "embedded"; readonly mesh: EmbeddedMesh; readonly data: string }
+  | { readonly kind: "shape"; readonly name: string }
+  | { readonly kind: "file"; readonly name: string; readonly bytes: Uint8Array };
+
+export type ToWorker =
+  /** The engine, as the page holds it: base64 of gzip. */
+  | { readonly kind: "start"; readonly engine: string }
+  | { readonly kind: "load"; readonly source: Source; readonly settings: GuardSettings }
+  | { readonly kind: "settings"; readonly settings: GuardSettings }
+  /** The tool is put there, and a new path begins. */
+  | { readonly kind: "place"; readonly tip: Vec3 }
+  /** Where the hand is; null: it lets go, and the spring draws it to the tool. */
+  | { readonly kind: "hand"; readonly place: Vec3 | null }
+  /** Follows a recorded hand: (n, 6), as a path file has it. */
+  | { readonly kind: "replay"; readonly lines: Float64Array }
+  | { readonly kind: "ask for path" }
+  | { readonly kind: "ask for counterexamples" }
+  /** Time stands still while nobody looks. */
+  | { readonly kind: "pause"; readonly paused: boolean };
+
+/** What the last cycles came to: told some sixty times a second. */
+export interface State {
+  /** Of the page's clock, at the last cycle. [ms] */
+  readonly time: number;
+  readonly tip: Vec3;
+  readonly hand: Vec3;
+  /** On the hand. [N] */
+  readonly force: Vec3;
+  readonly status: number;
+  /** From the ball of the tool to the surface; below 0 inside. NaN where unknown. [mm] */
+  readonly toolClearance: number;
+  /** The same of a ball as large where the hand is. [mm] */
+  readonly handClearance: number;
+  readonly planes: readonly Plane[];
+  readonly planeCount: number;
+  readonly triangles: number;
+  /** All cycles since the anatomy was loaded, and those in which a plane held the tool back. */
+  readonly cycles: number;
+  readonly limited: number;
+  /** Cycles that were due and not run, as the processor was busy. */
+  readonly lost: number;
+  /** Of a cycle, over the last second. [us] */
+  readonly stepTime: number;
+  /** Cycles a second, over the last second. */
+  readonly rate: number;
+  readonly recorded: number;
+  readonly replaying: boolean;
+}
+
+/** What a counterexample comes to under a rule. */
+export interface Trial {
+  readonly rule: "paper" | "certified";
+  readonly status: string;
+  /** Where the step ends. */
+  readonly end: Vec3;
+}
+
+export type FromWorker =
+  | {
+      readonly kind: "ready";
+      readonly version: string;
+      readonly shapes: readonly string[];
+      readonly statuses: readonly { readonly name: string; readonly reason: string }[];
+    }
+  /** What to draw: (n, 3) coordinates from `origin` on, and (m, 3) corners. */
+  | {
+      readonly kind: "surface";
+      readonly name: string;
+      readonly origin: Vec3;
+      readonly positions: Float32Array;
+      readonly corners: Uint32Array;
+    }
+  | { readonly kind: "findings"; readonly name: string; readonly findings: Findings }
+  /** The index is built: the tool can be placed. `milliseconds`: since it was asked for. */
+  | { readonly kind: "guarded"; readonly name: string; readonly milliseconds: number }
+  | { readonly kind: "state"; readonly state: State }
+  | { readonly kind: "path"; readonly lines: Float64Array; readonly settings: GuardSettings }
+  /** A replay has come to its end; `differs`: the first cycle with another tool, or -1. */
+  | { readonly kind: "replayed"; readonly cycles: number; readonly differs: number }
+  | {
+      readonly kind: "counterexamples";
+      readonly margin: number;
+      readonly examples: readonly { example: Counterexample; trials: readonly Trial[] }[];
+    }
+  | { readonly kind: "failure"; readonly what: string; readonly message: string };

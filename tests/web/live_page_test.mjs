@@ -1,0 +1,299 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * The page of `keepout live`, in a real browser and with real input:
+ *
+ *   live_page_test.mjs KEEPOUT JUDGE_PATH FOLDER [BROWSER]
+ *
+ * A hand drags into the skull; what the page's tool did is done again by `keepout replay`, as the
+ * page says, and must be the same in every bit; the exact oracle judges it. Then without a fixture,
+ * with files that are dropped, by touch and by keys. Prints times and rates, and asserts none.
+ */
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { mkdirSync, readdirSync, readFileSync, rmSync, statSync, writeFileSync } from "node:fs";
+import { createRequire } from "node:module";
+import { join, resolve } from "node:path";
+import { test } from "node:test";
+import { pathToFileURL } from "node:url";
+
+const [keepout, judge, folder, browserPath = "/usr/bin/chromium"] = process.argv.slice(2);
+const root = resolve(import.meta.dirname ?? new URL(".", import.meta.url).pathname, "../..");
+const packages = createRequire(join(root, "apps/web/package.json"));
+const puppeteer = packages("puppeteer-core");
+const skull = join(process.env.KEEPOUT_CACHE ?? join(root, ".cache"), "fixtures/skull.stl");
+
+rmSync(folder, { recursive: true, force: true });
+mkdirSync(folder, { recursive: true });
+
+const note = (text) => console.log(`# ${text}`);
+const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
+
+/** What a command prints. */
+const run = (program, ...args) =>
+  execFileSync(program, args, { encoding: "utf8", cwd: folder, maxBuffer: 1 << 26 });
+
+const page = join(folder, "page.html");
+run(keepout, "live", skull, "--no-open", "--out", page);
+
+const browser = await puppeteer.launch({
+  executablePath: browserPath,
+  args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
+});
+
+/** Opens the page; gives it back once the tool can be dragged. */
+async function opened({ width = 1280, height = 800, ...viewport } = {}) {
+  const tab = await browser.newPage();
+  tab.faults = [];
+  tab.on("pageerror", (error) => tab.faults.push(String(error)));
+  tab.on("console", (line) => {
+    if (line.type() === "error") tab.faults.push(line.text());
+  });
+  await tab.setViewport({ width, height, ...viewport });
+  const client = await tab.createCDPSession();
+  await client.send("Browser.setDownloadBehavior", { behavior: "allow", downloadPath: folder });
+  await tab.goto(pathToFileURL(page).href);
+  await ready(tab);
+  return tab;
+}
+
+/** Waits until there is a tool, whose state is told. */
+const ready = (tab) =>
+  tab.waitForFunction(
+    () =>
+      !document.querySelector("#grip").hidden &&
+      document.querySelector("#loading").hidden &&
+      document.querySelector("#clearance").textContent.endsWith("mm"),
+    { timeout: 60_000 },
+  );
+
+/** Where the middle of the hand is on the screen. */
+const handAt = (tab) =>
+  tab.evaluate(() => {
+    const { x, y, width, height } = document.querySelector("#grip").getBoundingClientRect();
+    return { x: x + width / 2, y: y + height / 2 };
+  });
+
+const textOf = (tab, selector) => tab.$eval(selector, (element) => element.textContent);
+const limitedCycles = async (tab) =>
+  Number((await textOf(tab, "#limited")).split(" of ")[0].replaceAll(",", ""));
+
+/** Pushes the hand into the anatomy and rubs it up and down there. */
+async function dragIn(tab, seconds = 4) {
+  const { x, y } = await handAt(tab);
+  await tab.mouse.move(x, y);
+  await tab.mouse.down();
+  const begin = performance.now();
+  for (let t = 0; t < 1; t = (performance.now() - begin) / (1000 * seconds)) {
+    await tab.mouse.move(x - 130 * Math.min(1, 3 * t), y + 60 * Math.sin(14 * t));
+    await sleep(8);
+  }
+  await tab.mouse.up();
+}
+
+/** Presses a button of the page and gives the file that it saves. */
+async function savedPath(tab) {
+  const before = new Set(readdirSync(folder));
+  await tab.click("#save");
+  for (let i = 0; i < 200; ++i) {
+    await sleep(50);
+    const file = readdirSync(folder).find((name) => !before.has(name) && name.endsWith(".txt"));
+    if (file !== undefined) return file;
+  }
+  assert.fail("no path was saved");
+}
+
+/** Numbers of the lines of a path. */
+const linesOf = (file) =>
+  readFileSync(join(folder, file), "utf8")
+    .split("\n")
+    .filter((line) => line !== "" && !line.startsWith("#"))
+    .map((line) => line.split(" ").map(Number));
+
+/** Types what the head of a path says, and gives the rows of STEPS.csv. */
+function replayed(file, mesh, rule) {
+  const line = readFileSync(join(folder, file), "utf8")
+    .split("\n")
+    .find((text) => text.startsWith("#   keepout replay "));
+  const words = line
+    .replace("#   keepout ", "")
+    .replace("THIS_FILE", file)
+    .replace("RULE", rule)
+    .split(" ");
+  words[1] = mesh;
+  run(keepout, ...words);
+  const [, ...rows] = readFileSync(join(folder, "steps.csv"), "utf8").trim().split("\n");
+  return rows.map((row) => row.split(","));
+}
+
+/** How many cycles of a path have another tool than replay has, in any bit. */
+function differing(lines, rows) {
+  assert.equal(rows.length, lines.length);
+  return lines.filter((line, i) =>
+    [0, 1, 2].some((axis) => !Object.is(line[3 + axis], Number(rows[i][2 + axis]))),
+  ).length;
+}
+
+let certified; // the path of the first test, for those after
+
+test("the page is small, and needs nothing beside it", () => {
+  const text = readFileSync(page, "utf8");
+  const wasm = statSync(join(root, "build/wasm/keepout.wasm")).size;
+  note(`page ${(text.length / 1e6).toFixed(2)} MB, wasm ${(wasm / 1e3).toFixed(0)} kB`);
+  assert.ok(text.length <= 6e6, "the page is larger than 6 MB");
+  assert.ok(wasm <= 450e3, "keepout.wasm is larger than 450 kB");
+  assert.doesNotMatch(text, /(src|href)="(?!data:)[^"]*"/, "it names another file");
+});
+
+test("a drag into the skull: limited, out of it, and the same as keepout replay", async () => {
+  const begin = performance.now();
+  const tab = await opened();
+  note(`the tool can be dragged ${((performance.now() - begin) / 1000).toFixed(1)} s after opening`);
+  await dragIn(tab);
+  note(`limited: ${await textOf(tab, "#limited")}; lost: ${await textOf(tab, "#lost")}; a step takes ` +
+    `${await textOf(tab, "#step-time")}; ${await textOf(tab, "#rate")} cycles and ` +
+    `${await textOf(tab, "#frames")} frames a second`);
+  certified = await savedPath(tab);
+  const lines = linesOf(certified);
+  const rows = replayed(certified, skull, "certified");
+  assert.equal(differing(lines, rows), 0, "the page and keepout replay differ");
+  const limited = rows.filter((row) => row[1] === "limited").length;
+  const verdict = JSON.parse(run(judge, skull, "steps.csv", "2.2"));
+  note(`${lines.length} cycles kept, ${limited} of them limited: ${JSON.stringify(verdict)}`);
+  assert.ok(limited >= 1000, `${limited} limited cycles`);
+  assert.deepEqual([verdict.inside, verdict.crossing, verdict.nearer], [0, 0, 0]);
+  assert.ok(verdict.nearest < 2.21, `nearest ${verdict.nearest}: it never came to the margin`);
+
+  // Opened again, the path is played, and goes the same way.
+  const file = await tab.$("#file");
+  await file.uploadFile(join(folder, certified));
+  await tab.waitForFunction(
+    () => document.querySelector("#toast").textContent.startsWith("Replayed"),
+    { timeout: 60_000 },
+  );
+  assert.match(await textOf(tab, "#toast"), /bit for bit/);
+  assert.deepEqual(tab.faults, []);
+  await tab.close();
+});
+
+test("the same drag without a fixture goes in", async () => {
+  const tab = await opened();
+  await tab.click("#rules input[value=none]");
+  await dragIn(tab, 2);
+  const rows = linesOf(await savedPath(tab));
+  // As replay would write what happened: from tip to tip.
+  const steps = rows.slice(1).map((line, i) => {
+    const tip = rows[i].slice(3);
+    const motion = tip.map((value, axis) => line[3 + axis] - value);
+    return [i, "free", ...tip, ...motion, ...motion].join(",");
+  });
+  writeFileSync(join(folder, "free.csv"), `head\n${steps.join("\n")}\n`);
+  const verdict = JSON.parse(run(judge, skull, "free.csv", "2.2"));
+  note(JSON.stringify(verdict));
+  assert.ok(verdict.inside > 100, `${verdict.inside} motions end inside`);
+  assert.equal(await limitedCycles(tab), 0);
+  assert.deepEqual(tab.faults, []);
+  await tab.close();
+});
+
+test("files are dropped: a mesh, then a broken one, and the page lives on", async () => {
+  const tab = await opened();
+  const client = await tab.createCDPSession();
+  const drop = async (file) => {
+    const data = { items: [], files: [file], dragOperationsMask: 1 };
+    for (const type of ["dragEnter", "dragOver", "drop"]) {
+      await client.send("Input.dispatchDragEvent", { type, x: 640, y: 400, data });
+    }
+  };
+  const cube = join(folder, "my cube.obj");
+  writeFileSync(cube, readFileSync(join(root, "tests/install/cube.obj")));
+  await drop(cube);
+  await tab.waitForFunction(() => document.title.startsWith("my cube.obj"));
+  await ready(tab);
+  assert.match(await textOf(tab, "#findings"), /12 triangles.*watertight/);
+
+  const broken = join(folder, "broken.stl");
+  writeFileSync(broken, readFileSync(skull).subarray(0, 1000));
+  await drop(broken);
+  await tab.waitForFunction(() => !document.querySelector("#toast").hidden);
+  const words = await textOf(tab, "#toast");
+  note(words);
+  assert.match(words, /broken\.stl/);
+  assert.equal(await tab.title(), "my cube.obj – keepout live");
+  const nonsense = join(folder, "nonsense.txt");
+  writeFileSync(nonsense, "1 2 3\n");
+  await drop(nonsense);
+  await tab.waitForFunction(() => document.querySelector("#toast").textContent.includes("line 1"));
+
+  await dragIn(tab, 2);
+  const path = await savedPath(tab);
+  assert.equal(differing(linesOf(path), replayed(path, cube, "certified")), 0);
+  assert.ok((await limitedCycles(tab)) > 100);
+  assert.deepEqual(tab.faults, []);
+  await tab.close();
+});
+
+test("led by keys, and by touch on a phone", async () => {
+  const tab = await opened();
+  await tab.focus("#view");
+  for (const key of ["ArrowLeft", "PageUp"]) {
+    await tab.keyboard.down(key);
+    await sleep(key === "PageUp" ? 300 : 1500);
+    await tab.keyboard.up(key);
+  }
+  assert.ok((await limitedCycles(tab)) > 100, "keys do not lead into the skull");
+  assert.notEqual(await textOf(tab, "#newtons"), "0.00 N");
+  await tab.keyboard.press("Escape");
+  await tab.waitForFunction(() => document.querySelector("#newtons").textContent === "0.00 N");
+  assert.deepEqual(tab.faults, []);
+  await tab.close();
+
+  const phone = await opened({ width: 390, height: 844, hasTouch: true, isMobile: true });
+  const { x, y } = await handAt(phone);
+  await phone.touchscreen.touchStart(x + 12, y);
+  for (let i = 0; i < 100; ++i) {
+    await phone.touchscreen.touchMove(x + 12 - i, y + 20 * Math.sin(i / 12));
+    await sleep(10);
+  }
+  assert.ok((await limitedCycles(phone)) > 100, "touch does not lead into the skull");
+  await phone.touchscreen.touchEnd();
+  assert.deepEqual(phone.faults, []);
+  await phone.close();
+});
+
+test("counterexamples: the paper's rule goes through, the certified one stays out", async () => {
+  const tab = await opened();
+  await tab.click("#fail");
+  await tab.waitForSelector("#failures[open] #examples button");
+  const examples = await tab.$$("#examples button");
+  assert.equal(examples.length, 3);
+  for (const example of examples) {
+    await example.click();
+    const captions = await tab.$$eval("#duel figcaption span", (all) => all.map((one) => one.textContent));
+    assert.deepEqual(captions, ["goes through the surface", "stays out"]);
+  }
+  await tab.click("#failures .close");
+  assert.deepEqual(tab.faults, []);
+  await tab.close();
+});
+
+for (const [name, scheme, width, height] of [
+  ["light", "light", 1280, 800],
+  ["dark", "dark", 1280, 800],
+  ["phone", "dark", 390, 844],
+]) {
+  test(`controls have names and contrast holds: ${name}`, async () => {
+    const tab = await opened({ width, height });
+    await tab.emulateMediaFeatures([{ name: "prefers-color-scheme", value: scheme }]);
+    await tab.addScriptTag({ path: packages.resolve("axe-core") });
+    const { violations, passes } = await tab.evaluate(() => window.axe.run());
+    assert.ok(passes.some(({ id }) => id === "color-contrast"), "contrast was not looked at");
+    assert.deepEqual(
+      violations.map(({ id, nodes }) => [id, ...nodes.map((node) => node.html)]),
+      [],
+    );
+    await tab.screenshot({ path: join(folder, `${name}.png`) });
+    await tab.close();
+  });
+}
+
+test.after?.(() => browser.close());
