@@ -25,7 +25,7 @@ fi
 
 env -u KEEPOUT_WEB moved/bin/keepout live "$here/cube.obj" --no-open --out live.html
 for id in settings mesh-0; do
-  [ "$(grep -c "^<script[^>]* id=\"$id\">" live.html)" = 1 ] || fail "the page has not one $id"
+  [ "$(grep -c "^ *<script[^>]* id=\"$id\">" live.html)" = 1 ] || fail "the page has not one $id"
 done
 ! grep -qF -- "$place" live.html || fail "the page has its place for the anatomy still"
 [ "$(wc -l < live.html)" -eq $(($(wc -l < "$page") + 1)) ] || fail "the page is not whole"

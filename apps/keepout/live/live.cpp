@@ -110,7 +110,7 @@ void add_live(CLI::App& app, LiveOptions& options) {
   std::vector<std::string> rules = names(activation_rules());
   rules.emplace_back(no_fixture);
   add_name(command, "--activation", options.constraint.activation, std::move(rules),
-           "Rule that the page begins with");
+           "Rule that chooses the planes; none: no fixture");
   add_length(command, "--tool-radius", options.constraint.tool_radius, Zero::allowed,
              "Radius of the ball around the tip that shall not touch the surface");
   add_length(command, "--margin", options.constraint.margin, Zero::allowed,
@@ -120,6 +120,7 @@ void add_live(CLI::App& app, LiveOptions& options) {
   add_length(command, "--max-step", options.max_step, Zero::refused,
              "Longest way of the tool in a cycle of 1 ms");
   command.footer(
+      "What these set, the page begins with; there they are changed while the tool moves.\n"
       "The page is one file that needs no server and no network, and holds the meshes: pass it on "
       "as you\nmay pass these on.");
 }

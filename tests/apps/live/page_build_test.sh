@@ -13,7 +13,7 @@ cp "$source/run" "$work"
 cp -r "$source/cmake" "$work"
 cp "$source/apps/web/build" "$work/apps/web"
 touch "$work"/build/{release,wasm}/build.ninja
-echo '{}' > "$work/apps/web/package.json"
+touch "$work/apps/web/"{package.json,.npmrc}
 echo 'first' > "$work/apps/web/package-lock.json"
 export calls=$work/calls page=$work/build/web/live.html
 
@@ -86,6 +86,17 @@ npm_fails=yes run well inspect cube
 echo first > "$work/apps/web/package-lock.json"
 run well live
 calls_it "npm ci"
+
+calls_it "--omit=dev"
+
+# What the tests need holds what the page needs.
+: > "$calls"
+PATH=$work/programs:$PATH "$work/apps/web/build" tests 2>/dev/null
+called=$(cat "$calls")
+calls_it "npm ci"
+calls_no "--omit=dev"
+run well live
+calls_no "npm ci"
 
 npm_fails=yes run fails live
 calls_no "npm ci"
