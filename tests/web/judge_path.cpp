@@ -2,7 +2,9 @@
 // The exact oracle on what `keepout replay` has written of a path: judge_path MESH STEPS.csv KEPT.
 // Prints as JSON how many motions of the tip there were, how many of them end inside, how many touch
 // the mesh on their way, how many come nearer than KEPT less a tenth of a micrometre, and how near
-// the nearest comes. [mm]
+// the nearest comes, if it is no farther than a tenth of a millimetre beyond that; else null. [mm]
+#include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <iostream>
@@ -35,7 +37,7 @@ int main(int argc, char** argv) try {
     }
     const keepout::Vec3 tip(value[2], value[3], value[4]);
     const keepout::Vec3 end = tip + keepout::Vec3(value[8], value[9], value[10]);
-    const keepout::oracle::Finding finding = oracle.check(tip, end, kept - 1e-4, kept + 100.0);
+    const keepout::oracle::Finding finding = oracle.check(tip, end, std::max(kept - 1e-4, 0.0), kept + 0.1);
     crossing += finding.crosses ? 1 : 0;
     nearer += finding.below ? 1 : 0;
     nearest = std::min(nearest, finding.distance);
@@ -43,7 +45,12 @@ int main(int argc, char** argv) try {
   }
   std::cout << "{\"motions\": " << motions << ", \"inside\": " << inside
             << ", \"crossing\": " << crossing << ", \"nearer\": " << nearer
-            << ", \"nearest\": " << (motions > 0 ? nearest : -1.0) << "}\n";
+            << ", \"nearest\": ";
+  if (std::isfinite(nearest)) {
+    std::cout << nearest << "}\n";
+  } else {
+    std::cout << "null}\n";
+  }
   return motions > 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 } catch (const std::exception& error) {
   std::cerr << "judge_path: " << error.what() << '\n';

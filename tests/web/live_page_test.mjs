@@ -167,7 +167,7 @@ test("a drag into the skull: limited, out of it, and the same as keepout replay"
   note(`${lines.length} cycles kept, ${limited} of them limited: ${JSON.stringify(verdict)}`);
   assert.ok(limited >= 1000, `${limited} limited cycles`);
   assert.deepEqual([verdict.inside, verdict.crossing, verdict.nearer], [0, 0, 0]);
-  assert.ok(verdict.nearest < kept + 0.01, `nearest ${verdict.nearest}: it never came to the margin`);
+  assert.ok(verdict.nearest !== null && verdict.nearest < kept + 0.01, `nearest ${verdict.nearest}: it never came to the margin`);
 
   // Opened again, the path is played, and goes the same way.
   const file = await tab.$("#file");
