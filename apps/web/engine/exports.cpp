@@ -10,6 +10,7 @@
 #include <exception>
 #include <limits>
 #include <memory>
+#include <new>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -32,6 +33,8 @@
 namespace {
 
 using keepout::Vec3;
+using keepout::web::json;
+using keepout::web::json_list;
 
 std::string failure;  // why the last call that returned null failed
 std::string text;     // the last one that was handed out
@@ -43,6 +46,18 @@ auto made(const Make& make) noexcept -> decltype(make().release()) {
     return make().release();
   } catch (const std::bad_alloc&) {
     failure = "there is not enough memory for it";
+  } catch (const std::exception& error) {
+    failure = error.what();
+  }
+  return nullptr;
+}
+
+/// Null, with a message, where it throws.
+template <class Make>
+const char* made_text(const Make& make) noexcept {
+  try {
+    text = make();
+    return text.c_str();
   } catch (const std::exception& error) {
     failure = error.what();
   }
@@ -73,7 +88,8 @@ struct Anatomy {
   std::shared_ptr<const keepout::Mesh> mesh;
   std::shared_ptr<const keepout::SpatialIndex> index;
   std::vector<std::string> warnings;
-  std::optional<keepout::MotionConstraint> probe;  // what keepout_clearance asks, once it was asked
+  std::unique_ptr<keepout::MotionConstraint>
+      probe;  // what keepout_clearance asks, once it was asked
 };
 
 /// What a control cycle came to, as it lies in memory. Valid until the guard's next call.
@@ -197,23 +213,72 @@ const std::uint32_t* keepout_corners(const Anatomy* anatomy) {
 
 /// What is to be known of the mesh, as JSON: watertight, size, the warnings of its file, and the
 /// findings of `keepout inspect` but for self-intersections, the worst first. Null on failure.
-const char* keepout_findings(const Anatomy* anatomy);
+const char* keepout_findings(const Anatomy* anatomy) {
+  return made_text([&] {
+    const keepout::MeshFindings mesh = examine(*anatomy->mesh);
+    const auto findings = keepout::app::findings_of(mesh, std::nullopt);
+    const auto object = [](const keepout::app::Finding& finding) {
+      return R"({"key":)" + json(finding.key) + R"(,"count":)" + json(finding.count) +
+             R"(,"text":)" + json(text_of(finding)) + R"(,"advice":)" + json(finding.advice) + '}';
+    };
+    return std::string(R"({"watertight":)") + (mesh.is_watertight() ? "true" : "false") +
+           R"(,"size":)" + json_list(mesh.bounds.size()) + R"(,"warnings":)" +
+           json_list(anatomy->warnings) + R"(,"findings":)" + json_list(findings, object) + '}';
+  });
+}
 
 /// From a place to the nearest triangle; below 0 inside of a watertight mesh. NaN where that cannot
 /// be told. [mm]
-double keepout_clearance(Anatomy* anatomy, double x, double y, double z);
+double keepout_clearance(Anatomy* anatomy, double x, double y, double z) {
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  if (!anatomy->probe) {
+    // What is not led out from any depth is said to be inside: by the winding, and nothing else.
+    const double size = anatomy->mesh->bounds().size().norm();
+    anatomy->probe.reset(made([&] {
+      return std::make_unique<keepout::MotionConstraint>(
+          anatomy->guard({.radius = 1e-3 * size,
+                          .margin = 1e-6 * size,
+                          .deepest = 0.0,
+                          .distances = keepout::Distances::always}));
+    }));
+    if (!anatomy->probe) return unknown;
+  }
+  keepout::MotionConstraint& probe = *anatomy->probe;
+  probe.forget();
+  const keepout::Step step = probe.step({.tip = {x, y, z}, .desired = Vec3::Zero()});
+  if (!step.distance) return unknown;
+  return step.status == keepout::Status::inside ? -*step.distance : *step.distance;
+}
 
 /// A tool at the origin that is kept out of anatomy by a rule, or by none: rule "none". Lengths in
 /// mm, stiffness in N/mm, force in N. `max_step`: how far the tool may follow the hand in a cycle.
 Guard* keepout_make_guard(Anatomy* anatomy, const char* rule, double radius, double tool_radius,
-                          double margin, double max_step, double stiffness, double largest_force);
+                          double margin, double max_step, double stiffness, double largest_force) {
+  return made([&] {
+    auto guard = std::make_unique<Guard>();
+    guard->spring = {.stiffness = stiffness, .largest_force = largest_force};
+    check(guard->spring);
+    guard->max_step = max_step;
+    if (std::string_view(rule) == "none") return guard;
+    keepout::app::require_within_reach(max_step, radius);
+    guard->constraint = anatomy->guard({.activation = rule,
+                                        .radius = radius,
+                                        .tool_radius = tool_radius,
+                                        .margin = margin,
+                                        .distances = keepout::Distances::always});
+    return guard;
+  });
+}
 
 /// Frees a guard.
 void keepout_discard_guard(Guard* guard) { delete guard; }
 
 /// Puts the tool there and forgets the past: from here on it does what `keepout replay
 /// --closed-loop` does from a first line that says so.
-void keepout_place(Guard* guard, double x, double y, double z);
+void keepout_place(Guard* guard, double x, double y, double z) {
+  guard->tip = {x, y, z};
+  if (guard->constraint) guard->constraint->forget();
+}
 
 /// One control cycle towards where the hand is, as `keepout replay --closed-loop`.
 const Cycle* keepout_follow(Guard* guard, double gx, double gy, double gz) {
@@ -244,10 +309,28 @@ const char* keepout_status_reason(std::uint32_t status) {
 }
 
 /// The names of the generated shapes, as a JSON list.
-const char* keepout_shapes();
+const char* keepout_shapes() {
+  return made_text([] {
+    return json_list(keepout::shapes(),
+                     [](const keepout::Shape& shape) { return json(shape.name); });
+  });
+}
 
 /// The counterexamples to the paper's rule, as a JSON list of objects: name, vertices, triangles,
 /// tip, desired, radius.
-const char* keepout_counterexamples();
+const char* keepout_counterexamples() {
+  return made_text([] {
+    const auto lists = [](const auto& rows) {
+      return json_list(rows, [](const auto& row) { return json_list(row); });
+    };
+    return json_list(keepout::counterexamples(), [&](const keepout::Counterexample& example) {
+      return R"({"name":)" + json(example.name) + R"(,"vertices":)" +
+             lists(example.surface.vertices) + R"(,"triangles":)" +
+             lists(example.surface.triangles) + R"(,"tip":)" + json_list(example.tip) +
+             R"(,"desired":)" + json_list(example.desired) + R"(,"radius":)" +
+             json(example.radius) + '}';
+    });
+  });
+}
 
 }  // extern "C"
