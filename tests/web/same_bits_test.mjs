@@ -27,7 +27,7 @@ const wasm = await instantiate({wasmBinary: readFileSync(join(buildFolder, "keep
 
 const openSteps = 8000;
 const closedSteps = 4000;
-const settings = {radius: 2, toolRadius: 0.5, margin: 0.2, maxStep: 0.8};
+const settings = {radius: 1.2, toolRadius: 0.5, margin: 0.2, maxStep: 0.8};
 
 /** Numbers from 0 to 1, the same in each run. */
 function seeded(state) {
