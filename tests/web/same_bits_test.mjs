@@ -6,8 +6,10 @@
 //
 // The same seeded poses are stepped by `keepout replay` and by the module that pages load, one by one
 // and in a closed loop, close to the surface and into it. All that both tell is compared as numbers,
-// the sign of a zero included: status, tip, motion, triangles, distance and planes. One mesh is read
-// as text, so that numerals are, too.
+// the sign of a zero included: status, tip, motion, distance, planes, and the triangles in reach. Not so
+// the triangles that the certified rule asked about: floats pass over those that they find clear, by a
+// reciprocal square root that each processor rounds in its own way, so that native AVX2 and SSE4 differ
+// in some of 10,000 steps, too. One mesh is read as text, so that numerals are compared as well.
 import assert from "node:assert/strict";
 import {execFileSync} from "node:child_process";
 import {existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync} from "node:fs";
@@ -107,6 +109,9 @@ function closedPoses(triangles, random) {
   return poses.slice(0, closedSteps);
 }
 
+/** How many triangles a step rests on, if that is the same on every processor. */
+const comparable = (rule, triangles) => (rule === "certified" ? 0 : triangles);
+
 /** The rows of a CSV file, without its heading. */
 function rowsOf(file) {
   return readFileSync(file, "latin1").trimEnd().split("\n").slice(1).map((line) => line.split(","));
@@ -122,7 +127,8 @@ function native(mesh, rule, loop, poses) {
     ...(loop === "closed" ? ["--closed-loop", "--max-step", settings.maxStep] : [])], {stdio: ["ignore", "ignore", "inherit"]});
   const told = rowsOf(steps).map((row) => ({
     status: row[1],
-    numbers: [...row.slice(2, 5), ...row.slice(8, 13)].map(Number).concat(row[17] === "" ? NaN : Number(row[17])),
+    planes: Number(row[12]),
+    numbers: [...row.slice(2, 5), ...row.slice(8, 11), comparable(rule, row[11]), row[17] || NaN].map(Number),
   }));
   for (const [step, ...plane] of rowsOf(planes)) told[step].numbers.push(...plane.map(Number));
   return told;
@@ -153,25 +159,25 @@ function makeGuard(anatomy, rule, margin) {
 }
 
 /** What a cycle told, in the order of native(). */
-function toldBy(cycle, tip) {
+function toldBy(rule, cycle, tip) {
   const {HEAPF64, HEAPU32} = wasm;
   const d = cycle / 8;
   const [status, triangles, count, , planes] = HEAPU32.subarray(cycle / 4 + 20, cycle / 4 + 25);
-  const numbers = [...tip, ...HEAPF64.subarray(d + 3, d + 6), triangles, count, HEAPF64[d + 9]];
+  const numbers = [...tip, ...HEAPF64.subarray(d + 3, d + 6), comparable(rule, triangles), HEAPF64[d + 9]];
   for (let plane = planes; plane < planes + 40 * count; plane += 40) {
     numbers.push(HEAPU32[plane / 4 + 8], ...HEAPF64.subarray(plane / 8, plane / 8 + 4));
   }
-  return {status: wasm.UTF8ToString(wasm._keepout_status_name(status)), numbers};
+  return {status: wasm.UTF8ToString(wasm._keepout_status_name(status)), planes: count, numbers};
 }
 
 /** What the module makes of the same poses. */
-function byModule(guard, loop, poses) {
+function byModule(guard, rule, loop, poses) {
   let tip = poses[0].slice(3);
   wasm._keepout_place(guard, ...tip);
   return poses.map((pose) => {
-    if (loop === "open") return toldBy(wasm._keepout_step(guard, ...pose), pose.slice(0, 3));
+    if (loop === "open") return toldBy(rule, wasm._keepout_step(guard, ...pose), pose.slice(0, 3));
     const cycle = wasm._keepout_follow(guard, ...pose.slice(0, 3));
-    const told = toldBy(cycle, tip);
+    const told = toldBy(rule, cycle, tip);
     tip = [...wasm.HEAPF64.subarray(cycle / 8, cycle / 8 + 3)];
     return told;
   });
@@ -180,7 +186,7 @@ function byModule(guard, loop, poses) {
 /** How many steps are not the same. */
 function differences(one, other) {
   assert.equal(one.length, other.length);
-  const isSame = (a, b) => a.status === b.status && a.numbers.length === b.numbers.length &&
+  const isSame = (a, b) => a.status === b.status && a.planes === b.planes && a.numbers.length === b.numbers.length &&
     a.numbers.every((x, i) => Object.is(x, b.numbers[i]));
   return one.filter((told, step) => !isSame(told, other[step])).length;
 }
@@ -201,9 +207,9 @@ for (const name of ["skull", "aneurysm", "airway"]) {
     const guard = makeGuard(anatomy, rule, settings.margin);
     for (const [loop, poses] of Object.entries(loops)) {
       const expected = native(mesh, rule, loop, poses);
-      const different = differences(expected, byModule(guard, loop, poses));
+      const different = differences(expected, byModule(guard, rule, loop, poses));
       const limited = expected.filter((told) => told.status === "limited").length;
-      const planes = expected.reduce((sum, told) => sum + told.numbers[7], 0);
+      const planes = expected.reduce((sum, told) => sum + told.planes, 0);
       console.log(`${name} ${rule} ${loop}: ${poses.length} steps, ${limited} limited, ${planes} planes, ${different} different`);
       total.steps += poses.length;
       total.limited += limited;
@@ -211,7 +217,7 @@ for (const name of ["skull", "aneurysm", "airway"]) {
       total.different += different;
       if (!isAwake) {
         const other = makeGuard(anatomy, rule, settings.margin * (1 + 1e-12));
-        isAwake = differences(expected, byModule(other, loop, poses)) > 0;
+        isAwake = differences(expected, byModule(other, rule, loop, poses)) > 0;
         wasm._keepout_discard_guard(other);
       }
     }
