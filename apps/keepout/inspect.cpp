@@ -9,6 +9,7 @@
 
 #include "columns.h"
 #include "commands.h"
+#include "findings.h"
 #include "keepout/index/pd_tree.h"
 #include "keepout/index/self_intersection.h"
 #include "keepout/mesh/doctor.h"
@@ -17,16 +18,6 @@
 
 namespace keepout::app {
 namespace {
-
-/// Something about the mesh that its user should know before trusting it.
-struct Finding {
-  std::string_view key;  // stable, for programs
-  std::size_t count;     // 1 where there is nothing to count
-  std::string_view one;  // what there are `count` of; empty where there is nothing to count
-  std::string_view many;
-  std::string_view meaning;
-  std::string_view advice;
-};
 
 struct Inspection {
   LoadedMesh loaded;
@@ -45,49 +36,6 @@ Inspection examine_file(const InspectOptions& options) {
     inspection.self_intersections = count_self_intersections(*inspection.loaded.mesh, tree);
   }
   return inspection;
-}
-
-/// The worst first.
-std::vector<Finding> findings_of(const Inspection& inspection) {
-  const MeshFindings& mesh = inspection.mesh;
-  const std::vector<Finding> all{
-      {"inside_out", mesh.is_inside_out(), "", "",
-       "the normals point into the solid: tissue and free space are swapped", "flip all triangles"},
-      {"looks_like_metres", mesh.looks_like_metres(), "", "",
-       "smaller than 3 in every direction: in millimetres that is tiny, so these may be metres",
-       "scale by 1000 if so, or by what 'unit' above names; nothing is rescaled here"},
-      {"looks_like_micrometres", mesh.looks_like_micrometres(), "", "",
-       "larger than 3000 in some direction: 3 m in millimetres, so these may be micrometres, or "
-       "something lies far from the rest",
-       "divide by 1000 if so; nothing is rescaled here"},
-      {"inconsistent_edges", mesh.inconsistent_edges, "inconsistently wound edge",
-       "inconsistently wound edges", "the two triangles there disagree about which side is free",
-       "orient the surface consistently"},
-      {"boundary_edges", mesh.boundary_edges, "boundary edge", "boundary edges",
-       "the surface is open: nothing guards a hole, and a fixture by the paper's rule can also be "
-       "passed at a rim",
-       "close the holes, or keep the tool away from the rims"},
-      {"non_manifold_edges", mesh.non_manifold_edges, "non-manifold edge", "non-manifold edges",
-       "three triangles or more meet there, so no rule can tell ridge from valley",
-       "remove inner walls and duplicates, or use a rule that asks no neighbours"},
-      {"self_intersections", inspection.self_intersections.value_or(0), "self-intersecting pair",
-       "self-intersecting pairs",
-       "triangles cut through or lie on each other; behind such a place a tip may be wedged",
-       "remesh the surface, or take its outer hull"},
-      {"duplicate_triangles", mesh.duplicate_triangles, "duplicate triangle", "duplicate triangles",
-       "the same three vertices again; each calls for its own planes", "remove them"},
-      {"degenerate_triangles", mesh.degenerate_triangles(), "degenerate triangle",
-       "degenerate triangles",
-       "without an area they have no normal, and guard less than a proper triangle or nothing",
-       "remesh, or collapse their short edges"},
-      {"pinched_vertices", mesh.pinched_vertices, "pinched vertex", "pinched vertices",
-       "parts of the surface hang together by a point there", "split the vertex, or remesh"},
-  };
-  std::vector<Finding> present;
-  for (const Finding& finding : all) {
-    if (finding.count > 0) present.push_back(finding);
-  }
-  return present;
 }
 
 std::string triple(const Vec3& v, std::string_view between) {
@@ -153,15 +101,10 @@ void print_text(const InspectOptions& options, const Inspection& inspection, std
   }
 
   out << "\nFindings\n";
-  const std::vector<Finding> findings = findings_of(inspection);
+  const std::vector<Finding> findings = findings_of(mesh, inspection.self_intersections);
   if (findings.empty() && inspection.loaded.warnings.empty()) out << "  none\n";
   for (const Finding& finding : findings) {
-    out << "  - ";
-    if (!finding.many.empty()) {
-      out << grouped(finding.count) << ' ' << (finding.count == 1 ? finding.one : finding.many)
-          << ": ";
-    }
-    out << finding.meaning << ".\n    What to do: " << finding.advice << ".\n";
+    out << "  - " << text_of(finding) << ".\n    What to do: " << finding.advice << ".\n";
   }
   for (const std::string& warning : inspection.loaded.warnings) {
     out << "  - in the file: " << warning << ".\n";
@@ -209,7 +152,7 @@ void print_json(const InspectOptions& options, const Inspection& inspection, std
   for (const UnitGuess& guess : other_units(mesh.bounds.size().maxCoeff())) {
     json["other_units"].push_back({{"unit", guess.unit}, {"scale", guess.millimetres}});
   }
-  for (const Finding& finding : findings_of(inspection)) {
+  for (const Finding& finding : findings_of(mesh, inspection.self_intersections)) {
     json["findings"].push_back({{"key", finding.key},
                                 {"count", finding.count},
                                 {"meaning", finding.meaning},

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "keepout/factory/make_motion_constraint.h"
 
-#include <sstream>
+#include <array>
+#include <cstdio>
+#include <string>
 #include <utility>
 
 #include "keepout/activation/registry.h"
@@ -29,12 +31,17 @@ void warn_of_coarse_index(const SpatialIndex& index, const MotionConstraintSetti
   const double kept = settings.tool_radius + settings.margin;
   const double rounding = index.blocks() != nullptr ? index.blocks()->frame().error : 0.0;
   if (!settings.warn || !(32.0 * rounding > kept)) return;
-  std::ostringstream text;
-  text << "the mesh is so large beside the distance kept that its index, which is off by up to "
-       << rounding << ", cannot tell which triangles are near: steps are as safe, but slow, and "
-       << "shorter where that takes too long; keep more than " << 32.0 * rounding
-       << ", or cut out the part of the mesh that matters";
-  settings.warn(text.str());
+  const auto length = [](double value) {
+    std::array<char, 32> digits;
+    std::snprintf(digits.data(), digits.size(), "%g", value);
+    return std::string(digits.data());
+  };
+  settings.warn(
+      "the mesh is so large beside the distance kept that its index, which is off by up to " +
+      length(rounding) +
+      ", cannot tell which triangles are near: steps are as safe, but slow, and shorter where that "
+      "takes too long; keep more than " +
+      length(32.0 * rounding) + ", or cut out the part of the mesh that matters");
 }
 
 }  // namespace

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "accuracy/certified_loop.h"
-#include "accuracy/counterexamples.h"
 #include "accuracy/segment_crossing.h"
+#include "keepout/fixtures/counterexamples.h"
 #include "trials.h"
 
 namespace keepout::test {

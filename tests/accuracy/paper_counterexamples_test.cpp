@@ -6,9 +6,9 @@
 #include <map>
 #include <string>
 
-#include "accuracy/counterexamples.h"
 #include "accuracy/segment_crossing.h"
 #include "keepout/factory/make_motion_constraint.h"
+#include "keepout/fixtures/counterexamples.h"
 
 namespace keepout {
 namespace {

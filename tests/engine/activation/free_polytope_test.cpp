@@ -10,8 +10,8 @@
 #include <numeric>
 #include <vector>
 
-#include "accuracy/counterexamples.h"
 #include "keepout/error.h"
+#include "keepout/fixtures/counterexamples.h"
 #include "keepout/fixtures/poses.h"
 #include "keepout/fixtures/shapes.h"
 #include "keepout/index/brute_force.h"

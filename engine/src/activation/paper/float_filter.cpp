@@ -322,6 +322,13 @@ namespace keepout::paper {
 
 HWY_EXPORT(Filter);
 
+/// As the best instructions there are do it: chosen where one namespace of a target is in sight.
+static std::size_t filter(std::span<const LeafBlock> leaves, std::span<const LeafEdges> edges,
+                          std::span<const std::uint32_t> listed, const FilterQuery& query,
+                          Unfinished& unfinished) noexcept {
+  return HWY_DYNAMIC_DISPATCH(Filter)(leaves, edges, listed, query, unfinished);
+}
+
 }  // namespace keepout::paper
 
 namespace keepout {
@@ -356,8 +363,7 @@ FilterQuery filter_query(const Surroundings& around, const Ball& ball, const Lea
 std::size_t filter(std::span<const LeafBlock> leaves, std::span<const LeafEdges> edges,
                    std::span<const std::uint32_t> listed, const FilterQuery& query,
                    Unfinished& unfinished) noexcept {
-  using namespace paper;
-  return HWY_DYNAMIC_DISPATCH(Filter)(leaves, edges, listed, query, unfinished);
+  return paper::filter(leaves, edges, listed, query, unfinished);
 }
 
 }  // namespace keepout
