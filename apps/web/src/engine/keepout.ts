@@ -185,14 +185,13 @@ export class Keepout {
 
   /** Of the bytes of a mesh file, whose name tells the format: STL, PLY, OBJ or OFF. */
   anatomyOfFile(name: string, bytes: Uint8Array): Anatomy {
-    const path = `/${name.replaceAll("/", "_")}`;
-    this.module.FS.writeFile(path, bytes);
+    this.module.FS.writeFile(name, bytes);
     try {
-      return this.withText(path, (text) =>
+      return this.withText(name, (text) =>
         this.anatomy(this.module._keepout_anatomy_of_file(text)),
       );
     } finally {
-      this.module.FS.unlink(path);
+      this.module.FS.unlink(name);
     }
   }
 

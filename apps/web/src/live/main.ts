@@ -98,7 +98,7 @@ function hear(message: FromWorker): void {
     case "failure":
       awaited = null;
       element("loading", HTMLElement).hidden = true;
-      toast(`${message.what === "" ? "" : `${message.what}: `}${message.message}`);
+      toast(message.message);
       selectShown();
       return;
   }

@@ -99,4 +99,4 @@ export type FromWorker =
       readonly margin: number;
       readonly examples: readonly { example: Counterexample; trials: readonly Trial[] }[];
     }
-  | { readonly kind: "failure"; readonly what: string; readonly message: string };
+  | { readonly kind: "failure"; readonly message: string };

@@ -196,12 +196,7 @@ self.onmessage = ({ data }: MessageEvent<ToWorker>) => {
   queue = queue
     .then(() => handle(data))
     .catch((error: unknown) => {
-      const what = data.kind === "load" && data.source.kind !== "embedded" ? data.source.name : "";
-      tell({
-        kind: "failure",
-        what,
-        message: error instanceof Error ? error.message : String(error),
-      });
+      tell({ kind: "failure", message: error instanceof Error ? error.message : String(error) });
       restartClock();
     });
 };
