@@ -125,7 +125,7 @@ export class HandInput {
   private leadByKeys(): void {
     const now = performance.now();
     // No leap after a frame that took long.
-    const seconds = Math.min(now - this.keyClock, 50) / 1000;
+    const seconds = Math.min(now - this.keyClock, 200) / 1000;
     this.keyClock = now;
     if (this.keys.size === 0) return;
     const distance = seconds * (this.isSlow ? keySpeed.slow : keySpeed.usual);

@@ -33,8 +33,24 @@ let last: { header: PathHeader | null; lines: Float64Array } | null = null;
 /** What to do with the path that the worker was asked for. */
 let pathFor: "save" | "replay" = "save";
 
-const view = element("view", HTMLElement);
+// Work begins before there is anything to draw on.
+const worker = new Worker(
+  URL.createObjectURL(new Blob([embeddedText("worker")], { type: "text/javascript" })),
+);
+worker.onmessage = ({ data }: MessageEvent<FromWorker>) => hear(data);
+worker.onerror = () => toast("keepout itself has failed in this page: reload it.");
+
+tell({ kind: "start", engine: embeddedText("engine") });
+const meshes = element("mesh", HTMLSelectElement);
 const grip = element("grip", HTMLElement);
+listMeshes(
+  "In this page",
+  page.meshes.map(({ name }) => name),
+  (i) => `embedded ${i}`,
+);
+chooseMesh();
+
+const view = element("view", HTMLElement);
 const scene = new Scene(view, () => placeGrip());
 const chart = new ClearanceChart(element("chart", HTMLElement));
 const failures = new CounterexampleView();
@@ -42,12 +58,6 @@ const input = new HandInput(scene, view, (place) => {
   grip.classList.remove("new");
   tell({ kind: "hand", place });
 });
-
-const worker = new Worker(
-  URL.createObjectURL(new Blob([embeddedText("worker")], { type: "text/javascript" })),
-);
-worker.onmessage = ({ data }: MessageEvent<FromWorker>) => hear(data);
-worker.onerror = () => toast("keepout itself has failed in this page: reload it.");
 
 function tell(message: ToWorker): void {
   worker.postMessage(message);
@@ -57,10 +67,10 @@ function hear(message: FromWorker): void {
   switch (message.kind) {
     case "ready":
       readings = new Readings(message.statuses);
-      fillMeshes(message.shapes);
-      chooseMesh();
+      listMeshes("Generated", message.shapes, (i) => `shape ${message.shapes[i]}`);
       return;
     case "surface":
+      input.drop();
       scene.show(message.positions, message.corners, message.origin);
       chart.clear();
       state = null;
@@ -74,7 +84,6 @@ function hear(message: FromWorker): void {
     case "guarded":
       awaited = null;
       element("loading", HTMLElement).hidden = true;
-      grip.hidden = false;
       begin();
       if (last !== null) play();
       return;
@@ -98,6 +107,7 @@ function hear(message: FromWorker): void {
     case "failure":
       awaited = null;
       element("loading", HTMLElement).hidden = true;
+      grip.hidden = state === null;
       toast(message.message);
       selectShown();
       return;
@@ -112,6 +122,7 @@ function begin(): void {
 
 function show(now: State): void {
   state = now;
+  if (awaited === null) grip.hidden = false;
   input.rest(now.hand);
   scene.update({ hand: now.hand, tip: now.tip, planes: now.planes });
   chart.add(now.time, now.handClearance, now.toolClearance);
@@ -127,25 +138,11 @@ function placeGrip(): void {
 
 // What is chosen.
 
-const meshes = element("mesh", HTMLSelectElement);
-
-function fillMeshes(shapes: readonly string[]): void {
-  const group = (label: string, names: readonly string[], kind: string) => {
-    const options = document.createElement("optgroup");
-    options.label = label;
-    options.append(
-      ...names.map((name, i) => new Option(name, `${kind} ${kind === "shape" ? name : i}`)),
-    );
-    return options;
-  };
-  meshes.append(
-    group(
-      "In this page",
-      page.meshes.map(({ name }) => name),
-      "embedded",
-    ),
-    group("Generated", shapes, "shape"),
-  );
+function listMeshes(label: string, names: readonly string[], value: (i: number) => string): void {
+  const group = document.createElement("optgroup");
+  group.label = label;
+  group.append(...names.map((name, i) => new Option(name, value(i))));
+  meshes.append(group);
 }
 
 function chooseMesh(): void {
@@ -168,7 +165,7 @@ function load(source: Source, command: string): void {
   const line = element("loading", HTMLElement);
   line.textContent = `Reading ${source.kind === "embedded" ? source.mesh.name : source.name} …`;
   line.hidden = false;
-  input.drop();
+  grip.hidden = true;
   tell({ kind: "load", source, settings });
 }
 
@@ -199,6 +196,12 @@ function adopt(header: PathHeader | null): void {
   if (header !== null) {
     settings = header.settings;
     showSettings();
+    listMeshes(
+      "In this page",
+      page.meshes.map(({ name }) => name),
+      (i) => `embedded ${i}`,
+    );
+    chooseMesh();
     tell({ kind: "settings", settings });
     if (header.mesh !== shown.command) {
       const number = page.meshes.findIndex(({ command_name }) => command_name === header.mesh);
@@ -265,6 +268,12 @@ function showSettings(): void {
 function change(part: Partial<GuardSettings>): void {
   settings = { ...settings, ...part };
   showSettings();
+  listMeshes(
+    "In this page",
+    page.meshes.map(({ name }) => name),
+    (i) => `embedded ${i}`,
+  );
+  chooseMesh();
   tell({ kind: "settings", settings });
 }
 
@@ -333,4 +342,9 @@ document.addEventListener("visibilitychange", () => {
 });
 
 showSettings();
-tell({ kind: "start", engine: embeddedText("engine") });
+listMeshes(
+  "In this page",
+  page.meshes.map(({ name }) => name),
+  (i) => `embedded ${i}`,
+);
+chooseMesh();

@@ -20,6 +20,10 @@ export interface Moment {
 
 /** How many active planes are drawn at most. */
 const mostPlanes = 8;
+/** Where the tool may begin: how high in the view, and how near. [sizes of the anatomy] */
+const placesToBegin = [0.3, 0.2, 0.1, 0].flatMap((near) =>
+  [0.16, 0.08, 0.24, 0, -0.08].map((height) => [height, near] as const),
+);
 /** Points of a trail: some seconds. */
 const trailLength = 240;
 /** A ball that is smaller than this share of what is seen is drawn as large. */
@@ -31,7 +35,7 @@ export class Scene {
   private readonly renderer: three.WebGLRenderer;
   private readonly controls: OrbitControls;
   private readonly still: StillPicture;
-  private readonly anatomy: three.Mesh<three.BufferGeometry, three.MeshStandardMaterial>;
+  private readonly anatomy: three.Mesh<three.BufferGeometry, three.MeshLambertMaterial>;
   private readonly moving = new three.Scene();
   private readonly hand = new Ball(colors.hand, 0.35);
   private readonly tool = new Ball(colors.tool, 1);
@@ -43,6 +47,8 @@ export class Scene {
   );
   private readonly trail = new Trail(colors.tool);
   private readonly lit: three.Group[] = [];
+  /** Pixels drawn for each of the screen's, along a side, at most. */
+  private readonly finest: number;
   private corners = new Uint32Array();
   private origin = new three.Vector3();
   private size = 100; // of the anatomy's box: its diagonal [mm]
@@ -56,25 +62,22 @@ export class Scene {
     private readonly container: HTMLElement,
     private readonly onDraw: () => void,
   ) {
-    // Smooth edges where a graphics processor draws; without one they would take too long.
-    const canvas = document.createElement("canvas");
-    const antialias = canvas.getContext("webgl2", { failIfMajorPerformanceCaveat: true }) !== null;
-    this.renderer = new three.WebGLRenderer({ antialias, alpha: true });
+    // The still picture has smooth edges of its own.
+    this.renderer = new three.WebGLRenderer({ antialias: false, alpha: true });
+    // Without a graphics processor every pixel takes its time.
+    const isSlow = /swiftshader|llvmpipe|software/i.test(nameOfProcessor(this.renderer));
+    this.finest = isSlow ? 0.6 : 1;
     this.renderer.autoClear = false;
     this.renderer.setClearColor(0, 0);
     container.prepend(this.renderer.domElement);
     this.camera.up.set(0, 0, 1);
 
     const light = new three.Scene();
-    const material = new three.MeshStandardMaterial({
-      color: colors.bone,
-      roughness: 0.78,
-      side: three.DoubleSide,
-    });
+    const material = new three.MeshLambertMaterial({ color: colors.bone, side: three.DoubleSide });
     this.anatomy = new three.Mesh(new three.BufferGeometry(), material);
     this.anatomy.frustumCulled = false;
     light.add(this.anatomy, this.lights());
-    this.still = new StillPicture(light, this.camera, antialias ? 4 : 0);
+    this.still = new StillPicture(light, this.camera, isSlow ? 0 : 4);
 
     this.spring = new three.Mesh(
       new three.CylinderGeometry(1, 1, 1, 12),
@@ -129,7 +132,7 @@ export class Scene {
     this.controls.maxDistance = 4 * this.size;
     this.controls.target.set(0, 0, 0);
     this.camera.position
-      .set(0.55, 0.8, 0.22)
+      .set(-0.15, 0.95, 0.16)
       .normalize()
       .multiplyScalar((this.size * 1.15) / Math.min(1, 0.4 + 0.6 * this.camera.aspect));
     this.controls.update();
@@ -147,17 +150,44 @@ export class Scene {
     this.camera.updateMatrixWorld();
     const right = new three.Vector3().setFromMatrixColumn(this.camera.matrixWorld, 0);
     const up = new three.Vector3().setFromMatrixColumn(this.camera.matrixWorld, 1);
+    const near = new three.Vector3().setFromMatrixColumn(this.camera.matrixWorld, 2);
     const caster = new three.Raycaster();
-    for (const height of [0.14, 0, 0.25, -0.14, -0.25]) {
-      const from = up
-        .clone()
-        .multiplyScalar(height * this.size)
+    const toCamera = new three.Vector3();
+    let place: three.Vector3 | null = null;
+    for (const [height, depth] of placesToBegin) {
+      const from = new three.Vector3()
+        .addScaledVector(up, height * this.size)
+        .addScaledVector(near, depth * this.size)
         .addScaledVector(right, this.size);
       caster.set(from, right.clone().negate());
       const hit = caster.intersectObject(this.anatomy)[0];
-      if (hit !== undefined) return this.outside(hit.point.addScaledVector(right, distance));
+      if (!hit?.face) continue;
+      const contact = hit.point.clone();
+      place ??= contact.clone().addScaledVector(right, distance);
+      // Best where the surface is looked at, and nothing is before it.
+      if (Math.abs(hit.face.normal.dot(near)) < 0.4) continue;
+      toCamera.copy(this.camera.position).sub(contact).normalize();
+      caster.set(contact.clone().addScaledVector(toCamera, 0.01 * this.size), toCamera);
+      if (caster.intersectObject(this.anatomy).length > 0) continue;
+      place = contact.addScaledVector(right, distance);
+      break;
     }
-    return this.outside(right.multiplyScalar(0.3 * this.size));
+    place ??= right.clone().multiplyScalar(0.3 * this.size);
+    this.keepInSight(place);
+    return this.outside(place);
+  }
+
+  /** Leads the view back until a point is within it. */
+  private keepInSight(point: three.Vector3): void {
+    for (let i = 0; i < 40 && Math.abs(point.clone().project(this.camera).x) > 0.8; ++i) {
+      this.camera.position.multiplyScalar(1.1);
+      this.controls.maxDistance = Math.max(
+        this.controls.maxDistance,
+        this.camera.position.length(),
+      );
+      this.controls.update();
+      this.camera.updateMatrixWorld();
+    }
   }
 
   /** Where a ray through the view meets the anatomy, led off by a distance; null where it does not. */
@@ -275,7 +305,9 @@ export class Scene {
   private resize(): void {
     const { clientWidth: width, clientHeight: height } = this.container;
     if (width === 0 || height === 0) return;
-    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+    this.renderer.setPixelRatio(
+      Math.min(window.devicePixelRatio, 2, this.finest * window.devicePixelRatio),
+    );
     this.renderer.setSize(width, height);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
@@ -304,6 +336,13 @@ export class Scene {
   private outside(point: three.Vector3): Vec3 {
     return point.clone().add(this.origin).toArray() as Vec3;
   }
+}
+
+/** What draws, as the browser names it. */
+function nameOfProcessor(renderer: three.WebGLRenderer): string {
+  const gl = renderer.getContext();
+  const names = gl.getExtension("WEBGL_debug_renderer_info");
+  return String(gl.getParameter(names ? names.UNMASKED_RENDERER_WEBGL : gl.RENDERER));
 }
 
 /** A ball that shows through what hides it, faintly. */
