@@ -82,5 +82,9 @@ foreach(kind include/keepout src)
   forbid(engine/${kind}/activation "${include}keepout/step/" "a rule knows no step")
 endforeach()
 
+# What a page calls is the library, what is found wrong with a mesh, and no study.
+forbid(apps/web "${include}\"(bench|compare|plan|report|serve|verify)/" "a page knows no study")
+forbid(apps/web "${include}keepout/oracle/" "the oracle is for tests and the command")
+
 # What serves other programs needs none of the command's studies.
 forbid(apps/keepout/serve "${include}\"(bench|compare|report|verify)/" "serve knows no study")

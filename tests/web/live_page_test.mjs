@@ -10,7 +10,15 @@
  */
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import { mkdirSync, readdirSync, readFileSync, renameSync, rmSync, statSync, writeFileSync } from "node:fs";
+import {
+  mkdirSync,
+  readdirSync,
+  readFileSync,
+  renameSync,
+  rmSync,
+  statSync,
+  writeFileSync,
+} from "node:fs";
 import { createRequire } from "node:module";
 import { join, resolve } from "node:path";
 import { after, test } from "node:test";
@@ -157,7 +165,9 @@ test("the page is small, and needs nothing beside it", () => {
 test("a drag into the skull: limited, out of it, and the same as keepout replay", async () => {
   const begin = performance.now();
   desk = await opened(large);
-  note(`the tool can be dragged ${((performance.now() - begin) / 1000).toFixed(1)} s after opening`);
+  note(
+    `the tool can be dragged ${((performance.now() - begin) / 1000).toFixed(1)} s after opening`,
+  );
   await dragIn(desk);
   note(
     `limited: ${await textOf(desk, "#limited")}; lost: ${await textOf(desk, "#lost")}; a step takes ` +
@@ -175,7 +185,10 @@ test("a drag into the skull: limited, out of it, and the same as keepout replay"
   note(`${lines.length} cycles kept, ${limited} of them limited: ${JSON.stringify(verdict)}`);
   assert.ok(limited >= 1000, `${limited} limited cycles`);
   assert.deepEqual([verdict.inside, verdict.crossing, verdict.nearer], [0, 0, 0]);
-  assert.ok(verdict.nearest !== null && verdict.nearest < kept + 0.01, "it never came to the margin");
+  assert.ok(
+    verdict.nearest !== null && verdict.nearest < kept + 0.01,
+    "it never came to the margin",
+  );
 
   // Opened again, the path is played, and goes the same way.
   const file = await desk.$("#file");
@@ -300,7 +313,10 @@ for (const [name, scheme] of [
     await tab.emulateMediaFeatures([{ name: "prefers-color-scheme", value: scheme }]);
     await tab.addScriptTag({ path: packages.resolve("axe-core") });
     const { violations, passes } = await tab.evaluate(() => window.axe.run());
-    assert.ok(passes.some(({ id }) => id === "color-contrast"), "contrast was not looked at");
+    assert.ok(
+      passes.some(({ id }) => id === "color-contrast"),
+      "contrast was not looked at",
+    );
     assert.deepEqual(
       violations.map(({ id, nodes }) => [id, ...nodes.map((node) => node.html)]),
       [],

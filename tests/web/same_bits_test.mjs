@@ -11,25 +11,25 @@
 // reciprocal square root that each processor rounds in its own way, so that native AVX2 and SSE4 differ
 // in some of 10,000 steps, too. One mesh is read as text, so that numerals are compared as well.
 import assert from "node:assert/strict";
-import {execFileSync} from "node:child_process";
-import {existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync} from "node:fs";
-import {tmpdir} from "node:os";
-import {dirname, join, resolve} from "node:path";
-import {fileURLToPath, pathToFileURL} from "node:url";
+import { execFileSync } from "node:child_process";
+import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { dirname, join, resolve } from "node:path";
+import { fileURLToPath, pathToFileURL } from "node:url";
 
 const [command, buildFolder] = process.argv.slice(2).map((path) => resolve(path));
 assert(buildFolder, "usage: node same_bits_test.mjs KEEPOUT BUILD_WASM");
 const repository = resolve(dirname(fileURLToPath(import.meta.url)), "../..");
 const fixtures = join(process.env.KEEPOUT_CACHE || join(repository, ".cache"), "fixtures");
 const scratch = mkdtempSync(join(tmpdir(), "keepout-same-bits-"));
-process.on("exit", () => rmSync(scratch, {recursive: true, force: true}));
+process.on("exit", () => rmSync(scratch, { recursive: true, force: true }));
 
-const {default: instantiate} = await import(pathToFileURL(join(buildFolder, "keepout.js")));
-const wasm = await instantiate({wasmBinary: readFileSync(join(buildFolder, "keepout.wasm"))});
+const { default: instantiate } = await import(pathToFileURL(join(buildFolder, "keepout.js")));
+const wasm = await instantiate({ wasmBinary: readFileSync(join(buildFolder, "keepout.wasm")) });
 
 const openSteps = 8000;
 const closedSteps = 4000;
-const settings = {radius: 1.2, toolRadius: 0.5, margin: 0.2, maxStep: 0.8};
+const settings = { radius: 1.2, toolRadius: 0.5, margin: 0.2, maxStep: 0.8 };
 
 /** Numbers from 0 to 1, the same in each run. */
 function seeded(state) {
@@ -45,21 +45,24 @@ function seeded(state) {
 function trianglesOf(file) {
   const bytes = readFileSync(file);
   const count = bytes.readUInt32LE(80);
-  return Array.from({length: count}, (_, t) =>
-    Array.from({length: 9}, (_, i) => bytes.readFloatLE(84 + 50 * t + 12 + 4 * i)));
+  return Array.from({ length: count }, (_, t) =>
+    Array.from({ length: 9 }, (_, i) => bytes.readFloatLE(84 + 50 * t + 12 + 4 * i)),
+  );
 }
 
 /** Where a mesh of the cache lies; it is made there if it is not yet. */
 function fixture(name) {
   const file = join(fixtures, `${name}.stl`);
-  if (!existsSync(file)) execFileSync(command, ["inspect", name], {stdio: "ignore"});
+  if (!existsSync(file)) execFileSync(command, ["inspect", name], { stdio: "ignore" });
   return file;
 }
 
 /** The same triangles as text. */
 function asText(triangles, name) {
   const file = join(scratch, `${name}.obj`);
-  const vertices = triangles.flatMap((t) => [0, 3, 6].map((i) => `v ${t[i]} ${t[i + 1]} ${t[i + 2]}`));
+  const vertices = triangles.flatMap((t) =>
+    [0, 3, 6].map((i) => `v ${t[i]} ${t[i + 1]} ${t[i + 2]}`),
+  );
   const faces = triangles.map((_, t) => `f ${3 * t + 1} ${3 * t + 2} ${3 * t + 3}`);
   writeFileSync(file, `${vertices.join("\n")}\n${faces.join("\n")}\n`);
   return file;
@@ -70,12 +73,18 @@ function placeOn(triangles, random) {
   for (;;) {
     const t = triangles[Math.floor(random() * triangles.length)];
     const [a, b] = [3, 6].map((k) => [0, 1, 2].map((i) => t[k + i] - t[i]));
-    const normal = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+    const normal = [
+      a[1] * b[2] - a[2] * b[1],
+      a[2] * b[0] - a[0] * b[2],
+      a[0] * b[1] - a[1] * b[0],
+    ];
     const length = Math.hypot(...normal);
     if (!(length > 0)) continue;
     const [u, v] = [random(), random()].sort();
-    return {at: [0, 1, 2].map((i) => t[i] + u * a[i] + (1 - v) * b[i]),
-            normal: normal.map((x) => x / length)};
+    return {
+      at: [0, 1, 2].map((i) => t[i] + u * a[i] + (1 - v) * b[i]),
+      normal: normal.map((x) => x / length),
+    };
   }
 }
 
@@ -83,9 +92,13 @@ const along = (from, way, length) => from.map((x, i) => x + length * way[i]);
 
 /** Tips at about the distance that is kept, and increments into the surface. */
 function openPoses(triangles, random) {
-  return Array.from({length: openSteps}, () => {
-    const {at, normal} = placeOn(triangles, random);
-    const tip = along(at, normal, settings.toolRadius + settings.margin + 0.3 * random() * random());
+  return Array.from({ length: openSteps }, () => {
+    const { at, normal } = placeOn(triangles, random);
+    const tip = along(
+      at,
+      normal,
+      settings.toolRadius + settings.margin + 0.3 * random() * random(),
+    );
     const way = normal.map((n) => 1.2 * (random() - 0.5) - n);
     const length = (0.1 + 0.7 * random()) / Math.hypot(...way);
     return [...tip, ...way.map((x) => length * x)];
@@ -97,12 +110,16 @@ function closedPoses(triangles, random) {
   const poses = [];
   let reset;
   while (poses.length < closedSteps) {
-    const {at, normal} = placeOn(triangles, random);
+    const { at, normal } = placeOn(triangles, random);
     const start = along(at, normal, 4);
     reset ??= start;
     const aside = normal.map(() => random() - 0.5);
     for (let i = 0; i < 100; ++i) {
-      const goal = along(along(start, normal, -Math.min(6, 0.15 * i)), aside, 0.06 * Math.max(0, i - 40));
+      const goal = along(
+        along(start, normal, -Math.min(6, 0.15 * i)),
+        aside,
+        0.06 * Math.max(0, i - 40),
+      );
       poses.push([...goal.map((x) => x + 0.02 * (random() - 0.5)), ...reset]);
     }
   }
@@ -114,21 +131,51 @@ const comparable = (rule, triangles) => (rule === "certified" ? 0 : triangles);
 
 /** The rows of a CSV file, without its heading. */
 function rowsOf(file) {
-  return readFileSync(file, "latin1").trimEnd().split("\n").slice(1).map((line) => line.split(","));
+  return readFileSync(file, "latin1")
+    .trimEnd()
+    .split("\n")
+    .slice(1)
+    .map((line) => line.split(","));
 }
 
 /** What native keepout makes of poses: for each step its numbers in a row, and its planes'. */
 function native(mesh, rule, loop, poses) {
-  const [posesFile, steps, planes] = ["poses.txt", "steps.csv", "planes.csv"].map((f) => join(scratch, f));
-  writeFileSync(posesFile, poses.map((pose) => pose.join(" ")).join("\n") + "\n");
-  execFileSync(command, ["replay", mesh, "--poses", posesFile, "--out", steps, "--planes", planes,
-    "--activation", rule, "--radius", settings.radius, "--tool-radius", settings.toolRadius,
-    "--margin", settings.margin,
-    ...(loop === "closed" ? ["--closed-loop", "--max-step", settings.maxStep] : [])], {stdio: ["ignore", "ignore", "inherit"]});
+  const [posesFile, steps, planes] = ["poses.txt", "steps.csv", "planes.csv"].map((f) =>
+    join(scratch, f),
+  );
+  writeFileSync(posesFile, `${poses.map((pose) => pose.join(" ")).join("\n")}\n`);
+  execFileSync(
+    command,
+    [
+      "replay",
+      mesh,
+      "--poses",
+      posesFile,
+      "--out",
+      steps,
+      "--planes",
+      planes,
+      "--activation",
+      rule,
+      "--radius",
+      settings.radius,
+      "--tool-radius",
+      settings.toolRadius,
+      "--margin",
+      settings.margin,
+      ...(loop === "closed" ? ["--closed-loop", "--max-step", settings.maxStep] : []),
+    ],
+    { stdio: ["ignore", "ignore", "inherit"] },
+  );
   const told = rowsOf(steps).map((row) => ({
     status: row[1],
     planes: Number(row[12]),
-    numbers: [...row.slice(2, 5), ...row.slice(8, 11), comparable(rule, row[11]), row[17] || NaN].map(Number),
+    numbers: [
+      ...row.slice(2, 5),
+      ...row.slice(8, 11),
+      comparable(rule, row[11]),
+      row[17] || NaN,
+    ].map(Number),
   }));
   for (const [step, ...plane] of rowsOf(planes)) told[step].numbers.push(...plane.map(Number));
   return told;
@@ -153,21 +200,27 @@ function made(handle) {
 }
 
 function makeGuard(anatomy, rule, margin) {
-  const {radius, toolRadius, maxStep} = settings;
+  const { radius, toolRadius, maxStep } = settings;
   return withText(rule, (name) =>
-    made(wasm._keepout_make_guard(anatomy, name, radius, toolRadius, margin, maxStep, 1, 4)));
+    made(wasm._keepout_make_guard(anatomy, name, radius, toolRadius, margin, maxStep, 1, 4)),
+  );
 }
 
 /** What a cycle told, in the order of native(). */
 function toldBy(rule, cycle, tip) {
-  const {HEAPF64, HEAPU32} = wasm;
+  const { HEAPF64, HEAPU32 } = wasm;
   const d = cycle / 8;
   const [status, triangles, count, , planes] = HEAPU32.subarray(cycle / 4 + 20, cycle / 4 + 25);
-  const numbers = [...tip, ...HEAPF64.subarray(d + 3, d + 6), comparable(rule, triangles), HEAPF64[d + 9]];
+  const numbers = [
+    ...tip,
+    ...HEAPF64.subarray(d + 3, d + 6),
+    comparable(rule, triangles),
+    HEAPF64[d + 9],
+  ];
   for (let plane = planes; plane < planes + 40 * count; plane += 40) {
     numbers.push(HEAPU32[plane / 4 + 8], ...HEAPF64.subarray(plane / 8, plane / 8 + 4));
   }
-  return {status: wasm.UTF8ToString(wasm._keepout_status_name(status)), planes: count, numbers};
+  return { status: wasm.UTF8ToString(wasm._keepout_status_name(status)), planes: count, numbers };
 }
 
 /** What the module makes of the same poses. */
@@ -186,13 +239,16 @@ function byModule(guard, rule, loop, poses) {
 /** How many steps are not the same. */
 function differences(one, other) {
   assert.equal(one.length, other.length);
-  const isSame = (a, b) => a.status === b.status && a.planes === b.planes && a.numbers.length === b.numbers.length &&
+  const isSame = (a, b) =>
+    a.status === b.status &&
+    a.planes === b.planes &&
+    a.numbers.length === b.numbers.length &&
     a.numbers.every((x, i) => Object.is(x, b.numbers[i]));
   return one.filter((told, step) => !isSame(told, other[step])).length;
 }
 
-const total = {steps: 0, limited: 0, planes: 0, different: 0};
-let isAwake = false;  // whether it was seen that another margin is noticed
+const total = { steps: 0, limited: 0, planes: 0, different: 0 };
+let isAwake = false; // whether it was seen that another margin is noticed
 for (const name of ["skull", "aneurysm", "airway"]) {
   const file = fixture(name);
   const triangles = trianglesOf(file);
@@ -202,7 +258,7 @@ for (const name of ["skull", "aneurysm", "airway"]) {
   const anatomy = withText(inMemory, (path) => made(wasm._keepout_anatomy_of_file(path)));
   wasm.FS.unlink(inMemory);
   const random = seeded(triangles.length);
-  const loops = {open: openPoses(triangles, random), closed: closedPoses(triangles, random)};
+  const loops = { open: openPoses(triangles, random), closed: closedPoses(triangles, random) };
   for (const rule of ["all_faces", "paper", "certified"]) {
     const guard = makeGuard(anatomy, rule, settings.margin);
     for (const [loop, poses] of Object.entries(loops)) {
@@ -210,7 +266,9 @@ for (const name of ["skull", "aneurysm", "airway"]) {
       const different = differences(expected, byModule(guard, rule, loop, poses));
       const limited = expected.filter((told) => told.status === "limited").length;
       const planes = expected.reduce((sum, told) => sum + told.planes, 0);
-      console.log(`${name} ${rule} ${loop}: ${poses.length} steps, ${limited} limited, ${planes} planes, ${different} different`);
+      console.log(
+        `${name} ${rule} ${loop}: ${poses.length} steps, ${limited} limited, ${planes} planes, ${different} different`,
+      );
       total.steps += poses.length;
       total.limited += limited;
       total.planes += planes;
@@ -225,9 +283,14 @@ for (const name of ["skull", "aneurysm", "airway"]) {
   }
   wasm._keepout_discard_anatomy(anatomy);
 }
-console.log(`in all: ${total.steps} steps, ${total.limited} limited, ${total.planes} planes, ${total.different} different`);
+console.log(
+  `in all: ${total.steps} steps, ${total.limited} limited, ${total.planes} planes, ${total.different} different`,
+);
 assert(total.steps >= 1e5, "fewer than 100,000 steps were compared");
-assert(3 * total.limited >= total.steps, "fewer than a third of the steps were limited: little was asked");
+assert(
+  3 * total.limited >= total.steps,
+  "fewer than a third of the steps were limited: little was asked",
+);
 assert(total.planes >= total.limited, "planes were not compared");
 assert(isAwake, "a margin that is longer by 1e-12 of itself went unnoticed");
 assert.equal(total.different, 0, "native keepout and the module differ");

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <string>
 #include <string_view>
 #include <vector>
 
@@ -31,29 +30,23 @@ struct AbsentPart {
   std::string_view needs;  // the library, its Debian package and our option
 };
 
-/// The entry of a table of parts with that name. Throws Error, listing the names there are and the
-/// one that was probably meant, when there is none; and saying what it would need, when the part is
-/// absent. `what` says what kind of part it is.
+/// Throws Error for a name that no part of a kind has: it lists the names there are and the one
+/// that was probably meant; or says what the part would need, when it is absent. `what` says what
+/// kind of part it is.
+[[noreturn]] void refuse_name(std::string_view name, std::span<const std::string_view> known,
+                              std::string_view what, std::span<const AbsentPart> absent);
+
+/// The entry of a table of parts with that name. Throws Error, as refuse_name does, when there is
+/// none.
 template <class Table>
 const auto& entry_named(std::string_view name, const Table& table, std::string_view what,
                         std::span<const AbsentPart> absent = {}) {
-  std::string known;
-  std::vector<std::string_view> names;
+  std::vector<std::string_view> known;
   for (const auto& entry : table) {
     if (entry.name == name) return entry;
-    names.push_back(entry.name);
-    known += (known.empty() ? "" : ", ") + std::string(entry.name);
+    known.push_back(entry.name);
   }
-  const std::string named = std::string(what) + " '" + std::string(name) + "'";
-  for (const AbsentPart& part : absent) {
-    if (part.name != name) continue;
-    throw Error("this build was made without " + named + ", which needs " +
-                std::string(part.needs) + "; it has: " + known);
-  }
-  for (const AbsentPart& part : absent) names.push_back(part.name);
-  const auto meant = nearest_name(name, names);
-  const std::string hint = meant ? "; did you mean '" + std::string(*meant) + "'?" : ";";
-  throw Error("there is no " + named + hint + " known: " + known);
+  refuse_name(name, known, what, absent);
 }
 
 }  // namespace keepout

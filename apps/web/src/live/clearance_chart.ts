@@ -36,7 +36,7 @@ export class ClearanceChart {
             size: 22,
             values: (_plot, values) => values.map((v) => (v === 0 ? "now" : `${v} s`)),
           },
-          { ...axis, size: 44, values: (_plot, values) => values.map((v) => `${v} mm`) },
+          { ...axis, size: 44, space: 24, values: (_plot, values) => values.map((v) => `${v} mm`) },
         ],
         series: [
           {},

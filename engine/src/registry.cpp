@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "keepout/registry.h"
+
 #include <algorithm>
 #include <string>
 #include <vector>
-
-#include "keepout/registry.h"
 
 namespace keepout {
 namespace {
@@ -63,6 +63,24 @@ std::optional<std::string_view> nearest_name(std::string_view mistyped,
   };
   const auto found = std::find_if(names.begin(), names.end(), has_piece);
   return found == names.end() ? nearest : *found;
+}
+
+void refuse_name(std::string_view name, std::span<const std::string_view> known,
+                 std::string_view what, std::span<const AbsentPart> absent) {
+  std::string list;
+  for (const std::string_view one : known) list.append(list.empty() ? "" : ", ").append(one);
+  const std::string named = std::string(what) + " '" + std::string(name) + "'";
+  std::vector<std::string_view> names(known.begin(), known.end());
+  for (const AbsentPart& part : absent) {
+    if (part.name == name) {
+      throw Error("this build was made without " + named + ", which needs " +
+                  std::string(part.needs) + "; it has: " + list);
+    }
+    names.push_back(part.name);
+  }
+  const auto meant = nearest_name(name, names);
+  const std::string hint = meant ? "; did you mean '" + std::string(*meant) + "'?" : ";";
+  throw Error("there is no " + named + hint + " known: " + list);
 }
 
 }  // namespace keepout
