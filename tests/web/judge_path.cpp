@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The exact oracle on what `keepout replay` has written of a path: judge_path MESH STEPS.csv KEPT.
-// Prints as JSON how many motions of the tip there were, how many of them end inside, how many touch
-// the mesh on their way, how many come nearer than KEPT less a tenth of a micrometre, and how near
-// the nearest comes, if it is no farther than a tenth of a millimetre beyond that; else null. [mm]
+// Prints as JSON how many motions of the tip there were, how many of them end inside, how many
+// touch the mesh on their way, how many come nearer than KEPT less a tenth of a micrometre, and how
+// near the nearest comes, if it is no farther than a tenth of a millimetre beyond that; else null.
+// [mm]
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -37,15 +38,15 @@ int main(int argc, char** argv) try {
     }
     const keepout::Vec3 tip(value[2], value[3], value[4]);
     const keepout::Vec3 end = tip + keepout::Vec3(value[8], value[9], value[10]);
-    const keepout::oracle::Finding finding = oracle.check(tip, end, std::max(kept - 1e-4, 0.0), kept + 0.1);
+    const keepout::oracle::Finding finding =
+        oracle.check(tip, end, std::max(kept - 1e-4, 0.0), kept + 0.1);
     crossing += finding.crosses ? 1 : 0;
     nearer += finding.below ? 1 : 0;
     nearest = std::min(nearest, finding.distance);
     inside += oracle.inside(end).value_or(false) ? 1 : 0;
   }
   std::cout << "{\"motions\": " << motions << ", \"inside\": " << inside
-            << ", \"crossing\": " << crossing << ", \"nearer\": " << nearer
-            << ", \"nearest\": ";
+            << ", \"crossing\": " << crossing << ", \"nearer\": " << nearer << ", \"nearest\": ";
   if (std::isfinite(nearest)) {
     std::cout << nearest << "}\n";
   } else {
