@@ -10,9 +10,6 @@ import type { FromWorker, Source, State, ToWorker } from "./protocol.ts";
 import { Readings, showFindings } from "./readings.ts";
 import { Scene } from "./scene.ts";
 
-/** How far beside the surface the tool begins. [mm] */
-const beginsAt = 10;
-
 const page: PageSettings = JSON.parse(embeddedText("settings"));
 let settings: GuardSettings = {
   rule: page.activation as Rule,
@@ -116,7 +113,7 @@ function hear(message: FromWorker): void {
 
 /** The tool begins beside the anatomy, and the view comes near. */
 function begin(): void {
-  const place = scene.placeBeside(beginsAt + settings.toolRadius + settings.margin);
+  const place = scene.placeBeside(settings.toolRadius + settings.margin);
   tell({ kind: "place", tip: place });
 }
 
@@ -196,12 +193,6 @@ function adopt(header: PathHeader | null): void {
   if (header !== null) {
     settings = header.settings;
     showSettings();
-    listMeshes(
-      "In this page",
-      page.meshes.map(({ name }) => name),
-      (i) => `embedded ${i}`,
-    );
-    chooseMesh();
     tell({ kind: "settings", settings });
     if (header.mesh !== shown.command) {
       const number = page.meshes.findIndex(({ command_name }) => command_name === header.mesh);
@@ -268,12 +259,6 @@ function showSettings(): void {
 function change(part: Partial<GuardSettings>): void {
   settings = { ...settings, ...part };
   showSettings();
-  listMeshes(
-    "In this page",
-    page.meshes.map(({ name }) => name),
-    (i) => `embedded ${i}`,
-  );
-  chooseMesh();
   tell({ kind: "settings", settings });
 }
 
@@ -312,11 +297,7 @@ view.addEventListener("dblclick", (event) => {
   const box = view.getBoundingClientRect();
   const x = (2 * (event.clientX - box.left)) / box.width - 1;
   const y = 1 - (2 * (event.clientY - box.top)) / box.height;
-  const place: Vec3 | null = scene.placeBefore(
-    x,
-    y,
-    beginsAt / 2 + settings.toolRadius + settings.margin,
-  );
+  const place: Vec3 | null = scene.placeBefore(x, y, settings.toolRadius + settings.margin);
   if (place === null) return;
   input.drop();
   tell({ kind: "place", tip: place });
@@ -342,9 +323,3 @@ document.addEventListener("visibilitychange", () => {
 });
 
 showSettings();
-listMeshes(
-  "In this page",
-  page.meshes.map(({ name }) => name),
-  (i) => `embedded ${i}`,
-);
-chooseMesh();

@@ -144,9 +144,10 @@ export class Scene {
 
   /**
    * A place for the tool to begin: beside the half of the anatomy that is seen, where a motion across
-   * the view leads into it and stays in sight.
+   * the view leads into it and stays in sight. `kept`: what the tool keeps from the surface. [mm]
    */
-  placeBeside(distance: number): Vec3 {
+  placeBeside(kept: number): Vec3 {
+    const distance = kept + this.beginning();
     this.camera.updateMatrixWorld();
     const right = new three.Vector3().setFromMatrixColumn(this.camera.matrixWorld, 0);
     const up = new three.Vector3().setFromMatrixColumn(this.camera.matrixWorld, 1);
@@ -177,6 +178,11 @@ export class Scene {
     return this.outside(place);
   }
 
+  /** How far from what it keeps the tool begins. [mm] */
+  private beginning(): number {
+    return Math.min(10, 0.06 * this.size);
+  }
+
   /** Leads the view back until a point is within it. */
   private keepInSight(point: three.Vector3): void {
     for (let i = 0; i < 40 && Math.abs(point.clone().project(this.camera).x) > 0.8; ++i) {
@@ -190,15 +196,15 @@ export class Scene {
     }
   }
 
-  /** Where a ray through the view meets the anatomy, led off by a distance; null where it does not. */
-  placeBefore(x: number, y: number, distance: number): Vec3 | null {
+  /** The same before where a ray through the view meets the anatomy; null where it does not. */
+  placeBefore(x: number, y: number, kept: number): Vec3 | null {
     const caster = new three.Raycaster();
     caster.setFromCamera(new three.Vector2(x, y), this.camera);
     const hit = caster.intersectObject(this.anatomy)[0];
     if (!hit?.face) return null;
     const { normal } = hit.face;
     if (normal.dot(caster.ray.direction) > 0) normal.negate();
-    return this.outside(hit.point.addScaledVector(normal, distance));
+    return this.outside(hit.point.addScaledVector(normal, kept + this.beginning()));
   }
 
   setToolRadius(radius: number): void {
