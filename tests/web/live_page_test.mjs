@@ -287,7 +287,8 @@ test("files are dropped: a mesh, then what is none, and the page lives on", asyn
   await dragIn(desk, 2);
   const path = await savedPath(desk);
   assert.equal(differing(linesOf(path), replayed(path, cube, "certified")), 0);
-  assert.ok((await limitedCycles(desk)) > before + 100);
+  const after = await limitedCycles(desk);
+  assert.ok(after > before + 100, `limited cycles: ${before} before, ${after} after`);
 });
 
 test("led by touch, on a phone", async () => {

@@ -2,7 +2,7 @@
 import type { Vec3 } from "../engine/keepout.ts";
 import type { Scene } from "./scene.ts";
 
-/** How near a pointer must be to take hold. [px] */
+/** How near a pointer must be to take hold, or on the ball. [px] */
 const reach = { mouse: 30, touch: 52 } as const;
 /** How fast arrow keys lead the hand, and by how much slower with Shift. [mm/s] */
 const keySpeed = { usual: 40, slow: 8 } as const;
@@ -72,7 +72,8 @@ export class HandInput {
     const dx = hand.x - at.x;
     const dy = hand.y - at.y;
     const pixels = Math.hypot(dx * 0.5 * this.view.clientWidth, dy * 0.5 * this.view.clientHeight);
-    if (pixels > (event.pointerType === "mouse" ? reach.mouse : reach.touch)) return;
+    const near = event.pointerType === "mouse" ? reach.mouse : reach.touch;
+    if (pixels > Math.max(near, this.scene.ballRadius(this.hand))) return;
     event.stopPropagation();
     event.preventDefault();
     this.view.focus({ preventScroll: true, focusVisible: false } as FocusOptions);

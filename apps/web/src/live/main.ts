@@ -48,7 +48,7 @@ listMeshes(
 chooseMesh();
 
 const view = element("view", HTMLElement);
-const scene = new Scene(view, () => placeGrip());
+const scene = new Scene(view, roomBetweenCards, () => placeGrip());
 const chart = new ClearanceChart(element("chart", HTMLElement));
 const failures = new CounterexampleView();
 const input = new HandInput(scene, view, (place) => {
@@ -109,6 +109,12 @@ function hear(message: FromWorker): void {
       selectShown();
       return;
   }
+}
+
+/** The share of the view's width between the columns of cards; on a phone they are below it. */
+function roomBetweenCards(): number {
+  const column = document.querySelector(".column")?.getBoundingClientRect().right ?? 0;
+  return Math.max(1 - (2 * (column + 40)) / view.clientWidth, 0.3);
 }
 
 /** The tool begins beside the anatomy, and the view comes near. */

@@ -57,9 +57,13 @@ export class Scene {
   private isDue = false;
   private drawn = 0;
 
-  /** Draws into a container, and again whenever something in it changes. */
+  /**
+   * Draws into a container, and again whenever something in it changes. `room`: the share of its
+   * width that nothing covers, in the middle.
+   */
   constructor(
     private readonly container: HTMLElement,
+    private readonly room: () => number,
     private readonly onDraw: () => void,
   ) {
     // The still picture has smooth edges of its own.
@@ -134,7 +138,7 @@ export class Scene {
     this.camera.position
       .set(-0.15, 0.95, 0.16)
       .normalize()
-      .multiplyScalar((this.size * 1.15) / Math.min(1, 0.4 + 0.6 * this.camera.aspect));
+      .multiplyScalar(this.size * Math.max(1.15, 0.94 / (this.camera.aspect * this.room())));
     this.controls.update();
     this.moment = null;
     this.moving.visible = false;
@@ -185,7 +189,7 @@ export class Scene {
 
   /** Leads the view back until a point is within it. */
   private keepInSight(point: three.Vector3): void {
-    for (let i = 0; i < 40 && Math.abs(point.clone().project(this.camera).x) > 0.8; ++i) {
+    for (let i = 0; i < 40 && Math.abs(point.clone().project(this.camera).x) > this.room(); ++i) {
       this.camera.position.multiplyScalar(1.1);
       this.controls.maxDistance = Math.max(
         this.controls.maxDistance,
@@ -219,6 +223,13 @@ export class Scene {
     this.moment = moment;
     this.moving.visible = true;
     this.redraw();
+  }
+
+  /** How large the tool's ball is in the view, where it is. [px] */
+  ballRadius(place: Vec3): number {
+    const depth = this.inside(place).distanceTo(this.camera.position);
+    const halfHeight = depth * Math.tan((0.5 * this.camera.fov * Math.PI) / 180);
+    return (0.5 * this.container.clientHeight * this.toolRadius) / halfHeight;
   }
 
   /** Where a place is in the view, from -1 to 1 both ways, and how deep. */
