@@ -125,7 +125,10 @@ function begin(): void {
 
 function show(now: State): void {
   state = now;
-  if (awaited === null) grip.hidden = false;
+  if (awaited === null && grip.hidden) {
+    placeGrip();
+    grip.hidden = false;
+  }
   input.rest(now.hand);
   scene.update({ hand: now.hand, tip: now.tip, planes: now.planes });
   chart.add(now.time, now.handClearance, now.toolClearance);
