@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * Bundles the page of `keepout live` into one file, all but the anatomy, for which it has a comment;
- * apps/web/build calls it. From the environment: KEEPOUT_WASM, the folder with keepout.js and
+ * apps/web/build calls it. From the environment: KEEPOUT_WASM, the folder with keepout.mjs and
  * keepout.wasm, of the CMake preset wasm; KEEPOUT_PAGE, the file to write.
  */
 import { readFile, writeFile } from "node:fs/promises";
@@ -26,7 +26,7 @@ async function bundle(entry) {
     target: "es2022",
     format: "iife",
     legalComments: "inline",
-    alias: { "keepout-module": resolve(wasm, "keepout.js") },
+    alias: { "keepout-module": resolve(wasm, "keepout.mjs") },
     define: { "import.meta.url": '""' },
     external: ["module", "fs", "path", "url"],
     logOverride: { "empty-import-meta": "silent" },

@@ -287,8 +287,18 @@ test("files are dropped: a mesh, then what is none, and the page lives on", asyn
   await dragIn(desk, 2);
   const path = await savedPath(desk);
   assert.equal(differing(linesOf(path), replayed(path, cube, "certified")), 0);
-  const after = await limitedCycles(desk);
-  assert.ok(after > before + 100, `limited cycles: ${before} before, ${after} after`);
+  const limitedAfter = await limitedCycles(desk);
+  assert.ok(limitedAfter > before + 100, `limited cycles: ${before} before, ${limitedAfter} after`);
+
+  // A path whose settings the engine refuses: those before stay in force.
+  const refused = readFileSync(join(folder, path), "utf8").replace('"margin":0.2', '"margin":0');
+  writeFileSync(join(folder, "refused.txt"), refused);
+  await drop(join(folder, "refused.txt"));
+  await told("margin");
+  note(await textOf(desk, "#toast"));
+  await desk.waitForFunction(() =>
+    document.querySelector("#margin").parentElement.innerText.includes("0.2 mm"),
+  );
 });
 
 test("led by touch, on a phone", async () => {

@@ -24,7 +24,7 @@ const fixtures = join(process.env.KEEPOUT_CACHE || join(repository, ".cache"), "
 const scratch = mkdtempSync(join(tmpdir(), "keepout-same-bits-"));
 process.on("exit", () => rmSync(scratch, { recursive: true, force: true }));
 
-const { default: instantiate } = await import(pathToFileURL(join(buildFolder, "keepout.js")));
+const { default: instantiate } = await import(pathToFileURL(join(buildFolder, "keepout.mjs")));
 const wasm = await instantiate({ wasmBinary: readFileSync(join(buildFolder, "keepout.wasm")) });
 
 const openSteps = 8000;

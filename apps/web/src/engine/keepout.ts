@@ -62,7 +62,7 @@ interface Module {
   ): number;
 }
 
-/** What emscripten's loader makes a module of: build/wasm/keepout.js. */
+/** What emscripten's loader makes a module of: build/wasm/keepout.mjs. */
 export type ModuleFactory = (options: {
   wasmBinary: Uint8Array;
   locateFile: (name: string) => string;
@@ -164,8 +164,8 @@ export class Keepout {
   /** Of a surface that is welded already: (n, 3) coordinates and (m, 3) numbers of vertices. */
   anatomyOfSurface(vertices: Float64Array, corners: Uint32Array): Anatomy {
     const { module } = this;
-    const vertexPlace = module._malloc(vertices.byteLength);
-    const cornerPlace = module._malloc(corners.byteLength);
+    const vertexPlace = this.allocate(vertices.byteLength);
+    const cornerPlace = this.allocate(corners.byteLength);
     try {
       module.HEAPF64.set(vertices, vertexPlace / 8);
       module.HEAPU32.set(corners, cornerPlace / 4);
@@ -232,9 +232,15 @@ export class Keepout {
     return address;
   }
 
+  private allocate(bytes: number): number {
+    const place = this.module._malloc(bytes);
+    if (place === 0) throw new Error("there is not enough memory for it");
+    return place;
+  }
+
   private withText<T>(text: string, use: (address: number) => T): T {
     const bytes = new TextEncoder().encode(`${text}\0`);
-    const place = this.module._malloc(bytes.length);
+    const place = this.allocate(bytes.length);
     try {
       this.module.HEAPU8.set(bytes, place);
       return use(place);

@@ -47,10 +47,6 @@ export class ControlLoop {
     return this.settings_;
   }
 
-  get isReplaying(): boolean {
-    return this.replay !== null;
-  }
-
   activePlanes() {
     return this.last === null ? [] : this.guard.activePlanes();
   }

@@ -6,6 +6,7 @@ import { CounterexampleView } from "./counterexample_view.ts";
 import { HandInput } from "./hand_input.ts";
 import { element, embeddedText, grouped, type PageSettings, toast } from "./page.ts";
 import { type PathHeader, parsePath, pathText, replayCommand } from "./path_file.ts";
+import { PathRecord } from "./path_record.ts";
 import type { FromWorker, Source, State, ToWorker } from "./protocol.ts";
 import { Readings, showFindings } from "./readings.ts";
 import { Scene } from "./scene.ts";
@@ -18,11 +19,17 @@ let settings: GuardSettings = {
   margin: page.margin,
   maxStep: page.max_step,
 };
-/** What is in the view: its name, and what to call it on a command line. */
-let shown = { name: "", command: "" };
-let triangles = 0;
+/** An anatomy that can be chosen, and what to call it on a command line. */
+interface Choice {
+  readonly source: Source;
+  readonly command: string;
+}
+/** By the values of the list's options. */
+const choices = new Map<string, Choice>();
+let shown: Choice | null = null;
 /** That which is being loaded, until it is there or has failed. */
-let awaited: { command: string } | null = null;
+let awaited: Choice | null = null;
+let triangles = 0;
 let state: State | null = null;
 let readings: Readings | null = null;
 /** A path that is to be played, once its mesh is there; and the last one that was. */
@@ -40,11 +47,10 @@ worker.onerror = () => toast("keepout itself has failed in this page: reload it.
 tell({ kind: "start", engine: embeddedText("engine") });
 const meshes = element("mesh", HTMLSelectElement);
 const grip = element("grip", HTMLElement);
-listMeshes(
-  "In this page",
-  page.meshes.map(({ name }) => name),
-  (i) => `embedded ${i}`,
-);
+page.meshes.forEach((mesh, i) => {
+  const source = { kind: "embedded", mesh, data: embeddedText(`mesh-${i}`) } as const;
+  offer("In this page", { source, command: mesh.command_name });
+});
 chooseMesh();
 
 const view = element("view", HTMLElement);
@@ -64,14 +70,18 @@ function hear(message: FromWorker): void {
   switch (message.kind) {
     case "ready":
       readings = new Readings(message.statuses);
-      listMeshes("Generated", message.shapes, (i) => `shape ${message.shapes[i]}`);
+      for (const name of message.shapes) {
+        offer("Generated", { source: { kind: "shape", name }, command: name });
+      }
       return;
     case "surface":
       input.drop();
       scene.show(message.positions, message.corners, message.origin);
       chart.clear();
       state = null;
-      shown = { name: message.name, command: awaited?.command ?? message.name };
+      shown = awaited;
+      if (shown !== null && optionOf(shown) === undefined) offer("Opened", shown);
+      selectShown();
       document.title = `${message.name} – keepout live`;
       triangles = message.corners.length / 3;
       return;
@@ -100,6 +110,10 @@ function hear(message: FromWorker): void {
       return;
     case "counterexamples":
       failures.open(message);
+      return;
+    case "settings":
+      settings = message.settings;
+      showSettings();
       return;
     case "failure":
       awaited = null;
@@ -144,35 +158,45 @@ function placeGrip(): void {
 
 // What is chosen.
 
-function listMeshes(label: string, names: readonly string[], value: (i: number) => string): void {
-  const group = document.createElement("optgroup");
-  group.label = label;
-  group.append(...names.map((name, i) => new Option(name, value(i))));
-  meshes.append(group);
+function nameOf({ source }: Choice): string {
+  return source.kind === "embedded" ? source.mesh.name : source.name;
+}
+
+/** The value of its option in the list, if it stands there. */
+function optionOf(choice: Choice): string | undefined {
+  return [...choices].find(([, one]) => one === choice)?.[0];
+}
+
+/** Puts a choice into the list, under a heading. */
+function offer(heading: string, choice: Choice): void {
+  let group = meshes.querySelector<HTMLOptGroupElement>(`optgroup[label="${heading}"]`);
+  if (group === null) {
+    group = document.createElement("optgroup");
+    group.label = heading;
+    meshes.append(group);
+  }
+  const value = String(choices.size);
+  choices.set(value, choice);
+  group.append(new Option(nameOf(choice), value));
 }
 
 function chooseMesh(): void {
-  const [kind, which] = meshes.value.split(" ") as [string, string];
-  if (kind === "shape") load({ kind: "shape", name: which }, which);
-  if (kind !== "embedded") return;
-  const mesh = page.meshes[Number(which)];
-  if (mesh === undefined) return;
-  load({ kind: "embedded", mesh, data: embeddedText(`mesh-${which}`) }, mesh.command_name);
+  const choice = choices.get(meshes.value);
+  if (choice !== undefined) load(choice);
 }
 
 /** The list says what is in the view, also when what was chosen could not be. */
 function selectShown(): void {
-  const option = [...meshes.options].find(({ text }) => text === shown.name);
-  if (option) meshes.value = option.value;
+  if (shown !== null) meshes.value = optionOf(shown) ?? "";
 }
 
-function load(source: Source, command: string): void {
-  awaited = { command };
+function load(choice: Choice): void {
+  awaited = choice;
   const line = element("loading", HTMLElement);
-  line.textContent = `Reading ${source.kind === "embedded" ? source.mesh.name : source.name} …`;
+  line.textContent = `Reading ${nameOf(choice)} …`;
   line.hidden = false;
   grip.hidden = true;
-  tell({ kind: "load", source, settings });
+  tell({ kind: "load", source: choice.source, settings });
 }
 
 async function openFile(file: File): Promise<void> {
@@ -187,14 +211,10 @@ async function openFile(file: File): Promise<void> {
     return;
   }
   last = null;
-  load(
-    { kind: "file", name: file.name, bytes: new Uint8Array(await file.arrayBuffer()) },
-    /^[\w.-]+$/.test(file.name) ? file.name : `'${file.name.replaceAll("'", "'\\''")}'`,
-  );
-  const own = [...meshes.options].find(({ value }) => value === "file");
-  own?.remove();
-  meshes.append(new Option(file.name, "file"));
-  meshes.value = "file";
+  load({
+    source: { kind: "file", name: file.name, bytes: new Uint8Array(await file.arrayBuffer()) },
+    command: /^[\w.-]+$/.test(file.name) ? file.name : `'${file.name.replaceAll("'", "'\\''")}'`,
+  });
 }
 
 /** What a path was made with, as far as it is at hand; then plays it. */
@@ -203,14 +223,13 @@ function adopt(header: PathHeader | null): void {
     settings = header.settings;
     showSettings();
     tell({ kind: "settings", settings });
-    if (header.mesh !== shown.command) {
-      const number = page.meshes.findIndex(({ command_name }) => command_name === header.mesh);
-      const shape = [...meshes.options].find(({ value }) => value === `shape ${header.mesh}`);
-      if (number >= 0 || shape) {
-        meshes.value = shape?.value ?? `embedded ${number}`;
-        chooseMesh();
-        return; // it is played once that is there
+    if (header.mesh !== shown?.command) {
+      const choice = [...choices].find(([, { command }]) => command === header.mesh);
+      if (choice !== undefined) {
+        load(choice[1]); // it is played once that is there
+        return;
       }
+      last = null;
       toast(`This path is over ${header.mesh}, which is not in this page: open that file first.`);
       return;
     }
@@ -224,7 +243,7 @@ function play(): void {
 }
 
 function takePath(lines: Float64Array, made: GuardSettings): void {
-  if (lines.length === 0) return;
+  if (lines.length === 0 || shown === null) return;
   if (pathFor === "replay") {
     tell({ kind: "replay", lines });
     return;
@@ -232,11 +251,12 @@ function takePath(lines: Float64Array, made: GuardSettings): void {
   const header: PathHeader = { keepout: page.keepout, mesh: shown.command, settings: made };
   const link = document.createElement("a");
   link.href = URL.createObjectURL(new Blob([pathText(header, lines)], { type: "text/plain" }));
-  link.download = `keepout-path-${shown.name.replaceAll(/[^\w.-]/g, "_")}.txt`;
+  link.download = `keepout-path-${nameOf(shown).replaceAll(/[^\w.-]/g, "_")}.txt`;
   link.click();
   URL.revokeObjectURL(link.href);
+  const isFull = lines.length / 6 >= PathRecord.capacity;
   toast(
-    `${grouped(lines.length / 6)} cycles saved. ` +
+    `${grouped(lines.length / 6)} cycles saved${isFull ? ", the first ten minutes" : ""}. ` +
       (made.rule === "none"
         ? "Open the file here to see them again."
         : `To do them again outside: ${replayCommand(header, link.download)}`),

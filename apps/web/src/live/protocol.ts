@@ -60,8 +60,6 @@ export interface State {
   readonly stepTime: number;
   /** Cycles a second, over the last second. */
   readonly rate: number;
-  readonly recorded: number;
-  readonly replaying: boolean;
 }
 
 /** What a counterexample comes to under a rule. */
@@ -99,4 +97,6 @@ export type FromWorker =
       readonly margin: number;
       readonly examples: readonly { example: Counterexample; trials: readonly Trial[] }[];
     }
+  /** Those that stay in force, when others were refused. */
+  | { readonly kind: "settings"; readonly settings: GuardSettings }
   | { readonly kind: "failure"; readonly message: string };

@@ -19,6 +19,7 @@ const tellEvery = 15;
 let keepout: Keepout;
 let anatomy: { of: Anatomy; name: string; settings: GuardSettings } | null = null;
 let loop: ControlLoop | null = null;
+let place: Vec3 | null = null; // where the tool was put last, in this anatomy
 let paused = false;
 
 let begun = 0; // the page's clock at cycle 0 [ms]
@@ -90,8 +91,6 @@ function tellState(time: number): void {
       lost,
       stepTime: second.stepTime,
       rate: second.rate,
-      recorded: loop.record.count,
-      replaying: loop.isReplaying,
     },
   });
 }
@@ -131,7 +130,7 @@ async function load(source: Source, settings: GuardSettings): Promise<void> {
     tellSurface(name, made.vertices, made.corners);
   }
   loop?.discard();
-  loop = null;
+  loop = place = null;
   anatomy?.of.discard();
   anatomy = { of: made, name, settings };
   lost = 0;
@@ -149,6 +148,13 @@ async function start(engine: string): Promise<void> {
   setInterval(run, 1);
 }
 
+/** Begins where the tool was put, if it has not yet; what the engine refuses is thrown. */
+function begin(): void {
+  if (loop !== null || anatomy === null || place === null) return;
+  loop = new ControlLoop(keepout, anatomy.of, anatomy.settings, place);
+  restartClock();
+}
+
 function handle(message: ToWorker): void | Promise<void> {
   switch (message.kind) {
     case "start":
@@ -156,17 +162,14 @@ function handle(message: ToWorker): void | Promise<void> {
     case "load":
       return load(message.source, message.settings);
     case "settings":
-      if (anatomy !== null) anatomy.settings = message.settings;
       loop?.use(message.settings);
+      if (anatomy !== null) anatomy.settings = message.settings;
+      begin();
       return;
     case "place":
-      if (anatomy === null) return;
-      if (loop === null) {
-        loop = new ControlLoop(keepout, anatomy.of, anatomy.settings, message.tip);
-        restartClock();
-      } else {
-        loop.place(message.tip);
-      }
+      place = message.tip;
+      loop?.place(place);
+      begin();
       return;
     case "hand":
       loop?.hold(message.place);
@@ -197,6 +200,9 @@ self.onmessage = ({ data }: MessageEvent<ToWorker>) => {
     .then(() => handle(data))
     .catch((error: unknown) => {
       tell({ kind: "failure", message: error instanceof Error ? error.message : String(error) });
+      if (data.kind === "settings" && anatomy !== null) {
+        tell({ kind: "settings", settings: anatomy.settings });
+      }
       restartClock();
     });
 };
