@@ -40,8 +40,20 @@ function script(type, id, text) {
   return `<script type="${type}"${name}>${text.replaceAll(/<\/(script)/gi, "<\\/$1")}</script>`;
 }
 
+/** Whose work the page holds, and under which terms. */
+const licences = [
+  "keepout, compiled with Eigen (MPL-2.0), Highway (Apache-2.0), xxHash (BSD-2-Clause) and the libraries",
+  "of emscripten (MIT; libc++: Apache-2.0 with LLVM exceptions):",
+  await readFile(new URL("../../LICENSE", import.meta.url), "utf8"),
+  "three:",
+  await readFile(new URL("node_modules/three/LICENSE", import.meta.url), "utf8"),
+  "uPlot:",
+  await readFile(new URL("node_modules/uplot/LICENSE", import.meta.url), "utf8"),
+].join("\n");
+
 const engine = gzipSync(await readFile(resolve(wasm, "keepout.wasm")), { level: 9 });
 const scripts = [
+  script("text/plain", "licences", licences),
   script("application/octet-stream", "engine", engine.toString("base64")),
   script("text/plain", "worker", await bundle("worker.ts")),
   script("text/javascript", "", await bundle("main.ts")),
