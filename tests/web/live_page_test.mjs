@@ -291,13 +291,13 @@ test("files are dropped: a mesh, then what is none, and the page lives on", asyn
   assert.ok(limitedAfter > before + 100, `limited cycles: ${before} before, ${limitedAfter} after`);
 
   // A path whose settings the engine refuses: those before stay in force.
-  const refused = readFileSync(join(folder, path), "utf8").replace('"margin":0.2', '"margin":0');
-  writeFileSync(join(folder, "refused.txt"), refused);
+  const text = readFileSync(join(folder, path), "utf8");
+  writeFileSync(join(folder, "refused.txt"), text.replace('"radius":5', '"radius":-1'));
   await drop(join(folder, "refused.txt"));
-  await told("margin");
+  await told("longer than --radius");
   note(await textOf(desk, "#toast"));
   await desk.waitForFunction(() =>
-    document.querySelector("#margin").parentElement.innerText.includes("0.2 mm"),
+    document.querySelector("#radius").parentElement.innerText.includes("5 mm"),
   );
 });
 

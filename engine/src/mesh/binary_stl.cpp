@@ -73,7 +73,7 @@ std::optional<Surface> read_binary_stl(const MeshSource& source, unsigned thread
 
 void write_binary_stl(const std::filesystem::path& path, const Surface& surface) {
   write_binary_stl(path, surface.triangles.size(), [&](std::uint64_t t) -> Triangle {
-    const Corners& c = surface.triangles[t];
+    const Corners& c = surface.triangles[static_cast<std::size_t>(t)];
     for (const VertexId v : c) {
       if (v >= surface.vertices.size()) {
         throw Error(path.string() + ": triangle " + std::to_string(t) + " names vertex " +

@@ -176,7 +176,7 @@ void MeshSource::read(std::uint64_t offset, void* to, std::size_t size) const {
 }
 
 std::string MeshSource::contents(std::uint64_t at_most) const {
-  std::string contents(std::min(size(), at_most), '\0');
+  std::string contents(static_cast<std::size_t>(std::min(size(), at_most)), '\0');
   read(0, contents.data(), contents.size());
   return contents;
 }

@@ -161,7 +161,7 @@ class PlyBytes {
     if (size > left()) fail(cut_short(*element_));
     if (position_ < begin_ || position_ + size > begin_ + buffer_.size()) {
       begin_ = position_;
-      buffer_.resize(std::min(at_once, left()));
+      buffer_.resize(static_cast<std::size_t>(std::min(at_once, left())));
       if (!source_.try_read(begin_, buffer_.data(), buffer_.size())) fail(cut_short(*element_));
     }
     const char* bytes = buffer_.data() + (position_ - begin_);
@@ -273,8 +273,9 @@ class SurfaceReader {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       offsets[axis] = offset_of(element, layout_.coordinates[axis]);
     }
-    mesh_.surface.vertices = vector_in_huge_pages<Vec3>(element.count);
-    share_ranges(element.count, processors(), [&](std::size_t begin, std::size_t end) {
+    const auto count = static_cast<std::size_t>(element.count);
+    mesh_.surface.vertices = vector_in_huge_pages<Vec3>(count);
+    share_ranges(count, processors(), [&](std::size_t begin, std::size_t end) {
       const std::vector<char> items = body_.copy(begin * size, (end - begin) * size);
       const char* item = items.data();
       for (std::size_t v = begin; v < end; ++v, item += size) {
@@ -301,7 +302,7 @@ class SurfaceReader {
     }
     if (element.count > body_.left() / size || element.count > no_triangle / 3) return false;
     const std::size_t list = offset_of(element, layout_.corners);
-    auto triangles = vector_in_huge_pages<Corners>(element.count);
+    auto triangles = vector_in_huge_pages<Corners>(static_cast<std::size_t>(element.count));
     std::atomic<bool> good = true;
     share_ranges(triangles.size(), processors(), [&](std::size_t begin, std::size_t end) {
       if (!good) return;

@@ -84,7 +84,7 @@ void read_off_face(const TextLines& lines, std::uint64_t vertices, Polygons& pol
   if (corners > words.size() - 1) {
     lines.fail("a face has fewer corners than it declares; the file is damaged");
   }
-  for (const std::string_view word : words.subspan(1, corners)) {
+  for (const std::string_view word : words.subspan(1, static_cast<std::size_t>(corners))) {
     polygons.add_corner(lines.whole_number(word), vertices, lines);
   }
   polygons.end_polygon();

@@ -17,7 +17,7 @@ namespace keepout {
 class Budget {
  public:
   /// As much as nobody spends: for measuring, and where there is no control cycle.
-  static constexpr std::size_t unlimited = std::numeric_limits<std::int64_t>::max() / 4;
+  static constexpr std::size_t unlimited = std::numeric_limits<std::ptrdiff_t>::max() / 4;
 
   /// For so many looks in a cycle, at most `unlimited`.
   explicit Budget(std::size_t looks = unlimited) noexcept
