@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import uPlot from "uplot";
-import { colors } from "./scene.ts";
+import { colors } from "./markers.ts";
 
 /** How much of the past is seen. [s] */
 const span = 8;

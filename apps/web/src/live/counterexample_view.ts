@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import * as three from "three";
 import type { Counterexample, Vec3 } from "../engine/keepout.ts";
+import { colors } from "./markers.ts";
 import { element } from "./page.ts";
 import type { FromWorker, Trial } from "./protocol.ts";
-import { colors } from "./scene.ts";
 
 type Shown = Extract<FromWorker, { kind: "counterexamples" }>;
 

@@ -191,6 +191,11 @@ function selectShown(): void {
 }
 
 function load(choice: Choice): void {
+  if (awaited !== null) {
+    toast(`${nameOf(awaited)} is still being read`);
+    selectShown();
+    return;
+  }
   awaited = choice;
   const line = element("loading", HTMLElement);
   line.textContent = `Reading ${nameOf(choice)} …`;

@@ -2,14 +2,8 @@
 import * as three from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import type { Plane, Vec3 } from "../engine/keepout.ts";
+import { Ball, colors, sheet, Trail } from "./markers.ts";
 import { StillPicture } from "./still_picture.ts";
-
-export const colors = {
-  hand: "#e5484d",
-  tool: "#2f7df6",
-  plane: "#0fb5a3",
-  bone: "#e9dfce",
-} as const;
 
 /** What is seen of a moment. */
 export interface Moment {
@@ -24,8 +18,6 @@ const mostPlanes = 8;
 const placesToBegin = [0.3, 0.2, 0.1, 0].flatMap((near) =>
   [0.16, 0.08, 0.24, 0, -0.08].map((height) => [height, near] as const),
 );
-/** Points of a trail: some seconds. */
-const trailLength = 240;
 /** A ball that is smaller than this share of what is seen is drawn as large. */
 const smallestBall = 0.006;
 
@@ -360,73 +352,4 @@ function nameOfProcessor(renderer: three.WebGLRenderer): string {
   const gl = renderer.getContext();
   const names = gl.getExtension("WEBGL_debug_renderer_info");
   return String(gl.getParameter(names ? names.UNMASKED_RENDERER_WEBGL : gl.RENDERER));
-}
-
-/** A ball that shows through what hides it, faintly. */
-class Ball {
-  readonly parts: three.Mesh[];
-
-  constructor(color: string, opacity: number) {
-    const geometry = new three.SphereGeometry(1, 40, 24);
-    const faint = { color, transparent: true, depthWrite: false };
-    const solid = new three.MeshStandardMaterial({
-      ...faint,
-      opacity,
-      roughness: 0.35,
-      depthWrite: opacity === 1,
-    });
-    const ghost = new three.MeshBasicMaterial({ ...faint, opacity: 0.3, depthTest: false });
-    this.parts = [new three.Mesh(geometry, solid), new three.Mesh(geometry, ghost)];
-  }
-
-  place(at: three.Vector3, radius: number): void {
-    for (const part of this.parts) {
-      part.position.copy(at);
-      part.scale.setScalar(radius);
-    }
-  }
-}
-
-/** Where a point was lately. */
-class Trail {
-  readonly line: three.Line;
-  private readonly points: three.Vector3[] = [];
-
-  constructor(color: string) {
-    this.line = new three.Line(
-      new three.BufferGeometry(),
-      new three.LineBasicMaterial({ color, transparent: true, opacity: 0.8, depthTest: false }),
-    );
-    this.line.frustumCulled = false;
-  }
-
-  add(point: three.Vector3): void {
-    this.points.push(point);
-    if (this.points.length > trailLength) this.points.shift();
-    this.show();
-  }
-
-  clear(): void {
-    this.points.length = 0;
-    this.show();
-  }
-
-  private show(): void {
-    this.line.geometry.dispose();
-    this.line.geometry = new three.BufferGeometry().setFromPoints(this.points);
-  }
-}
-
-/** An active plane: a disc with a rim, of radius 1. */
-function sheet(): three.Group {
-  const shared = { color: colors.plane, side: three.DoubleSide, transparent: true };
-  const disc = new three.Mesh(
-    new three.CircleGeometry(1, 64),
-    new three.MeshBasicMaterial({ ...shared, opacity: 0.22, depthWrite: false }),
-  );
-  const rim = new three.Mesh(
-    new three.RingGeometry(0.97, 1, 64),
-    new three.MeshBasicMaterial({ ...shared, opacity: 0.9, depthWrite: false }),
-  );
-  return new three.Group().add(disc, rim);
 }

@@ -114,12 +114,20 @@ function tellSurface(name: string, vertices: Float64Array, corners: Uint32Array)
   ]);
 }
 
+/** No anatomy, and nothing that guards it. */
+function letGo(): void {
+  loop?.discard();
+  anatomy?.of.discard();
+  loop = anatomy = place = null;
+}
+
 async function load(source: Source, settings: GuardSettings): Promise<void> {
   const begin = performance.now();
   const name = source.kind === "embedded" ? source.mesh.name : source.name;
   let made: Anatomy;
   if (source.kind === "embedded") {
     const { vertices, corners } = await decodeSurface(source.mesh, source.data);
+    letGo(); // what is seen from here on is the other one
     tellSurface(name, vertices, corners);
     made = keepout.anatomyOfSurface(vertices, corners);
   } else {
@@ -129,9 +137,7 @@ async function load(source: Source, settings: GuardSettings): Promise<void> {
         : keepout.anatomyOfFile(source.name, source.bytes);
     tellSurface(name, made.vertices, made.corners);
   }
-  loop?.discard();
-  loop = place = null;
-  anatomy?.of.discard();
+  letGo();
   anatomy = { of: made, name, settings };
   lost = 0;
   tell({ kind: "findings", name, findings: made.findings() });

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/** What is drawn of hand, tool and planes. */
+import * as three from "three";
+
+export const colors = {
+  hand: "#e5484d",
+  tool: "#2f7df6",
+  plane: "#0fb5a3",
+  bone: "#e9dfce",
+} as const;
+
+/** Points of a trail: some seconds. */
+const trailLength = 240;
+
+/** A ball that shows through what hides it, faintly. */
+export class Ball {
+  readonly parts: three.Mesh[];
+
+  constructor(color: string, opacity: number) {
+    const geometry = new three.SphereGeometry(1, 40, 24);
+    const faint = { color, transparent: true, depthWrite: false };
+    const solid = new three.MeshStandardMaterial({
+      ...faint,
+      opacity,
+      roughness: 0.35,
+      depthWrite: opacity === 1,
+    });
+    const ghost = new three.MeshBasicMaterial({ ...faint, opacity: 0.3, depthTest: false });
+    this.parts = [new three.Mesh(geometry, solid), new three.Mesh(geometry, ghost)];
+  }
+
+  place(at: three.Vector3, radius: number): void {
+    for (const part of this.parts) {
+      part.position.copy(at);
+      part.scale.setScalar(radius);
+    }
+  }
+}
+
+/** Where a point was lately. */
+export class Trail {
+  readonly line: three.Line;
+  private readonly points: three.Vector3[] = [];
+
+  constructor(color: string) {
+    this.line = new three.Line(
+      new three.BufferGeometry(),
+      new three.LineBasicMaterial({ color, transparent: true, opacity: 0.8, depthTest: false }),
+    );
+    this.line.frustumCulled = false;
+  }
+
+  add(point: three.Vector3): void {
+    this.points.push(point);
+    if (this.points.length > trailLength) this.points.shift();
+    this.show();
+  }
+
+  clear(): void {
+    this.points.length = 0;
+    this.show();
+  }
+
+  private show(): void {
+    this.line.geometry.dispose();
+    this.line.geometry = new three.BufferGeometry().setFromPoints(this.points);
+  }
+}
+
+/** An active plane: a disc with a rim, of radius 1. */
+export function sheet(): three.Group {
+  const shared = { color: colors.plane, side: three.DoubleSide, transparent: true };
+  const disc = new three.Mesh(
+    new three.CircleGeometry(1, 64),
+    new three.MeshBasicMaterial({ ...shared, opacity: 0.22, depthWrite: false }),
+  );
+  const rim = new three.Mesh(
+    new three.RingGeometry(0.97, 1, 64),
+    new three.MeshBasicMaterial({ ...shared, opacity: 0.9, depthWrite: false }),
+  );
+  return new three.Group().add(disc, rim);
+}
