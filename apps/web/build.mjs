@@ -6,6 +6,7 @@
  */
 import { readFile, writeFile } from "node:fs/promises";
 import { resolve } from "node:path";
+import { fileURLToPath } from "node:url";
 import { gzipSync } from "node:zlib";
 import { build } from "esbuild";
 
@@ -14,7 +15,7 @@ if (!wasm || !page) {
   console.error("call apps/web/build, which says where keepout is and what to write");
   process.exit(2);
 }
-const source = new URL("src/live/", import.meta.url).pathname;
+const source = fileURLToPath(new URL("src/live/", import.meta.url));
 
 /** What esbuild makes of an entry: the text of the bundle. */
 async function bundle(entry) {

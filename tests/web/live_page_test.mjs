@@ -20,15 +20,15 @@ import {
   writeFileSync,
 } from "node:fs";
 import { createRequire } from "node:module";
-import { join, resolve } from "node:path";
+import { join } from "node:path";
 import { after, test } from "node:test";
-import { pathToFileURL } from "node:url";
+import { fileURLToPath, pathToFileURL } from "node:url";
 
 const [keepout, judge, folder, browserPath = "/usr/bin/chromium"] = process.argv.slice(2);
-const root = resolve(import.meta.dirname ?? new URL(".", import.meta.url).pathname, "../..");
+const root = fileURLToPath(new URL("../..", import.meta.url));
 const packages = createRequire(join(root, "apps/web/package.json"));
 const puppeteer = packages("puppeteer-core");
-const skull = join(process.env.KEEPOUT_CACHE ?? join(root, ".cache"), "fixtures/skull.stl");
+const skull = join(process.env.KEEPOUT_CACHE || join(root, ".cache"), "fixtures/skull.stl");
 
 rmSync(folder, { recursive: true, force: true });
 mkdirSync(folder, { recursive: true });

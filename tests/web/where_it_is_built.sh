@@ -5,8 +5,9 @@
 set -euo pipefail
 root=$1
 shift
-for needed in "$root/build/web/live.html" "$root/build/wasm/keepout.wasm"; do
-  [ -f "$needed" ] || { echo "skipped: there is no $needed; ./run live makes it"; exit 77; }
+for needed in web/live.html wasm/keepout.wasm web/fetched_for_tests.json; do
+  [ -f "$root/build/$needed" ] ||
+    { echo "skipped: there is no build/$needed; apps/web/build tests makes it"; exit 77; }
 done
 for program in node npm chromium; do
   command -v "$program" >/dev/null ||

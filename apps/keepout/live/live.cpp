@@ -3,6 +3,7 @@
 
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "base64.h"
 #include "clip.h"
@@ -44,11 +45,23 @@ std::vector<std::string> warnings_of(const LoadedMesh& loaded, const LiveOptions
   return warnings;
 }
 
+/// What to type after a command to get the mesh again: its name, and the space that it was turned
+/// to.
+std::string command_name(const std::filesystem::path& mesh, const LoadOptions& load) {
+  std::string words = shell_word(mesh.string());
+  for (const auto& [option, space] :
+       {std::pair("--space", load.space), std::pair("--untagged", load.untagged)}) {
+    if (space == AnatomicalSpace::unstated) continue;
+    words.append(" ").append(option).append(" ").append(name(space));
+  }
+  return words;
+}
+
 Anatomy anatomy_of(const std::filesystem::path& name, const LiveOptions& options) {
   const LoadedMesh loaded = load_named_mesh(name, options.load);
   const PackedMesh bytes = packed(*loaded.mesh);
   return {.facts = {{"name", name.filename().string()},
-                    {"command_name", shell_word(name.string())},
+                    {"command_name", command_name(name, options.load)},
                     {"vertices", loaded.mesh->vertex_count()},
                     {"triangles", loaded.mesh->triangle_count()},
                     {"coordinates", bytes.coordinates},

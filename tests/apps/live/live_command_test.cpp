@@ -108,6 +108,14 @@ TEST_F(Live, BeginsWithTheCertifiedRule) {
   EXPECT_EQ(told.at("max_step"), 0.5);
 }
 
+TEST_F(Live, AMeshThatWasTurnedIsNamedAsItWas) {
+  write_binary_stl(folder_.file("ball.stl"), make_shape("sphere"));
+  const Outcome outcome = run("ball.stl --untagged RAS --space LPS");
+  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  EXPECT_EQ(settings().at("meshes").at(0).at("command_name"),
+            "ball.stl --space LPS --untagged RAS");
+}
+
 TEST_F(Live, WarningsOfAMeshAreInThePageToo) {
   const Outcome outcome = run("flat_plate");
   ASSERT_EQ(outcome.status, 0) << outcome.output;

@@ -94,7 +94,7 @@ export interface Plane {
   readonly triangle: number;
 }
 
-/** What came of a control cycle; a view that holds until the next one. */
+/** What came of a control cycle. */
 export interface Cycle {
   /** Where the tool is now. [mm] */
   readonly tip: Vec3;
@@ -141,7 +141,7 @@ export class Keepout {
 
   private constructor(readonly module: Module) {
     this.version = this.text(module._keepout_version());
-    this.shapes = JSON.parse(this.text(module._keepout_shapes()));
+    this.shapes = JSON.parse(this.text(this.given(module._keepout_shapes())));
   }
 
   static async load(make: ModuleFactory, wasmBinary: Uint8Array): Promise<Keepout> {
@@ -150,7 +150,7 @@ export class Keepout {
   }
 
   counterexamples(): Counterexample[] {
-    return JSON.parse(this.text(this.module._keepout_counterexamples()));
+    return JSON.parse(this.text(this.given(this.module._keepout_counterexamples())));
   }
 
   statusName(status: number): string {
@@ -227,7 +227,7 @@ export class Keepout {
   }
 
   /** An address; what is none is a failure, which the engine has words for. */
-  private given(address: number): number {
+  given(address: number): number {
     if (address === 0) throw new Error(this.text(this.module._keepout_failure()));
     return address;
   }
@@ -272,7 +272,9 @@ export class Anatomy {
   }
 
   findings(): Findings {
-    return JSON.parse(this.keepout.text(this.keepout.module._keepout_findings(this.address)));
+    return JSON.parse(
+      this.keepout.text(this.keepout.given(this.keepout.module._keepout_findings(this.address))),
+    );
   }
 
   /** To the surface; below 0 inside a watertight mesh. [mm] */

@@ -4,6 +4,8 @@ import { PathRecord } from "./path_record.ts";
 
 /** How long the hand takes to come by 63 % to where the pointer has jumped. [cycles] */
 const handSmoothing = 8;
+/** Statuses up to this one, fallback, come with a motion: see keepout/status.h. */
+const lastOk = 3;
 /** Nearer than this the hand is there. [mm] */
 const arrival = 1e-6;
 
@@ -73,6 +75,7 @@ export class ControlLoop {
 
   /** Where the pointer holds the hand; null: it has let go. Ends a replay. */
   hold(pointer: Vec3 | null): void {
+    if (pointer !== null && !pointer.every(Number.isFinite)) return;
     if (this.replay !== null) {
       if (pointer === null) return;
       this.replay = null;
@@ -90,9 +93,10 @@ export class ControlLoop {
   run(): { cycles: number; differs: number } | null {
     const before = this.tip_;
     this.hand_ = this.nextHand();
+    const wasOk = this.last !== null && this.last.status <= lastOk;
     this.last = this.guard.follow(this.hand_);
     this.tip_ = this.last.tip;
-    this.record.add(this.hand_, before);
+    this.record.add(this.hand_, before, wasOk);
     ++this.cycles;
     if (this.last.activeCount > 0) ++this.limited;
     return this.advanceReplay(before);

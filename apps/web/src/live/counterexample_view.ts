@@ -46,6 +46,7 @@ export class CounterexampleView {
 
   /** Opens it: at first with the first counterexample. */
   open({ examples, margin }: Shown): void {
+    if (this.dialog.open) return;
     this.shown = examples;
     this.margin = margin;
     this.dialog.showModal();
@@ -90,7 +91,8 @@ export class CounterexampleView {
     const { renderer } = this;
     if (!this.dialog.open || renderer === null) return;
     const now = performance.now() - this.begun;
-    const share = Math.min((now % (way + rest)) / way, 1);
+    const isStill = matchMedia("(prefers-reduced-motion: reduce)").matches;
+    const share = isStill ? 1 : Math.min((now % (way + rest)) / way, 1);
     const box = this.duel.getBoundingClientRect();
     renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
     renderer.setSize(box.width, box.height);
@@ -102,7 +104,7 @@ export class CounterexampleView {
       const area = [left - box.left, box.bottom - bottom, width, height] as const;
       renderer.setViewport(...area);
       renderer.setScissor(...area);
-      stage.arrange(share * share * (3 - 2 * share), now / 1000, width / height);
+      stage.arrange(share * share * (3 - 2 * share), isStill ? 0 : now / 1000, width / height);
       renderer.render(stage.scene, stage.camera);
     });
     requestAnimationFrame(() => this.play());

@@ -49,7 +49,10 @@ export class HandInput {
       passive: false,
     });
     view.addEventListener("keydown", (event) => this.press(event));
-    view.addEventListener("keyup", (event) => this.keys.delete(event.key));
+    view.addEventListener("keyup", (event) => {
+      this.isSlow = event.shiftKey;
+      this.keys.delete(event.key);
+    });
     view.addEventListener("blur", () => this.keys.clear());
   }
 
@@ -60,6 +63,7 @@ export class HandInput {
 
   /** The hand is taken away from whatever leads it. */
   drop(): void {
+    this.view.classList.remove("dragging");
     this.pointer = null;
     this.keys.clear();
     this.isHeld = false;
@@ -95,7 +99,6 @@ export class HandInput {
   private letGo(event: PointerEvent): void {
     if (event.pointerId !== this.pointer) return;
     event.stopPropagation();
-    this.view.classList.remove("dragging");
     this.release();
   }
 
@@ -112,6 +115,7 @@ export class HandInput {
   }
 
   private press(event: KeyboardEvent): void {
+    if (event.altKey || event.ctrlKey || event.metaKey) return;
     this.isSlow = event.shiftKey;
     if (event.key === "Escape") this.release();
     if (ways[event.key] === undefined) return;

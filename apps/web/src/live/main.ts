@@ -32,10 +32,8 @@ let awaited: Choice | null = null;
 let triangles = 0;
 let state: State | null = null;
 let readings: Readings | null = null;
-/** A path that is to be played, once its mesh is there; and the last one that was. */
-let last: { header: PathHeader | null; lines: Float64Array } | null = null;
-/** What to do with the path that the worker was asked for. */
-let pathFor: "save" | "replay" = "save";
+/** A path that is to be played, once its mesh is there. */
+let pendingPath: { header: PathHeader | null; lines: Float64Array } | null = null;
 
 // Work begins before there is anything to draw on.
 const worker = new Worker(
@@ -54,13 +52,23 @@ page.meshes.forEach((mesh, i) => {
 chooseMesh();
 
 const view = element("view", HTMLElement);
-const scene = new Scene(view, roomBetweenCards, () => placeGrip());
+const scene = makeScene();
 const chart = new ClearanceChart(element("chart", HTMLElement));
 const failures = new CounterexampleView();
 const input = new HandInput(scene, view, (place) => {
   grip.classList.remove("new");
   tell({ kind: "hand", place });
 });
+
+function makeScene(): Scene {
+  try {
+    return new Scene(view, roomBetweenCards, () => placeGrip());
+  } catch (error) {
+    element("loading", HTMLElement).textContent =
+      "This browser draws nothing here: WebGL 2 is missing, or switched off.";
+    throw error;
+  }
+}
 
 function tell(message: ToWorker): void {
   worker.postMessage(message);
@@ -86,19 +94,19 @@ function hear(message: FromWorker): void {
       triangles = message.corners.length / 3;
       return;
     case "findings":
-      showFindings(message.findings, triangles);
+      showFindings(message.findings, triangles, warningsOf(shown));
       return;
     case "guarded":
       awaited = null;
       element("loading", HTMLElement).hidden = true;
       begin();
-      if (last !== null) play();
+      play();
       return;
     case "state":
       show(message.state);
       return;
     case "path":
-      takePath(message.lines, message.settings);
+      takePath(message.use, message.lines, message.settings);
       return;
     case "replayed":
       toast(
@@ -112,14 +120,16 @@ function hear(message: FromWorker): void {
       failures.open(message);
       return;
     case "settings":
+      input.drop();
       settings = message.settings;
       showSettings();
       return;
     case "failure":
-      awaited = null;
+      toast(message.message);
+      if (message.of !== "load") return;
+      awaited = pendingPath = null;
       element("loading", HTMLElement).hidden = true;
       grip.hidden = state === null;
-      toast(message.message);
       selectShown();
       return;
   }
@@ -162,6 +172,11 @@ function nameOf({ source }: Choice): string {
   return source.kind === "embedded" ? source.mesh.name : source.name;
 }
 
+/** What `keepout live` had to say of it. */
+function warningsOf(choice: Choice | null): readonly string[] {
+  return choice?.source.kind === "embedded" ? choice.source.mesh.warnings : [];
+}
+
 /** The value of its option in the list, if it stands there. */
 function optionOf(choice: Choice): string | undefined {
   return [...choices].find(([, one]) => one === choice)?.[0];
@@ -193,6 +208,7 @@ function selectShown(): void {
 function load(choice: Choice): void {
   if (awaited !== null) {
     toast(`${nameOf(awaited)} is still being read`);
+    pendingPath = null;
     selectShown();
     return;
   }
@@ -206,16 +222,20 @@ function load(choice: Choice): void {
 
 async function openFile(file: File): Promise<void> {
   if (/\.(txt|csv)$/i.test(file.name)) {
+    if (awaited !== null) {
+      toast(`${nameOf(awaited)} is still being read`);
+      return;
+    }
     try {
-      last = parsePath(await file.text());
+      pendingPath = parsePath(await file.text());
     } catch (error) {
       toast(`${file.name}: ${(error as Error).message}`);
       return;
     }
-    adopt(last.header);
+    adopt(pendingPath.header);
     return;
   }
-  last = null;
+  pendingPath = null;
   load({
     source: { kind: "file", name: file.name, bytes: new Uint8Array(await file.arrayBuffer()) },
     command: /^[\w.-]+$/.test(file.name) ? file.name : `'${file.name.replaceAll("'", "'\\''")}'`,
@@ -234,7 +254,7 @@ function adopt(header: PathHeader | null): void {
         load(choice[1]); // it is played once that is there
         return;
       }
-      last = null;
+      pendingPath = null;
       toast(`This path is over ${header.mesh}, which is not in this page: open that file first.`);
       return;
     }
@@ -242,15 +262,21 @@ function adopt(header: PathHeader | null): void {
   play();
 }
 
-function play(): void {
-  if (last !== null) tell({ kind: "replay", lines: last.lines });
-  last = null;
+function replay(lines: Float64Array): void {
+  input.drop();
+  tell({ kind: "replay", lines });
 }
 
-function takePath(lines: Float64Array, made: GuardSettings): void {
+/** What was opened, if anything was. */
+function play(): void {
+  if (pendingPath !== null) replay(pendingPath.lines);
+  pendingPath = null;
+}
+
+function takePath(use: "save" | "replay", lines: Float64Array, made: GuardSettings): void {
   if (lines.length === 0 || shown === null) return;
-  if (pathFor === "replay") {
-    tell({ kind: "replay", lines });
+  if (use === "replay") {
+    replay(lines);
     return;
   }
   const header: PathHeader = { keepout: page.keepout, mesh: shown.command, settings: made };
@@ -258,7 +284,7 @@ function takePath(lines: Float64Array, made: GuardSettings): void {
   link.href = URL.createObjectURL(new Blob([pathText(header, lines)], { type: "text/plain" }));
   link.download = `keepout-path-${nameOf(shown).replaceAll(/[^\w.-]/g, "_")}.txt`;
   link.click();
-  URL.revokeObjectURL(link.href);
+  setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
   const isFull = lines.length / 6 >= PathRecord.capacity;
   toast(
     `${grouped(lines.length / 6)} cycles saved${isFull ? ", the first ten minutes" : ""}. ` +
@@ -282,7 +308,11 @@ function showSettings(): void {
   }
   for (const [id, key] of sliders) {
     const slider = element(id, HTMLInputElement);
+    // What the page was made with may be beyond what the slider has.
+    slider.min = String(Math.min(Number(slider.min), settings[key]));
+    slider.max = String(Math.max(Number(slider.max), settings[key]));
     slider.value = String(settings[key]);
+    slider.ariaValueText = `${settings[key]} mm`;
     const output = slider.parentElement?.querySelector("output");
     if (output) output.textContent = `${settings[key]} mm`;
   }
@@ -291,6 +321,7 @@ function showSettings(): void {
 }
 
 function change(part: Partial<GuardSettings>): void {
+  input.drop(); // the tool stands where it is, and so does the hand
   settings = { ...settings, ...part };
   showSettings();
   tell({ kind: "settings", settings });
@@ -315,14 +346,8 @@ element("file", HTMLInputElement).onchange = ({ target }) => {
   if (file) void openFile(file);
   field.value = "";
 };
-for (const [id, use] of [
-  ["save", "save"],
-  ["replay", "replay"],
-] as const) {
-  element(id, HTMLButtonElement).onclick = () => {
-    pathFor = use;
-    tell({ kind: "ask for path" });
-  };
+for (const use of ["save", "replay"] as const) {
+  element(use, HTMLButtonElement).onclick = () => tell({ kind: "ask for path", use });
 }
 element("fail", HTMLButtonElement).onclick = () => tell({ kind: "ask for counterexamples" });
 

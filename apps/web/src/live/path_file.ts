@@ -10,6 +10,7 @@ export interface PathHeader {
 }
 
 const mark = "# path: ";
+const decimal = /^[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i;
 const rules: readonly string[] = ["none", "all_faces", "paper", "certified"] satisfies Rule[];
 
 /**
@@ -51,9 +52,9 @@ export function parsePath(text: string): { header: PathHeader | null; lines: Flo
   const numbers: number[] = [];
   text.split(/\r?\n/).forEach((line, i) => {
     if (line.startsWith(mark)) header = parseHeader(line.slice(mark.length), i + 1);
-    if (line.trim() === "" || line.startsWith("#")) return;
-    const words = line.trim().split(/[\s,]+/);
-    const values = words.map(Number);
+    if (/^\s*(#|$)/.test(line)) return;
+    const words = line.trim().split(/\s*,\s*|\s+/);
+    const values = words.map((word) => (decimal.test(word) ? Number(word) : Number.NaN));
     if (values.length !== 6 || !values.every(Number.isFinite)) {
       throw new Error(`line ${i + 1}: six numbers are needed, 'gx gy gz rx ry rz', in mm`);
     }
@@ -71,8 +72,9 @@ function parseHeader(text: string, line: number): PathHeader {
   } catch {
     throw wrong;
   }
-  const settings: Partial<GuardSettings> = header.settings ?? {};
+  const settings: Partial<GuardSettings> = header?.settings ?? {};
   const lengths = [settings.radius, settings.toolRadius, settings.margin, settings.maxStep];
+  if (typeof header?.mesh !== "string") throw wrong;
   if (!rules.includes(settings.rule ?? "") || !lengths.every(Number.isFinite)) throw wrong;
   return header as PathHeader;
 }

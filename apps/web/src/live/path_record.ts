@@ -4,7 +4,8 @@ import type { Vec3 } from "../engine/keepout.ts";
 /**
  * Where hand and tool were, cycle by cycle: six numbers each, as a line of `keepout replay
  * --closed-loop` has them, the goal of the cycle and the tip before it. A cycle that asks for what
- * the one before asked, from the same tip, has the same answer and is left out.
+ * the one before asked, from the same tip, has the same answer and is left out, if the one before
+ * was ok: one that ran out of work may have more of it the next time.
  */
 export class PathRecord {
   /** Ten minutes at 1 kHz; beyond, nothing is taken down. */
@@ -24,8 +25,9 @@ export class PathRecord {
     this.count_ = 0;
   }
 
-  add(goal: Vec3, tip: Vec3): void {
-    if (this.isFull || this.repeatsLast(goal, tip)) return;
+  /** `wasOk`: whether the cycle before this one was. */
+  add(goal: Vec3, tip: Vec3, wasOk: boolean): void {
+    if (this.isFull || (wasOk && this.repeatsLast(goal, tip))) return;
     if (6 * (this.count_ + 1) > this.lines_.length) {
       const longer = new Float64Array(2 * this.lines_.length);
       longer.set(this.lines_);

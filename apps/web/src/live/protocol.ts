@@ -30,14 +30,14 @@ export type ToWorker =
   | { readonly kind: "hand"; readonly place: Vec3 | null }
   /** Follows a recorded hand: (n, 6), as a path file has it. */
   | { readonly kind: "replay"; readonly lines: Float64Array }
-  | { readonly kind: "ask for path" }
+  | { readonly kind: "ask for path"; readonly use: "save" | "replay" }
   | { readonly kind: "ask for counterexamples" }
   /** Time stands still while nobody looks. */
   | { readonly kind: "pause"; readonly paused: boolean };
 
 /** What the last cycles came to: told some sixty times a second. */
 export interface State {
-  /** Of the page's clock, at the last cycle. [ms] */
+  /** Of the worker's clock, at the last cycle. [ms] */
   readonly time: number;
   readonly tip: Vec3;
   readonly hand: Vec3;
@@ -89,7 +89,12 @@ export type FromWorker =
   /** The index is built: the tool can be placed. `milliseconds`: since it was asked for. */
   | { readonly kind: "guarded"; readonly name: string; readonly milliseconds: number }
   | { readonly kind: "state"; readonly state: State }
-  | { readonly kind: "path"; readonly lines: Float64Array; readonly settings: GuardSettings }
+  | {
+      readonly kind: "path";
+      readonly use: "save" | "replay";
+      readonly lines: Float64Array;
+      readonly settings: GuardSettings;
+    }
   /** A replay has come to its end; `differs`: the first cycle with another tool, or -1. */
   | { readonly kind: "replayed"; readonly cycles: number; readonly differs: number }
   | {
@@ -99,4 +104,5 @@ export type FromWorker =
     }
   /** Those that stay in force, when others were refused. */
   | { readonly kind: "settings"; readonly settings: GuardSettings }
-  | { readonly kind: "failure"; readonly message: string };
+  /** `of`: what was asked for. */
+  | { readonly kind: "failure"; readonly of: ToWorker["kind"]; readonly message: string };

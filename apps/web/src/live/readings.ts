@@ -15,6 +15,8 @@ const moods: Readonly<Record<string, "free" | "limited">> = {
 export class Readings {
   private readonly status = element("status", HTMLElement);
   private readonly figure = element("clearance", HTMLElement);
+  private readonly spoken = element("spoken", HTMLElement);
+  private spokenAt = 0;
   private frames = { at: performance.now(), count: 0 };
 
   constructor(private readonly statuses: readonly { name: string; reason: string }[]) {}
@@ -26,6 +28,12 @@ export class Readings {
     this.status.className = moods[name] ?? "stopped";
     set(this.status.querySelector("b"), isGuarded ? name.replaceAll("_", " ") : "no fixture");
     set(this.status.querySelector("span"), isGuarded ? reason : "nothing holds the tool back");
+
+    // What a screen reader says is heard out before it changes.
+    if (state.time - this.spokenAt > 2000) {
+      this.spokenAt = state.time;
+      set(this.spoken, isGuarded ? `${name}: ${reason}` : "no fixture");
+    }
 
     const isInside = state.toolClearance < 0;
     this.figure.parentElement?.classList.toggle("inside", isInside);
@@ -58,20 +66,22 @@ export class Readings {
   }
 }
 
-/** What `keepout inspect` would say of the mesh. */
+/** What `keepout inspect` would say of the mesh, and what `keepout live` had to say. */
 export function showFindings(
   { watertight, size, warnings, findings }: Findings,
   triangles: number,
+  told: readonly string[],
 ): void {
   const details = element("findings", HTMLDetailsElement);
   const list = document.createElement("ul");
   for (const { text, advice } of findings) list.append(item(`${text}. ${sentence(advice)}`));
   for (const warning of warnings) list.append(item(`In the file: ${warning}.`));
+  for (const warning of told) list.append(item(`${warning}.`));
   const facts = document.createElement("p");
   facts.textContent =
     `${grouped(triangles)} triangles; ${size.map((length) => Number(length.toPrecision(4))).join(" × ")} mm; ` +
     (watertight ? "watertight" : "not watertight");
-  const count = findings.length + warnings.length;
+  const count = findings.length + warnings.length + told.length;
   set(
     details.querySelector("summary"),
     count === 0 ? "The mesh: nothing wrong" : `The mesh: ${count} finding${count > 1 ? "s" : ""}`,

@@ -93,6 +93,10 @@ export class Scene {
     this.moving.visible = false;
 
     this.controls = new OrbitControls(this.camera, this.renderer.domElement);
+    this.renderer.domElement.addEventListener("webglcontextrestored", () => {
+      this.still.outdate();
+      this.redraw();
+    });
     this.controls.addEventListener("change", () => {
       this.still.outdate();
       this.redraw();

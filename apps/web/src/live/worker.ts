@@ -19,6 +19,7 @@ const tellEvery = 15;
 let keepout: Keepout;
 let anatomy: { of: Anatomy; name: string; settings: GuardSettings } | null = null;
 let loop: ControlLoop | null = null;
+let accepted: GuardSettings | null = null; // those that a guard was last made with
 let place: Vec3 | null = null; // where the tool was put last, in this anatomy
 let paused = false;
 
@@ -37,6 +38,7 @@ function tell(message: FromWorker, transfer: Transferable[] = []): void {
 function restartClock(): void {
   begun = performance.now();
   done = 0;
+  Object.assign(second, { begin: begun, cycles: 0, busy: 0 });
 }
 
 function run(): void {
@@ -157,8 +159,18 @@ async function start(engine: string): Promise<void> {
 /** Begins where the tool was put, if it has not yet; what the engine refuses is thrown. */
 function begin(): void {
   if (loop !== null || anatomy === null || place === null) return;
-  loop = new ControlLoop(keepout, anatomy.of, anatomy.settings, place);
-  restartClock();
+  try {
+    loop = new ControlLoop(keepout, anatomy.of, anatomy.settings, place);
+  } catch (error) {
+    if (accepted === null) throw error;
+    anatomy.settings = accepted;
+    tell({ kind: "settings", settings: accepted });
+    loop = new ControlLoop(keepout, anatomy.of, accepted, place);
+    throw error;
+  } finally {
+    restartClock();
+  }
+  accepted = anatomy.settings;
 }
 
 function handle(message: ToWorker): void | Promise<void> {
@@ -168,7 +180,10 @@ function handle(message: ToWorker): void | Promise<void> {
     case "load":
       return load(message.source, message.settings);
     case "settings":
-      loop?.use(message.settings);
+      if (loop !== null) {
+        loop.use(message.settings);
+        accepted = message.settings;
+      }
       if (anatomy !== null) anatomy.settings = message.settings;
       begin();
       return;
@@ -185,7 +200,12 @@ function handle(message: ToWorker): void | Promise<void> {
       return;
     case "ask for path":
       if (loop !== null) {
-        tell({ kind: "path", lines: loop.record.lines(), settings: loop.settings });
+        tell({
+          kind: "path",
+          use: message.use,
+          lines: loop.record.lines(),
+          settings: loop.settings,
+        });
       }
       return;
     case "ask for counterexamples":
@@ -199,13 +219,20 @@ function handle(message: ToWorker): void | Promise<void> {
   }
 }
 
+/** Whether there is an engine: where it could not be loaded, nothing else is tried. */
+const isReady = (message: ToWorker): boolean => message.kind === "start" || keepout !== undefined;
+
 /** One after the other: a message waits until the one before is done with. */
 let queue: Promise<void> = Promise.resolve();
 self.onmessage = ({ data }: MessageEvent<ToWorker>) => {
   queue = queue
-    .then(() => handle(data))
+    .then(() => (isReady(data) ? handle(data) : undefined))
     .catch((error: unknown) => {
-      tell({ kind: "failure", message: error instanceof Error ? error.message : String(error) });
+      tell({
+        kind: "failure",
+        of: data.kind,
+        message: error instanceof Error ? error.message : String(error),
+      });
       if (data.kind === "settings" && anatomy !== null) {
         tell({ kind: "settings", settings: anatomy.settings });
       }
