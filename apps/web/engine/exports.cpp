@@ -28,7 +28,6 @@
 #include "keepout/index/wide_bvh.h"
 #include "keepout/mesh/doctor.h"
 #include "keepout/mesh/load_mesh.h"
-#include "keepout/version.h"
 
 namespace {
 
@@ -153,9 +152,6 @@ extern "C" {
 
 /// Why the last call that returned null failed, and what to do about it.
 const char* keepout_failure() { return failure.c_str(); }
-
-/// The version of keepout, as 1.2.3.
-const char* keepout_version() { return literal(keepout::library_version()); }
 
 /// Anatomy of a surface whose equal vertices are one already: vertices (vertex_count, 3) in mm,
 /// corners (triangle_count, 3). It is copied.

@@ -18,7 +18,6 @@ interface Module {
   _malloc(bytes: number): number;
   _free(address: number): void;
   _keepout_failure(): number;
-  _keepout_version(): number;
   _keepout_shapes(): number;
   _keepout_counterexamples(): number;
   _keepout_status_name(status: number): number;
@@ -135,12 +134,10 @@ export interface Counterexample {
 
 /** The engine, ready to be asked. What it refuses is thrown, in its own words. */
 export class Keepout {
-  readonly version: string;
   /** Names of generated meshes. */
   readonly shapes: readonly string[];
 
   private constructor(readonly module: Module) {
-    this.version = this.text(module._keepout_version());
     this.shapes = JSON.parse(this.text(this.given(module._keepout_shapes())));
   }
 

@@ -3,7 +3,7 @@ import * as three from "three";
 import type { Counterexample, Vec3 } from "../engine/keepout.ts";
 import { colors } from "./markers.ts";
 import { element } from "./page.ts";
-import type { FromWorker, Trial } from "./protocol.ts";
+import type { FromWorker } from "./protocol.ts";
 
 type Shown = Extract<FromWorker, { kind: "counterexamples" }>;
 
@@ -74,7 +74,7 @@ export class CounterexampleView {
     for (const [i, button] of buttons.entries()) {
       button.setAttribute("aria-pressed", String(i === number));
     }
-    this.stages = chosen.trials.map((trial) => new Stage(chosen.example, trial));
+    this.stages = chosen.ends.map((end) => new Stage(chosen.example, end));
     this.stages.forEach((stage, i) => {
       const caption = this.figures[i]?.querySelector("span");
       if (!caption) return;
@@ -122,9 +122,9 @@ class Stage {
   private readonly end: three.Vector3;
   private readonly reach: number;
 
-  constructor(example: Counterexample, trial: Trial) {
+  constructor(example: Counterexample, end: Vec3) {
     this.begin = vector(example.tip);
-    this.end = vector(trial.end);
+    this.end = vector(end);
     const wanted = this.begin.clone().add(vector(example.desired));
     // What happens fills the view; the mesh may be larger.
     this.reach = this.begin.distanceTo(wanted);

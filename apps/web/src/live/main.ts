@@ -141,7 +141,7 @@ function roomBetweenCards(): number {
   return Math.max(1 - (2 * (column + 40)) / view.clientWidth, 0.3);
 }
 
-/** The tool begins beside the anatomy, and the view comes near. */
+/** The tool begins beside the anatomy. */
 function begin(): void {
   const place = scene.placeBeside(settings.toolRadius + settings.margin);
   tell({ kind: "place", tip: place });

@@ -62,18 +62,9 @@ export interface State {
   readonly rate: number;
 }
 
-/** What a counterexample comes to under a rule. */
-export interface Trial {
-  readonly rule: "paper" | "certified";
-  readonly status: string;
-  /** Where the step ends. */
-  readonly end: Vec3;
-}
-
 export type FromWorker =
   | {
       readonly kind: "ready";
-      readonly version: string;
       readonly shapes: readonly string[];
       readonly statuses: readonly { readonly name: string; readonly reason: string }[];
     }
@@ -85,9 +76,9 @@ export type FromWorker =
       readonly positions: Float32Array;
       readonly corners: Uint32Array;
     }
-  | { readonly kind: "findings"; readonly name: string; readonly findings: Findings }
-  /** The index is built: the tool can be placed. `milliseconds`: since it was asked for. */
-  | { readonly kind: "guarded"; readonly name: string; readonly milliseconds: number }
+  | { readonly kind: "findings"; readonly findings: Findings }
+  /** The index is built: the tool can be placed. */
+  | { readonly kind: "guarded" }
   | { readonly kind: "state"; readonly state: State }
   | {
       readonly kind: "path";
@@ -100,7 +91,8 @@ export type FromWorker =
   | {
       readonly kind: "counterexamples";
       readonly margin: number;
-      readonly examples: readonly { example: Counterexample; trials: readonly Trial[] }[];
+      /** `ends`: where a step ends under the paper's rule, and under the certified one. */
+      readonly examples: readonly { example: Counterexample; ends: readonly Vec3[] }[];
     }
   /** Those that stay in force, when others were refused. */
   | { readonly kind: "settings"; readonly settings: GuardSettings }

@@ -110,10 +110,6 @@ export class Scene {
     return this.drawn;
   }
 
-  get canvas(): HTMLCanvasElement {
-    return this.renderer.domElement;
-  }
-
   /** Another anatomy: looked at from one side, as large as the view. */
   show(positions: Float32Array, corners: Uint32Array, origin: Vec3): void {
     const geometry = new three.BufferGeometry();
@@ -196,7 +192,7 @@ export class Scene {
     }
   }
 
-  /** The same before where a ray through the view meets the anatomy; null where it does not. */
+  /** A place to begin before where a ray through the view meets the anatomy; null where none does. */
   placeBefore(x: number, y: number, kept: number): Vec3 | null {
     const caster = new three.Raycaster();
     caster.setFromCamera(new three.Vector2(x, y), this.camera);

@@ -17,7 +17,7 @@ const mostBehind = 100;
 const tellEvery = 15;
 
 let keepout: Keepout;
-let anatomy: { of: Anatomy; name: string; settings: GuardSettings } | null = null;
+let anatomy: { of: Anatomy; settings: GuardSettings } | null = null;
 let loop: ControlLoop | null = null;
 let accepted: GuardSettings | null = null; // those that a guard was last made with
 let place: Vec3 | null = null; // where the tool was put last, in this anatomy
@@ -124,7 +124,6 @@ function letGo(): void {
 }
 
 async function load(source: Source, settings: GuardSettings): Promise<void> {
-  const begin = performance.now();
   const name = source.kind === "embedded" ? source.mesh.name : source.name;
   let made: Anatomy;
   if (source.kind === "embedded") {
@@ -140,10 +139,10 @@ async function load(source: Source, settings: GuardSettings): Promise<void> {
     tellSurface(name, made.vertices, made.corners);
   }
   letGo();
-  anatomy = { of: made, name, settings };
+  anatomy = { of: made, settings };
   lost = 0;
-  tell({ kind: "findings", name, findings: made.findings() });
-  tell({ kind: "guarded", name, milliseconds: performance.now() - begin });
+  tell({ kind: "findings", findings: made.findings() });
+  tell({ kind: "guarded" });
 }
 
 async function start(engine: string): Promise<void> {
@@ -152,7 +151,7 @@ async function start(engine: string): Promise<void> {
   for (let i = 0; keepout.statusName(i) !== "unknown"; ++i) {
     statuses.push({ name: keepout.statusName(i), reason: keepout.statusReason(i) });
   }
-  tell({ kind: "ready", version: keepout.version, shapes: keepout.shapes, statuses });
+  tell({ kind: "ready", shapes: keepout.shapes, statuses });
   setInterval(run, 1);
 }
 
