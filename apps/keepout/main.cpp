@@ -24,6 +24,7 @@
 #include "named_mesh.h"
 #include "names.h"
 #include "plan/plan.h"
+#include "record/report.h"
 #include "serve/serve.h"
 #include "verify/verify.h"
 
@@ -95,9 +96,7 @@ void add_simulate(CLI::App& app, SimulateOptions& options) {
       "and with each rule, and write an HTML report with pictures");
   add_mesh(command, options.mesh);
   add_spaces(command, options.load);
-  command.add_option("--out", options.report, "Where to write the report")
-      ->type_name("REPORT.html")
-      ->capture_default_str();
+  options.files.add_to(command);
   command.add_option("--activation", options.rules, "Rules to run beside the unguarded tool")
       ->check(one_of(names(activation_rules())))
       ->delimiter(',')
@@ -183,6 +182,7 @@ int run(int argc, char** argv) {
   PlanOptions plan_options;
   BenchOptions bench_options;
   CompareOptions compare_options;
+  ReportOptions report_options;
   simulate_options.rules = names(activation_rules());
   simulate_options.called_as = app.get_name();
   add_inspect(app, inspect_options);
@@ -194,6 +194,7 @@ int run(int argc, char** argv) {
   add_bench(app, bench_options);
   add_compare(app, compare_options);
   add_plan(app, plan_options);
+  add_report(app, report_options);
   for (CLI::App* command : app.get_subcommands([](CLI::App*) { return true; })) {
     command->group("Commands");
   }
@@ -209,10 +210,15 @@ int run(int argc, char** argv) {
   // For the record, so that it can be done again.
   std::string command_line = "keepout";
   for (int i = 1; i < argc; ++i) command_line += " " + shell_word(argv[i]);
-  bench_options.command = compare_options.command = simulate_options.command = command_line;
+  for (std::string* command :
+       {&bench_options.command, &compare_options.command, &plan_options.command,
+        &simulate_options.command, &verify_options.command}) {
+    *command = command_line;
+  }
   if (app.got_subcommand("inspect")) inspect(inspect_options, std::cout);
   if (app.got_subcommand("replay")) replay(replay_options, std::cout);
   if (app.got_subcommand("live")) live(live_options, std::cout);
+  if (app.got_subcommand("report")) report(report_options, std::cout);
   if (app.got_subcommand("serve")) return serve(serve_options, std::cerr);
   if (app.got_subcommand("simulate")) return simulate(simulate_options, std::cout);
   if (app.got_subcommand("bench")) return bench(bench_options, std::cout, std::cerr);

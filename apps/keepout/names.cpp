@@ -17,6 +17,15 @@ std::string enumerated(const std::vector<std::string>& names) {
   return text;
 }
 
+std::string listed(const std::vector<std::string>& names) {
+  std::string result;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (i > 0) result += i + 1 == names.size() ? " and " : ", ";
+    result += names[i];
+  }
+  return result;
+}
+
 std::string printable(std::string_view text) {
   constexpr std::size_t longest = 200;
   std::string result;

@@ -17,6 +17,9 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string>& 
 /// "a, b, c".
 std::string enumerated(const std::vector<std::string>& names);
 
+/// "a", "a and b", "a, b and c".
+std::string listed(const std::vector<std::string>& names);
+
 /// The beginning of somebody else's text, other bytes than printable ASCII as '?': up to 200 bytes,
 /// and "..." where there are more.
 std::string printable(std::string_view text);

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <regex>
 #include <sstream>
 #include <string>
@@ -392,28 +393,20 @@ TEST_F(Command, WithoutAFixtureThereAreNoTimes) {
   EXPECT_EQ(khz + p50 + p99, "---") << outcome.output;
 }
 
-TEST_F(Command, TheReportTellsTheDateAndTheCommandThatMakesItAgain) {
+TEST_F(Command, TheRecordTellsTheDateAndTheCommandThatMakesItAgain) {
   const auto untimed = [&](const std::string& arguments) {
     return run(arguments + " --verbose 2>/dev/null" + untimed_rows).output;
   };
   const std::string table = untimed(
-      "simulate cube.stl --out r.html --strokes 2 --cycles 50 --margin 0.1 --radius 1.25 "
+      "simulate cube.stl --json r.json --strokes 2 --cycles 50 --margin 0.1 --radius 1.25 "
       "--activation certified --untagged lps --seed 12");
-  std::ifstream stream(file("r.html"));
-  const std::string page{std::istreambuf_iterator<char>(stream), {}};
-  const std::regex tag("<[^>]*>");
-  const auto setting = [&](const std::string& name) {
-    const std::size_t dt = page.find(">" + name + "</dt>");
-    const std::size_t begin = page.find('>', page.find("<dd", dt)) + 1;
-    if (dt == std::string::npos) return std::string();
-    const std::string value = page.substr(begin, page.find("</dd>", begin) - begin);
-    return std::regex_replace(value, tag, "");
-  };
-  EXPECT_TRUE(
-      std::regex_match(setting("date"), std::regex("20\\d\\d-\\d\\d-\\d\\dT\\d\\d:\\d\\d:\\d\\dZ")))
-      << setting("date");
-  EXPECT_EQ(setting("SIMD target"), simd_target());
-  const std::string command = setting("command");
+  const nlohmann::json record = nlohmann::json::parse(std::ifstream(file("r.json")));
+  EXPECT_TRUE(std::regex_match(record["date"].get<std::string>(),
+                               std::regex("20\\d\\d-\\d\\d-\\d\\dT\\d\\d:\\d\\d:\\d\\dZ")))
+      << record["date"];
+  EXPECT_EQ(record["machine"]["simd"], std::string(simd_target()));
+  EXPECT_EQ(record["settings"]["seed"], "12");
+  const std::string command = record["command"];
   ASSERT_TRUE(command.starts_with("keepout simulate ")) << command;
   for (const char* given : {"--seed 12 ", "--untagged lps "}) {
     EXPECT_NE(command.find(given), std::string::npos) << command;

@@ -8,6 +8,7 @@
 #include <ostream>
 
 #include "bench/benchmark.h"
+#include "bench/benchmark_verdict.h"
 #include "bench/parts.h"
 #include "command_line.h"
 #include "compare/compare.h"
@@ -19,8 +20,7 @@
 #include "names.h"
 #include "number_text.h"
 #include "output_file.h"
-#include "report/benchmark_report.h"
-#include "report/text.h"
+#include "record/record.h"
 
 namespace keepout::app {
 namespace {
@@ -59,12 +59,29 @@ std::vector<Subject> chosen_subjects(const BenchOptions& options) {
 }
 
 /// Refuses a mesh of which there is none, too: a mistyped name is told of before the first row.
-OutputFiles outputs_of(const BenchOptions& options, const std::vector<Subject>& subjects) {
+std::vector<NamedPath> inputs_of(const std::vector<Subject>& subjects) {
   std::vector<NamedPath> inputs;
   for (const Subject& subject : subjects) {
     inputs.push_back({"--mesh", file_of_mesh(subject.mesh)});
   }
-  return {inputs, {{"--json", options.json}, {"--csv", options.csv}, {"--out", options.report}}};
+  return inputs;
+}
+
+Json record_of(const Benchmark& benchmark, const Comparison& comparison) {
+  Json record =
+      new_record({.kind = "bench",
+                 .date = benchmark.date,
+                 .command = benchmark.command,
+                 .complete = benchmark.rows.size() >= benchmark.planned && comparison.complete,
+                 .subject = "Search trees, activation rules and solvers, on the same motions; " +
+                            benchmark.machine.processor + ", " + benchmark.machine.simd,
+                 .headline = headline(benchmark),
+                 .account = {account(benchmark)},
+                 .machine = benchmark.machine,
+                 .settings = {{"seed", std::to_string(benchmark.seed)}}});
+  record["benchmark"] = json_of(benchmark);
+  record["comparison"] = json_of(comparison);
+  return record;
 }
 
 /// How well all parts agree; nothing, where the user wants to know about some only, or no more.
@@ -187,11 +204,8 @@ void add_bench(CLI::App& app, BenchOptions& options) {
       ->transform(one_of<Poses>({{"contact", Poses::contact}, {"unrelated", Poses::unrelated}}))
       ->default_str("contact");
   add_number(command, "--seed", options.seed, 0, largest_seed, "Seed of the motions");
-  command.add_option("--json", options.json, "Where to write all figures")->type_name("FILE");
-  command.add_option("--csv", options.csv, "Where to write them as a table")->type_name("FILE");
-  command.add_option("--out", options.report, "Where to write a report with plots")
-      ->type_name("REPORT.html")
-      ->capture_default_str();
+  options.files.add_to(command);
+  command.add_option("--csv", options.csv, "Where to write the rows as a table")->type_name("FILE");
   add_speed_options(command, options);
   command.footer(
       "Each list is crossed with the others; what is not named is wide_bvh, paper and certified,\n"
@@ -215,7 +229,12 @@ int bench(const BenchOptions& options, std::ostream& out, std::ostream& notes) {
   if (plan.combinations.empty()) {
     throw Error("there is nothing to measure: see 'keepout bench --list'");
   }
-  OutputFiles outputs = outputs_of(options, plan.subjects);
+  const RecordFiles& files = options.files;
+  const std::vector<NamedPath> inputs = inputs_of(plan.subjects);
+  using Asked = std::initializer_list<OutputFiles::Asked>;
+  std::optional<OutputFiles> outputs(
+      std::in_place, inputs,
+      Asked{{"--json", files.kept_json()}, {"--csv", options.csv}, {"--out", files.page}});
 
   const StopSignal stop;
   Benchmark benchmark;
@@ -231,19 +250,20 @@ int bench(const BenchOptions& options, std::ostream& out, std::ostream& notes) {
     return exit_interrupted;
   }
   // What has been measured is safe before anything else is tried.
-  if (auto* const json = outputs.stream("--json")) write_json(*json, benchmark);
-  if (auto* const csv = outputs.stream("--csv")) write_csv(*csv, benchmark);
-  outputs.commit();
-  const bool ended_early = failure || stop.has_come();
-  print_benchmark_report(
-      *outputs.stream("--out"), benchmark,
-      ended_early ? Comparison{} : comparison_for(options, plan.subjects.front(), stop, out));
-  outputs.commit();
+  Json record = record_of(benchmark, {});
+  if (auto* const json = outputs->stream("--json")) print_json(*json, record);
+  if (auto* const csv = outputs->stream("--csv")) write_csv(*csv, benchmark);
+  outputs->commit();
+  if (!failure && !stop.has_come()) {
+    record = record_of(benchmark, comparison_for(options, plan.subjects.front(), stop, out));
+  }
+  outputs.emplace(inputs, Asked{{"--json", files.kept_json()}, {"--out", files.page}});
+  write_record(*outputs, record, files, notes);
   print_verdict(out, benchmark);
-  out << "report: " << options.report.string() << '\n';
+  out << "report: " << files.page->string() << '\n';
   if (!failure && !stop.has_come()) return EXIT_SUCCESS;
-  std::vector<std::string> kept{options.report.string()};
-  for (const auto& path : {options.json, options.csv}) {
+  std::vector<std::string> kept{files.page->string()};
+  for (const auto& path : {files.kept_json(), options.csv}) {
     if (path) kept.push_back(path->string());
   }
   notes << "keepout: stopped; " << grouped(benchmark.rows.size()) << " of "

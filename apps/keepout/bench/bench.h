@@ -9,6 +9,7 @@
 
 #include "bench/combination.h"
 #include "bench/run_benchmark.h"
+#include "record/record.h"
 
 namespace CLI {
 class App;
@@ -35,9 +36,9 @@ struct BenchOptions {
   std::optional<double> seconds;
   Poses poses = Poses::contact;
   std::uint64_t seed = 1;
-  std::filesystem::path report = "keepout-bench.html";  // to be written
-  std::optional<std::filesystem::path> json, csv;       // to be written
-  std::string command;                                  // that does it again
+  RecordFiles files = {.json = {}, .page = "keepout-bench.html"};
+  std::optional<std::filesystem::path> csv;  // to be written
+  std::string command;                       // that does it again
 };
 
 /// Adds `keepout bench` and its options to the command line.

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "bench/timing.h"
+#include "columns.h"
 #include "machine.h"
 
 namespace keepout::app {
@@ -74,9 +75,8 @@ void print_table_head(std::ostream& out);
 void print_table_row(std::ostream& out, const BenchmarkRow& row);
 void print_verdict(std::ostream& out, const Benchmark& benchmark);
 
-/// All of it: {"machine": {...}, "rows": [{"mesh": ..., "query_us": {"p50": ..., ...}, ...}, ...]}.
-/// null stands for what was not measured; a radius of null is as far as the motions lead.
-void write_json(std::ostream& out, const Benchmark& benchmark);
+/// As docs/records.md has it: the figures, and what is found in them.
+Json json_of(const Benchmark& benchmark);
 
 /// The rows, one a line, below a line of names; what was not measured is empty. Each says where it
 /// was measured, so that files can be put together.

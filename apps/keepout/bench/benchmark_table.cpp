@@ -6,9 +6,11 @@
 #include <string>
 
 #include "bench/benchmark.h"
-#include "bench/json_parts.h"
+#include "bench/benchmark_findings.h"
+#include "bench/benchmark_verdict.h"
+#include "bench/published_rate.h"
 #include "number_text.h"
-#include "report/benchmark_verdict.h"
+#include "record/json_parts.h"
 
 namespace keepout::app {
 namespace {
@@ -61,6 +63,7 @@ void to_json(Json& json, const BenchmarkRow& row) {
           {"step_query_us", row.step_query},
           {"activate_us", row.activate},
           {"solve_us", row.solve},
+          {"rate_khz", row.step && row.step->p50 > 0.0 ? Json(rate_khz(row)) : Json()},
           {"hash", hexadecimal(row.hash)},
           {"hashes_of_first", std::move(first_hashes)},
           {"verified", row.verified},
@@ -140,20 +143,36 @@ void print_table_row(std::ostream& out, const BenchmarkRow& row) {
       << share(row.unsolved_share, "without an answer") << share(row.worse_share, "worse") << '\n';
 }
 
-void write_json(std::ostream& out, const Benchmark& benchmark) {
-  const Json all = {{"date", benchmark.date},
-                    {"command", benchmark.command},
-                    {"seed", benchmark.seed},
-                    {"machine", benchmark.machine},
-                    {"others_cores", benchmark.others_cores},
-                    {"complete", benchmark.rows.size() >= benchmark.planned},
-                    {"planned_rows", benchmark.planned},
-                    {"headline", headline(benchmark)},
-                    {"account", account(benchmark)},
-                    {"parts", benchmark.parts},
-                    {"remarks", benchmark.remarks},
-                    {"rows", benchmark.rows}};
-  out << all.dump(2) << '\n';
+Json json_of(const Benchmark& benchmark) {
+  Json found = Json::array(), published = Json::array();
+  for (const BenchmarkFinding& finding : findings(benchmark)) {
+    constexpr std::array about{"queries", "rates", "solvers", "stages", "costs", "steps"};
+    Json numbers = Json::array();
+    for (const BenchmarkRow* row : finding.rows) numbers.push_back(row - benchmark.rows.data());
+    found.push_back({{"about", about[static_cast<std::size_t>(finding.about)]},
+                     {"mesh", finding.mesh},
+                     {"text", finding.text},
+                     {"rows", std::move(numbers)}});
+    if (finding.about == BenchmarkFinding::About::queries ||
+        finding.about == BenchmarkFinding::About::stages) {
+      found.back()["radius"] = finding.rows.front()->radius;
+    }
+  }
+  for (const auto& [triangles, vertices, khz] : published_rates) {
+    published.push_back({{"triangles", triangles}, {"vertices", vertices}, {"khz", khz}});
+  }
+  return {{"headline", headline(benchmark)},
+          {"account", account(benchmark)},
+          {"complete", benchmark.rows.size() >= benchmark.planned},
+          {"seed", benchmark.seed},
+          {"machine", benchmark.machine},
+          {"planned_rows", benchmark.planned},
+          {"others_cores", benchmark.others_cores},
+          {"parts", benchmark.parts},
+          {"remarks", benchmark.remarks},
+          {"published", std::move(published)},
+          {"findings", std::move(found)},
+          {"rows", benchmark.rows}};
 }
 
 void write_csv(std::ostream& out, const Benchmark& benchmark) {

@@ -3,7 +3,7 @@
 
 #include <array>
 #include <cstdlib>
-#include <ostream>
+#include <iostream>
 
 #include "bench/parts.h"
 #include "bench/subject.h"
@@ -14,7 +14,9 @@
 #include "machine.h"
 #include "named_mesh.h"
 #include "names.h"
+#include "number_text.h"
 #include "output_file.h"
+#include "record/record.h"
 #include "stop_signal.h"
 
 namespace keepout::app {
@@ -73,8 +75,7 @@ void add_compare(CLI::App& app, CompareOptions& options) {
                  std::string(touch_text) + " of a touch, on either side");
   add_number(command, "--seed", options.extent.seed, 0, largest_seed,
              "Seed of poses, problems and pairs");
-  command.add_option("--json", options.json, "Where to write the tables and the verdict")
-      ->type_name("FILE");
+  options.files.add_to(command);
   command.footer(
       "The exit status is 0 only if all indices agree to the bit and no solver is wrong; 130 "
       "after\n"
@@ -82,23 +83,38 @@ void add_compare(CLI::App& app, CompareOptions& options) {
 }
 
 int compare(const CompareOptions& options, std::ostream& out) {
-  OutputFiles outputs(std::array{NamedPath{"MESH", options.mesh}}, {{"--json", options.json}});
+  OutputFiles outputs(std::array{NamedPath{"MESH", options.mesh}},
+                      {{"--json", options.files.kept_json()}, {"--out", options.files.page}});
   const Subject subject{.mesh = options.mesh};
   const std::shared_ptr<const Mesh> mesh = make_mesh(subject);
-  ComparisonRecord record{.date = date_now(),
-                          .command = options.command,
-                          .mesh = label_of(subject),
-                          .triangles = mesh->triangle_count(),
-                          .extent = options.extent,
-                          .machine = this_machine()};
   const StopSignal stop;
-  record.comparison =
-      compare_parts(record.mesh, mesh, options.extent, [&stop] { return stop.has_come(); });
-  print(out, record.comparison);
-  if (auto* const json = outputs.stream("--json")) write_json(*json, record);
-  outputs.commit();
-  if (!record.comparison.complete) return exit_interrupted;
-  return agree(record.comparison) ? EXIT_SUCCESS : EXIT_FAILURE;
+  const Comparison comparison =
+      compare_parts(label_of(subject), mesh, options.extent, [&stop] { return stop.has_come(); });
+  print(out, comparison);
+  const std::vector<std::string> paragraphs = verdict(comparison);
+  const CompareExtent& extent = options.extent;
+  Json record = new_record(
+      {.kind = "compare",
+       .command = options.command,
+       .complete = comparison.complete,
+       .subject =
+           "Parts that can take each other's place, held to each other and to the truth, on " +
+           label_of(subject) + " (" + counted(mesh->triangle_count(), "triangle") + ")",
+       .headline = paragraphs.empty() ? "Nothing was compared." : paragraphs.back(),
+       .machine = this_machine(),
+       .settings = {{"poses under each rule", std::to_string(extent.poses)},
+                    {"problems", std::to_string(extent.problems)},
+                    {"pairs of each kind", std::to_string(extent.pairs)},
+                    {"seed", std::to_string(extent.seed)}}});
+  record["mesh"] = label_of(subject);
+  record["triangles"] = mesh->triangle_count();
+  record["seed"] = extent.seed;
+  record["asked_for"] = {
+      {"poses", extent.poses}, {"problems", extent.problems}, {"pairs", extent.pairs}};
+  record["comparison"] = json_of(comparison);
+  write_record(outputs, record, options.files, std::cerr);
+  if (!comparison.complete) return exit_interrupted;
+  return agree(comparison) ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 
 }  // namespace keepout::app

@@ -10,6 +10,7 @@
 
 #include "compare/comparison.h"
 #include "keepout/mesh/mesh.h"
+#include "record/record.h"
 
 namespace CLI {
 class App;
@@ -20,8 +21,8 @@ namespace keepout::app {
 struct CompareOptions {
   std::string mesh = "skull";  // a real fixture or a file
   CompareExtent extent;
-  std::optional<std::filesystem::path> json;  // to be written
-  std::string command;                        // that does it again
+  RecordFiles files;
+  std::string command;  // that does it again
 };
 
 /// Everything that can take another's place, on the same input; as much as is finished when it is

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/benchmark.h"
+#include "columns.h"
 
 namespace keepout::app {
 
@@ -81,22 +81,11 @@ struct Comparison {
   std::vector<NarrowPhaseAgreement> narrow_phases;
 };
 
-/// A comparison, and all that it takes to do it again.
-struct ComparisonRecord {
-  std::string date;     // ISO 8601, UTC
-  std::string command;  // that does it again
-  std::string mesh;
-  std::size_t triangles = 0;  // of the mesh
-  CompareExtent extent;
-  Machine machine;
-  Comparison comparison = {};
-};
-
 /// Tables for a terminal, and the verdict. Parts that were not compared are left out.
 void print(std::ostream& out, const Comparison& comparison);
 
-/// All of it, the verdict included.
-void write_json(std::ostream& out, const ComparisonRecord& record);
+/// All of it, the verdicts included, as docs/records.md has it; null where nothing was compared.
+Json json_of(const Comparison& comparison);
 
 // What a comparison came to, in words, all of it computed from the rows. Of rows that there are:
 // each function but the first two needs one.
@@ -107,10 +96,8 @@ bool agree(const Comparison& comparison);
 /// A paragraph for each kind of part that was compared, then whether those agree that must.
 std::vector<std::string> verdict(const Comparison& comparison);
 
-/// On queries and steps, in one sentence.
+/// On queries and steps, and on where equal steps are no finding, as they could not differ.
 std::string index_verdict(const std::vector<IndexAgreement>& rows);
-/// Equal steps are no finding where they could not be otherwise: on where that is so.
-std::string index_agreement_by_construction(const std::vector<IndexAgreement>& rows);
 /// On answers, and on why some solvers got fewer problems.
 std::string solver_verdict(const std::vector<SolverAgreement>& rows);
 /// On distances.

@@ -2,10 +2,10 @@
 #include <ostream>
 #include <string>
 
-#include "bench/json_parts.h"
 #include "columns.h"
 #include "compare/comparison.h"
 #include "number_text.h"
+#include "record/json_parts.h"
 
 namespace keepout::app {
 namespace {
@@ -94,25 +94,19 @@ void print(std::ostream& out, const Comparison& comparison) {
   for (const std::string& paragraph : verdict(comparison)) out << "  " << paragraph << '\n';
 }
 
-void write_json(std::ostream& out, const ComparisonRecord& record) {
-  const Comparison& comparison = record.comparison;
-  const CompareExtent& extent = record.extent;
-  const Json all = {
-      {"date", record.date},
-      {"command", record.command},
-      {"seed", extent.seed},
-      {"machine", record.machine},
-      {"mesh", record.mesh},
-      {"triangles", record.triangles},
-      {"asked_for",
-       {{"poses", extent.poses}, {"problems", extent.problems}, {"pairs", extent.pairs}}},
-      {"complete", comparison.complete},
-      {"agree", agree(comparison)},
-      {"verdict", verdict(comparison)},
-      {"indices", json_of(index_columns, comparison.indices)},
-      {"solvers", json_of(solver_columns, comparison.solvers)},
-      {"narrow_phases", json_of(narrow_phase_columns, comparison.narrow_phases)}};
-  out << all.dump(2) << '\n';
+Json json_of(const Comparison& comparison) {
+  const auto part = [](const auto& columns, const auto& rows, const auto& in_words) -> Json {
+    if (rows.empty()) return nullptr;
+    return {{"verdict", in_words(rows)}, {"rows", json_of(columns, rows)}};
+  };
+  const auto& [complete, indices, solvers, narrow_phases] = comparison;
+  if (indices.empty() && solvers.empty() && narrow_phases.empty()) return nullptr;
+  return {{"complete", complete},
+          {"agree", agree(comparison)},
+          {"verdict", verdict(comparison)},
+          {"indices", part(index_columns, indices, index_verdict)},
+          {"solvers", part(solver_columns, solvers, solver_verdict)},
+          {"narrow_phases", part(narrow_phase_columns, narrow_phases, narrow_phase_verdict)}};
 }
 
 }  // namespace keepout::app

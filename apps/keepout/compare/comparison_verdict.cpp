@@ -3,8 +3,8 @@
 #include <set>
 
 #include "compare/comparison.h"
+#include "names.h"
 #include "number_text.h"
-#include "report/text.h"
 
 namespace keepout::app {
 namespace {
@@ -52,6 +52,19 @@ std::string why_fewer(const std::vector<SolverAgreement>& rows, const SolverAgre
          rows.front().solver + ".";
 }
 
+/// Equal steps are no finding where they could not be otherwise: on where that is so.
+std::string by_construction(const std::vector<IndexAgreement>& rows) {
+  std::string text =
+      "By construction the exact kernel decides, whichever index proposes: a plain rule can only "
+      "come to another step by a triangle that the index missed or gave twice.";
+  const auto indices = names_of(rows, &IndexAgreement::index, &IndexAgreement::searched);
+  const auto rules = names_of(rows, &IndexAgreement::activation, &IndexAgreement::searched);
+  if (indices.empty()) return text;
+  return text + " Not so where the rule searches the index by itself, which is what " +
+         listed(rules) + (rules.size() == 1 ? " does" : " do") + " on " + listed(indices) +
+         ": these steps were found in another way than brute force's.";
+}
+
 }  // namespace
 
 std::string index_verdict(const std::vector<IndexAgreement>& rows) {
@@ -81,19 +94,7 @@ std::string index_verdict(const std::vector<IndexAgreement>& rows) {
                             " brute force's steps, bit for bit."
                       : "; " + grouped(differ) + (differ == 1 ? " step differs" : " steps differ") +
                             " from brute force's in some bit.";
-  return text;
-}
-
-std::string index_agreement_by_construction(const std::vector<IndexAgreement>& rows) {
-  std::string text =
-      "By construction the exact kernel decides, whichever index proposes: a plain rule can only "
-      "come to another step by a triangle that the index missed or gave twice.";
-  const auto indices = names_of(rows, &IndexAgreement::index, &IndexAgreement::searched);
-  const auto rules = names_of(rows, &IndexAgreement::activation, &IndexAgreement::searched);
-  if (indices.empty()) return text;
-  return text + " Not so where the rule searches the index by itself, which is what " +
-         listed(rules) + (rules.size() == 1 ? " does" : " do") + " on " + listed(indices) +
-         ": these steps were found in another way than brute force's.";
+  return text + " " + by_construction(rows);
 }
 
 std::string solver_verdict(const std::vector<SolverAgreement>& rows) {
@@ -159,9 +160,7 @@ std::vector<std::string> verdict(const Comparison& comparison) {
   const auto add = [&](const char* what, const auto& rows, auto in_words) {
     if (!rows.empty()) paragraphs.push_back(what + in_words(rows));
   };
-  add("Indices: ", comparison.indices, [](const std::vector<IndexAgreement>& rows) {
-    return index_verdict(rows) + " " + index_agreement_by_construction(rows);
-  });
+  add("Indices: ", comparison.indices, index_verdict);
   add("Solvers: ", comparison.solvers, solver_verdict);
   add("Narrow phases, which are not all ours: ", comparison.narrow_phases, narrow_phase_verdict);
   if (!comparison.complete) {

@@ -5,19 +5,20 @@
 #include <string_view>
 #include <utility>
 
-#include "base64.h"
 #include "clip.h"
 #include "columns.h"
 #include "command_line.h"
 #include "keepout/activation/registry.h"
 #include "keepout/version.h"
 #include "live/browser.h"
-#include "live/packed_mesh.h"
-#include "live/page_parts.h"
 #include "named_mesh.h"
 #include "names.h"
 #include "number_text.h"
 #include "output_file.h"
+#include "page/base64.h"
+#include "page/gzip.h"
+#include "page/packed_mesh.h"
+#include "page/page_template.h"
 #include "progress.h"
 
 namespace keepout::app {
@@ -59,7 +60,7 @@ std::string command_name(const std::filesystem::path& mesh, const LoadOptions& l
 
 Anatomy anatomy_of(const std::filesystem::path& name, const LiveOptions& options) {
   const LoadedMesh loaded = load_named_mesh(name, options.load);
-  const PackedMesh bytes = packed(*loaded.mesh);
+  const PackedMesh bytes = packed(loaded.mesh->vertices(), loaded.mesh->triangles());
   return {.facts = {{"name", name.filename().string()},
                     {"command_name", command_name(name, options.load)},
                     {"vertices", loaded.mesh->vertex_count()},
@@ -140,9 +141,10 @@ void add_live(CLI::App& app, LiveOptions& options) {
 
 void live(const LiveOptions& options, std::ostream& out) {
   require_within_reach(options.max_step, options.constraint.radius);
-  const std::filesystem::path parts_file = page_parts_file();
-  const PageParts parts = read_page_parts(parts_file);
-  std::vector<NamedPath> inputs{{"the page without an anatomy", parts_file}};
+  const std::filesystem::path template_file = page_template_file("live.html");
+  const PageTemplate parts =
+      read_page_template(template_file, "<!-- keepout live: the anatomy goes here -->");
+  std::vector<NamedPath> inputs{{"the page without an anatomy", template_file}};
   for (const std::filesystem::path& mesh : options.meshes) {
     inputs.push_back({"MESH", file_of_mesh(mesh)});
   }

@@ -2,6 +2,7 @@
 #include "plan/plan.h"
 
 #include <cstdlib>
+#include <iostream>
 #include <memory>
 #include <ostream>
 #include <utility>
@@ -11,11 +12,11 @@
 #include "keepout/factory/make_motion_constraint.h"
 #include "keepout/ompl/straight_way.h"
 #include "named_mesh.h"
-#include "number_text.h"
 #include "output_file.h"
 #include "plan/planning_run.h"
 #include "progress.h"
 #include "stop_signal.h"
+#include "wrapped_text.h"
 
 namespace keepout::app {
 namespace {
@@ -60,7 +61,10 @@ std::shared_ptr<GuardPool> validating_guards(const PlanOptions& options, const S
 OutputFiles outputs_of(const PlanOptions& options) {
   std::vector<NamedPath> inputs;
   if (options.mesh) inputs.push_back({"MESH", file_of_mesh(*options.mesh)});
-  return {inputs, {{"--json", options.json}, {"--csv", options.csv}, {"--out", options.page}}};
+  return {inputs,
+          {{"--json", options.files.kept_json()},
+           {"--csv", options.csv},
+           {"--out", options.files.page}}};
 }
 
 void run_scene(const PlanOptions& options, PlanningScene& where, Progress& progress,
@@ -83,7 +87,10 @@ void run_scene(const PlanOptions& options, PlanningScene& where, Progress& progr
       if (stop.has_come() && !path.solved) return;
       const PathVerdict verdict =
           path.solved ? judge_path(scene, path.points, least) : PathVerdict{};
-      runs.push_back({scene.name(), task.planner(), checker, problem, std::move(path), verdict});
+      std::vector<std::vector<Vec3>> too_near;
+      if (!verdict.is_valid()) too_near = lengths_too_near(scene, path.points, least);
+      runs.push_back({scene.name(), task.planner(), checker, problem, std::move(path), verdict,
+                      std::move(too_near)});
       progress.advance();
     }
   }
@@ -112,20 +119,19 @@ int plan(const PlanOptions& options, std::ostream& out) {
       if (!stop.has_come()) run_scene(options, where, progress, stop, runs);
     }
   }
-  if (auto* const json = outputs.stream("--json")) write_planning_json(*json, options, runs);
   if (auto* const csv = outputs.stream("--csv")) write_planning_csv(*csv, runs);
-  if (auto* const page = outputs.stream("--out")) write_planning_page(*page, options, scenes, runs);
-  outputs.commit();
-  out << lead(options) << (options.simplify ? ", simplified" : "")
-      << ". The sliding checker has a planner of its own, SlidingConnect.\n"
-         "valid: of those solved, by the exact oracle over the whole of each path.\n\n";
+  const Json record = record_of(options, scenes, runs, !stop.has_come());
+  write_record(outputs, record, options.files, std::cerr);
+  print_wrapped(out, record["subject"]);
+  for (const Json& text : record["account"]) print_wrapped(out, text);
+  out << '\n';
   print_table(out, summaries(runs));
   if (stop.has_come()) {
     out << "\ninterrupted: " << runs.size() << " of " << total << " runs are finished\n";
   }
-  const std::size_t invalid = invalid_of_keepout(runs);
-  if (invalid > 0) out << "\n" << counted(invalid, "path") << " of keepout's are not valid!\n";
-  if (invalid > 0) return EXIT_FAILURE;
+  out << '\n';
+  print_wrapped(out, record["headline"]);
+  if (invalid_of_keepout(runs) > 0) return EXIT_FAILURE;
   return stop.has_come() ? exit_interrupted : EXIT_SUCCESS;
 }
 

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "record/record.h"
+
 namespace CLI {
 class App;
 }
@@ -31,7 +33,9 @@ struct PlanOptions {
   double radius = 5.0;                                   // of the motion sphere [mm]
   double range = 0.0;     // of the planner [mm]; 0: a fifth of the extent, as OMPL has it
   bool simplify = false;  // shorten each path by OMPL's simplifier, under the same checker
-  std::optional<std::filesystem::path> json, csv, page;
+  RecordFiles files;
+  std::optional<std::filesystem::path> csv;  // to be written
+  std::string command;                       // that does it again
 
   double clearance() const noexcept { return tool_radius + margin; }
 };

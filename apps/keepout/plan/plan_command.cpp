@@ -41,12 +41,9 @@ void add_plan(CLI::App& app, PlanOptions& options) {
              "Longest motion that a planner adds; 0: a fifth of the extent, as OMPL has it");
   command.add_flag("--simplify", options.simplify,
                    "Shorten each path by OMPL's simplifier, under the same checker");
-  command.add_option("--json", options.json, "Where to write every run, its path included")
-      ->type_name("FILE");
+  options.files.add_to(command);
   command.add_option("--csv", options.csv, "Where to write a line for every run")
       ->type_name("FILE");
-  command.add_option("--out", options.page, "Where to write a page with pictures of the paths")
-      ->type_name("FILE.html");
   command.footer(
       "Ctrl-C ends it early: what is finished is judged, printed and written.\n"
       "The exit status is 0 only if no path that keepout let pass is invalid.\n"

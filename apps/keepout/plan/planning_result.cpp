@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <iomanip>
 #include <limits>
 #include <ostream>
 #include <sstream>
 #include <utility>
 
-#include "columns.h"
-#include "keepout/simd_target.h"
-#include "keepout/version.h"
 #include "machine.h"
 #include "number_text.h"
 #include "plan/planning_run.h"
+#include "record/drawn_mesh.h"
+#include "record/record.h"
 #include "verify/judge.h"
 
 namespace keepout::app {
@@ -85,6 +85,11 @@ Json entry_of(const PlanningRun& run) {
   entry["length_mm"] = run.verdict.length;
   Json& path = entry["path"] = Json::array();
   for (const Vec3& point : run.path.points) path.push_back(json_of(point));
+  Json& too_near = entry["too_near"] = Json::array();
+  for (const std::vector<Vec3>& length : run.too_near) {
+    Json& points = too_near.emplace_back(Json::array());
+    for (const Vec3& point : length) points.push_back(json_of(point));
+  }
   return entry;
 }
 
@@ -98,6 +103,20 @@ std::string field(const Json& entry, const char* key) {
   std::ostringstream text;
   text << std::setprecision(9) << value.get<double>();
   return text.str();
+}
+
+/// A row of a table: solved, valid, enters, clearance, seconds, checking, checks and length.
+std::vector<std::string> cells_of(const PlanningSummary& row) {
+  const bool none = row.solved == 0;
+  const std::string solved = std::to_string(row.solved);
+  return {solved + "/" + std::to_string(row.runs),
+          none ? "-" : std::to_string(row.valid) + "/" + solved,
+          none ? "-" : std::to_string(row.entering),
+          none ? "-" : rounded(row.least_clearance, 4),
+          rounded(row.median_seconds),
+          rounded(row.median_checking),
+          grouped(static_cast<std::size_t>(row.checks)),
+          none ? "-" : rounded(row.median_length)};
 }
 
 }  // namespace
@@ -151,19 +170,6 @@ PathVerdict judge_path(const Scene& scene, std::span<const Vec3> points, double 
   return verdict;
 }
 
-std::vector<std::string> cells_of(const PlanningSummary& row) {
-  const bool none = row.solved == 0;
-  const std::string solved = std::to_string(row.solved);
-  return {solved + "/" + std::to_string(row.runs),
-          none ? "-" : std::to_string(row.valid) + "/" + solved,
-          none ? "-" : std::to_string(row.entering),
-          none ? "-" : rounded(row.least_clearance, 4),
-          rounded(row.median_seconds),
-          rounded(row.median_checking),
-          grouped(static_cast<std::size_t>(row.checks)),
-          none ? "-" : rounded(row.median_length)};
-}
-
 void print_table(std::ostream& out, const std::vector<PlanningSummary>& rows) {
   std::size_t mesh = 4;
   for (const PlanningSummary& row : rows) mesh = std::max(mesh, row.mesh.size());
@@ -181,23 +187,90 @@ void print_table(std::ostream& out, const std::vector<PlanningSummary>& rows) {
   for (const PlanningSummary& row : rows) line(row.mesh, row.checker.name(), cells_of(row));
 }
 
-void write_planning_json(std::ostream& out, const PlanOptions& options,
-                         const std::vector<PlanningRun>& runs) {
-  Json root{{"version", KEEPOUT_VERSION},
-            {"machine", processor()},
-            {"simd", simd_target()},
-            {"compiler", KEEPOUT_COMPILER},
-            {"build", KEEPOUT_BUILD_TYPE},
-            {"seed", options.seed},
-            {"planner", options.planner},
-            {"seconds_allowed", options.seconds},
-            {"clearance_mm", options.clearance()},
-            {"radius_mm", options.radius},
-            {"range_mm", options.range},
-            {"simplified", options.simplify},
-            {"runs", Json::array()}};
-  for (const PlanningRun& run : runs) root["runs"].push_back(entry_of(run));
-  out << root.dump(1) << '\n';
+std::string headline(const std::vector<PlanningRun>& runs) {
+  struct Count {
+    std::size_t all = 0, bad = 0;
+  } ours, sampled;
+  for (const PlanningRun& run : runs) {
+    if (!run.path.solved) continue;
+    Count& count = run.checker.is_keepouts() ? ours : sampled;
+    ++count.all;
+    count.bad += !run.verdict.is_valid();
+  }
+  const auto told = [](const Count& count, const std::string& whose) {
+    return grouped(count.bad) + " of " + counted(count.all, "path") + whose +
+           (count.bad == 1 ? " comes" : " come") + " nearer to the anatomy than allowed, or enter" +
+           (count.bad == 1 ? "s it" : " it");
+  };
+  return told(sampled, " under sampled checking") + "; " + told(ours, " under keepout's") + ".";
+}
+
+std::vector<std::vector<Vec3>> lengths_too_near(const Scene& scene, std::span<const Vec3> points,
+                                                double least) {
+  constexpr double longest = 0.5;  // of what is judged at once [mm]
+  oracle::SafetyOracle oracle = scene.oracle();
+  std::vector<std::vector<Vec3>> lengths;
+  bool was_bad = false;
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    const Vec3 along = points[i] - points[i - 1];
+    const int pieces = std::max(1, static_cast<int>(std::ceil(along.norm() / longest)));
+    for (int k = 0; k < pieces; ++k) {
+      const Vec3 from = points[i - 1] + along * (static_cast<double>(k) / pieces);
+      const Vec3 to = points[i - 1] + along * (static_cast<double>(k + 1) / pieces);
+      const bool is_bad = oracle.check(from, to, least).below;
+      if (is_bad && !was_bad) lengths.push_back({from});
+      if (is_bad) lengths.back().push_back(to);
+      was_bad = is_bad;
+    }
+  }
+  return lengths;
+}
+
+Json record_of(const PlanOptions& options, const std::vector<PlanningScene>& scenes,
+               const std::vector<PlanningRun>& runs, bool complete) {
+  Json record =
+      new_record({.kind = "plan",
+                 .command = options.command,
+                 .complete = complete,
+                 .subject = "Plans through anatomy, judged by an exact oracle: " + lead(options) +
+                            (options.simplify ? ", simplified" : ""),
+                 .headline = headline(runs),
+                 .account = {"The sliding checker has a planner of its own, "
+                             "SlidingConnect. Valid is a path whose whole way keeps the "
+                             "clearance."},
+                 .machine = this_machine()});
+  record["seed"] = options.seed;
+  record["planner"] = options.planner;
+  record["seconds_allowed"] = options.seconds;
+  record["clearance_mm"] = options.clearance();
+  record["radius_mm"] = options.radius;
+  record["range_mm"] = options.range;
+  record["simplified"] = options.simplify;
+  for (const char* list : {"meshes", "checkers", "summaries", "runs"}) record[list] = Json::array();
+  for (const PlanningScene& where : scenes) {
+    Json mesh = drawn_mesh(where.scene.name(), *where.scene.mesh());
+    mesh["inside"] = where.space == PlanningScene::Space::within;
+    record["meshes"].push_back(std::move(mesh));
+  }
+  for (const Checker& checker : checkers(options.resolutions)) {
+    record["checkers"].push_back(checker.name());
+  }
+  for (const PlanningSummary& row : summaries(runs)) {
+    const auto if_solved = [&](double value) { return row.solved > 0 ? Json(value) : Json(); };
+    record["summaries"].push_back({{"mesh", row.mesh},
+                                   {"checker", row.checker.name()},
+                                   {"runs", row.runs},
+                                   {"solved", row.solved},
+                                   {"valid", row.valid},
+                                   {"entering", row.entering},
+                                   {"least_clearance_mm", if_solved(row.least_clearance)},
+                                   {"median_seconds", row.median_seconds},
+                                   {"median_checking_seconds", row.median_checking},
+                                   {"median_checks", row.checks},
+                                   {"median_length_mm", if_solved(row.median_length)}});
+  }
+  for (const PlanningRun& run : runs) record["runs"].push_back(entry_of(run));
+  return record;
 }
 
 void write_planning_csv(std::ostream& out, const std::vector<PlanningRun>& runs) {

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "columns.h"
 #include "keepout/ompl/guard_pool.h"
 #include "plan/plan.h"
 #include "plan/problems.h"
@@ -82,6 +83,10 @@ double least_distance(const Scene& scene, const PlanOptions& options);
 /// points.
 PathVerdict judge_path(const Scene& scene, std::span<const Vec3> points, double least);
 
+/// The lengths of a path that is not valid that come too near: to half a millimetre.
+std::vector<std::vector<Vec3>> lengths_too_near(const Scene& scene, std::span<const Vec3> points,
+                                                double least);
+
 /// One problem under one checker.
 struct PlanningRun {
   std::string mesh;
@@ -89,7 +94,8 @@ struct PlanningRun {
   Checker checker;
   Problem problem;
   PlannedPath path;
-  PathVerdict verdict;  // of a solved one
+  PathVerdict verdict;                           // of a solved one
+  std::vector<std::vector<Vec3>> too_near = {};  // the lengths of it that are not valid [mm]
 };
 
 /// All runs of a mesh under one checker.
@@ -113,18 +119,14 @@ std::string lead(const PlanOptions& options);
 /// In the order of the runs.
 std::vector<PlanningSummary> summaries(const std::vector<PlanningRun>& runs);
 
-/// A row of a table: solved, valid, enters, clearance, seconds, checking, checks and length.
-std::vector<std::string> cells_of(const PlanningSummary& row);
+/// What came out, in a sentence.
+std::string headline(const std::vector<PlanningRun>& runs);
 
 void print_table(std::ostream& out, const std::vector<PlanningSummary>& rows);
-void write_planning_json(std::ostream& out, const PlanOptions& options,
-                         const std::vector<PlanningRun>& runs);
 void write_planning_csv(std::ostream& out, const std::vector<PlanningRun>& runs);
 
-/// Writes a page that needs nothing but itself: the table, and for each mesh and checker a picture
-/// of all paths, with what comes too near the mesh or enters it in the colour of alarm.
-void write_planning_page(std::ostream& out, const PlanOptions& options,
-                         const std::vector<PlanningScene>& scenes,
-                         const std::vector<PlanningRun>& runs);
+/// The record of it: see docs/records.md. `complete`: it was not stopped.
+Json record_of(const PlanOptions& options, const std::vector<PlanningScene>& scenes,
+               const std::vector<PlanningRun>& runs, bool complete);
 
 }  // namespace keepout::app

@@ -7,14 +7,16 @@
 #include <fstream>
 
 #include "../machine.h"
+#include "../number_text.h"
 #include "keepout/error.h"
 #include "keepout/simd_target.h"
-#include "keepout/version.h"
+#include "record/record.h"
 
 namespace keepout::app {
 namespace {
 
-constexpr int file_format = 2;  // raised whenever the trajectories of a seed, or this file, change
+constexpr int campaign_format =
+    3;  // raised whenever the trajectories of a seed, or tallies, change
 
 template <class Enum, std::size_t n>
 Json json_of(const std::array<std::uint64_t, n>& counts) {
@@ -100,6 +102,13 @@ std::uint64_t common_shard(const Json& a, const Json& b) {
   return 0;
 }
 
+/// Says in words what has come out so far.
+void tell(Json& result) {
+  result.at("complete") = is_complete(result);
+  result.at("headline") = headline(result);
+  result.at("account") = account(result);
+}
+
 /// Precondition: the two are of one campaign.
 void add_result(Json& sum, const Json& part) {
   for (std::size_t i = 0; i < part.at("meshes").size(); ++i) {
@@ -113,7 +122,7 @@ void add_result(Json& sum, const Json& part) {
   std::ranges::sort(shards, {}, [](const Json& s) { return s.at("index").get<std::uint64_t>(); });
   sum.at("shards") = shards;
   sum.at("steps_done") = sum.at("total").at("steps");
-  sum.at("complete") = is_complete(sum);
+  tell(sum);
 }
 
 /// JSON has negative numbers and fractions, which get() would turn into counts, and which could
@@ -170,10 +179,11 @@ Json read(const std::filesystem::path& path) {
   const Error damaged(path.string() + ": is not a whole result of 'keepout verify --json'");
   try {
     Json result = Json::parse(file);
-    const int written = result.at("keepout_verify").get<int>();
-    if (written != file_format) {
+    if (!is_record(result) || result["keepout_record"] != "verify") throw damaged;
+    const int written = result.at("campaign_format").get<int>();
+    if (written != campaign_format) {
       throw Error(path.string() + ": written by another version of keepout verify (format " +
-                  std::to_string(written) + ", not " + std::to_string(file_format) + ")");
+                  std::to_string(written) + ", not " + std::to_string(campaign_format) + ")");
     }
     if (!is_sound(result)) throw damaged;
     std::ostream nowhere(nullptr);
@@ -203,20 +213,25 @@ Json result_of(const CampaignRun& run, const Findings& findings) {
                    {"machine", processor() + ", " + std::string(simd_target()) + ", " +
                                    KEEPOUT_COMPILER + ", " + KEEPOUT_BUILD_TYPE},
                    {"complete", is_whole}};
-  return {{"keepout_verify", file_format},
-          {"version", KEEPOUT_VERSION},
-          {"seed", run.settings.seed},
-          {"steps", run.settings.steps},
-          {"steps_done", total.at("steps")},
-          {"complete", is_whole && count == 1},
-          {"index", run.index},
-          {"shard_count", count},
-          {"shards", Json::array({shard})},
-          {"missing", run.missing},
-          {"meshes", meshes},
-          {"total", total},
-          {"breaches", findings.breaches},
-          {"anomalies", findings.anomalies}};
+  Json record = new_record({.kind = "verify",
+                           .command = run.command,
+                           .subject = "Adversarial closed-loop motion over " +
+                                      counted(findings.meshes.size(), "mesh") +
+                                      ", each step judged by an exact oracle"});
+  record.update({{"campaign_format", campaign_format},
+                 {"seed", run.settings.seed},
+                 {"steps", run.settings.steps},
+                 {"steps_done", total.at("steps")},
+                 {"index", run.index},
+                 {"shard_count", count},
+                 {"shards", Json::array({shard})},
+                 {"missing", run.missing},
+                 {"meshes", meshes},
+                 {"total", total},
+                 {"breaches", findings.breaches},
+                 {"anomalies", findings.anomalies}});
+  tell(record);
+  return record;
 }
 
 Json merged(const std::vector<std::filesystem::path>& files) {

@@ -108,6 +108,32 @@ bool is_complete(const Json& result) {
                              [](const Json& shard) { return shard.value("complete", true); });
 }
 
+std::string headline(const Json& result) {
+  const std::uint64_t broken = breach_count(result);
+  return (broken == 0 ? "No breach in " : counted(broken, "breach") + " in ") +
+         counted(count(result.at("total"), "steps"), "step") + ".";
+}
+
+std::vector<std::string> account(const Json& result) {
+  std::vector<std::string> told;
+  const Json& breaches = result.at("breaches");
+  if (breach_count(result) > breaches.size()) {
+    told.push_back("Of the breaches " + grouped(breaches.size()) + " are kept.");
+  }
+  if (!is_complete(result)) {
+    told.push_back("Incomplete: " + grouped(count(result.at("total"), "steps")) +
+                   " of the campaign's " + counted(count(result, "steps"), "step") + " are done.");
+  }
+  const std::string shards = "/" + result.at("shard_count").dump();
+  for (const std::uint64_t shard : missing_shards(result)) {
+    told.push_back("Missing: shard " + std::to_string(shard) + shards + ".");
+  }
+  for (const Json& mesh : result.at("missing")) {
+    told.push_back("Missing: " + mesh.get<std::string>() + ".");
+  }
+  return told;
+}
+
 void print(std::ostream& out, const Json& result) {
   auto rows = result.at("meshes").get<std::vector<Json>>();
   rows.push_back(result.at("total"));
@@ -117,13 +143,7 @@ void print(std::ostream& out, const Json& result) {
          "breaches\n"
          "of the theorem. least: smallest distance of any way, less tool radius and margin, in\n"
          "tau and as it is.\n";
-  for (const Json& mesh : result.at("missing")) {
-    out << "missing: " << mesh.get<std::string>() << '\n';
-  }
   const std::string shards = "/" + result.at("shard_count").dump();
-  for (const std::uint64_t shard : missing_shards(result)) {
-    out << "missing: shard " << shard << shards << '\n';
-  }
   for (const Json& shard : result.at("shards")) {
     out << "shard " << shard.at("index") << shards << ": " << number("%.1f", shard.at("seconds"))
         << " s on " << shard.at("machine").get<std::string>()
@@ -132,18 +152,8 @@ void print(std::ostream& out, const Json& result) {
   constexpr std::size_t shown = 5;
   const Json& breaches = result.at("breaches");
   for (std::size_t i = 0; i < std::min(shown, breaches.size()); ++i) out << text(breaches[i]);
-  const std::uint64_t broken = breach_count(result);
-  const std::uint64_t steps = count(result.at("total"), "steps");
-  if (broken == 0) {
-    out << "no breach in " << counted(steps, "step") << '\n';
-  } else {
-    out << grouped(broken) << (broken == 1 ? " breach in " : " breaches in ")
-        << counted(steps, "step") << "; --json keeps " << grouped(breaches.size()) << " of them\n";
-  }
-  if (!is_complete(result)) {
-    out << "incomplete: " << grouped(steps) << " of the campaign's "
-        << counted(count(result, "steps"), "step") << " are done\n";
-  }
+  out << headline(result) << '\n';
+  for (const std::string& text : account(result)) out << text << '\n';
 }
 
 }  // namespace keepout::app

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
-#include <ostream>
+#include <iostream>
 #include <sstream>
 
 #include "../command_line.h"
@@ -58,6 +58,7 @@ Json run(const VerifyOptions& options, std::ostream& out) {
                 " steps to share out; ask for fewer shards or more steps");
   }
   CampaignRun run{.settings = {.seed = options.seed, .steps = options.steps, .shard = shard},
+                  .command = options.command,
                   .index = options.index};
   const std::vector<Arena> arenas = arenas_of(options, run.missing);
   for (const std::string& mesh : run.missing) out << "note: " << mesh << '\n';
@@ -101,8 +102,7 @@ void add_verify(CLI::App& app, VerifyOptions& options) {
                          ->capture_default_str());
   of_a_run.push_back(add_name(command, "--index", options.index, names(index_backends()),
                               "Index that finds triangles"));
-  command.add_option("--json", options.json, "Where to write the results, every breach included")
-      ->type_name("FILE");
+  options.files.add_to(command);
   CLI::Option* merge =
       command.add_option("--merge", options.merge, "Add up the results of a campaign's shards")
           ->type_name("FILES");
@@ -116,12 +116,10 @@ int verify(const VerifyOptions& options, std::ostream& out) {
   std::vector<NamedPath> inputs;
   for (const auto& mesh : options.meshes) inputs.push_back({"MESH", file_of_mesh(mesh)});
   for (const auto& file : options.merge) inputs.push_back({"--merge", file});
-  OutputFiles outputs(inputs, {{"--json", options.json}});
+  OutputFiles outputs(inputs,
+                      {{"--json", options.files.kept_json()}, {"--out", options.files.page}});
   const Json result = options.merge.empty() ? run(options, out) : merged(options.merge);
-  if (auto* const json = outputs.stream("--json")) {
-    *json << result.dump(1, ' ', false, Json::error_handler_t::replace) << '\n';
-  }
-  outputs.commit();
+  write_record(outputs, result, options.files, std::cerr);
   print(out, result);
   if (breach_count(result) > 0) return EXIT_FAILURE;
   const bool interrupted = options.merge.empty() && !result["shards"][0]["complete"].get<bool>();

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "record/record.h"
+
 namespace CLI {
 class App;
 }
@@ -20,8 +22,9 @@ struct VerifyOptions {
   std::uint64_t seed = 1;
   std::string shard = "1/1";
   std::string index = "wide_bvh";
-  std::optional<std::filesystem::path> json;  // to be written
-  std::vector<std::filesystem::path> merge;   // results to add up, instead of a campaign
+  RecordFiles files;
+  std::vector<std::filesystem::path> merge;  // records to add up, instead of a campaign
+  std::string command;                       // that does it again
 };
 
 /// Adds `keepout verify` and its options to the command line.

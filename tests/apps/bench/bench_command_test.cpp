@@ -32,7 +32,7 @@ class BenchCommand : public testing::Test {
 
   json read(const std::string& name) const {
     std::ifstream file(folder.file(name));
-    return json::parse(file);
+    return json::parse(file).at("benchmark");
   }
 
   void expect_refused(const std::string& arguments, const std::string& why) const {

@@ -33,9 +33,9 @@ TEST_F(CompareCommand, HoldsEveryIndexToBruteForceAndSaysWhatItCameTo) {
   const ProcessOutcome outcome =
       folder.run("compare cube.stl --poses 30 --problems 60 --pairs 20 --seed 3 --json c.json");
   ASSERT_EQ(outcome.status, 0) << outcome.output;
-  const json comparison = read("c.json");
+  const json comparison = read("c.json")["comparison"];
   std::set<std::string> names, searched;
-  for (const json& row : comparison["indices"]) {
+  for (const json& row : comparison["indices"]["rows"]) {
     names.insert(row["index"]);
     if (row["searched_by_the_rule"]) searched.insert(row["index"]);
     EXPECT_EQ(row["poses"], 30);
@@ -77,7 +77,7 @@ TEST_F(CompareCommand, KeepsWhatIsFinishedWhenItIsInterrupted) {
   EXPECT_EQ(outcome.status, 130) << outcome.output;
   EXPECT_NE(outcome.output.find("Interrupted: "), std::string::npos) << outcome.output;
   EXPECT_NE(outcome.output.find("So far all parts agree that must."), std::string::npos);
-  const json comparison = read("c.json");
+  const json comparison = read("c.json")["comparison"];
   EXPECT_EQ(comparison["complete"], false);
   EXPECT_FALSE(comparison["indices"].empty()) << "they were finished";
   EXPECT_TRUE(comparison["narrow_phases"].empty());

@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "apps/command_process.h"
-#include "apps/live/unpacked_page.h"
+#include "apps/page/unpacked_page.h"
 #include "keepout/fixtures/shapes.h"
 #include "keepout/mesh/binary_stl.h"
 #include "keepout/mesh/load_mesh.h"
@@ -184,11 +184,11 @@ TEST_F(Live, NeitherAMeshNorThePagesOwnPartsAreOverwritten) {
 
 TEST_F(Live, WithoutThePagesPartsItSaysWhatToDo) {
   expect_refused("cube", "there is no elsewhere/live.html", 1, "KEEPOUT_WEB=elsewhere");
-  expect_refused("cube", "share/keepout/web/live.html. In a checkout of keepout, `./run live`", 1,
+  expect_refused("cube", "share/keepout/web/live.html. In a checkout of keepout, ./run makes it", 1,
                  "KEEPOUT_WEB=");
   for (const std::string& page : {std::string("<p>no place</p>\n"), place + place}) {
     folder_.write("web/live.html", page);
-    expect_refused("cube", "is not the page of this keepout");
+    expect_refused("cube", "is not the front end of this keepout");
   }
 }
 

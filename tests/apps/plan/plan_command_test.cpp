@@ -31,9 +31,16 @@ TEST_F(PlanCommandTest, EveryPathOfKeepoutIsValidByTheOracle) {
       folder_.run(quick + "--problems 2 --json runs.json --csv runs.csv --out page.html");
   EXPECT_EQ(outcome.status, 0) << outcome.output;
   EXPECT_NE(outcome.output.find("certified"), std::string::npos) << outcome.output;
-  const Json runs = Json::parse(std::ifstream(folder_.file("runs.json"))).at("runs");
+  const Json record = Json::parse(std::ifstream(folder_.file("runs.json")));
+  const Json& runs = record.at("runs");
   ASSERT_EQ(runs.size(), 8u);  // 2 problems, 4 checkers
+  EXPECT_EQ(record.at("summaries").size(), 4u);
+  EXPECT_EQ(record.at("meshes").at(0).at("name"), "cortex.stl");
+  EXPECT_NE(record.at("headline").get<std::string>().find("0 of 4 paths under keepout's"),
+            std::string::npos)
+      << record.at("headline");
   for (const Json& run : runs) {
+    EXPECT_EQ(run["solved"] && !run["valid"], run.contains("too_near") && !run["too_near"].empty());
     if (run["checker"] != "certified" && run["checker"] != "sliding") continue;
     EXPECT_TRUE(run["solved"]) << run;
     EXPECT_TRUE(run["valid"]) << run;
@@ -42,7 +49,7 @@ TEST_F(PlanCommandTest, EveryPathOfKeepoutIsValidByTheOracle) {
   }
   std::ifstream csv(folder_.file("runs.csv"));
   EXPECT_EQ(std::count(std::istreambuf_iterator<char>(csv), {}, '\n'), 9);
-  EXPECT_GT(std::filesystem::file_size(folder_.file("page.html")), 10'000u);
+  EXPECT_GT(std::filesystem::file_size(folder_.file("page.html")), 1000u);
 }
 
 TEST_F(PlanCommandTest, TheSameSeedPlansTheSame) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cstdlib>
+#include <iostream>
 #include <memory>
 #include <ostream>
 #include <utility>
@@ -13,7 +14,7 @@
 #include "machine.h"
 #include "number_text.h"
 #include "output_file.h"
-#include "report/speed_report.h"
+#include "record/record.h"
 #include "stop_signal.h"
 
 namespace keepout::app {
@@ -98,7 +99,8 @@ int bench_speed(const BenchOptions& options, std::ostream& out) {
   if (options.triangles.size() > 1) throw Error("--speed: give --triangles one size");
   const std::size_t triangles = options.triangles.empty() ? 1'000'000 : options.triangles.front();
   const Effort& effort = options.speed.quick ? quick : thorough;
-  OutputFiles outputs({}, {{"--out", options.report}, {"--json", options.json}});
+  OutputFiles outputs(
+      {}, {{"--out", options.files.page}, {"--json", options.files.kept_json()}});
   for (const char* fixture : {"bunny", effort.file}) fixture_path(fixture);  // throws if missing
 
   Progress progress("bench --speed", std::size(on_the_bunny) + std::size(on_their_own));
@@ -122,10 +124,8 @@ int bench_speed(const BenchOptions& options, std::ostream& out) {
   progress.interrupt();
   print_queries(out, run.record);
   print_summary(out, run.record);
-  if (auto* const json = outputs.stream("--json")) write_json(*json, run.record);
-  print_speed_report(*outputs.stream("--out"), run.record);
-  outputs.commit();
-  out << "report: " << options.report.string() << '\n';
+  write_record(outputs, record_of(run.record), options.files, std::cerr);
+  out << "report: " << options.files.page->string() << '\n';
   return run.record.complete ? EXIT_SUCCESS : exit_interrupted;
 }
 

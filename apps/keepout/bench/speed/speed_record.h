@@ -85,10 +85,13 @@ void print_row(std::ostream& out, const SpeedRow& row);
 void print_queries(std::ostream& out, const SpeedRecord& record);
 void print_summary(std::ostream& out, const SpeedRecord& record);
 
-/// All of it as JSON: {"machine": {...}, "rows": [{"work": ..., "compared": ..., "demanded":
-/// {"at_least": 38}, "figure": 41.2, "unit": "x", "met": true, "sides": [...]}, ...], "queries":
-/// [...], "histogram": {"steps": {"bins": [[from_ns, count], ...], ...}, "nothing": {...}}}. null
-/// stands for what was not measured.
-void write_json(std::ostream& out, const SpeedRecord& record);
+/// How many demands are met, in a sentence.
+std::string headline(const SpeedRecord& record);
+
+/// How long the steps of the histogram took; empty where there is none.
+std::string histogram_words(const SpeedRecord& record);
+
+/// The record of it: see docs/records.md.
+Json record_of(const SpeedRecord& record);
 
 }  // namespace keepout::app

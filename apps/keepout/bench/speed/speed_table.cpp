@@ -3,7 +3,8 @@
 #include <ostream>
 #include <utility>
 
-#include "bench/json_parts.h"
+#include "record/json_parts.h"
+#include "record/record.h"
 #include "bench/speed/speed_record.h"
 #include "number_text.h"
 
@@ -128,33 +129,67 @@ void print_queries(std::ostream& out, const SpeedRecord& record) {
   }
 }
 
+std::string headline(const SpeedRecord& record) {
+  const auto met = static_cast<std::size_t>(std::ranges::count_if(record.rows, &SpeedRow::is_met));
+  const auto measured = static_cast<std::size_t>(std::ranges::count_if(
+      record.rows, [](const SpeedRow& row) { return row.figure.has_value(); }));
+  std::string text = grouped(met) + " of " + counted(record.rows.size(), "demand") + " met, " +
+                     grouped(measured - met) + " fall short, " +
+                     grouped(record.rows.size() - measured) + " not measured";
+  return text + (record.complete ? "." : "; interrupted, so only a part of the table.");
+}
+
+std::string histogram_words(const SpeedRecord& record) {
+  if (!record.histogram) return {};
+  const auto& [steps, nothing] = *record.histogram;
+  const auto within = [&](double share) {
+    return time_text(1e-3 * steps.percentile(share).value_or(0.0));
+  };
+  const auto longest = [](const TimeHistogram& times) {
+    return time_text(1e-3 * static_cast<double>(times.longest()));
+  };
+  return grouped(steps.total()) + " certified steps in contact: 99 % within " + within(0.99) +
+         ", 99.9 % within " + within(0.999) + ", 99.999 % within " + within(0.99999) +
+         ", the longest " + longest(steps) +
+         ". The empty loop waits as often and as long as the median step and does nothing: its "
+         "longest took " +
+         longest(nothing) + ", which is the machine's doing.";
+}
+
 void print_summary(std::ostream& out, const SpeedRecord& record) {
   std::vector<std::string> short_ones, missing;
-  std::size_t met = 0;
   for (const SpeedRow& row : record.rows) {
-    if (row.is_met()) {
-      ++met;
-    } else if (row.figure) {
+    if (!row.figure) {
+      missing.push_back(name_of(row) + ": " + row.remark);
+    } else if (!row.is_met()) {
       short_ones.push_back(name_of(row) + ": " + figure_text(row) + ", demanded " +
                            demand_text(row));
-    } else {
-      missing.push_back(name_of(row) + ": " + row.remark);
     }
   }
-  if (!record.complete) out << "\nInterrupted: what had been measured until then is kept.\n";
-  out << "\nOf " << counted(record.rows.size(), "demand") << ", " << grouped(met) << " are met, "
-      << grouped(short_ones.size()) << " fall short, " << grouped(missing.size())
-      << " were not measured.\n";
+  if (record.histogram) out << '\n' << histogram_words(record) << '\n';
+  out << '\n' << headline(record) << '\n';
   list(out, "Short of what is demanded:", short_ones);
   list(out, "Not measured:", missing);
 }
 
-void write_json(std::ostream& out, const SpeedRecord& record) {
-  const Json all = {
-      {"date", record.date}, {"command", record.command}, {"complete", record.complete},
-      {"seed", record.seed}, {"machine", record.machine}, {"mesh", record.mesh},
-      {"rows", record.rows}, {"queries", record.queries}, {"histogram", record.histogram}};
-  out << all.dump(2) << '\n';
+Json record_of(const SpeedRecord& record) {
+  Json all = new_record({.kind = "speed",
+                        .date = record.date,
+                        .command = record.command,
+                        .complete = record.complete,
+                        .subject = "The table of ratios, of " + record.mesh +
+                                   " unless said, on one core unless said; " +
+                                   record.machine.processor + ", " + record.machine.simd,
+                        .headline = headline(record),
+                        .machine = record.machine,
+                        .settings = {{"seed", std::to_string(record.seed)}}});
+  if (record.histogram) all["account"].push_back(histogram_words(record));
+  all["mesh"] = record.mesh;
+  all["seed"] = record.seed;
+  all["rows"] = record.rows;
+  all["queries"] = record.queries;
+  all["histogram"] = record.histogram;
+  return all;
 }
 
 }  // namespace keepout::app

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "record/record.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <ostream>
+
+#include "keepout/version.h"
+#include "record/json_parts.h"
+#include "record/report_page.h"
+
+namespace keepout::app {
+namespace {
+
+constexpr int format = 1;  // see docs/records.md
+
+/// What a line has to itself: the members of the outer objects, and the entries of their arrays.
+void print_lines(std::ostream& out, const Json& value, int depth) {
+  const bool has_lines =
+      !value.empty() && ((value.is_object() && depth < 2) ||
+                         (value.is_array() && depth < 3 && value.front().is_structured()));
+  if (!has_lines) {
+    // The name of a file need not be UTF-8, and JSON must.
+    out << value.dump(-1, ' ', false, Json::error_handler_t::replace);
+    return;
+  }
+  const bool is_object = value.is_object();
+  out << (is_object ? '{' : '[');
+  const char* between = "\n";
+  for (const auto& [key, member] : value.items()) {
+    out << std::exchange(between, ",\n");
+    if (is_object) out << Json(key).dump() << ": ";
+    print_lines(out, member, depth + 1);
+  }
+  out << (is_object ? "\n}" : "\n]");
+}
+
+}  // namespace
+
+Json new_record(const RecordHead& head) {
+  return {{"keepout_record", head.kind}, {"format", format},          {"version", KEEPOUT_VERSION},
+          {"date", head.date},           {"command", head.command},   {"complete", head.complete},
+          {"subject", head.subject},     {"headline", head.headline}, {"account", head.account},
+          {"machine", head.machine},     {"settings", head.settings}};
+}
+
+bool is_record(const Json& json) {
+  constexpr std::array kinds{"simulate", "bench", "speed", "compare", "plan", "verify"};
+  if (!json.is_object() || !json.contains("keepout_record")) return false;
+  const Json head = new_record({});
+  return std::ranges::find(kinds, json["keepout_record"]) != kinds.end() &&
+         json.value("format", Json()) == format &&
+         std::ranges::all_of(head.items(), [&](const auto& member) {
+           return json.contains(member.key()) &&
+                  (json[member.key()].type() == member.value().type() ||
+                   member.key() == "machine" || member.key() == "format");
+         });
+}
+
+void RecordFiles::add_to(CLI::App& command) {
+  command.add_option("--json", json, "Where to write all that was found: see docs/records.md")
+      ->type_name("FILE");
+  CLI::Option* out =
+      command.add_option("--out", page, "Where to write a report with pictures, plots and tables")
+          ->type_name("REPORT.html");
+  if (page) out->default_str(page->string());
+}
+
+std::optional<std::filesystem::path> RecordFiles::kept_json() const {
+  if (json || !page || has_report_template()) return json;
+  return page->string() + ".json";
+}
+
+void write_record(OutputFiles& outputs, const Json& record, const RecordFiles& files,
+                  std::ostream& notes) {
+  if (std::ostream* const json = outputs.stream("--json")) print_json(*json, record);
+  if (std::ostream* const page = outputs.stream("--out")) {
+    if (const std::string missing = print_report(*page, record); !missing.empty()) {
+      notes << "keepout: " << files.page->string()
+            << " is a plain page of tables, without pictures and plots: " << missing << ".\n"
+            << "Once that is there, 'keepout report " << files.kept_json().value().string()
+            << "' makes the whole page.\n";
+    }
+  }
+  outputs.commit();
+}
+
+void print_json(std::ostream& out, const Json& record) {
+  print_lines(out, record, 0);
+  out << '\n';
+}
+
+}  // namespace keepout::app

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <iosfwd>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "columns.h"
+#include "machine.h"
+#include "output_file.h"
+
+namespace CLI {
+class App;
+}
+
+namespace keepout::app {
+
+// A record is what a command found, as docs/records.md describes it; a report is a page that shows
+// one.
+
+/// What every record has. A command adds the rest.
+struct RecordHead {
+  std::string_view kind = {};     // "simulate", "bench", ...
+  std::string date = date_now();  // ISO 8601, UTC
+  std::string command = {};       // that does it again
+  bool complete = true;
+  std::string subject = {};               // what was done, in a line
+  std::string headline = {};              // what came out, in a sentence
+  std::vector<std::string> account = {};  // what is to be said beside it
+  std::optional<Machine> machine = {};    // none: several
+  Json settings = Json::object();         // what it was told: names and values
+};
+Json new_record(const RecordHead& head);
+
+/// Whether this is a record of a format that is known, as far as its head goes.
+bool is_record(const Json& json);
+
+/// Where a command writes its record, and its report.
+struct RecordFiles {
+  std::optional<std::filesystem::path> json, page;
+
+  /// Adds --json and --out to a command; a `page` that is set is the one by default.
+  void add_to(CLI::App& command);
+
+  /// The JSON that is to be written: where a report will be a plain one (see write_record), it is
+  /// kept beside it if nobody asked for it, so that the report can be made later.
+  std::optional<std::filesystem::path> kept_json() const;
+};
+
+/// Writes a record to the stream "--json" and its report to "--out", as far as these are among the
+/// outputs, and commits them. Without the front end of pages (see page_template.h) the report is a
+/// plain page of tables, which `notes` is told.
+void write_record(OutputFiles& outputs, const Json& record, const RecordFiles& files,
+                  std::ostream& notes);
+
+/// The record itself, in lines that can be read and compared.
+void print_json(std::ostream& out, const Json& record);
+
+}  // namespace keepout::app

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "record/report.h"
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <fstream>
+#include <ostream>
+
+#include "keepout/error.h"
+#include "output_file.h"
+#include "record/record.h"
+#include "record/report_page.h"
+
+namespace keepout::app {
+namespace {
+
+/// skull.json and skull.html.json are of skull.html.
+std::filesystem::path page_of(const std::filesystem::path& record) {
+  std::filesystem::path page = record;
+  if (page.extension() == ".json") page.replace_extension();
+  return page.extension() == ".html" ? page : std::filesystem::path(page.string() + ".html");
+}
+
+Json read_record(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  if (!file) throw Error(path.string() + ": cannot be read; is it there?");
+  const Json record = Json::parse(file, nullptr, false);
+  if (!is_record(record)) {
+    throw Error(path.string() +
+                ": is no whole record; 'keepout simulate', 'bench', 'compare', 'plan' and 'verify' "
+                "write one where --json says");
+  }
+  return record;
+}
+
+}  // namespace
+
+void add_report(CLI::App& app, ReportOptions& options) {
+  CLI::App& command = *app.add_subcommand(
+      "report", "Make the report of a record that another command has kept with --json");
+  command.add_option("FILE", options.record, "The record")->type_name(".json")->required();
+  command.add_option("--out", options.page, "Where to write the report; else beside the record")
+      ->type_name("REPORT.html");
+}
+
+void report(const ReportOptions& options, std::ostream& out) {
+  const Json record = read_record(options.record);
+  const std::filesystem::path page = options.page.value_or(page_of(options.record));
+  OutputFiles outputs(std::array{NamedPath{"FILE", options.record}}, {{"--out", page}});
+  if (const std::string missing = print_report(*outputs.stream("--out"), record);
+      !missing.empty()) {
+    throw Error(missing);
+  }
+  outputs.commit();
+  out << record.at("headline").get<std::string>() << "\nreport: " << page.string() << '\n';
+}
+
+}  // namespace keepout::app

@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstdio>
+#include <cstdlib>
+#include <iostream>
+#include <optional>
+#include <ostream>
+#include <utility>
+
+#include "bench/bench.h"
+#include "bench/benchmark.h"
+#include "clip.h"
+#include "commands.h"
+#include "compare/compare.h"
+#include "compare/comparison.h"
+#include "keepout/activation/registry.h"
+#include "keepout/error.h"
+#include "keepout/simd_target.h"
+#include "keepout/version.h"
+#include "machine.h"
+#include "named_mesh.h"
+#include "names.h"
+#include "number_text.h"
+#include "output_file.h"
+#include "progress.h"
+#include "record/record.h"
+#include "simulate/audit.h"
+#include "simulate/simulation.h"
+#include "simulate/simulation_json.h"
+#include "wrapped_text.h"
+
+namespace keepout::app {
+namespace {
+
+/// Where a tip went in one cycle.
+struct Move {
+  Vec3 motion;
+  Outcome outcome;
+  float microseconds;
+};
+
+/// One cycle with a fixture, or, where there is none, freely.
+Move run_cycle(std::optional<MotionConstraint>& constraint, const Vec3& tip, const Vec3& desired) {
+  if (!constraint) return {desired, Outcome::moved_freely, 0.0F};
+  StageTimes times;
+  const Step step = constraint->step({.tip = tip, .desired = desired}, times);
+  // Less than a nanometre when more was asked for is standing still.
+  const bool still = step.motion.norm() < 1e-6 && desired.norm() > 1e-3;
+  const Outcome outcome = !step.ok() || still           ? Outcome::stopped
+                          : step.status != Status::free ? Outcome::limited
+                                                        : Outcome::moved_freely;
+  return {step.motion, outcome, static_cast<float>(1e-3 * static_cast<double>(times.total()))};
+}
+
+Run run_strokes(std::string rule, std::string description,
+                std::optional<MotionConstraint>& constraint,
+                const std::vector<std::vector<Vec3>>& hand, double max_step, Audit& audit) {
+  Run run{.rule = std::move(rule), .description = std::move(description)};
+  Progress progress("simulate " + run.rule, hand.size());
+  for (const std::vector<Vec3>& goals : hand) {
+    Vec3 tip = goals.front();
+    PathAudit path(audit, tip);
+    Stroke& stroke = run.strokes.emplace_back();
+    for (const Vec3& goal : goals) {
+      const Move moved = run_cycle(constraint, tip, clipped(goal - tip, max_step));
+      tip += moved.motion;
+      if (path.follow(tip)) {
+        run.crossings.push_back({run.strokes.size() - 1, stroke.cycles.size()});
+      }
+      stroke.cycles.push_back({goal, tip, path.clearance(), moved.microseconds, moved.outcome});
+    }
+    progress.advance();
+  }
+  return run;
+}
+
+/// The fewest digits that read back exactly.
+std::string number(double value) {
+  std::array<char, 32> text;
+  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
+}
+
+std::vector<std::pair<std::string, std::string>> settings_of(const SimulateOptions& options) {
+  return {{"mesh", options.mesh.string()},
+          {"index", options.constraint.index},
+          {"solver", options.constraint.solver},
+          {"motion sphere radius", number(options.constraint.radius) + " mm"},
+          {"tool radius", number(options.constraint.tool_radius) + " mm"},
+          {"margin", number(options.constraint.margin) + " mm"},
+          {"refinements", std::to_string(options.constraint.refinements)},
+          {"branches", std::to_string(options.constraint.nodes)},
+          {"longest step asked for", number(options.max_step) + " mm"},
+          {"seed", std::to_string(options.hand.seed)},
+          {"strokes", std::to_string(options.hand.strokes)},
+          {"cycles per stroke", std::to_string(options.hand.cycles)}};
+}
+
+std::string description_of(std::string_view rule) {
+  for (const ActivationEntry& entry : activation_rules()) {
+    if (entry.name == rule) return std::string(entry.description);
+  }
+  return {};
+}
+
+/// Each once, in the order of their first mention.
+std::vector<std::string> without_repeats(const std::vector<std::string>& rules) {
+  std::vector<std::string> once;
+  for (const std::string& rule : rules) {
+    if (std::find(once.begin(), once.end(), rule) == once.end()) once.push_back(rule);
+  }
+  return once;
+}
+
+/// The hand over a mesh; an error names its file.
+std::vector<std::vector<Vec3>> hand_over(Audit& audit, const SimulateOptions& options) {
+  try {
+    return make_hand(audit, options.hand);
+  } catch (const Error& error) {
+    throw Error(options.mesh.string() + ": " + error.what());
+  }
+}
+
+struct Measured {
+  Benchmark benchmark;
+  Comparison comparison;
+};
+
+/// A quick benchmark on the same mesh; nothing, unless it was asked for.
+Measured timings_of(const SimulateOptions& options, const std::shared_ptr<const Mesh>& mesh,
+                    std::ostream& out) {
+  Measured measured;
+  if (options.timings == Timings::of_the_run) return measured;
+  const StopSignal stop;
+  run_benchmark({.command = options.command,
+                 .subjects = {{.mesh = options.mesh.string()}},
+                 .combinations = combinations_of({.radii = {5.0, 1.0}}),
+                 .queries = 1500,
+                 .seconds = 0.3},
+                stop, measured.benchmark, out);
+  if (stop.has_come()) {
+    const std::size_t rows = measured.benchmark.rows.size();
+    if (rows == 0) {
+      std::cerr
+          << "keepout: stopped before any row of the benchmark was finished: the report is of "
+             "the simulation alone\n";
+    } else {
+      std::cerr << "keepout: stopped; " << grouped(rows) << " of "
+                << counted(measured.benchmark.planned, "row")
+                << " of the benchmark were finished, and are kept in the report\n";
+    }
+    return measured;
+  }
+  measured.comparison = compare_parts(options.mesh.stem().string(), mesh,
+                                      {.poses = 12, .problems = 400, .pairs = 100},
+                                      [&stop] { return stop.has_come(); });
+  print(out, measured.comparison);
+  return measured;
+}
+
+/// The last lines on the terminal.
+void print_next(const SimulateOptions& options, std::ostream& out) {
+  const std::string mesh = shell_word(options.mesh.string());
+  out << "\nReport, with pictures, tables and settings: " << options.files.page->string() << "\n\n";
+  const auto suggest = [&](const std::string& arguments, const char* what) {
+    constexpr std::size_t column = 40;
+    std::string command = options.called_as + ' ' + arguments;
+    command.resize(std::max(command.size(), column), ' ');
+    out << "  " << command << "  # " << what << '\n';
+  };
+  out << "Try next:\n";
+  suggest("inspect " + mesh, "what the mesh is made of, and what is wrong with it");
+  suggest("verify " + mesh + " --steps 1e5", "attack the certified rule; an exact oracle judges");
+  suggest("simulate YOUR_MESH.stl", "the same on a mesh of yours, in mm");
+  suggest("--help", "all commands");
+}
+
+}  // namespace
+
+int simulate(const SimulateOptions& options, std::ostream& out) {
+  require_within_reach(options.max_step, options.constraint.radius);
+  OutputFiles outputs(std::array{NamedPath{"MESH", file_of_mesh(options.mesh)}},
+                      {{"--json", options.files.kept_json()}, {"--out", options.files.page}});
+  const LoadedMesh loaded = load_named_mesh(options.mesh, options.load);
+  // Nor a mistyped name.
+  const std::vector<std::string> rules = without_repeats(options.rules);
+  std::vector<std::pair<std::string, std::optional<MotionConstraint>>> fixtures;
+  fixtures.emplace_back(no_rule, std::nullopt);
+  for (const std::string& rule : rules) {
+    MotionConstraintSettings settings = options.constraint;
+    settings.activation = rule;
+    settings.warn = warn_on_stderr;
+    fixtures.emplace_back(rule, make_motion_constraint(loaded.mesh, settings));
+  }
+
+  Audit audit(loaded.mesh);
+  Simulation simulation{.mesh_name = options.mesh.stem().string(),
+                        .mesh = loaded.mesh.get(),
+                        .surface = audit.surface(),
+                        .margin = options.constraint.tool_radius + options.constraint.margin,
+                        .cycle_seconds = cycle_seconds,
+                        .command = options.command,
+                        .settings = settings_of(options)};
+  const std::vector<std::vector<Vec3>> hand = hand_over(audit, options);
+  for (auto& [rule, constraint] : fixtures) {
+    simulation.runs.push_back(
+        run_strokes(rule, description_of(rule), constraint, hand, options.max_step, audit));
+  }
+  // Those of the benchmark are many, and tell who does not know it of nothing but numbers.
+  std::ostream tables(options.tables == Tables::printed ? out.rdbuf() : nullptr);
+  print_table(tables, simulation);
+  const auto [benchmark, comparison] = timings_of(options, loaded.mesh, tables);
+  Json record = record_of(simulation);
+  if (!benchmark.rows.empty()) record["benchmark"] = json_of(benchmark);
+  record["comparison"] = json_of(comparison);
+  const bool complete = benchmark.rows.size() >= benchmark.planned && comparison.complete;
+  record["complete"] = complete;
+  write_record(outputs, record, options.files, std::cerr);
+  if (options.tables == Tables::printed) out << '\n';
+  print_wrapped(out, record["subject"]);
+  out << '\n';
+  print_wrapped(out, record["headline"]);
+  for (const Json& text : record["account"]) print_wrapped(out, text);
+  if (!benchmark.rows.empty()) {
+    out << "Timed as well, in the report: " << counted(benchmark.rows.size(), "combination")
+        << " of index, rule, solver and radius.\n";
+  }
+  print_next(options, out);
+  return complete ? EXIT_SUCCESS : exit_interrupted;
+}
+
+}  // namespace keepout::app

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "wrapped_text.h"
+
+#include <cstddef>
+#include <ostream>
+#include <sstream>
+
+namespace keepout::app {
+namespace {
+
+/// Not bytes: our texts are in UTF-8.
+std::size_t characters_in(const std::string& word) {
+  std::size_t width = 0;
+  for (const char c : word) width += (static_cast<unsigned char>(c) & 0xC0) != 0x80;
+  return width;
+}
+
+}  // namespace
+
+void print_wrapped(std::ostream& out, const std::string& text) {
+  constexpr std::size_t longest = 88;
+  std::istringstream words(text);
+  std::size_t width = 0;
+  for (std::string word; words >> word;) {
+    const std::size_t more = characters_in(word);
+    if (width > 0) {
+      const bool fits = width + 1 + more <= longest;
+      out << (fits ? ' ' : '\n');
+      width = fits ? width + 1 : 0;
+    }
+    out << word;
+    width += more;
+  }
+  out << '\n';
+}
+
+}  // namespace keepout::app

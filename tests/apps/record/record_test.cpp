@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "record/record.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <sstream>
+#include <string>
+
+#include "record/plain_page.h"
+
+namespace keepout::app {
+namespace {
+
+/// With names as a hostile file may have them.
+Json some_record() {
+  Json record = new_record({.kind = "bench",
+                            .command = "keepout bench --mesh '<b>&\"'",
+                            .subject = "<i>All</i> & more",
+                            .headline = "A < B",
+                            .account = {"First.", "Second."},
+                            .settings = {{"seed", "<1>"}}});
+  record["rows"] = {{{"mesh", "<lost> \"them\""}, {"triangles", 51978}, {"us", {{"p50", 1.25}}}},
+                    {{"mesh", "b"}, {"triangles", nullptr}, {"remark", "slow"}}};
+  record["series"] = {1.0, 2.0, 3.0};
+  return record;
+}
+
+TEST(Record, IsReadBackAsItWasWritten) {
+  const Json record = some_record();
+  std::ostringstream text;
+  print_json(text, record);
+  EXPECT_EQ(Json::parse(text.str()), record);
+  EXPECT_TRUE(is_record(record));
+  // A line for each row, so that two records can be compared with diff.
+  EXPECT_NE(text.str().find("\n{\"mesh\":\"b\""), std::string::npos) << text.str();
+  EXPECT_NE(text.str().find("\n\"series\": [1.0,2.0,3.0]"), std::string::npos) << text.str();
+}
+
+TEST(Record, BytesThatAreNoTextAndNumbersThatAreNoneLeaveItWhole) {
+  Json record = some_record();
+  record["name"] = "skull\xff.stl";
+  record["none"] = std::numeric_limits<double>::quiet_NaN();
+  std::ostringstream text;
+  print_json(text, record);
+  const Json read = Json::parse(text.str());
+  EXPECT_TRUE(read["none"].is_null());
+  EXPECT_EQ(read["name"], "skull\uFFFD.stl");
+}
+
+TEST(Record, WhatLacksAPartOfTheHeadIsNone) {
+  const Json head = new_record({});
+  for (const auto& member : head.items()) {
+    Json record = some_record();
+    record.erase(member.key());
+    EXPECT_FALSE(is_record(record)) << member.key();
+  }
+  Json later = some_record();
+  later["format"] = 99;
+  EXPECT_FALSE(is_record(later));
+  Json other = some_record();
+  other["keepout_record"] = "lunch";
+  EXPECT_FALSE(is_record(other));
+  Json torn = some_record();
+  torn["account"] = "one";
+  EXPECT_FALSE(is_record(torn));
+  EXPECT_FALSE(is_record(Json::array({1, 2})));
+}
+
+TEST(PlainPage, ShowsWordsAndRowsAsText) {
+  std::ostringstream out;
+  print_plain_page(out, some_record());
+  const std::string page = out.str();
+  for (const char* words :
+       {"<h1>A &lt; B</h1>", "<p>&lt;i&gt;All&lt;/i&gt; &amp; more</p>", "<p>Second.</p>",
+        "keepout bench --mesh '&lt;b&gt;&amp;&quot;'", "<td>&lt;1&gt;</td>",
+        "<th>mesh</th><th>triangles</th><th>us p50</th><th>remark</th>",
+        "<td>&lt;lost&gt; &quot;them&quot;</td><td>51,978</td><td>1.25</td><td></td>",
+        "<td>b</td><td>-</td><td></td><td>slow</td>"}) {
+    EXPECT_NE(page.find(words), std::string::npos) << words << " in " << page;
+  }
+  EXPECT_EQ(page.find("<lost>"), std::string::npos);
+  for (const char* reference : {"http", "src=", "<script", "<link"}) {
+    EXPECT_EQ(page.find(reference), std::string::npos) << reference;
+  }
+}
+
+}  // namespace
+}  // namespace keepout::app

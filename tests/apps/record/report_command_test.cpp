@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// keepout report, and what the commands do where the front end of pages is there or missing; the
+// front end is played by two files.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "apps/command_process.h"
+#include "apps/page/unpacked_page.h"
+#include "keepout/fixtures/shapes.h"
+#include "keepout/mesh/binary_stl.h"
+
+namespace keepout {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Outcome = test::ProcessOutcome;
+
+class Report : public testing::Test {
+ protected:
+  void SetUp() override {
+    write_binary_stl(folder_.file("cube.stl"), make_cube(20.0));
+    std::filesystem::create_directory(folder_.file("web"));
+    for (const char* name : {"report", "report_with_anatomy"}) {
+      folder_.write(std::string("web/") + name + ".html",
+                    std::string("<p>") + name +
+                        "</p>\n<!-- keepout report: the record goes here -->\n<p>after</p>\n");
+    }
+  }
+
+  Outcome run(const std::string& arguments, const std::string& environment = "KEEPOUT_WEB=web ") {
+    return folder_.run(arguments, "env " + environment);
+  }
+  std::string contents(const std::string& name) const {
+    std::ifstream file(folder_.file(name), std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+  /// The record in a page.
+  Json record_in(const std::string& page) const {
+    const std::string text = contents(page);
+    const std::string opening = "<script type=\"application/octet-stream\" id=\"record\">";
+    const std::size_t begin = text.find(opening) + opening.size();
+    const std::string base64 = text.substr(begin, text.find("</script>", begin) - begin);
+    const auto bytes = test::gunzipped(test::from_base64(base64));
+    return Json::parse(bytes.begin(), bytes.end());
+  }
+  void expect_refused(const std::string& arguments, const std::string& told,
+                      const std::string& environment = "KEEPOUT_WEB=web ") {
+    const Outcome outcome = run(arguments, environment);
+    EXPECT_EQ(outcome.status, 1) << outcome.output;
+    EXPECT_NE(outcome.output.find(told), std::string::npos) << outcome.output;
+  }
+
+  test::CommandFolder folder_;
+};
+
+constexpr const char* simulate =
+    "simulate cube.stl --strokes 1 --cycles 20 --activation certified --out r.html ";
+constexpr const char* without = "KEEPOUT_WEB=nowhere ";
+
+TEST_F(Report, OfACommandIsThatOfTheRecordItKept) {
+  ASSERT_EQ(run(std::string(simulate) + "--json r.json").status, 0);
+  const Json record = Json::parse(contents("r.json"));
+  EXPECT_EQ(record_in("r.html"), record);
+  const std::string page = contents("r.html");
+  EXPECT_TRUE(page.starts_with("<p>report_with_anatomy</p>\n")) << page.substr(0, 60);
+  EXPECT_TRUE(page.ends_with("<p>after</p>\n"));
+  EXPECT_FALSE(std::filesystem::exists(folder_.file("r.html.json")));
+
+  const Outcome outcome = run("report r.json --out again.html");
+  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  EXPECT_NE(outcome.output.find(record["headline"].get<std::string>()), std::string::npos);
+  EXPECT_EQ(contents("again.html"), page);
+}
+
+TEST_F(Report, WithoutItsFrontEndIsPlainAndMadeWholeLater) {
+  const Outcome outcome = run(simulate, without);
+  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  for (const char* told : {"plain page", "there is no nowhere/report_with_anatomy.html",
+                           "'keepout report r.html.json' makes the whole page"}) {
+    EXPECT_NE(outcome.output.find(told), std::string::npos) << outcome.output;
+  }
+  EXPECT_NE(contents("r.html").find("<td>certified</td>"), std::string::npos);
+  expect_refused("report r.html.json", "front end is missing", without);
+  EXPECT_NE(contents("r.html").find("<td>certified</td>"), std::string::npos) << "nothing is lost";
+  ASSERT_EQ(run("report r.html.json").status, 0);
+  EXPECT_EQ(record_in("r.html"), Json::parse(contents("r.html.json")));
+}
+
+TEST_F(Report, IsRefusedOfWhatIsNoRecord) {
+  folder_.write("none.json", "{\"rows\": []}");
+  folder_.write("cut.json", "{\"keepout_record\": \"bench\", ");
+  for (const char* file : {"none.json", "cut.json", "cube.stl"}) {
+    expect_refused(std::string("report ") + file, std::string(file) + ": is no whole record");
+  }
+  expect_refused("report nowhere.json", "nowhere.json: cannot be read");
+  folder_.write("web/report.html", "<p>of another version</p>");
+  ASSERT_EQ(run("verify cube.stl --steps 500 --json v.json").status, 0);
+  expect_refused("report v.json", "is not the front end of this keepout");
+  expect_refused("report v.json --out v.json", "is the same file");
+}
+
+TEST_F(Report, EveryCommandWritesOne) {
+  for (const std::string command :
+       {"verify cube.stl --steps 500", "compare cube.stl --poses 6 --problems 30 --pairs 10",
+        "bench --mesh cube.stl --index pd_tree --solver active_set --activation paper --queries 20 "
+        "--seconds 0.1"}) {
+    const Outcome outcome = run(command + " --json c.json --out c.html");
+    ASSERT_EQ(outcome.status, 0) << outcome.output;
+    const Json record = Json::parse(contents("c.json"));
+    EXPECT_EQ(record_in("c.html"), record) << command;
+    EXPECT_TRUE(contents("c.html").starts_with("<p>report</p>"));
+    EXPECT_EQ(record["command"], "keepout " + command + " --json c.json --out c.html");
+    // In lines of the terminal or as it is: the same words.
+    std::string printed = outcome.output, headline = record["headline"];
+    for (std::string* text : {&printed, &headline}) {
+      std::erase_if(*text, [](char c) { return c == ' ' || c == '\n'; });
+    }
+    EXPECT_NE(printed.find(headline), std::string::npos) << headline << "\n" << outcome.output;
+  }
+}
+
+}  // namespace
+}  // namespace keepout
