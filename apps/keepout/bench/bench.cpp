@@ -70,15 +70,15 @@ std::vector<NamedPath> inputs_of(const std::vector<Subject>& subjects) {
 Json record_of(const Benchmark& benchmark, const Comparison& comparison) {
   Json record =
       new_record({.kind = "bench",
-                 .date = benchmark.date,
-                 .command = benchmark.command,
-                 .complete = benchmark.rows.size() >= benchmark.planned && comparison.complete,
-                 .subject = "Search trees, activation rules and solvers, on the same motions; " +
-                            benchmark.machine.processor + ", " + benchmark.machine.simd,
-                 .headline = headline(benchmark),
-                 .account = {account(benchmark)},
-                 .machine = benchmark.machine,
-                 .settings = {{"seed", std::to_string(benchmark.seed)}}});
+                  .date = benchmark.date,
+                  .command = benchmark.command,
+                  .complete = benchmark.rows.size() >= benchmark.planned && comparison.complete,
+                  .subject = "Search trees, activation rules and solvers, on the same motions; " +
+                             benchmark.machine.processor + ", " + benchmark.machine.simd,
+                  .headline = headline(benchmark),
+                  .account = {account(benchmark)},
+                  .machine = benchmark.machine,
+                  .settings = {{"seed", std::to_string(benchmark.seed)}}});
   record["benchmark"] = json_of(benchmark);
   record["comparison"] = json_of(comparison);
   return record;

@@ -319,13 +319,10 @@ void find_in_stages(const Benchmark& benchmark, std::vector<BenchmarkFinding>& f
   for_each_mesh(rows, [&](const std::string& mesh, const Rows& on_this) {
     const Rows common = on_common_mesh(on_this);
     for (const std::optional<double>& sphere : radii(common)) {
-      const Rows there = at_radius(common, sphere);
-      const auto [hub, shown] = neighborhood(there);
-      std::string text = stage_lead(shown);
-      if (shown.size() < there.size()) {
-        text += " Shown: " + combination(*hub) + ", and all that differ from it in one part.";
-      }
-      found.push_back({About::stages, mesh, std::move(text), shown});
+      Rows there = at_radius(common, sphere);
+      std::ranges::stable_sort(
+          there, {}, [](const BenchmarkRow* row) { return median(*row, &BenchmarkRow::step); });
+      found.push_back({About::stages, mesh, stage_lead(there), there});
     }
   });
 }

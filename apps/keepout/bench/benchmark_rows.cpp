@@ -36,12 +36,6 @@ bool faster(const BenchmarkRow& a, const BenchmarkRow& b, Stage stage) {
   return median(a, stage) < median(b, stage);
 }
 
-/// In how many parts two combinations differ.
-int differences(const BenchmarkRow& a, const BenchmarkRow& b) {
-  return (a.index != b.index ? 1 : 0) + (a.activation != b.activation ? 1 : 0) +
-         (a.solver != b.solver ? 1 : 0);
-}
-
 }  // namespace
 
 Rows timed(const Benchmark& benchmark, Stage stage) {
@@ -162,23 +156,6 @@ Rows problems_of(const Rows& rows, const std::string& solver) {
     result.push_back(same[same.size() / 2]);
   }
   return result;
-}
-
-Neighborhood neighborhood(const Rows& rows) {
-  const auto near = [&](const BenchmarkRow& hub) {
-    return std::count_if(rows.begin(), rows.end(),
-                         [&](const BenchmarkRow* row) { return differences(hub, *row) <= 1; });
-  };
-  Rows sorted = rows;
-  std::stable_sort(sorted.begin(), sorted.end(), [](const BenchmarkRow* a, const BenchmarkRow* b) {
-    return faster(*a, *b, &BenchmarkRow::step);
-  });
-  const BenchmarkRow& hub = **std::max_element(
-      sorted.begin(), sorted.end(),
-      [&](const BenchmarkRow* a, const BenchmarkRow* b) { return near(*a) < near(*b); });
-  return {&hub, only(sorted, [&](const BenchmarkRow& row) {
-            return differences(hub, row) <= 1 || is(row, our_pair) || is(row, peer_pair);
-          })};
 }
 
 std::vector<Rows> rate_lines(const Rows& rows) {

@@ -67,15 +67,6 @@ Rows comparable_solvers(const Rows& rows);
 /// the one of median time. Precondition: the search for the motion was timed in all.
 Rows problems_of(const Rows& rows, const std::string& solver);
 
-/// A combination and all that differ from it in one part, so that one part at a time is compared;
-/// the pairs below besides.
-struct Neighborhood {
-  const BenchmarkRow* hub;  // of all, the one that has most others around it; of these the fastest
-  Rows rows;                // the fastest first
-};
-/// Precondition: there is a row.
-Neighborhood neighborhood(const Rows& rows);
-
 /// The combinations whose rate over the size of the mesh is worth a line, one each: under every
 /// rule ours and its peer's, or else the fastest and the slowest there are on the mesh that most
 /// have; each with the largest sphere, and the smallest mesh first. `rows`: those on one mesh.

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <array>
-#include <charconv>
 #include <ostream>
-#include <sstream>
 #include <string>
 
 #include "bench/benchmark.h"
@@ -10,6 +8,7 @@
 #include "bench/benchmark_verdict.h"
 #include "bench/published_rate.h"
 #include "number_text.h"
+#include "record/flat_rows.h"
 #include "record/json_parts.h"
 
 namespace keepout::app {
@@ -69,35 +68,6 @@ void to_json(Json& json, const BenchmarkRow& row) {
           {"verified", row.verified},
           {"remark", row.remark}};
 }
-
-namespace {
-
-/// A cell of the table: numbers with the fewest digits that read back exactly, and text, of which
-/// the name of a file may hold anything, in quotes where it has to be.
-std::string cell(const Json& value) {
-  if (value.is_null()) return "";
-  if (value.is_number_float()) {
-    std::array<char, 32> text;
-    const double number = value;
-    return {text.data(), std::to_chars(text.data(), text.data() + text.size(), number).ptr};
-  }
-  if (!value.is_string()) return value.dump();
-  const std::string text = value;
-  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
-}
-
-constexpr const char* columns =
-    "mesh,triangles,vertices,radius,queries,index,activation,solver,load_s,load_cores,build_s,"
-    "build_cores,bytes_per_triangle,candidates_mean,hits_mean,reaching_share,planes_mean,"
-    "unsolved_share,worse_share";
-constexpr std::array stages = {"collect_us",    "query_us",    "step_us",
-                               "step_query_us", "activate_us", "solve_us"};
-constexpr std::array percentiles = {"p50", "p99", "p999", "max"};
-
-}  // namespace
 
 void print_machine(std::ostream& out, const Machine& machine) {
   out << machine.processor << ", " << counted(machine.cores, "core") << ", SIMD target "
@@ -176,26 +146,16 @@ Json json_of(const Benchmark& benchmark) {
 }
 
 void write_csv(std::ostream& out, const Benchmark& benchmark) {
-  out << columns << ',';
-  for (const char* stage : stages) {
-    for (const char* percentile : percentiles) out << stage << '_' << percentile << ',';
+  Json rows = benchmark.rows;
+  for (Json& row : rows) {
+    row.erase("hashes_of_first");
+    row.update({{"date", benchmark.date},
+                {"processor", benchmark.machine.processor},
+                {"simd", benchmark.machine.simd},
+                {"keepout", benchmark.machine.keepout},
+                {"others_cores", benchmark.others_cores}});
   }
-  out << "hash,verified,remark,date,processor,simd,keepout,others_cores\n";
-  for (const BenchmarkRow& row : benchmark.rows) {
-    const Json values = row;
-    std::istringstream names(columns);
-    for (std::string column; std::getline(names, column, ',');) out << cell(values[column]) << ',';
-    for (const char* stage : stages) {
-      const Json& timing = values[stage];
-      for (const char* percentile : percentiles) {
-        out << (timing.is_null() ? "" : cell(timing[percentile])) << ',';
-      }
-    }
-    out << std::hex << row.hash << std::dec << ',' << cell(row.verified) << ',' << cell(row.remark)
-        << ',' << benchmark.date << ',' << cell(benchmark.machine.processor) << ','
-        << benchmark.machine.simd << ',' << benchmark.machine.keepout << ','
-        << cell(benchmark.others_cores) << '\n';
-  }
+  print_csv(out, flat(rows));
 }
 
 }  // namespace keepout::app

@@ -15,6 +15,7 @@
 #include "output_file.h"
 #include "plan/planning_run.h"
 #include "progress.h"
+#include "record/flat_rows.h"
 #include "stop_signal.h"
 #include "wrapped_text.h"
 
@@ -119,8 +120,8 @@ int plan(const PlanOptions& options, std::ostream& out) {
       if (!stop.has_come()) run_scene(options, where, progress, stop, runs);
     }
   }
-  if (auto* const csv = outputs.stream("--csv")) write_planning_csv(*csv, runs);
   const Json record = record_of(options, scenes, runs, !stop.has_come());
+  if (auto* const csv = outputs.stream("--csv")) print_csv(*csv, flat(record["runs"]));
   write_record(outputs, record, options.files, std::cerr);
   print_wrapped(out, record["subject"]);
   for (const Json& text : record["account"]) print_wrapped(out, text);

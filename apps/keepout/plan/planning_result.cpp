@@ -5,7 +5,6 @@
 #include <iomanip>
 #include <limits>
 #include <ostream>
-#include <sstream>
 #include <utility>
 
 #include "machine.h"
@@ -55,14 +54,6 @@ PlanningSummary summary(const std::vector<const PlanningRun*>& runs) {
   return row;
 }
 
-/// A name as a field of CSV: in quotes where it must be.
-std::string field(const std::string& name) {
-  if (name.find_first_of(",\"\n") == std::string::npos) return name;
-  std::string quoted = "\"";
-  for (const char c : name) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + '"';
-}
-
 Json entry_of(const PlanningRun& run) {
   Json entry{{"mesh", run.mesh},
              {"problem", run.problem.number},
@@ -91,18 +82,6 @@ Json entry_of(const PlanningRun& run) {
     for (const Vec3& point : length) points.push_back(json_of(point));
   }
   return entry;
-}
-
-/// A value as a field of CSV; empty where there is none.
-std::string field(const Json& entry, const char* key) {
-  if (!entry.contains(key)) return "";
-  const Json& value = entry[key];
-  if (value.is_string()) return field(value.get<std::string>());
-  if (value.is_boolean()) return value.get<bool>() ? "1" : "0";
-  if (value.is_number_integer()) return value.dump();
-  std::ostringstream text;
-  text << std::setprecision(9) << value.get<double>();
-  return text.str();
 }
 
 /// A row of a table: solved, valid, enters, clearance, seconds, checking, checks and length.
@@ -230,15 +209,15 @@ Json record_of(const PlanOptions& options, const std::vector<PlanningScene>& sce
                const std::vector<PlanningRun>& runs, bool complete) {
   Json record =
       new_record({.kind = "plan",
-                 .command = options.command,
-                 .complete = complete,
-                 .subject = "Plans through anatomy, judged by an exact oracle: " + lead(options) +
-                            (options.simplify ? ", simplified" : ""),
-                 .headline = headline(runs),
-                 .account = {"The sliding checker has a planner of its own, "
-                             "SlidingConnect. Valid is a path whose whole way keeps the "
-                             "clearance."},
-                 .machine = this_machine()});
+                  .command = options.command,
+                  .complete = complete,
+                  .subject = "Plans through anatomy, judged by an exact oracle: " + lead(options) +
+                             (options.simplify ? ", simplified" : ""),
+                  .headline = headline(runs),
+                  .account = {"The sliding checker has a planner of its own, "
+                              "SlidingConnect. Valid is a path whose whole way keeps the "
+                              "clearance."},
+                  .machine = this_machine()});
   record["seed"] = options.seed;
   record["planner"] = options.planner;
   record["seconds_allowed"] = options.seconds;
@@ -271,20 +250,6 @@ Json record_of(const PlanOptions& options, const std::vector<PlanningScene>& sce
   }
   for (const PlanningRun& run : runs) record["runs"].push_back(entry_of(run));
   return record;
-}
-
-void write_planning_csv(std::ostream& out, const std::vector<PlanningRun>& runs) {
-  constexpr std::array columns{"mesh",         "problem",   "checker",          "planner",
-                               "solved",       "seconds",   "checking_seconds", "checks",
-                               "valid",        "enters",    "bad_pieces",       "pieces",
-                               "clearance_mm", "length_mm", "straight_mm",      "detour"};
-  for (const char* column : columns) out << (column == columns.front() ? "" : ",") << column;
-  for (const PlanningRun& run : runs) {
-    const Json entry = entry_of(run);
-    char before = '\n';
-    for (const char* column : columns) out << std::exchange(before, ',') << field(entry, column);
-  }
-  out << '\n';
 }
 
 }  // namespace keepout::app

@@ -123,7 +123,6 @@ std::vector<PlanningSummary> summaries(const std::vector<PlanningRun>& runs);
 std::string headline(const std::vector<PlanningRun>& runs);
 
 void print_table(std::ostream& out, const std::vector<PlanningSummary>& rows);
-void write_planning_csv(std::ostream& out, const std::vector<PlanningRun>& runs);
 
 /// The record of it: see docs/records.md. `complete`: it was not stopped.
 Json record_of(const PlanOptions& options, const std::vector<PlanningScene>& scenes,

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "record/plain_page.h"
 
-#include <algorithm>
 #include <ostream>
-#include <utility>
 #include <vector>
 
 #include "number_text.h"
+#include "record/flat_rows.h"
 
 namespace keepout::app {
 namespace {
@@ -35,58 +34,28 @@ std::string cell_text(const Json& value) {
   return value.is_number() ? trimmed(value.get<double>()) : value.dump();
 }
 
-using Cells = std::vector<std::pair<std::string, Json>>;
-
-/// What of an object can be told in one row; objects within have their members there too.
-void add_cells(const Json& object, const std::string& before, Cells& cells) {
-  for (const auto& [key, value] : object.items()) {
-    if (value.is_object()) {
-      add_cells(value, before + key + ' ', cells);
-    } else if (value.is_primitive()) {
-      cells.emplace_back(before + key, value);
-    }
-  }
-}
-
-void print_table(std::ostream& out, const std::string& title, const Json& rows) {
-  std::vector<std::string> columns;
-  std::vector<Cells> lines;
-  for (const Json& row : rows) {
-    add_cells(row, "", lines.emplace_back());
-    for (const auto& [name, value] : lines.back()) {
-      if (std::ranges::find(columns, name) == columns.end()) columns.push_back(name);
-    }
-  }
+void print_table(std::ostream& out, const std::string& title, const FlatRows& table) {
   out << "<h2>" << escaped(title) << "</h2>\n<div class=\"scroll\"><table><thead><tr>";
-  for (const std::string& column : columns) out << "<th>" << escaped(column) << "</th>";
+  for (const std::string& column : table.columns) out << "<th>" << escaped(column) << "</th>";
   out << "</tr></thead>\n<tbody>\n";
-  for (const Cells& cells : lines) {
+  for (const std::vector<Json>& row : table.rows) {
     out << "<tr>";
-    for (const std::string& column : columns) {
-      const auto cell = std::ranges::find(cells, column, &std::pair<std::string, Json>::first);
-      out << "<td>" << (cell == cells.end() ? "" : escaped(cell_text(cell->second))) << "</td>";
-    }
+    for (const Json& cell : row) out << "<td>" << escaped(cell_text(cell)) << "</td>";
     out << "</tr>\n";
   }
   out << "</tbody></table></div>\n";
 }
 
+/// What is an array of objects is a table; so are the plain members of an object.
 void print_member(std::ostream& out, const std::string& name, const Json& value) {
   if (value.is_array() && !value.empty() && value.front().is_object()) {
-    print_table(out, name, value);
+    print_table(out, name, flat(value));
   } else if (value.is_object() && !value.contains("packed")) {
-    Cells cells;
+    Json plain = Json::array();
     for (const auto& [key, member] : value.items()) {
-      if (member.is_primitive()) cells.emplace_back(key, member);
+      if (member.is_primitive()) plain.push_back({{"", key}, {"value", member}});
     }
-    if (!cells.empty()) {
-      out << "<h2>" << escaped(name) << "</h2>\n<table>";
-      for (const auto& [key, member] : cells) {
-        out << "<tr><th>" << escaped(key) << "</th><td>" << escaped(cell_text(member))
-            << "</td></tr>\n";
-      }
-      out << "</table>\n";
-    }
+    if (!plain.empty()) print_table(out, name, flat(plain));
     for (const auto& [key, member] : value.items()) print_member(out, name + ", " + key, member);
   }
 }

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "bench/benchmark.h"
-#include "compare/comparison.h"
 
 namespace keepout::app {
 
@@ -147,62 +146,6 @@ inline Benchmark made_up_benchmark(const std::vector<std::size_t>& sizes = {5197
     row.remark = "missed 3 triangles & <lost> \"them\": its ids have 21 bits";
   }
   return benchmark;
-}
-
-inline Comparison made_up_comparison() {
-  Comparison comparison;
-  for (const MadeUpIndex& index : made_up_indices()) {
-    const bool lossy = std::string(index.name) == "bullet_quantised";
-    comparison.indices.push_back({.mesh = "bunny",
-                                  .index = index.name,
-                                  .activation = "paper",
-                                  .poses = 10000,
-                                  .missed = lossy ? 3U : 0U,
-                                  .closest_point_error = 2.3e-14,
-                                  .plane_angle = lossy ? 0.0123 : 0.0,
-                                  .step_difference = lossy ? 4.5e-3 : 0.0,
-                                  .steps_that_differ = lossy ? 2U : 0U});
-  }
-  for (const MadeUpSolver& solver : made_up_solvers()) {
-    const std::string name = solver.name;
-    const bool vague = name.starts_with("nlopt");
-    comparison.solvers.push_back(
-        {.solver = name,
-         .activation = "paper",
-         .problems = 5000,
-         .optimal = vague ? 4881U : 4900U,
-         .infeasible = 100,
-         .gave_up = vague ? 12U : 0U,
-         .wrong = vague ? 7U : 0U,
-         .step_difference = name == "active_set" ? 0.0 : 3.2e-9,
-         .kkt_residual = vague ? 8.1e-7 : 4.4e-16,
-         .median_us = solver.base + 30 * solver.per_plane,
-         .p99_us = solver.base + 700 * solver.per_plane,
-         .outcomes =
-             vague ? std::map<std::string, std::size_t>{{"XTOL_REACHED, optimal", 4700},
-                                                        {"ROUNDOFF_LIMITED, optimal", 181},
-                                                        {"FAILURE, infeasible", 100},
-                                                        {"XTOL_REACHED, <wrong> & \"so\"", 7},
-                                                        {"MAXEVAL_REACHED", 12}}
-                   : std::map<std::string, std::size_t>{{"optimal", 4900}, {"infeasible", 100}}});
-  }
-  for (const char* backend : {"exact", "libccd_gjk", "fcl_gjk", "bullet_gjk"}) {
-    const bool exact = std::string(backend) == "exact";
-    for (const char* relation : {"apart", "touching", "overlapping"}) {
-      const bool touching = std::string(relation) == "touching";
-      comparison.narrow_phases.push_back({.backend = backend,
-                                          .tool = "capsule",
-                                          .relation = relation,
-                                          .pairs = 10000,
-                                          .failed = exact || !touching ? 0U : 14U,
-                                          .contradicted = exact || !touching ? 0U : 1203U,
-                                          .median_error = exact ? 0.0 : 3.1e-9,
-                                          .worst_error = exact ? 2e-15 : 0.031,
-                                          .median_us = exact ? 0.08 : 1.4,
-                                          .p99_us = exact ? 0.15 : 6.2});
-    }
-  }
-  return comparison;
 }
 
 }  // namespace keepout::app

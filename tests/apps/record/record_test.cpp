@@ -7,6 +7,7 @@
 #include <sstream>
 #include <string>
 
+#include "record/flat_rows.h"
 #include "record/plain_page.h"
 
 namespace keepout::app {
@@ -73,16 +74,24 @@ TEST(PlainPage, ShowsWordsAndRowsAsText) {
   const std::string page = out.str();
   for (const char* words :
        {"<h1>A &lt; B</h1>", "<p>&lt;i&gt;All&lt;/i&gt; &amp; more</p>", "<p>Second.</p>",
-        "keepout bench --mesh '&lt;b&gt;&amp;&quot;'", "<td>&lt;1&gt;</td>",
-        "<th>mesh</th><th>triangles</th><th>us p50</th><th>remark</th>",
-        "<td>&lt;lost&gt; &quot;them&quot;</td><td>51,978</td><td>1.25</td><td></td>",
-        "<td>b</td><td>-</td><td></td><td>slow</td>"}) {
+        "keepout bench --mesh '&lt;b&gt;&amp;&quot;'", "<td>seed</td><td>&lt;1&gt;</td>",
+        "<th>mesh</th><th>triangles</th><th>us_p50</th><th>remark</th>",
+        "<td>&lt;lost&gt; &quot;them&quot;</td><td>51,978</td><td>1.25</td><td>-</td>",
+        "<td>b</td><td>-</td><td>-</td><td>slow</td>"}) {
     EXPECT_NE(page.find(words), std::string::npos) << words << " in " << page;
   }
   EXPECT_EQ(page.find("<lost>"), std::string::npos);
   for (const char* reference : {"http", "src=", "<script", "<link"}) {
     EXPECT_EQ(page.find(reference), std::string::npos) << reference;
   }
+}
+
+TEST(FlatRows, AsCsvKeepEveryDigitAndQuoteWhatMustBe) {
+  std::ostringstream out;
+  const Json rows = {{{"a", 0.1}, {"b", nullptr}, {"z", 1e-17}, {"e", {1, 2}}},
+                     {{"a", 3}, {"b", {{"c", true}, {"d", nullptr}}}, {"f", "x, \"y\""}}};
+  print_csv(out, flat(rows));
+  EXPECT_EQ(out.str(), "a,b_c,f,z\n0.1,,,1e-17\n3,true,\"x, \"\"y\"\"\",\n");
 }
 
 }  // namespace

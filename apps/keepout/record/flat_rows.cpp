@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "record/flat_rows.h"
+
+#include <algorithm>
+#include <ostream>
+#include <utility>
+
+namespace keepout::app {
+namespace {
+
+using Cells = std::vector<std::pair<std::string, Json>>;
+
+void add_cells(const Json& object, const std::string& before, Cells& cells) {
+  for (const auto& [key, value] : object.items()) {
+    if (value.is_object()) add_cells(value, before + key + '_', cells);
+    if (value.is_primitive()) cells.emplace_back(before + key, value);
+  }
+}
+
+/// Each name once; one that a row before has not stands behind the one that precedes it here.
+void add_columns(const Cells& cells, std::vector<std::string>& columns) {
+  std::size_t at = 0;
+  for (const auto& [name, value] : cells) {
+    const auto known = std::ranges::find(columns, name);
+    if (known != columns.end()) {
+      at = static_cast<std::size_t>(known - columns.begin()) + 1;
+    } else if (!value.is_null()) {
+      columns.insert(columns.begin() + static_cast<std::ptrdiff_t>(at++), name);
+    }
+  }
+}
+
+std::string csv_cell(const Json& value) {
+  if (value.is_null()) return "";
+  const std::string text = plain(value);
+  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + '"';
+}
+
+}  // namespace
+
+FlatRows flat(const Json& rows) {
+  FlatRows table;
+  std::vector<Cells> lines;
+  for (const Json& row : rows) {
+    add_cells(row, "", lines.emplace_back());
+    add_columns(lines.back(), table.columns);
+  }
+  for (const Cells& cells : lines) {
+    std::vector<Json>& row = table.rows.emplace_back();
+    for (const std::string& column : table.columns) {
+      const auto cell = std::ranges::find(cells, column, &std::pair<std::string, Json>::first);
+      row.push_back(cell == cells.end() ? Json() : cell->second);
+    }
+  }
+  return table;
+}
+
+void print_csv(std::ostream& out, const FlatRows& table) {
+  const auto print_line = [&](const auto& cells, const auto& text) {
+    const char* between = "";
+    for (const auto& cell : cells) out << std::exchange(between, ",") << text(cell);
+    out << '\n';
+  };
+  print_line(table.columns, [](const std::string& name) { return name; });
+  for (const std::vector<Json>& row : table.rows) print_line(row, csv_cell);
+}
+
+}  // namespace keepout::app
