@@ -75,9 +75,9 @@ TEST(PlainPage, ShowsWordsAndRowsAsText) {
   for (const char* words :
        {"<h1>A &lt; B</h1>", "<p>&lt;i&gt;All&lt;/i&gt; &amp; more</p>", "<p>Second.</p>",
         "keepout bench --mesh '&lt;b&gt;&amp;&quot;'", "<td>seed</td><td>&lt;1&gt;</td>",
-        "<th>mesh</th><th>triangles</th><th>us_p50</th><th>remark</th>",
-        "<td>&lt;lost&gt; &quot;them&quot;</td><td>51,978</td><td>1.25</td><td>-</td>",
-        "<td>b</td><td>-</td><td>-</td><td>slow</td>"}) {
+        "<th>mesh</th><th>triangles</th><th>remark</th><th>us_p50</th>",
+        "<td>&lt;lost&gt; &quot;them&quot;</td><td>51,978</td><td>-</td><td>1.25</td>",
+        "<td>b</td><td>-</td><td>slow</td><td>-</td>"}) {
     EXPECT_NE(page.find(words), std::string::npos) << words << " in " << page;
   }
   EXPECT_EQ(page.find("<lost>"), std::string::npos);
