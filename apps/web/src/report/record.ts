@@ -67,3 +67,7 @@ export function valueAt<T>(pointer: string): T | undefined {
   }
   return value as T | undefined;
 }
+
+/** Where the entries of an array, or the members of an object, are in the record. */
+export const entries = (pointer: string): string[] =>
+  Object.keys(valueAt<object>(pointer) ?? {}).map((key) => below(pointer, key));

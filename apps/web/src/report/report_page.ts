@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import { type ReportRecord, readRecord, recordText, valueAt } from "./record.ts";
-import { make, paragraphs, rounded, show, shown, shownEntries } from "./shown.ts";
+import { make, paragraphs, rounded, show, shown, shownMembers, shownWhole } from "./shown.ts";
 
 /** What a page shows between its headline and its machine. */
 export type Sections = (main: HTMLElement, record: ReportRecord) => void | Promise<void>;
@@ -60,9 +60,7 @@ export function machineFacts(pointer: string): HTMLElement[] {
     const from = `${pointer}/${key}`;
     const value = valueAt<unknown>(from);
     if (!value) return [];
-    const content = Array.isArray(value)
-      ? value.flatMap((_, i) => [...(i > 0 ? [", "] : []), shown(`${from}/${i}`)])
-      : [shown(from, format as typeof gibibytes | undefined)];
+    const content = format ? [shown(from, format as typeof gibibytes)] : shownWhole(from);
     return [make("dt", {}, name as string), make("dd", {}, ...content)];
   });
 }
@@ -88,7 +86,7 @@ function circumstances(record: ReportRecord): HTMLElement {
       "div",
       { class: "panels wide", style: "--columns:2" },
       make("figure", {}, make("dl", {}, ...facts)),
-      make("figure", {}, make("dl", {}, ...shownEntries("/settings"))),
+      make("figure", {}, make("dl", {}, ...shownMembers("/settings"))),
     ),
     make("div", { class: "command" }, show(make("code"), "/command"), copy),
     make("p", { class: "saving" }, save),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /** How values of the record are shown: each element says from where in the record its text is. */
-import { lastKey, valueAt } from "./record.ts";
+import { entries, lastKey, valueAt } from "./record.ts";
 
 /** An element with attributes and what is in it. Text is never taken for HTML. */
 export function make<Tag extends keyof HTMLElementTagNameMap>(
@@ -96,17 +96,26 @@ export function shownName(pointer: string): HTMLSpanElement {
   return make("span", { "data-from": pointer, "data-name": "" }, lastKey(pointer));
 }
 
-/** Names and values of an object of the record, for people. */
-export function shownEntries(pointer: string): HTMLElement[] {
-  const object = valueAt<Readonly<Record<string, unknown>>>(pointer) ?? {};
-  return Object.keys(object).flatMap((key) => {
-    const from = `${pointer}/${key.replaceAll("~", "~0").replaceAll("/", "~1")}`;
-    return [make("dt", {}, shownName(from)), show(make("dd"), from)];
-  });
+/** All that is at a pointer, whatever it is, in full: names and values, and lists of them. */
+export function shownWhole(pointer: string): Node[] {
+  const value = valueAt<unknown>(pointer);
+  if (Array.isArray(value)) {
+    return entries(pointer).flatMap((entry, i) => [
+      ...(i > 0 ? [document.createTextNode(", ")] : []),
+      ...shownWhole(entry),
+    ]);
+  }
+  if (value === null || typeof value !== "object") return [shown(pointer, String)];
+  return [make("dl", {}, ...shownMembers(pointer))];
 }
+
+/** Names and values of an object of the record, for a list of definitions. */
+export const shownMembers = (pointer: string): HTMLElement[] =>
+  entries(pointer).flatMap((entry) => [
+    make("dt", {}, shownName(entry)),
+    make("dd", {}, ...shownWhole(entry)),
+  ]);
 
 /** The paragraphs that the record has in an array of texts. */
 export const paragraphs = (pointer: string, name: string): HTMLElement[] =>
-  (valueAt<readonly string[]>(pointer) ?? []).map((_, i) =>
-    show(make("p", { class: name }), `${pointer}/${i}`),
-  );
+  entries(pointer).map((entry) => show(make("p", { class: name }), entry));

@@ -14,15 +14,18 @@ export interface Column {
   readonly content?: (row: string) => readonly (Node | string)[];
 }
 
-/** A table whose rows are in the record, sorted by whichever heading is pressed. */
+/**
+ * A table of rows that are in the record, at these pointers, sorted by whichever heading is pressed;
+ * below it those of `totals`, which stay there.
+ */
 export function table(
-  base: string,
-  rows: readonly number[],
+  rows: readonly string[],
   columns: readonly Column[],
+  totals: readonly string[] = [],
 ): HTMLTableElement {
   const body = make("tbody");
   const heads = columns.map((column) => heading(column));
-  const lines = rows.map((row) => line(`${base}/${row}`, columns));
+  const lines = rows.map((row) => line(row, columns));
   body.append(...lines.map(({ element }) => element));
 
   heads.forEach((head, place) => {
@@ -40,7 +43,8 @@ export function table(
       body.append(...sorted.map(({ element }) => element));
     });
   });
-  return make("table", {}, make("thead", {}, make("tr", {}, ...heads)), body);
+  const foot = make("tfoot", {}, ...totals.map((row) => line(row, columns).element));
+  return make("table", {}, make("thead", {}, make("tr", {}, ...heads)), body, foot);
 }
 
 /** A table that scrolls sideways where the page is narrow; by keyboard too. */
