@@ -8,32 +8,24 @@ import {
   combination,
   type FindingGroup,
   hasSizes,
+  nameOf,
+  type Rate,
   shownCombination,
-  shownSphere,
 } from "./benchmark_rows.ts";
-import { benchmarkTable } from "./benchmark_table.ts";
-import {
-  barInRow,
-  chart,
-  inRow,
-  Legend,
-  type Look,
-  logarithmic,
-  looksOf,
-  rowPlot,
-  tickText,
-  tipOf,
-} from "./charts.ts";
+import { benchmarkTable, columnsOf } from "./benchmark_table.ts";
+import { Legend, type Look, logarithmic, looksOf, tickText, tipOfColumns } from "./charts.ts";
 import { choice } from "./choice.ts";
 import { comparisonSections } from "./comparison.ts";
-import { entries, valueAt } from "./record.ts";
-import { lead, section } from "./report_page.ts";
+import { curves } from "./curves.ts";
+import { entries, type Timing, valueAt } from "./record.ts";
+import { lead, panel, panels, section } from "./report_page.ts";
+import { barInRow, inRow, rowChart } from "./row_chart.ts";
 import {
   grouped,
   inUnit,
   make,
-  mean,
   microseconds,
+  paragraphs,
   rounded,
   show,
   shown,
@@ -43,400 +35,238 @@ import {
 /** Those of the benchmark and of the comparison at these pointers, as far as there are such. */
 export function benchmarkSections(from: string, comparisonFrom: string): HTMLElement[] {
   const benchmark = new BenchmarkRecord(from);
-  const middle = comparisonSections(comparisonFrom);
-  if (benchmark.rows.length === 0) return middle;
-  const indices = looksOf(benchmark.rows.map(({ index }) => index));
-  const solvers = looksOf(benchmark.rows.map(({ solver }) => solver));
+  const { rows } = benchmark;
+  const comparison = comparisonSections(comparisonFrom);
+  if (rows.length === 0) return comparison;
+  const isPart = valueAt("/keepout_record") !== "bench";
+  const indices = looksOf(rows.map(({ index }) => index));
   return [
+    ...(isPart ? [show(make("h2", { class: "part" }), `${from}/headline`)] : []),
+    ...(isPart ? paragraphs(`${from}/account`, "account") : []),
     ...querySection(benchmark, indices),
     ...rateSection(benchmark),
-    ...solverSection(benchmark, solvers),
+    ...solverSection(benchmark),
     ...stageSection(benchmark),
     ...costSection(benchmark, indices),
-    ...middle,
+    ...comparison,
     benchmarkTable(benchmark),
     benchmarkMethod(benchmark),
   ];
 }
 
-const panels = (...figures: readonly HTMLElement[]): HTMLElement =>
-  make("div", { class: "panels wide charts", style: `--columns:${figures.length}` }, ...figures);
-
-function panel(title: readonly (Node | string)[], ...content: readonly Node[]): HTMLElement {
-  const caption = make("figcaption", {}, make("span", { class: "name" }, ...title));
-  return make("figure", { class: "measured" }, ...(title.length > 0 ? [caption] : []), ...content);
+/** What is to be seen in some findings. */
+interface Topic {
+  readonly about: string;
+  readonly title: string;
+  readonly words: readonly (Node | string)[];
+  /** Whether each motion sphere is by itself. */
+  readonly apart?: boolean;
+  readonly legend?: Legend;
+  readonly draw: (rows: readonly BenchmarkRow[]) => readonly HTMLElement[];
 }
 
-/** What was found, group by group, each under its texts and with what draws it. */
-function groups(
-  found: readonly FindingGroup[],
-  label: (first: BenchmarkRow) => readonly (Node | string)[],
-  draw: (group: FindingGroup) => readonly HTMLElement[],
-): HTMLElement[] {
-  return choice(
-    "Shown:",
-    found.flatMap((group) => {
-      const first = group.rows[0];
-      if (!first) return [];
-      const texts =
-        group.texts.length === 1
-          ? group.texts.map((text) => show(make("p", { class: "lead" }), text))
-          : [make("ul", { class: "lead" }, ...group.texts.map((text) => show(make("li"), text)))];
-      return [{ label: label(first), content: make("div", {}, ...texts, ...draw(group)) }];
-    }),
-  );
-}
-
-/** Which mesh, where there are several, and which sphere, where each is by itself. */
-function nameOf(found: readonly FindingGroup[], first: BenchmarkRow, apart: boolean) {
-  const meshes = new Set(found.map(({ rows }) => rows[0]?.mesh));
-  const mesh = meshes.size > 1 || !apart ? [shown(`${first.from}/mesh`)] : [];
-  const sphere = apart ? shownSphere(first) : [];
-  return [...mesh, ...(mesh.length > 0 && apart ? [", "] : []), ...sphere];
-}
-
-const timeFacts = (row: BenchmarkRow, key: string, name: string): (readonly [string, Node])[] => [
-  [`${name}, median`, shown(`${row.from}/${key}/p50`, microseconds)],
-  ["99 %", shown(`${row.from}/${key}/p99`, microseconds)],
-];
-
-const sizeFact = (row: BenchmarkRow): readonly [string, Node] => [
-  "triangles",
-  shown(`${row.from}/triangles`, grouped),
-];
-
-function querySection(benchmark: BenchmarkRecord, looks: ReadonlyMap<string, Look>): HTMLElement[] {
-  const found = benchmark.found("queries", true);
+/** A section of findings, mesh by mesh, each under its texts and with what draws its rows. */
+function topicSection(benchmark: BenchmarkRecord, topic: Topic): HTMLElement[] {
+  const { about, title, words, apart = false, legend, draw } = topic;
+  const found = benchmark.found(about, apart);
   if (found.length === 0) return [];
-  const legend = new Legend(looks, nameShown(benchmark, "index"));
-  const remarks = entries(`${benchmark.from}/remarks`).map((remark) =>
-    lead(shownName(remark), ": ", shown(remark)),
-  );
-  const isCurve = found.some(({ rows }) => hasSizes(rows));
-  return [
-    section(
-      "Which index finds the triangles fastest",
-      lead(
-        "The same work for every index, apart from the step: all triangles where the rule looks, by " +
-          "the exact test, with their closest points, sorted. Candidates only is what the index " +
-          "proposes, before that." +
-          (isCurve
-            ? ""
-            : " Filled: the median of the whole query, and a line to its 99 %; open: the median of " +
-              "the candidates only."),
-      ),
-      ...remarks,
-      legend.element,
-      ...groups(
-        found,
-        (first) => nameOf(found, first, true),
-        ({ rows }) => [
-          hasSizes(rows)
-            ? panels(
-                panel(["The whole query"], queryLines(rows, "query_us", "query [µs]", legend)),
-                panel(
-                  ["Candidates only"],
-                  queryLines(rows, "collect_us", "candidates only [µs]", legend),
-                ),
-              )
-            : panels(panel([], queryRows(rows, legend))),
-        ],
-      ),
-    ),
-  ];
+  const texts = ({ texts: [first = "", ...others] }: FindingGroup) =>
+    others.length === 0
+      ? show(lead(), first)
+      : make("ul", { class: "lead" }, ...[first, ...others].map((one) => show(make("li"), one)));
+  const choices = found.map((group) => ({
+    label: nameOf(group.rows, apart),
+    content: make("div", {}, texts(group), ...draw(group.rows)),
+  }));
+  const legends = legend ? [legend.element] : [];
+  return [section(title, lead(...words), ...legends, ...choice("Shown:", choices))];
 }
+
+const median = (timing: Timing | null): number => timing?.p50 ?? Number.NaN;
 
 /** What stands in a legend for a name: that of the first row that has it. */
-const nameShown =
-  (benchmark: BenchmarkRecord, part: "index" | "solver") =>
-  (name: string): Node => {
-    const row = benchmark.rows.find((one) => one[part] === name);
-    return row ? shown(`${row.from}/${part}`) : document.createTextNode(name);
-  };
+const nameShown = (rows: readonly BenchmarkRow[], part: "index" | "solver") => (name: string) =>
+  shown(`${rows.find((row) => row[part] === name)?.from}/${part}`);
 
 const queryTip = (row: BenchmarkRow): HTMLElement[] =>
-  tipOf(
+  tipOfColumns(
     [shown(`${row.from}/index`)],
-    [
-      sizeFact(row),
-      ...timeFacts(row, "query_us", "query"),
-      ["candidates only", shown(`${row.from}/collect_us/p50`, microseconds)],
-      ["hits, mean", shown(`${row.from}/hits_mean`, mean)],
-    ],
+    row.from,
+    columnsOf(
+      "/triangles",
+      "/radius",
+      "/query_us/p50",
+      "/query_us/p99",
+      "/collect_us/p50",
+      "/hits_mean",
+    ),
   );
 
-/** Lines through the marks of each series, on two logarithmic axes. */
-function linesWithMarks(
-  rows: readonly BenchmarkRow[],
-  name: (row: BenchmarkRow) => string,
-  look: (name: string) => Look,
-  [x, y]: readonly [(row: BenchmarkRow) => number, (row: BenchmarkRow) => number],
-): Plot.Markish[] {
-  const sorted = [...rows].sort((a, b) => x(a) - x(b));
-  const color = (row: BenchmarkRow) => look(name(row)).color;
-  const symbol = (row: BenchmarkRow) => look(name(row)).symbol as string;
-  return [
-    Plot.line(sorted, { x, y, z: name, stroke: color, strokeWidth: 2 }),
-    Plot.dot(sorted, { x, y, symbol, fill: color, stroke: "var(--card)", r: 4.5 }),
-    Plot.dot(sorted, Plot.pointer({ x, y, stroke: "var(--ink)", strokeWidth: 2, r: 9 })),
-  ];
-}
-
-function queryLines(
-  rows: readonly BenchmarkRow[],
-  stage: "query_us" | "collect_us",
-  label: string,
-  legend: Legend,
-): HTMLElement {
-  const timed = rows.filter((row) => row[stage] !== null);
-  const axes = [
-    (row: BenchmarkRow) => row.triangles,
-    (row: BenchmarkRow) => row[stage]?.p50 ?? 0,
-  ] as const;
-  return chart({
-    description: `Median of the ${label} against the number of triangles, for each index`,
+function querySection(benchmark: BenchmarkRecord, looks: ReadonlyMap<string, Look>): HTMLElement[] {
+  const legend = new Legend(looks, nameShown(benchmark.rows, "index"));
+  const remarks = entries(`${benchmark.from}/remarks`).flatMap((remark) => [
+    make("br"),
+    shownName(remark),
+    ": ",
+    shown(remark),
+  ]);
+  const lines = (rows: readonly BenchmarkRow[], stage: "query_us" | "collect_us", label: string) =>
+    curves({
+      description: `Median of the ${label} against the number of triangles, for each index`,
+      data: rows,
+      series: ({ index }) => index,
+      x: ["triangles", ({ triangles }) => triangles],
+      y: [`${label} [µs]`, (row) => median(row[stage])],
+      legend,
+      tip: queryTip,
+    });
+  return topicSection(benchmark, {
+    about: "queries",
+    title: "Which index finds the triangles fastest",
+    words: [
+      "The same work for every index, apart from the step: all triangles where the rule looks, by the " +
+        "exact test, with their closest points, sorted. Candidates only is what the index proposes, " +
+        "before that.",
+      ...remarks,
+    ],
+    apart: true,
     legend,
-    tip: queryTip,
-    draw: () => ({
-      height: 400,
-      marginLeft: 48,
-      inset: 7,
-      x: logarithmic("triangles", timed.map(axes[0])),
-      y: logarithmic(label, timed.map(axes[1])),
-      marks: linesWithMarks(
-        timed.filter(({ index }) => legend.shows(index)),
-        ({ index }) => index,
-        legend.look,
-        axes,
-      ),
-    }),
+    draw: (rows) =>
+      hasSizes(rows)
+        ? [
+            panels(
+              panel("The whole query", lines(rows, "query_us", "query")),
+              panel("Candidates only", lines(rows, "collect_us", "candidates only")),
+            ),
+          ]
+        : [
+            lead(
+              "Filled: the median of the whole query, and a line to its 99 %; open: the median of the " +
+                "candidates only.",
+            ),
+            panels(panel("", queryRows(rows, legend))),
+          ],
   });
 }
 
 function queryRows(rows: readonly BenchmarkRow[], legend: Legend): HTMLElement {
-  const sorted = [...rows].sort((a, b) => (a.query_us?.p50 ?? 0) - (b.query_us?.p50 ?? 0));
-  const reach = (row: BenchmarkRow) => row.query_us?.p99 ?? row.query_us?.p50 ?? 0;
-  const all = rows.flatMap((row) => [row.collect_us?.p50 ?? 0, row.query_us?.p50 ?? 0, reach(row)]);
-  const color = (row: BenchmarkRow) => legend.look(row.index).color;
-  const symbol = (row: BenchmarkRow) => legend.look(row.index).symbol as string;
-  return chart({
+  const last = ({ query_us }: BenchmarkRow) => query_us?.p99 ?? median(query_us);
+  const first = ({ collect_us }: BenchmarkRow) => median(collect_us);
+  const middle = ({ query_us }: BenchmarkRow) => median(query_us);
+  return rowChart({
     description: "Median time of a query and its 99 %, for each index, the fastest first",
+    data: [...rows].sort((a, b) => middle(a) - middle(b)),
+    series: ({ index }) => index,
     legend,
     tip: queryTip,
-    draw: () => {
-      const seen = sorted.filter(({ index }) => legend.shows(index));
-      const place = { y: (_: BenchmarkRow, i: number) => i, ...inRow };
-      return rowPlot(
-        seen,
-        {
-          name: ({ from }) => [{ from: `${from}/index` }],
-          value: ({ from }) => [{ from: `${from}/query_us/p50`, format: microseconds }],
-        },
-        logarithmic("query [µs]", all),
-        [
-          Plot.link(seen, {
-            x1: (row: BenchmarkRow) => row.query_us?.p50,
-            x2: reach,
-            y1: place.y,
-            y2: place.y,
-            dy: inRow.dy,
-            stroke: color,
-            strokeWidth: 2,
-          }),
-          Plot.dot(seen, {
-            ...place,
-            x: (row: BenchmarkRow) => row.collect_us?.p50,
-            symbol,
-            fill: "var(--card)",
-            stroke: color,
-            r: 4.5,
-          }),
-          Plot.dot(seen, {
-            ...place,
-            x: (row: BenchmarkRow) => row.query_us?.p50,
-            symbol,
-            fill: color,
-            r: 5,
-          }),
-        ],
-      );
-    },
+    name: ({ from }) => [{ from: `${from}/index` }],
+    value: ({ from }) => [{ from: `${from}/query_us/p50`, format: microseconds }],
+    x: logarithmic("query [µs]", [...rows.map(first), ...rows.map(middle), ...rows.map(last)]),
+    marks: (seen, { y, color, symbol }) => [
+      Plot.link(seen, {
+        x1: middle,
+        x2: last,
+        y1: y,
+        y2: y,
+        ...inRow,
+        stroke: color,
+        strokeWidth: 2,
+      }),
+      Plot.dot(seen, { x: first, y, ...inRow, symbol, fill: "var(--card)", stroke: color, r: 4.5 }),
+      Plot.dot(seen, { x: middle, y, ...inRow, symbol, fill: color, r: 5 }),
+    ],
   });
-}
-
-/** A rate that others have published, of the whole step. */
-interface PublishedRate {
-  readonly from: string;
-  readonly triangles: number;
-  readonly vertices: number;
-  readonly khz: number;
 }
 
 const published = "Li et al. 2020, their machine";
 const kilohertz = inUnit("kHz");
 
 function rateSection(benchmark: BenchmarkRecord): HTMLElement[] {
-  const found = benchmark.found("rates");
-  if (found.length === 0) return [];
-  const stars = entries(`${benchmark.from}/published`).map((from) => ({
-    ...(valueAt(from) as PublishedRate),
-    from,
-  }));
-  const rates = stars.flatMap(({ from }, i) => [
+  const stars = entries(`${benchmark.from}/published`).map((from): Rate => {
+    const { khz, ...sizes } = valueAt(from) as { triangles: number; vertices: number; khz: number };
+    return { ...sizes, from, series: published, rate: khz, key: "khz" };
+  });
+  const told = stars.flatMap(({ from }, i) => [
     i > 0 ? " and " : "",
-    shown(
-      `${from}/khz`,
-      inUnit("kHz", (khz) => String(Number(khz.toPrecision(3)))),
-    ),
+    shown(`${from}/khz`, inUnit("kHz", String)),
     " at ",
     shown(`${from}/triangles`, grouped),
   ]);
-  return [
-    section(
-      "How often a step fits into a second",
-      lead(
-        "Rates of the median step. The stars are what Li et al. 2020 published for the Stanford bunny, ",
-        ...rates,
-        " triangles on an Intel i7-8700, another machine. They state neither the motions nor the " +
-          "motion sphere of that run. Compare the slopes, not the heights.",
-      ),
-      ...groups(
-        found,
-        (first) => nameOf(found, first, false),
-        ({ rows }) => {
-          const looks = looksOf(rows.map(combination));
-          const legend = new Legend(
-            new Map([...looks, [published, { color: "var(--ink)", symbol: "star" }]]),
-            (name) => {
-              const row = rows.find((one) => combination(one) === name);
-              return row ? make("span", {}, ...shownCombination(row)) : name;
-            },
-          );
-          if (!hasSizes(rows)) return [panels(panel([], rateRows(rows, stars, legend)))];
-          const over = (size: "triangles" | "vertices") => ({
-            label: [size],
-            content: panels(panel([`Over ${size}`], rateLines(rows, stars, size, legend))),
-          });
-          return [legend.element, ...choice("Over", [over("triangles"), over("vertices")])];
+  return topicSection(benchmark, {
+    about: "rates",
+    title: "How often a step fits into a second",
+    words: [
+      "Rates of the median step. The stars are what Li et al. 2020 published for the Stanford bunny, ",
+      ...told,
+      " triangles on an Intel i7-8700, another machine. They state neither the motions nor the motion " +
+        "sphere of that run. Compare the slopes, not the heights.",
+    ],
+    draw: (rows) => {
+      const own = rows.map((row): Rate => {
+        const { from, triangles, vertices, rate_khz } = row;
+        const series = combination(row);
+        return { from, triangles, vertices, series, rate: rate_khz ?? Number.NaN, key: "rate_khz" };
+      });
+      const star: [string, Look] = [published, { color: "var(--ink)", symbol: "star" }];
+      const legend = new Legend(
+        new Map([...looksOf(own.map(({ series }) => series)), star]),
+        (name) => {
+          const row = rows.find((one) => combination(one) === name);
+          return row ? make("span", {}, ...shownCombination(row.from)) : name;
         },
-      ),
-    ),
-  ];
-}
-
-const rateTip = (row: BenchmarkRow | PublishedRate): HTMLElement[] =>
-  "khz" in row
-    ? tipOf(
-        [published],
-        [
-          ["triangles", shown(`${row.from}/triangles`, grouped)],
-          ["vertices", shown(`${row.from}/vertices`, grouped)],
-          ["rate", shown(`${row.from}/khz`, kilohertz)],
-        ],
-      )
-    : tipOf(shownCombination(row), [
-        sizeFact(row),
-        ["vertices", shown(`${row.from}/vertices`, grouped)],
-        ["rate", shown(`${row.from}/rate_khz`, kilohertz)],
-        ...timeFacts(row, "step_us", "step"),
-      ]);
-
-const rateOf = (row: BenchmarkRow): number => row.rate_khz ?? 0;
-
-function rateLines(
-  rows: readonly BenchmarkRow[],
-  stars: readonly PublishedRate[],
-  size: "triangles" | "vertices",
-  legend: Legend,
-): HTMLElement {
-  const axes = [(row: BenchmarkRow) => row[size], rateOf] as const;
-  const star = { x: size, y: "khz" };
-  return chart<BenchmarkRow | PublishedRate>({
-    description: `Rate of the whole step against the number of ${size}, for each combination, and as published`,
-    legend,
-    tip: rateTip,
-    draw: () => {
-      const seen = legend.shows(published) ? [...stars] : [];
-      return {
-        height: 480,
-        marginLeft: 48,
-        inset: 7,
-        x: logarithmic(size, [...rows.map(axes[0]), ...stars.map((one) => one[size])]),
-        y: logarithmic("rate of the whole step [kHz]", [
-          1,
-          ...rows.map(rateOf),
-          ...stars.map(({ khz }) => khz),
-        ]),
-        marks: [
-          Plot.ruleY([1], { stroke: "var(--soft)", strokeDasharray: "5 4" }),
-          Plot.text([1], {
-            y: 1,
-            text: () => "1 kHz",
-            frameAnchor: "left",
-            dx: 4,
-            dy: -7,
-            fill: "var(--soft)",
-          }),
-          ...linesWithMarks(
-            rows.filter((row) => legend.shows(combination(row))),
-            combination,
-            legend.look,
-            axes,
-          ),
-          Plot.dot(seen, { ...star, symbol: "star", fill: "var(--ink)", r: 6 }),
-          Plot.dot(seen, Plot.pointer({ ...star, stroke: "var(--ink)", strokeWidth: 2, r: 10 })),
-        ],
-      };
+      );
+      const all = [...own, ...stars];
+      if (!hasSizes(rows)) return [panels(panel("", rateRows(all, legend)))];
+      const over = (size: "triangles" | "vertices") => ({
+        label: [size],
+        content: panels(panel(`Over ${size}`, rateLines(all, size, legend))),
+      });
+      return [legend.element, ...choice("Over", [over("triangles"), over("vertices")])];
     },
   });
 }
 
-function rateRows(
-  rows: readonly BenchmarkRow[],
-  stars: readonly PublishedRate[],
-  legend: Legend,
-): HTMLElement {
-  const all = [...rows, ...stars];
-  const rate = (row: BenchmarkRow | PublishedRate) => ("khz" in row ? row.khz : rateOf(row));
-  const look = (row: BenchmarkRow | PublishedRate) =>
-    legend.look("khz" in row ? published : combination(row));
-  return chart<BenchmarkRow | PublishedRate>({
-    description: "Rate of the whole step, for each combination, and as published",
+const rateTip = ({ from, series, key }: Rate): HTMLElement[] =>
+  tipOfColumns(series === published ? [published] : shownCombination(from), from, [
+    ...columnsOf("/triangles"),
+    { heading: "vertices", from: "/vertices", format: grouped },
+    { heading: "rate", from: `/${key}`, format: kilohertz },
+    ...(series === published ? [] : columnsOf("/radius", "/step_us/p50", "/step_us/p99")),
+  ]);
+
+const rateLines = (rates: readonly Rate[], size: "triangles" | "vertices", legend: Legend) =>
+  curves({
+    description: `Rate of the whole step against the number of ${size}, for each combination, and as published`,
+    data: rates,
+    series: ({ series }) => series,
+    x: [size, (rate) => rate[size]],
+    y: ["rate of the whole step [kHz]", ({ rate }) => rate],
+    legend,
     tip: rateTip,
-    draw: () =>
-      rowPlot(
-        all,
-        {
-          name: (row) =>
-            "khz" in row
-              ? [
-                  "Li et al. 2020, ",
-                  { from: `${row.from}/triangles`, format: grouped },
-                  " triangles",
-                ]
-              : combinationParts(row),
-          value: (row) => [
-            { from: `${row.from}/${"khz" in row ? "khz" : "rate_khz"}`, format: kilohertz },
-          ],
-        },
-        logarithmic("rate of the whole step [kHz]", [1, ...all.map(rate)]),
-        [
-          Plot.ruleX([1], { stroke: "var(--soft)", strokeDasharray: "5 4" }),
-          Plot.dot(all, {
-            ...inRow,
-            x: rate,
-            y: (_, i: number) => i,
-            symbol: (row: BenchmarkRow) => look(row).symbol as string,
-            fill: (row) => look(row).color,
-            r: 5.5,
-          }),
-        ],
-      ),
+    rule: [1, "1 kHz"],
   });
-}
+
+const rateRows = (rates: readonly Rate[], legend: Legend) =>
+  rowChart({
+    description: "Rate of the whole step, for each combination, and as published",
+    data: rates,
+    series: ({ series }) => series,
+    legend,
+    tip: rateTip,
+    name: ({ from, series }) =>
+      series === published
+        ? ["Li et al. 2020, ", { from: `${from}/triangles`, format: grouped }, " triangles"]
+        : combinationParts(from),
+    value: ({ from, key }) => [{ from: `${from}/${key}`, format: kilohertz }],
+    x: logarithmic("rate of the whole step [kHz]", [1, ...rates.map(({ rate }) => rate)]),
+    marks: (seen, { y, color, symbol }) => [
+      Plot.ruleX([1], { stroke: "var(--soft)", strokeDasharray: "5 4" }),
+      Plot.dot(seen, { x: "rate", y, ...inRow, symbol, fill: color, r: 5.5 }),
+    ],
+  });
 
 /** A combination within the text of a plot. */
-const combinationParts = ({ from }: BenchmarkRow) => [
+const combinationParts = (from: string) => [
   { from: `${from}/index` },
   ", ",
   { from: `${from}/activation` },
@@ -444,72 +274,42 @@ const combinationParts = ({ from }: BenchmarkRow) => [
   { from: `${from}/solver` },
 ];
 
-function solverSection(
-  benchmark: BenchmarkRecord,
-  looks: ReadonlyMap<string, Look>,
-): HTMLElement[] {
-  const found = benchmark.found("solvers");
-  if (found.length === 0) return [];
-  const legend = new Legend(looks, nameShown(benchmark, "solver"));
-  return [
-    section(
-      "Which solver copes with many planes",
-      lead(
-        "Each solver has the same motions. Planes that are not in the way are left out for one that " +
-          "can tell that they have no bearing on its answer.",
-      ),
-      legend.element,
-      ...groups(
-        found,
-        (first) => nameOf(found, first, false),
-        ({ rows }) => {
-          const of = (percentile: "p50" | "p99", label: string) => ({
-            label: [label],
-            content: panels(
-              panel([`Time to solve, ${label}`], solveLines(rows, percentile, legend)),
-            ),
-          });
-          return choice("Time to solve:", [of("p50", "median"), of("p99", "99 %")]);
-        },
-      ),
-    ),
-  ];
-}
-
-function solveLines(
-  rows: readonly BenchmarkRow[],
-  percentile: "p50" | "p99",
-  legend: Legend,
-): HTMLElement {
-  const timed = rows.filter((row) => (row.solve_us?.[percentile] ?? null) !== null);
-  const axes = [
-    ({ planes_mean }: BenchmarkRow) => planes_mean,
-    (row: BenchmarkRow) => row.solve_us?.[percentile] ?? 0,
-  ] as const;
-  return chart({
-    description:
-      "Time of the search for the motion against the mean number of planes, for each solver",
+function solverSection(benchmark: BenchmarkRecord): HTMLElement[] {
+  const looks = looksOf(benchmark.rows.map(({ solver }) => solver));
+  const legend = new Legend(looks, nameShown(benchmark.rows, "solver"));
+  const facts = columnsOf(
+    "/triangles",
+    "/radius",
+    "/planes_mean",
+    "/solve_us/p50",
+    "/solve_us/p99",
+  );
+  const lines = (rows: readonly BenchmarkRow[], key: "p50" | "p99", label: string) =>
+    panel(
+      `Time to solve, ${label}`,
+      curves({
+        description: `Time of the search for the motion, ${label}, against the mean number of planes, for each solver`,
+        data: rows,
+        series: ({ solver }) => solver,
+        x: ["planes (mean)", ({ planes_mean }) => planes_mean],
+        y: ["solve [µs]", ({ solve_us }) => solve_us?.[key] ?? Number.NaN],
+        legend,
+        tip: ({ from }) => tipOfColumns(shownCombination(from), from, facts),
+      }),
+    );
+  return topicSection(benchmark, {
+    about: "solvers",
+    title: "Which solver copes with many planes",
+    words: [
+      "Each solver has the same motions. Planes that are not in the way are left out for one that can " +
+        "tell that they have no bearing on its answer.",
+    ],
     legend,
-    tip: (row: BenchmarkRow) =>
-      tipOf(shownCombination(row), [
-        sizeFact(row),
-        ["sphere", make("span", {}, ...shownSphere(row))],
-        ["planes, mean", shown(`${row.from}/planes_mean`, mean)],
-        ...timeFacts(row, "solve_us", "solve"),
+    draw: (rows) =>
+      choice("Time to solve:", [
+        { label: ["median"], content: panels(lines(rows, "p50", "median")) },
+        { label: ["99 %"], content: panels(lines(rows, "p99", "99 %")) },
       ]),
-    draw: () => ({
-      height: 440,
-      marginLeft: 48,
-      inset: 7,
-      x: logarithmic("planes (mean)", timed.map(axes[0])),
-      y: logarithmic("solve [µs]", timed.map(axes[1])),
-      marks: linesWithMarks(
-        timed.filter(({ solver }) => legend.shows(solver)),
-        ({ solver }) => solver,
-        legend.look,
-        axes,
-      ),
-    }),
   });
 }
 
@@ -520,142 +320,81 @@ const stages = [
 ] as const;
 
 function stageSection(benchmark: BenchmarkRecord): HTMLElement[] {
-  const found = benchmark.found("stages", true);
-  if (found.length === 0) return [];
   const legend = new Legend(
     new Map(stages.map(({ name, color }) => [name, { color, symbol: "square" }])),
   );
-  return [
-    section(
-      "Where the time of a step goes",
-      lead(
-        "Stages are timed in a round of their own, so that the whole step, at the right, is timed " +
-          "without any clock within.",
-      ),
-      legend.element,
-      ...groups(
-        found,
-        (first) => nameOf(found, first, true),
-        ({ rows }) => [panels(panel([], stageRows(rows, legend)))],
-      ),
-    ),
-  ];
-}
-
-function stageRows(rows: readonly BenchmarkRow[], legend: Legend): HTMLElement {
-  const parts = rows.flatMap((row, place) =>
-    stages.map(({ key, name, color }) => ({ place, name, color, time: row[key]?.p50 ?? 0 })),
+  const facts = columnsOf(
+    ...stages.map(({ key }) => `/${key}/p50`),
+    "/step_us/p50",
+    "/step_us/p99",
   );
-  return chart({
-    description: "Which part of the median step is which, for each combination",
+  const parts = (rows: readonly BenchmarkRow[]) =>
+    rows.flatMap((row, place) =>
+      stages
+        .filter(({ name }) => legend.shows(name))
+        .map(({ key, color }) => ({ place, color, time: row[key]?.p50 ?? 0 })),
+    );
+  const stack = { offset: "normalize", x: "time", y: "place", fill: "color", ...barInRow } as const;
+  const bars = (rows: readonly BenchmarkRow[]) =>
+    rowChart({
+      description: "Which part of the median step is which, for each combination",
+      data: rows,
+      legend,
+      tip: ({ from }) => tipOfColumns(shownCombination(from), from, facts),
+      name: ({ from }) => combinationParts(from),
+      value: ({ from }) => [{ from: `${from}/step_us/p50`, format: microseconds }],
+      x: { label: "share of the stages", tickFormat: "%" },
+      marks: (seen) => [Plot.barX(parts(seen), Plot.stackX({ ...stack, stroke: "var(--card)" }))],
+    });
+  return topicSection(benchmark, {
+    about: "stages",
+    title: "Where the time of a step goes",
+    words: [
+      "Stages are timed in a round of their own, so that the whole step, at the right, is timed without " +
+        "any clock within.",
+    ],
+    apart: true,
     legend,
-    tip: (row: BenchmarkRow) =>
-      tipOf(shownCombination(row), [
-        ...stages.map(
-          ({ key, name }) => [name, shown(`${row.from}/${key}/p50`, microseconds)] as const,
-        ),
-        ...timeFacts(row, "step_us", "whole step"),
-      ]),
-    draw: () =>
-      rowPlot(
-        rows,
-        {
-          name: combinationParts,
-          value: ({ from }) => [{ from: `${from}/step_us/p50`, format: microseconds }],
-        },
-        { label: "share of the stages", tickFormat: "%" },
-        [
-          Plot.barX(
-            parts.filter(({ name }) => legend.shows(name)),
-            Plot.stackX({
-              ...barInRow,
-              offset: "normalize",
-              x: "time",
-              y: "place",
-              fill: "color",
-              stroke: "var(--card)",
-            }),
-          ),
-        ],
-      ),
+    draw: (rows) => [panels(panel("", bars(rows)))],
   });
 }
 
 function costSection(benchmark: BenchmarkRecord, looks: ReadonlyMap<string, Look>): HTMLElement[] {
-  const found = benchmark.found("costs");
-  if (found.length === 0) return [];
-  return [
-    section(
-      "What an index costs before the first query",
-      lead(
-        "Each is built once on each mesh. Cores busy are the processor’s time of all threads of this " +
-          "process over the time on the clock",
-        ...(valueAt(`${benchmark.from}/machine/cores`)
-          ? [", of the ", shown(`${benchmark.from}/machine/cores`), " of this machine"]
-          : []),
-        ".",
+  const facts = columnsOf("/triangles", "/build_s", "/build_cores", "/bytes_per_triangle");
+  const cores = inUnit("cores", (count) => rounded(count, 2));
+  const bars = (rows: readonly BenchmarkRow[], cost: "build_s" | "bytes_per_triangle") => {
+    const isTime = cost === "build_s";
+    const value = (from: string) => ({
+      from: `${from}/${cost}`,
+      format: inUnit(isTime ? "s" : "B"),
+    });
+    return rowChart({
+      description: isTime ? "Time to build each index" : "Memory of each index for a triangle",
+      data: [...rows].sort((a, b) => a[cost] - b[cost]),
+      series: ({ index }) => index,
+      legend: new Legend(looks),
+      tip: ({ from }) => tipOfColumns([shown(`${from}/index`)], from, facts),
+      name: ({ from }) => [{ from: `${from}/index` }],
+      value: ({ from }) =>
+        isTime
+          ? [value(from), ", ", { from: `${from}/build_cores`, format: cores }]
+          : [value(from)],
+      x: { label: isTime ? "build [s]" : "bytes a triangle", grid: true, tickFormat: tickText },
+      marks: (seen, { y, color }) => [Plot.barX(seen, { x: cost, y, fill: color, ...barInRow })],
+    });
+  };
+  return topicSection(benchmark, {
+    about: "costs",
+    title: "What an index costs before the first query",
+    words: [
+      "Each is built once on each mesh. Cores busy are the processor’s time of all threads of this " +
+        "process over the time on the clock.",
+    ],
+    draw: (rows) => [
+      panels(
+        panel("Time to build, and cores busy", bars(rows, "build_s")),
+        panel("Memory for a triangle", bars(rows, "bytes_per_triangle")),
       ),
-      ...groups(
-        found,
-        (first) => nameOf(found, first, false),
-        ({ rows }) => [
-          panels(
-            panel(["Time to build, and cores busy"], costRows(rows, looks, "build_s")),
-            panel(["Memory for a triangle"], costRows(rows, looks, "bytes_per_triangle")),
-          ),
-        ],
-      ),
-    ),
-  ];
-}
-
-function costRows(
-  rows: readonly BenchmarkRow[],
-  looks: ReadonlyMap<string, Look>,
-  cost: "build_s" | "bytes_per_triangle",
-): HTMLElement {
-  const sorted = [...rows].sort((a, b) => a[cost] - b[cost]);
-  const isTime = cost === "build_s";
-  return chart({
-    description: isTime
-      ? "Time to build each index"
-      : "Memory that each index takes for a triangle",
-    tip: ({ from }: BenchmarkRow) =>
-      tipOf(
-        [shown(`${from}/index`)],
-        [
-          ["build", shown(`${from}/build_s`, inUnit("s"))],
-          ["cores busy", shown(`${from}/build_cores`, (cores) => rounded(cores, 2))],
-          ["for a triangle", shown(`${from}/bytes_per_triangle`, inUnit("B"))],
-        ],
-      ),
-    draw: () =>
-      rowPlot(
-        sorted,
-        {
-          name: ({ from }) => [{ from: `${from}/index` }],
-          value: ({ from }) =>
-            isTime
-              ? [
-                  { from: `${from}/build_s`, format: inUnit("s") },
-                  ", ",
-                  { from: `${from}/build_cores`, format: inUnit("cores", (n) => rounded(n, 2)) },
-                ]
-              : [{ from: `${from}/bytes_per_triangle`, format: inUnit("B") }],
-        },
-        {
-          label: isTime ? "time to build [s]" : "bytes a triangle",
-          grid: true,
-          tickFormat: tickText,
-        },
-        [
-          Plot.barX(sorted, {
-            ...barInRow,
-            x: cost,
-            y: (_, i: number) => i,
-            fill: ({ index }: BenchmarkRow) => looks.get(index)?.color ?? "var(--ink)",
-          }),
-        ],
-      ),
+    ],
   });
 }

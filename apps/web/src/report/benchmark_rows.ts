@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import { entries, type Timing, valueAt } from "./record.ts";
-import { type Format, shown } from "./shown.ts";
+import { inUnit, shown, trimmed } from "./shown.ts";
 
 /** A row of a benchmark: one combination on one mesh. */
 export interface BenchmarkRow {
@@ -36,8 +36,6 @@ export interface Finding {
 export interface FindingGroup {
   /** Their texts, in the record. */
   readonly texts: readonly string[];
-  /** The rows of each. */
-  readonly lines: readonly (readonly BenchmarkRow[])[];
   readonly rows: readonly BenchmarkRow[];
 }
 
@@ -54,18 +52,18 @@ export class BenchmarkRecord {
 
   /** What was found about something, mesh by mesh; `apart`: each sphere by itself, too. */
   found(about: string, apart = false): FindingGroup[] {
-    const groups = new Map<string, { texts: string[]; lines: BenchmarkRow[][] }>();
+    const groups = new Map<string, { texts: string[]; rows: BenchmarkRow[] }>();
     for (const from of entries(`${this.from}/findings`)) {
       const finding = valueAt(from) as Finding;
-      if (finding.about !== about) continue;
       const rows = finding.rows.flatMap((number) => this.rows[number] ?? []);
+      if (finding.about !== about || rows.length === 0) continue;
       const key = JSON.stringify([finding.mesh, apart ? rows[0]?.radius : null]);
-      const group = groups.get(key) ?? { texts: [], lines: [] };
+      const group = groups.get(key) ?? { texts: [], rows: [] };
       group.texts.push(`${from}/text`);
-      group.lines.push(rows);
+      group.rows.push(...rows);
       groups.set(key, group);
     }
-    return [...groups.values()].map((group) => ({ ...group, rows: group.lines.flat() }));
+    return [...groups.values()];
   }
 }
 
@@ -77,8 +75,8 @@ export const hasSizes = (rows: readonly BenchmarkRow[]): boolean =>
 export const combination = ({ index, activation, solver }: BenchmarkRow): string =>
   [index, activation, solver].join(", ");
 
-/** The same, shown as of the record. */
-export const shownCombination = ({ from }: BenchmarkRow): (Node | string)[] => [
+/** The combination of the row at a pointer, shown as of the record. */
+export const shownCombination = (from: string): (Node | string)[] => [
   shown(`${from}/index`),
   ", ",
   shown(`${from}/activation`),
@@ -86,10 +84,21 @@ export const shownCombination = ({ from }: BenchmarkRow): (Node | string)[] => [
   shown(`${from}/solver`),
 ];
 
-const reach: Format = (mm) => `${Number(mm.toPrecision(6))}\u00a0mm`;
+/** What rows of findings have in common: the mesh, and the motion sphere where each is `apart`. */
+export function nameOf([first]: readonly BenchmarkRow[], apart: boolean): (Node | string)[] {
+  const mesh = shown(`${first?.from}/mesh`);
+  if (!apart) return [mesh];
+  if (first?.radius === null) return [mesh, ", as far as the motion leads"];
+  return [mesh, ", motion sphere of ", shown(`${first?.from}/radius`, inUnit("mm", trimmed))];
+}
 
-/** The motion sphere of a row. */
-export const shownSphere = ({ from, radius }: BenchmarkRow): (Node | string)[] =>
-  radius === null
-    ? ["as far as the motion leads"]
-    : ["motion sphere of ", shown(`${from}/radius`, reach)];
+/** How often a step fits into a second, on a mesh of this size. */
+export interface Rate {
+  readonly from: string;
+  readonly triangles: number;
+  readonly vertices: number;
+  readonly series: string;
+  /** In kHz, and under which key it is in the record. */
+  readonly rate: number;
+  readonly key: "rate_khz" | "khz";
+}

@@ -38,6 +38,16 @@ const columns: readonly Column[] = [
   { heading: "remark", from: "/remark", look: "words" },
 ];
 
+/** What only tips tell. */
+const others: readonly Column[] = [
+  { heading: "query 99 % [µs]", from: "/query_us/p99", format: rounded },
+  { heading: "solve 99 % [µs]", from: "/solve_us/p99", format: rounded },
+];
+
+/** What is told of a row elsewhere as the table tells it, by where below a row it is. */
+export const columnsOf = (...wanted: readonly string[]): Column[] =>
+  [...columns, ...others].filter(({ from }) => wanted.includes(from));
+
 /** Every row of a benchmark, the largest mesh first, then the largest sphere, then the fastest. */
 export function benchmarkTable(benchmark: BenchmarkRecord): HTMLElement {
   const meshes = [...new Set(benchmark.rows.map(({ mesh }) => mesh))];

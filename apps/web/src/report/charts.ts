@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /** What all plots share: how they are drawn to fit, told of by a tip, and filtered by a legend. */
 import * as Plot from "@observablehq/plot";
-import { type Format, make, textOf } from "./shown.ts";
+import { make, shown } from "./shown.ts";
+import type { Column } from "./table.ts";
 
 /** How a series is told from others, by its colour and by its mark. */
 export interface Look {
@@ -71,13 +72,16 @@ export interface Chart<Datum> {
   readonly legend?: Legend;
 }
 
+/** Around what a plot draws, for its axes. */
+const space = { marginLeft: 48, marginBottom: 40, inset: 7 };
+
 /** The element that holds a chart. */
 export function chart<Datum>({ description, draw, tip, legend }: Chart<Datum>): HTMLElement {
   const bubble = make("div", { class: "tip", hidden: "" });
   const place = make("div", { class: "plot" });
   let width = 0;
   const redraw = () => {
-    const picture = Plot.plot({ ...draw(width), width, className: "drawing" });
+    const picture = Plot.plot({ ...space, ...draw(width), width, className: "drawing" });
     picture.setAttribute("role", "img");
     picture.setAttribute("aria-label", description);
     picture.addEventListener("input", () => {
@@ -115,6 +119,17 @@ export function tipOf(
   return [make("b", {}, ...title), make("dl", {}, ...lines)];
 }
 
+/** The same, of those that some columns of a table would show of a row. */
+export const tipOfColumns = (
+  title: readonly (Node | string)[],
+  row: string,
+  columns: readonly Column[],
+): HTMLElement[] =>
+  tipOf(
+    title,
+    columns.map(({ heading, from, format }) => [heading, shown(row + from, format)]),
+  );
+
 /** A logarithmic scale, with ticks that fit the values. */
 export function logarithmic(label: string | null, values: readonly number[]): Plot.ScaleOptions {
   const positive = values.filter((value) => value > 0);
@@ -140,87 +155,3 @@ export function tickText(value: number): string {
   const raised = [...power].map((one) => "⁰¹²³⁴⁵⁶⁷⁸⁹"[Number(one)]).join("");
   return `${digit === "1" ? "" : `${digit}·`}10⁻${raised}`;
 }
-
-/** A value of the record within a text of a plot. */
-export interface Inscribed {
-  readonly from: string;
-  readonly format?: Format;
-}
-
-/** A mark of texts that hold values of the record, each of which says where it is from. */
-export function inscribed<Datum>(
-  data: readonly Datum[],
-  content: (datum: Datum) => readonly (Inscribed | string)[],
-  options: Plot.TextOptions,
-): Plot.Text {
-  return Plot.text([...data], {
-    ...options,
-    text: () => " ",
-    render: (index, scales, values, dimensions, context, next) => {
-      const group = next?.(index, scales, values, dimensions, context) ?? null;
-      group?.querySelectorAll("text").forEach((text, i) => {
-        const parts = content(data[index[i] as number] as Datum).map((part) => {
-          const span = document.createElementNS("http://www.w3.org/2000/svg", "tspan");
-          span.textContent = typeof part === "string" ? part : textOf(part.from, part.format);
-          if (typeof part !== "string") span.setAttribute("data-from", part.from);
-          return span;
-        });
-        text.replaceChildren(...parts);
-      });
-      return group;
-    },
-  });
-}
-
-const rowHeight = 42;
-
-/** What each row of a plot of rows is called, at its left, and comes to, at its right. */
-export interface RowTexts<Datum> {
-  readonly name: (datum: Datum) => readonly (Inscribed | string)[];
-  readonly value: (datum: Datum) => readonly (Inscribed | string)[];
-}
-
-/**
- * A plot of one row a datum, below its name and value. `marks` are drawn at y: the datum's place in
- * `data`, at the height of inRow.
- */
-export function rowPlot<Datum>(
-  data: readonly Datum[],
-  texts: RowTexts<Datum>,
-  x: Plot.ScaleOptions,
-  marks: readonly Plot.Markish[],
-): Plot.PlotOptions {
-  const places = data.map((_, i) => i);
-  const place = (_: unknown, i: number) => i;
-  const text = { y: place, dy: -9, fontSize: 13 };
-  return {
-    height: rowHeight * data.length + 52,
-    marginLeft: 14,
-    marginRight: 14,
-    marginTop: 4,
-    marginBottom: 38,
-    x,
-    y: { type: "band", domain: places, axis: null, padding: 0 },
-    marks: [
-      Plot.ruleY([...data], {
-        ...Plot.pointerY({ y: place, maxRadius: rowHeight, strokeWidth: rowHeight }),
-        stroke: "var(--ink)",
-        strokeOpacity: 0.06,
-        strokeWidth: rowHeight,
-      }),
-      ...marks,
-      inscribed(data, texts.name, { ...text, frameAnchor: "left", textAnchor: "start" }),
-      inscribed(data, texts.value, {
-        ...text,
-        frameAnchor: "right",
-        textAnchor: "end",
-        fontWeight: 600,
-      }),
-    ],
-  };
-}
-
-/** Where in its row a mark of a plot of rows is: below the texts. */
-export const inRow = { dy: 9 };
-/** The same for bars. */
-export const barInRow = { insetTop: 22, insetBottom: 7 };

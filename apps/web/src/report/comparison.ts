@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /** The sections of a comparison: whether indices, solvers and narrow phases give the same answers. */
 import * as Plot from "@observablehq/plot";
-import { chart, inRow, logarithmic, looksOf, rowPlot, tipOf } from "./charts.ts";
+import { Legend, logarithmic, looksOf, tipOfColumns } from "./charts.ts";
 import { entries, valueAt } from "./record.ts";
-import { lead, section } from "./report_page.ts";
-import { error, grouped, inUnit, make, rounded, show, shown, shownName } from "./shown.ts";
+import { lead, panel, panels, section } from "./report_page.ts";
+import { inRow, rowChart } from "./row_chart.ts";
+import { error, grouped, make, rounded, show, shown, shownName } from "./shown.ts";
 import { type Column, scrolled, table } from "./table.ts";
 
 const count = (heading: string, from: string): Column => ({ heading, from, format: grouped });
@@ -110,71 +111,45 @@ interface NarrowPhaseRow {
 /** The errors of all narrow phases, side by side for each relation of tool and triangle. */
 function errors(pointers: readonly string[]): HTMLElement[] {
   const rows = pointers.map((from) => ({ ...(valueAt(from) as NarrowPhaseRow), from }));
-  const looks = looksOf(rows.map(({ backend }) => backend));
-  // On the same axis, so that panels can be compared.
-  const x = logarithmic(
-    "error [mm]",
-    rows.flatMap((row) => [row.median_error_mm, row.worst_error_mm]),
-  );
-  const color = ({ backend }: NarrowPhaseRow) => looks.get(backend)?.color;
+  const legend = new Legend(looksOf(rows.map(({ backend }) => backend)));
+  // A logarithmic axis has no place for what is exact.
   const above = (value: number) => (value > 0 ? value : Number.NaN);
-  const panels = [...new Set(rows.map(({ relation }) => relation))].map((relation) => {
-    const shownRows = rows.filter((row) => row.relation === relation);
-    const place = (_: unknown, i: number) => i;
-    const draw = () =>
-      rowPlot(
-        shownRows,
-        {
-          name: ({ from }) => [{ from: `${from}/backend` }, ", ", { from: `${from}/tool` }],
-          value: ({ from }) => [
-            { from: `${from}/median_error_mm`, format: error },
-            " to ",
-            { from: `${from}/worst_error_mm`, format: error },
-          ],
-        },
-        x,
-        [
-          Plot.link(shownRows, {
-            x1: (row: NarrowPhaseRow) => above(row.median_error_mm),
-            x2: (row: NarrowPhaseRow) => above(row.worst_error_mm),
-            y1: place,
-            y2: place,
-            stroke: color,
-            strokeWidth: 2,
-            ...inRow,
-          }),
-          Plot.dot(shownRows, {
-            x: (row: NarrowPhaseRow) => above(row.median_error_mm),
-            y: place,
-            symbol: ({ backend }: NarrowPhaseRow) => looks.get(backend)?.symbol as string,
-            fill: color,
-            r: 4.5,
-            ...inRow,
-          }),
-        ],
-      );
-    const tip = ({ from }: NarrowPhaseRow) =>
-      tipOf(
-        [shown(`${from}/backend`), ", ", shown(`${from}/tool`)],
-        [
-          ["median error", shown(`${from}/median_error_mm`, inUnit("mm", error))],
-          ["worst error", shown(`${from}/worst_error_mm`, inUnit("mm", error))],
-          ["unproven", shown(`${from}/worst_unproven_mm`, inUnit("mm", error))],
-        ],
-      );
-    const caption = make(
-      "figcaption",
-      {},
-      make("span", { class: "name" }, relation),
-      make("br"),
-      make(
-        "span",
-        { class: "about" },
-        "A mark at the median error, a line to the worst; no mark where it is nothing.",
-      ),
-    );
-    const description = `Median and worst error of each narrow phase, ${relation}`;
-    return make("figure", { class: "measured" }, caption, chart({ description, draw, tip }));
-  });
-  return [make("div", { class: "panels charts", style: "--columns:3" }, ...panels)];
+  const middle = ({ median_error_mm }: NarrowPhaseRow) => above(median_error_mm);
+  const worst = ({ worst_error_mm }: NarrowPhaseRow) => above(worst_error_mm);
+  const named = (from: string) => [{ from: `${from}/backend` }, ", ", { from: `${from}/tool` }];
+  const chartOf = (relation: string) =>
+    rowChart({
+      description: `Median and worst error of each narrow phase, ${relation}`,
+      data: rows.filter((row) => row.relation === relation),
+      series: ({ backend }) => backend,
+      legend,
+      tip: ({ from }) =>
+        tipOfColumns([shown(`${from}/backend`)], from, narrowPhaseColumns.slice(1)),
+      name: ({ from }) => named(from),
+      value: ({ from }) => [
+        { from: `${from}/median_error_mm`, format: error },
+        " to ",
+        { from: `${from}/worst_error_mm`, format: error },
+      ],
+      // On the same axis, so that panels can be compared.
+      x: logarithmic("error [mm]", [...rows.map(middle), ...rows.map(worst)]),
+      marks: (seen, { y, color, symbol }) => [
+        Plot.link(seen, {
+          x1: middle,
+          x2: worst,
+          y1: y,
+          y2: y,
+          ...inRow,
+          stroke: color,
+          strokeWidth: 2,
+        }),
+        Plot.dot(seen, { x: middle, y, ...inRow, symbol, fill: color, r: 4.5 }),
+      ],
+    });
+  const relations = [...new Set(rows.map(({ relation }) => relation))];
+  return [
+    lead("Filled: the median error, and a line to the worst; no mark where it is nothing."),
+    legend.element,
+    panels(...relations.map((relation) => panel(relation, chartOf(relation)))),
+  ];
 }

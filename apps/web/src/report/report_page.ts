@@ -42,8 +42,22 @@ export function section(title: string, ...content: readonly (Node | string)[]): 
 export const lead = (...content: readonly (Node | string)[]): HTMLElement =>
   make("p", { class: "lead" }, ...content);
 
+/** Cards with plots, side by side where there is room. */
+export const panels = (...figures: readonly HTMLElement[]): HTMLElement =>
+  make("div", { class: "panels wide charts", style: `--columns:${figures.length}` }, ...figures);
+
+/** A card under a title, if it has one. */
+export function panel(
+  title: string,
+  content: HTMLElement,
+  about: readonly Node[] = [],
+): HTMLElement {
+  const caption = make("figcaption", {}, make("span", { class: "name" }, title), ...about);
+  return make("figure", { class: "measured" }, ...(title === "" ? [] : [caption]), content);
+}
+
 /** The facts of a machine, as far as they are known, for a list of definitions. */
-export function machineFacts(pointer: string): HTMLElement[] {
+function machineFacts(pointer: string): HTMLElement[] {
   const gibibytes = (value: number) => `${rounded(value)} GiB`;
   return [
     ["processor", "processor"],
@@ -80,14 +94,10 @@ function circumstances(record: ReportRecord): HTMLElement {
     setTimeout(() => URL.revokeObjectURL(file), 1000);
   });
   const facts = [make("dt", {}, "date"), show(make("dd"), "/date"), ...machineFacts("/machine")];
+  const lists = [facts, shownMembers("/settings")].filter((list) => list.length > 0);
   return section(
     "Where it was done, and how to do it again",
-    make(
-      "div",
-      { class: "panels wide", style: "--columns:2" },
-      make("figure", {}, make("dl", {}, ...facts)),
-      make("figure", {}, make("dl", {}, ...shownMembers("/settings"))),
-    ),
+    panels(...lists.map((list) => make("figure", {}, make("dl", {}, ...list)))),
     make("div", { class: "command" }, show(make("code"), "/command"), copy),
     make("p", { class: "saving" }, save),
   );

@@ -116,6 +116,8 @@ export const shownMembers = (pointer: string): HTMLElement[] =>
     make("dd", {}, ...shownWhole(entry)),
   ]);
 
-/** The paragraphs that the record has in an array of texts. */
+/** The paragraphs that the record has in an array of texts, or the one that it has in a text. */
 export const paragraphs = (pointer: string, name: string): HTMLElement[] =>
-  entries(pointer).map((entry) => show(make("p", { class: name }), entry));
+  (Array.isArray(valueAt(pointer)) ? entries(pointer) : [pointer])
+    .filter((from) => valueAt(from))
+    .map((from) => show(make("p", { class: name }), from));

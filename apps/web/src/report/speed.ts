@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /** The sections of the table of ratios that keepout is held to. */
 import * as Plot from "@observablehq/plot";
-import { chart, Legend, type Look, logarithmic, tipOf } from "./charts.ts";
+import { chart, Legend, type Look, logarithmic, tipOfColumns } from "./charts.ts";
+import { curves } from "./curves.ts";
 import { entries, type Timing, valueAt } from "./record.ts";
-import { lead, section } from "./report_page.ts";
+import { lead, panel, panels, section } from "./report_page.ts";
 import { type Format, grouped, make, mean, nanoseconds, rounded, shown, trimmed } from "./shown.ts";
 import { type Column, scrolled, table } from "./table.ts";
 
@@ -125,7 +126,7 @@ function querySection(): HTMLElement[] {
   ];
 }
 
-/** A bin of a histogram: from where to where, how many are in it, and of a million how many are not below. */
+/** A bin of a histogram, in µs: how many are in it, and how many of a million not below it. */
 interface Bin {
   readonly from: string;
   readonly low: number;
@@ -135,32 +136,66 @@ interface Bin {
   readonly series: string;
 }
 
+/** Bins are an eighth of a doubling wide. */
+function binsOf(from: string, series: string): Bin[] {
+  const total = valueAt<number>(`${from}/total`) ?? 0;
+  let left = total;
+  return entries(`${from}/bins`).map((bin) => {
+    const [begin, count] = valueAt(bin) as readonly [number, number];
+    const longer = (1e6 * left) / total;
+    left -= count;
+    const high = begin + 2 ** Math.floor(Math.log2(begin)) / 8;
+    return { from: bin, low: begin / 1e3, high: high / 1e3, count, longer, series };
+  });
+}
+
 const looks: ReadonlyMap<string, Look> = new Map([
   ["empty loop", { color: "var(--series-7)", symbol: "square" }],
   ["certified step", { color: "var(--series-0)", symbol: "circle" }],
 ]);
-
-/** Bins are an eighth of a doubling wide. Times in µs. */
-function binsOf(from: string, series: string): Bin[] {
-  const pairs = entries(`${from}/bins`).map((bin) => ({
-    bin,
-    pair: valueAt(bin) as readonly [number, number],
-  }));
-  let left = valueAt<number>(`${from}/total`) ?? 0;
-  const total = left;
-  return pairs.map(({ bin, pair: [begin, count] }) => {
-    const longer = (1e6 * left) / total;
-    left -= count;
-    const width = 2 ** Math.floor(Math.log2(begin)) / 8;
-    return { from: bin, low: begin / 1e3, high: (begin + width) / 1e3, count, longer, series };
-  });
-}
+const binColumns: readonly Column[] = [
+  { heading: "from", from: "/0", format: nanoseconds },
+  { heading: "cycles", from: "/1", format: grouped },
+];
 
 function histogramSection(): HTMLElement[] {
   const from = "/histogram/steps";
   if (!valueAt(from)) return [];
-  const bins = [...binsOf("/histogram/nothing", "empty loop"), ...binsOf(from, "certified step")];
   const legend = new Legend(looks);
+  const bins = [...binsOf("/histogram/nothing", "empty loop"), ...binsOf(from, "certified step")];
+  const tip = (bin: Bin) => tipOfColumns([bin.series], bin.from, binColumns);
+  const color = ({ series }: Bin) => legend.look(series).color;
+  const counts = chart({
+    description: "How many cycles took how long: certified steps, and an empty loop",
+    legend,
+    tip,
+    draw: () => {
+      const seen = bins.filter(({ series }) => legend.shows(series));
+      const place = { x1: "low", x2: "high", y1: () => 0.5, y2: "count" };
+      const pointed = Plot.pointerX({ ...place, stroke: "var(--ink)", strokeWidth: 2 });
+      return {
+        height: 420,
+        x: logarithmic(
+          "time [µs]",
+          bins.flatMap(({ low, high }) => [low, high]),
+        ),
+        y: logarithmic("cycles in a bin", [0.5, ...bins.map(({ count }) => count)]),
+        marks: [
+          Plot.rect(seen, { ...place, fill: color, fillOpacity: 0.45, stroke: color }),
+          Plot.rect(seen, pointed),
+        ],
+      };
+    },
+  });
+  const tails = curves({
+    description: "How many of a million cycles took longer: certified steps, and an empty loop",
+    data: bins,
+    series: ({ series }) => series,
+    x: ["time [µs]", ({ low }) => low],
+    y: ["of a million cycles, longer", ({ longer }) => longer],
+    legend,
+    tip,
+  });
   const at = (key: string) => shown(`${from}/at_most_ns/${key}`, nanoseconds);
   return [
     section(
@@ -181,72 +216,7 @@ function histogramSection(): HTMLElement[] {
         ", which is the machine’s doing.",
       ),
       legend.element,
-      make(
-        "div",
-        { class: "panels wide charts", style: "--columns:2" },
-        histogramPanel("How many took how long", "cycles in a bin", bins, legend, "count"),
-        histogramPanel(
-          "How many took longer",
-          "of a million cycles, longer",
-          bins,
-          legend,
-          "longer",
-        ),
-      ),
+      panels(panel("How many took how long", counts), panel("How many took longer", tails)),
     ),
   ];
-}
-
-function histogramPanel(
-  title: string,
-  label: string,
-  bins: readonly Bin[],
-  legend: Legend,
-  height: "count" | "longer",
-): HTMLElement {
-  const color = ({ series }: Bin) => legend.look(series).color;
-  const x = logarithmic(
-    "time [µs]",
-    bins.flatMap(({ low, high }) => [low, high]),
-  );
-  const least = height === "count" ? 0.5 : Math.min(...bins.map(({ longer }) => longer));
-  const y = logarithmic(label, [least, ...bins.map((bin) => bin[height])]);
-  const draw = () => {
-    const seen = bins.filter(({ series }) => legend.shows(series));
-    const shape =
-      height === "count"
-        ? Plot.rect(seen, {
-            x1: "low",
-            x2: "high",
-            y1: () => least,
-            y2: "count",
-            fill: color,
-            fillOpacity: 0.45,
-            stroke: color,
-          })
-        : Plot.line(seen, { x: "low", y: "longer", z: "series", stroke: color, strokeWidth: 2 });
-    const pointed = Plot.pointer({
-      x: "low",
-      y: height,
-      r: 6,
-      stroke: "var(--ink)",
-      strokeWidth: 2,
-    });
-    return { height: 400, marginLeft: 52, inset: 7, x, y, marks: [shape, Plot.dot(seen, pointed)] };
-  };
-  const tip = (bin: Bin) =>
-    tipOf(
-      [bin.series],
-      [
-        ["from", shown(`${bin.from}/0`, nanoseconds)],
-        ["cycles", shown(`${bin.from}/1`, grouped)],
-      ],
-    );
-  const caption = make("figcaption", {}, make("span", { class: "name" }, title));
-  return make(
-    "figure",
-    { class: "measured" },
-    caption,
-    chart({ description: title, legend, draw, tip }),
-  );
 }
