@@ -1,38 +1,47 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Bundles the page of `keepout live` into one file, all but the anatomy, for which it has a comment;
- * apps/web/build calls it. From the environment: KEEPOUT_WASM, the folder with keepout.mjs and
- * keepout.wasm, of the CMake preset wasm; KEEPOUT_PAGE, the file to write.
+ * Bundles the pages of keepout, each into one file, all but what the command puts in: the anatomy of
+ * `keepout live`, and the records of reports. apps/web/build calls it. From the environment:
+ *   KEEPOUT_PAGES  the folder to write to
+ *   KEEPOUT_WASM   the folder with keepout.mjs and keepout.wasm, of the CMake preset wasm; without
+ *                  it only the reports are made, which have no engine in them
  */
 import { readFile, writeFile } from "node:fs/promises";
-import { resolve } from "node:path";
+import { join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
 import { gzipSync } from "node:zlib";
 import { build } from "esbuild";
 
-const { KEEPOUT_WASM: wasm, KEEPOUT_PAGE: page } = process.env;
-if (!wasm || !page) {
-  console.error("call apps/web/build, which says where keepout is and what to write");
+const { KEEPOUT_WASM: wasm, KEEPOUT_PAGES: pages } = process.env;
+if (!pages) {
+  console.error("call apps/web/build, which says where to write the pages");
   process.exit(2);
 }
-const source = fileURLToPath(new URL("src/live/", import.meta.url));
+const here = fileURLToPath(new URL(".", import.meta.url));
 
-/** What esbuild makes of an entry: the text of the bundle. */
+/** What esbuild makes of an entry: the text of the bundle, and the packages that are in it. */
 async function bundle(entry) {
-  const { outputFiles } = await build({
-    entryPoints: [source + entry],
+  const { outputFiles, metafile } = await build({
+    entryPoints: [join(here, "src", entry)],
+    absWorkingDir: here,
     bundle: true,
     minify: true,
     write: false,
+    metafile: true,
     target: "es2022",
     format: "iife",
     legalComments: "inline",
-    alias: { "keepout-module": resolve(wasm, "keepout.mjs") },
+    alias: { "keepout-module": resolve(wasm ?? "", "keepout.mjs") },
     define: { "import.meta.url": '""' },
     external: ["module", "fs", "path", "url"],
     logOverride: { "empty-import-meta": "silent" },
   });
-  return outputFiles[0].text;
+  const [output] = Object.values(metafile.outputs);
+  const packages = Object.entries(output.inputs)
+    .filter(([, { bytesInOutput }]) => bytesInOutput > 0)
+    .map(([file]) => file.match(/^.*node_modules\/(@[^/]+\/)?[^/]+/)?.[0])
+    .filter((folder) => folder !== undefined);
+  return { text: outputFiles[0].text, packages };
 }
 
 /** A script element; nothing in it ends it. */
@@ -41,26 +50,63 @@ function script(type, id, text) {
   return `<script type="${type}"${name}>${text.replaceAll(/<\/(script)/gi, "<\\/$1")}</script>`;
 }
 
-/** Whose work the page holds, and under which terms. */
-const licences = [
-  "keepout, compiled with Eigen (MPL-2.0), Highway (Apache-2.0), xxHash (BSD-2-Clause) and the libraries",
-  "of emscripten (MIT; libc++: Apache-2.0 with LLVM exceptions):",
-  await readFile(new URL("../../LICENSE", import.meta.url), "utf8"),
-  "three:",
-  await readFile(new URL("node_modules/three/LICENSE", import.meta.url), "utf8"),
-  "uPlot:",
-  await readFile(new URL("node_modules/uplot/LICENSE", import.meta.url), "utf8"),
-].join("\n");
+/** Whose work the page holds, and under which terms: each of these once, after those it is for. */
+async function licences(own, packages) {
+  const holders = new Map();
+  for (const folder of [...new Set(packages)].sort()) {
+    const { name, license } = JSON.parse(
+      await readFile(join(here, folder, "package.json"), "utf8"),
+    );
+    const terms = await readFile(join(here, folder, "LICENSE"), "utf8").catch((missing) => {
+      if (license === "Unlicense") return "in the public domain (Unlicense)\n";
+      throw missing;
+    });
+    holders.set(terms, [...(holders.get(terms) ?? []), name]);
+  }
+  const theirs = [...holders].map(([terms, names]) => `${names.join(", ")}:\n${terms}`);
+  return [own, await readFile(join(here, "../../LICENSE"), "utf8"), ...theirs].join("\n");
+}
 
-const engine = gzipSync(await readFile(resolve(wasm, "keepout.wasm")), { level: 9 });
-const scripts = [
-  script("text/plain", "licences", licences),
-  script("application/octet-stream", "engine", engine.toString("base64")),
-  script("text/plain", "worker", await bundle("worker.ts")),
-  script("text/javascript", "", await bundle("main.ts")),
-].join("\n");
-const style = await bundle("page.css");
-const html = (await readFile(`${source}page.html`, "utf8"))
-  .replace("/* keepout: style */", () => style)
-  .replace("<!-- keepout: scripts -->", () => scripts);
-await writeFile(page, html);
+/** Writes a page: its HTML with style, licences and scripts in their places. */
+async function writePage(name, source, { own, style, scripts, packages }) {
+  const all = [
+    script("text/plain", "licences", await licences(own, [...packages, ...style.packages])),
+    ...scripts,
+  ];
+  const html = (await readFile(join(here, "src", source), "utf8"))
+    .replace("/* keepout: style */", () => style.text)
+    .replace("<!-- keepout: scripts -->", () => all.join("\n"));
+  await writeFile(join(pages, name), html);
+}
+
+async function writeLivePage() {
+  const engine = gzipSync(await readFile(resolve(wasm, "keepout.wasm")), { level: 9 });
+  const [worker, main] = [await bundle("live/worker.ts"), await bundle("live/main.ts")];
+  await writePage("live.html", "live/page.html", {
+    own: [
+      "keepout, compiled with Eigen (MPL-2.0), Highway (Apache-2.0), xxHash (BSD-2-Clause) and the libraries",
+      "of emscripten (MIT; libc++: Apache-2.0 with LLVM exceptions):",
+    ].join("\n"),
+    style: await bundle("live/page.css"),
+    scripts: [
+      script("application/octet-stream", "engine", engine.toString("base64")),
+      script("text/plain", "worker", worker.text),
+      script("text/javascript", "", main.text),
+    ],
+    packages: [...worker.packages, ...main.packages],
+  });
+}
+
+async function writeReportPage(name, entry) {
+  const main = await bundle(entry);
+  await writePage(name, "report/page.html", {
+    own: "keepout:",
+    style: await bundle("report/page.css"),
+    scripts: [script("text/javascript", "", main.text)],
+    packages: main.packages,
+  });
+}
+
+await writeReportPage("report.html", "report/main.ts");
+await writeReportPage("report_with_anatomy.html", "report/main_with_anatomy.ts");
+if (wasm) await writeLivePage();

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /** What the page and its worker, in which keepout runs, tell each other. */
 import type { Counterexample, Findings, GuardSettings, Plane, Vec3 } from "../engine/keepout.ts";
+import type { PackedSurface } from "../page/embedded_surface.ts";
 
 /** A mesh that `keepout live` has put into the page: see apps/keepout/live. */
-export interface EmbeddedMesh {
+export interface EmbeddedMesh extends PackedSurface {
   readonly name: string;
   /** What to give to `keepout replay` as MESH. */
   readonly command_name: string;
-  readonly vertices: number;
-  readonly triangles: number;
-  readonly coordinates: "float32" | "float64";
   readonly warnings: readonly string[];
 }
 

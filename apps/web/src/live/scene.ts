@@ -2,8 +2,8 @@
 import * as three from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import type { Plane, Vec3 } from "../engine/keepout.ts";
+import { StillPicture } from "../page/still_picture.ts";
 import { Ball, colors, sheet, Trail } from "./markers.ts";
-import { StillPicture } from "./still_picture.ts";
 
 /** What is seen of a moment. */
 export interface Moment {

@@ -5,11 +5,11 @@
  */
 import makeModule from "keepout-module";
 import { type Anatomy, type GuardSettings, Keepout, type Vec3 } from "../engine/keepout.ts";
+import { decodeSurface } from "../page/embedded_surface.ts";
+import { unpacked } from "../page/unpacked.ts";
 import { ControlLoop } from "./control_loop.ts";
 import { runCounterexamples } from "./counterexample_trials.ts";
-import { decodeSurface } from "./embedded_surface.ts";
 import type { FromWorker, Source, ToWorker } from "./protocol.ts";
-import { unpacked } from "./unpacked.ts";
 
 /** Cycles that are due and no more caught up with. */
 const mostBehind = 100;

@@ -1,20 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
-import type { EmbeddedMesh } from "./protocol.ts";
 import { unpacked } from "./unpacked.ts";
 
+/** What is to be known of a surface to unpack it. */
+export interface PackedSurface {
+  readonly vertices: number;
+  readonly triangles: number;
+  readonly coordinates: "float32" | "float64";
+}
+
 /**
- * Unpacks a mesh as `keepout live` packs it (apps/keepout/live): base64 of gzip of all x, all y and
+ * Unpacks a surface as keepout packs it into pages and records (docs/records.md): base64 of gzip of all x, all y and
  * all z, and of a code for each corner, in four planes of bytes. A corner's code is how far back its
  * vertex is from the first one not named yet; 0 is that one. All bits of all coordinates come back.
  */
 export async function decodeSurface(
-  mesh: EmbeddedMesh,
+  surface: PackedSurface,
   base64: string,
 ): Promise<{ vertices: Float64Array; corners: Uint32Array }> {
   const buffer = await unpacked(base64);
-  const count = mesh.vertices;
+  const count = surface.vertices;
   const columns =
-    mesh.coordinates === "float32"
+    surface.coordinates === "float32"
       ? new Float32Array(buffer, 0, 3 * count)
       : new Float64Array(buffer, 0, 3 * count);
   const vertices = new Float64Array(3 * count);
@@ -25,7 +31,7 @@ export async function decodeSurface(
   }
 
   const codes = new Uint8Array(buffer, columns.byteLength);
-  const corners = new Uint32Array(3 * mesh.triangles);
+  const corners = new Uint32Array(3 * surface.triangles);
   let next = 0;
   for (let i = 0; i < corners.length; ++i) {
     let code = 0;

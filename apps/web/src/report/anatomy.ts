@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+import * as three from "three";
+import { decodeSurface } from "../page/embedded_surface.ts";
+import type { Place, RecordedMesh } from "./simulation_record.ts";
+
+/** A surface to be drawn, about the middle of its box. */
+export interface Anatomy {
+  readonly positions: Float32Array;
+  readonly corners: Uint32Array;
+  readonly isClosed: boolean;
+  /** The diagonal of its box. [mm] */
+  readonly size: number;
+  /** A place of the record as one of these positions. */
+  readonly placed: (place: Place) => three.Vector3;
+}
+
+/** Unpacks the mesh of a record. */
+export async function unpackedAnatomy(mesh: RecordedMesh): Promise<Anatomy> {
+  const { vertices, corners } = await decodeSurface(mesh.drawn, mesh.drawn.packed);
+  const box = new three.Box3().setFromArray(vertices);
+  const middle = box.getCenter(new three.Vector3());
+  const origin = middle.toArray();
+  const positions = new Float32Array(vertices.length);
+  for (let i = 0; i < vertices.length; ++i) {
+    positions[i] = (vertices[i] as number) - (origin[i % 3] as number);
+  }
+  return {
+    positions,
+    corners,
+    isClosed: mesh.surface === "closed",
+    size: box.getSize(new three.Vector3()).length(),
+    placed: (place) => new three.Vector3(...place).sub(middle),
+  };
+}
+
+/** The corners of the triangles of which one is within a way from a place, seen along a direction. */
+export function cornersAround(
+  { positions, corners }: Anatomy,
+  place: three.Vector3,
+  along: three.Vector3,
+  reach: number,
+): Uint32Array {
+  const isNear = new Uint8Array(positions.length / 3);
+  const way = new three.Vector3();
+  for (let i = 0; i < isNear.length; ++i) {
+    way.fromArray(positions, 3 * i).sub(place);
+    isNear[i] = Number(way.lengthSq() - way.dot(along) ** 2 <= reach ** 2);
+  }
+  return corners.filter((_, i) => {
+    const first = i - (i % 3);
+    return [0, 1, 2].some((k) => isNear[corners[first + k] as number]);
+  });
+}
+
+/** The mean direction out of the surface around a place, weighted by area; null without a surface. */
+export function outward(
+  { positions, corners }: Anatomy,
+  place: three.Vector3,
+  radius: number,
+): three.Vector3 | null {
+  const sum = new three.Vector3();
+  const triangle = new three.Triangle();
+  const { a, b, c } = triangle;
+  const middle = new three.Vector3();
+  for (let i = 0; i < corners.length; i += 3) {
+    a.fromArray(positions, 3 * (corners[i] as number));
+    b.fromArray(positions, 3 * (corners[i + 1] as number));
+    c.fromArray(positions, 3 * (corners[i + 2] as number));
+    if (triangle.getMidpoint(middle).distanceToSquared(place) > radius ** 2) continue;
+    sum.addScaledVector(triangle.getNormal(middle), triangle.getArea());
+  }
+  return sum.lengthSq() > 0 ? sum.normalize() : null;
+}
+
+/** How the anatomy is looked at: a camera without perspective, which looks at a target. */
+export interface Outlook {
+  readonly camera: three.OrthographicCamera;
+  readonly target: three.Vector3;
+}
+
+/** Width by height of all pictures. */
+export const aspect = 4 / 3;
+
+/** Looks from a direction at a target, at so much of the height. [mm] */
+export function lookFrom(
+  toward: three.Vector3,
+  up: three.Vector3,
+  target: three.Vector3,
+  height: number,
+  size: number,
+): Outlook {
+  const [x, y] = [(aspect * height) / 2, height / 2];
+  const camera = new three.OrthographicCamera(-x, x, y, -y, 0, 6 * size);
+  camera.up.copy(up).normalize();
+  camera.position
+    .copy(toward)
+    .normalize()
+    .multiplyScalar(3 * size)
+    .add(target);
+  camera.lookAt(target);
+  camera.updateMatrixWorld();
+  return { camera, target: target.clone() };
+}
+
+/** The middle of places, and the height that shows them all, for one who looks from a direction. */
+export function fitted(
+  places: readonly three.Vector3[],
+  toward: three.Vector3,
+  up: three.Vector3,
+): { middle: three.Vector3; height: number } {
+  const axes = new three.Matrix4().lookAt(toward, new three.Vector3(), up);
+  const inverse = axes.clone().invert();
+  const box = new three.Box3();
+  const turned = new three.Vector3();
+  for (const place of places) box.expandByPoint(turned.copy(place).applyMatrix4(inverse));
+  const { x, y } = box.getSize(new three.Vector3());
+  const middle = box.getCenter(new three.Vector3()).applyMatrix4(axes);
+  return { middle, height: Math.max(y, x / aspect) };
+}

@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: BSD-3-Clause
+import type * as three from "three";
+import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import type { Anatomy, Outlook } from "./anatomy.ts";
+import { drawn, type Mark, placeMark, scaleBar } from "./marks.ts";
+import { GraphicsPainter, GraphicsProcessor, type Layer, type Painter } from "./painting.ts";
+import { make } from "./shown.ts";
+import { StillPainter } from "./still.ts";
+
+/** How long after the last motion of a view it is drawn as fine as it can be. [ms] */
+const rest = 160;
+/** By how much a key turns, and by how much it zooms. */
+const [turn, zoom] = [0.12, 1.15];
+
+let processor: GraphicsProcessor | null | undefined;
+
+/** What draws with WebGL; null where there is none. */
+export function graphicsProcessor(): GraphicsProcessor | null {
+  if (processor !== undefined) return processor;
+  try {
+    processor = new GraphicsProcessor();
+  } catch {
+    processor = null;
+  }
+  return processor;
+}
+
+interface Picture {
+  readonly element: HTMLElement;
+  readonly canvas: HTMLCanvasElement;
+  readonly marks: readonly Mark[];
+  readonly scale: SVGGElement;
+  readonly layer: Layer;
+  readonly controls: OrbitControls;
+  isInSight: boolean;
+  isStale: boolean;
+}
+
+/** Pictures of one anatomy that are looked at in the same way: when one is turned, all turn. */
+export class AnatomyView {
+  private readonly pictures: Picture[] = [];
+  private readonly painter: Painter;
+  private readonly isSlow: boolean;
+  private readonly end = new AbortController();
+  private isDue = false;
+  private isMoving = false;
+  private settling = 0;
+  private readonly sight = new IntersectionObserver((changes) => {
+    for (const { target, isIntersecting } of changes) {
+      const picture = this.pictures.find(({ element }) => element === target);
+      if (picture) picture.isInSight = isIntersecting;
+    }
+    this.redraw();
+  });
+  private readonly sizes = new ResizeObserver(() => this.outdate());
+
+  /** `group`: the element around the pictures, which says from where they are looked at. */
+  constructor(
+    private readonly group: HTMLElement,
+    anatomy: Anatomy,
+    corners: Uint32Array,
+    private readonly outlook: Outlook,
+  ) {
+    const graphics = graphicsProcessor();
+    this.isSlow = graphics?.isSlow ?? true;
+    this.painter = graphics
+      ? new GraphicsPainter(graphics, anatomy, corners, outlook.camera)
+      : new StillPainter(anatomy, corners, outlook.camera);
+    const { signal } = this.end;
+    const restored = () => {
+      this.painter.outdate();
+      this.outdate();
+    };
+    graphics?.renderer.domElement.addEventListener("webglcontextrestored", restored, { signal });
+    const dark = window.matchMedia("(prefers-color-scheme: dark)");
+    dark.addEventListener("change", () => this.outdate(), { signal });
+    const printing = () => {
+      this.isMoving = false;
+      for (const picture of this.pictures) this.paint(picture);
+    };
+    window.addEventListener("beforeprint", printing, { signal });
+    this.tellView();
+  }
+
+  /** Another picture. */
+  picture(description: string, layer: Layer, marks: readonly Mark[]): HTMLElement {
+    const canvas = make("canvas", { class: "anatomy" });
+    const scale = drawn("g", { class: "scale" }, drawn("path", {}), drawn("text", {}));
+    const overlay = drawn("svg", {}, ...marks.map(({ element }) => element), scale);
+    const element = make("div", { class: "picture", tabindex: "0", role: "img" }, canvas);
+    element.setAttribute("aria-label", description);
+    element.append(overlay);
+    const controls = this.controlled(element);
+    this.pictures.push({
+      ...{ element, canvas, marks, scale, layer, controls },
+      ...{ isInSight: false, isStale: true },
+    });
+    this.sight.observe(element);
+    this.sizes.observe(element);
+    return element;
+  }
+
+  /** Puts the marks of all pictures where they are now. */
+  placeMarks(): void {
+    for (const picture of this.pictures) this.mark(picture);
+  }
+
+  dispose(): void {
+    this.end.abort();
+    this.sight.disconnect();
+    this.sizes.disconnect();
+    for (const { controls } of this.pictures) controls.dispose();
+    this.pictures.length = 0;
+    this.painter.dispose();
+  }
+
+  private controlled(element: HTMLElement): OrbitControls {
+    // Only in a picture that was clicked, or with Ctrl, the wheel zooms: else it scrolls the page.
+    element.addEventListener("wheel", ({ ctrlKey }) => {
+      controls.enableZoom = ctrlKey || document.activeElement === element;
+    });
+    element.addEventListener("pointerdown", () => {
+      controls.enableZoom = true;
+    });
+    const controls = new OrbitControls(this.outlook.camera, element);
+    controls.target = this.outlook.target;
+    controls.minZoom = 0.5;
+    controls.maxZoom = 200;
+    controls.saveState();
+    controls.update();
+    controls.addEventListener("change", () => this.moved());
+    const keys: Readonly<Record<string, () => void>> = {
+      ArrowLeft: () => controls.rotateLeft(-turn),
+      ArrowRight: () => controls.rotateLeft(turn),
+      ArrowUp: () => controls.rotateUp(-turn),
+      ArrowDown: () => controls.rotateUp(turn),
+      "+": () => controls.dollyIn(zoom),
+      "-": () => controls.dollyOut(zoom),
+      Home: () => controls.reset(),
+    };
+    element.addEventListener("keydown", (event) => {
+      const act = keys[event.key];
+      if (!act || event.ctrlKey || event.altKey || event.metaKey) return;
+      event.preventDefault();
+      act();
+    });
+    element.addEventListener("dblclick", () => controls.reset());
+    return controls;
+  }
+
+  private moved(): void {
+    this.outlook.camera.updateMatrixWorld();
+    this.painter.outdate();
+    this.isMoving = true;
+    this.outdate();
+    this.tellView();
+    window.clearTimeout(this.settling);
+    this.settling = window.setTimeout(() => {
+      this.isMoving = false;
+      this.outdate();
+    }, rest);
+  }
+
+  private tellView(): void {
+    const { camera, target } = this.outlook;
+    const toward = camera.position.clone().sub(target).normalize();
+    this.group.dataset.view = [...toward.toArray(), camera.zoom]
+      .map((value) => value.toFixed(3))
+      .join(",");
+  }
+
+  private outdate(): void {
+    for (const picture of this.pictures) picture.isStale = true;
+    this.redraw();
+  }
+
+  /** Draws when the browser next does: first what is in sight, then, at rest, all else. */
+  private redraw(): void {
+    if (this.isDue || this.pictures.length === 0) return;
+    this.isDue = true;
+    requestAnimationFrame(() => {
+      this.isDue = false;
+      const stale = this.pictures.filter(({ isStale }) => isStale);
+      const seen = stale.filter(({ isInSight }) => isInSight);
+      const now = seen.length > 0 || this.isMoving ? seen : stale.slice(0, 1);
+      for (const picture of now) this.paint(picture);
+      if (stale.length > now.length && !this.isMoving) this.redraw();
+    });
+  }
+
+  private paint(picture: Picture): void {
+    const { element, canvas, layer } = picture;
+    const { clientWidth: width, clientHeight: height } = element;
+    if (width === 0 || height === 0) return;
+    const density = Math.min(window.devicePixelRatio, 2);
+    canvas.width = Math.round(width * density);
+    canvas.height = Math.round(height * density);
+    const coarse = this.isSlow ? 0.6 : density;
+    const source = this.painter.paint(layer, width, height, this.isMoving ? coarse : 2);
+    const pen = canvas.getContext("2d") as CanvasRenderingContext2D;
+    pen.imageSmoothingQuality = "high";
+    pen.drawImage(source, 0, 0, canvas.width, canvas.height);
+    picture.isStale = false;
+    this.mark(picture);
+  }
+
+  private mark({ element, marks, scale }: Picture): void {
+    const { clientWidth: width, clientHeight: height } = element;
+    if (width === 0) return;
+    const { camera } = this.outlook;
+    for (const mark of marks) placeMark(mark, camera, width, height);
+    scaleBar(scale, (camera.top - camera.bottom) / camera.zoom / height, width, height);
+  }
+}
+
+/** What can be done with the pictures, and, where it is so, why they are plain. */
+export const hint = (): HTMLElement =>
+  make(
+    "p",
+    { class: "hint" },
+    "Drag to turn: all turn together. Ctrl and the wheel zoom, or the wheel alone in a picture that was clicked; so do two fingers. ",
+    "Arrow keys turn, + and − zoom, Home or a double click goes back.",
+    ...(graphicsProcessor() ? [] : [" There is no WebGL here: the pictures are plain."]),
+  );
+
+/** The direction, of those all around and a little above, from which most places are seen. */
+export function bestDirection(
+  directions: readonly three.Vector3[],
+  seenFrom: (toward: three.Vector3) => number,
+): three.Vector3 {
+  const counts = directions.map(seenFrom);
+  return directions[counts.indexOf(Math.max(...counts))] as three.Vector3;
+}

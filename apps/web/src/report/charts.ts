@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/** What all plots share: how they are drawn to fit, told of by a tip, and filtered by a legend. */
+import * as Plot from "@observablehq/plot";
+import { make, shown } from "./shown.ts";
+import type { Column } from "./table.ts";
+
+/** How a series is told from others, by its colour and by its mark. */
+export interface Look {
+  readonly color: string;
+  readonly symbol: Plot.SymbolType;
+}
+
+const symbols = ["circle", "square", "triangle", "diamond", "cross", "wye"] as const;
+
+/** The looks of series by their names: the same for a name wherever it is drawn. */
+export function looksOf(names: readonly string[]): Map<string, Look> {
+  return new Map(
+    [...new Set(names)].map((name, i) => [
+      name,
+      { color: `var(--series-${i % 10})`, symbol: symbols[i % symbols.length] ?? "circle" },
+    ]),
+  );
+}
+
+/** Names of series with their looks; those that are not ticked are left out of its charts. */
+export class Legend {
+  readonly element = make(
+    "fieldset",
+    { class: "legend" },
+    make("legend", { class: "unseen" }, "Shown"),
+  );
+  private readonly hidden = new Set<string>();
+  private readonly charts: (() => void)[] = [];
+
+  /** `label`: what stands for a name, if not the name. */
+  constructor(
+    readonly looks: ReadonlyMap<string, Look>,
+    label: (name: string) => Node | string = (name) => name,
+  ) {
+    for (const [name, look] of looks) {
+      const tick = make("input", { type: "checkbox", checked: "" });
+      tick.addEventListener("change", () => {
+        if (tick.checked) this.hidden.delete(name);
+        else this.hidden.add(name);
+        for (const draw of this.charts) draw();
+      });
+      this.element.append(make("label", {}, tick, glyph(look), label(name)));
+    }
+  }
+
+  shows = (name: string): boolean => !this.hidden.has(name);
+  look = (name: string): Look => this.looks.get(name) ?? { color: "var(--ink)", symbol: "star" };
+  whenChanged(draw: () => void): void {
+    this.charts.push(draw);
+  }
+}
+
+function glyph({ color, symbol }: Look): Element {
+  const mark = Plot.dot([0], { frameAnchor: "middle", symbol, fill: color, r: 5 });
+  const picture = Plot.plot({ width: 14, height: 14, margin: 0, marks: [mark] });
+  picture.setAttribute("aria-hidden", "true");
+  return picture;
+}
+
+/** A plot of data, drawn as wide as its place is. */
+export interface Chart<Datum> {
+  /** For those who cannot see it. */
+  readonly description: string;
+  readonly draw: (width: number) => Plot.PlotOptions;
+  /** What is told of a datum under the pointer: see the marks that are made with Plot.pointer. */
+  readonly tip: (datum: Datum) => readonly (Node | string)[];
+  readonly legend?: Legend;
+}
+
+/** Around what a plot draws, for its axes. */
+const space = { marginLeft: 48, marginBottom: 40, inset: 7 };
+
+/** The element that holds a chart. */
+export function chart<Datum>({ description, draw, tip, legend }: Chart<Datum>): HTMLElement {
+  const bubble = make("div", { class: "tip", hidden: "" });
+  const place = make("div", { class: "plot" });
+  let width = 0;
+  const redraw = () => {
+    const picture = Plot.plot({ ...space, ...draw(width), width, className: "drawing" });
+    picture.setAttribute("role", "img");
+    picture.setAttribute("aria-label", description);
+    picture.addEventListener("input", () => {
+      const datum = picture.value as Datum | null;
+      bubble.hidden = datum === null;
+      if (datum !== null) bubble.replaceChildren(...tip(datum));
+    });
+    place.replaceChildren(picture, bubble);
+  };
+  const follow = (event: PointerEvent) => {
+    const { left, top, width: room } = place.getBoundingClientRect();
+    const x = event.clientX - left;
+    bubble.style.top = `${event.clientY - top + 16}px`;
+    bubble.style.left = `${Math.max(0, Math.min(x + 12, room - bubble.offsetWidth - 4))}px`;
+  };
+  place.addEventListener("pointermove", follow);
+  place.addEventListener("pointerdown", follow);
+  legend?.whenChanged(redraw);
+  // What is not seen has no width; it is drawn all the same, for print.
+  new ResizeObserver(([entry]) => {
+    const room = Math.floor(entry?.contentRect.width ?? 0) || width || 560;
+    if (room === width) return;
+    width = room;
+    redraw();
+  }).observe(place);
+  return place;
+}
+
+/** Names and values for a tip. */
+export function tipOf(
+  title: readonly (Node | string)[],
+  facts: readonly (readonly [string, Node])[],
+): HTMLElement[] {
+  const lines = facts.flatMap(([name, value]) => [make("dt", {}, name), make("dd", {}, value)]);
+  return [make("b", {}, ...title), make("dl", {}, ...lines)];
+}
+
+/** The same, of those that some columns of a table would show of a row. */
+export const tipOfColumns = (
+  title: readonly (Node | string)[],
+  row: string,
+  columns: readonly Column[],
+): HTMLElement[] =>
+  tipOf(
+    title,
+    columns.map(({ heading, from, format }) => [heading, shown(row + from, format)]),
+  );
+
+/** A logarithmic scale, with ticks that fit the values. */
+export function logarithmic(label: string | null, values: readonly number[]): Plot.ScaleOptions {
+  const positive = values.filter((value) => value > 0);
+  const [low, high] = [Math.min(...positive), Math.max(...positive)];
+  const decades = Math.log10(high / low);
+  const digits = decades > 2 ? [1] : decades > 0.6 ? [1, 2, 5] : [1, 2, 3, 4, 5, 6, 7, 8, 9];
+  const ticks = [];
+  const step = Math.max(1, Math.ceil(decades / 8));
+  for (let power = Math.floor(Math.log10(low)); power <= Math.log10(high); power += 1) {
+    if (power % step !== 0) continue;
+    for (const digit of digits) ticks.push(digit * 10 ** power);
+  }
+  const seen = ticks.filter((tick) => tick >= low && tick <= high);
+  return { type: "log", domain: [low, high], label, grid: true, ticks: seen, tickFormat: tickText };
+}
+
+/** The number at a tick: 0.5, 200, 50k, 1M, 10⁻⁶. */
+export function tickText(value: number): string {
+  if (value >= 1e6) return `${Number((value / 1e6).toPrecision(6))}M`;
+  if (value >= 1e4) return `${Number((value / 1e3).toPrecision(6))}k`;
+  if (value >= 0.9e-3 || value === 0) return String(Number(value.toPrecision(6)));
+  const [digit, power] = value.toExponential(0).split("e-") as [string, string];
+  const raised = [...power].map((one) => "⁰¹²³⁴⁵⁶⁷⁸⁹"[Number(one)]).join("");
+  return `${digit === "1" ? "" : `${digit}·`}10⁻${raised}`;
+}

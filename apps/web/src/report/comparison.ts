@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/** The sections of a comparison: whether indices, solvers and narrow phases give the same answers. */
+import * as Plot from "@observablehq/plot";
+import { Legend, logarithmic, looksOf, tipOfColumns } from "./charts.ts";
+import { entries, valueAt } from "./record.ts";
+import { lead, panel, panels, section } from "./report_page.ts";
+import { inRow, rowChart } from "./row_chart.ts";
+import { error, grouped, make, rounded, show, shown, shownName } from "./shown.ts";
+import { type Column, scrolled, table } from "./table.ts";
+
+const count = (heading: string, from: string): Column => ({ heading, from, format: grouped });
+const harm = (heading: string, from: string): Column => ({ ...count(heading, from), look: "harm" });
+const name = (heading: string, from: string): Column => ({ heading, from, look: "name" });
+const size = (heading: string, from: string): Column => ({ heading, from, format: error });
+const times: readonly Column[] = [
+  { heading: "median [µs]", from: "/p50_us", format: rounded },
+  { heading: "99 % [µs]", from: "/p99_us", format: rounded },
+];
+
+const indexColumns: readonly Column[] = [
+  name("index", "/index"),
+  name("rule", "/activation"),
+  name("mesh", "/mesh"),
+  count("poses", "/poses"),
+  harm("missed", "/missed"),
+  harm("invented", "/invented"),
+  size("worst error of a closest point [mm]", "/closest_point_error_mm"),
+  size("worst angle of a plane [rad]", "/plane_angle_rad"),
+  size("worst difference of a step [mm]", "/step_difference_mm"),
+  count("steps that differ", "/steps_that_differ"),
+];
+const solverColumns: readonly Column[] = [
+  name("solver", "/solver"),
+  name("rule", "/activation"),
+  count("problems", "/problems"),
+  count("optimal", "/optimal"),
+  count("infeasible", "/infeasible"),
+  harm("gave up", "/gave_up"),
+  harm("wrong", "/wrong"),
+  size("worst difference of a step, relative", "/step_difference"),
+  size("worst KKT residual", "/kkt_residual"),
+  ...times,
+];
+const narrowPhaseColumns: readonly Column[] = [
+  name("narrow phase", "/backend"),
+  name("tool", "/tool"),
+  name("relation", "/relation"),
+  count("pairs", "/pairs"),
+  harm("no answer", "/failed"),
+  harm("contradicted", "/contradicted"),
+  size("median error [mm]", "/median_error_mm"),
+  size("worst error [mm]", "/worst_error_mm"),
+  ...times,
+];
+
+/** `from`: where the comparison is; what was not compared is left out. */
+export function comparisonSections(from: string): HTMLElement[] {
+  const part = (
+    key: string,
+    title: string,
+    columns: readonly Column[],
+    more: (rows: readonly string[]) => readonly HTMLElement[] = () => [],
+  ) => {
+    const rows = entries(`${from}/${key}/rows`);
+    if (rows.length === 0) return [];
+    return [
+      section(
+        title,
+        show(lead(), `${from}/${key}/verdict`),
+        scrolled(table(rows, columns)),
+        ...more(rows),
+      ),
+    ];
+  };
+  return [
+    ...part("indices", "Do the indices agree?", indexColumns),
+    ...part("solvers", "Do the solvers agree?", solverColumns, outcomes),
+    ...part("narrow_phases", "Do the narrow phases agree?", narrowPhaseColumns, errors),
+  ];
+}
+
+/** What the libraries said, in their words: a line for each solver. */
+function outcomes(rows: readonly string[]): HTMLElement[] {
+  const lines = rows.flatMap((row) => {
+    const most = entries(`${row}/outcomes`).sort(
+      (a, b) => (valueAt<number>(b) ?? 0) - (valueAt<number>(a) ?? 0),
+    );
+    const said = most.flatMap((outcome, i) => [
+      i > 0 ? "; " : "",
+      shown(outcome, grouped),
+      "\u00a0× ",
+      shownName(outcome),
+    ]);
+    const solver = [shown(`${row}/solver`), ", ", shown(`${row}/activation`)];
+    return said.length > 0 ? [make("dt", {}, ...solver), make("dd", {}, ...said)] : [];
+  });
+  return [
+    make("h3", {}, "What the libraries said, and what was found"),
+    make("figure", {}, make("dl", { class: "long" }, ...lines)),
+  ];
+}
+
+interface NarrowPhaseRow {
+  readonly from: string;
+  readonly backend: string;
+  readonly relation: string;
+  readonly median_error_mm: number;
+  readonly worst_error_mm: number;
+}
+
+/** The errors of all narrow phases, side by side for each relation of tool and triangle. */
+function errors(pointers: readonly string[]): HTMLElement[] {
+  const rows = pointers.map((from) => ({ ...(valueAt(from) as NarrowPhaseRow), from }));
+  const legend = new Legend(looksOf(rows.map(({ backend }) => backend)));
+  // A logarithmic axis has no place for what is exact.
+  const above = (value: number) => (value > 0 ? value : Number.NaN);
+  const middle = ({ median_error_mm }: NarrowPhaseRow) => above(median_error_mm);
+  const worst = ({ worst_error_mm }: NarrowPhaseRow) => above(worst_error_mm);
+  const named = (from: string) => [{ from: `${from}/backend` }, ", ", { from: `${from}/tool` }];
+  const chartOf = (relation: string) =>
+    rowChart({
+      description: `Median and worst error of each narrow phase, ${relation}`,
+      data: rows.filter((row) => row.relation === relation),
+      series: ({ backend }) => backend,
+      legend,
+      tip: ({ from }) =>
+        tipOfColumns([shown(`${from}/backend`)], from, narrowPhaseColumns.slice(1)),
+      name: ({ from }) => named(from),
+      value: ({ from }) => [
+        { from: `${from}/median_error_mm`, format: error },
+        " to ",
+        { from: `${from}/worst_error_mm`, format: error },
+      ],
+      // On the same axis, so that panels can be compared.
+      x: logarithmic("error [mm]", [...rows.map(middle), ...rows.map(worst)]),
+      marks: (seen, { y, color, symbol }) => [
+        Plot.link(seen, {
+          x1: middle,
+          x2: worst,
+          y1: y,
+          y2: y,
+          ...inRow,
+          stroke: color,
+          strokeWidth: 2,
+        }),
+        Plot.dot(seen, { x: middle, y, ...inRow, symbol, fill: color, r: 4.5 }),
+      ],
+    });
+  const relations = [...new Set(rows.map(({ relation }) => relation))];
+  return [
+    lead("Filled: the median error, and a line to the worst; no mark where it is nothing."),
+    legend.element,
+    panels(...relations.map((relation) => panel(relation, chartOf(relation)))),
+  ];
+}

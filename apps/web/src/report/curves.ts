@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+import * as Plot from "@observablehq/plot";
+import { type Chart, chart, type Legend, logarithmic } from "./charts.ts";
+
+/** What is drawn as lines through marks, a line for each series, on two logarithmic axes. */
+export interface Curves<Datum> extends Omit<Chart<Datum>, "draw"> {
+  readonly data: readonly Datum[];
+  readonly series: (datum: Datum) => string;
+  /** The label of an axis, and where on it a datum is; not a number: nowhere. */
+  readonly x: readonly [string, (datum: Datum) => number];
+  readonly y: readonly [string, (datum: Datum) => number];
+  readonly legend: Legend;
+  /** A level that tells something, and its name. */
+  readonly rule?: readonly [number, string];
+}
+
+/** The element that holds such a plot. Stars stand alone. */
+export function curves<Datum>(wanted: Curves<Datum>): HTMLElement {
+  const { legend, series, rule } = wanted;
+  const [[xLabel, x], [yLabel, y]] = [wanted.x, wanted.y];
+  const data = wanted.data
+    .filter((datum) => x(datum) > 0 && y(datum) > 0)
+    .sort((a, b) => x(a) - x(b));
+  const fill = (datum: Datum) => legend.look(series(datum)).color;
+  const symbol = (datum: Datum) => legend.look(series(datum)).symbol as string;
+  const draw = () => {
+    const seen = data.filter((datum) => legend.shows(series(datum)));
+    const joined = seen.filter((datum) => symbol(datum) !== "star");
+    const text = { frameAnchor: "left", dx: 4, dy: -8, fill: "var(--soft)" } as const;
+    return {
+      height: 420,
+      x: logarithmic(xLabel, data.map(x)),
+      y: logarithmic(yLabel, [...data.map(y), ...(rule ? [rule[0]] : [])]),
+      marks: [
+        Plot.ruleY(rule ? [rule[0]] : [], { stroke: "var(--soft)", strokeDasharray: "5 4" }),
+        Plot.text(rule ? [rule] : [], { ...text, y: "0", text: "1" }),
+        Plot.line(joined, { x, y, z: series, stroke: fill, strokeWidth: 2 }),
+        Plot.dot(seen, { x, y, symbol, fill, stroke: "var(--card)", r: 4.5 }),
+        Plot.dot(seen, Plot.pointer({ x, y, stroke: "var(--ink)", strokeWidth: 2, r: 9 })),
+      ],
+    };
+  };
+  return chart({ ...wanted, draw });
+}

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/** The reports that show no anatomy. */
+import { benchmarkSections } from "./benchmark.ts";
+import { comparisonSections } from "./comparison.ts";
+import { showReport } from "./report_page.ts";
+import { speedSections } from "./speed.ts";
+import { verificationSections } from "./verification.ts";
+
+void showReport({
+  bench: (main) => main.append(...benchmarkSections("/benchmark", "/comparison")),
+  speed: (main) => main.append(...speedSections()),
+  compare: (main) => main.append(...comparisonSections("/comparison")),
+  verify: (main) => main.append(...verificationSections()),
+});

@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: BSD-3-Clause
+import * as three from "three";
+import { LineMaterial } from "three/addons/lines/LineMaterial.js";
+import { LineSegments2 } from "three/addons/lines/LineSegments2.js";
+import { LineSegmentsGeometry } from "three/addons/lines/LineSegmentsGeometry.js";
+import { StillPicture } from "../page/still_picture.ts";
+import type { Anatomy } from "./anatomy.ts";
+import type { Cut } from "./cut.ts";
+
+/** Lengths of paths that look alike. */
+export interface Lengths {
+  /** Pairs of ends, three coordinates each. */
+  readonly ends: Float32Array;
+  /** The variable of the page's style that has the colour. */
+  readonly color: string;
+  /** Wide, and seen through the surface. */
+  readonly isAlarming: boolean;
+  readonly isSeenThrough: boolean;
+  /** [px of the page] */
+  readonly width: number;
+}
+
+/** What a picture shows beside the anatomy. */
+export interface Layer {
+  readonly lengths: readonly Lengths[];
+  readonly cut: Cut | null;
+}
+
+/** Draws the pictures of one anatomy. */
+export interface Painter {
+  /** `scale`: pixels for each of the page. What is returned holds until it paints again. */
+  paint(layer: Layer, width: number, height: number, scale: number): CanvasImageSource;
+  /** Another view than that of the last picture. */
+  outdate(): void;
+  dispose(): void;
+}
+
+/** The colour that a variable of the page's style has now. */
+export function colorOf(variable: string): string {
+  const probe = document.body.appendChild(document.createElement("i"));
+  probe.style.color = `var(${variable})`;
+  const { color } = getComputedStyle(probe);
+  probe.remove();
+  return color;
+}
+
+/** What bone looks like, in linear light: of a free side, of a back, of a section and of its edge. */
+export const materials = {
+  bone: [0.8, 0.69, 0.52],
+  hollow: [0.34, 0.2, 0.15],
+  section: [0.88, 0.62, 0.42],
+  edge: [0.2, 0.09, 0.05],
+} as const;
+
+/** Lines of a hatched section: how far apart, and how wide. [px of the page] */
+export const hatching = { period: 15, line: 1.7 } as const;
+
+/** The one thing that draws with a graphics processor, for all pictures of the page. */
+export class GraphicsProcessor {
+  readonly renderer: three.WebGLRenderer;
+  /** Without a graphics processor every pixel takes its time. */
+  readonly isSlow: boolean;
+
+  /** Throws where there is no WebGL. */
+  constructor() {
+    const canvas = document.createElement("canvas");
+    const gl = canvas.getContext("webgl2", { alpha: true });
+    if (!gl) throw new Error("there is no WebGL");
+    const names = gl.getExtension("WEBGL_debug_renderer_info");
+    const name = String(gl.getParameter(names ? names.UNMASKED_RENDERER_WEBGL : gl.RENDERER));
+    this.isSlow = /swiftshader|llvmpipe|software/i.test(name);
+    this.renderer = new three.WebGLRenderer({ canvas, context: gl });
+    this.renderer.autoClear = false;
+    this.renderer.setClearColor(0, 0);
+  }
+}
+
+/** Draws with WebGL. */
+export class GraphicsPainter implements Painter {
+  private readonly anatomy: three.Mesh<three.BufferGeometry, three.ShaderMaterial>;
+  private readonly scene = new three.Scene();
+  private readonly still: StillPicture;
+  private readonly linesOf = new Map<Layer, three.Scene>();
+  private readonly depths = new three.DataTexture(null, 1, 1, three.RedFormat, three.FloatType);
+
+  private lastColumns = 0;
+
+  /** `corners`: of the triangles that are drawn. */
+  constructor(
+    private readonly processor: GraphicsProcessor,
+    anatomy: Anatomy,
+    corners: Uint32Array,
+    private readonly camera: three.OrthographicCamera,
+  ) {
+    const geometry = new three.BufferGeometry();
+    geometry.setAttribute("position", new three.BufferAttribute(anatomy.positions, 3));
+    geometry.setIndex(new three.BufferAttribute(corners, 1));
+    geometry.computeVertexNormals();
+    this.anatomy = new three.Mesh(geometry, boneMaterial(anatomy.isClosed, this.depths));
+    this.anatomy.frustumCulled = false;
+    this.scene.add(this.anatomy);
+    this.still = new StillPicture(this.scene, camera, processor.isSlow ? 0 : 4);
+  }
+
+  outdate(): void {
+    this.still.outdate();
+  }
+
+  paint(layer: Layer, width: number, height: number, scale: number): HTMLCanvasElement {
+    const { renderer } = this.processor;
+    const size = renderer.getSize(new three.Vector2());
+    const [columns, rows] = [Math.round(width * scale), Math.round(height * scale)];
+    if (size.x !== columns || size.y !== rows) renderer.setSize(columns, rows, false);
+    if (this.lastColumns !== columns) this.outdate();
+    this.lastColumns = columns;
+    (this.anatomy.material.uniforms.scale as three.IUniform).value = scale;
+    if (layer.cut) {
+      this.hang(layer.cut);
+      renderer.clear();
+      renderer.render(this.scene, this.camera);
+    } else {
+      this.still.draw(renderer);
+    }
+    const lines = this.linesOf.get(layer) ?? linesOf(layer);
+    this.linesOf.set(layer, lines);
+    this.adjust(lines, height, scale);
+    renderer.render(lines, this.camera);
+    return renderer.domElement;
+  }
+
+  dispose(): void {
+    this.anatomy.geometry.dispose();
+    this.anatomy.material.dispose();
+    this.depths.dispose();
+    for (const lines of this.linesOf.values()) {
+      for (const { geometry, material } of lines.children as LineSegments2[]) {
+        geometry.dispose();
+        material.dispose();
+      }
+    }
+  }
+
+  private hang(cut: Cut): void {
+    this.depths.image = {
+      data: cut.depths as Float32Array<ArrayBuffer>,
+      width: cut.depths.length,
+      height: 1,
+    };
+    this.depths.needsUpdate = true;
+    const { uniforms } = this.anatomy.material;
+    const values = {
+      isCut: true,
+      sideways: cut.sideways,
+      toward: cut.toward,
+      from: cut.from,
+      to: cut.to,
+    };
+    for (const [name, value] of Object.entries(values))
+      (uniforms[name] as three.IUniform).value = value;
+  }
+
+  /** Lines are as wide wherever the view is, and lie before the surface that they touch. */
+  private adjust(lines: three.Scene, height: number, scale: number): void {
+    const { top, bottom, zoom, far, near } = this.camera;
+    const pixel = (top - bottom) / zoom / height; // [mm]
+    for (const { material, userData } of lines.children as LineSegments2[]) {
+      material.linewidth = scale * userData.width;
+      material.color.set(colorOf(userData.color)).multiplyScalar(userData.light);
+      material.polygonOffsetUnits = (-userData.width * pixel * 2 ** 24) / (far - near);
+    }
+  }
+}
+
+/** Each length twice: wide and dark, and on it narrower and in its colour. */
+function linesOf({ lengths }: Layer): three.Scene {
+  const scene = new three.Scene();
+  for (const { ends, color, isAlarming, isSeenThrough, width } of lengths) {
+    if (ends.length === 0) continue;
+    const geometry = new LineSegmentsGeometry().setPositions(ends);
+    for (const [rank, more, light] of [
+      [0, 1.4, 0.35],
+      [1, 0, 1],
+    ] as const) {
+      const material = new LineMaterial({ depthTest: !isSeenThrough, polygonOffset: true });
+      const line = new LineSegments2(geometry, material);
+      line.userData = { width: width + more, color, light };
+      line.renderOrder = 2 * Number(isAlarming) + rank;
+      line.frustumCulled = false;
+      material.depthWrite = rank === 1;
+      scene.add(line);
+    }
+  }
+  return scene;
+}
+
+/** Bone, lit from the upper left of the view; where it is cut, a section as a draughtsman draws it. */
+function boneMaterial(isClosed: boolean, depths: three.Texture): three.ShaderMaterial {
+  const color = (name: keyof typeof materials) =>
+    `const vec3 ${name} = vec3(${materials[name].map((part) => part.toFixed(2)).join(", ")});`;
+  return new three.ShaderMaterial({
+    side: three.DoubleSide,
+    uniforms: {
+      isClosed: { value: isClosed },
+      isCut: { value: false },
+      depths: { value: depths },
+      sideways: { value: new three.Vector3() },
+      toward: { value: new three.Vector3() },
+      from: { value: 0 },
+      to: { value: 1 },
+      scale: { value: 1 },
+    },
+    vertexShader: `
+      varying vec3 place, eye, bent;
+      void main() {
+        place = position;
+        eye = (modelViewMatrix * vec4(position, 1.0)).xyz;
+        bent = normalMatrix * normal;
+        gl_Position = projectionMatrix * vec4(eye, 1.0);
+      }`,
+    fragmentShader: `
+      uniform bool isClosed, isCut;
+      uniform sampler2D depths;
+      uniform vec3 sideways, toward;
+      uniform float from, to, scale;
+      varying vec3 place, eye, bent;
+      ${color("bone")} ${color("hollow")} ${color("section")} ${color("edge")}
+
+      // How far behind the curtain a place is. [mm]
+      float behind() {
+        float last = float(textureSize(depths, 0).x - 1);
+        float column = last * clamp((dot(place, sideways) - from) / (to - from), 0.0, 1.0);
+        float left = texelFetch(depths, ivec2(int(column), 0), 0).r;
+        float right = texelFetch(depths, ivec2(int(min(column + 1.0, last)), 0), 0).r;
+        return mix(left, right, fract(column)) - dot(place, toward);
+      }
+
+      vec3 lit(vec3 material, vec3 normal) {
+        const vec3 key = normalize(vec3(-0.45, 0.62, 0.64));
+        const vec3 fill = normalize(vec3(0.75, -0.10, 0.65));
+        const vec3 warm = vec3(1.00, 0.96, 0.89);
+        const vec3 cool = vec3(0.86, 0.91, 1.00);
+        // Wrapped a little beyond the terminator, as light in bone is.
+        float keyLight = max(0.0, (dot(normal, key) + 0.15) / 1.15);
+        float sky = 0.5 + 0.5 * normal.y;
+        float gloss = pow(max(0.0, dot(normal, normalize(key + vec3(0.0, 0.0, 1.0)))), 40.0);
+        return material * (warm * 0.86 * keyLight + cool * (0.15 * max(0.0, dot(normal, fill)) +
+               0.09 + 0.13 * sky)) + warm * 0.05 * gloss;
+      }
+
+      void main() {
+        float rest = isCut ? behind() : 1.0;
+        vec3 flatNormal = normalize(cross(dFdx(eye), dFdy(eye)));
+        float reach = fwidth(rest);
+        if (rest < 0.0) discard;
+        // Slivers may be taken for turned: then the normal tells.
+        bool isFree = gl_FrontFacing && normalize(bent).z > -0.3;
+        vec3 color;
+        if (isCut && isClosed && !isFree) {
+          float stripe = mod(gl_FragCoord.x - gl_FragCoord.y, ${hatching.period.toFixed(1)} * scale);
+          color = section * (stripe < ${hatching.line.toFixed(1)} * scale ? 0.8 : 1.0);
+        } else {
+          // Across a sharp edge there is no normal but that of the triangle.
+          vec3 normal = normalize(isFree ? bent : -bent);
+          if (dot(normal, flatNormal) < 0.5) normal = flatNormal;
+          color = lit(isFree ? bone : hollow, normal);
+          if (isCut && rest < 1.2 * scale * reach) color = edge;
+        }
+        gl_FragColor = vec4(color, 1.0);
+        #include <colorspace_fragment>
+      }`,
+  });
+}

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+import * as three from "three";
+import { type Anatomy, fitted, lookFrom, unpackedAnatomy } from "./anatomy.ts";
+import { AnatomyView, hint } from "./anatomy_view.ts";
+import { coloured, ends, widths } from "./paths.ts";
+import type { ReportRecord } from "./record.ts";
+import { lead, section } from "./report_page.ts";
+import { panels, runColor } from "./runs.ts";
+import { grouped, make, rounded, shown } from "./shown.ts";
+import type { PlanRecord } from "./simulation_record.ts";
+import { type Column, scrolled, table } from "./table.ts";
+
+/** What the page of `plan` shows. */
+export async function planningSections(main: HTMLElement, record: ReportRecord): Promise<void> {
+  const plan = record as PlanRecord;
+  for (const mesh of plan.meshes.keys()) main.append(await meshSection(plan, mesh));
+}
+
+const columns: readonly Column[] = [
+  { heading: "checker", from: "/checker", look: "name" },
+  { heading: "runs", from: "/runs", format: grouped },
+  { heading: "solved", from: "/solved", format: grouped },
+  { heading: "valid", from: "/valid", format: grouped },
+  { heading: "enters", from: "/entering", format: grouped, look: "harm" },
+  { heading: "least clearance [mm]", from: "/least_clearance_mm", format: (mm) => rounded(mm, 4) },
+  { heading: "median [s]", from: "/median_seconds", format: rounded },
+  { heading: "checking [s]", from: "/median_checking_seconds", format: rounded },
+  { heading: "motions asked", from: "/median_checks", format: grouped },
+  { heading: "length [mm]", from: "/median_length_mm", format: rounded },
+];
+
+/** One mesh: what came out under each checker, and all paths that were found. */
+async function meshSection(plan: PlanRecord, number: number): Promise<HTMLElement> {
+  const mesh = plan.meshes[number] as PlanRecord["meshes"][number];
+  const anatomy = await unpackedAnatomy(mesh);
+  const rows = [...plan.summaries.keys()].filter((row) => plan.summaries[row]?.mesh === mesh.name);
+  const group = panels(2);
+  const view = new AnatomyView(group, anatomy, anatomy.corners, outlook(anatomy));
+  rows.forEach((row, place) => {
+    const checker = plan.summaries[row]?.checker as string;
+    const [good, bad]: [number[], number[]] = [[], []];
+    for (const run of plan.runs) {
+      if (run.mesh !== mesh.name || run.checker !== checker) continue;
+      good.push(...ends((run.path ?? []).map(anatomy.placed)));
+      for (const length of run.too_near ?? []) bad.push(...ends(length.map(anatomy.placed)));
+    }
+    const lengths = coloured(good, bad, runColor(place + 1), widths.whole, mesh.inside);
+    const from = `/summaries/${row}`;
+    const caption = make(
+      "figcaption",
+      {},
+      make("span", { class: "name" }, shown(`${from}/checker`)),
+      make("br"),
+      shown(`${from}/solved`, grouped),
+      " solved, of these ",
+      shown(`${from}/valid`, grouped),
+      " valid",
+    );
+    const description = `All paths found under the checker ${checker}.`;
+    const picture = view.picture(description, { lengths, cut: null }, []);
+    group.append(make("figure", {}, picture, caption));
+  });
+  const title = section(
+    "",
+    lead(
+      "All paths found under each checker. ",
+      make("b", {}, "Red"),
+      ": nearer to the mesh than allowed, or through it.",
+    ),
+    scrolled(
+      table(
+        rows.map((row) => `/summaries/${row}`),
+        columns,
+      ),
+    ),
+    group,
+    hint(),
+  );
+  (title.firstChild as HTMLElement).append(shown(`/meshes/${number}/name`));
+  return title;
+}
+
+/** From the side and a little above, z upwards, as the fixtures stand. */
+function outlook(anatomy: Anatomy) {
+  const [toward, up] = [new three.Vector3(0.9, -0.5, 0.35), new three.Vector3(0, 0, 1)];
+  const places = Array.from({ length: anatomy.positions.length / 3 }, (_, i) =>
+    new three.Vector3().fromArray(anatomy.positions, 3 * i),
+  );
+  const { middle, height } = fitted(places, toward, up);
+  return lookFrom(toward, up, middle, 1.13 * height, anatomy.size);
+}

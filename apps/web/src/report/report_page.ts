@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+import { type ReportRecord, readRecord, recordText, valueAt } from "./record.ts";
+import { make, paragraphs, rounded, show, shown, shownMembers, shownWhole } from "./shown.ts";
+
+/** What a page shows between its headline and its machine. */
+export type Sections = (main: HTMLElement, record: ReportRecord) => void | Promise<void>;
+
+/** Builds the page of the record that is in it. `kinds`: what can be shown, by `keepout_record`. */
+export async function showReport(kinds: Readonly<Record<string, Sections>>): Promise<void> {
+  const main = document.querySelector("main") as HTMLElement;
+  try {
+    const record = await readRecord();
+    const sections = kinds[record.keepout_record];
+    if (!sections) throw new Error(`this page does not show '${record.keepout_record}'`);
+    document.title = `${record.headline} – keepout ${record.keepout_record}`;
+    main.replaceChildren(
+      make(
+        "p",
+        { class: "eyebrow" },
+        shown("/subject"),
+        ...(record.machine ? ["; ", make("strong", {}, shown("/machine/processor"))] : []),
+        ", ",
+        shown("/date"),
+      ),
+      show(make("h1"), "/headline"),
+      ...paragraphs("/account", "account"),
+    );
+    await sections(main, record);
+    main.append(circumstances(record));
+  } catch (error) {
+    main.append(make("p", { class: "account", role: "alert" }, String(error)));
+    throw error;
+  }
+}
+
+/** A section under a heading. */
+export function section(title: string, ...content: readonly (Node | string)[]): HTMLElement {
+  return make("section", {}, make("h2", {}, title), ...content);
+}
+
+/** A paragraph of the page's own words under a heading. */
+export const lead = (...content: readonly (Node | string)[]): HTMLElement =>
+  make("p", { class: "lead" }, ...content);
+
+/** Cards with plots, side by side where there is room. */
+export const panels = (...figures: readonly HTMLElement[]): HTMLElement =>
+  make("div", { class: "panels wide charts", style: `--columns:${figures.length}` }, ...figures);
+
+/** A card under a title, if it has one. */
+export function panel(
+  title: string,
+  content: HTMLElement,
+  about: readonly Node[] = [],
+): HTMLElement {
+  const caption = make("figcaption", {}, make("span", { class: "name" }, title), ...about);
+  return make("figure", { class: "measured" }, ...(title === "" ? [] : [caption]), content);
+}
+
+/** The facts of a machine, as far as they are known, for a list of definitions. */
+function machineFacts(pointer: string): HTMLElement[] {
+  const gibibytes = (value: number) => `${rounded(value)} GiB`;
+  return [
+    ["processor", "processor"],
+    ["cores", "cores"],
+    ["memory", "memory_gib", gibibytes],
+    ["SIMD target", "simd"],
+    ["system", "system"],
+    ["compiler", "compiler"],
+    ["flags", "flags"],
+    ["build type", "build_type"],
+    ["keepout", "keepout"],
+    ["libraries", "libraries"],
+  ].flatMap(([name, key, format]) => {
+    const from = `${pointer}/${key}`;
+    const value = valueAt<unknown>(from);
+    if (!value) return [];
+    const content = format ? [shown(from, format as typeof gibibytes)] : shownWhole(from);
+    return [make("dt", {}, name as string), make("dd", {}, ...content)];
+  });
+}
+
+/** Where and how the record was made, and how to make it again or take it along. */
+function circumstances(record: ReportRecord): HTMLElement {
+  const copy = make("button", { type: "button" }, "Copy");
+  copy.addEventListener("click", async () => {
+    await navigator.clipboard.writeText(record.command);
+    copy.textContent = "Copied";
+  });
+  const save = make("button", { type: "button" }, "Save the figures");
+  save.addEventListener("click", () => {
+    const file = URL.createObjectURL(new Blob([recordText()], { type: "application/json" }));
+    const date = record.date.replaceAll(":", "");
+    make("a", { href: file, download: `keepout-${record.keepout_record}-${date}.json` }).click();
+    setTimeout(() => URL.revokeObjectURL(file), 1000);
+  });
+  const facts = [make("dt", {}, "date"), show(make("dd"), "/date"), ...machineFacts("/machine")];
+  const lists = [facts, shownMembers("/settings")].filter((list) => list.length > 0);
+  return section(
+    "Where it was done, and how to do it again",
+    panels(...lists.map((list) => make("figure", {}, make("dl", {}, ...list)))),
+    make("div", { class: "command" }, show(make("code"), "/command"), copy),
+    make("p", { class: "saving" }, save),
+  );
+}

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+import * as Plot from "@observablehq/plot";
+import { type Chart, chart } from "./charts.ts";
+import { type Format, textOf } from "./shown.ts";
+
+/** A value of the record within a text of a plot. */
+export interface Inscribed {
+  readonly from: string;
+  readonly format?: Format;
+}
+type Inscription<Datum> = (datum: Datum) => readonly (Inscribed | string)[];
+
+/** How the marks of a row chart are placed and told apart. */
+export interface RowChannels<Datum> {
+  readonly y: (datum: Datum, place: number) => number;
+  readonly color: (datum: Datum) => string;
+  readonly symbol: (datum: Datum) => string;
+}
+
+/** What is drawn as one row a datum, below its name, at the left, and its value, at the right. */
+export interface RowChart<Datum> extends Omit<Chart<Datum>, "draw"> {
+  readonly data: readonly Datum[];
+  /** By which the legend knows a datum; without, all are shown. */
+  readonly series?: (datum: Datum) => string;
+  readonly name: Inscription<Datum>;
+  readonly value: Inscription<Datum>;
+  readonly x: Plot.ScaleOptions;
+  readonly marks: (seen: Datum[], channels: RowChannels<Datum>) => readonly Plot.Markish[];
+}
+
+const rowHeight = 42;
+/** Where in its row a mark is, and a bar: below the texts. */
+export const inRow = { dy: 9 };
+export const barInRow = { insetTop: 22, insetBottom: 7 };
+
+/** The element that holds a row chart. */
+export function rowChart<Datum>(wanted: RowChart<Datum>): HTMLElement {
+  const { data, series = () => "", legend, name, value, x, marks } = wanted;
+  const y = (_: Datum, place: number) => place;
+  const look = (datum: Datum) => legend?.look(series(datum));
+  const channels: RowChannels<Datum> = {
+    y,
+    color: (datum) => look(datum)?.color ?? "var(--ink)",
+    symbol: (datum) => (look(datum)?.symbol ?? "circle") as string,
+  };
+  const text = { y, dy: -9, fontSize: 13 };
+  const band = { stroke: "var(--ink)", strokeOpacity: 0.06, strokeWidth: rowHeight };
+  const draw = () => {
+    const seen = data.filter((datum) => legend?.shows(series(datum)) ?? true);
+    return {
+      height: rowHeight * seen.length + 46,
+      inset: 0,
+      marginTop: 4,
+      marginLeft: 14,
+      marginRight: 14,
+      x: { ...x, inset: 7 },
+      y: { type: "band", domain: seen.map(y), axis: null, padding: 0 } as const,
+      marks: [
+        Plot.ruleY(seen, Plot.pointerY({ y, maxRadius: rowHeight, ...band })),
+        ...marks(seen, channels),
+        inscribed(seen, name, { ...text, frameAnchor: "left", dx: 6 }),
+        inscribed(seen, value, { ...text, frameAnchor: "right", dx: -6, fontWeight: 600 }),
+      ],
+    };
+  };
+  return chart({ ...wanted, draw });
+}
+
+/** A mark of texts that hold values of the record, each of which says where it is from. */
+function inscribed<Datum>(data: Datum[], content: Inscription<Datum>, options: Plot.TextOptions) {
+  return Plot.text(data, {
+    ...options,
+    text: () => " ",
+    render: (index, scales, values, dimensions, context, next) => {
+      const group = next?.(index, scales, values, dimensions, context) ?? null;
+      group?.querySelectorAll("text").forEach((text, i) => {
+        const parts = content(data[index[i] as number] as Datum).map((part) => {
+          const span = document.createElementNS("http://www.w3.org/2000/svg", "tspan");
+          span.textContent = typeof part === "string" ? part : textOf(part.from, part.format);
+          if (typeof part !== "string") span.setAttribute("data-from", part.from);
+          return span;
+        });
+        text.replaceChildren(...parts);
+      });
+      return group;
+    },
+  });
+}

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/** How runs are told apart on a page: by their names, with a swatch of their colours. */
+import { lastKey } from "./record.ts";
+import { make, shown } from "./shown.ts";
+
+/** The variable of the page's style that has the colour of a run. */
+export const runColor = (run: number): string => `--rule-${run % 6}`;
+
+/** The name of a run, after a swatch of its colour. */
+export const runName = (run: number): HTMLElement =>
+  make(
+    "span",
+    { class: "name", style: `--color: var(${runColor(run)})` },
+    make("span", { class: "swatch" }),
+    shown(`/runs/${run}/name`),
+  );
+
+/** The place of something in an array of the record, as people count: from one. */
+export const ordinal = (pointer: string): HTMLElement =>
+  make(
+    "span",
+    { "data-from": pointer, "data-ordinal": "" },
+    (Number(lastKey(pointer)) + 1).toLocaleString("en"),
+  );
+
+/** Cards side by side: two and four make pairs, three a row. */
+export const panels = (count: number, name = "panels"): HTMLElement =>
+  make("div", {
+    class: name,
+    style: `--columns:${count === 3 || count > 4 ? 3 : Math.min(count, 2)}`,
+  });

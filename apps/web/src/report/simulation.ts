@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: BSD-3-Clause
+import * as three from "three";
+import { type Anatomy, fitted, lookFrom, type Outlook, unpackedAnatomy } from "./anatomy.ts";
+import { AnatomyView, bestDirection, hint } from "./anatomy_view.ts";
+import { benchmarkSections } from "./benchmark.ts";
+import { drawn, mark } from "./marks.ts";
+import { coloured, parted, widths } from "./paths.ts";
+import { lastKey, type ReportRecord, valueAt } from "./record.ts";
+import { lead, section } from "./report_page.ts";
+import { panels, runColor, runName } from "./runs.ts";
+import { grouped, make, millimetres, rounded, show, shown } from "./shown.ts";
+import { stepTimes } from "./simulation_charts.ts";
+import { type Run, type SimulationRecord, trespass } from "./simulation_record.ts";
+import { seen } from "./still.ts";
+import { strokeSection } from "./stroke.ts";
+import { scrolled, table } from "./table.ts";
+
+/** What the page of `simulate` shows. */
+export async function simulationSections(main: HTMLElement, record: ReportRecord): Promise<void> {
+  const simulation = record as SimulationRecord;
+  const anatomy = await unpackedAnatomy(simulation.mesh);
+  main.append(
+    overview(simulation, anatomy),
+    figures(simulation),
+    strokeSection(simulation, anatomy),
+    ...speed(simulation),
+    method(simulation.mesh.surface === "closed"),
+    ...benchmarkSections("/benchmark", "/comparison"),
+  );
+}
+
+/** The anatomy with all strokes, once for each run. */
+function overview(record: SimulationRecord, anatomy: Anatomy): HTMLElement {
+  const group = panels(record.runs.length);
+  const view = new AnatomyView(group, anatomy, anatomy.corners, wholeView(record, anatomy));
+  record.runs.forEach((run, number) => {
+    const layer = { lengths: strokes(record, anatomy, run, number), cut: null };
+    const description = `The anatomy with the paths of the tool tip, ${run.name}; in the colour of alarm where the tip is where it must not be.`;
+    const [verdict, words] = run.kept_out ? ["good", "stayed out"] : ["bad", "went in"];
+    const caption = make(
+      "figcaption",
+      {},
+      make("span", { class: `badge ${verdict}` }, words),
+      runName(number),
+      make("br"),
+      shown(`/runs/${number}/words`),
+      ...(run.description
+        ? [make("br"), show(make("span", { class: "about" }), `/runs/${number}/description`)]
+        : []),
+    );
+    const picture = view.picture(description, layer, worstPlace(anatomy, run, number));
+    group.append(make("figure", {}, picture, caption));
+  });
+  return make("section", {}, group, hint());
+}
+
+/** A ring around the worst place of a rule that let the tool in, so that a small place is found. */
+function worstPlace(anatomy: Anatomy, run: Run, number: number) {
+  if (run.kept_out || run.rule === "none") return [];
+  const { stroke, cycle } = run.worst;
+  const place = run.strokes[stroke]?.tip[cycle];
+  if (!place) return [];
+  const deepest = `/runs/${number}/summary/deepest_mm`;
+  const label = drawn("tspan", {});
+  if (Number(valueAt(deepest)) > 0) show(label, deepest, (mm) => `${millimetres(mm)} deep`);
+  else label.textContent = "passed through";
+  return [mark("ring bad", anatomy.placed(place), 15, label)];
+}
+
+function strokes(record: SimulationRecord, anatomy: Anatomy, run: Run, number: number) {
+  const [good, bad]: [number[], number[]] = [[], []];
+  run.strokes.forEach(({ tip }, stroke) => {
+    const isBad = trespass(run, stroke, record.mesh.surface);
+    const parts = parted(tip.map(anatomy.placed), isBad, 1e-3 * anatomy.size);
+    for (const value of parts.good) good.push(value);
+    for (const value of parts.bad) bad.push(value);
+  });
+  return coloured(good, bad, runColor(number), widths.whole);
+}
+
+/** Upright, from where most of the strokes of the last run are seen. */
+function wholeView(record: SimulationRecord, anatomy: Anatomy): Outlook {
+  const every = 10;
+  const some = (run: Run) =>
+    run.strokes.flatMap(({ tip }) => tip.filter((_, i) => i % every === 0).map(anatomy.placed));
+  const up = new three.Vector3(...record.up).normalize();
+  const all = record.runs.flatMap(some);
+  for (let i = 0; i < anatomy.positions.length; i += 3) {
+    all.push(new three.Vector3().fromArray(anatomy.positions, i));
+  }
+  const outlook = (toward: three.Vector3) => {
+    const { middle, height } = fitted(all, toward, up);
+    // Room for the scale bar below.
+    middle.addScaledVector(up, -0.035 * height);
+    return lookFrom(toward, up, middle, 1.13 * height, anatomy.size);
+  };
+  const tips = record.runs.slice(-1).flatMap(some);
+  const trial = [148, 111] as const;
+  return outlook(
+    bestDirection(directions(up), (toward) => {
+      const { camera } = outlook(toward);
+      const { depths } = seen(anatomy, anatomy.corners, camera, trial);
+      const slack = (0.01 * anatomy.size) / (camera.far - camera.near);
+      return tips.filter((tip) => {
+        const { x, y, z } = tip.clone().project(camera);
+        const [column, row] = [((x + 1) * trial[0]) / 2, ((1 - y) * trial[1]) / 2];
+        const depth = depths[Math.floor(row) * trial[0] + Math.floor(column)] ?? 1;
+        return z - 2 * slack <= depth;
+      }).length;
+    }),
+  );
+}
+
+/** Ways to look from all around, level and from a little above, as a person would. */
+function directions(up: three.Vector3): three.Vector3[] {
+  const east = new three.Vector3(up.y, up.z, up.x).cross(up).normalize();
+  return [0.1, 0.45].flatMap((elevation) =>
+    Array.from({ length: 12 }, (_, k) =>
+      east
+        .clone()
+        .applyAxisAngle(up, (Math.PI * k) / 6)
+        .multiplyScalar(Math.cos(elevation))
+        .addScaledVector(up, Math.sin(elevation)),
+    ),
+  );
+}
+
+function figures(record: SimulationRecord): HTMLElement {
+  const length = (key: string, heading: string) => ({
+    heading,
+    from: `/summary/${key}`,
+    format: millimetres,
+  });
+  const count = (key: string, heading: string) => ({
+    heading,
+    from: `/summary/${key}`,
+    format: grouped,
+  });
+  const time = (key: string, heading: string) => ({
+    heading,
+    from: `/summary/${key}`,
+    format: rounded,
+  });
+  const harm = { look: "harm" } as const;
+  const rows = table(
+    record.runs.map((_, run) => `/runs/${run}`),
+    [
+      {
+        heading: "rule",
+        from: "/name",
+        look: "name",
+        content: (row) => [runName(Number(lastKey(row)))],
+      },
+      { ...length("deepest_mm", "deepest inside"), ...harm },
+      { ...count("cycles_inside", "cycles inside"), ...harm },
+      { ...count("crossings", "crossings"), ...harm },
+      length("closest_approach_mm", "closest approach"),
+      count("cycles", "cycles"),
+      count("limited", "cycles limited"),
+      count("stopped", "cycles stopped"),
+      time("rate_khz", "rate [kHz]"),
+      time("p50_us", "median step [µs]"),
+      time("p99_us", "99 % [µs]"),
+      time("p999_us", "99.9 % [µs]"),
+      time("max_us", "slowest [µs]"),
+    ],
+  );
+  return section(
+    "The figures",
+    lead(
+      "A crossing is a move after which, or during which, the tip was on the other side of the surface. The rate is how often the median step fits into a millisecond.",
+    ),
+    scrolled(rows),
+  );
+}
+
+function speed(record: SimulationRecord): HTMLElement[] {
+  const times = stepTimes(record);
+  if (!times) return [];
+  return [
+    section(
+      "How fast it was",
+      lead("Read the plot at 1 %: one step in a hundred took this long or longer."),
+      make("figure", { class: "measured" }, times),
+    ),
+  ];
+}
+
+function method(isClosed: boolean): HTMLElement {
+  return section(
+    "How this was measured",
+    make(
+      "p",
+      { class: "method" },
+      "A seeded random hand moves over the anatomy and pushes into it, cycle by cycle. Each rule gets the very same hand; it may shorten or turn each motion before the tool follows. In every cycle it is then checked where the tip really is. ",
+      isClosed
+        ? "Inside or outside is told by counting how often a ray from the tip passes through the surface, which shares nothing with the rules."
+        : "The surface has holes, so it has no inside: only crossings count. On which side of the surface the tip is, is told by the angle-weighted normal at the nearest point of it (the pseudonormal), which no rule uses. The tip may go around a rim; sliding around one in contact counts as a crossing.",
+      " Distances come from a search tree (a PD-tree) and a closest-point computation that the rules may use too; the tests hold both to brute force and to an independent computation in quadruple precision. Depths up to a nanometre count as touching, not as inside.",
+    ),
+    make(
+      "p",
+      { class: "method" },
+      "Times are of the step alone, on the machine named below, with whatever else that machine did meanwhile.",
+    ),
+  );
+}

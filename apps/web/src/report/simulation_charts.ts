@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: BSD-3-Clause
+import * as Plot from "@observablehq/plot";
+import { chart, Legend, type Look, logarithmic, tickText, tipOf } from "./charts.ts";
+import { drawn } from "./marks.ts";
+import { ordinal, panels, runColor } from "./runs.ts";
+import { make, microseconds, millimetres, shown } from "./shown.ts";
+import type { SimulationRecord, Stroke } from "./simulation_record.ts";
+
+/** A cycle in a plot: what is drawn of it, and where in the record that is. */
+interface Point {
+  readonly run: number;
+  readonly stroke: number;
+  readonly cycle: number;
+  readonly x: number;
+  readonly y: number;
+}
+
+/** The names of runs, which can be unticked. */
+function legendOf(record: SimulationRecord): Legend {
+  const looks = record.runs.map((_, run): [string, Look] => [
+    String(run),
+    { color: `var(${runColor(run)})`, symbol: "circle" },
+  ]);
+  return new Legend(new Map(looks), (run) => shown(`/runs/${run}/name`));
+}
+
+/** Lines of points, one a run; later runs are narrower, so that none hides another. */
+const lines = (points: readonly Point[]): Plot.Markish[] => [
+  Plot.line([...points], {
+    x: "x",
+    y: "y",
+    z: "run",
+    stroke: ({ run }: Point) => `var(${runColor(run)})`,
+    strokeWidth: 1.8,
+    clip: true,
+  }),
+  Plot.dot([...points], {
+    ...Plot.pointer({ x: "x", y: "y", maxRadius: 30 }),
+    fill: ({ run }: Point) => `var(${runColor(run)})`,
+    r: 4,
+  }),
+];
+
+/** How far the tip is from the surface over the time of a stroke: all of it, and near the surface. */
+export function clearanceCharts(record: SimulationRecord, stroke: number) {
+  const legend = legendOf(record);
+  const points = record.runs.flatMap(({ strokes }, run) =>
+    (strokes[stroke] as Stroke).clearance_mm.map(
+      (y, cycle): Point => ({ run, stroke, cycle, x: cycle * record.cycle_s, y }),
+    ),
+  );
+  const rules: ((cycle: number) => void)[] = [];
+  let time = 0;
+  const timeRule = () => {
+    const line = drawn("line", { class: "now" });
+    return (
+      _: unknown,
+      { x }: Plot.ScaleFunctions,
+      __: unknown,
+      { height, marginTop, marginBottom }: Plot.Dimensions,
+    ) => {
+      line.setAttribute("y1", String(marginTop));
+      line.setAttribute("y2", String(height - marginBottom));
+      const rule = (cycle: number) => {
+        const at = String(x?.(cycle * record.cycle_s));
+        line.setAttribute("x1", at);
+        line.setAttribute("x2", at);
+      };
+      rules.push(rule);
+      rule(time);
+      return line;
+    };
+  };
+  const isClosed = record.mesh.surface === "closed";
+  const level = (y: number, text: string) => [
+    Plot.ruleY([y], { stroke: "var(--soft)", strokeDasharray: "5 4" }),
+    Plot.text([text], { y, frameAnchor: "right", dy: -8, textAnchor: "end", fill: "var(--soft)" }),
+  ];
+  const draw = (domain: readonly [number, number], kept: number) => (): Plot.PlotOptions => ({
+    height: 340,
+    marginLeft: 52,
+    x: { label: "time [s]", grid: true },
+    y: { label: "tip to surface [mm]", domain, grid: true, tickFormat: tickText },
+    marks: [
+      ...(isClosed && domain[0] < 0
+        ? [
+            Plot.rectY([0], { y1: domain[0], y2: 0, fill: "var(--alarm)", fillOpacity: 0.08 }),
+            Plot.text(["inside the anatomy"], {
+              ...{ frameAnchor: "bottom-left", dx: 8, dy: -8, fill: "var(--alarm)" },
+            }),
+          ]
+        : []),
+      ...level(0, "surface"),
+      ...(kept > 0 ? level(kept, "to be kept") : []),
+      ...lines(points.filter(({ run }) => legend.shows(String(run)))),
+      timeRule(),
+    ],
+  });
+  const tip = ({ run, cycle }: Point) => {
+    const from = `/runs/${run}/strokes/${stroke}`;
+    return tipOf(
+      [shown(`/runs/${run}/name`)],
+      [
+        ["cycle", ordinal(`${from}/tip/${cycle}`)],
+        ["tip to surface", shown(`${from}/clearance_mm/${cycle}`, millimetres)],
+      ],
+    );
+  };
+  const heights = points.map(({ y }) => y);
+  const [low, high] = [Math.min(0, ...heights), Math.max(...heights)];
+  const room = 0.06 * (high - low);
+  const guarded = record.runs.flatMap(({ rule, strokes }) =>
+    rule === "none" ? [] : [Math.min(...(strokes[stroke] as Stroke).clearance_mm)],
+  );
+  const deepest = Math.min(0, ...guarded);
+  // Where no rule failed, no more than a reader cares for: rules that only touch leave no room.
+  const around = Math.max(-deepest, ...guarded, record.kept_mm, deepest === 0 ? 0.1 : 0);
+  const both = [
+    [
+      "Distance of the tool tip to the surface over the time of one stroke, for each rule; below zero the tip is inside the anatomy.",
+      draw([low - room, high + room], 0),
+    ],
+    [
+      "The same distances, enlarged around the surface.",
+      draw([deepest - 0.5 * around, 2.5 * around], record.kept_mm),
+    ],
+  ] as const;
+  const group = panels(2, "panels wide charts");
+  for (const [description, drawing] of both) {
+    group.append(
+      make("figure", { class: "measured" }, chart({ description, draw: drawing, tip, legend })),
+    );
+  }
+  return {
+    elements: [make("h3", {}, "How near it came"), legend.element, group],
+    follow(cycle: number): void {
+      time = cycle;
+      for (const rule of rules) rule(cycle);
+    },
+  };
+}
+
+/** For each rule, the share of all steps that took at least so long; null without times. */
+export function stepTimes(record: SimulationRecord): HTMLElement | null {
+  const points = record.runs.flatMap(({ strokes }, run) => {
+    const steps = strokes.flatMap(({ step_us }, stroke) =>
+      step_us.flatMap((us, cycle) => (us > 0 ? [{ us, stroke, cycle }] : [])),
+    );
+    steps.sort((a, b) => a.us - b.us);
+    return steps.flatMap(({ us, stroke, cycle }, i): Point[] => {
+      const isSeen =
+        i + 1 === steps.length || i === 0 || column(us) !== column(steps[i - 1]?.us ?? 0);
+      return isSeen
+        ? [{ run, stroke, cycle, x: us, y: (100 * (steps.length - i)) / steps.length }]
+        : [];
+    });
+  });
+  if (points.length === 0) return null;
+  const legend = legendOf(record);
+  const cycle = 1e6 * record.cycle_s;
+  const times = [...points.map(({ x }) => x), 1.3 * cycle];
+  const draw = (): Plot.PlotOptions => ({
+    height: 340,
+    marginLeft: 60,
+    marginTop: 28,
+    x: logarithmic("time of a step [µs]", times),
+    y: {
+      ...logarithmic(
+        "steps at least as slow",
+        points.map(({ y }) => y),
+      ),
+      tickFormat: (share: number) => `${tickText(share)} %`,
+    },
+    marks: [
+      Plot.ruleX([cycle], { stroke: "var(--soft)", strokeDasharray: "5 4" }),
+      Plot.text(["one control cycle"], {
+        x: cycle,
+        frameAnchor: "top",
+        dx: -8,
+        dy: 6,
+        textAnchor: "end",
+        fill: "var(--soft)",
+      }),
+      ...lines(points.filter(({ run }) => legend.shows(String(run)))),
+    ],
+  });
+  const tip = ({ run, stroke, cycle }: Point) =>
+    tipOf(
+      [shown(`/runs/${run}/name`)],
+      [
+        [
+          "time of the step",
+          shown(`/runs/${run}/strokes/${stroke}/step_us/${cycle}`, microseconds),
+        ],
+        ["stroke", ordinal(`/runs/${run}/strokes/${stroke}`)],
+        ["cycle", ordinal(`/runs/${run}/strokes/${stroke}/tip/${cycle}`)],
+      ],
+    );
+  const description = "For each rule, the part of all steps that took at least so long.";
+  return make("div", {}, legend.element, chart({ description, draw, tip, legend }));
+}
+
+/** Times that are drawn as one. */
+const column = (us: number): number => Math.floor(80 * Math.log10(us));

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/** What the records of `simulate` and `plan` say of anatomy and paths: docs/records.md. */
+import type { PackedSurface } from "../page/embedded_surface.ts";
+import type { ReportRecord } from "./record.ts";
+
+export type Place = readonly [number, number, number];
+export type Surface = "closed" | "open";
+
+export interface RecordedMesh {
+  readonly name: string;
+  readonly surface: Surface;
+  readonly drawn: PackedSurface & { readonly packed: string };
+}
+
+export interface Stroke {
+  readonly tip: readonly Place[];
+  readonly clearance_mm: readonly number[];
+  readonly step_us: readonly number[];
+  readonly outcome: string;
+}
+
+export interface Run {
+  readonly rule: string;
+  readonly name: string;
+  readonly description: string;
+  readonly kept_out: boolean;
+  readonly strokes: readonly Stroke[];
+  readonly worst: { readonly stroke: number; readonly cycle: number };
+  readonly crossings: readonly { readonly stroke: number; readonly cycle: number }[];
+}
+
+/** A cycle of a stroke of a run, by their numbers. */
+export interface Moment {
+  readonly run: number;
+  readonly stroke: number;
+  readonly cycle: number;
+}
+
+export interface SimulationRecord extends ReportRecord {
+  readonly mesh: RecordedMesh;
+  readonly kept_mm: number;
+  readonly cycle_s: number;
+  readonly up: Place;
+  readonly hand: readonly (readonly Place[])[];
+  readonly runs: readonly Run[];
+  readonly moment: Moment;
+  readonly benchmark: unknown;
+  readonly comparison: unknown;
+}
+
+export interface PlanRecord extends ReportRecord {
+  readonly meshes: readonly (RecordedMesh & { readonly inside: boolean })[];
+  readonly checkers: readonly string[];
+  readonly summaries: readonly { readonly mesh: string; readonly checker: string }[];
+  readonly runs: readonly {
+    readonly mesh: string;
+    readonly checker: string;
+    readonly path?: readonly Place[] | null;
+    readonly too_near?: readonly (readonly Place[])[] | null;
+  }[];
+}
+
+/** In which cycles of a stroke the tip is where it must not be: inside, or past an open surface. */
+export function trespass(run: Run, stroke: number, surface: Surface): readonly boolean[] {
+  const { clearance_mm } = run.strokes[stroke] as Stroke;
+  if (surface === "closed") return clearance_mm.map((clearance) => !(clearance >= 0));
+  const crossings = run.crossings.filter((crossing) => crossing.stroke === stroke);
+  return clearance_mm.map(
+    (_, cycle) => crossings.filter((crossing) => crossing.cycle <= cycle).length % 2 === 1,
+  );
+}
+
+/** The cycle of a stroke that is its deepest, or else its first crossing, or else its nearest. */
+export function worstCycle(run: Run, stroke: number): number {
+  const { clearance_mm } = run.strokes[stroke] as Stroke;
+  const lowest = Math.min(...clearance_mm);
+  const crossing = run.crossings.find((one) => one.stroke === stroke);
+  return lowest >= 0 && crossing ? crossing.cycle : clearance_mm.indexOf(lowest);
+}
+
+/** The moment of a stroke that tells most: of a rule that failed, else of the run that came nearest. */
+export function tellingMoment(record: SimulationRecord, stroke: number): Moment {
+  if (stroke === record.moment.stroke) return record.moment;
+  const moments = record.runs.map((run, number) => {
+    const cycle = worstCycle(run, stroke);
+    const clearance = run.strokes[stroke]?.clearance_mm[cycle] as number;
+    const isIn = clearance < 0 || run.crossings.some((crossing) => crossing.stroke === stroke);
+    const kind = isIn ? (run.rule === "none" ? 1 : 2) : 0;
+    return { run: number, stroke, cycle, kind, clearance };
+  });
+  moments.sort((a, b) => b.kind - a.kind || a.clearance - b.clearance);
+  return moments[0] as Moment;
+}

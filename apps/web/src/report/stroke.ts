@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: BSD-3-Clause
+import { type Anatomy, cornersAround } from "./anatomy.ts";
+import { AnatomyView } from "./anatomy_view.ts";
+import { closeUp, hang, markedCycle } from "./cut.ts";
+import { drawn, mark } from "./marks.ts";
+import { coloured, parted, widths } from "./paths.ts";
+import { lead, section } from "./report_page.ts";
+import { ordinal, panels, runColor, runName } from "./runs.ts";
+import { make, millimetres, show } from "./shown.ts";
+import { clearanceCharts } from "./simulation_charts.ts";
+import {
+  type Run,
+  type SimulationRecord,
+  type Stroke,
+  tellingMoment,
+  trespass,
+} from "./simulation_record.ts";
+
+/** How long a stroke is played. [ms] */
+const playing = 8000;
+/** Up to here a tip touches. [mm] */
+const touching = 1e-6;
+const outcomes: Readonly<Record<string, string>> = {
+  f: "moved freely",
+  l: "limited",
+  s: "stopped",
+};
+
+/** One stroke: the anatomy cut open along it for each run, how near it came, and all of it in time. */
+export function strokeSection(record: SimulationRecord, anatomy: Anatomy): HTMLElement {
+  const isClosed = record.mesh.surface === "closed";
+  const chooser = make("select", { "aria-label": "stroke" }, ...options(record));
+  const content = make("div");
+  let view: { dispose: () => void } | null = null;
+  const choose = () => {
+    view?.dispose();
+    view = strokeView(record, anatomy, Number(chooser.value), content);
+  };
+  chooser.value = String(record.moment.stroke);
+  chooser.addEventListener("change", choose);
+  choose();
+  return section(
+    "One stroke, cut open",
+    lead(
+      "Stroke ",
+      chooser,
+      " along the path of the tip; at first it is the one that tells most. ",
+      ...(isClosed
+        ? ["Hatched is the anatomy; ", make("b", {}, "red"), " is where the tip is inside it. "]
+        : [make("b", {}, "Red"), " is where the tip is past the surface. "]),
+      "The label is at the worst moment, the balls are where the tip and, hollow, the hand are at the time chosen below.",
+    ),
+    content,
+  );
+}
+
+function options({ runs, moment }: SimulationRecord): HTMLElement[] {
+  const option = (stroke: number) => {
+    const from = `/runs/0/strokes/${stroke}`;
+    const { textContent } = ordinal(from);
+    const attributes = { value: String(stroke), "data-from": from, "data-ordinal": "" };
+    return make("option", attributes, textContent);
+  };
+  const others = (runs[0] as Run).strokes.map((_, stroke) => option(stroke));
+  others.splice(moment.stroke, 1);
+  return [
+    make("optgroup", { label: "tells most" }, option(moment.stroke)),
+    make("optgroup", { label: "others" }, ...others),
+  ];
+}
+
+/** Fills a place with the pictures and plots of a stroke, and with what follows it in time. */
+function strokeView(
+  record: SimulationRecord,
+  anatomy: Anatomy,
+  stroke: number,
+  content: HTMLElement,
+) {
+  const moment = tellingMoment(record, stroke);
+  const frame = closeUp(record, moment, anatomy);
+  const near = cornersAround(anatomy, frame.target, frame.toward, 2 * frame.height);
+  const group = panels(record.runs.length);
+  const view = new AnatomyView(group, anatomy, near, frame);
+  const followed = record.runs.map((run, number) => {
+    const { tip, clearance_mm, outcome } = run.strokes[stroke] as Stroke;
+    const path = tip.map(anatomy.placed);
+    const hand = (record.hand[stroke] ?? []).map(anatomy.placed);
+    const worst = markedCycle(record, number, moment, frame, anatomy);
+    const isBad = trespass(run, stroke, record.mesh.surface);
+    const { good, bad } = parted(path, isBad, 1e-3 * frame.height);
+    const lengths = coloured(good, bad, runColor(number), widths.near);
+    const cut = hang(path, worst, frame);
+    const at = (cycle: number) => path[cycle] as (typeof path)[number];
+    const label = distance(
+      clearanceAt(number, stroke, worst),
+      clearance_mm[worst] as number,
+      isBad[worst] === true,
+    );
+    const kind = isBad[worst] ? "worst bad" : "worst";
+    const marks = {
+      worst: mark(kind, at(worst), 5, label),
+      hand: mark("hand", at(worst), 6),
+      tool: mark("tool", at(worst), 6),
+    };
+    for (const { element } of Object.values(marks)) {
+      element.style.setProperty("--color", `var(${runColor(number)})`);
+    }
+    const now = make("span", { class: "now" });
+    const description = `Section along the path of the tip, ${run.name}: ${label.textContent}.`;
+    const picture = view.picture(description, { lengths, cut }, Object.values(marks));
+    const caption = make("figcaption", {}, runName(number), now);
+    group.append(make("figure", {}, picture, caption));
+    return (cycle: number) => {
+      marks.tool.place = at(cycle);
+      marks.hand.place = hand[cycle] ?? at(cycle);
+      const clearance = show(make("span"), clearanceAt(number, stroke, cycle), millimetres);
+      now.replaceChildren(clearance, `, ${outcomes[outcome[cycle] as string]}`);
+    };
+  });
+  const charts = clearanceCharts(record, stroke);
+  const time = timeSlider(
+    stroke,
+    (record.runs[0] as Run).strokes[stroke]?.tip.length ?? 1,
+    (cycle) => {
+      for (const follow of followed) follow(cycle);
+      view.placeMarks();
+      charts.follow(cycle);
+    },
+  );
+  time.go(moment.cycle);
+  content.replaceChildren(group, time.element, ...charts.elements);
+  return {
+    dispose() {
+      time.stop();
+      view.dispose();
+    },
+  };
+}
+
+const clearanceAt = (run: number, stroke: number, cycle: number): string =>
+  `/runs/${run}/strokes/${stroke}/clearance_mm/${cycle}`;
+
+/** How deep or how far away the tip is. Past an open surface, the distance tells no depth. */
+function distance(from: string, clearance: number, isBad: boolean): SVGTSpanElement {
+  const label = drawn("tspan", {});
+  if (isBad && clearance < 0) return show(label, from, (mm) => `${millimetres(-mm)} deep`);
+  if (!isBad && Math.abs(clearance) > touching)
+    return show(label, from, (mm) => `${millimetres(mm)} away`);
+  label.textContent = isBad ? "passed through" : "touching";
+  return label;
+}
+
+/** Chooses a cycle of a stroke, and plays it, slower than it was. */
+function timeSlider(stroke: number, cycles: number, follow: (cycle: number) => void) {
+  const slider = make("input", { type: "range", min: "0", "aria-label": "time" });
+  slider.max = String(cycles - 1);
+  const play = make("button", { type: "button", class: "play" }, "Play");
+  const cycle = make("span", { class: "cycle" });
+  let frame = 0;
+  const go = (to: number) => {
+    slider.value = String(to);
+    cycle.replaceChildren("cycle ", ordinal(`/runs/0/strokes/${stroke}/tip/${to}`));
+    follow(to);
+  };
+  const stop = () => {
+    cancelAnimationFrame(frame);
+    frame = 0;
+    play.textContent = "Play";
+  };
+  const start = () => {
+    const first = Number(slider.value) < cycles - 1 ? Number(slider.value) : 0;
+    const began = performance.now();
+    const next = (now: number) => {
+      const to = first + Math.floor((Math.max(now - began, 0) / playing) * cycles);
+      go(Math.min(to, cycles - 1));
+      if (to < cycles - 1) frame = requestAnimationFrame(next);
+      else stop();
+    };
+    play.textContent = "Pause";
+    frame = requestAnimationFrame(next);
+  };
+  play.addEventListener("click", () => (frame === 0 ? start() : stop()));
+  slider.addEventListener("input", () => {
+    stop();
+    go(Number(slider.value));
+  });
+  return { element: make("div", { class: "time" }, play, slider, cycle), go, stop };
+}

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/** The sections of a campaign that looks for a step that breaks the theorem. */
+import { entries, lastKey, valueAt } from "./record.ts";
+import { lead, section } from "./report_page.ts";
+import { error, grouped, make, mean, shownMembers, shownWhole } from "./shown.ts";
+import { type Column, scrolled, table } from "./table.ts";
+
+/** A column for each member that is not nothing in all. */
+const membersOf = (key: string, look: Pick<Column, "look">): Column[] =>
+  entries(`/total/${key}`)
+    .filter((member) => look.look === "harm" || valueAt<number>(member) !== 0)
+    .map((member) => ({
+      heading: lastKey(member).replaceAll("_", " "),
+      from: `/${key}/${lastKey(member)}`,
+      format: grouped,
+      ...look,
+    }));
+
+/** What was done on each mesh and what came out, in which shards, and each breach in full. */
+export function verificationSections(): HTMLElement[] {
+  const count = (heading: string, from: string): Column => ({ heading, from, format: grouped });
+  const work: readonly Column[] = [
+    { heading: "mesh", from: "/mesh" },
+    count("triangles", "/triangles"),
+    count("trajectories", "/trajectories"),
+    count("steps", "/steps"),
+    count("tips", "/tips"),
+    count("led out", "/led_out"),
+    ...membersOf("breaches", { look: "harm" }),
+    { heading: "least beyond margin [mm]", from: "/least_beyond_margin", format: error },
+    { heading: "the same in τ", from: "/least_beyond_margin_in_tau", format: error },
+    { heading: "time [s]", from: "/seconds", format: mean },
+  ];
+  const statuses: readonly Column[] = [
+    { heading: "mesh", from: "/mesh" },
+    count("steps", "/steps"),
+    ...membersOf("statuses", {}),
+  ];
+  const shards: readonly Column[] = [
+    { heading: "shard", from: "/index" },
+    { heading: "time [s]", from: "/seconds", format: mean },
+    { heading: "complete", from: "/complete", look: "name" },
+    { heading: "machine", from: "/machine", look: "words" },
+  ];
+  const meshes = entries("/meshes");
+  return [
+    section(
+      "What was tried, and what broke",
+      lead(
+        "Each trajectory places a tip, or several, and leads it over the mesh; each step is held to " +
+          "the theorem by an independent judge. Breaches ought to be none.",
+      ),
+      scrolled(table(meshes, work, ["/total"])),
+      ...(entries("/missing").length > 0
+        ? [lead("Meshes that could not be had: ", ...shownWhole("/missing"), ".")]
+        : []),
+    ),
+    section("How the steps ended", scrolled(table(meshes, statuses, ["/total"]))),
+    section("The shards", scrolled(table(entries("/shards"), shards))),
+    ...incidents("/breaches", "The first breaches, with all that it takes to do them again"),
+    ...incidents("/anomalies", "What else was odd"),
+  ];
+}
+
+function incidents(from: string, title: string): HTMLElement[] {
+  const all = entries(from).map((incident) =>
+    make("figure", {}, make("dl", {}, ...shownMembers(incident))),
+  );
+  return all.length > 0
+    ? [section(title, make("div", { class: "panels wide", style: "--columns:1" }, ...all))]
+    : [];
+}
