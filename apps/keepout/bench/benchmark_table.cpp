@@ -4,7 +4,6 @@
 #include <string>
 
 #include "bench/benchmark.h"
-#include "bench/benchmark_findings.h"
 #include "bench/benchmark_verdict.h"
 #include "bench/published_rate.h"
 #include "number_text.h"
@@ -62,7 +61,7 @@ void to_json(Json& json, const BenchmarkRow& row) {
           {"step_query_us", row.step_query},
           {"activate_us", row.activate},
           {"solve_us", row.solve},
-          {"rate_khz", row.step && row.step->p50 > 0.0 ? Json(rate_khz(row)) : Json()},
+          {"rate_khz", row.step && row.step->p50 > 0.0 ? Json(1e3 / row.step->p50) : Json()},
           {"hash", hexadecimal(row.hash)},
           {"hashes_of_first", std::move(first_hashes)},
           {"verified", row.verified},
@@ -114,22 +113,12 @@ void print_table_row(std::ostream& out, const BenchmarkRow& row) {
 }
 
 Json json_of(const Benchmark& benchmark) {
-  Json found = Json::array(), published = Json::array();
-  for (const BenchmarkFinding& finding : findings(benchmark)) {
-    constexpr std::array about{"queries", "rates", "solvers", "stages", "costs", "steps"};
-    Json numbers = Json::array();
-    for (const BenchmarkRow* row : finding.rows) numbers.push_back(row - benchmark.rows.data());
-    found.push_back({{"about", about[static_cast<std::size_t>(finding.about)]},
-                     {"mesh", finding.mesh},
-                     {"text", finding.text},
-                     {"rows", std::move(numbers)}});
-    if (finding.about == BenchmarkFinding::About::queries ||
-        finding.about == BenchmarkFinding::About::stages) {
-      found.back()["radius"] = finding.rows.front()->radius;
-    }
-  }
+  Json published = Json::array(), pairs = Json::array();
   for (const auto& [triangles, vertices, khz] : published_rates) {
     published.push_back({{"triangles", triangles}, {"vertices", vertices}, {"khz", khz}});
+  }
+  for (const auto& [index, solver] : {our_pair, peer_pair}) {
+    pairs.push_back({{"index", index}, {"solver", solver}});
   }
   return {{"headline", headline(benchmark)},
           {"account", account(benchmark)},
@@ -141,7 +130,8 @@ Json json_of(const Benchmark& benchmark) {
           {"parts", benchmark.parts},
           {"remarks", benchmark.remarks},
           {"published", std::move(published)},
-          {"findings", std::move(found)},
+          {"pairs", std::move(pairs)},
+          {"same_steps", same_steps(benchmark)},
           {"rows", benchmark.rows}};
 }
 

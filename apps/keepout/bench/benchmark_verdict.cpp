@@ -2,18 +2,78 @@
 #include "bench/benchmark_verdict.h"
 
 #include <algorithm>
+#include <bit>
+#include <functional>
+#include <iterator>
+#include <limits>
+#include <map>
 #include <optional>
 #include <tuple>
 #include <vector>
 
-#include "bench/benchmark_rows.h"
 #include "bench/used_cores.h"
 #include "number_text.h"
 
 namespace keepout::app {
 namespace {
 
-constexpr Stage step = &BenchmarkRow::step;
+using Rows = std::vector<const BenchmarkRow*>;  // in their order
+
+Rows only(const Rows& rows, const std::function<bool(const BenchmarkRow&)>& wanted) {
+  Rows result;
+  std::ranges::copy_if(rows, std::back_inserter(result),
+                       [&](const BenchmarkRow* row) { return wanted(*row); });
+  return result;
+}
+
+/// Those whose steps were timed.
+Rows timed(const Benchmark& benchmark) {
+  Rows rows;
+  for (const BenchmarkRow& row : benchmark.rows) {
+    if (row.step) rows.push_back(&row);
+  }
+  return rows;
+}
+
+/// Whether all steps but one in a hundred at most have an answer: a solver that gives up may be
+/// quick, but is not fast.
+bool answers(const BenchmarkRow& row) { return row.unsolved_share <= 0.01; }
+
+/// Whether at least half of the queries find a triangle: else their median is the time of finding
+/// nothing, and there is nothing to keep a step from.
+bool reaches(const BenchmarkRow& row) { return row.reaching_share >= 0.5; }
+
+/// Those that may be set against each other: also, the clock saw the step take time.
+Rows ranked(const Rows& rows) {
+  return only(rows, [](const BenchmarkRow& row) {
+    return reaches(row) && answers(row) && row.step->p50 > 0.0;
+  });
+}
+
+double median(const BenchmarkRow& row) { return row.step->p50; }
+
+bool is(const BenchmarkRow& row, const Pair& pair) {
+  return row.index == pair.index && row.solver == pair.solver;
+}
+
+std::string radius_text(const std::optional<double>& radius) {
+  return radius ? trimmed(*radius) + "\u00a0mm" : "as far as the motion leads";
+}
+
+/// "with a motion sphere of 5 mm"; "looking as far as the motion leads".
+std::string sphere_text(const std::optional<double>& radius) {
+  return (radius ? "with a motion sphere of " : "looking ") + radius_text(radius);
+}
+
+/// "bunny with 985,856 triangles"
+std::string mesh_text(const BenchmarkRow& row) {
+  return row.mesh + " with " + counted(row.triangles, "triangle");
+}
+
+/// "wide_bvh, paper, active_set"
+std::string combination(const BenchmarkRow& row) {
+  return row.index + ", " + row.activation + ", " + row.solver;
+}
 
 /// Two rows that differ in index and solver, and in nothing else.
 struct Duel {
@@ -56,21 +116,21 @@ std::optional<Duel> main_duel(const std::vector<Duel>& all) {
 }
 
 double ratio(const BenchmarkRow& quick, const BenchmarkRow& slow) {
-  return median(slow, step) / median(quick, step);
+  return median(slow) / median(quick);
 }
 
 std::string words(const BenchmarkRow& row) { return row.index + " with " + row.solver; }
 
-bool ahead(const Duel& duel) { return median(*duel.ours, step) <= median(*duel.peers, step); }
+bool ahead(const Duel& duel) { return median(*duel.ours) <= median(*duel.peers); }
 const BenchmarkRow& quick_of(const Duel& duel) { return ahead(duel) ? *duel.ours : *duel.peers; }
 const BenchmarkRow& slow_of(const Duel& duel) { return ahead(duel) ? *duel.peers : *duel.ours; }
 
 std::string told(const Duel& duel) {
   const BenchmarkRow& quick = quick_of(duel);
   const BenchmarkRow& slow = slow_of(duel);
-  return words(quick) + " answers a step in " + time_text(median(quick, step)) + ", where " +
-         words(slow) + " takes " + time_text(median(slow, step)) + ": " +
-         ratio_text(ratio(quick, slow)) + " times as long.";
+  return words(quick) + " answers a step in " + time_text(median(quick)) + ", where " +
+         words(slow) + " takes " + time_text(median(slow)) + ": " + ratio_text(ratio(quick, slow)) +
+         " times as long.";
 }
 
 /// "Those are medians of 2,500 and 120 steps on bunny with 51,978 triangles"; of so many "each"
@@ -99,7 +159,7 @@ std::string other_radii(const std::vector<Duel>& all, const Duel& main) {
         duel.ours->activation != main.ours->activation) {
       continue;
     }
-    const double ours = median(*duel.ours, step), peers = median(*duel.peers, step);
+    const double ours = median(*duel.ours), peers = median(*duel.peers);
     text += (text.empty() ? "With a sphere of " : "; with one of ") +
             radius_text(duel.ours->radius) + " it is " + time_text(ours) + " against " +
             time_text(peers) + ", " + ratio_text(std::max(ours, peers) / std::min(ours, peers)) +
@@ -110,17 +170,20 @@ std::string other_radii(const std::vector<Duel>& all, const Duel& main) {
 
 /// What our pair does there under the other rules, each with the largest sphere.
 std::string other_rules(const Rows& rows, const BenchmarkRow& main) {
-  const Rows ours = only(rows, [&](const BenchmarkRow& row) {
-    return is(row, our_pair) && row.mesh == main.mesh && row.triangles == main.triangles &&
-           row.activation != main.activation;
-  });
+  std::map<std::string, const BenchmarkRow*> widest;  // of each rule
+  for (const BenchmarkRow* row : rows) {
+    if (!is(*row, our_pair) || row->mesh != main.mesh || row->triangles != main.triangles ||
+        row->activation == main.activation) {
+      continue;
+    }
+    const BenchmarkRow*& known = widest[row->activation];
+    if (known == nullptr || row->radius > known->radius) known = row;
+  }
   std::string text;
-  for (const std::string& rule : names(ours, &BenchmarkRow::activation)) {
-    const Rows under = only(ours, [&](const BenchmarkRow& row) { return row.activation == rule; });
-    const BenchmarkRow& widest = *at_radius(under, radii(under).front()).front();
+  for (const auto& [rule, row] : widest) {
     text += (text.empty() ? "Under rule " : "; under rule ") + rule +
-            (text.empty() ? ", the same index and solver take " : ", ") +
-            time_text(median(widest, step)) + ", " + sphere_text(widest.radius);
+            (text.empty() ? ", the same index and solver take " : ", ") + time_text(median(*row)) +
+            ", " + sphere_text(row->radius);
   }
   return text.empty() ? text : text + ". ";
 }
@@ -140,7 +203,7 @@ std::string what_they_are(const Benchmark& benchmark, const Duel& duel) {
 
 std::string left_out(const Benchmark& benchmark) {
   const std::size_t all = benchmark.rows.size();
-  const Rows rows = timed(benchmark, step);
+  const Rows rows = timed(benchmark);
   const auto of_all = [&](std::size_t count) {
     return grouped(count) + " of " + counted(all, "row") + (count == 1 ? " was" : " were");
   };
@@ -161,7 +224,7 @@ std::string left_out(const Benchmark& benchmark) {
   return text;
 }
 
-/// The fastest and the slowest combination on the mesh and with the sphere that tell most.
+/// The fastest and the slowest combination on the largest mesh, with the largest sphere there.
 struct Extremes {
   const BenchmarkRow* quick;
   const BenchmarkRow* slow;
@@ -169,31 +232,41 @@ struct Extremes {
 
 /// Precondition: there is a row.
 Extremes extremes(const Rows& rows) {
-  const Rows common = on_common_mesh(rows);
-  const Rows there = at_radius(common, radii(common).front());
-  return {&fastest(there, step), &slowest(there, step)};
+  const auto place = [](const BenchmarkRow* row) { return std::pair(row->triangles, row->radius); };
+  const BenchmarkRow& largest = **std::ranges::max_element(rows, {}, place);
+  const Rows there = only(rows, [&](const BenchmarkRow& row) {
+    return row.mesh == largest.mesh && place(&row) == place(&largest);
+  });
+  const auto [quick, slow] =
+      std::ranges::minmax_element(there, {}, [](const BenchmarkRow* row) { return median(*row); });
+  return {*quick, *slow};
+}
+
+/// A row's hash over as many steps as another made too, or a power of two fewer.
+std::uint64_t hash_over(const BenchmarkRow& row, std::size_t steps) {
+  return row.queries == steps ? row.hash : row.first_hashes[std::bit_width(steps) - 1];
 }
 
 }  // namespace
 
 std::string headline(const Benchmark& benchmark) {
-  const Rows all = timed(benchmark, step);
+  const Rows all = timed(benchmark);
   if (all.empty()) return "No step was timed.";
-  const Rows rows = ranked(all, step);
+  const Rows rows = ranked(all);
   if (rows.empty()) {
     return "No combination had triangles in reach and answered 99 % of its steps.";
   }
   if (const std::optional<Duel> duel = main_duel(duels(rows))) return told(*duel);
   const auto [quick, slow] = extremes(rows);
   const std::string first =
-      "A step takes " + time_text(median(*quick, step)) + " with " + combination(*quick);
+      "A step takes " + time_text(median(*quick)) + " with " + combination(*quick);
   if (quick == slow) return first + ".";
-  return first + ", and " + time_text(median(*slow, step)) + " with " + combination(*slow) + ": " +
+  return first + ", and " + time_text(median(*slow)) + " with " + combination(*slow) + ": " +
          ratio_text(ratio(*quick, *slow)) + " times as long.";
 }
 
 std::string account(const Benchmark& benchmark) {
-  const Rows rows = ranked(timed(benchmark, step), step);
+  const Rows rows = ranked(timed(benchmark));
   std::string text;
   if (benchmark.rows.size() < benchmark.planned) {
     text = "Incomplete: it was stopped after " + grouped(benchmark.rows.size()) + " of " +
@@ -211,6 +284,53 @@ std::string account(const Benchmark& benchmark) {
   const std::string others = others_text(benchmark.others_cores, benchmark.machine.cores);
   if (!others.empty()) text += others + " ";
   if (!text.empty()) text.pop_back();
+  return text;
+}
+
+std::string same_steps(const Benchmark& benchmark) {
+  using Problem =
+      std::tuple<std::string, std::size_t, std::optional<double>, std::string, std::string>;
+  std::map<Problem, Rows> groups;
+  std::size_t unverified = 0, alone = 0, members = 0, compared = 0, same = 0;
+  for (const BenchmarkRow& row : benchmark.rows) {
+    if (row.verified && row.queries > 0) {
+      groups[{row.mesh, row.triangles, row.radius, row.activation, row.solver}].push_back(&row);
+    } else {
+      ++unverified;
+    }
+  }
+  std::size_t fewest = std::numeric_limits<std::size_t>::max(), most = 0;
+  for (const auto& [problem, rows] : groups) {
+    if (rows.size() < 2) {
+      ++alone;
+      continue;
+    }
+    const BenchmarkRow& longest = **std::ranges::max_element(rows, {}, &BenchmarkRow::queries);
+    bool all = true;
+    for (const BenchmarkRow* row : rows) {
+      if (row == &longest) continue;
+      const std::size_t steps =
+          row->queries == longest.queries ? row->queries : std::bit_floor(row->queries);
+      fewest = std::min(fewest, steps);
+      most = std::max(most, steps);
+      all = all && hash_over(*row, steps) == hash_over(longest, steps);
+    }
+    members += rows.size();
+    ++compared;
+    same += all ? 1 : 0;
+  }
+  std::string text;
+  if (compared > 0) {
+    text = "Rows that differ in the index alone, " + grouped(members) + " in " +
+           counted(compared, "group") + ", made the same steps in " + grouped(same) +
+           " of them, as far as they were asked for the same, the first " +
+           (fewest == most ? grouped(most) : grouped(fewest) + " to " + grouped(most)) +
+           " motions.";
+  }
+  if (compared > 0 && alone > 0) {
+    text += " Left out: " + counted(alone, "row") + " without such another.";
+  }
+  if (unverified > 0) text += " Left out: " + counted(unverified, "row") + " not verified.";
   return text;
 }
 

@@ -18,4 +18,16 @@ std::string headline(const Benchmark& benchmark);
 /// for, what was left out, and whether the machine was busy with other things.
 std::string account(const Benchmark& benchmark);
 
+/// Whether rows that differ in the index alone led to the same steps, as far as they made the same;
+/// and which rows have no such other. Empty where there are none.
+std::string same_steps(const Benchmark& benchmark);
+
+/// A pair of an index and a solver that is set against another wherever both were timed.
+struct Pair {
+  const char* index;
+  const char* solver;
+};
+inline constexpr Pair our_pair = {"wide_bvh", "active_set"};
+inline constexpr Pair peer_pair = {"fcl_obbrss", "nlopt_slsqp"};
+
 }  // namespace keepout::app

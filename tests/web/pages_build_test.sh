@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# How ./run comes by the page of `keepout live`: what it fetches, when, and what it says when it
+# How ./run comes by what pages are made from: what it fetches, when, and what it says when it
 # cannot. The programs that fetch, compile and bundle are played by scripts of this test.
-#   page_build_test.sh SOURCE WORK
+#   pages_build_test.sh SOURCE WORK
 # SPDX-License-Identifier: BSD-3-Clause
 set -euo pipefail
 source=$1 work=$2
@@ -15,6 +15,8 @@ cp "$source/apps/web/build" "$work/apps/web"
 touch "$work"/build/{release,wasm}/build.ninja
 touch "$work/apps/web/"{package.json,.npmrc}
 echo 'first' > "$work/apps/web/package-lock.json"
+mkdir "$work/apps/web/src"
+touch "$work"/{LICENSE,apps/web/src/main.ts,apps/web/build.mjs,build/wasm/keepout.mjs,build/wasm/keepout.wasm}
 export calls=$work/calls page=$work/build/web/live.html
 
 # program NAME: is played by the script on stdin, which tells how it was called.
@@ -34,8 +36,12 @@ if [ "$1" = ci ]; then
   cp package-lock.json node_modules/what_it_names
 else
   cmp package-lock.json node_modules/what_it_names || exit 1
-  [ -d "$KEEPOUT_WASM" ] || exit 1
-  printf '%s\n' "${bundled-<!-- keepout live: the anatomy goes here -->}" > "$KEEPOUT_PAGE"
+  for page in report report_with_anatomy; do
+    printf '%s\n' "${bundled-<!-- keepout report: the record goes here -->}" > "$KEEPOUT_PAGES/$page.html"
+  done
+  [ -z "$KEEPOUT_WASM" ] || [ -d "$KEEPOUT_WASM" ] || exit 1
+  [ -z "$KEEPOUT_WASM" ] ||
+    printf '%s\n' "${bundled-<!-- keepout live: the anatomy goes here -->}" > "$KEEPOUT_PAGES/live.html"
 fi
 PROGRAM
 program "$work/build/release/apps/keepout/keepout" <<< 'echo "in ${KEEPOUT_WEB:-nowhere}"'
@@ -59,21 +65,37 @@ calls_it() { [[ $called == *"$1"* ]] || fault "does not call '$1', but: $called"
 calls_no() { [[ $called != *"$1"* ]] || fault "calls '$1': $called"; }
 says() { [[ $told == *"$1"* ]] || fault "does not say '$1', but: $told"; }
 
-for words in "" "inspect cube" "inspect live" "live --help"; do
+for words in "inspect cube" "inspect live" "live --help" "simulate -h" "replay cube"; do
   # shellcheck disable=SC2086
   run well $words
   calls_no npm
   calls_no wasm
-  says "in nowhere"
 done
+
+# Of a report nobody waits for a compiler; without a network it is plain.
+npm_fails=yes run well
+says "could not be fetched: is there a network?"
+says "going on: reports will be plain"
+run well
+calls_it "npm ci"
+calls_no wasm
+says "in $work/build/web"
+[ -s "$work/build/web/report_with_anatomy.html" ] || fault "there is no front end"
+run well simulate cube
+calls_no "npm"
+touch "$work/apps/web/src/main.ts"
+run well --simd AVX2 bench
+calls_it "npm run"
+calls_no "npm ci"
 
 run well live cube
 calls_it "cmake --build --preset wasm"
-calls_it "npm ci"
+calls_no "npm ci"
 says "in $work/build/web"
 [ -s "$page" ] || fault "there is no page"
 [ -L "$work/apps/web/node_modules" ] || fault "the libraries are among the sources"
 
+touch "$work/apps/web/src/main.ts"
 run well --simd AVX2 live
 calls_it "npm run"
 calls_no "npm ci"
@@ -98,6 +120,7 @@ calls_no "--omit=dev"
 run well live
 calls_no "npm ci"
 
+touch "$work/apps/web/src/main.ts"
 npm_fails=yes run fails live
 calls_no "npm ci"
 says "could not be bundled"
@@ -112,10 +135,12 @@ not_installed=emscripten run well inspect cube
 not_installed=chromium run well live
 rm "$work/programs/npm"
 mkdir "$work/few"
-for name in bash cat cmp cp dirname env find grep id ln mkdir mv rm stat; do
+for name in bash cat cmp cp dirname env find grep id ln mkdir mv rm rmdir stat; do
   ln -s "$(command -v $name)" "$work/few/$name"
 done
 PATH=$work/few
 run fails live
-says "is made with npm, which is not here"
+says "are made with npm, which is not here"
 run well inspect cube
+run well simulate cube
+says "going on: reports will be plain"

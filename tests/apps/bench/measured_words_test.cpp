@@ -32,7 +32,7 @@ using nlohmann::json;
 const std::string no_break = "\u00a0";
 
 /// Two sizes of one mesh and another mesh, measured once.
-class MeasuredReport : public testing::Test {
+class MeasuredWords : public testing::Test {
  protected:
   static void SetUpTestSuite() {
     folder = std::make_unique<CommandFolder>();
@@ -55,20 +55,8 @@ class MeasuredReport : public testing::Test {
 
   void SetUp() override { ASSERT_EQ(outcome.status, 0) << outcome.output; }
 
-  /// What is found, of one kind of thing or of all.
-  static std::vector<std::string> findings(const std::string& about = {}) {
-    std::vector<std::string> all;
-    for (const json& finding : record["findings"]) {
-      if (about.empty() || finding["about"] == about) all.push_back(finding["text"]);
-    }
-    return all;
-  }
-
   static std::vector<std::string> sentences() {
-    std::vector<std::string> all = findings();
-    all.push_back(record["headline"]);
-    all.push_back(record["account"]);
-    return all;
+    return {record["headline"], record["account"], record["same_steps"]};
   }
 
   /// Whether the record says so somewhere.
@@ -117,16 +105,10 @@ class Figures {
     add("cores", record["machine"]["cores"].get<std::size_t>());
     of_unit_["cores"].insert(rounded(record["others_cores"], 2));
     of_unit_["of"].insert(rounded(record["others_cores"], 2));
-    // Limits that are stated, and what Li et al. published.
-    of_unit_["%"] = {"1", "99"};
-    of_unit_["kHz"] = {"1", "7.73", "0.18"};
-    of_unit_["mm"] = {"5"};
-    of_unit_["triangles"] = {"51,978", "989,376"};
-    of_unit_["and"] = {"51,978"};
     for (const json& row : rows) add_row(row);
     for (const json& row : rows) {
       for (const json& other : rows) {
-        if (row["mesh"] == other["mesh"]) add_ratios(row, other);
+        if (row["mesh"] == other["mesh"]) add_ratio(row, other);
       }
     }
   }
@@ -137,9 +119,6 @@ class Figures {
   }
 
  private:
-  static constexpr std::array stages = {"collect_us",    "query_us",    "step_us",
-                                        "step_query_us", "activate_us", "solve_us"};
-
   void add(const std::string& unit, std::size_t count) { of_unit_[unit].insert(grouped(count)); }
 
   void add_row(const json& row) {
@@ -149,45 +128,23 @@ class Figures {
     for (const std::string unit : {"steps", "motions"}) {
       add(unit, row["queries"].get<std::size_t>());
     }
-    of_unit_["planes"].insert(mean_text(row["planes_mean"]));
-    of_unit_["s"].insert({rounded(row["build_s"]), rounded(row["load_s"])});
-    of_unit_["cores"].insert({rounded(row["build_cores"], 2), rounded(row["load_cores"], 2)});
-    const std::string bytes = rounded(row["bytes_per_triangle"]);
-    of_unit_["bytes"].insert(bytes);
-    of_unit_["."].insert(bytes);
     if (!row["radius"].is_null()) of_unit_["mm"].insert(app::trimmed(row["radius"]));
     if (row["step_us"].is_null()) return;
-    of_unit_["kHz"].insert(rounded(1e3 / row["step_us"]["p50"].get<double>()));
-    double sum = 0.0;
-    const auto median = [&](const char* stage) {
-      return row[stage].is_null() ? 0.0 : row[stage]["p50"].get<double>();
-    };
-    for (const char* stage : {"step_query_us", "activate_us", "solve_us"}) sum += median(stage);
-    for (const char* stage : {"step_query_us", "activate_us", "solve_us"}) {
-      of_unit_["%"].insert(rounded(100.0 * median(stage) / sum, 2));
-    }
-    for (const char* stage : stages) {
-      if (row[stage].is_null()) continue;
-      const std::string text = time_text(row[stage]["p50"]);
-      const std::size_t space = text.find(no_break);
-      of_unit_[text.substr(space + no_break.size())].insert(text.substr(0, space));
-    }
+    const std::string text = time_text(row["step_us"]["p50"]);
+    const std::size_t space = text.find(no_break);
+    of_unit_[text.substr(space + no_break.size())].insert(text.substr(0, space));
   }
 
-  void add_ratios(const json& row, const json& other) {
+  void add_ratio(const json& row, const json& other) {
+    if (row["step_us"].is_null() || other["step_us"].is_null()) return;
     of_unit_["times"].insert(
-        ratio_text(row["triangles"].get<double>() / other["triangles"].get<double>()));
-    for (const char* stage : stages) {
-      if (row[stage].is_null() || other[stage].is_null()) continue;
-      of_unit_["times"].insert(
-          ratio_text(row[stage]["p50"].get<double>() / other[stage]["p50"].get<double>()));
-    }
+        ratio_text(row["step_us"]["p50"].get<double>() / other["step_us"]["p50"].get<double>()));
   }
 
   std::map<std::string, std::set<std::string>> of_unit_;
 };
 
-TEST_F(MeasuredReport, EachNumberInASentenceIsOneOfTheRecord) {
+TEST_F(MeasuredWords, EachNumberInASentenceIsOneOfTheRecord) {
   const Figures figures(record);
   // Names and quotations are no figures.
   std::vector<std::string> names;
@@ -210,10 +167,10 @@ TEST_F(MeasuredReport, EachNumberInASentenceIsOneOfTheRecord) {
       EXPECT_TRUE(figures.hold((*it)[2], digits)) << it->str() << " in: " << text;
     }
   }
-  EXPECT_GT(found, 100u);
+  EXPECT_GT(found, 10u);
 }
 
-TEST_F(MeasuredReport, SetsOurPairAgainstThePeersUnderTheSameConditions) {
+TEST_F(MeasuredWords, SetsOurPairAgainstThePeersUnderTheSameConditions) {
   const std::size_t most = std::max(largest()["bunny"], largest()["cube.stl"]);
   const json common = {{"triangles", most}, {"activation", "paper"}, {"radius", 5.0}};
   json ours = common, peers = common;
@@ -238,88 +195,7 @@ TEST_F(MeasuredReport, SetsOurPairAgainstThePeersUnderTheSameConditions) {
   }
 }
 
-TEST_F(MeasuredReport, NamesTheFastestAndTheSlowestQueryOfEachMesh) {
-  for (const auto& [mesh, triangles] : largest()) {
-    std::vector<json> rows = rows_of({{"mesh", mesh},
-                                      {"triangles", triangles},
-                                      {"activation", "paper"},
-                                      {"solver", "active_set"},
-                                      {"radius", 5.0}});
-    std::ranges::stable_sort(rows, {},
-                             [](const json& row) { return row["query_us"]["p50"].get<double>(); });
-    const json &quick = rows.front(), &slow = rows.back();
-    EXPECT_TRUE(is_said("On " + mesh + " with " + grouped(triangles) +
-                        " triangles, with a motion sphere of 5" + no_break + "mm, " +
-                        quick["index"].get<std::string>() + " finds the triangles in " +
-                        time_of(quick, "query_us") + " and " + slow["index"].get<std::string>() +
-                        " in " + time_of(slow, "query_us")))
-        << mesh;
-  }
-}
-
-TEST_F(MeasuredReport, StatesTheRateOfEveryRuleOnEveryMesh) {
-  for (const auto& [mesh, triangles] : largest()) {
-    for (const char* rule : {"paper", "all_faces", "certified"}) {
-      json wanted = {{"mesh", mesh},
-                     {"triangles", triangles},
-                     {"activation", rule},
-                     {"index", "wide_bvh"},
-                     {"solver", "active_set"}};
-      const bool has_radius = std::string(rule) != "certified";
-      if (has_radius) wanted["radius"] = 5.0;
-      const std::vector<json> rows = rows_of(wanted);
-      ASSERT_EQ(rows.size(), 1u);
-      const double khz = 1e3 / rows[0]["step_us"]["p50"].get<double>();
-      ASSERT_GT(khz, 1.0);
-      EXPECT_TRUE(is_said("wide_bvh, " + std::string(rule) + ", active_set" +
-                          (has_radius ? ", r = 5" + no_break + "mm" : "") + ": " + rounded(khz) +
-                          no_break + "kHz at " + grouped(triangles) + " triangles; 1" + no_break +
-                          "kHz is kept up to there"))
-          << mesh << ", " << rule;
-    }
-  }
-}
-
-TEST_F(MeasuredReport, NamesWhatIsBuiltFastestAndSlowestAndTheCoresItKeptBusy) {
-  for (const auto& [mesh, triangles] : largest()) {
-    std::vector<json> rows = rows_of({{"mesh", mesh}, {"triangles", triangles}});
-    std::ranges::stable_sort(rows, {},
-                             [](const json& row) { return row["build_s"].get<double>(); });
-    const auto built = [](const json& row) {
-      return "in " + rounded(row["build_s"]) + " s with " + rounded(row["build_cores"], 2) +
-             " cores busy";
-    };
-    EXPECT_TRUE(is_said("On " + mesh + " with " + grouped(triangles) + " triangles, " +
-                        rows.front()["index"].get<std::string>() + " is built fastest, " +
-                        built(rows.front()) + ", and " + rows.back()["index"].get<std::string>() +
-                        " slowest, " + built(rows.back())))
-        << mesh;
-  }
-}
-
-TEST_F(MeasuredReport, ComparesSolversByWhatThePlotShowsOfAsManyPlanes) {
-  std::set<std::string> rows;  // as they are told
-  for (const json& row : record["rows"]) {
-    rows.insert(row["solver"].get<std::string>() + " finds the motion in " +
-                time_of(row, "solve_us") + " among " + mean_text(row["planes_mean"]) +
-                " planes in the mean");
-  }
-  const std::regex words("(\\w+ finds the motion in [^ ]+ among ([\\d.]+) planes in the mean)");
-  std::size_t told = 0;
-  for (const std::string& text : findings("solvers")) {
-    std::vector<double> planes;
-    for (std::sregex_iterator it(text.begin(), text.end(), words), end; it != end; ++it, ++told) {
-      EXPECT_TRUE(rows.contains((*it)[1])) << it->str();
-      planes.push_back(std::stod((*it)[2]));
-    }
-    if (planes.size() == 2) {
-      EXPECT_NEAR(planes[0], planes[1], 0.11 * planes[0]) << text;
-    }
-  }
-  EXPECT_GE(told, largest().size()) << outcome.output.substr(0, 2000);
-}
-
-TEST_F(MeasuredReport, CountsTheRowsThatAgreeAndThoseLeftOut) {
+TEST_F(MeasuredWords, CountsTheRowsThatAgreeAndThoseLeftOut) {
   std::map<std::string, std::vector<json>> groups;
   for (const json& row : record["rows"]) {
     ASSERT_TRUE(row["verified"]) << row;
@@ -336,7 +212,7 @@ TEST_F(MeasuredReport, CountsTheRowsThatAgreeAndThoseLeftOut) {
       << outcome.output.substr(0, 2000);
 }
 
-TEST_F(MeasuredReport, IsTheSameInTheTableAsInTheRecord) {
+TEST_F(MeasuredWords, IsTheSameInTheTableAsInTheRecord) {
   std::ifstream csv(folder->file("b.csv"));
   const auto cells = [](const std::string& line) {
     std::vector<std::string> all;
