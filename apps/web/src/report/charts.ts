@@ -78,12 +78,11 @@ const space = { marginLeft: 48, marginBottom: 40, inset: 7 };
 /** The element that holds a chart. */
 export function chart<Datum>({ description, draw, tip, legend }: Chart<Datum>): HTMLElement {
   const bubble = make("div", { class: "tip", hidden: "" });
-  const place = make("div", { class: "plot" });
+  const place = make("div", { class: "plot", role: "img", "aria-label": description });
   let width = 0;
   const redraw = () => {
     const picture = Plot.plot({ ...space, ...draw(width), width, className: "drawing" });
-    picture.setAttribute("role", "img");
-    picture.setAttribute("aria-label", description);
+    picture.setAttribute("aria-hidden", "true");
     picture.addEventListener("input", () => {
       const datum = picture.value as Datum | null;
       bubble.hidden = datum === null;

@@ -1,0 +1,411 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * The reports of the commands, in a real browser and with real input:
+ *
+ *   report_pages_test.mjs KEEPOUT FOLDER [BROWSER]
+ *
+ * Each command is run on a small mesh; its page is opened. Every number that is read there must be
+ * one of the record; tables sort, plots tell what is under the pointer, anatomy turns. Where
+ * REPORT_RECORDS names a folder, the records in it are looked at instead.
+ */
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { mkdirSync, readdirSync, readFileSync, rmSync, statSync } from "node:fs";
+import { createRequire } from "node:module";
+import { basename, join } from "node:path";
+import { after, test } from "node:test";
+import { fileURLToPath, pathToFileURL } from "node:url";
+import { gunzipSync } from "node:zlib";
+
+const [keepout, folder, browserPath = "/usr/bin/chromium"] = process.argv.slice(2);
+const root = fileURLToPath(new URL("../..", import.meta.url));
+const packages = createRequire(join(root, "apps/web/package.json"));
+const puppeteer = packages("puppeteer-core");
+const given = process.env.REPORT_RECORDS;
+
+rmSync(folder, { recursive: true, force: true });
+mkdirSync(folder, { recursive: true });
+
+const note = (text) => console.log(`# ${text}`);
+const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
+
+/** Makes a page by a command, which may find that something does not hold. */
+function run(name, ...args) {
+  const file = join(folder, `${name}.html`);
+  try {
+    execFileSync(keepout, [...args, "--out", file], {
+      cwd: folder,
+      maxBuffer: 1 << 26,
+      stdio: "pipe",
+    });
+  } catch (failure) {
+    if (failure.status !== 1) throw failure;
+  }
+  return file;
+}
+
+const files = given
+  ? readdirSync(given)
+      .filter((name) => name.endsWith(".json"))
+      .map((name) => run(basename(name, ".json"), "report", join(given, name)))
+  : [
+      run("simulate", "simulate", "cube", "--strokes", "2", "--cycles", "300", "--bench"),
+      run("open", "simulate", "flat_plate", "--strokes", "2", "--cycles", "300"),
+      run("bench", "bench", "--mesh", "cube,sphere", "--seconds", "0.01"),
+      run("compare", "compare", "cube", "--poses", "6", "--problems", "100", "--pairs", "20"),
+      run("plan", "plan", "cube", "--problems", "2", "--resolution", "0.01"),
+      run("verify", "verify", "cube", "sphere", "--steps", "2000"),
+    ];
+
+/** The record in a page. */
+function recordOf(file) {
+  const [, packed] = readFileSync(file, "utf8").match(/id="record">([^<]*)</);
+  return JSON.parse(gunzipSync(Buffer.from(packed, "base64")).toString("utf8"));
+}
+const pages = files.map((file) => ({
+  file,
+  name: basename(file, ".html"),
+  record: recordOf(file),
+}));
+const showsAnatomy = ({ record }) => ["simulate", "plan"].includes(record.keepout_record);
+
+const keysOf = (pointer) =>
+  pointer
+    .split("/")
+    .slice(1)
+    .map((key) => key.replaceAll("~1", "/").replaceAll("~0", "~"));
+const valueAt = (record, pointer) => keysOf(pointer).reduce((value, key) => value?.[key], record);
+
+const microseconds = { ms: 1e-3, µs: 1, ns: 1e3 };
+const millimetres = { mm: 1, µm: 1e3, nm: 1e6 };
+
+/** By what a number of the record is multiplied when it is shown in a unit. */
+function scaleOf(keys, unit) {
+  const key = keys.findLast((one) => /_(us|ns|s|mm|share)$|^at_most_ns|bins$/.test(one)) ?? "";
+  if (key.endsWith("_us")) return microseconds[unit] ?? 1;
+  if (key.endsWith("_ns") || key === "bins") return (microseconds[unit] ?? 1e3) / 1e3;
+  if (key.endsWith("_share")) return 100;
+  if (unit === "%") return 100;
+  if (unit === "ms") return 1e3; // of seconds
+  return millimetres[unit] ?? 1;
+}
+
+const raised = "⁰¹²³⁴⁵⁶⁷⁸⁹";
+
+/** Whether a text is what the record has at a pointer. */
+function isOf(record, { text, from, role }) {
+  const keys = keysOf(from);
+  if (role === "name") return text === keys.at(-1);
+  if (role === "ordinal") return text.replaceAll(",", "") === String(Number(keys.at(-1)) + 1);
+  const value = valueAt(record, from);
+  if (typeof value !== "number") return text === String(value);
+  if (text === String(value)) return true;
+  const parts = text.match(/^([-−]?[\d,]*\.?\d+)(?:·10(⁻?)([⁰¹²³⁴⁵⁶⁷⁸⁹]+))?(?:\s*([^\d\s].*))?$/);
+  if (!parts) return /^under\s/.test(text) && Math.abs(value) < 1e-6;
+  const [, digits, minus, exponent = "", unit = ""] = parts;
+  const power = Number(
+    (minus ? "-" : "") + ([...exponent].map((d) => raised.indexOf(d)).join("") || 0),
+  );
+  const shown = Number(digits.replaceAll(",", "").replace("−", "-")) * 10 ** power;
+  const decimals = digits.includes(".") ? digits.length - digits.indexOf(".") - 1 : 0;
+  const depth = unit.endsWith(" deep");
+  const exact = (depth ? -value : value) * scaleOf(keys, unit.replace(" deep", ""));
+  const half = 0.5 * 10 ** (power - decimals);
+  const isNear = Math.abs(shown - exact) <= half + 1e-9 * Math.abs(exact);
+  return isNear && (exact === 0) === (shown === 0);
+}
+
+/** The page's own words that have digits. */
+const ownWords = [
+  "99.999 %",
+  "99.9 %",
+  "99 %",
+  "1 %",
+  "1 kHz",
+  "0.000001 mm",
+  "Li et al. 2020",
+  "i7-8700",
+];
+
+/** All texts with digits within an element, and where in the record they are said to be from. */
+const textsWithDigits = (tab, selector) =>
+  tab.$eval(selector, (element) => {
+    const found = [];
+    const walker = document.createTreeWalker(element, NodeFilter.SHOW_TEXT);
+    for (let node = walker.nextNode(); node; node = walker.nextNode()) {
+      const parent = node.parentElement;
+      if (!/\d/.test(node.data) || parent.closest("script, style, noscript")) continue;
+      if (parent.closest('[aria-label$="axis tick label"], .scale')) continue;
+      const place = parent.closest("[data-from]");
+      const role = place?.hasAttribute("data-name")
+        ? "name"
+        : place?.hasAttribute("data-ordinal")
+          ? "ordinal"
+          : "value";
+      found.push({ text: (place ?? node).textContent.trim(), from: place?.dataset.from, role });
+    }
+    return found;
+  });
+
+/** Asserts that every number within an element is one of the record, or one of the page's own words. */
+async function assertNumbers(tab, record, selector) {
+  const texts = await textsWithDigits(tab, selector);
+  const strange = texts.filter((one) => {
+    if (one.from !== undefined) return !isOf(record, one);
+    return /\d/.test(
+      ownWords.reduce((text, words) => text.replaceAll(words, ""), one.text.replace(/\s/g, " ")),
+    );
+  });
+  assert.deepEqual(
+    strange.map((one) => ({ ...one, value: one.from && valueAt(record, one.from) })),
+    [],
+  );
+  return texts.length;
+}
+
+const browser = await puppeteer.launch({
+  executablePath: browserPath,
+  args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
+});
+
+/** Opens a page; gives it back once it is built. */
+async function opened(file, viewport, prepare = () => {}) {
+  const tab = await browser.newPage();
+  tab.faults = [];
+  tab.on("pageerror", (error) => tab.faults.push(String(error)));
+  tab.on("console", (line) => {
+    if (line.type() === "error") tab.faults.push(line.text());
+  });
+  tab.on("request", (request) => {
+    if (!/^(file|data|blob):/.test(request.url())) tab.faults.push(`asks for ${request.url()}`);
+  });
+  await tab.setViewport(viewport);
+  await prepare(tab);
+  await tab.goto(pathToFileURL(file).href);
+  await tab.waitForSelector("main > section:last-child .command", { timeout: 120_000 });
+  await sleep(500); // for what is drawn when it is first seen
+  return tab;
+}
+
+const large = { width: 1280, height: 900 };
+const small = { width: 390, height: 844, hasTouch: true, isMobile: true };
+
+async function assertAccessible(tab, scheme) {
+  await tab.emulateMediaFeatures([{ name: "prefers-color-scheme", value: scheme }]);
+  await tab.addScriptTag({ path: packages.resolve("axe-core") });
+  const violations = await tab.evaluate(async () =>
+    (await window.axe.run()).violations.map(({ id, nodes }) => [
+      id,
+      ...nodes.map(({ html }) => html),
+    ]),
+  );
+  assert.deepEqual(violations, [], scheme);
+}
+
+/** Presses headings, by mouse and by key, and looks whether their columns are in order. */
+async function assertSorts(tab, record) {
+  for (const table of await tab.$$("table")) {
+    const columns = (await table.$$("thead button")).length;
+    for (const place of [0, Math.min(2, columns - 1)]) {
+      for (const direction of ["ascending", "descending"]) {
+        const button = (await table.$$("thead button"))[place];
+        if (place === 0) {
+          await button.focus();
+          await tab.keyboard.press("Enter");
+        } else {
+          await button.evaluate((one) => one.scrollIntoView({ block: "center", inline: "center" }));
+          await button.click();
+        }
+        const { sort, pointers } = await table.evaluate((element, column) => {
+          const cells = [...element.tBodies[0].rows].map(({ cells }) => cells[column]);
+          const from = (cell) =>
+            cell.dataset.from ?? cell.querySelector("[data-from]")?.dataset.from;
+          const head = element.tHead.rows[0].cells[column];
+          return { sort: head.getAttribute("aria-sort"), pointers: cells.map(from) };
+        }, place);
+        assert.equal(sort, direction);
+        const values = pointers.map((from) => (from ? valueAt(record, from) : null));
+        const numbers = values.filter((value) => typeof value === "number");
+        const sorted = [...numbers].sort((a, b) => (direction === "ascending" ? a - b : b - a));
+        assert.deepEqual(numbers, sorted);
+      }
+    }
+  }
+}
+
+/** Points at a mark of each plot that is seen; gives how many told of it. */
+async function assertTips(tab, record) {
+  let told = 0;
+  for (const plot of await tab.$$(".plot")) {
+    if (!(await plot.isVisible())) continue;
+    await plot.evaluate((one) => one.scrollIntoView({ block: "center" }));
+    await sleep(50);
+    const at = await plot.evaluate((one) => {
+      const marks = ["dot", "bar", "line", "rect"].map((kind) => `[aria-label="${kind}"] > *`);
+      const mark = marks.map((mark) => one.querySelector(mark)).find((found) => found);
+      if (!(mark instanceof SVGPathElement) || mark.closest('[aria-label="dot"]')) {
+        const box = mark?.getBoundingClientRect();
+        return box && { x: box.x + box.width / 2, y: box.y + box.height / 2 };
+      }
+      const { x, y } = mark.getPointAtLength(0).matrixTransform(mark.getScreenCTM());
+      return { x, y };
+    });
+    if (!at) continue;
+    await tab.mouse.move(at.x - 2, at.y);
+    await tab.mouse.move(at.x, at.y);
+    await sleep(30);
+    await plot.evaluate((one) => one.querySelector(".tip")?.setAttribute("id", "told"));
+    assert.ok(
+      await tab.$("#told:not([hidden])"),
+      await plot.evaluate((one) => one.outerHTML.slice(0, 400)),
+    );
+    assert.ok((await assertNumbers(tab, record, "#told")) > 0, "a tip tells no number");
+    await tab.$eval("#told", (one) => one.removeAttribute("id"));
+    told += 1;
+  }
+  return told;
+}
+
+for (const { file, name, record } of pages) {
+  test(`${name}: every number is of the record, tables sort, plots tell`, async () => {
+    const size = statSync(file).size;
+    const most = showsAnatomy({ record }) ? 8e6 : 500e3;
+    note(`${name}: ${(size / 1e3).toFixed(0)} kB`);
+    assert.ok(size <= most, `the page has ${size} bytes`);
+    assert.doesNotMatch(
+      readFileSync(file, "utf8"),
+      /(src|href)="(?!data:)[^"]*"/,
+      "it names another file",
+    );
+
+    const tab = await opened(file, large);
+    const headline = await tab.$eval("h1", (one) => one.textContent);
+    assert.equal(headline, record.headline);
+    assert.match(await tab.title(), new RegExp(`keepout ${record.keepout_record}$`));
+    note(`${await assertNumbers(tab, record, "body")} texts with numbers`);
+    await assertSorts(tab, record);
+    const tips = await assertTips(tab, record);
+    note(`${tips} plots told`);
+    assert.equal(tips > 0, record.keepout_record !== "verify" && record.keepout_record !== "plan");
+    // What legends and choices change is of the record too.
+    for (const field of await tab.$$(".choice input, .legend input")) {
+      await field.evaluate((one) => one.click());
+    }
+    await assertNumbers(tab, record, "body");
+
+    const paper = await tab.pdf({ preferCSSPageSize: true, format: "A4", printBackground: true });
+    const text = Buffer.from(paper).toString("latin1");
+    const sheets = text.match(/\/Type \/Page\b/g)?.length ?? 0;
+    note(`${sheets} sheets, ${(paper.length / 1e3).toFixed(0)} kB`);
+    assert.ok(sheets > 0 && text.includes("/Font"), "print has no text");
+    const isWide = /\/MediaBox \[0 0 84[12]/.test(text);
+    assert.equal(
+      isWide,
+      Boolean(record.benchmark?.rows.length),
+      "the table of all rows is on wide sheets",
+    );
+    await assertAccessible(tab, "light");
+    await assertAccessible(tab, "dark");
+    assert.deepEqual(tab.faults, []);
+    await tab.close();
+  });
+
+  test(`${name}: on a phone`, async () => {
+    const tab = await opened(file, small);
+    const widths = await tab.evaluate(() => [document.documentElement.scrollWidth, innerWidth]);
+    assert.equal(widths[0], widths[1], "the page scrolls sideways");
+    await assertAccessible(tab, "dark");
+    assert.deepEqual(tab.faults, []);
+    await tab.close();
+  });
+}
+
+test("the table of all rows is filtered by words", async () => {
+  const bench = pages.find(({ record }) => record.benchmark?.rows.length);
+  const tab = await opened(bench.file, large);
+  await tab.type(".filter input", "wide_bvh certified");
+  const rows = await tab.$$eval(".windowed tbody tr:not([hidden])", (all) =>
+    all.map((row) => row.textContent),
+  );
+  const expected = bench.record.benchmark.rows.filter(
+    ({ index, activation }) => index === "wide_bvh" && activation === "certified",
+  );
+  assert.equal(rows.length, expected.length);
+  assert.ok(rows.every((row) => row.includes("wide_bvh") && row.includes("certified")));
+  await tab.close();
+});
+
+/** How much the pixels of each picture differ from each other. */
+const contrasts = (tab) =>
+  tab.$$eval("canvas.anatomy", (all) =>
+    all.map((canvas) => {
+      const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+      const reds = data.filter((_, i) => i % 4 === 0);
+      return Math.max(...new Set(reds)) - Math.min(...new Set(reds));
+    }),
+  );
+
+/** Brings all pictures into sight, one after another, so that they are drawn. */
+async function seenPictures(tab) {
+  for (const picture of await tab.$$("canvas.anatomy")) {
+    await picture.evaluate((one) => one.scrollIntoView({ block: "center" }));
+    await sleep(700);
+  }
+}
+
+for (const { file, name, record } of pages.filter(showsAnatomy)) {
+  test(`${name}: a drag turns all pictures of a group alike`, async () => {
+    const tab = await opened(file, large);
+    await seenPictures(tab);
+    assert.ok((await contrasts(tab)).every((contrast) => contrast > 60));
+    for (const group of await tab.$$("[data-view]")) {
+      const before = await group.evaluate((one) => one.dataset.view);
+      const picture = await group.$(".picture");
+      await picture.evaluate((one) => one.scrollIntoView({ block: "center" }));
+      const { x, y, width, height } = await picture.boundingBox();
+      const pixels = () =>
+        group.$$eval("canvas.anatomy", (all) => all.map((canvas) => canvas.toDataURL()));
+      const still = await pixels();
+      await tab.mouse.move(x + width / 2, y + height / 2);
+      await tab.mouse.down();
+      await tab.mouse.move(x + width / 2 + 80, y + height / 2 + 25, { steps: 5 });
+      await tab.mouse.up();
+      await sleep(1500);
+      assert.notEqual(await group.evaluate((one) => one.dataset.view), before, "nothing turned");
+      const turned = await pixels();
+      assert.ok(
+        turned.every((one, i) => one !== still[i]),
+        "a picture has not turned with the others",
+      );
+    }
+    if (record.keepout_record === "simulate") {
+      const now = () => tab.$$eval(".now", (all) => all.map((one) => one.textContent).join());
+      const before = await now();
+      await tab.focus("input[type=range]");
+      for (let i = 0; i < 20; ++i) await tab.keyboard.press("ArrowLeft");
+      await sleep(500);
+      assert.notEqual(await now(), before, "the time does not move");
+      await assertNumbers(tab, record, "body");
+    }
+    assert.deepEqual(tab.faults, []);
+    await tab.close();
+  });
+
+  test(`${name}: without WebGL there are still pictures`, async () => {
+    const tab = await opened(file, large, (page) =>
+      page.evaluateOnNewDocument(() => {
+        const own = HTMLCanvasElement.prototype.getContext;
+        HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {
+          return kind.startsWith("webgl") ? null : own.call(this, kind, ...rest);
+        };
+      }),
+    );
+    await seenPictures(tab);
+    assert.ok((await contrasts(tab)).every((contrast) => contrast > 60));
+    assert.match(await tab.$eval("body", (body) => body.textContent), /WebGL/);
+    assert.deepEqual(tab.faults, []);
+    await tab.close();
+  });
+}
+
+after(() => browser.close());
