@@ -73,8 +73,7 @@ Json record_of(const Benchmark& benchmark, const Comparison& comparison) {
                   .date = benchmark.date,
                   .command = benchmark.command,
                   .complete = benchmark.rows.size() >= benchmark.planned && comparison.complete,
-                  .subject = "Search trees, activation rules and solvers, on the same motions; " +
-                             benchmark.machine.processor + ", " + benchmark.machine.simd,
+                  .subject = "Search trees, activation rules and solvers, on the same motions",
                   .headline = headline(benchmark),
                   .account = {account(benchmark)},
                   .machine = benchmark.machine,

@@ -3,10 +3,10 @@
 #include <ostream>
 #include <utility>
 
-#include "record/json_parts.h"
-#include "record/record.h"
 #include "bench/speed/speed_record.h"
 #include "number_text.h"
+#include "record/json_parts.h"
+#include "record/record.h"
 
 namespace keepout::app {
 namespace {
@@ -174,15 +174,14 @@ void print_summary(std::ostream& out, const SpeedRecord& record) {
 
 Json record_of(const SpeedRecord& record) {
   Json all = new_record({.kind = "speed",
-                        .date = record.date,
-                        .command = record.command,
-                        .complete = record.complete,
-                        .subject = "The table of ratios, of " + record.mesh +
-                                   " unless said, on one core unless said; " +
-                                   record.machine.processor + ", " + record.machine.simd,
-                        .headline = headline(record),
-                        .machine = record.machine,
-                        .settings = {{"seed", std::to_string(record.seed)}}});
+                         .date = record.date,
+                         .command = record.command,
+                         .complete = record.complete,
+                         .subject = "The table of ratios, of " + record.mesh +
+                                    " unless said, on one core unless said",
+                         .headline = headline(record),
+                         .machine = record.machine,
+                         .settings = {{"seed", std::to_string(record.seed)}}});
   if (record.histogram) all["account"].push_back(histogram_words(record));
   all["mesh"] = record.mesh;
   all["seed"] = record.seed;

@@ -1,25 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/** The sections of a benchmark: what was found, each with a plot, then every row. */
+/** The sections of a benchmark: plots of the rows that are chosen, then every row. */
 import * as Plot from "@observablehq/plot";
 import { benchmarkMethod } from "./benchmark_method.ts";
-import {
-  BenchmarkRecord,
-  type BenchmarkRow,
-  combination,
-  type FindingGroup,
-  hasSizes,
-  nameOf,
-  type Rate,
-  shownCombination,
-} from "./benchmark_rows.ts";
 import { benchmarkTable, columnsOf } from "./benchmark_table.ts";
-import { Legend, type Look, logarithmic, looksOf, tickText, tipOfColumns } from "./charts.ts";
-import { choice } from "./choice.ts";
+import { Legend, logarithmic, looksOf, tickText, tipOfColumns } from "./charts.ts";
 import { comparisonSections } from "./comparison.ts";
 import { curves } from "./curves.ts";
 import { entries, type Timing, valueAt } from "./record.ts";
 import { lead, panel, panels, section } from "./report_page.ts";
 import { barInRow, inRow, rowChart } from "./row_chart.ts";
+import { type Question, Selection } from "./selection.ts";
 import {
   grouped,
   inUnit,
@@ -30,240 +20,84 @@ import {
   show,
   shown,
   shownName,
+  trimmed,
 } from "./shown.ts";
+
+/** A row of a benchmark: one combination on one mesh. */
+export interface BenchmarkRow {
+  /** Where it is in the record. */
+  readonly from: string;
+  readonly mesh: string;
+  readonly triangles: number;
+  readonly vertices: number;
+  readonly radius: number | null;
+  readonly index: string;
+  readonly activation: string;
+  readonly solver: string;
+  readonly build_s: number;
+  readonly bytes_per_triangle: number;
+  readonly planes_mean: number;
+  readonly reaching_share: number;
+  readonly collect_us: Timing | null;
+  readonly query_us: Timing | null;
+  readonly step_query_us: Timing | null;
+  readonly activate_us: Timing | null;
+  readonly solve_us: Timing | null;
+  readonly step_us: Timing | null;
+  readonly rate_khz: number | null;
+}
+
+type Rows = readonly BenchmarkRow[];
 
 /** Those of the benchmark and of the comparison at these pointers, as far as there are such. */
 export function benchmarkSections(from: string, comparisonFrom: string): HTMLElement[] {
-  const benchmark = new BenchmarkRecord(from);
-  const { rows } = benchmark;
   const comparison = comparisonSections(comparisonFrom);
+  const rows = entries(`${from}/rows`).map((row) => ({
+    ...(valueAt(row) as BenchmarkRow),
+    from: row,
+  }));
   if (rows.length === 0) return comparison;
   const isPart = valueAt("/keepout_record") !== "bench";
-  const indices = looksOf(rows.map(({ index }) => index));
   return [
     ...(isPart ? [show(make("h2", { class: "part" }), `${from}/headline`)] : []),
     ...(isPart ? paragraphs(`${from}/account`, "account") : []),
-    ...querySection(benchmark, indices),
-    ...rateSection(benchmark),
-    ...solverSection(benchmark),
-    ...stageSection(benchmark),
-    ...costSection(benchmark, indices),
+    ...new BenchmarkPlots(from, rows).sections(),
     ...comparison,
-    benchmarkTable(benchmark),
-    benchmarkMethod(benchmark),
+    benchmarkTable(from, rows),
+    benchmarkMethod(from, rows),
   ];
 }
 
-/** What is to be seen in some findings. */
-interface Topic {
-  readonly about: string;
-  readonly title: string;
-  readonly words: readonly (Node | string)[];
-  /** Whether each motion sphere is by itself. */
-  readonly apart?: boolean;
-  readonly legend?: Legend;
-  readonly draw: (rows: readonly BenchmarkRow[]) => readonly HTMLElement[];
-}
-
-/** A section of findings, mesh by mesh, each under its texts and with what draws its rows. */
-function topicSection(benchmark: BenchmarkRecord, topic: Topic): HTMLElement[] {
-  const { about, title, words, apart = false, legend, draw } = topic;
-  const found = benchmark.found(about, apart);
-  if (found.length === 0) return [];
-  const texts = ({ texts: [first = "", ...others] }: FindingGroup) =>
-    others.length === 0
-      ? show(lead(), first)
-      : make("ul", { class: "lead" }, ...[first, ...others].map((one) => show(make("li"), one)));
-  const choices = found.map((group) => ({
-    label: nameOf(group.rows, apart),
-    content: make("div", {}, texts(group), ...draw(group.rows)),
-  }));
-  const legends = legend ? [legend.element] : [];
-  return [section(title, lead(...words), ...legends, ...choice("Shown:", choices))];
-}
-
+const sphere = ({ radius }: BenchmarkRow): string =>
+  radius === null ? "as far as the motion leads" : `${trimmed(radius)} mm`;
+const combination = ({ index, activation, solver }: BenchmarkRow): string =>
+  [index, activation, solver].join(", ");
 const median = (timing: Timing | null): number => timing?.p50 ?? Number.NaN;
+const distinct = (names: readonly string[]): string[] => [...new Set(names)];
 
-/** What stands in a legend for a name: that of the first row that has it. */
-const nameShown = (rows: readonly BenchmarkRow[], part: "index" | "solver") => (name: string) =>
-  shown(`${rows.find((row) => row[part] === name)?.from}/${part}`);
-
-const queryTip = (row: BenchmarkRow): HTMLElement[] =>
-  tipOfColumns(
-    [shown(`${row.from}/index`)],
-    row.from,
-    columnsOf(
-      "/triangles",
-      "/radius",
-      "/query_us/p50",
-      "/query_us/p99",
-      "/collect_us/p50",
-      "/hits_mean",
-    ),
-  );
-
-function querySection(benchmark: BenchmarkRecord, looks: ReadonlyMap<string, Look>): HTMLElement[] {
-  const legend = new Legend(looks, nameShown(benchmark.rows, "index"));
-  const remarks = entries(`${benchmark.from}/remarks`).flatMap((remark) => [
-    make("br"),
-    shownName(remark),
-    ": ",
-    shown(remark),
-  ]);
-  const lines = (rows: readonly BenchmarkRow[], stage: "query_us" | "collect_us", label: string) =>
-    curves({
-      description: `Median of the ${label} against the number of triangles, for each index`,
-      data: rows,
-      series: ({ index }) => index,
-      x: ["triangles", ({ triangles }) => triangles],
-      y: [`${label} [µs]`, (row) => median(row[stage])],
-      legend,
-      tip: queryTip,
-    });
-  return topicSection(benchmark, {
-    about: "queries",
-    title: "Which index finds the triangles fastest",
-    words: [
-      "The same work for every index, apart from the step: all triangles where the rule looks, by the " +
-        "exact test, with their closest points, sorted. Candidates only is what the index proposes, " +
-        "before that.",
-      ...remarks,
-    ],
-    apart: true,
-    legend,
-    draw: (rows) =>
-      hasSizes(rows)
-        ? [
-            panels(
-              panel("The whole query", lines(rows, "query_us", "query")),
-              panel("Candidates only", lines(rows, "collect_us", "candidates only")),
-            ),
-          ]
-        : [
-            lead(
-              "Filled: the median of the whole query, and a line to its 99 %; open: the median of the " +
-                "candidates only.",
-            ),
-            panels(panel("", queryRows(rows, legend))),
-          ],
-  });
+/** Those of the largest mesh among them, each index, rule and solver once. */
+function ofLargest(rows: Rows): BenchmarkRow[] {
+  const most = Math.max(...rows.map(({ triangles }) => triangles));
+  return rows.filter(({ triangles }) => triangles === most);
 }
 
-function queryRows(rows: readonly BenchmarkRow[], legend: Legend): HTMLElement {
-  const last = ({ query_us }: BenchmarkRow) => query_us?.p99 ?? median(query_us);
-  const first = ({ collect_us }: BenchmarkRow) => median(collect_us);
-  const middle = ({ query_us }: BenchmarkRow) => median(query_us);
-  return rowChart({
-    description: "Median time of a query and its 99 %, for each index, the fastest first",
-    data: [...rows].sort((a, b) => middle(a) - middle(b)),
-    series: ({ index }) => index,
-    legend,
-    tip: queryTip,
-    name: ({ from }) => [{ from: `${from}/index` }],
-    value: ({ from }) => [{ from: `${from}/query_us/p50`, format: microseconds }],
-    x: logarithmic("query [µs]", [...rows.map(first), ...rows.map(middle), ...rows.map(last)]),
-    marks: (seen, { y, color, symbol }) => [
-      Plot.link(seen, {
-        x1: middle,
-        x2: last,
-        y1: y,
-        y2: y,
-        ...inRow,
-        stroke: color,
-        strokeWidth: 2,
-      }),
-      Plot.dot(seen, { x: first, y, ...inRow, symbol, fill: "var(--card)", stroke: color, r: 4.5 }),
-      Plot.dot(seen, { x: middle, y, ...inRow, symbol, fill: color, r: 5 }),
-    ],
-  });
+/** The first row of each name on each mesh. */
+function oneEach(rows: Rows, name: (row: BenchmarkRow) => string): BenchmarkRow[] {
+  const known = new Map<string, BenchmarkRow>();
+  for (const row of rows) {
+    const key = `${row.triangles} ${name(row)}`;
+    if (!known.has(key)) known.set(key, row);
+  }
+  return [...known.values()];
 }
 
-const published = "Li et al. 2020, their machine";
-const kilohertz = inUnit("kHz");
-
-function rateSection(benchmark: BenchmarkRecord): HTMLElement[] {
-  const stars = entries(`${benchmark.from}/published`).map((from): Rate => {
-    const { khz, ...sizes } = valueAt(from) as { triangles: number; vertices: number; khz: number };
-    return { ...sizes, from, series: published, rate: khz, key: "khz" };
-  });
-  const told = stars.flatMap(({ from }, i) => [
-    i > 0 ? " and " : "",
-    shown(`${from}/khz`, inUnit("kHz", String)),
-    " at ",
-    shown(`${from}/triangles`, grouped),
-  ]);
-  return topicSection(benchmark, {
-    about: "rates",
-    title: "How often a step fits into a second",
-    words: [
-      "Rates of the median step. The stars are what Li et al. 2020 published for the Stanford bunny, ",
-      ...told,
-      " triangles on an Intel i7-8700, another machine. They state neither the motions nor the motion " +
-        "sphere of that run. Compare the slopes, not the heights.",
-    ],
-    draw: (rows) => {
-      const own = rows.map((row): Rate => {
-        const { from, triangles, vertices, rate_khz } = row;
-        const series = combination(row);
-        return { from, triangles, vertices, series, rate: rate_khz ?? Number.NaN, key: "rate_khz" };
-      });
-      const star: [string, Look] = [published, { color: "var(--ink)", symbol: "star" }];
-      const legend = new Legend(
-        new Map([...looksOf(own.map(({ series }) => series)), star]),
-        (name) => {
-          const row = rows.find((one) => combination(one) === name);
-          return row ? make("span", {}, ...shownCombination(row.from)) : name;
-        },
-      );
-      const all = [...own, ...stars];
-      if (!hasSizes(rows)) return [panels(panel("", rateRows(all, legend)))];
-      const over = (size: "triangles" | "vertices") => ({
-        label: [size],
-        content: panels(panel(`Over ${size}`, rateLines(all, size, legend))),
-      });
-      return [legend.element, ...choice("Over", [over("triangles"), over("vertices")])];
-    },
-  });
-}
-
-const rateTip = ({ from, series, key }: Rate): HTMLElement[] =>
-  tipOfColumns(series === published ? [published] : shownCombination(from), from, [
-    ...columnsOf("/triangles"),
-    { heading: "vertices", from: "/vertices", format: grouped },
-    { heading: "rate", from: `/${key}`, format: kilohertz },
-    ...(series === published ? [] : columnsOf("/radius", "/step_us/p50", "/step_us/p99")),
-  ]);
-
-const rateLines = (rates: readonly Rate[], size: "triangles" | "vertices", legend: Legend) =>
-  curves({
-    description: `Rate of the whole step against the number of ${size}, for each combination, and as published`,
-    data: rates,
-    series: ({ series }) => series,
-    x: [size, (rate) => rate[size]],
-    y: ["rate of the whole step [kHz]", ({ rate }) => rate],
-    legend,
-    tip: rateTip,
-    rule: [1, "1 kHz"],
-  });
-
-const rateRows = (rates: readonly Rate[], legend: Legend) =>
-  rowChart({
-    description: "Rate of the whole step, for each combination, and as published",
-    data: rates,
-    series: ({ series }) => series,
-    legend,
-    tip: rateTip,
-    name: ({ from, series }) =>
-      series === published
-        ? ["Li et al. 2020, ", { from: `${from}/triangles`, format: grouped }, " triangles"]
-        : combinationParts(from),
-    value: ({ from, key }) => [{ from: `${from}/${key}`, format: kilohertz }],
-    x: logarithmic("rate of the whole step [kHz]", [1, ...rates.map(({ rate }) => rate)]),
-    marks: (seen, { y, color, symbol }) => [
-      Plot.ruleX([1], { stroke: "var(--soft)", strokeDasharray: "5 4" }),
-      Plot.dot(seen, { x: "rate", y, ...inRow, symbol, fill: color, r: 5.5 }),
-    ],
-  });
+const shownCombination = (from: string): (Node | string)[] => [
+  shown(`${from}/index`),
+  ", ",
+  shown(`${from}/activation`),
+  ", ",
+  shown(`${from}/solver`),
+];
 
 /** A combination within the text of a plot. */
 const combinationParts = (from: string) => [
@@ -274,44 +108,33 @@ const combinationParts = (from: string) => [
   { from: `${from}/solver` },
 ];
 
-function solverSection(benchmark: BenchmarkRecord): HTMLElement[] {
-  const looks = looksOf(benchmark.rows.map(({ solver }) => solver));
-  const legend = new Legend(looks, nameShown(benchmark.rows, "solver"));
-  const facts = columnsOf(
-    "/triangles",
-    "/radius",
-    "/planes_mean",
-    "/solve_us/p50",
-    "/solve_us/p99",
-  );
-  const lines = (rows: readonly BenchmarkRow[], key: "p50" | "p99", label: string) =>
-    panel(
-      `Time to solve, ${label}`,
-      curves({
-        description: `Time of the search for the motion, ${label}, against the mean number of planes, for each solver`,
-        data: rows,
-        series: ({ solver }) => solver,
-        x: ["planes (mean)", ({ planes_mean }) => planes_mean],
-        y: ["solve [µs]", ({ solve_us }) => solve_us?.[key] ?? Number.NaN],
-        legend,
-        tip: ({ from }) => tipOfColumns(shownCombination(from), from, facts),
-      }),
-    );
-  return topicSection(benchmark, {
-    about: "solvers",
-    title: "Which solver copes with many planes",
-    words: [
-      "Each solver has the same motions. Planes that are not in the way are left out for one that can " +
-        "tell that they have no bearing on its answer.",
-    ],
-    legend,
-    draw: (rows) =>
-      choice("Time to solve:", [
-        { label: ["median"], content: panels(lines(rows, "p50", "median")) },
-        { label: ["99 %"], content: panels(lines(rows, "p99", "99 %")) },
-      ]),
-  });
+const tip = ({ from }: BenchmarkRow): HTMLElement[] =>
+  tipOfColumns(shownCombination(from), from, facts);
+const facts = columnsOf(
+  "/triangles",
+  "/radius",
+  "/hits_mean",
+  "/planes_mean",
+  "/query_us/p50",
+  "/query_us/p99",
+  "/collect_us/p50",
+  "/solve_us/p50",
+  "/step_us/p50",
+  "/step_us/p99",
+  "/build_s",
+  "/build_cores",
+  "/bytes_per_triangle",
+);
+
+/** A published rate, or that of a row. */
+interface Rate {
+  readonly from: string;
+  readonly triangles: number;
+  readonly vertices: number;
+  readonly series: string;
+  readonly khz: number;
 }
+const published = "Li et al. 2020, their machine";
 
 const stages = [
   { key: "step_query_us", name: "query", color: "var(--stage-query)" },
@@ -319,82 +142,341 @@ const stages = [
   { key: "solve_us", name: "solve", color: "var(--stage-solve)" },
 ] as const;
 
-function stageSection(benchmark: BenchmarkRecord): HTMLElement[] {
-  const legend = new Legend(
-    new Map(stages.map(({ name, color }) => [name, { color, symbol: "square" }])),
-  );
-  const facts = columnsOf(
-    ...stages.map(({ key }) => `/${key}/p50`),
-    "/step_us/p50",
-    "/step_us/p99",
-  );
-  const parts = (rows: readonly BenchmarkRow[]) =>
-    rows.flatMap((row, place) =>
-      stages
-        .filter(({ name }) => legend.shows(name))
-        .map(({ key, color }) => ({ place, color, time: row[key]?.p50 ?? 0 })),
-    );
-  const stack = { offset: "normalize", x: "time", y: "place", fill: "color", ...barInRow } as const;
-  const bars = (rows: readonly BenchmarkRow[]) =>
-    rowChart({
-      description: "Which part of the median step is which, for each combination",
-      data: rows,
-      legend,
-      tip: ({ from }) => tipOfColumns(shownCombination(from), from, facts),
-      name: ({ from }) => combinationParts(from),
-      value: ({ from }) => [{ from: `${from}/step_us/p50`, format: microseconds }],
-      x: { label: "share of the stages", tickFormat: "%" },
-      marks: (seen) => [Plot.barX(parts(seen), Plot.stackX({ ...stack, stroke: "var(--card)" }))],
-    });
-  return topicSection(benchmark, {
-    about: "stages",
-    title: "Where the time of a step goes",
-    words: [
-      "Stages are timed in a round of their own, so that the whole step, at the right, is timed without " +
-        "any clock within.",
-    ],
-    apart: true,
-    legend,
-    draw: (rows) => [panels(panel("", bars(rows)))],
-  });
-}
+/** The plots, and what is chosen for all of them: mesh, motion sphere, rule. */
+class BenchmarkPlots {
+  private readonly mesh: Question<BenchmarkRow>;
+  private readonly sphere: Question<BenchmarkRow>;
+  private readonly rule: Question<BenchmarkRow>;
+  private readonly selection: Selection<BenchmarkRow>;
 
-function costSection(benchmark: BenchmarkRecord, looks: ReadonlyMap<string, Look>): HTMLElement[] {
-  const facts = columnsOf("/triangles", "/build_s", "/build_cores", "/bytes_per_triangle");
-  const cores = inUnit("cores", (count) => rounded(count, 2));
-  const bars = (rows: readonly BenchmarkRow[], cost: "build_s" | "bytes_per_triangle") => {
-    const isTime = cost === "build_s";
-    const value = (from: string) => ({
-      from: `${from}/${cost}`,
-      format: inUnit(isTime ? "s" : "B"),
-    });
-    return rowChart({
-      description: isTime ? "Time to build each index" : "Memory of each index for a triangle",
-      data: [...rows].sort((a, b) => a[cost] - b[cost]),
-      series: ({ index }) => index,
-      legend: new Legend(looks),
-      tip: ({ from }) => tipOfColumns([shown(`${from}/index`)], from, facts),
-      name: ({ from }) => [{ from: `${from}/index` }],
-      value: ({ from }) =>
-        isTime
-          ? [value(from), ", ", { from: `${from}/build_cores`, format: cores }]
-          : [value(from)],
-      x: { label: isTime ? "build [s]" : "bytes a triangle", grid: true, tickFormat: tickText },
-      marks: (seen, { y, color }) => [Plot.barX(seen, { x: cost, y, fill: color, ...barInRow })],
-    });
-  };
-  return topicSection(benchmark, {
-    about: "costs",
-    title: "What an index costs before the first query",
-    words: [
-      "Each is built once on each mesh. Cores busy are the processor’s time of all threads of this " +
-        "process over the time on the clock.",
-    ],
-    draw: (rows) => [
-      panels(
-        panel("Time to build, and cores busy", bars(rows, "build_s")),
-        panel("Memory for a triangle", bars(rows, "bytes_per_triangle")),
+  constructor(
+    private readonly from: string,
+    private readonly rows: Rows,
+  ) {
+    const spheres = rows
+      .filter(({ radius }) => radius !== null)
+      .sort((a, b) => (b.radius ?? 0) - (a.radius ?? 0));
+    const rules = distinct(rows.map(({ activation }) => activation));
+    this.mesh = {
+      label: "Mesh",
+      of: ({ mesh }) => mesh,
+      answers: distinct(rows.map(({ mesh }) => mesh)),
+    };
+    this.sphere = {
+      label: "Motion sphere",
+      of: sphere,
+      answers: distinct((spheres.length > 0 ? spheres : rows).map(sphere)),
+    };
+    this.rule = {
+      label: "Rule",
+      of: ({ activation }) => activation,
+      // The published one has been timed with most indices and solvers.
+      answers: rules.sort((a, b) => Number(b === "paper") - Number(a === "paper")),
+    };
+    this.selection = new Selection([this.mesh, this.sphere, this.rule]);
+  }
+
+  sections(): HTMLElement[] {
+    return [
+      make("h2", {}, "What is shown"),
+      lead("All plots are of one mesh, one motion sphere and one rule; the table has all rows."),
+      this.selection.element,
+      ...this.queries(),
+      ...this.rates(),
+      ...this.solvers(),
+      ...this.stages(),
+      ...this.costs(),
+    ];
+  }
+
+  /** Those chosen, where nothing is timed that has nothing to find. */
+  private chosen(...ignored: readonly Question<BenchmarkRow>[]): BenchmarkRow[] {
+    // What certified looks at is no choice of the user: it is shown with any sphere.
+    const fits = (row: BenchmarkRow) =>
+      this.selection.has(row, ...ignored) ||
+      (row.radius === null && this.selection.has(row, this.sphere, ...ignored));
+    return this.rows.filter((row) => row.reaching_share >= 0.5 && fits(row));
+  }
+
+  private legend(part: "index" | "solver"): Legend {
+    const label = (name: string) =>
+      shown(`${this.rows.find((row) => row[part] === name)?.from}/${part}`);
+    return new Legend(looksOf(this.rows.map((row) => row[part])), label, this.selection);
+  }
+
+  private queries(): HTMLElement[] {
+    if (!this.rows.some(({ query_us }) => query_us)) return [];
+    const legend = this.legend("index");
+    const data = () => oneEach(this.chosen(), ({ index }) => index);
+    const remarks = entries(`${this.from}/remarks`).flatMap((remark) => [
+      make("br"),
+      shownName(remark),
+      ": ",
+      shown(remark),
+    ]);
+    const middle = ({ query_us }: BenchmarkRow) => median(query_us);
+    const first = ({ collect_us }: BenchmarkRow) => median(collect_us);
+    const last = ({ query_us }: BenchmarkRow) => query_us?.p99 ?? median(query_us);
+    return [
+      section(
+        "Which index finds the triangles fastest",
+        lead(
+          "The same work for every index, apart from the step: all triangles where the rule looks, by " +
+            "the exact test, with their closest points, sorted. Candidates only is what the index " +
+            "proposes, before that. The flatter a line, the less a finer mesh costs.",
+          ...remarks,
+        ),
+        legend.element,
+        panels(
+          panel(
+            "Over the size of the mesh",
+            curves({
+              description: "Median of the query against the number of triangles, for each index",
+              data,
+              series: ({ index }) => index,
+              x: ["triangles", ({ triangles }) => triangles],
+              y: ["query [µs]", middle],
+              legend,
+              tip,
+            }),
+          ),
+          panel(
+            "On the largest: candidates only, median, 99 %",
+            rowChart({
+              description: "Median time of a query and its 99 %, for each index, the fastest first",
+              data: () => ofLargest(data()).sort((a, b) => middle(a) - middle(b)),
+              series: ({ index }) => index,
+              legend,
+              tip,
+              name: ({ from }) => [{ from: `${from}/index` }],
+              value: ({ from }) => [{ from: `${from}/query_us/p50`, format: microseconds }],
+              x: (rows) =>
+                logarithmic(
+                  "query [µs]",
+                  [first, middle, last].flatMap((of) => rows.map(of)),
+                ),
+              marks: (seen, { y, color, symbol }) => {
+                const line = { stroke: color, strokeWidth: 2, y1: y, y2: y };
+                return [
+                  Plot.link(seen, { x1: middle, x2: last, ...inRow, ...line }),
+                  Plot.dot(seen, {
+                    x: first,
+                    y,
+                    ...inRow,
+                    symbol,
+                    fill: "var(--card)",
+                    stroke: color,
+                  }),
+                  Plot.dot(seen, { x: middle, y, ...inRow, symbol, fill: color, r: 5 }),
+                ];
+              },
+            }),
+          ),
+        ),
       ),
-    ],
-  });
+    ];
+  }
+
+  /** Of every rule: ours and what it is set against; all combinations where there is neither. */
+  private rates(): HTMLElement[] {
+    const pairs = entries(`${this.from}/pairs`).map((pair) => [
+      valueAt(`${pair}/index`),
+      valueAt(`${pair}/solver`),
+    ]);
+    const isPair = ({ index, solver }: BenchmarkRow) =>
+      pairs.some(([one, other]) => index === one && solver === other);
+    const told = this.rows.filter(({ rate_khz }) => rate_khz !== null);
+    const shownRows = told.some(isPair) ? told.filter(isPair) : told;
+    if (shownRows.length === 0) return [];
+    const stars = entries(`${this.from}/published`).map((from): Rate => {
+      return { ...(valueAt(from) as Rate), from, series: published };
+    });
+    const looks = looksOf(shownRows.map(combination));
+    looks.set(published, { color: "var(--ink)", symbol: "star" });
+    const legend = new Legend(
+      looks,
+      (name) => {
+        const row = shownRows.find((one) => combination(one) === name);
+        return row ? make("span", {}, ...shownCombination(row.from)) : name;
+      },
+      this.selection,
+    );
+    const data = (): Rate[] => [
+      ...stars,
+      ...this.chosen(this.rule)
+        .filter((row) => shownRows.includes(row))
+        .map((row) => ({ ...row, series: combination(row), khz: row.rate_khz ?? Number.NaN })),
+    ];
+    const columns = (series: string) => [
+      ...columnsOf("/triangles"),
+      { heading: "vertices", from: "/vertices", format: grouped },
+      {
+        heading: "rate",
+        from: series === published ? "/khz" : "/rate_khz",
+        format: inUnit("kHz"),
+      },
+    ];
+    const over = (size: "triangles" | "vertices") =>
+      panel(
+        `Over ${size}`,
+        curves({
+          description: `Rate of the whole step against the number of ${size}, and as published`,
+          data,
+          series: ({ series }) => series,
+          x: [size, (rate) => rate[size]],
+          y: ["rate of the whole step [kHz]", ({ khz }) => khz],
+          legend,
+          tip: ({ from, series }) =>
+            tipOfColumns(
+              series === published ? [published] : shownCombination(from),
+              from,
+              columns(series),
+            ),
+          rule: [1, "1 kHz"],
+        }),
+      );
+    const rates = stars.flatMap(({ from }, i) => [
+      i > 0 ? " and " : "",
+      shown(`${from}/khz`, inUnit("kHz", String)),
+      " at ",
+      shown(`${from}/triangles`, grouped),
+    ]);
+    return [
+      section(
+        "How often a step fits into a second",
+        lead(
+          "Rates of the median step, under every rule. The stars are what Li et al. 2020 published for " +
+            "the Stanford bunny, ",
+          ...rates,
+          " triangles on an Intel i7-8700, another machine. They state neither the motions nor the " +
+            "motion sphere of that run. Compare the slopes, not the heights.",
+        ),
+        legend.element,
+        panels(over("triangles"), over("vertices")),
+      ),
+    ];
+  }
+
+  private solvers(): HTMLElement[] {
+    if (!this.rows.some(({ planes_mean, solve_us }) => solve_us && planes_mean > 0)) return [];
+    const legend = this.legend("solver");
+    const plot = (key: "p50" | "p99", label: string) =>
+      panel(
+        `Time to solve, ${label}`,
+        curves({
+          description: `Time of the search for the motion, ${label}, against the mean number of planes`,
+          data: () => this.chosen(this.sphere),
+          series: ({ solver }) => solver,
+          x: ["planes (mean)", ({ planes_mean }) => planes_mean],
+          y: ["solve [µs]", ({ solve_us }) => solve_us?.[key] ?? Number.NaN],
+          isLoose: true,
+          legend,
+          tip,
+        }),
+      );
+    return [
+      section(
+        "Which solver copes with many planes",
+        lead(
+          "Each solver has the same motions; a mark for each row, whatever its sphere. Planes that are " +
+            "not in the way are left out for one that can tell that they have no bearing on its answer.",
+        ),
+        legend.element,
+        panels(plot("p50", "median"), plot("p99", "99 %")),
+      ),
+    ];
+  }
+
+  private stages(): HTMLElement[] {
+    if (!this.rows.some(({ step_us }) => step_us)) return [];
+    const looks = stages.map(({ name, color }) => [name, { color, symbol: "square" }] as const);
+    const legend = new Legend(new Map(looks), undefined, this.selection);
+    const parts = (rows: Rows) =>
+      rows.flatMap((row, place) =>
+        stages
+          .filter(({ name }) => legend.shows(name))
+          .map(({ key, color }) => ({ place, color, time: row[key]?.p50 ?? 0 })),
+      );
+    const stack = {
+      offset: "normalize",
+      x: "time",
+      y: "place",
+      fill: "color",
+      ...barInRow,
+    } as const;
+    return [
+      section(
+        "Where the time of a step goes",
+        lead(
+          "On the largest mesh, the fastest first. Stages are timed in a round of their own, so that " +
+            "the whole step, at the right, is timed without any clock within. There is no query where " +
+            "the rule searches the tree by itself.",
+        ),
+        legend.element,
+        panels(
+          panel(
+            "",
+            rowChart({
+              description: "Which part of the median step is which, for each combination",
+              data: () =>
+                ofLargest(this.chosen().filter(({ step_us }) => step_us)).sort(
+                  (a, b) => median(a.step_us) - median(b.step_us),
+                ),
+              legend,
+              tip,
+              name: ({ from }) => combinationParts(from),
+              value: ({ from }) => [{ from: `${from}/step_us/p50`, format: microseconds }],
+              x: () => ({ label: "share of the stages", tickFormat: "%" }),
+              marks: (seen) => [
+                Plot.barX(parts(seen), Plot.stackX({ ...stack, stroke: "var(--card)" })),
+              ],
+            }),
+          ),
+        ),
+      ),
+    ];
+  }
+
+  private costs(): HTMLElement[] {
+    if (!this.rows.some(({ build_s }) => build_s > 0)) return [];
+    const legend = this.legend("index");
+    const cores = inUnit("cores", (count) => rounded(count, 2));
+    const built = () =>
+      this.rows.filter((row) => row.build_s > 0 && this.selection.has(row, this.sphere, this.rule));
+    const bars = (title: string, cost: "build_s" | "bytes_per_triangle", unit: string) =>
+      panel(
+        title,
+        rowChart({
+          description: `${title}, for each index`,
+          data: () =>
+            oneEach(ofLargest(built()), ({ index }) => index).sort((a, b) => a[cost] - b[cost]),
+          series: ({ index }) => index,
+          legend,
+          tip,
+          name: ({ from }) => [{ from: `${from}/index` }],
+          value: ({ from }) => [
+            { from: `${from}/${cost}`, format: inUnit(unit) },
+            ...(cost === "build_s" ? [", ", { from: `${from}/build_cores`, format: cores }] : []),
+          ],
+          x: () => ({ label: `${title} [${unit}]`, grid: true, tickFormat: tickText }),
+          marks: (seen, { y, color }) => [
+            Plot.barX(seen, { x: cost, y, fill: color, ...barInRow }),
+          ],
+        }),
+      );
+    return [
+      section(
+        "What an index costs before the first query",
+        lead(
+          "Each is built once on each mesh; shown is the largest. Cores busy are the processor’s time of " +
+            "all threads of this process over the time on the clock.",
+        ),
+        legend.element,
+        panels(
+          bars("Time to build", "build_s", "s"),
+          bars("Memory for a triangle", "bytes_per_triangle", "B"),
+        ),
+      ),
+    ];
+  }
 }

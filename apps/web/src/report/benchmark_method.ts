@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-import type { BenchmarkRecord } from "./benchmark_rows.ts";
+import type { BenchmarkRow } from "./benchmark.ts";
 import { valueAt } from "./record.ts";
 import { section } from "./report_page.ts";
 import { make, rounded, shown, shownMembers } from "./shown.ts";
@@ -9,7 +9,7 @@ const method = (...words: readonly (Node | string)[]): HTMLElement =>
 const term = (name: string): HTMLElement => make("b", {}, name);
 
 /** How a benchmark was measured, on what, and what the names of its parts stand for. */
-export function benchmarkMethod({ from, rows }: BenchmarkRecord): HTMLElement {
+export function benchmarkMethod(from: string, rows: readonly BenchmarkRow[]): HTMLElement {
   const hasNlopt = rows.some(({ solver }) => solver.startsWith("nlopt"));
   const clock = `${from}/machine/clock_ns`;
   return section(

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-import type { BenchmarkRecord, BenchmarkRow } from "./benchmark_rows.ts";
-import { entries, valueAt } from "./record.ts";
+import type { BenchmarkRow } from "./benchmark.ts";
+import { valueAt } from "./record.ts";
 import { lead, section } from "./report_page.ts";
-import { type Format, grouped, make, mean, percent, rounded, show } from "./shown.ts";
+import { type Format, grouped, mean, percent, rounded, show } from "./shown.ts";
 import { type Column, rowFilter, scrolled, table } from "./table.ts";
 
 /** Nothing for what an index of no cost has. */
@@ -38,26 +38,24 @@ const columns: readonly Column[] = [
   { heading: "remark", from: "/remark", look: "words" },
 ];
 
-/** What only tips tell. */
-const others: readonly Column[] = [
+const only: readonly Column[] = [
   { heading: "query 99 % [µs]", from: "/query_us/p99", format: rounded },
-  { heading: "solve 99 % [µs]", from: "/solve_us/p99", format: rounded },
 ];
 
 /** What is told of a row elsewhere as the table tells it, by where below a row it is. */
 export const columnsOf = (...wanted: readonly string[]): Column[] =>
-  [...columns, ...others].filter(({ from }) => wanted.includes(from));
+  [...columns, ...only].filter(({ from }) => wanted.includes(from));
 
 /** Every row of a benchmark, the largest mesh first, then the largest sphere, then the fastest. */
-export function benchmarkTable(benchmark: BenchmarkRecord): HTMLElement {
-  const meshes = [...new Set(benchmark.rows.map(({ mesh }) => mesh))];
+export function benchmarkTable(from: string, rows: readonly BenchmarkRow[]): HTMLElement {
+  const meshes = [...new Set(rows.map(({ mesh }) => mesh))];
   const key = ({ mesh, triangles, radius, step_us }: BenchmarkRow) => [
     meshes.indexOf(mesh),
     -triangles,
     -(radius ?? 0),
     step_us?.p50 ?? Number.POSITIVE_INFINITY,
   ];
-  const sorted = [...benchmark.rows].sort((a, b) => {
+  const sorted = [...rows].sort((a, b) => {
     const [one, other] = [key(a), key(b)];
     const place = one.findIndex((value, i) => value !== other[i]);
     return place < 0 ? 0 : (one[place] as number) - (other[place] as number);
@@ -66,9 +64,6 @@ export function benchmarkTable(benchmark: BenchmarkRecord): HTMLElement {
     sorted.map(({ from }) => from),
     columns,
   );
-  const steps = entries(`${benchmark.from}/findings`).filter(
-    (finding) => valueAt(`${finding}/about`) === "steps",
-  );
   const everything = section(
     "Every row",
     lead(
@@ -76,7 +71,7 @@ export function benchmarkTable(benchmark: BenchmarkRecord): HTMLElement {
         "is pressed. Times are medians unless they say otherwise; counts are means. Rows with the " +
         "same hash made the same steps, bit for bit.",
     ),
-    ...steps.map((finding) => show(make("p", { class: "lead" }), `${finding}/text`)),
+    ...(valueAt(`${from}/same_steps`) ? [show(lead(), `${from}/same_steps`)] : []),
     rowFilter(content),
     scrolled(content, "scroll windowed"),
   );

@@ -22,27 +22,41 @@ export function looksOf(names: readonly string[]): Map<string, Look> {
   );
 }
 
+/** Choices of the reader that bear on what charts show. */
+export class Choices {
+  private readonly listeners: (() => void)[] = [];
+
+  whenChanged(listener: () => void): void {
+    this.listeners.push(listener);
+  }
+  protected changed(): void {
+    for (const listener of this.listeners) listener();
+  }
+}
+
 /** Names of series with their looks; those that are not ticked are left out of its charts. */
-export class Legend {
+export class Legend extends Choices {
   readonly element = make(
     "fieldset",
     { class: "legend" },
     make("legend", { class: "unseen" }, "Shown"),
   );
   private readonly hidden = new Set<string>();
-  private readonly charts: (() => void)[] = [];
 
-  /** `label`: what stands for a name, if not the name. */
+  /** `label`: what stands for a name, if not the name. `others`: choices that its charts follow too. */
   constructor(
     readonly looks: ReadonlyMap<string, Look>,
     label: (name: string) => Node | string = (name) => name,
+    others?: Choices,
   ) {
+    super();
+    others?.whenChanged(() => this.changed());
     for (const [name, look] of looks) {
       const tick = make("input", { type: "checkbox", checked: "" });
       tick.addEventListener("change", () => {
         if (tick.checked) this.hidden.delete(name);
         else this.hidden.add(name);
-        for (const draw of this.charts) draw();
+        this.changed();
       });
       this.element.append(make("label", {}, tick, glyph(look), label(name)));
     }
@@ -50,9 +64,6 @@ export class Legend {
 
   shows = (name: string): boolean => !this.hidden.has(name);
   look = (name: string): Look => this.looks.get(name) ?? { color: "var(--ink)", symbol: "star" };
-  whenChanged(draw: () => void): void {
-    this.charts.push(draw);
-  }
 }
 
 function glyph({ color, symbol }: Look): Element {

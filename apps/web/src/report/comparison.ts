@@ -120,7 +120,7 @@ function errors(pointers: readonly string[]): HTMLElement[] {
   const chartOf = (relation: string) =>
     rowChart({
       description: `Median and worst error of each narrow phase, ${relation}`,
-      data: rows.filter((row) => row.relation === relation),
+      data: () => rows.filter((row) => row.relation === relation),
       series: ({ backend }) => backend,
       legend,
       tip: ({ from }) =>
@@ -132,7 +132,7 @@ function errors(pointers: readonly string[]): HTMLElement[] {
         { from: `${from}/worst_error_mm`, format: error },
       ],
       // On the same axis, so that panels can be compared.
-      x: logarithmic("error [mm]", [...rows.map(middle), ...rows.map(worst)]),
+      x: () => logarithmic("error [mm]", [...rows.map(middle), ...rows.map(worst)]),
       marks: (seen, { y, color, symbol }) => [
         Plot.link(seen, {
           x1: middle,

@@ -4,7 +4,8 @@ import { type Chart, chart, type Legend, logarithmic } from "./charts.ts";
 
 /** What is drawn as lines through marks, a line for each series, on two logarithmic axes. */
 export interface Curves<Datum> extends Omit<Chart<Datum>, "draw"> {
-  readonly data: readonly Datum[];
+  /** Asked for whenever it is drawn. */
+  readonly data: () => readonly Datum[];
   readonly series: (datum: Datum) => string;
   /** The label of an axis, and where on it a datum is; not a number: nowhere. */
   readonly x: readonly [string, (datum: Datum) => number];
@@ -12,20 +13,23 @@ export interface Curves<Datum> extends Omit<Chart<Datum>, "draw"> {
   readonly legend: Legend;
   /** A level that tells something, and its name. */
   readonly rule?: readonly [number, string];
+  /** Marks alone, where one series has several at one place. */
+  readonly isLoose?: boolean;
 }
 
 /** The element that holds such a plot. Stars stand alone. */
 export function curves<Datum>(wanted: Curves<Datum>): HTMLElement {
-  const { legend, series, rule } = wanted;
+  const { legend, series, rule, isLoose = false } = wanted;
   const [[xLabel, x], [yLabel, y]] = [wanted.x, wanted.y];
-  const data = wanted.data
-    .filter((datum) => x(datum) > 0 && y(datum) > 0)
-    .sort((a, b) => x(a) - x(b));
   const fill = (datum: Datum) => legend.look(series(datum)).color;
   const symbol = (datum: Datum) => legend.look(series(datum)).symbol as string;
   const draw = () => {
+    const data = wanted
+      .data()
+      .filter((datum) => x(datum) > 0 && y(datum) > 0)
+      .sort((a, b) => x(a) - x(b));
     const seen = data.filter((datum) => legend.shows(series(datum)));
-    const joined = seen.filter((datum) => symbol(datum) !== "star");
+    const joined = seen.filter((datum) => !isLoose && symbol(datum) !== "star");
     const text = { frameAnchor: "left", dx: 4, dy: -8, fill: "var(--soft)" } as const;
     return {
       height: 420,

@@ -19,12 +19,13 @@ export interface RowChannels<Datum> {
 
 /** What is drawn as one row a datum, below its name, at the left, and its value, at the right. */
 export interface RowChart<Datum> extends Omit<Chart<Datum>, "draw"> {
-  readonly data: readonly Datum[];
+  /** In the order of the rows; asked for whenever it is drawn. */
+  readonly data: () => readonly Datum[];
   /** By which the legend knows a datum; without, all are shown. */
   readonly series?: (datum: Datum) => string;
   readonly name: Inscription<Datum>;
   readonly value: Inscription<Datum>;
-  readonly x: Plot.ScaleOptions;
+  readonly x: (data: readonly Datum[]) => Plot.ScaleOptions;
   readonly marks: (seen: Datum[], channels: RowChannels<Datum>) => readonly Plot.Markish[];
 }
 
@@ -46,14 +47,15 @@ export function rowChart<Datum>(wanted: RowChart<Datum>): HTMLElement {
   const text = { y, dy: -9, fontSize: 13 };
   const band = { stroke: "var(--ink)", strokeOpacity: 0.06, strokeWidth: rowHeight };
   const draw = () => {
-    const seen = data.filter((datum) => legend?.shows(series(datum)) ?? true);
+    const all = data();
+    const seen = all.filter((datum) => legend?.shows(series(datum)) ?? true);
     return {
       height: rowHeight * seen.length + 46,
       inset: 0,
       marginTop: 4,
       marginLeft: 14,
       marginRight: 14,
-      x: { ...x, inset: 7 },
+      x: { ...x(all), inset: 7 },
       y: { type: "band", domain: seen.map(y), axis: null, padding: 0 } as const,
       marks: [
         Plot.ruleY(seen, Plot.pointerY({ y, maxRadius: rowHeight, ...band })),
