@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # How ./run comes by the page of `keepout live`: what it fetches, when, and what it says when it
-# cannot. The programs that fetch, compile and bundle are played by scripts of this test.
+# cannot; and apps/web/build by those of reports. The programs that fetch, compile and bundle are played by scripts of this test.
 #   page_build_test.sh SOURCE WORK
 # SPDX-License-Identifier: BSD-3-Clause
 set -euo pipefail
@@ -8,12 +8,13 @@ source=$1 work=$2
 fault() { printf '%s\n' "$*" >&2; exit 1; }
 
 rm -rf "$work"
-mkdir -p "$work"/{apps/web,build/release/apps/keepout,build/wasm,programs}
+mkdir -p "$work"/{apps/web/src,build/release/apps/keepout,build/wasm,programs}
 cp "$source/run" "$work"
 cp -r "$source/cmake" "$work"
 cp "$source/apps/web/build" "$work/apps/web"
 touch "$work"/build/{release,wasm}/build.ninja
-touch "$work/apps/web/"{package.json,.npmrc}
+touch "$work/apps/web/"{package.json,.npmrc,build.mjs,src/main.ts} "$work/LICENSE"
+touch "$work"/build/wasm/keepout.{mjs,wasm}
 echo 'first' > "$work/apps/web/package-lock.json"
 export calls=$work/calls page=$work/build/web/live.html
 
@@ -34,8 +35,12 @@ if [ "$1" = ci ]; then
   cp package-lock.json node_modules/what_it_names
 else
   cmp package-lock.json node_modules/what_it_names || exit 1
+  for report in report report_with_anatomy; do
+    echo "<!-- keepout report: the record goes here -->" > "$KEEPOUT_PAGES/$report.html"
+  done
+  [ -n "$KEEPOUT_WASM" ] || exit 0
   [ -d "$KEEPOUT_WASM" ] || exit 1
-  printf '%s\n' "${bundled-<!-- keepout live: the anatomy goes here -->}" > "$KEEPOUT_PAGE"
+  printf '%s\n' "${bundled-<!-- keepout live: the anatomy goes here -->}" > "$KEEPOUT_PAGES/live.html"
 fi
 PROGRAM
 program "$work/build/release/apps/keepout/keepout" <<< 'echo "in ${KEEPOUT_WEB:-nowhere}"'
@@ -57,6 +62,7 @@ run() {
 }
 calls_it() { [[ $called == *"$1"* ]] || fault "does not call '$1', but: $called"; }
 calls_no() { [[ $called != *"$1"* ]] || fault "calls '$1': $called"; }
+change() { sleep 0.01; touch "$work/apps/web/$1"; }
 says() { [[ $told == *"$1"* ]] || fault "does not say '$1', but: $told"; }
 
 for words in "" "inspect cube" "inspect live" "live --help"; do
@@ -74,6 +80,10 @@ says "in $work/build/web"
 [ -s "$page" ] || fault "there is no page"
 [ -L "$work/apps/web/node_modules" ] || fault "the libraries are among the sources"
 
+# What has not changed is not made again.
+run well live
+calls_no "npm"
+change src/main.ts
 run well --simd AVX2 live
 calls_it "npm run"
 calls_no "npm ci"
@@ -89,15 +99,33 @@ calls_it "npm ci"
 
 calls_it "--omit=dev"
 
-# What the tests need holds what the page needs.
-: > "$calls"
-PATH=$work/programs:$PATH "$work/apps/web/build" tests 2>/dev/null
-called=$(cat "$calls")
+# What the tests need holds what the pages need.
+# make ARGS...: apps/web/build does it; what it called is in called.
+make() {
+  : > "$calls"
+  PATH=$work/programs:$PATH "$work/apps/web/build" "$@" 2>/dev/null
+  called=$(cat "$calls")
+}
+make tests
 calls_it "npm ci"
 calls_no "--omit=dev"
+change build.mjs
 run well live
+calls_it "npm run"
 calls_no "npm ci"
 
+# Reports need no engine.
+rm "$work"/build/web/*.html
+make
+calls_it "npm run"
+calls_no wasm
+[ -s "$work/build/web/report_with_anatomy.html" ] || fault "there is no page of reports"
+[ ! -e "$page" ] || fault "the page of live was made, too"
+make
+calls_no "npm run"
+run well live
+
+change build.mjs
 npm_fails=yes run fails live
 calls_no "npm ci"
 says "could not be bundled"
@@ -117,5 +145,5 @@ for name in bash cat cmp cp dirname env find grep id ln mkdir mv rm stat; do
 done
 PATH=$work/few
 run fails live
-says "is made with npm, which is not here"
+says "are made with npm, which is not here"
 run well inspect cube
