@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# Runs a test of the page where what it needs is there; else says what is missing, and is skipped.
+# Runs a test of the pages where what it needs is there; else says what is missing, and is skipped.
 #   where_it_is_built.sh ROOT COMMAND...
 # SPDX-License-Identifier: BSD-3-Clause
 set -euo pipefail
 root=$1
 shift
-for needed in web/live.html wasm/keepout.wasm web/fetched_for_tests.json; do
+for needed in web/live.html web/report.html web/report_with_anatomy.html wasm/keepout.wasm web/fetched_for_tests.json; do
   [ -f "$root/build/$needed" ] ||
     { echo "skipped: there is no build/$needed; apps/web/build tests makes it"; exit 77; }
 done

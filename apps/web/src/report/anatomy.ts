@@ -33,24 +33,57 @@ export async function unpackedAnatomy(mesh: RecordedMesh): Promise<Anatomy> {
   };
 }
 
-/** The corners of the triangles of which one is within a way from a place, seen along a direction. */
+/**
+ * The corners of the triangles of which one is within a way from a place, seen along a direction, and
+ * no further that way than the front.
+ */
 export function cornersAround(
   { positions, corners }: Anatomy,
   place: three.Vector3,
   along: three.Vector3,
   reach: number,
+  front: number,
 ): Uint32Array {
   const isNear = new Uint8Array(positions.length / 3);
   const way = new three.Vector3();
   for (let i = 0; i < isNear.length; ++i) {
-    way.fromArray(positions, 3 * i).sub(place);
-    isNear[i] = Number(way.lengthSq() - way.dot(along) ** 2 <= reach ** 2);
+    way.fromArray(positions, 3 * i);
+    const isBefore = way.dot(along) > front;
+    way.sub(place);
+    isNear[i] = Number(!isBefore && way.lengthSq() - way.dot(along) ** 2 <= reach ** 2);
   }
   return corners.filter((_, i) => {
     const first = i - (i % 3);
     return [0, 1, 2].some((k) => isNear[corners[first + k] as number]);
   });
 }
+
+/** The corners of fewer triangles, where those vertices count as one that are in one cube of a grid. */
+export function coarsened(
+  positions: Float32Array,
+  corners: Uint32Array,
+  grain: number,
+): Uint32Array {
+  const first = new Map<number, number>();
+  const cell = (vertex: number, axis: number) =>
+    Math.round((positions[3 * vertex + axis] as number) / grain) + 2 ** 16;
+  const merged = new Uint32Array(positions.length / 3).map((_, vertex) => {
+    const key = (cell(vertex, 0) * 2 ** 17 + cell(vertex, 1)) * 2 ** 17 + cell(vertex, 2);
+    const known = first.get(key);
+    if (known === undefined) first.set(key, vertex);
+    return known ?? vertex;
+  });
+  const result: number[] = [];
+  for (let i = 0; i < corners.length; i += 3) {
+    const [a, b, c] = [0, 1, 2].map(
+      (k) => merged[corners[i + k] as number] as number,
+    ) as unknown as Corners;
+    if (a !== b && b !== c && c !== a) result.push(a, b, c);
+  }
+  return new Uint32Array(result);
+}
+
+type Corners = readonly [number, number, number];
 
 /** The mean direction out of the surface around a place, weighted by area; null without a surface. */
 export function outward(

@@ -54,17 +54,18 @@ export class AnatomyView {
   });
   private readonly sizes = new ResizeObserver(() => this.outdate());
 
-  /** `group`: the element around the pictures, which says from where they are looked at. */
+  /** `group`: the element around the pictures, which says from where they are looked at. `isCut`: whether each shows a cut. */
   constructor(
     private readonly group: HTMLElement,
     anatomy: Anatomy,
     corners: Uint32Array,
     private readonly outlook: Outlook,
+    isCut = false,
   ) {
     const graphics = graphicsProcessor();
     this.isSlow = graphics?.isSlow ?? true;
     this.painter = graphics
-      ? new GraphicsPainter(graphics, anatomy, corners, outlook.camera)
+      ? new GraphicsPainter(graphics, anatomy, corners, outlook.camera, isCut)
       : new StillPainter(anatomy, corners, outlook.camera);
     const { signal } = this.end;
     const restored = () => {
@@ -134,8 +135,8 @@ export class AnatomyView {
       ArrowRight: () => controls.rotateLeft(turn),
       ArrowUp: () => controls.rotateUp(-turn),
       ArrowDown: () => controls.rotateUp(turn),
-      "+": () => controls.dollyIn(zoom),
-      "-": () => controls.dollyOut(zoom),
+      "+": () => controls.dollyOut(zoom),
+      "-": () => controls.dollyIn(zoom),
       Home: () => controls.reset(),
     };
     element.addEventListener("keydown", (event) => {

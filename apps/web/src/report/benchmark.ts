@@ -73,22 +73,14 @@ const sphere = ({ radius }: BenchmarkRow): string =>
 const combination = ({ index, activation, solver }: BenchmarkRow): string =>
   [index, activation, solver].join(", ");
 const median = (timing: Timing | null): number => timing?.p50 ?? Number.NaN;
-const distinct = (names: readonly string[]): string[] => [...new Set(names)];
+/** The first row of each name. */
+const distinct = (rows: Rows, name: (row: BenchmarkRow) => string): BenchmarkRow[] =>
+  rows.filter((row, i) => rows.findIndex((other) => name(other) === name(row)) === i);
 
 /** Those of the largest mesh among them, each index, rule and solver once. */
 function ofLargest(rows: Rows): BenchmarkRow[] {
   const most = Math.max(...rows.map(({ triangles }) => triangles));
   return rows.filter(({ triangles }) => triangles === most);
-}
-
-/** The first row of each name on each mesh. */
-function oneEach(rows: Rows, name: (row: BenchmarkRow) => string): BenchmarkRow[] {
-  const known = new Map<string, BenchmarkRow>();
-  for (const row of rows) {
-    const key = `${row.triangles} ${name(row)}`;
-    if (!known.has(key)) known.set(key, row);
-  }
-  return [...known.values()];
 }
 
 const shownCombination = (from: string): (Node | string)[] => [
@@ -156,23 +148,15 @@ class BenchmarkPlots {
     const spheres = rows
       .filter(({ radius }) => radius !== null)
       .sort((a, b) => (b.radius ?? 0) - (a.radius ?? 0));
-    const rules = distinct(rows.map(({ activation }) => activation));
-    this.mesh = {
-      label: "Mesh",
-      of: ({ mesh }) => mesh,
-      answers: distinct(rows.map(({ mesh }) => mesh)),
-    };
-    this.sphere = {
-      label: "Motion sphere",
-      of: sphere,
-      answers: distinct((spheres.length > 0 ? spheres : rows).map(sphere)),
-    };
-    this.rule = {
-      label: "Rule",
-      of: ({ activation }) => activation,
-      // The published one has been timed with most indices and solvers.
-      answers: rules.sort((a, b) => Number(b === "paper") - Number(a === "paper")),
-    };
+    const mesh = ({ mesh }: BenchmarkRow) => mesh;
+    const rule = ({ activation }: BenchmarkRow) => activation;
+    // The published one has been timed with most indices and solvers.
+    const isPaper = (row: BenchmarkRow) => Number(rule(row) === "paper");
+    const rules = distinct(rows, rule).sort((a, b) => isPaper(b) - isPaper(a));
+    const radii = distinct(spheres.length > 0 ? spheres : rows, sphere);
+    this.mesh = { label: "Mesh", of: mesh, from: "/mesh", answers: distinct(rows, mesh) };
+    this.sphere = { label: "Motion sphere", of: sphere, from: "/radius", answers: radii };
+    this.rule = { label: "Rule", of: rule, from: "/activation", answers: rules };
     this.selection = new Selection([this.mesh, this.sphere, this.rule]);
   }
 
@@ -207,7 +191,7 @@ class BenchmarkPlots {
   private queries(): HTMLElement[] {
     if (!this.rows.some(({ query_us }) => query_us)) return [];
     const legend = this.legend("index");
-    const data = () => oneEach(this.chosen(), ({ index }) => index);
+    const data = () => distinct(this.chosen(), ({ triangles, index }) => `${triangles} ${index}`);
     const remarks = entries(`${this.from}/remarks`).flatMap((remark) => [
       make("br"),
       shownName(remark),
@@ -449,7 +433,7 @@ class BenchmarkPlots {
         rowChart({
           description: `${title}, for each index`,
           data: () =>
-            oneEach(ofLargest(built()), ({ index }) => index).sort((a, b) => a[cost] - b[cost]),
+            distinct(ofLargest(built()), ({ index }) => index).sort((a, b) => a[cost] - b[cost]),
           series: ({ index }) => index,
           legend,
           tip,

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import * as three from "three";
-import { LineMaterial } from "three/addons/lines/LineMaterial.js";
-import { LineSegments2 } from "three/addons/lines/LineSegments2.js";
-import { LineSegmentsGeometry } from "three/addons/lines/LineSegmentsGeometry.js";
 import { StillPicture } from "../page/still_picture.ts";
-import type { Anatomy } from "./anatomy.ts";
+import { type Anatomy, coarsened } from "./anatomy.ts";
 import type { Cut } from "./cut.ts";
+import { Line } from "./line.ts";
 
 /** Lengths of paths that look alike. */
 export interface Lengths {
@@ -28,7 +26,10 @@ export interface Layer {
 
 /** Draws the pictures of one anatomy. */
 export interface Painter {
-  /** `scale`: pixels for each of the page. What is returned holds until it paints again. */
+  /**
+   * `scale`: pixels for each of the page; less than one where time counts more than looks. What is
+   * returned holds until it paints again.
+   */
   paint(layer: Layer, width: number, height: number, scale: number): CanvasImageSource;
   /** Another view than that of the last picture. */
   outdate(): void;
@@ -80,23 +81,31 @@ export class GraphicsPainter implements Painter {
   private readonly anatomy: three.Mesh<three.BufferGeometry, three.ShaderMaterial>;
   private readonly scene = new three.Scene();
   private readonly still: StillPicture;
-  private readonly linesOf = new Map<Layer, three.Scene>();
+  private readonly linesOf = new Map<Layer, readonly Line[]>();
   private readonly depths = new three.DataTexture(null, 1, 1, three.RedFormat, three.FloatType);
 
+  private readonly fine: three.BufferAttribute;
+  private readonly coarse: three.BufferAttribute;
   private lastColumns = 0;
 
-  /** `corners`: of the triangles that are drawn. */
+  /** `corners`: of the triangles that are drawn. `isCut`: whether each picture cuts them open. */
   constructor(
     private readonly processor: GraphicsProcessor,
     anatomy: Anatomy,
     corners: Uint32Array,
     private readonly camera: three.OrthographicCamera,
+    isCut: boolean,
   ) {
     const geometry = new three.BufferGeometry();
     geometry.setAttribute("position", new three.BufferAttribute(anatomy.positions, 3));
-    geometry.setIndex(new three.BufferAttribute(corners, 1));
+    this.fine = new three.BufferAttribute(corners, 1);
+    geometry.setIndex(this.fine);
     geometry.computeVertexNormals();
-    this.anatomy = new three.Mesh(geometry, boneMaterial(anatomy.isClosed, this.depths));
+    const grain = (camera.top - camera.bottom) / 120;
+    this.coarse = processor.isSlow
+      ? new three.BufferAttribute(coarsened(anatomy.positions, corners, grain), 1)
+      : this.fine;
+    this.anatomy = new three.Mesh(geometry, boneMaterial(isCut, anatomy.isClosed, this.depths));
     this.anatomy.frustumCulled = false;
     this.scene.add(this.anatomy);
     this.still = new StillPicture(this.scene, camera, processor.isSlow ? 0 : 4);
@@ -113,18 +122,24 @@ export class GraphicsPainter implements Painter {
     if (size.x !== columns || size.y !== rows) renderer.setSize(columns, rows, false);
     if (this.lastColumns !== columns) this.outdate();
     this.lastColumns = columns;
-    (this.anatomy.material.uniforms.scale as three.IUniform).value = scale;
+    this.anatomy.geometry.setIndex(scale < 1 ? this.coarse : this.fine);
+    const { top, bottom, zoom, far, near } = this.camera;
+    const pixel = (top - bottom) / zoom / height / (far - near); // as a depth
     if (layer.cut) {
-      this.hang(layer.cut);
+      this.hang(layer.cut, { scale, pixel });
       renderer.clear();
       renderer.render(this.scene, this.camera);
     } else {
       this.still.draw(renderer);
     }
-    const lines = this.linesOf.get(layer) ?? linesOf(layer);
+    const lines = this.linesOf.get(layer) ?? layer.lengths.map((lengths) => new Line(lengths));
     this.linesOf.set(layer, lines);
-    this.adjust(lines, height, scale);
-    renderer.render(lines, this.camera);
+    for (const line of lines) {
+      // What is seen through the surface is drawn over all that was drawn before.
+      if (line.lengths.isSeenThrough) renderer.clearDepth();
+      line.adjust(columns, rows, scale, pixel);
+      renderer.render(line.mesh, this.camera);
+    }
     return renderer.domElement;
   }
 
@@ -132,82 +147,39 @@ export class GraphicsPainter implements Painter {
     this.anatomy.geometry.dispose();
     this.anatomy.material.dispose();
     this.depths.dispose();
-    for (const lines of this.linesOf.values()) {
-      for (const { geometry, material } of lines.children as LineSegments2[]) {
-        geometry.dispose();
-        material.dispose();
-      }
-    }
+    for (const line of [...this.linesOf.values()].flat()) line.dispose();
   }
 
-  private hang(cut: Cut): void {
-    this.depths.image = {
-      data: cut.depths as Float32Array<ArrayBuffer>,
-      width: cut.depths.length,
-      height: 1,
-    };
+  private hang(cut: Cut, sizes: Readonly<Record<string, number>>): void {
+    const { depths, ...frame } = cut;
+    const data = depths as Float32Array<ArrayBuffer>;
+    this.depths.image = { data, width: data.length, height: 1 };
     this.depths.needsUpdate = true;
-    const { uniforms } = this.anatomy.material;
-    const values = {
-      isCut: true,
-      sideways: cut.sideways,
-      toward: cut.toward,
-      from: cut.from,
-      to: cut.to,
-    };
-    for (const [name, value] of Object.entries(values))
-      (uniforms[name] as three.IUniform).value = value;
-  }
-
-  /** Lines are as wide wherever the view is, and lie before the surface that they touch. */
-  private adjust(lines: three.Scene, height: number, scale: number): void {
-    const { top, bottom, zoom, far, near } = this.camera;
-    const pixel = (top - bottom) / zoom / height; // [mm]
-    for (const { material, userData } of lines.children as LineSegments2[]) {
-      material.linewidth = scale * userData.width;
-      material.color.set(colorOf(userData.color)).multiplyScalar(userData.light);
-      material.polygonOffsetUnits = (-userData.width * pixel * 2 ** 24) / (far - near);
+    for (const [name, value] of Object.entries({ ...frame, ...sizes })) {
+      (this.anatomy.material.uniforms[name] as three.IUniform).value = value;
     }
   }
-}
-
-/** Each length twice: wide and dark, and on it narrower and in its colour. */
-function linesOf({ lengths }: Layer): three.Scene {
-  const scene = new three.Scene();
-  for (const { ends, color, isAlarming, isSeenThrough, width } of lengths) {
-    if (ends.length === 0) continue;
-    const geometry = new LineSegmentsGeometry().setPositions(ends);
-    for (const [rank, more, light] of [
-      [0, 1.4, 0.35],
-      [1, 0, 1],
-    ] as const) {
-      const material = new LineMaterial({ depthTest: !isSeenThrough, polygonOffset: true });
-      const line = new LineSegments2(geometry, material);
-      line.userData = { width: width + more, color, light };
-      line.renderOrder = 2 * Number(isAlarming) + rank;
-      line.frustumCulled = false;
-      material.depthWrite = rank === 1;
-      scene.add(line);
-    }
-  }
-  return scene;
 }
 
 /** Bone, lit from the upper left of the view; where it is cut, a section as a draughtsman draws it. */
-function boneMaterial(isClosed: boolean, depths: three.Texture): three.ShaderMaterial {
+function boneMaterial(
+  isCut: boolean,
+  isClosed: boolean,
+  depths: three.Texture,
+): three.ShaderMaterial {
   const color = (name: keyof typeof materials) =>
     `const vec3 ${name} = vec3(${materials[name].map((part) => part.toFixed(2)).join(", ")});`;
   return new three.ShaderMaterial({
     side: three.DoubleSide,
+    defines: { ...(isCut && { CUT: "" }), ...(isCut && isClosed && { SOLID: "" }) },
     uniforms: {
-      isClosed: { value: isClosed },
-      isCut: { value: false },
       depths: { value: depths },
       sideways: { value: new three.Vector3() },
       toward: { value: new three.Vector3() },
       from: { value: 0 },
       to: { value: 1 },
       scale: { value: 1 },
+      pixel: { value: 0 },
     },
     vertexShader: `
       varying vec3 place, eye, bent;
@@ -218,10 +190,9 @@ function boneMaterial(isClosed: boolean, depths: three.Texture): three.ShaderMat
         gl_Position = projectionMatrix * vec4(eye, 1.0);
       }`,
     fragmentShader: `
-      uniform bool isClosed, isCut;
       uniform sampler2D depths;
       uniform vec3 sideways, toward;
-      uniform float from, to, scale;
+      uniform float from, to, scale, pixel;
       varying vec3 place, eye, bent;
       ${color("bone")} ${color("hollow")} ${color("section")} ${color("edge")}
 
@@ -248,23 +219,26 @@ function boneMaterial(isClosed: boolean, depths: three.Texture): three.ShaderMat
       }
 
       void main() {
-        float rest = isCut ? behind() : 1.0;
         vec3 flatNormal = normalize(cross(dFdx(eye), dFdy(eye)));
-        float reach = fwidth(rest);
-        if (rest < 0.0) discard;
-        // Slivers may be taken for turned: then the normal tells.
-        bool isFree = gl_FrontFacing && normalize(bent).z > -0.3;
-        vec3 color;
-        if (isCut && isClosed && !isFree) {
-          float stripe = mod(gl_FragCoord.x - gl_FragCoord.y, ${hatching.period.toFixed(1)} * scale);
-          color = section * (stripe < ${hatching.line.toFixed(1)} * scale ? 0.8 : 1.0);
-        } else {
-          // Across a sharp edge there is no normal but that of the triangle.
-          vec3 normal = normalize(isFree ? bent : -bent);
-          if (dot(normal, flatNormal) < 0.5) normal = flatNormal;
-          color = lit(isFree ? bone : hollow, normal);
-          if (isCut && rest < 1.2 * scale * reach) color = edge;
-        }
+        vec3 normal = normalize(gl_FrontFacing ? bent : -bent);
+        // Across a sharp edge there is no normal but that of the triangle.
+        if (dot(normal, flatNormal) < 0.5) normal = flatNormal;
+        vec3 color = lit(gl_FrontFacing ? bone : hollow, normal);
+        #ifdef CUT
+          float rest = behind();
+          float reach = fwidth(rest);
+          if (rest < 0.0) discard;
+          if (rest < 1.2 * scale * reach) color = edge;
+          gl_FragDepth = gl_FragCoord.z;
+        #endif
+        #ifdef SOLID
+          if (!gl_FrontFacing) {
+            float stripe = mod(gl_FragCoord.x - gl_FragCoord.y, ${hatching.period.toFixed(1)} * scale);
+            color = section * (stripe < ${hatching.line.toFixed(1)} * scale ? 0.8 : 1.0);
+            // It is before what folds behind it, which is not to show through at the fold.
+            gl_FragDepth -= 6.0 * pixel;
+          }
+        #endif
         gl_FragColor = vec4(color, 1.0);
         #include <colorspace_fragment>
       }`,

@@ -3,7 +3,7 @@ import type * as three from "three";
 import type { Lengths } from "./painting.ts";
 
 /** How wide paths are in a picture. [px] */
-export const widths = { whole: 2.6, near: 3.6 } as const;
+export const widths = { many: 1.7, whole: 2.2, near: 3.4 } as const;
 
 /** What is between neighbours of a path, as pairs of ends; places nearer than `least` count as one. */
 export function ends(path: readonly three.Vector3[], least = 0): number[] {
@@ -33,7 +33,7 @@ export function coloured(
       color: "--alarm",
       isAlarming: true,
       isSeenThrough: true,
-      width: 1.1 * width,
+      width: 1.3 * width,
     },
   ];
 }

@@ -3,7 +3,7 @@ import * as three from "three";
 import { type Anatomy, fitted, lookFrom, unpackedAnatomy } from "./anatomy.ts";
 import { AnatomyView, hint } from "./anatomy_view.ts";
 import { coloured, ends, widths } from "./paths.ts";
-import type { ReportRecord } from "./record.ts";
+import { type ReportRecord, valueAt } from "./record.ts";
 import { lead, section } from "./report_page.ts";
 import { panels, runColor } from "./runs.ts";
 import { grouped, make, rounded, shown } from "./shown.ts";
@@ -20,7 +20,14 @@ const columns: readonly Column[] = [
   { heading: "checker", from: "/checker", look: "name" },
   { heading: "runs", from: "/runs", format: grouped },
   { heading: "solved", from: "/solved", format: grouped },
-  { heading: "valid", from: "/valid", format: grouped },
+  {
+    heading: "valid",
+    from: "/valid",
+    content: (row) => {
+      const isLess = Number(valueAt(`${row}/valid`)) < Number(valueAt(`${row}/solved`));
+      return [make("span", isLess ? { class: "bad" } : {}, shown(`${row}/valid`, grouped))];
+    },
+  },
   { heading: "enters", from: "/entering", format: grouped, look: "harm" },
   { heading: "least clearance [mm]", from: "/least_clearance_mm", format: (mm) => rounded(mm, 4) },
   { heading: "median [s]", from: "/median_seconds", format: rounded },
@@ -44,7 +51,7 @@ async function meshSection(plan: PlanRecord, number: number): Promise<HTMLElemen
       good.push(...ends((run.path ?? []).map(anatomy.placed)));
       for (const length of run.too_near ?? []) bad.push(...ends(length.map(anatomy.placed)));
     }
-    const lengths = coloured(good, bad, runColor(place + 1), widths.whole, mesh.inside);
+    const lengths = coloured(good, bad, runColor(place + 1), widths.many, mesh.inside);
     const from = `/summaries/${row}`;
     const caption = make(
       "figcaption",

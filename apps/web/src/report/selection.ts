@@ -6,21 +6,26 @@ import { make } from "./shown.ts";
 export interface Question<Row> {
   readonly label: string;
   readonly of: (row: Row) => string;
-  /** The answers, in their order; the first is chosen until another is. */
-  readonly answers: readonly string[];
+  /** Where below a row the answer is in the record. */
+  readonly from: string;
+  /** A row of each answer, in their order; the first is chosen until another is. */
+  readonly answers: readonly Row[];
 }
 
 /** Questions to the reader about which rows to show. */
-export class Selection<Row> extends Choices {
+export class Selection<Row extends { readonly from: string }> extends Choices {
   readonly element = make("div", { class: "selection" });
   private readonly chosen = new Map<Question<Row>, string>();
 
   constructor(questions: readonly Question<Row>[]) {
     super();
     for (const question of questions) {
-      const { label, answers } = question;
-      this.chosen.set(question, answers[0] ?? "");
-      const list = make("select", {}, ...answers.map((answer) => make("option", {}, answer)));
+      const { label, of, from, answers } = question;
+      const options = answers.map((row) =>
+        make("option", { value: of(row), "data-from": row.from + from }, of(row)),
+      );
+      const list = make("select", {}, ...options);
+      this.chosen.set(question, list.value);
       list.addEventListener("change", () => {
         this.chosen.set(question, list.value);
         this.changed();

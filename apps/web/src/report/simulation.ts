@@ -176,12 +176,12 @@ function figures(record: SimulationRecord): HTMLElement {
 
 function speed(record: SimulationRecord): HTMLElement[] {
   const times = stepTimes(record);
-  if (!times) return [];
+  if (times.length === 0) return [];
   return [
     section(
       "How fast it was",
       lead("Read the plot at 1 %: one step in a hundred took this long or longer."),
-      make("figure", { class: "measured" }, times),
+      ...times,
     ),
   ];
 }

@@ -16,8 +16,8 @@ interface Point {
 }
 
 /** The names of runs, which can be unticked. */
-function legendOf(record: SimulationRecord): Legend {
-  const looks = record.runs.map((_, run): [string, Look] => [
+function legendOf(runs: Iterable<number>): Legend {
+  const looks = [...runs].map((run): [string, Look] => [
     String(run),
     { color: `var(${runColor(run)})`, symbol: "circle" },
   ]);
@@ -31,7 +31,7 @@ const lines = (points: readonly Point[]): Plot.Markish[] => [
     y: "y",
     z: "run",
     stroke: ({ run }: Point) => `var(${runColor(run)})`,
-    strokeWidth: 1.8,
+    strokeWidth: ({ run }: Point) => Math.max(5 - 1.2 * run, 1.5),
     clip: true,
   }),
   Plot.dot([...points], {
@@ -43,7 +43,7 @@ const lines = (points: readonly Point[]): Plot.Markish[] => [
 
 /** How far the tip is from the surface over the time of a stroke: all of it, and near the surface. */
 export function clearanceCharts(record: SimulationRecord, stroke: number) {
-  const legend = legendOf(record);
+  const legend = legendOf(record.runs.keys());
   const points = record.runs.flatMap(({ strokes }, run) =>
     (strokes[stroke] as Stroke).clearance_mm.map(
       (y, cycle): Point => ({ run, stroke, cycle, x: cycle * record.cycle_s, y }),
@@ -72,25 +72,32 @@ export function clearanceCharts(record: SimulationRecord, stroke: number) {
     };
   };
   const isClosed = record.mesh.surface === "closed";
-  const level = (y: number, text: string) => [
+  const level = (y: number, text: string, dy = -8) => [
     Plot.ruleY([y], { stroke: "var(--soft)", strokeDasharray: "5 4" }),
-    Plot.text([text], { y, frameAnchor: "right", dy: -8, textAnchor: "end", fill: "var(--soft)" }),
+    Plot.text([text], { y, frameAnchor: "right", dy, textAnchor: "end", fill: "var(--soft)" }),
   ];
   const draw = (domain: readonly [number, number], kept: number) => (): Plot.PlotOptions => ({
     height: 340,
     marginLeft: 52,
     x: { label: "time [s]", grid: true },
-    y: { label: "tip to surface [mm]", domain, grid: true, tickFormat: tickText },
+    y: { label: "tip to surface [mm]", domain, grid: true },
     marks: [
       ...(isClosed && domain[0] < 0
         ? [
-            Plot.rectY([0], { y1: domain[0], y2: 0, fill: "var(--alarm)", fillOpacity: 0.08 }),
+            Plot.rectY([0], {
+              y1: domain[0],
+              y2: 0,
+              inset: -7,
+              insetTop: 0,
+              fill: "var(--alarm)",
+              fillOpacity: 0.08,
+            }),
             Plot.text(["inside the anatomy"], {
               ...{ frameAnchor: "bottom-left", dx: 8, dy: -8, fill: "var(--alarm)" },
             }),
           ]
         : []),
-      ...level(0, "surface"),
+      ...level(0, "surface", kept > 0 ? 10 : -8),
       ...(kept > 0 ? level(kept, "to be kept") : []),
       ...lines(points.filter(({ run }) => legend.shows(String(run)))),
       timeRule(),
@@ -140,8 +147,8 @@ export function clearanceCharts(record: SimulationRecord, stroke: number) {
   };
 }
 
-/** For each rule, the share of all steps that took at least so long; null without times. */
-export function stepTimes(record: SimulationRecord): HTMLElement | null {
+/** For each rule, the share of all steps that took at least so long; nothing without times. */
+export function stepTimes(record: SimulationRecord): HTMLElement[] {
   const points = record.runs.flatMap(({ strokes }, run) => {
     const steps = strokes.flatMap(({ step_us }, stroke) =>
       step_us.flatMap((us, cycle) => (us > 0 ? [{ us, stroke, cycle }] : [])),
@@ -155,8 +162,8 @@ export function stepTimes(record: SimulationRecord): HTMLElement | null {
         : [];
     });
   });
-  if (points.length === 0) return null;
-  const legend = legendOf(record);
+  if (points.length === 0) return [];
+  const legend = legendOf(new Set(points.map(({ run }) => run)));
   const cycle = 1e6 * record.cycle_s;
   const times = [...points.map(({ x }) => x), 1.3 * cycle];
   const draw = (): Plot.PlotOptions => ({
@@ -197,7 +204,8 @@ export function stepTimes(record: SimulationRecord): HTMLElement | null {
       ],
     );
   const description = "For each rule, the part of all steps that took at least so long.";
-  return make("div", {}, legend.element, chart({ description, draw, tip, legend }));
+  const figure = make("figure", { class: "measured" }, chart({ description, draw, tip, legend }));
+  return [legend.element, figure];
 }
 
 /** Times that are drawn as one. */

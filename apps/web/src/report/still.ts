@@ -143,7 +143,7 @@ export class StillPainter implements Painter {
         pen.lineTo(y, w);
       }
       for (const [more, shade] of [
-        [1.4, "#000a"],
+        [1.1, "#000a"],
         [0, colorOf(color)],
       ] as const) {
         pen.lineWidth = (wide + more) * scale;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import { type Anatomy, cornersAround } from "./anatomy.ts";
 import { AnatomyView } from "./anatomy_view.ts";
-import { closeUp, hang, markedCycle } from "./cut.ts";
+import { type Cut, closeUp, hang, markedCycle } from "./cut.ts";
 import { drawn, mark } from "./marks.ts";
 import { coloured, parted, widths } from "./paths.ts";
 import { lead, section } from "./report_page.ts";
@@ -78,9 +78,14 @@ function strokeView(
 ) {
   const moment = tellingMoment(record, stroke);
   const frame = closeUp(record, moment, anatomy);
-  const near = cornersAround(anatomy, frame.target, frame.toward, 2 * frame.height);
+  const cuts = record.runs.map(({ strokes }, number) => {
+    const path = (strokes[stroke] as Stroke).tip.map(anatomy.placed);
+    return hang(path, markedCycle(record, number, moment, frame, anatomy), frame);
+  });
+  const front = Math.max(...cuts.flatMap(({ depths }) => [...depths]));
+  const near = cornersAround(anatomy, frame.target, frame.toward, 2 * frame.height, front);
   const group = panels(record.runs.length);
-  const view = new AnatomyView(group, anatomy, near, frame);
+  const view = new AnatomyView(group, anatomy, near, frame, true);
   const followed = record.runs.map((run, number) => {
     const { tip, clearance_mm, outcome } = run.strokes[stroke] as Stroke;
     const path = tip.map(anatomy.placed);
@@ -89,7 +94,7 @@ function strokeView(
     const isBad = trespass(run, stroke, record.mesh.surface);
     const { good, bad } = parted(path, isBad, 1e-3 * frame.height);
     const lengths = coloured(good, bad, runColor(number), widths.near);
-    const cut = hang(path, worst, frame);
+    const cut = cuts[number] as Cut;
     const at = (cycle: number) => path[cycle] as (typeof path)[number];
     const label = distance(
       clearanceAt(number, stroke, worst),
