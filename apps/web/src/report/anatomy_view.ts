@@ -129,6 +129,7 @@ export class AnatomyView {
     controls.maxZoom = 200;
     controls.saveState();
     controls.update();
+    this.outlook.camera.updateMatrixWorld();
     controls.addEventListener("change", () => this.moved());
     const keys: Readonly<Record<string, () => void>> = {
       ArrowLeft: () => controls.rotateLeft(-turn),

@@ -13,11 +13,16 @@ function percentiles(from: string): (Node | string)[] {
   const timing = valueAt<Timing>(from);
   if (!timing) return ["–"];
   const isLong = timing.p50 >= 1e4;
+  const unit = isLong ? "ms" : "µs";
   const format: Format = (us) => rounded(isLong ? us / 1e3 : us);
   const times = (["p50", "p99", "p999"] as const).filter((key) => timing[key] !== null);
   return [
-    ...times.flatMap((key, i) => [i > 0 ? " / " : "", shown(`${from}/${key}`, format)]),
-    isLong ? "\u00a0ms" : "\u00a0µs",
+    ...times.flatMap((key, i) => {
+      const time = shown(`${from}/${key}`, format);
+      time.dataset.unit = unit; // which stands behind the last of them
+      return [i > 0 ? " / " : "", time];
+    }),
+    `\u00a0${unit}`,
   ];
 }
 

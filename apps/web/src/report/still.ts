@@ -15,13 +15,17 @@ const key = new three.Vector3(-0.45, 0.62, 0.64).normalize();
 /** Linear light as a byte of a picture. */
 const byte = (light: number): number => 255 * Math.min(1, light) ** (1 / 2.2);
 
-/** Draws a surface without WebGL, triangle by triangle, each in one colour. */
+/**
+ * Draws a surface without WebGL, triangle by triangle, each in one colour. `scale`: pixels for each of
+ * the page.
+ */
 export function seen(
   { positions, isClosed }: Anatomy,
   corners: Uint32Array,
   camera: three.OrthographicCamera,
   [width, height]: readonly [number, number],
   cut: Cut | null = null,
+  scale = 1,
 ): Seen {
   const picture = new ImageData(width, height);
   const depths = new Float32Array(width * height).fill(1);
@@ -69,7 +73,7 @@ export function seen(
         )
           continue;
         depths[pixel] = depth;
-        const lit = (x + y) % hatching.period < hatching.line ? 0.8 : 1;
+        const lit = (x + y) % (scale * hatching.period) < scale * hatching.line ? 0.8 : 1;
         const [r, g, b_] = isSection ? materials.section : [red, green, blue];
         const share = isSection ? lit : light;
         picture.data[4 * pixel] = byte(share * r);
@@ -104,7 +108,7 @@ export class StillPainter implements Painter {
     const size = [Math.round(width * scale), Math.round(height * scale)] as const;
     const isOther = this.last?.picture.width !== size[0] || this.last.picture.height !== size[1];
     if (!this.last || isOther || layer.cut) {
-      this.last = seen(this.anatomy, this.corners, this.camera, size, layer.cut);
+      this.last = seen(this.anatomy, this.corners, this.camera, size, layer.cut, scale);
     }
     [this.canvas.width, this.canvas.height] = size;
     const pen = this.canvas.getContext("2d") as CanvasRenderingContext2D;
