@@ -199,7 +199,8 @@ function rateSection(benchmark: BenchmarkRecord): HTMLElement[] {
       "Rates of the median step. The stars are what Li et al. 2020 published for the Stanford bunny, ",
       ...told,
       " triangles on an Intel i7-8700, another machine. They state neither the motions nor the motion " +
-        "sphere of that run. Compare the slopes, not the heights.",
+        "sphere of that run.",
+      hasSizes(benchmark.rows) ? " Compare the slopes, not the heights." : "",
     ],
     draw: (rows) => {
       const own = rows.map((row): Rate => {
