@@ -23,6 +23,7 @@ export function curves<Datum>(wanted: Curves<Datum>): HTMLElement {
   const [[xLabel, x], [yLabel, y]] = [wanted.x, wanted.y];
   const fill = (datum: Datum) => legend.look(series(datum)).color;
   const symbol = (datum: Datum) => legend.look(series(datum)).symbol as string;
+  const r = (datum: Datum) => (symbol(datum) === "star" ? 7 : 4.5);
   const draw = () => {
     const data = wanted
       .data()
@@ -33,13 +34,14 @@ export function curves<Datum>(wanted: Curves<Datum>): HTMLElement {
     const text = { frameAnchor: "left", dx: 4, dy: -8, fill: "var(--soft)" } as const;
     return {
       height: 420,
+      r: { type: "identity" } as const,
       x: logarithmic(xLabel, data.map(x)),
       y: logarithmic(yLabel, [...data.map(y), ...(rule ? [rule[0]] : [])]),
       marks: [
         Plot.ruleY(rule ? [rule[0]] : [], { stroke: "var(--soft)", strokeDasharray: "5 4" }),
         Plot.text(rule ? [rule] : [], { ...text, y: "0", text: "1" }),
         Plot.line(joined, { x, y, z: series, stroke: fill, strokeWidth: 2 }),
-        Plot.dot(seen, { x, y, symbol, fill, stroke: "var(--card)", r: 4.5 }),
+        Plot.dot(seen, { x, y, symbol, fill, stroke: "var(--card)", r }),
         Plot.dot(seen, Plot.pointer({ x, y, stroke: "var(--ink)", strokeWidth: 2, r: 9 })),
       ],
     };

@@ -79,7 +79,7 @@ export function clearanceCharts(record: SimulationRecord, stroke: number) {
   const draw = (domain: readonly [number, number], kept: number) => (): Plot.PlotOptions => ({
     height: 340,
     marginLeft: 52,
-    x: { label: "time [s]", grid: true, domain: [0, Math.max(...points.map(({ x }) => x))] },
+    x: { label: "time [s]", domain: [0, Math.max(...points.map(({ x }) => x))], grid: true },
     y: { label: "tip to surface [mm]", domain, grid: true },
     marks: [
       ...(isClosed && domain[0] < 0
