@@ -15,7 +15,7 @@ const [turn, zoom] = [0.12, 1.15];
 let processor: GraphicsProcessor | null | undefined;
 
 /** What draws with WebGL, another one when that was lost; null where there is none. */
-export function graphicsProcessor(): GraphicsProcessor | null {
+function graphicsProcessor(): GraphicsProcessor | null {
   if (processor !== undefined) return processor;
   try {
     processor = new GraphicsProcessor();
