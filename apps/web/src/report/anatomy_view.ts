@@ -14,8 +14,8 @@ const [turn, zoom] = [0.12, 1.15];
 
 let processor: GraphicsProcessor | null | undefined;
 
-/** What draws with WebGL; null where there is none. */
-export function graphicsProcessor(): GraphicsProcessor | null {
+/** What draws with WebGL, another one when that was lost; null where there is none. */
+function graphicsProcessor(): GraphicsProcessor | null {
   if (processor !== undefined) return processor;
   try {
     processor = new GraphicsProcessor();
@@ -39,8 +39,8 @@ interface Picture {
 /** Pictures of one anatomy that are looked at in the same way: when one is turned, all turn. */
 export class AnatomyView {
   private readonly pictures: Picture[] = [];
-  private readonly painter: Painter;
-  private readonly isSlow: boolean;
+  private painter: Painter;
+  private isSlow = true;
   private readonly end = new AbortController();
   private isDue = false;
   private isMoving = false;
@@ -62,17 +62,21 @@ export class AnatomyView {
     private readonly outlook: Outlook,
     isCut = false,
   ) {
-    const graphics = graphicsProcessor();
-    this.isSlow = graphics?.isSlow ?? true;
-    this.painter = graphics
-      ? new GraphicsPainter(graphics, anatomy, corners, outlook.camera, isCut)
-      : new StillPainter(anatomy, corners, outlook.camera);
     const { signal } = this.end;
-    const restored = () => {
-      this.painter.outdate();
-      this.outdate();
+    const { camera } = outlook;
+    const begin = (): Painter => {
+      const graphics = graphicsProcessor();
+      this.isSlow = graphics?.isSlow ?? true;
+      if (!graphics) return new StillPainter(anatomy, corners, camera);
+      const lost = () => {
+        if (processor === graphics) processor = undefined;
+        this.painter = begin();
+        this.outdate();
+      };
+      graphics.renderer.domElement.addEventListener("webglcontextlost", lost, { signal });
+      return new GraphicsPainter(graphics, anatomy, corners, camera, isCut);
     };
-    graphics?.renderer.domElement.addEventListener("webglcontextrestored", restored, { signal });
+    this.painter = begin();
     const dark = window.matchMedia("(prefers-color-scheme: dark)");
     dark.addEventListener("change", () => this.outdate(), { signal });
     const printing = () => {
@@ -120,8 +124,12 @@ export class AnatomyView {
     element.addEventListener("wheel", ({ ctrlKey }) => {
       controls.enableZoom = ctrlKey || document.activeElement === element;
     });
-    element.addEventListener("pointerdown", () => {
+    element.addEventListener("pointerdown", ({ pointerType }) => {
       controls.enableZoom = true;
+      // Up and down a finger scrolls the page, if it is not in a picture that was tapped.
+      const scrolls = pointerType === "touch" && document.activeElement !== element;
+      controls.minPolarAngle = scrolls ? controls.getPolarAngle() : 0;
+      controls.maxPolarAngle = scrolls ? controls.getPolarAngle() : Math.PI;
     });
     const controls = new OrbitControls(this.outlook.camera, element);
     controls.target = this.outlook.target;

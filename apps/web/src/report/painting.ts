@@ -70,7 +70,7 @@ export class GraphicsProcessor {
     const names = gl.getExtension("WEBGL_debug_renderer_info");
     const name = String(gl.getParameter(names ? names.UNMASKED_RENDERER_WEBGL : gl.RENDERER));
     this.isSlow = /swiftshader|llvmpipe|software/i.test(name);
-    this.renderer = new three.WebGLRenderer({ canvas, context: gl });
+    this.renderer = new three.WebGLRenderer({ canvas, context: gl, alpha: true });
     this.renderer.autoClear = false;
     this.renderer.setClearColor(0, 0);
   }
