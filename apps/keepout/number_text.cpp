@@ -17,7 +17,7 @@ std::string grouped(std::size_t count) {
 std::string counted(std::size_t count, std::string_view noun) {
   std::string result = grouped(count) + ' ';
   result += noun;
-  if (count != 1) result += noun.ends_with("s") ? "es" : "s";
+  if (count != 1) result += noun.ends_with("s") || noun.ends_with("sh") ? "es" : "s";
   return result;
 }
 

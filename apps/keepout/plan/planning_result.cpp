@@ -176,12 +176,9 @@ std::string headline(const std::vector<PlanningRun>& runs) {
     ++count.all;
     count.bad += !run.verdict.is_valid();
   }
-  const auto told = [](const Count& count, const std::string& whose) {
-    return grouped(count.bad) + " of " + counted(count.all, "path") + whose +
-           (count.bad == 1 ? " comes" : " come") + " nearer to the anatomy than allowed, or enter" +
-           (count.bad == 1 ? "s it" : " it");
-  };
-  return told(sampled, " under sampled checking") + "; " + told(ours, " under keepout's") + ".";
+  return grouped(sampled.bad) + " of " + counted(sampled.all, "path") +
+         " under sampled checking, and " + grouped(ours.bad) + " of " + grouped(ours.all) +
+         " under keepout's, come nearer to the anatomy than allowed, or enter it.";
 }
 
 std::vector<std::vector<Vec3>> lengths_too_near(const Scene& scene, std::span<const Vec3> points,

@@ -218,7 +218,7 @@ int simulate(const SimulateOptions& options, std::ostream& out) {
   record["complete"] = complete;
   write_record(outputs, record, options.files, std::cerr);
   if (options.tables == Tables::printed) out << '\n';
-  print_wrapped(out, record["subject"]);
+  print_wrapped(out, record["subject"].get<std::string>() + ".");
   out << '\n';
   print_wrapped(out, record["headline"]);
   for (const Json& text : record["account"]) print_wrapped(out, text);

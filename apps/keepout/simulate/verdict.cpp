@@ -67,7 +67,7 @@ std::string subject(const Simulation& simulation, const std::vector<RunSummary>&
          counted(simulation.mesh->triangle_count(), "triangle") +
          "): " + counted(first.strokes, "stroke") + ", " + counted(first.cycles, "cycle") +
          " of 1 ms, without a fixture and under " + counted(summaries.size() - 1, "rule") +
-         ", margin " + length_text(simulation.margin) + ".";
+         ", margin " + length_text(simulation.margin);
 }
 
 std::string headline(const Simulation& simulation, const std::vector<RunSummary>& summaries) {

@@ -214,10 +214,13 @@ Json result_of(const CampaignRun& run, const Findings& findings) {
                                    KEEPOUT_COMPILER + ", " + KEEPOUT_BUILD_TYPE},
                    {"complete", is_whole}};
   Json record = new_record({.kind = "verify",
-                           .command = run.command,
-                           .subject = "Adversarial closed-loop motion over " +
-                                      counted(findings.meshes.size(), "mesh") +
-                                      ", each step judged by an exact oracle"});
+                            .command = run.command,
+                            .subject = "Adversarial closed-loop motion over " +
+                                       counted(findings.meshes.size(), "mesh") +
+                                       ", each step judged by an exact oracle",
+                            .settings = {{"seed", std::to_string(run.settings.seed)},
+                                         {"steps", grouped(run.settings.steps)},
+                                         {"index", run.index}}});
   record.update({{"campaign_format", campaign_format},
                  {"seed", run.settings.seed},
                  {"steps", run.settings.steps},

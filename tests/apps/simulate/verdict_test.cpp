@@ -82,7 +82,7 @@ TEST(Verdict, SaysWhatWasSimulatedAndHowLongStepsTook) {
   EXPECT_EQ(subject(simulation, summaries),
             "A simulated hand pushed a tool over and into <tetra> & \"friends\" (4 triangles): 1 "
             "stroke, 41 cycles of 1 ms, without a fixture and under 2 rules, margin "
-            "0.0500\u00a0mm.");
+            "0.0500\u00a0mm");
   EXPECT_TRUE(
       step_times(simulation, summaries).ends_with(" under “safe” and 2.00\u00a0µs under “leaky”."));
 }
