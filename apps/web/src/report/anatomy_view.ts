@@ -218,6 +218,8 @@ export class AnatomyView {
     const { clientWidth: width, clientHeight: height } = element;
     if (width === 0) return;
     const { camera } = this.outlook;
+    // On paper the picture has another size, but is not drawn anew.
+    scale.ownerSVGElement?.setAttribute("viewBox", `0 0 ${width} ${height}`);
     for (const mark of marks) placeMark(mark, camera, width, height);
     scaleBar(scale, (camera.top - camera.bottom) / camera.zoom / height, width, height);
   }
