@@ -205,9 +205,7 @@ class BenchmarkPlots {
       section(
         "Which index finds the triangles fastest",
         lead(
-          "The same work for every index, apart from the step: all triangles where the rule looks, by " +
-            "the exact test, with their closest points, sorted. Candidates only is what the index " +
-            "proposes, before that. The flatter a line, the less a finer mesh costs.",
+          "The same work for every index, apart from the step: all triangles where the rule looks, by the exact test, with their closest points, sorted. Candidates only is what the index proposes, before that. The flatter a line, the less a finer mesh costs.",
           ...remarks,
         ),
         legend.element,
@@ -329,11 +327,9 @@ class BenchmarkPlots {
       section(
         "How often a step fits into a second",
         lead(
-          "Rates of the median step, under every rule. The stars are what Li et al. 2020 published for " +
-            "the Stanford bunny, ",
+          "Rates of the median step, under every rule. The stars are what Li et al. 2020 published for the Stanford bunny, ",
           ...rates,
-          " triangles on an Intel i7-8700, another machine. They state neither the motions nor the " +
-            "motion sphere of that run. Compare the slopes, not the heights.",
+          " triangles on an Intel i7-8700, another machine. They state neither the motions nor the motion sphere of that run. Compare the slopes, not the heights.",
         ),
         legend.element,
         panels(over("triangles"), over("vertices")),
@@ -362,8 +358,7 @@ class BenchmarkPlots {
       section(
         "Which solver copes with many planes",
         lead(
-          "Each solver has the same motions; a mark for each row, whatever its sphere. Planes that are " +
-            "not in the way are left out for one that can tell that they have no bearing on its answer.",
+          "Each solver has the same motions; a mark for each row, whatever its sphere. Planes that are not in the way are left out for one that can tell that they have no bearing on its answer.",
         ),
         legend.element,
         panels(plot("p50", "median"), plot("p99", "99 %")),
@@ -392,9 +387,7 @@ class BenchmarkPlots {
       section(
         "Where the time of a step goes",
         lead(
-          "On the largest mesh, the fastest first. Stages are timed in a round of their own, so that " +
-            "the whole step, at the right, is timed without any clock within. There is no query where " +
-            "the rule searches the tree by itself.",
+          "On the largest mesh, the fastest first. Stages are timed in a round of their own, so that the whole step, at the right, is timed without any clock within. There is no query where the rule searches the tree by itself.",
         ),
         legend.element,
         panels(
@@ -452,8 +445,7 @@ class BenchmarkPlots {
       section(
         "What an index costs before the first query",
         lead(
-          "Each is built once on each mesh; shown is the largest. Cores busy are the processor’s time of " +
-            "all threads of this process over the time on the clock.",
+          "Each is built once on each mesh; shown is the largest. Cores busy are the processor’s time of all threads of this process over the time on the clock.",
         ),
         legend.element,
         panels(

@@ -103,9 +103,7 @@ function ratioSection(): HTMLElement {
     lead(
       "Of ",
       shown("/mesh"),
-      " unless said, on one core unless said. Beside each figure what it is made of: median / 99 % / " +
-        "99.9 %. A median of a fraction of a microsecond, marked *, is that of batches; reading the " +
-        "clock, which all other times include, takes ",
+      " unless said, on one core unless said. Beside each figure what it is made of: median / 99 % / 99.9 %. A median of a fraction of a microsecond, marked *, is that of batches; reading the clock, which all other times include, takes ",
       shown("/machine/clock_ns", (ns) => `${rounded(ns, 2)}\u00a0ns`),
       ".",
     ),
@@ -122,9 +120,7 @@ function querySection(): HTMLElement[] {
     section(
       "Sphere queries at random places, every index",
       lead(
-        "Median / 99 % / 99.9 %. Candidates: what the index does alone. Answer: the triangles within " +
-          "the ball, by the engine’s kernel for each candidate where the index does not know by " +
-          "itself; beside it by the least code that decides the same. All answers are the same.",
+        "Median / 99 % / 99.9 %. Candidates: what the index does alone. Answer: the triangles within the ball, by the engine’s kernel for each candidate where the index does not know by itself; beside it by the least code that decides the same. All answers are the same.",
       ),
       scrolled(table(rows, queryColumns)),
     ),

@@ -47,8 +47,7 @@ export function verificationSections(): HTMLElement[] {
     section(
       "What was tried, and what broke",
       lead(
-        "Each trajectory places a tip, or several, and leads it over the mesh; each step is held to " +
-          "the theorem by an independent judge. Breaches ought to be none.",
+        "Each trajectory places a tip, or several, and leads it over the mesh; each step is held to the theorem by an independent judge. Breaches ought to be none.",
       ),
       scrolled(table(meshes, work, ["/total"])),
       ...(entries("/missing").length > 0
