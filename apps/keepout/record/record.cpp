@@ -79,7 +79,7 @@ void write_record(OutputFiles& outputs, const Json& record, const RecordFiles& f
     if (const std::string missing = print_report(*page, record); !missing.empty()) {
       notes << "keepout: " << files.page->string()
             << " is a plain page of tables, without pictures and plots: " << missing << ".\n"
-            << "Once that is there, 'keepout report " << files.kept_json().value().string()
+            << "Once that is there, the command 'report " << files.kept_json().value().string()
             << "' makes the whole page.\n";
     }
   }

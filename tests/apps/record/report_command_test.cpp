@@ -81,7 +81,7 @@ TEST_F(Report, WithoutItsFrontEndIsPlainAndMadeWholeLater) {
   const Outcome outcome = run(simulate, without);
   ASSERT_EQ(outcome.status, 0) << outcome.output;
   for (const char* told : {"plain page", "there is no nowhere/report_with_anatomy.html",
-                           "'keepout report r.html.json' makes the whole page"}) {
+                           "'report r.html.json' makes the whole page"}) {
     EXPECT_NE(outcome.output.find(told), std::string::npos) << outcome.output;
   }
   EXPECT_NE(contents("r.html").find("<td>certified</td>"), std::string::npos);
