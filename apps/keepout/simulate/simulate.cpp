@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <cstdio>
 #include <cstdlib>
 #include <iostream>
 #include <optional>
@@ -17,9 +16,6 @@
 #include "compare/comparison.h"
 #include "keepout/activation/registry.h"
 #include "keepout/error.h"
-#include "keepout/simd_target.h"
-#include "keepout/version.h"
-#include "machine.h"
 #include "named_mesh.h"
 #include "names.h"
 #include "number_text.h"

@@ -65,18 +65,6 @@ struct SpeedRecord {
   bool complete = true;  // or interrupted: the rows are those that were measured until then
 };
 
-/// "at least 38x", "at most 45 bytes".
-std::string demand_text(const SpeedRow& row);
-
-/// "41.2x"; "-" where nothing was measured.
-std::string figure_text(const SpeedRow& row);
-
-/// "met", "short" or "not measured".
-std::string verdict_text(const SpeedRow& row);
-
-/// "5.13 / 7.90 / 12.1 us": median, p99 and p99.9, as far as there are enough samples.
-std::string side_text(const MeasuredSide& side);
-
 /// For a terminal, line by line as the rows come in.
 void print_head(std::ostream& out, const SpeedRecord& record);
 void print_row(std::ostream& out, const SpeedRow& row);

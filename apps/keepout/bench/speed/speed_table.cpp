@@ -18,6 +18,36 @@ std::string unit_of(const SpeedRow& row) {
 
 std::string name_of(const SpeedRow& row) { return row.work + ": " + row.compared; }
 
+/// "at least 38x", "at most 45 bytes".
+std::string demand_text(const SpeedRow& row) {
+  const bool least = row.demand.sense == Demand::Sense::at_least;
+  return (least ? "at least " : "at most ") + trimmed(row.demand.value) + unit_of(row);
+}
+
+/// "41.2x"; "-" where nothing was measured.
+std::string figure_text(const SpeedRow& row) {
+  if (!row.figure) return "-";
+  return (row.unit == "x" ? rounded(*row.figure) : trimmed(*row.figure, 3)) + unit_of(row);
+}
+
+/// "met", "short" or "not measured".
+std::string verdict_text(const SpeedRow& row) {
+  if (!row.figure) return "not measured";
+  return row.is_met() ? "met" : "short";
+}
+
+/// "5.13 / 7.90 / 12.1 us": median, p99 and p99.9, as far as there are enough samples.
+std::string side_text(const MeasuredSide& side) {
+  // From seconds down to nanoseconds, in one unit for all three.
+  const bool long_ones = side.us.p50 >= 1e4;
+  const double scale = long_ones ? 1e-3 : 1.0;
+  std::string text = rounded(scale * side.us.p50);
+  for (const std::optional<double>& tail : {side.us.p99, side.us.p999}) {
+    if (tail) text += " / " + rounded(scale * *tail);
+  }
+  return text + (long_ones ? " ms" : " us");
+}
+
 void list(std::ostream& out, const std::string& title, const std::vector<std::string>& names) {
   if (names.empty()) return;
   out << title << '\n';
@@ -68,32 +98,6 @@ void to_json(Json& json, const TimeHistogram& histogram) {
 
 void to_json(Json& json, const StepHistogram& histogram) {
   json = {{"steps", histogram.steps}, {"nothing", histogram.nothing}};
-}
-
-std::string demand_text(const SpeedRow& row) {
-  const bool least = row.demand.sense == Demand::Sense::at_least;
-  return (least ? "at least " : "at most ") + trimmed(row.demand.value) + unit_of(row);
-}
-
-std::string figure_text(const SpeedRow& row) {
-  if (!row.figure) return "-";
-  return (row.unit == "x" ? rounded(*row.figure) : trimmed(*row.figure, 3)) + unit_of(row);
-}
-
-std::string verdict_text(const SpeedRow& row) {
-  if (!row.figure) return "not measured";
-  return row.is_met() ? "met" : "short";
-}
-
-std::string side_text(const MeasuredSide& side) {
-  // From seconds down to nanoseconds, in one unit for all three.
-  const bool long_ones = side.us.p50 >= 1e4;
-  const double scale = long_ones ? 1e-3 : 1.0;
-  std::string text = rounded(scale * side.us.p50);
-  for (const std::optional<double>& tail : {side.us.p99, side.us.p999}) {
-    if (tail) text += " / " + rounded(scale * *tail);
-  }
-  return text + (long_ones ? " ms" : " us");
 }
 
 void print_head(std::ostream& out, const SpeedRecord& record) {
