@@ -139,6 +139,11 @@ void write_csv(std::ostream& out, const Benchmark& benchmark) {
   Json rows = benchmark.rows;
   for (Json& row : rows) {
     row.erase("hashes_of_first");
+    // The same columns whatever was timed, so that files can be put together.
+    for (auto& [key, value] : row.items()) {
+      if (!key.ends_with("_us") || !value.is_null()) continue;
+      value = {{"p50", nullptr}, {"p99", nullptr}, {"p999", nullptr}, {"max", nullptr}};
+    }
     row.update({{"date", benchmark.date},
                 {"processor", benchmark.machine.processor},
                 {"simd", benchmark.machine.simd},

@@ -83,7 +83,7 @@ void add_compare(CLI::App& app, CompareOptions& options) {
 }
 
 int compare(const CompareOptions& options, std::ostream& out) {
-  OutputFiles outputs(std::array{NamedPath{"MESH", options.mesh}},
+  OutputFiles outputs(std::array{NamedPath{"MESH", file_of_mesh(options.mesh)}},
                       {{"--json", options.files.kept_json()}, {"--out", options.files.page}});
   const Subject subject{.mesh = options.mesh};
   const std::shared_ptr<const Mesh> mesh = make_mesh(subject);

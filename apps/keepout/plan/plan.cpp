@@ -120,7 +120,7 @@ int plan(const PlanOptions& options, std::ostream& out) {
       if (!stop.has_come()) run_scene(options, where, progress, stop, runs);
     }
   }
-  const Json record = record_of(options, scenes, runs, !stop.has_come());
+  const Json record = record_of(options, scenes, runs, runs.size() == total);
   if (auto* const csv = outputs.stream("--csv")) print_csv(*csv, flat(record["runs"]));
   write_record(outputs, record, options.files, std::cerr);
   print_wrapped(out, record["subject"]);

@@ -67,6 +67,9 @@ Json entry_of(const PlanningRun& run) {
              {"seconds", run.path.seconds},
              {"checking_seconds", run.path.checking_seconds},
              {"checks", run.path.checks}};
+  for (const char* key : {"valid", "enters", "bad_pieces", "pieces", "clearance_mm", "length_mm"}) {
+    entry[key] = nullptr;
+  }
   if (!run.path.solved) return entry;
   entry["valid"] = run.verdict.is_valid();
   entry["enters"] = run.verdict.enters;

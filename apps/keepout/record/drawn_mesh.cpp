@@ -2,6 +2,7 @@
 #include "record/drawn_mesh.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
@@ -25,15 +26,27 @@ double area(const Mesh& mesh) {
   return 0.5 * twice;
 }
 
+/// Whether a triangle is within the part of which no detail is left out.
+bool is_close(const Mesh& mesh, const Corners& corners, const std::optional<Box>& closely) {
+  return closely && std::ranges::all_of(corners, [&](VertexId v) {
+           return distance_to(*closely, mesh.vertices()[v]) == 0.0;
+         });
+}
+
+std::size_t close_triangles(const Mesh& mesh, const std::optional<Box>& closely) {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      mesh.triangles(), [&](const Corners& corners) { return is_close(mesh, corners, closely); }));
+}
+
 /// The vertices that stay, numbered by their first use, and the triangles that keep an extent.
 Surface with_cells(const Mesh& mesh, double cell, const std::optional<Box>& closely) {
   std::map<std::array<std::int64_t, 3>, VertexId> taken;  // of each cell: the vertex that stays
   std::vector<VertexId> stays(mesh.vertex_count());
   for (VertexId v = 0; v < mesh.vertex_count(); ++v) {
     const Vec3& place = mesh.vertices()[v];
-    const bool is_close = closely && distance_to(*closely, place) == 0.0;
+    const bool stays_put = closely && distance_to(*closely, place) == 0.0;
     const auto along = [&](int axis) { return std::llround(place[axis] / cell); };
-    stays[v] = is_close ? v : taken.try_emplace({along(0), along(1), along(2)}, v).first->second;
+    stays[v] = stays_put ? v : taken.try_emplace({along(0), along(1), along(2)}, v).first->second;
   }
   Surface surface;
   std::vector<std::optional<VertexId>> number(mesh.vertex_count());
@@ -57,16 +70,21 @@ Surface with_cells(const Mesh& mesh, double cell, const std::optional<Box>& clos
 Surface coarsened(const Mesh& mesh, std::size_t most, const std::optional<Box>& closely) {
   // A cell of a flat grid has two triangles; the next larger one is tried as long as there are
   // more.
+  const std::size_t all = most + close_triangles(mesh, closely);
   double cell = std::sqrt(2.0 * area(mesh) / static_cast<double>(most));
   for (int tries = 0;; ++tries, cell *= 1.4) {
     Surface surface = with_cells(mesh, cell, closely);
-    if (surface.triangles.size() <= most || tries == 20) return surface;
+    if (surface.triangles.size() <= all || tries == 20) return surface;
   }
 }
 
 Json drawn_mesh(const std::string& name, const Mesh& mesh, const std::optional<Box>& closely) {
   std::optional<Surface> coarser;
-  if (mesh.triangle_count() > most_triangles) coarser = coarsened(mesh, most_triangles, closely);
+  if (mesh.triangle_count() > most_triangles) {
+    // Where what is close is a large mesh by itself, it cannot all be drawn either.
+    const bool is_much = close_triangles(mesh, closely) > most_triangles;
+    coarser = coarsened(mesh, most_triangles, is_much ? std::nullopt : closely);
+  }
   const std::span<const Vec3> vertices = coarser ? coarser->vertices : mesh.vertices();
   const std::span<const Corners> triangles = coarser ? coarser->triangles : mesh.triangles();
   const PackedMesh bytes = packed(vertices, triangles);

@@ -24,10 +24,17 @@ void add_columns(const Cells& cells, std::vector<std::string>& columns) {
     const auto known = std::ranges::find(columns, name);
     if (known != columns.end()) {
       at = static_cast<std::size_t>(known - columns.begin()) + 1;
-    } else if (!value.is_null()) {
+    } else {
       columns.insert(columns.begin() + static_cast<std::ptrdiff_t>(at++), name);
     }
   }
+}
+
+bool is_null_in_all(const std::vector<Cells>& rows, const std::string& column) {
+  return std::ranges::all_of(rows, [&](const Cells& cells) {
+    const auto cell = std::ranges::find(cells, column, &Cells::value_type::first);
+    return cell == cells.end() || cell->second.is_null();
+  });
 }
 
 std::string csv_cell(const Json& value) {
@@ -48,6 +55,12 @@ FlatRows flat(const Json& rows) {
     add_cells(row, "", lines.emplace_back());
     add_columns(lines.back(), table.columns);
   }
+  // What is an object in one row and null in another has its columns by the one.
+  std::erase_if(table.columns, [&](const std::string& column) {
+    return std::ranges::any_of(table.columns, [&](const std::string& other) {
+      return other.starts_with(column + '_') && is_null_in_all(lines, column);
+    });
+  });
   for (const Cells& cells : lines) {
     std::vector<Json>& row = table.rows.emplace_back();
     for (const std::string& column : table.columns) {

@@ -10,7 +10,7 @@
 namespace keepout::app {
 
 /// The rows of a record as a table: a column for each member, those of objects within under both
-/// names, "step_us_p50". Arrays are left out, and what is null in all rows.
+/// names, "step_us_p50". Arrays are left out.
 struct FlatRows {
   std::vector<std::string> columns;
   std::vector<std::vector<Json>> rows;  // as many cells as there are columns; null: it has none

@@ -8,6 +8,7 @@
 
 #include "keepout/version.h"
 #include "record/json_parts.h"
+#include "record/plain_page.h"
 #include "record/report_page.h"
 
 namespace keepout::app {
@@ -45,17 +46,27 @@ Json new_record(const RecordHead& head) {
           {"machine", head.machine},     {"settings", head.settings}};
 }
 
-bool is_record(const Json& json) {
+std::string fault_of(const Json& json) {
   constexpr std::array kinds{"simulate", "bench", "speed", "compare", "plan", "verify"};
-  if (!json.is_object() || !json.contains("keepout_record")) return false;
+  const std::string none =
+      "is no whole record; 'keepout simulate', 'bench', 'compare', 'plan' and 'verify' write one "
+      "where --json says";
+  if (!json.is_object() || !json.contains("keepout_record") || !json.contains("format") ||
+      std::ranges::find(kinds, json["keepout_record"]) == kinds.end()) {
+    return none;
+  }
+  if (json["format"] != format) {
+    return "is a record of format " + json["format"].dump() + ", and this keepout reads format " +
+           std::to_string(format);
+  }
   const Json head = new_record({});
-  return std::ranges::find(kinds, json["keepout_record"]) != kinds.end() &&
-         json.value("format", Json()) == format &&
-         std::ranges::all_of(head.items(), [&](const auto& member) {
-           return json.contains(member.key()) &&
-                  (json[member.key()].type() == member.value().type() ||
-                   member.key() == "machine" || member.key() == "format");
-         });
+  const bool is_whole = std::ranges::all_of(head.items(), [&](const auto& member) {
+    return json.contains(member.key()) && (json[member.key()].type() == member.value().type() ||
+                                           member.key() == "machine" || member.key() == "format");
+  });
+  const bool has_texts =
+      is_whole && std::ranges::all_of(json["account"].get<std::vector<Json>>(), &Json::is_string);
+  return has_texts ? "" : none;
 }
 
 void RecordFiles::add_to(CLI::App& command) {
@@ -68,7 +79,7 @@ void RecordFiles::add_to(CLI::App& command) {
 }
 
 std::optional<std::filesystem::path> RecordFiles::kept_json() const {
-  if (json || !page || has_report_template()) return json;
+  if (json || !page || missing_template().empty()) return json;
   return page->string() + ".json";
 }
 
@@ -76,11 +87,17 @@ void write_record(OutputFiles& outputs, const Json& record, const RecordFiles& f
                   std::ostream& notes) {
   if (std::ostream* const json = outputs.stream("--json")) print_json(*json, record);
   if (std::ostream* const page = outputs.stream("--out")) {
-    if (const std::string missing = print_report(*page, record); !missing.empty()) {
+    const std::string missing = missing_template(record);
+    if (missing.empty()) {
+      print_report(*page, record);
+    } else {
+      print_plain_page(*page, record);
       notes << "keepout: " << files.page->string()
-            << " is a plain page of tables, without pictures and plots: " << missing << ".\n"
-            << "Once that is there, the command 'report " << files.kept_json().value().string()
-            << "' makes the whole page.\n";
+            << " is a plain page of tables, without pictures and plots: " << missing << ".\n";
+      if (const auto kept = files.kept_json()) {
+        notes << "Once that is there, the command 'report " << kept->string()
+              << "' makes the whole page.\n";
+      }
     }
   }
   outputs.commit();

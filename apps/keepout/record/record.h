@@ -35,8 +35,8 @@ struct RecordHead {
 };
 Json new_record(const RecordHead& head);
 
-/// Whether this is a record of a format that is known, as far as its head goes.
-bool is_record(const Json& json);
+/// Why this is no record of the format that is known, as far as its head goes; empty where it is.
+std::string fault_of(const Json& json);
 
 /// Where a command writes its record, and its report.
 struct RecordFiles {

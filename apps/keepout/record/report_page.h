@@ -8,12 +8,12 @@
 
 namespace keepout::app {
 
-/// Whether there is what makes a report more than a plain page: see page_template.h.
-bool has_report_template();
+/// What is missing to make the report of a record, or of any where there is none yet, more than a
+/// plain page: in words, empty where there is all. See page_template.h.
+std::string missing_template(const Json& record = nullptr);
 
-/// Writes the report of a record as one HTML page that needs nothing but itself. Where its front
-/// end is missing, the page is a plain one of tables, and the text says what is missing; else it is
-/// empty.
-std::string print_report(std::ostream& out, const Json& record);
+/// Writes the report of a record as one HTML page that needs nothing but itself. Throws Error where
+/// something is missing.
+void print_report(std::ostream& out, const Json& record);
 
 }  // namespace keepout::app

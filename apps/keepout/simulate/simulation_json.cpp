@@ -103,7 +103,7 @@ Json hands_of(const Run& run) {
   return hands;
 }
 
-/// Where the tips of all runs were in a stroke, and as far again on all sides.
+/// Where the tips of all runs were in a stroke, and half as far again on all sides.
 Box around(const Simulation& simulation, std::size_t stroke) {
   const Vec3 first = simulation.runs.front().strokes[stroke].cycles.front().tip;
   Box box{first, first};
@@ -112,7 +112,7 @@ Box around(const Simulation& simulation, std::size_t stroke) {
       box = {box.low.cwiseMin(cycle.tip), box.high.cwiseMax(cycle.tip)};
     }
   }
-  const Vec3 far = Vec3::Constant(box.size().norm());
+  const Vec3 far = Vec3::Constant(0.5 * box.size().norm());
   return {box.low - far, box.high + far};
 }
 

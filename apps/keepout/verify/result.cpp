@@ -179,7 +179,7 @@ Json read(const std::filesystem::path& path) {
   const Error damaged(path.string() + ": is not a whole result of 'keepout verify --json'");
   try {
     Json result = Json::parse(file);
-    if (!is_record(result) || result["keepout_record"] != "verify") throw damaged;
+    if (!fault_of(result).empty() || result["keepout_record"] != "verify") throw damaged;
     const int written = result.at("campaign_format").get<int>();
     if (written != campaign_format) {
       throw Error(path.string() + ": written by another version of keepout verify (format " +

@@ -91,6 +91,22 @@ TEST_F(Report, WithoutItsFrontEndIsPlainAndMadeWholeLater) {
   EXPECT_EQ(record_in("r.html"), Json::parse(contents("r.html.json")));
 }
 
+TEST_F(Report, WhereHalfOfItsFrontEndIsMissingNothingIsLost) {
+  for (const bool is_stale : {false, true}) {
+    std::filesystem::remove(folder_.file("web/report_with_anatomy.html"));
+    if (is_stale) folder_.write("web/report_with_anatomy.html", "<p>of another version</p>");
+    for (const char* kept : {"", "--json r.html.json "}) {
+      const Outcome outcome = run(std::string(simulate) + kept);
+      EXPECT_EQ(outcome.status, 0) << outcome.output;
+      EXPECT_NE(outcome.output.find("'report r.html.json' makes"), std::string::npos)
+          << outcome.output;
+      EXPECT_NE(contents("r.html").find("<td>certified</td>"), std::string::npos);
+      EXPECT_FALSE(contents("r.html.json").empty());
+      std::filesystem::remove(folder_.file("r.html.json"));
+    }
+  }
+}
+
 TEST_F(Report, IsRefusedOfWhatIsNoRecord) {
   folder_.write("none.json", "{\"rows\": []}");
   folder_.write("cut.json", "{\"keepout_record\": \"bench\", ");
@@ -98,6 +114,8 @@ TEST_F(Report, IsRefusedOfWhatIsNoRecord) {
     expect_refused(std::string("report ") + file, std::string(file) + ": is no whole record");
   }
   expect_refused("report nowhere.json", "nowhere.json: cannot be read");
+  folder_.write("deep.json", std::string(200'000, '['));
+  expect_refused("report deep.json", "deep.json: is no whole record");
   folder_.write("web/report.html", "<p>of another version</p>");
   ASSERT_EQ(run("verify cube.stl --steps 500 --json v.json").status, 0);
   expect_refused("report v.json", "is not the front end of this keepout");

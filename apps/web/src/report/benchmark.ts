@@ -38,6 +38,7 @@ export interface BenchmarkRow {
   readonly bytes_per_triangle: number;
   readonly planes_mean: number;
   readonly reaching_share: number;
+  readonly unsolved_share: number;
   readonly collect_us: Timing | null;
   readonly query_us: Timing | null;
   readonly step_query_us: Timing | null;
@@ -73,6 +74,8 @@ const sphere = ({ radius }: BenchmarkRow): string =>
 const combination = ({ index, activation, solver }: BenchmarkRow): string =>
   [index, activation, solver].join(", ");
 const median = (timing: Timing | null): number => timing?.p50 ?? Number.NaN;
+/** Whether all steps but one in a hundred at most have an answer: what gives up is not fast. */
+const answers = ({ unsolved_share }: BenchmarkRow): boolean => unsolved_share <= 0.01;
 /** The first row of each name. */
 const distinct = (rows: Rows, name: (row: BenchmarkRow) => string): BenchmarkRow[] =>
   rows.filter((row, i) => rows.findIndex((other) => name(other) === name(row)) === i);
@@ -163,7 +166,9 @@ class BenchmarkPlots {
   sections(): HTMLElement[] {
     return [
       make("h2", {}, "What is shown"),
-      lead("All plots are of one mesh, one motion sphere and one rule; the table has all rows."),
+      lead(
+        "Plots are of one mesh, and of one motion sphere and one rule unless they say otherwise; the table has all rows.",
+      ),
       this.selection.element,
       ...this.queries(),
       ...this.rates(),
@@ -191,7 +196,11 @@ class BenchmarkPlots {
   private queries(): HTMLElement[] {
     if (!this.rows.some(({ query_us }) => query_us)) return [];
     const legend = this.legend("index");
-    const data = () => distinct(this.chosen(), ({ triangles, index }) => `${triangles} ${index}`);
+    const data = () =>
+      distinct(
+        this.chosen().filter(({ query_us }) => query_us),
+        ({ triangles, index }) => `${triangles} ${index}`,
+      );
     const remarks = entries(`${this.from}/remarks`).flatMap((remark) => [
       make("br"),
       shownName(remark),
@@ -286,7 +295,7 @@ class BenchmarkPlots {
     const data = (): Rate[] => [
       ...stars,
       ...this.chosen(this.rule)
-        .filter((row) => shownRows.includes(row))
+        .filter((row) => shownRows.includes(row) && answers(row))
         .map((row) => ({ ...row, series: combination(row), khz: row.rate_khz ?? Number.NaN })),
     ];
     const columns = (series: string) => [
@@ -358,7 +367,7 @@ class BenchmarkPlots {
       section(
         "Which solver copes with many planes",
         lead(
-          "Each solver has the same motions; a mark for each row, whatever its sphere. Planes that are not in the way are left out for one that can tell that they have no bearing on its answer.",
+          "Each solver has the same motions; a mark for each row, whatever its sphere, those with steps without an answer too. Planes that are not in the way are left out for one that can tell that they have no bearing on its answer.",
         ),
         legend.element,
         panels(plot("p50", "median"), plot("p99", "99 %")),
@@ -396,7 +405,7 @@ class BenchmarkPlots {
             rowChart({
               description: "Which part of the median step is which, for each combination",
               data: () =>
-                ofLargest(this.chosen().filter(({ step_us }) => step_us)).sort(
+                ofLargest(this.chosen().filter((row) => row.step_us && answers(row))).sort(
                   (a, b) => median(a.step_us) - median(b.step_us),
                 ),
               legend,

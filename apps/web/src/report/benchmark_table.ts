@@ -67,7 +67,7 @@ export function benchmarkTable(from: string, rows: readonly BenchmarkRow[]): HTM
   const everything = section(
     "Every row",
     lead(
-      "The largest mesh first, then the largest sphere, then the fastest step, until another heading is pressed. Times are medians unless they say otherwise; counts are means. Rows with the same hash made the same steps, bit for bit.",
+      "Mesh by mesh, the largest size first, then the largest sphere, then the fastest step, until another heading is pressed. Times are medians unless they say otherwise; counts are means. Rows with the same hash made the same steps, bit for bit.",
     ),
     ...(valueAt(`${from}/same_steps`) ? [show(lead(), `${from}/same_steps`)] : []),
     rowFilter(content),

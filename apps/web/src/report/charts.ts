@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /** What all plots share: how they are drawn to fit, told of by a tip, and filtered by a legend. */
+
 import * as Plot from "@observablehq/plot";
+import { extremes } from "./extremes.ts";
 import { make, shown } from "./shown.ts";
 import type { Column } from "./table.ts";
 
@@ -143,7 +145,7 @@ export const tipOfColumns = (
 /** A logarithmic scale, with ticks that fit the values. */
 export function logarithmic(label: string | null, values: readonly number[]): Plot.ScaleOptions {
   const positive = values.filter((value) => value > 0);
-  const [low, high] = [Math.min(...positive), Math.max(...positive)];
+  const [low, high] = extremes(positive);
   const decades = Math.log10(high / low);
   const digits = decades > 2 ? [1] : decades > 0.6 ? [1, 2, 5] : [1, 2, 3, 4, 5, 6, 7, 8, 9];
   const ticks = [];

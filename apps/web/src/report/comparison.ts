@@ -27,7 +27,7 @@ const indexColumns: readonly Column[] = [
   size("worst error of a closest point [mm]", "/closest_point_error_mm"),
   size("worst angle of a plane [rad]", "/plane_angle_rad"),
   size("worst difference of a step [mm]", "/step_difference_mm"),
-  count("steps that differ", "/steps_that_differ"),
+  harm("steps that differ", "/steps_that_differ"),
 ];
 const solverColumns: readonly Column[] = [
   name("solver", "/solver"),
@@ -72,7 +72,13 @@ export function comparisonSections(from: string): HTMLElement[] {
       ),
     ];
   };
+  // Behind what is said of each part, which stands there: what it all comes to.
+  const parts = ["indices", "solvers", "narrow_phases"].filter((key) => valueAt(`${from}/${key}`));
+  const verdicts = entries(`${from}/verdict`).slice(parts.length);
   return [
+    ...(verdicts.length > 0
+      ? [section("Do the parts agree?", ...verdicts.map((one) => show(lead(), one)))]
+      : []),
     ...part("indices", "Do the indices agree?", indexColumns),
     ...part("solvers", "Do the solvers agree?", solverColumns, outcomes),
     ...part("narrow_phases", "Do the narrow phases agree?", narrowPhaseColumns, errors),

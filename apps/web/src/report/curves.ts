@@ -3,7 +3,7 @@ import * as Plot from "@observablehq/plot";
 import { type Chart, chart, type Legend, logarithmic } from "./charts.ts";
 
 /** What is drawn as lines through marks, a line for each series, on two logarithmic axes. */
-export interface Curves<Datum> extends Omit<Chart<Datum>, "draw"> {
+interface Curves<Datum> extends Omit<Chart<Datum>, "draw"> {
   /** Asked for whenever it is drawn. */
   readonly data: () => readonly Datum[];
   readonly series: (datum: Datum) => string;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+
 import * as three from "three";
 import { type Anatomy, fitted, lookFrom, type Outlook, outward } from "./anatomy.ts";
+import { extremes } from "./extremes.ts";
 import {
   type Moment,
   type SimulationRecord,
@@ -23,7 +25,7 @@ export interface Cut {
 }
 
 /** The frame of a close-up. */
-export interface CloseUp extends Outlook {
+interface CloseUp extends Outlook {
   readonly sideways: three.Vector3;
   readonly toward: three.Vector3;
   readonly height: number;
@@ -37,8 +39,8 @@ const smoothing = 6;
 export function hang(path: readonly three.Vector3[], start: number, frame: CloseUp): Cut {
   const { sideways, toward } = frame;
   const across = path.map((place) => place.dot(sideways));
-  const from = Math.min(...across);
-  const to = Math.max(...across, from + 1e-6);
+  const [from, end] = extremes(across);
+  const to = Math.max(end, from + 1e-6);
   const depths = new Float32Array(columns).fill(Number.NaN);
   const column = (i: number) => (((across[i] as number) - from) / (to - from)) * (columns - 1);
   const depth = (i: number) => path[i]?.dot(toward) as number;
@@ -162,7 +164,7 @@ export function markedCycle(
     const { x, y } = placed(place).project(camera);
     return Math.max(Math.abs(x), Math.abs(y)) <= 1;
   });
-  const nearest = Math.min(...clearance_mm.filter((_, i) => seen[i]));
+  const nearest = extremes(clearance_mm.filter((_, i) => seen[i]))[0];
   const cycle = clearance_mm.findIndex((clearance, i) => seen[i] && clearance === nearest);
   return cycle < 0 ? worst : cycle;
 }

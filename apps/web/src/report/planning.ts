@@ -48,8 +48,9 @@ async function meshSection(plan: PlanRecord, number: number): Promise<HTMLElemen
     const [good, bad]: [number[], number[]] = [[], []];
     for (const run of plan.runs) {
       if (run.mesh !== mesh.name || run.checker !== checker) continue;
-      good.push(...ends((run.path ?? []).map(anatomy.placed)));
-      for (const length of run.too_near ?? []) bad.push(...ends(length.map(anatomy.placed)));
+      for (const end of ends((run.path ?? []).map(anatomy.placed))) good.push(end);
+      for (const end of (run.too_near ?? []).flatMap((length) => ends(length.map(anatomy.placed))))
+        bad.push(end);
     }
     const lengths = coloured(good, bad, runColor(place + 1), widths.many, mesh.inside);
     const from = `/summaries/${row}`;

@@ -2,7 +2,7 @@
 /** The record that the page shows: docs/records.md says what is in it. */
 import { unpacked } from "../page/unpacked.ts";
 
-export interface Machine {
+interface Machine {
   readonly processor: string;
   readonly cores: number;
   readonly memory_gib: number;
@@ -16,6 +16,7 @@ export interface ReportRecord {
   readonly keepout_record: string;
   readonly date: string;
   readonly command: string;
+  readonly complete: boolean;
   readonly subject: string;
   readonly headline: string;
   readonly account: readonly string[];

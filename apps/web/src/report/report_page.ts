@@ -3,7 +3,7 @@ import { type ReportRecord, readRecord, recordText, valueAt } from "./record.ts"
 import { make, paragraphs, rounded, show, shown, shownMembers, shownWhole } from "./shown.ts";
 
 /** What a page shows between its headline and its machine. */
-export type Sections = (main: HTMLElement, record: ReportRecord) => void | Promise<void>;
+type Sections = (main: HTMLElement, record: ReportRecord) => void | Promise<void>;
 
 /** Builds the page of the record that is in it. `kinds`: what can be shown, by `keepout_record`. */
 export async function showReport(kinds: Readonly<Record<string, Sections>>): Promise<void> {
@@ -25,8 +25,16 @@ export async function showReport(kinds: Readonly<Record<string, Sections>>): Pro
       show(make("h1"), "/headline"),
       ...paragraphs("/account", "account"),
     );
-    await sections(main, record);
-    main.append(circumstances(record));
+    if (!record.complete) {
+      main.append(
+        make("p", { class: "account bad" }, "It was stopped: this is what was finished."),
+      );
+    }
+    try {
+      await sections(main, record);
+    } finally {
+      main.append(circumstances(record));
+    }
   } catch (error) {
     main.append(make("p", { class: "account", role: "alert" }, String(error)));
     throw error;
@@ -53,7 +61,7 @@ export function panel(
   about: readonly Node[] = [],
 ): HTMLElement {
   const caption = make("figcaption", {}, make("span", { class: "name" }, title), ...about);
-  return make("figure", { class: "measured" }, ...(title === "" ? [] : [caption]), content);
+  return make("figure", {}, ...(title === "" ? [] : [caption]), content);
 }
 
 /** The facts of a machine, as far as they are known, for a list of definitions. */
@@ -99,6 +107,6 @@ function circumstances(record: ReportRecord): HTMLElement {
     "Where it was done, and how to do it again",
     panels(...lists.map((list) => make("figure", {}, make("dl", {}, ...list)))),
     make("div", { class: "command" }, show(make("code"), "/command"), copy),
-    make("p", { class: "saving" }, save),
+    make("p", {}, save),
   );
 }

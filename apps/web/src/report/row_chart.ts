@@ -4,21 +4,21 @@ import { type Chart, chart } from "./charts.ts";
 import { type Format, textOf } from "./shown.ts";
 
 /** A value of the record within a text of a plot. */
-export interface Inscribed {
+interface Inscribed {
   readonly from: string;
   readonly format?: Format;
 }
 type Inscription<Datum> = (datum: Datum) => readonly (Inscribed | string)[];
 
 /** How the marks of a row chart are placed and told apart. */
-export interface RowChannels<Datum> {
+interface RowChannels<Datum> {
   readonly y: (datum: Datum, place: number) => number;
   readonly color: (datum: Datum) => string;
   readonly symbol: (datum: Datum) => string;
 }
 
 /** What is drawn as one row a datum, below its name, at the left, and its value, at the right. */
-export interface RowChart<Datum> extends Omit<Chart<Datum>, "draw"> {
+interface RowChart<Datum> extends Omit<Chart<Datum>, "draw"> {
   /** In the order of the rows; asked for whenever it is drawn. */
   readonly data: () => readonly Datum[];
   /** By which the legend knows a datum; without, all are shown. */

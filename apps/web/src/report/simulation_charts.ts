@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+
 import * as Plot from "@observablehq/plot";
 import { chart, Legend, type Look, logarithmic, tickText, tipOf } from "./charts.ts";
+import { extremes } from "./extremes.ts";
 import { drawn } from "./marks.ts";
 import { ordinal, panels, runColor } from "./runs.ts";
 import { make, microseconds, millimetres, shown } from "./shown.ts";
@@ -79,7 +81,7 @@ export function clearanceCharts(record: SimulationRecord, stroke: number) {
   const draw = (domain: readonly [number, number], kept: number) => (): Plot.PlotOptions => ({
     height: 340,
     marginLeft: 52,
-    x: { label: "time [s]", domain: [0, Math.max(...points.map(({ x }) => x))], grid: true },
+    x: { label: "time [s]", domain: extremes(points.map(({ x }) => x)), grid: true },
     y: { label: "tip to surface [mm]", domain, grid: true },
     marks: [
       ...(isClosed && domain[0] < 0
@@ -114,10 +116,10 @@ export function clearanceCharts(record: SimulationRecord, stroke: number) {
     );
   };
   const heights = points.map(({ y }) => y);
-  const [low, high] = [Math.min(0, ...heights), Math.max(...heights)];
+  const [low, high] = extremes([0, ...heights]);
   const room = 0.06 * (high - low);
   const guarded = record.runs.flatMap(({ rule, strokes }) =>
-    rule === "none" ? [] : [Math.min(...(strokes[stroke] as Stroke).clearance_mm)],
+    rule === "none" ? [] : [extremes((strokes[stroke] as Stroke).clearance_mm)[0]],
   );
   const deepest = Math.min(0, ...guarded);
   // Where no rule failed, no more than a reader cares for: rules that only touch leave no room.
@@ -134,9 +136,7 @@ export function clearanceCharts(record: SimulationRecord, stroke: number) {
   ] as const;
   const group = panels(2, "panels wide charts");
   for (const [description, drawing] of both) {
-    group.append(
-      make("figure", { class: "measured" }, chart({ description, draw: drawing, tip, legend })),
-    );
+    group.append(make("figure", {}, chart({ description, draw: drawing, tip, legend })));
   }
   return {
     elements: [make("h3", {}, "How near it came"), legend.element, group],
@@ -204,7 +204,7 @@ export function stepTimes(record: SimulationRecord): HTMLElement[] {
       ],
     );
   const description = "For each rule, the part of all steps that took at least so long.";
-  const figure = make("figure", { class: "measured" }, chart({ description, draw, tip, legend }));
+  const figure = make("figure", {}, chart({ description, draw, tip, legend }));
   return [legend.element, figure];
 }
 

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /** What the records of `simulate` and `plan` say of anatomy and paths: docs/records.md. */
+
 import type { PackedSurface } from "../page/embedded_surface.ts";
+import { extremes } from "./extremes.ts";
 import type { ReportRecord } from "./record.ts";
 
 export type Place = readonly [number, number, number];
-export type Surface = "closed" | "open";
+type Surface = "closed" | "open";
 
 export interface RecordedMesh {
   readonly name: string;
@@ -60,20 +62,27 @@ export interface PlanRecord extends ReportRecord {
   }[];
 }
 
-/** In which cycles of a stroke the tip is where it must not be: inside, or past an open surface. */
+/**
+ * In which cycles of a stroke the tip is where it must not be: inside a closed surface, or just having
+ * passed through it; past an open one after an odd number of crossings. What is not known counts against.
+ */
 export function trespass(run: Run, stroke: number, surface: Surface): readonly boolean[] {
   const { clearance_mm } = run.strokes[stroke] as Stroke;
-  if (surface === "closed") return clearance_mm.map((clearance) => !(clearance >= 0));
-  const crossings = run.crossings.filter((crossing) => crossing.stroke === stroke);
-  return clearance_mm.map(
-    (_, cycle) => crossings.filter((crossing) => crossing.cycle <= cycle).length % 2 === 1,
+  const crossed = new Set(
+    run.crossings.filter((one) => one.stroke === stroke).map(({ cycle }) => cycle),
   );
+  let isPast = false;
+  return clearance_mm.map((clearance: number | null, cycle) => {
+    if (surface === "closed") return crossed.has(cycle) || clearance === null || clearance < 0;
+    if (crossed.has(cycle)) isPast = !isPast;
+    return isPast;
+  });
 }
 
 /** The cycle of a stroke that is its deepest, or else its first crossing, or else its nearest. */
 export function worstCycle(run: Run, stroke: number): number {
   const { clearance_mm } = run.strokes[stroke] as Stroke;
-  const lowest = Math.min(...clearance_mm);
+  const [lowest] = extremes(clearance_mm);
   const crossing = run.crossings.find((one) => one.stroke === stroke);
   return lowest >= 0 && crossing ? crossing.cycle : clearance_mm.indexOf(lowest);
 }

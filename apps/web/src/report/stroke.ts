@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+
 import { type Anatomy, cornersAround } from "./anatomy.ts";
 import { AnatomyView } from "./anatomy_view.ts";
 import { type Cut, closeUp, hang, markedCycle } from "./cut.ts";
+import { extremes } from "./extremes.ts";
 import { drawn, mark } from "./marks.ts";
 import { coloured, parted, widths } from "./paths.ts";
 import { lead, section } from "./report_page.ts";
@@ -47,7 +49,10 @@ export function strokeSection(record: SimulationRecord, anatomy: Anatomy): HTMLE
       " along the path of the tip; at first it is the one that tells most. ",
       ...(isClosed
         ? ["Hatched is the anatomy; ", make("b", {}, "red"), " is where the tip is inside it. "]
-        : [make("b", {}, "Red"), " is where the tip is past the surface. "]),
+        : [
+            make("b", {}, "Red"),
+            " is where the tip has passed through the surface an odd number of times. ",
+          ]),
       "The label is at the worst moment, the balls are where the tip and, hollow, the hand are at the time chosen below.",
     ),
     content,
@@ -82,7 +87,7 @@ function strokeView(
     const path = (strokes[stroke] as Stroke).tip.map(anatomy.placed);
     return hang(path, markedCycle(record, number, moment, frame, anatomy), frame);
   });
-  const front = Math.max(...cuts.flatMap(({ depths }) => [...depths]));
+  const front = extremes(cuts.flatMap(({ depths }) => [...depths]))[1];
   const near = cornersAround(anatomy, frame.target, frame.toward, 2 * frame.height, front);
   const group = panels(record.runs.length);
   const view = new AnatomyView(group, anatomy, near, frame, true);
