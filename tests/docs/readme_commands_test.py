@@ -48,13 +48,16 @@ def made_small(command):
 
 
 def web_page(root, folder):
-    """The folder of the page that ./run live makes; where it is not made, of one without content."""
+    """The folder of what ./run makes pages from; where it is not made, of ones without content."""
     made = root / "build/web"
-    if (made / "live.html").exists():
+    places = {"live": "keepout live: the anatomy", "report": "keepout report: the record",
+              "report_with_anatomy": "keepout report: the record"}
+    if all((made / f"{page}.html").exists() for page in places):
         return made
     bare = folder / "web"
     bare.mkdir()
-    (bare / "live.html").write_text("<!-- keepout live: the anatomy goes here -->\n")
+    for page, place in places.items():
+        (bare / f"{page}.html").write_text(f"<!-- {place} goes here -->\n")
     return bare
 
 
@@ -69,7 +72,8 @@ def main():
     environment = dict(os.environ, KEEPOUT_PREPARE=str(root / "fixtures/prepare"),
                        KEEPOUT_WEB=str(web_page(root, folder)))
     commands = commands_of((root / "README.md").read_text(encoding="utf-8"))
-    missing = [n for n in ("inspect", "replay", "simulate", "serve", "verify", "bench", "compare", "live", "plan")
+    missing = [n for n in ("inspect", "replay", "simulate", "serve", "verify", "bench", "compare", "live", "plan",
+                           "report")
                if not any(c.startswith(f"./run {n}") for c in commands)]
     if missing:
         sys.exit(f"README.md does not show {', '.join(missing)}: has the page changed its form?")
