@@ -217,7 +217,13 @@ Json record_of(const PlanOptions& options, const std::vector<PlanningScene>& sce
                   .account = {"The sliding checker has a planner of its own, "
                               "SlidingConnect. Valid is a path whose whole way keeps the "
                               "clearance."},
-                  .machine = this_machine()});
+                  .machine = this_machine(),
+                  .settings = {{"planner", options.planner},
+                               {"time for each problem", trimmed(options.seconds) + " s"},
+                               {"clearance", trimmed(options.clearance()) + " mm"},
+                               {"motion sphere radius", trimmed(options.radius) + " mm"},
+                               {"problems of each mesh", std::to_string(options.problems)},
+                               {"seed", std::to_string(options.seed)}}});
   record["seed"] = options.seed;
   record["planner"] = options.planner;
   record["seconds_allowed"] = options.seconds;

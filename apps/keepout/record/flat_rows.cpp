@@ -30,11 +30,10 @@ void add_columns(const Cells& cells, std::vector<std::string>& columns) {
   }
 }
 
-bool is_null_in_all(const std::vector<Cells>& rows, const std::string& column) {
-  return std::ranges::all_of(rows, [&](const Cells& cells) {
-    const auto cell = std::ranges::find(cells, column, &Cells::value_type::first);
-    return cell == cells.end() || cell->second.is_null();
-  });
+/// null where it has none.
+Json cell_of(const Cells& cells, const std::string& column) {
+  const auto cell = std::ranges::find(cells, column, &Cells::value_type::first);
+  return cell == cells.end() ? Json() : cell->second;
 }
 
 std::string csv_cell(const Json& value) {
@@ -58,15 +57,14 @@ FlatRows flat(const Json& rows) {
   // What is an object in one row and null in another has its columns by the one.
   std::erase_if(table.columns, [&](const std::string& column) {
     return std::ranges::any_of(table.columns, [&](const std::string& other) {
-      return other.starts_with(column + '_') && is_null_in_all(lines, column);
+      return other.starts_with(column + '_') && std::ranges::all_of(lines, [&](const Cells& cells) {
+               return cell_of(cells, column).is_null();
+             });
     });
   });
   for (const Cells& cells : lines) {
     std::vector<Json>& row = table.rows.emplace_back();
-    for (const std::string& column : table.columns) {
-      const auto cell = std::ranges::find(cells, column, &std::pair<std::string, Json>::first);
-      row.push_back(cell == cells.end() ? Json() : cell->second);
-    }
+    for (const std::string& column : table.columns) row.push_back(cell_of(cells, column));
   }
   return table;
 }

@@ -35,6 +35,7 @@ TEST_F(PlanCommandTest, EveryPathOfKeepoutIsValidByTheOracle) {
   const Json& runs = record.at("runs");
   ASSERT_EQ(runs.size(), 8u);  // 2 problems, 4 checkers
   EXPECT_EQ(record.at("summaries").size(), 4u);
+  EXPECT_EQ(record.at("settings").at("problems of each mesh"), "2");
   EXPECT_EQ(record.at("meshes").at(0).at("name"), "cortex.stl");
   EXPECT_NE(record.at("headline").get<std::string>().find("and 0 of 4 under keepout's"),
             std::string::npos)
