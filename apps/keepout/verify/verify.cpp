@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "../command_line.h"
+#include "../machine.h"
 #include "../named_mesh.h"
 #include "../names.h"
 #include "../output_file.h"
@@ -118,7 +119,11 @@ int verify(const VerifyOptions& options, std::ostream& out) {
   for (const auto& file : options.merge) inputs.push_back({"--merge", file});
   OutputFiles outputs(inputs,
                       {{"--json", options.files.kept_json()}, {"--out", options.files.page}});
-  const Json result = options.merge.empty() ? run(options, out) : merged(options.merge);
+  Json result = options.merge.empty() ? run(options, out) : merged(options.merge);
+  if (!options.merge.empty()) {  // not what one of the shards was made by
+    result["command"] = options.command;
+    result["date"] = date_now();
+  }
   write_record(outputs, result, options.files, std::cerr);
   print(out, result);
   if (breach_count(result) > 0) return EXIT_FAILURE;

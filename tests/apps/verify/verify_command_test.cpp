@@ -62,6 +62,8 @@ TEST_F(Verify, ShardsAddUpToTheWhole) {
   EXPECT_EQ(merged.output.find("Missing"), std::string::npos) << merged.output;
   EXPECT_EQ(without_times(read("merged.json")), without_times(read("whole.json")));
   EXPECT_EQ(read("merged.json")["shards"].size(), 3u);
+  EXPECT_EQ(read("merged.json")["command"],
+            "keepout verify --merge 3.json 1.json 2.json --json merged.json");
   EXPECT_EQ(read("merged.json")["complete"], true);
   EXPECT_EQ(whole.output.find("Incomplete"), std::string::npos) << whole.output;
 }
