@@ -5,7 +5,7 @@ import { AnatomyView, hint } from "./anatomy_view.ts";
 import { coloured, ends, widths } from "./paths.ts";
 import { type ReportRecord, valueAt } from "./record.ts";
 import { lead, section } from "./report_page.ts";
-import { panels, runColor } from "./runs.ts";
+import { pictureGrid, runColor } from "./runs.ts";
 import { grouped, make, rounded, shown } from "./shown.ts";
 import type { PlanRecord } from "./simulation_record.ts";
 import { type Column, scrolled, table } from "./table.ts";
@@ -41,7 +41,7 @@ async function meshSection(plan: PlanRecord, number: number): Promise<HTMLElemen
   const mesh = plan.meshes[number] as PlanRecord["meshes"][number];
   const anatomy = await unpackedAnatomy(mesh);
   const rows = [...plan.summaries.keys()].filter((row) => plan.summaries[row]?.mesh === mesh.name);
-  const group = panels(2);
+  const group = pictureGrid(2);
   const view = new AnatomyView(group, anatomy, anatomy.corners, outlook(anatomy));
   rows.forEach((row, place) => {
     const checker = plan.summaries[row]?.checker as string;

@@ -23,9 +23,9 @@ export const ordinal = (pointer: string): HTMLElement =>
     (Number(lastKey(pointer)) + 1).toLocaleString("en"),
   );
 
-/** Cards side by side: two and four make pairs, three a row. */
-export const panels = (count: number, name = "panels"): HTMLElement =>
+/** A place for pictures side by side: two and four make pairs, three a row. */
+export const pictureGrid = (count: number): HTMLElement =>
   make("div", {
-    class: name,
+    class: "panels",
     style: `--columns:${count === 3 || count > 4 ? 3 : Math.min(count, 2)}`,
   });

@@ -7,7 +7,7 @@ import { drawn, mark } from "./marks.ts";
 import { coloured, parted, widths } from "./paths.ts";
 import { lastKey, type ReportRecord, valueAt } from "./record.ts";
 import { lead, section } from "./report_page.ts";
-import { panels, runColor, runName } from "./runs.ts";
+import { pictureGrid, runColor, runName } from "./runs.ts";
 import { grouped, make, millimetres, rounded, show, shown } from "./shown.ts";
 import { stepTimes } from "./simulation_charts.ts";
 import { type Run, type SimulationRecord, trespass } from "./simulation_record.ts";
@@ -31,7 +31,7 @@ export async function simulationSections(main: HTMLElement, record: ReportRecord
 
 /** The anatomy with all strokes, once for each run. */
 function overview(record: SimulationRecord, anatomy: Anatomy): HTMLElement {
-  const group = panels(record.runs.length);
+  const group = pictureGrid(record.runs.length);
   const view = new AnatomyView(group, anatomy, anatomy.corners, wholeView(record, anatomy));
   record.runs.forEach((run, number) => {
     const layer = { lengths: strokes(record, anatomy, run, number), cut: null };

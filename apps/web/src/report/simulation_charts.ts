@@ -4,7 +4,8 @@ import * as Plot from "@observablehq/plot";
 import { chart, Legend, type Look, logarithmic, tickText, tipOf } from "./charts.ts";
 import { extremes } from "./extremes.ts";
 import { drawn } from "./marks.ts";
-import { ordinal, panels, runColor } from "./runs.ts";
+import { panels } from "./report_page.ts";
+import { ordinal, runColor } from "./runs.ts";
 import { make, microseconds, millimetres, shown } from "./shown.ts";
 import type { SimulationRecord, Stroke } from "./simulation_record.ts";
 
@@ -134,12 +135,11 @@ export function clearanceCharts(record: SimulationRecord, stroke: number) {
       draw([deepest - 0.5 * around, 2.5 * around], record.kept_mm),
     ],
   ] as const;
-  const group = panels(2, "panels wide charts");
-  for (const [description, drawing] of both) {
-    group.append(make("figure", {}, chart({ description, draw: drawing, tip, legend })));
-  }
+  const figures = both.map(([description, drawing]) =>
+    make("figure", {}, chart({ description, draw: drawing, tip, legend })),
+  );
   return {
-    elements: [make("h3", {}, "How near it came"), legend.element, group],
+    elements: [make("h3", {}, "How near it came"), legend.element, panels(...figures)],
     follow(cycle: number): void {
       time = cycle;
       for (const rule of rules) rule(cycle);

@@ -7,7 +7,7 @@ import { extremes } from "./extremes.ts";
 import { drawn, mark } from "./marks.ts";
 import { coloured, parted, widths } from "./paths.ts";
 import { lead, section } from "./report_page.ts";
-import { ordinal, panels, runColor, runName } from "./runs.ts";
+import { ordinal, pictureGrid, runColor, runName } from "./runs.ts";
 import { make, millimetres, show } from "./shown.ts";
 import { clearanceCharts } from "./simulation_charts.ts";
 import {
@@ -89,7 +89,7 @@ function strokeView(
   });
   const front = extremes(cuts.flatMap(({ depths }) => [...depths]))[1];
   const near = cornersAround(anatomy, frame.target, frame.toward, 2 * frame.height, front);
-  const group = panels(record.runs.length);
+  const group = pictureGrid(record.runs.length);
   const view = new AnatomyView(group, anatomy, near, frame, true);
   const followed = record.runs.map((run, number) => {
     const { tip, clearance_mm, outcome } = run.strokes[stroke] as Stroke;
