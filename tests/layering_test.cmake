@@ -19,11 +19,12 @@ function(forbid folder expression why)
 endfunction()
 
 set(include "^ *# *include *[<\"]")
-forbid(engine "${include}keepout/(adapters|solvers|factory|fixtures|control)/" "the engine knows no other part")
-forbid(adapters "${include}keepout/(solvers|factory|fixtures|control)/" "adapters know only the engine")
-forbid(solvers "${include}keepout/(adapters|factory|fixtures|control)/" "solvers know only the engine")
+forbid(engine "${include}keepout/(adapters|solvers|factory|fixtures|control|robot)/" "the engine knows no other part")
+forbid(adapters "${include}keepout/(solvers|factory|fixtures|control|robot)/" "adapters know only the engine")
+forbid(solvers "${include}keepout/(adapters|factory|fixtures|control|robot)/" "solvers know only the engine")
 forbid(fixtures "${include}keepout/(adapters|solvers|factory|control)/" "fixtures know only the engine")
-forbid(control "${include}keepout/(adapters|solvers|factory|fixtures)/" "control knows only the engine")
+forbid(control "${include}keepout/(adapters|solvers|factory|fixtures|robot)/" "control knows only the engine")
+forbid(robot "${include}keepout/(adapters|solvers|factory|fixtures|control)/" "robot knows only the engine")
 
 # One folder a library: what two of them share is in adapters/src.
 set(libraries bullet ccd cgal embree fcl ompl)
@@ -43,7 +44,7 @@ forbid(factory "${include}(ompl/|keepout/ompl/)" "the factory knows no planner")
 forbid(adapters/src "${include}(ompl/|keepout/ompl/)" "the other adapters know no planner")
 
 # What is under the GPL stays in its own folder, and in the target that gathers all indices.
-foreach(part engine solvers control factory fixtures oracle adapters/include adapters/src
+foreach(part engine solvers control robot factory fixtures oracle adapters/include adapters/src
         adapters/bullet adapters/ccd adapters/embree adapters/fcl adapters/ompl)
   forbid(${part} "${include}(CGAL/|keepout/adapters/all_indices)"
          "the library is not to depend on the GPL")
@@ -54,15 +55,15 @@ forbid(oracle "${include}keepout/(adapters|solvers|factory|fixtures)/" "the orac
 forbid(oracle "${include}keepout/(index|activation|step)/" "the oracle shares no algorithm with the engine")
 forbid(oracle "${include}keepout/geometry/(closest_point|orientation)" "the oracle has a geometry of its own")
 forbid(python "${include}keepout/(fixtures|oracle)/" "the module is the library, and no more")
-foreach(part engine adapters solvers control factory fixtures)
+foreach(part engine adapters solvers control robot factory fixtures)
   forbid(${part} "${include}(pybind11/|Python.h)" "the library knows no Python")
 endforeach()
-foreach(part engine adapters solvers control factory fixtures)
+foreach(part engine adapters solvers control robot factory fixtures)
   forbid(${part} "${include}keepout/oracle/" "the oracle is for tests and the command")
 endforeach()
 
 # In public headers: ours, Eigen's, and the standard library's, whose names have no dot or slash.
-foreach(part engine adapters adapters/ompl solvers control factory fixtures oracle)
+foreach(part engine adapters adapters/ompl solvers control robot factory fixtures oracle)
   file(GLOB_RECURSE headers "${SOURCE}/${part}/include/*.h")
   foreach(header IN LISTS headers)
     file(STRINGS "${header}" lines REGEX "${include}")

@@ -5,18 +5,10 @@
 #include <cstdint>
 #include <optional>
 
+#include "keepout/geometry/pose.h"
 #include "keepout/geometry/shapes.h"
 
 namespace keepout {
-
-/// A rotation, as a matrix: no type of Eigen's whose alignment depends on compiler flags.
-using Mat3 = Eigen::Matrix3d;
-
-/// Where a tool is, and how it is turned: in the frame and the unit of whoever says so.
-struct Pose {
-  Vec3 position = Vec3::Zero();      // of the tip, in the unit of that frame
-  Mat3 rotation = Mat3::Identity();  // from the tool's axes to those of that frame
-};
 
 /// A quaternion as messages have it. Named, for the order of its parts differs from one library to
 /// the next.

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "keepout/robot/chain.h"
+
+namespace keepout {
+
+/// One row of a table after Denavit and Hartenberg. The joint's position is added to `theta` where
+/// it is revolute, to `d` where it is prismatic.
+struct DenavitHartenberg {
+  std::string name = {};  // of the joint, for messages
+  JointKind kind = JointKind::revolute;
+  double a = 0.0;      // along x [length]
+  double alpha = 0.0;  // about x [rad]
+  double d = 0.0;      // along z, at position 0 [length]
+  double theta = 0.0;  // about z, at position 0 [rad]
+  JointLimits limits = {};
+};
+
+/// In which order the four motions of a row follow one another.
+enum class DhConvention : std::uint8_t {
+  modified,  // Craig: about x, along x, about z, along z; the joint's axis is its own frame's z
+  standard   // about z, along z, along x, about x; the joint's axis is the z of the frame before
+};
+
+/// The joints and the flange of a table. Under the standard convention the last row's a and alpha
+/// lead to the flange; under the modified one it is the last link's frame.
+struct DhChain {
+  std::vector<Joint> joints;
+  Pose flange;
+};
+
+/// See DhChain. Throws Error for a number that is not finite.
+DhChain joints_of(std::span<const DenavitHartenberg> table, DhConvention convention);
+
+}  // namespace keepout

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "keepout/robot/chain.h"
+
+namespace keepout {
+
+/// A point that a link carries.
+struct LinkPoint {
+  int link = 0;                  // 0 is the base, which does not move
+  Vec3 position = Vec3::Zero();  // in the frame of the link [length]
+};
+
+/// A part of an instrument that shall keep clear: all within `radius` of the convex hull of its
+/// points. One point is a ball, two are a capsule, more are a blade. The points of a capsule may be
+/// on different links: a shaft from its port to its wrist.
+struct Body {
+  std::string name = {};  // for messages and records
+  std::vector<LinkPoint> points = {};
+  double radius = 0.0;  // [length], >= 0
+};
+
+/// A chain, and what it carries.
+class Instrument {
+ public:
+  static constexpr std::size_t most_bodies = 16;
+  static constexpr std::size_t most_points = 48;  // of all bodies, equal ones counted once
+  static constexpr std::size_t most_points_of_a_body = 8;
+
+  /// Throws Error, naming the body, for none or more than most_bodies, a body without points or
+  /// with too many, three points or more that are not all on one link, a link that does not exist,
+  /// a number that is not finite, or a negative radius.
+  Instrument(Chain chain, std::vector<Body> bodies);
+
+  const Chain& chain() const noexcept { return chain_; }
+  std::span<const Body> bodies() const noexcept { return bodies_; }
+
+  /// All points, those that bodies share once. A body names its own by their place in here.
+  std::span<const LinkPoint> points() const noexcept { return points_; }
+  /// The points of body b, by their number.
+  std::span<const std::uint8_t> points_of(std::size_t b) const noexcept {
+    return {numbers_[b].data(), bodies_[b].points.size()};
+  }
+
+ private:
+  Chain chain_;
+  std::vector<Body> bodies_;
+  std::vector<LinkPoint> points_;
+  std::vector<std::array<std::uint8_t, most_points_of_a_body>> numbers_;
+};
+
+}  // namespace keepout

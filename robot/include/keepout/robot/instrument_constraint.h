@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "keepout/index/spatial_index.h"
+#include "keepout/mesh/mesh.h"
+#include "keepout/robot/instrument.h"
+#include "keepout/status.h"
+#include "keepout/step/solver.h"
+
+namespace keepout {
+
+/// What is asked of the flange in one cycle.
+struct Twist {
+  Vec3 linear = Vec3::Zero();   // how its origin shall move [length]
+  Vec3 angular = Vec3::Zero();  // how it shall turn: axis times angle, in the mesh's axes [rad]
+};
+
+/// On which motion the certificate is taken.
+enum class CertifiedMotion : std::uint8_t {
+  actual,     // the one that the joints make
+  linearised  // of points on straight lines, p + s J dq: what others do. Unsafe; for comparison
+              // only
+};
+
+/// What stays the same from cycle to cycle.
+struct InstrumentOptions {
+  double margin = 0.2;  // distance to keep beyond each body's radius [length], > band
+  /// What is held back of the margin, so that curved motions along a surface are proven: certified
+  /// is margin - band. A wide band costs progress, never safety. See recommended_band. [length]
+  double band = 0.002;
+  double period = 1e-3;    // of a cycle: what velocity limits are multiplied by [s], > 0
+  double recovery = 0.05;  // how far a body that is too close is led away in a cycle [length]
+  double damping = 1e-4;   // weight of |dq|^2 beside the task; see StepOptions::damping
+  /// What a turn of the flange counts beside its way, in lengths: a radian off is as bad as so
+  /// much. 0: only its origin is steered. [length / rad]
+  double orientation_weight = 20.0;
+  int refinements = 1;  // how often planes are turned towards a better motion, >= 0
+  CertifiedMotion certified = CertifiedMotion::actual;
+};
+
+/// Room for the largest cycle.
+struct InstrumentCapacity {
+  std::size_t triangles = std::size_t{1} << 14;  // near one body
+  std::size_t planes = 128;                      // posed at the same time
+  std::size_t looks = std::size_t{1} << 17;      // the work of a cycle: see Budget
+};
+
+/// What one cycle may do. Views stay valid until the next step.
+struct InstrumentStep {
+  Status status = Status::invalid_input;
+  std::span<const double> increment = {};  // dq (n); empty unless ok() [rad or length]
+  double share = 0.0;    // of the motion that was found and is made: below 1 when it was cut short
+  int rounds = 0;        // how often a trial motion was judged
+  std::size_t rows = 0;  // that hold the motion back, joint limits apart
+  std::size_t triangles = 0;  // that were looked at one by one
+  /// From the body nearest to the mesh, as the cycle began; of bodies closer than the margin and
+  /// the motion. Negative when the body reaches through the surface. [length]
+  std::optional<double> distance = std::nullopt;
+  int nearest = -1;  // the number of that body
+
+  /// Whether there is a motion that may be carried out; it may be zero.
+  bool ok() const noexcept { return is_ok(status); }
+  /// One line on what happened and what to do about it; a literal.
+  std::string_view reason() const noexcept { return keepout::reason(status); }
+};
+
+/// Keeps a whole instrument out of a mesh, in joint space: the joint increment nearest to what is
+/// asked for that provably keeps each body clear, on the motion that the joints really make.
+///
+/// Only the certificate is trusted. Planes, solver and linearisation propose a motion; the true
+/// motion q + s dq, s in [0, 1], is then proven, or cut back to the part of it that is.
+///
+/// Guarantee: if dist(body(q), mesh) >= radius + F at the start, with F the certified distance,
+/// margin - band (or what is left of it, when a body is closer already), then
+/// dist(body(q + s dq), mesh) >= radius + F - 3 tolerance for all s in [0, 1] and all bodies; joint
+/// limits hold all along. Proof: docs/joint-space-step.md.
+///
+/// Not thread-safe: one for each control loop; mesh and index may be shared.
+class InstrumentConstraint {
+ public:
+  /// The index must be built on `mesh`. Throws Error when a part is missing, the index is of
+  /// another mesh, or an option or a capacity is out of range. Makes all memory here.
+  InstrumentConstraint(std::shared_ptr<const Mesh> mesh, std::shared_ptr<const SpatialIndex> index,
+                       Instrument instrument, std::unique_ptr<Solver> solver,
+                       const InstrumentOptions& options, const InstrumentCapacity& capacity = {});
+  InstrumentConstraint(InstrumentConstraint&&) noexcept;
+  InstrumentConstraint& operator=(InstrumentConstraint&&) noexcept;
+  ~InstrumentConstraint();
+
+  /// Steers the flange. `q`: the joints' positions (n) [rad or length]. Allocates nothing, throws
+  /// nothing. On any trouble the increment is empty and the status says why.
+  InstrumentStep step(std::span<const double> q, const Twist& desired) noexcept;
+
+  /// Steers the joints: the nearest to `desired`, dq (n), each joint's weighed by `weights` (n, >
+  /// 0; all 1 when empty): min sum w_k (dq_k - desired_k)^2.
+  InstrumentStep step(std::span<const double> q, std::span<const double> desired,
+                      std::span<const double> weights = {}) noexcept;
+
+  /// Forgets what the last cycle left: for motions that have nothing to do with each other.
+  void forget() noexcept;
+
+  const Instrument& instrument() const noexcept;
+  const Mesh& mesh() const noexcept;
+  const InstrumentOptions& options() const noexcept;
+  /// Behaves so from the next step on. Throws Error, and changes nothing, for options that the
+  /// constructor would refuse. A raised margin is come up to by recovery.
+  void set_options(const InstrumentOptions& options);
+
+  /// Distances are told apart down to this: some 1e-12 of the lengths at hand. [length]
+  double tolerance() const noexcept;
+  /// How much work the last step was: see Budget.
+  std::size_t looks() const noexcept;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// A band that absorbs the curvature of every motion that the joints' limits admit in a cycle:
+/// an eighth of the largest bend of any body's point, at least `least`. Infinite without limits.
+/// [length]
+double recommended_band(const Instrument& instrument, double period, double least = 0.002);
+
+}  // namespace keepout
