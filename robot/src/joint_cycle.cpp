@@ -58,8 +58,7 @@ CycleMemory::CycleMemory(const Instrument& its, Neighborhood& its_near, Solver& 
       warm(capacity.planes) {
   const auto n = static_cast<std::size_t>(its.chain().size());
   for (std::size_t b = 0; b < its.bodies().size(); ++b) {
-    const double nothing = 0.0;
-    bodies.push_back({NearSet(near.room()), reach_beyond_axis(its, b), nothing, nothing});
+    bodies.push_back({.near = NearSet(near.room()), .beyond = reach_beyond_axis(its, b)});
   }
   matrix.resize((2 * n + capacity.planes) * n);
   bounds.resize(2 * n + capacity.planes);
@@ -72,7 +71,7 @@ void CycleMemory::forget() noexcept {
   side_of = 0;
   for (BodyMemory& body : bodies) {
     body.near.forget();
-    body.guard = 0.0;
+    body.guard = body.reach = 0.0;
     body.floor = std::numeric_limits<double>::infinity();
   }
 }
@@ -229,15 +228,15 @@ bool JointCycle::look(std::size_t b, double needed) noexcept {
   Core core;
   const double radius = memory_.instrument.bodies()[b].radius;
   // Farther where there is little, so that it is looked for seldom; less far where there is much.
-  constexpr std::size_t few = 4;
-  constexpr std::size_t many = 32;
-  const double size = memory_.near.mesh().bounds().size().norm();
-  if (!(body.guard > 0.0)) body.guard = 8.0 * options_.margin;
+  constexpr std::size_t few = 8;
+  constexpr std::size_t many = 64;
+  const double scale = std::max(options_.margin, body.reach);
+  body.guard = std::clamp(body.guard, scale, 16.0 * scale);
   for (const double share : {1.0, 0.125, 0.0}) {
     if (body.near.look(memory_.near, core_of(b, core), body.beyond, needed + share * body.guard,
                        radius + options_.margin, memory_.tolerance)) {
       if (share < 1.0 || body.near.size() > many) body.guard *= 0.5;
-      if (body.near.size() < few) body.guard = std::min(2.0 * body.guard, size);
+      if (body.near.size() < few) body.guard *= 2.0;
       return true;
     }
     if (is_worn_out()) break;
@@ -434,6 +433,7 @@ void JointCycle::judge(Trial& trial) noexcept {
   for (std::size_t b = 0; b < memory_.bodies.size(); ++b) {
     failures_[b] = {};
     const double reach = memory_.motion.farthest(b);
+    memory_.bodies[b].reach = reach;
     const double needed = memory_.instrument.bodies()[b].radius + kept_[b] + reach;
     if (!look(b, needed)) {
       trial.cell = 0;

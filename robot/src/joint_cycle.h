@@ -24,9 +24,10 @@ namespace keepout {
 struct BodyMemory {
   NearSet near;
   double beyond =
-      0.0;       // how far its core reaches beyond the segment of its first two points [length]
-  double guard;  // how much farther than needed triangles are looked for [length]
-  double floor;  // what was certified last [length]
+      0.0;  // how far its core reaches beyond the segment of its first two points [length]
+  double reach = 0.0;  // of its last motion [length]
+  double guard = 0.0;  // how much farther than needed triangles are looked for [length]
+  double floor = 0.0;  // what was certified last [length]
 };
 
 /// A row that held a motion back: the next cycle begins with it.

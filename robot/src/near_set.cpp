@@ -30,6 +30,18 @@ double least_distance(const Vec3& a, const Vec3& along, double inverse2,
   return along_least > 0.0 ? along_least / std::sqrt(length2) : 0.0;
 }
 
+/// Has the memory of triangles on its way whose turn comes soon.
+void fetch_ahead(const Mesh& mesh, std::span<const TriangleId> ids, std::size_t i) noexcept {
+  constexpr std::size_t corners_ahead = 16;
+  constexpr std::size_t vertices_ahead = 8;
+  if (i + corners_ahead < ids.size()) __builtin_prefetch(&mesh.corners(ids[i + corners_ahead]));
+  if (i + vertices_ahead < ids.size()) {
+    for (const VertexId v : mesh.corners(ids[i + vertices_ahead])) {
+      __builtin_prefetch(&mesh.vertex(v));
+    }
+  }
+}
+
 }  // namespace
 
 NearSet::NearSet(std::size_t room) : room_(room) {
@@ -60,7 +72,10 @@ bool NearSet::look(Neighborhood& near, std::span<const Vec3> core, double beyond
   const Vec3 along = b - a;
   const double inverse2 = inverse_square(along);
   double least_of_block = far;
-  for (const TriangleId id : candidates) {
+  const std::span<const TriangleId> found = candidates.view();
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    fetch_ahead(mesh, found, i);
+    const TriangleId id = found[i];
     const Triangle corners = mesh.triangle(id);
     double least = least_distance(a, along, inverse2, corners) - beyond - tolerance;
     if (least > radius) continue;
