@@ -8,7 +8,7 @@
 namespace keepout {
 namespace {
 
-constexpr std::size_t most_bytes_of_tag = 4096;
+constexpr std::size_t most_bytes_of_tag = 2048;
 constexpr std::size_t most_tags = 200'000;
 constexpr int deepest = 64;
 constexpr std::size_t nowhere = std::string_view::npos;
