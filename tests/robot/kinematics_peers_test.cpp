@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdio>
 #include <memory>
 #include <numbers>
@@ -174,8 +175,8 @@ void compare_with_mujoco(const Chain& ours, const std::string& name) {
     mj_comPos(model.get(), data.get());
     for (int k = 1; k <= n; ++k) {
       const Pose link = state.link(k);
-      const Eigen::Map<const Vec3> place(data->xpos + 3 * k);
-      const Eigen::Map<const RowMajor> rotation(data->xmat + 9 * k, 3, 3);
+      const Eigen::Map<const Vec3> place(data->xpos + std::ptrdiff_t{3} * k);
+      const Eigen::Map<const RowMajor> rotation(data->xmat + std::ptrdiff_t{9} * k, 3, 3);
       Differences::raise(found.place, (millimetre * link.position - place).norm());
       Differences::raise(found.rotation, (link.rotation - rotation).cwiseAbs().maxCoeff());
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
-#include <cmath>
+#include <algorithm>
 #include <limits>
 #include <string>
 #include <vector>
@@ -173,12 +173,12 @@ TEST(Urdf, EachFaultOfAJointHasAMessageOfItsOwn) {
 
 TEST(Urdf, MoreJointsThanAChainMayHaveAreRefused) {
   std::string robot = "<robot name=\"worm\"><link name=\"l0\"/>";
-  for (int i = 0; i < 9; ++i) {
-    const std::string from = "l" + std::to_string(i);
-    const std::string to = "l" + std::to_string(i + 1);
-    robot += "<link name=\"" + to + "\"/><joint name=\"j" + to +
-             "\" type=\"continuous\"><parent link=\"" + from + "\"/><child link=\"" + to +
-             "\"/></joint>";
+  for (const char digit : std::string("012345678")) {
+    std::string joint = R"(<link name="l!"/><joint name="j@" type="continuous">)"
+                        R"(<parent link="l@"/><child link="l!"/></joint>)";
+    std::replace(joint.begin(), joint.end(), '@', digit);
+    std::replace(joint.begin(), joint.end(), '!', static_cast<char>(digit + 1));
+    robot += joint;
   }
   robot += "</robot>";
   expect_refused(robot, "9 joints move between 'l0' and 'l9', not 1 to 8", "", "");

@@ -36,7 +36,7 @@ std::string listed(std::vector<std::string_view> names) {
 }
 
 urdf::LinkConstSharedPtr link_named(const urdf::ModelInterface& model, std::string_view wanted) {
-  if (const auto link = model.getLink(std::string(wanted))) return link;
+  if (auto link = model.getLink(std::string(wanted))) return link;
   std::vector<std::string_view> known;
   for (const auto& entry : model.links_) known.push_back(entry.first);
   const auto meant = nearest_name(wanted, known);
@@ -150,7 +150,7 @@ UrdfChain chain_of(const UrdfDescription& read, std::string_view base, std::stri
                 "' and '" + end->name + "', not 1 to " + std::to_string(Chain::most_joints) +
                 ": name another base or tip");
   }
-  Chain(chain.joints, {}, chain.flange);  // says what else would be wrong
+  [[maybe_unused]] const Chain usable(chain.joints, {}, chain.flange);  // or says why not
   return chain;
 }
 

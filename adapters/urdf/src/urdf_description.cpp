@@ -39,7 +39,8 @@ class HeardMessages : private console_bridge::OutputHandler {
 
  private:
   void log(const std::string& message, console_bridge::LogLevel, const char*, int) override {
-    text += (text.empty() ? "" : "; ") + message;
+    if (!text.empty()) text += "; ";
+    text += message;
   }
   const std::lock_guard<std::mutex> lock_{console};
   console_bridge::OutputHandler* const handler_before_ = console_bridge::getOutputHandler();
@@ -49,6 +50,12 @@ class HeardMessages : private console_bridge::OutputHandler {
 std::string attribute(const TiXmlElement* element, const char* name) {
   const char* value = element != nullptr ? element->Attribute(name) : nullptr;
   return value != nullptr ? value : "";
+}
+
+[[noreturn]] void refuse_two_parents(const std::string& link, const std::string& first,
+                                     const std::string& second) {
+  throw Error("link '" + link + "' is the child of joint '" + first + "' and of joint '" + second +
+              "', and a link has one parent: remove one of them");
 }
 
 /// That no link has two parents, and none is below itself: urdfdom lets the first pass, does not
@@ -63,9 +70,7 @@ void require_tree(const std::map<std::string, const TiXmlElement*>& joints) {
     const std::string child = attribute(element->FirstChildElement("child"), "link");
     const std::string parent = attribute(element->FirstChildElement("parent"), "link");
     const auto [place, is_new] = above.insert({child, {parent, joint}});
-    if (is_new) continue;
-    throw Error("link '" + child + "' is the child of joint '" + place->second.joint +
-                "' and of joint '" + joint + "', and a link has one parent: remove one of them");
+    if (!is_new) refuse_two_parents(child, place->second.joint, joint);
   }
   for (auto start = above.begin(); start != above.end(); ++start) {
     std::size_t steps = 0;
@@ -83,7 +88,7 @@ UrdfDescription describe(std::string_view text) {
   require_bounded_xml(text);
   const std::string xml(text);
   UrdfDescription read{
-      .model = nullptr, .document = std::make_unique<TiXmlDocument>(), .joints = {}};
+      .model = nullptr, .document = std::make_shared<TiXmlDocument>(), .joints = {}};
   read.document->Parse(xml.c_str());
   if (read.document->Error()) {
     throw Error("not XML: " + std::string(read.document->ErrorDesc()) + " Line " +

@@ -15,7 +15,7 @@ namespace keepout {
 /// missing and passes over what is there twice. Its links are a tree.
 struct UrdfDescription {
   std::shared_ptr<urdf::ModelInterface> model;
-  std::unique_ptr<TiXmlDocument> document;
+  std::shared_ptr<TiXmlDocument> document;
   std::map<std::string, const TiXmlElement*> joints;  // by name
 };
 
