@@ -47,12 +47,12 @@ void consider_edge(const Vec3& a, const Vec3& along, double length2, const Vec3&
   const double at_a = along.dot(between);
   const double at_from = edge.dot(between);
   const double area2 = length2 * edge2 - lean * lean;
+  const auto on_core_at = [&](double t) {
+    return length2 > 0.0 ? std::clamp((t * lean - at_a) / length2, 0.0, 1.0) : 0.0;
+  };
   double u = area2 > 0.0 ? std::clamp((lean * at_from - at_a * edge2) / area2, 0.0, 1.0) : 0.0;
-  double t = edge2 > 0.0 ? (lean * u + at_from) / edge2 : 0.0;
-  if (!(t >= 0.0 && t <= 1.0)) {
-    t = t > 1.0 ? 1.0 : 0.0;
-    u = length2 > 0.0 ? std::clamp((t * lean - at_a) / length2, 0.0, 1.0) : 0.0;
-  }
+  const double t = edge2 > 0.0 ? std::clamp((lean * u + at_from) / edge2, 0.0, 1.0) : 0.0;
+  u = on_core_at(t);  // also where both are all but parallel, and the first u is rounding
   const Vec3 on_core = a + u * along;
   const Vec3 away = on_core - (from + t * edge);
   const double distance2 = away.squaredNorm();
@@ -126,7 +126,18 @@ Gap gap(std::span<const Vec3> core, const Triangle& triangle) noexcept {
       consider_edge(a, along, length2, triangle[e], triangle[(e + 1) % 3], nearest);
     }
   }
-  return proven(nearest, core, triangle);
+  Gap best = proven(nearest, core, triangle);
+  // Where the features' directions are rounding, the search may know a better one.
+  const double distance = std::sqrt(nearest.distance2);
+  if (best.distance < distance * (1.0 - 1e-9)) {
+    const NearestPoints searched = nearest_points(core, triangle);
+    if (!searched.overlap && searched.proven > best.distance) {
+      best.distance = searched.proven;
+      best.normal = searched.normal;
+      best.support = support(triangle, searched.normal);
+    }
+  }
+  return best;
 }
 
 }  // namespace keepout

@@ -30,8 +30,14 @@ std::unique_ptr<Neighborhood> neighborhood_of(std::shared_ptr<const Mesh> mesh,
     throw Error(
         "the capacity must be of at least one triangle and one plane, at most 65536 planes");
   }
+  std::size_t looks = capacity.looks;
+  if (looks == 0) {
+    Budget unused;
+    const bool walks = index->walk_along_motions(unused) != nullptr;
+    looks = walks ? InstrumentCapacity::looks_of_a_walk : Capacity::looks_of_queries;
+  }
   return std::make_unique<Neighborhood>(std::move(mesh), std::move(index), capacity.triangles,
-                                        capacity.looks);
+                                        looks);
 }
 
 }  // namespace
@@ -76,7 +82,10 @@ struct InstrumentConstraint::State {
     near->budget().renew();
     if (!near->is_current()) return Status::mesh_changed;
     const auto n = static_cast<std::size_t>(instrument.chain().size());
-    return q.size() == n && are_numbers(q) ? Status::free : Status::invalid_input;
+    const bool is_position = q.size() == n && std::all_of(q.begin(), q.end(), [&](double x) {
+                               return std::abs(x) <= memory.largest_position;  // false for NaN
+                             });
+    return is_position ? Status::free : Status::invalid_input;
   }
 
   Instrument instrument;

@@ -32,15 +32,18 @@ double reach_beyond_axis(const Instrument& instrument, std::size_t body) {
   return most * (1.0 + 1e-12);
 }
 
-double tolerance_for(const Instrument& instrument, const Mesh& mesh) {
+/// The lengths that there are: of the ways from joint to joint, of what is carried, of the mesh.
+double size_of(const Instrument& instrument, const Mesh& mesh) {
+  double size = instrument.chain().base().position.norm() +
+                mesh.bounds().low.cwiseAbs().cwiseMax(mesh.bounds().high.cwiseAbs()).norm();
+  for (int k = 1; k <= instrument.chain().size(); ++k) {
+    size += instrument.chain().joint(k).origin.position.norm();
+  }
   double carried = 0.0;
   for (const LinkPoint& point : instrument.points()) {
     carried = std::max(carried, point.position.norm());
   }
-  const double reach = std::min(instrument.chain().reach(), longest_length);
-  const double size = reach + carried + instrument.chain().base().position.norm() +
-                      mesh.bounds().low.cwiseAbs().cwiseMax(mesh.bounds().high.cwiseAbs()).norm();
-  return 1e-12 * size;
+  return size + carried;
 }
 
 }  // namespace
@@ -50,7 +53,9 @@ CycleMemory::CycleMemory(const Instrument& its, Neighborhood& its_near, Solver& 
     : instrument(its),
       near(its_near),
       solver(its_solver),
-      tolerance(tolerance_for(its, its_near.mesh())),
+      largest_position(std::max(100.0 * size_of(its, its_near.mesh()), 100.0)),
+      tolerance(1e-12 *
+                (size_of(its, its_near.mesh()) + std::min(its.chain().reach(), largest_position))),
       is_watertight(keepout::is_watertight(its_near.mesh())),
       motion(its),
       rows(capacity.planes),

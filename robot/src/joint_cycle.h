@@ -42,7 +42,8 @@ struct CycleMemory {
   const Instrument& instrument;
   Neighborhood& near;
   Solver& solver;
-  double tolerance;
+  double largest_position;  // of a joint: what is farther off is refused [rad or length]
+  double tolerance;         // distances are told apart down to this [length]
   bool is_watertight;
   PointMotion motion;
   std::vector<BodyMemory> bodies;

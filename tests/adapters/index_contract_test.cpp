@@ -10,15 +10,24 @@
 #include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "keepout/adapters/all_indices.h"
 #include "keepout/error.h"
 #include "keepout/fixtures/shapes.h"
+#include "keepout/geometry/separation.h"
 #include "library_backends.h"
 #include "shapes_to_try.h"
 
 namespace keepout {
 namespace {
+
+/// A lower bound of a segment's distance to a triangle: of the boxes around both.
+double distance_to_box_around(const Triangle& corners, const Vec3& from, const Vec3& to) {
+  const Vec3 low = corners[0].cwiseMin(corners[1]).cwiseMin(corners[2]);
+  const Vec3 high = corners[0].cwiseMax(corners[1]).cwiseMax(corners[2]);
+  return (low - from.cwiseMax(to)).cwiseMax(from.cwiseMin(to) - high).cwiseMax(0.0).norm();
+}
 
 class IndexContract : public testing::TestWithParam<IndexBackend> {};
 
@@ -109,6 +118,37 @@ TEST_P(IndexContract, FindsTrianglesThatAreAllOnePoint) {
       index->collect(ball, candidates);
       EXPECT_EQ(candidates.size(), count) << "radius " << ball.radius;
       EXPECT_FALSE(candidates.overflowed());
+    }
+  }
+}
+
+// For a whole instrument: what is near a shaft. The distance of reference is the narrow phase's,
+// which knows nothing of segments.
+TEST_P(IndexContract, FindsAllThatIsNearACapsuleOnceEach) {
+  for (const Shape& shape : shapes_to_try()) {
+    SCOPED_TRACE(shape.name);
+    const auto mesh = std::make_shared<const Mesh>(shape.make());
+    const auto index = GetParam().make(mesh);
+    Random random(11);
+    const double size = mesh->bounds().size().norm();
+    TriangleBuffer candidates(mesh->triangle_count());
+    const std::vector<Vec3> points = probing_points(*mesh, 4);
+    for (const Vec3& from : points) {
+      const double length = size * std::pow(10.0, random.uniform(-4.0, 0.0));
+      const Vec3 to = random.below(8) == 0 ? from : Vec3(from + length * random.direction());
+      const double radius =
+          random.below(8) == 0 ? 0.0 : size * std::pow(10.0, random.uniform(-5, -1));
+      candidates.clear();
+      index->collect_near({from, to, radius}, candidates);
+      ASSERT_FALSE(candidates.overflowed());
+      const std::set<TriangleId> found(candidates.begin(), candidates.end());
+      ASSERT_EQ(found.size(), candidates.size()) << "once each";
+      const ConvexTool tool = ConvexTool::hull(std::vector<Vec3>{Vec3::Zero(), to - from});
+      for (TriangleId t = 0; t < mesh->triangle_count(); ++t) {
+        const Triangle corners = mesh->triangle(t);
+        if (found.contains(t) || distance_to_box_around(corners, from, to) > radius) continue;
+        ASSERT_GT(separation(tool, from, corners).distance, radius * (1.0 - 1e-12) - 1e-12 * size);
+      }
     }
   }
 }

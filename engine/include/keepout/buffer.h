@@ -32,8 +32,11 @@ class Buffer {
   /// at once. Precondition: there is room, size() + count <= capacity().
   void grow(std::size_t count) noexcept { size_ += count; }
 
-  /// Keeps the first `count` items. Precondition: count <= size().
-  void shrink(std::size_t count) noexcept { size_ = count; }
+  /// Keeps the first `count` items, and forgets an overflow. Precondition: count <= size().
+  void shrink(std::size_t count) noexcept {
+    size_ = count;
+    overflowed_ = false;
+  }
 
   /// Replaces the contents. The items must not be in this buffer.
   void assign(std::span<const T> items) noexcept {

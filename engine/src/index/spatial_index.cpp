@@ -25,11 +25,17 @@ void SpatialIndex::collect_near(const Capsule& capsule, TriangleBuffer& candidat
   for (double piece = 0.5; piece < pieces && !candidates.overflowed(); piece += 1.0) {
     const std::size_t known = candidates.size();
     collect(Ball{capsule.from + piece / pieces * (capsule.to - capsule.from), radius}, candidates);
-    if (known == before) continue;
+    if (known == before || candidates.overflowed()) continue;
     TriangleId* const first = candidates.begin() + before;
     std::sort(first, candidates.end());
     const auto found = std::unique(first, candidates.end()) - candidates.begin();
-    candidates.shrink(static_cast<std::size_t>(found));
+    candidates.shrink(before + static_cast<std::size_t>(found));
+  }
+  // There may have been room for each once, but not for what is near two pieces.
+  if (candidates.overflowed()) {
+    candidates.shrink(before);
+    const double all = 0.5 * length + capsule.radius;
+    collect(Ball{0.5 * (capsule.from + capsule.to), all * (1.0 + 1e-12)}, candidates);
   }
 }
 

@@ -11,6 +11,7 @@
 #include "keepout/mesh/mesh.h"
 #include "keepout/robot/instrument.h"
 #include "keepout/status.h"
+#include "keepout/step/options.h"
 #include "keepout/step/solver.h"
 
 namespace keepout {
@@ -53,7 +54,12 @@ struct InstrumentOptions {
 struct InstrumentCapacity {
   std::size_t triangles = std::size_t{1} << 14;  // near one body
   std::size_t planes = 128;                      // posed at the same time
-  std::size_t looks = std::size_t{1} << 17;      // the work of a cycle: see Budget
+  /// The work of a cycle, whatever happens in it: see Budget. What cannot be proven with it is not
+  /// moved. 0: looks_of_a_walk on an index that walks by itself, as wide_bvh, and
+  /// Capacity::looks_of_queries on others, of which more is asked.
+  std::size_t looks = 0;
+
+  static constexpr std::size_t looks_of_a_walk = std::size_t{1} << 17;
 };
 
 /// What one cycle may do. Views stay valid until the next step.

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <set>
+#include <vector>
+
+#include "keepout/fixtures/random.h"
+#include "keepout/fixtures/robots.h"
+#include "keepout/fixtures/shapes.h"
+#include "keepout/index/wide_bvh.h"
+#include "keepout/robot/instrument_constraint.h"
+#include "keepout/solvers/active_set.h"
+#include "realtime/counted_allocations.h"
+
+namespace keepout {
+namespace {
+
+TEST(InstrumentConstraint, AllocatesNothingWhateverTheOutcome) {
+  const auto mesh = std::make_shared<const Mesh>(make_shape("gear"));
+  const auto index = std::make_shared<WideBvh>(mesh);
+  const std::vector<double> start{0, 0, 60, 0, 0, 0};
+  std::vector<InstrumentConstraint> guards;
+  for (const Vec3& port : {Vec3(0, 0, 100), Vec3(100, 30, 0), Vec3(-60, 90, 20), Vec3(0, 0, 5)}) {
+    guards.emplace_back(mesh, index, psm({port, Mat3::Identity()}), std::make_unique<ActiveSet>(),
+                        InstrumentOptions{.period = 0.05});
+  }
+  std::vector<Status> seen;
+  seen.reserve(100'000);
+  std::vector<double> q(6);
+  const std::vector<double> bad(5);
+  Random random(2);
+  const std::size_t before = allocations();
+  for (InstrumentConstraint& guard : guards) {
+    for (int round = 0; round < 20; ++round) {
+      q = start;
+      for (double& number : q) number += random.uniform(-0.6, 0.6);
+      q[2] = random.uniform(0.0, 200.0);
+      for (int i = 0; i < 50; ++i) {
+        const InstrumentStep step = guard.step(
+            q, Twist{.linear = 2.0 * random.direction(), .angular = 0.1 * random.direction()});
+        seen.push_back(step.status);
+        for (std::size_t k = 0; k < step.increment.size(); ++k) q[k] += step.increment[k];
+      }
+      seen.push_back(guard.step(q, q).status);
+      seen.push_back(guard.prove(q, start).status);
+      seen.push_back(guard.step(bad, Twist{}).status);
+      guard.forget();
+    }
+  }
+  EXPECT_EQ(allocations(), before);
+  const std::set<Status> kinds(seen.begin(), seen.end());
+  for (const Status status : {Status::free, Status::limited, Status::recovering, Status::touching,
+                              Status::invalid_input}) {
+    EXPECT_TRUE(kinds.contains(status)) << name(status);
+  }
+}
+
+}  // namespace
+}  // namespace keepout

@@ -1,0 +1,380 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "keepout/robot/instrument_constraint.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "keepout/adapters/index_registry.h"
+#include "keepout/error.h"
+#include "keepout/fixtures/random.h"
+#include "keepout/fixtures/robots.h"
+#include "keepout/fixtures/shapes.h"
+#include "keepout/geometry/separation.h"
+#include "keepout/index/wide_bvh.h"
+#include "keepout/robot/motion_bounds.h"
+#include "keepout/solvers/registry.h"
+#include "trials.h"
+
+namespace keepout {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// An instrument that hangs down from its port, 120 above the origin: at insertion d its tip is at
+/// height 120 - d - 9.1 - 10.2 + 15.6.
+Pose port_above() {
+  Pose base{Vec3(0, 0, 120), Mat3::Identity()};
+  return base;
+}
+
+std::vector<double> straight_down(double insertion) { return {0, 0, insertion, 0, 0, 0}; }
+
+/// The distance of each body to the mesh, less its radius: by the narrow phase, triangle by
+/// triangle.
+double clearance(const Instrument& instrument, const Mesh& mesh, const std::vector<double>& q) {
+  ChainState chain;
+  instrument.chain().place(q, chain);
+  double least = infinity;
+  for (const Body& body : instrument.bodies()) {
+    std::vector<Vec3> points;
+    for (const LinkPoint& point : body.points)
+      points.push_back(chain.at(point.link, point.position));
+    const ConvexTool tool = ConvexTool::hull(points, body.radius);
+    for (TriangleId t = 0; t < mesh.triangle_count(); ++t) {
+      least = std::min(least, separation(tool, Vec3::Zero(), mesh.triangle(t)).distance);
+    }
+  }
+  return least;
+}
+
+std::vector<double> moved(std::vector<double> q, const InstrumentStep& step, double share = 1.0) {
+  for (std::size_t k = 0; k < step.increment.size(); ++k) q[k] += share * step.increment[k];
+  return q;
+}
+
+InstrumentConstraint guard_of(std::shared_ptr<const Mesh> mesh, Instrument instrument,
+                              const InstrumentOptions& options = {.period = 0.05},
+                              std::string_view index = "wide_bvh",
+                              std::string_view solver = "active_set") {
+  return {mesh, make_index(index, mesh), std::move(instrument), make_solver(solver), options};
+}
+
+/// The port's frame turned so that the instrument points along -z, whatever its zero pose.
+Instrument psm_above() {
+  ChainState chain;
+  const Instrument at_origin = psm();
+  at_origin.chain().place(straight_down(100.0), chain);
+  const Vec3 way = chain.flange().position.normalized();
+  Pose base = port_above();
+  base.rotation = Eigen::Quaterniond::FromTwoVectors(way, -Vec3::UnitZ()).toRotationMatrix();
+  return psm(base);
+}
+
+std::shared_ptr<const Mesh> mesh_of(std::string_view shape) {
+  return std::make_shared<const Mesh>(make_shape(shape));
+}
+
+/// The insertion at which nothing is nearer than that to a cube whose top is at 50.
+double insertion_above_cube(const Instrument& instrument, const Mesh& mesh, double distance) {
+  double low = 10.0;
+  double high = 200.0;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (low + high);
+    (clearance(instrument, mesh, straight_down(middle)) > distance ? low : high) = middle;
+  }
+  return low;
+}
+
+TEST(InstrumentConstraint, StopsAtASurfaceAtTheMarginAndSlidesAlongIt) {
+  const auto mesh = std::make_shared<const Mesh>(make_cube(20.0));
+  const Instrument instrument = psm_above();
+  auto guard = guard_of(mesh, instrument);
+  std::vector<double> q = straight_down(insertion_above_cube(instrument, *mesh, 3.0));
+  Vec3 before = Vec3::Zero();
+  for (int i = 0; i < 30; ++i) {
+    const InstrumentStep step = guard.step(q, {.linear = Vec3(0.1, 0.0, -0.5)});
+    ASSERT_TRUE(step.ok()) << step.reason();
+    ChainState chain;
+    instrument.chain().place(q, chain);
+    before = chain.flange().position;
+    q = moved(q, step);
+  }
+  ChainState chain;
+  instrument.chain().place(q, chain);
+  EXPECT_NEAR(chain.flange().position.x() - before.x(), 0.1, 0.02) << "it slides";
+  const double kept = guard.options().margin - guard.options().band;
+  EXPECT_NEAR(clearance(instrument, *mesh, q), guard.options().margin, 2e-3);
+  EXPECT_GE(clearance(instrument, *mesh, q), kept - 3.0 * guard.tolerance());
+}
+
+// On generated shapes, with each index and each solver: nothing below what is certified, on the way
+// as little as at its end, and the same answers to the bit on every index.
+TEST(InstrumentConstraint, KeepsEveryBodyClearOnEveryIndexAndEverySolver) {
+  struct Part {
+    std::string_view index, solver;
+  };
+  std::vector<Part> parts;
+  for (const IndexBackend& index : index_backends()) parts.push_back({index.name, "active_set"});
+  for (const SolverBackend& solver : solver_backends()) parts.push_back({"wide_bvh", solver.name});
+  for (const std::string_view shape : {"cube", "pyramid"}) {
+    const auto mesh = mesh_of(shape);
+    std::vector<double> first_way;
+    for (const Part& part : parts) {
+      SCOPED_TRACE(testing::Message() << shape << " " << part.index << " " << part.solver);
+      const Instrument instrument = psm_above();
+      auto guard = guard_of(mesh, instrument, {.period = 0.05}, part.index, part.solver);
+      std::vector<double> q = straight_down(insertion_above_cube(instrument, *mesh, 5.0));
+      Random random(3);
+      std::vector<double> way;
+      int held = 0;
+      const double kept = guard.options().margin - guard.options().band;
+      const int cycles = test::trials(60);
+      for (int i = 0; i < cycles; ++i) {
+        const Twist desired{.linear = Vec3(0, 0, -1.0) + random.direction(),
+                            .angular = 0.05 * random.direction()};
+        const InstrumentStep step = guard.step(q, desired);
+        if (!step.ok()) continue;  // a solver may give up
+        held += step.status == Status::limited ? 1 : 0;
+        for (const double share : {0.37, 1.0}) {
+          ASSERT_GE(clearance(instrument, *mesh, moved(q, step, share)),
+                    kept - 3.0 * guard.tolerance());
+        }
+        q = moved(q, step);
+        way.insert(way.end(), q.begin(), q.end());
+      }
+      EXPECT_GT(held, cycles / 10);
+      if (part.solver != "active_set") continue;
+      if (first_way.empty()) first_way = way;
+      EXPECT_EQ(way, first_way);
+    }
+  }
+}
+
+// Shares of random motions, also large ones, that are said to be proven are free, densely sampled;
+// and motions that are free are nearly all proven.
+TEST(InstrumentConstraint, ProvesWhatIsFreeAndNothingElse) {
+  const auto mesh = std::make_shared<const Mesh>(make_sphere(12.0));
+  const Instrument instrument = psm_above();
+  auto guard = guard_of(mesh, instrument);
+  const double kept = guard.options().margin - guard.options().band;
+  Random random(5);
+  int free = 0;
+  int proven = 0;
+  int partly = 0;
+  for (int i = 0; i < test::trials(600); ++i) {
+    std::vector<double> q = straight_down(random.uniform(40.0, 80.0));
+    for (const std::size_t k : {0u, 1u}) q[k] = random.uniform(-0.3, 0.3);
+    for (const std::size_t k : {3u, 4u, 5u}) q[k] = random.uniform(-0.8, 0.8);
+    if (clearance(instrument, *mesh, q) < kept) continue;
+    std::vector<double> dq(6);
+    for (double& number : dq) number = random.uniform(-0.4, 0.4);
+    dq[2] *= 25.0;
+    const MotionProof proof = guard.prove(q, dq);
+    ASSERT_TRUE(is_ok(proof.status)) << reason(proof.status);
+    double least = infinity;
+    for (int s = 0; s <= 20; ++s) {
+      std::vector<double> there = q;
+      for (std::size_t k = 0; k < 6; ++k) there[k] += s / 20.0 * dq[k];
+      const double clear = clearance(instrument, *mesh, there);
+      least = std::min(least, clear);
+      if (s <= 20.0 * proof.share) {
+        ASSERT_GE(clear, kept - 3.0 * guard.tolerance());
+      }
+    }
+    free += least > kept + 0.01 ? 1 : 0;
+    proven += least > kept + 0.01 && proof.share == 1.0 ? 1 : 0;
+    partly += proof.share > 0.0 && proof.share < 1.0 ? 1 : 0;
+  }
+  EXPECT_GT(free, test::trials(50));
+  EXPECT_GT(partly, test::trials(20));
+  EXPECT_GE(proven, free * 98 / 100);
+}
+
+TEST(InstrumentConstraint, NeverLeavesTheLimitsOfItsJoints) {
+  const auto mesh = mesh_of("cube");
+  const Instrument instrument = psm_above();
+  auto guard = guard_of(mesh, instrument, {.period = 0.02});
+  Random random(6);
+  std::vector<double> q = straight_down(20.0);
+  int at_limit = 0;
+  for (int i = 0; i < test::trials(4000); ++i) {
+    if (i % 50 == 0) random.direction();
+    std::vector<double> desired(6);
+    for (std::size_t k = 0; k < 6; ++k)
+      desired[k] = (k == 2 ? 5.0 : 0.2) * (i / 200 % 2 == 0 ? 1 : -1);
+    const InstrumentStep step = guard.step(q, desired);
+    if (!step.ok()) continue;
+    const std::vector<double> next = moved(q, step);
+    for (int k = 1; k <= 6; ++k) {
+      const auto j = static_cast<std::size_t>(k - 1);
+      const JointLimits& limits = instrument.chain().joint(k).limits;
+      ASSERT_LE(next[j], limits.upper);
+      ASSERT_GE(next[j], limits.lower);
+      ASSERT_LE(std::abs(step.increment[j]), limits.velocity * 0.02 * (1.0 + 1e-12));
+      at_limit += next[j] == limits.upper || next[j] == limits.lower ? 1 : 0;
+    }
+    q = next;
+  }
+  EXPECT_GT(at_limit, test::trials(100));
+}
+
+TEST(InstrumentConstraint, ComesBackToARaisedMarginWithoutEverComingCloser) {
+  const auto mesh = std::make_shared<const Mesh>(make_cube(10.0));
+  const Instrument instrument = psm_above();
+  auto guard = guard_of(mesh, instrument);
+  std::vector<double> q = straight_down(insertion_above_cube(instrument, *mesh, 0.3));
+  for (int i = 0; i < 5; ++i) q = moved(q, guard.step(q, {.linear = Vec3(0, 0, -0.5)}));
+  InstrumentOptions options = guard.options();
+  options.margin = 0.7;
+  guard.set_options(options);
+  double last = clearance(instrument, *mesh, q);
+  int cycles = 0;
+  for (; last < options.margin - options.band && cycles < 100; ++cycles) {
+    const InstrumentStep step = guard.step(q, {.linear = Vec3(0, 0, -0.5)});
+    ASSERT_EQ(step.status, Status::recovering) << step.reason();
+    q = moved(q, step);
+    const double now = clearance(instrument, *mesh, q);
+    ASSERT_GE(now, last - options.band - 3.0 * guard.tolerance());
+    last = now;
+  }
+  EXPECT_LT(cycles, 30);
+}
+
+TEST(InstrumentConstraint, LeadsOutABodyThatReachesThroughTheSurface) {
+  const auto mesh = std::make_shared<const Mesh>(make_cube(10.0));
+  const Instrument instrument = psm_above();
+  auto guard = guard_of(mesh, instrument);
+  std::vector<double> q = straight_down(insertion_above_cube(instrument, *mesh, -0.5));
+  ASSERT_NEAR(clearance(instrument, *mesh, q), -0.5, 1e-6) << "the cutter's round end is in";
+  InstrumentStep step = guard.step(q, Twist{});
+  EXPECT_EQ(step.status, Status::recovering);
+  ASSERT_TRUE(step.distance.has_value());
+  EXPECT_NEAR(*step.distance, -0.5, 1e-6);
+  EXPECT_EQ(step.nearest, 2);
+  for (int i = 0; i < 40 && step.status == Status::recovering; ++i) {
+    q = moved(q, step);
+    step = guard.step(q, Twist{});
+  }
+  EXPECT_EQ(step.status, Status::free);
+  EXPECT_GE(clearance(instrument, *mesh, q), 0.198 - 3.0 * guard.tolerance());
+}
+
+TEST(InstrumentConstraint, MovesNothingThatIsThroughTheSurfaceOrBehindIt) {
+  const auto mesh = std::make_shared<const Mesh>(make_cube(10.0));
+  auto guard = guard_of(mesh, psm_above());
+  const std::vector<double> through =
+      straight_down(insertion_above_cube(psm_above(), *mesh, 0.0) + 5.0);
+  EXPECT_EQ(guard.step(through, Twist{.linear = Vec3(0, 0, 1)}).status, Status::touching);
+  EXPECT_TRUE(guard.step(through, Twist{}).increment.empty());
+  // A ball alone, all of it inside.
+  const Chain chain({{.kind = JointKind::prismatic}});
+  const Instrument ball(chain, {{.points = {{1, Vec3::Zero()}}, .radius = 1.0}});
+  auto inside = guard_of(mesh, ball);
+  const std::vector<double> q{0.0};
+  EXPECT_EQ(inside.step(q, Twist{}).status, Status::inside);
+  auto unchecked = guard_of(mesh, ball, {.check_sides = false});
+  EXPECT_EQ(unchecked.step(q, Twist{}).status, Status::free) << "of any surface, the side it is on";
+}
+
+TEST(InstrumentConstraint, ABladeThatTurnsIsKeptOffByItsEdges) {
+  const auto mesh = std::make_shared<const Mesh>(make_cube(10.0));
+  const Pose above{Vec3(0, 0, 53), Mat3::Identity()};
+  // 4 wide, turning about y: flat it is 3 above, upright 1 above.
+  const Chain chain({{.axis = Vec3::UnitY()}}, above);
+  const std::vector<LinkPoint> corners{{1, Vec3(-2, -1, 0)}, {1, Vec3(2, -1, 0)},
+                                       {1, Vec3(-2, 1, 0)},  {1, Vec3(2, 1, 0)},
+                                       {1, Vec3(0, 0, 0.5)}, {1, Vec3(0, 0, -0.5)}};
+  const Instrument blade(chain, {{.name = "blade", .points = corners, .radius = 0.0}});
+  auto guard = guard_of(mesh, blade, {.margin = 1.5});
+  std::vector<double> q{0.0};
+  for (int i = 0; i < 400; ++i) {
+    const InstrumentStep step = guard.step(q, std::vector<double>{0.01});
+    ASSERT_TRUE(step.ok()) << step.reason();
+    q = moved(q, step);
+    ASSERT_GE(clearance(blade, *mesh, q), 1.498 - 3.0 * guard.tolerance());
+  }
+  EXPECT_NEAR(2.0 * std::sin(q[0]), 1.5, 1e-3) << "it turned until its edge was at the margin";
+}
+
+TEST(InstrumentConstraint, RefusesWhatIsNoInput) {
+  auto guard = guard_of(mesh_of("cube"), psm_above());
+  const std::vector<double> q = straight_down(20.0);
+  std::vector<double> bad = q;
+  bad[3] = nan;
+  const std::vector<double> few(5, 0.0);
+  EXPECT_EQ(guard.step(few, Twist{}).status, Status::invalid_input);
+  EXPECT_EQ(guard.step(bad, Twist{}).status, Status::invalid_input);
+  EXPECT_EQ(guard.step(q, {.linear = Vec3(0, nan, 0)}).status, Status::invalid_input);
+  EXPECT_EQ(guard.step(q, {.angular = Vec3(0, infinity, 0)}).status, Status::invalid_input);
+  EXPECT_EQ(guard.step(q, few).status, Status::invalid_input);
+  EXPECT_EQ(guard.step(q, q, std::vector<double>(6, 0.0)).status, Status::invalid_input);
+  EXPECT_EQ(guard.prove(q, bad).status, Status::invalid_input);
+  EXPECT_EQ(guard.step(q, Twist{}).status, Status::free) << "and goes on";
+}
+
+TEST(InstrumentConstraint, SaysWhatIsWrongWithItsParts) {
+  const auto mesh = mesh_of("cube");
+  const auto message = [](const std::function<void()>& make) -> std::string {
+    try {
+      make();
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const auto with = [&](const InstrumentOptions& options) {
+    return message([&] { guard_of(mesh, psm_above(), options); });
+  };
+  EXPECT_NE(with({.margin = 0.0}).find("margin"), std::string::npos);
+  EXPECT_NE(with({.margin = 0.2, .band = 0.2}).find("band"), std::string::npos);
+  EXPECT_NE(with({.margin = 1e-12, .band = 1e-13}).find("rounding"), std::string::npos);
+  EXPECT_NE(with({.period = 0.0}).find("period"), std::string::npos);
+  EXPECT_NE(with({.damping = nan}).find("damping"), std::string::npos);
+  const auto other = mesh_of("gear");
+  const auto of_other = [&] {
+    InstrumentConstraint(mesh, std::make_shared<WideBvh>(other), psm_above(),
+                         make_solver("active_set"), {});
+  };
+  EXPECT_NE(message(of_other).find("another mesh"), std::string::npos);
+  const auto no_solver = [&] {
+    InstrumentConstraint(mesh, std::make_shared<WideBvh>(mesh), psm_above(), nullptr, {});
+  };
+  EXPECT_NE(message(no_solver).find("solver"), std::string::npos);
+}
+
+TEST(InstrumentConstraint, ABandForTheLimitsOfItsJointsHoldsEveryBendAtFullSpeed) {
+  const Instrument instrument = psm();
+  const double band = recommended_band(instrument, 1e-3, 0.0);
+  Random random(8);
+  double most = 0.0;
+  for (int i = 0; i < test::trials(20'000); ++i) {
+    std::vector<double> q(6);
+    std::vector<double> dq(6);
+    for (int k = 1; k <= 6; ++k) {
+      const auto j = static_cast<std::size_t>(k - 1);
+      const JointLimits& limits = instrument.chain().joint(k).limits;
+      q[j] = random.uniform(limits.lower, limits.upper);
+      dq[j] = limits.velocity * 1e-3 * (random.below(2) == 0 ? 1.0 : -1.0);
+    }
+    ChainState chain;
+    instrument.chain().place(q, chain);
+    for (const LinkPoint& point : instrument.points()) {
+      const Vec3 at = chain.at(point.link, point.position);
+      most = std::max(most, motion_bounds(chain, dq, point.link, at).bend / 8.0);
+    }
+  }
+  EXPECT_LE(most, band);
+  EXPECT_GT(most, 0.02 * band) << "lengths of ways are added up, folded or not";
+  EXPECT_EQ(recommended_band(instrument, 1e-3, 1.0), 1.0);
+}
+
+}  // namespace
+}  // namespace keepout
