@@ -35,8 +35,7 @@ void Certificate::try_first(const Vec3& normal) noexcept {
 void Certificate::know(NearTriangle& triangle) noexcept {
   if (triangle.is_known) return;
   budget_.spend(work_of_gap);
-  triangle.at_start = gap_at(0, *triangle.corners);
-  triangle.is_known = true;
+  triangle.know(gap_at(0, *triangle.corners));
 }
 
 Certificate::Failure Certificate::judge(std::span<NearTriangle> triangles, double reach) noexcept {

@@ -27,6 +27,13 @@ double least_distance(const Vec3& from, const Vec3& to, const Triangle& corners)
   return apart > 0.0 ? apart / length : 0.0;
 }
 
+/// How far a plane with that normal parts a core from a triangle; not at all for none.
+double distance_along(const Vec3& n, std::span<const Vec3> core, const Triangle& corners) noexcept {
+  double least = far;
+  for (const Vec3& point : core) least = std::min(least, n.dot(point));
+  return least - std::max({n.dot(corners[0]), n.dot(corners[1]), n.dot(corners[2])});
+}
+
 /// Has the memory of triangles on its way whose turn comes soon.
 void fetch_ahead(const Mesh& mesh, std::span<const TriangleId> ids, std::size_t i) noexcept {
   constexpr std::size_t corners_ahead = 16;
@@ -47,6 +54,8 @@ NearSet::NearSet(std::size_t room, double beyond) : room_(room), beyond_(beyond)
   blocks_.resize(room / NearBlock::lanes + 1);
   told_.reserve(room);
   core_.reserve(8);
+  now_.reserve(8);
+  normals_.reserve(room);
 }
 
 bool NearSet::look(Neighborhood& near, std::span<const Vec3> core, double radius) noexcept {
@@ -54,6 +63,7 @@ bool NearSet::look(Neighborhood& near, std::span<const Vec3> core, double radius
   core_.assign(core.begin(), core.end());
   ids_.clear();
   corners_.clear();
+  normals_.clear();
   start_cycle(core);
   TriangleBuffer& candidates = near.candidates();
   candidates.clear();
@@ -82,6 +92,7 @@ bool NearSet::look(Neighborhood& near, std::span<const Vec3> core, double radius
                                                   core_.front());
       ids_.push_back(found[first + lane]);
       corners_.push_back(corners[lane]);
+      normals_.push_back(Vec3::Zero());
     }
   }
   radius_ = radius;
@@ -94,6 +105,7 @@ NearScreen NearSet::screen(double distance) const noexcept {
 }
 
 void NearSet::start_cycle(std::span<const Vec3> core) noexcept {
+  now_.assign(core.begin(), core.end());
   from_ = core.front();
   to_ = core.size() > 1 ? core[1] : core.front();
   told_.clear();
@@ -110,9 +122,11 @@ std::span<NearTriangle> NearSet::nearer_than(double distance, Budget& budget) no
       for (; lanes != 0; lanes &= lanes - 1) {
         const std::size_t i = first + static_cast<std::size_t>(std::countr_zero(lanes));
         if (i >= ids_.size()) break;
-        const double least = least_distance(from_, to_, corners_[i]) - beyond_;
+        const double least = std::max(least_distance(from_, to_, corners_[i]) - beyond_,
+                                      distance_along(normals_[i], now_, corners_[i]));
         if (!(least < distance) || least < told_below_) continue;
-        told_.push_back({.id = ids_[i], .least = least, .corners = &corners_[i]});
+        told_.push_back(
+            {.id = ids_[i], .least = least, .corners = &corners_[i], .normal = &normals_[i]});
       }
     }
     std::sort(told_.begin() + known, told_.end(), [](const NearTriangle& x, const NearTriangle& y) {

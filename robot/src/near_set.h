@@ -17,8 +17,16 @@ struct NearTriangle {
   TriangleId id;
   double least;             // its distance from the core, as the cycle begins, is no less [length]
   const Triangle* corners;  // valid until triangles are looked for again
-  bool is_known = false;    // whether the gap is
-  Gap at_start = {};        // as the cycle begins
+  Vec3* normal;  // the last one that parted it from the core, which may do so again: see `know`
+  bool is_known = false;  // whether the gap is
+  Gap at_start = {};      // as the cycle begins
+
+  /// Takes down the gap as the cycle begins.
+  void know(const Gap& gap) noexcept {
+    at_start = gap;
+    *normal = gap.normal;
+    is_known = true;
+  }
 };
 
 /// The triangles around one body, kept from cycle to cycle: while no point of the body has moved
@@ -62,8 +70,10 @@ class NearSet {
   std::vector<TriangleId> ids_;
   std::vector<Triangle> corners_;
   std::vector<NearBlock> blocks_;  // the same in floats
+  std::vector<Vec3> normals_;  // that parted them from the core when their gap was found; or zero
   // Of this cycle.
-  Vec3 from_ = Vec3::Zero();  // the segment
+  std::vector<Vec3> now_;     // the core's points
+  Vec3 from_ = Vec3::Zero();  // the segment of the first two
   Vec3 to_ = Vec3::Zero();
   std::vector<NearTriangle> told_;
   double told_below_ = 0.0;  // all that may be nearer than that are among them
