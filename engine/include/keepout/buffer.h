@@ -32,6 +32,9 @@ class Buffer {
   /// at once. Precondition: there is room, size() + count <= capacity().
   void grow(std::size_t count) noexcept { size_ += count; }
 
+  /// Keeps the first `count` items. Precondition: count <= size().
+  void shrink(std::size_t count) noexcept { size_ = count; }
+
   /// Replaces the contents. The items must not be in this buffer.
   void assign(std::span<const T> items) noexcept {
     clear();

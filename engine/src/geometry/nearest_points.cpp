@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "nearest_points.h"
+#include "keepout/geometry/nearest_points.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "direction_of.h"
-#include "nearest_points.h"
+#include "keepout/geometry/nearest_points.h"
 
 namespace keepout {
 namespace {

@@ -10,7 +10,7 @@
 #include "keepout/error.h"
 #include "keepout/index/query.h"
 #include "keepout/mesh/doctor.h"
-#include "placement.h"
+#include "leading_out.h"
 
 namespace keepout {
 namespace {

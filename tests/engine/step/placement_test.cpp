@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "step/placement.h"
+#include "step/leading_out.h"
 
 #include <gtest/gtest.h>
 

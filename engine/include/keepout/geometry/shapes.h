@@ -29,6 +29,13 @@ struct Ball {
   double radius;  // [length], >= 0
 };
 
+/// All points within `radius` of a segment.
+struct Capsule {
+  Vec3 from;      // the segment's ends [length]
+  Vec3 to;
+  double radius;  // [length], >= 0
+};
+
 /// An axis-aligned box. [length]
 struct Box {
   Vec3 low;   // the corner with the least coordinates

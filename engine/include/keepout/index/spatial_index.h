@@ -39,6 +39,9 @@ class SpatialIndex {
   /// Thread-safe.
   virtual void collect(const Ball& ball, TriangleBuffer& candidates) const noexcept = 0;
 
+  /// The same for a capsule, by default by a row of balls along it.
+  virtual void collect_near(const Capsule& capsule, TriangleBuffer& candidates) const noexcept;
+
   /// Whether the candidates are exactly the triangles that touch the ball by the engine's kernel,
   /// none extra.
   virtual bool is_exact() const noexcept { return false; }

@@ -84,6 +84,9 @@ class WideBvh final : public SpatialIndex, public TriangleBlocks {
     collect(ball, candidates, nullptr);
   }
 
+  /// In one walk: what has a box that comes near the segment.
+  void collect_near(const Capsule& capsule, TriangleBuffer& candidates) const noexcept override;
+
   /// The same, and adds to `counts` what it had to look at, unless it is null.
   void collect(const Ball& ball, TriangleBuffer& candidates, QueryCounts* counts) const noexcept;
 

@@ -36,11 +36,16 @@ struct InstrumentOptions {
   double band = 0.002;
   double period = 1e-3;    // of a cycle: what velocity limits are multiplied by [s], > 0
   double recovery = 0.05;  // how far a body that is too close is led away in a cycle [length]
-  double damping = 1e-4;   // weight of |dq|^2 beside the task; see StepOptions::damping
+  /// Weight of |dq|^2 beside the task of the flange, prismatic joints counted in
+  /// orientation_weight: what singular poses give way to. [length^2]
+  double damping = 0.1;
   /// What a turn of the flange counts beside its way, in lengths: a radian off is as bad as so
   /// much. 0: only its origin is steered. [length / rad]
   double orientation_weight = 20.0;
   int refinements = 1;  // how often planes are turned towards a better motion, >= 0
+  /// Whether bodies that no step has led to where they are have to be on the free side of a
+  /// watertight mesh: by its winding, as tips are (docs/conventions.md).
+  bool check_sides = true;
   CertifiedMotion certified = CertifiedMotion::actual;
 };
 

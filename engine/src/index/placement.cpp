@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "placement.h"
+#include "keepout/index/placement.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -151,92 +151,6 @@ std::optional<Placement> place(Neighborhood& near, const Vec3& tip) noexcept {
   placement.is_free = !(facing > 0.0);
   placement.way_out = (facing > 0.0 ? 1.0 : -1.0) * nearest->offset / nearest->distance;
   return placement;
-}
-
-Vec3 lead_out(Neighborhood& near, const Vec3& tip, const Placement& placement, double longest,
-              double off) noexcept {
-  // What cannot get through in one go stops short of the surface.
-  if (placement.distance + off > longest) {
-    const double rest = std::max(placement.distance - off, 0.5 * placement.distance);
-    return std::min(longest, rest) * placement.way_out;
-  }
-  // Close to the surface no farther than needed, as another wall may stand there.
-  const double through = placement.distance + off;
-  Vec3 best = placement.distance * placement.way_out;  // on the surface, and on from there
-  double most = 0.0;
-  const auto consider = [&](const Vec3& motion) {
-    if (most >= 0.5 * off) return;
-    const auto there = place(near, tip + motion);
-    if (!there || !there->is_free || there->distance <= most) return;
-    most = there->distance;
-    best = motion;
-  };
-  consider(through * placement.way_out);
-  consider(through * placement.normal);
-  // At a saddle neither need lead out.
-  for (int i = 0; i < 27; ++i) {
-    const Vec3 towards(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
-    if (!towards.isZero()) consider(through * towards.normalized());
-  }
-  return best;
-}
-
-namespace {
-
-/// Far above the distance at which the certified rule can no longer tell a side. [length]
-double well_off(const Mesh& mesh, const StepOptions& options) noexcept {
-  const double size = mesh.bounds().size().norm() + options.radius + distance_kept(options);
-  return std::max(1e-4 * options.recovery, 1e-8 * size);
-}
-
-double longest_way(const StepOptions& options) noexcept {
-  return std::min(options.recovery, options.radius);
-}
-
-bool may_be_led(const Motion& motion, const StepOptions& options, const Mesh& mesh) noexcept {
-  return !motion.jacobian && !motion.rows && longest_way(options) >= well_off(mesh, options);
-}
-
-Step led_out(const Placement& placement, Neighborhood& near, const Motion& motion,
-             const StepOptions& options, Workspace& work) noexcept {
-  Step result{.status = Status::recovering, .distance = placement.distance};
-  result.motion =
-      lead_out(near, motion.tip, placement, longest_way(options), well_off(near.mesh(), options));
-  work.solution = {};
-  result.motion.array() += 0.0;  // no zero has a sign
-  work.keep_answer(motion, result.motion, 1.0);
-  result.increment = work.increment();
-  return result;
-}
-
-}  // namespace
-
-bool lead_out_from_inside(Neighborhood& near, const Motion& motion, const StepOptions& options,
-                          Workspace& work, Step& step) noexcept {
-  const auto placement = place(near, motion.tip);
-  if (!placement) {
-    step.status = Status::over_capacity;
-    return true;
-  }
-  if (placement->is_free) return false;
-  if (!may_be_led(motion, options, near.mesh()) || placement->distance > options.deepest) {
-    step.status = Status::inside;
-    step.distance = placement->distance;
-  } else {
-    step = led_out(*placement, near, motion, options, work);
-  }
-  return true;
-}
-
-bool lead_off_surface(Neighborhood& near, const Motion& motion, const StepOptions& options,
-                      Workspace& work, Step& step) noexcept {
-  if (!may_be_led(motion, options, near.mesh())) return false;
-  const auto placement = place(near, motion.tip);
-  if (!placement) return false;
-  const Step off = led_out(*placement, near, motion, options, work);
-  if (off.motion.isZero(0.0)) return false;
-  step = off;
-  return true;
 }
 
 }  // namespace keepout

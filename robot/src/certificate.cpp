@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "certificate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace keepout {
+namespace {
+
+// In looks.
+constexpr std::size_t work_of_gap = 3;
+constexpr std::size_t work_of_separation = 1;
+
+double support(const Triangle& triangle, const Vec3& n) noexcept {
+  return std::max({n.dot(triangle[0]), n.dot(triangle[1]), n.dot(triangle[2])});
+}
+
+}  // namespace
+
+Certificate::Certificate(const Instrument& instrument, std::size_t body, PointMotion& motion,
+                         double kept, double tolerance, Budget& budget) noexcept
+    : points_(instrument.points_of(body)),
+      radius_(instrument.bodies()[body].radius),
+      motion_(motion),
+      kept_(kept),
+      tolerance_(tolerance),
+      budget_(budget) {}
+
+void Certificate::try_first(const Vec3& normal) noexcept {
+  if (plane_count_ == most_planes) return;
+  planes_[plane_count_++] = {normal, least_height(normal, 0, PointMotion::cells)};
+}
+
+void Certificate::know(NearTriangle& triangle) noexcept {
+  if (triangle.is_known) return;
+  budget_.spend(work_of_gap);
+  triangle.at_start = gap_at(0, *triangle.corners);
+  triangle.is_known = true;
+}
+
+Certificate::Failure Certificate::judge(std::span<NearTriangle> triangles, double reach) noexcept {
+  Failure first;
+  latest_ = PointMotion::cells;
+  for (NearTriangle& triangle : triangles) {
+    const double out_of_reach = radius_ + kept_ + reach;
+    if (triangle.is_known && triangle.at_start.distance >= out_of_reach) continue;
+    budget_.spend(1);
+    if (budget_.is_spent()) return {0, nullptr};
+    if (is_covered(triangle)) continue;
+    know(triangle);
+    if (triangle.at_start.distance >= out_of_reach) continue;
+    // What is kept, or what is there if rounding has left less.
+    const double distance = triangle.at_start.distance - radius_;
+    due_ = distance >= kept_
+               ? kept_
+               : std::max(kept_ - tolerance_, std::min(kept_, distance + 2.0 * tolerance_));
+    const Gap at_end = gap_at(PointMotion::cells, *triangle.corners);
+    budget_.spend(work_of_gap);
+    const int cell = proven_until(triangle, 0, triangle.at_start, PointMotion::cells, at_end);
+    if (budget_.is_spent()) return {0, nullptr};
+    if (cell > latest_ || cell == PointMotion::cells) continue;
+    if (cell == latest_ && first.triangle != nullptr && first.triangle->id < triangle.id) continue;
+    latest_ = cell;
+    first = {cell, &triangle};
+  }
+  return first;
+}
+
+Gap Certificate::gap_at(int cell, const Triangle& corners) noexcept {
+  const Vec3* places = motion_.at(cell);
+  std::array<Vec3, Instrument::most_points_of_a_body> core;
+  for (std::size_t i = 0; i < points_.size(); ++i) core[i] = places[points_[i]];
+  return gap({core.data(), points_.size()}, corners);
+}
+
+/// Of the body's core over a plane through the origin, on a part of the motion.
+double Certificate::least_height(const Vec3& normal, int lo, int hi) noexcept {
+  const Vec3* at_lo = motion_.at(lo);
+  const Vec3* at_hi = motion_.at(hi);
+  const double share = static_cast<double>(hi - lo) / PointMotion::cells;
+  double least = std::numeric_limits<double>::infinity();
+  for (const std::uint8_t p : points_) {
+    const double first = normal.dot(at_lo[p]);
+    const double last = normal.dot(at_hi[p]);
+    const double bend = motion_.bend(p) * share * share;
+    double height = std::min(first, last);
+    const double rest = 0.5 * bend - std::abs(last - first);
+    if (rest > 0.0) height -= rest * rest / (2.0 * bend);
+    least = std::min(least, height);
+  }
+  return least;
+}
+
+bool Certificate::separates(const Vec3& normal, const NearTriangle& triangle, int lo,
+                            int hi) noexcept {
+  budget_.spend(work_of_separation);
+  const double least = least_height(normal, lo, hi);
+  const double behind = support(*triangle.corners, normal);
+  if (!(least - behind >= radius_ + due_ - 2.0 * tolerance_)) return false;
+  const bool is_whole = lo == 0 && hi == PointMotion::cells;
+  if (is_whole && plane_count_ < most_planes) planes_[plane_count_++] = {normal, least};
+  return true;
+}
+
+bool Certificate::is_covered(const NearTriangle& triangle) const noexcept {
+  const double needed = radius_ + kept_ - 2.0 * tolerance_;
+  return std::any_of(planes_.begin(), planes_.begin() + plane_count_, [&](const Plane& plane) {
+    return plane.least - support(*triangle.corners, plane.normal) >= needed;
+  });
+}
+
+/// The grid's last point up to which the part from lo to hi is proven.
+int Certificate::proven_until(const NearTriangle& triangle, int lo, const Gap& at_lo, int hi,
+                              const Gap& at_hi) noexcept {
+  if (lo > latest_ || budget_.is_spent()) return lo;
+  const Vec3* from = motion_.at(lo);
+  const Vec3* to = motion_.at(hi);
+  const double share = static_cast<double>(hi - lo) / PointMotion::cells;
+  double way = 0.0;
+  for (const std::uint8_t p : points_) {
+    way = std::max(way, (to[p] - from[p]).norm() + motion_.bend(p) * share * share / 8.0);
+  }
+  if (at_lo.distance - way >= radius_ + due_) return hi;
+  const bool has_normals = at_lo.distance > 0.0 && at_hi.distance > 0.0;
+  if (at_lo.distance > 0.0 && separates(at_lo.normal, triangle, lo, hi)) return hi;
+  if (has_normals) {
+    if (separates(at_hi.normal, triangle, lo, hi)) return hi;
+    const Vec3 sum = at_lo.normal + at_hi.normal;
+    const double length = sum.norm();
+    if (length > 1e-3 && separates(sum / length, triangle, lo, hi)) return hi;
+  }
+  if (hi - lo == 1) return lo;
+  const int middle = (lo + hi) / 2;
+  budget_.spend(work_of_gap);
+  const Gap at_middle = gap_at(middle, *triangle.corners);
+  const int first = proven_until(triangle, lo, at_lo, middle, at_middle);
+  if (first < middle) return first;
+  return proven_until(triangle, middle, at_middle, hi, at_hi);
+}
+
+}  // namespace keepout

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gap.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "keepout/geometry/closest_point.h"
+#include "keepout/geometry/nearest_points.h"
+
+namespace keepout {
+namespace {
+
+constexpr double far = std::numeric_limits<double>::infinity();
+
+/// The best pair of points found so far, and the directions that may prove its distance.
+struct Pair {
+  double distance2 = far;
+  Vec3 on_core = Vec3::Zero();
+  Vec3 away = Vec3::Zero();     // from the triangle to the core
+  Vec3 sharper = Vec3::Zero();  // a direction that the features know better; zero if none
+};
+
+double support(const Triangle& triangle, const Vec3& n) noexcept {
+  return std::max({n.dot(triangle[0]), n.dot(triangle[1]), n.dot(triangle[2])});
+}
+
+void consider_end(const Vec3& end, const Triangle& triangle, const Vec3& face,
+                  Pair& best) noexcept {
+  const ClosestPoint closest = closest_point(triangle, end);
+  const double distance2 = closest.distance * closest.distance;
+  if (!(distance2 < best.distance2)) return;
+  best = {distance2, end, -closest.offset, Vec3::Zero()};
+  if (is_face(closest.feature)) best.sharper = face;
+}
+
+/// The nearest points of the core's segment and an edge, where both are inside of them (Ericson,
+/// "Real-Time Collision Detection", 2005, 5.1.9); what ends there belongs to `consider_end`, or to
+/// the edge's own corners.
+void consider_edge(const Vec3& a, const Vec3& along, double length2, const Vec3& from,
+                   const Vec3& to, Pair& best) noexcept {
+  const Vec3 edge = to - from;
+  const Vec3 between = a - from;
+  const double edge2 = edge.squaredNorm();
+  const double lean = along.dot(edge);
+  const double at_a = along.dot(between);
+  const double at_from = edge.dot(between);
+  const double area2 = length2 * edge2 - lean * lean;
+  double u = area2 > 0.0 ? std::clamp((lean * at_from - at_a * edge2) / area2, 0.0, 1.0) : 0.0;
+  double t = edge2 > 0.0 ? (lean * u + at_from) / edge2 : 0.0;
+  if (!(t >= 0.0 && t <= 1.0)) {
+    t = t > 1.0 ? 1.0 : 0.0;
+    u = length2 > 0.0 ? std::clamp((t * lean - at_a) / length2, 0.0, 1.0) : 0.0;
+  }
+  const Vec3 on_core = a + u * along;
+  const Vec3 away = on_core - (from + t * edge);
+  const double distance2 = away.squaredNorm();
+  if (!(distance2 < best.distance2)) return;
+  best = {distance2, on_core, away, Vec3::Zero()};
+  if (u > 0.0 && u < 1.0 && t > 0.0 && t < 1.0) best.sharper = along.cross(edge);
+}
+
+/// Whether a segment goes through a triangle's inside.
+bool goes_through(const Vec3& a, const Vec3& b, const Triangle& triangle,
+                  const Vec3& face) noexcept {
+  const double at_a = face.dot(a - triangle[0]);
+  const double at_b = face.dot(b - triangle[0]);
+  if (!((at_a > 0.0 && at_b < 0.0) || (at_a < 0.0 && at_b > 0.0))) return false;
+  const Vec3 along = b - a;
+  // The turn from each side to the way has one sign all around.
+  const Vec3 v0 = triangle[0] - a;
+  const Vec3 v1 = triangle[1] - a;
+  const Vec3 v2 = triangle[2] - a;
+  const double s0 = along.dot(v0.cross(v1));
+  const double s1 = along.dot(v1.cross(v2));
+  const double s2 = along.dot(v2.cross(v0));
+  return (s0 >= 0.0 && s1 >= 0.0 && s2 >= 0.0) || (s0 <= 0.0 && s1 <= 0.0 && s2 <= 0.0);
+}
+
+/// Takes of two directions the one that proves more.
+Gap proven(const Pair& nearest, std::span<const Vec3> core, const Triangle& triangle) noexcept {
+  Gap best;
+  best.contact = nearest.on_core;
+  for (const Vec3& towards : {nearest.away, nearest.sharper}) {
+    const double length2 = towards.squaredNorm();
+    if (!(length2 > 0.0)) continue;
+    Vec3 n = towards / std::sqrt(length2);
+    if (n.dot(nearest.away) < 0.0) n = -n;
+    double least = far;
+    for (const Vec3& point : core) least = std::min(least, n.dot(point));
+    const double behind = support(triangle, n);
+    if (!(least - behind > best.distance)) continue;
+    best.distance = least - behind;
+    best.normal = n;
+    best.support = behind;
+  }
+  return best;
+}
+
+}  // namespace
+
+Gap gap(std::span<const Vec3> core, const Triangle& triangle) noexcept {
+  if (core.size() > 2) {
+    const NearestPoints nearest = nearest_points(core, triangle);
+    if (nearest.overlap || !(nearest.proven > 0.0)) {
+      return {.contact = nearest.on_triangle};
+    }
+    return {nearest.proven, nearest.normal, support(triangle, nearest.normal),
+            nearest.on_triangle + nearest.to_core};
+  }
+  const Vec3& a = core.front();
+  const Vec3& b = core.back();
+  const Vec3 face = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
+  Pair nearest;
+  consider_end(a, triangle, face, nearest);
+  if (core.size() == 2) {
+    if (goes_through(a, b, triangle, face)) {
+      const double share = face.dot(triangle[0] - a) / face.dot(b - a);
+      return {.contact = a + std::clamp(share, 0.0, 1.0) * (b - a)};
+    }
+    consider_end(b, triangle, face, nearest);
+    const Vec3 along = b - a;
+    const double length2 = along.squaredNorm();
+    for (std::size_t e = 0; e < 3; ++e) {
+      consider_edge(a, along, length2, triangle[e], triangle[(e + 1) % 3], nearest);
+    }
+  }
+  return proven(nearest, core, triangle);
+}
+
+}  // namespace keepout

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "keepout/robot/instrument_constraint.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "joint_cycle.h"
+#include "keepout/error.h"
+
+namespace keepout {
+namespace {
+
+// Positions and increments beyond that are no joint's.
+constexpr double largest = 1e9;
+
+bool are_numbers(std::span<const double> values) noexcept {
+  return std::all_of(values.begin(), values.end(),
+                     [](double x) { return std::abs(x) <= largest; });  // false for NaN
+}
+
+std::unique_ptr<Neighborhood> neighborhood_of(std::shared_ptr<const Mesh> mesh,
+                                              std::shared_ptr<const SpatialIndex> index,
+                                              const Solver* solver,
+                                              const InstrumentCapacity& capacity) {
+  if (!mesh || !index || solver == nullptr) {
+    throw Error("an instrument constraint needs a mesh, an index and a solver");
+  }
+  if (capacity.triangles == 0 || capacity.planes == 0 || capacity.planes > (1u << 16)) {
+    throw Error(
+        "the capacity must be of at least one triangle and one plane, at most 65536 planes");
+  }
+  return std::make_unique<Neighborhood>(std::move(mesh), std::move(index), capacity.triangles,
+                                        capacity.looks);
+}
+
+}  // namespace
+
+struct InstrumentConstraint::State {
+  State(std::shared_ptr<const Mesh> mesh, std::shared_ptr<const SpatialIndex> index, Instrument its,
+        std::unique_ptr<Solver> its_solver, const InstrumentCapacity& capacity)
+      : instrument(std::move(its)),
+        solver(std::move(its_solver)),
+        near(neighborhood_of(std::move(mesh), std::move(index), solver.get(), capacity)),
+        memory(instrument, *near, *solver, capacity) {}
+
+  /// Throws unless all is in range, and rounding leaves something of the margin.
+  void require_usable(const InstrumentOptions& o) const {
+    const auto within = [](double x, double low) { return x >= low && x <= longest_length; };
+    if (!within(o.margin, shortest_length) || !(o.band > 0.0) || !(o.band < o.margin)) {
+      throw Error("the margin must be above zero, and the band above zero and below the margin");
+    }
+    if (!within(o.recovery, 0.0) || !within(o.damping, 0.0) || !within(o.orientation_weight, 0.0) ||
+        !(o.period > 0.0 && o.period < largest) || o.refinements < 0) {
+      throw Error(
+          "recovery, damping, orientation weight and refinements must not be below zero, and the "
+          "period must be above it");
+    }
+    // The certified distance, and the band, are told apart from rounding.
+    const double least = 4.0 * memory.tolerance;
+    if (!(o.margin - o.band > least) || !(o.band > least)) {
+      throw Error(
+          "the margin or its band is lost in the rounding of an instrument and a mesh of this "
+          "size: each must be well above 1e-11 of both");
+    }
+  }
+
+  InstrumentStep step(const JointTask& task, std::span<const double> q) noexcept {
+    InstrumentStep result;
+    JointCycle(memory, options, q).run(task, result);
+    return result;
+  }
+
+  /// Before anything else: why there can be no step.
+  Status check(std::span<const double> q) noexcept {
+    near->budget().renew();
+    if (!near->is_current()) return Status::mesh_changed;
+    const auto n = static_cast<std::size_t>(instrument.chain().size());
+    return q.size() == n && are_numbers(q) ? Status::free : Status::invalid_input;
+  }
+
+  Instrument instrument;
+  std::unique_ptr<Solver> solver;
+  std::unique_ptr<Neighborhood> near;
+  CycleMemory memory;
+  InstrumentOptions options;
+};
+
+InstrumentConstraint::InstrumentConstraint(std::shared_ptr<const Mesh> mesh,
+                                           std::shared_ptr<const SpatialIndex> index,
+                                           Instrument instrument, std::unique_ptr<Solver> solver,
+                                           const InstrumentOptions& options,
+                                           const InstrumentCapacity& capacity)
+    : state_(std::make_unique<State>(std::move(mesh), std::move(index), std::move(instrument),
+                                     std::move(solver), capacity)) {
+  set_options(options);
+}
+
+InstrumentConstraint::InstrumentConstraint(InstrumentConstraint&&) noexcept = default;
+InstrumentConstraint& InstrumentConstraint::operator=(InstrumentConstraint&&) noexcept = default;
+InstrumentConstraint::~InstrumentConstraint() = default;
+
+InstrumentStep InstrumentConstraint::step(std::span<const double> q,
+                                          const Twist& desired) noexcept {
+  Status status = state_->check(q);
+  const bool is_number =
+      are_numbers({desired.linear.data(), 3}) && are_numbers({desired.angular.data(), 3});
+  if (is_ok(status) && !is_number) status = Status::invalid_input;
+  if (!is_ok(status)) return {.status = status};
+  ChainState chain;
+  state_->instrument.chain().place(q, chain);
+  return state_->step(flange_task(chain, desired, state_->options), q);
+}
+
+InstrumentStep InstrumentConstraint::step(std::span<const double> q,
+                                          std::span<const double> desired,
+                                          std::span<const double> weights) noexcept {
+  Status status = state_->check(q);
+  const bool is_weighed =
+      weights.empty() || (weights.size() == q.size() && are_numbers(weights) &&
+                          *std::min_element(weights.begin(), weights.end()) > 0);
+  if (is_ok(status) && !(desired.size() == q.size() && are_numbers(desired) && is_weighed)) {
+    status = Status::invalid_input;
+  }
+  if (!is_ok(status)) return {.status = status};
+  return state_->step(joint_task(desired, weights), q);
+}
+
+void InstrumentConstraint::forget() noexcept { state_->memory.forget(); }
+
+const Instrument& InstrumentConstraint::instrument() const noexcept { return state_->instrument; }
+const Mesh& InstrumentConstraint::mesh() const noexcept { return state_->near->mesh(); }
+const InstrumentOptions& InstrumentConstraint::options() const noexcept { return state_->options; }
+
+void InstrumentConstraint::set_options(const InstrumentOptions& options) {
+  state_->require_usable(options);
+  state_->options = options;
+}
+
+double InstrumentConstraint::tolerance() const noexcept { return state_->memory.tolerance; }
+std::size_t InstrumentConstraint::looks() const noexcept { return state_->near->budget().spent(); }
+
+double recommended_band(const Instrument& instrument, double period, double least) {
+  const Chain& chain = instrument.chain();
+  double most = 0.0;
+  for (const LinkPoint& point : instrument.points()) {
+    double lever = point.position.norm();  // from joint k to the point, at the most
+    double path = 0.0;
+    double bend = 0.0;
+    for (int k = point.link; k >= 1; --k) {
+      const Joint& joint = chain.joint(k);
+      const double step = std::min(joint.limits.velocity * period, joint.limits.increment);
+      if (joint.kind == JointKind::prismatic) {
+        path += step;
+        lever += std::max(std::abs(joint.limits.lower), std::abs(joint.limits.upper));
+      } else {
+        bend += step * ((lever + path) * step + 2.0 * path);
+        path += (lever + path) * step;
+      }
+      lever += joint.origin.position.norm();
+    }
+    most = std::max(most, bend);
+  }
+  return std::max(least, most / 8.0);
+}
+
+}  // namespace keepout

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "joint_task.h"
+
+#include <cmath>
+
+namespace keepout {
+
+double JointTask::cost(const JointVector& increment) const noexcept {
+  double sum = 0.0;
+  for (int row = 0; row < rows; ++row) {
+    double off = -desired[static_cast<std::size_t>(row)];
+    for (int k = 0; k < joints; ++k) {
+      off += jacobian[static_cast<std::size_t>(k * rows + row)] * in_units(increment, k);
+    }
+    sum += off * off;
+  }
+  for (int k = 0; k < joints; ++k) {
+    const double u = in_units(increment, k);
+    sum += damping * u * u;
+  }
+  return sum;
+}
+
+JointTask JointTask::scaled(double share) const noexcept {
+  JointTask task = *this;
+  for (double& number : task.desired) number *= share;
+  return task;
+}
+
+JointTask flange_task(const ChainState& chain, const Twist& desired,
+                      const InstrumentOptions& options) noexcept {
+  const bool turns = options.orientation_weight > 0.0;
+  // What a prismatic joint moves by is as much as a radian that moves the flange as far.
+  const double length = turns ? options.orientation_weight : 1.0;
+  JointTask task{.rows = turns ? 6 : 3, .joints = chain.size(), .damping = options.damping};
+  const Vec3 tip = chain.flange().position;
+  const auto put = [&](int column, const Vec3& linear, const Vec3& angular) {
+    double* to = column < 0 ? task.desired.data() : task.jacobian.data() + column * task.rows;
+    for (int axis = 0; axis < 3; ++axis) {
+      to[axis] = linear[axis];
+      if (turns) to[3 + axis] = options.orientation_weight * angular[axis];
+    }
+  };
+  put(-1, desired.linear, desired.angular);
+  for (int k = 1; k <= chain.size(); ++k) {
+    const double unit = chain.turns(k) ? 1.0 : length;
+    task.unit[static_cast<std::size_t>(k - 1)] = unit;
+    put(k - 1, unit * chain.linear(k, chain.size(), tip), chain.angular(k, chain.size()));
+  }
+  return task;
+}
+
+JointTask joint_task(std::span<const double> desired, std::span<const double> weights) noexcept {
+  const int n = static_cast<int>(desired.size());
+  JointTask task{.rows = n, .joints = n};
+  for (std::size_t k = 0; k < desired.size(); ++k) {
+    const double weight = weights.empty() ? 1.0 : std::sqrt(weights[k]);
+    task.unit[k] = 1.0;
+    task.jacobian[k * desired.size() + k] = weight;
+    task.desired[k] = weight * desired[k];
+  }
+  return task;
+}
+
+}  // namespace keepout

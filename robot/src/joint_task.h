@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+
+#include "keepout/robot/instrument_constraint.h"
+#include "point_motion.h"
+
+namespace keepout {
+
+/// What the joints are to achieve: min |J u - v|^2 + damping |u|^2, where u is dq with each joint
+/// in a unit of its own, so that a radian and a length are about as much: dq_k = unit_k u_k.
+struct JointTask {
+  static constexpr int most_rows = Chain::most_joints;
+
+  std::array<double, most_rows * Chain::most_joints> jacobian{};  // J (rows, n), column by column
+  std::array<double, most_rows> desired{};                        // v (rows)
+  int rows = 0;
+  int joints = 0;
+  double damping = 0.0;
+  JointVector unit{};  // [rad or length]
+
+  /// What an increment dq costs.
+  double cost(const JointVector& increment) const noexcept;
+  /// A joint's increment in its unit.
+  double in_units(const JointVector& increment, int k) const noexcept {
+    return increment[static_cast<std::size_t>(k)] / unit[static_cast<std::size_t>(k)];
+  }
+  /// The same task, but for a share of what is desired.
+  JointTask scaled(double share) const noexcept;
+};
+
+/// Moves the flange by a twist: its way, and its turn times options.orientation_weight.
+JointTask flange_task(const ChainState& chain, const Twist& desired,
+                      const InstrumentOptions& options) noexcept;
+
+/// Moves the joints: dq (n) with weights (n), or none.
+JointTask joint_task(std::span<const double> desired, std::span<const double> weights) noexcept;
+
+}  // namespace keepout

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "gap.h"
+#include "keepout/index/query.h"
+
+namespace keepout {
+
+/// A triangle that may matter in a cycle, and how a body stands to it.
+struct NearTriangle {
+  TriangleId id;
+  double least;             // its distance from the core, as the cycle begins, is no less [length]
+  const Triangle* corners;  // valid until triangles are looked for again
+  bool is_known = false;    // whether the gap is
+  Gap at_start = {};        // as the cycle begins
+};
+
+/// The triangles around one body, kept from cycle to cycle: while no point of the body has moved
+/// farther than they were looked for, nothing else can be in reach. What is in here is decided by
+/// the engine and not by the index, so it is the same on each.
+class NearSet {
+ public:
+  /// With room for so many triangles. Allocates; nothing else does.
+  explicit NearSet(std::size_t room);
+
+  /// Looks for all triangles within `radius` of a core (in the places of its points), which all is
+  /// within `beyond` of the segment of its first two points. Exact distances are computed of what
+  /// seems nearer than `close`. `tolerance`: rounding that distances may have. False if there are
+  /// too many, or the budget is spent: then nothing is known. [length]
+  [[nodiscard]] bool look(Neighborhood& near, std::span<const Vec3> core, double beyond,
+                          double radius, double close, double tolerance) noexcept;
+
+  /// Forgets all: nothing is known.
+  void forget() noexcept { radius_ = -1.0; }
+
+  /// How far around the core all is known, from where it was then. Below 0: nothing is. [length]
+  double radius() const noexcept { return radius_; }
+  /// Where the points of the core were then. [length]
+  std::span<const Vec3> core() const noexcept { return core_; }
+  /// How many triangles there are.
+  std::size_t size() const noexcept { return ids_.size(); }
+
+  /// A new cycle, with the core elsewhere, no point of which has moved farther than `moved` since
+  /// triangles were looked for: those that matter are told anew. [length]
+  void start_cycle(std::span<const Vec3> core, double moved) noexcept;
+  /// Those that may be nearer than that to the core as the cycle begins, the nearest first; of
+  /// equals the first by number. Valid until triangles are looked for again, or the next cycle.
+  std::span<NearTriangle> nearer_than(double distance) noexcept;
+
+ private:
+  static constexpr std::size_t block = 16;
+
+  std::size_t room_;
+  double radius_ = -1.0;
+  std::vector<Vec3> core_;
+  std::vector<TriangleId> ids_;
+  std::vector<Triangle> corners_;
+  std::vector<double> least_;
+  std::vector<double> least_of_block_;
+  double tolerance_ = 0.0;
+  double beyond_ = 0.0;
+  // Of this cycle.
+  Vec3 first_ = Vec3::Zero();  // the segment
+  Vec3 along_ = Vec3::Zero();
+  double moved_ = 0.0;
+  std::vector<NearTriangle> told_;
+  double told_below_ = 0.0;  // all that may be nearer than that are among them
+};
+
+}  // namespace keepout
