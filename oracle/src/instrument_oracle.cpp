@@ -2,18 +2,18 @@
 #include "keepout/oracle/instrument_oracle.h"
 
 #include <algorithm>
+#include <functional>
 #include <limits>
 #include <utility>
 
 namespace keepout::oracle {
 namespace {
 
-// To look through a neighbour takes some 5 ns, to fetch and sort one some 50.
+// What is fetched at once: neither so much that it takes long, nor so little that it is soon again.
 constexpr std::size_t few = 64;
 constexpr std::size_t many = 256;
-constexpr std::size_t few_judged = 4;
 constexpr double least_slack = 1.0 / 64.0;
-constexpr double largest_slack = 64.0;
+constexpr double largest_slack = 16.0;
 
 double distance_of(const Vec3& point, const Segment& segment) noexcept {
   const Vec3 way = segment.to - segment.from;
@@ -43,12 +43,12 @@ void InstrumentOracle::move_to(std::span<const double> positions) {
 }
 
 void InstrumentOracle::look_around(Surroundings& around, const Segment& axis, double reach) {
-  around.reference = axis;
+  around.travelled = 0.0;
   around.known = reach + around.slack;
   found_.clear();
   tree_->collect_within(around.known, axis, found_);
   around.neighbors.clear();
-  around.order.clear();
+  around.heap.clear();
   for (const TriangleId t : found_) {
     const Triangle triangle = tree_->mesh().triangle(t);
     const Bounds bounds = bounds_of(triangle);
@@ -58,11 +58,10 @@ void InstrumentOracle::look_around(Surroundings& around, const Segment& axis, do
                           rounding_of(axis, center);
     const double low = distance_of(center, axis) - radius;
     if (low > around.known) continue;
-    around.order.push_back({low, static_cast<std::uint32_t>(around.neighbors.size())});
+    around.heap.push_back({low, static_cast<std::uint32_t>(around.neighbors.size())});
     around.neighbors.push_back({triangle, center, radius});
   }
-  std::ranges::sort(around.order, {}, &Entry::low);
-  // For the next time: neither too much to look through, nor too soon too little.
+  std::ranges::make_heap(around.heap, std::greater(), &Entry::key);
   const std::size_t count = around.neighbors.size();
   if (count > many) around.slack = std::max(least_slack, 0.5 * around.slack);
   if (count < few) around.slack = std::min(largest_slack, 2.0 * around.slack);
@@ -75,31 +74,29 @@ double InstrumentOracle::clearance(std::size_t body, double reach) {
   bool found = false;
   Surroundings& around = surroundings_[body];
   // No point of the axis has moved farther than its farther end, nor has any distance changed more.
-  const auto moved = [&] {
-    return std::max((axis.from - around.reference.from).norm(),
-                    (axis.to - around.reference.to).norm()) +
-           rounding_of(axis, around.reference.to);
-  };
-  if (!(nearest + moved() < around.known)) look_around(around, axis, nearest);
-  const double gone = moved();
-  std::size_t judged = 0;
-  for (Entry& entry : around.order) {
-    entry.low -= gone;
-    if (entry.low > nearest) continue;
+  around.travelled +=
+      std::max((axis.from - around.last.from).norm(), (axis.to - around.last.to).norm()) +
+      rounding_of(axis, around.last.to);
+  around.last = axis;
+  if (!(nearest + around.travelled < around.known)) look_around(around, axis, nearest);
+  std::vector<Entry>& heap = around.heap;
+  auto end = heap.end();  // of the heap; behind it is what was looked at by now
+  while (end != heap.begin() && heap.front().key - around.travelled <= nearest) {
+    std::ranges::pop_heap(heap.begin(), end, std::greater(), &Entry::key);
+    Entry& entry = *--end;
     const Neighbor& neighbor = around.neighbors[entry.neighbor];
-    entry.low = std::max(entry.low, distance_of(neighbor.center, axis) - neighbor.radius);
-    if (entry.low > nearest) continue;
-    const Bracket distance = narrow_distance(axis, neighbor.triangle);
-    entry.low = distance.low;
-    ++judged;
-    if (distance.estimate > nearest) continue;
-    nearest = distance.estimate;
-    found = true;
+    double low = distance_of(neighbor.center, axis) - neighbor.radius;
+    if (low <= nearest) {
+      const Bracket distance = narrow_distance(axis, neighbor.triangle);
+      low = distance.low;
+      found = found || distance.estimate <= nearest;
+      nearest = std::min(nearest, distance.estimate);
+    }
+    entry.key = low + around.travelled;
   }
-  around.reference = axis;
-  around.known -= gone;
-  // What is near by now comes first, so that the next time all else can be passed over.
-  if (judged > few_judged) std::ranges::sort(around.order, {}, &Entry::low);
+  while (end != heap.end()) {
+    std::ranges::push_heap(heap.begin(), ++end, std::greater(), &Entry::key);
+  }
   return found ? nearest - radius : std::numeric_limits<double>::infinity();
 }
 

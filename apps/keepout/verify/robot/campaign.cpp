@@ -135,7 +135,11 @@ class Attempt {
     tally.rows += step.rows;
     tally.most_looks = std::max<std::uint64_t>(tally.most_looks, constraint_.looks());
     const RobotTask task(instrument_.chain(), positions_, desired, constraint_.options());
-    if (task.share(made) < blocked_below && tally.blocked++ % sampled == 0) {
+    const RobotTask::Increment none = RobotTask::Increment::Zero(made.size());
+    const bool is_led = step.status == Status::recovering;
+    tally.worse += !is_led && task.cost(made) > 1.05 * task.cost(none) ? 1 : 0;
+    // What is led out has other things to do than what it is asked for.
+    if (!is_led && task.share(made) < blocked_below && tally.blocked++ % sampled == 0) {
       const double more = excess(task, instrument_.chain(), positions_, {made.data(), next.size()},
                                  constraint_.options(), oracle_, random_);
       ++tally.samples;

@@ -43,7 +43,9 @@ struct RobotTally {
   /// near. [mm]
   double least_beyond = std::numeric_limits<double>::infinity();
   std::array<std::uint64_t, status_count> statuses{};
-  std::uint64_t blocked = 0;  // cycles that made less than a twentieth of the motion asked for
+  /// Cycles that led nothing out, and made less than a twentieth of the motion asked for, or one
+  /// that costs more than none at all, by a twentieth.
+  std::uint64_t blocked = 0, worse = 0;
   std::uint64_t rounds = 0, most_rounds = 0;
   std::uint64_t rows = 0;  // that held motions back, in all
   std::uint64_t most_looks = 0;

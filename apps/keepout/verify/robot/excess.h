@@ -22,8 +22,10 @@ class RobotTask {
   double cost(const Increment& dq) const {
     return (jacobian_ * dq - desired_).squaredNorm() + damping_.dot(dq.cwiseAbs2());
   }
-  /// How far the flange goes, of how far it is asked to.
-  double share(const Increment& dq) const { return (jacobian_ * dq).norm() / desired_.norm(); }
+  /// How much of the motion that is asked for is made: what goes along it.
+  double share(const Increment& dq) const {
+    return desired_.dot(jacobian_ * dq) / desired_.squaredNorm();
+  }
   /// How much less the cost becomes where nothing holds the joints back.
   double largest_reduction() const;
   /// For each joint, the increment that alone moves the flange as far as is asked for.

@@ -72,6 +72,7 @@ const Columns<RobotTally>& columns() {
        &percent},
       {"unsolved_share", [](const Tally& t) { return share_of(t, Status::unsolved); }, "none", 6,
        &percent},
+      {"worse", &Tally::worse, "worse", 5, &count},
       {"rounds_mean", [](const Tally& t) { return ratio(t.rounds, t.cycles); }, "rounds", 6,
        &figure<3>},
       {"rounds_max", &Tally::most_rounds, "max", 3, &count},
@@ -92,16 +93,14 @@ const Columns<RobotTally>& columns() {
 }
 
 constexpr const char* legend =
-    "below: cycles that came closer than was to be kept, as an independent judge sees six poses of "
-    "each;\nin mesh: of them, those in which the mesh reached into a body. limits: cycles that "
-    "broke "
-    "a joint's.\nleast: smallest clearance beyond what was to be kept. blocked: cycles that made "
-    "less than 5 % of\nwhat was asked; cut: to the part that was proven; none: nothing was. "
-    "excess: "
-    "cost that a search\ncould still save, of all that can be, in blocked cycles looked at; "
-    "useful: "
-    "more than 5 %. recov.:\nhow often a body was closer than a margin just set; in 500: of them "
-    "within 500 cycles. Lengths in mm.\n";
+    R"(below: cycles that came closer than was to be kept, as an independent judge sees six poses of each;
+in mesh: of them, those in which the mesh reached into a body. limits: cycles that broke a joint's.
+least: smallest clearance beyond what was to be kept. blocked: cycles that made less than 5 % of what
+was asked; worse: those whose motion was more off than none. cut: to the part that was proven; none:
+nothing was. excess: cost that a search could still save, of all there is, in blocked cycles looked at;
+useful: more than 5 %. recov.: how often a body was closer than a margin just set; in 500: of them within
+500 cycles. Lengths in mm.
+)";
 
 }  // namespace
 

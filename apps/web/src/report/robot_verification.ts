@@ -10,11 +10,8 @@ const column = (heading: string, from: string, format: Format = grouped): Column
   from,
   format,
 });
-const share = (heading: string, from: string): Column => ({
-  heading,
-  from,
-  format: (value) => `${percent(value)} %`,
-});
+const share = (heading: string, from: string): Column =>
+  column(heading, from, (value) => `${percent(value)} %`);
 const time = (heading: string, key: string): Column =>
   column(heading, `/step_us/${key}`, microseconds);
 
@@ -57,11 +54,12 @@ export function robotVerificationSections(): HTMLElement[] {
     share("blocked", "/blocked_share"),
     share("cut short", "/cut_share"),
     share("no motion proven", "/unsolved_share"),
+    { ...column("worse than none", "/worse"), look: "harm" },
     column("excess", "/excess_mean", (value) => rounded(value, 2)),
     column("searched", "/excess_samples"),
     column("useful", "/useful"),
     column("recoveries", "/recoveries"),
-    column("within 500 cycles", "/recovered"),
+    column("in time", "/recovered"),
     column("cycles", "/recovery_cycles_mean", mean),
   ];
   const part = (title: string, words: string, columns: readonly Column[]) =>

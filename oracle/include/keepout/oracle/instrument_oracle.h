@@ -41,17 +41,20 @@ class InstrumentOracle {
     Vec3 center;
     double radius;  // of a ball around the triangle
   };
+  /// A neighbor, and how far away it is at least, plus how far the body had travelled when that
+  /// was found out: the sum need not be kept up to date while the body travels on.
   struct Entry {
-    double low;  // the neighbor is no nearer to the reference
+    double key;
     std::uint32_t neighbor;
   };
-  /// What was around a body.
+  /// What was around a body, and how far it has travelled since.
   struct Surroundings {
-    Segment reference = {};
-    double known = -1.0;  // all triangles within it of the reference are here
+    double known = -1.0;  // all triangles that were nearer than that are here
     double slack = 1.0;   // beyond what was asked for
+    double travelled = 0.0;
+    Segment last = {};  // where its axis was
     std::vector<Neighbor> neighbors = {};
-    std::vector<Entry> order = {};  // those that may be nearest first
+    std::vector<Entry> heap = {};  // those that may be nearest first
   };
 
   void look_around(Surroundings& around, const Segment& axis, double reach);
