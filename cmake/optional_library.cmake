@@ -9,6 +9,7 @@ option(KEEPOUT_WITH_EMBREE "Index of Embree" ON)
 option(KEEPOUT_WITH_CCD "Narrow phase of libccd" ON)
 option(KEEPOUT_WITH_NLOPT "Solvers of NLopt" ON)
 option(KEEPOUT_WITH_OMPL "Validators and a planner for OMPL" ON)
+option(KEEPOUT_WITH_URDF "Reader of robots in URDF" ON)
 # GPL-3: what is linked with it may only be passed on under the GPL. Never in the library.
 option(KEEPOUT_WITH_CGAL "Index of CGAL, for tests and benchmarks" OFF)
 

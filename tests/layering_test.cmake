@@ -20,14 +20,16 @@ endfunction()
 
 set(include "^ *# *include *[<\"]")
 forbid(engine "${include}keepout/(adapters|solvers|factory|fixtures|control|robot)/" "the engine knows no other part")
-forbid(adapters "${include}keepout/(solvers|factory|fixtures|control|robot)/" "adapters know only the engine")
+foreach(part all_indices bullet ccd cgal embree fcl include ompl src)
+  forbid(adapters/${part} "${include}keepout/(solvers|factory|fixtures|control|robot|urdf)/" "adapters know only the engine")
+endforeach()
 forbid(solvers "${include}keepout/(adapters|factory|fixtures|control|robot)/" "solvers know only the engine")
-forbid(fixtures "${include}keepout/(adapters|solvers|factory|control)/" "fixtures know only the engine")
+forbid(fixtures "${include}keepout/(adapters|solvers|factory|control|urdf)/" "fixtures know only the engine and robots")
 forbid(control "${include}keepout/(adapters|solvers|factory|fixtures|robot)/" "control knows only the engine")
 forbid(robot "${include}keepout/(adapters|solvers|factory|fixtures|control)/" "robot knows only the engine")
 
 # One folder a library: what two of them share is in adapters/src.
-set(libraries bullet ccd cgal embree fcl ompl)
+set(libraries bullet ccd cgal embree fcl ompl urdf)
 foreach(library IN LISTS libraries)
   set(others ${libraries})
   list(REMOVE_ITEM others ${library})
@@ -43,9 +45,15 @@ forbid(solvers "${include}(ompl/|keepout/ompl/)" "solvers know no planner")
 forbid(factory "${include}(ompl/|keepout/ompl/)" "the factory knows no planner")
 forbid(adapters/src "${include}(ompl/|keepout/ompl/)" "the other adapters know no planner")
 
+# The reader of robots is a library of its own as well, above robot; who wants one asks for it.
+forbid(adapters/urdf "${include}keepout/(adapters|solvers|factory|fixtures|control|ompl)/" "the reader knows only the engine and robots")
+foreach(part engine solvers control robot factory)
+  forbid(${part} "${include}(urdf_[a-z]+/|tinyxml|keepout/urdf/)" "the library reads no description of robots")
+endforeach()
+
 # What is under the GPL stays in its own folder, and in the target that gathers all indices.
 foreach(part engine solvers control robot factory fixtures oracle adapters/include adapters/src
-        adapters/bullet adapters/ccd adapters/embree adapters/fcl adapters/ompl)
+        adapters/bullet adapters/ccd adapters/embree adapters/fcl adapters/ompl adapters/urdf)
   forbid(${part} "${include}(CGAL/|keepout/adapters/all_indices)"
          "the library is not to depend on the GPL")
 endforeach()
@@ -63,7 +71,7 @@ foreach(part engine adapters solvers control robot factory fixtures)
 endforeach()
 
 # In public headers: ours, Eigen's, and the standard library's, whose names have no dot or slash.
-foreach(part engine adapters adapters/ompl solvers control robot factory fixtures oracle)
+foreach(part engine adapters adapters/ompl adapters/urdf solvers control robot factory fixtures oracle)
   file(GLOB_RECURSE headers "${SOURCE}/${part}/include/*.h")
   foreach(header IN LISTS headers)
     file(STRINGS "${header}" lines REGEX "${include}")

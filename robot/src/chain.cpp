@@ -26,7 +26,10 @@ Mat3 exact(const Mat3& r) { return Eigen::Quaterniond(r).normalized().toRotation
 /// One that turns z to an axis.
 Mat3 to_axis(const Vec3& axis) {
   if (axis == Vec3::UnitZ()) return Mat3::Identity();
-  return Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), axis).toRotationMatrix();
+  // Over the nearer of z and -z: the turn to a vector almost opposite is known to few digits.
+  const double side = std::copysign(1.0, axis.z());
+  return Eigen::Quaterniond::FromTwoVectors(side * Vec3::UnitZ(), axis).toRotationMatrix() *
+         Vec3(1.0, side, side).asDiagonal();
 }
 
 void require_pose(const Pose& pose, const std::string& whose) {

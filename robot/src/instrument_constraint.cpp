@@ -126,6 +126,22 @@ InstrumentStep InstrumentConstraint::step(std::span<const double> q,
   return state_->step(joint_task(desired, weights), q);
 }
 
+MotionProof InstrumentConstraint::prove(std::span<const double> q,
+                                        std::span<const double> increment) noexcept {
+  Status status = state_->check(q);
+  if (is_ok(status) && !(increment.size() == q.size() && are_numbers(increment))) {
+    status = Status::invalid_input;
+  }
+  if (!is_ok(status)) return {.status = status};
+  state_->memory.forget_motion();
+  JointVector motion{};
+  std::copy(increment.begin(), increment.end(), motion.begin());
+  InstrumentStep result;
+  const double share = JointCycle(state_->memory, state_->options, q).prove(motion, result);
+  state_->memory.forget_motion();
+  return {result.status, share, result.distance};
+}
+
 void InstrumentConstraint::forget() noexcept { state_->memory.forget(); }
 
 const Instrument& InstrumentConstraint::instrument() const noexcept { return state_->instrument; }

@@ -58,8 +58,7 @@ CycleMemory::CycleMemory(const Instrument& its, Neighborhood& its_near, Solver& 
       warm(capacity.planes) {
   const auto n = static_cast<std::size_t>(its.chain().size());
   for (std::size_t b = 0; b < its.bodies().size(); ++b) {
-    const double nothing = 0.0;
-    bodies.push_back({NearSet(near.room()), reach_beyond_axis(its, b), nothing, nothing});
+    bodies.push_back({.near = NearSet(near.room(), reach_beyond_axis(its, b))});
   }
   matrix.resize((2 * n + capacity.planes) * n);
   bounds.resize(2 * n + capacity.planes);
@@ -68,13 +67,17 @@ CycleMemory::CycleMemory(const Instrument& its, Neighborhood& its_near, Solver& 
 }
 
 void CycleMemory::forget() noexcept {
-  warm.clear();
-  side_of = 0;
+  forget_motion();
   for (BodyMemory& body : bodies) {
     body.near.forget();
-    body.guard = 0.0;
-    body.floor = std::numeric_limits<double>::infinity();
+    body.guard = body.reach = 0.0;
   }
+}
+
+void CycleMemory::forget_motion() noexcept {
+  warm.clear();
+  side_of = 0;
+  for (BodyMemory& body : bodies) body.floor = std::numeric_limits<double>::infinity();
 }
 
 JointCycle::JointCycle(CycleMemory& memory, const InstrumentOptions& options,
@@ -130,6 +133,18 @@ void JointCycle::run(const JointTask& task, InstrumentStep& result) noexcept {
   memory_.side_of = memory_.near.mesh().id();
 }
 
+double JointCycle::prove(const JointVector& increment, InstrumentStep& result) noexcept {
+  result.status = open(result);
+  if (!is_ok(result.status)) return 0.0;
+  memory_.rows.clear();
+  Trial trial{.increment = increment};
+  judge(trial);
+  if (is_recovering_) result.status = Status::recovering;
+  if (trouble_ != Status::free) result.status = trouble_;
+  if (is_worn_out()) result.status = Status::unsolved;
+  return is_ok(result.status) ? static_cast<double>(trial.cell) / PointMotion::cells : 0.0;
+}
+
 /// How each body stands, and what it is to keep.
 Status JointCycle::open(InstrumentStep& result) noexcept {
   memory_.motion.start(q_, memory_.near.budget());
@@ -153,7 +168,8 @@ Status JointCycle::open_body(std::size_t b, InstrumentStep& result) noexcept {
   Certificate certificate(memory_.instrument, b, memory_.motion, target, tolerance,
                           memory_.near.budget());
   double nearest = std::numeric_limits<double>::infinity();
-  for (NearTriangle& triangle : body.near.nearer_than(radius + options_.margin)) {
+  for (NearTriangle& triangle :
+       body.near.nearer_than(radius + options_.margin, memory_.near.budget())) {
     certificate.know(triangle);
     nearest = std::min(nearest, triangle.at_start.distance);
   }
@@ -201,7 +217,7 @@ bool JointCycle::is_inside() noexcept {
 
 void JointCycle::start_body(std::size_t b) noexcept {
   Core core;
-  memory_.bodies[b].near.start_cycle(core_of(b, core), moved(b));
+  memory_.bodies[b].near.start_cycle(core_of(b, core));
 }
 
 /// The places of a body's points as the cycle begins.
@@ -227,17 +243,15 @@ bool JointCycle::look(std::size_t b, double needed) noexcept {
   BodyMemory& body = memory_.bodies[b];
   if (body.near.radius() >= 0.0 && body.near.radius() - moved(b) >= needed) return true;
   Core core;
-  const double radius = memory_.instrument.bodies()[b].radius;
   // Farther where there is little, so that it is looked for seldom; less far where there is much.
-  constexpr std::size_t few = 4;
-  constexpr std::size_t many = 32;
-  const double size = memory_.near.mesh().bounds().size().norm();
-  if (!(body.guard > 0.0)) body.guard = 8.0 * options_.margin;
+  constexpr std::size_t few = 8;
+  constexpr std::size_t many = 64;
+  const double least = std::max(options_.margin, body.reach);
+  body.guard = std::clamp(body.guard, least, std::max(16.0 * options_.margin, 3.0 * body.reach));
   for (const double share : {1.0, 0.125, 0.0}) {
-    if (body.near.look(memory_.near, core_of(b, core), body.beyond, needed + share * body.guard,
-                       radius + options_.margin, memory_.tolerance)) {
+    if (body.near.look(memory_.near, core_of(b, core), needed + share * body.guard)) {
       if (share < 1.0 || body.near.size() > many) body.guard *= 0.5;
-      if (body.near.size() < few) body.guard = std::min(2.0 * body.guard, size);
+      if (body.near.size() < few) body.guard *= 2.0;
       return true;
     }
     if (is_worn_out()) break;
@@ -264,7 +278,7 @@ void JointCycle::start_rows() noexcept {
     int count = 0;
     BodyMemory& body = memory_.bodies[b];
     const double radius = memory_.instrument.bodies()[b].radius;
-    const auto nearby = body.near.nearer_than(radius + options_.margin);
+    const auto nearby = body.near.nearer_than(radius + options_.margin, memory_.near.budget());
     while (count < most_recovery_rows) {
       // The nearest one that none of the rows leads away from.
       const NearTriangle* nearest = nullptr;
@@ -290,7 +304,8 @@ void JointCycle::start_rows() noexcept {
 
 NearTriangle* JointCycle::find(std::size_t b, TriangleId id) noexcept {
   const double radius = memory_.instrument.bodies()[b].radius;
-  for (NearTriangle& triangle : memory_.bodies[b].near.nearer_than(radius + options_.margin)) {
+  for (NearTriangle& triangle :
+       memory_.bodies[b].near.nearer_than(radius + options_.margin, memory_.near.budget())) {
     if (triangle.id == id) return &triangle;
   }
   return nullptr;
@@ -434,13 +449,14 @@ void JointCycle::judge(Trial& trial) noexcept {
   for (std::size_t b = 0; b < memory_.bodies.size(); ++b) {
     failures_[b] = {};
     const double reach = memory_.motion.farthest(b);
+    memory_.bodies[b].reach = reach;
     const double needed = memory_.instrument.bodies()[b].radius + kept_[b] + reach;
     if (!look(b, needed)) {
       trial.cell = 0;
       trouble_ = Status::over_capacity;
       return;
     }
-    const std::span<NearTriangle> triangles = memory_.bodies[b].near.nearer_than(needed);
+    const std::span<NearTriangle> triangles = memory_.bodies[b].near.nearer_than(needed, budget);
     if (triangles.empty()) continue;
     looked_at_ = std::max(looked_at_, triangles.size());
     Certificate certificate(memory_.instrument, b, memory_.motion, kept_[b], memory_.tolerance,

@@ -23,10 +23,9 @@ namespace keepout {
 /// What is remembered of a body from cycle to cycle.
 struct BodyMemory {
   NearSet near;
-  double beyond =
-      0.0;       // how far its core reaches beyond the segment of its first two points [length]
-  double guard;  // how much farther than needed triangles are looked for [length]
-  double floor;  // what was certified last [length]
+  double reach = 0.0;  // of its last motion [length]
+  double guard = 0.0;  // how much farther than needed triangles are looked for [length]
+  double floor = 0.0;  // what was certified last [length]
 };
 
 /// A row that held a motion back: the next cycle begins with it.
@@ -56,7 +55,10 @@ struct CycleMemory {
   std::uint64_t side_of = 0;  // the mesh that it was on the free side of; 0: unknown
   JointVector increment;      // the answer
 
+  /// Forgets all, and allocates nothing.
   void forget() noexcept;
+  /// Forgets where the last step led and what it kept, but not what is near.
+  void forget_motion() noexcept;
 };
 
 /// One cycle of an instrument: solve, judge, add rows, until the motion is certified; then the
@@ -68,6 +70,10 @@ class JointCycle {
 
   /// Preconditions: q and the task are finite; the index is current.
   void run(const JointTask& task, InstrumentStep& result) noexcept;
+
+  /// The share of a motion that is certified; status and distance go to the result. Limits of
+  /// joints are not looked at. The same preconditions.
+  double prove(const JointVector& increment, InstrumentStep& result) noexcept;
 
  private:
   /// A motion, and the part of it that is certified.

@@ -2,6 +2,8 @@
 #include "near_set.h"
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
 #include <limits>
 
 namespace keepout {
@@ -9,104 +11,106 @@ namespace {
 
 constexpr double far = std::numeric_limits<double>::infinity();
 
-double inverse_square(const Vec3& v) noexcept {
-  const double length2 = v.squaredNorm();
-  return length2 > 0.0 ? 1.0 / length2 : 0.0;
-}
-
 /// A lower bound of the distance from a segment to a triangle, by the plane across the shortest way
 /// to the triangle's middle.
-double least_distance(const Vec3& a, const Vec3& along, double inverse2,
-                      const Triangle& corners) noexcept {
-  const Vec3 middle = (corners[0] + corners[1] + corners[2]) * (1.0 / 3.0);
-  const double share = std::clamp(along.dot(middle - a) * inverse2, 0.0, 1.0);
-  const Vec3 nearest = a + share * along;
-  const Vec3 towards = middle - nearest;
-  const double length2 = towards.squaredNorm();
-  if (!(length2 > 0.0)) return 0.0;
-  const double along_least =
-      std::min({towards.dot(corners[0] - nearest), towards.dot(corners[1] - nearest),
-                towards.dot(corners[2] - nearest)});
-  return along_least > 0.0 ? along_least / std::sqrt(length2) : 0.0;
+double least_distance(const Vec3& from, const Vec3& to, const Triangle& corners) noexcept {
+  const Vec3 along = to - from;
+  const double length2 = along.squaredNorm();
+  const Vec3 to_middle = (corners[0] + corners[1] + corners[2]) * (1.0 / 3.0) - from;
+  const double share = length2 > 0.0 ? std::clamp(along.dot(to_middle) / length2, 0.0, 1.0) : 0.0;
+  const Vec3 towards = to_middle - share * along;
+  const double length = towards.norm();
+  if (!(length > 0.0)) return 0.0;
+  const double nearest = std::min({towards.dot(corners[0] - from), towards.dot(corners[1] - from),
+                                   towards.dot(corners[2] - from)});
+  const double apart = nearest - std::max(towards.dot(along), 0.0);
+  return apart > 0.0 ? apart / length : 0.0;
+}
+
+/// Has the memory of triangles on its way whose turn comes soon.
+void fetch_ahead(const Mesh& mesh, std::span<const TriangleId> ids, std::size_t i) noexcept {
+  constexpr std::size_t corners_ahead = 16;
+  constexpr std::size_t vertices_ahead = 8;
+  if (i + corners_ahead < ids.size()) __builtin_prefetch(&mesh.corners(ids[i + corners_ahead]));
+  if (i + vertices_ahead < ids.size()) {
+    for (const VertexId v : mesh.corners(ids[i + vertices_ahead])) {
+      __builtin_prefetch(&mesh.vertex(v));
+    }
+  }
 }
 
 }  // namespace
 
-NearSet::NearSet(std::size_t room) : room_(room) {
+NearSet::NearSet(std::size_t room, double beyond) : room_(room), beyond_(beyond) {
   ids_.reserve(room);
   corners_.reserve(room);
-  least_.reserve(room);
-  least_of_block_.reserve(room / block + 1);
+  blocks_.resize(room / NearBlock::lanes + 1);
   told_.reserve(room);
-  core_.reserve(64);
+  core_.reserve(8);
 }
 
-bool NearSet::look(Neighborhood& near, std::span<const Vec3> core, double beyond, double radius,
-                   double close, double tolerance) noexcept {
+bool NearSet::look(Neighborhood& near, std::span<const Vec3> core, double radius) noexcept {
   forget();
   core_.assign(core.begin(), core.end());
   ids_.clear();
   corners_.clear();
-  least_.clear();
-  least_of_block_.clear();
-  const Vec3& a = core.front();
-  const Vec3& b = core.size() > 1 ? core[1] : a;
+  start_cycle(core);
   TriangleBuffer& candidates = near.candidates();
   candidates.clear();
-  near.index().collect_near({a, b, radius + beyond + tolerance}, candidates);
+  near.index().collect_near({from_, to_, radius + beyond_}, candidates);
   near.budget().spend(16 + candidates.size());
   if (candidates.overflowed() || near.budget().is_spent()) return false;
   const Mesh& mesh = near.mesh();
-  const Vec3 along = b - a;
-  const double inverse2 = inverse_square(along);
-  double least_of_block = far;
-  for (const TriangleId id : candidates) {
-    const Triangle corners = mesh.triangle(id);
-    double least = least_distance(a, along, inverse2, corners) - beyond - tolerance;
-    if (least > radius) continue;
-    if (least < close) {
-      near.budget().spend(3);
-      least = gap(core, corners).distance - tolerance;
-      if (least > radius) continue;
+  // Everything that matters is within the radius of the core.
+  size_ = (to_ - from_).norm() + 2.0 * (radius + beyond_) + mesh.longest_edge();
+  const NearScreen screen = this->screen(radius);
+  const std::span<const TriangleId> found = candidates.view();
+  NearBlock block;
+  Triangle corners[NearBlock::lanes];
+  for (std::size_t first = 0; first < found.size(); first += NearBlock::lanes) {
+    const std::size_t count = std::min(NearBlock::lanes, found.size() - first);
+    for (std::size_t lane = 0; lane < count; ++lane) {
+      fetch_ahead(mesh, found, first + lane);
+      corners[lane] = mesh.triangle(found[first + lane]);
+      block.set(lane, corners[lane], core_.front());
     }
-    if (ids_.size() == room_) return false;
-    ids_.push_back(id);
-    corners_.push_back(corners);
-    least_.push_back(least);
-    least_of_block = std::min(least_of_block, least);
-    if (ids_.size() % block != 0) continue;
-    least_of_block_.push_back(least_of_block);
-    least_of_block = far;
+    for (std::uint32_t lanes = may_be_near(block, screen); lanes != 0; lanes &= lanes - 1) {
+      const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
+      if (lane >= count) break;
+      if (ids_.size() == room_) return false;
+      blocks_[ids_.size() / NearBlock::lanes].set(ids_.size() % NearBlock::lanes, corners[lane],
+                                                  core_.front());
+      ids_.push_back(found[first + lane]);
+      corners_.push_back(corners[lane]);
+    }
   }
-  if (ids_.size() % block != 0) least_of_block_.push_back(least_of_block);
-  if (near.budget().is_spent()) return false;
   radius_ = radius;
-  beyond_ = beyond;
-  tolerance_ = tolerance;
-  start_cycle(core, 0.0);
   return true;
 }
 
-void NearSet::start_cycle(std::span<const Vec3> core, double moved) noexcept {
-  first_ = core.front();
-  along_ = core.size() > 1 ? Vec3(core[1] - first_) : Vec3::Zero();
-  moved_ = moved;
+/// For the core as it is in this cycle.
+NearScreen NearSet::screen(double distance) const noexcept {
+  return {from_ - core_.front(), to_ - core_.front(), distance + beyond_, size_};
+}
+
+void NearSet::start_cycle(std::span<const Vec3> core) noexcept {
+  from_ = core.front();
+  to_ = core.size() > 1 ? core[1] : core.front();
   told_.clear();
   told_below_ = -far;
 }
 
-std::span<NearTriangle> NearSet::nearer_than(double distance) noexcept {
-  if (distance > told_below_) {
+std::span<NearTriangle> NearSet::nearer_than(double distance, Budget& budget) noexcept {
+  if (distance > told_below_ && !ids_.empty()) {
     const auto known = static_cast<std::ptrdiff_t>(told_.size());
-    const double inverse2 = inverse_square(along_);
-    const double then = distance + moved_;
-    for (std::size_t of = 0; of < least_of_block_.size(); ++of) {
-      if (!(least_of_block_[of] < then)) continue;
-      const std::size_t end = std::min((of + 1) * block, ids_.size());
-      for (std::size_t i = of * block; i < end; ++i) {
-        if (!(least_[i] < then)) continue;
-        const double now = least_distance(first_, along_, inverse2, corners_[i]);
-        const double least = std::max(least_[i] - moved_, now - beyond_ - tolerance_);
+    const NearScreen screen = this->screen(distance);
+    budget.spend(1 + ids_.size() / (4 * NearBlock::lanes));
+    for (std::size_t first = 0; first < ids_.size(); first += NearBlock::lanes) {
+      std::uint32_t lanes = may_be_near(blocks_[first / NearBlock::lanes], screen);
+      for (; lanes != 0; lanes &= lanes - 1) {
+        const std::size_t i = first + static_cast<std::size_t>(std::countr_zero(lanes));
+        if (i >= ids_.size()) break;
+        const double least = least_distance(from_, to_, corners_[i]) - beyond_;
         if (!(least < distance) || least < told_below_) continue;
         told_.push_back({.id = ids_[i], .least = least, .corners = &corners_[i]});
       }

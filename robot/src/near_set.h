@@ -8,6 +8,7 @@
 
 #include "gap.h"
 #include "keepout/index/query.h"
+#include "near_blocks.h"
 
 namespace keepout {
 
@@ -21,19 +22,17 @@ struct NearTriangle {
 };
 
 /// The triangles around one body, kept from cycle to cycle: while no point of the body has moved
-/// farther than they were looked for, nothing else can be in reach. What is in here is decided by
-/// the engine and not by the index, so it is the same on each.
+/// farther than they were looked for, nothing else can be in reach. What is told of them is decided
+/// by the engine and not by the index, so it is the same on each.
 class NearSet {
  public:
-  /// With room for so many triangles. Allocates; nothing else does.
-  explicit NearSet(std::size_t room);
+  /// With room for so many triangles, for a body whose core is all within `beyond` of the segment
+  /// of its first two points. Allocates; nothing else does. [length]
+  NearSet(std::size_t room, double beyond);
 
-  /// Looks for all triangles within `radius` of a core (in the places of its points), which all is
-  /// within `beyond` of the segment of its first two points. Exact distances are computed of what
-  /// seems nearer than `close`. `tolerance`: rounding that distances may have. False if there are
-  /// too many, or the budget is spent: then nothing is known. [length]
-  [[nodiscard]] bool look(Neighborhood& near, std::span<const Vec3> core, double beyond,
-                          double radius, double close, double tolerance) noexcept;
+  /// Looks for all triangles within `radius` of a core, in the places of its points. False if there
+  /// are too many, or the budget is spent: then nothing is known. [length]
+  [[nodiscard]] bool look(Neighborhood& near, std::span<const Vec3> core, double radius) noexcept;
 
   /// Forgets all: nothing is known.
   void forget() noexcept { radius_ = -1.0; }
@@ -45,29 +44,27 @@ class NearSet {
   /// How many triangles there are.
   std::size_t size() const noexcept { return ids_.size(); }
 
-  /// A new cycle, with the core elsewhere, no point of which has moved farther than `moved` since
-  /// triangles were looked for: those that matter are told anew. [length]
-  void start_cycle(std::span<const Vec3> core, double moved) noexcept;
+  /// A new cycle, with the core elsewhere.
+  void start_cycle(std::span<const Vec3> core) noexcept;
   /// Those that may be nearer than that to the core as the cycle begins, the nearest first; of
   /// equals the first by number. Valid until triangles are looked for again, or the next cycle.
-  std::span<NearTriangle> nearer_than(double distance) noexcept;
+  /// Work is taken from the budget. [length]
+  std::span<NearTriangle> nearer_than(double distance, Budget& budget) noexcept;
 
  private:
-  static constexpr std::size_t block = 16;
+  NearScreen screen(double distance) const noexcept;
 
   std::size_t room_;
+  double beyond_;
   double radius_ = -1.0;
   std::vector<Vec3> core_;
+  double size_ = 0.0;  // the largest coordinate, from the core's first point [length]
   std::vector<TriangleId> ids_;
   std::vector<Triangle> corners_;
-  std::vector<double> least_;
-  std::vector<double> least_of_block_;
-  double tolerance_ = 0.0;
-  double beyond_ = 0.0;
+  std::vector<NearBlock> blocks_;  // the same in floats
   // Of this cycle.
-  Vec3 first_ = Vec3::Zero();  // the segment
-  Vec3 along_ = Vec3::Zero();
-  double moved_ = 0.0;
+  Vec3 from_ = Vec3::Zero();  // the segment
+  Vec3 to_ = Vec3::Zero();
   std::vector<NearTriangle> told_;
   double told_below_ = 0.0;  // all that may be nearer than that are among them
 };

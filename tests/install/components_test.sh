@@ -13,7 +13,7 @@ cmake_minimum_required(VERSION 3.25)
 project(parts LANGUAGES CXX)
 separate_arguments(ASK)
 find_package(keepout ${ASK})
-foreach(part engine solvers adapters keepout control robot ompl)
+foreach(part engine solvers adapters keepout control robot ompl urdf)
   if(TARGET keepout::${part})
     message(STATUS "has ${part}")
   endif()
@@ -53,6 +53,13 @@ if [ -e "$(library_folder "$prefix")/cmake/keepout/keepout-ompl-find.cmake" ]; t
   says "has ompl"
   answer=$(ask "REQUIRED COMPONENTS ompl" -DCMAKE_DISABLE_FIND_PACKAGE_ompl=ON) && fail "planning without OMPL"
   says "install libompl-dev"
+fi
+
+if [ -e "$(library_folder "$prefix")/cmake/keepout/keepout-urdf.cmake" ]; then
+  answer=$(ask "REQUIRED COMPONENTS urdf" "${without_libraries[@]}")
+  says "has urdf"
+  says "has robot"
+  says_not "has adapters"
 fi
 
 if [ "$form" = static ]; then

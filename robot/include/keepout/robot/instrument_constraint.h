@@ -75,6 +75,16 @@ struct InstrumentStep {
   std::string_view reason() const noexcept { return keepout::reason(status); }
 };
 
+/// How much of a motion is certified.
+struct MotionProof {
+  Status status = Status::invalid_input;  // how it ended; `recovering`: some body is too close now
+  double share = 0.0;  // q + s dq is proven for s from 0 to here: 1 if all of it is
+  std::optional<double> distance = std::nullopt;  // as InstrumentStep::distance [length]
+
+  /// Whether the instrument keeps the whole margin, less its band, on the whole motion.
+  bool is_clear() const noexcept { return status == Status::free && share == 1.0; }
+};
+
 /// Keeps a whole instrument out of a mesh, in joint space: the joint increment nearest to what is
 /// asked for that provably keeps each body clear, on the motion that the joints really make.
 ///
@@ -106,6 +116,11 @@ class InstrumentConstraint {
   /// 0; all 1 when empty): min sum w_k (dq_k - desired_k)^2.
   InstrumentStep step(std::span<const double> q, std::span<const double> desired,
                       std::span<const double> weights = {}) noexcept;
+
+  /// Looks at a motion, and does not solve for a better one: for planners, which ask of many, and
+  /// of single configurations by an increment of 0. `increment`: dq (n), of any size. Limits of
+  /// joints are not looked at, and it does not matter where the last step led.
+  MotionProof prove(std::span<const double> q, std::span<const double> increment) noexcept;
 
   /// Forgets what the last cycle left: for motions that have nothing to do with each other.
   void forget() noexcept;

@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "keepout/error.h"
+#include "keepout/fixtures/robots.h"
+#include "keepout/urdf/read_chain.h"
+
+namespace keepout {
+namespace {
+
+/// A mount of fixed joints, a joint of each kind, and two tips.
+const std::string arm = R"(<?xml version="1.0"?>
+<robot name="arm">
+  <!-- A comment with a <tag> in it. -->
+  <link name="world"/><link name="base"/><link name="upper"/><link name="fore"/><link name="hand"/>
+  <link name="tool"/><link name="camera"/>
+  <joint name="mount" type="fixed"><parent link="world"/><child link="base"/>
+    <origin xyz="0 0 0.5" rpy="0 0 1.5707963267948966"/></joint>
+  <joint name="turn" type="revolute"><parent link="base"/><child link="upper"/>
+    <origin xyz="0.1 0 0"/><axis xyz="0 0 1"/>
+    <limit lower="-1" upper="2" effort="1" velocity="3"/></joint>
+  <joint name="slide" type="prismatic"><parent link="upper"/><child link="fore"/>
+    <axis xyz="0.5774 0.5774 0.5774"/><limit lower="-0.1" upper="0.2" effort="1" velocity="0.3"/></joint>
+  <joint name="spin" type="continuous"><parent link="fore"/><child link="hand"/></joint>
+  <joint name="grip" type="fixed"><parent link="hand"/><child link="tool"/>
+    <origin xyz="0 0 0.05"/></joint>
+  <joint name="bracket" type="fixed"><parent link="hand"/><child link="camera"/></joint>
+</robot>
+)";
+
+std::string with(std::string text, const std::string& old, const std::string& other) {
+  const std::size_t at = text.find(old);
+  EXPECT_NE(at, std::string::npos) << old;
+  return text.replace(at, old.size(), other);
+}
+
+/// That a text is refused in these words, which follow its name.
+void expect_refused(const std::string& text, const std::string& words, const std::string& base = "",
+                    const std::string& tip = "tool", double scale = 1000.0) {
+  try {
+    parse_chain(text, "arm.urdf", base, tip, scale);
+    ADD_FAILURE() << "not refused: " << words;
+  } catch (const Error& error) {
+    const std::string said = error.what();
+    EXPECT_TRUE(said.starts_with("arm.urdf: ") && said.find(words) != std::string::npos)
+        << said << "\nexpected: " << words;
+  }
+}
+
+/// The same, of the arm where `old` is `other`.
+void expect_fault(const std::string& old, const std::string& other, const std::string& words) {
+  expect_refused(with(arm, old, other), words);
+}
+
+void expect_same(const Chain& expected, const std::string& name) {
+  const UrdfChain read = read_chain(std::string(KEEPOUT_ROBOTS) + "/" + name + ".urdf", "", "");
+  EXPECT_EQ(read.robot, name);
+  const Chain chain(read.joints, {}, read.flange);
+  ASSERT_EQ(chain.size(), expected.size());
+  const auto expect_near = [](const Pose& a, const Pose& b) {
+    EXPECT_LT((a.position - b.position).norm(), 1e-12);
+    EXPECT_LT((a.rotation - b.rotation).cwiseAbs().maxCoeff(), 1e-15);
+  };
+  for (int k = 1; k <= chain.size(); ++k) {
+    const Joint& joint = chain.joint(k);
+    EXPECT_EQ(joint.name, expected.joint(k).name);
+    EXPECT_EQ(joint.kind, expected.joint(k).kind);
+    EXPECT_EQ(joint.axis, expected.joint(k).axis);
+    expect_near(joint.origin, expected.joint(k).origin);
+    EXPECT_DOUBLE_EQ(joint.limits.lower, expected.joint(k).limits.lower);
+    EXPECT_DOUBLE_EQ(joint.limits.upper, expected.joint(k).limits.upper);
+    EXPECT_DOUBLE_EQ(joint.limits.velocity, expected.joint(k).limits.velocity);
+    EXPECT_EQ(read.links[static_cast<std::size_t>(k)], joint.name + "_link");
+  }
+  expect_near(chain.flange(), expected.flange());
+}
+
+TEST(Urdf, TheRobotsOfTheFilesAreThoseOfTheFixtures) {
+  expect_same(psm().chain(), "psm");
+  expect_same(seven_joint_arm().chain(), "seven_joint_arm");
+}
+
+TEST(Urdf, FixedJointsAreMergedAndLengthsAreScaled) {
+  const UrdfChain chain = parse_chain(arm, "arm.urdf", "", "tool");
+  EXPECT_EQ(chain.links, (std::vector<std::string>{"world", "upper", "fore", "hand"}));
+  ASSERT_EQ(chain.joints.size(), 3u);
+  EXPECT_LT((chain.joints[0].origin.position - Vec3(0, 100, 500)).norm(), 1e-12);
+  EXPECT_LT((chain.joints[0].origin.rotation.col(0) - Vec3::UnitY()).norm(), 1e-15);
+  EXPECT_EQ(chain.joints[0].limits.upper, 2.0) << "radians are not scaled";
+  EXPECT_EQ(chain.joints[0].limits.velocity, 3.0);
+  EXPECT_EQ(chain.joints[1].limits.lower, -100.0);
+  EXPECT_EQ(chain.joints[1].limits.velocity, 300.0);
+  EXPECT_DOUBLE_EQ(chain.joints[1].axis.norm(), 1.0) << "to three digits it was";
+  EXPECT_EQ(chain.joints[2].axis, Vec3::UnitX()) << "where none is told";
+  EXPECT_EQ(chain.joints[2].limits.upper, std::numeric_limits<double>::infinity());
+  EXPECT_EQ(chain.joints[2].limits.velocity, std::numeric_limits<double>::infinity());
+  EXPECT_EQ(chain.flange.position, Vec3(0, 0, 50));
+  const UrdfChain part = parse_chain(arm, "arm.urdf", "base", "fore", 1.0);
+  EXPECT_EQ(part.links, (std::vector<std::string>{"base", "upper", "fore"}));
+  EXPECT_EQ(part.joints[0].origin.position, Vec3(0.1, 0, 0));
+}
+
+TEST(Urdf, WhatIsOffTheWayIsNotAskedFor) {
+  const std::string other =
+      with(arm, "\"bracket\" type=\"fixed\"", "\"bracket\" type=\"floating\"");
+  EXPECT_EQ(parse_chain(other, "arm.urdf", "", "tool").joints.size(), 3u);
+  expect_refused(other, "joint 'bracket' is floating", "", "camera");
+}
+
+TEST(Urdf, EachFaultOfTheTextHasAMessageOfItsOwn) {
+  expect_fault("</robot>", "", "not XML");
+  expect_fault("</robot>", "<!-- </robot>", "not XML: '<!--");
+  expect_fault("<robot name=\"arm\">", "<robot>", "No name given for the robot");
+  expect_fault("<link name=\"hand\"/>", "", "hand");
+  expect_fault("<link name=\"hand\"/>", "<link name=\"fore\"/>", "'fore' is not unique");
+  expect_fault("name=\"slide\"", "name=\"turn\"", "two joints are called 'turn'");
+  expect_fault("</robot>", "</robot><robot/>", "one element <robot>");
+  expect_refused("", "not XML: Error document empty");
+  expect_refused("solid cube", "arm.urdf: not XML");
+  expect_refused("<mujoco/>", "one element <robot>");
+}
+
+TEST(Urdf, EachFaultOfTheTreeHasAMessageOfItsOwn) {
+  expect_refused(arm, "no link 'bass'; did you mean 'base'?", "bass");
+  expect_refused(arm, "name one of base, camera, fore, hand", "", "x7");
+  expect_refused(arm, "'fore' is not below 'tool'", "tool", "fore");
+  expect_refused(arm, "name one of camera, tool", "", "");
+  expect_refused(arm, "0 joints move between", "hand", "tool");
+  expect_refused(arm, "the scale", "", "tool", 0.0);
+  expect_fault("child link=\"camera\"", "child link=\"upper\"", "'upper' is the child of joint");
+  expect_fault("child link=\"camera\"", "child link=\"world\"", "is part of a loop");
+  expect_fault("parent link=\"base\"", "parent link=\"fore\"", "is part of a loop");
+  expect_fault("child link=\"camera\"", "child link=\"hand\"", "'hand' is the child of joint");
+  expect_fault("parent link=\"hand\"", "parent link=\"hans\"", "parent link [hans] of joint");
+  expect_fault("parent link=\"fore\"", "parent", "missing a parent");
+}
+
+TEST(Urdf, EachFaultOfAJointHasAMessageOfItsOwn) {
+  const std::string axis = "<axis xyz=\"0 0 1\"/>";
+  const std::string limit = "<limit lower=\"-1\" upper=\"2\" effort=\"1\" velocity=\"3\"/>";
+  expect_fault(axis, "<axis xyz=\"0 0 0\"/>", "joint 'turn' has a zero axis");
+  expect_fault(axis, "<axis/>", "joint 'turn' has a zero axis");
+  expect_fault(axis, "<axis xyz=\"0 0 2\"/>", "joint 'turn' has an axis of length 2.0");
+  expect_fault(axis, "<axis xyz=\"0 0 0.998\"/>", "joint 'turn' has an axis of length 0.998");
+  expect_fault(axis, "<axis xyz=\"0 0 1e300\"/>", "joint 'turn' has an axis of length");
+  expect_fault(axis, "<axis xyz=\"0 1\"/>", "Malformed axis element for joint [turn]");
+  expect_fault(axis, axis + "<axis xyz=\"1 0 0\"/>", "joint 'turn' has <axis> twice");
+  expect_fault("\"revolute\"", "\"floating\"", "joint 'turn' is floating");
+  expect_fault("\"revolute\"", "\"planar\"", "joint 'turn' is planar");
+  expect_fault("\"revolute\"", "\"ball\"", "no known type [ball]");
+  expect_fault(axis, axis + "<mimic joint=\"spin\"/>", "joint 'turn' mimics");
+  expect_fault(limit, "", "turn");
+  expect_fault("upper=\"2\" ", "", "joint 'turn' has no upper limit");
+  expect_fault("lower=\"-1\" ", "", "joint 'turn' has no lower limit");
+  expect_fault("effort=\"1\" ", "", "no effort");
+  expect_fault(" velocity=\"3\"", "", "no velocity");
+  expect_fault("velocity=\"3\"", "velocity=\"0\"", "'turn' has a velocity limit not above zero");
+  expect_fault("velocity=\"3\"", "velocity=\"-1\"", "'turn' has a velocity limit not above zero");
+  expect_fault("velocity=\"3\"", "velocity=\"inf\"", "joint [turn]");
+  expect_fault("velocity=\"0.3\"", "velocity=\"1e307\"",
+               "'slide' has a velocity limit that is not");
+  expect_fault("upper=\"0.2\"", "upper=\"1e307\"", "'slide' has a limit that is not finite");
+  expect_fault("upper=\"2\"", "upper=\"-2\"", "joint 'turn' has lower above upper limit");
+  expect_fault("upper=\"2\"", "upper=\"nan\"", "joint [turn]");
+  expect_fault("xyz=\"0.1 0 0\"", "xyz=\"1e307 0 0\"", "the origin of joint 1 ('turn') is no pose");
+  expect_fault("xyz=\"0.1 0 0\"", "xyz=\"0.1 0 nan\"", "joint [turn]");
+}
+
+TEST(Urdf, MoreJointsThanAChainMayHaveAreRefused) {
+  std::string robot = "<robot name=\"worm\"><link name=\"l0\"/>";
+  for (const char digit : std::string("012345678")) {
+    std::string joint = R"(<link name="l!"/><joint name="j@" type="continuous">)"
+                        R"(<parent link="l@"/><child link="l!"/></joint>)";
+    std::replace(joint.begin(), joint.end(), '@', digit);
+    std::replace(joint.begin(), joint.end(), '!', static_cast<char>(digit + 1));
+    robot += joint;
+  }
+  robot += "</robot>";
+  expect_refused(robot, "9 joints move between 'l0' and 'l9', not 1 to 8", "", "");
+  EXPECT_EQ(parse_chain(robot, "worm.urdf", "", "l8").joints.size(), 8u);
+}
+
+TEST(Urdf, HostileSizesAreRefusedBeforeTheParserSeesThem) {
+  const auto repeated = [](const std::string& piece, int times) {
+    std::string text;
+    for (int i = 0; i < times; ++i) text += piece;
+    return text;
+  };
+  const auto grown = [](const std::string& inside) {
+    return with(arm, "</robot>", inside + "</robot>");
+  };
+  expect_refused(grown(std::string(std::size_t{16} << 20, ' ')), "16 MiB");
+  expect_refused(grown(std::string(1, '\0')), "zero byte");
+  expect_refused(grown(repeated("<x>", 1'000'000)), "nested too deep");
+  expect_refused(grown(repeated("<x><!--</x>-->", 1000)), "too deep");
+  expect_refused(grown(repeated("<x y=\"</x>\">", 1000)), "not XML");
+  expect_refused(grown("<?x > " + repeated("<x>", 1000)), "too deep");
+  expect_refused("</x>" + repeated("<x>", 1000), "no beginning");
+  expect_refused(grown("<x " + repeated("a ", 9000) + "/>"), "2048");
+  expect_refused(grown(repeated("<x/>", 300'000)), "too many");
+  std::string joints;
+  for (int i = 0; i < 1100; ++i) joints += "<joint name=\"extra" + std::to_string(i) + "\"/>";
+  expect_refused(grown(joints), "more than 1000 joints");
+}
+
+TEST(Urdf, WhatCannotBeReadIsSaid) {
+  for (const char* path : {"/nowhere/arm.urdf", "/", "/dev/null", "/dev/zero"}) {
+    try {
+      read_chain(path, "", "");
+      ADD_FAILURE() << path;
+    } catch (const Error& error) {
+      EXPECT_TRUE(std::string(error.what()).starts_with(std::string(path) + ": ")) << error.what();
+    }
+  }
+}
+
+TEST(Urdf, NothingIsPrintedAboutAFaultyFile) {
+  testing::internal::CaptureStderr();
+  testing::internal::CaptureStdout();
+  expect_fault("\"revolute\"", "\"ball\"", "Joint [turn] has no known type [ball]");
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+}  // namespace
+}  // namespace keepout
