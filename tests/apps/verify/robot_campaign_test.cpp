@@ -55,7 +55,7 @@ TEST_P(RobotCampaignWith, NoCycleComesTooCloseOrBreaksAJointsLimit) {
     const std::string where = row.mesh + ", " + std::string(name(row.scenario));
     EXPECT_EQ(row.below, 0u) << where << ": " << row.least_beyond;
     EXPECT_EQ(row.limits_broken, 0u) << where;
-    EXPECT_EQ(row.cycles, row.starts == 0 ? 0u : 1000u) << where;
+    EXPECT_TRUE(row.cycles == 1000u || row.is_out_of_starts) << where;
   }
   // It is no walk in the park.
   EXPECT_GT(sum(rows, &RobotTally::cycles), 4000 * arenas.size());

@@ -203,7 +203,8 @@ std::vector<RobotTally> run_robot_campaign(
         Random of_seed(campaign.seed + 1000 * static_cast<std::uint64_t>(scenario));
         Random random(of_seed.bits() ^ tally.starts);
         const auto begin = find_start(scene, tree, robot, scenario, campaign.margin, random);
-        if (!begin) break;  // there is no such place on this mesh
+        tally.is_out_of_starts = !begin;
+        if (!begin) break;
         ++tally.starts;
         const std::uint64_t before = tally.cycles;
         Attempt(row, *begin, random).run(std::min(cycles_of_a_start, campaign.cycles - before));

@@ -35,9 +35,10 @@ struct RobotTally {
   double speed = 1.0;
   std::uint64_t starts = 0;
   std::uint64_t cycles = 0;
-  std::uint64_t below = 0;    // cycles that came closer than was to be kept
-  std::uint64_t in_mesh = 0;  // of them, those in which a body reached through the surface
-  double deepest = 0.0;       // of those [mm]
+  bool is_out_of_starts = false;  // no other place was found where one can begin
+  std::uint64_t below = 0;        // cycles that came closer than was to be kept
+  std::uint64_t in_mesh = 0;      // of them, those in which a body reached through the surface
+  double deepest = 0.0;           // of those [mm]
   std::uint64_t limits_broken = 0;
   /// Of all cycles, the smallest clearance beyond what was to be kept. Infinite when none came
   /// near. [mm]

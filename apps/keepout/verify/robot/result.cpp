@@ -119,9 +119,9 @@ Json result_of(const RobotCampaign& campaign, const std::string& command, const 
     total.in_mesh += t.in_mesh;
     total.limits_broken += t.limits_broken;
     total.deepest = std::max(total.deepest, t.deepest);
-    if (t.starts == 0) {
-      account.push_back("Nothing was done on " + t.mesh + ", " + std::string(name(t.scenario)) +
-                        ": no such place was found to begin.");
+    if (t.is_out_of_starts) {
+      account.push_back("On " + t.mesh + ", " + std::string(name(t.scenario)) + ", only " +
+                        counted(t.cycles, "cycle") + ": no other place was found to begin.");
     }
   }
   const bool is_actual = campaign.motion == CertifiedMotion::actual;
@@ -136,7 +136,7 @@ Json result_of(const RobotCampaign& campaign, const std::string& command, const 
   for (const double s : campaign.speeds) speeds += (speeds.empty() ? "" : ",") + trimmed(s);
   const bool is_complete = tallies.size() == meshes * (campaign.speeds.size() + 3) &&
                            std::ranges::all_of(tallies, [&](const RobotTally& t) {
-                             return t.starts == 0 || t.cycles >= campaign.cycles;
+                             return t.is_out_of_starts || t.cycles >= campaign.cycles;
                            });
   Json record =
       new_record({.kind = "verify_robot",
