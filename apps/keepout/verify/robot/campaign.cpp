@@ -20,7 +20,8 @@ constexpr double raise = 0.5;           // [mm]
 constexpr double blocked_below = 0.05;  // of the motion asked for
 constexpr double useful_above = 0.05;   // of the largest reduction of the cost
 constexpr std::uint64_t sampled = 2000;  // blocked cycles to each that is searched
-constexpr int patience = 50;  // cycles without any motion being proven, until a start is given up
+constexpr int hopeless_after =
+    50;  // cycles without any motion being proven, until a start is given up
 
 const RobotUnderTest& robot_named(const std::string& name) {
   const auto robots = robots_under_test();
@@ -48,7 +49,7 @@ bool is_raised(Scenario scenario, std::size_t cycle) noexcept {
 }
 
 /// What is being worked on: a row, and what it is made with.
-struct Row {
+struct RobotRow {
   Scene& scene;
   std::shared_ptr<const oracle::TriangleTree> tree;
   const RobotUnderTest& robot;
@@ -58,9 +59,9 @@ struct Row {
 };
 
 /// One instrument, from where it begins.
-class Attempt {
+class RobotAttempt {
  public:
-  Attempt(Row& row, const RobotStart& start, Random& random)
+  RobotAttempt(RobotRow& row, const RobotStart& start, Random& random)
       : row_(row),
         random_(random),
         instrument_(row.robot.make(start.base)),
@@ -75,7 +76,7 @@ class Attempt {
 
   void run(std::uint64_t cycles) {
     int failures = 0;
-    for (std::uint64_t cycle = 0; cycle < cycles && failures < patience; ++cycle) {
+    for (std::uint64_t cycle = 0; cycle < cycles && failures < hopeless_after; ++cycle) {
       if (cycle % block == 0) set_margin(cycle);
       failures = make_cycle() ? 0 : failures + 1;
       if (!waited_) continue;
@@ -150,7 +151,7 @@ class Attempt {
     return step.ok();
   }
 
-  Row& row_;
+  RobotRow& row_;
   Random& random_;
   Instrument instrument_;
   InstrumentOptions usual_;
@@ -188,14 +189,14 @@ std::vector<RobotTally> run_robot_campaign(
     Scene& scene = scenes.front();
     const auto tree = std::make_shared<const oracle::TriangleTree>(scene.mesh());
     for (const auto& [scenario, speed] : rows_of(campaign)) {
-      Row row{scene,
-              tree,
-              robot,
-              campaign,
-              {.mesh = arenas[a].mesh,
-               .triangles = scene.mesh()->triangle_count(),
-               .scenario = scenario,
-               .speed = speed}};
+      RobotRow row{scene,
+                   tree,
+                   robot,
+                   campaign,
+                   {.mesh = arenas[a].mesh,
+                    .triangles = scene.mesh()->triangle_count(),
+                    .scenario = scenario,
+                    .speed = speed}};
       RobotTally& tally = row.tally;
       const BenchClock::time_point start = BenchClock::now();
       Next next = Next::go_on;
@@ -207,7 +208,8 @@ std::vector<RobotTally> run_robot_campaign(
         if (!begin) break;
         ++tally.starts;
         const std::uint64_t before = tally.cycles;
-        Attempt(row, *begin, random).run(std::min(cycles_of_a_start, campaign.cycles - before));
+        RobotAttempt(row, *begin, random)
+            .run(std::min(cycles_of_a_start, campaign.cycles - before));
         next = advanced(tally, tally.cycles - before);
       }
       tally.step = timing_of(row.times);

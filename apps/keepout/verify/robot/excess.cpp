@@ -10,8 +10,8 @@
 namespace keepout::app {
 namespace {
 
-constexpr int trials = 800;
-constexpr int poses = 9;
+constexpr int search_trials = 800;
+constexpr int searched_poses = 9;
 
 bool is_within_limits(const Chain& chain, std::span<const double> positions,
                       const RobotTask::Increment& dq, double period) {
@@ -65,9 +65,9 @@ double excess(const RobotTask& task, const Chain& chain, std::span<const double>
     floors[b] = std::min(kept, oracle.clearance(b, kept));
   }
   const auto is_clear = [&](const RobotTask::Increment& dq) {
-    for (int i = poses - 1; i > 0; --i) {  // where it ends is most likely to be too close
+    for (int i = searched_poses - 1; i > 0; --i) {  // where it ends is most likely to be too close
       for (std::size_t k = 0; k < at.size(); ++k) {
-        at[k] = positions[k] + dq[static_cast<Eigen::Index>(k)] * i / (poses - 1);
+        at[k] = positions[k] + dq[static_cast<Eigen::Index>(k)] * i / (searched_poses - 1);
       }
       oracle.move_to(at);
       for (std::size_t b = 0; b < floors.size(); ++b) {
@@ -82,7 +82,7 @@ double excess(const RobotTask& task, const Chain& chain, std::span<const double>
   const RobotTask::Increment scales = task.scales();
   double least = cost;
   double size = 0.5;
-  for (int i = 0; i < trials; ++i) {
+  for (int i = 0; i < search_trials; ++i) {
     RobotTask::Increment trial = best;
     for (Eigen::Index k = 0; k < trial.size(); ++k) {
       trial[k] += size * random.uniform(-1.0, 1.0) * scales[k];

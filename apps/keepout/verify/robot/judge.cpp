@@ -8,7 +8,7 @@
 namespace keepout::app {
 namespace {
 
-constexpr int poses = 6;
+constexpr int poses_of_a_cycle = 6;
 
 /// Whether a joint may go there, but for what sums are rounded: one that is outside of its limits
 /// may stay, or come back.
@@ -65,9 +65,10 @@ RobotVerdict RobotJudge::judge(std::span<const double> next) {
         verdict.limits_broken ||
         !is_allowed(chain_->joint(static_cast<int>(k) + 1), from[k], next[k], options_.period);
   }
-  for (int i = 1; i < poses && !std::ranges::equal(next, from); ++i) {
+  for (int i = 1; i < poses_of_a_cycle && !std::ranges::equal(next, from); ++i) {
     // One at the end, and one at random in each quarter.
-    const double s = i == poses - 1 ? 1.0 : (i - random_->uniform()) / (poses - 2);
+    const double s =
+        i == poses_of_a_cycle - 1 ? 1.0 : (i - random_->uniform()) / (poses_of_a_cycle - 2);
     for (std::size_t k = 0; k < from.size(); ++k) {
       positions_[k] = s == 1.0 ? next[k] : from[k] + s * (next[k] - from[k]);
     }

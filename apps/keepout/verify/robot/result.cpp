@@ -28,19 +28,19 @@ Json statuses(const RobotTally& t) {
   return json;
 }
 
-std::string count(const Json& value) { return grouped(value.get<std::uint64_t>()); }
+std::string count_text(const Json& value) { return grouped(value.get<std::uint64_t>()); }
 template <int digits>
 std::string figure(const Json& value) {
   return value.is_null() ? "-" : rounded(value.get<double>(), digits);
 }
-std::string percent(const Json& value) {
+std::string percent_text(const Json& value) {
   return value.is_null() ? "-" : formatted("%.2f%%", 100.0 * value.get<double>());
 }
 std::string tiny(const Json& value) {
   return value.is_null() ? "-" : formatted("%.2e", value.get<double>());
 }
 /// Median, 99 %, 99.9 % and the longest.
-std::string times(const Json& us) {
+std::string times_text(const Json& us) {
   std::string text;
   for (const auto& [key, value] : us.items()) {
     text += (text.empty() ? "" : "/") + (value.is_null() ? "-" : rounded(value.get<double>(), 2));
@@ -48,43 +48,44 @@ std::string times(const Json& us) {
   return text;
 }
 
-const Columns<RobotTally>& columns() {
+const Columns<RobotTally>& robot_columns() {
   using Tally = RobotTally;
   static const Columns<Tally> all{
       {"mesh", &Tally::mesh, "mesh", -12},
-      {"triangles", &Tally::triangles, "triangles", 9, &count},
+      {"triangles", &Tally::triangles, "triangles", 9, &count_text},
       {"scenario", [](const Tally& t) { return Json(name(t.scenario)); }, "scenario", -11},
       {"speed", &Tally::speed, "speed", 5, &figure<2>},
-      {"starts", &Tally::starts, "starts", 6, &count},
-      {"cycles", &Tally::cycles, "cycles", 11, &count},
-      {"below", &Tally::below, "below", 7, &count},
-      {"in_mesh", &Tally::in_mesh, "in mesh", 7, &count},
+      {"starts", &Tally::starts, "starts", 6, &count_text},
+      {"cycles", &Tally::cycles, "cycles", 11, &count_text},
+      {"below", &Tally::below, "below", 7, &count_text},
+      {"in_mesh", &Tally::in_mesh, "in mesh", 7, &count_text},
       {"deepest_mm", &Tally::deepest, "deepest", 7, &figure<2>},
-      {"limits_broken", &Tally::limits_broken, "limits", 6, &count},
+      {"limits_broken", &Tally::limits_broken, "limits", 6, &count_text},
       {"least_beyond_mm",
        [](const Tally& t) {
          return std::isfinite(t.least_beyond) ? Json(t.least_beyond) : Json(nullptr);
        },
        "least", 9, &tiny},
       {"blocked_share", [](const Tally& t) { return ratio(t.blocked, t.cycles); }, "blocked", 7,
-       &percent},
+       &percent_text},
       {"cut_share", [](const Tally& t) { return share_of(t, Status::fallback); }, "cut", 6,
-       &percent},
+       &percent_text},
       {"unsolved_share", [](const Tally& t) { return share_of(t, Status::unsolved); }, "none", 6,
-       &percent},
-      {"worse", &Tally::worse, "worse", 5, &count},
+       &percent_text},
+      {"worse", &Tally::worse, "worse", 5, &count_text},
       {"rounds_mean", [](const Tally& t) { return ratio(t.rounds, t.cycles); }, "rounds", 6,
        &figure<3>},
-      {"rounds_max", &Tally::most_rounds, "max", 3, &count},
+      {"rounds_max", &Tally::most_rounds, "max", 3, &count_text},
       {"rows_mean", [](const Tally& t) { return ratio(t.rows, t.cycles); }, "rows", 5, &figure<2>},
-      {"step_us", [](const Tally& t) { return Json(t.step); }, "us p50/p99/p99.9/max", 22, &times},
-      {"looks_max", &Tally::most_looks, "looks", 8, &count},
+      {"step_us", [](const Tally& t) { return Json(t.step); }, "us p50/p99/p99.9/max", 22,
+       &times_text},
+      {"looks_max", &Tally::most_looks, "looks", 8, &count_text},
       {"excess_mean", [](const Tally& t) { return ratio(t.excess, t.samples); }, "excess", 7,
        &figure<2>},
-      {"excess_samples", &Tally::samples, "of", 5, &count},
-      {"useful", &Tally::useful, "useful", 6, &count},
-      {"recoveries", &Tally::recoveries, "recov.", 6, &count},
-      {"recovered", &Tally::recovered, "in 500", 6, &count},
+      {"excess_samples", &Tally::samples, "of", 5, &count_text},
+      {"useful", &Tally::useful, "useful", 6, &count_text},
+      {"recoveries", &Tally::recoveries, "recov.", 6, &count_text},
+      {"recovered", &Tally::recovered, "in 500", 6, &count_text},
       {"recovery_cycles_mean", [](const Tally& t) { return ratio(t.recovery_cycles, t.recovered); },
        "cycles", 6, &figure<3>},
       {"statuses", &statuses},
@@ -156,7 +157,7 @@ Json result_of(const RobotCampaign& campaign, const std::string& command, const 
                                {"seed", std::to_string(campaign.seed)},
                                {"index", index}}});
   record["robot"] = campaign.robot;
-  record["rows"] = json_of(columns(), tallies);
+  record["rows"] = json_of(robot_columns(), tallies);
   record["total"] = {{"mesh", total.mesh},          {"cycles", total.cycles},
                      {"below", total.below},        {"in_mesh", total.in_mesh},
                      {"deepest_mm", total.deepest}, {"limits_broken", total.limits_broken}};
@@ -164,10 +165,10 @@ Json result_of(const RobotCampaign& campaign, const std::string& command, const 
 }
 
 void print_robot_result(std::ostream& out, const Json& record) {
-  print_headings(out, columns());
+  print_headings(out, robot_columns());
   out << '\n';
   for (const Json& row : record.at("rows")) {
-    print_cells(out, columns(),
+    print_cells(out, robot_columns(),
                 [&](const auto& column) { return column.text(row.at(column.key)); });
     out << '\n';
   }
