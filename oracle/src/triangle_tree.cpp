@@ -39,6 +39,32 @@ class TouchedBy {
   Vec3 inverse_;
 };
 
+/// Whether the ball around a box comes within some reach of a segment.
+class WithinOf {
+ public:
+  WithinOf(double reach, const Segment& segment)
+      : from_(segment.from), way_(segment.to - segment.from), reach_(reach) {
+    const double squared = way_.squaredNorm();
+    inverse_ = squared > 0.0 ? 1.0 / squared : 0.0;
+  }
+
+  bool operator()(const Bounds& box) const noexcept {
+    const Vec3 center = 0.5 * box.low + 0.5 * box.high;
+    const Vec3 offset = center - from_;
+    const double along = std::clamp(offset.dot(way_) * inverse_, 0.0, 1.0);
+    const double distance = (offset - along * way_).norm();
+    // Some ten roundings of the coordinates, and of the lengths: 2^-48 is more than both.
+    const double rounding = 0x1p-48 * (center.lpNorm<1>() + from_.lpNorm<1>() + way_.lpNorm<1>());
+    return distance <= reach_ + 0.5 * (box.high - box.low).norm() + 4.0 * rounding;
+  }
+
+ private:
+  Vec3 from_;
+  Vec3 way_;
+  double reach_;
+  double inverse_;
+};
+
 }  // namespace
 
 TriangleTree::TriangleTree(std::shared_ptr<const Mesh> mesh) : mesh_(std::move(mesh)) {
@@ -106,6 +132,11 @@ void TriangleTree::collect(const Bounds& box, std::vector<TriangleId>& out) cons
 
 void TriangleTree::collect_along(const Segment& segment, std::vector<TriangleId>& out) const {
   collect_where(TouchedBy(segment), out);
+}
+
+void TriangleTree::collect_within(double reach, const Segment& segment,
+                                  std::vector<TriangleId>& out) const {
+  collect_where(WithinOf(reach, segment), out);
 }
 
 TriangleTree::Nearest TriangleTree::nearest(const Vec3& point) const {

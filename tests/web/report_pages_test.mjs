@@ -56,6 +56,7 @@ const files = given
       run("compare", "compare", "cube", "--poses", "6", "--problems", "100", "--pairs", "20"),
       run("plan", "plan", "cube", "--problems", "2", "--resolution", "0.01"),
       run("verify", "verify", "cube", "sphere", "--steps", "2000"),
+      run("verify_robot", ..."verify cube gear --robot psm --cycles 300".split(" ")),
     ];
 
 /** The record in a page. */
@@ -307,7 +308,8 @@ for (const { file, name, record } of pages) {
     await assertSorts(tab, record);
     const tips = await assertTips(tab, record);
     note(`${tips} plots told`);
-    assert.equal(tips > 0, record.keepout_record !== "verify" && record.keepout_record !== "plan");
+    const hasPlots = !["verify", "verify_robot", "plan"].includes(record.keepout_record);
+    assert.equal(tips > 0, hasPlots);
     // What legends and choices change is of the record too.
     for (const list of await tab.$$(".selection select")) {
       const values = await list.$$eval("option", (all) => all.map(({ value }) => value));

@@ -68,11 +68,6 @@ void limit_reach(const Scene& scene, Setup& setup) {
   }
 }
 
-struct SurfacePoint {
-  Vec3 point;
-  Vec3 normal;  // of a triangle there, to the free side
-};
-
 TriangleId any_triangle(const Mesh& mesh, Random& random) {
   return static_cast<TriangleId>(random.below(mesh.triangle_count()));
 }
@@ -88,18 +83,6 @@ SurfacePoint on_edge(const Mesh& mesh, Random& random) {
   const std::size_t e = random.below(3);
   const double share = random.uniform() < 0.5 ? 0.5 : random.uniform();
   return {c[e] + share * (c[(e + 1) % 3] - c[e]), mesh.normal(t)};
-}
-
-SurfacePoint on_face(const Mesh& mesh, Random& random) {
-  const TriangleId t = any_triangle(mesh, random);
-  const Triangle c = mesh.triangle(t);
-  double a = random.uniform();
-  double b = random.uniform();
-  if (a + b > 1.0) {
-    a = 1.0 - a;
-    b = 1.0 - b;
-  }
-  return {c[0] + a * (c[1] - c[0]) + b * (c[2] - c[0]), mesh.normal(t)};
 }
 
 SurfacePoint on_any(const Mesh& mesh, Random& random) {
@@ -236,6 +219,18 @@ constexpr std::array<Start, 8> starts{{
 }};
 
 }  // namespace
+
+SurfacePoint on_face(const Mesh& mesh, Random& random) {
+  const TriangleId t = any_triangle(mesh, random);
+  const Triangle c = mesh.triangle(t);
+  double a = random.uniform();
+  double b = random.uniform();
+  if (a + b > 1.0) {
+    a = 1.0 - a;
+    b = 1.0 - b;
+  }
+  return {c[0] + a * (c[1] - c[0]) + b * (c[2] - c[0]), mesh.normal(t)};
+}
 
 double least_distance_kept(const Scene& scene, double radius) noexcept {
   return 1e-8 * (scene.longest_edge() + radius) + 1e-14 * (scene.farthest() + radius);

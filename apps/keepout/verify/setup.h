@@ -39,6 +39,14 @@ struct Setup {
   void keep(double distance) noexcept;
 };
 
+/// A place on the surface.
+struct SurfacePoint {
+  Vec3 point;
+  Vec3 normal;  // of a triangle there, to the free side
+};
+/// Anywhere on a triangle; each triangle is as likely.
+SurfacePoint on_face(const Mesh& mesh, Random& random);
+
 /// The largest StepOptions::nodes of any setup.
 inline constexpr int most_nodes = 16;
 

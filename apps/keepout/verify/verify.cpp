@@ -18,6 +18,7 @@
 #include "keepout/adapters/index_registry.h"
 #include "keepout/error.h"
 #include "result.h"
+#include "verify/robot/result.h"
 
 namespace keepout::app {
 namespace {
@@ -74,6 +75,62 @@ Json run(const VerifyOptions& options, std::ostream& out) {
   return result_of(run, findings);
 }
 
+/// Those that are named, or the largest real ones and a small one.
+std::vector<std::filesystem::path> meshes_for_robot(const VerifyOptions& options) {
+  if (!options.meshes.empty()) return options.meshes;
+  return {"skull", "airway", "brain", "femur"};
+}
+
+Json run_with_robot(const VerifyOptions& options) {
+  VerifyOptions on = options;
+  on.meshes = meshes_for_robot(options);
+  std::vector<std::string> missing;
+  const std::vector<Arena> arenas = arenas_of(on, missing);
+  const StopSignal stop;
+  Progress progress("verify", cycle_count(on.robot, arenas.size()));
+  const auto advanced = [&](const RobotTally& row, std::uint64_t cycles) {
+    progress.advance(cycles);
+    progress.show(row.mesh + ", " + std::string(name(row.scenario)));
+    return stop.has_come() ? Next::stop : Next::go_on;
+  };
+  const std::vector<RobotTally> tallies = run_robot_campaign(on.robot, arenas, advanced);
+  return result_of(on.robot, on.command, on.index, tallies, arenas.size());
+}
+
+int verify_with_robot(const VerifyOptions& options, OutputFiles& outputs, std::ostream& out) {
+  const Json record = run_with_robot(options);
+  write_record(outputs, record, options.files, std::cerr);
+  print_robot_result(out, record);
+  const bool must_hold = options.robot.motion == CertifiedMotion::actual;
+  if (must_hold && robot_breaches(record) > 0) return EXIT_FAILURE;
+  return record["complete"].get<bool>() ? EXIT_SUCCESS : exit_interrupted;
+}
+
+/// What there is to say of a campaign with a robot.
+void add_robot(CLI::App& command, RobotCampaign& robot, std::vector<CLI::Option*>& of_a_run) {
+  CLI::Option* named =
+      command.add_option("--robot", robot.robot, "Try it with a whole instrument, in joint space")
+          ->check(one_of(names(robots_under_test())));
+  const auto add = [&](CLI::Option* option) { of_a_run.push_back(option->needs(named)); };
+  of_a_run.push_back(named);
+  add(command.add_option("--cycles", robot.cycles, "Cycles for each mesh, scenario and speed")
+          ->type_name("NUMBER")
+          ->transform(large_count())
+          ->capture_default_str());
+  add(command
+          .add_option("--speed", robot.speeds,
+                      "How fast, in multiples of 0.5 mm and 0.02 rad a cycle")
+          ->check(number_within(1e-3, 1e3, "a multiple from 0.001 to 1000", "NUMBER"))
+          ->delimiter(',')
+          ->capture_default_str());
+  add(command.add_option("--motion", robot.motion, "Which motion is certified")
+          ->transform(one_of<CertifiedMotion>(
+              {{"actual", CertifiedMotion::actual}, {"linearised", CertifiedMotion::linearised}}))
+          ->default_str("actual"));
+  add(add_length(command, "--margin", robot.margin, Zero::refused,
+                 "Distance that bodies keep beyond their radius"));
+}
+
 /// What --shard may be told; nothing is wrong with it when the text is empty.
 std::string check_shard(const std::string& text) {
   if (parse_shard(text)) return {};
@@ -91,16 +148,20 @@ void add_verify(CLI::App& app, VerifyOptions& options) {
   std::vector<CLI::Option*> of_a_run;
   of_a_run.push_back(command.add_option(
       "MESH", options.meshes, "Mesh files in mm, or fixtures; without one, all fixtures"));
+  add_robot(command, options.robot, of_a_run);
+  CLI::Option* const robot = command.get_option("--robot");
   of_a_run.push_back(command.add_option("--steps", options.steps, "Steps of the whole campaign")
                          ->type_name("NUMBER")
                          ->transform(large_count())
-                         ->capture_default_str());
+                         ->capture_default_str()
+                         ->excludes(robot));
   of_a_run.push_back(add_number(command, "--seed", options.seed, 0, largest_seed,
                                 "Seed: same seed and steps, same campaign"));
   of_a_run.push_back(command.add_option("--shard", options.shard, "Do part I of N of the campaign")
                          ->type_name("I/N")
                          ->check(check_shard)
-                         ->capture_default_str());
+                         ->capture_default_str()
+                         ->excludes(robot));
   of_a_run.push_back(add_name(command, "--index", options.index, names(index_backends()),
                               "Index that finds triangles"));
   options.files.add_to(command);
@@ -110,7 +171,9 @@ void add_verify(CLI::App& app, VerifyOptions& options) {
   for (CLI::Option* option : of_a_run) merge->excludes(option);
   command.footer(
       "Ctrl-C ends it early: what is finished is printed and written.\n"
-      "The exit status is 0 only if no step broke what docs/certified-step.md promises.");
+      "The exit status is 0 only if no step broke what docs/certified-step.md promises, and with\n"
+      "--robot docs/joint-space-step.md; but with --motion linearised nothing is promised.\n\n" +
+      listing("Robots", robots_under_test()));
 }
 
 int verify(const VerifyOptions& options, std::ostream& out) {
@@ -119,6 +182,7 @@ int verify(const VerifyOptions& options, std::ostream& out) {
   for (const auto& file : options.merge) inputs.push_back({"--merge", file});
   OutputFiles outputs(inputs,
                       {{"--json", options.files.kept_json()}, {"--out", options.files.page}});
+  if (!options.robot.robot.empty()) return verify_with_robot(options, outputs, out);
   Json result = options.merge.empty() ? run(options, out) : merged(options.merge);
   if (!options.merge.empty()) {  // not what one of the shards was made by
     result["command"] = options.command;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "record/record.h"
+#include "verify/robot/campaign.h"
 
 namespace CLI {
 class App;
@@ -24,15 +25,17 @@ struct VerifyOptions {
   std::string index = "wide_bvh";
   RecordFiles files;
   std::vector<std::filesystem::path> merge;  // records to add up, instead of a campaign
+  RobotCampaign robot;                       // instead, where it names one
   std::string command;                       // that does it again
 };
 
 /// Adds `keepout verify` and its options to the command line.
 void add_verify(CLI::App& app, VerifyOptions& options);
 
-/// Tries by all means to break what docs/certified-step.md promises, or adds up earlier tries, and
-/// prints a table. A StopSignal ends it early, and what is done is printed and written. The exit
-/// status: failure when there was any breach. Throws Error.
+/// Tries by all means to break what docs/certified-step.md promises, or docs/joint-space-step.md
+/// where a robot is named, or adds up earlier tries, and prints a table. A StopSignal ends it
+/// early, and what is done is printed and written. The exit status: failure when there was any
+/// breach. Throws Error.
 int verify(const VerifyOptions& options, std::ostream& out);
 
 }  // namespace keepout::app

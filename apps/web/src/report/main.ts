@@ -3,6 +3,7 @@
 import { benchmarkSections } from "./benchmark.ts";
 import { comparisonSections } from "./comparison.ts";
 import { showReport } from "./report_page.ts";
+import { robotVerificationSections } from "./robot_verification.ts";
 import { speedSections } from "./speed.ts";
 import { verificationSections } from "./verification.ts";
 
@@ -11,4 +12,5 @@ void showReport({
   speed: (main) => main.append(...speedSections()),
   compare: (main) => main.append(...comparisonSections("/comparison")),
   verify: (main) => main.append(...verificationSections()),
+  verify_robot: (main) => main.append(...robotVerificationSections()),
 });

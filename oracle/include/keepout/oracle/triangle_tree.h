@@ -67,6 +67,9 @@ class TriangleTree {
   /// Precondition: no coordinate of `to` equals that of `from`.
   void collect_along(const Segment& segment, std::vector<TriangleId>& out) const;
 
+  /// Appends, once, each triangle within `reach` [length, >= 0] of the segment, and others farther.
+  void collect_within(double reach, const Segment& segment, std::vector<TriangleId>& out) const;
+
   struct Nearest {
     TriangleId triangle;
     Bracket distance;  // low holds for all triangles; estimate and high are of the one named

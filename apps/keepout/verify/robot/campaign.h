@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "bench/timing.h"
+#include "keepout/robot/instrument_constraint.h"
+#include "verify/campaign.h"
+#include "verify/robot/start.h"
+
+namespace keepout::app {
+
+/// What a campaign with a whole instrument does.
+struct RobotCampaign {
+  std::string robot = {};                // of robots_under_test()
+  std::uint64_t cycles = 200'000;        // of each row
+  std::vector<double> speeds{1.0, 5.0};  // multiples of what a hand at speed 1 asks for
+  CertifiedMotion motion = CertifiedMotion::actual;
+  double margin = 0.2;  // [mm]
+  std::uint64_t seed = 1;
+};
+
+inline constexpr std::uint64_t cycles_of_a_start = 2000;
+
+/// What came out on one mesh, in one scenario at one speed.
+struct RobotTally {
+  std::string mesh;
+  std::uint64_t triangles = 0;
+  Scenario scenario = Scenario::approach;
+  double speed = 1.0;
+  std::uint64_t starts = 0;
+  std::uint64_t cycles = 0;
+  bool is_out_of_starts = false;  // no other place was found where one can begin
+  std::uint64_t below = 0;        // cycles that came closer than was to be kept
+  std::uint64_t in_mesh = 0;      // of them, those in which a body reached through the surface
+  double deepest = 0.0;           // of those [mm]
+  std::uint64_t limits_broken = 0;
+  /// Of all cycles, the smallest clearance beyond what was to be kept. Infinite when none came
+  /// near. [mm]
+  double least_beyond = std::numeric_limits<double>::infinity();
+  std::array<std::uint64_t, status_count> statuses{};
+  /// Cycles that led nothing out, and made less than a twentieth of the motion asked for, or one
+  /// that costs more than none at all, by a twentieth.
+  std::uint64_t blocked = 0, worse = 0;
+  std::uint64_t rounds = 0, most_rounds = 0;
+  std::uint64_t rows = 0;  // that held motions back, in all
+  std::uint64_t most_looks = 0;
+  Timing step = {};                   // [us]
+  double excess = 0.0;                // of all samples
+  std::uint64_t samples = 0;          // blocked cycles that were searched for a better motion
+  std::uint64_t useful = 0;           // of them, those where there was one worth the name
+  std::uint64_t recoveries = 0;       // how often a body was closer than a margin just set
+  std::uint64_t recovered = 0;        // of them, within 500 cycles
+  std::uint64_t recovery_cycles = 0;  // that those took
+  double seconds = 0.0;
+};
+
+/// Runs it, a row for each speed and mesh, and at the first speed one for each other scenario.
+/// `advanced` is told the cycles after each start; where it says stop, the rows are of what was
+/// done. Throws Error when there is no such robot.
+std::vector<RobotTally> run_robot_campaign(
+    const RobotCampaign& campaign, std::span<const Arena> arenas,
+    const std::function<Next(const RobotTally&, std::uint64_t)>& advanced);
+
+/// How many cycles that is on so many meshes.
+std::uint64_t cycle_count(const RobotCampaign& campaign, std::size_t meshes) noexcept;
+
+}  // namespace keepout::app

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+
+#include "keepout/fixtures/random.h"
+#include "keepout/oracle/instrument_oracle.h"
+#include "keepout/robot/instrument_constraint.h"
+
+namespace keepout::app {
+
+/// What a step is asked to make small, computed once more: |J dq - v|_W^2 + damping |dq|^2, where a
+/// turn of the flange, and what a prismatic joint moves by, count in orientation weights.
+class RobotTask {
+ public:
+  using Increment = Eigen::VectorXd;  // of the joints
+
+  RobotTask(const Chain& chain, std::span<const double> positions, const Twist& desired,
+            const InstrumentOptions& options);
+
+  double cost(const Increment& dq) const {
+    return (jacobian_ * dq - desired_).squaredNorm() + damping_.dot(dq.cwiseAbs2());
+  }
+  /// How much of the motion that is asked for is made: what goes along it.
+  double share(const Increment& dq) const {
+    return desired_.dot(jacobian_ * dq) / desired_.squaredNorm();
+  }
+  /// How much less the cost becomes where nothing holds the joints back.
+  double largest_reduction() const;
+  /// For each joint, the increment that alone moves the flange as far as is asked for.
+  Increment scales() const;
+
+ private:
+  Eigen::MatrixXd jacobian_;  // weighed (6, n)
+  Eigen::VectorXd desired_;   // weighed (6)
+  Eigen::VectorXd damping_;   // of each joint (n)
+};
+
+/// How much more of its cost a step could have saved, as a share of the largest reduction: what a
+/// local random search finds among joint increments that the joints' limits admit, and whose motion
+/// the judge finds clear by all but a tenth of the band at nine poses; a body that is closer to
+/// begin with need not be clearer than that.
+double excess(const RobotTask& task, const Chain& chain, std::span<const double> positions,
+              std::span<const double> made, const InstrumentOptions& options,
+              oracle::InstrumentOracle& oracle, Random& random);
+
+}  // namespace keepout::app

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "verify/robot/start.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <numbers>
+
+#include "keepout/fixtures/robots.h"
+#include "verify/setup.h"
+
+namespace keepout::app {
+namespace {
+
+constexpr int tries = 4000;
+
+/// Where the tip shall be, and from where the instrument comes.
+struct Target {
+  Vec3 tip;
+  Vec3 way;  // unit, along the tool
+};
+
+Target before_surface(const SurfacePoint& on, Random& random) {
+  const Vec3 way = -(on.normal + 0.7 * random.uniform() * random.direction()).normalized();
+  return {on.point - random.uniform(5.0, 20.0) * way, way};
+}
+
+/// Along the normal to the place that is as far from another wall, where a tool that keeps `least`
+/// from both has a millimetre of room at most.
+std::optional<Target> between_walls(Scene& scene, const SurfacePoint& on, double least,
+                                    Random& random) {
+  for (double way = least; way < least + 1.2; way += 0.1) {
+    const Vec3 center = on.point + way * on.normal;
+    const double distance = scene.nearest(center, way).closest.distance;
+    if (distance > 0.95 * way) continue;  // the nearest wall is the one it comes from
+    if (distance < least) break;
+    const Vec3 along = random.direction().cross(on.normal).normalized();
+    return Target{center + random.uniform(0.0, 8.0) * along, along};
+  }
+  return std::nullopt;
+}
+
+/// Of all bodies the least.
+double clearance(const oracle::JudgedRobot& robot, const RobotStart& start,
+                 const std::shared_ptr<const oracle::TriangleTree>& tree, double reach) {
+  oracle::InstrumentOracle judge(tree, robot, start.base);
+  judge.move_to(start.positions);
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t b = 0; b < judge.bodies(); ++b) {
+    least = std::min(least, judge.clearance(b, reach));
+  }
+  return least;
+}
+
+}  // namespace
+
+std::span<const RobotUnderTest> robots_under_test() {
+  static const std::array<RobotUnderTest, 2> robots{
+      {{"psm",
+        "six joints about a port: a da Vinci manipulator with an 8 mm instrument",
+        &psm,
+        &oracle::judged_psm,
+        {{-0.6, 0.6}, {-0.5, 0.5}, {90.0, 125.0}, {-2.0, 2.0}, {-0.6, 0.6}, {-0.6, 0.6}}},
+       {"seven_joint_arm",
+        "seven revolute joints and a straight shaft, held by no port",
+        &seven_joint_arm,
+        &oracle::judged_seven_joint_arm,
+        {{-1, 1}, {0.2, 0.9}, {-1, 1}, {-1.6, -0.8}, {-1, 1}, {0.3, 1.2}, {-1, 1}}}}};
+  return robots;
+}
+
+std::string_view name(Scenario scenario) noexcept {
+  constexpr std::array<std::string_view, 4> names{"approach", "raised", "overlapping", "wedged"};
+  return names[static_cast<std::size_t>(scenario)];
+}
+
+std::optional<RobotStart> find_start(Scene& scene,
+                                     const std::shared_ptr<const oracle::TriangleTree>& tree,
+                                     const RobotUnderTest& robot, Scenario scenario, double margin,
+                                     Random& random) {
+  const oracle::JudgedRobot judged = robot.judged();
+  const double tool = judged.bodies.back().radius;
+  for (int i = 0; i < tries; ++i) {
+    SurfacePoint on = on_face(*scene.mesh(), random);
+    // What has no free side is approached from either.
+    if (!scene.has_sides() && random.uniform() < 0.5) on.normal = -on.normal;
+    const std::optional<Target> target = scenario == Scenario::wedged
+                                             ? between_walls(scene, on, tool + margin, random)
+                                             : before_surface(on, random);
+    if (!target) continue;
+    RobotStart start;
+    for (const auto& [low, high] : robot.starts) {
+      start.positions.push_back(random.uniform(low, high));
+    }
+    // The base follows from where the tool shall be; about its axis it is turned at random.
+    std::vector<oracle::Segment> axes(judged.bodies.size());
+    oracle::place(judged, {}, start.positions, axes);
+    const Vec3 along = axes.back().to - axes.back().from;
+    const double roll = random.uniform(-std::numbers::pi, std::numbers::pi);
+    start.base.rotation = (Eigen::AngleAxisd(roll, target->way) *
+                           Eigen::Quaterniond::FromTwoVectors(along, target->way))
+                              .toRotationMatrix();
+    start.base.position = target->tip - start.base.rotation * axes.back().to;
+    if (clearance(judged, start, tree, margin) < margin) continue;
+    if (scenario != Scenario::overlapping) return start;
+    // Pushed on until the tool, or a thicker body, overlaps as far.
+    const double wanted = -random.uniform(0.05, 0.45) * tool;
+    double overlap = 0.0;
+    for (double gone = 0.0; gone < 40.0 && overlap > wanted; gone += 0.05) {
+      start.base.position += 0.05 * target->way;
+      overlap = clearance(judged, start, tree, 0.0);
+    }
+    if (overlap < wanted && overlap > -0.5 * tool) return start;
+  }
+  return std::nullopt;
+}
+
+}  // namespace keepout::app
