@@ -104,17 +104,20 @@ void JointCycle::run(const JointTask& task, InstrumentStep& result) noexcept {
   result.status = open(result);
   Trial best{.cost = task.cost(memory_.increment)};
   if (is_ok(result.status)) {
-    // Where not even the first part of a motion can be proven, a shorter one bends less.
-    double share = 1.0;
-    for (; share > 0.01; share *= 0.25) {
-      start_rows();
-      const bool is_certified = seek(share == 1.0 ? task : task.scaled(share), best);
-      if (is_certified) turn(share == 1.0 ? task : task.scaled(share), best);
-      if (best.cell > 0 || is_worn_out() || trouble_ != Status::free) break;
+    // Where not even the first part of a motion can be proven, a shorter one bends less. The rows
+    // that were found stay.
+    double asked = 1.0;
+    start_rows();
+    for (; asked > 0.01; asked *= 0.25) {
+      const JointTask part = task.scaled(asked);
+      if (seek(part, best)) turn(part, best);
+      if (best.share > 0.0 || best.cell == PointMotion::cells) break;
+      if (is_worn_out() || trouble_ != Status::free) break;
     }
     if (best.cell == 0) {
       result.status = trouble_ != Status::free ? trouble_ : Status::unsolved;
-    } else if (best.cell < PointMotion::cells || share < 1.0) {
+      remember_all_rows();
+    } else if (best.share < 1.0 || asked < 1.0) {
       result.status = Status::fallback;
     } else {
       result.status = best.is_held ? Status::limited : Status::free;
@@ -125,7 +128,7 @@ void JointCycle::run(const JointTask& task, InstrumentStep& result) noexcept {
   result.rows = best.rows;
   result.triangles = looked_at_;
   if (!is_ok(result.status)) return;
-  const double share = static_cast<double>(best.cell) / PointMotion::cells;
+  const double share = best.share;
   result.share = share;
   const auto n = static_cast<std::size_t>(memory_.instrument.chain().size());
   for (std::size_t k = 0; k < n; ++k) memory_.increment[k] = share * best.increment[k] + 0.0;
@@ -275,7 +278,7 @@ void JointCycle::start_rows() noexcept {
   memory_.motion.move(still, options_.certified, memory_.near.budget());
   for (const WarmRow& warm : memory_.warm) {
     const NearTriangle* triangle = find(warm.body, warm.triangle);
-    if (triangle == nullptr || !triangle->is_known) continue;
+    if (triangle == nullptr) continue;
     if (const auto row = rows.witness(warm.body, *triangle, 0)) memory_.rows.push(*row);
   }
   for (std::size_t b = 0; b < memory_.bodies.size(); ++b) {
@@ -307,13 +310,32 @@ void JointCycle::start_rows() noexcept {
   }
 }
 
+/// One of the triangles that a body is at, its gap known.
 NearTriangle* JointCycle::find(std::size_t b, TriangleId id) noexcept {
+  BodyMemory& body = memory_.bodies[b];
   const double radius = memory_.instrument.bodies()[b].radius;
-  for (NearTriangle& triangle :
-       memory_.bodies[b].near.nearer_than(radius + options_.margin, memory_.near.budget())) {
-    if (triangle.id == id) return &triangle;
+  const double at = radius + options_.margin + std::max(options_.band, body.reach);
+  if (!look(b, at)) return nullptr;
+  for (NearTriangle& triangle : body.near.nearer_than(at, memory_.near.budget())) {
+    if (triangle.id != id) continue;
+    Certificate(memory_.instrument, b, memory_.motion, kept_[b], memory_.tolerance,
+                memory_.near.budget())
+        .know(triangle);
+    return &triangle;
   }
   return nullptr;
+}
+
+/// Where nothing was found the next cycle begins with all that was learned.
+void JointCycle::remember_all_rows() noexcept {
+  memory_.warm.clear();
+  for (const ContactRow& row : memory_.rows) {
+    const bool is_there =
+        std::any_of(memory_.warm.begin(), memory_.warm.end(), [&](const WarmRow& warm) {
+          return warm.body == row.body && warm.triangle == row.triangle;
+        });
+    if (!is_there) memory_.warm.push({row.body, row.triangle});
+  }
 }
 
 /// Solves and judges until a motion is certified; else `best` is the best part of those tried, if
@@ -329,18 +351,19 @@ bool JointCycle::seek(const JointTask& task, Trial& best) noexcept {
     }
     ++rounds_;
     judge(trial);
-    if (trial.cell == PointMotion::cells) {
-      trial.cost = task.cost(trial.increment);
+    // Of what is proven as much as pays: but what leads away has to be paid for.
+    const double proven = static_cast<double>(trial.cell) / PointMotion::cells;
+    trial.share = is_recovering_ ? proven : task.best_share(trial.increment, proven);
+    JointVector part = trial.increment;
+    for (double& number : part) number *= trial.share;
+    trial.cost = task.cost(part);
+    if (trial.cell == PointMotion::cells && trial.share == 1.0) {
       best = trial;
       return true;
     }
+    if (trial.cell > 0 && (best.cell == 0 || trial.cost < best.cost)) best = trial;
+    if (trial.cell == PointMotion::cells) return false;
     if (is_worn_out() || trouble_ != Status::free) return false;
-    if (trial.cell > 0) {
-      JointVector part = trial.increment;
-      for (double& number : part) number *= static_cast<double>(trial.cell) / PointMotion::cells;
-      trial.cost = task.cost(part);
-      if (best.cell == 0 || trial.cost < best.cost) best = trial;
-    }
     if (!answer_failures()) return false;
   }
   return false;
@@ -361,7 +384,7 @@ void JointCycle::turn(const JointTask& task, Trial& best) noexcept {
             return warm.body == row.body && warm.triangle == row.triangle;
           });
       NearTriangle* triangle = is_active ? find(row.body, row.triangle) : nullptr;
-      if (triangle == nullptr || !triangle->is_known) continue;
+      if (triangle == nullptr) continue;
       auto turned = rows.witness(row.body, *triangle, PointMotion::cells);
       if (!turned) continue;
       turned->correction = row.correction;
@@ -372,6 +395,7 @@ void JointCycle::turn(const JointTask& task, Trial& best) noexcept {
     Trial trial;
     bool is_better = solve(task, trial) == SolveStatus::optimal;
     if (is_better) {
+      trial.share = 1.0;
       trial.cost = task.cost(trial.increment);
       is_better = trial.cost < best.cost * (1.0 - worthwhile);
     }

@@ -80,8 +80,9 @@ class JointCycle {
   /// A motion, and the part of it that is certified.
   struct Trial {
     JointVector increment{};
-    int cell = 0;
-    double cost = 0.0;
+    int cell = 0;          // proven is the motion up to here
+    double share = 0.0;    // of the motion, up to there, that is made: whatever costs least
+    double cost = 0.0;     // of that
     bool is_held = false;  // by a row or a joint's limit
     std::size_t rows = 0;  // that hold it
   };
@@ -98,6 +99,7 @@ class JointCycle {
 
   void start_rows() noexcept;
   NearTriangle* find(std::size_t body, TriangleId id) noexcept;
+  void remember_all_rows() noexcept;
   bool seek(const JointTask& task, Trial& best) noexcept;
   void turn(const JointTask& task, Trial& best) noexcept;
   SolveStatus solve(const JointTask& task, Trial& trial) noexcept;

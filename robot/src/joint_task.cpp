@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "joint_task.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace keepout {
@@ -19,6 +20,27 @@ double JointTask::cost(const JointVector& increment) const noexcept {
     sum += damping * u * u;
   }
   return sum;
+}
+
+double JointTask::best_share(const JointVector& increment, double most) const noexcept {
+  // The cost of a share s is square s^2 - 2 gain s + cost(0).
+  double square = 0.0;
+  double gain = 0.0;
+  for (int row = 0; row < rows; ++row) {
+    double way = 0.0;
+    for (int k = 0; k < joints; ++k) {
+      way += jacobian[static_cast<std::size_t>(k * rows + row)] * in_units(increment, k);
+    }
+    square += way * way;
+    gain += way * desired[static_cast<std::size_t>(row)];
+  }
+  for (int k = 0; k < joints; ++k) {
+    const double u = in_units(increment, k);
+    square += damping * u * u;
+  }
+  constexpr double rounding = 1e-6;  // of a minimum, where the cost is flat
+  if (gain >= most * square * (1.0 - rounding)) return most;
+  return std::max(gain / square, 0.0);
 }
 
 JointTask JointTask::scaled(double share) const noexcept {

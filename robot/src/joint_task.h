@@ -24,6 +24,9 @@ struct JointTask {
 
   /// What an increment dq costs.
   double cost(const JointVector& increment) const noexcept;
+  /// The share of an increment, at most `most`, that costs least: 0 where every share costs more
+  /// than standing still.
+  double best_share(const JointVector& increment, double most) const noexcept;
   /// A joint's increment in its unit.
   double in_units(const JointVector& increment, int k) const noexcept {
     return increment[static_cast<std::size_t>(k)] / unit[static_cast<std::size_t>(k)];

@@ -2,8 +2,9 @@
 //
 // What is near a capsule. A box grown by the radius and a segment are apart if one of six planes is
 // between them: across the box's axes, or along one of these and the segment (Ericson, "Real-Time
-// Collision Detection", 2005, 5.3.3). Products and sums only, so that rounding is a share of the
-// coordinates, by which the box is grown as well.
+// Collision Detection", 2005, 5.3.3); or if the ball around the box, which knows nothing of the
+// grown box's corners, is. Rounding is a share of the coordinates, by which the box is grown as
+// well.
 #include <algorithm>
 #include <cmath>
 
@@ -24,6 +25,7 @@ namespace keepout {
 struct CapsuleScreen {
   float middle[3];    // the sum of its segment's ends
   float along[3];     // from the one to the other
+  float inverse2;     // of |along|^2; 0 for a point
   float thickness;    // twice the radius, and what rounding may take
   bool fits = false;  // false where a float would overflow: then nothing else is to be used
 
@@ -38,6 +40,8 @@ struct CapsuleScreen {
     // Each sum and product below rounds by 2^-24 of at most four times the size: a handful of them.
     constexpr double rounding = 0x1p-17;
     thickness = static_cast<float>(2.0 * (capsule.radius + frame.error) + rounding * size);
+    const double length2 = (to - from).squaredNorm();
+    inverse2 = length2 > 1e-30 ? static_cast<float>(1.0 / length2) : 0.0f;
     for (int axis = 0; axis < 3; ++axis) {
       middle[axis] = static_cast<float>(from[axis] + to[axis]);
       along[axis] = static_cast<float>(to[axis] - from[axis]);
@@ -73,6 +77,14 @@ HWY_INLINE M comes_near(const Vector& low, const Vector& high, const CapsuleScre
     const V reach = hn::Add(hn::Mul(size[j], length[k]), hn::Mul(size[k], length[j]));
     apart = hn::Or(apart, hn::Gt(hn::Abs(across), reach));
   }
+  const Vector from_middle{offset[0], offset[1], offset[2]};
+  const Vector way{along[0], along[1], along[2]};
+  const V share = hn::Mul(dot(from_middle, way), hn::Set(d, capsule.inverse2));
+  const V clamped = hn::Min(hn::Max(share, hn::Set(d, -1.0f)), hn::Set(d, 1.0f));
+  const Vector towards = from_middle - clamped * way;
+  const Vector diagonal = high - low;
+  const V reach = hn::Add(hn::Sqrt(dot(diagonal, diagonal)), thickness);
+  apart = hn::Or(apart, hn::Gt(dot(towards, towards), hn::Mul(reach, reach)));
   return hn::Not(apart);
 }
 

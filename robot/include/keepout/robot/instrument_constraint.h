@@ -59,7 +59,7 @@ struct InstrumentCapacity {
   /// Capacity::looks_of_queries on others, of which more is asked.
   std::size_t looks = 0;
 
-  static constexpr std::size_t looks_of_a_walk = std::size_t{1} << 17;
+  static constexpr std::size_t looks_of_a_walk = std::size_t{1} << 16;
 };
 
 /// What one cycle may do. Views stay valid until the next step.
