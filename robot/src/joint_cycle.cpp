@@ -351,12 +351,16 @@ bool JointCycle::seek(const JointTask& task, Trial& best) noexcept {
     }
     ++rounds_;
     judge(trial);
-    // Of what is proven as much as pays: but what leads away has to be paid for.
-    const double proven = static_cast<double>(trial.cell) / PointMotion::cells;
-    trial.share = is_recovering_ ? proven : task.best_share(trial.increment, proven);
-    JointVector part = trial.increment;
-    for (double& number : part) number *= trial.share;
-    trial.cost = task.cost(part);
+    // All that is proven; but what costs more than standing still, and than coming back to the
+    // margin within the band, only as far as it pays.
+    trial.share = static_cast<double>(trial.cell) / PointMotion::cells;
+    trial.cost = task.cost_of_share(trial.increment, trial.share);
+    const double still = std::sqrt(task.cost_of_share(trial.increment, 0.0));
+    const double affordable = still + 2.0 * options_.band;
+    if (!is_recovering_ && trial.cost > affordable * affordable) {
+      trial.share = task.best_share(trial.increment, trial.share);
+      trial.cost = task.cost_of_share(trial.increment, trial.share);
+    }
     if (trial.cell == PointMotion::cells && trial.share == 1.0) {
       best = trial;
       return true;

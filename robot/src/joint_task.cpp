@@ -22,6 +22,12 @@ double JointTask::cost(const JointVector& increment) const noexcept {
   return sum;
 }
 
+double JointTask::cost_of_share(const JointVector& increment, double share) const noexcept {
+  JointVector part = increment;
+  for (double& number : part) number *= share;
+  return cost(part);
+}
+
 double JointTask::best_share(const JointVector& increment, double most) const noexcept {
   // The cost of a share s is square s^2 - 2 gain s + cost(0).
   double square = 0.0;
@@ -38,8 +44,7 @@ double JointTask::best_share(const JointVector& increment, double most) const no
     const double u = in_units(increment, k);
     square += damping * u * u;
   }
-  constexpr double rounding = 1e-6;  // of a minimum, where the cost is flat
-  if (gain >= most * square * (1.0 - rounding)) return most;
+  if (gain >= most * square) return most;
   return std::max(gain / square, 0.0);
 }
 

@@ -24,6 +24,8 @@ struct JointTask {
 
   /// What an increment dq costs.
   double cost(const JointVector& increment) const noexcept;
+  /// What a share of an increment costs.
+  double cost_of_share(const JointVector& increment, double share) const noexcept;
   /// The share of an increment, at most `most`, that costs least: 0 where every share costs more
   /// than standing still.
   double best_share(const JointVector& increment, double most) const noexcept;
