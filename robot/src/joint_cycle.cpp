@@ -134,8 +134,10 @@ void JointCycle::run(const JointTask& task, InstrumentStep& result) noexcept {
   for (std::size_t k = 0; k < n; ++k) memory_.increment[k] = share * best.increment[k] + 0.0;
   clip(memory_.increment);
   result.increment = {memory_.increment.data(), n};
-  // Of the last motion judged, which need not be the best.
-  memory_.motion.move(memory_.increment, options_.certified, memory_.near.budget());
+  // The last motion judged need not be the best one.
+  if (memory_.motion.increment() != memory_.increment) {
+    memory_.motion.move(memory_.increment, options_.certified, memory_.near.budget());
+  }
   const Vec3* ended = memory_.motion.at(PointMotion::cells);
   std::copy(ended, ended + memory_.instrument.points().size(), memory_.ended_at.begin());
   memory_.side_of = memory_.near.mesh().id();
@@ -172,12 +174,13 @@ Status JointCycle::open_body(std::size_t b, InstrumentStep& result) noexcept {
   const double radius = memory_.instrument.bodies()[b].radius;
   const double target = options_.margin - options_.band;
   const double tolerance = memory_.tolerance;
-  if (!look(b, radius + options_.margin)) return Status::over_capacity;
+  if (!look(b, at(b))) return Status::over_capacity;
   Certificate certificate(memory_.instrument, b, memory_.motion, target, tolerance,
                           memory_.near.budget());
   double nearest = std::numeric_limits<double>::infinity();
-  for (NearTriangle& triangle :
-       body.near.nearer_than(radius + options_.margin, memory_.near.budget())) {
+  // All at once that the cycle is likely to ask for.
+  for (NearTriangle& triangle : body.near.nearer_than(at(b), memory_.near.budget())) {
+    if (!(triangle.least < radius + options_.margin)) break;
     certificate.know(triangle);
     nearest = std::min(nearest, triangle.at_start.distance);
   }
@@ -274,8 +277,6 @@ void JointCycle::start_rows() noexcept {
   memory_.rows.clear();
   ContactRows rows(memory_.instrument, memory_.motion, options_.margin, options_.recovery,
                    memory_.tolerance);
-  const JointVector still{};
-  memory_.motion.move(still, options_.certified, memory_.near.budget());
   for (const WarmRow& warm : memory_.warm) {
     const NearTriangle* triangle = find(warm.body, warm.triangle);
     if (triangle == nullptr) continue;
@@ -310,13 +311,18 @@ void JointCycle::start_rows() noexcept {
   }
 }
 
+/// From a body's core, what it may be held by: the margin, and as much as it moved at last.
+/// [length]
+double JointCycle::at(std::size_t b) const noexcept {
+  return memory_.instrument.bodies()[b].radius + options_.margin +
+         std::max(options_.band, memory_.bodies[b].reach);
+}
+
 /// One of the triangles that a body is at, its gap known.
 NearTriangle* JointCycle::find(std::size_t b, TriangleId id) noexcept {
   BodyMemory& body = memory_.bodies[b];
-  const double radius = memory_.instrument.bodies()[b].radius;
-  const double at = radius + options_.margin + std::max(options_.band, body.reach);
-  if (!look(b, at)) return nullptr;
-  for (NearTriangle& triangle : body.near.nearer_than(at, memory_.near.budget())) {
+  if (!look(b, at(b))) return nullptr;
+  for (NearTriangle& triangle : body.near.nearer_than(at(b), memory_.near.budget())) {
     if (triangle.id != id) continue;
     Certificate(memory_.instrument, b, memory_.motion, kept_[b], memory_.tolerance,
                 memory_.near.budget())

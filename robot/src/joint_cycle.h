@@ -99,6 +99,7 @@ class JointCycle {
 
   void start_rows() noexcept;
   NearTriangle* find(std::size_t body, TriangleId id) noexcept;
+  double at(std::size_t body) const noexcept;
   void remember_all_rows() noexcept;
   bool seek(const JointTask& task, Trial& best) noexcept;
   void turn(const JointTask& task, Trial& best) noexcept;
