@@ -153,6 +153,23 @@ TEST_P(IndexContract, FindsAllThatIsNearACapsuleOnceEach) {
   }
 }
 
+// What is left out without a word would be moved into.
+TEST_P(IndexContract, SaysThatThereIsMoreNearACapsuleThanThereIsRoomFor) {
+  const auto mesh = std::make_shared<const Mesh>(make_cube(25.0));
+  const auto index = GetParam().make(mesh);
+  const std::size_t count = mesh->triangle_count();
+  for (const double radius : {1.0, 30.0, 200.0}) {
+    const Capsule along_an_edge{Vec3(50, 50, -50), Vec3(50, 50, 50), radius};
+    TriangleBuffer all(count);
+    index->collect_near(along_an_edge, all);
+    for (const std::size_t room : {std::size_t{1}, all.size() / 2, all.size() - 1}) {
+      TriangleBuffer few(room);
+      index->collect_near(along_an_edge, few);
+      EXPECT_TRUE(few.overflowed()) << "radius " << radius << ", room " << room;
+    }
+  }
+}
+
 TEST_P(IndexContract, ABallThatHoldsTheMeshFindsAllOfIt) {
   const auto mesh = std::make_shared<const Mesh>(make_shape("cube"));
   const auto index = GetParam().make(mesh);
