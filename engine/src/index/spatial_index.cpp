@@ -22,14 +22,22 @@ void SpatialIndex::collect_near(const Capsule& capsule, TriangleBuffer& candidat
   const double half = 0.5 * length / pieces;
   const double radius = std::hypot(half, capsule.radius) * (1.0 + 1e-12);
   const std::size_t before = candidates.size();
-  for (double piece = 0.5; piece < pieces && !candidates.overflowed(); piece += 1.0) {
+  const auto add = [&](const Ball& ball) {
+    if (candidates.overflowed()) return;
     const std::size_t known = candidates.size();
-    collect(Ball{capsule.from + piece / pieces * (capsule.to - capsule.from), radius}, candidates);
-    if (known == before || candidates.overflowed()) continue;
+    collect(ball, candidates);
+    if (known == before || candidates.overflowed()) return;
     TriangleId* const first = candidates.begin() + before;
     std::sort(first, candidates.end());
     const auto found = std::unique(first, candidates.end()) - candidates.begin();
     candidates.shrink(before + static_cast<std::size_t>(found));
+  };
+  for (double piece = 0.5; piece < pieces; piece += 1.0) {
+    add({capsule.from + piece / pieces * (capsule.to - capsule.from), radius});
+  }
+  // The round ends, beyond the outermost pieces.
+  if (length > 0.0) {
+    for (const Vec3& end : {capsule.from, capsule.to}) add({end, capsule.radius * (1.0 + 1e-12)});
   }
   // There may have been room for each once, but not for what is near two pieces.
   if (candidates.overflowed()) {
