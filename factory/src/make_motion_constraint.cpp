@@ -10,10 +10,15 @@
 
 namespace keepout {
 
+std::shared_ptr<const SpatialIndex> make_or_load_index(std::shared_ptr<const Mesh> mesh,
+                                                       const MotionConstraintSettings& settings) {
+  return make_or_load_index(std::move(mesh), settings.index, settings.index_cache, settings.warn);
+}
+
 MotionConstraint make_motion_constraint(std::shared_ptr<const Mesh> mesh,
                                         const MotionConstraintSettings& settings) {
   if (!mesh) throw Error("a motion constraint needs a mesh: none was given");
-  auto index = make_or_load_index(mesh, settings.index, settings.index_cache, settings.warn);
+  auto index = make_or_load_index(mesh, settings);
   return make_motion_constraint(std::move(mesh), std::move(index), settings);
 }
 
