@@ -6,27 +6,41 @@
     step = guard.step(tip, desired)    # the allowed motion nearest to the one desired
     tip += step.motion                 # zero unless step.ok
 
+    guard = keepout.InstrumentGuard(mesh, keepout.Instrument(chain, bodies), margin=0.5)
+    step = guard.step(q, linear=(0, 0, -0.1))    # of a whole instrument, in joint space
+    q += step.increment
+
 Lengths are in the unit of the mesh, usually mm, and everything is in its frame. Arguments are arrays
 or anything that numpy makes one of; what is wrong with one is said by keepout.Error.
 """
 
 from ._core import (
+    Body,
+    Chain,
     Error,
     Hits,
     Index,
     Inspection,
+    Instrument,
+    InstrumentGuard,
+    InstrumentStep,
+    Joint,
     Mesh,
     MotionConstraint,
+    MotionProof,
     Planes,
     Polytope,
     Step,
+    TableRow,
     __version__,
     activations,
+    chain_of_table,
     indices,
     load_mesh,
+    read_chain,
     solvers,
 )
-from ._results import Part, Simulation, Status, Steps
+from ._results import Part, Proofs, Simulation, Status, Steps
 
 __all__ = ["__version__", *(name for name in dir() if not name.startswith("_"))]
 

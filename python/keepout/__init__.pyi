@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Shapes, units and failures are in the docstrings of the module: help(keepout.MotionConstraint).
+from collections.abc import Sequence
 from os import PathLike
 from typing import Literal
 
@@ -7,28 +8,40 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ._results import Part as Part
+from ._results import Proofs as Proofs
 from ._results import Simulation as Simulation
 from ._results import Status as Status
 from ._results import Steps as Steps
 
 __all__ = [
+    "Body",
+    "Chain",
     "Error",
     "Hits",
     "Index",
     "Inspection",
+    "Instrument",
+    "InstrumentGuard",
+    "InstrumentStep",
+    "Joint",
     "Mesh",
     "MotionConstraint",
+    "MotionProof",
     "Part",
     "Planes",
     "Polytope",
+    "Proofs",
     "Simulation",
     "Status",
     "Step",
     "Steps",
+    "TableRow",
     "__version__",
     "activations",
+    "chain_of_table",
     "indices",
     "load_mesh",
+    "read_chain",
     "solvers",
 ]
 
@@ -257,3 +270,192 @@ class MotionConstraint:
     def margin(self) -> float: ...
     @property
     def distance_kept(self) -> float: ...
+
+class Joint:
+    def __init__(
+        self,
+        name: str = "",
+        *,
+        kind: Literal["revolute", "prismatic"] = "revolute",
+        origin: ArrayLike | None = None,
+        axis: ArrayLike | None = None,
+        lower: float | None = None,
+        upper: float | None = None,
+        velocity: float | None = None,
+        increment: float | None = None,
+    ) -> None: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def kind(self) -> Literal["revolute", "prismatic"]: ...
+    @property
+    def lower(self) -> float: ...
+    @property
+    def upper(self) -> float: ...
+    @property
+    def velocity(self) -> float: ...
+    @property
+    def increment(self) -> float: ...
+
+class TableRow:
+    def __init__(
+        self,
+        name: str = "",
+        *,
+        kind: Literal["revolute", "prismatic"] = "revolute",
+        a: float = 0.0,
+        alpha: float = 0.0,
+        d: float = 0.0,
+        theta: float = 0.0,
+        lower: float | None = None,
+        upper: float | None = None,
+        velocity: float | None = None,
+        increment: float | None = None,
+    ) -> None: ...
+
+class Chain:
+    def __init__(
+        self,
+        joints: Sequence[Joint],
+        *,
+        base: ArrayLike | None = None,
+        flange: ArrayLike | None = None,
+    ) -> None: ...
+    def place(self, q: ArrayLike) -> NDArray[np.float64]: ...
+    @property
+    def joints(self) -> list[Joint]: ...
+    @property
+    def base(self) -> NDArray[np.float64]: ...
+    @property
+    def flange(self) -> NDArray[np.float64]: ...
+    def __len__(self) -> int: ...
+
+def chain_of_table(
+    rows: Sequence[TableRow],
+    *,
+    convention: Literal["modified", "standard"] = "modified",
+    base: ArrayLike | None = None,
+    flange: ArrayLike | None = None,
+) -> Chain: ...
+def read_chain(
+    path: str | PathLike[str],
+    *,
+    base: str = "",
+    tip: str = "",
+    scale: float = 1000.0,
+) -> Chain: ...
+
+class Body:
+    def __init__(
+        self, name: str, points: Sequence[tuple[int, ArrayLike]], radius: float
+    ) -> None: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def points(self) -> list[tuple[int, tuple[float, float, float]]]: ...
+    @property
+    def radius(self) -> float: ...
+
+class Instrument:
+    def __init__(self, chain: Chain, bodies: Sequence[Body]) -> None: ...
+    @property
+    def chain(self) -> Chain: ...
+    @property
+    def bodies(self) -> list[Body]: ...
+    def recommended_band(self, period: float, least: float = 0.002) -> float: ...
+
+class InstrumentStep:
+    @property
+    def status(self) -> Status: ...
+    @property
+    def ok(self) -> bool: ...
+    @property
+    def reason(self) -> str: ...
+    @property
+    def increment(self) -> NDArray[np.float64]: ...
+    @property
+    def share(self) -> float: ...
+    @property
+    def rounds(self) -> int: ...
+    @property
+    def rows(self) -> int: ...
+    @property
+    def distance(self) -> float | None: ...
+    @property
+    def nearest(self) -> int | None: ...
+
+class MotionProof:
+    @property
+    def status(self) -> Status: ...
+    @property
+    def reason(self) -> str: ...
+    @property
+    def share(self) -> float: ...
+    @property
+    def distance(self) -> float | None: ...
+    @property
+    def is_clear(self) -> bool: ...
+
+class InstrumentGuard:
+    def __init__(
+        self,
+        mesh: Mesh,
+        instrument: Instrument,
+        *,
+        index: str | Index = "wide_bvh",
+        index_cache: str | PathLike[str] | None = None,
+        solver: str = "active_set",
+        margin: float = 0.2,
+        band: float = 0.002,
+        period: float = 0.001,
+        recovery: float = 0.05,
+        damping: float = 0.1,
+        orientation_weight: float = 20.0,
+        refinements: int = 1,
+        check_sides: bool = True,
+        certified: Literal["actual", "linearised"] = "actual",
+        max_triangles: int = 16384,
+        max_planes: int = 128,
+        max_looks: int = 131072,
+    ) -> None: ...
+    def step(
+        self,
+        q: ArrayLike,
+        linear: ArrayLike | None = None,
+        angular: ArrayLike | None = None,
+        *,
+        increment: ArrayLike | None = None,
+        weights: ArrayLike | None = None,
+    ) -> InstrumentStep: ...
+    def prove(self, q: ArrayLike, increment: ArrayLike) -> MotionProof: ...
+    def proofs(
+        self,
+        q: ArrayLike,
+        increments: ArrayLike | None = None,
+        *,
+        threads: int | None = None,
+    ) -> Proofs: ...
+    def forget(self) -> None: ...
+    def set_options(
+        self,
+        *,
+        margin: float | None = None,
+        band: float | None = None,
+        period: float | None = None,
+        recovery: float | None = None,
+        damping: float | None = None,
+        orientation_weight: float | None = None,
+        refinements: int | None = None,
+        check_sides: bool | None = None,
+        certified: Literal["actual", "linearised"] | None = None,
+    ) -> None: ...
+    @property
+    def mesh(self) -> Mesh: ...
+    @property
+    def index(self) -> Index: ...
+    @property
+    def instrument(self) -> Instrument: ...
+    @property
+    def margin(self) -> float: ...
+    @property
+    def band(self) -> float: ...

@@ -77,7 +77,7 @@ class _Batch:
 
     def __repr__(self) -> str:
         counted = ", ".join(f"{status.name}: {n}" for status, n in self.counts().items())
-        items = "poses" if self.status.ndim == 1 else "loops"
+        items = "loops" if self.status.ndim == 2 else "motions" if type(self) is Proofs else "poses"
         return f"<keepout.{type(self).__name__} of {len(self)} {items}: {counted or 'none'}>"
 
 
@@ -116,6 +116,20 @@ class Simulation(_Batch):
             np.full((loops, cycles), Status.invalid_input, np.uint8),
             np.zeros((loops, cycles), np.uint32),
         )
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Proofs(_Batch):
+    """How much of each of m motions of an instrument is certified."""
+
+    status: NDArray[np.uint8]  # (m,): of Status, as numbers
+    share: NDArray[np.float64]  # (m,): proven is a motion from its start to here; 1 if all of it is
+    distance: NDArray[np.float64]  # (m,): of the body nearest as it starts [length]; NaN if unknown
+
+    @property
+    def is_clear(self) -> NDArray[np.bool_]:
+        """(m,): whether the whole margin, less its band, is kept on all of a motion."""
+        return (self.status == Status.free) & (self.share == 1.0)
 
 
 def room_for(

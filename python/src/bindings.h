@@ -45,6 +45,14 @@ struct IndexHandle {
   const std::shared_ptr<const SpatialIndex> index;
 };
 
+/// `index` if it is a keepout.Index of this mesh, or one of that name made for the caller: see
+/// IndexHandle. Throws Error for anything else.
+std::shared_ptr<IndexHandle> index_from(const py::object& mesh, const py::object& index,
+                                        const std::optional<std::filesystem::path>& cache);
+
+/// The member of keepout.Status.
+py::object status_object(Status status);
+
 /// Half-spaces that outlive the step they are of.
 struct Planes {
   std::vector<HalfSpace> planes;
@@ -74,5 +82,8 @@ void bind_index(py::module_& module);
 void bind_planes(py::module_& module);
 void bind_step(py::module_& module);
 void bind_motion_constraint(py::module_& module);
+void bind_chain(py::module_& module);
+void bind_instrument(py::module_& module);
+void bind_instrument_guard(py::module_& module);
 
 }  // namespace keepout::python

@@ -5,24 +5,9 @@
 #include <utility>
 
 #include "arrays.h"
-#include "batch.h"
 
 namespace keepout::python {
 namespace {
-
-/// Takes a lock that another thread of Python's may hold, which needs Python's own to go on: never
-/// waits for it while holding that.
-class InUse {
- public:
-  explicit InUse(std::mutex& mutex) : lock_(mutex, std::try_to_lock) {
-    if (lock_.owns_lock()) return;
-    const py::gil_scoped_release release;
-    lock_.lock();
-  }
-
- private:
-  std::unique_lock<std::mutex> lock_;
-};
 
 /// Column by column.
 using Jacobian = py::array_t<double, py::array::f_style | py::array::forcecast>;
@@ -113,22 +98,10 @@ MotionConstraint Guard::make() const {
 
 template <class Item>
 void Guard::do_each(std::size_t items, std::size_t chunk, unsigned threads, const Item& item) {
-  const py::gil_scoped_release release;
-  const std::lock_guard in_use(workers_in_use_);
-  while (workers_.size() < threads) {
-    workers_.push_back(make_motion_constraint(index_->mesh, index_->index, settings_));
-  }
-  const Work work = [&](unsigned worker, std::size_t begin, std::size_t end,
-                        const std::stop_token& stop) {
-    for (std::size_t i = begin; i < end && !stop.stop_requested(); ++i) {
-      item(workers_[worker], i, stop);
-    }
+  const auto make = [this] {
+    return make_motion_constraint(index_->mesh, index_->index, settings_);
   };
-  if (chunk > 1 && items <= chunk) {
-    work(0, 0, items, std::stop_token());  // a thread takes longer to start
-  } else {
-    run_batch(items, chunk, threads, work);
-  }
+  workers_.do_each(items, chunk, threads, make, item);
 }
 
 StepResult Guard::step(const py::object& tip, const py::object& desired, const py::object& jacobian,
@@ -183,12 +156,12 @@ void Guard::forget() {
 
 void Guard::follow(std::shared_ptr<IndexHandle> index) {
   if (!index) refuse("index", "a keepout.Index", "None");
-  const InUse no_batch(workers_in_use_);
+  const InUse no_batch(workers_.in_use());
   const InUse no_step(constraint_in_use_);
   {
     const py::gil_scoped_release release;
     constraint_.follow(index->mesh, index->index);
-    workers_.clear();
+    workers_.constraints().clear();
   }
   index_ = std::move(index);
 }

@@ -3,13 +3,13 @@
 
 #include <pybind11/pybind11.h>
 
-#include <deque>
 #include <memory>
 #include <mutex>
 #include <optional>
 
 #include "bindings.h"
 #include "keepout/factory/make_motion_constraint.h"
+#include "workers.h"
 
 namespace keepout::python {
 
@@ -39,8 +39,7 @@ class Guard {
  private:
   MotionConstraint make() const;
 
-  /// Calls `item(constraint, i, stop)` for each of a batch, without Python's lock, each worker with
-  /// a constraint of its own. For the rest see run_batch.
+  /// See Workers.
   template <class Item>
   void do_each(std::size_t items, std::size_t chunk, unsigned threads, const Item& item);
 
@@ -48,8 +47,7 @@ class Guard {
   MotionConstraintSettings settings_;
   MotionConstraint constraint_;
   std::mutex constraint_in_use_;
-  std::deque<MotionConstraint> workers_;
-  std::mutex workers_in_use_;
+  Workers<MotionConstraint> workers_;
 };
 
 }  // namespace keepout::python

@@ -111,6 +111,22 @@ py::array_t<double> distances(const IndexHandle& index, const py::object& points
 
 }  // namespace
 
+std::shared_ptr<IndexHandle> index_from(const py::object& mesh, const py::object& index,
+                                        const std::optional<std::filesystem::path>& cache) {
+  const std::shared_ptr<const Mesh>& surface = mesh_of(mesh);
+  if (py::isinstance<IndexHandle>(index)) {
+    auto shared = index.cast<std::shared_ptr<IndexHandle>>();
+    if (shared->mesh != surface) {
+      refuse("index", "an Index of the same Mesh object", "one of another mesh");
+    }
+    return shared;
+  }
+  if (!py::isinstance<py::str>(index)) {
+    refuse("index", "a name of indices(), or a keepout.Index", Py_TYPE(index.ptr())->tp_name);
+  }
+  return std::make_shared<IndexHandle>(mesh, index.cast<std::string>(), cache);
+}
+
 IndexHandle::IndexHandle(py::object on, std::string part,
                          const std::optional<std::filesystem::path>& cache)
     : mesh_object(std::move(on)),

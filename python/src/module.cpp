@@ -68,4 +68,7 @@ PYBIND11_MODULE(_core, module) {
   bind_planes(module);
   bind_step(module);
   bind_motion_constraint(module);
+  bind_chain(module);
+  bind_instrument(module);
+  bind_instrument_guard(module);
 }

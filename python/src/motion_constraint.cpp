@@ -6,58 +6,16 @@
 #include <string>
 #include <utility>
 
-#include "arrays.h"
 #include "guard.h"
-#include "keepout/registry.h"
+#include "keywords.h"
 
 namespace keepout::python {
 namespace {
-
-/// One of two values, by name.
-template <class Enum>
-Enum named(std::string_view argument, const std::string& given,
-           const std::array<std::pair<std::string, Enum>, 2>& names) {
-  for (const auto& [name, value] : names) {
-    if (given == name) return value;
-  }
-  refuse(argument, "'" + names[0].first + "' or '" + names[1].first + "'", "'" + given + "'");
-}
 
 constexpr std::array<std::string_view, 21> arguments = {
     "mesh",      "index",   "index_cache",   "activation", "solver",      "radius",   "tool_radius",
     "margin",    "damping", "recovery",      "deepest",    "refinements", "nodes",    "query",
     "distances", "inside",  "max_triangles", "max_planes", "max_joints",  "max_rows", "max_looks"};
-
-/// What Python says of a keyword that there is not, and which one may have been meant.
-void refuse_others(const py::kwargs& others) {
-  if (others.empty()) return;
-  const auto name = py::str(others.begin()->first).cast<std::string>();
-  std::string known;
-  for (const std::string_view argument : arguments) {
-    known += (known.empty() ? "" : ", ") + std::string(argument);
-  }
-  const auto meant = nearest_name(name, arguments);
-  throw py::type_error("MotionConstraint has no argument '" + name + "'" +
-                       (meant ? "; did you mean '" + std::string(*meant) + "'?" : ";") +
-                       " known: " + known);
-}
-
-/// The one given, or one made for this constraint.
-std::shared_ptr<IndexHandle> index_from(const py::object& mesh, const py::object& index,
-                                        const std::optional<std::filesystem::path>& cache) {
-  const std::shared_ptr<const Mesh>& surface = mesh_of(mesh);
-  if (py::isinstance<IndexHandle>(index)) {
-    auto shared = index.cast<std::shared_ptr<IndexHandle>>();
-    if (shared->mesh != surface) {
-      refuse("index", "an Index of the same Mesh object", "one of another mesh");
-    }
-    return shared;
-  }
-  if (!py::isinstance<py::str>(index)) {
-    refuse("index", "a name of indices(), or a keepout.Index", Py_TYPE(index.ptr())->tp_name);
-  }
-  return std::make_shared<IndexHandle>(mesh, index.cast<std::string>(), cache);
-}
 
 py::str repr(const Guard& guard) {
   const MotionConstraintSettings& s = guard.settings();
@@ -147,7 +105,7 @@ void bind_motion_constraint(py::module_& module) {
                        const std::string& distances, const std::string& inside,
                        py::ssize_t max_triangles, py::ssize_t max_planes, py::ssize_t max_joints,
                        py::ssize_t max_rows, py::ssize_t max_looks, const py::kwargs& others) {
-             refuse_others(others);
+             refuse_others("MotionConstraint", others, arguments);
              MotionConstraintSettings settings;
              settings.activation = std::move(activation);
              settings.solver = std::move(solver);

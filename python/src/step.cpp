@@ -23,6 +23,10 @@ Status status_from(py::ssize_t value) {
 
 }  // namespace
 
+py::object status_object(Status status) {
+  return py::reinterpret_borrow<py::object>(members[static_cast<std::size_t>(status)]);
+}
+
 void bind_status(py::module_& module) {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < status_count; ++i) {
@@ -81,11 +85,7 @@ void bind_step(py::module_& module) {
   py::class_<StepResult>(module, "Step",
                          "What one control cycle may do. Arrays are read-only views of it.")
       .def_property_readonly(
-          "status",
-          [](const StepResult& self) {
-            return py::reinterpret_borrow<py::object>(
-                members[static_cast<std::size_t>(self.status)]);
-          },
+          "status", [](const StepResult& self) { return status_object(self.status); },
           "How the step ended: a Status.")
       .def_property_readonly(
           "ok", [](const StepResult& self) { return is_ok(self.status); },

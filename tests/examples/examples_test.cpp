@@ -148,11 +148,35 @@ TEST(Example02, TheJointsKeepTheTipOut) {
   EXPECT_GT(tip.norm(), radius + 0.5 - 0.001);
 }
 
+TEST(Example09, TheWholeInstrumentKeepsTheMarginAndAPlannerIsToldHowFarItMayGo) {
+  const std::string text = output_of(KEEPOUT_EXAMPLE_INSTRUMENT);
+  double clear = 0, nearest = 0;
+  int held = 0, stopped = -1;
+  char body[16] = "";
+  Vec3 tip = Vec3::Zero();
+  ASSERT_EQ(
+      std::sscanf(text.c_str(),
+                  "clear are %lf mm of 20 (free)\nheld back in %d of 3000 cycles, stopped in %d, "
+                  "nearest %lf mm of 0.5: the %15s\nends at %lf %lf %lf",
+                  &clear, &held, &stopped, &nearest, body, &tip.x(), &tip.y(), &tip.z()),
+      8)
+      << text;
+  // The jaws' end is 9 mm above the top, and the margin is kept but for its band.
+  EXPECT_GT(clear, 8.4);
+  EXPECT_LT(clear, 8.55);
+  EXPECT_GT(held, 1000);
+  EXPECT_EQ(stopped, 0) << text;
+  EXPECT_GT(nearest, 0.45) << "the margin less its band";
+  EXPECT_LT(nearest, 0.5) << "it is pressed against the margin";
+  EXPECT_STREQ(body, "jaws");
+  EXPECT_GT(tip.norm(), radius + 1.0 + 0.45);
+}
+
 TEST(Examples, SayWhatIsWrongWhenTheMeshIsMissing) {
   for (const std::string example :
        {KEEPOUT_EXAMPLE, KEEPOUT_EXAMPLE_OWN_INDEX, KEEPOUT_EXAMPLE_CONVEX_TOOL,
         KEEPOUT_EXAMPLE_OWN_SOLVER, KEEPOUT_EXAMPLE_OWN_QP, KEEPOUT_EXAMPLE_CRTK_LOOP,
-        KEEPOUT_EXAMPLE_JOINTS}) {
+        KEEPOUT_EXAMPLE_JOINTS, KEEPOUT_EXAMPLE_INSTRUMENT}) {
     const auto said = [&](const std::string& arguments, int status) {
       FILE* pipe = ::popen(("'" + example + "' " + arguments + " 2>&1").c_str(), "r");
       EXPECT_NE(pipe, nullptr);

@@ -29,10 +29,11 @@ def run(arguments, folder):
 
 
 def test_stubtest(tmp_path):
-    made_by_others = "Hits Inspection Planes Polytope Step"
+    made_by_others = "Hits Inspection InstrumentStep MotionProof Planes Polytope Step"
     allowed = [
         # pybind11 has a metaclass of its own, and an __init__ for what cannot be made by hand.
-        r"keepout\.(Index|Mesh|MotionConstraint|" + made_by_others.replace(" ", "|") + ")",
+        r"keepout\.(Body|Chain|Index|Instrument|InstrumentGuard|Joint|Mesh|MotionConstraint|TableRow|"
+        + made_by_others.replace(" ", "|") + ")",
         r"keepout\.(" + made_by_others.replace(" ", "|") + r")\.__init__",
         r"keepout\._results\.NamedTuple",  # a function in Python 3.11, which mypy 1.0 does not know
     ]
@@ -41,6 +42,8 @@ def test_stubtest(tmp_path):
 
 
 use = """
+from typing import Any
+
 import numpy as np
 import keepout
 
@@ -52,6 +55,12 @@ distance: float | None = step.distance
 kept: float = guard.tool_radius + guard.margin
 length = float(np.linalg.norm(step.motion)) + step.planes.offsets.sum()
 steps = guard.steps(np.zeros((4, 3)), np.zeros((4, 3)), threads=2, out=keepout.Steps.empty(4))
+chain = keepout.Chain([keepout.Joint("turn", axis=(0, 1, 0))], base=np.eye(4))
+instrument = keepout.Instrument(chain, [keepout.Body("tip", [(1, (0, 0, 1))], 0.5)])
+whole = keepout.InstrumentGuard(mesh, instrument, index=guard.index, margin=0.5)
+q: np.ndarray[Any, np.dtype[np.float64]] = whole.step([0.0], linear=(0, 0, 1)).increment
+share: float = whole.prove(q, increment=[0.1]).share
+clear = whole.proofs(np.zeros((4, 1)), threads=2).is_clear.all()
 names: list[str] = [part.name for part in keepout.indices()]
 """
 
@@ -60,6 +69,7 @@ names: list[str] = [part.name for part in keepout.indices()]
 misuse = """
 guard.steps(np.zeros((1, 3)), np.zeros((1, 3)), thread=3)  # type: ignore[call-arg]
 number: int = step.status.name  # type: ignore[assignment]
+whole.step([0.0], turn=(0, 0, 1))  # type: ignore[call-arg]
 keepout.MotionConstraint(mesh, query="far")  # type: ignore[arg-type]
 """
 

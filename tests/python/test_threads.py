@@ -97,7 +97,12 @@ def interrupt():
     os.kill(os.getpid(), signal.SIGINT)
 threading.Thread(target=interrupt).start()
 try:
-    if sys.argv[2] == "steps":
+    if sys.argv[2] == "proofs":
+        chain = keepout.Chain([keepout.Joint(axis=(0, 1, 0))])
+        body = keepout.Body("tip", [(1, (0, 0, 10.8))], 0.5)
+        whole = keepout.InstrumentGuard(guard.mesh, keepout.Instrument(chain, [body]))
+        whole.proofs([0.0], np.zeros((20_000_000, 1)))
+    elif sys.argv[2] == "steps":
         guard.steps(hands[0], hands[0])
     else:
         guard.simulate(np.array([[0.0, 0, 10.5]]), hands)
@@ -107,7 +112,7 @@ except KeyboardInterrupt:
 """
 
 
-@pytest.mark.parametrize("batch", ["steps", "simulate"])
+@pytest.mark.parametrize("batch", ["steps", "simulate", "proofs"])
 def test_a_long_batch_can_be_interrupted(batch):
     ended = subprocess.run(
         [sys.executable, "-c", interrupted, os.path.dirname(__file__), batch],

@@ -27,6 +27,15 @@ void append_list(std::string& out, const Items& items, const Append& append) {
   out += before == '[' ? "[]" : "]";
 }
 
+/// Of a step that is not ok there is no increment to tell, but a client who looks at nothing else
+/// shall stand still.
+void append_increment(std::string& out, std::span<const double> increment, std::size_t joints) {
+  out += ",\"increment\":";
+  append_list(out, std::views::iota(std::size_t{0}, joints), [&](std::size_t i) {
+    append_number(out, i < increment.size() ? increment[i] : 0.0);
+  });
+}
+
 template <class Numbers>
 void append_numbers(std::string& out, const Numbers& numbers) {
   append_list(out, numbers, [&](double number) { append_number(out, number); });
@@ -84,14 +93,7 @@ void append_step(std::string& out, const Step& step, std::size_t joints) {
   append_outcome(out, step);
   out += ",\"motion\":";
   append_numbers(out, step.motion);
-  if (joints > 0) {
-    // Of a step that is not ok there is none to tell, but a client who looks at nothing else shall
-    // stand still.
-    out += ",\"increment\":";
-    append_list(out, std::views::iota(std::size_t{0}, joints), [&](std::size_t i) {
-      append_number(out, i < step.increment.size() ? step.increment[i] : 0.0);
-    });
-  }
+  if (joints > 0) append_increment(out, step.increment, joints);
   out += ",\"triangles\":";
   append_digits(out, step.triangles);
   out += ",\"planes\":";
@@ -108,6 +110,26 @@ void append_polytope(std::string& out, const Polytope& polytope) {
   append_list(out, polytope.planes, [&](const auto& plane) { append_numbers(out, plane.normal); });
   out += ",\"offsets\":";
   append_list(out, polytope.planes, [&](const auto& plane) { append_number(out, plane.offset); });
+}
+
+void append_instrument(std::string& out, const Instrument& instrument) {
+  out += "\"ok\":true,\"joints\":";
+  append_list(out, std::views::iota(1, instrument.chain().size() + 1),
+              [&](int k) { append_string(out, instrument.chain().joint(k).name); });
+  out += ",\"bodies\":";
+  append_digits(out, instrument.bodies().size());
+}
+
+void append_joint_step(std::string& out, const InstrumentStep& step, std::size_t joints) {
+  append_outcome(out, step);
+  append_increment(out, step.increment, joints);
+  out += ",\"share\":";
+  append_number(out, step.share);
+  if (!step.distance) return;
+  out += ",\"distance\":";
+  append_number(out, *step.distance);
+  out += ",\"nearest\":";
+  append_digits(out, step.nearest);
 }
 
 void append_error(std::string& out, std::string_view id, std::string_view kind,

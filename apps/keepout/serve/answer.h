@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "keepout/robot/instrument_constraint.h"
 #include "keepout/step/motion_constraint.h"
 
 namespace keepout::app {
@@ -27,6 +28,12 @@ void end_answer(std::string& out);
 void append_step(std::string& out, const Step& step, std::size_t joints);
 
 void append_polytope(std::string& out, const Polytope& polytope);
+
+/// What an instrument is made of.
+void append_instrument(std::string& out, const Instrument& instrument);
+
+/// What became of the step of an instrument of so many joints.
+void append_joint_step(std::string& out, const InstrumentStep& step, std::size_t joints);
 
 /// The whole answer to a line that was not carried out.
 void append_error(std::string& out, std::string_view id, std::string_view kind,

@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include "keepout/robot/instrument.h"
 #include "names.h"
 #include "serve/answer.h"
 
@@ -31,13 +32,19 @@ struct VerbKeys {
   std::string_view name;
   Verb verb;
   std::array<std::string_view, 2> needed;
-  std::array<std::string_view, 3> optional;
+  std::array<std::string_view, 9> optional;
 };
 
-constexpr std::array<VerbKeys, 6> verbs{
+constexpr std::array<VerbKeys, 8> verbs{
     {{"step", Verb::step, {"tip", "desired"}, {"jacobian", "rows", "bounds"}},
      {"steps", Verb::steps, {"motions"}, {}},
      {"polytope", Verb::polytope, {"tip", "radius"}, {}},
+     {"instrument",
+      Verb::instrument,
+      {"urdf", "capsules"},
+      {"base_link", "tip_link", "scale", "frame", "margin", "band", "period", "recovery",
+       "orientation_weight"}},
+     {"joint_step", Verb::joint_step, {"q"}, {"linear", "angular", "increment", "weights"}},
      {"info", Verb::info, {}, {}},
      {"statuses", Verb::statuses, {}, {}},
      {"ping", Verb::ping, {}, {}}}};
@@ -114,6 +121,13 @@ void take(const Json& line, Request& request) {
       if (!value.is_string()) refuse("'do' must be one of " + verb_list());
       continue;
     }
+    const auto texts = request.texts();
+    if (const auto text = std::ranges::find(texts, key, &TextValue::name); text != texts.end()) {
+      if (!value.is_string()) refuse(in_quotes(key) + " must be a string");
+      (*text)->is_given = true;
+      (*text)->text = value.get_ref<const std::string&>();
+      continue;
+    }
     const auto tables = request.tables();
     const auto table = std::ranges::find(tables, key, [](const NumberTable* t) { return t->name; });
     if (table == tables.end()) {
@@ -124,18 +138,18 @@ void take(const Json& line, Request& request) {
   }
 }
 
-/// Whether a table is there just where the verb wants it. Throws Refusal.
-void check(const NumberTable& table, const VerbKeys& verb) {
-  const bool is_needed = contains(verb.needed, table.name);
-  if (is_needed && !table.is_given) {
-    refuse(in_quotes(table.name) + " is missing: " + in_quotes(verb.name) + " needs it, " +
-           table.description);
+/// Whether a value is there just where the verb wants it. Throws Refusal.
+void check(std::string_view value, bool is_given, const std::string& description,
+           const VerbKeys& verb) {
+  const bool is_needed = contains(verb.needed, value);
+  if (is_needed && !is_given) {
+    refuse(in_quotes(value) + " is missing: " + in_quotes(verb.name) + " needs it, " + description);
   }
-  if (is_needed || !table.is_given || contains(verb.optional, table.name)) return;
+  if (is_needed || !is_given || contains(verb.optional, value)) return;
   std::string takes = "'id', 'do'";
   for (const std::string_view name : verb.needed) add_to_list(takes, name);
   for (const std::string_view name : verb.optional) add_to_list(takes, name);
-  refuse(in_quotes(table.name) + " is nothing that " + in_quotes(verb.name) + " takes; it takes " +
+  refuse(in_quotes(value) + " is nothing that " + in_quotes(verb.name) + " takes; it takes " +
          takes);
 }
 
@@ -149,7 +163,19 @@ void check(Request& request, const std::string& asked) {
                                "; 'do' must be one of " + verb_list());
   }
   request.verb = known->verb;
-  for (const NumberTable* table : request.tables()) check(*table, *known);
+  for (const NumberTable* table : request.tables()) {
+    check(table->name, table->is_given, table->description, *known);
+  }
+  for (const TextValue* text : request.texts()) {
+    check(text->name, text->is_given, "a string", *known);
+  }
+  if (request.verb == Verb::joint_step) {
+    const bool has_twist = request.linear.is_given || request.angular.is_given;
+    if (has_twist == request.increment.is_given) {
+      refuse("a 'joint_step' takes either 'linear' or 'angular' of the flange, or an 'increment'");
+    }
+    if (has_twist && request.weights.is_given) refuse("'weights' belong to an 'increment'");
+  }
   const auto& [rows, bounds, jacobian] = std::tie(request.rows, request.bounds, request.jacobian);
   if (rows.is_given != bounds.is_given) {
     refuse("'rows' and 'bounds' belong together: rows . u >= bounds");
@@ -201,6 +227,13 @@ NumberTable table(std::string_view name, const TableShape& shape, std::string de
 
 std::string up_to(std::size_t count) { return "at most " + std::to_string(count); }
 
+NumberTable number(std::string_view name) { return table(name, {0, 1, 1, 1, 1}, "a number"); }
+
+NumberTable joints(std::string_view name) {
+  return table(name, {1, 1, 1, 1, Chain::most_joints},
+               "an array of one number for each joint of the instrument");
+}
+
 }  // namespace
 
 Request::Request(const RequestLimits& limits)
@@ -215,10 +248,26 @@ Request::Request(const RequestLimits& limits)
       bounds(table(
           "bounds", {1, 0, 1, 0, limits.rows},
           "an array of one number for each of the rows, " + up_to(limits.rows) + " (--rows)")),
-      radius(table("radius", {0, 1, 1, 1, 1}, "a number")),
+      radius(number("radius")),
       motions(table("motions", {2, 0, limits.motions, 6, 6},
                     "an array of arrays of six numbers, tip and desired increment, " +
-                        up_to(limits.motions) + " of them")) {
+                        up_to(limits.motions) + " of them")),
+      scale(number("scale")),
+      frame(table("frame", {2, 4, 4, 4, 4}, "four arrays of four numbers, a homogeneous matrix")),
+      capsules(table("capsules", {2, 1, Instrument::most_bodies, 9, 9},
+                     "an array of arrays of nine numbers, a link and a point of it, another, and a "
+                     "radius, " +
+                         up_to(Instrument::most_bodies) + " of them")),
+      margin(number("margin")),
+      band(number("band")),
+      period(number("period")),
+      recovery(number("recovery")),
+      orientation_weight(number("orientation_weight")),
+      q(joints("q")),
+      linear(table("linear", {1, 1, 1, 3, 3}, "an array of three numbers")),
+      angular(table("angular", {1, 1, 1, 3, 3}, "an array of three numbers")),
+      increment(joints("increment")),
+      weights(joints("weights")) {
   id.reserve(6 * longest_id + 2);
 }
 
@@ -229,6 +278,7 @@ void read_request(std::string_view line, Request& request) {
     table->rows = table->columns = 0;
     table->numbers.clear();
   }
+  for (TextValue* text : request.texts()) text->is_given = false, text->text.clear();
   // The library would take it for the end of the line.
   if (const std::size_t at = line.find('\0'); at != std::string_view::npos) {
     refuse_as_json("column " + std::to_string(at + 1) + ": a NUL byte");

@@ -11,7 +11,16 @@
 namespace keepout::app {
 
 /// What a line may ask for.
-enum class Verb : std::uint8_t { step, steps, polytope, info, statuses, ping };
+enum class Verb : std::uint8_t {
+  step,
+  steps,
+  polytope,
+  info,
+  statuses,
+  ping,
+  instrument,
+  joint_step
+};
 
 /// The largest request that there is room for.
 struct RequestLimits {
@@ -39,6 +48,13 @@ struct NumberTable {
   std::vector<double> numbers = {};
 };
 
+/// The text of one value of a request.
+struct TextValue {
+  std::string_view name;
+  bool is_given = false;
+  std::string text = {};
+};
+
 /// One request as it was read.
 struct Request {
   explicit Request(const RequestLimits& limits);
@@ -52,10 +68,30 @@ struct Request {
   NumberTable bounds;    // b (m)
   NumberTable radius;
   NumberTable motions;  // (count, 6): tip and desired increment
+  TextValue urdf{"urdf"};
+  TextValue base_link{"base_link"};
+  TextValue tip_link{"tip_link"};
+  NumberTable scale;     // of the lengths in the URDF
+  NumberTable frame;     // (4, 4): of link 0, in that of the mesh
+  NumberTable capsules;  // (count, 9): link and point, link and point, radius
+  NumberTable margin;
+  NumberTable band;
+  NumberTable period;
+  NumberTable recovery;
+  NumberTable orientation_weight;
+  NumberTable q;
+  NumberTable linear;
+  NumberTable angular;
+  NumberTable increment;
+  NumberTable weights;
 
-  std::array<NumberTable*, 7> tables() noexcept {
-    return {&tip, &desired, &jacobian, &rows, &bounds, &radius, &motions};
+  std::array<NumberTable*, 20> tables() noexcept {
+    return {&tip,    &desired, &jacobian, &rows,      &bounds,
+            &radius, &motions, &scale,    &frame,     &capsules,
+            &margin, &band,    &period,   &recovery,  &orientation_weight,
+            &q,      &linear,  &angular,  &increment, &weights};
   }
+  std::array<TextValue*, 3> texts() noexcept { return {&urdf, &base_link, &tip_link}; }
 };
 
 /// Thrown for a line that is not carried out: what the client is told.

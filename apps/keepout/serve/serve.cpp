@@ -220,6 +220,9 @@ step      tip, desired: the motion that the tip may make instead of the desired 
           With rows and bounds: rows . u >= bounds holds for the increment u.
 steps     motions, an array of [px,py,pz,dx,dy,dz]: as many steps, answered as "steps".
 polytope  tip, radius: normals and offsets of the free space around it, normal . d >= offset.
+instrument  urdf, a file, and capsules, arrays of [link,x,y,z,link,x,y,z,radius]: opens an
+          instrument of this client's.
+joint_step  q, and linear and angular of its flange, or an increment: the increment of the joints.
 info      version, mesh, settings and limits.
 statuses  all statuses by name, each with its reason.
 ping      whether it is there.
@@ -228,7 +231,7 @@ A line that cannot be carried out is answered, moves nothing and ends nothing:
 
   {"id":2,"error":{"kind":"not_a_request","message":"'tip' must be an array of three numbers"}}
 
-kinds: line_too_long, not_json, not_a_request, too_many_clients. All of it: docs/serve.md
+kinds: line_too_long, not_json, not_a_request, no_instrument, too_many_clients. All of it: docs/serve.md
 )";
 
 }  // namespace keepout::app

@@ -131,8 +131,13 @@ std::optional<Line> LineReader::finished(std::size_t line_end, std::size_t next_
 }
 
 Service::Service(std::shared_ptr<const Mesh> mesh, const ServiceSettings& settings)
-    : constraint_(
-          make_motion_constraint(mesh, with_room_for(settings.constraint, settings.limits))),
+    : mesh_(mesh),
+      index_(make_or_load_index(mesh, settings.constraint)),
+      instrument_{.solver = settings.constraint.solver,
+                  .options = {.margin = settings.constraint.margin,
+                              .recovery = settings.constraint.recovery}},
+      constraint_(make_motion_constraint(mesh, index_,
+                                         with_room_for(settings.constraint, settings.limits))),
       longest_line_(settings.longest_line),
       request_(settings.limits),
       jacobian_(3, static_cast<Eigen::Index>(settings.limits.joints)),
@@ -144,7 +149,7 @@ Service::Service(std::shared_ptr<const Mesh> mesh, const ServiceSettings& settin
                          return s == PolytopeStatus::found;
                        })}})) {}
 
-std::size_t Service::answer(const Line& line, SideWatch& tip, std::string& out) {
+std::size_t Service::answer(const Line& line, Client& client, std::string& out) {
   if (line.is_too_long) {
     append_error(out, "null", "line_too_long",
                  "the line has more than " + std::to_string(longest_line_) +
@@ -152,26 +157,28 @@ std::size_t Service::answer(const Line& line, SideWatch& tip, std::string& out) 
     return 1;
   }
   if (is_blank(line.text)) return 0;
+  const std::size_t before = out.size();
   try {
     read_request(line.text, request_);
+    begin_answer(out, request_.id);
+    const std::size_t work = carry_out(client, out);
+    end_answer(out);
+    return work;
   } catch (const Refusal& refusal) {
+    out.resize(before);
     append_error(out, request_.id, refusal.kind, refusal.message);
     return 1;
   }
-  begin_answer(out, request_.id);
-  const std::size_t work = carry_out(tip, out);
-  end_answer(out);
-  return work;
 }
 
-std::size_t Service::carry_out(SideWatch& tip, std::string& out) {
+std::size_t Service::carry_out(Client& client, std::string& out) {
   out += ',';
   switch (request_.verb) {
     case Verb::step:
-      append_single_step(tip, out);
+      append_single_step(client.tip, out);
       break;
     case Verb::steps:
-      append_batch(tip, out);
+      append_batch(client.tip, out);
       return std::max<std::size_t>(request_.motions.rows, 1);
     case Verb::polytope:
       append_polytope(
@@ -182,6 +189,13 @@ std::size_t Service::carry_out(SideWatch& tip, std::string& out) {
       break;
     case Verb::statuses:
       out += statuses_;
+      break;
+    case Verb::instrument:
+      open_instrument(client, mesh_, index_, instrument_, request_);
+      append_instrument(out, client.instrument->instrument());
+      return most_work;
+    case Verb::joint_step:
+      append_joint_step(out, joint_step(client, request_), request_.q.columns);
       break;
     case Verb::ping:
       out += "\"ok\":true";
@@ -230,7 +244,7 @@ void Session::take_turn() {
     may_have_line_ = line.has_value();
     if (!line) return;
     // A blank line is no work, but a sea of them must not hold up the others.
-    work += std::max<std::size_t>(service_.answer(*line, tip_, out_), 1);
+    work += std::max<std::size_t>(service_.answer(*line, client_, out_), 1);
   }
 }
 

@@ -10,8 +10,10 @@
 #include <string_view>
 #include <vector>
 
+#include "keepout/factory/make_instrument_constraint.h"
 #include "keepout/factory/make_motion_constraint.h"
 #include "keepout/mesh/load_mesh.h"
+#include "serve/client.h"
 #include "serve/request.h"
 
 namespace keepout::app {
@@ -65,24 +67,28 @@ struct ServiceSettings {
   std::size_t longest_line = default_longest_line;  // [bytes]
 };
 
-/// Carries out requests: one mesh, one constraint and one memory for all clients, who are told
-/// apart by the side of their tips alone. Not thread-safe.
+/// Carries out requests: one mesh, one index, one constraint of tips and one memory for all
+/// clients, who are told apart by the side of their tips, and by their instruments. Not
+/// thread-safe.
 class Service {
  public:
   /// Throws Error where make_motion_constraint does.
   Service(std::shared_ptr<const Mesh> mesh, const ServiceSettings& settings);
 
-  /// Appends the answer to a line, which is one line; none to a blank one. `tip`: of the client who
+  /// Appends the answer to a line, which is one line; none to a blank one. `client`: who
   /// asks. Returns how many steps the work was worth.
-  std::size_t answer(const Line& line, SideWatch& tip, std::string& out);
+  std::size_t answer(const Line& line, Client& client, std::string& out);
 
   std::size_t longest_line() const noexcept { return longest_line_; }
 
  private:
-  std::size_t carry_out(SideWatch& tip, std::string& out);
+  std::size_t carry_out(Client& client, std::string& out);
   void append_single_step(SideWatch& tip, std::string& out);
   void append_batch(SideWatch& tip, std::string& out);
 
+  std::shared_ptr<const Mesh> mesh_;
+  std::shared_ptr<const SpatialIndex> index_;
+  InstrumentConstraintSettings instrument_;  // what a client says nothing of
   MotionConstraint constraint_;
   std::size_t longest_line_;
   Request request_;               // in hand, or done
@@ -91,7 +97,7 @@ class Service {
   std::string statuses_;          // members of an answer
 };
 
-/// One client: what came from him in part, the side of his tip, and what he has not been sent yet.
+/// One client: what came from him in part, what is kept of him, and what he has not been sent yet.
 /// Knows no file or socket. While answers are unsent no line is taken, so a client who does not
 /// read takes up no more memory than one turn's answers.
 class Session {
@@ -122,7 +128,7 @@ class Session {
  private:
   Service& service_;
   LineReader lines_;
-  SideWatch tip_;
+  Client client_;
   std::string out_;
   std::size_t sent_ = 0;  // bytes of out_
   bool may_have_line_ = false;

@@ -77,6 +77,20 @@ bool is_request(const Json& line) {
   } else if (verb == "polytope") {
     if (!line.contains("tip") || !line.contains("radius")) return false;
     allowed.insert({"tip", "radius"});
+  } else if (verb == "instrument") {
+    if (!line.contains("urdf") || !line["urdf"].is_string() || !line.contains("capsules") ||
+        !is_matrix(line["capsules"], 1, 16, 9)) {
+      return false;
+    }
+    allowed.insert({"urdf", "capsules"});
+  } else if (verb == "joint_step") {
+    const bool has_twist = line.contains("linear");
+    const char* const asked = has_twist ? "linear" : "increment";
+    if (!line.contains("q") || !is_array_of_numbers(line["q"], 1, 8)) return false;
+    if (!line.contains(asked)) return false;
+    const std::size_t fewest = has_twist ? 3 : 1;
+    if (!is_array_of_numbers(line[asked], fewest, has_twist ? 3 : 8)) return false;
+    allowed.insert({"q", asked});
   } else if (verb != "info" && verb != "statuses" && verb != "ping") {
     return false;
   }
@@ -165,6 +179,15 @@ bool is_same_batch(const Json& request, const Json& answer, MotionConstraint& co
   return true;
 }
 
+/// What must hold of a step of an instrument, whatever it is.
+bool is_joint_step(const Json& request, const Json& answer) {
+  const bool ok = answer["ok"];
+  const auto increment = answer["increment"].get<std::vector<double>>();
+  const std::vector<double> zeros(request["q"].size(), 0.0);
+  return answer.contains("reason") == !ok && increment.size() == zeros.size() &&
+         (ok ? answer["share"] >= 0.0 && answer["share"] <= 1.0 : increment == zeros);
+}
+
 /// The lines of a text that are to be answered.
 std::vector<std::string_view> lines_of(std::string_view bytes, std::size_t longest) {
   std::vector<std::string_view> lines;
@@ -233,6 +256,14 @@ std::string JudgedService::judge(std::string_view line, std::string_view answer,
   const Json request =
       line.size() > settings_.longest_line ? Json(Json::value_t::discarded) : parsed(line);
   const bool is_refused = told.contains("error");
+  // Whether there is an instrument depends on files, and on what was opened before.
+  if (is_refused && is_request(request) &&
+      (request["do"] == "instrument" || request["do"] == "joint_step")) {
+    const std::string kind = told["error"]["kind"];
+    const bool is_joint_step = request["do"] == "joint_step";
+    return kind == "no_instrument" || (is_joint_step && kind == "not_a_request") ? ""
+                                                                                 : "another kind";
+  }
   if (is_refused == is_request(request)) return is_refused ? "refused" : "not refused";
   if (request.is_object() && request.contains("id") && is_id(request["id"]) &&
       told["id"] != request["id"]) {
@@ -251,6 +282,8 @@ std::string JudgedService::judge(std::string_view line, std::string_view answer,
   const std::string verb = request["do"];
   if (verb == "step" && !is_same_step(request, told, reference_, tip)) return "another step";
   if (verb == "steps" && !is_same_batch(request, told, reference_, tip)) return "other steps";
+  if (verb == "joint_step" && !is_joint_step(request, told)) return "no step of joints";
+  joint_steps_ += verb == "joint_step";
   if (verb == "polytope" &&
       !is_same(told, reference_.free_polytope(vector(request["tip"]), request["radius"]))) {
     return "another polytope";

@@ -21,8 +21,9 @@ class JudgedService {
   /// and those of the constraint. Returns what is wrong; empty if nothing is.
   std::string converse(std::string_view bytes, std::mt19937_64& random);
 
-  std::size_t lines() const noexcept { return lines_; }        // that were answered
-  std::size_t refusals() const noexcept { return refusals_; }  // among them
+  std::size_t lines() const noexcept { return lines_; }              // that were answered
+  std::size_t refusals() const noexcept { return refusals_; }        // among them
+  std::size_t joint_steps() const noexcept { return joint_steps_; }  // that were carried out
 
  private:
   std::string judge(std::string_view line, std::string_view answer, SideWatch& tip);
@@ -32,6 +33,7 @@ class JudgedService {
   MotionConstraint reference_;
   std::size_t lines_ = 0;
   std::size_t refusals_ = 0;
+  std::size_t joint_steps_ = 0;
 };
 
 }  // namespace keepout::test

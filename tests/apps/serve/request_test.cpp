@@ -88,6 +88,31 @@ TEST_F(RequestLine, RowsAndBoundsFitTheJacobianOrTheTip) {
   }
 }
 
+TEST_F(RequestLine, AnInstrumentHasAFileAndCapsulesAndItsStepOneKindOfMotion) {
+  const std::string file = R"({"do":"instrument","urdf":"a.urdf","capsules":)";
+  ASSERT_TRUE(is_read(file + R"([[0,1,2,3,4,5,6,7,8]],"tip_link":"t","margin":0.5})"));
+  EXPECT_EQ(request().urdf.text, "a.urdf");
+  EXPECT_EQ(request().tip_link.text, "t");
+  EXPECT_FALSE(request().base_link.is_given);
+  EXPECT_EQ(request().capsules.columns, 9u);
+  EXPECT_TRUE(is_read(R"({"do":"joint_step","q":[1,2],"linear":[0,0,1],"angular":[0,0,1]})"));
+  EXPECT_EQ(request().urdf.text, "") << "of the request before";
+  EXPECT_TRUE(is_read(R"({"do":"joint_step","q":[1],"increment":[1],"weights":[1]})"));
+  for (const std::string& wrong :
+       {file + "[]}", file + "[[0,1,2,3,4,5,6,7]]}", file + "[[0,1,2,3,4,5,6,7,8]],\"tip\":\"t\"}",
+        file + "[[0,1,2,3,4,5,6,7,8]],\"base_link\":7}",
+        file + "[[0,1,2,3,4,5,6,7,8]],\"frame\":[[1,0,0,0],[0,1,0,0],[0,0,1,0]]}",
+        std::string(R"({"do":"instrument","capsules":[[0,1,2,3,4,5,6,7,8]]})"),
+        std::string(R"({"do":"ping","urdf":"a.urdf"})"),
+        std::string(R"({"do":"joint_step","q":[1]})"),
+        std::string(R"({"do":"joint_step","q":[],"increment":[1]})"),
+        std::string(R"({"do":"joint_step","q":[1,2,3,4,5,6,7,8,9],"increment":[1]})"),
+        std::string(R"({"do":"joint_step","q":[1],"increment":[1],"linear":[0,0,1]})"),
+        std::string(R"({"do":"joint_step","q":[1],"linear":[0,0,1],"weights":[1]})")}) {
+    EXPECT_FALSE(is_read(wrong)) << wrong;
+  }
+}
+
 TEST_F(RequestLine, AMessageNamesWhatIsWrong) {
   const std::vector<std::pair<std::string_view, std::string_view>> table{
       {R"({"id":1,"do":"step","tip":[1,2]})", "'tip' must be an array of three numbers"},

@@ -75,7 +75,7 @@ class Garbler {
     static constexpr std::array<std::string_view, 8> ids{
         "1", "\"a\"", "null", "-5", "1.5", "\"\\u0000\\\"\"", "[1]", "18446744073709551615"};
     std::string text = "{\"id\":" + std::string(any(ids));
-    const std::size_t kind = below(12);
+    const std::size_t kind = below(14);
     if (kind < 4) {
       text += ",\"do\":\"step\",\"tip\":" + tip() + ",\"desired\":" + increment();
       const std::size_t joints = 1 + below(7);
@@ -88,6 +88,13 @@ class Garbler {
       text += ",\"do\":\"steps\",\"motions\":" + (size_ = 6.0, matrix(below(5), 6));
     } else if (kind < 7) {
       text += ",\"do\":\"polytope\",\"tip\":" + tip() + ",\"radius\":" + (size_ = 2.0, number());
+    } else if (kind == 12 && below(3) == 0) {
+      text += ",\"do\":\"instrument\",\"urdf\":\"" KEEPOUT_ROBOTS "/psm.urdf\",\"capsules\":" +
+              std::string(below(2) == 0 ? "[[5,9.1,0,0,6,0,10.2,0,1]]" : matrix(below(3), 9));
+    } else if (kind >= 12) {
+      const bool has_twist = below(2) == 0;
+      text += ",\"do\":\"joint_step\",\"q\":" + (size_ = 3.0, array(6));
+      text += has_twist ? ",\"linear\":" + increment() : ",\"increment\":" + array(6);
     } else {
       static constexpr std::array<std::string_view, 4> others{"info", "ping", "ping", "fly"};
       text += ",\"do\":\"" + std::string(any(others)) + "\"";
@@ -167,6 +174,9 @@ TEST(ServeFuzz, EveryGarbledLineIsAnsweredOnceAndMovesNothing) {
   // It is worth something only if both kinds of line are there.
   EXPECT_GT(service.refusals(), service.lines() / 4);
   EXPECT_LT(service.refusals(), 3 * service.lines() / 4);
+#if KEEPOUT_HAS_URDF
+  EXPECT_GT(service.joint_steps(), service.lines() / 500);
+#endif
 }
 
 TEST(ServeFuzz, BytesThatAreNoTextAreAnsweredOnceALine) {

@@ -10,10 +10,14 @@
 #include <vector>
 
 #include "keepout/fixtures/poses.h"
+#include "keepout/fixtures/robots.h"
 #include "keepout/fixtures/shapes.h"
 #include "keepout/version.h"
 #include "serve/answer.h"
 #include "serve/service.h"
+#if KEEPOUT_HAS_URDF
+#include "keepout/urdf/read_chain.h"
+#endif
 
 namespace keepout::app {
 namespace {
@@ -111,6 +115,92 @@ TEST_F(SessionTest, ClosedLoopsOfSeveralClientsAreThoseOfTheirOwnConstraintsBitF
   EXPECT_GT(limited, 100u);
   EXPECT_GT(recovering, 0u);
 }
+
+#if KEEPOUT_HAS_URDF
+std::string numbers(std::span<const double> values) {
+  std::string text;
+  for (const double value : values) append_number(text += text.empty() ? '[' : ',', value);
+  return text + ']';
+}
+
+/// Opens what fixtures/robots.h has as psm(), its port in the middle of the mesh, 200 above.
+constexpr std::string_view open_line =
+    R"({"do":"instrument","urdf":")" KEEPOUT_ROBOTS
+    R"(/psm.urdf","frame":[[1,0,0,0],[0,1,0,0],[0,0,1,200],[0,0,0,1]],"margin":0.5,"capsules":)"
+    "[[0,0,0,0,4,0,0,0,4.5],[4,0,0,0,5,9.1,0,0,3],[5,9.1,0,0,6,0,10.2,0,1]]}";
+
+TEST_F(SessionTest, InstrumentsOfTwoClientsStepAsTheirOwnConstraintsBitForBit) {
+  const Pose base{.position = {0, 0, 200}};
+  const Chain read = [&] {
+    const UrdfChain chain = read_chain(KEEPOUT_ROBOTS "/psm.urdf", "", "");
+    return Chain(chain.joints, base, chain.flange);
+  }();
+  const Instrument robot = psm();
+  const Instrument instrument(read, {robot.bodies().begin(), robot.bodies().end()});
+  std::vector<std::unique_ptr<Session>> sessions;
+  std::vector<InstrumentConstraint> own;
+  std::vector<std::vector<double>> q(2, {0, 0, 90, 0, 0, 0});
+  for (int i = 0; i < 2; ++i) {
+    own.push_back(make_instrument_constraint(mesh_, instrument, {.options = {.margin = 0.5}}));
+    sessions.push_back(std::make_unique<Session>(service_));
+    EXPECT_EQ(Json::parse(ask(*sessions[i], open_line))["bodies"], 3);
+  }
+  std::size_t limited = 0;
+  for (int cycle = 0; cycle < 600; ++cycle) {
+    for (std::size_t i = 0; i < 2; ++i) {
+      const Twist twist{.linear = {i == 0 ? 0.05 : -0.05, 0, -0.1}};
+      const std::vector<double> down{0, 0, 0.1, 0.01, 0, 0};
+      const bool by_joints = cycle % 3 == 0;
+      const InstrumentStep step = by_joints ? own[i].step(q[i], down) : own[i].step(q[i], twist);
+      const std::string line = R"({"do":"joint_step","q":)" + numbers(q[i]) +
+                               (by_joints ? R"(,"increment":)" + numbers(down)
+                                          : R"(,"linear":)" + numbers({twist.linear.data(), 3})) +
+                               '}';
+      const std::string answer = ask(*sessions[i], line);
+      ASSERT_TRUE(step.ok());
+      ASSERT_NE(answer.find("\"increment\":" + numbers(step.increment) + ","), std::string::npos)
+          << answer;
+      const Json told = Json::parse(answer);
+      ASSERT_EQ(told["status"], name(step.status));
+      ASSERT_EQ(told["share"], step.share);
+      ASSERT_EQ(told.contains("distance"), step.distance.has_value());
+      if (step.distance) {
+        ASSERT_EQ(told["distance"], *step.distance);
+      }
+      limited += step.status == Status::limited;
+      for (std::size_t k = 0; k < 6; ++k) q[i][k] += step.increment[k];
+    }
+  }
+  EXPECT_GT(limited, 100u);
+}
+
+TEST_F(SessionTest, WhatIsNoInstrumentIsToldAndLeavesTheOneThereIs) {
+  const std::string line = R"({"id":1,"do":"joint_step","q":[0,0,90,0,0,0],"linear":[0,0,0]})";
+  Session session(service_);
+  EXPECT_EQ(Json::parse(ask(session, line))["error"]["kind"], "no_instrument");
+  EXPECT_EQ(Json::parse(ask(session, open_line))["joints"][2], "insertion");
+  EXPECT_EQ(Json::parse(ask(session, line))["ok"], true);
+  for (const auto& [right, wrong] :
+       {std::pair("/psm.urdf", "/none.urdf"), std::pair("/psm.urdf", ""),
+        std::pair("[[0,0,0,0,4,", "[[0.5,0,0,0,4,"), std::pair("[[0,0,0,0,4,", "[[0,0,0,0,7,"),
+        std::pair("4.5]", "-4.5]"), std::pair("[0,0,0,1]]", "[0,0,0,2]]"),
+        std::pair("\"margin\":0.5", "\"margin\":0.001")}) {
+    std::string changed(open_line);
+    changed.replace(changed.find(right), std::string_view(right).size(), wrong);
+    const Json told = Json::parse(ask(session, changed));
+    EXPECT_EQ(told["error"]["kind"], "no_instrument") << changed << told;
+    EXPECT_EQ(Json::parse(ask(session, line))["ok"], true) << "the one before";
+  }
+  const Json few = Json::parse(ask(session, R"({"do":"joint_step","q":[0],"increment":[0]})"));
+  EXPECT_NE(std::string(few["error"]["message"]).find("'q' must have 6 numbers"),
+            std::string::npos);
+  const Json failing = Json::parse(
+      ask(session, R"({"do":"joint_step","q":[0,0,1e300,0,0,0],"increment":[0,0,1,0,0,0]})"));
+  EXPECT_EQ(failing["status"], "invalid_input");
+  EXPECT_EQ(failing["increment"], Json({0, 0, 0, 0, 0, 0}));
+  EXPECT_TRUE(failing.contains("reason"));
+}
+#endif
 
 TEST_F(SessionTest, AFailingStepIsAnAnswerWithZeroMotionAndAReason) {
   Session session(service_);

@@ -35,6 +35,11 @@ struct MotionConstraintSettings {
   Capacity capacity = {};           // the largest step there is room for
 };
 
+/// The index that the settings name, from index_cache where it is kept there: for constraints that
+/// share it. Throws Error for a name that does not exist.
+std::shared_ptr<const SpatialIndex> make_or_load_index(std::shared_ptr<const Mesh> mesh,
+                                                       const MotionConstraintSettings& settings);
+
 /// Builds the parts and puts them together. Throws Error, listing what exists, for a name that does
 /// not, and for settings out of range.
 MotionConstraint make_motion_constraint(std::shared_ptr<const Mesh> mesh,

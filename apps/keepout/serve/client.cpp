@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "serve/client.h"
+
+#include <cmath>
+#include <filesystem>
+#include <string>
+#include <utility>
+
+#include "keepout/error.h"
+#include "names.h"
+#if KEEPOUT_HAS_URDF
+#include "keepout/urdf/read_chain.h"
+#endif
+
+namespace keepout::app {
+namespace {
+
+Vec3 vector(std::span<const double> numbers) { return {numbers[0], numbers[1], numbers[2]}; }
+
+Pose pose_of(const NumberTable& frame) {
+  if (!frame.is_given) return {};
+  using RowByRow = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
+  const Eigen::Map<const RowByRow> m(frame.numbers.data());
+  if (m.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) {
+    throw Error("the last row of 'frame' must be 0, 0, 0, 1");
+  }
+  return {m.topRightCorner<3, 1>(), m.topLeftCorner<3, 3>()};
+}
+
+/// The four numbers of a link's number and a point of it.
+LinkPoint link_point(std::span<const double> numbers) {
+  const double link = numbers[0];
+  if (!(link >= 0.0 && link <= Chain::most_joints && link == std::floor(link))) {
+    throw Error("a link of 'capsules' is not a number from 0 to that of the last joint");
+  }
+  return {static_cast<int>(link), vector(numbers.subspan(1))};
+}
+
+Chain read_chain_of([[maybe_unused]] const Request& request) {
+#if KEEPOUT_HAS_URDF
+  const std::filesystem::path file(request.urdf.text);
+  std::error_code trouble;
+  // A pipe would hold up all clients.
+  if (!std::filesystem::is_regular_file(file, trouble)) {
+    throw Error("'urdf' must name a file, which " + in_quotes(request.urdf.text) + " does not");
+  }
+  const double scale = request.scale.is_given ? request.scale.numbers[0] : 1000.0;
+  UrdfChain chain = read_chain(file, request.base_link.text, request.tip_link.text, scale);
+  return Chain(std::move(chain.joints), pose_of(request.frame), chain.flange);
+#else
+  throw Error(
+      "this build reads no URDF: install liburdfdom-dev and liburdfdom-headers-dev, and build it "
+      "anew");
+#endif
+}
+
+Instrument instrument_of(const Request& request) {
+  std::vector<Body> bodies;
+  const std::span<const double> numbers = request.capsules.numbers;
+  for (std::size_t i = 0; i < numbers.size(); i += 9) {
+    const std::span<const double> row = numbers.subspan(i, 9);
+    bodies.push_back({.points = {link_point(row), link_point(row.subspan(4))}, .radius = row[8]});
+  }
+  return {read_chain_of(request), std::move(bodies)};
+}
+
+void take(double& option, const NumberTable& given) {
+  if (given.is_given) option = given.numbers[0];
+}
+
+}  // namespace
+
+void open_instrument(Client& client, const std::shared_ptr<const Mesh>& mesh,
+                     const std::shared_ptr<const SpatialIndex>& index,
+                     InstrumentConstraintSettings settings, const Request& request) {
+  take(settings.options.margin, request.margin);
+  take(settings.options.band, request.band);
+  take(settings.options.period, request.period);
+  take(settings.options.recovery, request.recovery);
+  take(settings.options.orientation_weight, request.orientation_weight);
+  try {
+    client.instrument = make_instrument_constraint(mesh, index, instrument_of(request), settings);
+  } catch (const Error& error) {
+    throw Refusal{"no_instrument", printable(error.what())};
+  }
+}
+
+InstrumentStep joint_step(Client& client, const Request& request) {
+  if (!client.instrument) {
+    throw Refusal{"no_instrument", "there is no instrument yet: open one, with 'instrument'"};
+  }
+  const auto n = static_cast<std::size_t>(client.instrument->instrument().chain().size());
+  for (const NumberTable* table : {&request.q, &request.increment, &request.weights}) {
+    if (table->is_given && table->columns != n) {
+      throw Refusal{"not_a_request", in_quotes(table->name) + " must have " + std::to_string(n) +
+                                         " numbers, one for each joint of the instrument"};
+    }
+  }
+  if (request.increment.is_given) {
+    return client.instrument->step(request.q.numbers, request.increment.numbers,
+                                   request.weights.numbers);
+  }
+  Twist twist;
+  if (request.linear.is_given) twist.linear = vector(request.linear.numbers);
+  if (request.angular.is_given) twist.angular = vector(request.angular.numbers);
+  return client.instrument->step(request.q.numbers, twist);
+}
+
+}  // namespace keepout::app

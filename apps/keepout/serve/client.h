@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "keepout/factory/make_instrument_constraint.h"
+#include "keepout/step/side_watch.h"
+#include "serve/request.h"
+
+namespace keepout::app {
+
+/// What is kept of one client from request to request.
+struct Client {
+  SideWatch tip;                                                  // where his last step led it
+  std::optional<InstrumentConstraint> instrument = std::nullopt;  // that he has opened
+};
+
+/// Opens the instrument of a request in place of the one that there was; `settings` are what it
+/// says nothing of. Throws Refusal, "no_instrument", and leaves that one, for what is no
+/// instrument. Reads a file, and allocates.
+void open_instrument(Client& client, const std::shared_ptr<const Mesh>& mesh,
+                     const std::shared_ptr<const SpatialIndex>& index,
+                     InstrumentConstraintSettings settings, const Request& request);
+
+/// Carries out a request. Throws Refusal: "no_instrument" if none was opened, "not_a_request" for
+/// another number of joints.
+InstrumentStep joint_step(Client& client, const Request& request);
+
+}  // namespace keepout::app

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "keepout/robot/instrument_constraint.h"
+
+namespace keepout {
+
+/// Which parts to build an instrument constraint from, by name, and how it shall behave.
+struct InstrumentConstraintSettings {
+  std::string index = "wide_bvh";  // see index_backends(); fcl_collide is not for real time
+  /// The folder where built indices are kept; only wide_bvh is. Empty: none is kept.
+  std::filesystem::path index_cache = {};
+  std::string solver = "active_set";  // see solver_backends()
+  InstrumentOptions options = {};
+  InstrumentCapacity capacity = {};
+  /// As MotionConstraintSettings::warn. Empty: nobody is told.
+  std::function<void(const std::string&)> warn = {};
+};
+
+/// Builds the parts and puts them together. Throws Error, listing what exists, for a name that does
+/// not, and for settings out of range.
+InstrumentConstraint make_instrument_constraint(std::shared_ptr<const Mesh> mesh,
+                                                Instrument instrument,
+                                                const InstrumentConstraintSettings& settings);
+
+/// The same on an index that is there already, built on this mesh: settings.index and index_cache
+/// are not looked at. Constraints of many threads may share it, as they share the mesh.
+InstrumentConstraint make_instrument_constraint(std::shared_ptr<const Mesh> mesh,
+                                                std::shared_ptr<const SpatialIndex> index,
+                                                Instrument instrument,
+                                                const InstrumentConstraintSettings& settings);
+
+}  // namespace keepout

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "keepout/factory/make_instrument_constraint.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "chosen_index.h"
+#include "keepout/error.h"
+#include "keepout/solvers/registry.h"
+
+namespace keepout {
+
+InstrumentConstraint make_instrument_constraint(std::shared_ptr<const Mesh> mesh,
+                                                Instrument instrument,
+                                                const InstrumentConstraintSettings& settings) {
+  if (!mesh) throw Error("an instrument constraint needs a mesh: none was given");
+  auto index = make_or_load_index(mesh, settings.index, settings.index_cache, settings.warn);
+  return make_instrument_constraint(std::move(mesh), std::move(index), std::move(instrument),
+                                    settings);
+}
+
+InstrumentConstraint make_instrument_constraint(std::shared_ptr<const Mesh> mesh,
+                                                std::shared_ptr<const SpatialIndex> index,
+                                                Instrument instrument,
+                                                const InstrumentConstraintSettings& settings) {
+  if (!mesh) throw Error("an instrument constraint needs a mesh: none was given");
+  const auto thinnest = std::ranges::min_element(instrument.bodies(), {}, &Body::radius);
+  if (index) {
+    warn_of_coarse_index(*index, thinnest->radius + settings.options.margin, settings.warn);
+  }
+  return {std::move(mesh),  std::move(index), std::move(instrument), make_solver(settings.solver),
+          settings.options, settings.capacity};
+}
+
+}  // namespace keepout

@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "keepout/robot/chain.h"
+
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "arrays.h"
+#include "bindings.h"
+#include "keepout/error.h"
+#include "keepout/robot/denavit_hartenberg.h"
+#include "keywords.h"
+#if KEEPOUT_HAS_URDF
+#include "keepout/urdf/read_chain.h"
+#endif
+
+namespace keepout::python {
+namespace {
+
+using Matrix4 = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
+using Optional = std::optional<double>;
+
+/// A homogeneous matrix; None is the identity. Whether it turns is looked at by Chain.
+Pose pose_of(const py::object& matrix, std::string_view name) {
+  if (matrix.is_none()) return {};
+  const Doubles numbers = doubles(matrix, {name, {4, 4}, "(4, 4)"});
+  const Eigen::Map<const Matrix4> m(numbers.data());
+  if (m.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) {
+    refuse(name, "a homogeneous matrix, whose last row is 0, 0, 0, 1", "another last row");
+  }
+  return {m.topRightCorner<3, 1>(), m.topLeftCorner<3, 3>()};
+}
+
+void write(double* to, const Pose& pose) {
+  Eigen::Map<Matrix4> m(to);
+  m.setIdentity();
+  m.topRightCorner<3, 1>() = pose.position;
+  m.topLeftCorner<3, 3>() = pose.rotation;
+}
+
+py::array_t<double> matrix_of(const Pose& pose) {
+  py::array_t<double> matrix({4, 4});
+  write(matrix.mutable_data(), pose);
+  return matrix;
+}
+
+JointKind kind_of(const std::string& kind) {
+  return named<JointKind>(
+      "kind", kind, {{{"revolute", JointKind::revolute}, {"prismatic", JointKind::prismatic}}});
+}
+
+JointLimits limits_of(Optional lower, Optional upper, Optional velocity, Optional increment) {
+  const JointLimits none;
+  return {.lower = lower.value_or(none.lower),
+          .upper = upper.value_or(none.upper),
+          .velocity = velocity.value_or(none.velocity),
+          .increment = increment.value_or(none.increment)};
+}
+
+/// Where the flange is at each row of q; of what is not finite, nowhere.
+py::array_t<double> place(const Chain& chain, const py::object& positions) {
+  const auto n = static_cast<py::ssize_t>(chain.size());
+  const std::string width = std::to_string(n);
+  const std::string text = "(m, " + width + ") or (" + width + ",)";
+  const Doubles q = doubles(positions, {"q", {any, n}, text, OneForAll::allowed});
+  const py::ssize_t count = q.ndim() == 1 ? 1 : q.shape(0);
+  std::vector<py::ssize_t> shape{count, 4, 4};
+  if (q.ndim() == 1) shape.erase(shape.begin());
+  py::array_t<double> poses(shape);
+  ChainState state;
+  for (py::ssize_t i = 0; i < count; ++i) {
+    const std::span<const double> row(q.data() + i * n, static_cast<std::size_t>(n));
+    double* const to = poses.mutable_data() + 16 * i;
+    if (std::ranges::all_of(row, [](double x) { return std::isfinite(x); })) {
+      chain.place(row, state);
+      write(to, state.flange());
+    } else {
+      std::fill_n(to, 16, std::nan(""));
+    }
+  }
+  return poses;
+}
+
+Chain chain_of_table(const std::vector<DenavitHartenberg>& rows, const std::string& convention,
+                     const py::object& base, const py::object& flange) {
+  auto [joints, end] = joints_of(
+      rows, named<DhConvention>(
+                "convention", convention,
+                {{{"modified", DhConvention::modified}, {"standard", DhConvention::standard}}}));
+  return Chain(std::move(joints), pose_of(base, "base"), end * pose_of(flange, "flange"));
+}
+
+#if KEEPOUT_HAS_URDF
+Chain chain_of_file(const std::filesystem::path& path, const std::string& base,
+                    const std::string& tip, double scale) {
+  UrdfChain read = read_chain(path, base, tip, scale);
+  return Chain(std::move(read.joints), {}, read.flange);
+}
+#else
+Chain chain_of_file(const std::filesystem::path&, const std::string&, const std::string&, double) {
+  throw Error(
+      "read_chain: this build reads no URDF; install liburdfdom-dev and liburdfdom-headers-dev, "
+      "and build the module anew, or write the chain down with Chain or chain_of_table");
+}
+#endif
+
+constexpr const char* joint_doc =
+    R"(One joint of a chain, and the fixed way to it from the one before.
+
+name: for messages. kind: 'revolute' turns what is beyond it about the axis [rad], 'prismatic' moves
+it along the axis [length]. origin: (4, 4), the joint's frame in that of the link before it; None is
+the identity. axis: (3,), unit, in the joint's frame; None is z. lower, upper: of its position;
+velocity: per second, above 0; increment: in a cycle, above 0. None: no limit.)";
+
+constexpr const char* row_doc =
+    R"(One row of a table after Denavit and Hartenberg: a along x [length], alpha about x [rad], d along z
+[length], theta about z [rad]. The joint's position is added to theta where it is revolute, to d
+where it is prismatic. The rest is as in Joint.)";
+
+constexpr const char* chain_doc =
+    R"(A serial chain of revolute and prismatic joints: what carries an instrument. Link 0 is the base,
+link k the one that joint k moves, counted from 1; frames are those of URDF.
+
+joints: 1 to 8 of Joint, from the base on. base: (4, 4), where link 0 is, in the frame of the mesh.
+flange: (4, 4), the frame that is steered, in that of the last link. None is the identity.)";
+
+}  // namespace
+
+void bind_chain(py::module_& module) {
+  py::class_<Joint>(module, "Joint", joint_doc)
+      .def(py::init([](std::string name, const std::string& kind, const py::object& origin,
+                       const py::object& axis, Optional lower, Optional upper, Optional velocity,
+                       Optional increment) {
+             return Joint{std::move(name), kind_of(kind), pose_of(origin, "origin"),
+                          axis.is_none() ? Vec3(0, 0, 1) : point(axis, "axis"),
+                          limits_of(lower, upper, velocity, increment)};
+           }),
+           py::arg("name") = "", py::kw_only(), py::arg("kind") = "revolute",
+           py::arg("origin") = py::none(), py::arg("axis") = py::none(),
+           py::arg("lower") = py::none(), py::arg("upper") = py::none(),
+           py::arg("velocity") = py::none(), py::arg("increment") = py::none())
+      .def_readonly("name", &Joint::name, "For messages.")
+      .def_property_readonly(
+          "kind",
+          [](const Joint& self) {
+            return self.kind == JointKind::revolute ? "revolute" : "prismatic";
+          },
+          "'revolute' or 'prismatic'.")
+      .def_property_readonly(
+          "lower", [](const Joint& self) { return self.limits.lower; },
+          "Least position [rad or length]; -inf where there is no limit.")
+      .def_property_readonly(
+          "upper", [](const Joint& self) { return self.limits.upper; },
+          "Largest position [rad or length]; inf where there is no limit.")
+      .def_property_readonly(
+          "velocity", [](const Joint& self) { return self.limits.velocity; },
+          "[rad/s or length/s]; inf where there is no limit.")
+      .def_property_readonly(
+          "increment", [](const Joint& self) { return self.limits.increment; },
+          "In a cycle [rad or length]; inf where there is no limit.")
+      .def("__repr__", [](const Joint& self) {
+        return py::str("<keepout.Joint '{}', {}>")
+            .format(self.name, self.kind == JointKind::revolute ? "revolute" : "prismatic");
+      });
+
+  py::class_<DenavitHartenberg>(module, "TableRow", row_doc)
+      .def(py::init([](std::string name, const std::string& kind, double a, double alpha, double d,
+                       double theta, Optional lower, Optional upper, Optional velocity,
+                       Optional increment) {
+             return DenavitHartenberg{std::move(name),
+                                      kind_of(kind),
+                                      a,
+                                      alpha,
+                                      d,
+                                      theta,
+                                      limits_of(lower, upper, velocity, increment)};
+           }),
+           py::arg("name") = "", py::kw_only(), py::arg("kind") = "revolute", py::arg("a") = 0.0,
+           py::arg("alpha") = 0.0, py::arg("d") = 0.0, py::arg("theta") = 0.0,
+           py::arg("lower") = py::none(), py::arg("upper") = py::none(),
+           py::arg("velocity") = py::none(), py::arg("increment") = py::none());
+
+  py::class_<Chain>(module, "Chain", chain_doc)
+      .def(
+          py::init([](std::vector<Joint> joints, const py::object& base, const py::object& flange) {
+            return Chain(std::move(joints), pose_of(base, "base"), pose_of(flange, "flange"));
+          }),
+          py::arg("joints"), py::kw_only(), py::arg("base") = py::none(),
+          py::arg("flange") = py::none())
+      .def("place", &place, py::arg("q"),
+           "Where the flange is, in the frame of the mesh: (4, 4) for joint positions (n,), or\n"
+           "(m, 4, 4) for (m, n) [rad or length]; NaN for numbers that are not finite.")
+      .def_property_readonly(
+          "joints",
+          [](const Chain& self) {
+            std::vector<Joint> joints;
+            for (int k = 1; k <= self.size(); ++k) joints.push_back(self.joint(k));
+            return joints;
+          },
+          "A list of Joint, from the base on.")
+      .def_property_readonly(
+          "base", [](const Chain& self) { return matrix_of(self.base()); },
+          "(4, 4) float64: where link 0 is, in the frame of the mesh.")
+      .def_property_readonly(
+          "flange", [](const Chain& self) { return matrix_of(self.flange()); },
+          "(4, 4) float64: the frame that is steered, in that of the last link.")
+      .def("__len__", &Chain::size)
+      .def("__repr__", [](const Chain& self) {
+        return py::str("<keepout.Chain of {} joints>").format(self.size());
+      });
+
+  module.def(
+      "chain_of_table", &chain_of_table, py::arg("rows"), py::kw_only(),
+      py::arg("convention") = "modified", py::arg("base") = py::none(),
+      py::arg("flange") = py::none(),
+      "A Chain of a list of TableRow. convention: 'modified' (Craig: about x, along x, about "
+      "z,\nalong z) or 'standard' (about z, along z, along x, about x). base: as in Chain. "
+      "flange:\n(4, 4), in the last frame of the table.");
+  module.def(
+      "read_chain", &chain_of_file, py::arg("path"), py::kw_only(), py::arg("base") = "",
+      py::arg("tip") = "", py::arg("scale") = 1000.0,
+      "A Chain out of a robot's description in URDF, from link `base` to link `tip`, which is its\n"
+      "flange. Empty: the root, and the only leaf below it. scale: a metre in the mesh's unit.\n"
+      "Link 0 is at the mesh's origin; Chain(chain.joints, base=..., flange=chain.flange) puts it\n"
+      "elsewhere. Raises Error where this build reads no URDF.");
+}
+
+}  // namespace keepout::python

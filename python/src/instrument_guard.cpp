@@ -1,0 +1,378 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "instrument_guard.h"
+
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <utility>
+
+#include "batch.h"
+#include "keywords.h"
+
+namespace keepout::python {
+namespace {
+
+std::span<const double> numbers_of(const Doubles& array) {
+  return {array.data(), static_cast<std::size_t>(array.size())};
+}
+
+/// Row i, or the only one, which stands for all.
+std::span<const double> row_of(const Doubles& rows, std::size_t i, std::size_t width) {
+  return numbers_of(rows).subspan(rows.ndim() == 1 ? 0 : i * width, width);
+}
+
+}  // namespace
+
+InstrumentGuard::InstrumentGuard(std::shared_ptr<IndexHandle> index, Instrument instrument,
+                                 InstrumentConstraintSettings settings)
+    : index_(std::move(index)),
+      instrument_(std::move(instrument)),
+      settings_(std::move(settings)),
+      constraint_([this] {
+        const py::gil_scoped_release release;
+        return make();
+      }()) {}
+
+InstrumentConstraint InstrumentGuard::make() const {
+  return make_instrument_constraint(index_->mesh, index_->index, instrument_, settings_);
+}
+
+Doubles InstrumentGuard::of_joints(const py::object& argument, std::string_view name) const {
+  return doubles(argument, {name, {joints()}, "(" + std::to_string(joints()) + ",)"});
+}
+
+InstrumentStepResult InstrumentGuard::step(const py::object& q, const py::object& linear,
+                                           const py::object& angular, const py::object& increment,
+                                           const py::object& weights) {
+  const Doubles at = of_joints(q, "q");
+  const bool has_twist = !linear.is_none() || !angular.is_none();
+  if (has_twist != increment.is_none()) {
+    refuse("increment", "either an increment of the joints, or 'linear' or 'angular' of the flange",
+           has_twist ? "both" : "neither");
+  }
+  if (has_twist && !weights.is_none()) {
+    refuse("weights", "None without an increment of the joints, which they are for", "weights");
+  }
+  const auto joints = static_cast<std::size_t>(at.size());
+  const auto result = [&](const InstrumentStep& step) {
+    InstrumentStepResult kept{step, std::vector<double>(joints, 0.0)};
+    std::copy(step.increment.begin(), step.increment.end(), kept.increment.begin());
+    kept.step.increment = {};
+    return kept;
+  };
+  if (has_twist) {
+    Twist twist;
+    if (!linear.is_none()) twist.linear = point(linear, "linear");
+    if (!angular.is_none()) twist.angular = point(angular, "angular");
+    const InUse in_use(constraint_in_use_);
+    return result(constraint_.step(numbers_of(at), twist));
+  }
+  const Doubles wanted = of_joints(increment, "increment");
+  const Doubles weighed = weights.is_none() ? Doubles(0) : of_joints(weights, "weights");
+  const InUse in_use(constraint_in_use_);
+  return result(constraint_.step(numbers_of(at), numbers_of(wanted), numbers_of(weighed)));
+}
+
+template <class Take>
+void InstrumentGuard::prove_each(const Doubles& q, const Doubles& increments, std::size_t count,
+                                 unsigned threads, const Take& take) {
+  const auto width = static_cast<std::size_t>(joints());
+  workers_.do_each(
+      count, 16, threads, [this] { return make(); },
+      [&](InstrumentConstraint& constraint, std::size_t i, const std::stop_token&) {
+        // Or the answer might depend on what this worker proved before.
+        constraint.forget();
+        take(i, constraint.prove(row_of(q, i, width), row_of(increments, i, width)));
+      });
+}
+
+MotionProof InstrumentGuard::prove(const py::object& q, const py::object& increment) {
+  const Doubles at = of_joints(q, "q");
+  const Doubles by = of_joints(increment, "increment");
+  MotionProof result;
+  prove_each(at, by, 1, 1, [&](std::size_t, const MotionProof& proof) { result = proof; });
+  return result;
+}
+
+py::object InstrumentGuard::proofs(const py::object& q, const py::object& increments,
+                                   std::optional<py::ssize_t> threads) {
+  const py::ssize_t n = joints();
+  const std::string width = std::to_string(n);
+  const std::string text = "(m, " + width + ") or (" + width + ",)";
+  const Doubles at = doubles(q, {"q", {any, n}, text, OneForAll::allowed});
+  Doubles by(n);
+  std::fill_n(by.mutable_data(), n, 0.0);
+  if (!increments.is_none()) {
+    by = doubles(increments, {"increments", {any, n}, text, OneForAll::allowed});
+  }
+  if (at.ndim() == 2 && by.ndim() == 2 && at.shape(0) != by.shape(0)) {
+    refuse("increments", "as many as q, " + std::to_string(at.shape(0)) + ", or one for all",
+           "shape " + shape_text(by));
+  }
+  const py::ssize_t count = at.ndim() == 2 ? at.shape(0) : by.ndim() == 2 ? by.shape(0) : 1;
+  py::array_t<std::uint8_t> status(count);
+  py::array_t<double> share(count);
+  py::array_t<double> distance(count);
+  const auto take = [statuses = status.mutable_data(), shares = share.mutable_data(),
+                     distances = distance.mutable_data()](std::size_t i, const MotionProof& proof) {
+    statuses[i] = static_cast<std::uint8_t>(proof.status);
+    shares[i] = proof.share;
+    distances[i] = proof.distance.value_or(std::nan(""));
+  };
+  const auto motions = static_cast<std::size_t>(count);
+  prove_each(at, by, motions, threads_for(motions, threads), take);
+  return py::module_::import("keepout._results").attr("Proofs")(status, share, distance);
+}
+
+void InstrumentGuard::forget() {
+  const InUse in_use(constraint_in_use_);
+  constraint_.forget();
+}
+
+void InstrumentGuard::set_options(const InstrumentOptions& options) {
+  const InUse no_proof(workers_.in_use());
+  const InUse no_step(constraint_in_use_);
+  constraint_.set_options(options);  // throws for what none would take
+  for (InstrumentConstraint& worker : workers_.constraints()) worker.set_options(options);
+  settings_.options = options;
+}
+
+namespace {
+
+CertifiedMotion certified_of(const std::string& name) {
+  return named<CertifiedMotion>(
+      "certified", name,
+      {{{"actual", CertifiedMotion::actual}, {"linearised", CertifiedMotion::linearised}}});
+}
+
+constexpr std::array<std::string_view, 17> arguments = {"mesh",
+                                                        "instrument",
+                                                        "index",
+                                                        "index_cache",
+                                                        "solver",
+                                                        "margin",
+                                                        "band",
+                                                        "period",
+                                                        "recovery",
+                                                        "damping",
+                                                        "orientation_weight",
+                                                        "refinements",
+                                                        "check_sides",
+                                                        "max_triangles",
+                                                        "max_planes",
+                                                        "max_looks",
+                                                        "certified"};
+
+constexpr const char* class_doc =
+    R"(Keeps a whole instrument out of a mesh, in joint space: the joint increment nearest to what is asked
+for that provably keeps each body clear, on the motion that the joints really make. It is safe to
+use from several threads, which then wait for each other; for loops of their own give each a guard,
+and let them share the Index.
+
+index, index_cache, solver: as in MotionConstraint. The rest but max_... may be set again.
+margin: distance to keep beyond each body's radius [length], above the band.
+band: what is held back of the margin, so that curved motions along a surface are proven: certified
+is margin - band. See Instrument.recommended_band [length].
+period: of a cycle: what velocity limits are multiplied by [s].
+recovery: how far a body that is too close is led away in a cycle [length].
+damping: weight of |dq|^2 beside the task of the flange [length^2].
+orientation_weight: what a turn of the flange counts beside its way [length / rad]; 0: nothing.
+refinements: how often planes are turned towards a better motion.
+check_sides: whether bodies that no step has led to where they are have to be on the free side of
+a watertight mesh.
+certified: 'actual', the motion that the joints make, or 'linearised', which is unsafe, and for
+comparison only.
+max_triangles (near one body), max_planes: room for a cycle; one that needs more ends with
+Status.over_capacity. max_looks: the work of a cycle.)";
+
+constexpr const char* step_doc =
+    R"(What the joints may do in this cycle: an InstrumentStep. Asked for is either a motion of the flange,
+or an increment of the joints. A number that is not finite gives Status.invalid_input.
+
+q: (n,), the joints' positions [rad or length]. linear: (3,), how the flange's origin shall move
+[length]. angular: (3,), how it shall turn, axis times angle, in the mesh's axes [rad]; zero where
+one of both is None. increment: (n,), of the joints. weights: (n,), above 0, what each joint's way
+from it counts; all 1 when None.)";
+
+constexpr const char* prove_doc =
+    R"(How much of a motion is certified, for planners: a MotionProof. It looks for no better motion, and
+not at the limits of joints. Changes nothing for the steps. A number that is not finite gives
+Status.invalid_input.
+
+q: (n,), where it starts. increment: (n,), of any size; zeros ask of the place alone.)";
+
+constexpr const char* proofs_doc =
+    R"(The same of m motions, each for itself: a Proofs, whose arrays do not depend on the order or on the
+number of threads. Runs without Python's lock.
+
+q: (m, n). increments: (m, n); None for zeros. A single one of either, (n,), serves all of the
+other. threads: 1 to 1024; None for one a processor.)";
+
+template <class Value>
+void take(Value& option, const std::optional<Value>& given) {
+  if (given) option = *given;
+}
+
+void set_given(InstrumentGuard& guard, std::optional<double> margin, std::optional<double> band,
+               std::optional<double> period, std::optional<double> recovery,
+               std::optional<double> damping, std::optional<double> orientation_weight,
+               std::optional<int> refinements, std::optional<bool> check_sides,
+               const std::optional<std::string>& certified) {
+  InstrumentOptions options = guard.settings().options;
+  take(options.margin, margin);
+  take(options.band, band);
+  take(options.period, period);
+  take(options.recovery, recovery);
+  take(options.damping, damping);
+  take(options.orientation_weight, orientation_weight);
+  take(options.refinements, refinements);
+  take(options.check_sides, check_sides);
+  if (certified) options.certified = certified_of(*certified);
+  guard.set_options(options);
+}
+
+void bind_results(py::module_& module) {
+  using Result = InstrumentStepResult;
+  py::class_<Result>(module, "InstrumentStep",
+                     "What one cycle of an instrument may do. Arrays are read-only views of it.")
+      .def_property_readonly(
+          "status", [](const Result& self) { return status_object(self.step.status); },
+          "How the step ended: a Status.")
+      .def_property_readonly(
+          "ok", [](const Result& self) { return self.step.ok(); },
+          "Whether there is a motion that may be carried out; it may be zero.")
+      .def_property_readonly(
+          "reason", [](const Result& self) { return self.step.reason(); },
+          "One line on what happened and what to do about it.")
+      .def_property_readonly(
+          "increment",
+          [](const py::object& self) { return view(self.cast<const Result&>().increment, self); },
+          "(n,) float64 [rad or length]: of the joints; zeros unless ok.")
+      .def_property_readonly(
+          "share", [](const Result& self) { return self.step.share; },
+          "How much of the motion that was found is made: below 1 when it was cut short.")
+      .def_property_readonly(
+          "rounds", [](const Result& self) { return self.step.rounds; },
+          "How often a trial motion was judged.")
+      .def_property_readonly(
+          "rows", [](const Result& self) { return self.step.rows; },
+          "How many rows hold the motion back, joint limits apart.")
+      .def_property_readonly(
+          "distance", [](const Result& self) { return self.step.distance; },
+          "From the body nearest to the mesh, as the cycle began [length]; None where none is\n"
+          "closer than the margin and the motion, negative where it reaches through the surface.")
+      .def_property_readonly(
+          "nearest",
+          [](const Result& self) {
+            return self.step.nearest < 0 ? std::nullopt : std::optional(self.step.nearest);
+          },
+          "The number of that body; None where there is no distance.")
+      .def("__repr__", [](const Result& self) {
+        return py::str("<keepout.InstrumentStep: {}, increment {}>")
+            .format(name(self.step.status), py::cast(self.increment));
+      });
+
+  py::class_<MotionProof>(module, "MotionProof", "How much of a motion is certified.")
+      .def_property_readonly(
+          "status", [](const MotionProof& self) { return status_object(self.status); },
+          "How it ended: a Status; 'recovering' where some body is too close as it starts.")
+      .def_property_readonly(
+          "reason", [](const MotionProof& self) { return reason(self.status); },
+          "One line on what happened and what to do about it.")
+      .def_readonly("share", &MotionProof::share,
+                    "Proven is the motion from its start to here: 1 if all of it is.")
+      .def_readonly("distance", &MotionProof::distance,
+                    "As that of an InstrumentStep, at the start [length].")
+      .def_property_readonly("is_clear", &MotionProof::is_clear,
+                             "Whether the whole margin, less its band, is kept on all of it.")
+      .def("__repr__", [](const MotionProof& self) {
+        return py::str("<keepout.MotionProof: {}, share {:g}>")
+            .format(name(self.status), self.share);
+      });
+}
+
+}  // namespace
+
+void bind_instrument_guard(py::module_& module) {
+  bind_results(module);
+  const InstrumentConstraintSettings usual;
+  const InstrumentOptions& o = usual.options;
+  py::class_<InstrumentGuard>(module, "InstrumentGuard", class_doc)
+      .def(
+          py::init([](const py::object& mesh, const Instrument& instrument, const py::object& index,
+                      const std::optional<std::filesystem::path>& index_cache, std::string solver,
+                      double margin, double band, double period, double recovery, double damping,
+                      double orientation_weight, int refinements, bool check_sides,
+                      const std::string& certified, py::ssize_t max_triangles,
+                      py::ssize_t max_planes, py::ssize_t max_looks, const py::kwargs& others) {
+            refuse_others("InstrumentGuard", others, arguments);
+            InstrumentConstraintSettings settings;
+            settings.solver = std::move(solver);
+            settings.options = {.margin = margin,
+                                .band = band,
+                                .period = period,
+                                .recovery = recovery,
+                                .damping = damping,
+                                .orientation_weight = orientation_weight,
+                                .refinements = refinements,
+                                .check_sides = check_sides,
+                                .certified = certified_of(certified)};
+            settings.capacity = {.triangles = count(max_triangles, "max_triangles"),
+                                 .planes = count(max_planes, "max_planes"),
+                                 .looks = count(max_looks, "max_looks")};
+            return std::make_unique<InstrumentGuard>(index_from(mesh, index, index_cache),
+                                                     instrument, std::move(settings));
+          }),
+          py::arg("mesh"), py::arg("instrument"), py::kw_only(), py::arg("index") = usual.index,
+          py::arg("index_cache") = py::none(), py::arg("solver") = usual.solver,
+          py::arg("margin") = o.margin, py::arg("band") = o.band, py::arg("period") = o.period,
+          py::arg("recovery") = o.recovery, py::arg("damping") = o.damping,
+          py::arg("orientation_weight") = o.orientation_weight,
+          py::arg("refinements") = o.refinements, py::arg("check_sides") = o.check_sides,
+          py::arg("certified") = "actual", py::arg("max_triangles") = usual.capacity.triangles,
+          py::arg("max_planes") = usual.capacity.planes,
+          py::arg("max_looks") = usual.capacity.looks)
+      .def("step", &InstrumentGuard::step, py::arg("q"), py::arg("linear") = py::none(),
+           py::arg("angular") = py::none(), py::kw_only(), py::arg("increment") = py::none(),
+           py::arg("weights") = py::none(), step_doc)
+      .def("prove", &InstrumentGuard::prove, py::arg("q"), py::arg("increment"), prove_doc)
+      .def("proofs", &InstrumentGuard::proofs, py::arg("q"), py::arg("increments") = py::none(),
+           py::kw_only(), py::arg("threads") = py::none(), proofs_doc)
+      .def("forget", &InstrumentGuard::forget,
+           "Forgets what the last cycle left: for motions that have nothing to do with each other.")
+      .def(
+          "set_options", &set_given, py::kw_only(), py::arg("margin") = py::none(),
+          py::arg("band") = py::none(), py::arg("period") = py::none(),
+          py::arg("recovery") = py::none(), py::arg("damping") = py::none(),
+          py::arg("orientation_weight") = py::none(), py::arg("refinements") = py::none(),
+          py::arg("check_sides") = py::none(), py::arg("certified") = py::none(),
+          "Behaves so from the next step on; None leaves an option as it is. Changes nothing when\n"
+          "it raises Error. A raised margin is come up to by recovery.")
+      .def_property_readonly(
+          "mesh", [](const InstrumentGuard& self) { return self.index()->mesh_object; },
+          "The mesh.")
+      .def_property_readonly("index", &InstrumentGuard::index, "Its Index, which others may share.")
+      .def_property_readonly("instrument", &InstrumentGuard::instrument, "Its Instrument.")
+      .def_property_readonly(
+          "margin", [](const InstrumentGuard& self) { return self.settings().options.margin; },
+          "Distance to keep beyond each body's radius [length].")
+      .def_property_readonly(
+          "band", [](const InstrumentGuard& self) { return self.settings().options.band; },
+          "What is held back of the margin [length].")
+      .def("__repr__", [](const InstrumentGuard& self) {
+        const InstrumentConstraintSettings& s = self.settings();
+        return py::str(
+                   "<keepout.InstrumentGuard of {} bodies index='{}' solver='{}' margin={:g} "
+                   "band={:g} on {} triangles>")
+            .format(self.instrument().bodies().size(), self.index()->name, s.solver,
+                    s.options.margin, s.options.band, self.index()->mesh->triangle_count());
+      });
+}
+
+}  // namespace keepout::python

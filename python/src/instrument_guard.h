@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "arrays.h"
+#include "bindings.h"
+#include "keepout/factory/make_instrument_constraint.h"
+#include "workers.h"
+
+namespace keepout::python {
+
+/// A step that outlives the next one. The increment has a number for each joint: zeros unless ok.
+struct InstrumentStepResult {
+  InstrumentStep step;  // but for its increment
+  std::vector<double> increment;
+};
+
+/// An instrument constraint as Python holds it: one for its own steps, and one for each worker that
+/// proves motions. All share mesh and index. Proofs change nothing for the steps.
+class InstrumentGuard {
+ public:
+  InstrumentGuard(std::shared_ptr<IndexHandle> index, Instrument instrument,
+                  InstrumentConstraintSettings settings);
+
+  // As in Python: see bind_instrument_guard.
+  InstrumentStepResult step(const py::object& q, const py::object& linear,
+                            const py::object& angular, const py::object& increment,
+                            const py::object& weights);
+  MotionProof prove(const py::object& q, const py::object& increment);
+  py::object proofs(const py::object& q, const py::object& increments,
+                    std::optional<py::ssize_t> threads);
+  void forget();
+  void set_options(const InstrumentOptions& options);
+
+  const InstrumentConstraintSettings& settings() const noexcept { return settings_; }
+  const Instrument& instrument() const noexcept { return instrument_; }
+  const std::shared_ptr<IndexHandle>& index() const noexcept { return index_; }
+
+ private:
+  InstrumentConstraint make() const;
+  py::ssize_t joints() const noexcept { return instrument_.chain().size(); }
+  /// One number for each joint.
+  Doubles of_joints(const py::object& argument, std::string_view name) const;
+
+  /// Calls `take(i, proof)` for each motion, i of (n,) or (count, n) q and increments.
+  template <class Take>
+  void prove_each(const Doubles& q, const Doubles& increments, std::size_t count, unsigned threads,
+                  const Take& take);
+
+  std::shared_ptr<IndexHandle> index_;
+  Instrument instrument_;
+  InstrumentConstraintSettings settings_;
+  InstrumentConstraint constraint_;
+  std::mutex constraint_in_use_;
+  Workers<InstrumentConstraint> workers_;
+};
+
+}  // namespace keepout::python

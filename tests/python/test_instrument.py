@@ -1,0 +1,222 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Whole instruments: chains, bodies, and what keeps them out of a mesh."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from surfaces import sphere
+
+import keepout
+from keepout import Body, Chain, Instrument, InstrumentGuard, Joint, Status, TableRow
+
+robots = Path(__file__).resolve().parents[2] / "fixtures" / "robots"
+right = np.pi / 2
+wall = keepout.Mesh(
+    [[-200, -200, 0], [200, -200, 0], [200, 200, 0], [-200, 200, 0]], [[0, 1, 2], [0, 2, 3]]
+)
+ball = keepout.Mesh(*sphere(64, 50.0))
+
+
+def moved(x, y, z):
+    pose = np.eye(4)
+    pose[:3, 3] = x, y, z
+    return pose
+
+
+def psm(base=None):
+    """The da Vinci research kit's, as fixtures/robots/psm.urdf has it."""
+    rows = [
+        TableRow("yaw", alpha=right, theta=right, lower=-1.588, upper=1.588, velocity=1),
+        TableRow("pitch", alpha=-right, theta=-right, lower=-0.925025, upper=0.925025, velocity=1),
+        TableRow("insertion", kind="prismatic", alpha=right, d=-431.8, lower=0, upper=240, velocity=200),
+        TableRow("roll", d=416.2, lower=-4.53786, upper=4.53786, velocity=8),
+        TableRow("wrist_pitch", alpha=-right, theta=-right, lower=-1.39626, upper=1.39626, velocity=8),
+        TableRow("wrist_yaw", a=9.1, alpha=-right, theta=-right, lower=-1.39626, upper=1.39626, velocity=8),
+    ]
+    jaws = np.array([[0, -1, 0, 0], [0, 0, 1, 10.2], [-1, 0, 0, 0], [0, 0, 0, 1.0]])
+    return keepout.chain_of_table(rows, base=base, flange=jaws)
+
+
+def psm_guard(**options):
+    """Its tip hangs straight down, 10 mm above the top of a sphere of 50 mm, at q[2] = 106.3."""
+    port, wrist, yaw = (0, (0, 0, 0)), (4, (0, 0, 0)), (5, (9.1, 0, 0))
+    bodies = [
+        Body("shaft", [port, wrist], 4.5),
+        Body("wrist", [wrist, yaw], 3.0),
+        Body("jaws", [yaw, (6, (0, 10.2, 0))], 1.0),
+    ]
+    return InstrumentGuard(ball, Instrument(psm(moved(0, 0, 170)), bodies), margin=0.5, **options)
+
+
+def lever_guard(**options):
+    """A shaft of 60 mm, radius 2, that one joint turns down to the wall 20 mm below it."""
+    turn = Joint("turn", axis=(0, 1, 0), lower=-1, upper=1, velocity=2)
+    chain = Chain([turn], base=moved(0, 0, 20), flange=moved(60, 0, 0))
+    shaft = Body("shaft", [(1, (0, 0, 0)), (1, (60, 0, 0))], 2.0)
+    return InstrumentGuard(wall, Instrument(chain, [shaft]), margin=0.5, band=0.01, **options)
+
+
+def test_the_shaft_stops_at_the_wall():
+    down = {"linear": (0, 0, -0.1)}
+    for asked in (down, {**down, "angular": (0, 0.002, 0)}, {"increment": [0.002]}):
+        guard, q = lever_guard(), np.zeros(1)
+        held = 0
+        for _ in range(400):
+            step = guard.step(q, **asked)
+            assert step.ok and step.increment.shape == (1,) and abs(step.increment[0]) <= 0.002 + 1e-12
+            held += step.status is Status.limited
+            q = q + step.increment
+        clearance = 20 - 60 * np.sin(q[0]) - 2
+        assert 0.49 - 1e-9 <= clearance <= 0.5 + 1e-6, asked
+        assert held > 100 and step.nearest == 0 and step.rows >= 1 and step.rounds >= 1
+        np.testing.assert_allclose(step.distance, clearance, atol=1e-9)
+        back = guard.step(q, increment=[-0.001])
+        np.testing.assert_allclose(back.increment, [-0.001], atol=1e-12)
+
+
+def test_joints_nearest_to_an_increment_are_weighed_and_keep_their_limits():
+    axes = [Joint(n, kind="prismatic", axis=a, lower=-50, upper=50) for n, a in zip("xyz", np.eye(3))]
+    chain = Chain(axes, base=moved(0, 0, 10))
+    guard = InstrumentGuard(wall, Instrument(chain, [Body("tip", [(3, (0, 0, 0))], 1.0)]), margin=0.5)
+    free = guard.step([49.5, 0, 0], increment=[1, 2, -3], weights=[1, 2, 3])
+    np.testing.assert_allclose(free.increment, [0.5, 2, -3], atol=1e-9)
+    held = guard.step([0, 0, -8], linear=(0.2, 0, -1))
+    assert held.status is Status.limited
+    np.testing.assert_allclose(held.increment, [0.2, 0, -0.5], atol=0.004)
+    close = guard.step([0, 0, -8.9], linear=(0, 0, 0))
+    assert close.status is Status.recovering and close.increment[2] > 0
+    np.testing.assert_allclose(close.distance, 0.1, atol=1e-9)
+    bad = guard.step([0, np.nan, 0], linear=(0, 0, 0))
+    assert bad.status is Status.invalid_input and list(bad.increment) == [0, 0, 0]
+    assert not bad.ok and "finite" in bad.reason and bad.nearest is None and bad.distance is None
+
+
+def test_what_is_proven_is_almost_all_that_is_clear():
+    guard = lever_guard()
+    clear = np.arcsin(17.51 / 60)
+    for motion in (0.2, 0.4, 0.8):
+        proof = guard.prove([0.0], [motion])
+        true = min(1.0, clear / motion)
+        assert true - 2 / 64 <= proof.share <= true + 1e-9, motion
+        assert proof.is_clear == (motion < clear) and proof.status is Status.free
+    too_close = guard.prove([np.arcsin(17.7 / 60)], [0.0])
+    assert not too_close.is_clear and too_close.status is Status.recovering
+    np.testing.assert_allclose(too_close.distance, 0.3, atol=1e-9)
+    assert guard.prove([np.nan], [0.0]).status is Status.invalid_input
+
+
+def motions(count):
+    random = np.random.default_rng(5)
+    q = np.array([0, 0, 110.3, 0, 0, 0]) + random.normal(size=(count, 6)) * [0.1, 0.1, 5, 1, 0.5, 0.5]
+    return q, random.normal(size=(count, 6)) * [0.05, 0.05, 10, 0.2, 0.2, 0.2]
+
+
+def test_batches_are_single_proofs_bit_for_bit():
+    guard = psm_guard()
+    q, by = motions(300)
+    whole = guard.proofs(q, by, threads=1)
+    single = [guard.prove(*motion) for motion in zip(q, by)]
+    np.testing.assert_array_equal(whole.share, [proof.share for proof in single])
+    np.testing.assert_array_equal(whole.status, [proof.status for proof in single])
+    distances = [np.nan if p.distance is None else p.distance for p in single]
+    np.testing.assert_array_equal(whole.distance, distances)
+    np.testing.assert_array_equal(whole.is_clear, [proof.is_clear for proof in single])
+    assert 20 < whole.is_clear.sum() < 280 and len(set(whole.share)) > 10
+    order = np.random.default_rng(6).permutation(len(q))
+    for threads in (2, 5):
+        other = guard.proofs(q[order], by[order], threads=threads)
+        np.testing.assert_array_equal(other.share, whole.share[order])
+        np.testing.assert_array_equal(other.distance, whole.distance[order])
+    np.testing.assert_array_equal(guard.proofs(q).share, guard.proofs(q, np.zeros((300, 6))).share)
+    one = guard.proofs(q[0], by)
+    np.testing.assert_array_equal(one.share, guard.proofs(np.tile(q[0], (300, 1)), by).share)
+    assert len(one) == 300 and len(guard.proofs(q[0])) == 1 and len(guard.proofs(q[:0])) == 0
+    assert "300 motions" in repr(one)
+
+
+def test_proofs_change_nothing_for_the_steps_and_options_something():
+    guards, places = (psm_guard(), psm_guard()), []
+    for index, guard in enumerate(guards):
+        q = np.array([0, 0, 114.0, 0, 0, 0])
+        for cycle in range(60):
+            q = q + guard.step(q, (0.05, 0, -0.05)).increment
+            if index == 1 and cycle % 10 == 0:
+                guard.prove(q, [0, 0, 5.0, 0, 0, 0])
+        places.append(q)
+    np.testing.assert_array_equal(*places)
+    guards[0].set_options(margin=2.0, recovery=0.2)
+    assert guards[0].margin == 2.0 and guards[0].band == 0.002
+    assert guards[0].step(places[0], (0, 0, 0)).status is Status.recovering
+    assert guards[0].prove(places[0], np.zeros(6)).status is Status.recovering
+    assert guards[1].proofs(places[0]).is_clear.all()
+    guards[1].proofs(places[0])
+    guards[1].set_options(margin=2.0)  # of those that have proven already as well
+    assert not guards[1].proofs(places[0]).is_clear.any()
+    with pytest.raises(keepout.Error, match="band"):
+        guards[1].set_options(margin=0.001)
+    assert guards[1].margin == 2.0
+    assert 0.002 < guards[0].instrument.recommended_band(0.01) < 0.5
+
+
+def test_chains_of_tables_and_files_are_the_same():
+    q = motions(50)[0]
+    chain = psm()
+    poses = chain.place(q)
+    assert poses.shape == (50, 4, 4) and len(chain) == 6
+    np.testing.assert_array_equal(poses[7], chain.place(q[7]))
+    np.testing.assert_allclose(psm(moved(1, 2, 3)).place(q), moved(1, 2, 3) @ poses, atol=1e-9)
+    again = Chain(chain.joints, base=chain.base, flange=chain.flange)
+    np.testing.assert_allclose(again.place(q), poses, atol=1e-9)
+    assert np.isnan(chain.place([np.nan, 0, 0, 0, 0, 0])).all()
+    assert (chain.joints[2].kind, chain.joints[2].upper) == ("prismatic", 240)
+    try:
+        read = keepout.read_chain(robots / "psm.urdf")
+    except keepout.Error as error:
+        assert "install liburdfdom-dev" in str(error)
+        pytest.skip("this build reads no URDF")
+    np.testing.assert_allclose(read.place(q), poses, atol=1e-9)
+    assert [joint.name for joint in read.joints] == [joint.name for joint in chain.joints]
+    metres = keepout.read_chain(robots / "psm.urdf", base="base", tip="tip", scale=1.0)
+    assert metres.joints[2].upper == 0.24
+    with pytest.raises(keepout.Error, match="no_such_link"):
+        keepout.read_chain(robots / "psm.urdf", tip="no_such_link")
+
+
+@pytest.mark.parametrize(
+    "wrong, says",
+    [
+        (lambda: Joint(kind="screw"), "kind: expected 'revolute' or 'prismatic', got 'screw'"),
+        (lambda: Joint(origin=np.eye(3)), r"origin: .* \(4, 4\), got shape \(3, 3\)"),
+        (lambda: Joint(origin=2 * np.eye(4)), "origin: .* last row"),
+        (lambda: Chain([Joint("a", axis=(1, 1, 0))]), r"axis of joint 1 \('a'\)"),
+        (lambda: Chain([Joint()], base=np.diag([1, 1, -1, 1])), "base .* rotation"),
+        (lambda: psm().place(np.zeros((2, 5))), r"q: .* \(m, 6\) or \(6,\), got shape \(2, 5\)"),
+        (lambda: keepout.chain_of_table([TableRow()], convention="craig"), "convention: .*'craig'"),
+        (lambda: Body("b", [(1, (0, 0))], 1.0), r"points\[0\]\[1\]: .* \(3,\)"),
+        (lambda: Body("b", [((0, 0, 0), 1)], 1.0), r"points\[0\]\[0\]: .* number of a link"),
+        (lambda: Body("b", [7], 1.0), r"points\[0\]: .* pair"),
+        (lambda: Instrument(psm(), [Body("b", [(7, (0, 0, 0))], 1.0)]), "body 1 .* link 7"),
+        (lambda: Instrument(psm(), [Body("b", [(2**70, (0, 0, 0))], 1.0)]), "body 1 .* link"),
+        (lambda: lever_guard(certified="never"), "certified: .*'never'"),
+        (lambda: lever_guard(max_planes=-1), "max_planes: "),
+        (lambda: lever_guard(index="grid"), "wide_bvh"),
+        (lambda: lever_guard().step([0.0, 0.0], (0, 0, 0)), r"q: .* \(1,\), got shape \(2,\)"),
+        (lambda: lever_guard().step([0.0], (0, 0)), "linear: "),
+        (lambda: lever_guard().step([0.0]), "increment: expected either .* got neither"),
+        (lambda: lever_guard().step([0.0], (0, 0, 0), increment=[0]), "increment: .* got both"),
+        (lambda: lever_guard().step([0.0], (0, 0, 0), weights=[1]), "weights: "),
+        (lambda: lever_guard().step([0.0], increment=[0, 1]), r"increment: .* \(1,\)"),
+        (lambda: lever_guard().prove([0.0], None), "increment: .* None"),
+        (lambda: lever_guard().proofs(np.zeros((3, 1)), np.zeros((2, 1))), "increments: .* 3, or one"),
+        (lambda: lever_guard().proofs(np.zeros((3, 1)), threads=0), "threads: "),
+    ],
+)
+def test_what_is_wrong_is_named(wrong, says):
+    with pytest.raises(keepout.Error, match=says):
+        wrong()
+
+
+def test_a_mistyped_argument_is_told():
+    with pytest.raises(TypeError, match="InstrumentGuard has no argument 'magrin'; did you mean 'margin'"):
+        lever_guard(magrin=1.0)
