@@ -142,13 +142,34 @@ MotionProof InstrumentConstraint::prove(std::span<const double> q,
     status = Status::invalid_input;
   }
   if (!is_ok(status)) return {.status = status};
+  // In parts, where there is more near a long motion than there is room for.
+  constexpr double least_part = 1.0 / 64.0;
+  MotionProof proof{.status = Status::free};
+  double part = 1.0;
+  while (proof.share < 1.0) {
+    JointVector from{};
+    JointVector motion{};
+    for (std::size_t k = 0; k < q.size(); ++k) {
+      from[k] = q[k] + proof.share * increment[k];
+      motion[k] = part * increment[k];
+    }
+    state_->near->budget().renew();
+    state_->memory.forget_motion();
+    InstrumentStep result;
+    const double proven =
+        JointCycle(state_->memory, state_->options, {from.data(), q.size()}).prove(motion, result);
+    if (result.status == Status::over_capacity && part > least_part) {
+      part *= 0.5;
+      continue;
+    }
+    if (proof.share == 0.0) proof.distance = result.distance;
+    if (proof.share == 0.0 || !is_ok(result.status)) proof.status = result.status;
+    proof.share += part * proven;
+    if (proven < 1.0 || result.status != Status::free) break;
+  }
   state_->memory.forget_motion();
-  JointVector motion{};
-  std::copy(increment.begin(), increment.end(), motion.begin());
-  InstrumentStep result;
-  const double share = JointCycle(state_->memory, state_->options, q).prove(motion, result);
-  state_->memory.forget_motion();
-  return {result.status, share, result.distance};
+  if (proof.status == Status::free && proof.share < 1.0) proof.status = Status::limited;
+  return proof;
 }
 
 void InstrumentConstraint::forget() noexcept { state_->memory.forget(); }

@@ -75,14 +75,17 @@ void CycleMemory::forget() noexcept {
   forget_motion();
   for (BodyMemory& body : bodies) {
     body.near.forget();
-    body.guard = body.reach = 0.0;
+    body.guard = 0.0;
   }
 }
 
 void CycleMemory::forget_motion() noexcept {
   warm.clear();
   side_of = 0;
-  for (BodyMemory& body : bodies) body.floor = std::numeric_limits<double>::infinity();
+  for (BodyMemory& body : bodies) {
+    body.floor = std::numeric_limits<double>::infinity();
+    body.reach = 0.0;
+  }
 }
 
 JointCycle::JointCycle(CycleMemory& memory, const InstrumentOptions& options,
@@ -311,11 +314,11 @@ void JointCycle::start_rows() noexcept {
   }
 }
 
-/// From a body's core, what it may be held by: the margin, and as much as it moved at last.
-/// [length]
+/// From a body's core, what it may be held by: the margin, and as much as it moved at last, unless
+/// that was a leap. [length]
 double JointCycle::at(std::size_t b) const noexcept {
-  return memory_.instrument.bodies()[b].radius + options_.margin +
-         std::max(options_.band, memory_.bodies[b].reach);
+  const double reach = std::min(memory_.bodies[b].reach, 4.0 * options_.margin);
+  return memory_.instrument.bodies()[b].radius + options_.margin + std::max(options_.band, reach);
 }
 
 /// One of the triangles that a body is at, its gap known.

@@ -198,6 +198,22 @@ TEST(InstrumentConstraint, ProvesWhatIsFreeAndNothingElse) {
   EXPECT_GE(proven, free * 98 / 100);
 }
 
+TEST(InstrumentConstraint, ProvesLongMotionsInPartsWhereThereIsNoRoomForThemAtOnce) {
+  const auto mesh = std::make_shared<const Mesh>(make_cube(2.0));
+  const Instrument instrument = psm_above();
+  InstrumentConstraint guard(mesh, make_index("wide_bvh", mesh), instrument,
+                             make_solver("active_set"), {}, {.triangles = 1000});
+  const std::vector<double> q = straight_down(20.0);
+  const double free = insertion_above_cube(instrument, *mesh, 0.2) - 20.0;
+  const MotionProof clear = guard.prove(q, std::vector<double>{0, 0, free - 0.01, 0, 0, 0});
+  EXPECT_EQ(clear.status, Status::free) << reason(clear.status);
+  EXPECT_TRUE(clear.is_clear());
+  const MotionProof through = guard.prove(q, std::vector<double>{0, 0, 100.0, 0, 0, 0});
+  EXPECT_EQ(through.status, Status::limited);
+  EXPECT_NEAR(100.0 * through.share, free, 100.0 / 64.0 + 0.01);
+  EXPECT_LE(100.0 * through.share, free + 0.002);
+}
+
 TEST(InstrumentConstraint, NeverLeavesTheLimitsOfItsJoints) {
   const auto mesh = mesh_of("cube");
   const Instrument instrument = psm_above();

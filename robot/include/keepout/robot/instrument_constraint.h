@@ -83,7 +83,9 @@ struct InstrumentStep {
 
 /// How much of a motion is certified.
 struct MotionProof {
-  Status status = Status::invalid_input;  // how it ended; `recovering`: some body is too close now
+  /// free: all of it; limited: a part of it; recovering: some body is too close at its start, and
+  /// certified is that none comes closer.
+  Status status = Status::invalid_input;
   double share = 0.0;  // q + s dq is proven for s from 0 to here: 1 if all of it is
   std::optional<double> distance = std::nullopt;  // as InstrumentStep::distance [length]
 
@@ -124,8 +126,10 @@ class InstrumentConstraint {
                       std::span<const double> weights = {}) noexcept;
 
   /// Looks at a motion, and does not solve for a better one: for planners, which ask of many, and
-  /// of single configurations by an increment of 0. `increment`: dq (n), of any size. Limits of
-  /// joints are not looked at, and it does not matter where the last step led.
+  /// of single configurations by an increment of 0. `increment`: dq (n), of any size; long ones are
+  /// proven in up to 64 parts, each with the work of a cycle. Limits of joints are not looked at,
+  /// and it does not matter where the last step led. Meant for a constraint of the planner's own:
+  /// the next step forgets which rows held the last one back, and has its side checked.
   MotionProof prove(std::span<const double> q, std::span<const double> increment) noexcept;
 
   /// Forgets what the last cycle left: for motions that have nothing to do with each other.
