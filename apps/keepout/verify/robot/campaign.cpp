@@ -5,9 +5,11 @@
 #include <optional>
 #include <utility>
 
+#include "keepout/activation/certified.h"
 #include "keepout/error.h"
 #include "keepout/registry.h"
 #include "keepout/solvers/registry.h"
+#include "keepout/step/motion_constraint.h"
 #include "verify/robot/excess.h"
 #include "verify/robot/hand.h"
 #include "verify/robot/judge.h"
@@ -55,7 +57,8 @@ struct RobotRow {
   const RobotUnderTest& robot;
   const RobotCampaign& campaign;
   RobotTally tally;
-  std::vector<double> times = {};  // [us]
+  std::vector<double> times = {};        // [us]
+  std::vector<double> point_times = {};  // [us]
 };
 
 /// One instrument, from where it begins.
@@ -68,6 +71,11 @@ class RobotAttempt {
         usual_(options_of(row.campaign, instrument_.chain(), row.tally.speed)),
         constraint_(row.scene.mesh(), row.scene.shared_index(), instrument_,
                     make_solver("active_set"), usual_, {.triangles = std::size_t{1} << 16}),
+        point_(row.scene.mesh(), row.scene.shared_index(), std::make_unique<CertifiedRule>(),
+               make_solver("active_set"),
+               {.radius = 10.0 * row.tally.speed,
+                .tool_radius = instrument_.bodies().back().radius,
+                .margin = usual_.margin}),
         oracle_(row.tree, row.robot.judged(), instrument_.chain().base()),
         judge_(oracle_, instrument_.chain(), random, start.positions, usual_,
                constraint_.tolerance()),
@@ -114,6 +122,9 @@ class RobotAttempt {
     const BenchClock::time_point start = BenchClock::now();
     const InstrumentStep step = constraint_.step(positions_, desired);
     row_.times.push_back(microseconds_since(start));
+    const BenchClock::time_point after = BenchClock::now();
+    point_.step({.tip = state.flange().position, .desired = desired.linear});
+    row_.point_times.push_back(microseconds_since(after));
     RobotTask::Increment made = RobotTask::Increment::Zero(instrument_.chain().size());
     std::vector<double> next = positions_;
     for (std::size_t k = 0; step.ok() && k < next.size(); ++k) {
@@ -156,6 +167,7 @@ class RobotAttempt {
   Instrument instrument_;
   InstrumentOptions usual_;
   InstrumentConstraint constraint_;
+  MotionConstraint point_;  // of a ball at the tip alone: timed beside it
   oracle::InstrumentOracle oracle_;
   RobotJudge judge_;
   RobotHand hand_;
@@ -213,6 +225,7 @@ std::vector<RobotTally> run_robot_campaign(
         next = advanced(tally, tally.cycles - before);
       }
       tally.step = timing_of(row.times);
+      tally.point = timing_of(row.point_times);
       tally.seconds = microseconds_since(start) * 1e-6;
       tallies.push_back(tally);
       if (next == Next::stop) return tallies;

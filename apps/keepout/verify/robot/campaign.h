@@ -50,12 +50,13 @@ struct RobotTally {
   std::uint64_t rounds = 0, most_rounds = 0;
   std::uint64_t rows = 0;  // that held motions back, in all
   std::uint64_t most_looks = 0;
-  Timing step = {};                   // [us]
-  double excess = 0.0;                // of all samples
-  std::uint64_t samples = 0;          // blocked cycles that were searched for a better motion
-  std::uint64_t useful = 0;           // of them, those where there was one worth the name
-  std::uint64_t recoveries = 0;       // how often a body was closer than a margin just set
-  std::uint64_t recovered = 0;        // of them, within 500 cycles
+  Timing step = {};              // [us]
+  Timing point = {};             // of the certified step of a ball at the tip, beside each [us]
+  double excess = 0.0;           // of all samples
+  std::uint64_t samples = 0;     // blocked cycles that were searched for a better motion
+  std::uint64_t useful = 0;      // of them, those where there was one worth the name
+  std::uint64_t recoveries = 0;  // how often a body was closer than a margin just set
+  std::uint64_t recovered = 0;   // of them, within 500 cycles
   std::uint64_t recovery_cycles = 0;  // that those took
   double seconds = 0.0;
 };

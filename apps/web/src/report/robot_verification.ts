@@ -12,8 +12,8 @@ const column = (heading: string, from: string, format: Format = grouped): Column
 });
 const share = (heading: string, from: string): Column =>
   column(heading, from, (value) => `${percent(value)} %`);
-const time = (heading: string, key: string): Column =>
-  column(heading, `/step_us/${key}`, microseconds);
+const time = (heading: string, key: string, of = "step_us"): Column =>
+  column(heading, `/${of}/${key}`, microseconds);
 
 const which: readonly Column[] = [
   { heading: "mesh", from: "/mesh" },
@@ -43,6 +43,7 @@ export function robotVerificationSections(): HTMLElement[] {
     time("99 %", "p99"),
     time("99.9 %", "p999"),
     time("longest", "max"),
+    time("median of a ball at the tip alone", "p50", "point_us"),
     column("looks, at most", "/looks_max"),
     column("rounds", "/rounds_mean", mean),
     column("at most", "/rounds_max"),
