@@ -9,7 +9,6 @@ namespace keepout {
 namespace {
 
 // In looks.
-constexpr std::size_t work_of_gap = 3;
 constexpr std::size_t work_of_separation = 1;
 
 double support(const Triangle& triangle, const Vec3& n) noexcept {
@@ -21,6 +20,7 @@ double support(const Triangle& triangle, const Vec3& n) noexcept {
 Certificate::Certificate(const Instrument& instrument, std::size_t body, PointMotion& motion,
                          double kept, double tolerance, Budget& budget) noexcept
     : points_(instrument.points_of(body)),
+      work_of_gap_(points_.size() > 2 ? 12 : 3),
       radius_(instrument.bodies()[body].radius),
       motion_(motion),
       kept_(kept),
@@ -34,7 +34,7 @@ void Certificate::try_first(const Vec3& normal) noexcept {
 
 void Certificate::know(NearTriangle& triangle) noexcept {
   if (triangle.is_known) return;
-  budget_.spend(work_of_gap);
+  budget_.spend(work_of_gap_);
   triangle.know(gap_at(0, *triangle.corners));
 }
 
@@ -55,7 +55,7 @@ Certificate::Failure Certificate::judge(std::span<NearTriangle> triangles, doubl
                ? kept_
                : std::max(kept_ - tolerance_, std::min(kept_, distance + 2.0 * tolerance_));
     const Gap at_end = gap_at(PointMotion::cells, *triangle.corners);
-    budget_.spend(work_of_gap);
+    budget_.spend(work_of_gap_);
     const int cell = proven_until(triangle, 0, triangle.at_start, PointMotion::cells, at_end);
     if (budget_.is_spent()) return {0, nullptr};
     if (cell > latest_ || cell == PointMotion::cells) continue;
@@ -131,7 +131,7 @@ int Certificate::proven_until(const NearTriangle& triangle, int lo, const Gap& a
   }
   if (hi - lo == 1) return lo;
   const int middle = (lo + hi) / 2;
-  budget_.spend(work_of_gap);
+  budget_.spend(work_of_gap_);
   const Gap at_middle = gap_at(middle, *triangle.corners);
   const int first = proven_until(triangle, lo, at_lo, middle, at_middle);
   if (first < middle) return first;

@@ -57,6 +57,7 @@ class Certificate {
                    const Gap& at_hi) noexcept;
 
   std::span<const std::uint8_t> points_;
+  std::size_t work_of_gap_;  // in looks: of a blade it is searched for
   double radius_;
   PointMotion& motion_;
   double kept_;

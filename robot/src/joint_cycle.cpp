@@ -568,11 +568,15 @@ void JointCycle::clip(JointVector& increment) const noexcept {
     const JointLimits& limits = chain.joint(k).limits;
     double& step = increment[i];
     step = std::clamp(step, low_[i], high_[i]);
-    // What a sum is rounded up by is known exactly, and taken off; twice, as that may round too.
-    for (int again = 0; again < 2; ++again) {
-      const double end = q_[i] + step;
-      if (step > 0.0 && end > limits.upper) step = std::max(step - (end - limits.upper), 0.0);
-      if (step < 0.0 && end < limits.lower) step = std::min(step + (limits.lower - end), 0.0);
+    // Where the sum rounds to beyond a limit it is shortened by the excess, which is known exactly,
+    // or by a last digit where that is lost.
+    for (int again = 0; again < 4; ++again) {
+      const double beyond = std::max(q_[i] + step - limits.upper, limits.lower - (q_[i] + step));
+      const bool is_towards =
+          step > 0.0 ? q_[i] + step > limits.upper : q_[i] + step < limits.lower;
+      if (!(beyond > 0.0) || !is_towards || step == 0.0) break;
+      const double shorter = std::min(std::abs(step) - beyond, std::nextafter(std::abs(step), 0.0));
+      step = std::copysign(std::max(shorter, 0.0), step);
     }
   }
 }

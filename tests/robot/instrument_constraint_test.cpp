@@ -242,6 +242,30 @@ TEST(InstrumentConstraint, NeverLeavesTheLimitsOfItsJoints) {
   EXPECT_GT(at_limit, test::trials(100));
 }
 
+// To the last bit of q + dq as the caller adds it up.
+TEST(InstrumentConstraint, EndsWithinLimitsWhateverTheRounding) {
+  const auto mesh = std::make_shared<const Mesh>(make_cube(50.0));
+  Random random(12);
+  int at_limit = 0;
+  for (int i = 0; i < test::trials(2000); ++i) {
+    const double lower = random.uniform(-1.0, 0.0) * std::pow(10.0, random.uniform(-3.0, 1.0));
+    const double upper = random.uniform(0.0, 1.0) * std::pow(10.0, random.uniform(-3.0, 1.0));
+    const Chain chain({{.limits = {.lower = lower, .upper = upper}}}, {Vec3(200, 0, 0)});
+    auto guard =
+        guard_of(mesh, Instrument(chain, {{.points = {{1, Vec3(1, 0, 0)}}, .radius = 1.0}}));
+    std::vector<double> q{random.uniform(lower, upper)};
+    for (const double way : {100.0, -100.0, random.uniform(-2.0, 2.0), 100.0}) {
+      const InstrumentStep step = guard.step(q, std::vector<double>{way});
+      ASSERT_TRUE(step.ok()) << step.reason();
+      q = moved(q, step);
+      ASSERT_GE(q[0], lower);
+      ASSERT_LE(q[0], upper);
+      at_limit += q[0] > upper - 1e-12 || q[0] < lower + 1e-12 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(at_limit, test::trials(5000));
+}
+
 TEST(InstrumentConstraint, ComesBackToARaisedMarginWithoutEverComingCloser) {
   const auto mesh = std::make_shared<const Mesh>(make_cube(10.0));
   const Instrument instrument = psm_above();
