@@ -156,7 +156,7 @@ TEST(Example09, TheWholeInstrumentKeepsTheMarginAndAPlannerIsToldHowFarItMayGo) 
   Vec3 tip = Vec3::Zero();
   ASSERT_EQ(
       std::sscanf(text.c_str(),
-                  "clear are %lf mm of 20 (free)\nheld back in %d of 3000 cycles, stopped in %d, "
+                  "clear are %lf mm of 20 (limited)\nheld back in %d of 3000 cycles, stopped in %d, "
                   "nearest %lf mm of 0.5: the %15s\nends at %lf %lf %lf",
                   &clear, &held, &stopped, &nearest, body, &tip.x(), &tip.y(), &tip.z()),
       8)

@@ -25,7 +25,9 @@ namespace keepout {
 struct CapsuleScreen {
   float middle[3];    // the sum of its segment's ends
   float along[3];     // from the one to the other
-  float inverse2;     // of |along|^2; 0 for a point
+  float length[3];    // the sizes of that
+  float length2;      // |along|^2
+  float inverse2;     // its inverse; 0 for a point
   float thickness;    // twice the radius, and what rounding may take
   bool fits = false;  // false where a float would overflow: then nothing else is to be used
 
@@ -40,11 +42,13 @@ struct CapsuleScreen {
     // Each sum and product below rounds by 2^-24 of at most four times the size: a handful of them.
     constexpr double rounding = 0x1p-17;
     thickness = static_cast<float>(2.0 * (capsule.radius + frame.error) + rounding * size);
-    const double length2 = (to - from).squaredNorm();
-    inverse2 = length2 > 1e-30 ? static_cast<float>(1.0 / length2) : 0.0f;
+    const double way2 = (to - from).squaredNorm();
+    length2 = static_cast<float>(way2);
+    inverse2 = way2 > 1e-30 ? static_cast<float>(1.0 / way2) : 0.0f;
     for (int axis = 0; axis < 3; ++axis) {
       middle[axis] = static_cast<float>(from[axis] + to[axis]);
       along[axis] = static_cast<float>(to[axis] - from[axis]);
+      length[axis] = std::abs(along[axis]);
     }
   }
 };
@@ -67,7 +71,7 @@ HWY_INLINE M comes_near(const Vector& low, const Vector& high, const CapsuleScre
     offset[axis] = hn::Sub(hn::Add(low_of[axis], high_of[axis]), hn::Set(d, capsule.middle[axis]));
     size[axis] = hn::Add(hn::Sub(high_of[axis], low_of[axis]), thickness);
     along[axis] = hn::Set(d, capsule.along[axis]);
-    length[axis] = hn::Abs(along[axis]);
+    length[axis] = hn::Set(d, capsule.length[axis]);
     apart = hn::Or(apart, hn::Gt(hn::Abs(offset[axis]), hn::Add(size[axis], length[axis])));
   }
   for (int axis = 0; axis < 3; ++axis) {
@@ -79,9 +83,10 @@ HWY_INLINE M comes_near(const Vector& low, const Vector& high, const CapsuleScre
   }
   const Vector from_middle{offset[0], offset[1], offset[2]};
   const Vector way{along[0], along[1], along[2]};
-  const V share = hn::Mul(dot(from_middle, way), hn::Set(d, capsule.inverse2));
-  const V clamped = hn::Min(hn::Max(share, hn::Set(d, -1.0f)), hn::Set(d, 1.0f));
-  const Vector towards = from_middle - clamped * way;
+  const V ahead = hn::Set(d, capsule.length2);
+  const V behind = hn::Sub(hn::Zero(d), ahead);
+  const V nearest = hn::Min(hn::Max(dot(from_middle, way), behind), ahead);
+  const Vector towards = from_middle - hn::Mul(nearest, hn::Set(d, capsule.inverse2)) * way;
   const Vector diagonal = high - low;
   const V reach = hn::Add(hn::Sqrt(dot(diagonal, diagonal)), thickness);
   apart = hn::Or(apart, hn::Gt(dot(towards, towards), hn::Mul(reach, reach)));

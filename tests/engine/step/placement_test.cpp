@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "step/leading_out.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -19,6 +17,7 @@
 #include "keepout/oracle/safety_oracle.h"
 #include "random_places.h"
 #include "small_surfaces.h"
+#include "step/leading_out.h"
 #include "trials.h"
 
 namespace keepout {

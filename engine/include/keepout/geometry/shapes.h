@@ -32,7 +32,7 @@ struct Ball {
 /// All points within `radius` of a segment.
 struct Capsule {
   Vec3 from;      // the segment's ends [length]
-  Vec3 to;
+  Vec3 to;        // the other one [length]
   double radius;  // [length], >= 0
 };
 

@@ -16,8 +16,8 @@ struct InstrumentConstraintSettings {
   /// The folder where built indices are kept; only wide_bvh is. Empty: none is kept.
   std::filesystem::path index_cache = {};
   std::string solver = "active_set";  // see solver_backends()
-  InstrumentOptions options = {};
-  InstrumentCapacity capacity = {};
+  InstrumentOptions options = {};     // how it shall behave
+  InstrumentCapacity capacity = {};   // the largest cycle there is room for
   /// As MotionConstraintSettings::warn. Empty: nobody is told.
   std::function<void(const std::string&)> warn = {};
 };

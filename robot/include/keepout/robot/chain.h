@@ -29,13 +29,13 @@ struct JointLimits {
 
 /// One joint of a chain, and the fixed way to it from the one before.
 struct Joint {
-  std::string name = {};  // for messages
-  JointKind kind = JointKind::revolute;
+  std::string name = {};                 // for messages
+  JointKind kind = JointKind::revolute;  // how it moves what is beyond it
   /// The joint's frame, told in that of the link before it. At position 0 it is the frame of the
   /// link that the joint moves.
   Pose origin = {};
   Vec3 axis = Vec3::UnitZ();  // unit, in the joint's frame
-  JointLimits limits = {};
+  JointLimits limits = {};    // what it may do
 };
 
 class ChainState;

@@ -12,13 +12,13 @@ namespace keepout {
 /// One row of a table after Denavit and Hartenberg. The joint's position is added to `theta` where
 /// it is revolute, to `d` where it is prismatic.
 struct DenavitHartenberg {
-  std::string name = {};  // of the joint, for messages
-  JointKind kind = JointKind::revolute;
-  double a = 0.0;      // along x [length]
-  double alpha = 0.0;  // about x [rad]
-  double d = 0.0;      // along z, at position 0 [length]
-  double theta = 0.0;  // about z, at position 0 [rad]
-  JointLimits limits = {};
+  std::string name = {};                 // of the joint, for messages
+  JointKind kind = JointKind::revolute;  // how the joint moves what is beyond it
+  double a = 0.0;                        // along x [length]
+  double alpha = 0.0;                    // about x [rad]
+  double d = 0.0;                        // along z, at position 0 [length]
+  double theta = 0.0;                    // about z, at position 0 [rad]
+  JointLimits limits = {};               // of the position that is added
 };
 
 /// In which order the four motions of a row follow one another.
@@ -30,8 +30,8 @@ enum class DhConvention : std::uint8_t {
 /// The joints and the flange of a table. Under the standard convention the last row's a and alpha
 /// lead to the flange; under the modified one it is the last link's frame.
 struct DhChain {
-  std::vector<Joint> joints;
-  Pose flange;
+  std::vector<Joint> joints;  // in the order of the rows
+  Pose flange;                // in the frame of the last link
 };
 
 /// See DhChain. Throws Error for a number that is not finite.

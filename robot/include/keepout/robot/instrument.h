@@ -21,24 +21,26 @@ struct LinkPoint {
 /// points. One point is a ball, two are a capsule, more are a blade. The points of a capsule may be
 /// on different links: a shaft from its port to its wrist.
 struct Body {
-  std::string name = {};  // for messages and records
-  std::vector<LinkPoint> points = {};
-  double radius = 0.0;  // [length], >= 0
+  std::string name = {};               // for messages and records
+  std::vector<LinkPoint> points = {};  // of the core, 1 to 8
+  double radius = 0.0;                 // [length], >= 0
 };
 
 /// A chain, and what it carries.
 class Instrument {
  public:
-  static constexpr std::size_t most_bodies = 16;
-  static constexpr std::size_t most_points = 48;  // of all bodies, equal ones counted once
-  static constexpr std::size_t most_points_of_a_body = 8;
+  static constexpr std::size_t most_bodies = 16;           // of an instrument
+  static constexpr std::size_t most_points = 48;           // of all bodies, equal ones counted once
+  static constexpr std::size_t most_points_of_a_body = 8;  // of its core
 
   /// Throws Error, naming the body, for none or more than most_bodies, a body without points or
   /// with too many, three points or more that are not all on one link, a link that does not exist,
   /// a number that is not finite, or a negative radius.
   Instrument(Chain chain, std::vector<Body> bodies);
 
+  /// What carries the bodies.
   const Chain& chain() const noexcept { return chain_; }
+  /// What is carried, as it was given.
   std::span<const Body> bodies() const noexcept { return bodies_; }
 
   /// All points, those that bodies share once. A body names its own by their place in here.

@@ -47,7 +47,7 @@ struct InstrumentOptions {
   /// Whether bodies that no step has led to where they are have to be on the free side of a
   /// watertight mesh: by its winding, as tips are (docs/conventions.md).
   bool check_sides = true;
-  CertifiedMotion certified = CertifiedMotion::actual;
+  CertifiedMotion certified = CertifiedMotion::actual;  // nothing else is safe
 };
 
 /// Room for the largest cycle.
@@ -59,12 +59,13 @@ struct InstrumentCapacity {
   /// Capacity::looks_of_queries on others, of which more is asked.
   std::size_t looks = 0;
 
+  /// Of a cycle, where the index walks by itself.
   static constexpr std::size_t looks_of_a_walk = std::size_t{1} << 16;
 };
 
 /// What one cycle may do. Views stay valid until the next step.
 struct InstrumentStep {
-  Status status = Status::invalid_input;
+  Status status = Status::invalid_input;   // how it ended
   std::span<const double> increment = {};  // dq (n); empty unless ok() [rad or length]
   double share = 0.0;    // of the motion that was found and is made: below 1 when it was cut short
   int rounds = 0;        // how often a trial motion was judged
@@ -112,7 +113,9 @@ class InstrumentConstraint {
   InstrumentConstraint(std::shared_ptr<const Mesh> mesh, std::shared_ptr<const SpatialIndex> index,
                        Instrument instrument, std::unique_ptr<Solver> solver,
                        const InstrumentOptions& options, const InstrumentCapacity& capacity = {});
+  /// Takes over all that another one has, which is of no use any more.
   InstrumentConstraint(InstrumentConstraint&&) noexcept;
+  /// The same.
   InstrumentConstraint& operator=(InstrumentConstraint&&) noexcept;
   ~InstrumentConstraint();
 
@@ -135,8 +138,11 @@ class InstrumentConstraint {
   /// Forgets what the last cycle left: for motions that have nothing to do with each other.
   void forget() noexcept;
 
+  /// What is kept out.
   const Instrument& instrument() const noexcept;
+  /// What it is kept out of.
   const Mesh& mesh() const noexcept;
+  /// How it behaves.
   const InstrumentOptions& options() const noexcept;
   /// Behaves so from the next step on. Throws Error, and changes nothing, for options that the
   /// constructor would refuse. A raised margin is come up to by recovery.
