@@ -24,9 +24,10 @@ InstrumentConstraint make_instrument_constraint(std::shared_ptr<const Mesh> mesh
                                                 Instrument instrument,
                                                 const InstrumentConstraintSettings& settings) {
   if (!mesh) throw Error("an instrument constraint needs a mesh: none was given");
-  const auto thinnest = std::ranges::min_element(instrument.bodies(), {}, &Body::radius);
+  double thinnest = longest_length;
+  for (const Body& body : instrument.bodies()) thinnest = std::min(thinnest, body.radius);
   if (index) {
-    warn_of_coarse_index(*index, thinnest->radius + settings.options.margin, settings.warn);
+    warn_of_coarse_index(*index, thinnest + settings.options.margin, settings.warn);
   }
   return {std::move(mesh),  std::move(index), std::move(instrument), make_solver(settings.solver),
           settings.options, settings.capacity};

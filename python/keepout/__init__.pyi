@@ -416,7 +416,7 @@ class InstrumentGuard:
         certified: Literal["actual", "linearised"] = "actual",
         max_triangles: int = 16384,
         max_planes: int = 128,
-        max_looks: int = 131072,
+        max_looks: int = 0,
     ) -> None: ...
     def step(
         self,

@@ -189,7 +189,8 @@ a watertight mesh.
 certified: 'actual', the motion that the joints make, or 'linearised', which is unsafe, and for
 comparison only.
 max_triangles (near one body), max_planes: room for a cycle; one that needs more ends with
-Status.over_capacity. max_looks: the work of a cycle.)";
+Status.over_capacity. max_looks: the work of a cycle; 0 for 65,536, or 4,194,304
+on an index that does not walk by itself.)";
 
 constexpr const char* step_doc =
     R"(What the joints may do in this cycle: an InstrumentStep. Asked for is either a motion of the flange,

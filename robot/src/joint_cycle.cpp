@@ -181,15 +181,16 @@ Status JointCycle::open_body(std::size_t b, InstrumentStep& result) noexcept {
   Certificate certificate(memory_.instrument, b, memory_.motion, target, tolerance,
                           memory_.near.budget());
   double nearest = std::numeric_limits<double>::infinity();
+  const double known = radius + options_.margin + options_.band;
   // All at once that the cycle is likely to ask for.
   for (NearTriangle& triangle : body.near.nearer_than(at(b), memory_.near.budget())) {
-    if (!(triangle.least < radius + options_.margin)) break;
+    if (!(triangle.least < known)) break;
     certificate.know(triangle);
     nearest = std::min(nearest, triangle.at_start.distance);
   }
   if (is_worn_out()) return Status::over_capacity;
   const double distance = nearest - radius;
-  if (std::isfinite(distance) && !(result.distance && *result.distance <= distance)) {
+  if (nearest <= known && !(result.distance && *result.distance <= distance)) {
     result.distance = distance;
     result.nearest = static_cast<int>(b);
   }

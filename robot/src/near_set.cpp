@@ -136,7 +136,7 @@ std::span<NearTriangle> NearSet::nearer_than(double distance, Budget& budget) no
   }
   const auto end = std::partition_point(
       told_.begin(), told_.end(), [&](const NearTriangle& one) { return one.least < distance; });
-  return {told_.begin(), end};
+  return {told_.data(), static_cast<std::size_t>(end - told_.begin())};
 }
 
 }  // namespace keepout

@@ -71,8 +71,8 @@ struct InstrumentStep {
   int rounds = 0;        // how often a trial motion was judged
   std::size_t rows = 0;  // that hold the motion back, joint limits apart
   std::size_t triangles = 0;  // that were looked at one by one
-  /// From the body nearest to the mesh, as the cycle began; of bodies closer than the margin and
-  /// the motion. Negative when the body reaches through the surface. [length]
+  /// From the body nearest to the mesh, as the cycle began; of bodies no farther off than the
+  /// margin and its band. Negative when the body reaches through the surface. [length]
   std::optional<double> distance = std::nullopt;
   int nearest = -1;  // the number of that body
 
