@@ -14,36 +14,31 @@ SpatialIndex::SpatialIndex(std::shared_ptr<const Mesh> mesh) : mesh_(std::move(m
 
 void SpatialIndex::collect_near(const Capsule& capsule, TriangleBuffer& candidates) const noexcept {
   // Pieces twice as long as the capsule is thick: shorter ones ask for more, longer ones find more
-  // that is beside it.
-  constexpr double most_pieces = 64.0;
-  const double length = (capsule.to - capsule.from).norm();
+  // that is beside it. Then the round ends, beyond the outermost pieces.
+  constexpr int most_pieces = 64;
+  const Vec3 along = capsule.to - capsule.from;
+  const double length = along.norm();
   const double wanted = std::ceil(length / (2.0 * capsule.radius + 1e-3 * length));
-  const double pieces = std::clamp(wanted, 1.0, most_pieces);
+  const int pieces = wanted < most_pieces ? std::max(static_cast<int>(wanted), 1) : most_pieces;
   const double half = 0.5 * length / pieces;
-  const double radius = std::hypot(half, capsule.radius) * (1.0 + 1e-12);
+  const double around_piece = std::sqrt(half * half + capsule.radius * capsule.radius);
   const std::size_t before = candidates.size();
-  const auto add = [&](const Ball& ball) {
-    if (candidates.overflowed()) return;
-    const std::size_t known = candidates.size();
-    collect(ball, candidates);
-    if (known == before || candidates.overflowed()) return;
+  for (int i = 0; i < pieces + 2 && !candidates.overflowed(); ++i) {
+    const bool is_end = i >= pieces;
+    const double share = is_end ? i - pieces : (i + 0.5) / pieces;
+    const double radius = is_end ? capsule.radius : around_piece;
+    collect({capsule.from + share * along, radius * (1.0 + 1e-12)}, candidates);
+    if (candidates.overflowed()) break;
     TriangleId* const first = candidates.begin() + before;
     std::sort(first, candidates.end());
-    const auto found = std::unique(first, candidates.end()) - candidates.begin();
-    candidates.shrink(before + static_cast<std::size_t>(found));
-  };
-  for (double piece = 0.5; piece < pieces; piece += 1.0) {
-    add({capsule.from + piece / pieces * (capsule.to - capsule.from), radius});
-  }
-  // The round ends, beyond the outermost pieces.
-  if (length > 0.0) {
-    for (const Vec3& end : {capsule.from, capsule.to}) add({end, capsule.radius * (1.0 + 1e-12)});
+    candidates.shrink(
+        static_cast<std::size_t>(std::unique(first, candidates.end()) - candidates.begin()));
   }
   // There may have been room for each once, but not for what is near two pieces.
   if (candidates.overflowed()) {
     candidates.shrink(before);
     const double all = 0.5 * length + capsule.radius;
-    collect(Ball{0.5 * (capsule.from + capsule.to), all * (1.0 + 1e-12)}, candidates);
+    collect({capsule.from + 0.5 * along, all * (1.0 + 1e-12)}, candidates);
   }
 }
 

@@ -6,6 +6,7 @@
 // grown box's corners, is. Rounding is a share of the coordinates, by which the box is grown as
 // well.
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "keepout/index/wide_bvh.h"
@@ -59,113 +60,100 @@ struct CapsuleScreen {
 HWY_BEFORE_NAMESPACE();
 namespace keepout::HWY_NAMESPACE {
 
-/// Which of some boxes come near the capsule.
-HWY_INLINE M comes_near(const Vector& low, const Vector& high, const CapsuleScreen& capsule) {
+/// Which of sixteen boxes come near the capsule: a bit for each.
+HWY_NOINLINE std::uint32_t boxes_nearby(const float (&low)[3][NodeBlock::lanes],
+                                        const float (&high)[3][NodeBlock::lanes],
+                                        const CapsuleScreen& capsule) {
   const Float d;
   const V thickness = hn::Set(d, capsule.thickness);
-  const V low_of[3] = {low.x, low.y, low.z};
-  const V high_of[3] = {high.x, high.y, high.z};
-  V offset[3], size[3], along[3], length[3];
-  M apart = hn::Lt(thickness, hn::Zero(d));  // none
-  for (int axis = 0; axis < 3; ++axis) {
-    offset[axis] = hn::Sub(hn::Add(low_of[axis], high_of[axis]), hn::Set(d, capsule.middle[axis]));
-    size[axis] = hn::Add(hn::Sub(high_of[axis], low_of[axis]), thickness);
-    along[axis] = hn::Set(d, capsule.along[axis]);
-    length[axis] = hn::Set(d, capsule.length[axis]);
-    apart = hn::Or(apart, hn::Gt(hn::Abs(offset[axis]), hn::Add(size[axis], length[axis])));
+  std::uint32_t nearby = 0;
+  for (std::size_t first = 0; first < NodeBlock::lanes; first += hn::Lanes(d)) {
+    V offset[3], size[3], along[3], length[3];
+    M apart = hn::Lt(thickness, hn::Zero(d));  // none
+    V diagonal2 = hn::Zero(d);
+    for (int axis = 0; axis < 3; ++axis) {
+      const V least = hn::Load(d, low[axis] + first);
+      const V most = hn::Load(d, high[axis] + first);
+      const V width = hn::Sub(most, least);
+      diagonal2 = hn::Add(diagonal2, hn::Mul(width, width));
+      offset[axis] = hn::Sub(hn::Add(least, most), hn::Set(d, capsule.middle[axis]));
+      size[axis] = hn::Add(width, thickness);
+      along[axis] = hn::Set(d, capsule.along[axis]);
+      length[axis] = hn::Set(d, capsule.length[axis]);
+      apart = hn::Or(apart, hn::Gt(hn::Abs(offset[axis]), hn::Add(size[axis], length[axis])));
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      const int j = (axis + 1) % 3;
+      const int k = (axis + 2) % 3;
+      const V across = hn::Sub(hn::Mul(offset[j], along[k]), hn::Mul(offset[k], along[j]));
+      const V reach = hn::Add(hn::Mul(size[j], length[k]), hn::Mul(size[k], length[j]));
+      apart = hn::Or(apart, hn::Gt(hn::Abs(across), reach));
+    }
+    const Vector from_middle{offset[0], offset[1], offset[2]};
+    const Vector way{along[0], along[1], along[2]};
+    const V ahead = hn::Set(d, capsule.length2);
+    const V behind = hn::Sub(hn::Zero(d), ahead);
+    const V nearest = hn::Min(hn::Max(dot(from_middle, way), behind), ahead);
+    const Vector towards = from_middle - hn::Mul(nearest, hn::Set(d, capsule.inverse2)) * way;
+    const V reach = hn::Add(hn::Sqrt(diagonal2), thickness);
+    apart = hn::Or(apart, hn::Gt(dot(towards, towards), hn::Mul(reach, reach)));
+    nearby |= bits(d, hn::Not(apart), first);
   }
-  for (int axis = 0; axis < 3; ++axis) {
-    const int j = (axis + 1) % 3;
-    const int k = (axis + 2) % 3;
-    const V across = hn::Sub(hn::Mul(offset[j], along[k]), hn::Mul(offset[k], along[j]));
-    const V reach = hn::Add(hn::Mul(size[j], length[k]), hn::Mul(size[k], length[j]));
-    apart = hn::Or(apart, hn::Gt(hn::Abs(across), reach));
-  }
-  const Vector from_middle{offset[0], offset[1], offset[2]};
-  const Vector way{along[0], along[1], along[2]};
-  const V ahead = hn::Set(d, capsule.length2);
-  const V behind = hn::Sub(hn::Zero(d), ahead);
-  const V nearest = hn::Min(hn::Max(dot(from_middle, way), behind), ahead);
-  const Vector towards = from_middle - hn::Mul(nearest, hn::Set(d, capsule.inverse2)) * way;
-  const Vector diagonal = high - low;
-  const V reach = hn::Add(hn::Sqrt(dot(diagonal, diagonal)), thickness);
-  apart = hn::Or(apart, hn::Gt(dot(towards, towards), hn::Mul(reach, reach)));
-  return hn::Not(apart);
-}
-
-HWY_INLINE Vector loaded(const float (&numbers)[3][16], std::size_t first) {
-  const Float d;
-  return {hn::Load(d, numbers[0] + first), hn::Load(d, numbers[1] + first),
-          hn::Load(d, numbers[2] + first)};
+  return nearby;
 }
 
 /// Appends the triangles of a leaf whose boxes come near.
 HWY_INLINE void append_near(const LeafBlock& leaf, const CapsuleScreen& capsule,
                             TriangleBuffer& out) {
   const Float d;
-  for (std::size_t first = 0; first < LeafBlock::lanes; first += hn::Lanes(d)) {
-    const Vector a = loaded(leaf.corner[0], first);
-    const Vector b = loaded(leaf.corner[1], first);
-    const Vector c = loaded(leaf.corner[2], first);
-    const Vector low{least(a.x, b.x, c.x), least(a.y, b.y, c.y), least(a.z, b.z, c.z)};
-    const Vector high{most(a.x, b.x, c.x), most(a.y, b.y, c.y), most(a.z, b.z, c.z)};
-    append(hn::Load(Ids(), leaf.source + first), comes_near(low, high, capsule), out);
+  alignas(64) float low[3][LeafBlock::lanes];
+  alignas(64) float high[3][LeafBlock::lanes];
+  for (int axis = 0; axis < 3; ++axis) {
+    for (std::size_t first = 0; first < LeafBlock::lanes; first += hn::Lanes(d)) {
+      const V a = hn::Load(d, leaf.corner[0][axis] + first);
+      const V b = hn::Load(d, leaf.corner[1][axis] + first);
+      const V c = hn::Load(d, leaf.corner[2][axis] + first);
+      hn::Store(least(a, b, c), d, low[axis] + first);
+      hn::Store(most(a, b, c), d, high[axis] + first);
+    }
+  }
+  for (std::uint32_t nearby = boxes_nearby(low, high, capsule); nearby != 0; nearby &= nearby - 1) {
+    const auto lane = static_cast<std::size_t>(std::countr_zero(nearby));
+    if (!leaf.is_used(lane)) break;
+    out.push(leaf.triangle(lane));
   }
 }
 
-/// Appends the triangles in the leaves that were found.
-struct NearTriangles {
-  const LeafBlock* leaves;
-  const CapsuleScreen& capsule;
-  TriangleBuffer& out;
-
-  HWY_INLINE void look(const std::uint32_t* found, std::size_t count) const {
-    constexpr std::size_t ahead = 8;
-    for (std::size_t i = 0; i < std::min(ahead, count); ++i) fetch(found[i]);
-    for (std::size_t i = 0; i < count; ++i) {
-      if (i + ahead < count) fetch(found[i + ahead]);
-      append_near(leaves[found[i] & leaf_number], capsule, out);
-    }
+HWY_INLINE void fetch(const LeafBlock& leaf) {
+  hwy::Prefetch(leaf.source);
+  for (const auto& corner : leaf.corner) {
+    for (const auto& axis : corner) hwy::Prefetch(axis);
   }
-  HWY_INLINE void fetch(std::uint32_t at) const {
-    const LeafBlock& leaf = leaves[at & leaf_number];
-    hwy::Prefetch(leaf.source);
-    for (const auto& corner : leaf.corner) {
-      for (const auto& axis : corner) hwy::Prefetch(axis);
-    }
-  }
-};
+}
 
 void walk_near_capsule(const NodeBlock* nodes, const LeafBlock* leaves,
                        const CapsuleScreen& capsule, TriangleBuffer& out) {
-  const Float d;
-  const Ids ids;
   std::uint32_t stack[(WideBvh::most_levels + 1) * NodeBlock::lanes];
   std::size_t waiting = 0;
-  LeafList list;
-  const NearTriangles visitor{leaves, capsule, out};
   stack[waiting++] = 0;
   while (waiting > 0 && !out.overflowed()) {
     const NodeBlock& node = nodes[stack[--waiting]];
-    const bool above_leaves = (node.child[0] & NodeBlock::leaf) != 0;
-    if (above_leaves && list.room() < NodeBlock::lanes) list.show(visitor);
-    std::uint32_t* to = above_leaves ? list.end() : stack + waiting;
+    std::uint32_t found[NodeBlock::lanes];
     std::size_t count = 0;
-    for (std::size_t first = 0; first < NodeBlock::lanes; first += hn::Lanes(d)) {
-      const auto child = hn::Load(ids, node.child + first);
-      const M near = comes_near(loaded(node.low, first), loaded(node.high, first), capsule);
-      const auto used = hn::Ne(child, hn::Zero(ids));
-      const LanePacking packing(hn::And(hn::RebindMask(ids, near), used));
-      hn::StoreU(packing(child), ids, to + count);
-      count += packing.count();
+    for (std::uint32_t nearby = boxes_nearby(node.low, node.high, capsule); nearby != 0;
+         nearby &= nearby - 1) {
+      const auto lane = static_cast<std::size_t>(std::countr_zero(nearby));
+      if (!node.is_used(lane)) break;
+      const std::uint32_t child = node.child[lane];
+      if ((child & NodeBlock::leaf) == 0) {
+        stack[waiting++] = child;
+      } else {
+        found[count++] = child & ~NodeBlock::leaf;
+        fetch(leaves[found[count - 1]]);
+      }
     }
-    if (above_leaves) {
-      list.grow(count);
-    } else {
-      waiting += count;
-    }
+    for (std::size_t i = 0; i < count; ++i) append_near(leaves[found[i]], capsule, out);
   }
-  list.show(visitor);
 }
 
 }  // namespace keepout::HWY_NAMESPACE
