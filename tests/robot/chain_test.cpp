@@ -6,7 +6,6 @@
 #include <Eigen/Dense>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <string>
 
 #include "keepout/error.h"
@@ -18,9 +17,6 @@ namespace keepout {
 namespace {
 
 using Matrix = Eigen::Matrix4d;
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 Matrix matrix(const Pose& pose) {
   Matrix m = Matrix::Identity();
@@ -156,17 +152,17 @@ TEST(Chain, WhatIsNoChainIsRefusedAndTheMessageNamesTheJoint) {
   expect_refused([] { Chain(std::vector<Joint>(9)); }, "1 to 8 joints, not 9");
   expect_refused(chain({.name = "elbow", .axis = Vec3::Zero()}), "joint 2 ('elbow') is not a unit");
   expect_refused(chain({.axis = Vec3(0, 0, 2)}), "joint 2 is not a unit vector");
-  expect_refused(chain({.axis = Vec3(nan, 0, 1)}), "not a unit vector");
-  expect_refused(chain({.origin = {Vec3(0, infinity, 0)}}), "the origin of joint 2 is no pose");
+  expect_refused(chain({.axis = Vec3(test::nan, 0, 1)}), "not a unit vector");
+  expect_refused(chain({.origin = {Vec3(0, test::infinity, 0)}}), "the origin of joint 2 is no pose");
   expect_refused(chain({.origin = {Vec3::Zero(), -Mat3::Identity()}}), "the origin of joint 2");
   expect_refused(chain({.limits = {.lower = 1, .upper = 0}}), "lower limit above its upper");
-  expect_refused(chain({.limits = {.lower = nan}}), "not a number");
-  expect_refused(chain({.limits = {.lower = infinity}}), "joint 2 has a lower limit");
+  expect_refused(chain({.limits = {.lower = test::nan}}), "not a number");
+  expect_refused(chain({.limits = {.lower = test::infinity}}), "joint 2 has a lower limit");
   expect_refused(chain({.limits = {.velocity = 0}}), "joint 2 has a limit of velocity");
-  expect_refused(chain({.limits = {.increment = nan}}), "not above zero");
-  expect_refused([] { Chain({Joint{}}, {Vec3(nan, 0, 0)}); }, "the base of the chain");
+  expect_refused(chain({.limits = {.increment = test::nan}}), "not above zero");
+  expect_refused([] { Chain({Joint{}}, {Vec3(test::nan, 0, 0)}); }, "the base of the chain");
   expect_refused([] { Chain({Joint{}}, {}, {Vec3::Zero(), Mat3::Zero()}); }, "the flange");
-  const DenavitHartenberg rows[] = {{}, {.alpha = nan}};
+  const DenavitHartenberg rows[] = {{}, {.alpha = test::nan}};
   expect_refused([&] { joints_of(rows, DhConvention::modified); }, "row 2 of the table");
 }
 
@@ -178,7 +174,7 @@ TEST(Chain, WhatIsNoInstrumentIsRefusedAndTheMessageNamesTheBody) {
   expect_refused([] { Instrument(Chain({Joint{}}), {}); }, "1 to 16 bodies, not 0");
   expect_refused(body({.name = "tip"}), "body 2 ('tip') has 0 points");
   expect_refused(body({.points = {{3}}}), "body 2 is on link 3; there are links 0 to 2");
-  expect_refused(body({.points = {{1, Vec3(nan, 0, 0)}}}), "body 2 has a point that is not finite");
+  expect_refused(body({.points = {{1, Vec3(test::nan, 0, 0)}}}), "body 2 has a point that is not finite");
   expect_refused(body({.points = {{1}}, .radius = -1}), "the radius of body 2 is below zero");
   expect_refused(body({.points = triangle}), "only a capsule may reach from one link to another");
 }

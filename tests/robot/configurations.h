@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
+#include <limits>
 #include <vector>
 
 #include "keepout/fixtures/random.h"
 #include "keepout/robot/chain.h"
 
 namespace keepout::test {
+
+inline constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+inline constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Positions of the joints within their limits, evenly; of joints without, within half a turn.
 inline std::vector<double> configuration(const Chain& chain, Random& random) {

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -20,13 +19,11 @@
 #include "keepout/index/wide_bvh.h"
 #include "keepout/robot/motion_bounds.h"
 #include "keepout/solvers/registry.h"
+#include "robot/configurations.h"
 #include "trials.h"
 
 namespace keepout {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// An instrument that hangs down from its port, 120 above the origin: at insertion d its tip is at
 /// height 120 - d - 9.1 - 10.2 + 15.6.
@@ -42,7 +39,7 @@ std::vector<double> straight_down(double insertion) { return {0, 0, insertion, 0
 double clearance(const Instrument& instrument, const Mesh& mesh, const std::vector<double>& q) {
   ChainState chain;
   instrument.chain().place(q, chain);
-  double least = infinity;
+  double least = test::infinity;
   for (const Body& body : instrument.bodies()) {
     std::vector<Vec3> points;
     for (const LinkPoint& point : body.points)
@@ -179,7 +176,7 @@ TEST(InstrumentConstraint, ProvesWhatIsFreeAndNothingElse) {
     dq[2] *= 25.0;
     const MotionProof proof = guard.prove(q, dq);
     ASSERT_TRUE(is_ok(proof.status)) << reason(proof.status);
-    double least = infinity;
+    double least = test::infinity;
     for (int s = 0; s <= 20; ++s) {
       std::vector<double> there = q;
       for (std::size_t k = 0; k < 6; ++k) there[k] += s / 20.0 * dq[k];
@@ -348,12 +345,12 @@ TEST(InstrumentConstraint, RefusesWhatIsNoInput) {
   auto guard = guard_of(mesh_of("cube"), psm_above());
   const std::vector<double> q = straight_down(20.0);
   std::vector<double> bad = q;
-  bad[3] = nan;
+  bad[3] = test::nan;
   const std::vector<double> few(5, 0.0);
   EXPECT_EQ(guard.step(few, Twist{}).status, Status::invalid_input);
   EXPECT_EQ(guard.step(bad, Twist{}).status, Status::invalid_input);
-  EXPECT_EQ(guard.step(q, {.linear = Vec3(0, nan, 0)}).status, Status::invalid_input);
-  EXPECT_EQ(guard.step(q, {.angular = Vec3(0, infinity, 0)}).status, Status::invalid_input);
+  EXPECT_EQ(guard.step(q, {.linear = Vec3(0, test::nan, 0)}).status, Status::invalid_input);
+  EXPECT_EQ(guard.step(q, {.angular = Vec3(0, test::infinity, 0)}).status, Status::invalid_input);
   EXPECT_EQ(guard.step(q, few).status, Status::invalid_input);
   EXPECT_EQ(guard.step(q, q, std::vector<double>(6, 0.0)).status, Status::invalid_input);
   EXPECT_EQ(guard.prove(q, bad).status, Status::invalid_input);
@@ -377,7 +374,7 @@ TEST(InstrumentConstraint, SaysWhatIsWrongWithItsParts) {
   EXPECT_NE(with({.margin = 0.2, .band = 0.2}).find("band"), std::string::npos);
   EXPECT_NE(with({.margin = 1e-12, .band = 1e-13}).find("rounding"), std::string::npos);
   EXPECT_NE(with({.period = 0.0}).find("period"), std::string::npos);
-  EXPECT_NE(with({.damping = nan}).find("damping"), std::string::npos);
+  EXPECT_NE(with({.damping = test::nan}).find("damping"), std::string::npos);
   const auto other = mesh_of("gear");
   const auto of_other = [&] {
     InstrumentConstraint(mesh, std::make_shared<WideBvh>(other), psm_above(),
