@@ -267,7 +267,7 @@ void bind_results(py::module_& module) {
       .def_property_readonly(
           "distance", [](const Result& self) { return self.step.distance; },
           "From the body nearest to the mesh, as the cycle began [length]; None where none is\n"
-          "closer than the margin and the motion, negative where it reaches through the surface.")
+          "closer than the margin and its band, negative where it reaches through the surface.")
       .def_property_readonly(
           "nearest",
           [](const Result& self) {

@@ -5,24 +5,22 @@
 #include <cmath>
 #include <limits>
 
+#include "keepout/activation/facet.h"
+
 namespace keepout {
 namespace {
 
-// In looks.
-constexpr std::size_t work_of_separation = 1;
-
-double support(const Triangle& triangle, const Vec3& n) noexcept {
-  return std::max({n.dot(triangle[0]), n.dot(triangle[1]), n.dot(triangle[2])});
-}
+constexpr std::size_t work_of_separation = 1;  // in looks
 
 }  // namespace
 
 Certificate::Certificate(const Instrument& instrument, std::size_t body, PointMotion& motion,
-                         double kept, double tolerance, Budget& budget) noexcept
-    : points_(instrument.points_of(body)),
-      work_of_gap_(points_.size() > 2 ? 12 : 3),
+                         NearSet& near, double kept, double tolerance, Budget& budget) noexcept
+    : body_(body),
+      points_(instrument.points_of(body)),
       radius_(instrument.bodies()[body].radius),
       motion_(motion),
+      near_(near),
       kept_(kept),
       tolerance_(tolerance),
       budget_(budget) {}
@@ -30,12 +28,6 @@ Certificate::Certificate(const Instrument& instrument, std::size_t body, PointMo
 void Certificate::try_first(const Vec3& normal) noexcept {
   if (plane_count_ == most_planes) return;
   planes_[plane_count_++] = {normal, least_height(normal, 0, PointMotion::cells)};
-}
-
-void Certificate::know(NearTriangle& triangle) noexcept {
-  if (triangle.is_known) return;
-  budget_.spend(work_of_gap_);
-  triangle.know(gap_at(0, *triangle.corners));
 }
 
 Certificate::Failure Certificate::judge(std::span<NearTriangle> triangles, double reach) noexcept {
@@ -47,7 +39,7 @@ Certificate::Failure Certificate::judge(std::span<NearTriangle> triangles, doubl
     budget_.spend(1);
     if (budget_.is_spent()) return {0, nullptr};
     if (is_covered(triangle)) continue;
-    know(triangle);
+    near_.know(triangle, budget_);
     if (triangle.at_start.distance >= out_of_reach) continue;
     // What is kept, or what is there if rounding has left less.
     const double distance = triangle.at_start.distance - radius_;
@@ -55,7 +47,6 @@ Certificate::Failure Certificate::judge(std::span<NearTriangle> triangles, doubl
                ? kept_
                : std::max(kept_ - tolerance_, std::min(kept_, distance + 2.0 * tolerance_));
     const Gap at_end = gap_at(PointMotion::cells, *triangle.corners);
-    budget_.spend(work_of_gap_);
     const int cell = proven_until(triangle, 0, triangle.at_start, PointMotion::cells, at_end);
     if (budget_.is_spent()) return {0, nullptr};
     if (cell > latest_ || cell == PointMotion::cells) continue;
@@ -67,10 +58,9 @@ Certificate::Failure Certificate::judge(std::span<NearTriangle> triangles, doubl
 }
 
 Gap Certificate::gap_at(int cell, const Triangle& corners) noexcept {
-  const Vec3* places = motion_.at(cell);
-  std::array<Vec3, Instrument::most_points_of_a_body> core;
-  for (std::size_t i = 0; i < points_.size(); ++i) core[i] = places[points_[i]];
-  return gap({core.data(), points_.size()}, corners);
+  budget_.spend(work_of_gap(points_.size()));
+  Core core;
+  return gap(motion_.core(body_, cell, core), corners);
 }
 
 /// Of the body's core over a plane through the origin, on a part of the motion.
@@ -131,7 +121,6 @@ int Certificate::proven_until(const NearTriangle& triangle, int lo, const Gap& a
   }
   if (hi - lo == 1) return lo;
   const int middle = (lo + hi) / 2;
-  budget_.spend(work_of_gap_);
   const Gap at_middle = gap_at(middle, *triangle.corners);
   const int first = proven_until(triangle, lo, at_lo, middle, at_middle);
   if (first < middle) return first;

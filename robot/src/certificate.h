@@ -26,10 +26,10 @@ class Certificate {
     NearTriangle* triangle = nullptr;  // null if there is none, or the budget is spent
   };
 
-  /// For a body on a motion. `kept`: what triangles are to be kept clear of beyond the radius.
-  /// All must outlive it. [length]
-  Certificate(const Instrument& instrument, std::size_t body, PointMotion& motion, double kept,
-              double tolerance, Budget& budget) noexcept;
+  /// For a body on a motion, and what is near it. `kept`: what triangles are to be kept clear of
+  /// beyond the radius. All must outlive it. [length]
+  Certificate(const Instrument& instrument, std::size_t body, PointMotion& motion, NearSet& near,
+              double kept, double tolerance, Budget& budget) noexcept;
 
   /// Tries planes with this normal before others: one that holds the body back.
   void try_first(const Vec3& normal) noexcept;
@@ -37,9 +37,6 @@ class Certificate {
   /// The first of the triangles to speak against the motion, of equals the first by number.
   /// `reach`: how far the body gets on it (PointMotion::farthest). [length]
   Failure judge(std::span<NearTriangle> triangles, double reach) noexcept;
-
-  /// Finds the gap as the cycle begins, unless it is known.
-  void know(NearTriangle& triangle) noexcept;
 
  private:
   /// A normal, and the least height of the body over it on the whole motion.
@@ -56,10 +53,11 @@ class Certificate {
   int proven_until(const NearTriangle& triangle, int lo, const Gap& at_lo, int hi,
                    const Gap& at_hi) noexcept;
 
+  std::size_t body_;
   std::span<const std::uint8_t> points_;
-  std::size_t work_of_gap_;  // in looks: of a blade it is searched for
   double radius_;
   PointMotion& motion_;
+  NearSet& near_;
   double kept_;
   double tolerance_;
   Budget& budget_;

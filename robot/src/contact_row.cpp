@@ -6,14 +6,11 @@
 #include <cmath>
 #include <limits>
 
+#include "keepout/activation/facet.h"
 #include "keepout/geometry/closest_point.h"
 
 namespace keepout {
 namespace {
-
-double support(const Triangle& triangle, const Vec3& n) noexcept {
-  return std::max({n.dot(triangle[0]), n.dot(triangle[1]), n.dot(triangle[2])});
-}
 
 /// Of the normals from one that is valid to one that is wanted, the last that is valid.
 template <class IsValid>
@@ -57,11 +54,10 @@ std::optional<ContactRow> ContactRows::witness(std::size_t body, const NearTrian
   });
   ContactRow row{.body = body, .triangle = triangle.id, .point = point, .normal = normal};
   finish(row, at, corners);
-  const Instrument& instrument = instrument_;
-  const std::span<const std::uint8_t> points = instrument.points_of(body);
+  const std::span<const std::uint8_t> points = instrument_.points_of(body);
   const ChainState& chain = motion_.chain_at_start();
-  const LinkPoint& first = instrument.points()[points.front()];
-  const LinkPoint& last = instrument.points()[points.back()];
+  const LinkPoint& first = instrument_.points()[points.front()];
+  const LinkPoint& last = instrument_.points()[points.back()];
   const Vec3* places = motion_.at_start();
   for (int k = 1; k <= chain.size(); ++k) {
     double& part = row.gradient[static_cast<std::size_t>(k - 1)];
@@ -109,11 +105,11 @@ double ContactRows::height_at_end(const ContactRow& row) noexcept {
 }
 
 Gap ContactRows::gap_at(std::size_t body, const Triangle& corners, int cell) noexcept {
-  const std::span<const std::uint8_t> points = instrument_.points_of(body);
-  const Vec3* places = motion_.at(cell);
-  std::array<Vec3, Instrument::most_points_of_a_body> core;
-  for (std::size_t i = 0; i < points.size(); ++i) core[i] = places[points[i]];
-  return gap({core.data(), points.size()}, corners);
+  constexpr std::size_t work_of_turning = 5;  // in looks
+  Core core;
+  const std::span<const Vec3> points = motion_.core(body, cell, core);
+  budget_.spend(work_of_gap(points.size()) + work_of_turning);
+  return gap(points, corners);
 }
 
 /// Which point of the body's core is at a place at a share of the motion.

@@ -38,14 +38,15 @@ struct ContactRow {
 class ContactRows {
  public:
   /// `margin`: to be kept beyond the radius; `recovery`: the most that a row leads away in a cycle;
-  /// `tolerance` of lengths. All must outlive it. [length]
+  /// `tolerance` of lengths. Work is taken from the budget. All must outlive it. [length]
   ContactRows(const Instrument& instrument, PointMotion& motion, double margin, double recovery,
-              double tolerance) noexcept
+              double tolerance, Budget& budget) noexcept
       : instrument_(instrument),
         motion_(motion),
         margin_(margin),
         recovery_(recovery),
-        tolerance_(tolerance) {}
+        tolerance_(tolerance),
+        budget_(budget) {}
 
   /// Where a triangle is met at a share of the motion: a row on that point of the body alone, so
   /// that the body may roll and pivot over the triangle. Its normal is the one there, turned back
@@ -71,6 +72,7 @@ class ContactRows {
   double margin_;
   double recovery_;
   double tolerance_;
+  Budget& budget_;
 };
 
 }  // namespace keepout

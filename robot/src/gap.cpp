@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "keepout/activation/facet.h"
 #include "keepout/geometry/closest_point.h"
 #include "keepout/geometry/nearest_points.h"
 
@@ -13,6 +14,8 @@ namespace keepout {
 namespace {
 
 constexpr double far = std::numeric_limits<double>::infinity();
+// Shorter ones tell no direction: their squares are rounded to few digits.
+constexpr double least_length2 = 1e-280;
 
 /// The best pair of points found so far, and the directions that may prove its distance.
 struct Pair {
@@ -21,10 +24,6 @@ struct Pair {
   Vec3 away = Vec3::Zero();     // from the triangle to the core
   Vec3 sharper = Vec3::Zero();  // a direction that the features know better; zero if none
 };
-
-double support(const Triangle& triangle, const Vec3& n) noexcept {
-  return std::max({n.dot(triangle[0]), n.dot(triangle[1]), n.dot(triangle[2])});
-}
 
 void consider_end(const Vec3& end, const Triangle& triangle, const Vec3& face,
                   Pair& best) noexcept {
@@ -84,7 +83,7 @@ Gap proven(const Pair& nearest, std::span<const Vec3> core, const Triangle& tria
   best.contact = nearest.on_core;
   for (const Vec3& towards : {nearest.away, nearest.sharper}) {
     const double length2 = towards.squaredNorm();
-    if (!(length2 > 0.0)) continue;
+    if (!(length2 > least_length2)) continue;
     Vec3 n = towards / std::sqrt(length2);
     if (n.dot(nearest.away) < 0.0) n = -n;
     double least = far;

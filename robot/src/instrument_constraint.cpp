@@ -2,8 +2,11 @@
 #include "keepout/robot/instrument_constraint.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
+#include <vector>
 
 #include "joint_cycle.h"
 #include "keepout/error.h"
@@ -11,7 +14,7 @@
 namespace keepout {
 namespace {
 
-// Positions and increments beyond that are no joint's.
+// Beyond that no number is one of a task.
 constexpr double largest = 1e9;
 
 bool are_numbers(std::span<const double> values) noexcept {
@@ -34,7 +37,7 @@ std::unique_ptr<Neighborhood> neighborhood_of(std::shared_ptr<const Mesh> mesh,
   if (looks == 0) {
     Budget unused;
     const bool walks = index->walk_along_motions(unused) != nullptr;
-    looks = walks ? InstrumentCapacity::looks_of_a_walk : Capacity::looks_of_queries;
+    looks = walks ? Capacity::looks_of_a_walk : Capacity::looks_of_queries;
   }
   return std::make_unique<Neighborhood>(std::move(mesh), std::move(index), capacity.triangles,
                                         looks);
@@ -82,10 +85,16 @@ struct InstrumentConstraint::State {
     near->budget().renew();
     if (!near->is_current()) return Status::mesh_changed;
     const auto n = static_cast<std::size_t>(instrument.chain().size());
-    const bool is_position = q.size() == n && std::all_of(q.begin(), q.end(), [&](double x) {
-                               return std::abs(x) <= memory.largest_position;  // false for NaN
-                             });
-    return is_position ? Status::free : Status::invalid_input;
+    return q.size() == n && are_positions(q) ? Status::free : Status::invalid_input;
+  }
+
+  /// Whether the joints can be there, moved by that (n) or by nothing.
+  bool are_positions(std::span<const double> q, std::span<const double> moved = {}) const noexcept {
+    for (std::size_t k = 0; k < q.size(); ++k) {
+      const double there = moved.empty() ? q[k] : q[k] + moved[k];
+      if (!(std::abs(there) <= memory.farthest(static_cast<int>(k) + 1))) return false;  // or NaN
+    }
+    return true;
   }
 
   Instrument instrument;
@@ -138,10 +147,14 @@ InstrumentStep InstrumentConstraint::step(std::span<const double> q,
 MotionProof InstrumentConstraint::prove(std::span<const double> q,
                                         std::span<const double> increment) noexcept {
   Status status = state_->check(q);
-  if (is_ok(status) && !(increment.size() == q.size() && are_numbers(increment))) {
+  if (is_ok(status) && !(increment.size() == q.size() && state_->are_positions(q, increment))) {
     status = Status::invalid_input;
   }
   if (!is_ok(status)) return {.status = status};
+  // What steps have gained is none of a planner's business.
+  std::array<double, Instrument::most_bodies> floors;
+  std::vector<BodyMemory>& bodies = state_->memory.bodies;
+  for (std::size_t b = 0; b < bodies.size(); ++b) floors[b] = bodies[b].floor;
   // In parts, where there is more near a long motion than there is room for.
   constexpr double least_part = 1.0 / 64.0;
   MotionProof proof{.status = Status::free};
@@ -155,6 +168,7 @@ MotionProof InstrumentConstraint::prove(std::span<const double> q,
     }
     state_->near->budget().renew();
     state_->memory.forget_motion();
+    for (BodyMemory& body : bodies) body.floor = std::numeric_limits<double>::infinity();
     InstrumentStep result;
     const double proven =
         JointCycle(state_->memory, state_->options, {from.data(), q.size()}).prove(motion, result);
@@ -168,6 +182,7 @@ MotionProof InstrumentConstraint::prove(std::span<const double> q,
     if (proven < 1.0 || result.status != Status::free) break;
   }
   state_->memory.forget_motion();
+  for (std::size_t b = 0; b < bodies.size(); ++b) bodies[b].floor = floors[b];
   if (proof.status == Status::free && proof.share < 1.0) proof.status = Status::limited;
   return proof;
 }
@@ -205,7 +220,9 @@ double recommended_band(const Instrument& instrument, double period, double leas
       }
       lever += joint.origin.position.norm();
     }
-    most = std::max(most, bend);
+    // Without a limit the bend is infinite, or 0 times infinity.
+    most = std::isnan(bend) ? std::numeric_limits<double>::infinity() : std::max(most, bend);
+    if (std::isinf(most)) break;
   }
   return std::max(least, most / 8.0);
 }

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "keepout/activation/facet.h"
+
 namespace keepout {
 namespace {
 
@@ -31,7 +33,7 @@ double least_distance(const Vec3& from, const Vec3& to, const Triangle& corners)
 double distance_along(const Vec3& n, std::span<const Vec3> core, const Triangle& corners) noexcept {
   double least = far;
   for (const Vec3& point : core) least = std::min(least, n.dot(point));
-  return least - std::max({n.dot(corners[0]), n.dot(corners[1]), n.dot(corners[2])});
+  return least - support(corners, n);
 }
 
 /// Has the memory of triangles on its way whose turn comes soon.
@@ -53,6 +55,7 @@ NearSet::NearSet(std::size_t room, double beyond) : room_(room), beyond_(beyond)
   corners_.reserve(room);
   blocks_.resize(room / NearBlock::lanes + 1);
   told_.reserve(room);
+  told_in_.reserve(room);
   core_.reserve(8);
   now_.reserve(8);
   normals_.reserve(room);
@@ -64,6 +67,7 @@ bool NearSet::look(Neighborhood& near, std::span<const Vec3> core, double radius
   ids_.clear();
   corners_.clear();
   normals_.clear();
+  told_in_.clear();
   start_cycle(core);
   TriangleBuffer& candidates = near.candidates();
   candidates.clear();
@@ -75,7 +79,7 @@ bool NearSet::look(Neighborhood& near, std::span<const Vec3> core, double radius
   size_ = (to_ - from_).norm() + 2.0 * (radius + beyond_) + mesh.longest_edge();
   const NearScreen screen = this->screen(radius);
   const std::span<const TriangleId> found = candidates.view();
-  NearBlock block;
+  NearBlock block{};
   Triangle corners[NearBlock::lanes];
   for (std::size_t first = 0; first < found.size(); first += NearBlock::lanes) {
     const std::size_t count = std::min(NearBlock::lanes, found.size() - first);
@@ -93,6 +97,7 @@ bool NearSet::look(Neighborhood& near, std::span<const Vec3> core, double radius
       ids_.push_back(found[first + lane]);
       corners_.push_back(corners[lane]);
       normals_.push_back(Vec3::Zero());
+      told_in_.push_back(0);
     }
   }
   radius_ = radius;
@@ -109,6 +114,7 @@ void NearSet::start_cycle(std::span<const Vec3> core) noexcept {
   from_ = core.front();
   to_ = core.size() > 1 ? core[1] : core.front();
   told_.clear();
+  ++cycle_;
   told_below_ = -far;
 }
 
@@ -122,13 +128,16 @@ std::span<NearTriangle> NearSet::nearer_than(double distance, Budget& budget) no
       for (; lanes != 0; lanes &= lanes - 1) {
         const std::size_t i = first + static_cast<std::size_t>(std::countr_zero(lanes));
         if (i >= ids_.size()) break;
+        if (told_in_[i] == cycle_) continue;
         const double least = std::max(least_distance(from_, to_, corners_[i]) - beyond_,
                                       distance_along(normals_[i], now_, corners_[i]));
-        if (!(least < distance) || least < told_below_) continue;
+        if (!(least < distance)) continue;
+        told_in_[i] = cycle_;
         told_.push_back(
             {.id = ids_[i], .least = least, .corners = &corners_[i], .normal = &normals_[i]});
       }
     }
+    budget.spend(told_.size() - static_cast<std::size_t>(known));
     std::sort(told_.begin() + known, told_.end(), [](const NearTriangle& x, const NearTriangle& y) {
       return x.least < y.least || (x.least == y.least && x.id < y.id);
     });
@@ -137,6 +146,14 @@ std::span<NearTriangle> NearSet::nearer_than(double distance, Budget& budget) no
   const auto end = std::partition_point(
       told_.begin(), told_.end(), [&](const NearTriangle& one) { return one.least < distance; });
   return {told_.data(), static_cast<std::size_t>(end - told_.begin())};
+}
+
+void NearSet::know(NearTriangle& triangle, Budget& budget) noexcept {
+  if (triangle.is_known) return;
+  budget.spend(work_of_gap(now_.size()));
+  triangle.at_start = gap(now_, *triangle.corners);
+  *triangle.normal = triangle.at_start.normal;
+  triangle.is_known = true;
 }
 
 }  // namespace keepout

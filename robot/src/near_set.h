@@ -20,13 +20,6 @@ struct NearTriangle {
   Vec3* normal;  // the last one that parted it from the core, which may do so again: see `know`
   bool is_known = false;  // whether the gap is
   Gap at_start = {};      // as the cycle begins
-
-  /// Takes down the gap as the cycle begins.
-  void know(const Gap& gap) noexcept {
-    at_start = gap;
-    *normal = gap.normal;
-    is_known = true;
-  }
 };
 
 /// The triangles around one body, kept from cycle to cycle: while no point of the body has moved
@@ -58,6 +51,8 @@ class NearSet {
   /// equals the first by number. Valid until triangles are looked for again, or the next cycle.
   /// Work is taken from the budget. [length]
   std::span<NearTriangle> nearer_than(double distance, Budget& budget) noexcept;
+  /// Finds the gap of one of them as the cycle begins, unless it is known.
+  void know(NearTriangle& triangle, Budget& budget) noexcept;
 
  private:
   NearScreen screen(double distance) const noexcept;
@@ -76,6 +71,8 @@ class NearSet {
   Vec3 from_ = Vec3::Zero();  // the segment of the first two
   Vec3 to_ = Vec3::Zero();
   std::vector<NearTriangle> told_;
+  std::vector<std::uint64_t> told_in_;  // the cycle in which each was
+  std::uint64_t cycle_ = 0;
   double told_below_ = 0.0;  // all that may be nearer than that are among them
 };
 

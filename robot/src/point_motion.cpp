@@ -12,28 +12,25 @@ constexpr std::size_t work_of_place = 4;
 
 }  // namespace
 
-PointMotion::PointMotion(const Instrument& instrument)
-    : instrument_(&instrument), places_(cells + 1) {
+PointMotion::PointMotion(const Instrument& instrument, Budget& budget)
+    : instrument_(&instrument), budget_(&budget), places_(cells + 1) {
   straight_.fill(Vec3::Zero());
 }
 
-void PointMotion::start(std::span<const double> q, Budget& budget) noexcept {
-  budget_ = &budget;
+void PointMotion::start(std::span<const double> q) noexcept {
   std::copy(q.begin(), q.end(), q_.begin());
-  budget.spend(work_of_place);
+  budget_->spend(work_of_place);
   instrument_->chain().place(q, start_);
   fill(start_, places_[0]);
 }
 
-void PointMotion::move(const JointVector& increment, CertifiedMotion which,
-                       Budget& budget) noexcept {
-  budget_ = &budget;
+void PointMotion::move(const JointVector& increment, CertifiedMotion which) noexcept {
   ++motion_;
   increment_ = increment;
   which_ = which;
   const std::span<const LinkPoint> points = instrument_->points();
   const auto n = static_cast<std::size_t>(instrument_->chain().size());
-  budget.spend(1 + points.size() / 4);
+  budget_->spend(1 + points.size() / 4);
   for (std::size_t p = 0; p < points.size(); ++p) {
     const Vec3& here = at_start()[p];
     if (which == CertifiedMotion::actual) {
@@ -64,6 +61,13 @@ const Vec3* PointMotion::at(int cell) noexcept {
   this->place(cell, state_);
   fill(state_, place);
   return place.points.data();
+}
+
+std::span<const Vec3> PointMotion::core(std::size_t body, int cell, Core& core) noexcept {
+  const Vec3* places = at(cell);
+  const std::span<const std::uint8_t> points = instrument_->points_of(body);
+  for (std::size_t i = 0; i < points.size(); ++i) core[i] = places[points[i]];
+  return {core.data(), points.size()};
 }
 
 void PointMotion::place(int cell, ChainState& state) const noexcept {

@@ -17,6 +17,9 @@ namespace keepout {
 /// Positions of joints, or what is added to them.
 using JointVector = std::array<double, Chain::most_joints>;
 
+/// Where the points of a body's core are. [length]
+using Core = std::array<Vec3, Instrument::most_points_of_a_body>;
+
 /// The points of an instrument on their way while the joints move by an increment: where they are,
 /// on a grid of shares of the motion, and what bounds them in between. Positions are computed when
 /// they are first asked for.
@@ -25,20 +28,22 @@ class PointMotion {
   /// The grid's cells; shares are c / cells.
   static constexpr int cells = 64;
 
-  /// The instrument must stay where it is.
-  explicit PointMotion(const Instrument& instrument);
+  /// Takes its work from the budget. Both must stay where they are.
+  PointMotion(const Instrument& instrument, Budget& budget);
 
   /// A new cycle, with the joints at q (n).
-  void start(std::span<const double> q, Budget& budget) noexcept;
+  void start(std::span<const double> q) noexcept;
 
   /// Another motion from there: dq.
-  void move(const JointVector& increment, CertifiedMotion which, Budget& budget) noexcept;
+  void move(const JointVector& increment, CertifiedMotion which) noexcept;
 
   /// The motion: dq.
   const JointVector& increment() const noexcept { return increment_; }
 
   /// Where all points are at a share of the motion, by their number. [length]
   const Vec3* at(int cell) noexcept;
+  /// The same of the points of one body, put into `core`. [length]
+  std::span<const Vec3> core(std::size_t body, int cell, Core& core) noexcept;
   /// Where they are as the cycle begins. [length]
   const Vec3* at_start() const noexcept { return places_[0].points.data(); }
   /// The chain as the cycle begins.
@@ -61,6 +66,7 @@ class PointMotion {
   void fill(const ChainState& state, Place& place) const noexcept;
 
   const Instrument* instrument_;
+  Budget* budget_;
   JointVector q_{};
   JointVector increment_{};
   CertifiedMotion which_ = CertifiedMotion::actual;
@@ -70,7 +76,6 @@ class PointMotion {
   std::array<Vec3, Instrument::most_points> straight_;  // J dq, of the linearised motion
   std::vector<Place> places_;                           // (cells + 1)
   std::uint64_t motion_ = 0;
-  Budget* budget_ = nullptr;
 };
 
 }  // namespace keepout

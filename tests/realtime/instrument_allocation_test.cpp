@@ -24,6 +24,18 @@ TEST(InstrumentConstraint, AllocatesNothingWhateverTheOutcome) {
     guards.emplace_back(mesh, index, psm({port, Mat3::Identity()}), std::make_unique<ActiveSet>(),
                         InstrumentOptions{.period = 0.05});
   }
+  // A mesh that is all near, one cycle's work that does not last, and a ball that is inside.
+  const auto cube = std::make_shared<const Mesh>(make_cube(20.0));
+  const auto cube_index = std::make_shared<WideBvh>(cube);
+  for (const std::size_t looks : {std::size_t{0}, std::size_t{60}}) {
+    guards.emplace_back(cube, cube_index, psm({Vec3(0, 0, 100), Mat3::Identity()}),
+                        std::make_unique<ActiveSet>(), InstrumentOptions{.period = 0.05},
+                        InstrumentCapacity{.looks = looks});
+  }
+  const Chain turning({Joint{}, Joint{}, Joint{}, Joint{}, Joint{}, Joint{}});
+  guards.emplace_back(cube, cube_index,
+                      Instrument(turning, {{.points = {{6, Vec3::Zero()}}, .radius = 1.0}}),
+                      std::make_unique<ActiveSet>(), InstrumentOptions{});
   std::vector<Status> seen;
   seen.reserve(100'000);
   std::vector<double> q(6);
@@ -50,7 +62,7 @@ TEST(InstrumentConstraint, AllocatesNothingWhateverTheOutcome) {
   EXPECT_EQ(allocations(), before);
   const std::set<Status> kinds(seen.begin(), seen.end());
   for (const Status status : {Status::free, Status::limited, Status::recovering, Status::touching,
-                              Status::invalid_input}) {
+                              Status::invalid_input, Status::over_capacity, Status::inside}) {
     EXPECT_TRUE(kinds.contains(status)) << name(status);
   }
 }

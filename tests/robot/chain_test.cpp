@@ -153,7 +153,8 @@ TEST(Chain, WhatIsNoChainIsRefusedAndTheMessageNamesTheJoint) {
   expect_refused(chain({.name = "elbow", .axis = Vec3::Zero()}), "joint 2 ('elbow') is not a unit");
   expect_refused(chain({.axis = Vec3(0, 0, 2)}), "joint 2 is not a unit vector");
   expect_refused(chain({.axis = Vec3(test::nan, 0, 1)}), "not a unit vector");
-  expect_refused(chain({.origin = {Vec3(0, test::infinity, 0)}}), "the origin of joint 2 is no pose");
+  expect_refused(chain({.origin = {Vec3(0, test::infinity, 0)}}),
+                 "the origin of joint 2 is no pose");
   expect_refused(chain({.origin = {Vec3::Zero(), -Mat3::Identity()}}), "the origin of joint 2");
   expect_refused(chain({.limits = {.lower = 1, .upper = 0}}), "lower limit above its upper");
   expect_refused(chain({.limits = {.lower = test::nan}}), "not a number");
@@ -174,7 +175,8 @@ TEST(Chain, WhatIsNoInstrumentIsRefusedAndTheMessageNamesTheBody) {
   expect_refused([] { Instrument(Chain({Joint{}}), {}); }, "1 to 16 bodies, not 0");
   expect_refused(body({.name = "tip"}), "body 2 ('tip') has 0 points");
   expect_refused(body({.points = {{3}}}), "body 2 is on link 3; there are links 0 to 2");
-  expect_refused(body({.points = {{1, Vec3(test::nan, 0, 0)}}}), "body 2 has a point that is not finite");
+  expect_refused(body({.points = {{1, Vec3(test::nan, 0, 0)}}}),
+                 "body 2 has a point that is not finite");
   expect_refused(body({.points = {{1}}, .radius = -1}), "the radius of body 2 is below zero");
   expect_refused(body({.points = triangle}), "only a capsule may reach from one link to another");
 }

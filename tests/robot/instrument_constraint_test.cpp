@@ -8,6 +8,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "keepout/adapters/index_registry.h"
@@ -211,15 +212,93 @@ TEST(InstrumentConstraint, ProvesLongMotionsInPartsWhereThereIsNoRoomForThemAtOn
   EXPECT_LE(100.0 * through.share, free + 0.002);
 }
 
+// The same where it is the work, and not the room, that does not last.
+TEST(InstrumentConstraint, ProvesLongMotionsInPartsWhereThereIsNoWorkForThemAtOnce) {
+  const auto mesh = mesh_of("gear");
+  const Instrument instrument = psm_above();
+  std::vector<double> all(6, 0.0);
+  all[0] = -0.3;
+  const auto prove = [&](std::size_t looks) {
+    InstrumentConstraint guard(mesh, make_index("wide_bvh", mesh), instrument,
+                               make_solver("active_set"), {}, {.looks = looks});
+    std::vector<double> q = straight_down(20.0);
+    q[0] = 0.1;
+    const MotionProof proof = guard.prove(q, all);
+    return std::pair(proof, guard.looks());
+  };
+  const auto [whole, looks] = prove(0);
+  ASSERT_GT(whole.share, 0.2) << reason(whole.status);
+  ASSERT_GT(looks, 50);
+  const auto [parts, spent] = prove(looks - 1);
+  EXPECT_EQ(parts.status, whole.status) << reason(parts.status);
+  EXPECT_NEAR(parts.share, whole.share, 1.0 / 64.0);
+  EXPECT_EQ(prove(3).first.status, Status::over_capacity);
+}
+
+TEST(InstrumentConstraint, ChecksTheSideOnceItIsToldTo) {
+  const auto mesh = std::make_shared<const Mesh>(make_cube(10.0));
+  const Chain chain({{.kind = JointKind::prismatic}});
+  const Instrument ball(chain, {{.points = {{1, Vec3::Zero()}}, .radius = 1.0}});
+  auto guard = guard_of(mesh, ball, {.check_sides = false});
+  const std::vector<double> q{0.0};
+  EXPECT_EQ(guard.step(q, Twist{}).status, Status::free);
+  InstrumentOptions options = guard.options();
+  options.check_sides = true;
+  guard.set_options(options);
+  EXPECT_EQ(guard.step(q, Twist{}).status, Status::inside);
+}
+
+TEST(InstrumentConstraint, KeepsWhatWasGainedWhateverIsProvenInBetween) {
+  const auto mesh = std::make_shared<const Mesh>(make_cube(10.0));
+  const Instrument instrument = psm_above();
+  auto guard = guard_of(mesh, instrument);
+  InstrumentOptions options = guard.options();
+  options.margin = 1.0;
+  options.band = 0.1;
+  options.recovery = 0.01;
+  guard.set_options(options);
+  std::vector<double> q = straight_down(insertion_above_cube(instrument, *mesh, 0.5));
+  q = moved(q, guard.step(q, Twist{}));
+  const double floor = clearance(instrument, *mesh, q) - options.band;
+  for (int i = 0; i < 20; ++i) {
+    EXPECT_EQ(guard.prove(q, std::vector<double>(6, 0.0)).status, Status::recovering);
+    const InstrumentStep step = guard.step(q, {.linear = Vec3(0, 0, -0.05)});
+    ASSERT_TRUE(step.ok()) << step.reason();
+    q = moved(q, step);
+    ASSERT_GE(clearance(instrument, *mesh, q), floor - 3.0 * guard.tolerance());
+  }
+}
+
+TEST(InstrumentConstraint, RefusesPositionsThatLoseTheDigitsOfAWay) {
+  const auto mesh = mesh_of("cube");
+  auto guard = guard_of(mesh, psm_above());
+  std::vector<double> q = straight_down(20.0);
+  EXPECT_TRUE(guard.step(q, Twist{}).ok());
+  q[3] = 101.0;  // revolute
+  EXPECT_EQ(guard.step(q, Twist{}).status, Status::invalid_input);
+  EXPECT_EQ(guard.prove(q, std::vector<double>(6, 0.0)).status, Status::invalid_input);
+  const std::vector<double> far{0, 0, 1e8, 0, 0, 0};
+  EXPECT_EQ(guard.prove(straight_down(20.0), far).status, Status::invalid_input);
+  // Without limits of its own, a joint is not sent beyond what the next cycle would refuse.
+  const Chain chain({{.kind = JointKind::prismatic}}, {Vec3(0, 0, 500)});
+  const Instrument ball(chain, {{.points = {{1, Vec3::Zero()}}, .radius = 1.0}});
+  auto free = guard_of(mesh, ball);
+  std::vector<double> at{0.0};
+  for (int i = 0; i < 3; ++i) {
+    const InstrumentStep step = free.step(at, std::vector<double>{1e9});
+    ASSERT_TRUE(step.ok()) << step.reason();
+    at = moved(at, step);
+  }
+  EXPECT_GT(at[0], 1e4);
+}
+
 TEST(InstrumentConstraint, NeverLeavesTheLimitsOfItsJoints) {
   const auto mesh = mesh_of("cube");
   const Instrument instrument = psm_above();
   auto guard = guard_of(mesh, instrument, {.period = 0.02});
-  Random random(6);
   std::vector<double> q = straight_down(20.0);
   int at_limit = 0;
   for (int i = 0; i < test::trials(4000); ++i) {
-    if (i % 50 == 0) random.direction();
     std::vector<double> desired(6);
     for (std::size_t k = 0; k < 6; ++k)
       desired[k] = (k == 2 ? 5.0 : 0.2) * (i / 200 % 2 == 0 ? 1 : -1);
@@ -411,6 +490,9 @@ TEST(InstrumentConstraint, ABandForTheLimitsOfItsJointsHoldsEveryBendAtFullSpeed
   EXPECT_LE(most, band);
   EXPECT_GT(most, 0.02 * band) << "lengths of ways are added up, folded or not";
   EXPECT_EQ(recommended_band(instrument, 1e-3, 1.0), 1.0);
+  // A point in the joint's own axis, which no limit holds.
+  const Instrument unlimited(Chain({Joint{}}), {{.points = {{1, Vec3::Zero()}}, .radius = 1.0}});
+  EXPECT_EQ(recommended_band(unlimited, 1e-3), test::infinity);
 }
 
 }  // namespace

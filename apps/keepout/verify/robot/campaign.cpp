@@ -70,7 +70,7 @@ class RobotAttempt {
         instrument_(row.robot.make(start.base)),
         usual_(options_of(row.campaign, instrument_.chain(), row.tally.speed)),
         constraint_(row.scene.mesh(), row.scene.shared_index(), instrument_,
-                    make_solver("active_set"), usual_, {.triangles = std::size_t{1} << 16}),
+                    make_solver("active_set"), usual_),
         point_(row.scene.mesh(), row.scene.shared_index(), std::make_unique<CertifiedRule>(),
                make_solver("active_set"),
                {.radius = 10.0 * row.tally.speed,

@@ -36,12 +36,13 @@ struct InstrumentOptions {
   /// is margin - band. A wide band costs progress, never safety. See recommended_band. [length]
   double band = 0.002;
   double period = 1e-3;    // of a cycle: what velocity limits are multiplied by [s], > 0
-  double recovery = 0.05;  // how far a body that is too close is led away in a cycle [length]
-  /// Weight of |dq|^2 beside the task of the flange, prismatic joints counted in
-  /// orientation_weight: what singular poses give way to. [length^2]
+  double recovery = 0.05;  // how far a body that is too close is led away in a cycle, >= 0 [length]
+  /// Weight of |dq|^2 beside the task of the flange, >= 0: what singular poses give way to. A
+  /// prismatic joint counts as a radian when it moves by orientation_weight, or by a length of 1
+  /// where that is 0. [length^2]
   double damping = 0.1;
-  /// What a turn of the flange counts beside its way, in lengths: a radian off is as bad as so
-  /// much. 0: only its origin is steered. [length / rad]
+  /// What a turn of the flange counts beside its way, in lengths, >= 0: a radian off is as bad as
+  /// so much. 0: only its origin is steered. [length / rad]
   double orientation_weight = 20.0;
   int refinements = 1;  // how often planes are turned towards a better motion, >= 0
   /// Whether bodies that no step has led to where they are have to be on the free side of a
@@ -55,24 +56,22 @@ struct InstrumentCapacity {
   std::size_t triangles = std::size_t{1} << 14;  // near one body
   std::size_t planes = 128;                      // posed at the same time
   /// The work of a cycle, whatever happens in it: see Budget. What cannot be proven with it is not
-  /// moved. 0: looks_of_a_walk on an index that walks by itself, as wide_bvh, and
+  /// moved. 0: Capacity::looks_of_a_walk on an index that walks by itself, as wide_bvh, and
   /// Capacity::looks_of_queries on others, of which more is asked.
   std::size_t looks = 0;
-
-  /// Of a cycle, where the index walks by itself.
-  static constexpr std::size_t looks_of_a_walk = std::size_t{1} << 16;
 };
 
 /// What one cycle may do. Views stay valid until the next step.
 struct InstrumentStep {
   Status status = Status::invalid_input;   // how it ended
   std::span<const double> increment = {};  // dq (n); empty unless ok() [rad or length]
-  double share = 0.0;    // of the motion that was found and is made: below 1 when it was cut short
+  double share = 0.0;    // that is made of the motion that was found; below 1: it was cut short
   int rounds = 0;        // how often a trial motion was judged
   std::size_t rows = 0;  // that hold the motion back, joint limits apart
-  std::size_t triangles = 0;  // that were looked at one by one
+  std::size_t triangles = 0;  // in reach of one body and one trial motion, at the most
   /// From the body nearest to the mesh, as the cycle began; of bodies no farther off than the
-  /// margin and its band. Negative when the body reaches through the surface. [length]
+  /// margin and its band, and that there was work left to look at. Negative when the body reaches
+  /// through the surface. [length]
   std::optional<double> distance = std::nullopt;
   int nearest = -1;  // the number of that body
 
@@ -85,9 +84,9 @@ struct InstrumentStep {
 /// How much of a motion is certified.
 struct MotionProof {
   /// free: all of it; limited: a part of it; recovering: some body is too close at its start, and
-  /// certified is that none comes closer.
+  /// certified is that none comes closer by more than the band. Else why nothing more is known.
   Status status = Status::invalid_input;
-  double share = 0.0;  // q + s dq is proven for s from 0 to here: 1 if all of it is
+  double share = 0.0;  // q + s dq is proven for s from 0 to here, whatever the status: 1 if all is
   std::optional<double> distance = std::nullopt;  // as InstrumentStep::distance [length]
 
   /// Whether the instrument keeps the whole margin, less its band, on the whole motion.
@@ -119,8 +118,10 @@ class InstrumentConstraint {
   InstrumentConstraint& operator=(InstrumentConstraint&&) noexcept;
   ~InstrumentConstraint();
 
-  /// Steers the flange. `q`: the joints' positions (n) [rad or length]. Allocates nothing, throws
-  /// nothing. On any trouble the increment is empty and the status says why.
+  /// Steers the flange. `q`: the joints' positions (n), of revolute ones within +-100 rad, of
+  /// others within some hundred times the lengths at hand: else invalid_input. [rad or length]
+  /// Allocates nothing, throws nothing. On any trouble the increment is empty and the status says
+  /// why.
   InstrumentStep step(std::span<const double> q, const Twist& desired) noexcept;
 
   /// Steers the joints: the nearest to `desired`, dq (n), each joint's weighed by `weights` (n, >
@@ -130,9 +131,10 @@ class InstrumentConstraint {
 
   /// Looks at a motion, and does not solve for a better one: for planners, which ask of many, and
   /// of single configurations by an increment of 0. `increment`: dq (n), of any size; long ones are
-  /// proven in up to 64 parts, each with the work of a cycle. Limits of joints are not looked at,
-  /// and it does not matter where the last step led. Meant for a constraint of the planner's own:
-  /// the next step forgets which rows held the last one back, and has its side checked.
+  /// proven in up to 64 parts, each with the work of a cycle, up to the first that starts too
+  /// close. Limits of joints are not looked at, and it does not matter where the last step led.
+  /// Meant for a constraint of the planner's own: the next step forgets which rows held the last
+  /// one back, and has its side checked.
   MotionProof prove(std::span<const double> q, std::span<const double> increment) noexcept;
 
   /// Forgets what the last cycle left: for motions that have nothing to do with each other.
@@ -158,9 +160,9 @@ class InstrumentConstraint {
   std::unique_ptr<State> state_;
 };
 
-/// A band that absorbs the curvature of every motion that the joints' limits admit in a cycle:
-/// an eighth of the largest bend of any body's point, at least `least`. Infinite without limits.
-/// [length]
+/// A band that absorbs the curvature of every motion that the joints' limits admit in a cycle of
+/// `period` > 0 seconds: an eighth of the largest bend of any body's point, at least `least`.
+/// Infinite without limits. [length]
 double recommended_band(const Instrument& instrument, double period, double least = 0.002);
 
 }  // namespace keepout

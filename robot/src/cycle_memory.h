@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "contact_row.h"
+#include "keepout/buffer.h"
+#include "keepout/index/query.h"
+#include "keepout/robot/instrument_constraint.h"
+#include "keepout/step/solver.h"
+#include "near_set.h"
+#include "point_motion.h"
+
+namespace keepout {
+
+/// What is remembered of a body from cycle to cycle.
+struct BodyMemory {
+  NearSet near;
+  double reach = 0.0;  // of its last motion [length]
+  double guard = 0.0;  // how much farther than needed triangles are looked for [length]
+  double floor = 0.0;  // what was certified last [length]
+};
+
+/// A row that held a motion back: the next cycle begins with it.
+struct WarmRow {
+  std::size_t body;
+  TriangleId triangle;
+};
+
+/// The memory of the cycles of one instrument. Made once.
+struct CycleMemory {
+  CycleMemory(const Instrument& instrument, Neighborhood& near, Solver& solver,
+              const InstrumentCapacity& capacity);
+
+  const Instrument& instrument;
+  Neighborhood& near;
+  Solver& solver;
+  double largest_position;  // of a prismatic joint: what is farther off is refused [length]
+  double tolerance;         // distances are told apart down to this [length]
+  bool is_watertight;
+  PointMotion motion;
+  std::vector<BodyMemory> bodies;
+  Buffer<ContactRow> rows;
+  Buffer<ContactRow> earlier_rows;  // put aside while better ones are tried
+  Buffer<WarmRow> warm;
+  Buffer<WarmRow> earlier_warm;
+  std::vector<double> matrix;  // of the problem's rows
+  std::vector<double> bounds;
+  std::array<Vec3, Instrument::most_points> ended_at;  // where the last step led
+  std::uint64_t side_of = 0;  // the mesh that it was found on the free side of; 0: unknown
+  JointVector increment;      // the answer
+
+  /// Joint k (1..n) is to be at most so far from 0, so that no digit of a way is lost that matters:
+  /// sixteen turns, or a hundred times the lengths at hand. [rad or length]
+  double farthest(int k) const noexcept {
+    return instrument.chain().joint(k).kind == JointKind::prismatic ? largest_position : 100.0;
+  }
+  /// Forgets all, and allocates nothing.
+  void forget() noexcept;
+  /// Forgets where the last step led and what held it back, but not what is near.
+  void forget_motion() noexcept;
+};
+
+}  // namespace keepout

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "working_rows.h"
+
+#include <algorithm>
+
+namespace keepout {
+namespace {
+
+constexpr int most_recovery_rows = 4;  // of a body
+constexpr double alike = 0.9;          // normals with more than this cosine recover alike
+constexpr int most_corrections = 3;    // of a row
+
+}  // namespace
+
+void WorkingRows::start() noexcept {
+  memory_.rows.clear();
+  for (const WarmRow& warm : memory_.warm) {
+    const NearTriangle* triangle = watch_.find(warm.body, warm.triangle);
+    if (triangle == nullptr) continue;
+    if (const auto row = make_.witness(warm.body, *triangle, 0)) memory_.rows.push(*row);
+  }
+  for (std::size_t b = 0; b < memory_.bodies.size(); ++b) {
+    if (watch_.is_recovering(b)) start_recovery(b);
+  }
+}
+
+void WorkingRows::start_recovery(std::size_t b) noexcept {
+  Budget& budget = memory_.near.budget();
+  const double distance = memory_.instrument.bodies()[b].radius + margin_;
+  const auto nearby = memory_.bodies[b].near.nearer_than(distance, budget);
+  for (int count = 0; count < most_recovery_rows && !budget.is_spent(); ++count) {
+    budget.spend(1 + nearby.size() * (1 + memory_.rows.size()) / 32);
+    // The nearest one that none of the rows leads away from.
+    const NearTriangle* nearest = nullptr;
+    for (const NearTriangle& triangle : nearby) {
+      if (!triangle.is_known || triangle.at_start.distance >= distance) continue;
+      if (nearest != nullptr && triangle.at_start.distance >= nearest->at_start.distance) continue;
+      const bool is_led =
+          std::any_of(memory_.rows.begin(), memory_.rows.end(), [&](const ContactRow& row) {
+            return row.body == b && (row.triangle == triangle.id ||
+                                     row.normal.dot(triangle.at_start.normal) > alike);
+          });
+      if (!is_led) nearest = &triangle;
+    }
+    if (nearest == nullptr) return;
+    const auto row = make_.witness(b, *nearest, 0);
+    if (!row) return;
+    memory_.rows.push(*row);
+  }
+}
+
+bool WorkingRows::answer(const Failures& failures) noexcept {
+  bool changed = false;
+  for (std::size_t b = 0; b < memory_.bodies.size(); ++b) {
+    if (failures[b].triangle == nullptr) continue;
+    const NearTriangle& triangle = *failures[b].triangle;
+    const std::size_t before = memory_.rows.size();
+    answer(b, triangle, std::max(failures[b].cell, 1));
+    const bool is_new = memory_.rows.size() > before;
+    changed = changed || is_new || correct(b, triangle.id);
+  }
+  return changed && !memory_.rows.overflowed();
+}
+
+/// Witnesses first, then the end points; and then none is missing any more.
+void WorkingRows::answer(std::size_t b, const NearTriangle& triangle, int cell) noexcept {
+  int witnesses = 0;
+  bool has_ends = false;
+  for (const ContactRow& row : memory_.rows) {
+    if (row.body != b || row.triangle != triangle.id) continue;
+    witnesses += row.point.has_value() ? 1 : 0;
+    has_ends = has_ends || !row.point.has_value();
+  }
+  if (witnesses < 2) {
+    if (const auto row = make_.witness(b, triangle, cell)) memory_.rows.push(*row);
+  } else if (!has_ends) {
+    for (const std::uint8_t p : memory_.instrument.points_of(b)) {
+      if (memory_.instrument.points()[p].link == 0) continue;
+      if (const auto row = make_.end_point(b, p, triangle, cell)) memory_.rows.push(*row);
+    }
+  }
+}
+
+/// Adds to a triangle's rows what the straight motion of their points promised, less what the true
+/// one kept.
+bool WorkingRows::correct(std::size_t b, TriangleId triangle) noexcept {
+  bool changed = false;
+  for (ContactRow& row : memory_.rows) {
+    if (row.body != b || row.triangle != triangle || row.corrections >= most_corrections) continue;
+    double promised = row.start_height;
+    for (std::size_t k = 0; k < row.gradient.size(); ++k) {
+      promised += row.gradient[k] * memory_.motion.increment()[k];
+    }
+    const double missing = promised - make_.height_at_end(row);
+    if (!(missing > 0.0)) continue;
+    row.correction += missing;
+    ++row.corrections;
+    changed = true;
+  }
+  return changed;
+}
+
+std::size_t WorkingRows::hold(std::span<const std::uint32_t> active) noexcept {
+  memory_.warm.clear();
+  for (const std::uint32_t number : active) {
+    if (number >= memory_.rows.size()) continue;
+    memory_.warm.push({memory_.rows[number].body, memory_.rows[number].triangle});
+  }
+  return memory_.warm.size();
+}
+
+void WorkingRows::put_aside() noexcept {
+  memory_.earlier_rows.assign(memory_.rows.view());
+  memory_.earlier_warm.assign(memory_.warm.view());
+}
+
+void WorkingRows::take_back() noexcept {
+  memory_.rows.assign(memory_.earlier_rows.view());
+  memory_.warm.assign(memory_.earlier_warm.view());
+}
+
+bool WorkingRows::turn() noexcept {
+  bool changed = false;
+  for (ContactRow& row : memory_.rows) {
+    NearTriangle* triangle = holds(row) ? watch_.find(row.body, row.triangle) : nullptr;
+    if (triangle == nullptr) continue;
+    auto turned = make_.witness(row.body, *triangle, PointMotion::cells);
+    if (!turned) continue;
+    turned->correction = row.correction;
+    changed = changed || (turned->normal - row.normal).squaredNorm() > 1e-12;
+    row = *turned;
+  }
+  return changed;
+}
+
+void WorkingRows::remember_all() noexcept {
+  memory_.warm.clear();
+  for (const ContactRow& row : memory_.rows) {
+    if (!holds(row)) memory_.warm.push({row.body, row.triangle});
+  }
+}
+
+/// Whether a row of its triangle holds, or is noted already.
+bool WorkingRows::holds(const ContactRow& row) const noexcept {
+  return std::any_of(memory_.warm.begin(), memory_.warm.end(), [&](const WarmRow& warm) {
+    return warm.body == row.body && warm.triangle == row.triangle;
+  });
+}
+
+}  // namespace keepout

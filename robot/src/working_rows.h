@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <span>
+
+#include "body_watch.h"
+#include "certificate.h"
+
+namespace keepout {
+
+/// The rows on bodies of one cycle: those that it begins with, and those that are added as trial
+/// motions fail. They lie in the cycles' memory.
+class WorkingRows {
+ public:
+  /// What a trial could not be proven for, by body.
+  using Failures = std::array<Certificate::Failure, Instrument::most_bodies>;
+
+  /// None yet. All must outlive it.
+  WorkingRows(CycleMemory& memory, BodyWatch& watch, const InstrumentOptions& options) noexcept
+      : memory_(memory),
+        watch_(watch),
+        margin_(options.margin),
+        make_(memory.instrument, memory.motion, options.margin, options.recovery, memory.tolerance,
+              memory.near.budget()) {}
+
+  /// Begins with the rows that held the last cycle back, and in recovery with those of what is too
+  /// close.
+  void start() noexcept;
+  /// Adds rows for what spoke against the last motion, or corrects those there are. Whether
+  /// anything was changed.
+  bool answer(const Failures& failures) noexcept;
+
+  /// Notes which rows hold a solution back, by their numbers; numbers beyond the rows are not ours.
+  /// Returns how many do.
+  std::size_t hold(std::span<const std::uint32_t> active) noexcept;
+  /// Puts rows, and which of them hold, aside; and takes them back.
+  void put_aside() noexcept;
+  /// The same.
+  void take_back() noexcept;
+  /// Turns the rows that hold to where the last motion ends. Whether any changed.
+  bool turn() noexcept;
+  /// Where nothing was found the next cycle begins with all that was learned.
+  void remember_all() noexcept;
+
+ private:
+  void start_recovery(std::size_t body) noexcept;
+  void answer(std::size_t body, const NearTriangle& triangle, int cell) noexcept;
+  bool correct(std::size_t body, TriangleId triangle) noexcept;
+  bool holds(const ContactRow& row) const noexcept;
+
+  CycleMemory& memory_;
+  BodyWatch& watch_;
+  double margin_;
+  ContactRows make_;
+};
+
+}  // namespace keepout
