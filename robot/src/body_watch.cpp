@@ -50,16 +50,8 @@ Status BodyWatch::open_body(std::size_t b, InstrumentStep& result) noexcept {
     result.nearest = static_cast<int>(b);
   }
   if (nearest <= touching_within * tolerance) return Status::touching;
-  const double held = std::min(body.floor, target());
   const double room = std::min(options_.band, 0.5 * nearest);
-  const double missing = held - distance;
-  if (missing > 4.0 * tolerance) {  // moved by somebody else, or the surface was
-    kept_[b] = distance - room;
-  } else if (missing > 3.0 * tolerance) {  // lost to rounding
-    kept_[b] = distance;
-  } else {
-    kept_[b] = std::min(std::max(held, distance - room), target());
-  }
+  kept_[b] = certified_distance(distance, body.floor, target(), room, tolerance);
   is_recovering_ = is_recovering_ || is_recovering(b);
   body.floor = kept_[b];
   return Status::free;

@@ -52,7 +52,7 @@ std::optional<ContactRow> ContactRows::witness(std::size_t body, const NearTrian
   const Vec3 normal = turned_back(straight, there.normal, [&](const Vec3& n) {
     return n.dot(at) - support(corners, n) >= level;
   });
-  ContactRow row{.body = body, .triangle = triangle.id, .point = point, .normal = normal};
+  ContactRow row{.owner = body, .triangle = triangle.id, .point = point, .normal = normal};
   finish(row, at, corners);
   const std::span<const std::uint8_t> points = instrument_.points_of(body);
   const ChainState& chain = motion_.chain_at_start();
@@ -87,7 +87,7 @@ std::optional<ContactRow> ContactRows::end_point(std::size_t body, std::uint8_t 
     }
     return least - support(corners, n) >= level;
   });
-  ContactRow row{.body = body, .triangle = triangle.id, .end = end, .normal = normal};
+  ContactRow row{.owner = body, .triangle = triangle.id, .end = end, .normal = normal};
   finish(row, places[end], corners);
   const LinkPoint& point = instrument_.points()[end];
   const ChainState& chain = motion_.chain_at_start();
@@ -99,7 +99,7 @@ std::optional<ContactRow> ContactRows::end_point(std::size_t body, std::uint8_t 
 }
 
 double ContactRows::height_at_end(const ContactRow& row) noexcept {
-  const Vec3 at = row.point ? place_of(row.body, *row.point, PointMotion::cells)
+  const Vec3 at = row.point ? place_of(row.owner, *row.point, PointMotion::cells)
                             : motion_.at(PointMotion::cells)[row.end];
   return row.normal.dot(at) - row.level;
 }
@@ -142,7 +142,7 @@ Vec3 ContactRows::place_of(std::size_t body, const CorePoint& point, int cell) n
 }
 
 void ContactRows::finish(ContactRow& row, const Vec3& at, const Triangle& corners) const noexcept {
-  const double radius = instrument_.bodies()[row.body].radius;
+  const double radius = instrument_.bodies()[row.owner].radius;
   row.level = support(corners, row.normal) + radius + margin_;
   row.start_height = row.normal.dot(at) - row.level;
   row.bound = std::min(-row.start_height, recovery_);

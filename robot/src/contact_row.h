@@ -20,8 +20,10 @@ struct CorePoint {
 /// A linear row on the joints' increment that keeps a point of a body on its side of a plane that
 /// has one triangle behind it: gradient . dq >= bound. It proposes; the certificate decides.
 struct ContactRow {
-  std::size_t body;
-  TriangleId triangle;
+  /// The number of the body; from Instrument::most_bodies on, of a guide, whose plane touches its
+  /// region and not a triangle.
+  std::size_t owner;
+  TriangleId triangle;  // no_triangle for a guide
   /// Which point of the body; nothing: one of its end points, number `end` of the instrument's.
   std::optional<CorePoint> point = std::nullopt;
   std::uint8_t end = 0;

@@ -69,8 +69,27 @@ void CycleMemory::forget() noexcept {
   for (BodyMemory& body : bodies) {
     body.near.forget();
     body.guard = 0.0;
-    body.floor = std::numeric_limits<double>::infinity();
   }
+  forget_floors();
+}
+
+CycleMemory::Floors CycleMemory::floors() const noexcept {
+  Floors all{};
+  for (std::size_t b = 0; b < bodies.size(); ++b) all[b] = bodies[b].floor;
+  for (std::size_t g = 0; g < guides.size(); ++g)
+    all[Instrument::most_bodies + g] = guides[g].floor;
+  return all;
+}
+
+void CycleMemory::set_floors(const Floors& all) noexcept {
+  for (std::size_t b = 0; b < bodies.size(); ++b) bodies[b].floor = all[b];
+  for (std::size_t g = 0; g < guides.size(); ++g)
+    guides[g].floor = all[Instrument::most_bodies + g];
+}
+
+void CycleMemory::forget_floors() noexcept {
+  for (BodyMemory& body : bodies) body.floor = std::numeric_limits<double>::infinity();
+  for (GuideMemory& guide : guides) guide.floor = std::numeric_limits<double>::infinity();
 }
 
 void CycleMemory::forget_motion() noexcept {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -9,6 +10,7 @@
 #include "contact_row.h"
 #include "keepout/buffer.h"
 #include "keepout/index/query.h"
+#include "keepout/robot/guide.h"
 #include "keepout/robot/instrument_constraint.h"
 #include "keepout/step/solver.h"
 #include "near_set.h"
@@ -24,11 +26,29 @@ struct BodyMemory {
   double floor = 0.0;  // what was certified last [length]
 };
 
+/// The same of a guide.
+struct GuideMemory {
+  Guide guide;
+  double floor = 0.0;  // how far within its region it was certified last; below 0: out of it
+};
+
 /// A row that held a motion back: the next cycle begins with it.
 struct WarmRow {
-  std::size_t body;
+  std::size_t owner;  // see ContactRow
   TriangleId triangle;
 };
+
+/// What is certified in a cycle of something that should keep `target`, and is at `distance`, when
+/// `floor` was certified last and `room` is to be left to a motion: never less than last time,
+/// unless it was moved by somebody else, or what it lies beside was.
+inline double certified_distance(double distance, double floor, double target, double room,
+                                 double tolerance) noexcept {
+  const double held = std::min(floor, target);
+  const double missing = held - distance;
+  if (missing > 4.0 * tolerance) return distance - room;
+  if (missing > 3.0 * tolerance) return distance;  // lost to rounding
+  return std::min(std::max(held, distance - room), target);
+}
 
 /// The memory of the cycles of one instrument. Made once.
 struct CycleMemory {
@@ -43,6 +63,8 @@ struct CycleMemory {
   bool is_watertight;
   PointMotion motion;
   std::vector<BodyMemory> bodies;
+  std::vector<GuideMemory> guides;
+  std::vector<GuideState> guide_states;  // of the last cycle
   Buffer<ContactRow> rows;
   Buffer<ContactRow> earlier_rows;  // put aside while better ones are tried
   Buffer<WarmRow> warm;
@@ -60,6 +82,13 @@ struct CycleMemory {
   }
   /// Forgets all, and allocates nothing.
   void forget() noexcept;
+  /// What was certified last, of bodies and guides.
+  using Floors = std::array<double, Instrument::most_bodies + Guide::most>;
+  Floors floors() const noexcept;
+  /// Takes it to be that.
+  void set_floors(const Floors& floors) noexcept;
+  /// Forgets it.
+  void forget_floors() noexcept;
   /// Forgets where the last step led and what held it back, but not what is near.
   void forget_motion() noexcept;
 };

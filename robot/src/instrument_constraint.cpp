@@ -2,11 +2,10 @@
 #include "keepout/robot/instrument_constraint.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
+#include <string>
 #include <utility>
-#include <vector>
 
 #include "joint_cycle.h"
 #include "keepout/error.h"
@@ -152,9 +151,7 @@ MotionProof InstrumentConstraint::prove(std::span<const double> q,
   }
   if (!is_ok(status)) return {.status = status};
   // What steps have gained is none of a planner's business.
-  std::array<double, Instrument::most_bodies> floors;
-  std::vector<BodyMemory>& bodies = state_->memory.bodies;
-  for (std::size_t b = 0; b < bodies.size(); ++b) floors[b] = bodies[b].floor;
+  const CycleMemory::Floors floors = state_->memory.floors();
   // In parts, where there is more near a long motion than there is room for.
   constexpr double least_part = 1.0 / 64.0;
   MotionProof proof{.status = Status::free};
@@ -168,7 +165,7 @@ MotionProof InstrumentConstraint::prove(std::span<const double> q,
     }
     state_->near->budget().renew();
     state_->memory.forget_motion();
-    for (BodyMemory& body : bodies) body.floor = std::numeric_limits<double>::infinity();
+    state_->memory.forget_floors();
     InstrumentStep result;
     const double proven =
         JointCycle(state_->memory, state_->options, {from.data(), q.size()}).prove(motion, result);
@@ -182,7 +179,7 @@ MotionProof InstrumentConstraint::prove(std::span<const double> q,
     if (proven < 1.0 || result.status != Status::free) break;
   }
   state_->memory.forget_motion();
-  for (std::size_t b = 0; b < bodies.size(); ++b) bodies[b].floor = floors[b];
+  state_->memory.set_floors(floors);
   if (proof.status == Status::free && proof.share < 1.0) proof.status = Status::limited;
   return proof;
 }
@@ -196,6 +193,25 @@ const InstrumentOptions& InstrumentConstraint::options() const noexcept { return
 void InstrumentConstraint::set_options(const InstrumentOptions& options) {
   state_->require_usable(options);
   state_->options = options;
+}
+
+void InstrumentConstraint::set_guides(std::vector<Guide> guides) {
+  if (guides.size() > Guide::most) {
+    throw Error("an instrument has at most " + std::to_string(Guide::most) + " guides, not " +
+                std::to_string(guides.size()));
+  }
+  for (const Guide& guide : guides) {
+    if (guide.link() <= state_->instrument.chain().size()) continue;
+    throw Error("guide '" + guide.name() + "' is on link " + std::to_string(guide.link()) +
+                "; there are links 0 to " + std::to_string(state_->instrument.chain().size()));
+  }
+  CycleMemory& memory = state_->memory;
+  memory.guides.clear();
+  for (Guide& guide : guides) {
+    memory.guides.push_back({std::move(guide), std::numeric_limits<double>::infinity()});
+  }
+  memory.guide_states.assign(memory.guides.size(), {});
+  memory.forget_motion();
 }
 
 double InstrumentConstraint::tolerance() const noexcept { return state_->memory.tolerance; }

@@ -19,17 +19,21 @@ JointCycle::JointCycle(CycleMemory& memory, const InstrumentOptions& options,
       options_(options),
       box_(memory, options.period, q),
       watch_(memory, options),
-      rows_(memory, watch_, options) {
+      guides_(memory, options),
+      rows_(memory, watch_, guides_, options) {
   memory.motion.start(q);
 }
 
 void JointCycle::run(const JointTask& task, InstrumentStep& result) noexcept {
   memory_.increment.fill(0.0);
+  guides_.open();
+  result.guides = memory_.guide_states;
   result.status = watch_.open(result);
   if (!is_ok(result.status)) return;
   Trial best{.cost = task.cost(memory_.increment)};
   search(task, best, result);
-  if (is_ok(result.status) && watch_.is_recovering()) result.status = Status::recovering;
+  if (is_ok(result.status) && is_recovering()) result.status = Status::recovering;
+  if (is_ok(result.status)) tell_of_guides(best, result);
   result.rounds = rounds_;
   result.rows = best.rows;
   result.triangles = in_reach_;
@@ -74,13 +78,28 @@ void JointCycle::carry_out(const Trial& best, InstrumentStep& result) noexcept {
   memory_.side_of = options_.check_sides ? memory_.near.mesh().id() : 0;
 }
 
+/// What held the motion back, and what gave way to it.
+void JointCycle::tell_of_guides(const Trial& best, InstrumentStep& result) noexcept {
+  result.softening = best.softening;
+  for (const WarmRow& warm : memory_.warm) {
+    if (warm.owner < Instrument::most_bodies) continue;
+    memory_.guide_states[warm.owner - Instrument::most_bodies].holds = true;
+  }
+  if (best.softening == Softening::none) return;
+  for (const ContactRow& row : memory_.rows) {
+    if (row.owner < Instrument::most_bodies || !(row.bound > 0.0)) continue;
+    memory_.guide_states[row.owner - Instrument::most_bodies].gave_way = true;
+  }
+}
+
 double JointCycle::prove(const JointVector& increment, InstrumentStep& result) noexcept {
+  guides_.open();
   result.status = watch_.open(result);
   if (!is_ok(result.status)) return 0.0;
   memory_.rows.clear();
   Trial trial{.increment = increment};
   judge(trial);
-  if (watch_.is_recovering()) result.status = Status::recovering;
+  if (is_recovering()) result.status = Status::recovering;
   if (trouble_ != Status::free) result.status = trouble_;
   if (is_worn_out()) result.status = Status::over_capacity;
   return is_ok(result.status) ? static_cast<double>(trial.cell) / PointMotion::cells : 0.0;
@@ -105,7 +124,7 @@ bool JointCycle::seek(const JointTask& task, Trial& best) noexcept {
     trial.cost = task.cost_of_share(trial.increment, trial.share);
     const double still = std::sqrt(task.cost_of_share(trial.increment, 0.0));
     const double affordable = still + 2.0 * options_.band;
-    if (!watch_.is_recovering() && trial.cost > affordable * affordable) {
+    if (!is_recovering() && trial.cost > affordable * affordable) {
       trial.share = task.best_share(trial.increment, trial.share);
       trial.cost = task.cost_of_share(trial.increment, trial.share);
     }
@@ -116,9 +135,17 @@ bool JointCycle::seek(const JointTask& task, Trial& best) noexcept {
     if (trial.cell > 0 && (best.cell == 0 || trial.cost < best.cost)) best = trial;
     if (trial.cell == PointMotion::cells) return false;
     if (is_worn_out() || trouble_ != Status::free) return false;
-    if (!rows_.answer(failures_)) return false;
+    if (!answer()) return false;
   }
   return false;
+}
+
+/// Whether anything was found to say to what the last trial was not certified for.
+bool JointCycle::answer() noexcept {
+  const bool is_new_plane =
+      kept_by_guides_ < PointMotion::cells && rows_.answer(failed_guide_, kept_by_guides_);
+  const bool is_new_row = rows_.answer(failures_);
+  return (is_new_plane || is_new_row) && !memory_.rows.overflowed();
 }
 
 /// Turns the rows that hold a certified motion back to where its end is, while that makes a better
@@ -150,11 +177,19 @@ void JointCycle::turn(const JointTask& task, Trial& best) noexcept {
 
 SolveStatus JointCycle::solve(const JointTask& task, Trial& trial) noexcept {
   Solution solution;
-  // What leads away gives way where it contradicts itself: at 0 standing still is allowed.
+  // What leads back gives way where it contradicts itself, guides first: in the end standing still
+  // is allowed.
+  constexpr Softness softer[] = {{Softening::none, 1.0, 1.0},
+                                 {Softening::guides, 0.0, 1.0},
+                                 {Softening::bodies, 0.0, 0.5},
+                                 {Softening::bodies, 0.0, 0.25},
+                                 {Softening::bodies, 0.0, 0.0}};
   SolveStatus solved = SolveStatus::infeasible;
-  for (const double softness : {1.0, 0.5, 0.25, 0.0}) {
+  for (const Softness& softness : softer) {
+    if (softness.name == Softening::guides && !guides_.is_recovering()) continue;
     solved = pose(task, softness, solution);
-    if (solved != SolveStatus::infeasible) break;
+    trial.softening = softness.name;
+    if (solved == SolveStatus::optimal || solved == SolveStatus::ill_posed) break;
   }
   if (solved != SolveStatus::optimal) return solved;
   const auto n = static_cast<std::size_t>(task.joints);
@@ -169,14 +204,16 @@ SolveStatus JointCycle::solve(const JointTask& task, Trial& trial) noexcept {
   return solved;
 }
 
-SolveStatus JointCycle::pose(const JointTask& task, double softness, Solution& solution) noexcept {
+SolveStatus JointCycle::pose(const JointTask& task, const Softness& softness,
+                             Solution& solution) noexcept {
   const auto n = static_cast<std::size_t>(task.joints);
   double* number = memory_.matrix.data();
   std::size_t count = 0;
   for (const ContactRow& row : memory_.rows) {
     for (std::size_t k = 0; k < n; ++k) *number++ = task.unit[k] * row.gradient[k];
-    const double bound = (row.bound > 0.0 ? softness * row.bound : row.bound) + row.correction;
-    memory_.bounds[count++] = softness > 0.0 ? bound : std::min(bound, 0.0);
+    const double soft = row.owner < Instrument::most_bodies ? softness.bodies : softness.guides;
+    const double bound = (row.bound > 0.0 ? soft * row.bound : row.bound) + row.correction;
+    memory_.bounds[count++] = soft > 0.0 ? bound : std::min(bound, 0.0);
   }
   for (std::size_t k = 0; k < n; ++k) {
     for (const double sign : {1.0, -1.0}) {
@@ -204,7 +241,8 @@ SolveStatus JointCycle::pose(const JointTask& task, double softness, Solution& s
 void JointCycle::judge(Trial& trial) noexcept {
   Budget& budget = memory_.near.budget();
   memory_.motion.move(trial.increment, options_.certified);
-  trial.cell = PointMotion::cells;
+  kept_by_guides_ = guides_.judge(failed_guide_);
+  trial.cell = kept_by_guides_;
   for (std::size_t b = 0; b < memory_.bodies.size(); ++b) {
     BodyMemory& body = memory_.bodies[b];
     failures_[b] = {};
@@ -221,7 +259,7 @@ void JointCycle::judge(Trial& trial) noexcept {
     Certificate certificate(memory_.instrument, b, memory_.motion, body.near, watch_.kept(b),
                             memory_.tolerance, budget);
     for (const ContactRow& row : memory_.rows) {
-      if (row.body == b) certificate.try_first(row.normal);
+      if (row.owner == b) certificate.try_first(row.normal);
     }
     failures_[b] = certificate.judge(triangles, body.reach);
     trial.cell = std::min(trial.cell, failures_[b].cell);

@@ -6,6 +6,7 @@
 
 #include "body_watch.h"
 #include "cycle_memory.h"
+#include "guide_watch.h"
 #include "increment_box.h"
 #include "joint_task.h"
 #include "working_rows.h"
@@ -28,6 +29,13 @@ class JointCycle {
   double prove(const JointVector& increment, InstrumentStep& result) noexcept;
 
  private:
+  /// How much of what rows lead back is asked for.
+  struct Softness {
+    Softening name;
+    double guides;
+    double bodies;
+  };
+
   /// A motion, and the part of it that is certified.
   struct Trial {
     JointVector increment{};
@@ -36,14 +44,18 @@ class JointCycle {
     double cost = 0.0;     // of that
     bool is_held = false;  // by a row or a joint's limit
     std::size_t rows = 0;  // that hold it
+    Softening softening = Softening::none;  // what gave way
   };
 
   void search(const JointTask& task, Trial& best, InstrumentStep& result) noexcept;
   bool seek(const JointTask& task, Trial& best) noexcept;
   void turn(const JointTask& task, Trial& best) noexcept;
   SolveStatus solve(const JointTask& task, Trial& trial) noexcept;
-  SolveStatus pose(const JointTask& task, double softness, Solution& solution) noexcept;
+  SolveStatus pose(const JointTask& task, const Softness& softness, Solution& solution) noexcept;
   void judge(Trial& trial) noexcept;
+  bool answer() noexcept;
+  void tell_of_guides(const Trial& best, InstrumentStep& result) noexcept;
+  bool is_recovering() const noexcept { return watch_.is_recovering() || guides_.is_recovering(); }
   void carry_out(const Trial& best, InstrumentStep& result) noexcept;
   bool is_worn_out() const noexcept { return memory_.near.budget().is_spent(); }
 
@@ -51,8 +63,11 @@ class JointCycle {
   const InstrumentOptions& options_;
   IncrementBox box_;
   BodyWatch watch_;
+  GuideWatch guides_;
   WorkingRows rows_;
   WorkingRows::Failures failures_;
+  int kept_by_guides_ = 0;         // up to which cell all guides were kept by the last trial
+  std::size_t failed_guide_ = 0;   // and which was not, beyond
   Status trouble_ = Status::free;  // why nothing can be judged
   int rounds_ = 0;
   std::size_t in_reach_ = 0;  // triangles of one body and one trial, at the most

@@ -15,13 +15,25 @@ constexpr int most_corrections = 3;    // of a row
 void WorkingRows::start() noexcept {
   memory_.rows.clear();
   for (const WarmRow& warm : memory_.warm) {
-    const NearTriangle* triangle = watch_.find(warm.body, warm.triangle);
-    if (triangle == nullptr) continue;
-    if (const auto row = make_.witness(warm.body, *triangle, 0)) memory_.rows.push(*row);
+    if (const auto row = row_of(warm, 0)) memory_.rows.push(*row);
+  }
+  for (std::size_t g = 0; g < memory_.guides.size(); ++g) {
+    if (!guides_.is_recovering(g)) continue;
+    if (const auto row = guides_.row(g, 0)) memory_.rows.push(*row);
   }
   for (std::size_t b = 0; b < memory_.bodies.size(); ++b) {
     if (watch_.is_recovering(b)) start_recovery(b);
   }
+}
+
+/// The row of a body's witness or a guide, where they are at a share of the motion at hand.
+std::optional<ContactRow> WorkingRows::row_of(const WarmRow& warm, int cell) noexcept {
+  if (warm.owner >= Instrument::most_bodies) {
+    const std::size_t guide = warm.owner - Instrument::most_bodies;
+    return guide < memory_.guides.size() ? guides_.row(guide, cell) : std::nullopt;
+  }
+  const NearTriangle* triangle = watch_.find(warm.owner, warm.triangle);
+  return triangle == nullptr ? std::nullopt : make_.witness(warm.owner, *triangle, cell);
 }
 
 void WorkingRows::start_recovery(std::size_t b) noexcept {
@@ -37,8 +49,8 @@ void WorkingRows::start_recovery(std::size_t b) noexcept {
       if (nearest != nullptr && triangle.at_start.distance >= nearest->at_start.distance) continue;
       const bool is_led =
           std::any_of(memory_.rows.begin(), memory_.rows.end(), [&](const ContactRow& row) {
-            return row.body == b && (row.triangle == triangle.id ||
-                                     row.normal.dot(triangle.at_start.normal) > alike);
+            return row.owner == b && (row.triangle == triangle.id ||
+                                      row.normal.dot(triangle.at_start.normal) > alike);
           });
       if (!is_led) nearest = &triangle;
     }
@@ -55,19 +67,35 @@ bool WorkingRows::answer(const Failures& failures) noexcept {
     if (failures[b].triangle == nullptr) continue;
     const NearTriangle& triangle = *failures[b].triangle;
     const std::size_t before = memory_.rows.size();
-    answer(b, triangle, std::max(failures[b].cell, 1));
+    add(b, triangle, std::max(failures[b].cell, 1));
     const bool is_new = memory_.rows.size() > before;
     changed = changed || is_new || correct(b, triangle.id);
   }
   return changed && !memory_.rows.overflowed();
 }
 
+bool WorkingRows::answer(std::size_t guide, int cell) noexcept {
+  // Planes that touch the region where the motion leaves it, and then where it ends.
+  constexpr int most_planes = 4;
+  const std::size_t owner = Instrument::most_bodies + guide;
+  const auto planes = std::count_if(memory_.rows.begin(), memory_.rows.end(),
+                                    [&](const ContactRow& row) { return row.owner == owner; });
+  if (planes < most_planes) {
+    const int where = planes == 0 ? std::max(cell, 1) : PointMotion::cells;
+    if (const auto row = guides_.row(guide, where)) {
+      memory_.rows.push(*row);
+      return !memory_.rows.overflowed();
+    }
+  }
+  return correct(owner, no_triangle);
+}
+
 /// Witnesses first, then the end points; and then none is missing any more.
-void WorkingRows::answer(std::size_t b, const NearTriangle& triangle, int cell) noexcept {
+void WorkingRows::add(std::size_t b, const NearTriangle& triangle, int cell) noexcept {
   int witnesses = 0;
   bool has_ends = false;
   for (const ContactRow& row : memory_.rows) {
-    if (row.body != b || row.triangle != triangle.id) continue;
+    if (row.owner != b || row.triangle != triangle.id) continue;
     witnesses += row.point.has_value() ? 1 : 0;
     has_ends = has_ends || !row.point.has_value();
   }
@@ -83,15 +111,18 @@ void WorkingRows::answer(std::size_t b, const NearTriangle& triangle, int cell) 
 
 /// Adds to a triangle's rows what the straight motion of their points promised, less what the true
 /// one kept.
-bool WorkingRows::correct(std::size_t b, TriangleId triangle) noexcept {
+bool WorkingRows::correct(std::size_t owner, TriangleId triangle) noexcept {
   bool changed = false;
   for (ContactRow& row : memory_.rows) {
-    if (row.body != b || row.triangle != triangle || row.corrections >= most_corrections) continue;
+    if (row.owner != owner || row.triangle != triangle || row.corrections >= most_corrections)
+      continue;
     double promised = row.start_height;
     for (std::size_t k = 0; k < row.gradient.size(); ++k) {
       promised += row.gradient[k] * memory_.motion.increment()[k];
     }
-    const double missing = promised - make_.height_at_end(row);
+    const bool is_guide = owner >= Instrument::most_bodies;
+    const double kept = is_guide ? guides_.height_at_end(row) : make_.height_at_end(row);
+    const double missing = promised - kept;
     if (!(missing > 0.0)) continue;
     row.correction += missing;
     ++row.corrections;
@@ -104,7 +135,7 @@ std::size_t WorkingRows::hold(std::span<const std::uint32_t> active) noexcept {
   memory_.warm.clear();
   for (const std::uint32_t number : active) {
     if (number >= memory_.rows.size()) continue;
-    memory_.warm.push({memory_.rows[number].body, memory_.rows[number].triangle});
+    memory_.warm.push({memory_.rows[number].owner, memory_.rows[number].triangle});
   }
   return memory_.warm.size();
 }
@@ -122,9 +153,8 @@ void WorkingRows::take_back() noexcept {
 bool WorkingRows::turn() noexcept {
   bool changed = false;
   for (ContactRow& row : memory_.rows) {
-    NearTriangle* triangle = holds(row) ? watch_.find(row.body, row.triangle) : nullptr;
-    if (triangle == nullptr) continue;
-    auto turned = make_.witness(row.body, *triangle, PointMotion::cells);
+    if (!holds(row)) continue;
+    auto turned = row_of({row.owner, row.triangle}, PointMotion::cells);
     if (!turned) continue;
     turned->correction = row.correction;
     changed = changed || (turned->normal - row.normal).squaredNorm() > 1e-12;
@@ -136,14 +166,14 @@ bool WorkingRows::turn() noexcept {
 void WorkingRows::remember_all() noexcept {
   memory_.warm.clear();
   for (const ContactRow& row : memory_.rows) {
-    if (!holds(row)) memory_.warm.push({row.body, row.triangle});
+    if (!holds(row)) memory_.warm.push({row.owner, row.triangle});
   }
 }
 
 /// Whether a row of its triangle holds, or is noted already.
 bool WorkingRows::holds(const ContactRow& row) const noexcept {
   return std::any_of(memory_.warm.begin(), memory_.warm.end(), [&](const WarmRow& warm) {
-    return warm.body == row.body && warm.triangle == row.triangle;
+    return warm.owner == row.owner && warm.triangle == row.triangle;
   });
 }
 

@@ -5,20 +5,23 @@
 
 #include "body_watch.h"
 #include "certificate.h"
+#include "guide_watch.h"
 
 namespace keepout {
 
-/// The rows on bodies of one cycle: those that it begins with, and those that are added as trial
-/// motions fail. They lie in the cycles' memory.
+/// The rows on bodies and guides of one cycle: those that it begins with, and those that are added
+/// as trial motions fail. They lie in the cycles' memory.
 class WorkingRows {
  public:
   /// What a trial could not be proven for, by body.
   using Failures = std::array<Certificate::Failure, Instrument::most_bodies>;
 
   /// None yet. All must outlive it.
-  WorkingRows(CycleMemory& memory, BodyWatch& watch, const InstrumentOptions& options) noexcept
+  WorkingRows(CycleMemory& memory, BodyWatch& watch, GuideWatch& guides,
+              const InstrumentOptions& options) noexcept
       : memory_(memory),
         watch_(watch),
+        guides_(guides),
         margin_(options.margin),
         make_(memory.instrument, memory.motion, options.margin, options.recovery, memory.tolerance,
               memory.near.budget()) {}
@@ -29,6 +32,8 @@ class WorkingRows {
   /// Adds rows for what spoke against the last motion, or corrects those there are. Whether
   /// anything was changed.
   bool answer(const Failures& failures) noexcept;
+  /// The same for a guide that was not kept beyond a cell.
+  bool answer(std::size_t guide, int cell) noexcept;
 
   /// Notes which rows hold a solution back, by their numbers; numbers beyond the rows are not ours.
   /// Returns how many do.
@@ -44,12 +49,14 @@ class WorkingRows {
 
  private:
   void start_recovery(std::size_t body) noexcept;
-  void answer(std::size_t body, const NearTriangle& triangle, int cell) noexcept;
-  bool correct(std::size_t body, TriangleId triangle) noexcept;
+  void add(std::size_t body, const NearTriangle& triangle, int cell) noexcept;
+  bool correct(std::size_t owner, TriangleId triangle) noexcept;
+  std::optional<ContactRow> row_of(const WarmRow& warm, int cell) noexcept;
   bool holds(const ContactRow& row) const noexcept;
 
   CycleMemory& memory_;
   BodyWatch& watch_;
+  GuideWatch& guides_;
   double margin_;
   ContactRows make_;
 };

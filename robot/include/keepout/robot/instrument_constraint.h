@@ -6,9 +6,11 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "keepout/index/spatial_index.h"
 #include "keepout/mesh/mesh.h"
+#include "keepout/robot/guide.h"
 #include "keepout/robot/instrument.h"
 #include "keepout/status.h"
 #include "keepout/step/options.h"
@@ -73,7 +75,9 @@ struct InstrumentStep {
   /// margin and its band, and that there was work left to look at. Negative when the body reaches
   /// through the surface. [length]
   std::optional<double> distance = std::nullopt;
-  int nearest = -1;  // the number of that body
+  int nearest = -1;                         // the number of that body
+  std::span<const GuideState> guides = {};  // of each guide, in the order in which they were given
+  Softening softening = Softening::none;    // what gave way
 
   /// Whether there is a motion that may be carried out; it may be zero.
   bool ok() const noexcept { return is_ok(status); }
@@ -139,6 +143,11 @@ class InstrumentConstraint {
 
   /// Forgets what the last cycle left: for motions that have nothing to do with each other.
   void forget() noexcept;
+
+  /// Keeps these guides as well from the next step on, instead of those there are: see Guide.
+  /// Throws Error, and changes nothing, for more than Guide::most, or a link that the chain has
+  /// not. Allocates, and is not for the control path.
+  void set_guides(std::vector<Guide> guides);
 
   /// What is kept out.
   const Instrument& instrument() const noexcept;

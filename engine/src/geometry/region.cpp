@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "keepout/geometry/region.h"
+
+#include <cmath>
+
+#include "direction_of.h"
+#include "keepout/error.h"
+
+namespace keepout {
+namespace {
+
+Vec3 unit(const Vec3& direction) {
+  const Vec3 n = direction_of(direction);
+  if (n.isZero(0.0)) throw Error("the direction of a region has no length, or is not finite");
+  return n;
+}
+
+double distance(double length) {
+  if (!(length >= shortest_length && length <= longest_length)) {
+    throw Error("the width or radius of a region must be above zero, and a length");
+  }
+  return length;
+}
+
+}  // namespace
+
+Region::Region(const Vec3& origin, const Mat3& across, double radius)
+    : origin_(origin), across_(across), radius_(radius) {
+  if (!(origin.cwiseAbs().maxCoeff() <= longest_length)) {
+    throw Error("the place of a region is not finite, or too far away");
+  }
+}
+
+Region Region::half_space(const Vec3& point, const Vec3& into) {
+  Mat3 across = Mat3::Zero();
+  across.row(0) = -unit(into);
+  Region region(point, across, 0.0);
+  region.one_sided_ = true;
+  return region;
+}
+
+Region Region::slab(const Vec3& point, const Vec3& normal, double half_width) {
+  const Vec3 n = unit(normal);
+  return {point, n * n.transpose(), distance(half_width)};
+}
+
+Region Region::tube(const Vec3& point, const Vec3& direction, double radius) {
+  const Vec3 d = unit(direction);
+  return {point, Mat3::Identity() - d * d.transpose(), distance(radius)};
+}
+
+Region Region::ball(const Vec3& center, double radius) {
+  return {center, Mat3::Identity(), distance(radius)};
+}
+
+double Region::excess(const Vec3& point) const noexcept {
+  if (one_sided_) return across_.row(0).dot(point - origin_);
+  return (across_ * (point - origin_)).norm() - radius_;
+}
+
+Vec3 Region::outward(const Vec3& point) const noexcept {
+  if (one_sided_) return across_.row(0);
+  return direction_of(across_ * (point - origin_));
+}
+
+}  // namespace keepout

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "guide_watch.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace keepout {
+namespace {
+
+constexpr double angular_tolerance = 1e-12;  // [rad]
+constexpr std::size_t work_of_guide = 2;     // in looks
+
+}  // namespace
+
+void GuideWatch::open() noexcept {
+  const ChainState& chain = memory_.motion.chain_at_start();
+  for (std::size_t g = 0; g < memory_.guides.size(); ++g) {
+    const Guide& guide = memory_.guides[g].guide;
+    const double excess = guide.region().excess(guide.place(chain));
+    const double tolerance = guide.is_angular() ? angular_tolerance : memory_.tolerance;
+    double& floor = memory_.guides[g].floor;
+    floor = certified_distance(-excess, floor, -guide.band(), guide.band(), tolerance);
+    // As a body's: what is there, if rounding has left less than what is certified.
+    allowed_[g] = std::min(-floor + 3.0 * tolerance, std::max(-floor + 2.0 * tolerance, excess));
+    is_recovering_ = is_recovering_ || is_recovering(g);
+    memory_.guide_states[g] = {.excess = excess};
+  }
+  memory_.near.budget().spend(work_of_guide * memory_.guides.size());
+}
+
+bool GuideWatch::is_recovering(std::size_t g) const noexcept {
+  return memory_.guides[g].floor < -memory_.guides[g].guide.band();
+}
+
+int GuideWatch::judge(std::size_t& failed) noexcept {
+  int proven = PointMotion::cells;
+  for (std::size_t g = 0; g < memory_.guides.size() && proven > 0; ++g) {
+    const Guide& guide = memory_.guides[g].guide;
+    const double at_end = guide.region().excess(guide.place(chain_at(PointMotion::cells)));
+    const int until =
+        proven_until(g, 0, memory_.guide_states[g].excess, PointMotion::cells, at_end);
+    if (until >= proven) continue;
+    proven = until;
+    failed = g;
+  }
+  return proven;
+}
+
+/// The grid's last point up to which the part from lo to hi is proven.
+int GuideWatch::proven_until(std::size_t g, int lo, double at_lo, int hi, double at_hi) noexcept {
+  Budget& budget = memory_.near.budget();
+  budget.spend(work_of_guide);
+  if (budget.is_spent()) return lo;
+  const Guide& guide = memory_.guides[g].guide;
+  const double part = static_cast<double>(hi - lo) / PointMotion::cells;
+  const double slide = std::abs(guide.share(chain_at(hi)) - guide.share(chain_at(lo))) / part;
+  const auto n = static_cast<std::size_t>(memory_.instrument.chain().size());
+  const double bend =
+      guide.bend(memory_.motion.chain_at_start(), {memory_.motion.increment().data(), n}, slide);
+  if (std::max(at_lo, at_hi) + bend * part * part / 8.0 <= allowed_[g]) return hi;
+  if (hi - lo == 1) return lo;
+  const int middle = (lo + hi) / 2;
+  const double at_middle = guide.region().excess(guide.place(chain_at(middle)));
+  const int first = proven_until(g, lo, at_lo, middle, at_middle);
+  return first < middle ? first : proven_until(g, middle, at_middle, hi, at_hi);
+}
+
+std::optional<ContactRow> GuideWatch::row(std::size_t g, int cell) noexcept {
+  const Guide& guide = memory_.guides[g].guide;
+  const Region& region = guide.region();
+  const Vec3 outward = region.outward(guide.place(chain_at(cell)));
+  if (outward.isZero(0.0)) return std::nullopt;
+  const ChainState& chain = memory_.motion.chain_at_start();
+  ContactRow row{.owner = Instrument::most_bodies + g, .triangle = no_triangle};
+  row.normal = -outward;
+  row.level = row.normal.dot(region.origin()) - region.radius();
+  row.start_height = row.normal.dot(guide.place(chain)) - row.level;
+  // What is out is led back as fast as bodies are led off, turns by as much as moves a tool so.
+  const double per_length = guide.is_angular() ? std::max(options_.orientation_weight, 1.0) : 1.0;
+  row.bound = std::min(-row.start_height, options_.recovery / per_length);
+  for (int k = 1; k <= chain.size(); ++k) {
+    row.gradient[static_cast<std::size_t>(k - 1)] = row.normal.dot(guide.derivative(chain, k));
+  }
+  return row;
+}
+
+double GuideWatch::height_at_end(const ContactRow& row) noexcept {
+  const Guide& guide = memory_.guides[row.owner - Instrument::most_bodies].guide;
+  return row.normal.dot(guide.place(chain_at(PointMotion::cells))) - row.level;
+}
+
+const ChainState& GuideWatch::chain_at(int cell) noexcept {
+  if (cell == 0) return memory_.motion.chain_at_start();
+  memory_.near.budget().spend(work_of_guide);
+  memory_.motion.place(cell, chain_);
+  return chain_;
+}
+
+}  // namespace keepout

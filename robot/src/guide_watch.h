@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+
+#include "cycle_memory.h"
+
+namespace keepout {
+
+/// How the guides stand as a cycle begins, how far out each may come in it, and the proof that a
+/// motion goes no farther: a region's excess is convex and no steeper than 1, so on a part of the
+/// motion it is no more than at one of the ends, and an eighth of the bend.
+class GuideWatch {
+ public:
+  /// The motion's start must be where the joints are. Both must outlive it.
+  GuideWatch(CycleMemory& memory, const InstrumentOptions& options) noexcept
+      : memory_(memory), options_(options) {}
+
+  /// Looks at all guides.
+  void open() noexcept;
+  /// Whether some guide is out by more than its band.
+  bool is_recovering() const noexcept { return is_recovering_; }
+  /// Whether that guide is.
+  bool is_recovering(std::size_t guide) const noexcept;
+
+  /// Up to which cell all guides are proven to be kept on the motion at hand; and, if not to the
+  /// last, which one was not.
+  int judge(std::size_t& failed) noexcept;
+
+  /// A row that keeps a guide behind the plane that touches its region where it is at a share of
+  /// the motion. Nothing in the region's middle, which has no such plane.
+  std::optional<ContactRow> row(std::size_t guide, int cell) noexcept;
+  /// Where the row's guide is, relative to its plane's level, at the end of the motion.
+  double height_at_end(const ContactRow& row) noexcept;
+
+ private:
+  int proven_until(std::size_t guide, int lo, double at_lo, int hi, double at_hi) noexcept;
+  const ChainState& chain_at(int cell) noexcept;
+
+  CycleMemory& memory_;
+  const InstrumentOptions& options_;
+  ChainState chain_;
+  bool is_recovering_ = false;
+  std::array<double, Guide::most> allowed_{};  // excess of each in this cycle
+};
+
+}  // namespace keepout

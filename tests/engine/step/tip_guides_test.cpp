@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "keepout/step/tip_guides.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "keepout/activation/certified.h"
+#include "keepout/error.h"
+#include "keepout/fixtures/random.h"
+#include "keepout/fixtures/shapes.h"
+#include "keepout/geometry/closest_point.h"
+#include "keepout/index/wide_bvh.h"
+#include "keepout/solvers/active_set.h"
+#include "trials.h"
+
+namespace keepout {
+namespace {
+
+constexpr double margin = 0.2;
+
+/// A ball of radius 1 beside a shape.
+struct Loop {
+  explicit Loop(const char* shape)
+      : mesh(std::make_shared<const Mesh>(make_shape(shape))),
+        guard(mesh, std::make_shared<WideBvh>(mesh), std::make_unique<CertifiedRule>(),
+              std::make_unique<ActiveSet>(),
+              {.radius = 5.0, .tool_radius = 1.0, .margin = margin, .damping = 0.0}) {}
+
+  double distance(const Vec3& tip) const {
+    double least = 1e30;
+    for (TriangleId t = 0; t < mesh->triangle_count(); ++t) {
+      least = std::min(least, closest_point(mesh->triangle(t), tip).distance);
+    }
+    return least;
+  }
+
+  std::shared_ptr<const Mesh> mesh;
+  MotionConstraint guard;
+};
+
+TEST(TipGuides, KeepCorridorLineAndMeshAtOnce) {
+  Loop loop("gear");
+  Vec3 top = loop.mesh->vertex(0);
+  for (VertexId v = 1; v < loop.mesh->vertex_count(); ++v) {
+    if (loop.mesh->vertex(v).z() > top.z()) top = loop.mesh->vertex(v);
+  }
+  const Vec3 start = top + Vec3(0, 0, 4);
+  TipGuides guides({{"corridor", Region::slab(start, Vec3(1, 0, 0), 1.0)},
+                    {"line", Region::tube(start, Vec3(0, 1, 0.1), 6.0)},
+                    {"reach", Region::ball(start, 8.0)}});
+  Random random(1);
+  Vec3 tip = start;
+  std::vector<int> held(3, 0);
+  int met = 0;
+  double way = 0.0;
+  for (int i = 0; i < test::trials(5000); ++i) {
+    const Vec3 desired =
+        random.uniform(0.0, 1.0) *
+        (Vec3(std::sin(i / 7), std::cos(i / 50), std::sin(i / 90)) + 0.5 * random.direction());
+    const Step step = guides.step(loop.guard, {.tip = tip, .desired = desired});
+    ASSERT_TRUE(step.ok()) << step.reason();
+    for (const double share : {0.25, 0.5, 0.75, 1.0}) {
+      for (const TipGuide& guide : guides.guides()) {
+        ASSERT_LE(guide.region.excess(tip + share * step.motion), guide.band + 1e-12) << guide.name;
+      }
+    }
+    tip += step.motion;
+    way += step.motion.norm();
+    for (std::size_t g = 0; g < 3; ++g) held[g] += guides.states()[g].holds ? 1 : 0;
+    if (i % 20 != 0) continue;
+    const double distance = loop.distance(tip);
+    ASSERT_GE(distance, 1.0 + margin - 1e-9);
+    met += distance < 1.0 + margin + 0.01 ? 1 : 0;
+  }
+  for (const int count : held) EXPECT_GT(count, test::trials(50));
+  EXPECT_GT(met, test::trials(10)) << "the mesh is in the way as well";
+  EXPECT_GT(way, test::trials(500.0));
+}
+
+// In free space the best step ends in the point of the region that is nearest to the aim.
+TEST(TipGuides, MakeTheNearestStepThatARoundRegionAllows) {
+  Loop loop("cube");
+  const Vec3 axis = Vec3(1, 2, 0.5).normalized();
+  const Vec3 on_axis = loop.mesh->bounds().high + Vec3::Constant(50.0);
+  const double radius = 2.0;
+  TipGuides guides({{"tube", Region::tube(on_axis, axis, radius)}});
+  Random random(2);
+  int out = 0;
+  for (int i = 0; i < test::trials(2000); ++i) {
+    const Vec3 side = axis.cross(random.direction()).normalized();
+    const Vec3 tip = on_axis + radius * std::sqrt(random.uniform()) * side;
+    const Vec3 desired = random.uniform(0.0, 3.0) * random.direction();
+    const Vec3 aim = tip + desired - on_axis;
+    const Vec3 across = aim - axis.dot(aim) * axis;
+    const double beyond = std::max(across.norm() - radius, 0.0);
+    const Step step = guides.step(loop.guard, {.tip = tip, .desired = desired});
+    ASSERT_TRUE(step.ok());
+    ASSERT_LE((step.motion - desired).norm(), 1.001 * beyond + guides.guides()[0].band);
+    out += beyond > 0.1 ? 1 : 0;
+  }
+  EXPECT_GT(out, test::trials(300));
+}
+
+TEST(TipGuides, HoldWhateverJointsMoveTheTip) {
+  Loop loop("cube");
+  StepOptions options = loop.guard.options();
+  options.damping = 1e-6;
+  loop.guard.set_options(options);
+  const Vec3 tip = loop.mesh->bounds().high + Vec3(0, 0, 3);
+  TipGuides guides({{"corridor", Region::slab(tip, Vec3(1, 1, 0), 0.5)}}, 5, 1);
+  Random random(3);
+  for (int i = 0; i < test::trials(500); ++i) {
+    Eigen::Matrix<double, 3, 5> jacobian;
+    for (int c = 0; c < 5; ++c) jacobian.col(c) = random.uniform(0.5, 2.0) * random.direction();
+    const double row[5] = {0, 0, 1, 0, 0};
+    const double bound[1] = {-0.1};
+    const Step step = guides.step(loop.guard, {.tip = tip,
+                                               .desired = 2.0 * random.direction(),
+                                               .jacobian = jacobian,
+                                               .rows = ExtraRows(row, bound, 1)});
+    ASSERT_TRUE(step.ok()) << step.reason();
+    ASSERT_LE(guides.guides()[0].region.excess(tip + step.motion), 0.002 + 1e-9);
+    ASSERT_GE(step.increment[2], -0.1 - 1e-9) << "the caller's own row";
+  }
+  const Eigen::Matrix<double, 3, 6> too_many = Eigen::Matrix<double, 3, 6>::Random();
+  EXPECT_EQ(
+      guides.step(loop.guard, {.tip = tip, .desired = Vec3::Zero(), .jacobian = too_many}).status,
+      Status::over_capacity);
+}
+
+TEST(TipGuides, LeadBackWhatIsOutAndSayWhatGivesWay) {
+  Loop loop("cube");
+  Vec3 tip = loop.mesh->bounds().high + Vec3(0, 0, 5);
+  const Vec3 x = Vec3::UnitX();
+  TipGuides back({{"side", Region::half_space(tip + x, x)}});
+  for (int i = 0; i < 19; ++i) {
+    const Step step = back.step(loop.guard, {.tip = tip, .desired = -0.1 * x});
+    ASSERT_EQ(step.status, Status::recovering);
+    ASSERT_NEAR(step.motion.x(), loop.guard.options().recovery, 1e-9);
+    tip += step.motion;
+  }
+  TipGuides apart(
+      {{"left", Region::half_space(tip - x, -x)}, {"right", Region::half_space(tip + x, x)}});
+  const Step step = apart.step(loop.guard, {.tip = tip, .desired = Vec3(0.3, 0.4, 0)});
+  ASSERT_EQ(step.status, Status::recovering) << step.reason();
+  EXPECT_NEAR((step.motion - Vec3(0, 0.4, 0)).norm(), 0.0, 1e-6);
+  EXPECT_EQ(apart.softening(), Softening::guides);
+  EXPECT_TRUE(apart.states()[0].gave_way && apart.states()[1].gave_way);
+  EXPECT_NEAR(apart.states()[0].excess, 1.0, 1e-12);
+}
+
+TEST(TipGuides, RefuseWhatIsNone) {
+  const TipGuide guide{"a", Region::ball(Vec3::Zero(), 1.0)};
+  EXPECT_THROW(TipGuides(std::vector<TipGuide>(17, guide)), Error);
+  EXPECT_THROW(TipGuides({{"a", guide.region, 0.0}}), Error);
+}
+
+}  // namespace
+}  // namespace keepout

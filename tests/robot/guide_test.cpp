@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "keepout/robot/guide.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "keepout/adapters/index_registry.h"
+#include "keepout/error.h"
+#include "keepout/fixtures/random.h"
+#include "keepout/fixtures/robots.h"
+#include "keepout/fixtures/shapes.h"
+#include "keepout/robot/instrument_constraint.h"
+#include "keepout/solvers/registry.h"
+#include "robot/configurations.h"
+#include "trials.h"
+
+namespace keepout {
+namespace {
+
+const LinkPoint wrist{4, Vec3::Zero()};
+const LinkPoint tip{6, Vec3(0, 10.2, 0)};  // of the psm
+
+/// A psm 120 above the gear, and a guard of it.
+struct Bench {
+  explicit Bench(const char* shape = "gear")
+      : mesh(std::make_shared<const Mesh>(make_shape(shape))),
+        instrument(psm({Vec3(30, 10, 120), Mat3::Identity()})),
+        guard(mesh, make_index("wide_bvh", mesh), instrument, make_solver("active_set"),
+              {.period = 0.02, .check_sides = false}) {}
+
+  ChainState at(const std::vector<double>& q) const {
+    ChainState state;
+    instrument.chain().place(q, state);
+    return state;
+  }
+
+  std::shared_ptr<const Mesh> mesh;
+  Instrument instrument;
+  InstrumentConstraint guard;
+};
+
+/// The excess of a guide, by what it says of itself in the chain's true states along a step.
+double farthest_out(const Bench& bench, const Guide& guide, const std::vector<double>& q,
+                    const InstrumentStep& step) {
+  double most = -1e30;
+  for (int s = 0; s <= 16; ++s) {
+    std::vector<double> there = q;
+    for (std::size_t k = 0; k < step.increment.size(); ++k) {
+      there[k] += s / 16.0 * step.increment[k];
+    }
+    most = std::max(most, guide.region().excess(guide.place(bench.at(there))));
+  }
+  return most;
+}
+
+TEST(Guide, IsAboutWhatItSays) {
+  const Bench bench;
+  Random random(1);
+  for (int i = 0; i < test::trials(300); ++i) {
+    const std::vector<double> q = test::configuration(bench.instrument.chain(), random);
+    const ChainState state = bench.at(q);
+    const Vec3 center = state.at(4, Vec3(3.0 * random.direction()));
+    const Guide shaft = Guide::remote_center("port", {0, Vec3::Zero()}, wrist, center, 0.5);
+    const Vec3 along = state.at(4, Vec3::Zero()) - state.at(0, Vec3::Zero());
+    const double share =
+        std::clamp(along.dot(center - state.at(0, Vec3::Zero())) / along.squaredNorm(), 0.0, 1.0);
+    const Vec3 nearest = state.at(0, Vec3::Zero()) + share * along;
+    EXPECT_NEAR((shaft.place(state) - nearest).norm(), 0.0, 1e-9);
+
+    // Of three axes each within its angle, no turn is more than what was asked for.
+    const Mat3 wanted = state.link(6).rotation;
+    const double angle = random.uniform(0.01, 1.0);
+    const std::vector<Guide> axes = Guide::orientation("hand", 6, wanted, angle);
+    ASSERT_EQ(axes.size(), 3u);
+    std::vector<double> other = q;
+    for (double& number : other) number += random.uniform(-0.5, 0.5) * angle;
+    const ChainState there = bench.at(other);
+    const bool is_kept = std::all_of(axes.begin(), axes.end(), [&](const Guide& axis) {
+      return axis.region().excess(axis.place(there)) <= 0.0;
+    });
+    const double turn = Eigen::AngleAxisd(wanted.transpose() * there.link(6).rotation).angle();
+    if (is_kept) {
+      EXPECT_LE(turn, angle + 1e-9);
+    }
+    if (turn < 0.7 * angle) {
+      EXPECT_TRUE(is_kept);
+    }
+  }
+}
+
+// Second differences on a fine grid against the bound that proofs take.
+TEST(Guide, BoundsTheBendOfItsPlace) {
+  const Bench bench;
+  Random random(2);
+  const Chain& chain = bench.instrument.chain();
+  double largest = 0.0;
+  for (int i = 0; i < test::trials(5000); ++i) {
+    const std::vector<double> q = test::configuration(chain, random);
+    const ChainState state = bench.at(q);
+    const Vec3 center = state.at(4, Vec3(10.0 * random.direction()));
+    const Guide guides[] = {Guide::point("tip", tip, Region::ball(center, 1.0)),
+                            Guide::axis("axis", 6, random.direction(), random.direction(), 1.0)};
+    std::vector<double> increment;
+    for (int k = 1; k <= chain.size(); ++k) increment.push_back(random.uniform(-0.3, 0.3));
+    for (const Guide& guide : guides) {
+      const double bend = guide.bend(state, increment, 0.0);
+      Vec3 places[33];
+      for (int s = 0; s <= 32; ++s) {
+        std::vector<double> there = q;
+        for (std::size_t k = 0; k < there.size(); ++k) there[k] += s / 32.0 * increment[k];
+        places[s] = guide.place(bench.at(there));
+      }
+      for (int s = 1; s < 32; ++s) {
+        const double second = (places[s - 1] - 2.0 * places[s] + places[s + 1]).norm() * 32 * 32;
+        ASSERT_LE(second, bend + 1e-8);
+        largest = std::max(largest, second / (bend + 1e-6));
+      }
+    }
+  }
+  EXPECT_GT(largest, 0.5) << "the bound is of the size of what it bounds";
+}
+
+/// Pushes and turns in all directions; returns how often each guide held the motion back.
+std::vector<int> wander(Bench& bench, const std::vector<Guide>& guides, std::vector<double> q,
+                        int cycles, std::uint64_t seed) {
+  bench.guard.set_guides(guides);
+  Random random(seed);
+  std::vector<int> held(guides.size(), 0);
+  double way = 0.0;
+  for (int i = 0; i < cycles; ++i) {
+    const Vec3 linear = (i % 60 < 30 ? 1.0 : -1.0) * random.uniform(0.0, 2.0) *
+                        (Vec3(std::cos(i / 60), std::sin(i / 60), -0.7) + 0.3 * random.direction());
+    const Vec3 angular = random.uniform(0.0, 0.1) * random.direction();
+    const InstrumentStep step = bench.guard.step(q, {.linear = linear, .angular = angular});
+    EXPECT_TRUE(step.ok()) << step.reason();
+    EXPECT_EQ(step.guides.size(), guides.size());
+    EXPECT_EQ(step.softening, Softening::none);
+    if (!step.ok() || step.guides.size() != guides.size()) return held;
+    for (std::size_t g = 0; g < guides.size(); ++g) {
+      const double out = farthest_out(bench, guides[g], q, step);
+      EXPECT_LE(out, guides[g].band() + 3e-9) << guides[g].name() << " in cycle " << i;
+      held[g] += step.guides[g].holds ? 1 : 0;
+    }
+    for (std::size_t k = 0; k < q.size(); ++k) {
+      q[k] += step.increment[k];
+      way += std::abs(step.increment[k]);
+    }
+  }
+  EXPECT_GT(way, 0.01 * cycles) << "and yet it moves";
+  return held;
+}
+
+TEST(Guide, IsNeverLeftByMoreThanItsBand) {
+  const std::vector<double> q{0.1, -0.1, 60.0, 0.2, 0.1, -0.2};
+  const Bench at_start;
+  const ChainState state = at_start.at(q);
+  const Vec3 at = state.at(tip.link, tip.position);
+  const Vec3 way = state.at(4, Vec3::Zero()) - state.at(0, Vec3::Zero());
+  const Vec3 axis = state.link(6).rotation.col(1);
+  const Vec3 port = state.at(0, Vec3::Zero()) + 0.4 * way;
+  const std::vector<std::vector<Guide>> sets{
+      {Guide::point("corridor", tip, Region::slab(at, Vec3(1, 0.2, 0), 1.0))},
+      {Guide::point("path", tip, Region::tube(at, Vec3(1, 1, 0.3), 0.5))},
+      {Guide::point("above", tip, Region::half_space(at - Vec3(0, 0, 1), Vec3::UnitZ()))},
+      {Guide::axis("axis", 6, Vec3::UnitY(), axis, 0.2)},
+      {Guide::remote_center("trocar", {0, Vec3(1, 0, 0)}, wrist, port, 1.0)},
+      Guide::orientation("hand", 6, state.link(6).rotation, 0.1),
+      {Guide::point("corridor", tip, Region::slab(at, Vec3(1, 0.2, 0), 1.0)),
+       Guide::point("not too far", tip, Region::ball(at, 5.0)),
+       Guide::axis("axis", 6, Vec3::UnitY(), axis, 0.3)}};
+  for (std::size_t i = 0; i < sets.size(); ++i) {
+    Bench bench;
+    const std::vector<int> held = wander(bench, sets[i], q, test::trials(1500), i + 1);
+    for (std::size_t g = 0; g < held.size(); ++g) {
+      EXPECT_GT(held[g], test::trials(20)) << sets[i][g].name();
+    }
+  }
+}
+
+TEST(Guide, LeadsBackWhatIsOut) {
+  Bench bench;
+  std::vector<double> q{0.0, 0.0, 60.0, 0.0, 0.0, 0.0};
+  const Vec3 at = bench.at(q).at(tip.link, tip.position);
+  const Guide guide =
+      Guide::point("corridor", tip, Region::slab(at + Vec3(3, 0, 0), Vec3::UnitX(), 1.0));
+  bench.guard.set_guides({guide});
+  double last = 2.0;
+  int cycles = 0;
+  for (; last > guide.band() && cycles < 100; ++cycles) {
+    const InstrumentStep step = bench.guard.step(q, {.linear = Vec3(-0.2, 0, 0)});
+    ASSERT_EQ(step.status, Status::recovering) << step.reason();
+    ASSERT_NEAR(step.guides[0].excess, last, 1e-9);
+    EXPECT_FALSE(step.guides[0].gave_way);
+    for (std::size_t k = 0; k < q.size(); ++k) q[k] += step.increment[k];
+    const double now = guide.region().excess(guide.place(bench.at(q)));
+    ASSERT_LE(now, last + guide.band());
+    last = now;
+  }
+  EXPECT_LT(cycles, 60);
+}
+
+TEST(Guide, GivesWayWithAWordOnItWhereOthersContradict) {
+  Bench bench;
+  std::vector<double> q{0.0, 0.0, 60.0, 0.0, 0.0, 0.0};
+  const Vec3 at = bench.at(q).at(tip.link, tip.position);
+  // To the left of one plane, and to the right of another one: out of both.
+  bench.guard.set_guides(
+      {Guide::point("left", tip, Region::half_space(at - Vec3(1, 0, 0), -Vec3::UnitX())),
+       Guide::point("right", tip, Region::half_space(at + Vec3(1, 0, 0), Vec3::UnitX()))});
+  for (int i = 0; i < 50; ++i) {
+    const InstrumentStep step = bench.guard.step(q, {.linear = Vec3(0.3, 0.3, 0.1)});
+    ASSERT_EQ(step.status, Status::recovering) << step.reason();
+    EXPECT_EQ(step.softening, Softening::guides);
+    EXPECT_TRUE(step.guides[0].gave_way && step.guides[1].gave_way);
+    for (std::size_t k = 0; k < q.size(); ++k) q[k] += step.increment[k];
+  }
+  const Vec3 moved = bench.at(q).at(tip.link, tip.position) - at;
+  EXPECT_LE(std::abs(moved.x()), 0.01) << "neither gets worse";
+  EXPECT_GT(moved.y(), 5.0) << "along both it moves";
+}
+
+// A region that lies in the mesh: the mesh is kept out of, and the guide is told to hold.
+TEST(Guide, NeverLeadsIntoTheMesh) {
+  Bench bench("cube");
+  std::vector<double> q{0.0, 0.0, 60.0, 0.0, 0.0, 0.0};
+  const Vec3 center = 0.5 * (bench.mesh->bounds().low + bench.mesh->bounds().high);
+  const Vec3 at = bench.at(q).at(tip.link, tip.position);
+  bench.guard.set_guides({Guide::point("in", tip, Region::tube(center, center - at, 0.5)),
+                          Guide::point("deep", tip, Region::ball(center, 0.1))});
+  InstrumentStep step;
+  for (int i = 0; i < test::trials(1000); ++i) {
+    step = bench.guard.step(q, {.linear = 0.5 * (center - at).normalized()});
+    ASSERT_TRUE(step.ok()) << step.reason() << " in cycle " << i;
+    ASSERT_TRUE(!step.distance || *step.distance >= 0.198 - 1e-8) << i;
+    for (std::size_t k = 0; k < q.size(); ++k) q[k] += step.increment[k];
+  }
+  EXPECT_NEAR(step.distance.value_or(1.0), 0.2, 0.003) << "it came as near as it may";
+  EXPECT_EQ(step.softening, Softening::guides);
+  EXPECT_TRUE(step.guides[1].gave_way);
+}
+
+TEST(Guide, RefusesWhatIsNone) {
+  Bench bench;
+  EXPECT_THROW(Guide::axis("a", 6, Vec3::Zero(), Vec3::UnitX(), 0.1), Error);
+  EXPECT_THROW(Guide::axis("a", 6, Vec3::UnitX(), Vec3::UnitX(), 4.0), Error);
+  EXPECT_THROW(Guide::axis("a", -1, Vec3::UnitX(), Vec3::UnitX(), 1.0), Error);
+  EXPECT_THROW(Guide::orientation("a", 6, 2.0 * Mat3::Identity(), 1.0), Error);
+  const Guide guide = Guide::point("a", tip, Region::ball(Vec3::Zero(), 1.0));
+  EXPECT_THROW(guide.with_band(0.0), Error);
+  EXPECT_EQ(guide.with_band(0.5).band(), 0.5);
+  EXPECT_THROW(bench.guard.set_guides(std::vector<Guide>(17, guide)), Error);
+  EXPECT_THROW(bench.guard.set_guides({Guide::point("a", {7, Vec3::Zero()}, guide.region())}),
+               Error);
+}
+
+}  // namespace
+}  // namespace keepout
