@@ -15,6 +15,7 @@
 #include "keepout/geometry/shapes.h"
 #include "keepout/index/spatial_index.h"
 #include "keepout/mesh/load_mesh.h"
+#include "keepout/step/guide_state.h"
 #include "keepout/step/motion.h"
 
 namespace keepout::python {
@@ -72,13 +73,19 @@ struct StepResult {
   std::vector<std::uint32_t> active;
   std::size_t triangles;
   std::optional<double> distance;
+  std::vector<GuideState> guides;
+  Softening softening;
 };
+
+/// What a softening is called in Python: none, guides or bodies.
+const char* softening_name(Softening softening);
 
 // Each adds one concept to the module; the order matters where one is an argument of the next.
 void bind_status(py::module_& module);
 void bind_inspection(py::module_& module);
 void bind_mesh(py::module_& module);
 void bind_index(py::module_& module);
+void bind_guides(py::module_& module);
 void bind_planes(py::module_& module);
 void bind_step(py::module_& module);
 void bind_motion_constraint(py::module_& module);

@@ -132,14 +132,28 @@ StepResult Guard::step(const py::object& tip, const py::object& desired, const p
     if (count > 0) motion.rows.emplace(matrix.data(), bounds.data(), count);
   }
   const InUse in_use(constraint_in_use_);
-  const Step step = constraint_.step(motion);
+  const bool is_guided = !guides_.guides().empty();
+  const Step step = is_guided ? guides_.step(constraint_, motion) : constraint_.step(motion);
   return {.status = step.status,
           .motion = step.motion,
           .increment = {step.increment.begin(), step.increment.end()},
           .planes = {{step.planes.begin(), step.planes.end()}},
           .active = {step.active.begin(), step.active.end()},
           .triangles = step.triangles,
-          .distance = step.distance};
+          .distance = step.distance,
+          .guides = {guides_.states().begin(), guides_.states().end()},
+          .softening = is_guided ? guides_.softening() : Softening::none};
+}
+
+void Guard::set_guides(std::vector<TipGuide> guides) {
+  const Capacity& room = settings_.capacity;
+  TipGuides made(std::move(guides), room.variables, room.extra_rows);
+  if (made.rows() > room.extra_rows) {
+    refuse("guides", "max_rows of at least " + std::to_string(made.rows()) + " for so many",
+           std::to_string(room.extra_rows));
+  }
+  const InUse in_use(constraint_in_use_);
+  guides_ = std::move(made);
 }
 
 FreeSpace Guard::free_polytope(const py::object& tip, double radius) {

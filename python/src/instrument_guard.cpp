@@ -40,7 +40,10 @@ InstrumentGuard::InstrumentGuard(std::shared_ptr<IndexHandle> index, Instrument 
       }()) {}
 
 InstrumentConstraint InstrumentGuard::make() const {
-  return make_instrument_constraint(index_->mesh, index_->index, instrument_, settings_);
+  InstrumentConstraint made =
+      make_instrument_constraint(index_->mesh, index_->index, instrument_, settings_);
+  made.set_guides(guides_);
+  return made;
 }
 
 Doubles InstrumentGuard::of_joints(const py::object& argument, std::string_view name) const {
@@ -61,9 +64,11 @@ InstrumentStepResult InstrumentGuard::step(const py::object& q, const py::object
   }
   const auto joints = static_cast<std::size_t>(at.size());
   const auto result = [&](const InstrumentStep& step) {
-    InstrumentStepResult kept{step, std::vector<double>(joints, 0.0)};
+    InstrumentStepResult kept{
+        step, std::vector<double>(joints, 0.0), {step.guides.begin(), step.guides.end()}};
     std::copy(step.increment.begin(), step.increment.end(), kept.increment.begin());
     kept.step.increment = {};
+    kept.step.guides = {};
     return kept;
   };
   if (has_twist) {
@@ -135,6 +140,14 @@ void InstrumentGuard::forget() {
   constraint_.forget();
 }
 
+void InstrumentGuard::set_guides(const std::vector<Guide>& guides) {
+  const InUse no_proof(workers_.in_use());
+  const InUse no_step(constraint_in_use_);
+  constraint_.set_guides(guides);  // throws for what none would take
+  for (InstrumentConstraint& worker : workers_.constraints()) worker.set_guides(guides);
+  guides_ = guides;
+}
+
 void InstrumentGuard::set_options(const InstrumentOptions& options) {
   const InUse no_proof(workers_.in_use());
   const InUse no_step(constraint_in_use_);
@@ -151,7 +164,7 @@ CertifiedMotion certified_of(const std::string& name) {
       {{{"actual", CertifiedMotion::actual}, {"linearised", CertifiedMotion::linearised}}});
 }
 
-constexpr std::array<std::string_view, 17> arguments = {"mesh",
+constexpr std::array<std::string_view, 17> guard_arguments = {"mesh",
                                                         "instrument",
                                                         "index",
                                                         "index_cache",
@@ -169,7 +182,7 @@ constexpr std::array<std::string_view, 17> arguments = {"mesh",
                                                         "max_looks",
                                                         "certified"};
 
-constexpr const char* class_doc =
+constexpr const char* guard_doc =
     R"(Keeps a whole instrument out of a mesh, in joint space: the joint increment nearest to what is asked
 for that provably keeps each body clear, on the motion that the joints really make. It is safe to
 use from several threads, which then wait for each other; for loops of their own give each a guard,
@@ -192,7 +205,7 @@ max_triangles (near one body), max_planes: room for a cycle; one that needs more
 Status.over_capacity. max_looks: the work of a cycle; 0 for 65,536, or 4,194,304
 on an index that does not walk by itself.)";
 
-constexpr const char* step_doc =
+constexpr const char* joint_step_doc =
     R"(What the joints may do in this cycle: an InstrumentStep. Asked for is either a motion of the flange,
 or an increment of the joints. A number that is not finite gives Status.invalid_input.
 
@@ -269,6 +282,12 @@ void bind_results(py::module_& module) {
           "From the body nearest to the mesh, as the cycle began [length]; None where none is\n"
           "closer than the margin and its band, negative where it reaches through the surface.")
       .def_property_readonly(
+          "guides", [](const Result& self) { return self.guides; },
+          "How each guide fared, in the order of set_guides: a list of GuideState.")
+      .def_property_readonly(
+          "softening", [](const Result& self) { return softening_name(self.step.softening); },
+          "What gave way, as all could not be had: 'none', 'guides' or 'bodies'.")
+      .def_property_readonly(
           "nearest",
           [](const Result& self) {
             return self.step.nearest < 0 ? std::nullopt : std::optional(self.step.nearest);
@@ -304,7 +323,7 @@ void bind_instrument_guard(py::module_& module) {
   bind_results(module);
   const InstrumentConstraintSettings usual;
   const InstrumentOptions& o = usual.options;
-  py::class_<InstrumentGuard>(module, "InstrumentGuard", class_doc)
+  py::class_<InstrumentGuard>(module, "InstrumentGuard", guard_doc)
       .def(
           py::init([](const py::object& mesh, const Instrument& instrument, const py::object& index,
                       const std::optional<std::filesystem::path>& index_cache, std::string solver,
@@ -312,7 +331,7 @@ void bind_instrument_guard(py::module_& module) {
                       double orientation_weight, int refinements, bool check_sides,
                       const std::string& certified, py::ssize_t max_triangles,
                       py::ssize_t max_planes, py::ssize_t max_looks, const py::kwargs& others) {
-            refuse_others("InstrumentGuard", others, arguments);
+            refuse_others("InstrumentGuard", others, guard_arguments);
             InstrumentConstraintSettings settings;
             settings.solver = std::move(solver);
             settings.options = {.margin = margin,
@@ -341,12 +360,15 @@ void bind_instrument_guard(py::module_& module) {
           py::arg("max_looks") = usual.capacity.looks)
       .def("step", &InstrumentGuard::step, py::arg("q"), py::arg("linear") = py::none(),
            py::arg("angular") = py::none(), py::kw_only(), py::arg("increment") = py::none(),
-           py::arg("weights") = py::none(), step_doc)
+           py::arg("weights") = py::none(), joint_step_doc)
       .def("prove", &InstrumentGuard::prove, py::arg("q"), py::arg("increment"), prove_doc)
       .def("proofs", &InstrumentGuard::proofs, py::arg("q"), py::arg("increments") = py::none(),
            py::kw_only(), py::arg("threads") = py::none(), proofs_doc)
       .def("forget", &InstrumentGuard::forget,
            "Forgets what the last cycle left: for motions that have nothing to do with each other.")
+      .def("set_guides", &InstrumentGuard::set_guides, py::arg("guides"),
+           "Keeps these guides as well from the next step on, at most 16, instead of those there\n"
+           "are: a list of Guide. They hold in proofs too.")
       .def(
           "set_options", &set_given, py::kw_only(), py::arg("margin") = py::none(),
           py::arg("band") = py::none(), py::arg("period") = py::none(),

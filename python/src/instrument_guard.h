@@ -18,8 +18,9 @@ namespace keepout::python {
 
 /// A step that outlives the next one. The increment has a number for each joint: zeros unless ok.
 struct InstrumentStepResult {
-  InstrumentStep step;  // but for its increment
+  InstrumentStep step;  // but for its increment and guides
   std::vector<double> increment;
+  std::vector<GuideState> guides;
 };
 
 /// An instrument constraint as Python holds it: one for its own steps, and one for each worker that
@@ -37,6 +38,7 @@ class InstrumentGuard {
   py::object proofs(const py::object& q, const py::object& increments,
                     std::optional<py::ssize_t> threads);
   void forget();
+  void set_guides(const std::vector<Guide>& guides);
   void set_options(const InstrumentOptions& options);
 
   const InstrumentConstraintSettings& settings() const noexcept { return settings_; }
@@ -57,6 +59,7 @@ class InstrumentGuard {
   std::shared_ptr<IndexHandle> index_;
   Instrument instrument_;
   InstrumentConstraintSettings settings_;
+  std::vector<Guide> guides_;
   InstrumentConstraint constraint_;
   std::mutex constraint_in_use_;
   Workers<InstrumentConstraint> workers_;

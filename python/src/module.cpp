@@ -66,6 +66,7 @@ PYBIND11_MODULE(_core, module) {
   bind_parts(module);
   bind_index(module);
   bind_planes(module);
+  bind_guides(module);
   bind_step(module);
   bind_motion_constraint(module);
   bind_chain(module);

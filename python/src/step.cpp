@@ -118,6 +118,11 @@ void bind_step(py::module_& module) {
           "From the tip, as the step began, to the nearest triangle [length]; None where the\n"
           "rule does not come by it, unless the constraint was made with "
           "distances='always'.")
+      .def_readonly("guides", &StepResult::guides,
+                    "How each guide fared, in the order of set_guides: a list of GuideState.")
+      .def_property_readonly(
+          "softening", [](const StepResult& self) { return softening_name(self.softening); },
+          "What gave way, as all could not be had: 'none' or 'guides'.")
       .def("__repr__", [](const StepResult& self) {
         const Vec3& u = self.motion;
         return py::str("<keepout.Step: {}, motion ({}, {}, {})>")

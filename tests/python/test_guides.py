@@ -1,0 +1,155 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Guides: regions that a tip, an axis or a shaft is to stay in, beside a mesh that is kept out."""
+
+import math
+
+import numpy as np
+import pytest
+
+import keepout
+
+TIP = (0.0, 10.2, 0.0)  # of the instrument below, on link 6
+
+
+def box(size):
+    """A cube about the origin."""
+    corners = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) * size / 2
+    faces = [
+        (0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5), (0, 4, 5), (0, 5, 1),
+        (2, 3, 7), (2, 7, 6), (0, 2, 6), (0, 6, 4), (1, 5, 7), (1, 7, 3),
+    ]  # fmt: skip
+    return keepout.Mesh(corners, np.array(faces, dtype=np.uint32))
+
+
+def instrument():
+    """A shaft through a port at the origin of its base, 150 above the cube; insertion along it."""
+    right = math.pi / 2
+    rows = [
+        keepout.TableRow(alpha=right, theta=right, lower=-1.5, upper=1.5, velocity=1),
+        keepout.TableRow(alpha=-right, theta=-right, lower=-0.9, upper=0.9, velocity=1),
+        keepout.TableRow(kind="prismatic", alpha=right, d=-431.8, lower=0, upper=240, velocity=200),
+        keepout.TableRow(d=416.2, lower=-4.5, upper=4.5, velocity=8),
+        keepout.TableRow(alpha=-right, theta=-right, lower=-1.4, upper=1.4, velocity=8),
+        keepout.TableRow(a=9.1, alpha=-right, theta=-right, lower=-1.4, upper=1.4, velocity=8),
+    ]
+    base = np.eye(4)
+    base[:3, 3] = (0, 0, 150)
+    flange = np.eye(4)
+    flange[:3, 3] = TIP
+    chain = keepout.chain_of_table(rows, base=base, flange=flange)
+    shaft = keepout.Body("shaft", [(0, (0, 0, 0)), (4, (0, 0, 0))], 4.5)
+    cutter = keepout.Body("cutter", [(5, (9.1, 0, 0)), (6, TIP)], 1.0)
+    return keepout.Instrument(chain, [shaft, cutter])
+
+
+def test_corridor_and_mesh_hold_at_once():
+    guard = keepout.MotionConstraint(box(20), radius=5, tool_radius=1, margin=0.2)
+    tip = np.array([0.0, 0.0, 14.0])
+    corridor = keepout.Region.slab(tip, (1, 0, 0), 1.0)
+    guard.set_guides([keepout.TipGuide("corridor", corridor)])
+    random = np.random.default_rng(1)
+    held = 0
+    for _ in range(500):
+        step = guard.step(tip, random.uniform(-0.5, 0.5, 3) + (0.2, 0, -0.2))
+        assert step.ok, step.reason
+        tip = tip + step.motion
+        assert corridor.excess(tip) <= 0.002 + 1e-9
+        assert tip[2] >= 11.2 - 1e-9
+        held += step.guides[0].holds
+    assert held > 50
+    guard.set_guides([])
+    assert guard.step(tip, (0.5, 0, 0)).guides == []
+
+
+def test_what_contradicts_gives_way_and_says_so():
+    guard = keepout.MotionConstraint(box(20), radius=5, margin=0.2)
+    left = keepout.Region.half_space((-1, 0, 0), (-1, 0, 0))
+    right = keepout.Region.half_space((1, 0, 0), (1, 0, 0))
+    guard.set_guides([keepout.TipGuide("left", left), keepout.TipGuide("right", right)])
+    step = guard.step((0, 0, 15), (0.3, 0.3, 0))
+    assert step.status == keepout.Status.recovering
+    assert step.softening == "guides"
+    assert all(guide.gave_way for guide in step.guides)
+    assert step.motion[0] == pytest.approx(0.0, abs=1e-7)
+    assert step.motion[1] == pytest.approx(0.3, abs=1e-7)
+    assert "gave way" in repr(step.guides[0])
+
+
+def test_there_must_be_room_for_their_rows():
+    guard = keepout.MotionConstraint(box(20), radius=5, margin=0.2, max_rows=3)
+    guide = keepout.TipGuide("a", keepout.Region.ball((0, 0, 15), 1.0))
+    with pytest.raises(keepout.Error, match="max_rows"):
+        guard.set_guides([guide])
+
+
+def test_tip_axis_and_trocar_are_kept_on_the_way():
+    guard = keepout.InstrumentGuard(box(20), instrument(), period=0.02, check_sides=False)
+    chain = guard.instrument.chain
+    q = np.array([0.1, -0.1, 60.0, 0.2, 0.1, -0.2])
+    pose = chain.place(q)
+    tip = pose[:3, 3]
+    axis = pose[:3, 1]
+    guides = [
+        keepout.Guide.point("tube", 6, TIP, keepout.Region.tube(tip, (0, 0, 1), 2.0)),
+        keepout.Guide.axis("axis", 6, (0, 1, 0), axis, 0.2),
+    ]
+    guard.set_guides(guides)
+    random = np.random.default_rng(2)
+    held = np.zeros(2)
+    for cycle in range(600):
+        way = 1.0 if cycle // 100 % 2 else -1.0
+        step = guard.step(
+            q, linear=way * random.uniform(0, 1, 3), angular=random.uniform(-0.05, 0.05, 3)
+        )
+        assert step.ok, step.reason
+        for share in (0.5, 1.0):
+            at = chain.place(q + share * step.increment)
+            assert guides[0].region.excess(at[:3, 3]) <= 0.002 + 1e-8
+            angle = math.acos(min(1.0, at[:3, 1] @ axis))
+            assert angle <= 0.2 + 0.0003
+        q = q + step.increment
+        held += [state.holds for state in step.guides]
+    assert (held > 20).all(), held
+
+
+def test_a_proof_ends_where_a_guide_is_left():
+    guard = keepout.InstrumentGuard(box(20), instrument(), check_sides=False)
+    q = np.array([0.0, 0.0, 60.0, 0.0, 0.0, 0.0])
+    by = np.array([0.0, 0.0, 4.0, 0.0, 0.0, 0.0])
+    assert guard.prove(q, by).is_clear
+    tip = guard.instrument.chain.place(q)[:3, 3]
+    guard.set_guides([keepout.Guide.point("near", 6, TIP, keepout.Region.ball(tip, 1.0))])
+    assert guard.prove(q, by).share == pytest.approx(0.25, abs=1 / 64 + 1e-9)
+    assert guard.proofs(q, by).share[0] == pytest.approx(0.25, abs=1 / 64 + 1e-9)
+
+
+def test_orientation_and_remote_center():
+    guard = keepout.InstrumentGuard(box(20), instrument(), period=0.02, check_sides=False)
+    chain = guard.instrument.chain
+    q = np.array([0.1, 0.1, 80.0, 0.0, 0.2, 0.1])
+    start = chain.place(q)[:3, :3]
+    guides = keepout.Guide.orientation("hand", 6, start, 0.1)
+    assert [guide.name for guide in guides] == ["hand x", "hand y", "hand z"]
+    guides.append(
+        keepout.Guide.remote_center("port", (0, (0, 0, 0)), (4, (0, 0, 0)), (0, 0, 150), 0.5)
+    )
+    guard.set_guides(guides)
+    for _ in range(200):
+        step = guard.step(q, angular=(0.02, 0.03, 0.01))
+        assert step.ok, step.reason
+        q = q + step.increment
+    turn = start.T @ chain.place(q)[:3, :3]
+    angle = math.acos(min(1.0, (np.trace(turn) - 1) / 2))
+    assert angle < 0.1 + 0.001
+    assert angle > 0.05
+
+
+def test_what_is_none_is_refused():
+    guard = keepout.InstrumentGuard(box(20), instrument())
+    region = keepout.Region.ball((0, 0, 0), 1.0)
+    with pytest.raises(keepout.Error, match="link 7"):
+        guard.set_guides([keepout.Guide.point("far", 7, TIP, region)])
+    with pytest.raises(keepout.Error, match="band"):
+        keepout.Guide.point("a", 6, TIP, region).with_band(0)
+    with pytest.raises(keepout.Error, match="width or radius"):
+        keepout.Region.ball((0, 0, 0), -1)
