@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The set-up of the paper's cutting experiment (section V-B): a manipulator with limits of its
+// joints cuts along a plane, in a corridor of 1 mm to each side, over a skull that is kept out.
+// Corridor and skull are judged by kinematics and distances that are not the library's.
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "keepout/adapters/index_registry.h"
+#include "keepout/fixtures/random.h"
+#include "keepout/fixtures/real_mesh.h"
+#include "keepout/fixtures/robots.h"
+#include "keepout/mesh/load_mesh.h"
+#include "keepout/oracle/instrument_oracle.h"
+#include "keepout/robot/instrument_constraint.h"
+#include "keepout/solvers/registry.h"
+#include "trials.h"
+
+namespace keepout {
+namespace {
+
+constexpr double half_width = 1.0;  // [mm]
+
+/// The base from which a psm points straight down to a place, its port so far above it.
+Pose port_above(const Vec3& place, double height) {
+  ChainState state;
+  psm().chain().place(std::vector<double>{0, 0, 100, 0, 0, 0}, state);
+  const Vec3 way = state.flange().position.normalized();
+  return {place + Vec3(0, 0, height),
+          Eigen::Quaterniond::FromTwoVectors(way, -Vec3::UnitZ()).toRotationMatrix()};
+}
+
+TEST(CuttingSetUp, KeepsCorridorSkullAndJointsWhateverTheHandDoes) {
+  const auto mesh = load_mesh(fixture_path("skull")).mesh;
+  Vec3 top = mesh->vertex(0);
+  for (VertexId v = 1; v < mesh->vertex_count(); ++v) {
+    if (mesh->vertex(v).z() > top.z()) top = mesh->vertex(v);
+  }
+  const Instrument robot = psm(port_above(top, 120.0));
+  const Chain& chain = robot.chain();
+  std::vector<double> q{0, 0, 0, 0, 0, 0};
+  ChainState state;
+  chain.place(q, state);
+  q[2] = state.flange().position.z() - top.z() - 3.0;  // 3 mm above the bone
+  chain.place(q, state);
+  const LinkPoint tip{6, chain.flange().position};
+  InstrumentConstraint guard(mesh, make_index("wide_bvh", mesh), robot, make_solver("active_set"),
+                             {.period = 5e-3});
+  const Guide corridor = Guide::point(
+      "corridor", tip, Region::slab(state.flange().position, Vec3::UnitX(), half_width));
+  guard.set_guides({corridor});
+
+  oracle::InstrumentOracle judge(std::make_shared<const oracle::TriangleTree>(mesh),
+                                 oracle::judged_psm(), chain.base());
+  const double middle = state.flange().position.x();
+  const double kept = guard.options().margin - guard.options().band - 3.0 * guard.tolerance();
+  double farthest = 0.0;
+  double nearest = std::numeric_limits<double>::infinity();
+  int held = 0;
+  int blocked = 0;
+  double cut = 0.0;
+  Random random(1);
+  for (int cycle = 0; cycle < test::trials(20'000); ++cycle) {
+    // Strokes to and fro along the plane, pressed on the bone, by a hand that wanders sideways.
+    const double way = cycle / 400 % 2 == 0 ? 1.0 : -1.0;
+    const Twist hand{
+        .linear = Vec3(std::sin(cycle / 170.0), way, -0.5) * 0.4 + 0.2 * random.direction(),
+        .angular = 0.01 * random.direction()};
+    const InstrumentStep step = guard.step(q, hand);
+    ASSERT_TRUE(step.ok()) << step.reason() << " in cycle " << cycle;
+    for (const double share : {0.5, 1.0}) {
+      std::vector<double> there = q;
+      for (std::size_t k = 0; k < q.size(); ++k) there[k] += share * step.increment[k];
+      judge.move_to(there);
+      farthest = std::max(farthest, std::abs(judge.axis(2).to.x() - middle));
+      for (std::size_t body = 0; body < judge.bodies(); ++body) {
+        nearest = std::min(nearest, judge.clearance(body, 1.0));
+      }
+    }
+    for (std::size_t k = 0; k < q.size(); ++k) {
+      const JointLimits& limits = chain.joint(static_cast<int>(k) + 1).limits;
+      q[k] += step.increment[k];
+      ASSERT_TRUE(q[k] >= limits.lower && q[k] <= limits.upper) << "joint " << k + 1;
+    }
+    held += step.guides[0].holds ? 1 : 0;
+    blocked += step.distance ? 1 : 0;
+    cut += step.increment.empty() ? 0.0 : std::abs(step.increment[1]);
+  }
+  std::printf(
+      "outside of the corridor by %.6f mm at most; %.6f mm from the bone at least; held by "
+      "the corridor in %d cycles, near the bone in %d\n",
+      farthest - half_width, nearest, held, blocked);
+  RecordProperty("outside", std::to_string(farthest - half_width));
+  EXPECT_LE(farthest, half_width + corridor.band() + 1e-8);
+  EXPECT_GE(nearest, kept);
+  EXPECT_GT(held, test::trials(1000));
+  EXPECT_GT(blocked, test::trials(1000));
+  EXPECT_GT(cut, test::trials(1.0)) << "and yet it moves";
+}
+
+}  // namespace
+}  // namespace keepout
