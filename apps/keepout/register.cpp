@@ -17,111 +17,48 @@
 namespace keepout::app {
 namespace {
 
-/// The fiducials' fit, and what was asked of it. [mm]
-struct Fitted {
-  FiducialPairs pairs;
-  RigidFit fit;
-  std::vector<Vec3> targets;
-
-  std::size_t worst() const {
-    return std::ranges::max_element(fit.residuals) - fit.residuals.begin();
-  }
+struct PairRow {
+  std::size_t line;  // of the file, from 1
+  double residual;   // [mm]
+  bool is_worst;
 };
 
-Fitted fitted(const RegisterOptions& options) {
-  Fitted result{.pairs = read_fiducials(options.fiducials), .fit = {}, .targets = {}};
-  if (options.unit == LengthUnit::metre) {
-    for (Vec3& p : result.pairs.measured) p *= 1000.0;
-  }
+struct TargetRow {
+  Vec3 place;  // [mm]
+  TargetError error;
+  double margin;  // [mm]
+};
+
+std::string four_decimals(const Json& number) { return formatted("%.4f", number.get<double>()); }
+
+std::string place_text(const Json& place) {
+  return formatted("%g, %g, %g", place[0].get<double>(), place[1].get<double>(),
+                   place[2].get<double>());
+}
+
+std::string worst_text(const Json& is_worst) { return is_worst.get<bool>() ? " the worst" : ""; }
+
+const Columns<PairRow> pair_columns{
+    {"line", &PairRow::line, "line", 6},
+    {"residual", &PairRow::residual, "apart, mm", 12, &four_decimals},
+    {"is_worst", &PairRow::is_worst, "", -1, &worst_text}};
+
+const Columns<TargetRow> target_columns{
+    {"target", [](const TargetRow& row) { return json_of(row.place); }, "target, mm", -24,
+     &place_text},
+    {"tre", [](const TargetRow& row) { return row.error.rms(); }, "TRE, mm", 9, &four_decimals},
+    {"worst_deviation", [](const TargetRow& row) { return row.error.worst_deviation(); },
+     "one way, mm", 12, &four_decimals},
+    {"margin", &TargetRow::margin, "margin, mm", 11, &four_decimals}};
+
+RigidFit fit_of(const FiducialPairs& pairs, const RegisterOptions& options) {
+  std::vector<Vec3> measured = pairs.measured;
+  for (Vec3& p : measured) p *= options.unit == LengthUnit::metre ? 1000.0 : 1.0;
   try {
-    const FiducialPairs& pairs = result.pairs;
-    result.fit = fit_rigid(pairs.measured, pairs.model, pairs.weights);
+    return fit_rigid(measured, pairs.model, pairs.weights);
   } catch (const Error& error) {
     throw Error(options.fiducials.string() + ": " + error.what());
   }
-  for (std::size_t i = 0; i < options.targets.size(); i += 3) {
-    result.targets.emplace_back(options.targets[i], options.targets[i + 1], options.targets[i + 2]);
-  }
-  return result;
-}
-
-double margin(const RegisterOptions& options, const Fitted& fitted,
-              const std::vector<Vec3>& targets) {
-  return registration_margin(fitted.fit, targets, options.confidence, options.fle);
-}
-
-void print(std::ostream& out, const RegisterOptions& options, const Fitted& fitted) {
-  const RigidFit& fit = fitted.fit;
-  const std::size_t pairs = fit.residuals.size();
-  out << options.fiducials.string() << ": " << counted(pairs, "pair") << "\n\n"
-      << "Matrix from the robot's frame to the mesh's, its translation in mm\n";
-  const Eigen::Matrix4d matrix = fit.matrix();
-  for (int row = 0; row < 4; ++row) {
-    out << formatted("  %16.12f %16.12f %16.12f %18.9f\n", matrix(row, 0), matrix(row, 1),
-                     matrix(row, 2), matrix(row, 3));
-  }
-  out << "\nLeft between the pairs, in mm\n";
-  for (std::size_t i = 0; i < pairs; ++i) {
-    out << formatted("  pair %3zu, line %3zu %10.4f%s\n", i + 1, fitted.pairs.lines[i],
-                     fit.residuals[i], i == fitted.worst() ? "  the worst" : "");
-  }
-  out << formatted("\nFRE %.4f mm, root mean square%s\n", fit.fre,
-                   fitted.pairs.weights.empty() ? "" : " by weight")
-      << (options.fle ? formatted("FLE %.4f mm, as told; estimated from the FRE: %.4f mm\n",
-                                  *options.fle, fit.estimated_fle())
-                      : formatted("FLE %.4f mm, estimated from the FRE\n", fit.estimated_fle()));
-  for (const Vec3& target : fitted.targets) {
-    const TargetError error = target_error(fit, target, options.fle);
-    out << formatted(
-        "Target %g, %g, %g: TRE %.4f mm, root mean square; %.4f mm in the worst direction, one "
-        "standard deviation\n  margin for it: %.4f mm\n",
-        target.x(), target.y(), target.z(), error.rms(), error.worst_deviation(),
-        margin(options, fitted, {target}));
-  }
-  if (fitted.targets.empty()) {
-    out << "No margin: say where in the mesh the tool works, with --target X Y Z.\n";
-  } else {
-    out << formatted(
-        "Add %.4f mm to the margin of a guard: with a probability of %g the registration is off by "
-        "no more\nat %s.\n",
-        margin(options, fitted, fitted.targets), options.confidence,
-        fitted.targets.size() == 1 ? "the target" : "all targets and everywhere between them");
-  }
-  if (!fit.doubt.empty()) out << "\nDo not trust it: " << fit.doubt << '\n';
-}
-
-Json json_of(const RegisterOptions& options, const Fitted& fitted) {
-  const RigidFit& fit = fitted.fit;
-  Json rows = Json::array();
-  const Eigen::Matrix4d matrix = fit.matrix();
-  for (int i = 0; i < 4; ++i) {
-    rows.push_back({matrix(i, 0), matrix(i, 1), matrix(i, 2), matrix(i, 3)});
-  }
-  Json json{{"unit", "mm"},
-            {"mesh_from_robot", rows},
-            {"residuals", fit.residuals},
-            {"lines", fitted.pairs.lines},
-            {"worst_line", fitted.pairs.lines[fitted.worst()]},
-            {"fre", fit.fre},
-            {"fle", options.fle.value_or(fit.estimated_fle())},
-            {"fle_is_estimated", !options.fle},
-            {"scale", fit.scale},
-            {"doubt", fit.doubt},
-            {"confidence", options.confidence},
-            {"targets", Json::array()},
-            {"margin", nullptr}};
-  for (const Vec3& target : fitted.targets) {
-    const TargetError error = target_error(fit, target, options.fle);
-    Json covariance = Json::array();
-    for (int i = 0; i < 3; ++i) covariance.push_back(app::json_of(Vec3(error.covariance.row(i))));
-    json["targets"].push_back({{"target", app::json_of(target)},
-                               {"tre", error.rms()},
-                               {"worst_deviation", error.worst_deviation()},
-                               {"covariance", covariance},
-                               {"margin", margin(options, fitted, {target})}});
-  }
-  if (!fitted.targets.empty()) json["margin"] = margin(options, fitted, fitted.targets);
-  return json;
 }
 
 }  // namespace
@@ -129,11 +66,60 @@ Json json_of(const RegisterOptions& options, const Fitted& fitted) {
 void register_fiducials(const RegisterOptions& options, std::ostream& out) {
   const std::vector<NamedPath> inputs{{"FILE", options.fiducials}};
   OutputFiles outputs(inputs, {{"--json", options.json}});
-  const Fitted result = fitted(options);
-  print(out, options, result);
-  if (std::ostream* json = outputs.stream("--json")) {
-    *json << json_of(options, result).dump(2) << '\n';
+  const FiducialPairs pairs = read_fiducials(options.fiducials);
+  const RigidFit fit = fit_of(pairs, options);
+  const double largest = std::ranges::max(fit.residuals);
+  std::vector<PairRow> rows;
+  for (std::size_t i = 0; i < fit.residuals.size(); ++i) {
+    rows.push_back({pairs.lines[i], fit.residuals[i], fit.residuals[i] == largest});
   }
+  std::vector<Vec3> places;
+  std::vector<TargetRow> targets;
+  const auto margin_of = [&](const std::vector<Vec3>& of) {
+    return registration_margin(fit, of, options.confidence, options.fle);
+  };
+  for (std::size_t i = 0; i < options.targets.size(); i += 3) {
+    const double* const xyz = &options.targets[i];
+    places.emplace_back(xyz[0], xyz[1], xyz[2]);
+    targets.push_back(
+        {places.back(), target_error(fit, places.back(), options.fle), margin_of({places.back()})});
+  }
+  const Eigen::Matrix4d m = fit.matrix();
+  Json json{{"unit", "mm"}, {"mesh_from_robot", Json::array()}};
+
+  out << "From the robot's frame to the mesh's, the translation in mm\n";
+  for (int i = 0; i < 4; ++i) {
+    out << formatted("%16.12f%16.12f%16.12f%18.9f\n", m(i, 0), m(i, 1), m(i, 2), m(i, 3));
+    json["mesh_from_robot"].push_back({m(i, 0), m(i, 1), m(i, 2), m(i, 3)});
+  }
+  out << "\nWhat is left between the " << counted(rows.size(), "pair") << '\n';
+  print_rows(out, pair_columns, rows);
+  const double fle = options.fle.value_or(fit.estimated_fle());
+  out << formatted("\nFRE %.4f mm%s; FLE %.4f mm, ", fit.fre,
+                   pairs.weights.empty() ? "" : " by weight", fle)
+      << (options.fle ? formatted("as told (the FRE lets expect %.4f)\n", fit.estimated_fle())
+                      : "estimated from it\n");
+  json.update({{"pairs", json_of(pair_columns, rows)},
+               {"fre", fit.fre},
+               {"fle", fle},
+               {"fle_is_estimated", !options.fle},
+               {"scale", fit.scale},
+               {"doubt", fit.doubt},
+               {"confidence", options.confidence},
+               {"targets", json_of(target_columns, targets)},
+               {"margin", places.empty() ? Json(nullptr) : Json(margin_of(places))}});
+  if (places.empty()) {
+    out << "No margin: say where in the mesh the tool works, with --target X Y Z.\n";
+  } else {
+    print_rows(out, target_columns, targets);
+    out << formatted(
+        "Add %.4f mm to a guard's margin: so far off, at most, is the registration%s,\nwith a "
+        "probability of %g.\n",
+        json["margin"].get<double>(), places.size() == 1 ? " there" : " at all of them and between",
+        options.confidence);
+  }
+  if (!fit.doubt.empty()) out << "\nDo not trust it: " << fit.doubt << '\n';
+  if (std::ostream* file = outputs.stream("--json")) *file << json.dump(2) << '\n';
   outputs.commit();
 }
 

@@ -30,15 +30,19 @@ from ._core import (
     MotionProof,
     Planes,
     Polytope,
+    RigidFit,
     Step,
     TableRow,
     __version__,
     activations,
     chain_of_table,
+    fit_rigid,
     indices,
     load_mesh,
     read_chain,
+    registration_margin,
     solvers,
+    target_error,
 )
 from ._results import Part, Proofs, Simulation, Status, Steps
 
