@@ -26,9 +26,8 @@ std::string numbered(const char* name, std::size_t i) {
 
 void check_points(std::span<const Vec3> points, const char* name) {
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (!points[i].allFinite()) refuse(numbered(name, i) + " is not finite");
-    if (points[i].cwiseAbs().maxCoeff() > longest_length) {
-      refuse(numbered(name, i) + " has a coordinate beyond 1e15; check the file that it is from");
+    if (!points[i].allFinite() || points[i].cwiseAbs().maxCoeff() > longest_length) {
+      refuse(numbered(name, i) + " has a coordinate that is not finite, or beyond 1e15");
     }
   }
 }
