@@ -116,8 +116,9 @@ void read_lines(const std::filesystem::path& path, const LineKind& kind, const T
 
 bool begins_a_number(std::string_view word) {
   double ignored = 0.0;
-  return std::from_chars(word.data(), word.data() + word.size(), ignored).ec !=
-         std::errc::invalid_argument;
+  return word.starts_with('+') ||
+         std::from_chars(word.data(), word.data() + word.size(), ignored).ec !=
+             std::errc::invalid_argument;
 }
 
 Vec3 point_of(const std::vector<double>& n, std::size_t first) {

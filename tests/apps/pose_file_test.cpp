@@ -110,7 +110,7 @@ TEST_F(PoseFile, ALineMayBeAsLongAsItsCommentIs) {
 }
 
 TEST_F(PoseFile, FiducialsHaveAHeaderOrNoneAndWeightsOnEachLineOrNone) {
-  const FiducialPairs plain = read_fiducials(write("1,2,3,4,5,6\n\n7 8 9 10 11 12\n"));
+  const FiducialPairs plain = read_fiducials(write("+1,+2,+3,+4,+5,+6\n\n7 8 9 10 11 12\n"));
   EXPECT_EQ(plain.measured[1], Vec3(7, 8, 9));
   EXPECT_EQ(plain.model[0], Vec3(4, 5, 6));
   EXPECT_TRUE(plain.weights.empty());
