@@ -30,12 +30,12 @@ struct InspectOptions {
 void inspect(const InspectOptions& options, std::ostream& out);
 
 struct RegisterOptions {
-  std::filesystem::path fiducials;
-  LengthUnit unit = LengthUnit::millimetre;   // of what was measured
-  std::vector<double> targets;                // x, y, z of each, in the mesh [mm]
-  std::optional<double> fle;                  // fiducial localisation error [mm]
-  double confidence = 0.99;                   // of the margin
-  std::optional<std::filesystem::path> json;  // to be written
+  std::filesystem::path fiducials = {};
+  LengthUnit unit = LengthUnit::millimetre;        // of what was measured
+  std::vector<double> targets = {};                // x, y, z of each, in the mesh [mm]
+  std::optional<double> fle = {};                  // fiducial localisation error [mm]
+  double confidence = 0.99;                        // of the margin
+  std::optional<std::filesystem::path> json = {};  // to be written
 };
 
 /// Fits the points of a file and prints the matrix, what is left between the pairs, and by how much
