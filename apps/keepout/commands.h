@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "keepout/control/registration.h"
 #include "keepout/factory/make_motion_constraint.h"
 #include "keepout/mesh/load_mesh.h"
 #include "record/record.h"
@@ -27,6 +28,20 @@ struct InspectOptions {
 /// Reads a mesh file and prints what it is made of and what is wrong with it, in words or as JSON.
 /// Throws Error when the file cannot be read; whatever is found in it is no error.
 void inspect(const InspectOptions& options, std::ostream& out);
+
+struct RegisterOptions {
+  std::filesystem::path fiducials = {};
+  LengthUnit unit = LengthUnit::millimetre;        // of what was measured
+  std::vector<double> targets = {};                // x, y, z of each, in the mesh [mm]
+  std::optional<double> fle = {};                  // fiducial localisation error [mm]
+  double confidence = 0.99;                        // of the margin
+  std::optional<std::filesystem::path> json = {};  // to be written
+};
+
+/// Fits the points of a file and prints the matrix, what is left between the pairs, and by how much
+/// the registration is expected to be off at the targets. Throws Error, also when the file for JSON
+/// would overwrite the other.
+void register_fiducials(const RegisterOptions& options, std::ostream& out);
 
 enum class Loop : std::uint8_t {
   open,   // each line is a tip and a desired increment

@@ -53,6 +53,44 @@ void add_inspect(CLI::App& app, InspectOptions& options) {
                    "Also count the pairs of triangles that cut through each other");
 }
 
+void add_register(CLI::App& app, RegisterOptions& options) {
+  CLI::App& command = *app.add_subcommand(
+      "register",
+      "Find where the mesh is in the robot's frame, from points that are known in both, and by how "
+      "much that may be off where the tool works");
+  command
+      .add_option("FILE", options.fiducials,
+                  "One pair a line, 'measured x,y,z, model x,y,z' and, if wanted, a weight; the "
+                  "first line may be a header")
+      ->type_name("")
+      ->required();
+  command
+      .add_option(
+          "--measured-in", options.unit,
+          "Unit of what was measured, which is also that of the robot's poses; the model is "
+          "in mm")
+      ->transform(one_of<LengthUnit>({{"mm", LengthUnit::millimetre}, {"m", LengthUnit::metre}}))
+      ->default_str("mm");
+  command
+      .add_option("--target", options.targets,
+                  "Place in the mesh where the tool works; may be given several times")
+      ->type_name("X Y Z")
+      ->type_size(3)
+      ->allow_extra_args(false)
+      ->check(number_within(-1e6, 1e6, "a number from -1e6 to 1e6", "MM"));
+  command
+      .add_option("--fle", options.fle,
+                  "Localisation error of a pair, root mean square; by default estimated from what "
+                  "is left between the pairs")
+      ->type_name("MM")
+      ->check(length(Zero::refused));
+  command.add_option("--confidence", options.confidence, "Probability with which the margin holds")
+      ->check(number_within(0.01, 0.9999, "a probability from 0.01 to 0.9999", "PROBABILITY"))
+      ->capture_default_str();
+  command.add_option("--json", options.json, "Where to write the results as JSON")
+      ->type_name("FILE.json");
+}
+
 void add_replay(CLI::App& app, ReplayOptions& options) {
   CLI::App& command = *app.add_subcommand(
       "replay", "Solve one step for each line of a pose file and write every result as CSV");
@@ -174,6 +212,7 @@ int run(int argc, char** argv) {
       ->type_name("TARGET");
 
   InspectOptions inspect_options;
+  RegisterOptions register_options;
   ReplayOptions replay_options;
   SimulateOptions simulate_options;
   LiveOptions live_options;
@@ -186,6 +225,7 @@ int run(int argc, char** argv) {
   simulate_options.rules = names(activation_rules());
   simulate_options.called_as = app.get_name();
   add_inspect(app, inspect_options);
+  add_register(app, register_options);
   add_replay(app, replay_options);
   add_simulate(app, simulate_options);
   add_live(app, live_options);
@@ -216,6 +256,7 @@ int run(int argc, char** argv) {
     *command = command_line;
   }
   if (app.got_subcommand("inspect")) inspect(inspect_options, std::cout);
+  if (app.got_subcommand("register")) register_fiducials(register_options, std::cout);
   if (app.got_subcommand("replay")) replay(replay_options, std::cout);
   if (app.got_subcommand("live")) live(live_options, std::cout);
   if (app.got_subcommand("report")) report(report_options, std::cout);

@@ -2,12 +2,12 @@
 #include "pose_file.h"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <fstream>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "keepout/error.h"
@@ -54,30 +54,44 @@ double number_in(std::string_view word) {
   if (error == std::errc::result_out_of_range) {
     throw Error(quoted + " is beyond the range of a double (1e-308 to 1e308)");
   }
-  if (!std::isfinite(value))
-    throw Error(quoted + " is not finite: a pose needs six finite numbers");
+  if (!std::isfinite(value)) throw Error(quoted + " is not finite: finite numbers are needed");
   return value;
 }
 
-PoseLine pose_of(const std::vector<std::string_view>& words) {
-  std::array<double, 6> n;
-  for (std::size_t i = 0; i < std::min(words.size(), n.size()); ++i) n[i] = number_in(words[i]);
-  if (words.size() < n.size()) throw Error("has fewer than six numbers");
-  if (words.size() > n.size()) {
-    throw Error("has more than six numbers: " + in_quotes(words[6]) + " is too many");
+/// What the lines of a kind of file are.
+struct LineKind {
+  std::size_t most_numbers;  // six, or one more that may be left out
+  std::string_view option;   // of the command line, by which the file is named
+  std::string_view name;     // of the file
+  std::string_view told;     // after what is wrong with a line
+};
+
+std::vector<double> numbers_of(const std::vector<std::string_view>& words, const LineKind& kind) {
+  std::vector<double> numbers;
+  for (const std::string_view word : words) {
+    if (numbers.size() == kind.most_numbers) {
+      throw Error("has more than " + std::string(kind.most_numbers == 6 ? "six" : "seven") +
+                  " numbers: " + in_quotes(word) + " is too many");
+    }
+    numbers.push_back(number_in(word));
   }
-  return {{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
+  if (numbers.size() < 6) throw Error("has fewer than six numbers");
+  return numbers;
 }
 
-}  // namespace
-
-std::vector<PoseLine> read_poses(const std::filesystem::path& path) {
+/// Hands the words of each line, and its number, to `take`, but for blank lines and comments.
+/// Throws Error with file and line for what that throws.
+template <class Take>
+void read_lines(const std::filesystem::path& path, const LineKind& kind, const Take& take) {
+  const auto told = [&](std::size_t number, const std::string& what) {
+    return Error(path.string() + ":" + std::to_string(number) + ": " + what);
+  };
   std::error_code ignored;
   std::ifstream file(path);
   if (!file || std::filesystem::is_directory(path, ignored)) {
-    throw Error(path.string() + ": cannot be read; check the path given to --poses");
+    throw Error(path.string() + ": cannot be read; check the path given " +
+                std::string(kind.option));
   }
-  std::vector<PoseLine> poses;
   std::vector<char> line(longest_line + 1);
   std::size_t number = 1;
   for (; file.getline(line.data(), std::ssize(line)); ++number) {
@@ -88,20 +102,68 @@ std::vector<PoseLine> read_poses(const std::filesystem::path& path) {
     const std::size_t begin = text.find_first_not_of(blanks);
     if (begin == std::string_view::npos || text[begin] == '#') continue;
     try {
-      poses.push_back(pose_of(words_in(text)));
+      take(words_in(text), number);
     } catch (const Error& error) {
-      throw Error(path.string() + ":" + std::to_string(number) + ": " + error.what() +
-                  "; each line is six numbers in mm, 'px py pz dx dy dz', or with --closed-loop "
-                  "'gx gy gz rx ry rz'");
+      throw told(number, error.what() + std::string(kind.told));
     }
   }
   if (file.bad()) throw Error(path.string() + ": reading broke off; is the disk sound?");
   if (!file.eof()) {
-    throw Error(path.string() + ":" + std::to_string(number) + ": is longer than " +
-                std::to_string(longest_line) + " bytes; is this a pose file?");
+    throw told(number, "is longer than " + std::to_string(longest_line) + " bytes; is this a " +
+                           std::string(kind.name) + "?");
   }
+}
+
+bool begins_a_number(std::string_view word) {
+  double ignored = 0.0;
+  return word.starts_with('+') ||
+         std::from_chars(word.data(), word.data() + word.size(), ignored).ec !=
+             std::errc::invalid_argument;
+}
+
+Vec3 point_of(const std::vector<double>& n, std::size_t first) {
+  return {n[first], n[first + 1], n[first + 2]};
+}
+
+}  // namespace
+
+std::vector<PoseLine> read_poses(const std::filesystem::path& path) {
+  const LineKind kind{6, "to --poses", "pose file",
+                      "; each line is six numbers in mm, 'px py pz dx dy dz', or with "
+                      "--closed-loop 'gx gy gz rx ry rz'"};
+  std::vector<PoseLine> poses;
+  read_lines(path, kind, [&](const auto& words, std::size_t) {
+    const std::vector<double> n = numbers_of(words, kind);
+    poses.push_back({point_of(n, 0), point_of(n, 3)});
+  });
   if (poses.empty()) throw Error(path.string() + ": holds no pose; give one line for each step");
   return poses;
+}
+
+FiducialPairs read_fiducials(const std::filesystem::path& path) {
+  const LineKind kind{7, "as FILE", "file of fiducials",
+                      "; each line is 'measured x,y,z, model x,y,z' and, in all or none, a weight"};
+  FiducialPairs pairs;
+  bool may_be_header = true;
+  read_lines(path, kind, [&](const auto& words, std::size_t line) {
+    if (std::exchange(may_be_header, false) && std::ranges::none_of(words, begins_a_number)) return;
+    const std::vector<double> n = numbers_of(words, kind);
+    if (!pairs.lines.empty() && (n.size() == 7) == pairs.weights.empty()) {
+      throw Error(n.size() == 7 ? "has a weight, and lines before it have none"
+                                : "has no weight, and lines before it have one");
+    }
+    if (n.size() == 7) {
+      if (!(n[6] > 0.0)) throw Error("has a weight that is not above 0");
+      pairs.weights.push_back(n[6]);
+    }
+    pairs.measured.push_back(point_of(n, 0));
+    pairs.model.push_back(point_of(n, 3));
+    pairs.lines.push_back(line);
+  });
+  if (pairs.lines.empty()) {
+    throw Error(path.string() + ": holds no fiducials; give one line for each pair");
+  }
+  return pairs;
 }
 
 }  // namespace keepout::app

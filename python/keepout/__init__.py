@@ -33,16 +33,20 @@ from ._core import (
     Planes,
     Polytope,
     Region,
+    RigidFit,
     Step,
     TableRow,
     TipGuide,
     __version__,
     activations,
     chain_of_table,
+    fit_rigid,
     indices,
     load_mesh,
     read_chain,
+    registration_margin,
     solvers,
+    target_error,
 )
 from ._results import Part, Proofs, Simulation, Status, Steps
 

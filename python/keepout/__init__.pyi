@@ -31,6 +31,7 @@ __all__ = [
     "Planes",
     "Polytope",
     "Proofs",
+    "RigidFit",
     "Simulation",
     "Status",
     "Step",
@@ -39,10 +40,13 @@ __all__ = [
     "__version__",
     "activations",
     "chain_of_table",
+    "fit_rigid",
     "indices",
     "load_mesh",
     "read_chain",
+    "registration_margin",
     "solvers",
+    "target_error",
 ]
 
 __version__: str
@@ -522,3 +526,23 @@ class InstrumentGuard:
     def margin(self) -> float: ...
     @property
     def band(self) -> float: ...
+
+class RigidFit:
+    @property
+    def mesh_from_robot(self) -> NDArray[np.float64]: ...
+    @property
+    def residuals(self) -> NDArray[np.float64]: ...
+    @property
+    def fre(self) -> float: ...
+    @property
+    def estimated_fle(self) -> float: ...
+    @property
+    def scale(self) -> float: ...
+    @property
+    def doubt(self) -> str: ...
+
+def fit_rigid(measured: ArrayLike, model: ArrayLike, weights: ArrayLike | None = None) -> RigidFit: ...
+def target_error(fit: RigidFit, target: ArrayLike, fle: float | None = None) -> NDArray[np.float64]: ...
+def registration_margin(
+    fit: RigidFit, targets: ArrayLike, confidence: float = 0.99, fle: float | None = None
+) -> float: ...

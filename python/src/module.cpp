@@ -72,4 +72,5 @@ PYBIND11_MODULE(_core, module) {
   bind_chain(module);
   bind_instrument(module);
   bind_instrument_guard(module);
+  bind_registration(module);
 }

@@ -83,7 +83,7 @@ TEST_F(Command, SaysThatNothingOfABenchmarkWasFinishedWhenItIsInterruptedAtOnce)
 TEST_F(Command, HelpNamesEveryCommandAndChoice) {
   const Outcome help = run("--help");
   EXPECT_EQ(help.status, 0);
-  for (const char* word : {"inspect", "replay", "simulate"}) {
+  for (const char* word : {"inspect", "register", "replay", "simulate"}) {
     EXPECT_NE(help.output.find(word), std::string::npos) << word;
   }
   const Outcome replay = run("replay --help");

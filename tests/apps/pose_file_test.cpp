@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "keepout/error.h"
 #include "temporary_folder.h"
@@ -105,6 +107,38 @@ TEST_F(PoseFile, ALineThatDoesNotEndIsReadNoFurtherThanLinesGo) {
 TEST_F(PoseFile, ALineMayBeAsLongAsItsCommentIs) {
   const auto poses = read_poses(write("#" + std::string(60'000, 'x') + "\n1 2 3 4 5 6"));
   EXPECT_EQ(poses.size(), 1u);
+}
+
+TEST_F(PoseFile, FiducialsHaveAHeaderOrNoneAndWeightsOnEachLineOrNone) {
+  const FiducialPairs plain = read_fiducials(write("+1,+2,+3,+4,+5,+6\n\n7 8 9 10 11 12\n"));
+  EXPECT_EQ(plain.measured[1], Vec3(7, 8, 9));
+  EXPECT_EQ(plain.model[0], Vec3(4, 5, 6));
+  EXPECT_TRUE(plain.weights.empty());
+  EXPECT_EQ(plain.lines, (std::vector<std::size_t>{1, 3}));
+  const FiducialPairs weighted = read_fiducials(write("# c\nx,y,z,X,Y,Z,w\n1,2,3,4,5,6,0.5\n"));
+  EXPECT_EQ(weighted.weights, std::vector<double>{0.5});
+  EXPECT_EQ(weighted.lines, std::vector<std::size_t>{3});
+}
+
+TEST_F(PoseFile, WhatIsWrongWithFiducialsIsToldByLine) {
+  for (const auto& [text, told] : std::vector<std::pair<std::string, std::string>>{
+           {"x,y,z\nx,y,z\n", ":2: 'x' is not a number"},
+           {"nan,nan,nan,1,2,3\n", ":1: 'nan' is not finite"},
+           {"1;2;3;4;5;6\n", ":1: '1;2;3;4;5;6' is not a number"},
+           {"1,2,3,4,5\n", ":1: has fewer than six numbers"},
+           {"1,2,3,4,5,6,7,8\n", ":1: has more than seven numbers: '8'"},
+           {"1,2,3,4,5,6,0\n", ":1: has a weight that is not above 0"},
+           {"1,2,3,4,5,6\n1,2,3,4,5,6,1\n", ":2: has a weight, and lines before it have none"},
+           {"1,2,3,4,5,6,1\n1,2,3,4,5,6\n", ":2: has no weight, and lines before it have one"},
+           {"x,y,z\n", ": holds no fiducials"}}) {
+    try {
+      read_fiducials(write(text));
+      ADD_FAILURE() << text;
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find("poses.txt" + told), std::string::npos)
+          << error.what();
+    }
+  }
 }
 
 TEST_F(PoseFile, AMissingFileAndAFolderAreErrors) {

@@ -42,8 +42,9 @@ void expect_told(const std::vector<Mistake>& mistakes) {
 
 TEST(Usage, EachCommandMistypedIsSuggested) {
   std::vector<Mistake> mistakes;
-  for (const auto& [typed, meant] : std::array<std::array<std::string, 2>, 9>{{
+  for (const auto& [typed, meant] : std::array<std::array<std::string, 2>, 10>{{
            {"inspec", "inspect"},
+           {"regsiter", "register"},
            {"relpay", "replay"},
            {"simulat", "simulate"},
            {"liev", "live"},
@@ -67,6 +68,7 @@ TEST(Usage, AnOptionOfEachCommandMistypedIsSuggested) {
   };
   expect_told({
       {"inspect cube --jsno", told("--jsno", "--json")},
+      {"register f.csv --taget 1 2 3", told("--taget", "--target")},
       {"replay cube --pose p --out s.csv", told("--pose", "--poses")},
       {"simulate cube --raduis 1", told("--raduis", "--radius")},
       {"simulate cube --raduis=1", told("--raduis", "--radius")},
@@ -95,6 +97,8 @@ TEST(Usage, NamesAndValuesAreToldWithTheirOption) {
       {"bench --poses kontact", "--poses: there is no 'kontact'; did you mean 'contact'?"},
       {"bench --seconds soon", "--seconds: expected a number above 0 and at most 1e30, not 'soon'"},
       {"bench --radius abc", "--radius: expected a number above 0 and at most 1e30, not 'abc'"},
+      {"register f.csv --target 1 2", "--target: a value is missing"},
+      {"register f.csv --measured-in cm", "--measured-in: there is no 'cm'"},
       {"plan --planner RTT", "--planner: there is no 'RTT'; did you mean 'RRT'?"},
       {"plan --seconds soon",
        "--seconds: expected seconds above 0 and not above 86400, not 'soon'"},

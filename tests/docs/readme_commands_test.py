@@ -73,7 +73,7 @@ def main():
                        KEEPOUT_WEB=str(web_page(root, folder)))
     commands = commands_of((root / "README.md").read_text(encoding="utf-8"))
     missing = [n for n in ("inspect", "replay", "simulate", "serve", "verify", "bench", "compare", "live", "plan",
-                           "report")
+                           "register", "report")
                if not any(c.startswith(f"./run {n}") for c in commands)]
     if missing:
         sys.exit(f"README.md does not show {', '.join(missing)}: has the page changed its form?")

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pybind11/stl.h>
+
+#include <optional>
+#include <vector>
+
+#include "arrays.h"
+#include "bindings.h"
+#include "keepout/control/rigid_fit.h"
+#include "keepout/control/target_error.h"
+
+namespace keepout::python {
+namespace {
+
+/// A copy, row by row.
+template <class Matrix>
+py::array_t<double> array_of(const Matrix& matrix) {
+  py::array_t<double> array({matrix.rows(), matrix.cols()});
+  for (int i = 0; i < matrix.rows(); ++i) {
+    for (int j = 0; j < matrix.cols(); ++j) array.mutable_at(i, j) = matrix(i, j);
+  }
+  return array;
+}
+
+std::vector<Vec3> points_of(const py::object& given, const Expected& expected) {
+  const Doubles numbers = doubles(given, expected);
+  std::vector<Vec3> points;
+  for (py::ssize_t i = 0; i < numbers.size() / 3; ++i) {
+    points.push_back(row(numbers.data(), static_cast<std::size_t>(i)));
+  }
+  return points;
+}
+
+RigidFit fit(const py::object& measured, const py::object& model, const py::object& weights) {
+  std::vector<double> each;
+  if (!weights.is_none()) {
+    const Doubles given = doubles(weights, {"weights", {any}, "(n,)"});
+    each.assign(given.data(), given.data() + given.size());
+    if (each.empty()) refuse("weights", "one for each pair, or None", "none at all");
+  }
+  return fit_rigid(points_of(measured, {"measured", {any, 3}, "(n, 3)"}),
+                   points_of(model, {"model", {any, 3}, "(n, 3)"}), each);
+}
+
+double margin(const RigidFit& fit, const py::object& targets, double confidence,
+              std::optional<double> fle) {
+  const Expected expected{"targets", {any, 3}, "(n, 3) or (3,)", OneForAll::allowed};
+  return registration_margin(fit, points_of(targets, expected), confidence, fle);
+}
+
+constexpr const char* fit_doc =
+    R"(The RigidFit of points measured in the robot's frame to the same ones of the model, in the mesh's.
+
+measured, model: (n, 3), n >= 3 pairs in the same order, both in the unit of the mesh: what is
+measured in metres times 1000 for a mesh in mm. weights: (n,), above 0, best proportional to
+1 / (localisation error of the pair)^2; None: all alike. Raises Error for points that coincide or
+lie on a line; large residuals are no error: see RigidFit.doubt.)";
+
+constexpr const char* margin_doc =
+    R"(What to add to a guard's margin, so that with the probability `confidence` the registration is off
+by no more [length]: at a target, or at all points of the convex hull of several at once, such as
+of the corners of the box in which the tool works.
+
+targets: (3,) or (n, 3), in the frame of the mesh. fle: root mean square localisation error of a
+pair [length]; None: estimated from the residuals, which takes a larger margin where they are few.
+It does not cover what all pairs have in common, nor what moves later.)";
+
+}  // namespace
+
+void bind_registration(py::module_& module) {
+  py::class_<RigidFit>(module, "RigidFit",
+                       "The rigid motion that brings measured points onto those of a mesh.")
+      .def_property_readonly(
+          "mesh_from_robot", [](const RigidFit& self) { return array_of(self.matrix()); },
+          "(4, 4) float64: takes a measured point to the mesh; as `base` of a Chain as well.")
+      .def_property_readonly(
+          "residuals",
+          [](const py::object& self) { return view(self.cast<const RigidFit&>().residuals, self); },
+          "(n,) float64: how far apart each pair is left [length].")
+      .def_readonly("fre", &RigidFit::fre,
+                    "Fiducial registration error: weighted root mean square of the residuals "
+                    "[length].")
+      .def_property_readonly("estimated_fle", &RigidFit::estimated_fle,
+                             "Localisation error of a pair that the residuals let expect [length].")
+      .def_readonly("scale", &RigidFit::scale,
+                    "How much wider the model's points are spread than the measured ones.")
+      .def_readonly("doubt", &RigidFit::doubt,
+                    "Which mistake the residuals speak of: a unit, an order, a reflection; or ''.")
+      .def("__repr__", [](const RigidFit& self) {
+        return py::str("<keepout.RigidFit of {} pairs, fre={:.4g}>")
+            .format(self.residuals.size(), self.fre);
+      });
+  module.def("fit_rigid", &fit, py::arg("measured"), py::arg("model"),
+             py::arg("weights") = py::none(), fit_doc);
+  module.def(
+      "target_error",
+      [](const RigidFit& fit, const py::object& target, std::optional<double> fle) {
+        return array_of(target_error(fit, point(target, "target"), fle).covariance);
+      },
+      py::arg("fit"), py::arg("target"), py::arg("fle") = py::none(),
+      "(3, 3) float64: covariance of the error of a registration at a target (3,), in the mesh's\n"
+      "frame [length^2]. The square root of its trace is the target registration error, TRE, root\n"
+      "mean square; that of its largest eigenvalue the deviation in the worst direction. fle: as "
+      "in\n"
+      "registration_margin.");
+  module.def("registration_margin", &margin, py::arg("fit"), py::arg("targets"),
+             py::arg("confidence") = 0.99, py::arg("fle") = py::none(), margin_doc);
+}
+
+}  // namespace keepout::python

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "commands.h"
+#include "keepout/error.h"
+#include "temporary_folder.h"
+
+namespace keepout::app {
+namespace {
+
+class Register : public testing::Test {
+ protected:
+  std::string text(RegisterOptions options) {
+    options.fiducials = file;
+    std::ostringstream out;
+    register_fiducials(options, out);
+    return out.str();
+  }
+
+  TemporaryFolder folder;
+  // A quarter of a turn about z, and (10, 20, 30); the last is off by 0.4 mm along x.
+  std::filesystem::path file = folder.write("pairs.csv",
+                                            "mx,my,mz,x,y,z\n0,0,0,10,20,30\n0,0,90,10,20,120\n"
+                                            "80,0,0,10,100,30\n0,-70,0,80.4,20,30\n");
+};
+
+TEST_F(Register, TellsMatrixWorstPairErrorAndMarginAndWritesThem) {
+  const std::filesystem::path path = folder.path() / "out.json";
+  const std::string printed =
+      text({.targets = {20, 0, 40, -10, 30, 50}, .fle = 0.5, .confidence = 0.95, .json = path});
+  for (const char* words : {"4 pairs", "FRE 0.1", "FLE 0.5000 mm, as told", "20, 0, 40",
+                            "-10, 30, 50", "at all of them and between", "probability of 0.95"}) {
+    EXPECT_NE(printed.find(words), std::string::npos) << words << '\n' << printed;
+  }
+  const nlohmann::json json = nlohmann::json::parse(std::ifstream(path));
+  EXPECT_NEAR(json["mesh_from_robot"][1][0], 1.0, 1e-4);
+  EXPECT_NEAR(json["mesh_from_robot"][2][3], 30.0, 0.2);
+  double largest = 0.0;
+  for (const nlohmann::json& pair : json["pairs"]) {
+    largest = std::max(largest, pair["residual"].get<double>());
+  }
+  for (const nlohmann::json& pair : json["pairs"]) {
+    EXPECT_EQ(pair["is_worst"], pair["residual"] == largest) << pair;
+  }
+  EXPECT_EQ(json["pairs"][3]["line"], 5);
+  EXPECT_FALSE(json["fle_is_estimated"].get<bool>());
+  ASSERT_EQ(json["targets"].size(), 2u);
+  EXPECT_GT(json["margin"], json["targets"][0]["margin"]);
+  EXPECT_GT(json["targets"][0]["margin"], json["targets"][0]["tre"]);
+}
+
+TEST_F(Register, DoubtsAWrongUnitAndAsksForTargets) {
+  const std::string printed = text({.unit = LengthUnit::metre});
+  EXPECT_NE(printed.find("Do not trust it: the model's points are spread 0.001 times"),
+            std::string::npos)
+      << printed;
+  EXPECT_NE(printed.find("--target X Y Z"), std::string::npos) << printed;
+  EXPECT_EQ(text({}).find("Do not trust"), std::string::npos);
+}
+
+TEST_F(Register, NamesTheFileOfPointsThatFixNoRotation) {
+  file = folder.write("line.csv", "0,0,0,10,20,30\n0,0,90,10,20,120\n0,0,50,10,20,80\n");
+  try {
+    text({});
+    ADD_FAILURE() << "no error";
+  } catch (const Error& error) {
+    EXPECT_NE(
+        std::string(error.what()).find("line.csv: fit_rigid: the measured points lie on a line"),
+        std::string::npos)
+        << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace keepout::app
