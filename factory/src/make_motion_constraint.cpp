@@ -4,11 +4,43 @@
 #include <utility>
 
 #include "chosen_index.h"
+#include "keepout/activation/convex_tool_rule.h"
 #include "keepout/activation/registry.h"
+#include "keepout/adapters/narrow_phase_registry.h"
 #include "keepout/error.h"
 #include "keepout/solvers/registry.h"
 
 namespace keepout {
+namespace {
+
+/// The rule of the settings' tool, or the one they name. Throws Error where they contradict each
+/// other.
+std::unique_ptr<Activation> make_rule(const MotionConstraintSettings& settings) {
+  const MotionConstraintSettings usual;
+  if (!settings.tool) {
+    if (settings.narrow_phase != usual.narrow_phase) {
+      throw Error("the narrow phase '" + settings.narrow_phase +
+                  "' is for a convex tool, and there is none: give a tool, or leave narrow_phase "
+                  "at '" +
+                  usual.narrow_phase + "'");
+    }
+    return make_activation(settings.activation);
+  }
+  if (settings.tool_radius != 0.0) {
+    throw Error(
+        "a convex tool takes the place of the ball of tool_radius: leave tool_radius at 0, and "
+        "give "
+        "the tool itself a radius");
+  }
+  if (settings.activation != usual.activation) {
+    throw Error("a convex tool is kept out by a rule of its own: leave activation at '" +
+                usual.activation + "', not '" + settings.activation + "'");
+  }
+  return std::make_unique<ConvexToolRule>(*settings.tool,
+                                          make_narrow_phase(settings.narrow_phase, *settings.tool));
+}
+
+}  // namespace
 
 std::shared_ptr<const SpatialIndex> make_or_load_index(std::shared_ptr<const Mesh> mesh,
                                                        const MotionConstraintSettings& settings) {
@@ -29,24 +61,25 @@ MotionConstraint make_motion_constraint(std::shared_ptr<const Mesh> mesh,
   if (index) {
     warn_of_coarse_index(*index, settings.tool_radius + settings.margin, settings.warn);
   }
-  auto activation = make_activation(settings.activation);
+  auto activation = make_rule(settings);
   auto solver = make_solver(settings.solver);
-  return {std::move(mesh),
-          std::move(index),
-          std::move(activation),
-          std::move(solver),
-          {.radius = settings.radius,
-           .tool_radius = settings.tool_radius,
-           .margin = settings.margin,
-           .damping = settings.damping,
-           .recovery = settings.recovery,
-           .deepest = settings.deepest,
-           .refinements = settings.refinements,
-           .nodes = settings.nodes,
-           .query = settings.query,
-           .distances = settings.distances},
-          settings.capacity,
-          settings.activation == "certified" ? settings.inside : Inside::taken_as_is};
+  return {
+      std::move(mesh),
+      std::move(index),
+      std::move(activation),
+      std::move(solver),
+      {.radius = settings.radius,
+       .tool_radius = settings.tool_radius,
+       .margin = settings.margin,
+       .damping = settings.damping,
+       .recovery = settings.recovery,
+       .deepest = settings.deepest,
+       .refinements = settings.refinements,
+       .nodes = settings.nodes,
+       .query = settings.query,
+       .distances = settings.distances},
+      settings.capacity,
+      settings.activation == "certified" && !settings.tool ? settings.inside : Inside::taken_as_is};
 }
 
 }  // namespace keepout
