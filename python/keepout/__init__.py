@@ -17,6 +17,7 @@ or anything that numpy makes one of; what is wrong with one is said by keepout.E
 from ._core import (
     Body,
     Chain,
+    ConvexTool,
     Error,
     Hits,
     Index,
@@ -37,6 +38,7 @@ from ._core import (
     chain_of_table,
     indices,
     load_mesh,
+    narrow_phases,
     read_chain,
     solvers,
 )

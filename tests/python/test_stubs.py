@@ -29,7 +29,7 @@ def run(arguments, folder):
 
 
 def test_stubtest(tmp_path):
-    made_by_others = "Hits Inspection InstrumentStep MotionProof Planes Polytope Step"
+    made_by_others = "ConvexTool Hits Inspection InstrumentStep MotionProof Planes Polytope Step"
     allowed = [
         # pybind11 has a metaclass of its own, and an __init__ for what cannot be made by hand.
         r"keepout\.(Body|Chain|Index|Instrument|InstrumentGuard|Joint|Mesh|MotionConstraint|TableRow|"
@@ -57,6 +57,9 @@ length = float(np.linalg.norm(step.motion)) + step.planes.offsets.sum()
 steps = guard.steps(np.zeros((4, 3)), np.zeros((4, 3)), threads=2, out=keepout.Steps.empty(4))
 chain = keepout.Chain([keepout.Joint("turn", axis=(0, 1, 0))], base=np.eye(4))
 instrument = keepout.Instrument(chain, [keepout.Body("tip", [(1, (0, 0, 1))], 0.5)])
+tool: keepout.ConvexTool = keepout.ConvexTool.capsule((0, 0, 0), (0, 0, 9), 1.5).rotated(np.eye(3))
+shaft = keepout.MotionConstraint(mesh, tool=tool, narrow_phase=keepout.narrow_phases()[0].name)
+nearest = tool.separations((0, 0, 1), mesh.vertices[mesh.triangles]).min()
 whole = keepout.InstrumentGuard(mesh, instrument, index=guard.index, margin=0.5)
 q: np.ndarray[Any, np.dtype[np.float64]] = whole.step([0.0], linear=(0, 0, 1)).increment
 share: float = whole.prove(q, increment=[0.1]).share
