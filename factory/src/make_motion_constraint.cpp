@@ -16,25 +16,16 @@ namespace {
 /// The rule of the settings' tool, or the one they name. Throws Error where they contradict each
 /// other.
 std::unique_ptr<Activation> make_rule(const MotionConstraintSettings& settings) {
-  const MotionConstraintSettings usual;
   if (!settings.tool) {
-    if (settings.narrow_phase != usual.narrow_phase) {
-      throw Error("the narrow phase '" + settings.narrow_phase +
-                  "' is for a convex tool, and there is none: give a tool, or leave narrow_phase "
-                  "at '" +
-                  usual.narrow_phase + "'");
-    }
-    return make_activation(settings.activation);
+    if (settings.narrow_phase == "exact") return make_activation(settings.activation);
+    throw Error("the narrow phase '" + settings.narrow_phase + "' is for a convex tool: give one");
   }
   if (settings.tool_radius != 0.0) {
-    throw Error(
-        "a convex tool takes the place of the ball of tool_radius: leave tool_radius at 0, and "
-        "give "
-        "the tool itself a radius");
+    throw Error("a convex tool takes the place of the ball: leave tool_radius at 0");
   }
-  if (settings.activation != usual.activation) {
-    throw Error("a convex tool is kept out by a rule of its own: leave activation at '" +
-                usual.activation + "', not '" + settings.activation + "'");
+  if (settings.activation != "certified") {
+    throw Error("a convex tool has a rule of its own: leave activation at 'certified', not '" +
+                settings.activation + "'");
   }
   return std::make_unique<ConvexToolRule>(*settings.tool,
                                           make_narrow_phase(settings.narrow_phase, *settings.tool));
@@ -63,23 +54,23 @@ MotionConstraint make_motion_constraint(std::shared_ptr<const Mesh> mesh,
   }
   auto activation = make_rule(settings);
   auto solver = make_solver(settings.solver);
-  return {
-      std::move(mesh),
-      std::move(index),
-      std::move(activation),
-      std::move(solver),
-      {.radius = settings.radius,
-       .tool_radius = settings.tool_radius,
-       .margin = settings.margin,
-       .damping = settings.damping,
-       .recovery = settings.recovery,
-       .deepest = settings.deepest,
-       .refinements = settings.refinements,
-       .nodes = settings.nodes,
-       .query = settings.query,
-       .distances = settings.distances},
-      settings.capacity,
-      settings.activation == "certified" && !settings.tool ? settings.inside : Inside::taken_as_is};
+  const bool has_sides = settings.activation == "certified" && !settings.tool;
+  return {std::move(mesh),
+          std::move(index),
+          std::move(activation),
+          std::move(solver),
+          {.radius = settings.radius,
+           .tool_radius = settings.tool_radius,
+           .margin = settings.margin,
+           .damping = settings.damping,
+           .recovery = settings.recovery,
+           .deepest = settings.deepest,
+           .refinements = settings.refinements,
+           .nodes = settings.nodes,
+           .query = settings.query,
+           .distances = settings.distances},
+          settings.capacity,
+          has_sides ? settings.inside : Inside::taken_as_is};
 }
 
 }  // namespace keepout

@@ -59,7 +59,6 @@ chain = keepout.Chain([keepout.Joint("turn", axis=(0, 1, 0))], base=np.eye(4))
 instrument = keepout.Instrument(chain, [keepout.Body("tip", [(1, (0, 0, 1))], 0.5)])
 tool: keepout.ConvexTool = keepout.ConvexTool.capsule((0, 0, 0), (0, 0, 9), 1.5).rotated(np.eye(3))
 shaft = keepout.MotionConstraint(mesh, tool=tool, narrow_phase=keepout.narrow_phases()[0].name)
-nearest = tool.separations((0, 0, 1), mesh.vertices[mesh.triangles]).min()
 whole = keepout.InstrumentGuard(mesh, instrument, index=guard.index, margin=0.5)
 q: np.ndarray[Any, np.dtype[np.float64]] = whole.step([0.0], linear=(0, 0, 1)).increment
 share: float = whole.prove(q, increment=[0.1]).share

@@ -7,22 +7,16 @@
 
 namespace keepout {
 
-/// The forms of a tool's text, a line each, for help and messages.
-extern const std::string_view convex_tool_forms;
+/// The forms of a tool's text, for help and messages.
+inline constexpr std::string_view convex_tool_forms =
+    "sphere:R or capsule:X,Y,Z:X,Y,Z:R or box:X,Y,Z:X,Y,Z or blade:LENGTH:WIDTH:THICKNESS or "
+    "hull:X,Y,Z:...[:R] or hull:FILE";
 
-/// A convex tool from one line of text, such as "capsule:0,0,0:0,0,12:1.5". The tip is the origin,
-/// the axes are the mesh's, and all numbers are in its unit:
-///
-///     sphere:R                         a ball around the tip
-///     capsule:X,Y,Z:X,Y,Z:R            all within R of a segment
-///     box:X,Y,Z:X,Y,Z                  along the axes, between two opposite corners
-///     blade:LENGTH:WIDTH:THICKNESS     a box that rises LENGTH along z from the tip, WIDTH across
-///                                      in x and THICKNESS in y, the tip amid its lower end
-///     hull:X,Y,Z:...[:R]               all within R of the hull of the points
-///     hull:FILE                        the hull of the vertices of a mesh file
-///
-/// Throws Error, which names what is wrong and the form that was meant; as well where ConvexTool
-/// does, and where the file is none or cannot be read. Reads a file, and allocates.
+/// A convex tool from a text of one of these forms. The tip is the origin, the axes are the mesh's,
+/// lengths in its unit. A box lies between two opposite corners. A blade is a box that rises LENGTH
+/// along z from the tip, WIDTH across in x and THICKNESS in y, the tip amid its lower end. A hull
+/// is that of points, or of the vertices of a mesh file. Throws Error, which names what is wrong
+/// and the forms; as well where ConvexTool does, and where a file cannot be read.
 ConvexTool tool_of_text(std::string_view text);
 
 }  // namespace keepout
