@@ -84,7 +84,7 @@ def guard_of(**settings):
 @pytest.mark.parametrize(
     "make, says",
     [
-        (lambda: ConvexTool.sphere(np.nan), "radius of a convex tool"),
+        (lambda: guard_of(narrow_phase="exakt"), "did you mean 'exact'"),
         (lambda: ConvexTool.capsule((0, 0), (0, 0, 1), 1), "start: expected"),
         (lambda: ConvexTool.hull(corners.T), r"points: expected numbers of shape \(n, 3\)"),
         (lambda: ConvexTool.sphere(1).rotated(2 * np.eye(3)), "rotation"),

@@ -48,7 +48,7 @@ import numpy as np
 import keepout
 
 mesh = keepout.Mesh(np.zeros((3, 3)), [[0, 1, 2]])
-guard = keepout.MotionConstraint(mesh, index=keepout.Index(mesh), margin=0.2, query="sphere")
+guard = keepout.MotionConstraint(mesh, index=keepout.Index(mesh), margin=0.2, query="sphere", tool=None)
 step = guard.step((0, 0, 1), np.zeros(3), rows=([[1, 0, 0]], [0]))
 status: keepout.Status = step.status
 distance: float | None = step.distance
@@ -58,7 +58,6 @@ steps = guard.steps(np.zeros((4, 3)), np.zeros((4, 3)), threads=2, out=keepout.S
 chain = keepout.Chain([keepout.Joint("turn", axis=(0, 1, 0))], base=np.eye(4))
 instrument = keepout.Instrument(chain, [keepout.Body("tip", [(1, (0, 0, 1))], 0.5)])
 tool: keepout.ConvexTool = keepout.ConvexTool.capsule((0, 0, 0), (0, 0, 9), 1.5).rotated(np.eye(3))
-shaft = keepout.MotionConstraint(mesh, tool=tool, narrow_phase=keepout.narrow_phases()[0].name)
 whole = keepout.InstrumentGuard(mesh, instrument, index=guard.index, margin=0.5)
 q: np.ndarray[Any, np.dtype[np.float64]] = whole.step([0.0], linear=(0, 0, 1)).increment
 share: float = whole.prove(q, increment=[0.1]).share
