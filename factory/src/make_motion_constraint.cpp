@@ -16,6 +16,10 @@ namespace {
 /// The rule of the settings' tool, or the one they name. Throws Error where they contradict each
 /// other.
 std::unique_ptr<Activation> make_rule(const MotionConstraintSettings& settings) {
+#if KEEPOUT_BALLS_ONLY
+  if (settings.tool) throw Error("this build guards balls alone");
+  return make_activation(settings.activation);
+#else
   if (!settings.tool) {
     if (settings.narrow_phase == "exact") return make_activation(settings.activation);
     throw Error("the narrow phase '" + settings.narrow_phase + "' is for a convex tool: give one");
@@ -29,6 +33,7 @@ std::unique_ptr<Activation> make_rule(const MotionConstraintSettings& settings) 
   }
   return std::make_unique<ConvexToolRule>(*settings.tool,
                                           make_narrow_phase(settings.narrow_phase, *settings.tool));
+#endif
 }
 
 }  // namespace
