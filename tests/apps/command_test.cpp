@@ -212,7 +212,7 @@ TEST_F(Command, AConvexToolByNameStepsAsPutTogetherByHandBitForBit) {
     for (const auto& [tip, desired, status, motion] : loop) {
       poses << std::setprecision(17) << tip.transpose() << " " << desired.transpose() << "\n";
     }
-    poses.close();
+    poses << std::flush;
     const Outcome outcome = run("replay cube.stl --poses poses.txt --out s.csv --tool " + text +
                                 " --narrow-phase " + phase);
     ASSERT_EQ(outcome.status, 0) << outcome.output;

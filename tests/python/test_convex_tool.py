@@ -86,7 +86,6 @@ def guard_of(**settings):
     [
         (lambda: guard_of(narrow_phase="exakt"), "did you mean 'exact'"),
         (lambda: ConvexTool.capsule((0, 0), (0, 0, 1), 1), "start: expected"),
-        (lambda: ConvexTool.hull(corners.T), r"points: expected numbers of shape \(n, 3\)"),
         (lambda: ConvexTool.sphere(1).rotated(2 * np.eye(3)), "rotation"),
         (lambda: guard_of(tool_radius=0.5), "leave tool_radius at 0"),
         (lambda: guard_of(tool=None, narrow_phase="ccd_gjk"), "'ccd_gjk' is for a convex tool"),

@@ -48,8 +48,7 @@ std::shared_ptr<const SpatialIndex> make_or_load_index(std::shared_ptr<const Mes
                                                        const MotionConstraintSettings& settings);
 
 /// Builds the parts and puts them together. Throws Error, listing what exists, for a name that does
-/// not, and for settings out of range or that contradict each other: a tool beside a tool_radius or
-/// another activation, a narrow_phase without a tool.
+/// not, and for settings out of range, or that contradict each other, as a tool and a tool_radius.
 MotionConstraint make_motion_constraint(std::shared_ptr<const Mesh> mesh,
                                         const MotionConstraintSettings& settings);
 
