@@ -1,15 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A tool that is more than a tip: a burr and its shaft, kept out of a mesh with the parts of a
-// motion constraint put together by hand.
+// A tool that is more than a tip: a burr and its shaft, kept out of a mesh.
 #include <cstdio>
-#include <memory>
 
-#include "keepout/activation/convex_tool_rule.h"
-#include "keepout/adapters/index_registry.h"
-#include "keepout/error.h"
-#include "keepout/mesh/load_mesh.h"
-#include "keepout/solvers/registry.h"
-#include "keepout/step/motion_constraint.h"
+#include "keepout/keepout.h"
 
 int main(int argc, char** argv) try {
   if (argc != 2) {
@@ -20,9 +13,7 @@ int main(int argc, char** argv) try {
 
   // 12 mm of a shaft 3 mm thick, leaning by 45 degrees; the tip is the centre of its lower end.
   const auto shaft = keepout::ConvexTool::capsule({0, 0, 0}, {8.5, 0, 8.5}, 1.5);
-  keepout::MotionConstraint guard(
-      mesh, keepout::make_index("wide_bvh", mesh), std::make_unique<keepout::ConvexToolRule>(shaft),
-      keepout::make_solver("active_set"), {.radius = 5.0, .margin = 0.2});
+  auto guard = keepout::make_motion_constraint(mesh, {.tool = shaft, .margin = 0.2});
 
   // A hand that comes from above and wants to go straight through to below.
   const keepout::Box& box = mesh->bounds();

@@ -10,6 +10,9 @@
 
 #include "keepout/activation/registry.h"
 #include "keepout/adapters/index_registry.h"
+#include "keepout/adapters/narrow_phase_registry.h"
+#include "keepout/error.h"
+#include "keepout/factory/convex_tool_text.h"
 #include "keepout/solvers/registry.h"
 #include "named_mesh.h"
 #include "names.h"
@@ -227,6 +230,28 @@ void add_constraint_options(CLI::App& command, MotionConstraintSettings& setting
 void add_activation(CLI::App& command, std::string& activation) {
   add_name(command, "--activation", activation, names(activation_rules()),
            "Rule that chooses the planes");
+}
+
+void add_convex_tool(CLI::App& command, MotionConstraintSettings& settings) {
+  const auto take = [&settings](const std::string& text) {
+    try {
+      settings.tool = tool_of_text(text);
+    } catch (const Error& error) {
+      throw CLI::ValidationError("--tool", error.what());
+    }
+  };
+  CLI::Option* tool =
+      command
+          .add_option_function<std::string>(
+              "--tool", take,
+              "A convex tool that shall not touch the surface, in place of the ball; it does not "
+              "turn. The tip is its origin, and a blade rises from it along z. One of: " +
+                  std::string(convex_tool_forms))
+          ->type_name("TOOL")
+          ->excludes(command.get_option("--tool-radius"));
+  add_name(command, "--narrow-phase", settings.narrow_phase, names(narrow_phase_backends()),
+           "What proposes the planes of --tool; each is proven, whatever it proposes")
+      ->needs(tool);
 }
 
 std::string usage_error(const CLI::App& app, const CLI::ParseError& error) {

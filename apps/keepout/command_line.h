@@ -86,6 +86,10 @@ void add_spaces(CLI::App& command, LoadOptions& load);
 void add_constraint_options(CLI::App& command, MotionConstraintSettings& settings);
 void add_activation(CLI::App& command, std::string& activation);
 
+/// Of every command that guards one tool, and judges it by nothing but the guard: a convex tool in
+/// place of the ball. Precondition: add_constraint_options.
+void add_convex_tool(CLI::App& command, MotionConstraintSettings& settings);
+
 /// What is wrong with a command line, in words that name the option and its value, with a hint at
 /// what was meant and at the help. `error`: what app.parse() threw, and no call for help.
 std::string usage_error(const CLI::App& app, const CLI::ParseError& error);

@@ -110,6 +110,7 @@ void add_replay(CLI::App& app, ReplayOptions& options) {
       ->type_name("PLANES.csv");
   add_activation(command, options.constraint.activation);
   add_constraint_options(command, options.constraint);
+  add_convex_tool(command, options.constraint);
   CLI::Option* closed = command.add_flag_callback(
       "--closed-loop", [&options] { options.loop = Loop::closed; },
       "Lines are 'gx gy gz rx ry rz', goal and reset position: the tip starts at the first line's "
@@ -181,6 +182,7 @@ void add_serve(CLI::App& app, ServeOptions& options) {
       ->type_name("NUMBER");
   add_activation(command, service.constraint.activation);
   add_constraint_options(command, service.constraint);
+  add_convex_tool(command, service.constraint);
   command.footer(std::string(protocol_help));
 }
 

@@ -4,11 +4,39 @@
 #include <utility>
 
 #include "chosen_index.h"
+#include "keepout/activation/convex_tool_rule.h"
 #include "keepout/activation/registry.h"
+#include "keepout/adapters/narrow_phase_registry.h"
 #include "keepout/error.h"
 #include "keepout/solvers/registry.h"
 
 namespace keepout {
+namespace {
+
+/// The rule of the settings' tool, or the one they name. Throws Error where they contradict each
+/// other.
+std::unique_ptr<Activation> make_rule(const MotionConstraintSettings& settings) {
+#if KEEPOUT_BALLS_ONLY
+  if (settings.tool) throw Error("this build guards balls alone");
+  return make_activation(settings.activation);
+#else
+  if (!settings.tool) {
+    if (settings.narrow_phase == "exact") return make_activation(settings.activation);
+    throw Error("the narrow phase '" + settings.narrow_phase + "' is for a convex tool: give one");
+  }
+  if (settings.tool_radius != 0.0) {
+    throw Error("a convex tool takes the place of the ball: leave tool_radius at 0");
+  }
+  if (settings.activation != "certified") {
+    throw Error("a convex tool has a rule of its own: leave activation at 'certified', not '" +
+                settings.activation + "'");
+  }
+  return std::make_unique<ConvexToolRule>(*settings.tool,
+                                          make_narrow_phase(settings.narrow_phase, *settings.tool));
+#endif
+}
+
+}  // namespace
 
 std::shared_ptr<const SpatialIndex> make_or_load_index(std::shared_ptr<const Mesh> mesh,
                                                        const MotionConstraintSettings& settings) {
@@ -29,8 +57,9 @@ MotionConstraint make_motion_constraint(std::shared_ptr<const Mesh> mesh,
   if (index) {
     warn_of_coarse_index(*index, settings.tool_radius + settings.margin, settings.warn);
   }
-  auto activation = make_activation(settings.activation);
+  auto activation = make_rule(settings);
   auto solver = make_solver(settings.solver);
+  const bool has_sides = settings.activation == "certified" && !settings.tool;
   return {std::move(mesh),
           std::move(index),
           std::move(activation),
@@ -46,7 +75,7 @@ MotionConstraint make_motion_constraint(std::shared_ptr<const Mesh> mesh,
            .query = settings.query,
            .distances = settings.distances},
           settings.capacity,
-          settings.activation == "certified" ? settings.inside : Inside::taken_as_is};
+          has_sides ? settings.inside : Inside::taken_as_is};
 }
 
 }  // namespace keepout

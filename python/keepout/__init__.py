@@ -17,6 +17,7 @@ or anything that numpy makes one of; what is wrong with one is said by keepout.E
 from ._core import (
     Body,
     Chain,
+    ConvexTool,
     Error,
     Guide,
     GuideState,
@@ -43,6 +44,7 @@ from ._core import (
     fit_rigid,
     indices,
     load_mesh,
+    narrow_phases,
     read_chain,
     registration_margin,
     solvers,

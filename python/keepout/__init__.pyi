@@ -16,6 +16,7 @@ from ._results import Steps as Steps
 __all__ = [
     "Body",
     "Chain",
+    "ConvexTool",
     "Error",
     "Hits",
     "Index",
@@ -43,6 +44,7 @@ __all__ = [
     "fit_rigid",
     "indices",
     "load_mesh",
+    "narrow_phases",
     "read_chain",
     "registration_margin",
     "solvers",
@@ -131,6 +133,7 @@ def load_mesh(
 def indices() -> list[Part]: ...
 def activations() -> list[Part]: ...
 def solvers() -> list[Part]: ...
+def narrow_phases() -> list[Part]: ...
 
 class Hits:
     @property
@@ -258,6 +261,23 @@ class Step:
     @property
     def softening(self) -> Literal["none", "guides"]: ...
 
+class ConvexTool:
+    @staticmethod
+    def sphere(radius: float) -> ConvexTool: ...
+    @staticmethod
+    def capsule(start: ArrayLike, end: ArrayLike, radius: float) -> ConvexTool: ...
+    @staticmethod
+    def box(low: ArrayLike, high: ArrayLike) -> ConvexTool: ...
+    @staticmethod
+    def hull(points: ArrayLike, radius: float = 0.0) -> ConvexTool: ...
+    @staticmethod
+    def of_text(text: str) -> ConvexTool: ...
+    def rotated(self, rotation: ArrayLike) -> ConvexTool: ...
+    @property
+    def points(self) -> NDArray[np.float64]: ...
+    @property
+    def radius(self) -> float: ...
+
 class MotionConstraint:
     def __init__(
         self,
@@ -269,6 +289,8 @@ class MotionConstraint:
         solver: str = "active_set",
         radius: float = 5.0,
         tool_radius: float = 0.0,
+        tool: ConvexTool | None = None,
+        narrow_phase: str = "exact",
         margin: float = 0.2,
         damping: float = 0.0,
         recovery: float = 0.05,
@@ -328,6 +350,8 @@ class MotionConstraint:
     def radius(self) -> float: ...
     @property
     def tool_radius(self) -> float: ...
+    @property
+    def tool(self) -> ConvexTool | None: ...
     @property
     def margin(self) -> float: ...
     @property

@@ -88,6 +88,7 @@ void bind_index(py::module_& module);
 void bind_guides(py::module_& module);
 void bind_planes(py::module_& module);
 void bind_step(py::module_& module);
+void bind_convex_tool(py::module_& module);
 void bind_motion_constraint(py::module_& module);
 void bind_chain(py::module_& module);
 void bind_instrument(py::module_& module);

@@ -7,6 +7,7 @@
 #include "bindings.h"
 #include "keepout/activation/registry.h"
 #include "keepout/adapters/index_registry.h"
+#include "keepout/adapters/narrow_phase_registry.h"
 #include "keepout/error.h"
 #include "keepout/solvers/registry.h"
 #include "keepout/version.h"
@@ -50,6 +51,9 @@ void bind_parts(py::module_& module) {
   module.def(
       "solvers", [] { return parts_of(solver_backends()); },
       "The solvers of the step problem in this build: a list of Part.");
+  module.def(
+      "narrow_phases", [] { return parts_of(narrow_phase_backends()); },
+      "The narrow phases of this build, for a ConvexTool: a list of Part.");
 }
 
 }  // namespace
@@ -68,6 +72,7 @@ PYBIND11_MODULE(_core, module) {
   bind_planes(module);
   bind_guides(module);
   bind_step(module);
+  bind_convex_tool(module);
   bind_motion_constraint(module);
   bind_chain(module);
   bind_instrument(module);

@@ -12,18 +12,21 @@
 namespace keepout::python {
 namespace {
 
-constexpr std::array<std::string_view, 21> arguments = {
-    "mesh",      "index",   "index_cache",   "activation", "solver",      "radius",   "tool_radius",
-    "margin",    "damping", "recovery",      "deepest",    "refinements", "nodes",    "query",
-    "distances", "inside",  "max_triangles", "max_planes", "max_joints",  "max_rows", "max_looks"};
+constexpr std::array<std::string_view, 23> arguments = {
+    "mesh",          "index",       "index_cache",  "activation", "solver",    "radius",
+    "tool_radius",   "tool",        "narrow_phase", "margin",     "damping",   "recovery",
+    "deepest",       "refinements", "nodes",        "query",      "distances", "inside",
+    "max_triangles", "max_planes",  "max_joints",   "max_rows",   "max_looks"};
 
 py::str repr(const Guard& guard) {
   const MotionConstraintSettings& s = guard.settings();
   return py::str(
              "<keepout.MotionConstraint index='{}' activation='{}' solver='{}' radius={:g} "
-             "tool_radius={:g} margin={:g} on {} triangles>")
-      .format(guard.index()->name, s.activation, s.solver, s.radius, s.tool_radius, s.margin,
-              guard.index()->mesh->triangle_count());
+             "{}={} margin={:g} on {} triangles>")
+      .format(guard.index()->name, s.activation, s.solver, s.radius,
+              s.tool ? "tool" : "tool_radius",
+              s.tool ? py::repr(py::cast(*s.tool)) : py::str("{:g}").format(s.tool_radius),
+              s.margin, guard.index()->mesh->triangle_count());
 }
 
 constexpr const char* class_doc =
@@ -35,6 +38,8 @@ index: a name of indices(), or an Index of this mesh. index_cache: a folder that
 indices for the next start. activation, solver: a name of activations(), solvers().
 radius: of the motion sphere, the farthest that the tip may go in a step [length].
 tool_radius: of the ball around the tip that shall not touch the mesh [length].
+tool: a ConvexTool that shall not touch it in place of the ball; leave tool_radius and activation
+as they are: inside, refinements and nodes have no effect. narrow_phase: a name of narrow_phases().
 margin: distance to keep beyond that [length].
 damping: weight of |u|^2 beside the task; above 0 with more than three joints, such as 1e-6 of
 a squared column of the Jacobian.
@@ -100,8 +105,9 @@ void bind_motion_constraint(py::module_& module) {
       .def(py::init([](const py::object& mesh, const py::object& index,
                        const std::optional<std::filesystem::path>& index_cache,
                        std::string activation, std::string solver, double radius,
-                       double tool_radius, double margin, double damping, double recovery,
-                       double deepest, int refinements, int nodes, const std::string& query,
+                       double tool_radius, std::optional<ConvexTool> tool, std::string narrow_phase,
+                       double margin, double damping, double recovery, double deepest,
+                       int refinements, int nodes, const std::string& query,
                        const std::string& distances, const std::string& inside,
                        py::ssize_t max_triangles, py::ssize_t max_planes, py::ssize_t max_joints,
                        py::ssize_t max_rows, py::ssize_t max_looks, const py::kwargs& others) {
@@ -111,6 +117,8 @@ void bind_motion_constraint(py::module_& module) {
              settings.solver = std::move(solver);
              settings.radius = radius;
              settings.tool_radius = tool_radius;
+             settings.tool = std::move(tool);
+             settings.narrow_phase = std::move(narrow_phase);
              settings.margin = margin;
              settings.damping = damping;
              settings.recovery = recovery;
@@ -136,7 +144,8 @@ void bind_motion_constraint(py::module_& module) {
            py::arg("mesh"), py::kw_only(), py::arg("index") = usual.index,
            py::arg("index_cache") = py::none(), py::arg("activation") = usual.activation,
            py::arg("solver") = usual.solver, py::arg("radius") = usual.radius,
-           py::arg("tool_radius") = usual.tool_radius, py::arg("margin") = usual.margin,
+           py::arg("tool_radius") = usual.tool_radius, py::arg("tool") = py::none(),
+           py::arg("narrow_phase") = usual.narrow_phase, py::arg("margin") = usual.margin,
            py::arg("damping") = usual.damping, py::arg("recovery") = usual.recovery,
            py::arg("deepest") = usual.deepest, py::arg("refinements") = usual.refinements,
            py::arg("nodes") = usual.nodes, py::arg("query") = "motion",
@@ -181,11 +190,14 @@ void bind_motion_constraint(py::module_& module) {
           "Of the ball around the tip that shall not touch the mesh [length].")
       .def_property_readonly(
           "margin", [](const Guard& self) { return self.settings().margin; },
-          "Distance that is kept beyond that [length].")
+          "Distance that is kept beyond that, or from the tool [length].")
+      .def_property_readonly(
+          "tool", [](const Guard& self) { return self.settings().tool; },
+          "The ConvexTool that shall not touch the mesh; None for the ball.")
       .def_property_readonly(
           "distance_kept",
           [](const Guard& self) { return self.settings().tool_radius + self.settings().margin; },
-          "From the tip to the mesh: tool radius and margin [length].")
+          "From the tip, or all of the tool, to the mesh: tool radius and margin [length].")
       .def("__repr__", &repr);
 }
 

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iomanip>
 #include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -15,6 +16,7 @@
 #include <vector>
 
 #include "apps/command_process.h"
+#include "factory/tools_by_name.h"
 #include "keepout/fixtures/shapes.h"
 #include "keepout/mesh/binary_stl.h"
 #include "keepout/simd_target.h"
@@ -200,6 +202,28 @@ TEST_F(Command, AToolWithARadiusIsKeptOffByItAndTheMargin) {
   EXPECT_LT((vector(rows("s.csv").at(0), "u") - Vec3(1, -2, -0.4)).norm(), 1e-12);
 }
 
+TEST_F(Command, AConvexToolByNameStepsAsPutTogetherByHandBitForBit) {
+  const auto phases = narrow_phase_backends();
+  std::size_t number = 0;
+  for (const auto& [text, tool] : test::tools_by_name()) {
+    const std::string phase(phases[number++ % phases.size()].name);  // each of them once
+    const auto loop = test::loop_by_hand(tool, phase);
+    std::ofstream poses(file("poses.txt"));
+    for (const auto& [tip, desired, status, motion] : loop) {
+      poses << std::setprecision(17) << tip.transpose() << " " << desired.transpose() << "\n";
+    }
+    poses << std::flush;
+    const Outcome outcome = run("replay cube.stl --poses poses.txt --out s.csv --tool " + text +
+                                " --narrow-phase " + phase);
+    ASSERT_EQ(outcome.status, 0) << outcome.output;
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      const Row row = rows("s.csv").at(i);
+      EXPECT_EQ(row.at("status"), name(loop[i].status));
+      EXPECT_EQ(vector(row, "u"), loop[i].motion) << text << " " << phase;
+    }
+  }
+}
+
 TEST_F(Command, TheCertifiedRuleWithoutAMarginIsRefused) {
   folder_.write("poses.txt", "3 4 51 1 -2 -3\n");
   const Outcome outcome = run("replay cube.stl --poses poses.txt --out s.csv --margin 0");
@@ -236,6 +260,11 @@ TEST_F(Command, MistakesAreToldOfAndLeaveNothingBehind) {
       {"replay cube.stl --poses poses.txt --out s.csv --branches -1", "--branches"},
       {"replay cube.stl --poses poses.txt --out s.csv --query box", "--query"},
       {"replay cube.stl --poses poses.txt --out s.csv --tool-radius -1", "--tool-radius"},
+      {"replay cube.stl --poses poses.txt --out s.csv --tool ball:1", "'ball': there is no such"},
+      {"replay cube.stl --poses poses.txt --out s.csv --tool sphere:1 --tool-radius 1",
+       "--tool cannot be given together"},
+      {"replay cube.stl --poses poses.txt --out s.csv --narrow-phase exact", "with --tool"},
+      {"simulate cube.stl --tool sphere:1", "there is no option --tool"},
   };
   for (const auto& [arguments, told] : mistakes) {
     const Outcome outcome = run(arguments);

@@ -29,7 +29,10 @@ def run(arguments, folder):
 
 
 def test_stubtest(tmp_path):
-    made_by_others = "Hits Inspection InstrumentStep MotionProof Planes Polytope RigidFit Step"
+    made_by_others = (
+        "ConvexTool Guide GuideState Hits Inspection InstrumentStep MotionProof Planes Polytope Region "
+        "RigidFit Step"
+    )
     allowed = [
         # pybind11 has a metaclass of its own, and an __init__ for what cannot be made by hand.
         r"keepout\.(Body|Chain|Index|Instrument|InstrumentGuard|Joint|Mesh|MotionConstraint|TableRow|"
@@ -48,7 +51,7 @@ import numpy as np
 import keepout
 
 mesh = keepout.Mesh(np.zeros((3, 3)), [[0, 1, 2]])
-guard = keepout.MotionConstraint(mesh, index=keepout.Index(mesh), margin=0.2, query="sphere")
+guard = keepout.MotionConstraint(mesh, index=keepout.Index(mesh), margin=0.2, query="sphere", tool=None)
 step = guard.step((0, 0, 1), np.zeros(3), rows=([[1, 0, 0]], [0]))
 status: keepout.Status = step.status
 distance: float | None = step.distance
@@ -57,6 +60,7 @@ length = float(np.linalg.norm(step.motion)) + step.planes.offsets.sum()
 steps = guard.steps(np.zeros((4, 3)), np.zeros((4, 3)), threads=2, out=keepout.Steps.empty(4))
 chain = keepout.Chain([keepout.Joint("turn", axis=(0, 1, 0))], base=np.eye(4))
 instrument = keepout.Instrument(chain, [keepout.Body("tip", [(1, (0, 0, 1))], 0.5)])
+tool: keepout.ConvexTool = keepout.ConvexTool.capsule((0, 0, 0), (0, 0, 9), 1.5).rotated(np.eye(3))
 whole = keepout.InstrumentGuard(mesh, instrument, index=guard.index, margin=0.5)
 q: np.ndarray[Any, np.dtype[np.float64]] = whole.step([0.0], linear=(0, 0, 1)).increment
 share: float = whole.prove(q, increment=[0.1]).share

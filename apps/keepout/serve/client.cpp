@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "keepout/error.h"
+#include "keepout/factory/convex_tool_text.h"
 #include "names.h"
 #if KEEPOUT_HAS_URDF
 #include "keepout/urdf/read_chain.h"
@@ -82,6 +83,20 @@ void open_instrument(Client& client, const std::shared_ptr<const Mesh>& mesh,
     client.instrument = make_instrument_constraint(mesh, index, instrument_of(request), settings);
   } catch (const Error& error) {
     throw Refusal{"no_instrument", printable(error.what())};
+  }
+}
+
+void open_tool(Client& client, const std::shared_ptr<const Mesh>& mesh,
+               const std::shared_ptr<const SpatialIndex>& index, MotionConstraintSettings settings,
+               const Request& request) {
+  settings.tool_radius = 0.0;
+  settings.activation = "certified";
+  settings.narrow_phase = request.narrow_phase.is_given ? request.narrow_phase.text : "exact";
+  try {
+    settings.tool = tool_of_text(request.tool.text);
+    client.tool = make_motion_constraint(mesh, index, settings);
+  } catch (const Error& error) {
+    throw Refusal{"no_tool", printable(error.what())};
   }
 }
 

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "keepout/factory/make_instrument_constraint.h"
+#include "keepout/factory/make_motion_constraint.h"
 #include "keepout/step/side_watch.h"
 #include "serve/request.h"
 
@@ -14,6 +15,7 @@ namespace keepout::app {
 struct Client {
   SideWatch tip;                                                  // where his last step led it
   std::optional<InstrumentConstraint> instrument = std::nullopt;  // that he has opened
+  std::optional<MotionConstraint> tool = std::nullopt;            // of a tool that he has opened
 };
 
 /// Opens the instrument of a request in place of the one that there was; `settings` are what it
@@ -22,6 +24,12 @@ struct Client {
 void open_instrument(Client& client, const std::shared_ptr<const Mesh>& mesh,
                      const std::shared_ptr<const SpatialIndex>& index,
                      InstrumentConstraintSettings settings, const Request& request);
+
+/// The same for the tool of his steps, in place of the one before or the service's, whose rule and
+/// narrow phase do not count. Throws Refusal, "no_tool". May read a file.
+void open_tool(Client& client, const std::shared_ptr<const Mesh>& mesh,
+               const std::shared_ptr<const SpatialIndex>& index, MotionConstraintSettings settings,
+               const Request& request);
 
 /// Carries out a request. Throws Refusal: "no_instrument" if none was opened, "not_a_request" for
 /// another number of joints.

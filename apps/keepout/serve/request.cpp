@@ -35,7 +35,7 @@ struct VerbKeys {
   std::array<std::string_view, 9> optional;
 };
 
-constexpr std::array<VerbKeys, 8> verbs{
+constexpr std::array<VerbKeys, 9> verbs{
     {{"step", Verb::step, {"tip", "desired"}, {"jacobian", "rows", "bounds"}},
      {"steps", Verb::steps, {"motions"}, {}},
      {"polytope", Verb::polytope, {"tip", "radius"}, {}},
@@ -45,6 +45,7 @@ constexpr std::array<VerbKeys, 8> verbs{
       {"base_link", "tip_link", "scale", "frame", "margin", "band", "period", "recovery",
        "orientation_weight"}},
      {"joint_step", Verb::joint_step, {"q"}, {"linear", "angular", "increment", "weights"}},
+     {"tool", Verb::tool, {"tool"}, {"narrow_phase"}},
      {"info", Verb::info, {}, {}},
      {"statuses", Verb::statuses, {}, {}},
      {"ping", Verb::ping, {}, {}}}};

@@ -19,7 +19,8 @@ enum class Verb : std::uint8_t {
   statuses,
   ping,
   instrument,
-  joint_step
+  joint_step,
+  tool
 };
 
 /// The largest request that there is room for.
@@ -71,6 +72,8 @@ struct Request {
   TextValue urdf{"urdf"};
   TextValue base_link{"base_link"};
   TextValue tip_link{"tip_link"};
+  TextValue tool{"tool"};  // as tool_of_text reads it
+  TextValue narrow_phase{"narrow_phase"};
   NumberTable scale;     // of the lengths in the URDF
   NumberTable frame;     // (4, 4): of link 0, in that of the mesh
   NumberTable capsules;  // (count, 9): link and point, link and point, radius
@@ -91,7 +94,9 @@ struct Request {
             &margin, &band,    &period,   &recovery,  &orientation_weight,
             &q,      &linear,  &angular,  &increment, &weights};
   }
-  std::array<TextValue*, 3> texts() noexcept { return {&urdf, &base_link, &tip_link}; }
+  std::array<TextValue*, 5> texts() noexcept {
+    return {&urdf, &base_link, &tip_link, &tool, &narrow_phase};
+  }
 };
 
 /// Thrown for a line that is not carried out: what the client is told.

@@ -223,6 +223,7 @@ polytope  tip, radius: normals and offsets of the free space around it, normal .
 instrument  urdf, a file, and capsules, arrays of [link,x,y,z,link,x,y,z,radius]: opens an
           instrument of this client's.
 joint_step  q, and linear and angular of its flange, or an increment: the increment of the joints.
+tool      tool, as --tool takes it, and narrow_phase: from now on this client's steps guard it.
 info      version, mesh, settings and limits.
 statuses  all statuses by name, each with its reason.
 ping      whether it is there.
@@ -231,7 +232,8 @@ A line that cannot be carried out is answered, moves nothing and ends nothing:
 
   {"id":2,"error":{"kind":"not_a_request","message":"'tip' must be an array of three numbers"}}
 
-kinds: line_too_long, not_json, not_a_request, no_instrument, too_many_clients. All of it: docs/serve.md
+kinds: line_too_long, not_json, not_a_request, no_instrument, no_tool, too_many_clients.
+All of it: docs/serve.md
 )";
 
 }  // namespace keepout::app

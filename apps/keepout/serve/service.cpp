@@ -68,6 +68,8 @@ OrderedJson info(const Mesh& mesh, const ServiceSettings& settings) {
             {"solver", c.solver},
             {"radius", c.radius},
             {"tool_radius", c.tool_radius},
+            {"convex_tool", c.tool.has_value()},
+            {"narrow_phase", c.narrow_phase},
             {"margin", c.margin},
             {"damping", c.damping},
             {"recovery", c.recovery},
@@ -136,8 +138,8 @@ Service::Service(std::shared_ptr<const Mesh> mesh, const ServiceSettings& settin
       instrument_{.solver = settings.constraint.solver,
                   .options = {.margin = settings.constraint.margin,
                               .recovery = settings.constraint.recovery}},
-      constraint_(make_motion_constraint(mesh, index_,
-                                         with_room_for(settings.constraint, settings.limits))),
+      settings_(with_room_for(settings.constraint, settings.limits)),
+      constraint_(make_motion_constraint(mesh, index_, settings_)),
       longest_line_(settings.longest_line),
       request_(settings.limits),
       jacobian_(3, static_cast<Eigen::Index>(settings.limits.joints)),
@@ -175,14 +177,14 @@ std::size_t Service::carry_out(Client& client, std::string& out) {
   out += ',';
   switch (request_.verb) {
     case Verb::step:
-      append_single_step(client.tip, out);
+      append_single_step(client, out);
       break;
     case Verb::steps:
-      append_batch(client.tip, out);
+      append_batch(client, out);
       return std::max<std::size_t>(request_.motions.rows, 1);
     case Verb::polytope:
-      append_polytope(
-          out, constraint_.free_polytope(vector(request_.tip.numbers), request_.radius.numbers[0]));
+      append_polytope(out, constraint_of(client).free_polytope(vector(request_.tip.numbers),
+                                                               request_.radius.numbers[0]));
       break;
     case Verb::info:
       out += info_;
@@ -194,6 +196,10 @@ std::size_t Service::carry_out(Client& client, std::string& out) {
       open_instrument(client, mesh_, index_, instrument_, request_);
       append_instrument(out, client.instrument->instrument());
       return most_work;
+    case Verb::tool:
+      open_tool(client, mesh_, index_, settings_, request_);
+      out += "\"ok\":true";
+      return most_work;
     case Verb::joint_step:
       append_joint_step(out, joint_step(client, request_), request_.q.columns);
       break;
@@ -204,7 +210,12 @@ std::size_t Service::carry_out(Client& client, std::string& out) {
   return 1;
 }
 
-void Service::append_single_step(SideWatch& tip, std::string& out) {
+/// Of a tool that he has opened, or that of all.
+MotionConstraint& Service::constraint_of(Client& client) noexcept {
+  return client.tool ? *client.tool : constraint_;
+}
+
+void Service::append_single_step(Client& client, std::string& out) {
   Motion motion{.tip = vector(request_.tip.numbers), .desired = vector(request_.desired.numbers)};
   const auto joints = static_cast<Eigen::Index>(request_.jacobian.columns);
   if (joints > 0) {
@@ -217,17 +228,17 @@ void Service::append_single_step(SideWatch& tip, std::string& out) {
     motion.rows = ExtraRows(request_.rows.numbers.data(), request_.bounds.numbers.data(),
                             static_cast<Eigen::Index>(request_.rows.rows));
   }
-  append_step(out, constraint_.step(motion, tip), request_.jacobian.columns);
+  append_step(out, constraint_of(client).step(motion, client.tip), request_.jacobian.columns);
 }
 
-void Service::append_batch(SideWatch& tip, std::string& out) {
+void Service::append_batch(Client& client, std::string& out) {
   const std::span<const double> numbers = request_.motions.numbers;
   out += "\"steps\":[";
   for (std::size_t i = 0; i < numbers.size(); i += 6) {
     const Motion motion{.tip = vector(numbers.subspan(i)),
                         .desired = vector(numbers.subspan(i + 3))};
     out += i == 0 ? "{" : ",{";
-    append_step(out, constraint_.step(motion, tip), 0);
+    append_step(out, constraint_of(client).step(motion, client.tip), 0);
     out += '}';
   }
   out += ']';

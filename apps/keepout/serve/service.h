@@ -68,8 +68,8 @@ struct ServiceSettings {
 };
 
 /// Carries out requests: one mesh, one index, one constraint of tips and one memory for all
-/// clients, who are told apart by the side of their tips, and by their instruments. Not
-/// thread-safe.
+/// clients, who are told apart by the side of their tips, and by the instruments and tools that
+/// they open. Not thread-safe.
 class Service {
  public:
   /// Throws Error where make_motion_constraint does.
@@ -83,12 +83,14 @@ class Service {
 
  private:
   std::size_t carry_out(Client& client, std::string& out);
-  void append_single_step(SideWatch& tip, std::string& out);
-  void append_batch(SideWatch& tip, std::string& out);
+  MotionConstraint& constraint_of(Client& client) noexcept;
+  void append_single_step(Client& client, std::string& out);
+  void append_batch(Client& client, std::string& out);
 
   std::shared_ptr<const Mesh> mesh_;
   std::shared_ptr<const SpatialIndex> index_;
   InstrumentConstraintSettings instrument_;  // what a client says nothing of
+  MotionConstraintSettings settings_;        // the same, with room for the largest request
   MotionConstraint constraint_;
   std::size_t longest_line_;
   Request request_;               // in hand, or done

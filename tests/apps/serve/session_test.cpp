@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "factory/tools_by_name.h"
 #include "keepout/fixtures/poses.h"
 #include "keepout/fixtures/robots.h"
 #include "keepout/fixtures/shapes.h"
@@ -114,6 +115,37 @@ TEST_F(SessionTest, ClosedLoopsOfSeveralClientsAreThoseOfTheirOwnConstraintsBitF
   }
   EXPECT_GT(limited, 100u);
   EXPECT_GT(recovering, 0u);
+}
+
+TEST(SessionWithTools, AToolThatAClientOpensStepsAsPutTogetherByHandBitForBit) {
+  ServiceSettings settings;
+  settings.constraint.tool = ConvexTool::sphere(3.0);
+  Service service(test::cube(), settings);
+  Session other(service);
+  const std::string line = step_line({0, 0, 54}, {0, 0, -3});
+  const std::string sphere = ask(other, line);
+  EXPECT_NEAR(motion_in(sphere).z(), -0.8, 1e-9);
+  const auto phases = narrow_phase_backends();
+  std::size_t number = 0;
+  for (const auto& [text, tool] : test::tools_by_name()) {
+    const std::string phase(phases[number++ % phases.size()].name);  // each of them once
+    Session session(service);
+    EXPECT_EQ(
+        ask(session, R"({"do":"tool","tool":")" + text + R"(","narrow_phase":")" + phase + "\"}"),
+        "{\"id\":null,\"ok\":true}\n");
+    for (const auto& [tip, desired, status, motion] : test::loop_by_hand(tool, phase)) {
+      const std::string answer = ask(session, step_line(tip, desired));
+      EXPECT_TRUE(same_bits(motion_in(answer), motion)) << text << " " << phase << " " << answer;
+      EXPECT_EQ(Json::parse(answer)["status"], name(status));
+    }
+  }
+  for (const char* wrong :
+       {R"("tool":"sphere:0,0")", R"("tool":"blade:4:2:1","narrow_phase":"a")"}) {
+    const std::string request = R"({"do":"tool",)" + std::string(wrong) + '}';
+    EXPECT_EQ(Json::parse(ask(other, request))["error"]["kind"], "no_tool");
+  }
+  EXPECT_EQ(ask(other, line), sphere) << "neither the tool of others nor one that is none";
+  EXPECT_EQ(Json::parse(ask(other, R"({"do":"info"})"))["settings"]["convex_tool"], true);
 }
 
 #if KEEPOUT_HAS_URDF

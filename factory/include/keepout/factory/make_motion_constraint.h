@@ -4,8 +4,10 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
+#include "keepout/geometry/convex_tool.h"
 #include "keepout/step/motion_constraint.h"
 
 namespace keepout {
@@ -21,9 +23,14 @@ struct MotionConstraintSettings {
   std::function<void(const std::string&)> warn = {};
   std::string activation = "certified";  // see activation_rules()
   std::string solver = "active_set";     // see solver_backends()
-  double radius = 5.0;          // of the motion sphere: the farthest that the tip may go [length]
-  double tool_radius = 0.0;     // of the ball around the tip that shall not touch the mesh [length]
-  double margin = 0.2;          // distance to keep beyond that; certified needs one [length]
+  double radius = 5.0;       // of the motion sphere: the farthest that the tip may go [length]
+  double tool_radius = 0.0;  // of the ball around the tip that shall not touch the mesh [length]
+  /// What shall not touch the mesh instead of that ball; tool_of_text() makes one of a text. It is
+  /// kept out by a rule of its own, ConvexToolRule: activation stays "certified" and tool_radius 0,
+  /// inside, refinements and nodes have no effect. Empty: the ball.
+  std::optional<ConvexTool> tool = {};
+  std::string narrow_phase = "exact";  // of a tool; see narrow_phase_backends()
+  double margin = 0.2;                 // distance to keep beyond that; certified needs one [length]
   double damping = 0.0;         // weight of |u|^2 beside the task: above 0 with more than 3 joints
   double recovery = 0.05;       // how far a tip that is too close is led away in a cycle [length]
   double deepest = 10.0;        // no tip is led out from deeper inside [length]
@@ -31,7 +38,7 @@ struct MotionConstraintSettings {
   int nodes = 0;                // of a branch and bound for a better motion still; 0: none
   Query query = Query::motion;  // how far around the tip triangles are looked for
   Distances distances = Distances::where_known;  // of which tips Step::distance is told
-  Inside inside = Inside::led_out;  // what becomes of a tip that starts inside; certified only
+  Inside inside = Inside::led_out;  // what becomes of a tip that starts inside; a ball's, certified
   Capacity capacity = {};           // the largest step there is room for
 };
 
@@ -41,7 +48,7 @@ std::shared_ptr<const SpatialIndex> make_or_load_index(std::shared_ptr<const Mes
                                                        const MotionConstraintSettings& settings);
 
 /// Builds the parts and puts them together. Throws Error, listing what exists, for a name that does
-/// not, and for settings out of range.
+/// not, and for settings out of range, or that contradict each other, as a tool and a tool_radius.
 MotionConstraint make_motion_constraint(std::shared_ptr<const Mesh> mesh,
                                         const MotionConstraintSettings& settings);
 

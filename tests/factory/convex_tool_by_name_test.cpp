@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A convex tool by name is the one that is put together by hand.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "factory/tools_by_name.h"
+#include "keepout/keepout.h"
+#include "temporary_folder.h"
+
+namespace keepout {
+namespace {
+
+void expect_same(const ConvexTool& one, const ConvexTool& other) {
+  EXPECT_EQ(std::vector<Vec3>(one.points().begin(), one.points().end()),
+            std::vector<Vec3>(other.points().begin(), other.points().end()));
+  EXPECT_EQ(one.radius(), other.radius());
+}
+
+/// What is said of a text or of settings; empty if nothing is wrong with them.
+template <class Make>
+std::string objection(const Make& make) {
+  try {
+    make();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return {};
+}
+
+TEST(ConvexToolByName, EachTextIsTheToolMadeByHand) {
+  for (const auto& [text, tool] : test::tools_by_name()) {
+    SCOPED_TRACE(text);
+    expect_same(tool_of_text(text), tool);
+  }
+  const TemporaryFolder folder;
+  const std::string file =
+      folder.write("1,2,3:4.off", "OFF\n4 2 0\n0 0 0\n3 0 0\n0 3 0\n0 0 3\n3 0 1 2\n3 0 1 3\n");
+  const std::vector<Vec3> corners{{0, 0, 0}, {3, 0, 0}, {0, 3, 0}, {0, 0, 3}};
+  expect_same(tool_of_text("hull:" + file), ConvexTool::hull(corners));
+}
+
+TEST(ConvexToolByName, ATextThatIsNoToolIsToldWithTheForms) {
+  for (const auto& [text, why] : std::vector<std::pair<std::string, std::string>>{
+           {"", "the tool '': there is no such form"},
+           {"sphere:nan", "'nan' is not a number"},
+           {"sphere:-1", "the radius of a convex tool"},
+           {"capsule:0,0:0,0,1:1", "'0,0' is not a point"},
+           {"blade:4:2:0", "of a blade must be above 0"},
+           {"hull:0,0,0:1,1:2", "'1,1' is not a point"},
+           {"hull:/none.stl", "there is no file '/none.stl'"},
+           {"hull:" + testing::TempDir(), "there is no file"}}) {
+    const std::string told = objection([&] { tool_of_text(text); });
+    EXPECT_NE(told.find(why), std::string::npos) << text << "\n" << told;
+    EXPECT_NE(told.find("write sphere:R or capsule:"), std::string::npos) << text << "\n" << told;
+  }
+}
+
+TEST(ConvexToolByName, AMangledTextIsAToolOrAnErrorAndNothingElse) {
+  Random random(6);
+  const std::string letters = ":,.-+019e naxh\n";
+  int tools = 0;
+  for (int i = 0; i < 2000; ++i) {
+    for (auto [text, tool] : test::tools_by_name()) {
+      for (int changes = 0; changes < 2; ++changes) {
+        text[random.below(text.size())] = letters[random.below(letters.size())];
+      }
+      tools += objection([&] { tool_of_text(text); }).empty();
+    }
+  }
+  EXPECT_GT(tools, 100);
+}
+
+// The steps on all are hardly ever different; that a name is looked up, a wrong one below tells.
+TEST(ConvexToolByName, StepsOnEachNarrowPhaseAsPutTogetherByHandBitForBit) {
+  for (const NarrowPhaseBackend& backend : narrow_phase_backends()) {
+    for (const auto& [text, tool] : test::tools_by_name()) {
+      SCOPED_TRACE(std::string(backend.name) + " " + text);
+      const std::string name(backend.name);
+      MotionConstraint guard =
+          make_motion_constraint(test::cube(), {.tool = tool_of_text(text), .narrow_phase = name});
+      int held = 0;
+      for (const auto& expected : test::loop_by_hand(tool, name, name == "exact" ? 400 : 40)) {
+        const Step step = guard.step({.tip = expected.tip, .desired = expected.desired});
+        EXPECT_EQ(step.status, expected.status);
+        EXPECT_EQ(step.motion, expected.motion);
+        held += step.status == Status::limited;
+      }
+      EXPECT_GT(held, 5);
+    }
+  }
+}
+
+TEST(ConvexToolByName, IsTakenAsItIsInsideAndRefusedWhereSettingsContradictEachOther) {
+  const ConvexTool tool = ConvexTool::sphere(1.0);
+  MotionConstraint guard = make_motion_constraint(test::cube(), {.tool = tool});
+  EXPECT_EQ(guard.step({.tip = {0, 0, 0}, .desired = {0, 0, 1}}).motion, Vec3(0, 0, 1));
+  for (const auto& [settings, why] : std::vector<std::pair<MotionConstraintSettings, std::string>>{
+           {{.tool_radius = 0.5, .tool = tool}, "leave tool_radius at 0"},
+           {{.activation = "paper", .tool = tool}, "leave activation at 'certified', not 'paper'"},
+           {{.narrow_phase = "ccd_mpr"}, "'ccd_mpr' is for a convex tool"},
+           {{.tool = tool, .narrow_phase = "exakt"}, "did you mean 'exact'"}}) {
+    const std::string told = objection([&] { make_motion_constraint(test::cube(), settings); });
+    EXPECT_NE(told.find(why), std::string::npos) << told;
+  }
+}
+
+}  // namespace
+}  // namespace keepout
