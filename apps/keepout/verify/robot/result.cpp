@@ -20,6 +20,15 @@ Json share_of(const RobotTally& t, Status status) {
   return ratio(t.statuses[static_cast<std::size_t>(status)], t.cycles);
 }
 
+/// Of cycles that ended without a motion that may be carried out.
+Json unmoved_share(const RobotTally& t) {
+  std::uint64_t unmoved = 0;
+  for (std::size_t i = 0; i < status_count; ++i) {
+    unmoved += is_ok(static_cast<Status>(i)) ? 0 : t.statuses[i];
+  }
+  return ratio(unmoved, t.cycles);
+}
+
 Json statuses(const RobotTally& t) {
   Json json = Json::object();
   for (std::size_t i = 0; i < status_count; ++i) {
@@ -70,8 +79,7 @@ const Columns<RobotTally>& robot_columns() {
        &percent_text},
       {"cut_share", [](const Tally& t) { return share_of(t, Status::fallback); }, "cut", 6,
        &percent_text},
-      {"unsolved_share", [](const Tally& t) { return share_of(t, Status::unsolved); }, "none", 6,
-       &percent_text},
+      {"unmoved_share", [](const Tally& t) { return unmoved_share(t); }, "none", 6, &percent_text},
       {"worse", &Tally::worse, "worse", 5, &count_text},
       {"rounds_mean", [](const Tally& t) { return ratio(t.rounds, t.cycles); }, "rounds", 6,
        &figure<3>},

@@ -54,7 +54,7 @@ export function robotVerificationSections(): HTMLElement[] {
     ...which,
     share("blocked", "/blocked_share"),
     share("cut short", "/cut_share"),
-    share("no motion proven", "/unsolved_share"),
+    share("no motion proven", "/unmoved_share"),
     { ...column("worse than none", "/worse"), look: "harm" },
     column("excess", "/excess_mean", (value) => rounded(value, 2)),
     column("searched", "/excess_samples"),
