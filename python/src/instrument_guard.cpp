@@ -165,22 +165,22 @@ CertifiedMotion certified_of(const std::string& name) {
 }
 
 constexpr std::array<std::string_view, 17> guard_arguments = {"mesh",
-                                                        "instrument",
-                                                        "index",
-                                                        "index_cache",
-                                                        "solver",
-                                                        "margin",
-                                                        "band",
-                                                        "period",
-                                                        "recovery",
-                                                        "damping",
-                                                        "orientation_weight",
-                                                        "refinements",
-                                                        "check_sides",
-                                                        "max_triangles",
-                                                        "max_planes",
-                                                        "max_looks",
-                                                        "certified"};
+                                                              "instrument",
+                                                              "index",
+                                                              "index_cache",
+                                                              "solver",
+                                                              "margin",
+                                                              "band",
+                                                              "period",
+                                                              "recovery",
+                                                              "damping",
+                                                              "orientation_weight",
+                                                              "refinements",
+                                                              "check_sides",
+                                                              "max_triangles",
+                                                              "max_planes",
+                                                              "max_looks",
+                                                              "certified"};
 
 constexpr const char* guard_doc =
     R"(Keeps a whole instrument out of a mesh, in joint space: the joint increment nearest to what is asked

@@ -40,20 +40,24 @@ void JointCycle::run(const JointTask& task, InstrumentStep& result) noexcept {
   if (is_ok(result.status)) carry_out(best, result);
 }
 
-/// Where not even the first part of a motion can be proven, a shorter one bends less. The rows that
-/// were found stay.
+/// Where not even the first part of a motion can be proven, a shorter one bends less, and meets
+/// less. The rows that were found stay. Each attempt has half of the work that is left.
 void JointCycle::search(const JointTask& task, Trial& best, InstrumentStep& result) noexcept {
   rows_.start();
   double asked = 1.0;
   for (; asked >= least_asked; asked *= 0.25) {
-    const JointTask part = task.scaled(asked);
-    if (seek(part, best)) turn(part, best);
+    trouble_ = Status::free;
+    const bool is_worn_out = memory_.near.budget().halved([&] {
+      const JointTask part = task.scaled(asked);
+      if (seek(part, best)) turn(part, best);
+      return this->is_worn_out();
+    });
     if (best.share > 0.0 || best.cell == PointMotion::cells) break;
-    if (is_worn_out() || trouble_ != Status::free) break;
+    if (is_worn_out) trouble_ = Status::over_capacity;
+    if (trouble_ != Status::free && trouble_ != Status::over_capacity) break;
   }
   if (best.cell == 0) {
     result.status = Status::unsolved;
-    if (is_worn_out()) result.status = Status::over_capacity;
     if (trouble_ != Status::free) result.status = trouble_;
     rows_.remember_all();
   } else if (best.share < 1.0 || asked < 1.0) {

@@ -154,12 +154,12 @@ TEST(Example09, TheWholeInstrumentKeepsTheMarginAndAPlannerIsToldHowFarItMayGo) 
   int held = 0, stopped = -1;
   char body[16] = "";
   Vec3 tip = Vec3::Zero();
-  ASSERT_EQ(
-      std::sscanf(text.c_str(),
-                  "clear are %lf mm of 20 (limited)\nheld back in %d of 3000 cycles, stopped in %d, "
-                  "nearest %lf mm of 0.5: the %15s\nends at %lf %lf %lf",
-                  &clear, &held, &stopped, &nearest, body, &tip.x(), &tip.y(), &tip.z()),
-      8)
+  ASSERT_EQ(std::sscanf(
+                text.c_str(),
+                "clear are %lf mm of 20 (limited)\nheld back in %d of 3000 cycles, stopped in %d, "
+                "nearest %lf mm of 0.5: the %15s\nends at %lf %lf %lf",
+                &clear, &held, &stopped, &nearest, body, &tip.x(), &tip.y(), &tip.z()),
+            8)
       << text;
   // The jaws' end is 9 mm above the top, and the margin is kept but for its band.
   EXPECT_GT(clear, 8.4);

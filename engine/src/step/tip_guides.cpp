@@ -97,7 +97,8 @@ Step TipGuides::solve(MotionConstraint& guard, const Motion& motion) noexcept {
   double* bound = std::copy_n(rows > 0 ? motion.rows->bounds() : nullptr, rows, bounds_.data());
   for (const Plane& plane : planes_) {
     for (Eigen::Index c = 0; c < columns; ++c) {
-      *row++ = motion.jacobian ? plane.normal.dot(motion.jacobian->matrix().col(c)) : plane.normal[c];
+      *row++ =
+          motion.jacobian ? plane.normal.dot(motion.jacobian->matrix().col(c)) : plane.normal[c];
     }
     *bound++ = plane.bound;
   }
