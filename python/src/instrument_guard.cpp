@@ -140,6 +140,18 @@ void InstrumentGuard::forget() {
   constraint_.forget();
 }
 
+void InstrumentGuard::follow(std::shared_ptr<IndexHandle> index) {
+  if (!index) refuse("index", "a keepout.Index", "None");
+  const InUse no_proof(workers_.in_use());
+  const InUse no_step(constraint_in_use_);
+  {
+    const py::gil_scoped_release release;
+    constraint_.follow(index->mesh, index->index);
+    workers_.constraints().clear();
+  }
+  index_ = std::move(index);
+}
+
 void InstrumentGuard::set_guides(const std::vector<Guide>& guides) {
   const InUse no_proof(workers_.in_use());
   const InUse no_step(constraint_in_use_);
@@ -366,6 +378,10 @@ void bind_instrument_guard(py::module_& module) {
            py::kw_only(), py::arg("threads") = py::none(), proofs_doc)
       .def("forget", &InstrumentGuard::forget,
            "Forgets what the last cycle left: for motions that have nothing to do with each other.")
+      .def("follow", &InstrumentGuard::follow, py::arg("index"),
+           "Goes on with anatomy that has moved: an Index of the moved mesh, such as\n"
+           "index.refitted(mesh). All bodies are placed anew; one that the surface came too close\n"
+           "to recovers.")
       .def("set_guides", &InstrumentGuard::set_guides, py::arg("guides"),
            "Keeps these guides as well from the next step on, at most 16, instead of those there\n"
            "are: a list of Guide. They hold in proofs too.")

@@ -38,6 +38,7 @@ class InstrumentGuard {
   py::object proofs(const py::object& q, const py::object& increments,
                     std::optional<py::ssize_t> threads);
   void forget();
+  void follow(std::shared_ptr<IndexHandle> index);
   void set_guides(const std::vector<Guide>& guides);
   void set_options(const InstrumentOptions& options);
 

@@ -45,22 +45,27 @@ CycleMemory::CycleMemory(const Instrument& its, Neighborhood& its_near, Solver& 
     : instrument(its),
       near(its_near),
       solver(its_solver),
-      largest_position(std::max(100.0 * size_of(its, its_near.mesh()), 100.0)),
-      tolerance(1e-12 *
-                (size_of(its, its_near.mesh()) + std::min(its.chain().reach(), largest_position))),
-      is_watertight(keepout::is_watertight(its_near.mesh())),
       motion(its, its_near.budget()),
       rows(capacity.planes),
       earlier_rows(capacity.planes),
       warm(capacity.planes),
       earlier_warm(capacity.planes) {
   const auto n = static_cast<std::size_t>(its.chain().size());
-  for (std::size_t b = 0; b < its.bodies().size(); ++b) {
-    bodies.push_back({.near = NearSet(near.room(), reach_beyond_axis(its, b))});
-  }
   matrix.resize((2 * n + capacity.planes) * n);
   bounds.resize(2 * n + capacity.planes);
   solver.reserve(static_cast<int>(n), static_cast<int>(bounds.size()));
+  is_watertight = keepout::is_watertight(near.mesh());
+  prepare();
+}
+
+void CycleMemory::prepare() {
+  const double size = size_of(instrument, near.mesh());
+  largest_position = std::max(100.0 * size, 100.0);
+  tolerance = 1e-12 * (size + std::min(instrument.chain().reach(), largest_position));
+  bodies.clear();
+  for (std::size_t b = 0; b < instrument.bodies().size(); ++b) {
+    bodies.push_back({.near = NearSet(near.room(), reach_beyond_axis(instrument, b))});
+  }
   forget();
 }
 

@@ -80,6 +80,8 @@ struct CycleMemory {
   double farthest(int k) const noexcept {
     return instrument.chain().joint(k).kind == JointKind::prismatic ? largest_position : 100.0;
   }
+  /// Makes what depends on the mesh, which may be another one by now; forgets all. Allocates.
+  void prepare();
   /// Forgets all, and allocates nothing.
   void forget() noexcept;
   /// What was certified last, of bodies and guides.

@@ -9,6 +9,7 @@
 
 #include "joint_cycle.h"
 #include "keepout/error.h"
+#include "keepout/mesh/doctor.h"
 
 namespace keepout {
 namespace {
@@ -46,11 +47,12 @@ std::unique_ptr<Neighborhood> neighborhood_of(std::shared_ptr<const Mesh> mesh,
 
 struct InstrumentConstraint::State {
   State(std::shared_ptr<const Mesh> mesh, std::shared_ptr<const SpatialIndex> index, Instrument its,
-        std::unique_ptr<Solver> its_solver, const InstrumentCapacity& capacity)
+        std::unique_ptr<Solver> its_solver, const InstrumentCapacity& its_capacity)
       : instrument(std::move(its)),
         solver(std::move(its_solver)),
-        near(neighborhood_of(std::move(mesh), std::move(index), solver.get(), capacity)),
-        memory(instrument, *near, *solver, capacity) {}
+        near(neighborhood_of(std::move(mesh), std::move(index), solver.get(), its_capacity)),
+        memory(instrument, *near, *solver, its_capacity),
+        capacity(its_capacity) {}
 
   /// Throws unless all is in range, and rounding leaves something of the margin.
   void require_usable(const InstrumentOptions& o) const {
@@ -100,6 +102,7 @@ struct InstrumentConstraint::State {
   std::unique_ptr<Solver> solver;
   std::unique_ptr<Neighborhood> near;
   CycleMemory memory;
+  InstrumentCapacity capacity;
   InstrumentOptions options;
 };
 
@@ -193,6 +196,23 @@ const InstrumentOptions& InstrumentConstraint::options() const noexcept { return
 void InstrumentConstraint::set_options(const InstrumentOptions& options) {
   state_->require_usable(options);
   state_->options = options;
+}
+
+void InstrumentConstraint::follow(std::shared_ptr<const Mesh> moved,
+                                  std::shared_ptr<const SpatialIndex> index) {
+  State& state = *state_;
+  auto near = neighborhood_of(moved, std::move(index), state.solver.get(), state.capacity);
+  std::swap(*state.near, *near);
+  state.memory.prepare();
+  try {
+    state.require_usable(state.options);
+  } catch (...) {
+    std::swap(*state.near, *near);
+    state.memory.prepare();
+    throw;
+  }
+  const bool has_same_triangles = std::ranges::equal(moved->triangles(), near->mesh().triangles());
+  if (!has_same_triangles) state.memory.is_watertight = is_watertight(*moved);
 }
 
 void InstrumentConstraint::set_guides(std::vector<Guide> guides) {

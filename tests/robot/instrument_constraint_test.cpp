@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 #include <memory>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
@@ -290,6 +291,51 @@ TEST(InstrumentConstraint, RefusesPositionsThatLoseTheDigitsOfAWay) {
     at = moved(at, step);
   }
   EXPECT_GT(at[0], 1e4);
+}
+
+// A surface that comes and goes, refit ten times a beat; between refits all is certified, after
+// each it is looked where the instrument stands now.
+TEST(InstrumentConstraint, FollowsAnatomyThatDeforms) {
+  const Surface still = make_shape("sphere");
+  const auto at = [&](double beats) {
+    Surface surface = still;
+    const double swing = 0.3 * std::sin(2.0 * std::numbers::pi * beats);
+    for (Vec3& v : surface.vertices) v += swing * v.normalized();
+    return std::make_shared<const Mesh>(std::move(surface));
+  };
+  auto mesh = at(0.0);
+  const auto tree = std::make_shared<WideBvh>(mesh);
+  const Instrument instrument = psm_above();
+  const InstrumentOptions options{.margin = 0.5, .period = 0.05};
+  InstrumentConstraint guard(mesh, tree, instrument, make_solver("active_set"), options);
+  std::vector<double> q = straight_down(insertion_above_cube(instrument, *mesh, 0.6));
+  int recovering = 0;
+  int held = 0;
+  Random random(13);
+  for (int refit = 1; refit <= test::trials(60); ++refit) {
+    mesh = at(0.1 * refit);
+    tree->refit(mesh);
+    EXPECT_EQ(guard.step(q, Twist{}).status, Status::mesh_changed);
+    guard.follow(mesh, tree);
+    EXPECT_EQ(&guard.mesh(), mesh.get());
+    double before = clearance(instrument, *mesh, q);
+    ASSERT_GT(before, 0.0);
+    for (int cycle = 0; cycle < 10; ++cycle) {
+      const InstrumentStep step =
+          guard.step(q, {.linear = Vec3(0, 0, -0.3) + 0.2 * random.direction()});
+      ASSERT_TRUE(step.ok()) << step.reason();
+      recovering += step.status == Status::recovering ? 1 : 0;
+      held += step.status == Status::limited ? 1 : 0;
+      q = moved(q, step);
+      const double now = clearance(instrument, *mesh, q);
+      ASSERT_GE(now, std::min(options.margin, before) - options.band - 3.0 * guard.tolerance());
+      before = now;
+    }
+  }
+  EXPECT_GT(recovering, test::trials(20));
+  EXPECT_GT(held, test::trials(50));
+  EXPECT_THROW(guard.follow(mesh_of("cube"), tree), Error) << "an index of another mesh";
+  EXPECT_TRUE(guard.step(q, Twist{}).ok()) << "and it stays as it was";
 }
 
 TEST(InstrumentConstraint, NeverLeavesTheLimitsOfItsJoints) {

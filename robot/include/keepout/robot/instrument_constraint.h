@@ -149,6 +149,14 @@ class InstrumentConstraint {
   /// not. Allocates, and is not for the control path.
   void set_guides(std::vector<Guide> guides);
 
+  /// Goes on with anatomy that has moved: with a mesh and an index of it, which may be the one at
+  /// hand, refit, or one that was made ready elsewhere in the meantime. Bodies are placed anew; a
+  /// body that the surface came too close to recovers, one that it came over is told of (inside),
+  /// if the mesh is watertight. Once an index is refit, every step is `mesh_changed` until it is
+  /// followed. Allocates, and is not for the control path. Throws Error, and stays as it is, if the
+  /// index is not of this mesh, or the options are lost in the rounding of its size.
+  void follow(std::shared_ptr<const Mesh> moved, std::shared_ptr<const SpatialIndex> index);
+
   /// What is kept out.
   const Instrument& instrument() const noexcept;
   /// What it is kept out of.
