@@ -21,7 +21,7 @@
 namespace keepout {
 namespace {
 
-constexpr double margin = 0.2;
+constexpr double kept_off = 0.2;
 
 /// A ball of radius 1 beside a shape.
 struct Loop {
@@ -29,7 +29,7 @@ struct Loop {
       : mesh(std::make_shared<const Mesh>(make_shape(shape))),
         guard(mesh, std::make_shared<WideBvh>(mesh), std::make_unique<CertifiedRule>(),
               std::make_unique<ActiveSet>(),
-              {.radius = 5.0, .tool_radius = 1.0, .margin = margin, .damping = 0.0}) {}
+              {.radius = 5.0, .tool_radius = 1.0, .margin = kept_off, .damping = 0.0}) {}
 
   double distance(const Vec3& tip) const {
     double least = 1e30;
@@ -74,8 +74,8 @@ TEST(TipGuides, KeepCorridorLineAndMeshAtOnce) {
     for (std::size_t g = 0; g < 3; ++g) held[g] += guides.states()[g].holds ? 1 : 0;
     if (i % 20 != 0) continue;
     const double distance = loop.distance(tip);
-    ASSERT_GE(distance, 1.0 + margin - 1e-9);
-    met += distance < 1.0 + margin + 0.01 ? 1 : 0;
+    ASSERT_GE(distance, 1.0 + kept_off - 1e-9);
+    met += distance < 1.0 + kept_off + 0.01 ? 1 : 0;
   }
   for (const int count : held) EXPECT_GT(count, test::trials(50));
   EXPECT_GT(met, test::trials(10)) << "the mesh is in the way as well";
