@@ -39,10 +39,12 @@ struct WarmRow {
 };
 
 /// What is certified in a cycle of something that should keep `target`, and is at `distance`, when
-/// `floor` was certified last and `room` is to be left to a motion: never less than last time,
-/// unless it was moved by somebody else, or what it lies beside was.
+/// `floor` was certified last and `room` is to be left to a motion: the target, where it is kept;
+/// else never less than last time, unless it was moved by somebody else, or what it lies beside
+/// was.
 inline double certified_distance(double distance, double floor, double target, double room,
                                  double tolerance) noexcept {
+  if (distance >= target - 3.0 * tolerance) return target;
   const double held = std::min(floor, target);
   const double missing = held - distance;
   if (missing > 4.0 * tolerance) return distance - room;

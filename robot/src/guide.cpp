@@ -4,7 +4,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include "keepout/error.h"
@@ -14,6 +13,7 @@ namespace keepout {
 namespace {
 
 constexpr double usual_band = 0.002;           // [length], as InstrumentOptions::band
+constexpr double most_angle = 3.0;             // where chords still tell angles apart [rad]
 constexpr double usual_angular_band = 0.0002;  // [rad]
 
 Vec3 unit(const Vec3& direction, const std::string& name) {
@@ -26,8 +26,8 @@ Vec3 unit(const Vec3& direction, const std::string& name) {
 
 /// The chord of an angle on the unit sphere.
 double chord(double angle, const std::string& name) {
-  if (!(angle > 0.0 && angle <= std::numbers::pi)) {
-    throw Error("guide '" + name + "' has an angle that is not above 0 and at most pi");
+  if (!(angle > 0.0 && angle <= most_angle)) {
+    throw Error("guide '" + name + "' has an angle that is not above 0 and at most 3 rad");
   }
   return 2.0 * std::sin(0.5 * angle);
 }

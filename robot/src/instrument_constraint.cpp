@@ -221,6 +221,10 @@ void InstrumentConstraint::set_guides(std::vector<Guide> guides) {
                 std::to_string(guides.size()));
   }
   for (const Guide& guide : guides) {
+    if (!guide.is_angular() && !(guide.band() > 4.0 * state_->memory.tolerance)) {
+      throw Error("the band of guide '" + guide.name() +
+                  "' is lost in the rounding of an instrument and a mesh of this size");
+    }
     if (guide.link() <= state_->instrument.chain().size()) continue;
     throw Error("guide '" + guide.name() + "' is on link " + std::to_string(guide.link()) +
                 "; there are links 0 to " + std::to_string(state_->instrument.chain().size()));

@@ -33,7 +33,7 @@ void JointCycle::run(const JointTask& task, InstrumentStep& result) noexcept {
   Trial best{.cost = task.cost(memory_.increment)};
   search(task, best, result);
   if (is_ok(result.status) && is_recovering()) result.status = Status::recovering;
-  if (is_ok(result.status)) tell_of_guides(best, result);
+  tell_of_guides(best, result);
   result.rounds = rounds_;
   result.rows = best.rows;
   result.triangles = in_reach_;
@@ -47,6 +47,8 @@ void JointCycle::search(const JointTask& task, Trial& best, InstrumentStep& resu
   double asked = 1.0;
   for (; asked >= least_asked; asked *= 0.25) {
     trouble_ = Status::free;
+    is_shortened_ = asked < 1.0;
+    if (is_shortened_) rows_.forgive_curvature(0.0625);
     const bool is_worn_out = memory_.near.budget().halved([&] {
       const JointTask part = task.scaled(asked);
       if (seek(part, best)) turn(part, best);
@@ -89,10 +91,11 @@ void JointCycle::tell_of_guides(const Trial& best, InstrumentStep& result) noexc
     if (warm.owner < Instrument::most_bodies) continue;
     memory_.guide_states[warm.owner - Instrument::most_bodies].holds = true;
   }
-  if (best.softening == Softening::none) return;
-  for (const ContactRow& row : memory_.rows) {
-    if (row.owner < Instrument::most_bodies || !(row.bound > 0.0)) continue;
-    memory_.guide_states[row.owner - Instrument::most_bodies].gave_way = true;
+  const bool is_cut = !is_ok(result.status) || is_shortened_ || best.share < 1.0;
+  for (std::size_t g = 0; g < memory_.guides.size(); ++g) {
+    GuideState& state = memory_.guide_states[g];
+    state.holds = state.holds || (is_cut && has_failed_[g]);
+    state.gave_way = best.softening != Softening::none && state.excess > 0.0;
   }
 }
 
@@ -146,6 +149,7 @@ bool JointCycle::seek(const JointTask& task, Trial& best) noexcept {
 
 /// Whether anything was found to say to what the last trial was not certified for.
 bool JointCycle::answer() noexcept {
+  if (kept_by_guides_ < PointMotion::cells) has_failed_[failed_guide_] = true;
   const bool is_new_plane =
       kept_by_guides_ < PointMotion::cells && rows_.answer(failed_guide_, kept_by_guides_);
   const bool is_new_row = rows_.answer(failures_);
@@ -188,11 +192,20 @@ SolveStatus JointCycle::solve(const JointTask& task, Trial& trial) noexcept {
                                  {Softening::bodies, 0.0, 0.5},
                                  {Softening::bodies, 0.0, 0.25},
                                  {Softening::bodies, 0.0, 0.0}};
+  bool guides_lead = false;
+  bool bodies_lead = false;
+  for (const ContactRow& row : memory_.rows) {
+    bool& lead = row.owner < Instrument::most_bodies ? bodies_lead : guides_lead;
+    lead = lead || row.bound > 0.0;
+  }
   SolveStatus solved = SolveStatus::infeasible;
   for (const Softness& softness : softer) {
-    if (softness.name == Softening::guides && !guides_.is_recovering()) continue;
+    if (softness.name == Softening::guides && !guides_lead) continue;
     solved = pose(task, softness, solution);
     trial.softening = softness.name;
+    if (softness.name == Softening::bodies && !bodies_lead) {
+      trial.softening = guides_lead ? Softening::guides : Softening::none;
+    }
     if (solved == SolveStatus::optimal || solved == SolveStatus::ill_posed) break;
   }
   if (solved != SolveStatus::optimal) return solved;

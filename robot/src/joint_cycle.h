@@ -66,9 +66,11 @@ class JointCycle {
   GuideWatch guides_;
   WorkingRows rows_;
   WorkingRows::Failures failures_;
-  int kept_by_guides_ = 0;         // up to which cell all guides were kept by the last trial
-  std::size_t failed_guide_ = 0;   // and which was not, beyond
-  Status trouble_ = Status::free;  // why nothing can be judged
+  int kept_by_guides_ = 0;        // up to which cell all guides were kept by the last trial
+  std::size_t failed_guide_ = 0;  // and which was not, beyond
+  std::array<bool, Guide::most> has_failed_{};  // in any trial
+  Status trouble_ = Status::free;               // why nothing can be judged
+  bool is_shortened_ = false;                   // whether less than all was asked for at last
   int rounds_ = 0;
   std::size_t in_reach_ = 0;  // triangles of one body and one trial, at the most
 };

@@ -163,6 +163,13 @@ bool WorkingRows::turn() noexcept {
   return changed;
 }
 
+void WorkingRows::forgive_curvature(double share) noexcept {
+  for (ContactRow& row : memory_.rows) {
+    row.correction *= share;
+    row.corrections = 0;
+  }
+}
+
 void WorkingRows::remember_all() noexcept {
   memory_.warm.clear();
   for (const ContactRow& row : memory_.rows) {

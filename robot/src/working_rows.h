@@ -44,6 +44,9 @@ class WorkingRows {
   void take_back() noexcept;
   /// Turns the rows that hold to where the last motion ends. Whether any changed.
   bool turn() noexcept;
+  /// For a motion that is shorter, and so bends less: what curvature took is so much of what it
+  /// was.
+  void forgive_curvature(double share) noexcept;
   /// Where nothing was found the next cycle begins with all that was learned.
   void remember_all() noexcept;
 

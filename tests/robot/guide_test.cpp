@@ -225,6 +225,33 @@ TEST(Guide, GivesWayWithAWordOnItWhereOthersContradict) {
   EXPECT_GT(moved.y(), 5.0) << "along both it moves";
 }
 
+// Out, led back to within the band, and pushed out again: from there on it is kept to the band.
+TEST(Guide, KeepsWhatIsWithinItsBandAgain) {
+  Random random(7);
+  int back = 0;
+  for (int i = 0; i < test::trials(300); ++i) {
+    Bench bench;
+    std::vector<double> q{0.1, -0.1, 60.0, 0.2, 0.1, -0.2};
+    const Vec3 at = bench.at(q).at(tip.link, tip.position);
+    const double out = random.uniform(0.0, 0.01);
+    const Guide guide =
+        Guide::point("ball", tip, Region::ball(at + (1.0 + out) * random.direction(), 1.0));
+    bench.guard.set_guides({guide});
+    for (int cycle = 0; cycle < 8; ++cycle) {
+      const InstrumentStep step =
+          bench.guard.step(q, {.linear = random.uniform(0.0, 8.0) * random.direction(),
+                               .angular = 0.1 * random.direction()});
+      if (!step.ok()) continue;
+      if (step.guides[0].excess <= guide.band()) {
+        ASSERT_LE(farthest_out(bench, guide, q, step), guide.band() + 3e-9);
+        back += step.guides[0].excess > 0.0 ? 1 : 0;
+      }
+      for (std::size_t k = 0; k < q.size(); ++k) q[k] += step.increment[k];
+    }
+  }
+  EXPECT_GT(back, test::trials(100));
+}
+
 // A region that lies in the mesh: the mesh is kept out of, and the guide is told to hold.
 TEST(Guide, NeverLeadsIntoTheMesh) {
   Bench bench("cube");
@@ -253,6 +280,7 @@ TEST(Guide, RefusesWhatIsNone) {
   EXPECT_THROW(Guide::orientation("a", 6, 2.0 * Mat3::Identity(), 1.0), Error);
   const Guide guide = Guide::point("a", tip, Region::ball(Vec3::Zero(), 1.0));
   EXPECT_THROW(guide.with_band(0.0), Error);
+  EXPECT_THROW(bench.guard.set_guides({guide.with_band(1e-12)}), Error);
   EXPECT_EQ(guide.with_band(0.5).band(), 0.5);
   EXPECT_THROW(bench.guard.set_guides(std::vector<Guide>(17, guide)), Error);
   EXPECT_THROW(bench.guard.set_guides({Guide::point("a", {7, Vec3::Zero()}, guide.region())}),

@@ -425,7 +425,7 @@ TEST(InstrumentConstraint, LeadsOutABodyThatReachesThroughTheSurface) {
     q = moved(q, step);
     step = guard.step(q, Twist{});
   }
-  EXPECT_EQ(step.status, Status::free);
+  EXPECT_TRUE(step.status == Status::free || step.status == Status::limited) << step.reason();
   EXPECT_GE(clearance(instrument, *mesh, q), 0.198 - 3.0 * guard.tolerance());
 }
 

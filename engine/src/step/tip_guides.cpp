@@ -85,7 +85,7 @@ void TipGuides::add(std::size_t g, const Vec3& tip, const Vec3& at) noexcept {
   const Vec3 into = -region.outward(at);
   if (into.isZero(0.0)) return;
   const double bound = into.dot(region.origin() - tip) - region.radius();
-  planes_.push({g, into, std::min(bound, recovery_)});
+  planes_.push({g, into, std::min(bound, softening_ == Softening::none ? recovery_ : 0.0)});
 }
 
 /// The guard's step under the caller's rows and the planes there are.
@@ -140,6 +140,9 @@ void TipGuides::cut(const Motion& motion, Step& step) noexcept {
     return true;
   };
   if (is_kept(1.0)) return;
+  for (std::size_t g = 0; g < guides_.size(); ++g) {
+    if (guides_[g].region.excess(motion.tip + step.motion) > allowed_[g]) states_[g].holds = true;
+  }
   double share = 0.0;
   for (double part = 0.5; part > 1e-3; part *= 0.5) {
     if (is_kept(share + part)) share += part;
@@ -166,9 +169,8 @@ void TipGuides::tell(const Motion& motion, Step& step) noexcept {
   for (const std::uint32_t row : step.active) {
     if (row < first || row - first >= planes_.size()) continue;
     const std::size_t g = planes_[row - first].guide;
-    if (states_[g].holds) continue;
     states_[g].holds = true;
-    held_.push_back(g);
+    if (std::find(held_.begin(), held_.end(), g) == held_.end()) held_.push_back(g);
   }
   for (std::size_t g = 0; g < guides_.size(); ++g) {
     if (states_[g].excess > guides_[g].band) step.status = Status::recovering;

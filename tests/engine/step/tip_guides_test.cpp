@@ -154,6 +154,38 @@ TEST(TipGuides, LeadBackWhatIsOutAndSayWhatGivesWay) {
   EXPECT_NEAR(apart.states()[0].excess, 1.0, 1e-12);
 }
 
+// Regions that contradict each other stop leading back; along them the tip moves on.
+TEST(TipGuides, LeaveNoTipStandingThatMayMove) {
+  Loop loop("cube");
+  const Vec3 tip(0, 0, 150);
+  TipGuides guides({{"side", Region::half_space(tip + Vec3(0.15, 0, 0), Vec3::UnitX())},
+                    {"ball", Region::ball(tip + Vec3(-2, 0, 0), 1.9)}});
+  const Step step = guides.step(loop.guard, {.tip = tip, .desired = Vec3(0, 0, 0.1)});
+  ASSERT_EQ(step.status, Status::recovering) << step.reason();
+  for (const TipGuide& guide : guides.guides()) {
+    EXPECT_LE(guide.region.excess(tip + step.motion), guide.region.excess(tip) + 1e-9);
+  }
+  Random random(4);
+  int stuck = 0;
+  for (int i = 0; i < test::trials(2000); ++i) {
+    std::vector<TipGuide> some;
+    for (int g = 0; g < 3; ++g) {
+      const double radius = random.uniform(0.3, 2.0);
+      const Vec3 center = tip + (radius + random.uniform(-0.2, 0.3)) * random.direction();
+      some.push_back({"ball", Region::ball(center, radius)});
+    }
+    TipGuides many(some);
+    const Step one =
+        many.step(loop.guard, {.tip = tip, .desired = random.uniform() * random.direction()});
+    stuck += one.ok() ? 0 : 1;
+    for (const TipGuide& guide : many.guides()) {
+      ASSERT_LE(guide.region.excess(tip + one.motion),
+                std::max(guide.region.excess(tip), guide.band) + 1e-9);
+    }
+  }
+  EXPECT_EQ(stuck, 0);
+}
+
 TEST(TipGuides, RefuseWhatIsNone) {
   const TipGuide guide{"a", Region::ball(Vec3::Zero(), 1.0)};
   EXPECT_THROW(TipGuides(std::vector<TipGuide>(17, guide)), Error);

@@ -28,7 +28,7 @@ class Guide {
   /// line, on one side of a plane. Like those below it throws Error for a number that is none.
   static Guide point(std::string name, const LinkPoint& point, const Region& region);
 
-  /// An axis of a link, a direction in the link's frame, stays within `angle` (up to pi) of a
+  /// An axis of a link, a direction in the link's frame, stays within `angle` (up to 3) of a
   /// direction in the mesh's. [rad]
   static Guide axis(std::string name, int link, const Vec3& axis, const Vec3& direction,
                     double angle);
