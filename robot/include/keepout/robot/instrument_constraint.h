@@ -145,9 +145,9 @@ class InstrumentConstraint {
   void forget() noexcept;
 
   /// Keeps these guides as well from the next step on, instead of those there are: see Guide.
-  /// Throws Error, and changes nothing, for more than Guide::most, a link that the chain has not, or
-  /// a band that is lost in rounding. What is out of its region begins anew: it may come farther out
-  /// by a band once more. Allocates, and is not for the control path.
+  /// Throws Error, and changes nothing, for more than Guide::most, a link that the chain has not,
+  /// or a band that is lost in rounding. What is out of its region begins anew: it may come farther
+  /// out by a band once more. Allocates, and is not for the control path.
   void set_guides(std::vector<Guide> guides);
 
   /// Goes on with anatomy that has moved: with a mesh and an index of it, which may be the one at
