@@ -33,12 +33,11 @@ bool GuideWatch::is_recovering(std::size_t g) const noexcept {
 }
 
 int GuideWatch::judge(std::size_t& failed) noexcept {
+  cell_of_chain_ = 0;
   int proven = PointMotion::cells;
   for (std::size_t g = 0; g < memory_.guides.size() && proven > 0; ++g) {
-    const Guide& guide = memory_.guides[g].guide;
-    const double at_end = guide.region().excess(guide.place(chain_at(PointMotion::cells)));
-    const int until =
-        proven_until(g, 0, memory_.guide_states[g].excess, PointMotion::cells, at_end);
+    const Standing at_end = standing(g, PointMotion::cells);
+    const int until = proven_until(g, 0, standing(g, 0), PointMotion::cells, at_end);
     if (until >= proven) continue;
     proven = until;
     failed = g;
@@ -46,21 +45,28 @@ int GuideWatch::judge(std::size_t& failed) noexcept {
   return proven;
 }
 
+GuideWatch::Standing GuideWatch::standing(std::size_t g, int cell) noexcept {
+  const Guide& guide = memory_.guides[g].guide;
+  const ChainState& chain = chain_at(cell);
+  return {guide.region().excess(guide.place(chain)), guide.share(chain)};
+}
+
 /// The grid's last point up to which the part from lo to hi is proven.
-int GuideWatch::proven_until(std::size_t g, int lo, double at_lo, int hi, double at_hi) noexcept {
+int GuideWatch::proven_until(std::size_t g, int lo, const Standing& at_lo, int hi,
+                             const Standing& at_hi) noexcept {
   Budget& budget = memory_.near.budget();
   budget.spend(work_of_guide);
   if (budget.is_spent()) return lo;
   const Guide& guide = memory_.guides[g].guide;
   const double part = static_cast<double>(hi - lo) / PointMotion::cells;
-  const double slide = std::abs(guide.share(chain_at(hi)) - guide.share(chain_at(lo))) / part;
+  const double slide = std::abs(at_hi.share - at_lo.share) / part;
   const auto n = static_cast<std::size_t>(memory_.instrument.chain().size());
   const double bend =
       guide.bend(memory_.motion.chain_at_start(), {memory_.motion.increment().data(), n}, slide);
-  if (std::max(at_lo, at_hi) + bend * part * part / 8.0 <= allowed_[g]) return hi;
+  if (std::max(at_lo.excess, at_hi.excess) + bend * part * part / 8.0 <= allowed_[g]) return hi;
   if (hi - lo == 1) return lo;
   const int middle = (lo + hi) / 2;
-  const double at_middle = guide.region().excess(guide.place(chain_at(middle)));
+  const Standing at_middle = standing(g, middle);
   const int first = proven_until(g, lo, at_lo, middle, at_middle);
   return first < middle ? first : proven_until(g, middle, at_middle, hi, at_hi);
 }
@@ -91,8 +97,11 @@ double GuideWatch::height_at_end(const ContactRow& row) noexcept {
 
 const ChainState& GuideWatch::chain_at(int cell) noexcept {
   if (cell == 0) return memory_.motion.chain_at_start();
-  memory_.near.budget().spend(work_of_guide);
-  memory_.motion.place(cell, chain_);
+  if (cell != cell_of_chain_) {
+    memory_.near.budget().spend(work_of_guide);
+    memory_.motion.place(cell, chain_);
+    cell_of_chain_ = cell;
+  }
   return chain_;
 }
 

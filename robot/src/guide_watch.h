@@ -36,12 +36,21 @@ class GuideWatch {
   double height_at_end(const ContactRow& row) noexcept;
 
  private:
-  int proven_until(std::size_t guide, int lo, double at_lo, int hi, double at_hi) noexcept;
+  /// How a guide stands at a share of the motion.
+  struct Standing {
+    double excess;
+    double share;  // see Guide::share
+  };
+
+  Standing standing(std::size_t guide, int cell) noexcept;
+  int proven_until(std::size_t guide, int lo, const Standing& at_lo, int hi,
+                   const Standing& at_hi) noexcept;
   const ChainState& chain_at(int cell) noexcept;
 
   CycleMemory& memory_;
   const InstrumentOptions& options_;
   ChainState chain_;
+  int cell_of_chain_ = 0;  // where that is, on the motion at hand; 0: not known
   bool is_recovering_ = false;
   std::array<double, Guide::most> allowed_{};  // excess of each in this cycle
 };

@@ -49,13 +49,13 @@ void JointCycle::search(const JointTask& task, Trial& best, InstrumentStep& resu
     trouble_ = Status::free;
     is_shortened_ = asked < 1.0;
     if (is_shortened_) rows_.forgive_curvature(0.0625);
-    const bool is_worn_out = memory_.near.budget().halved([&] {
+    const bool is_spent = memory_.near.budget().halved([&] {
       const JointTask part = task.scaled(asked);
       if (seek(part, best)) turn(part, best);
-      return this->is_worn_out();
+      return is_worn_out();
     });
     if (best.share > 0.0 || best.cell == PointMotion::cells) break;
-    if (is_worn_out) trouble_ = Status::over_capacity;
+    if (is_spent) trouble_ = Status::over_capacity;
     if (trouble_ != Status::free && trouble_ != Status::over_capacity) break;
   }
   if (best.cell == 0) {
@@ -185,8 +185,8 @@ void JointCycle::turn(const JointTask& task, Trial& best) noexcept {
 
 SolveStatus JointCycle::solve(const JointTask& task, Trial& trial) noexcept {
   Solution solution;
-  // What leads back gives way where it contradicts itself, guides first: in the end standing still
-  // is allowed.
+  // What leads back gives way where it contradicts itself, or where the solver comes to no end,
+  // guides first: in the end standing still is allowed.
   constexpr Softness softer[] = {{Softening::none, 1.0, 1.0},
                                  {Softening::guides, 0.0, 1.0},
                                  {Softening::bodies, 0.0, 0.5},

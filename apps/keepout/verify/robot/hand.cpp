@@ -6,8 +6,8 @@
 namespace keepout::app {
 namespace {
 
-constexpr std::size_t habit = 250;    // of a habit [cycles]
-constexpr std::size_t attention = 10;  // it looks where the surface is as often [cycles]
+constexpr std::size_t habit_lasts = 250;  // [cycles]
+constexpr std::size_t attention = 10;     // it looks where the surface is as often [cycles]
 
 }  // namespace
 
@@ -20,7 +20,7 @@ Twist RobotHand::next(const Vec3& flange) {
     guess_ = 1.1 * hit.closest.distance;
     if (hit.closest.distance > 0.0) inwards_ = hit.closest.offset / hit.closest.distance;
   }
-  if (cycle_++ % habit == 0) {
+  if (cycle_++ % habit_lasts == 0) {
     habit_ = static_cast<Habit>(random_->below(5));
     const double share = random_->uniform() < 0.5 ? 1.0 : random_->uniform(0.1, 1.0);
     way_ = share * speed_ * fastest_way;
