@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cycle_memory.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace keepout {
+namespace {
+
+constexpr double wanted_distance = 0.198;
+constexpr double left_to_a_motion = 0.002;
+constexpr double told_apart = 1e-9;
+
+double certified_at(double distance, double floor) {
+  return certified_distance(distance, floor, wanted_distance, left_to_a_motion, told_apart);
+}
+
+// Bodies and guides alike: what is certified is what was gained, and no band of it is given away.
+TEST(CertifiedDistance, IsTheTargetWhereThatIsKeptHoweverLittleWasCertifiedBefore) {
+  for (const double floor :
+       {-1.0, 0.0, 0.1, wanted_distance, std::numeric_limits<double>::infinity()}) {
+    for (const double beyond : {0.0, 0.001, 0.5, -2.9 * told_apart}) {
+      EXPECT_EQ(certified_at(wanted_distance + beyond, floor), wanted_distance)
+          << floor << ' ' << beyond;
+    }
+  }
+}
+
+TEST(CertifiedDistance, BelowTheTargetLosesNothingThatWasCertified) {
+  EXPECT_EQ(certified_at(0.15, 0.149), 0.149);
+  EXPECT_EQ(certified_at(0.15, 0.1), 0.15 - left_to_a_motion)
+      << "and gains what was recovered, less the room";
+  EXPECT_EQ(certified_at(0.15, 0.15 + 3.5 * told_apart), 0.15) << "lost to rounding";
+  EXPECT_EQ(certified_at(0.15, 0.19), 0.15 - left_to_a_motion) << "moved by somebody else";
+}
+
+}  // namespace
+}  // namespace keepout
