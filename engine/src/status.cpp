@@ -20,6 +20,9 @@ constexpr std::array outcomes{
     Outcome{"fallback",
             "the best motion could not be proven within the budget of work: this is a shorter one "
             "that was"},
+    Outcome{"yielding",
+            "anatomy comes on faster than the instrument can give way: this motion is proven to "
+            "keep less than the margin, how much is told; slow it down, or make room"},
     Outcome{"infeasible",
             "no motion satisfies all planes: the tip is closer than the margin on several sides, "
             "or the joints cannot move it away; retreat, or lower the margin"},

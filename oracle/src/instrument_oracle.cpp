@@ -42,6 +42,11 @@ void InstrumentOracle::move_to(std::span<const double> positions) {
   place(robot_, base_, positions, axes_);
 }
 
+void InstrumentOracle::move_to(std::span<const double> positions, const Pose& base) {
+  base_ = base;
+  move_to(positions);
+}
+
 void InstrumentOracle::look_around(Surroundings& around, const Segment& axis, double reach) {
   around.travelled = 0.0;
   around.known = reach + around.slack;

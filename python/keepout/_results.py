@@ -19,23 +19,24 @@ class Part(NamedTuple):
 
 
 class Status(IntEnum):
-    """How a step ended. The first four come with a motion, which may be carried out and may be
+    """How a step ended. The first five come with a motion, which may be carried out and may be
     zero; the others with zero motion."""
 
     free = 0  # no plane holds the motion back
     limited = 1  # the motion is the best one that the planes allow
     recovering = 2  # the tip was too close or inside: the motion leads it out
     fallback = 3  # only a shorter motion could be proven, within the budget of work
-    infeasible = 4  # no motion satisfies all planes: the tip is too close on several sides
-    ill_posed = 5  # the Jacobian lacks full column rank and there is no damping
-    invalid_input = 6  # a number is not finite or out of range
-    beyond_reach = 7  # the motion asked for, or solved, is longer than the motion sphere's radius
-    over_capacity = 8  # more triangles, planes or variables than room was made for
-    unsolved = 9  # the solver gave up, or its answer does not satisfy the planes
-    inside = 10  # the tip is on the forbidden side, and joints or rows are in the way out
-    touching = 11  # the tip is on the surface, and which side is free cannot be told
-    margin_too_small = 12  # the margin is lost in the rounding of lengths this large
-    mesh_changed = 13  # the index was refit to another mesh, which is not followed yet
+    yielding = 4  # anatomy comes on too fast: less than the margin is kept
+    infeasible = 5  # no motion satisfies all planes: the tip is too close on several sides
+    ill_posed = 6  # the Jacobian lacks full column rank and there is no damping
+    invalid_input = 7  # a number is not finite or out of range
+    beyond_reach = 8  # the motion asked for, or solved, is longer than the motion sphere's radius
+    over_capacity = 9  # more triangles, planes or variables than room was made for
+    unsolved = 10  # the solver gave up, or its answer does not satisfy the planes
+    inside = 11  # the tip is on the forbidden side, and joints or rows are in the way out
+    touching = 12  # the tip is on the surface, and which side is free cannot be told
+    margin_too_small = 13  # the margin is lost in the rounding of lengths this large
+    mesh_changed = 14  # the index was refit to another mesh, which is not followed yet
 
     def __str__(self) -> str:
         return self.name
@@ -47,7 +48,7 @@ class Status(IntEnum):
     @property
     def ok(self) -> bool:
         """Whether a motion comes with it, which may be carried out."""
-        return self <= Status.fallback
+        return self <= Status.yielding
 
     @property
     def reason(self) -> str:
@@ -65,7 +66,7 @@ class _Batch:
     @property
     def ok(self) -> NDArray[np.bool_]:
         """In the shape of `status`: whether the motion may be carried out."""
-        return self.status <= Status.fallback
+        return self.status <= Status.yielding
 
     def counts(self) -> dict[Status, int]:
         """How many steps ended with each status."""

@@ -16,65 +16,93 @@ constexpr double touching_within = 4.0;  // tolerances
 
 Status BodyWatch::open(InstrumentStep& result) noexcept {
   Status status = Status::free;
-  for (std::size_t b = 0; b < memory_.bodies.size(); ++b) {
+  for (std::size_t p = 0; p < memory_.pairs.size(); ++p) {
     Core core;
-    memory_.bodies[b].near.start_cycle(memory_.motion.core(b, 0, core));
-    const Status of_body = open_body(b, result);
-    if (of_body == Status::over_capacity) return of_body;
-    if (!is_ok(of_body)) status = of_body;
+    memory_.pairs[p].near.start_cycle(motion(p).core(memory_.pairs[p].body, 0, core));
+    const Status of_pair = open_pair(p, result);
+    if (of_pair == Status::over_capacity) return of_pair;
+    if (!is_ok(of_pair)) status = of_pair;
   }
-  if (!is_ok(status)) return status;
-  const bool is_asked = options_.check_sides && memory_.is_watertight;
-  return is_asked && was_moved_by_others() ? side() : Status::free;
+  for (std::size_t m = 0; m < memory_.meshes.size() && is_ok(status); ++m) {
+    const bool is_asked = options_.check_sides && memory_.meshes[m].is_watertight;
+    if (is_asked && was_moved_by_others(m)) status = side(m);
+  }
+  return status;
 }
 
-Status BodyWatch::open_body(std::size_t b, InstrumentStep& result) noexcept {
-  BodyMemory& body = memory_.bodies[b];
-  Budget& budget = memory_.near.budget();
-  const double radius = memory_.instrument.bodies()[b].radius;
+Status BodyWatch::open_pair(std::size_t p, InstrumentStep& result) noexcept {
+  PairMemory& pair = memory_.pairs[p];
   const double tolerance = memory_.tolerance;
-  if (!look(b, vicinity(b))) return Status::over_capacity;
+  if (!look(p, vicinity(p))) return Status::over_capacity;
   double nearest = std::numeric_limits<double>::infinity();
-  const double known = radius + options_.margin + options_.band;
+  const double known = radius(p) + own_margin(p) + std::max(options_.band, options_.slowing_within);
   // All at once that the cycle is likely to ask for.
-  for (NearTriangle& triangle : body.near.nearer_than(vicinity(b), budget)) {
+  for (NearTriangle& triangle : pair.near.nearer_than(vicinity(p), memory_.budget)) {
     if (!(triangle.least < known)) break;
     if (is_worn_out()) return Status::over_capacity;
-    body.near.know(triangle, budget);
+    pair.near.know(triangle, memory_.budget);
     nearest = std::min(nearest, triangle.at_start.distance);
   }
   if (is_worn_out()) return Status::over_capacity;
-  const double distance = nearest - radius;
+  const double distance = nearest - radius(p);
   if (nearest <= known && !(result.distance && *result.distance <= distance)) {
     result.distance = distance;
-    result.nearest = static_cast<int>(b);
+    result.nearest = static_cast<int>(pair.body);
+    result.nearest_mesh = static_cast<int>(pair.mesh);
   }
   if (nearest <= touching_within * tolerance) return Status::touching;
   const double room = std::min(options_.band, 0.5 * nearest);
-  kept_[b] = certified_distance(distance, body.floor, target(), room, tolerance);
-  is_recovering_ = is_recovering_ || is_recovering(b);
-  body.floor = kept_[b];
+  kept_[p] = certified_distance(distance, pair.floor, target(p), room, tolerance);
+  aims_[p] = own_margin(p);
+  pair.floor = kept_[p];
+  is_recovering_ = is_recovering_ || is_recovering(p);
+  if (!is_recovering(p)) slow_down(p, distance);
   return Status::free;
 }
 
-/// Whether a body is where no step has led it, so that its side is unknown.
-bool BodyWatch::was_moved_by_others() const noexcept {
-  if (memory_.side_of != memory_.near.mesh().id()) return true;
-  for (std::size_t b = 0; b < memory_.bodies.size(); ++b) {
+/// Raises what a body keeps in this cycle, so that it uses up a share only of its way to the margin
+/// (the velocity damper of Faverjon and Tournassoud, ICRA 1987): but for what a mesh itself comes
+/// on.
+void BodyWatch::slow_down(std::size_t p, double distance) noexcept {
+  const double left = distance - own_margin(p);
+  if (!(left > 0.0 && left < options_.slowing_within)) return;
+  const double share = std::min(options_.period / options_.slowing_time, 1.0);
+  const double raised = (1.0 - share) * left - motion(p).drift(memory_.pairs[p].body);
+  if (!(raised > 0.0)) return;
+  kept_[p] += raised;
+  aims_[p] += raised;
+}
+
+void BodyWatch::close() noexcept {
+  if (level_ == 1.0) return;
+  for (std::size_t p = 0; p < memory_.pairs.size(); ++p) {
+    memory_.pairs[p].floor = std::min(memory_.pairs[p].floor, kept(p));
+  }
+}
+
+/// Whether a body is where no step has led it beside a mesh, so that its side is unknown.
+bool BodyWatch::was_moved_by_others(std::size_t m) noexcept {
+  MeshMemory& mesh = memory_.meshes[m];
+  if (mesh.side_of != mesh.near->mesh().id()) return true;
+  const std::size_t first = m * memory_.instrument.bodies().size();
+  for (std::size_t b = 0; b < memory_.instrument.bodies().size(); ++b) {
     // So far around its core all is free.
-    const double free = 0.5 * (memory_.instrument.bodies()[b].radius + kept_[b]);
+    const double free = 0.5 * (radius(first + b) + kept_[first + b]);
     for (const std::uint8_t p : memory_.instrument.points_of(b)) {
-      if (!((memory_.motion.at_start()[p] - memory_.ended_at[p]).norm() <= free)) return true;
+      if (!((mesh.motion.at_start()[p] - mesh.ended_at[p]).norm() <= free)) return true;
     }
   }
   return false;
 }
 
 /// No core meets the surface, so each is on one side of it, and one point tells which.
-Status BodyWatch::side() noexcept {
-  for (std::size_t b = 0; b < memory_.bodies.size(); ++b) {
+Status BodyWatch::side(std::size_t m) noexcept {
+  MeshMemory& mesh = memory_.meshes[m];
+  for (std::size_t b = 0; b < memory_.instrument.bodies().size(); ++b) {
     const std::uint8_t last = memory_.instrument.points_of(b).back();
-    const auto placement = place(memory_.near, memory_.motion.at_start()[last]);
+    mesh.near->budget() = memory_.budget;
+    const auto placement = place(*mesh.near, mesh.motion.at_start()[last]);
+    memory_.budget = mesh.near->budget();
     if (!placement || is_worn_out()) return Status::over_capacity;
     if (!placement->is_free) return Status::inside;
   }
@@ -83,53 +111,54 @@ Status BodyWatch::side() noexcept {
 
 /// From a body's core, what it may be held by: the margin, and as much as it moved at last, unless
 /// that was a leap. [length]
-double BodyWatch::vicinity(std::size_t b) const noexcept {
-  const double reach = std::min(memory_.bodies[b].reach, 4.0 * options_.margin);
-  return memory_.instrument.bodies()[b].radius + options_.margin + std::max(options_.band, reach);
+double BodyWatch::vicinity(std::size_t p) const noexcept {
+  const double reach = std::min(memory_.pairs[p].reach, 4.0 * own_margin(p));
+  return radius(p) + own_margin(p) + std::max({options_.band, options_.slowing_within, reach});
 }
 
 /// How far a body's points are from where triangles were looked for. [length]
-double BodyWatch::moved(std::size_t b) const noexcept {
-  const std::span<const Vec3> then = memory_.bodies[b].near.core();
-  const std::span<const std::uint8_t> points = memory_.instrument.points_of(b);
+double BodyWatch::moved(std::size_t p) noexcept {
+  const std::span<const Vec3> then = memory_.pairs[p].near.core();
+  const std::span<const std::uint8_t> points = memory_.instrument.points_of(memory_.pairs[p].body);
+  const Vec3* now = motion(p).at_start();
   double most = 0.0;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    most = std::max(most, (memory_.motion.at_start()[points[i]] - then[i]).norm());
+    most = std::max(most, (now[points[i]] - then[i]).norm());
   }
   return most;
 }
 
-bool BodyWatch::look(std::size_t b, double needed) noexcept {
-  BodyMemory& body = memory_.bodies[b];
-  if (body.near.radius() >= 0.0 && body.near.radius() - moved(b) >= needed) return true;
+bool BodyWatch::look(std::size_t p, double needed) noexcept {
+  PairMemory& pair = memory_.pairs[p];
+  if (pair.near.radius() >= 0.0 && pair.near.radius() - moved(p) >= needed) return true;
   Core core;
-  const std::span<const Vec3> now = memory_.motion.core(b, 0, core);
+  const std::span<const Vec3> now = motion(p).core(pair.body, 0, core);
   // Farther where there is little, so that it is looked for seldom; less far where there is much.
   constexpr std::size_t few = 8;
   constexpr std::size_t many = 64;
-  const double least = std::max(options_.margin, body.reach);
-  body.guard = std::clamp(body.guard, least, std::max(16.0 * options_.margin, 3.0 * body.reach));
+  const double least = std::max(own_margin(p), pair.reach);
+  pair.guard = std::clamp(pair.guard, least, std::max(16.0 * own_margin(p), 3.0 * pair.reach));
+  Neighborhood& near = *memory_.meshes[pair.mesh].near;
   for (const double share : {1.0, 0.125, 0.0}) {
-    if (body.near.look(memory_.near, now, needed + share * body.guard)) {
-      if (share < 1.0 || body.near.size() > many) body.guard *= 0.5;
-      if (body.near.size() < few) body.guard *= 2.0;
+    if (pair.near.look(near, now, needed + share * pair.guard, memory_.budget)) {
+      if (share < 1.0 || pair.near.size() > many) pair.guard *= 0.5;
+      if (pair.near.size() < few) pair.guard *= 2.0;
       return true;
     }
     if (is_worn_out()) break;
   }
-  body.near.forget();
+  pair.near.forget();
   return false;
 }
 
-NearTriangle* BodyWatch::find(std::size_t b, TriangleId id) noexcept {
-  if (!look(b, vicinity(b))) return nullptr;
-  NearSet& near = memory_.bodies[b].near;
-  Budget& budget = memory_.near.budget();
-  const std::span<NearTriangle> nearby = near.nearer_than(vicinity(b), budget);
-  budget.spend(1 + nearby.size() / 64);
+NearTriangle* BodyWatch::find(std::size_t p, TriangleId id) noexcept {
+  if (!look(p, vicinity(p))) return nullptr;
+  NearSet& near = memory_.pairs[p].near;
+  const std::span<NearTriangle> nearby = near.nearer_than(vicinity(p), memory_.budget);
+  memory_.budget.spend(1 + nearby.size() / 64);
   for (NearTriangle& triangle : nearby) {
     if (triangle.id != id) continue;
-    near.know(triangle, budget);
+    near.know(triangle, memory_.budget);
     return &triangle;
   }
   return nullptr;

@@ -8,42 +8,70 @@
 
 namespace keepout {
 
-/// How the bodies stand as a cycle begins, what each is to keep in it, and what is near them.
+/// How the bodies stand to the meshes as a cycle begins, what each is to keep in it, and what is
+/// near them. A pair is a body and a mesh.
 class BodyWatch {
  public:
-  /// The motion's start must be where the joints are. Both must outlive it.
+  /// The motions' start must be where joints and meshes are. Both must outlive it.
   BodyWatch(CycleMemory& memory, const InstrumentOptions& options) noexcept
       : memory_(memory), options_(options) {}
 
-  /// Looks at all bodies: free, or why nothing may move. The distance goes to the result.
+  /// Looks at all pairs: free, or why nothing may move. The distance goes to the result.
   Status open(InstrumentStep& result) noexcept;
 
-  /// The distance that a body is certified for in this cycle: margin - band, or what is left of it.
+  /// The distance that a pair is certified for in this cycle: margin - band, or what is left of it.
   /// [length]
-  double kept(std::size_t body) const noexcept { return kept_[body]; }
+  double kept(std::size_t pair) const noexcept {
+    return kept_[pair] - (1.0 - level_) * std::max(kept_[pair], 0.0);
+  }
+  /// The margin that its rows aim at in this cycle, beyond the body's radius. [length]
+  double margin(std::size_t pair) const noexcept { return aims_[pair]; }
+  /// Keeps only a share of that from now on: what can be done where a mesh comes on too fast.
+  void lower_to(double level) noexcept { level_ = level; }
+  /// How much less than the margin rows aim at, so. [length]
+  double given_way(std::size_t pair) const noexcept {
+    return (1.0 - level_) * std::max(kept_[pair], 0.0);
+  }
+
   /// Whether some body is closer than margin - band.
   bool is_recovering() const noexcept { return is_recovering_; }
-  /// Whether that body is.
-  bool is_recovering(std::size_t body) const noexcept { return kept_[body] < target(); }
+  /// Whether that pair is.
+  bool is_recovering(std::size_t pair) const noexcept { return kept_[pair] < target(pair); }
 
   /// Makes sure that all triangles nearer than that to a body's core are known. False: there is no
   /// room, or no work left. [length]
-  [[nodiscard]] bool look(std::size_t body, double needed) noexcept;
+  [[nodiscard]] bool look(std::size_t pair, double needed) noexcept;
   /// A triangle that may hold the body, its gap known; null if it is not near any more.
-  NearTriangle* find(std::size_t body, TriangleId id) noexcept;
+  NearTriangle* find(std::size_t pair, TriangleId id) noexcept;
+
+  /// Notes what was certified, now that the cycle has ended.
+  void close() noexcept;
 
  private:
-  Status open_body(std::size_t body, InstrumentStep& result) noexcept;
-  Status side() noexcept;
-  bool was_moved_by_others() const noexcept;
-  double vicinity(std::size_t body) const noexcept;
-  double moved(std::size_t body) const noexcept;
-  double target() const noexcept { return options_.margin - options_.band; }
-  bool is_worn_out() const noexcept { return memory_.near.budget().is_spent(); }
+  Status open_pair(std::size_t pair, InstrumentStep& result) noexcept;
+  void slow_down(std::size_t pair, double distance) noexcept;
+  Status side(std::size_t mesh) noexcept;
+  bool was_moved_by_others(std::size_t mesh) noexcept;
+  double radius(std::size_t pair) const noexcept {
+    return memory_.instrument.bodies()[memory_.pairs[pair].body].radius;
+  }
+  /// Of its mesh, before any slowing down. [length]
+  double own_margin(std::size_t pair) const noexcept {
+    return memory_.meshes[memory_.pairs[pair].mesh].margin(options_);
+  }
+  RelativeMotion& motion(std::size_t pair) noexcept {
+    return memory_.meshes[memory_.pairs[pair].mesh].motion;
+  }
+  double target(std::size_t pair) const noexcept { return own_margin(pair) - options_.band; }
+  double vicinity(std::size_t pair) const noexcept;
+  double moved(std::size_t pair) noexcept;
+  bool is_worn_out() const noexcept { return memory_.budget.is_spent(); }
 
   CycleMemory& memory_;
   const InstrumentOptions& options_;
-  std::array<double, Instrument::most_bodies> kept_{};  // of each body in this cycle [length]
+  std::array<double, most_pairs> kept_{};  // of each pair in this cycle [length]
+  std::array<double, most_pairs> aims_{};  // [length]
+  double level_ = 1.0;
   bool is_recovering_ = false;
 };
 

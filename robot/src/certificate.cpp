@@ -14,7 +14,7 @@ constexpr std::size_t work_of_separation = 1;  // in looks
 
 }  // namespace
 
-Certificate::Certificate(const Instrument& instrument, std::size_t body, PointMotion& motion,
+Certificate::Certificate(const Instrument& instrument, std::size_t body, RelativeMotion& motion,
                          NearSet& near, double kept, double tolerance, Budget& budget) noexcept
     : body_(body),
       points_(instrument.points_of(body)),

@@ -8,7 +8,7 @@
 
 #include "keepout/index/budget.h"
 #include "near_set.h"
-#include "point_motion.h"
+#include "relative_motion.h"
 
 namespace keepout {
 
@@ -26,9 +26,9 @@ class Certificate {
     NearTriangle* triangle = nullptr;  // null if there is none, or the budget is spent
   };
 
-  /// For a body on a motion, and what is near it. `kept`: what triangles are to be kept clear of
-  /// beyond the radius. All must outlive it. [length]
-  Certificate(const Instrument& instrument, std::size_t body, PointMotion& motion, NearSet& near,
+  /// For a body on its motion beside a mesh, and what is near it. `kept`: what triangles are to be
+  /// kept clear of beyond the radius. All must outlive it. [length]
+  Certificate(const Instrument& instrument, std::size_t body, RelativeMotion& motion, NearSet& near,
               double kept, double tolerance, Budget& budget) noexcept;
 
   /// Tries planes with this normal before others: one that holds the body back.
@@ -56,7 +56,7 @@ class Certificate {
   std::size_t body_;
   std::span<const std::uint8_t> points_;
   double radius_;
-  PointMotion& motion_;
+  RelativeMotion& motion_;
   NearSet& near_;
   double kept_;
   double tolerance_;

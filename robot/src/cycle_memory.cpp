@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "keepout/mesh/doctor.h"
-
 namespace keepout {
 namespace {
 
@@ -24,10 +22,11 @@ double reach_beyond_axis(const Instrument& instrument, std::size_t body) {
   return most * (1.0 + 1e-12);
 }
 
-/// The lengths that there are: of the ways from joint to joint, of what is carried, of the mesh.
-double size_of(const Instrument& instrument, const Mesh& mesh) {
-  double size = instrument.chain().base().position.norm() +
-                mesh.bounds().low.cwiseAbs().cwiseMax(mesh.bounds().high.cwiseAbs()).norm();
+/// The lengths that there are: of the ways from joint to joint, of what is carried, of a mesh.
+double size_of(const Instrument& instrument, const MeshMemory& mesh) {
+  const Box bounds = mesh.near->mesh().bounds();
+  double size = instrument.chain().base().position.norm() + mesh.pose.position.norm() +
+                bounds.low.cwiseAbs().cwiseMax(bounds.high.cwiseAbs()).norm();
   for (int k = 1; k <= instrument.chain().size(); ++k) {
     size += instrument.chain().joint(k).origin.position.norm();
   }
@@ -40,12 +39,11 @@ double size_of(const Instrument& instrument, const Mesh& mesh) {
 
 }  // namespace
 
-CycleMemory::CycleMemory(const Instrument& its, Neighborhood& its_near, Solver& its_solver,
+CycleMemory::CycleMemory(const Instrument& its, Solver& its_solver,
                          const InstrumentCapacity& capacity)
     : instrument(its),
-      near(its_near),
       solver(its_solver),
-      motion(its, its_near.budget()),
+      motion(its, budget),
       rows(capacity.planes),
       earlier_rows(capacity.planes),
       warm(capacity.planes),
@@ -54,53 +52,58 @@ CycleMemory::CycleMemory(const Instrument& its, Neighborhood& its_near, Solver& 
   matrix.resize((2 * n + capacity.planes) * n);
   bounds.resize(2 * n + capacity.planes);
   solver.reserve(static_cast<int>(n), static_cast<int>(bounds.size()));
-  is_watertight = keepout::is_watertight(near.mesh());
-  prepare();
 }
 
 void CycleMemory::prepare() {
-  const double size = size_of(instrument, near.mesh());
+  pairs.clear();
+  for (std::size_t m = 0; m < meshes.size(); ++m) {
+    for (std::size_t b = 0; b < instrument.bodies().size(); ++b) {
+      pairs.push_back({.body = b,
+                       .mesh = m,
+                       .near = NearSet(meshes[m].near->room(), reach_beyond_axis(instrument, b))});
+    }
+  }
+  measure();
+  forget();
+}
+
+void CycleMemory::measure() noexcept {
+  double size = 0.0;
+  for (const MeshMemory& mesh : meshes) size = std::max(size, size_of(instrument, mesh));
   largest_position = std::max(100.0 * size, 100.0);
   tolerance = 1e-12 * (size + std::min(instrument.chain().reach(), largest_position));
-  bodies.clear();
-  for (std::size_t b = 0; b < instrument.bodies().size(); ++b) {
-    bodies.push_back({.near = NearSet(near.room(), reach_beyond_axis(instrument, b))});
-  }
-  forget();
 }
 
 void CycleMemory::forget() noexcept {
   forget_motion();
-  for (BodyMemory& body : bodies) {
-    body.near.forget();
-    body.guard = 0.0;
+  for (PairMemory& pair : pairs) {
+    pair.near.forget();
+    pair.guard = 0.0;
   }
   forget_floors();
 }
 
 CycleMemory::Floors CycleMemory::floors() const noexcept {
   Floors all{};
-  for (std::size_t b = 0; b < bodies.size(); ++b) all[b] = bodies[b].floor;
-  for (std::size_t g = 0; g < guides.size(); ++g)
-    all[Instrument::most_bodies + g] = guides[g].floor;
+  for (std::size_t p = 0; p < pairs.size(); ++p) all[p] = pairs[p].floor;
+  for (std::size_t g = 0; g < guides.size(); ++g) all[most_pairs + g] = guides[g].floor;
   return all;
 }
 
 void CycleMemory::set_floors(const Floors& all) noexcept {
-  for (std::size_t b = 0; b < bodies.size(); ++b) bodies[b].floor = all[b];
-  for (std::size_t g = 0; g < guides.size(); ++g)
-    guides[g].floor = all[Instrument::most_bodies + g];
+  for (std::size_t p = 0; p < pairs.size(); ++p) pairs[p].floor = all[p];
+  for (std::size_t g = 0; g < guides.size(); ++g) guides[g].floor = all[most_pairs + g];
 }
 
 void CycleMemory::forget_floors() noexcept {
-  for (BodyMemory& body : bodies) body.floor = std::numeric_limits<double>::infinity();
+  for (PairMemory& pair : pairs) pair.floor = std::numeric_limits<double>::infinity();
   for (GuideMemory& guide : guides) guide.floor = std::numeric_limits<double>::infinity();
 }
 
 void CycleMemory::forget_motion() noexcept {
   warm.clear();
-  side_of = 0;
-  for (BodyMemory& body : bodies) body.reach = 0.0;
+  for (MeshMemory& mesh : meshes) mesh.side_of = 0;
+  for (PairMemory& pair : pairs) pair.reach = 0.0;
 }
 
 }  // namespace keepout

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "contact_row.h"
@@ -15,11 +16,31 @@
 #include "keepout/step/solver.h"
 #include "near_set.h"
 #include "point_motion.h"
+#include "relative_motion.h"
 
 namespace keepout {
 
-/// What is remembered of a body from cycle to cycle.
-struct BodyMemory {
+/// One of the meshes, where it is, and what is remembered of it.
+struct MeshMemory {
+  std::unique_ptr<Neighborhood> near;
+  double own_margin;  // 0: that of the options [length]
+  bool is_watertight;
+  RelativeMotion motion;                                    // the instrument's, as the mesh sees it
+  Pose pose = {};                                           // as the next cycle begins
+  Twist velocity = {};                                      // [length/s], [rad/s]
+  bool is_misplaced = false;                                // it was told to be nowhere
+  std::array<Vec3, Instrument::most_points> ended_at = {};  // where the last step led, as it saw it
+  std::uint64_t side_of = 0;  // the mesh that it was found on the free side of; 0: unknown
+
+  double margin(const InstrumentOptions& options) const noexcept {
+    return own_margin > 0.0 ? own_margin : options.margin;
+  }
+};
+
+/// What is remembered of a body beside a mesh from cycle to cycle.
+struct PairMemory {
+  std::size_t body;
+  std::size_t mesh;
   NearSet near;
   double reach = 0.0;  // of its last motion [length]
   double guard = 0.0;  // how much farther than needed triangles are looked for [length]
@@ -31,6 +52,9 @@ struct GuideMemory {
   Guide guide;
   double floor = 0.0;  // how far within its region it was certified last; below 0: out of it
 };
+
+/// Bodies and meshes, at the most.
+constexpr std::size_t most_pairs = Instrument::most_bodies * InstrumentConstraint::most_meshes;
 
 /// A row that held a motion back: the next cycle begins with it.
 struct WarmRow {
@@ -54,17 +78,17 @@ inline double certified_distance(double distance, double floor, double target, d
 
 /// The memory of the cycles of one instrument. Made once.
 struct CycleMemory {
-  CycleMemory(const Instrument& instrument, Neighborhood& near, Solver& solver,
-              const InstrumentCapacity& capacity);
+  /// Of no mesh yet.
+  CycleMemory(const Instrument& instrument, Solver& solver, const InstrumentCapacity& capacity);
 
   const Instrument& instrument;
-  Neighborhood& near;
   Solver& solver;
+  Budget budget;            // of a cycle, for all meshes
   double largest_position;  // of a prismatic joint: what is farther off is refused [length]
   double tolerance;         // distances are told apart down to this [length]
-  bool is_watertight;
   PointMotion motion;
-  std::vector<BodyMemory> bodies;
+  std::vector<MeshMemory> meshes;
+  std::vector<PairMemory> pairs;  // all bodies with the first mesh, with the second, and so on
   std::vector<GuideMemory> guides;
   std::vector<GuideState> guide_states;  // of the last cycle
   Buffer<ContactRow> rows;
@@ -73,21 +97,27 @@ struct CycleMemory {
   Buffer<WarmRow> earlier_warm;
   std::vector<double> matrix;  // of the problem's rows
   std::vector<double> bounds;
-  std::array<Vec3, Instrument::most_points> ended_at;  // where the last step led
-  std::uint64_t side_of = 0;  // the mesh that it was found on the free side of; 0: unknown
-  JointVector increment;      // the answer
+  JointVector increment;  // the answer
 
   /// Joint k (1..n) is to be at most so far from 0, so that no digit of a way is lost that matters:
   /// sixteen turns, or a hundred times the lengths at hand. [rad or length]
   double farthest(int k) const noexcept {
     return instrument.chain().joint(k).kind == JointKind::prismatic ? largest_position : 100.0;
   }
-  /// Makes what depends on the mesh, which may be another one by now; forgets all. Allocates.
+  /// Makes what depends on the meshes, which may be others by now; forgets all. Allocates.
   void prepare();
+  /// Makes what depends on where they are.
+  void measure() noexcept;
+  /// Whether any mesh moves.
+  bool is_moving() const noexcept {
+    return std::any_of(meshes.begin(), meshes.end(), [](const MeshMemory& mesh) {
+      return !mesh.velocity.linear.isZero(0.0) || !mesh.velocity.angular.isZero(0.0);
+    });
+  }
   /// Forgets all, and allocates nothing.
   void forget() noexcept;
-  /// What was certified last, of bodies and guides.
-  using Floors = std::array<double, Instrument::most_bodies + Guide::most>;
+  /// What was certified last, of pairs and guides.
+  using Floors = std::array<double, most_pairs + Guide::most>;
   Floors floors() const noexcept;
   /// Takes it to be that.
   void set_floors(const Floors& floors) noexcept;

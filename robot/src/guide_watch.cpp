@@ -25,7 +25,7 @@ void GuideWatch::open() noexcept {
     is_recovering_ = is_recovering_ || is_recovering(g);
     memory_.guide_states[g] = {.excess = excess};
   }
-  memory_.near.budget().spend(work_of_guide * memory_.guides.size());
+  memory_.budget.spend(work_of_guide * memory_.guides.size());
 }
 
 bool GuideWatch::is_recovering(std::size_t g) const noexcept {
@@ -54,7 +54,7 @@ GuideWatch::Standing GuideWatch::standing(std::size_t g, int cell) noexcept {
 /// The grid's last point up to which the part from lo to hi is proven.
 int GuideWatch::proven_until(std::size_t g, int lo, const Standing& at_lo, int hi,
                              const Standing& at_hi) noexcept {
-  Budget& budget = memory_.near.budget();
+  Budget& budget = memory_.budget;
   budget.spend(work_of_guide);
   if (budget.is_spent()) return lo;
   const Guide& guide = memory_.guides[g].guide;
@@ -77,7 +77,7 @@ std::optional<ContactRow> GuideWatch::row(std::size_t g, int cell) noexcept {
   const Vec3 outward = region.outward(guide.place(chain_at(cell)));
   if (outward.isZero(0.0)) return std::nullopt;
   const ChainState& chain = memory_.motion.chain_at_start();
-  ContactRow row{.owner = Instrument::most_bodies + g, .triangle = no_triangle};
+  ContactRow row{.owner = most_pairs + g, .triangle = no_triangle};
   row.normal = -outward;
   row.level = row.normal.dot(region.origin()) - region.radius();
   row.start_height = row.normal.dot(guide.place(chain)) - row.level;
@@ -91,14 +91,14 @@ std::optional<ContactRow> GuideWatch::row(std::size_t g, int cell) noexcept {
 }
 
 double GuideWatch::height_at_end(const ContactRow& row) noexcept {
-  const Guide& guide = memory_.guides[row.owner - Instrument::most_bodies].guide;
+  const Guide& guide = memory_.guides[row.owner - most_pairs].guide;
   return row.normal.dot(guide.place(chain_at(PointMotion::cells))) - row.level;
 }
 
 const ChainState& GuideWatch::chain_at(int cell) noexcept {
   if (cell == 0) return memory_.motion.chain_at_start();
   if (cell != cell_of_chain_) {
-    memory_.near.budget().spend(work_of_guide);
+    memory_.budget.spend(work_of_guide);
     memory_.motion.place(cell, chain_);
     cell_of_chain_ = cell;
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "keepout/robot/instrument_constraint.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -16,6 +17,8 @@ namespace {
 
 // Beyond that no number is one of a task.
 constexpr double largest = 1e9;
+constexpr double rotation_digits = 1e-6;  // that a rotation is to have
+constexpr double fastest_turn = 1.0;      // of a mesh in a cycle [rad]
 
 bool are_numbers(std::span<const double> values) noexcept {
   return std::all_of(values.begin(), values.end(),
@@ -24,14 +27,10 @@ bool are_numbers(std::span<const double> values) noexcept {
 
 std::unique_ptr<Neighborhood> neighborhood_of(std::shared_ptr<const Mesh> mesh,
                                               std::shared_ptr<const SpatialIndex> index,
-                                              const Solver* solver,
                                               const InstrumentCapacity& capacity) {
-  if (!mesh || !index || solver == nullptr) {
-    throw Error("an instrument constraint needs a mesh, an index and a solver");
-  }
-  if (capacity.triangles == 0 || capacity.planes == 0 || capacity.planes > (1u << 16)) {
-    throw Error(
-        "the capacity must be of at least one triangle and one plane, at most 65536 planes");
+  if (!mesh || !index) throw Error("an instrument constraint needs a mesh and an index of it");
+  if (capacity.triangles == 0) {
+    throw Error("the capacity must be of at least one triangle");
   }
   std::size_t looks = capacity.looks;
   if (looks == 0) {
@@ -43,22 +42,63 @@ std::unique_ptr<Neighborhood> neighborhood_of(std::shared_ptr<const Mesh> mesh,
                                         looks);
 }
 
+Instrument& required(Instrument& instrument, const Solver* solver,
+                     const InstrumentCapacity& capacity) {
+  if (solver == nullptr) throw Error("an instrument constraint needs a solver");
+  if (capacity.planes == 0 || capacity.planes > (1u << 16)) {
+    throw Error("the capacity must be of at least one plane, and at most 65536");
+  }
+  return instrument;
+}
+
 }  // namespace
 
 struct InstrumentConstraint::State {
-  State(std::shared_ptr<const Mesh> mesh, std::shared_ptr<const SpatialIndex> index, Instrument its,
-        std::unique_ptr<Solver> its_solver, const InstrumentCapacity& its_capacity)
-      : instrument(std::move(its)),
+  State(Instrument its, std::unique_ptr<Solver> its_solver, const InstrumentCapacity& its_capacity)
+      : instrument(std::move(required(its, its_solver.get(), its_capacity))),
         solver(std::move(its_solver)),
-        near(neighborhood_of(std::move(mesh), std::move(index), solver.get(), its_capacity)),
-        memory(instrument, *near, *solver, its_capacity),
+        memory(instrument, *solver, its_capacity),
         capacity(its_capacity) {}
+
+  /// Puts a mesh where there is one of that number, or to the others; and takes that back where
+  /// it cannot be used.
+  void put(MeshMemory mesh, std::size_t number, const InstrumentOptions& its_options) {
+    const std::vector<MeshMemory>::iterator at =
+        memory.meshes.begin() + static_cast<std::ptrdiff_t>(number);
+    const bool is_new = at == memory.meshes.end();
+    if (is_new) {
+      memory.meshes.push_back(std::move(mesh));
+    } else {
+      std::swap(*at, mesh);
+    }
+    try {
+      memory.prepare();
+      require_usable(its_options);
+    } catch (...) {
+      if (is_new) {
+        memory.meshes.pop_back();
+      } else {
+        std::swap(memory.meshes[number], mesh);
+      }
+      memory.prepare();
+      throw;
+    }
+    std::size_t looks = 0;
+    for (const MeshMemory& each : memory.meshes) looks = std::max(looks, each.near->budget().all());
+    memory.budget = Budget(looks);
+  }
 
   /// Throws unless all is in range, and rounding leaves something of the margin.
   void require_usable(const InstrumentOptions& o) const {
     const auto within = [](double x, double low) { return x >= low && x <= longest_length; };
-    if (!within(o.margin, shortest_length) || !(o.band > 0.0) || !(o.band < o.margin)) {
-      throw Error("the margin must be above zero, and the band above zero and below the margin");
+    double margin = o.margin;  // the least
+    for (const MeshMemory& mesh : memory.meshes) margin = std::min(margin, mesh.margin(o));
+    if (!within(o.margin, shortest_length) || !within(margin, shortest_length) || !(o.band > 0.0) ||
+        !(o.band < margin)) {
+      throw Error("the margins must be above zero, and the band above zero and below each of them");
+    }
+    if (!within(o.slowing_within, 0.0) || !(o.slowing_time > 0.0 && o.slowing_time < largest)) {
+      throw Error("slowing_within must not be below zero, and slowing_time must be above it");
     }
     if (!within(o.recovery, 0.0) || !within(o.damping, 0.0) || !within(o.orientation_weight, 0.0) ||
         !(o.period > 0.0 && o.period < largest) || o.refinements < 0) {
@@ -68,7 +108,7 @@ struct InstrumentConstraint::State {
     }
     // The certified distance, and the band, are told apart from rounding.
     const double least = 4.0 * memory.tolerance;
-    if (!(o.margin - o.band > least) || !(o.band > least)) {
+    if (!(margin - o.band > least) || !(o.band > least)) {
       throw Error(
           "the margin or its band is lost in the rounding of an instrument and a mesh of this "
           "size: each must be well above 1e-11 of both");
@@ -77,14 +117,17 @@ struct InstrumentConstraint::State {
 
   InstrumentStep step(const JointTask& task, std::span<const double> q) noexcept {
     InstrumentStep result;
-    JointCycle(memory, options, q).run(task, result);
+    JointCycle(memory, options, q, JointCycle::Meshes::moving).run(task, result);
     return result;
   }
 
   /// Before anything else: why there can be no step.
   Status check(std::span<const double> q) noexcept {
-    near->budget().renew();
-    if (!near->is_current()) return Status::mesh_changed;
+    memory.budget.renew();
+    for (const MeshMemory& mesh : memory.meshes) {
+      if (mesh.is_misplaced) return Status::invalid_input;
+      if (!mesh.near->is_current()) return Status::mesh_changed;
+    }
     const auto n = static_cast<std::size_t>(instrument.chain().size());
     return q.size() == n && are_positions(q) ? Status::free : Status::invalid_input;
   }
@@ -98,9 +141,21 @@ struct InstrumentConstraint::State {
     return true;
   }
 
+  /// A cycle has passed, whatever came of it: what moves is where it leads.
+  void pass_time() noexcept {
+    if (!memory.is_moving()) return;
+    for (MeshMemory& mesh : memory.meshes) {
+      mesh.pose.position += options.period * mesh.velocity.linear;
+      const double turn = options.period * mesh.velocity.angular.norm();
+      if (!(turn > 0.0)) continue;
+      const Eigen::AngleAxisd by(turn, mesh.velocity.angular.normalized());
+      mesh.pose.rotation = (by * Eigen::Quaterniond(mesh.pose.rotation)).normalized().matrix();
+    }
+    memory.measure();
+  }
+
   Instrument instrument;
   std::unique_ptr<Solver> solver;
-  std::unique_ptr<Neighborhood> near;
   CycleMemory memory;
   InstrumentCapacity capacity;
   InstrumentOptions options;
@@ -111,9 +166,9 @@ InstrumentConstraint::InstrumentConstraint(std::shared_ptr<const Mesh> mesh,
                                            Instrument instrument, std::unique_ptr<Solver> solver,
                                            const InstrumentOptions& options,
                                            const InstrumentCapacity& capacity)
-    : state_(std::make_unique<State>(std::move(mesh), std::move(index), std::move(instrument),
-                                     std::move(solver), capacity)) {
-  set_options(options);
+    : state_(std::make_unique<State>(std::move(instrument), std::move(solver), capacity)) {
+  state_->options = options;
+  add_mesh(std::move(mesh), std::move(index));
 }
 
 InstrumentConstraint::InstrumentConstraint(InstrumentConstraint&&) noexcept = default;
@@ -126,10 +181,14 @@ InstrumentStep InstrumentConstraint::step(std::span<const double> q,
   const bool is_number =
       are_numbers({desired.linear.data(), 3}) && are_numbers({desired.angular.data(), 3});
   if (is_ok(status) && !is_number) status = Status::invalid_input;
-  if (!is_ok(status)) return {.status = status};
-  ChainState chain;
-  state_->instrument.chain().place(q, chain);
-  return state_->step(flange_task(chain, desired, state_->options), q);
+  InstrumentStep result{.status = status};
+  if (is_ok(status)) {
+    ChainState chain;
+    state_->instrument.chain().place(q, chain);
+    result = state_->step(flange_task(chain, desired, state_->options), q);
+  }
+  state_->pass_time();
+  return result;
 }
 
 InstrumentStep InstrumentConstraint::step(std::span<const double> q,
@@ -142,8 +201,10 @@ InstrumentStep InstrumentConstraint::step(std::span<const double> q,
   if (is_ok(status) && !(desired.size() == q.size() && are_numbers(desired) && is_weighed)) {
     status = Status::invalid_input;
   }
-  if (!is_ok(status)) return {.status = status};
-  return state_->step(joint_task(desired, weights), q);
+  InstrumentStep result{.status = status};
+  if (is_ok(status)) result = state_->step(joint_task(desired, weights), q);
+  state_->pass_time();
+  return result;
 }
 
 MotionProof InstrumentConstraint::prove(std::span<const double> q,
@@ -166,12 +227,13 @@ MotionProof InstrumentConstraint::prove(std::span<const double> q,
       from[k] = q[k] + proof.share * increment[k];
       motion[k] = part * increment[k];
     }
-    state_->near->budget().renew();
+    state_->memory.budget.renew();
     state_->memory.forget_motion();
     state_->memory.forget_floors();
     InstrumentStep result;
-    const double proven =
-        JointCycle(state_->memory, state_->options, {from.data(), q.size()}).prove(motion, result);
+    const double proven = JointCycle(state_->memory, state_->options, {from.data(), q.size()},
+                                     JointCycle::Meshes::still)
+                              .prove(motion, result);
     if (result.status == Status::over_capacity && part > least_part) {
       part *= 0.5;
       continue;
@@ -190,7 +252,15 @@ MotionProof InstrumentConstraint::prove(std::span<const double> q,
 void InstrumentConstraint::forget() noexcept { state_->memory.forget(); }
 
 const Instrument& InstrumentConstraint::instrument() const noexcept { return state_->instrument; }
-const Mesh& InstrumentConstraint::mesh() const noexcept { return state_->near->mesh(); }
+std::size_t InstrumentConstraint::mesh_count() const noexcept {
+  return state_->memory.meshes.size();
+}
+const Mesh& InstrumentConstraint::mesh(std::size_t number) const noexcept {
+  return state_->memory.meshes[number].near->mesh();
+}
+const Pose& InstrumentConstraint::place_of(std::size_t mesh) const noexcept {
+  return state_->memory.meshes[mesh].pose;
+}
 const InstrumentOptions& InstrumentConstraint::options() const noexcept { return state_->options; }
 
 void InstrumentConstraint::set_options(const InstrumentOptions& options) {
@@ -198,21 +268,64 @@ void InstrumentConstraint::set_options(const InstrumentOptions& options) {
   state_->options = options;
 }
 
-void InstrumentConstraint::follow(std::shared_ptr<const Mesh> moved,
-                                  std::shared_ptr<const SpatialIndex> index) {
+std::size_t InstrumentConstraint::add_mesh(std::shared_ptr<const Mesh> mesh,
+                                           std::shared_ptr<const SpatialIndex> index,
+                                           double margin) {
   State& state = *state_;
-  auto near = neighborhood_of(moved, std::move(index), state.solver.get(), state.capacity);
-  std::swap(*state.near, *near);
-  state.memory.prepare();
-  try {
-    state.require_usable(state.options);
-  } catch (...) {
-    std::swap(*state.near, *near);
-    state.memory.prepare();
-    throw;
+  const std::size_t number = state.memory.meshes.size();
+  if (number == most_meshes) {
+    throw Error("an instrument is kept out of at most " + std::to_string(most_meshes) + " meshes");
   }
-  const bool has_same_triangles = std::ranges::equal(moved->triangles(), near->mesh().triangles());
-  if (!has_same_triangles) state.memory.is_watertight = is_watertight(*moved);
+  if (!(margin >= 0.0)) throw Error("the margin of a mesh must not be below zero");
+  auto near = neighborhood_of(std::move(mesh), std::move(index), state.capacity);
+  const bool is_closed = is_watertight(near->mesh());
+  state.put({.near = std::move(near),
+             .own_margin = margin,
+             .is_watertight = is_closed,
+             .motion = RelativeMotion(state.instrument, state.memory.motion)},
+            number, state.options);
+  return number;
+}
+
+void InstrumentConstraint::follow(std::shared_ptr<const Mesh> moved,
+                                  std::shared_ptr<const SpatialIndex> index, std::size_t number) {
+  State& state = *state_;
+  if (number >= state.memory.meshes.size()) {
+    throw Error("there is no mesh of number " + std::to_string(number));
+  }
+  const MeshMemory& old = state.memory.meshes[number];
+  auto near = neighborhood_of(std::move(moved), std::move(index), state.capacity);
+  const bool has_same_triangles =
+      std::ranges::equal(near->mesh().triangles(), old.near->mesh().triangles());
+  const bool is_closed = has_same_triangles ? old.is_watertight : is_watertight(near->mesh());
+  state.put({.near = std::move(near),
+             .own_margin = old.own_margin,
+             .is_watertight = is_closed,
+             .motion = RelativeMotion(state.instrument, state.memory.motion),
+             .pose = old.pose,
+             .velocity = old.velocity,
+             .is_misplaced = old.is_misplaced},
+            number, state.options);
+}
+
+void InstrumentConstraint::place(std::size_t mesh, const Pose& pose,
+                                 const Twist& velocity) noexcept {
+  CycleMemory& memory = state_->memory;
+  const double far = memory.largest_position;
+  const auto is_within = [](const auto& numbers, double most) {
+    return (numbers.array().abs() <= most).all();  // false for NaN
+  };
+  const Mat3 off = pose.rotation.transpose() * pose.rotation - Mat3::Identity();
+  const bool is_one = mesh < memory.meshes.size();
+  MeshMemory& placed = memory.meshes[is_one ? mesh : 0];
+  placed.is_misplaced = !is_one || !is_within(pose.position, far) ||
+                        !is_within(off, rotation_digits) || !(pose.rotation.determinant() > 0.0) ||
+                        !is_within(velocity.linear, largest) ||
+                        !is_within(velocity.angular, fastest_turn / state_->options.period);
+  if (placed.is_misplaced) return;
+  placed.pose = {pose.position, Eigen::Quaterniond(pose.rotation).normalized().matrix()};
+  placed.velocity = velocity;
+  memory.measure();
 }
 
 void InstrumentConstraint::set_guides(std::vector<Guide> guides) {
@@ -239,7 +352,7 @@ void InstrumentConstraint::set_guides(std::vector<Guide> guides) {
 }
 
 double InstrumentConstraint::tolerance() const noexcept { return state_->memory.tolerance; }
-std::size_t InstrumentConstraint::looks() const noexcept { return state_->near->budget().spent(); }
+std::size_t InstrumentConstraint::looks() const noexcept { return state_->memory.budget.spent(); }
 
 double recommended_band(const Instrument& instrument, double period, double least) {
   const Chain& chain = instrument.chain();

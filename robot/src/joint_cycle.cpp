@@ -14,14 +14,23 @@ constexpr double worthwhile = 1e-6;         // a share of the cost
 }  // namespace
 
 JointCycle::JointCycle(CycleMemory& memory, const InstrumentOptions& options,
-                       std::span<const double> q) noexcept
+                       std::span<const double> q, Meshes meshes) noexcept
     : memory_(memory),
       options_(options),
       box_(memory, options.period, q),
       watch_(memory, options),
       guides_(memory, options),
-      rows_(memory, watch_, guides_, options) {
+      rows_(memory, watch_, guides_, options),
+      meshes_move_(meshes == Meshes::moving && memory.is_moving()) {
   memory.motion.start(q);
+  for (MeshMemory& mesh : memory.meshes) {
+    Twist way;
+    if (meshes_move_) {
+      way = {.linear = options.period * mesh.velocity.linear,
+             .angular = options.period * mesh.velocity.angular};
+    }
+    mesh.motion.start(mesh.pose, way);
+  }
 }
 
 void JointCycle::run(const JointTask& task, InstrumentStep& result) noexcept {
@@ -31,8 +40,15 @@ void JointCycle::run(const JointTask& task, InstrumentStep& result) noexcept {
   result.status = watch_.open(result);
   if (!is_ok(result.status)) return;
   Trial best{.cost = task.cost(memory_.increment)};
-  search(task, best, result);
-  if (is_ok(result.status) && is_recovering()) result.status = Status::recovering;
+  rows_.start();
+  if (meshes_move_) {
+    search_beside_moving(task, best, result);
+  } else {
+    search(task, best, result);
+  }
+  watch_.close();
+  if (is_ok(result.status) && result.status != Status::yielding && is_recovering())
+    result.status = Status::recovering;
   tell_of_guides(best, result);
   result.rounds = rounds_;
   result.rows = best.rows;
@@ -41,32 +57,62 @@ void JointCycle::run(const JointTask& task, InstrumentStep& result) noexcept {
 }
 
 /// Where not even the first part of a motion can be proven, a shorter one bends less, and meets
-/// less. The rows that were found stay. Each attempt has half of the work that is left.
+/// less. The rows that were found stay.
 void JointCycle::search(const JointTask& task, Trial& best, InstrumentStep& result) noexcept {
-  rows_.start();
   double asked = 1.0;
   for (; asked >= least_asked; asked *= 0.25) {
-    trouble_ = Status::free;
-    is_shortened_ = asked < 1.0;
-    if (is_shortened_) rows_.forgive_curvature(0.0625);
-    const bool is_spent = memory_.near.budget().halved([&] {
-      const JointTask part = task.scaled(asked);
-      if (seek(part, best)) turn(part, best);
-      return is_worn_out();
-    });
-    if (best.share > 0.0 || best.cell == PointMotion::cells) break;
-    if (is_spent) trouble_ = Status::over_capacity;
-    if (trouble_ != Status::free && trouble_ != Status::over_capacity) break;
+    const bool goes_on = attempt(task, asked, best);
+    if (best.share > 0.0 || best.cell == PointMotion::cells || !goes_on) break;
   }
   if (best.cell == 0) {
-    result.status = Status::unsolved;
-    if (trouble_ != Status::free) result.status = trouble_;
+    result.status = trouble_ != Status::free ? trouble_ : Status::unsolved;
     rows_.remember_all();
   } else if (best.share < 1.0 || asked < 1.0) {
     result.status = Status::fallback;
   } else {
     result.status = best.is_held ? Status::limited : Status::free;
   }
+}
+
+/// Less and less of what is asked for, down to what only gives way; and then less and less of what
+/// is to be kept.
+void JointCycle::search_beside_moving(const JointTask& task, Trial& best,
+                                      InstrumentStep& result) noexcept {
+  struct Attempt {
+    double asked;
+    double level;
+  };
+  constexpr Attempt attempts[] = {{1.0, 1.0}, {0.25, 1.0}, {0.0, 1.0}, {0.0, 0.75},
+                                  {0.0, 0.5}, {0.0, 0.25}, {0.0, 0.0}};
+  for (const auto& [asked, level] : attempts) {
+    watch_.lower_to(level);
+    attempt(task, asked, best);
+    if (best.cell < PointMotion::cells) continue;
+    result.level = level;
+    result.status = level < 1.0    ? Status::yielding
+                    : asked < 1.0  ? Status::fallback
+                    : best.is_held ? Status::limited
+                                   : Status::free;
+    return;
+  }
+  result.level = 0.0;
+  result.status = trouble_ != Status::free ? trouble_ : Status::unsolved;
+  rows_.remember_all();
+}
+
+/// For a share of what is asked for, with half of the work that is left. Whether another share may
+/// fare better.
+bool JointCycle::attempt(const JointTask& task, double asked, Trial& best) noexcept {
+  trouble_ = Status::free;
+  is_shortened_ = asked < 1.0;
+  if (is_shortened_) rows_.forgive_curvature(0.0625);
+  const bool is_spent = memory_.budget.halved([&] {
+    const JointTask part = task.scaled(asked);
+    if (seek(part, best)) turn(part, best);
+    return is_worn_out();
+  });
+  if (is_spent) trouble_ = Status::over_capacity;
+  return trouble_ == Status::free || trouble_ == Status::over_capacity;
 }
 
 void JointCycle::carry_out(const Trial& best, InstrumentStep& result) noexcept {
@@ -79,17 +125,19 @@ void JointCycle::carry_out(const Trial& best, InstrumentStep& result) noexcept {
   if (memory_.motion.increment() != memory_.increment) {
     memory_.motion.move(memory_.increment, options_.certified);
   }
-  const Vec3* ended = memory_.motion.at(PointMotion::cells);
-  std::copy(ended, ended + memory_.instrument.points().size(), memory_.ended_at.begin());
-  memory_.side_of = options_.check_sides ? memory_.near.mesh().id() : 0;
+  for (MeshMemory& mesh : memory_.meshes) {
+    const Vec3* ended = mesh.motion.at(PointMotion::cells);
+    std::copy(ended, ended + memory_.instrument.points().size(), mesh.ended_at.begin());
+    mesh.side_of = options_.check_sides ? mesh.near->mesh().id() : 0;
+  }
 }
 
 /// What held the motion back, and what gave way to it.
 void JointCycle::tell_of_guides(const Trial& best, InstrumentStep& result) noexcept {
   result.softening = best.softening;
   for (const WarmRow& warm : memory_.warm) {
-    if (warm.owner < Instrument::most_bodies) continue;
-    memory_.guide_states[warm.owner - Instrument::most_bodies].holds = true;
+    if (warm.owner < most_pairs) continue;
+    memory_.guide_states[warm.owner - most_pairs].holds = true;
   }
   const bool is_cut = !is_ok(result.status) || is_shortened_ || best.share < 1.0;
   for (std::size_t g = 0; g < memory_.guides.size(); ++g) {
@@ -131,7 +179,7 @@ bool JointCycle::seek(const JointTask& task, Trial& best) noexcept {
     trial.cost = task.cost_of_share(trial.increment, trial.share);
     const double still = std::sqrt(task.cost_of_share(trial.increment, 0.0));
     const double affordable = still + 2.0 * options_.band;
-    if (!is_recovering() && trial.cost > affordable * affordable) {
+    if (!is_recovering() && !meshes_move_ && trial.cost > affordable * affordable) {
       trial.share = task.best_share(trial.increment, trial.share);
       trial.cost = task.cost_of_share(trial.increment, trial.share);
     }
@@ -139,7 +187,8 @@ bool JointCycle::seek(const JointTask& task, Trial& best) noexcept {
       best = trial;
       return true;
     }
-    if (trial.cell > 0 && (best.cell == 0 || trial.cost < best.cost)) best = trial;
+    const bool is_better = best.cell == 0 || trial.cost < best.cost;
+    if (trial.cell > 0 && is_better && !meshes_move_) best = trial;
     if (trial.cell == PointMotion::cells) return false;
     if (is_worn_out() || trouble_ != Status::free) return false;
     if (!answer()) return false;
@@ -195,7 +244,7 @@ SolveStatus JointCycle::solve(const JointTask& task, Trial& trial) noexcept {
   bool guides_lead = false;
   bool bodies_lead = false;
   for (const ContactRow& row : memory_.rows) {
-    bool& lead = row.owner < Instrument::most_bodies ? bodies_lead : guides_lead;
+    bool& lead = row.owner < most_pairs ? bodies_lead : guides_lead;
     lead = lead || row.bound > 0.0;
   }
   SolveStatus solved = SolveStatus::infeasible;
@@ -228,9 +277,10 @@ SolveStatus JointCycle::pose(const JointTask& task, const Softness& softness,
   std::size_t count = 0;
   for (const ContactRow& row : memory_.rows) {
     for (std::size_t k = 0; k < n; ++k) *number++ = task.unit[k] * row.gradient[k];
-    const double soft = row.owner < Instrument::most_bodies ? softness.bodies : softness.guides;
+    const double soft = row.owner < most_pairs ? softness.bodies : softness.guides;
     const double bound = (row.bound > 0.0 ? soft * row.bound : row.bound) + row.correction;
-    memory_.bounds[count++] = soft > 0.0 ? bound : std::min(bound, 0.0);
+    const double given = row.owner < most_pairs ? watch_.given_way(row.owner) : 0.0;
+    memory_.bounds[count++] = (soft > 0.0 ? bound : std::min(bound, 0.0)) - row.drift - given;
   }
   for (std::size_t k = 0; k < n; ++k) {
     for (const double sign : {1.0, -1.0}) {
@@ -249,37 +299,40 @@ SolveStatus JointCycle::pose(const JointTask& task, const Softness& softness,
                             task.damping};
   solution = {};
   const SolveStatus solved = memory_.solver.solve(problem, solution);
-  memory_.near.budget().spend(4 + static_cast<std::size_t>(std::max(solution.iterations, 0)) *
-                                      (2 + count / 4));
+  memory_.budget.spend(4 + static_cast<std::size_t>(std::max(solution.iterations, 0)) *
+                               (2 + count / 4));
   return solved;
 }
 
-/// How much of a motion is certified, and of each body what speaks against the rest.
+/// How much of a motion is certified, and of each pair what speaks against the rest.
 void JointCycle::judge(Trial& trial) noexcept {
-  Budget& budget = memory_.near.budget();
+  Budget& budget = memory_.budget;
   memory_.motion.move(trial.increment, options_.certified);
+  for (MeshMemory& mesh : memory_.meshes) mesh.motion.move();
   kept_by_guides_ = guides_.judge(failed_guide_);
   trial.cell = kept_by_guides_;
-  for (std::size_t b = 0; b < memory_.bodies.size(); ++b) {
-    BodyMemory& body = memory_.bodies[b];
-    failures_[b] = {};
-    body.reach = memory_.motion.farthest(b);
-    const double needed = memory_.instrument.bodies()[b].radius + watch_.kept(b) + body.reach;
-    if (!watch_.look(b, needed)) {
+  for (std::size_t p = 0; p < memory_.pairs.size(); ++p) {
+    PairMemory& pair = memory_.pairs[p];
+    RelativeMotion& motion = memory_.meshes[pair.mesh].motion;
+    failures_[p] = {};
+    pair.reach = motion.farthest(pair.body);
+    const double needed =
+        memory_.instrument.bodies()[pair.body].radius + watch_.kept(p) + pair.reach;
+    if (!watch_.look(p, needed)) {
       trial.cell = 0;
       trouble_ = Status::over_capacity;
       return;
     }
-    const std::span<NearTriangle> triangles = body.near.nearer_than(needed, budget);
+    const std::span<NearTriangle> triangles = pair.near.nearer_than(needed, budget);
     if (triangles.empty()) continue;
     in_reach_ = std::max(in_reach_, triangles.size());
-    Certificate certificate(memory_.instrument, b, memory_.motion, body.near, watch_.kept(b),
+    Certificate certificate(memory_.instrument, pair.body, motion, pair.near, watch_.kept(p),
                             memory_.tolerance, budget);
     for (const ContactRow& row : memory_.rows) {
-      if (row.owner == b) certificate.try_first(row.normal);
+      if (row.owner == p) certificate.try_first(row.normal);
     }
-    failures_[b] = certificate.judge(triangles, body.reach);
-    trial.cell = std::min(trial.cell, failures_[b].cell);
+    failures_[p] = certificate.judge(triangles, pair.reach);
+    trial.cell = std::min(trial.cell, failures_[p].cell);
   }
 }
 

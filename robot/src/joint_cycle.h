@@ -17,11 +17,15 @@ namespace keepout {
 /// increment is it, or the part of one that was. Allocates nothing, throws nothing.
 class JointCycle {
  public:
-  /// From q (n). The index must be current. All must outlive it.
-  JointCycle(CycleMemory& memory, const InstrumentOptions& options,
-             std::span<const double> q) noexcept;
+  /// Whether the meshes move in the cycle as they are said to, or stay where they are.
+  enum class Meshes : bool { still, moving };
 
-  /// Precondition: the task is finite.
+  /// From q (n). The indices must be current. All must outlive it.
+  JointCycle(CycleMemory& memory, const InstrumentOptions& options, std::span<const double> q,
+             Meshes meshes) noexcept;
+
+  /// Precondition: the task is finite. Where a mesh moves, all of a motion is proven or nothing: to
+  /// stop on the way is not safe there.
   void run(const JointTask& task, InstrumentStep& result) noexcept;
 
   /// The share of a motion that is certified; status and distance go to the result. Limits of
@@ -48,6 +52,8 @@ class JointCycle {
   };
 
   void search(const JointTask& task, Trial& best, InstrumentStep& result) noexcept;
+  void search_beside_moving(const JointTask& task, Trial& best, InstrumentStep& result) noexcept;
+  bool attempt(const JointTask& task, double asked, Trial& best) noexcept;
   bool seek(const JointTask& task, Trial& best) noexcept;
   void turn(const JointTask& task, Trial& best) noexcept;
   SolveStatus solve(const JointTask& task, Trial& trial) noexcept;
@@ -57,7 +63,7 @@ class JointCycle {
   void tell_of_guides(const Trial& best, InstrumentStep& result) noexcept;
   bool is_recovering() const noexcept { return watch_.is_recovering() || guides_.is_recovering(); }
   void carry_out(const Trial& best, InstrumentStep& result) noexcept;
-  bool is_worn_out() const noexcept { return memory_.near.budget().is_spent(); }
+  bool is_worn_out() const noexcept { return memory_.budget.is_spent(); }
 
   CycleMemory& memory_;
   const InstrumentOptions& options_;
@@ -71,6 +77,7 @@ class JointCycle {
   std::array<bool, Guide::most> has_failed_{};  // in any trial
   Status trouble_ = Status::free;               // why nothing can be judged
   bool is_shortened_ = false;                   // whether less than all was asked for at last
+  bool meshes_move_;
   int rounds_ = 0;
   std::size_t in_reach_ = 0;  // triangles of one body and one trial, at the most
 };

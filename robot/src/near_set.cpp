@@ -61,7 +61,8 @@ NearSet::NearSet(std::size_t room, double beyond) : room_(room), beyond_(beyond)
   normals_.reserve(room);
 }
 
-bool NearSet::look(Neighborhood& near, std::span<const Vec3> core, double radius) noexcept {
+bool NearSet::look(Neighborhood& near, std::span<const Vec3> core, double radius,
+                   Budget& budget) noexcept {
   forget();
   core_.assign(core.begin(), core.end());
   ids_.clear();
@@ -72,8 +73,8 @@ bool NearSet::look(Neighborhood& near, std::span<const Vec3> core, double radius
   TriangleBuffer& candidates = near.candidates();
   candidates.clear();
   near.index().collect_near({from_, to_, radius + beyond_}, candidates);
-  near.budget().spend(16 + candidates.size());
-  if (candidates.overflowed() || near.budget().is_spent()) return false;
+  budget.spend(16 + candidates.size());
+  if (candidates.overflowed() || budget.is_spent()) return false;
   const Mesh& mesh = near.mesh();
   // Everything that matters is within the radius of the core.
   size_ = (to_ - from_).norm() + 2.0 * (radius + beyond_) + mesh.longest_edge();

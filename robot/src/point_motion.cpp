@@ -18,6 +18,7 @@ PointMotion::PointMotion(const Instrument& instrument, Budget& budget)
 }
 
 void PointMotion::start(std::span<const double> q) noexcept {
+  ++motion_;
   std::copy(q.begin(), q.end(), q_.begin());
   budget_->spend(work_of_place);
   instrument_->chain().place(q, start_);
@@ -63,29 +64,12 @@ const Vec3* PointMotion::at(int cell) noexcept {
   return place.points.data();
 }
 
-std::span<const Vec3> PointMotion::core(std::size_t body, int cell, Core& core) noexcept {
-  const Vec3* places = at(cell);
-  const std::span<const std::uint8_t> points = instrument_->points_of(body);
-  for (std::size_t i = 0; i < points.size(); ++i) core[i] = places[points[i]];
-  return {core.data(), points.size()};
-}
-
 void PointMotion::place(int cell, ChainState& state) const noexcept {
   const double share = static_cast<double>(cell) / cells;
   const auto n = static_cast<std::size_t>(instrument_->chain().size());
   JointVector q;
   for (std::size_t k = 0; k < n; ++k) q[k] = q_[k] + share * increment_[k];
   instrument_->chain().place({q.data(), n}, state);
-}
-
-double PointMotion::farthest(std::size_t body) noexcept {
-  const Vec3* end = at(cells);
-  double most = 0.0;
-  for (const std::uint8_t p : instrument_->points_of(body)) {
-    const double chord = (end[p] - at_start()[p]).norm();
-    most = std::max(most, std::min(bounds_[p].path, chord + bounds_[p].bend / 8.0));
-  }
-  return most;
 }
 
 void PointMotion::fill(const ChainState& state, Place& place) const noexcept {

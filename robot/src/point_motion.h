@@ -42,8 +42,6 @@ class PointMotion {
 
   /// Where all points are at a share of the motion, by their number. [length]
   const Vec3* at(int cell) noexcept;
-  /// The same of the points of one body, put into `core`. [length]
-  std::span<const Vec3> core(std::size_t body, int cell, Core& core) noexcept;
   /// Where they are as the cycle begins. [length]
   const Vec3* at_start() const noexcept { return places_[0].points.data(); }
   /// The chain as the cycle begins.
@@ -51,11 +49,10 @@ class PointMotion {
   /// Where the chain is at a share of the motion.
   void place(int cell, ChainState& state) const noexcept;
 
-  /// Bounds of a point's second derivative by the share. [length]
-  double bend(std::size_t point) const noexcept { return bounds_[point].bend; }
-
-  /// How far any point of a body is from its start at the most, on the way. [length]
-  double farthest(std::size_t body) noexcept;
+  /// What bounds the way of a point.
+  const MotionBounds& bounds(std::size_t point) const noexcept { return bounds_[point]; }
+  /// Which motion it is, of all that there were.
+  std::uint64_t number() const noexcept { return motion_; }
 
  private:
   struct Place {

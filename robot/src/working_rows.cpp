@@ -21,25 +21,26 @@ void WorkingRows::start() noexcept {
     if (!guides_.is_recovering(g)) continue;
     if (const auto row = guides_.row(g, 0)) memory_.rows.push(*row);
   }
-  for (std::size_t b = 0; b < memory_.bodies.size(); ++b) {
-    if (watch_.is_recovering(b)) start_recovery(b);
+  for (std::size_t p = 0; p < memory_.pairs.size(); ++p) {
+    if (watch_.is_recovering(p)) start_recovery(p);
   }
 }
 
 /// The row of a body's witness or a guide, where they are at a share of the motion at hand.
 std::optional<ContactRow> WorkingRows::row_of(const WarmRow& warm, int cell) noexcept {
-  if (warm.owner >= Instrument::most_bodies) {
-    const std::size_t guide = warm.owner - Instrument::most_bodies;
+  if (warm.owner >= most_pairs) {
+    const std::size_t guide = warm.owner - most_pairs;
     return guide < memory_.guides.size() ? guides_.row(guide, cell) : std::nullopt;
   }
   const NearTriangle* triangle = watch_.find(warm.owner, warm.triangle);
   return triangle == nullptr ? std::nullopt : make_.witness(warm.owner, *triangle, cell);
 }
 
-void WorkingRows::start_recovery(std::size_t b) noexcept {
-  Budget& budget = memory_.near.budget();
-  const double distance = memory_.instrument.bodies()[b].radius + margin_;
-  const auto nearby = memory_.bodies[b].near.nearer_than(distance, budget);
+void WorkingRows::start_recovery(std::size_t p) noexcept {
+  Budget& budget = memory_.budget;
+  const double radius = memory_.instrument.bodies()[memory_.pairs[p].body].radius;
+  const double distance = radius + watch_.margin(p);
+  const auto nearby = memory_.pairs[p].near.nearer_than(distance, budget);
   for (int count = 0; count < most_recovery_rows && !budget.is_spent(); ++count) {
     budget.spend(1 + nearby.size() * (1 + memory_.rows.size()) / 32);
     // The nearest one that none of the rows leads away from.
@@ -49,13 +50,13 @@ void WorkingRows::start_recovery(std::size_t b) noexcept {
       if (nearest != nullptr && triangle.at_start.distance >= nearest->at_start.distance) continue;
       const bool is_led =
           std::any_of(memory_.rows.begin(), memory_.rows.end(), [&](const ContactRow& row) {
-            return row.owner == b && (row.triangle == triangle.id ||
+            return row.owner == p && (row.triangle == triangle.id ||
                                       row.normal.dot(triangle.at_start.normal) > alike);
           });
       if (!is_led) nearest = &triangle;
     }
     if (nearest == nullptr) return;
-    const auto row = make_.witness(b, *nearest, 0);
+    const auto row = make_.witness(p, *nearest, 0);
     if (!row) return;
     memory_.rows.push(*row);
   }
@@ -63,13 +64,13 @@ void WorkingRows::start_recovery(std::size_t b) noexcept {
 
 bool WorkingRows::answer(const Failures& failures) noexcept {
   bool changed = false;
-  for (std::size_t b = 0; b < memory_.bodies.size(); ++b) {
-    if (failures[b].triangle == nullptr) continue;
-    const NearTriangle& triangle = *failures[b].triangle;
+  for (std::size_t p = 0; p < memory_.pairs.size(); ++p) {
+    if (failures[p].triangle == nullptr) continue;
+    const NearTriangle& triangle = *failures[p].triangle;
     const std::size_t before = memory_.rows.size();
-    add(b, triangle, std::max(failures[b].cell, 1));
+    add(p, triangle, std::max(failures[p].cell, 1));
     const bool is_new = memory_.rows.size() > before;
-    changed = changed || is_new || correct(b, triangle.id);
+    changed = changed || is_new || correct(p, triangle.id);
   }
   return changed && !memory_.rows.overflowed();
 }
@@ -77,7 +78,7 @@ bool WorkingRows::answer(const Failures& failures) noexcept {
 bool WorkingRows::answer(std::size_t guide, int cell) noexcept {
   // Planes that touch the region where the motion leaves it, and then where it ends.
   constexpr int most_planes = 4;
-  const std::size_t owner = Instrument::most_bodies + guide;
+  const std::size_t owner = most_pairs + guide;
   const auto planes = std::count_if(memory_.rows.begin(), memory_.rows.end(),
                                     [&](const ContactRow& row) { return row.owner == owner; });
   if (planes < most_planes) {
@@ -91,20 +92,20 @@ bool WorkingRows::answer(std::size_t guide, int cell) noexcept {
 }
 
 /// Witnesses first, then the end points; and then none is missing any more.
-void WorkingRows::add(std::size_t b, const NearTriangle& triangle, int cell) noexcept {
+void WorkingRows::add(std::size_t p, const NearTriangle& triangle, int cell) noexcept {
   int witnesses = 0;
   bool has_ends = false;
   for (const ContactRow& row : memory_.rows) {
-    if (row.owner != b || row.triangle != triangle.id) continue;
+    if (row.owner != p || row.triangle != triangle.id) continue;
     witnesses += row.point.has_value() ? 1 : 0;
     has_ends = has_ends || !row.point.has_value();
   }
   if (witnesses < 2) {
-    if (const auto row = make_.witness(b, triangle, cell)) memory_.rows.push(*row);
+    if (const auto row = make_.witness(p, triangle, cell)) memory_.rows.push(*row);
   } else if (!has_ends) {
-    for (const std::uint8_t p : memory_.instrument.points_of(b)) {
-      if (memory_.instrument.points()[p].link == 0) continue;
-      if (const auto row = make_.end_point(b, p, triangle, cell)) memory_.rows.push(*row);
+    for (const std::uint8_t end : memory_.instrument.points_of(memory_.pairs[p].body)) {
+      if (memory_.instrument.points()[end].link == 0) continue;
+      if (const auto row = make_.end_point(p, end, triangle, cell)) memory_.rows.push(*row);
     }
   }
 }
@@ -116,11 +117,11 @@ bool WorkingRows::correct(std::size_t owner, TriangleId triangle) noexcept {
   for (ContactRow& row : memory_.rows) {
     if (row.owner != owner || row.triangle != triangle || row.corrections >= most_corrections)
       continue;
-    double promised = row.start_height;
+    double promised = row.start_height + row.drift;
     for (std::size_t k = 0; k < row.gradient.size(); ++k) {
       promised += row.gradient[k] * memory_.motion.increment()[k];
     }
-    const bool is_guide = owner >= Instrument::most_bodies;
+    const bool is_guide = owner >= most_pairs;
     const double kept = is_guide ? guides_.height_at_end(row) : make_.height_at_end(row);
     const double missing = promised - kept;
     if (!(missing > 0.0)) continue;

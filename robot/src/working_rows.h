@@ -13,18 +13,13 @@ namespace keepout {
 /// as trial motions fail. They lie in the cycles' memory.
 class WorkingRows {
  public:
-  /// What a trial could not be proven for, by body.
-  using Failures = std::array<Certificate::Failure, Instrument::most_bodies>;
+  /// What a trial could not be proven for, by pair of body and mesh.
+  using Failures = std::array<Certificate::Failure, most_pairs>;
 
   /// None yet. All must outlive it.
   WorkingRows(CycleMemory& memory, BodyWatch& watch, GuideWatch& guides,
               const InstrumentOptions& options) noexcept
-      : memory_(memory),
-        watch_(watch),
-        guides_(guides),
-        margin_(options.margin),
-        make_(memory.instrument, memory.motion, options.margin, options.recovery, memory.tolerance,
-              memory.near.budget()) {}
+      : memory_(memory), watch_(watch), guides_(guides), make_(memory, watch, options) {}
 
   /// Begins with the rows that held the last cycle back, and in recovery with those of what is too
   /// close.
@@ -51,8 +46,8 @@ class WorkingRows {
   void remember_all() noexcept;
 
  private:
-  void start_recovery(std::size_t body) noexcept;
-  void add(std::size_t body, const NearTriangle& triangle, int cell) noexcept;
+  void start_recovery(std::size_t pair) noexcept;
+  void add(std::size_t pair, const NearTriangle& triangle, int cell) noexcept;
   bool correct(std::size_t owner, TriangleId triangle) noexcept;
   std::optional<ContactRow> row_of(const WarmRow& warm, int cell) noexcept;
   bool holds(const ContactRow& row) const noexcept;
@@ -60,7 +55,6 @@ class WorkingRows {
   CycleMemory& memory_;
   BodyWatch& watch_;
   GuideWatch& guides_;
-  double margin_;
   ContactRows make_;
 };
 

@@ -36,6 +36,9 @@ TEST(InstrumentConstraint, AllocatesNothingWhateverTheOutcome) {
   guards.emplace_back(cube, cube_index,
                       Instrument(turning, {{.points = {{6, Vec3::Zero()}}, .radius = 1.0}}),
                       std::make_unique<ActiveSet>(), InstrumentOptions{});
+  // Two meshes, one of which comes on, at times faster than can be given way to.
+  InstrumentConstraint& beside_two = guards.front();
+  beside_two.add_mesh(cube, cube_index, 0.5);
   std::vector<Status> seen;
   seen.reserve(100'000);
   std::vector<double> q(6);
@@ -47,6 +50,8 @@ TEST(InstrumentConstraint, AllocatesNothingWhateverTheOutcome) {
       q = start;
       for (double& number : q) number += random.uniform(-0.6, 0.6);
       q[2] = random.uniform(0.0, 200.0);
+      const double speed = round % 2 == 0 ? 50.0 : 2.0;
+      beside_two.place(1, {Vec3(60, 0, 0), Mat3::Identity()}, {.linear = Vec3(-speed, 0, 0)});
       for (int i = 0; i < 50; ++i) {
         const InstrumentStep step = guard.step(
             q, Twist{.linear = 2.0 * random.direction(), .angular = 0.1 * random.direction()});

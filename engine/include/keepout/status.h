@@ -7,13 +7,14 @@
 
 namespace keepout {
 
-/// How a step ended. The first four come with a motion, which may be carried out and may be zero;
+/// How a step ended. The first five come with a motion, which may be carried out and may be zero;
 /// the others with zero motion.
 enum class Status : std::uint8_t {
   free,           // no plane holds the motion back
   limited,        // the motion is the best one that the planes allow
   recovering,     // the tip was too close or inside: the motion leads it out
   fallback,       // only a shorter motion could be proven, within the budget of work
+  yielding,       // anatomy comes on faster than can be given way to: less than the margin is kept
   infeasible,     // no motion satisfies all planes: the tip is too close on several sides
   ill_posed,      // the Jacobian lacks full column rank and there is no damping
   invalid_input,  // a number is not finite or out of range
@@ -30,7 +31,7 @@ enum class Status : std::uint8_t {
 inline constexpr std::size_t status_count = static_cast<std::size_t>(Status::mesh_changed) + 1;
 
 /// A motion comes with it, which may be carried out.
-constexpr bool is_ok(Status status) noexcept { return status <= Status::fallback; }
+constexpr bool is_ok(Status status) noexcept { return status <= Status::yielding; }
 
 /// The name as it stands in the enumeration, for files and logs.
 std::string_view name(Status status) noexcept;

@@ -35,6 +35,9 @@ class Budget {
   /// Whether nothing is left.
   bool is_spent() const noexcept { return left_ <= 0; }
 
+  /// How many looks a cycle may take.
+  std::size_t all() const noexcept { return static_cast<std::size_t>(all_); }
+
   /// How many looks were taken in this cycle.
   std::size_t spent() const noexcept {
     return static_cast<std::size_t>(left_ > 0 ? all_ - left_ : all_);

@@ -26,6 +26,8 @@ class InstrumentOracle {
 
   /// From now on the joints are at `positions` [rad or length].
   void move_to(std::span<const double> positions);
+  /// The same, and link 0 is at `base`, as the mesh sees it: of a mesh that moves.
+  void move_to(std::span<const double> positions, const Pose& base);
 
   /// The axis of a body, where it is now. [length]
   const Segment& axis(std::size_t body) const noexcept { return axes_[body]; }

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "keepout/geometry/pose.h"
 #include "keepout/index/spatial_index.h"
 #include "keepout/mesh/mesh.h"
 #include "keepout/robot/guide.h"
@@ -18,10 +19,11 @@
 
 namespace keepout {
 
-/// What is asked of the flange in one cycle.
+/// How a frame moves: what is asked of the flange in one cycle; or of a mesh, in a second. In the
+/// axes of the world, which are those of the first mesh unless that is placed elsewhere.
 struct Twist {
-  Vec3 linear = Vec3::Zero();   // how its origin shall move [length]
-  Vec3 angular = Vec3::Zero();  // how it shall turn: axis times angle, in the mesh's axes [rad]
+  Vec3 linear = Vec3::Zero();   // of its origin [length]
+  Vec3 angular = Vec3::Zero();  // its turn: axis times angle [rad]
 };
 
 /// On which motion the certificate is taken.
@@ -33,12 +35,19 @@ enum class CertifiedMotion : std::uint8_t {
 
 /// What stays the same from cycle to cycle.
 struct InstrumentOptions {
-  double margin = 0.2;  // distance to keep beyond each body's radius [length], > band
+  /// Distance to keep beyond each body's radius, from all meshes that have no margin of their own,
+  /// > band [length]
+  double margin = 0.2;
   /// What is held back of the margin, so that curved motions along a surface are proven: certified
   /// is margin - band. A wide band costs progress, never safety. See recommended_band. [length]
   double band = 0.002;
   double period = 1e-3;    // of a cycle: what velocity limits are multiplied by [s], > 0
   double recovery = 0.05;  // how far a body that is too close is led away in a cycle, >= 0 [length]
+  /// Bodies come on slower where they are nearer to the margin than that, so that they touch it
+  /// softly: a way of d left to it, they use up no more than d period / slowing_time in a cycle.
+  /// What comes on is the instrument: a mesh that does is not fled. 0: nowhere. [length]
+  double slowing_within = 0.0;
+  double slowing_time = 0.05;  // how long the approach takes to come to an end, > 0 [s]
   /// Weight of |dq|^2 beside the task of the flange, >= 0: what singular poses give way to. A
   /// prismatic joint counts as a radian when it moves by orientation_weight, or by a length of 1
   /// where that is 0. [length^2]
@@ -55,7 +64,7 @@ struct InstrumentOptions {
 
 /// Room for the largest cycle.
 struct InstrumentCapacity {
-  std::size_t triangles = std::size_t{1} << 14;  // near one body
+  std::size_t triangles = std::size_t{1} << 14;  // of one mesh, near one body
   std::size_t planes = 128;                      // posed at the same time
   /// The work of a cycle, whatever happens in it: see Budget. What cannot be proven with it is not
   /// moved. 0: Capacity::looks_of_a_walk on an index that walks by itself, as wide_bvh, and
@@ -71,11 +80,15 @@ struct InstrumentStep {
   int rounds = 0;        // how often a trial motion was judged
   std::size_t rows = 0;  // that hold the motion back, joint limits apart
   std::size_t triangles = 0;  // in reach of one body and one trial motion, at the most
-  /// From the body nearest to the mesh, as the cycle began; of bodies no farther off than the
-  /// margin and its band, and that there was work left to look at. Negative when the body reaches
-  /// through the surface. [length]
+  /// From the body nearest to a mesh, as the cycle began; of bodies no farther off than the margin
+  /// and its band, and that there was work left to look at. Negative when the body reaches through
+  /// the surface. [length]
   std::optional<double> distance = std::nullopt;
-  int nearest = -1;                         // the number of that body
+  int nearest = -1;       // the number of that body
+  int nearest_mesh = -1;  // and of the mesh
+  /// The share of what is certified (InstrumentConstraint: F) that could be: below 1 where a mesh
+  /// came on faster than the joints can give way; nothing then, if there is no motion.
+  double level = 1.0;
   std::span<const GuideState> guides = {};  // of each guide, in the order in which they were given
   Softening softening = Softening::none;    // what gave way
 
@@ -97,7 +110,7 @@ struct MotionProof {
   bool is_clear() const noexcept { return status == Status::free && share == 1.0; }
 };
 
-/// Keeps a whole instrument out of a mesh, in joint space: the joint increment nearest to what is
+/// Keeps a whole instrument out of meshes, in joint space: the joint increment nearest to what is
 /// asked for that provably keeps each body clear, on the motion that the joints really make.
 ///
 /// Only the certificate is trusted. Planes, solver and linearisation propose a motion; the true
@@ -108,9 +121,15 @@ struct MotionProof {
 /// dist(body(q + s dq), mesh) >= radius + F - 3 tolerance for all s in [0, 1] and all bodies; joint
 /// limits hold all along. Proof: docs/joint-space-step.md.
 ///
+/// Of a mesh that moves, the same, wherever it is at s, if it moves in the cycle as `place` was
+/// told; but for level F in place of F, and with the whole of an increment: a part of it is not
+/// safe then.
+///
 /// Not thread-safe: one for each control loop; mesh and index may be shared.
 class InstrumentConstraint {
  public:
+  static constexpr std::size_t most_meshes = 8;  // to be kept out of
+
   /// The index must be built on `mesh`. Throws Error when a part is missing, the index is of
   /// another mesh, or an option or a capacity is out of range. Makes all memory here.
   InstrumentConstraint(std::shared_ptr<const Mesh> mesh, std::shared_ptr<const SpatialIndex> index,
@@ -133,6 +152,25 @@ class InstrumentConstraint {
   InstrumentStep step(std::span<const double> q, std::span<const double> desired,
                       std::span<const double> weights = {}) noexcept;
 
+  /// Keeps out of one more mesh from the next step on, and returns its number; the constructor's
+  /// has 0. `margin`: of its own, > band; 0 for that of the options. [length] All begins anew, as
+  /// after `forget`. The work of a cycle does not grow with it. Throws Error, and changes nothing,
+  /// beyond most_meshes and as the constructor does. Allocates, and is not for the control path.
+  std::size_t add_mesh(std::shared_ptr<const Mesh> mesh, std::shared_ptr<const SpatialIndex> index,
+                       double margin = 0.0);
+
+  /// Says where a mesh is as the next cycle begins, and how it moves: its frame's origin
+  /// [length/s], and its turn about that [rad/s]. Nothing is built anew. A mesh that moves is taken
+  /// to go on so with every step, until it is placed again: so a loop places it in each cycle, as
+  /// it is measured. What the mesh is off that, in a cycle, belongs into its margin. Where `mesh`
+  /// is no number of one, or the pose is none, or far beyond all lengths at hand, every step is
+  /// invalid_input until it is placed well. Proofs take meshes to stay where they are. Allocates
+  /// nothing, throws nothing.
+  void place(std::size_t mesh, const Pose& pose, const Twist& velocity = {}) noexcept;
+
+  /// Where a mesh is, as the next cycle begins. Precondition: there is one of that number.
+  const Pose& place_of(std::size_t mesh) const noexcept;
+
   /// Looks at a motion, and does not solve for a better one: for planners, which ask of many, and
   /// of single configurations by an increment of 0. `increment`: dq (n), of any size; long ones are
   /// proven in up to 64 parts, each with the work of a cycle, up to the first that starts too
@@ -154,14 +192,18 @@ class InstrumentConstraint {
   /// hand, refit, or one that was made ready elsewhere in the meantime. Bodies are placed anew; a
   /// body that the surface came too close to recovers, one that it came over is told of (inside),
   /// if the mesh is watertight. Once an index is refit, every step is `mesh_changed` until it is
-  /// followed. Allocates, and is not for the control path. Throws Error, and stays as it is, if the
-  /// index is not of this mesh, or the options are lost in the rounding of its size.
-  void follow(std::shared_ptr<const Mesh> moved, std::shared_ptr<const SpatialIndex> index);
+  /// followed. `number`: of which mesh, which stays placed as it is. Allocates, and is not for the
+  /// control path. Throws Error, and stays as it is, if the index is not of this mesh, there is
+  /// none of that number, or the options are lost in the rounding of its size.
+  void follow(std::shared_ptr<const Mesh> moved, std::shared_ptr<const SpatialIndex> index,
+              std::size_t number = 0);
 
   /// What is kept out.
   const Instrument& instrument() const noexcept;
-  /// What it is kept out of.
-  const Mesh& mesh() const noexcept;
+  /// How many meshes it is kept out of.
+  std::size_t mesh_count() const noexcept;
+  /// One of them. Precondition: there is one of that number.
+  const Mesh& mesh(std::size_t number = 0) const noexcept;
   /// How it behaves.
   const InstrumentOptions& options() const noexcept;
   /// Behaves so from the next step on. Throws Error, and changes nothing, for options that the

@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// An instrument beside several meshes, each placed, moved and kept off by a margin of its own.
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "keepout/error.h"
+#include "keepout/fixtures/random.h"
+#include "keepout/fixtures/shapes.h"
+#include "keepout/geometry/closest_point.h"
+#include "keepout/index/wide_bvh.h"
+#include "keepout/robot/instrument_constraint.h"
+#include "keepout/solvers/active_set.h"
+#include "robot/configurations.h"
+#include "trials.h"
+
+namespace keepout {
+namespace {
+
+/// What the point step guards, a ball: carried by three joints that slide along the axes.
+Instrument ball(double radius) {
+  std::vector<Joint> axes;
+  for (const Vec3& axis : {Vec3(Vec3::UnitX()), Vec3(Vec3::UnitY()), Vec3(Vec3::UnitZ())}) {
+    axes.push_back({.kind = JointKind::prismatic,
+                    .axis = axis,
+                    .limits = {.lower = -500.0, .upper = 500.0, .velocity = 2000.0}});
+  }
+  return {Chain(axes), {{"ball", {{3, Vec3::Zero()}}, radius}}};
+}
+
+InstrumentConstraint guard_of(const std::shared_ptr<const Mesh>& mesh, Instrument instrument,
+                              const InstrumentOptions& options = {.damping = 1e-9,
+                                                                  .orientation_weight = 0.0}) {
+  return {mesh, std::make_shared<WideBvh>(mesh), std::move(instrument),
+          std::make_unique<ActiveSet>(), options};
+}
+
+std::shared_ptr<const Mesh> cube_of(double side) {
+  Surface surface = make_cube(20.0);  // of a side of 100
+  for (Vec3& v : surface.vertices) v *= side / 100.0;
+  return std::make_shared<const Mesh>(std::move(surface));
+}
+
+/// From a ball to a mesh that is placed, by every triangle.
+double clearance(const Vec3& center, double radius, const Mesh& mesh, const Pose& pose) {
+  const Vec3 seen = pose.rotation.transpose() * (center - pose.position);
+  double least = test::infinity;
+  for (TriangleId t = 0; t < mesh.triangle_count(); ++t) {
+    least = std::min(least, closest_point(mesh.triangle(t), seen).distance);
+  }
+  return least - radius;
+}
+
+Vec3 moved(const Vec3& at, const InstrumentStep& step) {
+  Vec3 to = at;
+  for (std::size_t k = 0; k < step.increment.size(); ++k) {
+    to[static_cast<Eigen::Index>(k)] += step.increment[k];
+  }
+  return to;
+}
+
+InstrumentStep step_of(InstrumentConstraint& guard, const Vec3& at, const Vec3& way) {
+  return guard.step({at.data(), 3}, Twist{.linear = way});
+}
+
+TEST(SeveralMeshes, EachIsKeptOffByItsOwnMarginWhereItIsPlaced) {
+  const auto left = cube_of(10.0);
+  const auto right = cube_of(8.0);
+  const double size = 8.0 * std::sqrt(3.0);  // however it is turned
+  InstrumentConstraint guard = guard_of(left, ball(1.0));
+  ASSERT_EQ(guard.add_mesh(right, std::make_shared<WideBvh>(right), 0.7), 1u);
+  const Pose aside{Vec3(10.0 + 0.5 * size, 1.0, -2.0),
+                   Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix()};
+  guard.place(1, aside);
+  Random random(1);
+  Vec3 at(7.5, 0.0, 0.0);
+  double nearest_left = 1.0;
+  double nearest_right = 1.0;
+  int beside[2] = {};
+  for (int i = 0; i < test::trials(2000); ++i) {
+    const Vec3 way =
+        0.6 * random.direction() + Vec3(i / 100 % 2 == 0 ? 0.3 : -0.3, -0.02 * at.y(), 0);
+    const InstrumentStep step = step_of(guard, at, way);
+    ASSERT_TRUE(step.ok()) << step.reason();
+    for (const double share : {0.25, 0.5, 1.0}) {
+      const Vec3 there = at + share * (moved(at, step) - at);
+      nearest_left = std::min(nearest_left, clearance(there, 1.0, *left, {}));
+      nearest_right = std::min(nearest_right, clearance(there, 1.0, *right, aside));
+    }
+    if (step.nearest_mesh >= 0) ++beside[step.nearest_mesh];
+    at = moved(at, step);
+  }
+  EXPECT_GE(nearest_left, 0.198 - 1e-8);
+  EXPECT_LT(nearest_left, 0.201) << "and it got there";
+  EXPECT_GE(nearest_right, 0.698 - 1e-8);
+  EXPECT_LT(nearest_right, 0.701);
+  EXPECT_GT(beside[0], test::trials(40));
+  EXPECT_GT(beside[1], test::trials(40));
+}
+
+// It is all the same whether the mesh is moved to the robot or the robot to the mesh.
+TEST(SeveralMeshes, APlacedMeshIsTheSameAsARobotThatIsPlacedTheOtherWay) {
+  const auto mesh = std::make_shared<const Mesh>(make_shape("gear"));
+  const Pose pose{Vec3(300, -200, 100),
+                  Eigen::AngleAxisd(1.1, Vec3(3, 1, -2).normalized()).toRotationMatrix()};
+  const Instrument instrument = ball(0.5);
+  const Chain& chain = instrument.chain();
+  const std::vector<Joint> joints{chain.joint(1), chain.joint(2), chain.joint(3)};
+  InstrumentConstraint home = guard_of(mesh, instrument);
+  InstrumentConstraint away = guard_of(
+      mesh,
+      Instrument(Chain(joints, pose), {instrument.bodies().begin(), instrument.bodies().end()}));
+  away.place(0, pose);
+  Random random(2);
+  int held = 0;
+  int other = 0;
+  for (int i = 0; i < test::trials(2000); ++i) {
+    const Vec3 at = mesh->bounds().center() + 0.4 * random.uniform(0.9, 1.0) *
+                                                  mesh->bounds().size().norm() * random.direction();
+    const Vec3 way = 20.0 * random.direction();
+    home.forget();
+    away.forget();
+    const InstrumentStep expected = step_of(home, at, way);
+    const InstrumentStep step = step_of(away, at, pose.rotation * way);
+    ASSERT_EQ(step.status, expected.status);
+    if (!step.ok()) continue;
+    held += step.status == Status::limited;
+    const double off = (moved(at, step) - moved(at, expected)).norm();
+    other += off > 1e-8;
+    ASSERT_LE(off, 0.1) << "rounding may choose another triangle of two that are as near";
+  }
+  EXPECT_LE(other, held / 10);
+  EXPECT_GT(held, test::trials(50));
+}
+
+// The hand does nothing: the cube comes on, and the ball goes before it, at the margin.
+TEST(SeveralMeshes, AMeshThatComesOnIsGivenWayTo) {
+  const auto cube = cube_of(10.0);
+  InstrumentConstraint guard = guard_of(cube, ball(1.0));
+  const Twist coming{.linear = Vec3(50, 0, 0), .angular = Vec3(0, 0, 0.5)};
+  guard.place(0, {}, coming);
+  Vec3 at(7.0, 0.3, 0.2);
+  double before = at.x();
+  int limited = 0;
+  for (int i = 0; i < 400; ++i) {
+    const InstrumentStep step = step_of(guard, at, Vec3::Zero());
+    ASSERT_TRUE(step.status == Status::free || step.status == Status::limited) << step.reason();
+    ASSERT_EQ(step.level, 1.0);
+    limited += step.status == Status::limited;
+    at = moved(at, step);
+    const Pose& now = guard.place_of(0);
+    ASSERT_NEAR(now.position.x(), 0.05 * (i + 1), 1e-9) << "it goes on";
+    ASSERT_LE((now.rotation * now.rotation.transpose() - Mat3::Identity()).norm(), 1e-12);
+    ASSERT_GE(clearance(at, 1.0, *cube, now), 0.198 - 1e-8);
+  }
+  EXPECT_GT(at.x() - before, 15.0) << "it was pushed along";
+  EXPECT_GT(limited, 300);
+}
+
+// Faster than the joints can go: less and less is kept, which is told; and then nothing is proven.
+TEST(SeveralMeshes, WhatOutrunsTheJointsIsNamed) {
+  const auto cube = cube_of(10.0);
+  int yielding = 0;
+  int stopped = 0;
+  Vec3 at = Vec3::Zero();
+  InstrumentConstraint guard = guard_of(cube, ball(1.0));
+  for (int trial = 0; trial < 20; ++trial) {
+    guard.forget();
+    at = Vec3(6.9, 0.01 * trial, 0.0);
+    guard.place(0, {}, {.linear = Vec3(2000.0 + 10.0 * trial, 0, 0)});  // joints: 2000
+    double kept = 0.198;
+    for (int i = 0; i < 40; ++i) {
+      const double clear_before = clearance(at, 1.0, *cube, guard.place_of(0));
+      const InstrumentStep step = step_of(guard, at, Vec3::Zero());
+      if (!step.ok()) {
+        ASSERT_EQ(step.level, step.status == Status::touching ? 1.0 : 0.0);
+        ASSERT_TRUE(step.increment.empty());
+        ++stopped;
+        break;
+      }
+      at = moved(at, step);
+      const double clear = clearance(at, 1.0, *cube, guard.place_of(0));
+      kept = std::min(0.198, clear_before - 0.002);
+      ASSERT_GE(clear, step.level * kept - 1e-8) << name(step.status) << " in cycle " << i;
+      if (step.status == Status::yielding) {
+        ASSERT_LT(step.level, 1.0);
+        ++yielding;
+      } else {
+        ASSERT_EQ(step.level, 1.0);
+      }
+    }
+  }
+  EXPECT_GT(yielding, 20);
+  EXPECT_GT(stopped, 5);
+}
+
+TEST(SeveralMeshes, APlaceThatIsNoneStopsUntilThereIsOne) {
+  const auto cube = cube_of(10.0);
+  InstrumentConstraint guard = guard_of(cube, ball(1.0));
+  guard.add_mesh(cube, std::make_shared<WideBvh>(cube));
+  const Vec3 at(30, 0, 0);
+  Mat3 stretched = Mat3::Identity();
+  stretched(0, 0) = 1.1;
+  const Mat3 mirrored = -Mat3::Identity();
+  for (const Pose& bad : {Pose{Vec3(test::nan, 0, 0)}, Pose{Vec3(1e30, 0, 0)},
+                          Pose{Vec3::Zero(), stretched}, Pose{Vec3::Zero(), mirrored}}) {
+    guard.place(1, bad);
+    EXPECT_EQ(step_of(guard, at, Vec3::UnitX()).status, Status::invalid_input);
+    guard.place(0, {});
+    EXPECT_EQ(step_of(guard, at, Vec3::UnitX()).status, Status::invalid_input) << "the other one";
+    guard.place(1, {Vec3(0, 20, 0)});
+    EXPECT_EQ(step_of(guard, at, Vec3::UnitX()).status, Status::free);
+  }
+  guard.place(0, {}, {.linear = Vec3(0, test::nan, 0)});
+  EXPECT_EQ(step_of(guard, at, Vec3::UnitX()).status, Status::invalid_input);
+  guard.place(0, {});
+  guard.place(2, {});
+  EXPECT_EQ(step_of(guard, at, Vec3::UnitX()).status, Status::invalid_input) << "there are two";
+}
+
+TEST(SeveralMeshes, SaysWhatIsWrongWithOneAndStaysAsItWas) {
+  const auto cube = cube_of(10.0);
+  const auto index = std::make_shared<WideBvh>(cube);
+  InstrumentConstraint guard = guard_of(cube, ball(1.0));
+  EXPECT_THROW(guard.add_mesh(nullptr, index), Error);
+  EXPECT_THROW(guard.add_mesh(cube_of(10.0), index), Error) << "of another mesh";
+  EXPECT_THROW(guard.add_mesh(cube, index, 0.001), Error) << "below the band";
+  EXPECT_THROW(guard.add_mesh(cube, index, test::nan), Error);
+  EXPECT_THROW(guard.follow(cube, index, 1), Error);
+  EXPECT_EQ(guard.mesh_count(), 1u);
+  EXPECT_TRUE(step_of(guard, Vec3(30, 0, 0), Vec3::UnitX()).ok());
+  for (std::size_t m = 1; m < InstrumentConstraint::most_meshes; ++m) {
+    EXPECT_EQ(guard.add_mesh(cube, index, 0.5), m);
+  }
+  EXPECT_THROW(guard.add_mesh(cube, index), Error);
+  InstrumentOptions wide = guard.options();
+  wide.band = 0.6;
+  wide.margin = 1.0;
+  EXPECT_THROW(guard.set_options(wide), Error) << "wider than the margin of some mesh";
+}
+
+// A mesh deforms while it moves: followed, it stays where it is.
+TEST(SeveralMeshes, IsFollowedWhereItIs) {
+  const auto cube = cube_of(10.0);
+  InstrumentConstraint guard = guard_of(cube, ball(1.0));
+  guard.add_mesh(cube, std::make_shared<WideBvh>(cube), 0.4);
+  guard.place(1, {Vec3(20, 0, 0)});
+  const auto larger = cube_of(12.0);
+  guard.follow(larger, std::make_shared<WideBvh>(larger), 1);
+  EXPECT_EQ(guard.place_of(1).position.x(), 20.0);
+  EXPECT_EQ(&guard.mesh(1), larger.get());
+  Vec3 at(10, 0, 0);
+  for (int i = 0; i < 20; ++i) at = moved(at, step_of(guard, at, Vec3::UnitX()));
+  EXPECT_NEAR(at.x(), 20.0 - 6.0 - 1.0 - 0.4, 2e-3);
+}
+
+// The velocity damper: never more than a share of what is left, and none of it along the surface.
+TEST(Slowing, UsesUpAShareOfTheWayThatIsLeft) {
+  const auto cube = cube_of(10.0);
+  InstrumentConstraint guard = guard_of(
+      cube, ball(1.0),
+      {.slowing_within = 2.0, .slowing_time = 0.02, .damping = 1e-9, .orientation_weight = 0.0});
+  Vec3 at(9.5, 0, 0);  // 3.5 from it
+  const double share = 1e-3 / 0.02;
+  int slowed = 0;
+  double slowest = 1.0;  // along the surface
+  for (int i = 0; i < 200; ++i) {
+    const double left = clearance(at, 1.0, *cube, {}) - 0.2;
+    const InstrumentStep step = step_of(guard, at, Vec3(-0.3, 0.01, 0.0));
+    ASSERT_TRUE(step.ok());
+    const Vec3 to = moved(at, step);
+    slowest = std::min(slowest, to.y() - at.y());
+    if (left < 2.0) {
+      const double now = clearance(to, 1.0, *cube, {}) - 0.2;
+      ASSERT_GE(now, (1.0 - share) * left - 0.002 - 1e-8);
+      ++slowed;
+    }
+    at = to;
+  }
+  EXPECT_GT(slowed, 150);
+  EXPECT_GT(slowest, 0.0099) << "along the surface nothing is slowed";
+  EXPECT_LT(clearance(at, 1.0, *cube, {}), 0.21) << "and it arrives";
+}
+
+}  // namespace
+}  // namespace keepout
