@@ -93,6 +93,7 @@ void bind_motion_constraint(py::module_& module);
 void bind_chain(py::module_& module);
 void bind_instrument(py::module_& module);
 void bind_instrument_guard(py::module_& module);
+void bind_instrument_results(py::module_& module);
 void bind_registration(py::module_& module);
 
 }  // namespace keepout::python

@@ -16,6 +16,7 @@
 #include "keepout/error.h"
 #include "keepout/robot/denavit_hartenberg.h"
 #include "keywords.h"
+#include "poses.h"
 #if KEEPOUT_HAS_URDF
 #include "keepout/urdf/read_chain.h"
 #endif
@@ -23,32 +24,7 @@
 namespace keepout::python {
 namespace {
 
-using Matrix4 = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
 using Optional = std::optional<double>;
-
-/// A homogeneous matrix; None is the identity. Whether it turns is looked at by Chain.
-Pose pose_of(const py::object& matrix, std::string_view name) {
-  if (matrix.is_none()) return {};
-  const Doubles numbers = doubles(matrix, {name, {4, 4}, "(4, 4)"});
-  const Eigen::Map<const Matrix4> m(numbers.data());
-  if (m.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) {
-    refuse(name, "a homogeneous matrix, whose last row is 0, 0, 0, 1", "another last row");
-  }
-  return {m.topRightCorner<3, 1>(), m.topLeftCorner<3, 3>()};
-}
-
-void write(double* to, const Pose& pose) {
-  Eigen::Map<Matrix4> m(to);
-  m.setIdentity();
-  m.topRightCorner<3, 1>() = pose.position;
-  m.topLeftCorner<3, 3>() = pose.rotation;
-}
-
-py::array_t<double> matrix_of(const Pose& pose) {
-  py::array_t<double> matrix({4, 4});
-  write(matrix.mutable_data(), pose);
-  return matrix;
-}
 
 JointKind kind_of(const std::string& kind) {
   return named<JointKind>(

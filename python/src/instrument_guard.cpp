@@ -14,6 +14,7 @@
 
 #include "batch.h"
 #include "keywords.h"
+#include "poses.h"
 
 namespace keepout::python {
 namespace {
@@ -31,7 +32,7 @@ std::span<const double> row_of(const Doubles& rows, std::size_t i, std::size_t w
 
 InstrumentGuard::InstrumentGuard(std::shared_ptr<IndexHandle> index, Instrument instrument,
                                  InstrumentConstraintSettings settings)
-    : index_(std::move(index)),
+    : meshes_{{std::move(index), 0.0}},
       instrument_(std::move(instrument)),
       settings_(std::move(settings)),
       constraint_([this] {
@@ -41,7 +42,10 @@ InstrumentGuard::InstrumentGuard(std::shared_ptr<IndexHandle> index, Instrument 
 
 InstrumentConstraint InstrumentGuard::make() const {
   InstrumentConstraint made =
-      make_instrument_constraint(index_->mesh, index_->index, instrument_, settings_);
+      make_instrument_constraint(index()->mesh, index()->index, instrument_, settings_);
+  for (std::size_t m = 1; m < meshes_.size(); ++m) {
+    made.add_mesh(meshes_[m].index->mesh, meshes_[m].index->index, meshes_[m].margin);
+  }
   made.set_guides(guides_);
   return made;
 }
@@ -88,11 +92,17 @@ template <class Take>
 void InstrumentGuard::prove_each(const Doubles& q, const Doubles& increments, std::size_t count,
                                  unsigned threads, const Take& take) {
   const auto width = static_cast<std::size_t>(joints());
+  std::vector<Pose> places;
+  {
+    const InUse no_step(constraint_in_use_);
+    for (std::size_t m = 0; m < meshes_.size(); ++m) places.push_back(constraint_.place_of(m));
+  }
   workers_.do_each(
       count, 16, threads, [this] { return make(); },
       [&](InstrumentConstraint& constraint, std::size_t i, const std::stop_token&) {
         // Or the answer might depend on what this worker proved before.
         constraint.forget();
+        for (std::size_t m = 0; m < places.size(); ++m) constraint.place(m, places[m]);
         take(i, constraint.prove(row_of(q, i, width), row_of(increments, i, width)));
       });
 }
@@ -140,16 +150,50 @@ void InstrumentGuard::forget() {
   constraint_.forget();
 }
 
-void InstrumentGuard::follow(std::shared_ptr<IndexHandle> index) {
+void InstrumentGuard::follow(std::shared_ptr<IndexHandle> index, std::size_t mesh) {
+  require_mesh(mesh);
   if (!index) refuse("index", "a keepout.Index", "None");
   const InUse no_proof(workers_.in_use());
   const InUse no_step(constraint_in_use_);
   {
     const py::gil_scoped_release release;
-    constraint_.follow(index->mesh, index->index);
+    constraint_.follow(index->mesh, index->index, mesh);
     workers_.constraints().clear();
   }
-  index_ = std::move(index);
+  meshes_[mesh].index = std::move(index);
+}
+
+std::size_t InstrumentGuard::add_mesh(std::shared_ptr<IndexHandle> index, double margin) {
+  if (!index) refuse("index", "a keepout.Index", "None");
+  const InUse no_proof(workers_.in_use());
+  const InUse no_step(constraint_in_use_);
+  const std::size_t number = constraint_.add_mesh(index->mesh, index->index, margin);
+  workers_.constraints().clear();
+  meshes_.push_back({std::move(index), margin});
+  return number;
+}
+
+void InstrumentGuard::place(std::size_t mesh, const py::object& pose, const py::object& linear,
+                            const py::object& angular) {
+  Twist velocity;
+  if (!linear.is_none()) velocity.linear = point(linear, "linear");
+  if (!angular.is_none()) velocity.angular = point(angular, "angular");
+  const Pose at = pose_of(pose, "pose");
+  require_mesh(mesh);
+  const InUse no_step(constraint_in_use_);
+  constraint_.place(mesh, at, velocity);
+}
+
+py::array_t<double> InstrumentGuard::place_of(std::size_t mesh) {
+  require_mesh(mesh);
+  const InUse no_step(constraint_in_use_);
+  return matrix_of(constraint_.place_of(mesh));
+}
+
+void InstrumentGuard::require_mesh(std::size_t mesh) const {
+  if (mesh < meshes_.size()) return;
+  refuse("mesh", "the number of a mesh, 0 to " + std::to_string(meshes_.size() - 1),
+         std::to_string(mesh));
 }
 
 void InstrumentGuard::set_guides(const std::vector<Guide>& guides) {
@@ -176,7 +220,7 @@ CertifiedMotion certified_of(const std::string& name) {
       {{{"actual", CertifiedMotion::actual}, {"linearised", CertifiedMotion::linearised}}});
 }
 
-constexpr std::array<std::string_view, 17> guard_arguments = {"mesh",
+constexpr std::array<std::string_view, 19> guard_arguments = {"mesh",
                                                               "instrument",
                                                               "index",
                                                               "index_cache",
@@ -185,6 +229,8 @@ constexpr std::array<std::string_view, 17> guard_arguments = {"mesh",
                                                               "band",
                                                               "period",
                                                               "recovery",
+                                                              "slowing_within",
+                                                              "slowing_time",
                                                               "damping",
                                                               "orientation_weight",
                                                               "refinements",
@@ -206,6 +252,8 @@ band: what is held back of the margin, so that curved motions along a surface ar
 is margin - band. See Instrument.recommended_band [length].
 period: of a cycle: what velocity limits are multiplied by [s].
 recovery: how far a body that is too close is led away in a cycle [length].
+slowing_within, slowing_time: nearer to the margin than that [length], a body uses up no more of the
+way left to it in a cycle than period / slowing_time [s]; 0: nowhere.
 damping: weight of |dq|^2 beside the task of the flange [length^2].
 orientation_weight: what a turn of the flange counts beside its way [length / rad]; 0: nothing.
 refinements: how often planes are turned towards a better motion.
@@ -247,6 +295,7 @@ void take(Value& option, const std::optional<Value>& given) {
 
 void set_given(InstrumentGuard& guard, std::optional<double> margin, std::optional<double> band,
                std::optional<double> period, std::optional<double> recovery,
+               std::optional<double> slowing_within, std::optional<double> slowing_time,
                std::optional<double> damping, std::optional<double> orientation_weight,
                std::optional<int> refinements, std::optional<bool> check_sides,
                const std::optional<std::string>& certified) {
@@ -255,6 +304,8 @@ void set_given(InstrumentGuard& guard, std::optional<double> margin, std::option
   take(options.band, band);
   take(options.period, period);
   take(options.recovery, recovery);
+  take(options.slowing_within, slowing_within);
+  take(options.slowing_time, slowing_time);
   take(options.damping, damping);
   take(options.orientation_weight, orientation_weight);
   take(options.refinements, refinements);
@@ -263,113 +314,49 @@ void set_given(InstrumentGuard& guard, std::optional<double> margin, std::option
   guard.set_options(options);
 }
 
-void bind_results(py::module_& module) {
-  using Result = InstrumentStepResult;
-  py::class_<Result>(module, "InstrumentStep",
-                     "What one cycle of an instrument may do. Arrays are read-only views of it.")
-      .def_property_readonly(
-          "status", [](const Result& self) { return status_object(self.step.status); },
-          "How the step ended: a Status.")
-      .def_property_readonly(
-          "ok", [](const Result& self) { return self.step.ok(); },
-          "Whether there is a motion that may be carried out; it may be zero.")
-      .def_property_readonly(
-          "reason", [](const Result& self) { return self.step.reason(); },
-          "One line on what happened and what to do about it.")
-      .def_property_readonly(
-          "increment",
-          [](const py::object& self) { return view(self.cast<const Result&>().increment, self); },
-          "(n,) float64 [rad or length]: of the joints; zeros unless ok.")
-      .def_property_readonly(
-          "share", [](const Result& self) { return self.step.share; },
-          "How much of the motion that was found is made: below 1 when it was cut short.")
-      .def_property_readonly(
-          "rounds", [](const Result& self) { return self.step.rounds; },
-          "How often a trial motion was judged.")
-      .def_property_readonly(
-          "rows", [](const Result& self) { return self.step.rows; },
-          "How many rows hold the motion back, joint limits apart.")
-      .def_property_readonly(
-          "distance", [](const Result& self) { return self.step.distance; },
-          "From the body nearest to the mesh, as the cycle began [length]; None where none is\n"
-          "closer than the margin and its band, negative where it reaches through the surface.")
-      .def_property_readonly(
-          "guides", [](const Result& self) { return self.guides; },
-          "How each guide fared, in the order of set_guides: a list of GuideState.")
-      .def_property_readonly(
-          "softening", [](const Result& self) { return softening_name(self.step.softening); },
-          "What gave way, as all could not be had: 'none', 'guides' or 'bodies'.")
-      .def_property_readonly(
-          "nearest",
-          [](const Result& self) {
-            return self.step.nearest < 0 ? std::nullopt : std::optional(self.step.nearest);
-          },
-          "The number of that body; None where there is no distance.")
-      .def("__repr__", [](const Result& self) {
-        return py::str("<keepout.InstrumentStep: {}, increment {}>")
-            .format(name(self.step.status), py::cast(self.increment));
-      });
-
-  py::class_<MotionProof>(module, "MotionProof", "How much of a motion is certified.")
-      .def_property_readonly(
-          "status", [](const MotionProof& self) { return status_object(self.status); },
-          "How it ended: a Status; 'recovering' where some body is too close as it starts.")
-      .def_property_readonly(
-          "reason", [](const MotionProof& self) { return reason(self.status); },
-          "One line on what happened and what to do about it.")
-      .def_readonly("share", &MotionProof::share,
-                    "Proven is the motion from its start to here: 1 if all of it is.")
-      .def_readonly("distance", &MotionProof::distance,
-                    "As that of an InstrumentStep, at the start [length].")
-      .def_property_readonly("is_clear", &MotionProof::is_clear,
-                             "Whether the whole margin, less its band, is kept on all of it.")
-      .def("__repr__", [](const MotionProof& self) {
-        return py::str("<keepout.MotionProof: {}, share {:g}>")
-            .format(name(self.status), self.share);
-      });
-}
-
 }  // namespace
 
 void bind_instrument_guard(py::module_& module) {
-  bind_results(module);
   const InstrumentConstraintSettings usual;
   const InstrumentOptions& o = usual.options;
   py::class_<InstrumentGuard>(module, "InstrumentGuard", guard_doc)
-      .def(
-          py::init([](const py::object& mesh, const Instrument& instrument, const py::object& index,
-                      const std::optional<std::filesystem::path>& index_cache, std::string solver,
-                      double margin, double band, double period, double recovery, double damping,
-                      double orientation_weight, int refinements, bool check_sides,
-                      const std::string& certified, py::ssize_t max_triangles,
-                      py::ssize_t max_planes, py::ssize_t max_looks, const py::kwargs& others) {
-            refuse_others("InstrumentGuard", others, guard_arguments);
-            InstrumentConstraintSettings settings;
-            settings.solver = std::move(solver);
-            settings.options = {.margin = margin,
-                                .band = band,
-                                .period = period,
-                                .recovery = recovery,
-                                .damping = damping,
-                                .orientation_weight = orientation_weight,
-                                .refinements = refinements,
-                                .check_sides = check_sides,
-                                .certified = certified_of(certified)};
-            settings.capacity = {.triangles = count(max_triangles, "max_triangles"),
-                                 .planes = count(max_planes, "max_planes"),
-                                 .looks = count(max_looks, "max_looks")};
-            return std::make_unique<InstrumentGuard>(index_from(mesh, index, index_cache),
-                                                     instrument, std::move(settings));
-          }),
-          py::arg("mesh"), py::arg("instrument"), py::kw_only(), py::arg("index") = usual.index,
-          py::arg("index_cache") = py::none(), py::arg("solver") = usual.solver,
-          py::arg("margin") = o.margin, py::arg("band") = o.band, py::arg("period") = o.period,
-          py::arg("recovery") = o.recovery, py::arg("damping") = o.damping,
-          py::arg("orientation_weight") = o.orientation_weight,
-          py::arg("refinements") = o.refinements, py::arg("check_sides") = o.check_sides,
-          py::arg("certified") = "actual", py::arg("max_triangles") = usual.capacity.triangles,
-          py::arg("max_planes") = usual.capacity.planes,
-          py::arg("max_looks") = usual.capacity.looks)
+      .def(py::init(
+               [](const py::object& mesh, const Instrument& instrument, const py::object& index,
+                  const std::optional<std::filesystem::path>& index_cache, std::string solver,
+                  double margin, double band, double period, double recovery, double slowing_within,
+                  double slowing_time, double damping, double orientation_weight, int refinements,
+                  bool check_sides, const std::string& certified, py::ssize_t max_triangles,
+                  py::ssize_t max_planes, py::ssize_t max_looks, const py::kwargs& others) {
+                 refuse_others("InstrumentGuard", others, guard_arguments);
+                 InstrumentConstraintSettings settings;
+                 settings.solver = std::move(solver);
+                 settings.options = {.margin = margin,
+                                     .band = band,
+                                     .period = period,
+                                     .recovery = recovery,
+                                     .slowing_within = slowing_within,
+                                     .slowing_time = slowing_time,
+                                     .damping = damping,
+                                     .orientation_weight = orientation_weight,
+                                     .refinements = refinements,
+                                     .check_sides = check_sides,
+                                     .certified = certified_of(certified)};
+                 settings.capacity = {.triangles = count(max_triangles, "max_triangles"),
+                                      .planes = count(max_planes, "max_planes"),
+                                      .looks = count(max_looks, "max_looks")};
+                 return std::make_unique<InstrumentGuard>(index_from(mesh, index, index_cache),
+                                                          instrument, std::move(settings));
+               }),
+           py::arg("mesh"), py::arg("instrument"), py::kw_only(), py::arg("index") = usual.index,
+           py::arg("index_cache") = py::none(), py::arg("solver") = usual.solver,
+           py::arg("margin") = o.margin, py::arg("band") = o.band, py::arg("period") = o.period,
+           py::arg("recovery") = o.recovery, py::arg("slowing_within") = o.slowing_within,
+           py::arg("slowing_time") = o.slowing_time, py::arg("damping") = o.damping,
+           py::arg("orientation_weight") = o.orientation_weight,
+           py::arg("refinements") = o.refinements, py::arg("check_sides") = o.check_sides,
+           py::arg("certified") = "actual", py::arg("max_triangles") = usual.capacity.triangles,
+           py::arg("max_planes") = usual.capacity.planes,
+           py::arg("max_looks") = usual.capacity.looks)
       .def("step", &InstrumentGuard::step, py::arg("q"), py::arg("linear") = py::none(),
            py::arg("angular") = py::none(), py::kw_only(), py::arg("increment") = py::none(),
            py::arg("weights") = py::none(), joint_step_doc)
@@ -378,25 +365,47 @@ void bind_instrument_guard(py::module_& module) {
            py::kw_only(), py::arg("threads") = py::none(), proofs_doc)
       .def("forget", &InstrumentGuard::forget,
            "Forgets what the last cycle left: for motions that have nothing to do with each other.")
-      .def("follow", &InstrumentGuard::follow, py::arg("index"),
-           "Goes on with anatomy that has moved: an Index of the moved mesh, such as\n"
+      .def("follow", &InstrumentGuard::follow, py::arg("index"), py::kw_only(), py::arg("mesh") = 0,
+           "Goes on with anatomy that has deformed: an Index of the new mesh, such as\n"
            "index.refitted(mesh). All bodies are placed anew; one that the surface came too close\n"
-           "to recovers.")
+           "to recovers. mesh: the number of the mesh, which stays placed as it is.")
+      .def(
+          "add_mesh", &InstrumentGuard::add_mesh, py::arg("index"), py::kw_only(),
+          py::arg("margin") = 0.0,
+          "Keeps out of one more mesh, that of an Index, and returns its number; the first has 0.\n"
+          "margin: of its own [length], or 0 for that of the guard. At most 8 meshes.")
+      .def(
+          "place", &InstrumentGuard::place, py::arg("mesh"), py::arg("pose"),
+          py::arg("linear") = py::none(), py::arg("angular") = py::none(),
+          "Says where a mesh is as the next cycle begins, and how it moves: its frame's origin\n"
+          "[length/s], and its turn about that [rad/s]. Nothing is built anew. It goes on so with\n"
+          "every step until it is placed again. Until a pose that is none, or a number that is "
+          "not\n"
+          "finite, is mended, steps are Status.invalid_input. pose: (4, 4), its frame in the "
+          "world;\n"
+          "None is the identity. linear, angular: (3,), in the axes of the world; None is zero.")
+      .def("place_of", &InstrumentGuard::place_of, py::arg("mesh"),
+           "(4, 4) float64: where a mesh is, as the next cycle begins.")
       .def("set_guides", &InstrumentGuard::set_guides, py::arg("guides"),
            "Keeps these guides as well from the next step on, at most 16, instead of those there\n"
            "are: a list of Guide. They hold in proofs too.")
       .def(
           "set_options", &set_given, py::kw_only(), py::arg("margin") = py::none(),
           py::arg("band") = py::none(), py::arg("period") = py::none(),
-          py::arg("recovery") = py::none(), py::arg("damping") = py::none(),
+          py::arg("recovery") = py::none(), py::arg("slowing_within") = py::none(),
+          py::arg("slowing_time") = py::none(), py::arg("damping") = py::none(),
           py::arg("orientation_weight") = py::none(), py::arg("refinements") = py::none(),
           py::arg("check_sides") = py::none(), py::arg("certified") = py::none(),
           "Behaves so from the next step on; None leaves an option as it is. Changes nothing when\n"
           "it raises Error. A raised margin is come up to by recovery.")
       .def_property_readonly(
           "mesh", [](const InstrumentGuard& self) { return self.index()->mesh_object; },
-          "The mesh.")
-      .def_property_readonly("index", &InstrumentGuard::index, "Its Index, which others may share.")
+          "The first mesh.")
+      .def_property_readonly(
+          "mesh_count", [](const InstrumentGuard& self) { return self.mesh_count(); },
+          "How many meshes it is kept out of.")
+      .def_property_readonly("index", &InstrumentGuard::index,
+                             "The Index of the first mesh, which others may share.")
       .def_property_readonly("instrument", &InstrumentGuard::instrument, "Its Instrument.")
       .def_property_readonly(
           "margin", [](const InstrumentGuard& self) { return self.settings().options.margin; },

@@ -38,13 +38,19 @@ class InstrumentGuard {
   py::object proofs(const py::object& q, const py::object& increments,
                     std::optional<py::ssize_t> threads);
   void forget();
-  void follow(std::shared_ptr<IndexHandle> index);
+  void follow(std::shared_ptr<IndexHandle> index, std::size_t mesh);
+  std::size_t add_mesh(std::shared_ptr<IndexHandle> index, double margin);
+  void place(std::size_t mesh, const py::object& pose, const py::object& linear,
+             const py::object& angular);
+  py::array_t<double> place_of(std::size_t mesh);
   void set_guides(const std::vector<Guide>& guides);
   void set_options(const InstrumentOptions& options);
 
   const InstrumentConstraintSettings& settings() const noexcept { return settings_; }
   const Instrument& instrument() const noexcept { return instrument_; }
-  const std::shared_ptr<IndexHandle>& index() const noexcept { return index_; }
+  /// Of the first mesh.
+  const std::shared_ptr<IndexHandle>& index() const noexcept { return meshes_.front().index; }
+  std::size_t mesh_count() const noexcept { return meshes_.size(); }
 
  private:
   InstrumentConstraint make() const;
@@ -57,7 +63,13 @@ class InstrumentGuard {
   void prove_each(const Doubles& q, const Doubles& increments, std::size_t count, unsigned threads,
                   const Take& take);
 
-  std::shared_ptr<IndexHandle> index_;
+  void require_mesh(std::size_t mesh) const;
+
+  struct Kept {
+    std::shared_ptr<IndexHandle> index;
+    double margin;
+  };
+  std::vector<Kept> meshes_;
   Instrument instrument_;
   InstrumentConstraintSettings settings_;
   std::vector<Guide> guides_;

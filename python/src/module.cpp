@@ -76,6 +76,7 @@ PYBIND11_MODULE(_core, module) {
   bind_motion_constraint(module);
   bind_chain(module);
   bind_instrument(module);
+  bind_instrument_results(module);
   bind_instrument_guard(module);
   bind_registration(module);
 }
