@@ -13,6 +13,7 @@
 #include "keepout/adapters/narrow_phase_registry.h"
 #include "keepout/error.h"
 #include "keepout/factory/convex_tool_text.h"
+#include "keepout/factory/guide_text.h"
 #include "keepout/solvers/registry.h"
 #include "named_mesh.h"
 #include "names.h"
@@ -252,6 +253,24 @@ void add_convex_tool(CLI::App& command, MotionConstraintSettings& settings) {
   add_name(command, "--narrow-phase", settings.narrow_phase, names(narrow_phase_backends()),
            "What proposes the planes of --tool; each is proven, whatever it proposes")
       ->needs(tool);
+}
+
+void add_guides(CLI::App& command, std::vector<TipGuide>& guides) {
+  const auto take = [&guides](const std::vector<std::string>& texts) {
+    try {
+      for (const std::string& text : texts) guides.push_back(tip_guide_of_text(text));
+    } catch (const Error& error) {
+      throw CLI::ValidationError("--guide", error.what());
+    }
+  };
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--guide", take,
+          "A region that the tip is to stay in as well; may be given several times. [NAME=] and "
+          "one of: " +
+              std::string(region_forms))
+      ->type_name("GUIDE")
+      ->expected(1, static_cast<int>(TipGuides::most));
 }
 
 std::string usage_error(const CLI::App& app, const CLI::ParseError& error) {

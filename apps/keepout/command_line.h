@@ -11,6 +11,7 @@
 
 #include "keepout/factory/make_motion_constraint.h"
 #include "keepout/mesh/load_mesh.h"
+#include "keepout/step/tip_guides.h"
 
 namespace keepout::app {
 
@@ -89,6 +90,10 @@ void add_activation(CLI::App& command, std::string& activation);
 /// Of every command that guards one tool, and judges it by nothing but the guard: a convex tool in
 /// place of the ball. Precondition: add_constraint_options.
 void add_convex_tool(CLI::App& command, MotionConstraintSettings& settings);
+
+/// Of a command that guards one tip: regions that it is to stay in. Precondition: its
+/// Capacity::extra_rows is at least TipGuides::most_rows.
+void add_guides(CLI::App& command, std::vector<TipGuide>& guides);
 
 /// What is wrong with a command line, in words that name the option and its value, with a hint at
 /// what was meant and at the help. `error`: what app.parse() threw, and no call for help.

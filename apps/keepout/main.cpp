@@ -111,6 +111,7 @@ void add_replay(CLI::App& app, ReplayOptions& options) {
   add_activation(command, options.constraint.activation);
   add_constraint_options(command, options.constraint);
   add_convex_tool(command, options.constraint);
+  add_guides(command, options.guides);
   CLI::Option* closed = command.add_flag_callback(
       "--closed-loop", [&options] { options.loop = Loop::closed; },
       "Lines are 'gx gy gz rx ry rz', goal and reset position: the tip starts at the first line's "

@@ -64,11 +64,16 @@ std::string_view reason(CycleStatus status) noexcept { return text_of(status, 1)
 HapticProxy::HapticProxy(MotionConstraint guard, const HapticOptions& options)
     : guard_(std::move(guard)),
       options_(checked(options)),
+      guides_(options.guides),
       longest_(std::min(options.top_speed * options.period, guard_.options().radius)),
       passivity_(options.largest_brake) {
   StepOptions slowed = guard_.options();
   slowed.recovery = std::min(slowed.recovery, longest_);
   guard_.set_options(slowed);
+  if (guides_.rows() > guard_.capacity().extra_rows) {
+    throw Error("haptic proxy: the guides need Capacity::extra_rows of " +
+                std::to_string(guides_.rows()));
+  }
 }
 
 CycleStatus HapticProxy::engage(const Vec3& tip) noexcept {
@@ -100,7 +105,7 @@ HapticCycle HapticProxy::cycle(const Vec3& hand) noexcept {
   const bool is_cut = distance > radius;
   Motion motion{.tip = proxy_, .desired = wanted};
   if (is_cut) motion.desired *= radius / distance;
-  Step step = guard_.step(motion);
+  Step step = guides_.step(guard_, motion);
   const Status status = step.status;
   const double length = step.motion.norm();
   // It is the motion that is cut, and not the way wanted: a hand that presses into the surface and
@@ -108,7 +113,7 @@ HapticCycle HapticProxy::cycle(const Vec3& hand) noexcept {
   const bool is_slowed = step.ok() && length > longest_;
   if (is_slowed) {
     motion.desired = step.motion * (longest_ / length);
-    step = guard_.step(motion);
+    step = guides_.step(guard_, motion);
   }
   if (!step.ok()) {
     HapticCycle stood = stand(CycleStatus::stopped, hand);

@@ -2,8 +2,6 @@
 #include "keepout/factory/convex_tool_text.h"
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <filesystem>
 #include <string>
 #include <system_error>
@@ -11,37 +9,10 @@
 
 #include "keepout/error.h"
 #include "keepout/mesh/load_mesh.h"
+#include "text_fields.h"
 
 namespace keepout {
 namespace {
-
-using Fields = std::vector<std::string_view>;
-
-Fields split(std::string_view text, char at) {
-  Fields fields;
-  for (std::size_t end = text.find(at); end != std::string_view::npos; end = text.find(at)) {
-    fields.push_back(text.substr(0, end));
-    text.remove_prefix(end + 1);
-  }
-  fields.push_back(text);
-  return fields;
-}
-
-std::string in_quotes(std::string_view text) { return "'" + std::string(text) + "'"; }
-
-double number(std::string_view field) {
-  double value = 0.0;
-  const char* const last = field.data() + field.size();
-  const auto [end, error] = std::from_chars(field.data(), last, value);
-  if (error == std::errc{} && end == last && std::isfinite(value)) return value;
-  throw Error(in_quotes(field) + " is not a number");
-}
-
-Vec3 point(std::string_view field) {
-  const Fields numbers = split(field, ',');
-  if (numbers.size() != 3) throw Error(in_quotes(field) + " is not a point, three numbers");
-  return {number(numbers[0]), number(numbers[1]), number(numbers[2])};
-}
 
 ConvexTool blade(double length, double width, double thickness) {
   if (!(std::min({length, width, thickness}) > 0.0)) {

@@ -51,6 +51,22 @@ TEST(HapticProxy, FollowsTheHandExactlyAndWithoutForceInFreeSpace) {
   EXPECT_EQ(proxy.energy().active, 0.0);
 }
 
+// Beside the cube, in a corridor: the hand feels the wall of the corridor as it feels the mesh.
+TEST(HapticProxy, StaysInItsGuidesAndPullsTheHandBackIntoThem) {
+  const SpringDamper spring{.stiffness = 0.7, .damping = 0.002, .largest_force = 4.0};
+  HapticOptions options{.spring = spring};
+  options.guides = {{"corridor", Region::slab(above, Vec3::UnitX(), 1.0)}};
+  HapticProxy proxy(guard_of(cube()), options);
+  proxy.engage(above);
+  const HapticCycle cycle = lead(proxy, above, above + Vec3(3.0, 0.5, 0.0), 200);
+  EXPECT_LE(cycle.proxy.x(), above.x() + 1.0 + options.guides[0].band);
+  EXPECT_NEAR(cycle.proxy.y(), above.y() + 0.5, accuracy) << "along the corridor it follows";
+  EXPECT_TRUE(proxy.guides()[0].holds);
+  EXPECT_NEAR(cycle.force.x(), -0.7 * 2.0, 0.01);
+  options.guides.assign(TipGuides::most + 1, options.guides[0]);
+  EXPECT_THROW(HapticProxy(guard_of(cube()), options), Error);
+}
+
 TEST(HapticProxy, OnAPlaneTheStaticForceIsTheStiffnessTimesTheDepthBehindTheMargin) {
   const SpringDamper spring{.stiffness = 0.7, .damping = 0.002, .largest_force = 4.0};
   HapticProxy proxy(guard_of(cube()), {.spring = spring});

@@ -125,11 +125,32 @@ void append_joint_step(std::string& out, const InstrumentStep& step, std::size_t
   append_increment(out, step.increment, joints);
   out += ",\"share\":";
   append_number(out, step.share);
+  if (step.level < 1.0) {
+    out += ",\"level\":";
+    append_number(out, step.level);
+  }
   if (!step.distance) return;
   out += ",\"distance\":";
   append_number(out, *step.distance);
   out += ",\"nearest\":";
   append_digits(out, step.nearest);
+}
+
+void append_guides(std::string& out, std::span<const std::string> names,
+                   std::span<const GuideState> states, Softening softening) {
+  if (states.empty()) return;
+  constexpr std::string_view words[] = {"none", "guides", "bodies"};
+  out += ",\"softening\":";
+  append_string(out, words[static_cast<std::size_t>(softening)]);
+  out += ",\"guides\":";
+  append_list(out, std::views::iota(std::size_t{0}, states.size()), [&](std::size_t g) {
+    out += "{\"name\":";
+    append_string(out, names[g]);
+    out += ",\"excess\":";
+    append_number(out, states[g].excess);
+    out += states[g].holds ? ",\"holds\":true" : ",\"holds\":false";
+    out += states[g].gave_way ? ",\"gave_way\":true}" : ",\"gave_way\":false}";
+  });
 }
 
 void append_error(std::string& out, std::string_view id, std::string_view kind,

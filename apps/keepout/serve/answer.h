@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -34,6 +35,10 @@ void append_instrument(std::string& out, const Instrument& instrument);
 
 /// What became of the step of an instrument of so many joints.
 void append_joint_step(std::string& out, const InstrumentStep& step, std::size_t joints);
+
+/// How the guides of a step fared, by name, and what gave way; nothing where there are none.
+void append_guides(std::string& out, std::span<const std::string> names,
+                   std::span<const GuideState> states, Softening softening);
 
 /// The whole answer to a line that was not carried out.
 void append_error(std::string& out, std::string_view id, std::string_view kind,

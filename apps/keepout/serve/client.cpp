@@ -8,6 +8,8 @@
 
 #include "keepout/error.h"
 #include "keepout/factory/convex_tool_text.h"
+#include "keepout/factory/guide_text.h"
+#include "keepout/mesh/load_mesh.h"
 #include "names.h"
 #if KEEPOUT_HAS_URDF
 #include "keepout/urdf/read_chain.h"
@@ -65,6 +67,18 @@ Instrument instrument_of(const Request& request) {
   return {read_chain_of(request), std::move(bodies)};
 }
 
+InstrumentConstraint& instrument_of(Client& client) {
+  if (client.instrument) return *client.instrument;
+  throw Refusal{"no_instrument", "there is no instrument yet: open one, with 'instrument'"};
+}
+
+Twist twist_of(const Request& request) {
+  Twist twist;
+  if (request.linear.is_given) twist.linear = vector(request.linear.numbers);
+  if (request.angular.is_given) twist.angular = vector(request.angular.numbers);
+  return twist;
+}
+
 void take(double& option, const NumberTable& given) {
   if (given.is_given) option = given.numbers[0];
 }
@@ -81,6 +95,7 @@ void open_instrument(Client& client, const std::shared_ptr<const Mesh>& mesh,
   take(settings.options.orientation_weight, request.orientation_weight);
   try {
     client.instrument = make_instrument_constraint(mesh, index, instrument_of(request), settings);
+    client.guide_names.clear();
   } catch (const Error& error) {
     throw Refusal{"no_instrument", printable(error.what())};
   }
@@ -100,11 +115,66 @@ void open_tool(Client& client, const std::shared_ptr<const Mesh>& mesh,
   }
 }
 
-InstrumentStep joint_step(Client& client, const Request& request) {
-  if (!client.instrument) {
-    throw Refusal{"no_instrument", "there is no instrument yet: open one, with 'instrument'"};
+void set_guides(Client& client, const RequestLimits& limits, const Request& request) {
+  try {
+    if (request.of.text != "instrument") {
+      std::vector<TipGuide> guides;
+      for (const std::string& text : request.guides.texts) {
+        guides.push_back(tip_guide_of_text(text));
+      }
+      client.guides.reset();
+      if (!guides.empty()) client.guides.emplace(std::move(guides), limits.joints, limits.rows);
+      return;
+    }
+    InstrumentConstraint& instrument = instrument_of(client);
+    std::vector<Guide> guides;
+    std::vector<std::string> names;
+    for (const std::string& text : request.guides.texts) {
+      guides.push_back(guide_of_text(text));
+      names.push_back(guides.back().name());
+    }
+    instrument.set_guides(std::move(guides));
+    client.guide_names = std::move(names);
+  } catch (const Error& error) {
+    throw Refusal{"no_guide", printable(error.what())};
   }
-  const auto n = static_cast<std::size_t>(client.instrument->instrument().chain().size());
+}
+
+std::size_t add_anatomy(Client& client, const MotionConstraintSettings& settings,
+                        const Request& request) {
+  InstrumentConstraint& instrument = instrument_of(client);
+  const std::filesystem::path file(request.file.text);
+  try {
+    std::error_code trouble;
+    if (!std::filesystem::is_regular_file(file, trouble)) {
+      throw Error("'file' must name a file, which " + in_quotes(request.file.text) + " does not");
+    }
+    const std::shared_ptr<const Mesh> mesh = load_mesh(file).mesh;
+    const double margin = request.margin.is_given ? request.margin.numbers[0] : 0.0;
+    return instrument.add_mesh(mesh, make_or_load_index(mesh, settings), margin);
+  } catch (const Error& error) {
+    throw Refusal{"no_anatomy", printable(error.what())};
+  }
+}
+
+void place_anatomy(Client& client, const Request& request) {
+  InstrumentConstraint& instrument = instrument_of(client);
+  const double number = request.mesh.numbers[0];
+  const std::size_t count = instrument.mesh_count();
+  if (!(number >= 0.0 && number < static_cast<double>(count) && number == std::floor(number))) {
+    throw Refusal{"no_anatomy",
+                  "'mesh' must be the number of a mesh, 0 to " + std::to_string(count - 1)};
+  }
+  try {
+    instrument.place(static_cast<std::size_t>(number), pose_of(request.frame), twist_of(request));
+  } catch (const Error& error) {
+    throw Refusal{"no_anatomy", error.what()};
+  }
+}
+
+InstrumentStep joint_step(Client& client, const Request& request) {
+  InstrumentConstraint& instrument = instrument_of(client);
+  const auto n = static_cast<std::size_t>(instrument.instrument().chain().size());
   for (const NumberTable* table : {&request.q, &request.increment, &request.weights}) {
     if (table->is_given && table->columns != n) {
       throw Refusal{"not_a_request", in_quotes(table->name) + " must have " + std::to_string(n) +
@@ -112,13 +182,9 @@ InstrumentStep joint_step(Client& client, const Request& request) {
     }
   }
   if (request.increment.is_given) {
-    return client.instrument->step(request.q.numbers, request.increment.numbers,
-                                   request.weights.numbers);
+    return instrument.step(request.q.numbers, request.increment.numbers, request.weights.numbers);
   }
-  Twist twist;
-  if (request.linear.is_given) twist.linear = vector(request.linear.numbers);
-  if (request.angular.is_given) twist.angular = vector(request.angular.numbers);
-  return client.instrument->step(request.q.numbers, twist);
+  return instrument.step(request.q.numbers, twist_of(request));
 }
 
 }  // namespace keepout::app

@@ -3,10 +3,13 @@
 
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "keepout/factory/make_instrument_constraint.h"
 #include "keepout/factory/make_motion_constraint.h"
 #include "keepout/step/side_watch.h"
+#include "keepout/step/tip_guides.h"
 #include "serve/request.h"
 
 namespace keepout::app {
@@ -16,6 +19,8 @@ struct Client {
   SideWatch tip;                                                  // where his last step led it
   std::optional<InstrumentConstraint> instrument = std::nullopt;  // that he has opened
   std::optional<MotionConstraint> tool = std::nullopt;            // of a tool that he has opened
+  std::optional<TipGuides> guides = std::nullopt;                 // that his tip is to keep
+  std::vector<std::string> guide_names = {};                      // of his instrument
 };
 
 /// Opens the instrument of a request in place of the one that there was; `settings` are what it
@@ -30,6 +35,20 @@ void open_instrument(Client& client, const std::shared_ptr<const Mesh>& mesh,
 void open_tool(Client& client, const std::shared_ptr<const Mesh>& mesh,
                const std::shared_ptr<const SpatialIndex>& index, MotionConstraintSettings settings,
                const Request& request);
+
+/// Has his tip, or his instrument, keep the guides of a request in place of those there are.
+/// Throws Refusal, "no_guide", and leaves those, for what is no guide, and "no_instrument".
+void set_guides(Client& client, const RequestLimits& limits, const Request& request);
+
+/// Keeps his instrument out of one more mesh, with an index as `settings` say, and returns its
+/// number. Throws Refusal, "no_anatomy", and leaves all as it was, and "no_instrument". Reads a
+/// file, and builds an index.
+std::size_t add_anatomy(Client& client, const MotionConstraintSettings& settings,
+                        const Request& request);
+
+/// Says where one of the meshes of his instrument is, and how it moves. Throws Refusal,
+/// "no_anatomy", for a number of none or a frame that is none, and "no_instrument".
+void place_anatomy(Client& client, const Request& request);
 
 /// Carries out a request. Throws Refusal: "no_instrument" if none was opened, "not_a_request" for
 /// another number of joints.

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "keepout/robot/instrument.h"
+#include "keepout/step/tip_guides.h"
 #include "names.h"
 #include "serve/answer.h"
 
@@ -35,7 +36,7 @@ struct VerbKeys {
   std::array<std::string_view, 9> optional;
 };
 
-constexpr std::array<VerbKeys, 9> verbs{
+constexpr std::array<VerbKeys, 12> verbs{
     {{"step", Verb::step, {"tip", "desired"}, {"jacobian", "rows", "bounds"}},
      {"steps", Verb::steps, {"motions"}, {}},
      {"polytope", Verb::polytope, {"tip", "radius"}, {}},
@@ -46,6 +47,9 @@ constexpr std::array<VerbKeys, 9> verbs{
        "orientation_weight"}},
      {"joint_step", Verb::joint_step, {"q"}, {"linear", "angular", "increment", "weights"}},
      {"tool", Verb::tool, {"tool"}, {"narrow_phase"}},
+     {"guides", Verb::guides, {"guides"}, {"of"}},
+     {"anatomy", Verb::anatomy, {"file"}, {"margin"}},
+     {"place", Verb::place, {"mesh", "frame"}, {"linear", "angular"}},
      {"info", Verb::info, {}, {}},
      {"statuses", Verb::statuses, {}, {}},
      {"ping", Verb::ping, {}, {}}}};
@@ -129,6 +133,17 @@ void take(const Json& line, Request& request) {
       (*text)->text = value.get_ref<const std::string&>();
       continue;
     }
+    if (key == request.guides.name) {
+      TextList& list = request.guides;
+      list.is_given = value.is_array() && value.size() <= list.most &&
+                      std::ranges::all_of(value, [](const Json& v) { return v.is_string(); });
+      if (!list.is_given) {
+        refuse(in_quotes(key) + " must be an array of strings, at most " +
+               std::to_string(list.most));
+      }
+      for (const Json& text : value) list.texts.push_back(text.get<std::string>());
+      continue;
+    }
     const auto tables = request.tables();
     const auto table = std::ranges::find(tables, key, [](const NumberTable* t) { return t->name; });
     if (table == tables.end()) {
@@ -169,6 +184,11 @@ void check(Request& request, const std::string& asked) {
   }
   for (const TextValue* text : request.texts()) {
     check(text->name, text->is_given, "a string", *known);
+  }
+  check(request.guides.name, request.guides.is_given, "an array of strings", *known);
+  const std::string& of = request.of.text;
+  if (request.of.is_given && of != "tip" && of != "instrument") {
+    refuse("'of' must be 'tip' or 'instrument'");
   }
   if (request.verb == Verb::joint_step) {
     const bool has_twist = request.linear.is_given || request.angular.is_given;
@@ -238,7 +258,8 @@ NumberTable joints(std::string_view name) {
 }  // namespace
 
 Request::Request(const RequestLimits& limits)
-    : tip(table("tip", {1, 1, 1, 3, 3}, "an array of three numbers")),
+    : guides{.name = "guides", .most = TipGuides::most},
+      tip(table("tip", {1, 1, 1, 3, 3}, "an array of three numbers")),
       desired(table("desired", {1, 1, 1, 3, 3}, "an array of three numbers")),
       jacobian(table("jacobian", {2, 3, 3, 1, limits.joints},
                      "three arrays, the rows of the Jacobian, of one number for each joint, " +
@@ -268,7 +289,8 @@ Request::Request(const RequestLimits& limits)
       linear(table("linear", {1, 1, 1, 3, 3}, "an array of three numbers")),
       angular(table("angular", {1, 1, 1, 3, 3}, "an array of three numbers")),
       increment(joints("increment")),
-      weights(joints("weights")) {
+      weights(joints("weights")),
+      mesh(number("mesh")) {
   id.reserve(6 * longest_id + 2);
 }
 
@@ -280,6 +302,8 @@ void read_request(std::string_view line, Request& request) {
     table->numbers.clear();
   }
   for (TextValue* text : request.texts()) text->is_given = false, text->text.clear();
+  request.guides.is_given = false;
+  request.guides.texts.clear();
   // The library would take it for the end of the line.
   if (const std::size_t at = line.find('\0'); at != std::string_view::npos) {
     refuse_as_json("column " + std::to_string(at + 1) + ": a NUL byte");

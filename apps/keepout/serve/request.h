@@ -20,7 +20,10 @@ enum class Verb : std::uint8_t {
   ping,
   instrument,
   joint_step,
-  tool
+  tool,
+  guides,
+  anatomy,
+  place
 };
 
 /// The largest request that there is room for.
@@ -56,12 +59,21 @@ struct TextValue {
   std::string text = {};
 };
 
+/// The texts of one value of a request, an array of them.
+struct TextList {
+  std::string_view name;
+  std::size_t most;
+  bool is_given = false;
+  std::vector<std::string> texts = {};
+};
+
 /// One request as it was read.
 struct Request {
   explicit Request(const RequestLimits& limits);
 
   std::string id;  // as JSON, to be echoed; null if there is none, or none that can be read
   Verb verb = Verb::ping;
+  TextList guides;  // as tip_guide_of_text or guide_of_text reads each
   NumberTable tip;
   NumberTable desired;
   NumberTable jacobian;  // (3, n)
@@ -74,9 +86,11 @@ struct Request {
   TextValue tip_link{"tip_link"};
   TextValue tool{"tool"};  // as tool_of_text reads it
   TextValue narrow_phase{"narrow_phase"};
-  NumberTable scale;     // of the lengths in the URDF
-  NumberTable frame;     // (4, 4): of link 0, in that of the mesh
-  NumberTable capsules;  // (count, 9): link and point, link and point, radius
+  TextValue of{"of"};      // what guides are of
+  TextValue file{"file"};  // of a mesh
+  NumberTable scale;       // of the lengths in the URDF
+  NumberTable frame;       // (4, 4): of link 0, in that of the mesh
+  NumberTable capsules;    // (count, 9): link and point, link and point, radius
   NumberTable margin;
   NumberTable band;
   NumberTable period;
@@ -87,15 +101,17 @@ struct Request {
   NumberTable angular;
   NumberTable increment;
   NumberTable weights;
+  NumberTable mesh;  // its number
 
-  std::array<NumberTable*, 20> tables() noexcept {
+  std::array<NumberTable*, 21> tables() noexcept {
     return {&tip,    &desired, &jacobian, &rows,      &bounds,
             &radius, &motions, &scale,    &frame,     &capsules,
             &margin, &band,    &period,   &recovery,  &orientation_weight,
-            &q,      &linear,  &angular,  &increment, &weights};
+            &q,      &linear,  &angular,  &increment, &weights,
+            &mesh};
   }
-  std::array<TextValue*, 5> texts() noexcept {
-    return {&urdf, &base_link, &tip_link, &tool, &narrow_phase};
+  std::array<TextValue*, 7> texts() noexcept {
+    return {&urdf, &base_link, &tip_link, &tool, &narrow_phase, &of, &file};
   }
 };
 

@@ -224,6 +224,10 @@ instrument  urdf, a file, and capsules, arrays of [link,x,y,z,link,x,y,z,radius]
           instrument of this client's.
 joint_step  q, and linear and angular of its flange, or an increment: the increment of the joints.
 tool      tool, as --tool takes it, and narrow_phase: from now on this client's steps guard it.
+guides    guides, texts as --guide of 'keepout replay' takes them, of this client's tip; or with of,
+          "instrument", of his instrument: see docs/guides.md.
+anatomy   file, and margin: one more mesh that his instrument is kept out of.
+place     mesh, its number, frame, and linear and angular: where it is, and how it moves.
 info      version, mesh, settings and limits.
 statuses  all statuses by name, each with its reason.
 ping      whether it is there.
@@ -232,7 +236,8 @@ A line that cannot be carried out is answered, moves nothing and ends nothing:
 
   {"id":2,"error":{"kind":"not_a_request","message":"'tip' must be an array of three numbers"}}
 
-kinds: line_too_long, not_json, not_a_request, no_instrument, no_tool, too_many_clients.
+kinds: line_too_long, not_json, not_a_request, no_instrument, no_tool, no_guide,
+       no_anatomy, too_many_clients.
 All of it: docs/serve.md
 )";
 

@@ -25,7 +25,7 @@ MotionConstraintSettings with_room_for(MotionConstraintSettings settings,
                                        const RequestLimits& limits) {
   settings.distances = Distances::always;
   settings.capacity.variables = std::max<std::size_t>(limits.joints, 3);
-  settings.capacity.extra_rows = limits.rows;
+  settings.capacity.extra_rows = limits.rows + TipGuides::most_rows;
   return settings;
 }
 
@@ -141,6 +141,7 @@ Service::Service(std::shared_ptr<const Mesh> mesh, const ServiceSettings& settin
       settings_(with_room_for(settings.constraint, settings.limits)),
       constraint_(make_motion_constraint(mesh, index_, settings_)),
       longest_line_(settings.longest_line),
+      limits_(settings.limits),
       request_(settings.limits),
       jacobian_(3, static_cast<Eigen::Index>(settings.limits.joints)),
       info_(members_of(info(*mesh, settings))),
@@ -200,8 +201,25 @@ std::size_t Service::carry_out(Client& client, std::string& out) {
       open_tool(client, mesh_, index_, settings_, request_);
       out += "\"ok\":true";
       return most_work;
-    case Verb::joint_step:
-      append_joint_step(out, joint_step(client, request_), request_.q.columns);
+    case Verb::joint_step: {
+      const InstrumentStep step = joint_step(client, request_);
+      append_joint_step(out, step, request_.q.columns);
+      if (client.instrument->mesh_count() > 1 && step.distance) {
+        out += ",\"nearest_mesh\":" + std::to_string(step.nearest_mesh);
+      }
+      append_guides(out, client.guide_names, step.guides, step.softening);
+      break;
+    }
+    case Verb::guides:
+      set_guides(client, limits_, request_);
+      out += "\"ok\":true";
+      break;
+    case Verb::anatomy:
+      out += "\"ok\":true,\"mesh\":" + std::to_string(add_anatomy(client, settings_, request_));
+      return most_work;
+    case Verb::place:
+      place_anatomy(client, request_);
+      out += "\"ok\":true";
       break;
     case Verb::ping:
       out += "\"ok\":true";
@@ -213,6 +231,12 @@ std::size_t Service::carry_out(Client& client, std::string& out) {
 /// Of a tool that he has opened, or that of all.
 MotionConstraint& Service::constraint_of(Client& client) noexcept {
   return client.tool ? *client.tool : constraint_;
+}
+
+Step Service::step(Client& client, const Motion& motion) noexcept {
+  MotionConstraint& constraint = constraint_of(client);
+  return client.guides ? client.guides->step(constraint, motion, client.tip)
+                       : constraint.step(motion, client.tip);
 }
 
 void Service::append_single_step(Client& client, std::string& out) {
@@ -228,7 +252,12 @@ void Service::append_single_step(Client& client, std::string& out) {
     motion.rows = ExtraRows(request_.rows.numbers.data(), request_.bounds.numbers.data(),
                             static_cast<Eigen::Index>(request_.rows.rows));
   }
-  append_step(out, constraint_of(client).step(motion, client.tip), request_.jacobian.columns);
+  append_step(out, step(client, motion), request_.jacobian.columns);
+  if (client.guides) {
+    std::vector<std::string> names;
+    for (const TipGuide& guide : client.guides->guides()) names.push_back(guide.name);
+    append_guides(out, names, client.guides->states(), client.guides->softening());
+  }
 }
 
 void Service::append_batch(Client& client, std::string& out) {
@@ -238,7 +267,7 @@ void Service::append_batch(Client& client, std::string& out) {
     const Motion motion{.tip = vector(numbers.subspan(i)),
                         .desired = vector(numbers.subspan(i + 3))};
     out += i == 0 ? "{" : ",{";
-    append_step(out, constraint_of(client).step(motion, client.tip), 0);
+    append_step(out, step(client, motion), 0);
     out += '}';
   }
   out += ']';

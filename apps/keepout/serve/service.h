@@ -84,6 +84,7 @@ class Service {
  private:
   std::size_t carry_out(Client& client, std::string& out);
   MotionConstraint& constraint_of(Client& client) noexcept;
+  Step step(Client& client, const Motion& motion) noexcept;
   void append_single_step(Client& client, std::string& out);
   void append_batch(Client& client, std::string& out);
 
@@ -93,6 +94,7 @@ class Service {
   MotionConstraintSettings settings_;        // the same, with room for the largest request
   MotionConstraint constraint_;
   std::size_t longest_line_;
+  RequestLimits limits_;
   Request request_;               // in hand, or done
   TipJacobian::Matrix jacobian_;  // of a request: (3, most joints)
   std::string info_;              // members of an answer

@@ -9,7 +9,7 @@
 namespace keepout {
 namespace {
 
-constexpr std::size_t planes_of_a_guide = 4;
+constexpr std::size_t planes_of_a_guide = TipGuides::most_rows / TipGuides::most;
 constexpr int most_rounds = 8;
 
 Eigen::Index caller_rows(const Motion& motion) noexcept {
@@ -42,7 +42,9 @@ TipGuides::TipGuides(std::vector<TipGuide> guides, std::size_t joints, std::size
   bounds_.resize(extra_rows + planes_.capacity());
 }
 
-Step TipGuides::step(MotionConstraint& guard, const Motion& motion) noexcept {
+Step TipGuides::step(MotionConstraint& guard, const Motion& motion, SideWatch* sides,
+                     StageTimes* times) noexcept {
+  if (times != nullptr) *times = {};
   const auto columns = static_cast<std::size_t>(variables(motion));
   const auto rows = static_cast<std::size_t>(caller_rows(motion));
   if (columns > increment_.size() || rows + planes_.capacity() > bounds_.size()) {
@@ -52,7 +54,7 @@ Step TipGuides::step(MotionConstraint& guard, const Motion& motion) noexcept {
   open(motion);
   Step result;
   for (int round = 0; round < most_rounds; ++round) {
-    result = solve(guard, motion);
+    result = solve(guard, motion, sides, times);
     if (!result.ok()) {
       if (!soften()) return result;
       continue;
@@ -89,7 +91,8 @@ void TipGuides::add(std::size_t g, const Vec3& tip, const Vec3& at) noexcept {
 }
 
 /// The guard's step under the caller's rows and the planes there are.
-Step TipGuides::solve(MotionConstraint& guard, const Motion& motion) noexcept {
+Step TipGuides::solve(MotionConstraint& guard, const Motion& motion, SideWatch* sides,
+                      StageTimes* times) noexcept {
   const Eigen::Index columns = variables(motion);
   const Eigen::Index rows = caller_rows(motion);
   double* row =
@@ -105,7 +108,14 @@ Step TipGuides::solve(MotionConstraint& guard, const Motion& motion) noexcept {
   Motion guided = motion;
   const Eigen::Index count = bound - bounds_.data();
   if (count > 0) guided.rows = ExtraRows(matrix_.data(), bounds_.data(), count);
-  return guard.step(guided);
+  if (sides != nullptr) return guard.step(guided, *sides);
+  if (times == nullptr) return guard.step(guided);
+  StageTimes of_trial;
+  const Step step = guard.step(guided, of_trial);
+  times->query += of_trial.query;
+  times->activation += of_trial.activation;
+  times->solve += of_trial.solve;
+  return step;
 }
 
 /// Adds planes where a step would leave regions. Whether there are new ones.

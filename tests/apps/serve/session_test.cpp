@@ -16,6 +16,7 @@
 #include "keepout/version.h"
 #include "serve/answer.h"
 #include "serve/service.h"
+#include "temporary_folder.h"
 #if KEEPOUT_HAS_URDF
 #include "keepout/urdf/read_chain.h"
 #endif
@@ -148,6 +149,43 @@ TEST(SessionWithTools, AToolThatAClientOpensStepsAsPutTogetherByHandBitForBit) {
   EXPECT_EQ(Json::parse(ask(other, R"({"do":"info"})"))["settings"]["convex_tool"], true);
 }
 
+TEST_F(SessionTest, GuidesThatAClientSetsHoldHisTipAsByHandAndNobodyElses) {
+  Session session(service_);
+  Session other(service_);
+  EXPECT_EQ(
+      ask(session, R"({"do":"guides","guides":["corridor=slab:0,0,0:1,0,0:0.5","ball:0,0,0:90"]})"),
+      "{\"id\":null,\"ok\":true}\n");
+  MotionConstraint own = make_motion_constraint(mesh_, settings().constraint);
+  TipGuides guides({{"corridor", Region::slab(Vec3::Zero(), Vec3::UnitX(), 0.5)},
+                    {"ball", Region::ball(Vec3::Zero(), 90.0)}});
+  Vec3 tip(0, 0, 80);
+  std::size_t held = 0;
+  Random random(4);
+  for (int cycle = 0; cycle < 200; ++cycle) {
+    const Vec3 desired = 0.3 * random.direction() + Vec3(0.1, 0, 0.2);
+    const Step step = guides.step(own, {.tip = tip, .desired = desired});
+    const std::string answer = ask(session, step_line(tip, desired));
+    ASSERT_TRUE(same_bits(motion_in(answer), step.motion)) << answer;
+    const Json told = Json::parse(answer);
+    ASSERT_EQ(told["softening"], "none");
+    for (std::size_t g = 0; g < 2; ++g) {
+      ASSERT_EQ(told["guides"][g]["excess"], guides.states()[g].excess);
+      ASSERT_EQ(told["guides"][g]["holds"], guides.states()[g].holds);
+      held += guides.states()[g].holds;
+    }
+    tip += step.motion;
+  }
+  EXPECT_GT(held, 100u);
+  EXPECT_FALSE(Json::parse(ask(other, step_line(tip, {1, 0, 0}))).contains("guides"));
+  const Json wrong = Json::parse(ask(session, R"({"do":"guides","guides":["slab:0,0,0:1,0,0"]})"));
+  EXPECT_EQ(wrong["error"]["kind"], "no_guide");
+  EXPECT_EQ(Json::parse(ask(session, step_line(tip, {1, 0, 0})))["guides"].size(), 2u) << "left";
+  EXPECT_EQ(Json::parse(ask(session, R"({"do":"guides","guides":[]})"))["ok"], true);
+  EXPECT_FALSE(Json::parse(ask(session, step_line(tip, {1, 0, 0}))).contains("guides"));
+  const Json early = Json::parse(ask(session, R"({"do":"guides","guides":[],"of":"instrument"})"));
+  EXPECT_EQ(early["error"]["kind"], "no_instrument");
+}
+
 #if KEEPOUT_HAS_URDF
 std::string numbers(std::span<const double> values) {
   std::string text;
@@ -206,6 +244,53 @@ TEST_F(SessionTest, InstrumentsOfTwoClientsStepAsTheirOwnConstraintsBitForBit) {
   EXPECT_GT(limited, 100u);
 }
 
+TEST_F(SessionTest, AnInstrumentKeepsGuidesAndAnatomyThatIsAddedAndMoves) {
+  Session session(service_);
+  const auto done = [&](const std::string& line) { return Json::parse(ask(session, line)); };
+  const auto step = [&](const char* linear) {
+    return done(R"({"do":"joint_step","q":[0,0,60,0,0,0],"linear":)" + std::string(linear) + '}');
+  };
+  EXPECT_EQ(
+      done(R"({"do":"place","mesh":0,"frame":[[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]})")["error"]
+                                                                                          ["kind"],
+      "no_instrument");
+  ASSERT_EQ(done(std::string(open_line))["bodies"], 3);
+  EXPECT_FALSE(step("[0,0,-0.1]").contains("guides"));
+
+  const std::string over_tip = R"({"do":"guides","of":"instrument","guides":)"
+                               R"(["upright=axis:4:0,0,1:0,0,1:0.001"]})";
+  ASSERT_EQ(done(over_tip)["ok"], true);
+  const Json guided = step("[0.1,0,0]");
+  EXPECT_EQ(guided["guides"][0]["name"], "upright");
+  EXPECT_EQ(done(R"({"do":"guides","of":"instrument","guides":["ball:0,0,0:1"]})")["error"]["kind"],
+            "no_guide");
+
+  const TemporaryFolder folder;
+  const std::string file = folder.write(
+      "wall.off", "OFF\n4 2 0\n-300 -300 0\n300 -300 0\n300 300 0\n-300 300 0\n3 0 1 2\n3 0 2 3\n");
+  const Json added = done(R"({"do":"anatomy","margin":2,"file":")" + file + "\"}");
+  ASSERT_EQ(added["mesh"], 1) << added;
+  EXPECT_EQ(done(R"({"do":"anatomy","file":"/none.stl"})")["error"]["kind"], "no_anatomy");
+  const auto place = [](const std::string& height, const std::string& more) {
+    return R"({"do":"place","mesh":1,"frame":[[1,0,0,0],[0,1,0,0],[0,0,1,)" + height +
+           "],[0,0,0,1]]" + more + '}';
+  };
+  // The tip is at 200 - 60 - 3.7, and the wall comes up to it from 2.1 mm below.
+  ASSERT_EQ(done(place("134.2", R"(,"linear":[0,0,200])"))["ok"], true);
+  const Json pushed = step("[0,0,0]");
+  EXPECT_EQ(pushed["nearest_mesh"], 1) << pushed;
+  EXPECT_EQ(pushed["status"], "limited");
+  EXPECT_LT(pushed["increment"][2], -0.05) << "it is drawn back";
+  ASSERT_EQ(done(place("134.2", R"(,"linear":[0,0,30000])"))["ok"], true);
+  const Json outrun = step("[0,0,0]");
+  EXPECT_TRUE(!outrun["ok"] || outrun["status"] == "yielding") << outrun;
+  EXPECT_LT(outrun["level"], 1.0);
+  EXPECT_EQ(
+      done(R"({"do":"place","mesh":2,"frame":[[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]})")["error"]
+                                                                                          ["kind"],
+      "no_anatomy");
+}
+
 TEST_F(SessionTest, WhatIsNoInstrumentIsToldAndLeavesTheOneThereIs) {
   const std::string line = R"({"id":1,"do":"joint_step","q":[0,0,90,0,0,0],"linear":[0,0,0]})";
   Session session(service_);
@@ -257,7 +342,7 @@ TEST_F(SessionTest, InfoAndStatusesTellWhatThereIs) {
   EXPECT_EQ(info["settings"]["radius"], 1.0);
   EXPECT_EQ(info["limits"]["line"], 4096);
   const Json statuses = Json::parse(ask(session, R"({"do":"statuses"})"));
-  EXPECT_EQ(statuses["statuses"].size(), 14u);
+  EXPECT_EQ(statuses["statuses"].size(), status_count);
   for (const Json& status : statuses["statuses"]) EXPECT_NE(status["status"], "unknown");
   EXPECT_EQ(statuses["statuses"].back()["status"], "mesh_changed");
   EXPECT_EQ(statuses["polytope_statuses"].size(), 6u);

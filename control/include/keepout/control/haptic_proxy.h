@@ -3,9 +3,11 @@
 
 #include <cstdint>
 #include <string_view>
+#include <vector>
 
 #include "keepout/control/haptic_force.h"
 #include "keepout/step/motion_constraint.h"
+#include "keepout/step/tip_guides.h"
 
 namespace keepout {
 
@@ -40,6 +42,7 @@ struct HapticOptions {
   /// How long the force takes to die when cycles fail, and to come back [s], >= period
   double fade = 0.05;
   double largest_brake = 0.0;  // of the passivity controller [N s / length]; 0: it only observes
+  std::vector<TipGuide> guides = {};  // that the proxy stays in as well, in the frame of the mesh
 };
 
 /// What a cycle came to.
@@ -68,7 +71,8 @@ struct HapticCycle {
 /// seconds.
 class HapticProxy {
  public:
-  /// Throws Error for an option out of range. The step of a cycle, top_speed * period, is cut to
+  /// Throws Error for an option out of range, and for guides that the guard's Capacity::extra_rows
+  /// has no room for. The step of a cycle, top_speed * period, is cut to
   /// the radius of the motion sphere; and the guard's recovery to that step.
   HapticProxy(MotionConstraint guard, const HapticOptions& options);
 
@@ -92,6 +96,8 @@ class HapticProxy {
   const Vec3& proxy() const noexcept { return proxy_; }
   /// Whether it has been placed, and not been let go since.
   bool engaged() const noexcept { return engaged_; }
+  /// How each of the options' guides fared in the last cycle that was guarded.
+  std::span<const GuideState> guides() const noexcept { return guides_.states(); }
   /// What went to and fro since it was engaged.
   const EnergyReport& energy() const noexcept { return energy_; }
   /// As they were given.
@@ -108,6 +114,7 @@ class HapticProxy {
 
   MotionConstraint guard_;
   HapticOptions options_;
+  TipGuides guides_;
   double longest_;  // way of the proxy in a cycle [length]
   PassivityObserver passivity_;
   EnergyReport energy_;

@@ -117,6 +117,9 @@ class MotionConstraint {
   /// How it behaves: radius, tool radius and margin, among others.
   const StepOptions& options() const noexcept { return options_; }
 
+  /// The largest step that there is room for.
+  const Capacity& capacity() const noexcept { return capacity_; }
+
   /// Behaves so from the next step on. Where the last step led is remembered. Throws Error, and
   /// changes nothing, for options that the constructor would refuse, or for more nodes than there
   /// is room for.

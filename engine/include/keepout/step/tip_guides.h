@@ -32,7 +32,8 @@ struct TipGuide {
 /// One for each control loop, beside its MotionConstraint. After construction it allocates nothing.
 class TipGuides {
  public:
-  static constexpr std::size_t most = 16;  // guides
+  static constexpr std::size_t most = 16;             // guides
+  static constexpr std::size_t most_rows = 4 * most;  // that they pose at once
 
   /// Throws Error for more than `most`, or a band that is not above 0. `joints`: columns of the
   /// Jacobian at the most; `extra_rows`: of the caller's own, which go on being kept.
@@ -42,7 +43,17 @@ class TipGuides {
   /// One control cycle: MotionConstraint::step within the regions. The guard's Capacity::extra_rows
   /// must hold the caller's rows and `rows()` more. Views stay valid until the next step; `active`
   /// beyond the planes is of rows: first the caller's, then the guides'.
-  Step step(MotionConstraint& guard, const Motion& motion) noexcept;
+  Step step(MotionConstraint& guard, const Motion& motion) noexcept {
+    return step(guard, motion, nullptr, nullptr);
+  }
+  /// The same for one of several tips: see MotionConstraint::step.
+  Step step(MotionConstraint& guard, const Motion& motion, SideWatch& sides) noexcept {
+    return step(guard, motion, &sides, nullptr);
+  }
+  /// The same, and what the stages took of all trials.
+  Step step(MotionConstraint& guard, const Motion& motion, StageTimes& times) noexcept {
+    return step(guard, motion, nullptr, &times);
+  }
 
   /// How each guide fared in the last step.
   std::span<const GuideState> states() const noexcept { return states_; }
@@ -61,8 +72,11 @@ class TipGuides {
     double bound;  // of normal . motion; above 0 it leads back [length]
   };
 
+  Step step(MotionConstraint& guard, const Motion& motion, SideWatch* sides,
+            StageTimes* times) noexcept;
   void open(const Motion& motion) noexcept;
-  Step solve(MotionConstraint& guard, const Motion& motion) noexcept;
+  Step solve(MotionConstraint& guard, const Motion& motion, SideWatch* sides,
+             StageTimes* times) noexcept;
   bool add_violated(const Motion& motion, const Step& step) noexcept;
   void add(std::size_t guide, const Vec3& tip, const Vec3& at) noexcept;
   bool soften() noexcept;
