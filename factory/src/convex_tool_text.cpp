@@ -14,6 +14,12 @@
 namespace keepout {
 namespace {
 
+using text::Fields;
+using text::in_quotes;
+using text::number;
+using text::point;
+using text::split;
+
 ConvexTool blade(double length, double width, double thickness) {
   if (!(std::min({length, width, thickness}) > 0.0)) {
     throw Error("length, width and thickness of a blade must be above 0");

@@ -11,6 +11,12 @@
 namespace keepout {
 namespace {
 
+using text::Fields;
+using text::in_quotes;
+using text::number;
+using text::point;
+using text::split;
+
 using Part = std::span<const std::string_view>;
 
 Region region_of(Part f) {

@@ -7,7 +7,7 @@
 
 #include "keepout/error.h"
 
-namespace keepout {
+namespace keepout::text {
 
 Fields split(std::string_view text, char at) {
   Fields fields;
@@ -35,4 +35,4 @@ Vec3 point(std::string_view field) {
   return {number(numbers[0]), number(numbers[1]), number(numbers[2])};
 }
 
-}  // namespace keepout
+}  // namespace keepout::text

@@ -7,7 +7,7 @@
 
 #include "keepout/geometry/shapes.h"
 
-namespace keepout {
+namespace keepout::text {
 
 // What tools and guides are told in: fields between colons, of names, numbers and points.
 
@@ -25,4 +25,4 @@ double number(std::string_view field);
 /// Three numbers between commas. Throws Error for anything else.
 Vec3 point(std::string_view field);
 
-}  // namespace keepout
+}  // namespace keepout::text
