@@ -81,8 +81,11 @@ struct SimulateOptions {
   double max_step = 0.5;  // longest increment asked for in a cycle [mm]
   Timings timings = Timings::of_the_run;
   Tables tables = Tables::in_the_report;
-  std::string called_as = "keepout";  // what the user is told to type next
-  std::string command;                // that does it again
+  std::string robot;                          // whose instrument is driven instead; empty: none
+  std::vector<std::filesystem::path> meshes;  // for it; without one, the largest real ones
+  std::vector<double> speeds{1.0, 5.0};       // of it, in multiples of 0.5 mm and 0.02 rad a cycle
+  std::string called_as = "keepout";          // what the user is told to type next
+  std::string command;                        // that does it again
 };
 
 /// Pushes the tool over and into the anatomy in closed loop, without a fixture and with each rule;

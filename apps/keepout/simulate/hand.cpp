@@ -3,24 +3,23 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
 #include "keepout/error.h"
 #include "keepout/fixtures/poses.h"
 #include "keepout/fixtures/random.h"
 #include "number_text.h"
+#include "simulate/tremor.h"
 
 namespace keepout::app {
 namespace {
 
 // On a mesh of 100 mm and more; on a smaller one the hand is as much smaller. [mm]
-constexpr double start_height = 8.0;      // above the surface at both ends of a stroke
-constexpr double deepest = 5.0;           // how far below the surface the hand aims, at most
-constexpr double slide_length = 30.0;     // over the surface, at most
-constexpr double tremor_amplitude = 0.1;  // root of the sum of the squared amplitudes of its waves
+constexpr double start_height = 8.0;   // above the surface at both ends of a stroke
+constexpr double deepest = 5.0;        // how far below the surface the hand aims, at most
+constexpr double slide_length = 30.0;  // over the surface, at most
+constexpr double tremor_amplitude = 0.1;
 
 struct SurfacePoint {
   Vec3 point;
@@ -67,40 +66,6 @@ std::optional<SurfacePoint> place_to_start(Audit& audit, Places& places, double 
   }
   return facing_elsewhere;
 }
-
-/// From 0 to 1, at rest at both ends: the speed is continuous, though the acceleration is not.
-double smooth(double t) {
-  t = std::clamp(t, 0.0, 1.0);
-  return t * t * (3.0 - 2.0 * t);
-}
-
-/// A smooth shake: the sum of three waves, each along a direction and at a frequency of its own.
-class Tremor {
- public:
-  Tremor(double amplitude, Random& random) : amplitude_(amplitude) {
-    for (Wave& wave : waves_) {
-      wave = {random.direction(), random.uniform(8.0, 12.0), random.uniform(0.0, 1.0)};
-    }
-  }
-
-  Vec3 at(double seconds) const {
-    Vec3 sum = Vec3::Zero();
-    for (const Wave& wave : waves_) {
-      sum += wave.direction *
-             std::sin(2.0 * std::numbers::pi * (wave.frequency * seconds + wave.phase));
-    }
-    return amplitude_ / std::sqrt(3.0) * sum;
-  }
-
- private:
-  struct Wave {
-    Vec3 direction;
-    double frequency;  // [Hz]
-    double phase;      // [turns]
-  };
-  double amplitude_;
-  std::array<Wave, 3> waves_;
-};
 
 /// Follows the surface from a place, in a straight direction as seen from above.
 std::vector<SurfacePoint> slide_over(Audit& audit, const SurfacePoint& start, double length,
