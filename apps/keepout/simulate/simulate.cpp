@@ -23,7 +23,6 @@
 #include "progress.h"
 #include "record/record.h"
 #include "simulate/audit.h"
-#include "simulate/robot/simulate_robot.h"
 #include "simulate/simulation.h"
 #include "simulate/simulation_json.h"
 #include "wrapped_text.h"
@@ -176,7 +175,6 @@ void print_next(const SimulateOptions& options, std::ostream& out) {
 }  // namespace
 
 int simulate(const SimulateOptions& options, std::ostream& out) {
-  if (!options.robot.empty()) return simulate_robot(options, out);
   require_within_reach(options.max_step, options.constraint.radius);
   OutputFiles outputs(std::array{NamedPath{"MESH", file_of_mesh(options.mesh)}},
                       {{"--json", options.files.kept_json()}, {"--out", options.files.page}});

@@ -24,8 +24,7 @@ Twist way_to(const Pose& goal, const Pose& at, double speed) {
 /// back: what is left is the damped least squares within the joints' limits.
 InstrumentConstraint joints_of(Mode mode, Scene& scene, const Instrument& instrument,
                                InstrumentOptions options) {
-  const bool guards_bodies = mode == Mode::certified || mode == Mode::linearised;
-  if (guards_bodies) {
+  if (mode == Mode::certified || mode == Mode::linearised) {
     if (mode == Mode::linearised) options.certified = CertifiedMotion::linearised;
     return make_instrument_constraint(scene.mesh(), scene.shared_index(), instrument,
                                       {.options = options});
@@ -62,7 +61,6 @@ std::vector<GuardedCycle> follow(const RobotStroke& stroke, Scene& scene,
   oracle::InstrumentOracle oracle(tree, robot.judged(), stroke.start.base);
   RobotJudge judge(oracle, chain, random, q, options, joints.tolerance());
   const double kept = margin - options.band - 3.0 * joints.tolerance();
-  ++tally.strokes;
   std::vector<GuardedCycle> cycles;
   for (const Pose& goal : stroke.hand) {
     ChainState state;
@@ -75,16 +73,18 @@ std::vector<GuardedCycle> follow(const RobotStroke& stroke, Scene& scene,
     const RobotVerdict verdict = judge.judge(q);
     ++tally.cycles;
     tally.refused += step.ok() ? 0 : 1;
-    tally.below += verdict.is_below ? 1 : 0;
     tally.limits_broken += verdict.limits_broken ? 1 : 0;
-    GuardedCycle& cycle = cycles.emplace_back();
-    for (std::size_t b = 0; b < body_names.size(); ++b) {
-      const double least = cycle.clearances[b] = judge.least()[b];
-      cycle.places[b] = oracle.axis(b).to;
-      BodyTally& body = tally.bodies[b];
+    const auto add = [&](BodyTally& body, double least) {
       body.below += least >= kept ? 0 : 1;
       body.in_mesh += least < 0.0 ? 1 : 0;
       body.deepest = std::max(body.deepest, -least);
+    };
+    add(tally.any, verdict.least);
+    GuardedCycle& cycle = cycles.emplace_back();
+    for (std::size_t b = 0; b < body_names.size(); ++b) {
+      cycle.clearances[b] = judge.least()[b];
+      cycle.places[b] = oracle.axis(b).to;
+      add(tally.bodies[b], cycle.clearances[b]);
     }
   }
   return cycles;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
+
 #include "simulate/robot/strokes.h"
 #include "verify/robot/campaign.h"
 
@@ -25,14 +27,12 @@ struct BodyTally {
 /// What came out of all strokes on a mesh, at one speed, in one mode.
 struct ModeTally {
   std::string mesh = {};
-  std::uint64_t triangles = 0;
   double speed = 1.0;
   Mode mode = Mode::certified;
-  std::uint64_t strokes = 0;
   std::uint64_t cycles = 0;
   std::uint64_t refused = 0;        // cycles without a motion that may be carried out
-  std::uint64_t below = 0;          // in which any body was closer
   std::uint64_t limits_broken = 0;  // of the joints
+  BodyTally any = {};               // of the bodies together
   std::array<BodyTally, 3> bodies = {};
 };
 
@@ -40,6 +40,8 @@ struct ModeTally {
 struct GuardedCycle {
   std::array<Vec3, 3> places;        // ends of the bodies, from shaft to tip [mm]
   std::array<double, 3> clearances;  // least of each at its poses; infinite beyond the margin [mm]
+
+  double least() const { return *std::ranges::min_element(clearances); }
 };
 
 /// Follows the hand of a stroke in closed loop, from its start, in the mode of the tally, and
