@@ -183,9 +183,6 @@ void add_simulate(CLI::App& app, SimulateOptions& options) {
     }
     options.mesh = options.meshes.front();
   });
-  command.footer(
-      "With --robot the exit status is 0 only if no certified cycle broke what\n"
-      "docs/joint-space-step.md promises.");
 }
 
 void add_serve(CLI::App& app, ServeOptions& options) {

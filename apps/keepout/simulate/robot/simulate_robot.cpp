@@ -60,17 +60,16 @@ at most its radius. refused: cycles without a proven motion; limits: cycles that
 
 /// In one mode: which cycle was worst, and all that is drawn of it.
 Json run_json(Mode mode, const std::vector<GuardedCycle>& cycles) {
-  const auto rounded_to = [](double mm, double parts) {
-    return std::isfinite(mm) ? Json(std::round(mm * parts) / parts) : Json(nullptr);
-  };
   Json places = Json::array(), clearances = Json::array();
   for (const GuardedCycle& cycle : cycles) {
-    Json& at = places.emplace_back(Json::array());
+    Json& at = places.emplace_back();
     for (const Vec3& place : cycle.places) {
-      for (const double x : place) at.push_back(rounded_to(x, 1e3));
+      at.push_back(json_of(Vec3((1e3 * place).array().round() / 1e3)));
     }
-    Json& least = clearances.emplace_back(Json::array());
-    for (const double mm : cycle.clearances) least.push_back(rounded_to(mm, 1e6));
+    Json& least = clearances.emplace_back();
+    for (const double mm : cycle.clearances) {
+      least.push_back(std::isfinite(mm) ? Json(std::round(1e6 * mm) / 1e6) : Json(nullptr));
+    }
   }
   const auto worst = std::ranges::min_element(cycles, {}, &GuardedCycle::least);
   return {{"mode", name(mode)},
@@ -111,7 +110,7 @@ void run_stroke(const SimulateOptions& options, Scene& scene,
 }
 
 /// All rows of a mode together.
-ModeTally total(const std::vector<ModeTally>& rows, Mode mode) {
+ModeTally sum_of(const std::vector<ModeTally>& rows, Mode mode) {
   ModeTally sum;
   for (const ModeTally& row : rows) {
     if (row.mode != mode) continue;
@@ -128,12 +127,12 @@ Json record_of(const SimulateOptions& options, const std::vector<ModeTally>& row
                bool is_complete) {
   std::vector<std::string> account;
   for (const Mode mode : modes) {
-    const auto& [below, in_mesh, deepest] = total(rows, mode).any;
+    const auto& [below, in_mesh, deepest] = sum_of(rows, mode).any;
     account.push_back("Mode “" + std::string(name(mode)) + "”: some body was too close in " +
                       counted(below, "cycle") + ", in the mesh in " + grouped(in_mesh) +
                       (in_mesh > 0 ? ", up to " + length_text(deepest) + "." : "."));
   }
-  const ModeTally certified = total(rows, Mode::certified);
+  const ModeTally certified = sum_of(rows, Mode::certified);
   const bool is_kept = certified.any.below + certified.limits_broken == 0;
   std::string speeds;
   for (const double s : options.speeds) speeds += (speeds.empty() ? "" : ",") + trimmed(s);
@@ -209,7 +208,7 @@ int simulate_robot(const SimulateOptions& options, std::ostream& out) {
   print_wrapped(out, record["headline"]);
   for (const Json& text : record["account"]) print_wrapped(out, text);
   out << "\nReport, with pictures: " << options.files.page->string() << '\n';
-  const ModeTally certified = total(rows, Mode::certified);
+  const ModeTally certified = sum_of(rows, Mode::certified);
   if (certified.any.below + certified.limits_broken > 0) return EXIT_FAILURE;
   return stop.has_come() ? exit_interrupted : EXIT_SUCCESS;
 }

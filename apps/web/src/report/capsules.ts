@@ -10,7 +10,8 @@ export interface Capsule {
   readonly radius: number;
   /** The variable of the page's style that has the colour. */
   readonly color: string;
-  readonly isSeenThrough: boolean;
+  /** How strong it is drawn where the surface hides it, from 0 to 1. */
+  readonly hidden: number;
 }
 
 /** Draws capsules one after the other, over what was drawn and with its depths. */
@@ -23,7 +24,7 @@ export class CapsuleBrush {
   }
 
   draw(renderer: three.WebGLRenderer, camera: three.Camera, capsule: Capsule): void {
-    const { from, to, radius, color, isSeenThrough } = capsule;
+    const { from, to, radius, color, hidden } = capsule;
     const { material } = this.mesh;
     const along = to.clone().sub(from).normalize();
     const turn = new three.Quaternion().setFromUnitVectors(new three.Vector3(0, 1, 0), along);
@@ -34,11 +35,11 @@ export class CapsuleBrush {
     for (const [name, value] of Object.entries({ from, to, radius, axes, color: paint })) {
       (material.uniforms[name] as three.IUniform).value = value;
     }
-    // First as it is, then, faint, what the surface hides of it.
-    for (const isHidden of isSeenThrough ? [false, true] : [false]) {
+    // What is hidden of it, and then what is seen.
+    for (const isHidden of [true, false]) {
       material.depthFunc = isHidden ? three.GreaterDepth : three.LessEqualDepth;
       material.depthWrite = !isHidden;
-      (material.uniforms.opacity as three.IUniform<number>).value = isHidden ? 0.55 : 1;
+      (material.uniforms.opacity as three.IUniform<number>).value = isHidden ? hidden : 1;
       renderer.render(this.mesh, camera);
     }
   }

@@ -1,23 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /** The sections of a simulation with a whole instrument: docs/records.md. */
 import * as three from "three";
-import { type Anatomy, coarsened, fitted, lookFrom, unpackedAnatomy } from "./anatomy.ts";
-import { AnatomyView, bestDirection, hint } from "./anatomy_view.ts";
+import { type Anatomy, fitted, lookFrom, unpackedAnatomy } from "./anatomy.ts";
+import { AnatomyView, hint } from "./anatomy_view.ts";
 import type { Capsule } from "./capsules.ts";
 import type { Layer } from "./painting.ts";
 import { entries, type ReportRecord } from "./record.ts";
 import { lead, section } from "./report_page.ts";
 import { pictureGrid, runColor } from "./runs.ts";
-import { grouped, make, millimetres, rounded, show, shown } from "./shown.ts";
+import { type Format, grouped, make, millimetres, rounded, show, shown } from "./shown.ts";
 import type { Place, RecordedMesh } from "./simulation_record.ts";
-import { seen } from "./still.ts";
 import { type Column, scrolled, table } from "./table.ts";
 import { timeSlider } from "./time_slider.ts";
 
 interface Run {
   readonly mode: string;
   readonly worst: number;
-  readonly places: readonly (readonly number[])[];
+  readonly places: readonly (readonly Place[])[];
   readonly clearance_mm: readonly (readonly (number | null)[])[];
 }
 interface Stroke {
@@ -40,20 +39,18 @@ export async function robotSimulationSections(
 }
 
 function figures({ bodies }: RobotSimulationRecord): HTMLElement {
+  const harm = (heading: string, from: string, format: Format = grouped): Column => ({
+    ...{ heading, from, format, look: "harm" },
+  });
   const columns: Column[] = [
     { heading: "mesh", from: "/mesh" },
     { heading: "speed", from: "/speed" },
     { heading: "mode", from: "/mode", look: "name" },
     { heading: "cycles", from: "/cycles", format: grouped },
-    ...bodies.flatMap(({ name }): Column[] => [
-      { heading: `${name}: too close`, from: `/${name}_below`, format: grouped, look: "harm" },
-      { heading: "in the mesh", from: `/${name}_in_mesh`, format: grouped, look: "harm" },
-      {
-        heading: "deepest [mm]",
-        from: `/${name}_deepest_mm`,
-        format: (mm) => rounded(mm, 2),
-        look: "harm",
-      },
+    ...bodies.flatMap(({ name }) => [
+      harm(`${name}: too close`, `/${name}_below`),
+      harm("in the mesh", `/${name}_in_mesh`),
+      harm("deepest [mm]", `/${name}_deepest_mm`, (mm) => rounded(mm)),
     ]),
   ];
   return section(
@@ -110,12 +107,9 @@ async function meshSection(record: RobotSimulationRecord, number: number): Promi
   return title;
 }
 
-/** The bodies of an instrument in a cycle: from the port, and from each body's end to the next. */
-const ends = (stroke: Stroke, run: Run, cycle: number, { placed }: Anatomy): three.Vector3[] => {
-  const flat = run.places[cycle] ?? [];
-  const places = [0, 1, 2].map((b) => placed(flat.slice(3 * b, 3 * b + 3) as unknown as Place));
-  return [placed(stroke.port), ...places];
-};
+/** Where the instrument's bodies end in a cycle: at the port, and each at the next. */
+const ends = ({ port }: Stroke, run: Run, cycle: number, { placed }: Anatomy): three.Vector3[] =>
+  [port, ...(run.places[cycle] ?? [])].map(placed);
 
 /** A stroke in all modes, side by side, and what follows it in time. */
 function strokeView(
@@ -148,7 +142,7 @@ function strokeView(
           to: places[body + 1] as three.Vector3,
           radius: radius_mm,
           color: isDeepest ? "--alarm" : runColor(number),
-          isSeenThrough: isDeepest,
+          hidden: isDeepest ? 0.6 : 0.25,
         };
       });
       const at = `${from}/runs/${number}/clearance_mm/${cycle}/${nearest}`;
@@ -158,13 +152,14 @@ function strokeView(
       } else now.replaceChildren("clear");
     };
   });
+  const about = make("p", { class: "hint" }, "At speed ", shown(`${from}/speed`), ".");
   const cycles = stroke.runs[0]?.places.length ?? 1;
   const time = timeSlider(`${from}/runs/0/places`, cycles, (cycle) => {
     for (const follow of followed) follow(cycle);
     view.outdate();
   });
   return {
-    element: make("div", {}, group, time.element),
+    element: make("div", {}, group, time.element, about),
     go: (run: number) => time.go(stroke.runs[run]?.worst ?? 0),
     dispose() {
       time.stop();
@@ -173,44 +168,19 @@ function strokeView(
   };
 }
 
-/** Obliquely down the shaft, from where most of the instrument is seen, at what the tip comes to. */
+/** Obliquely along the shaft, at what the tip comes to in all modes. */
 function outlook(anatomy: Anatomy, stroke: Stroke) {
   const up = new three.Vector3(0, 0, 1);
-  const some = stroke.runs.flatMap((run) =>
-    [0, 0.2, 0.4, 0.6, 0.8].map((share) =>
-      ends(stroke, run, Math.floor(share * run.places.length), anatomy),
+  const places = stroke.runs.flatMap((run) =>
+    [0, 0.2, 0.4, 0.6, 0.8].flatMap((share) =>
+      ends(stroke, run, Math.floor(share * run.places.length), anatomy).slice(1),
     ),
   );
-  const [port, wrist] = ends(stroke, stroke.runs[0] as Run, 0, anatomy) as [
-    three.Vector3,
-    three.Vector3,
-  ];
+  const [port, wrist] = [anatomy.placed(stroke.port), places[0] as three.Vector3];
+  places.push(port.clone().lerp(wrist, 0.6));
   const axis = port.clone().sub(wrist).normalize();
-  const places = some.flatMap((at) => at.slice(1));
-  places.push(wrist.clone().addScaledVector(axis, 0.4 * port.distanceTo(wrist)));
-  const look = (toward: three.Vector3) => {
-    const { middle, height } = fitted(places, toward, up);
-    return lookFrom(toward, up, middle, 1.25 * height, anatomy.size);
-  };
-  const side = new three.Vector3(axis.y, axis.z, axis.x).cross(axis).normalize();
-  const directions = Array.from({ length: 12 }, (_, k) =>
-    side
-      .clone()
-      .applyAxisAngle(axis, (Math.PI * k) / 6)
-      .addScaledVector(axis, 0.6)
-      .normalize(),
-  );
-  const corners = coarsened(anatomy.positions, anatomy.corners, anatomy.size / 150);
-  const trial = [96, 72] as const;
-  return look(
-    bestDirection(directions, (toward) => {
-      const { camera } = look(toward);
-      const { depths } = seen(anatomy, corners, camera, trial);
-      return places.filter((place) => {
-        const { x, y, z } = place.clone().project(camera);
-        const [column, row] = [((x + 1) * trial[0]) / 2, ((1 - y) * trial[1]) / 2];
-        return z <= (depths[Math.floor(row) * trial[0] + Math.floor(column)] ?? 1);
-      }).length;
-    }),
-  );
+  const side = axis.clone().cross(up).normalize();
+  const toward = axis.addScaledVector(side, 1.2).normalize();
+  const { middle, height } = fitted(places, toward, up);
+  return lookFrom(toward, up, middle, 1.25 * height, anatomy.size);
 }
