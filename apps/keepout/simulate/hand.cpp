@@ -21,12 +21,12 @@ constexpr double deepest = 5.0;        // how far below the surface the hand aim
 constexpr double slide_length = 30.0;  // over the surface, at most
 constexpr double tremor_amplitude = 0.1;
 
-struct SurfacePoint {
+struct SurfacePlace {
   Vec3 point;
   Vec3 normal;
 };
 
-SurfacePoint on_surface(Audit& audit, const Vec3& near) {
+SurfacePlace on_surface(Audit& audit, const Vec3& near) {
   const Hit hit = audit.nearest(near);
   return {near + hit.closest.offset, audit.mesh().normal(hit.triangle)};
 }
@@ -36,7 +36,7 @@ class Places {
  public:
   Places(Audit& audit, Random& random) : audit_(audit), random_(random) {}
 
-  SurfacePoint next() {
+  SurfacePlace next() {
     if (points_.empty()) points_ = surface_points(audit_.mesh(), 1000, 0.0, random_);
     const Vec3 point = points_.back();
     points_.pop_back();
@@ -51,14 +51,14 @@ class Places {
 
 /// A place on the surface with free room above it; if there are such, one that faces outwards:
 /// strokes deep in a cavity would be as good a test, but nobody could see them in a picture.
-std::optional<SurfacePoint> place_to_start(Audit& audit, Places& places, double height) {
+std::optional<SurfacePlace> place_to_start(Audit& audit, Places& places, double height) {
   const Vec3 middle = audit.mesh().bounds().center();
-  const auto is_free = [&](const SurfacePoint& place) {
+  const auto is_free = [&](const SurfacePlace& place) {
     return audit.clearance(place.point + height * place.normal) > 0.8 * height;
   };
-  std::optional<SurfacePoint> facing_elsewhere;
+  std::optional<SurfacePlace> facing_elsewhere;
   for (int attempt = 0; attempt < 2000; ++attempt) {
-    const SurfacePoint place = places.next();
+    const SurfacePlace place = places.next();
     const Vec3 outwards = place.point - middle;
     const bool faces_outwards = place.normal.dot(outwards) >= 0.3 * outwards.norm();
     if (faces_outwards && is_free(place)) return place;
@@ -68,10 +68,10 @@ std::optional<SurfacePoint> place_to_start(Audit& audit, Places& places, double 
 }
 
 /// Follows the surface from a place, in a straight direction as seen from above.
-std::vector<SurfacePoint> slide_over(Audit& audit, const SurfacePoint& start, double length,
+std::vector<SurfacePlace> slide_over(Audit& audit, const SurfacePlace& start, double length,
                                      Random& random) {
   constexpr int stations = 16;
-  std::vector<SurfacePoint> way{start};
+  std::vector<SurfacePlace> way{start};
   Vec3 heading = start.normal.cross(random.direction()).normalized();
   for (int i = 1; i < stations; ++i) {
     const Vec3& up = way.back().normal;
@@ -85,7 +85,7 @@ std::vector<SurfacePoint> slide_over(Audit& audit, const SurfacePoint& start, do
 std::vector<Vec3> make_stroke(Audit& audit, std::size_t cycles, double scale, Places& places,
                               Random& random) {
   const double height = start_height * scale;
-  const std::optional<SurfacePoint> start = place_to_start(audit, places, height);
+  const std::optional<SurfacePlace> start = place_to_start(audit, places, height);
   if (!start) {
     throw Error("no free place to start a stroke from: nowhere is there room for " +
                 trimmed(height) +
@@ -93,7 +93,7 @@ std::vector<Vec3> make_stroke(Audit& audit, std::size_t cycles, double scale, Pl
                 "the solid, flip all triangles ('keepout inspect' tells whether they do)");
   }
   const double depth = random.uniform(0.2, 1.0) * (deepest * scale);
-  const std::vector<SurfacePoint> way =
+  const std::vector<SurfacePlace> way =
       slide_over(audit, *start, random.uniform(0.3, 1.0) * (slide_length * scale), random);
   const Tremor tremor(tremor_amplitude * scale, random);
 

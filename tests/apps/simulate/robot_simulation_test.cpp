@@ -52,9 +52,15 @@ TEST(SimulateRobot, WhatIsCertifiedKeepsAllBodiesOutAndNothingElseDoes) {
       EXPECT_EQ(row[name + "_deepest_mm"] > 0.0, row[name + "_in_mesh"] > 0u);
       EXPECT_GE(row[name + "_below"], row[name + "_in_mesh"]);
     }
-    if (row["mode"] == "certified") EXPECT_EQ(cycles_of(row, "below"), 0u) << row;
-    if (row["mode"] == "tip only") EXPECT_GT(row["shaft_deepest_mm"], 1.0) << row;
-    if (row["mode"] == "none") EXPECT_GT(cycles_of(row, "in_mesh"), 100u) << row;
+    if (row["mode"] == "certified") {
+      EXPECT_EQ(cycles_of(row, "below"), 0u) << row;
+    }
+    if (row["mode"] == "tip only") {
+      EXPECT_GT(row["shaft_deepest_mm"], 1.0) << row;
+    }
+    if (row["mode"] == "none") {
+      EXPECT_GT(cycles_of(row, "in_mesh"), 100u) << row;
+    }
   }
   EXPECT_EQ(rows[5]["mode"], "linearised");
   EXPECT_EQ(rows[5]["speed"], 20.0);

@@ -127,10 +127,10 @@ Json record_of(const SimulateOptions& options, const std::vector<ModeTally>& row
                bool is_complete) {
   std::vector<std::string> account;
   for (const Mode mode : modes) {
-    const auto& [below, in_mesh, deepest] = sum_of(rows, mode).any;
+    const BodyTally any = sum_of(rows, mode).any;
     account.push_back("Mode “" + std::string(name(mode)) + "”: some body was too close in " +
-                      counted(below, "cycle") + ", in the mesh in " + grouped(in_mesh) +
-                      (in_mesh > 0 ? ", up to " + length_text(deepest) + "." : "."));
+                      counted(any.below, "cycle") + ", in the mesh in " + grouped(any.in_mesh) +
+                      (any.in_mesh > 0 ? ", up to " + length_text(any.deepest) + "." : "."));
   }
   const ModeTally certified = sum_of(rows, Mode::certified);
   const bool is_kept = certified.any.below + certified.limits_broken == 0;

@@ -14,7 +14,7 @@ export interface Capsule {
   readonly hidden: number;
 }
 
-/** Draws capsules one after the other, over what was drawn and with its depths. */
+/** Draws capsules over what was drawn before, and with its depths. */
 export class CapsuleBrush {
   private readonly mesh: three.Mesh<three.CapsuleGeometry, three.ShaderMaterial>;
 
@@ -23,24 +23,25 @@ export class CapsuleBrush {
     this.mesh.frustumCulled = false;
   }
 
-  draw(renderer: three.WebGLRenderer, camera: three.Camera, capsule: Capsule): void {
-    const { from, to, radius, color, hidden } = capsule;
-    const { material } = this.mesh;
-    const along = to.clone().sub(from).normalize();
-    const turn = new three.Quaternion().setFromUnitVectors(new three.Vector3(0, 1, 0), along);
-    const axes = new three.Matrix3().setFromMatrix4(
-      new three.Matrix4().makeRotationFromQuaternion(turn),
-    );
-    const paint = new three.Color(colorOf(color));
-    for (const [name, value] of Object.entries({ from, to, radius, axes, color: paint })) {
-      (material.uniforms[name] as three.IUniform).value = value;
-    }
-    // What is hidden of it, and then what is seen.
+  draw(renderer: three.WebGLRenderer, camera: three.Camera, capsules: readonly Capsule[]): void {
+    const { uniforms } = this.mesh.material;
+    // What is hidden of all of them, and then what is seen.
     for (const isHidden of [true, false]) {
-      material.depthFunc = isHidden ? three.GreaterDepth : three.LessEqualDepth;
-      material.depthWrite = !isHidden;
-      (material.uniforms.opacity as three.IUniform<number>).value = isHidden ? hidden : 1;
-      renderer.render(this.mesh, camera);
+      this.mesh.material.depthFunc = isHidden ? three.GreaterDepth : three.LessEqualDepth;
+      this.mesh.material.depthWrite = !isHidden;
+      for (const { from, to, radius, color: variable, hidden } of capsules) {
+        const along = to.clone().sub(from).normalize();
+        const turn = new three.Quaternion().setFromUnitVectors(new three.Vector3(0, 1, 0), along);
+        const axes = new three.Matrix3().setFromMatrix4(
+          new three.Matrix4().makeRotationFromQuaternion(turn),
+        );
+        const color = new three.Color(colorOf(variable));
+        const opacity = isHidden ? hidden : 1;
+        for (const [name, value] of Object.entries({ from, to, radius, axes, color, opacity })) {
+          (uniforms[name] as three.IUniform).value = value;
+        }
+        renderer.render(this.mesh, camera);
+      }
     }
   }
 

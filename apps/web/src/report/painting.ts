@@ -144,7 +144,7 @@ export class GraphicsPainter implements Painter {
       line.adjust(columns, rows, scale, pixel);
       renderer.render(line.mesh, this.camera);
     }
-    for (const capsule of layer.capsules ?? []) this.brush.draw(renderer, this.camera, capsule);
+    this.brush.draw(renderer, this.camera, layer.capsules ?? []);
     return renderer.domElement;
   }
 

@@ -172,8 +172,8 @@ function strokeView(
 function outlook(anatomy: Anatomy, stroke: Stroke) {
   const up = new three.Vector3(0, 0, 1);
   const places = stroke.runs.flatMap((run) =>
-    [0, 0.2, 0.4, 0.6, 0.8].flatMap((share) =>
-      ends(stroke, run, Math.floor(share * run.places.length), anatomy).slice(1),
+    run.places.flatMap((_, cycle) =>
+      cycle % 10 === 0 ? ends(stroke, run, cycle, anatomy).slice(1) : [],
     ),
   );
   const [port, wrist] = [anatomy.placed(stroke.port), places[0] as three.Vector3];
