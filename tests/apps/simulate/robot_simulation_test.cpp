@@ -92,7 +92,7 @@ TEST(SimulateRobot, KeepsAStrokeOfEachMannerThatBeginsAlikeInAllModes) {
       ASSERT_EQ(run["places"].size(), 100u);
       ASSERT_EQ(run["clearance_mm"].size(), 100u);
       EXPECT_EQ(run["places"][0].size(), 3u);
-      EXPECT_EQ(run["places"][0], stroke["runs"][0]["places"][0]);  // 5 mm off all is free
+      EXPECT_EQ(run["places"][0], stroke["runs"][0]["places"][0]);  // the surface is 5 mm off
       const auto least = [](const Json& cycle) {
         double mm = 1.0;
         for (const Json& body : cycle) mm = std::min(mm, body.is_null() ? 1.0 : body.get<double>());
