@@ -95,10 +95,11 @@ struct SimulateOptions {
 /// signal stopped the benchmark, of which the report has what was finished.
 int simulate(const SimulateOptions& options, std::ostream& out);
 
-/// Drives the instrument of options.robot over the meshes in each mode, and judges each cycle:
-/// writes a record of the kind simulate_robot (docs/records.md) and its report, and prints a table.
-/// A StopSignal ends it early, and what is done is kept. The exit status: failure when a certified
-/// cycle broke what docs/joint-space-step.md promises. Throws Error.
+/// What `simulate` does where a robot is named: drives its instrument over the meshes in each mode,
+/// and judges each cycle; writes a record of the kind simulate_robot (docs/records.md) and its
+/// report, and prints a table. A StopSignal ends it early, and what is done is kept. The exit
+/// status: failure when a certified cycle broke what docs/joint-space-step.md promises. Throws
+/// Error.
 int simulate_robot(const SimulateOptions& options, std::ostream& out);
 
 }  // namespace keepout::app

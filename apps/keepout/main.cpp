@@ -291,10 +291,7 @@ int run(int argc, char** argv) {
   if (app.got_subcommand("live")) live(live_options, std::cout);
   if (app.got_subcommand("report")) report(report_options, std::cout);
   if (app.got_subcommand("serve")) return serve(serve_options, std::cerr);
-  if (app.got_subcommand("simulate")) {
-    return (simulate_options.robot.empty() ? simulate : simulate_robot)(simulate_options,
-                                                                        std::cout);
-  }
+  if (app.got_subcommand("simulate")) return simulate(simulate_options, std::cout);
   if (app.got_subcommand("bench")) return bench(bench_options, std::cout, std::cerr);
   if (app.got_subcommand("compare")) return compare(compare_options, std::cout);
   if (app.got_subcommand("plan")) return plan(plan_options, std::cout);

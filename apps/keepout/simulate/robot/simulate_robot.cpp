@@ -134,8 +134,6 @@ Json record_of(const SimulateOptions& options, const std::vector<ModeTally>& row
   }
   const ModeTally certified = sum_of(rows, Mode::certified);
   const bool is_kept = certified.any.below + certified.limits_broken == 0;
-  std::string speeds;
-  for (const double s : options.speeds) speeds += (speeds.empty() ? "" : ",") + trimmed(s);
   const double margin = options.constraint.margin;
   Json record =
       new_record({.kind = "simulate_robot",
@@ -152,7 +150,6 @@ Json record_of(const SimulateOptions& options, const std::vector<ModeTally>& row
                   .settings = {{"robot", options.robot},
                                {"strokes", grouped(options.hand.strokes)},
                                {"cycles per stroke", grouped(options.hand.cycles)},
-                               {"speed", speeds},
                                {"margin", trimmed(margin) + " mm"},
                                {"seed", std::to_string(options.hand.seed)},
                                {"index", options.constraint.index}}});
