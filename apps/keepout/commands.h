@@ -83,8 +83,11 @@ struct SimulateOptions {
   double max_step = 0.5;  // longest increment asked for in a cycle [mm]
   Timings timings = Timings::of_the_run;
   Tables tables = Tables::in_the_report;
-  std::string called_as = "keepout";  // what the user is told to type next
-  std::string command;                // that does it again
+  std::string robot;                          // whose instrument is driven instead; empty: none
+  std::vector<std::filesystem::path> meshes;  // for it; without one, the largest real ones
+  std::vector<double> speeds{1.0, 5.0};       // of it, in multiples of 0.5 mm and 0.02 rad a cycle
+  std::string called_as = "keepout";          // what the user is told to type next
+  std::string command;                        // that does it again
 };
 
 /// Pushes the tool over and into the anatomy in closed loop, without a fixture and with each rule;
@@ -93,5 +96,12 @@ struct SimulateOptions {
 /// overwrite the mesh; then there is no report. Gives the exit status: exit_interrupted where a
 /// signal stopped the benchmark, of which the report has what was finished.
 int simulate(const SimulateOptions& options, std::ostream& out);
+
+/// What `simulate` does where a robot is named: drives its instrument over the meshes in each mode,
+/// and judges each cycle; writes a record of the kind simulate_robot (docs/records.md) and its
+/// report, and prints a table. A StopSignal ends it early, and what is done is kept. The exit
+/// status: failure when a certified cycle broke what docs/joint-space-step.md promises. Throws
+/// Error.
+int simulate_robot(const SimulateOptions& options, std::ostream& out);
 
 }  // namespace keepout::app

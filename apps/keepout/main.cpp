@@ -134,7 +134,8 @@ void add_simulate(CLI::App& app, SimulateOptions& options) {
       "simulate",
       "Push a tool over and into the anatomy with a simulated hand, without a fixture "
       "and with each rule, and write an HTML report with pictures");
-  add_mesh(command, options.mesh);
+  command.add_option("MESH", options.meshes, std::string(mesh_help) + "; with --robot several")
+      ->type_name("");
   add_spaces(command, options.load);
   options.files.add_to(command);
   command.add_option("--activation", options.rules, "Rules to run beside the unguarded tool")
@@ -156,6 +157,33 @@ void add_simulate(CLI::App& app, SimulateOptions& options) {
   add_number(command, "--strokes", options.hand.strokes, 1, 100'000, "How often the hand goes in");
   add_number(command, "--cycles", options.hand.cycles, 10, 1'000'000,
              "Control cycles of each stroke, at 1 kHz");
+  CLI::Option* const robot =
+      command
+          .add_option(
+              "--robot", options.robot,
+              "Drive the instrument of a robot instead: shaft, wrist and jaw, guarded in "
+              "joint space, in part, and not at all; without MESH on skull, airway and brain")
+          ->check(one_of({"psm"}));
+  command
+      .add_option("--speed", options.speeds,
+                  "How fast, in multiples of 0.5 mm and 0.02 rad a cycle")
+      ->check(number_within(1e-3, 1e3, "a multiple from 0.001 to 1000", "NUMBER"))
+      ->delimiter(',')
+      ->capture_default_str()
+      ->needs(robot);
+  for (const char* other : {"--space", "--untagged", "--activation", "--bench", "--verbose",
+                            "--index-cache", "--solver", "--radius", "--tool-radius", "--refine",
+                            "--branches", "--query", "--max-step"}) {
+    command.get_option(other)->excludes(robot);
+  }
+  command.final_callback([&options] {
+    if (!options.robot.empty()) return;
+    if (options.meshes.empty()) throw CLI::RequiredError("MESH");
+    if (options.meshes.size() > 1) {
+      throw CLI::ValidationError("MESH", "is one, not several, but with --robot");
+    }
+    options.mesh = options.meshes.front();
+  });
 }
 
 void add_serve(CLI::App& app, ServeOptions& options) {

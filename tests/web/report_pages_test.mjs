@@ -56,6 +56,10 @@ const files = given
       run("compare", "compare", "cube", "--poses", "6", "--problems", "100", "--pairs", "20"),
       run("plan", "plan", "cube", "--problems", "2", "--resolution", "0.01"),
       run("verify", "verify", "cube", "sphere", "--steps", "2000"),
+      run(
+        "simulate_robot",
+        ..."simulate gear --robot psm --strokes 3 --cycles 200 --speed 5".split(" "),
+      ),
       run("verify_robot", ..."verify cube gear --robot psm --cycles 300".split(" ")),
     ];
 
@@ -69,7 +73,8 @@ const pages = files.map((file) => ({
   name: basename(file, ".html"),
   record: recordOf(file),
 }));
-const showsAnatomy = ({ record }) => ["simulate", "plan"].includes(record.keepout_record);
+const showsAnatomy = ({ record }) =>
+  ["simulate", "simulate_robot", "plan"].includes(record.keepout_record);
 
 const keysOf = (pointer) =>
   pointer
@@ -308,7 +313,9 @@ for (const { file, name, record } of pages) {
     await assertSorts(tab, record);
     const tips = await assertTips(tab, record);
     note(`${tips} plots told`);
-    const hasPlots = !["verify", "verify_robot", "plan"].includes(record.keepout_record);
+    const hasPlots = !["verify", "verify_robot", "simulate_robot", "plan"].includes(
+      record.keepout_record,
+    );
     assert.equal(tips > 0, hasPlots);
     // What legends and choices change is of the record too.
     for (const list of await tab.$$(".selection select")) {
@@ -411,7 +418,7 @@ for (const { file, name, record } of pages.filter(showsAnatomy)) {
         "a picture has not turned with the others",
       );
     }
-    if (record.keepout_record === "simulate") {
+    if (record.keepout_record.startsWith("simulate")) {
       const now = () => tab.$$eval(".now", (all) => all.map((one) => one.textContent).join());
       const before = await now();
       await tab.focus("input[type=range]");
@@ -419,6 +426,16 @@ for (const { file, name, record } of pages.filter(showsAnatomy)) {
       await sleep(500);
       assert.notEqual(await now(), before, "the time does not move");
       await assertNumbers(tab, record, "body");
+    }
+    // Another stroke of an instrument, and the worst moment of each mode of it.
+    for (const list of await tab.$$('select[aria-label="stroke"] ~ select')) {
+      await tab.select('select[aria-label="stroke"]', "1");
+      for (const [number, run] of record.meshes[0].strokes[1].runs.entries()) {
+        await list.select(String(number));
+        const slider = await tab.$eval("input[type=range]", (one) => one.value);
+        assert.equal(slider, String(run.worst));
+        await assertNumbers(tab, record, "body");
+      }
     }
     assert.deepEqual(tab.faults, []);
     await tab.close();

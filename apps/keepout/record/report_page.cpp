@@ -18,8 +18,8 @@ constexpr const char* place = "<!-- keepout report: the record goes here -->";
 PageTemplate template_for(const Json& record) {
   const std::string kind = record.value("keepout_record", "");
   return read_page_template(
-      page_template_file(kind == "simulate" || kind == "plan" ? "report_with_anatomy.html"
-                                                              : "report.html"),
+      page_template_file(kind.starts_with("simulate") || kind == "plan" ? "report_with_anatomy.html"
+                                                                        : "report.html"),
       place);
 }
 

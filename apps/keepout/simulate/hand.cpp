@@ -3,31 +3,30 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
 #include "keepout/error.h"
 #include "keepout/fixtures/poses.h"
 #include "keepout/fixtures/random.h"
 #include "number_text.h"
+#include "simulate/tremor.h"
 
 namespace keepout::app {
 namespace {
 
 // On a mesh of 100 mm and more; on a smaller one the hand is as much smaller. [mm]
-constexpr double start_height = 8.0;      // above the surface at both ends of a stroke
-constexpr double deepest = 5.0;           // how far below the surface the hand aims, at most
-constexpr double slide_length = 30.0;     // over the surface, at most
-constexpr double tremor_amplitude = 0.1;  // root of the sum of the squared amplitudes of its waves
+constexpr double start_height = 8.0;   // above the surface at both ends of a stroke
+constexpr double deepest = 5.0;        // how far below the surface the hand aims, at most
+constexpr double slide_length = 30.0;  // over the surface, at most
+constexpr double tremor_amplitude = 0.1;
 
-struct SurfacePoint {
+struct SurfacePlace {
   Vec3 point;
   Vec3 normal;
 };
 
-SurfacePoint on_surface(Audit& audit, const Vec3& near) {
+SurfacePlace on_surface(Audit& audit, const Vec3& near) {
   const Hit hit = audit.nearest(near);
   return {near + hit.closest.offset, audit.mesh().normal(hit.triangle)};
 }
@@ -37,7 +36,7 @@ class Places {
  public:
   Places(Audit& audit, Random& random) : audit_(audit), random_(random) {}
 
-  SurfacePoint next() {
+  SurfacePlace next() {
     if (points_.empty()) points_ = surface_points(audit_.mesh(), 1000, 0.0, random_);
     const Vec3 point = points_.back();
     points_.pop_back();
@@ -52,14 +51,14 @@ class Places {
 
 /// A place on the surface with free room above it; if there are such, one that faces outwards:
 /// strokes deep in a cavity would be as good a test, but nobody could see them in a picture.
-std::optional<SurfacePoint> place_to_start(Audit& audit, Places& places, double height) {
+std::optional<SurfacePlace> place_to_start(Audit& audit, Places& places, double height) {
   const Vec3 middle = audit.mesh().bounds().center();
-  const auto is_free = [&](const SurfacePoint& place) {
+  const auto is_free = [&](const SurfacePlace& place) {
     return audit.clearance(place.point + height * place.normal) > 0.8 * height;
   };
-  std::optional<SurfacePoint> facing_elsewhere;
+  std::optional<SurfacePlace> facing_elsewhere;
   for (int attempt = 0; attempt < 2000; ++attempt) {
-    const SurfacePoint place = places.next();
+    const SurfacePlace place = places.next();
     const Vec3 outwards = place.point - middle;
     const bool faces_outwards = place.normal.dot(outwards) >= 0.3 * outwards.norm();
     if (faces_outwards && is_free(place)) return place;
@@ -68,45 +67,11 @@ std::optional<SurfacePoint> place_to_start(Audit& audit, Places& places, double 
   return facing_elsewhere;
 }
 
-/// From 0 to 1, at rest at both ends: the speed is continuous, though the acceleration is not.
-double smooth(double t) {
-  t = std::clamp(t, 0.0, 1.0);
-  return t * t * (3.0 - 2.0 * t);
-}
-
-/// A smooth shake: the sum of three waves, each along a direction and at a frequency of its own.
-class Tremor {
- public:
-  Tremor(double amplitude, Random& random) : amplitude_(amplitude) {
-    for (Wave& wave : waves_) {
-      wave = {random.direction(), random.uniform(8.0, 12.0), random.uniform(0.0, 1.0)};
-    }
-  }
-
-  Vec3 at(double seconds) const {
-    Vec3 sum = Vec3::Zero();
-    for (const Wave& wave : waves_) {
-      sum += wave.direction *
-             std::sin(2.0 * std::numbers::pi * (wave.frequency * seconds + wave.phase));
-    }
-    return amplitude_ / std::sqrt(3.0) * sum;
-  }
-
- private:
-  struct Wave {
-    Vec3 direction;
-    double frequency;  // [Hz]
-    double phase;      // [turns]
-  };
-  double amplitude_;
-  std::array<Wave, 3> waves_;
-};
-
 /// Follows the surface from a place, in a straight direction as seen from above.
-std::vector<SurfacePoint> slide_over(Audit& audit, const SurfacePoint& start, double length,
+std::vector<SurfacePlace> slide_over(Audit& audit, const SurfacePlace& start, double length,
                                      Random& random) {
   constexpr int stations = 16;
-  std::vector<SurfacePoint> way{start};
+  std::vector<SurfacePlace> way{start};
   Vec3 heading = start.normal.cross(random.direction()).normalized();
   for (int i = 1; i < stations; ++i) {
     const Vec3& up = way.back().normal;
@@ -120,7 +85,7 @@ std::vector<SurfacePoint> slide_over(Audit& audit, const SurfacePoint& start, do
 std::vector<Vec3> make_stroke(Audit& audit, std::size_t cycles, double scale, Places& places,
                               Random& random) {
   const double height = start_height * scale;
-  const std::optional<SurfacePoint> start = place_to_start(audit, places, height);
+  const std::optional<SurfacePlace> start = place_to_start(audit, places, height);
   if (!start) {
     throw Error("no free place to start a stroke from: nowhere is there room for " +
                 trimmed(height) +
@@ -128,7 +93,7 @@ std::vector<Vec3> make_stroke(Audit& audit, std::size_t cycles, double scale, Pl
                 "the solid, flip all triangles ('keepout inspect' tells whether they do)");
   }
   const double depth = random.uniform(0.2, 1.0) * (deepest * scale);
-  const std::vector<SurfacePoint> way =
+  const std::vector<SurfacePlace> way =
       slide_over(audit, *start, random.uniform(0.3, 1.0) * (slide_length * scale), random);
   const Tremor tremor(tremor_amplitude * scale, random);
 

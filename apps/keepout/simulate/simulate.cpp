@@ -175,6 +175,7 @@ void print_next(const SimulateOptions& options, std::ostream& out) {
 }  // namespace
 
 int simulate(const SimulateOptions& options, std::ostream& out) {
+  if (!options.robot.empty()) return simulate_robot(options, out);
   require_within_reach(options.max_step, options.constraint.radius);
   OutputFiles outputs(std::array{NamedPath{"MESH", file_of_mesh(options.mesh)}},
                       {{"--json", options.files.kept_json()}, {"--out", options.files.page}});

@@ -32,19 +32,6 @@ const RobotUnderTest& robot_named(const std::string& name) {
   return *found;
 }
 
-/// Velocity limits are those of a patient arm: the cycle is made so long that they admit a tenth of
-/// a radian and 2.5 mm at speed 1.
-InstrumentOptions options_of(const RobotCampaign& campaign, const Chain& chain, double speed) {
-  InstrumentOptions options{.margin = campaign.margin,
-                            .band = std::min(0.002, 0.05 * campaign.margin),
-                            .certified = campaign.motion};
-  for (int k = 1; k <= chain.size(); ++k) {
-    const double needed = chain.joint(k).kind == JointKind::revolute ? 0.1 : 2.5;
-    options.period = std::max(options.period, speed * needed / chain.joint(k).limits.velocity);
-  }
-  return options;
-}
-
 bool is_raised(Scenario scenario, std::size_t cycle) noexcept {
   const bool is_odd = (cycle / block) % 2 == 1;
   return scenario == Scenario::raised ? is_odd : scenario == Scenario::wedged && !is_odd;
@@ -186,6 +173,17 @@ std::vector<std::pair<Scenario, double>> rows_of(const RobotCampaign& campaign) 
 }
 
 }  // namespace
+
+InstrumentOptions options_of(const RobotCampaign& campaign, const Chain& chain, double speed) {
+  InstrumentOptions options{.margin = campaign.margin,
+                            .band = std::min(0.002, 0.05 * campaign.margin),
+                            .certified = campaign.motion};
+  for (int k = 1; k <= chain.size(); ++k) {
+    const double needed = chain.joint(k).kind == JointKind::revolute ? 0.1 : 2.5;
+    options.period = std::max(options.period, speed * needed / chain.joint(k).limits.velocity);
+  }
+  return options;
+}
 
 std::uint64_t cycle_count(const RobotCampaign& campaign, std::size_t meshes) noexcept {
   return campaign.cycles * meshes * (campaign.speeds.size() + 3);

@@ -25,6 +25,10 @@ struct RobotCampaign {
   std::uint64_t seed = 1;
 };
 
+/// How a robot is guarded in a campaign. Velocity limits are those of a patient arm: the cycle is
+/// made so long that they admit a tenth of a radian and 2.5 mm at speed 1.
+InstrumentOptions options_of(const RobotCampaign& campaign, const Chain& chain, double speed);
+
 inline constexpr std::uint64_t cycles_of_a_start = 2000;
 
 /// What came out on one mesh, in one scenario at one speed.

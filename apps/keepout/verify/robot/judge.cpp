@@ -54,9 +54,9 @@ void RobotJudge::look(std::span<const double> positions, std::span<double> clear
 
 RobotVerdict RobotJudge::judge(std::span<const double> next) {
   const std::vector<double> from = positions_;
-  std::vector<double> least = clearances_;
+  least_ = clearances_;
   RobotVerdict verdict{};
-  for (std::size_t b = 0; b < least.size(); ++b) {
+  for (std::size_t b = 0; b < least_.size(); ++b) {
     floors_[b] = std::min(std::max(floors_[b], clearances_[b] - options_.band),
                           options_.margin - options_.band);
   }
@@ -73,13 +73,13 @@ RobotVerdict RobotJudge::judge(std::span<const double> next) {
       positions_[k] = s == 1.0 ? next[k] : from[k] + s * (next[k] - from[k]);
     }
     look(positions_, clearances_);
-    std::ranges::transform(least, clearances_, least.begin(),
+    std::ranges::transform(least_, clearances_, least_.begin(),
                            [](double a, double b) { return std::min(a, b); });
   }
-  verdict.least = std::ranges::min(least);
+  verdict.least = std::ranges::min(least_);
   verdict.beyond = std::numeric_limits<double>::infinity();
-  for (std::size_t b = 0; b < least.size(); ++b) {
-    verdict.beyond = std::min(verdict.beyond, least[b] - floors_[b]);
+  for (std::size_t b = 0; b < least_.size(); ++b) {
+    verdict.beyond = std::min(verdict.beyond, least_[b] - floors_[b]);
   }
   verdict.is_below = !(verdict.beyond >= -3.0 * tolerance_);
   return verdict;

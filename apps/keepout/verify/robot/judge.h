@@ -35,6 +35,10 @@ class RobotJudge {
   /// and ends, and in four places between.
   RobotVerdict judge(std::span<const double> next);
 
+  /// The smallest clearance of each body at the poses of the last cycle; infinite beyond the
+  /// margin. [length]
+  std::span<const double> least() const noexcept { return least_; }
+
   /// Whether no body is closer than margin - band.
   bool is_recovered() const noexcept;
 
@@ -48,6 +52,7 @@ class RobotJudge {
   InstrumentOptions options_;
   double tolerance_;
   std::vector<double> clearances_, floors_;  // of the bodies, where they are [length]
+  std::vector<double> least_;                // of the last cycle [length]
 };
 
 }  // namespace keepout::app

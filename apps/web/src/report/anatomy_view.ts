@@ -179,7 +179,8 @@ export class AnatomyView {
       .join(",");
   }
 
-  private outdate(): void {
+  /** Draws all pictures anew: what is in them has changed, or how they are looked at. */
+  outdate(): void {
     for (const picture of this.pictures) picture.isStale = true;
     this.redraw();
   }

@@ -2,6 +2,11 @@
 /** The reports that show anatomy. */
 import { planningSections } from "./planning.ts";
 import { showReport } from "./report_page.ts";
+import { robotSimulationSections } from "./robot_simulation.ts";
 import { simulationSections } from "./simulation.ts";
 
-void showReport({ simulate: simulationSections, plan: planningSections });
+void showReport({
+  simulate: simulationSections,
+  simulate_robot: robotSimulationSections,
+  plan: planningSections,
+});

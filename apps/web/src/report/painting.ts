@@ -2,6 +2,7 @@
 import * as three from "three";
 import { StillPicture } from "../page/still_picture.ts";
 import { type Anatomy, coarsened } from "./anatomy.ts";
+import { type Capsule, CapsuleBrush } from "./capsules.ts";
 import type { Cut } from "./cut.ts";
 import { Line } from "./line.ts";
 
@@ -22,6 +23,8 @@ export interface Lengths {
 export interface Layer {
   readonly lengths: readonly Lengths[];
   readonly cut: Cut | null;
+  /** Bodies of an instrument; others from one picture to the next. */
+  capsules?: readonly Capsule[];
 }
 
 /** Draws the pictures of one anatomy. */
@@ -82,6 +85,7 @@ export class GraphicsPainter implements Painter {
   private readonly scene = new three.Scene();
   private readonly still: StillPicture;
   private readonly linesOf = new Map<Layer, readonly Line[]>();
+  private readonly brush = new CapsuleBrush();
   private readonly depths = new three.DataTexture(null, 1, 1, three.RedFormat, three.FloatType);
 
   private readonly fine: three.BufferAttribute;
@@ -140,6 +144,7 @@ export class GraphicsPainter implements Painter {
       line.adjust(columns, rows, scale, pixel);
       renderer.render(line.mesh, this.camera);
     }
+    this.brush.draw(renderer, this.camera, layer.capsules ?? []);
     return renderer.domElement;
   }
 
@@ -147,6 +152,7 @@ export class GraphicsPainter implements Painter {
     this.anatomy.geometry.dispose();
     this.anatomy.material.dispose();
     this.depths.dispose();
+    this.brush.dispose();
     for (const line of [...this.linesOf.values()].flat()) line.dispose();
   }
 

@@ -114,7 +114,25 @@ export class StillPainter implements Painter {
     const pen = this.canvas.getContext("2d") as CanvasRenderingContext2D;
     pen.putImageData(this.last.picture, 0, 0);
     this.drawLines(pen, layer, this.last.depths, scale);
+    this.drawCapsules(pen, layer);
     return this.canvas;
+  }
+
+  /** A capsule is a wide line with round ends, from wherever one looks. */
+  private drawCapsules(pen: CanvasRenderingContext2D, { capsules = [] }: Layer): void {
+    const { width, height } = this.canvas;
+    const { top, bottom, zoom } = this.camera;
+    pen.lineCap = "round";
+    for (const { from, to, radius, color } of capsules) {
+      pen.beginPath();
+      for (const place of [from, to]) {
+        const { x, y } = place.clone().project(this.camera);
+        pen.lineTo(((x + 1) * width) / 2, ((1 - y) * height) / 2);
+      }
+      pen.lineWidth = (2 * radius * zoom * height) / (top - bottom);
+      pen.strokeStyle = colorOf(color);
+      pen.stroke();
+    }
   }
 
   private drawLines(

@@ -17,9 +17,8 @@ import {
   tellingMoment,
   trespass,
 } from "./simulation_record.ts";
+import { timeSlider } from "./time_slider.ts";
 
-/** How long a stroke is played. [ms] */
-const playing = 8000;
 /** Up to here a tip touches. [mm] */
 const touching = 1e-6;
 const outcomes: Readonly<Record<string, string>> = {
@@ -129,7 +128,7 @@ function strokeView(
   });
   const charts = clearanceCharts(record, stroke);
   const time = timeSlider(
-    stroke,
+    `/runs/0/strokes/${stroke}/tip`,
     (record.runs[0] as Run).strokes[stroke]?.tip.length ?? 1,
     (cycle) => {
       for (const follow of followed) follow(cycle);
@@ -158,41 +157,4 @@ function distance(from: string, clearance: number, isBad: boolean): SVGTSpanElem
     return show(label, from, (mm) => `${millimetres(mm)} away`);
   label.textContent = isBad ? "passed through" : "touching";
   return label;
-}
-
-/** Chooses a cycle of a stroke, and plays it, slower than it was. */
-function timeSlider(stroke: number, cycles: number, follow: (cycle: number) => void) {
-  const slider = make("input", { type: "range", min: "0", "aria-label": "time" });
-  slider.max = String(cycles - 1);
-  const play = make("button", { type: "button", class: "play" }, "Play");
-  const cycle = make("span", { class: "cycle" });
-  let frame = 0;
-  const go = (to: number) => {
-    slider.value = String(to);
-    cycle.replaceChildren("cycle ", ordinal(`/runs/0/strokes/${stroke}/tip/${to}`));
-    follow(to);
-  };
-  const stop = () => {
-    cancelAnimationFrame(frame);
-    frame = 0;
-    play.textContent = "Play";
-  };
-  const start = () => {
-    const first = Number(slider.value) < cycles - 1 ? Number(slider.value) : 0;
-    const began = performance.now();
-    const next = (now: number) => {
-      const to = first + Math.floor((Math.max(now - began, 0) / playing) * cycles);
-      go(Math.min(to, cycles - 1));
-      if (to < cycles - 1) frame = requestAnimationFrame(next);
-      else stop();
-    };
-    play.textContent = "Pause";
-    frame = requestAnimationFrame(next);
-  };
-  play.addEventListener("click", () => (frame === 0 ? start() : stop()));
-  slider.addEventListener("input", () => {
-    stop();
-    go(Number(slider.value));
-  });
-  return { element: make("div", { class: "time" }, play, slider, cycle), go, stop };
 }

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "simulate/robot/strokes.h"
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "simulate/hand.h"
+#include "simulate/tremor.h"
+
+namespace keepout::app {
+namespace {
+
+constexpr double pass_lasts = 400.0;  // at speed 1 [cycles]
+constexpr int starts_to_lean = 12;    // of which the best is taken
+
+/// A place on an instrument, and the nearest one of the surface.
+struct Facing {
+  Vec3 at = Vec3::Zero();
+  Vec3 inwards = Vec3::UnitZ();                               // unit, to the surface
+  double distance = std::numeric_limits<double>::infinity();  // [mm]
+};
+
+/// Of the places on a part of a body's axis, from one share of it to another.
+Facing facing(Scene& scene, const oracle::Segment& axis, double from, double to) {
+  constexpr int places = 24;
+  Facing best;
+  for (int i = 0; i <= places; ++i) {
+    const Vec3 at = axis.from + (from + (to - from) * i / places) * (axis.to - axis.from);
+    const ClosestPoint closest = scene.nearest(at).closest;
+    if (closest.distance < best.distance && closest.distance > 0.0) {
+      best = {at, closest.offset / closest.distance, closest.distance};
+    }
+  }
+  return best;
+}
+
+/// Once in and back.
+struct Pass {
+  double depth = 0.0;            // below the surface [mm]
+  double slide = 0.0;            // along it, to and fro [mm]
+  Vec3 heading = Vec3::UnitX();  // of that, unit
+  double turn = 0.0;             // to and fro [rad]
+  Vec3 axis = Vec3::UnitX();     // of that, unit
+};
+
+Pass draw_pass(Manner manner, const Vec3& inwards, Random& random) {
+  const bool is_rotating = manner == Manner::rotate;
+  Pass pass;
+  pass.depth = is_rotating ? random.uniform(0.0, 3.0) : random.uniform(2.0, 12.0);
+  pass.slide = is_rotating ? 0.0 : random.uniform(0.0, 20.0);
+  pass.heading = inwards.cross(random.direction()).normalized();
+  pass.turn = is_rotating ? random.uniform(0.5, 1.2) : random.uniform(0.0, 0.2);
+  pass.axis = random.direction();
+  return pass;
+}
+
+}  // namespace
+
+std::string_view name(Manner manner) noexcept {
+  constexpr std::array<std::string_view, 3> names{"pushing with the jaw", "leaning with the shaft",
+                                                  "rotating the wrist"};
+  return names[static_cast<std::size_t>(manner)];
+}
+
+std::optional<RobotStroke> make_robot_stroke(
+    Scene& scene, const std::shared_ptr<const oracle::TriangleTree>& tree,
+    const RobotUnderTest& robot, Manner manner, double margin, double speed, std::size_t cycles,
+    Random& random) {
+  const bool is_leaning = manner == Manner::lean;
+  std::optional<RobotStart> start;
+  Facing facing_most;
+  for (int i = 0; i < (is_leaning ? starts_to_lean : 1); ++i) {
+    const auto drawn = find_start(scene, tree, robot, Scenario::approach, margin, random);
+    if (!drawn) break;
+    const oracle::JudgedRobot judged = robot.judged();
+    std::vector<oracle::Segment> axes(judged.bodies.size());
+    oracle::place(judged, drawn->base, drawn->positions, axes);
+    const Facing one =
+        is_leaning ? facing(scene, axes.front(), 0.5, 0.95) : facing(scene, axes.back(), 1.0, 1.0);
+    if (start && one.distance >= facing_most.distance) continue;
+    start = drawn;
+    facing_most = one;
+  }
+  if (!start) return std::nullopt;
+
+  const Instrument instrument = robot.make(start->base);
+  ChainState state;
+  instrument.chain().place(start->positions, state);
+  const Pose home = state.flange();
+  const Vec3& port = start->base.position;
+  const double lever =
+      is_leaning ? (home.position - port).norm() / (facing_most.at - port).norm() : 1.0;
+  const double off = random.uniform(0.0, 2.0);
+  const Vec3 bias = off * random.direction();
+  const Tremor tremor(0.1, random);
+  RobotStroke stroke{manner, *start, {}};
+  Pass pass;
+  double last = -1.0;
+  for (std::size_t cycle = 0; cycle < cycles; ++cycle) {
+    const double time = speed * static_cast<double>(cycle) / pass_lasts;  // [passes]
+    if (std::floor(time) != last) pass = draw_pass(manner, facing_most.inwards, random);
+    last = std::floor(time);
+    const double t = time - last;
+    const double lowered = smooth(4.0 * t) * smooth(4.0 * (1.0 - t));
+    const double to_and_fro = lowered * std::sin(2.0 * std::numbers::pi * t);
+    const Vec3 way = lowered * lever * (facing_most.distance + pass.depth) * facing_most.inwards +
+                     to_and_fro * pass.slide * pass.heading;
+    const Mat3 turn = Eigen::AngleAxisd(to_and_fro * pass.turn, pass.axis).toRotationMatrix();
+    stroke.hand.push_back(
+        {home.position + way + bias + tremor.at(static_cast<double>(cycle) * cycle_seconds),
+         turn * home.rotation});
+  }
+  return stroke;
+}
+
+}  // namespace keepout::app

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "keepout/fixtures/random.h"
+
+namespace keepout::app {
+
+/// From 0 to 1, at rest at both ends: the speed is continuous, though the acceleration is not.
+inline double smooth(double t) {
+  t = std::clamp(t, 0.0, 1.0);
+  return t * t * (3.0 - 2.0 * t);
+}
+
+/// A smooth shake: the sum of three waves, each along a direction and at a frequency of its own.
+class Tremor {
+ public:
+  /// `amplitude`: root of the sum of the squared amplitudes of the waves. [mm]
+  Tremor(double amplitude, Random& random) : amplitude_(amplitude) {
+    for (Wave& wave : waves_) {
+      wave = {random.direction(), random.uniform(8.0, 12.0), random.uniform(0.0, 1.0)};
+    }
+  }
+
+  Vec3 at(double seconds) const {
+    Vec3 sum = Vec3::Zero();
+    for (const Wave& wave : waves_) {
+      sum += wave.direction *
+             std::sin(2.0 * std::numbers::pi * (wave.frequency * seconds + wave.phase));
+    }
+    return amplitude_ / std::sqrt(3.0) * sum;
+  }
+
+ private:
+  struct Wave {
+    Vec3 direction;
+    double frequency;  // [Hz]
+    double phase;      // [turns]
+  };
+  double amplitude_;
+  std::array<Wave, 3> waves_;
+};
+
+}  // namespace keepout::app

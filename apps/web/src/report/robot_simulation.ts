@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/** The sections of a simulation with a whole instrument: docs/records.md. */
+import * as three from "three";
+import { type Anatomy, fitted, lookFrom, unpackedAnatomy } from "./anatomy.ts";
+import { AnatomyView, hint } from "./anatomy_view.ts";
+import type { Capsule } from "./capsules.ts";
+import type { Layer } from "./painting.ts";
+import { entries, type ReportRecord } from "./record.ts";
+import { lead, section } from "./report_page.ts";
+import { pictureGrid, runColor } from "./runs.ts";
+import { type Format, grouped, make, millimetres, rounded, show, shown } from "./shown.ts";
+import type { Place, RecordedMesh } from "./simulation_record.ts";
+import { type Column, scrolled, table } from "./table.ts";
+import { timeSlider } from "./time_slider.ts";
+
+interface Run {
+  readonly mode: string;
+  readonly worst: number;
+  readonly places: readonly (readonly Place[])[];
+  readonly clearance_mm: readonly (readonly (number | null)[])[];
+}
+interface Stroke {
+  readonly port: Place;
+  readonly runs: readonly Run[];
+}
+interface RobotSimulationRecord extends ReportRecord {
+  readonly bodies: readonly { readonly name: string; readonly radius_mm: number }[];
+  readonly meshes: readonly (RecordedMesh & { readonly strokes: readonly Stroke[] })[];
+}
+
+/** What the page of `simulate --robot` shows. */
+export async function robotSimulationSections(
+  main: HTMLElement,
+  record: ReportRecord,
+): Promise<void> {
+  const simulation = record as RobotSimulationRecord;
+  main.append(figures(simulation));
+  for (const mesh of simulation.meshes.keys()) main.append(await meshSection(simulation, mesh));
+}
+
+function figures({ bodies }: RobotSimulationRecord): HTMLElement {
+  const harm = (heading: string, from: string, format: Format = grouped): Column => ({
+    ...{ heading, from, format, look: "harm" },
+  });
+  const columns: Column[] = [
+    { heading: "mesh", from: "/mesh" },
+    { heading: "speed", from: "/speed" },
+    { heading: "mode", from: "/mode", look: "name" },
+    { heading: "cycles", from: "/cycles", format: grouped },
+    ...bodies.flatMap(({ name }) => [
+      harm(`${name}: too close`, `/${name}_below`),
+      harm("in the mesh", `/${name}_in_mesh`),
+      harm("deepest [mm]", `/${name}_deepest_mm`, (mm) => rounded(mm)),
+    ]),
+  ];
+  return section(
+    "The figures",
+    lead(
+      "Cycles in which a body was closer than what is certified, ",
+      shown("/certified_mm", millimetres),
+      "; of them those in which the mesh reached into it; and how far, which is at most the body's radius. An independent judge sees several poses of each cycle. A body that is all behind the surface, farther than its radius, counts as clear.",
+    ),
+    scrolled(table(entries("/rows"), columns)),
+  );
+}
+
+/** The strokes on one mesh that say most. */
+async function meshSection(record: RobotSimulationRecord, number: number): Promise<HTMLElement> {
+  const mesh = record.meshes[number] as RobotSimulationRecord["meshes"][number];
+  const anatomy = await unpackedAnatomy(mesh);
+  const strokes = entries(`/meshes/${number}/strokes`);
+  const option = (value: number, from: string) =>
+    show(make("option", { value: String(value) }), from);
+  const chooser = make("select", { "aria-label": "stroke" });
+  chooser.append(...strokes.map((from, stroke) => option(stroke, `${from}/manner`)));
+  const moment = make("select", { "aria-label": "moment" });
+  const content = make("div");
+  const runs = entries(`${strokes[0]}/runs`);
+  moment.append(...runs.map((from, run) => option(run, `${from}/mode`)));
+  moment.value = String(Math.max(runs.length - 2, 0));
+  let view: ReturnType<typeof strokeView> | null = null;
+  const choose = () => {
+    view?.dispose();
+    const stroke = Number(chooser.value);
+    view = strokeView(record, anatomy, mesh.strokes[stroke] as Stroke, strokes[stroke] as string);
+    content.replaceChildren(view.element);
+    view.go(Number(moment.value));
+  };
+  chooser.addEventListener("change", choose);
+  moment.addEventListener("change", () => view?.go(Number(moment.value)));
+  if (strokes.length > 0) choose();
+  const title = section(
+    "",
+    lead(
+      "Stroke: ",
+      chooser,
+      ", at first at the worst moment of ",
+      moment,
+      ". ",
+      make("b", {}, "Red"),
+      " is the body that the mesh reaches into farthest, also where the surface hides it.",
+    ),
+    content,
+    hint(),
+  );
+  (title.firstChild as HTMLElement).append(shown(`/meshes/${number}/name`));
+  return title;
+}
+
+/** Where the instrument's bodies end in a cycle: at the port, and each at the next. */
+const ends = ({ port }: Stroke, run: Run, cycle: number, { placed }: Anatomy): three.Vector3[] =>
+  [port, ...(run.places[cycle] ?? [])].map(placed);
+
+/** A stroke in all modes, side by side, and what follows it in time. */
+function strokeView(
+  { bodies }: RobotSimulationRecord,
+  anatomy: Anatomy,
+  stroke: Stroke,
+  from: string,
+) {
+  const group = pictureGrid(stroke.runs.length);
+  const view = new AnatomyView(group, anatomy, anatomy.corners, outlook(anatomy, stroke));
+  const followed = stroke.runs.map((run, number) => {
+    const layer: Layer = { lengths: [], cut: null };
+    const now = make("span", { class: "now" });
+    const style = `--color: var(${runColor(number)})`;
+    const mode = shown(`${from}/runs/${number}/mode`);
+    const name = make("span", { class: "name", style }, make("span", { class: "swatch" }), mode);
+    const picture = view.picture(`The instrument beside the anatomy, ${run.mode}.`, layer, []);
+    group.append(make("figure", {}, picture, make("figcaption", {}, name, now)));
+    return (cycle: number) => {
+      const clearances = (run.clearance_mm[cycle] ?? []).map(
+        (mm) => mm ?? Number.POSITIVE_INFINITY,
+      );
+      const least = Math.min(...clearances);
+      const nearest = clearances.indexOf(least);
+      const places = ends(stroke, run, cycle, anatomy);
+      layer.capsules = bodies.map(({ radius_mm }, body): Capsule => {
+        const isDeepest = least < 0 && body === nearest;
+        return {
+          from: places[body] as three.Vector3,
+          to: places[body + 1] as three.Vector3,
+          radius: radius_mm,
+          color: isDeepest ? "--alarm" : runColor(number),
+          hidden: isDeepest ? 0.6 : 0.25,
+        };
+      });
+      const at = `${from}/runs/${number}/clearance_mm/${cycle}/${nearest}`;
+      const how = (mm: number) => (mm < 0 ? `${millimetres(-mm)} deep` : millimetres(mm));
+      if (Number.isFinite(least)) {
+        now.replaceChildren(shown(`/bodies/${nearest}/name`), " ", shown(at, how));
+      } else now.replaceChildren("clear");
+    };
+  });
+  const about = make("p", { class: "hint" }, "At speed ", shown(`${from}/speed`), ".");
+  const cycles = stroke.runs[0]?.places.length ?? 1;
+  const time = timeSlider(`${from}/runs/0/places`, cycles, (cycle) => {
+    for (const follow of followed) follow(cycle);
+    view.outdate();
+  });
+  return {
+    element: make("div", {}, group, time.element, about),
+    go: (run: number) => time.go(stroke.runs[run]?.worst ?? 0),
+    dispose() {
+      time.stop();
+      view.dispose();
+    },
+  };
+}
+
+/** Obliquely along the shaft, at what the tip comes to in all modes. */
+function outlook(anatomy: Anatomy, stroke: Stroke) {
+  const up = new three.Vector3(0, 0, 1);
+  const places = stroke.runs.flatMap((run) =>
+    run.places.flatMap((_, cycle) =>
+      cycle % 10 === 0 ? ends(stroke, run, cycle, anatomy).slice(1) : [],
+    ),
+  );
+  const [port, wrist] = [anatomy.placed(stroke.port), places[0] as three.Vector3];
+  places.push(port.clone().lerp(wrist, 0.6));
+  const axis = port.clone().sub(wrist).normalize();
+  const side = axis.clone().cross(up).normalize();
+  const toward = axis.addScaledVector(side, 1.2).normalize();
+  const { middle, height } = fitted(places, toward, up);
+  return lookFrom(toward, up, middle, 1.25 * height, anatomy.size);
+}

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+import { ordinal } from "./runs.ts";
+import { make } from "./shown.ts";
+
+/** How long a stroke is played. [ms] */
+const playing = 8000;
+
+/** Chooses a cycle of a stroke, and plays it, slower than it was. `from`: an array with one entry a cycle. */
+export function timeSlider(from: string, cycles: number, follow: (cycle: number) => void) {
+  const slider = make("input", { type: "range", min: "0", "aria-label": "time" });
+  slider.max = String(cycles - 1);
+  const play = make("button", { type: "button", class: "play" }, "Play");
+  const cycle = make("span", { class: "cycle" });
+  let frame = 0;
+  const go = (to: number) => {
+    slider.value = String(to);
+    cycle.replaceChildren("cycle ", ordinal(`${from}/${to}`));
+    follow(to);
+  };
+  const stop = () => {
+    cancelAnimationFrame(frame);
+    frame = 0;
+    play.textContent = "Play";
+  };
+  const start = () => {
+    const first = Number(slider.value) < cycles - 1 ? Number(slider.value) : 0;
+    const began = performance.now();
+    const next = (now: number) => {
+      const to = first + Math.floor((Math.max(now - began, 0) / playing) * cycles);
+      go(Math.min(to, cycles - 1));
+      if (to < cycles - 1) frame = requestAnimationFrame(next);
+      else stop();
+    };
+    play.textContent = "Pause";
+    frame = requestAnimationFrame(next);
+  };
+  play.addEventListener("click", () => (frame === 0 ? start() : stop()));
+  slider.addEventListener("input", () => {
+    stop();
+    go(Number(slider.value));
+  });
+  return { element: make("div", { class: "time" }, play, slider, cycle), go, stop };
+}

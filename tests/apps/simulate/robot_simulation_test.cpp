@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// keepout simulate --robot: the same strokes in each mode, judged body by body.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <fstream>
+#include <initializer_list>
+#include <string>
+#include <utility>
+
+#include "apps/command_process.h"
+#include "columns.h"
+
+namespace keepout::app {
+namespace {
+
+/// Makes a record; at such a speed straight lines are far from what the joints do.
+Json record_of_robot(const test::CommandFolder& folder, const std::string& arguments) {
+  const test::ProcessOutcome outcome =
+      folder.run("simulate gear --robot psm --json r.json --out r.html " + arguments);
+  EXPECT_EQ(outcome.status, 0) << outcome.output;
+  EXPECT_NE(outcome.output.find("The certified step kept shaft, wrist and jaw off"),
+            std::string::npos)
+      << outcome.output;
+  std::ifstream file(folder.file("r.json"));
+  Json record = Json::parse(file);
+  EXPECT_EQ(record["keepout_record"], "simulate_robot");
+  return record;
+}
+
+/// Over shaft, wrist and jaw: cycles, or the largest depth.
+std::uint64_t cycles_of(const Json& row, const std::string& figure) {
+  std::uint64_t sum = 0;
+  for (const char* body : {"shaft_", "wrist_", "jaw_"}) {
+    sum += row.at(body + figure).get<std::uint64_t>();
+  }
+  return sum;
+}
+
+TEST(SimulateRobot, WhatIsCertifiedKeepsAllBodiesOutAndNothingElseDoes) {
+  const test::CommandFolder folder;
+  const Json record = record_of_robot(folder, "--strokes 6 --cycles 300 --speed 1,20");
+  const Json& rows = record["rows"];
+  ASSERT_EQ(rows.size(), 8u);
+  for (const Json& row : rows) {
+    EXPECT_EQ(row["cycles"], 1800u);
+    EXPECT_EQ(row["limits_broken"], 0u);
+    for (const Json& body : record["bodies"]) {
+      const std::string name = body["name"].get<std::string>();
+      EXPECT_LE(row[name + "_deepest_mm"].get<double>(), body["radius_mm"].get<double>() + 1e-9);
+      EXPECT_EQ(row[name + "_deepest_mm"] > 0.0, row[name + "_in_mesh"] > 0u);
+      EXPECT_GE(row[name + "_below"], row[name + "_in_mesh"]);
+    }
+    if (row["mode"] == "certified") {
+      EXPECT_EQ(cycles_of(row, "below"), 0u) << row;
+    }
+    if (row["mode"] == "tip only") {
+      EXPECT_GT(row["shaft_deepest_mm"], 1.0) << row;
+    }
+    if (row["mode"] == "none") {
+      EXPECT_GT(cycles_of(row, "in_mesh"), 100u) << row;
+    }
+  }
+  EXPECT_EQ(rows[5]["mode"], "linearised");
+  EXPECT_EQ(rows[5]["speed"], 20.0);
+  EXPECT_GT(cycles_of(rows[5], "in_mesh"), 0u);
+}
+
+TEST(SimulateRobot, TheSameSeedGivesTheSameAndAnotherDoesNot) {
+  const test::CommandFolder folder;
+  const auto record = [&](const std::string& seed) {
+    Json json = record_of_robot(folder, "--strokes 3 --cycles 100 --speed 5 --seed " + seed);
+    for (const char* of_the_run : {"date", "command", "machine", "settings"}) {
+      json.erase(of_the_run);
+    }
+    return json.dump();
+  };
+  const std::string one = record("1");
+  EXPECT_EQ(one, record("1"));
+  EXPECT_NE(one, record("2"));
+}
+
+TEST(SimulateRobot, KeepsAStrokeOfEachMannerThatBeginsAlikeInAllModes) {
+  const test::CommandFolder folder;
+  const Json record = record_of_robot(folder, "--strokes 4 --cycles 100 --speed 5");
+  const Json& strokes = record["meshes"][0]["strokes"];
+  ASSERT_EQ(strokes.size(), 3u);
+  for (const Json& stroke : strokes) {
+    ASSERT_EQ(stroke["runs"].size(), 4u);
+    for (const Json& run : stroke["runs"]) {
+      ASSERT_EQ(run["places"].size(), 100u);
+      ASSERT_EQ(run["clearance_mm"].size(), 100u);
+      EXPECT_EQ(run["places"][0].size(), 3u);
+      EXPECT_EQ(run["places"][0], stroke["runs"][0]["places"][0]);  // the surface is 5 mm off
+      const auto least = [](const Json& cycle) {
+        double mm = 1.0;
+        for (const Json& body : cycle) mm = std::min(mm, body.is_null() ? 1.0 : body.get<double>());
+        return mm;
+      };
+      const double worst = least(run["clearance_mm"][run["worst"].get<std::size_t>()]);
+      for (const Json& cycle : run["clearance_mm"]) EXPECT_GE(least(cycle), worst);
+    }
+  }
+}
+
+TEST(SimulateRobot, TellsOfMistakes) {
+  const test::CommandFolder folder;
+  for (const auto& [arguments, told] : std::initializer_list<std::pair<const char*, const char*>>{
+           {"cube --robot pms", "did you mean 'psm'"},
+           {"cube --speed 2", "--robot"},
+           {"cube --robot psm --speed 0", "--speed"},
+           {"cube --robot psm --activation paper", "cannot be given together"},
+           {"cube --robot psm --radius 1", "cannot be given together"},
+           {"cube sphere", "MESH: is one, not several, but with --robot"},
+           {"cub --robot psm", "did you mean 'cube'"}}) {
+    const test::ProcessOutcome refused = folder.run(std::string("simulate ") + arguments);
+    EXPECT_NE(refused.status, 0) << arguments;
+    EXPECT_NE(refused.output.find(told), std::string::npos) << arguments << refused.output;
+  }
+}
+
+}  // namespace
+}  // namespace keepout::app
