@@ -48,9 +48,9 @@ RobotPlanningRun run_on(const RobotPlanningTask& task, const Checker& checker, s
   CheckTimer timer;
   set_robot_checkers(space, task, checker, timer);
   SolvedPath path =
-      solve(named_planner(task.options.planner, space, task.options.range),
-            task.problem.start.positions, task.problem.goal,
-            {task.options.seconds, task.options.simplify}, [&stop] { return stop.has_come(); });
+      solve(named_planner(task.options.planner, space, task.options.range), task.problem.start,
+            task.problem.goal, {task.options.seconds, task.options.simplify},
+            [&stop] { return stop.has_come(); });
   RobotPlanningRun run{.mesh = {},
                        .checker = checker,
                        .problem = task.problem,
@@ -92,10 +92,10 @@ void run_scene(const PlanOptions& options, Scene& scene, Progress& progress, con
        draw_robot_problems(scene, tree, robot, options.margin, options.problems, options.seed)) {
     const auto guards = std::make_shared<InstrumentPool>([&] {
       return make_instrument_constraint(scene.mesh(), scene.shared_index(),
-                                        robot.make(problem.start.base),
+                                        robot.make(problem.base),
                                         {.options = {.margin = options.margin}});
     });
-    oracle::InstrumentOracle oracle(tree, robot.judged(), problem.start.base);
+    oracle::InstrumentOracle oracle(tree, robot.judged(), problem.base);
     for (const Checker& checker : robot_checkers(options)) {
       progress.show(scene.name() + " " + std::to_string(problem.number) + ", " + checker.name());
       for (std::size_t i = 0; i < options.seeds; ++i) {

@@ -89,9 +89,9 @@ Json entry_of(const Run& run) {
              {"problem", run.problem.number},
              {"seed", run.seed},
              {"checker", run.checker.name()},
-             {"base_position", json_of(run.problem.start.base.position)},
+             {"base_position", json_of(run.problem.base.position)},
              {"base_rotation", Json::array()},
-             {"start", run.problem.start.positions},
+             {"start", run.problem.start},
              {"goal", run.problem.goal},
              {"advance_mm", run.problem.advance},
              {"solved", run.solved},
@@ -99,7 +99,11 @@ Json entry_of(const Run& run) {
              {"checking_seconds", run.checking_seconds},
              {"checks", run.checks}};
   for (int row = 0; row < 3; ++row) {
-    entry["base_rotation"].push_back(json_of(Vec3(run.problem.start.base.rotation.row(row))));
+    entry["base_rotation"].push_back(json_of(Vec3(run.problem.base.rotation.row(row))));
+  }
+  for (const char* key :
+       {"motions", "too_close", "entering", "unproven", "clearance_mm", "length_mm"}) {
+    entry[key] = nullptr;
   }
   if (!run.solved) return entry;
   entry["motions"] = run.verdict.motions;
