@@ -15,19 +15,17 @@ struct RobotProblem {
   std::size_t number = 0;  // from 1
   Pose base;
   std::vector<double> start = {}, goal = {};  // positions of the joints
-  double advance = 0.0;  // of the flange, along the tool as it is at the goal [mm]
+  double advance = 0.0;  // of the flange, along the tool as it is at the start [mm]
 };
 
 /// Draws problems by a rule that knows no planner, each with a solution that keeps twice the
 /// margin:
 ///
-/// 1. The goal is a random place where the tool is between two walls, with a millimetre or so of
-///    room (find_start, wedged).
-/// 2. From there the instrument is drawn back by 3000 certified steps, along the tool and aside,
-///    and is turned, in a direction that changes every 100 steps.
-/// 3. The start is the place on its way that is farthest back, along the tool as it is at the goal,
-///    among those from which the straight motion of the joints to the goal leads through the mesh.
-///    One less than 30 mm back is not taken, and another goal is tried.
+/// 1. The instrument begins before a random place of the surface, 5 to 20 mm off it (find_start).
+/// 2. From there a hand pushes, slides and turns it about (RobotHand), for 3000 certified steps.
+/// 3. The goal is the place on its way that is farthest ahead, along the tool as it is at the
+///    start, among those to which the straight motion of the joints leads through the mesh; to
+///    within some 2 mm. Unless it is 30 mm ahead, another beginning is tried.
 ///
 /// Throws Error when it finds too few.
 std::vector<RobotProblem> draw_robot_problems(
