@@ -15,11 +15,11 @@ namespace keepout::app {
 namespace {
 
 constexpr int cycles_of_the_hand = 3000;
-constexpr int looked_at_each = 20;        // [cycles]
-constexpr double speed = 4.0;             // of the hand
-constexpr double least_advance = 30;      // [mm]
-constexpr double finer_than = 2.0;        // the farthest place is not looked for [mm]
-constexpr std::size_t most_starts = 100;  // to each problem that is asked for
+constexpr int looked_at_each = 20;         // [cycles]
+constexpr double speed_of_the_hand = 4.0;  // see RobotHand
+constexpr double least_advance = 30;       // [mm]
+constexpr double finer_than = 2.0;         // the farthest place is not looked for [mm]
+constexpr std::size_t most_starts = 100;   // to each problem that is asked for
 
 /// Where the hand leads an instrument from a beginning, if that is far enough and in the way of the
 /// straight motion.
@@ -35,7 +35,7 @@ std::optional<RobotProblem> led_by_hand(Scene& scene,
   InstrumentConstraint straight = make_instrument_constraint(
       scene.mesh(), scene.shared_index(), instrument, {.options = {.margin = margin}});
   oracle::InstrumentOracle judge(tree, robot.judged(), start.base);
-  RobotHand hand(scene, random, speed);
+  RobotHand hand(scene, random, speed_of_the_hand);
   ChainState state;
   instrument.chain().place(start.positions, state);
   const Pose first = state.flange();

@@ -15,7 +15,7 @@ using Run = RobotPlanningRun;
 using Group = std::vector<const Run*>;
 
 template <class Value>
-std::size_t total(const Group& runs, const Value& value) {
+std::size_t sum_of(const Group& runs, const Value& value) {
   std::size_t sum = 0;
   for (const Run* run : runs) sum += static_cast<std::size_t>(value(*run));
   return sum;
@@ -31,17 +31,17 @@ Json median_of(const Group& runs, bool of_solved, const Value& value) {
   return values.empty() ? Json(nullptr) : Json(median(std::move(values)));
 }
 
-double deepest(const Group& runs) {
+double deepest_of(const Group& runs) {
   double deepest = 0.0;
   for (const Run* run : runs) deepest = std::max(deepest, -run->verdict.clearance);
   return deepest;
 }
 
-std::string count_text(const Json& value) { return grouped(value.get<std::size_t>()); }
-std::string figure(const Json& value) {
+std::string shown_count(const Json& value) { return grouped(value.get<std::size_t>()); }
+std::string shown_figure(const Json& value) {
   return value.is_null() ? "-" : rounded(value.get<double>());
 }
-std::string whole(const Json& value) {
+std::string shown_whole(const Json& value) {
   return value.is_null() ? "-" : grouped(static_cast<std::size_t>(value.get<double>()));
 }
 
@@ -49,38 +49,40 @@ const Columns<Group>& summary_columns() {
   static const Columns<Group> all{
       {"mesh", [](const Group& g) { return Json(g.front()->mesh); }, "mesh", -12},
       {"checker", [](const Group& g) { return Json(g.front()->checker.name()); }, "checker", -15},
-      {"runs", [](const Group& g) { return Json(g.size()); }, "runs", 5, &count_text},
-      {"solved", [](const Group& g) { return Json(total(g, [](auto& r) { return r.solved; })); },
-       "solved", 6, &count_text},
-      {"valid", [](const Group& g) { return Json(total(g, [](auto& r) { return r.is_valid(); })); },
-       "valid", 6, &count_text},
+      {"runs", [](const Group& g) { return Json(g.size()); }, "runs", 5, &shown_count},
+      {"solved", [](const Group& g) { return Json(sum_of(g, [](auto& r) { return r.solved; })); },
+       "solved", 6, &shown_count},
+      {"valid",
+       [](const Group& g) { return Json(sum_of(g, [](auto& r) { return r.is_valid(); })); },
+       "valid", 6, &shown_count},
       {"motions",
-       [](const Group& g) { return Json(total(g, [](auto& r) { return r.verdict.motions; })); },
-       "motions", 8, &count_text},
+       [](const Group& g) { return Json(sum_of(g, [](auto& r) { return r.verdict.motions; })); },
+       "motions", 8, &shown_count},
       {"too_close",
-       [](const Group& g) { return Json(total(g, [](auto& r) { return r.verdict.too_close; })); },
-       "too close", 9, &count_text},
+       [](const Group& g) { return Json(sum_of(g, [](auto& r) { return r.verdict.too_close; })); },
+       "too close", 9, &shown_count},
       {"entering",
-       [](const Group& g) { return Json(total(g, [](auto& r) { return r.verdict.entering; })); },
-       "in mesh", 7, &count_text},
+       [](const Group& g) { return Json(sum_of(g, [](auto& r) { return r.verdict.entering; })); },
+       "in mesh", 7, &shown_count},
       {"unproven",
-       [](const Group& g) { return Json(total(g, [](auto& r) { return r.verdict.unproven; })); },
-       "unproven", 8, &count_text},
-      {"deepest_mm", [](const Group& g) { return Json(deepest(g)); }, "deepest mm", 10, &figure},
+       [](const Group& g) { return Json(sum_of(g, [](auto& r) { return r.verdict.unproven; })); },
+       "unproven", 8, &shown_count},
+      {"deepest_mm", [](const Group& g) { return Json(deepest_of(g)); }, "deepest mm", 10,
+       &shown_figure},
       {"median_seconds",
        [](const Group& g) { return median_of(g, false, [](auto& r) { return r.seconds; }); },
-       "median s", 9, &figure},
+       "median s", 9, &shown_figure},
       {"median_checking_seconds",
        [](const Group& g) {
          return median_of(g, false, [](auto& r) { return r.checking_seconds; });
        },
-       "checking s", 10, &figure},
+       "checking s", 10, &shown_figure},
       {"median_checks",
        [](const Group& g) { return median_of(g, false, [](auto& r) { return r.checks; }); },
-       "asked", 8, &whole},
+       "asked", 8, &shown_whole},
       {"median_length_mm",
        [](const Group& g) { return median_of(g, true, [](auto& r) { return r.length; }); },
-       "length mm", 9, &figure}};
+       "length mm", 9, &shown_figure}};
   return all;
 }
 
