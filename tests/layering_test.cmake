@@ -20,7 +20,7 @@ endfunction()
 
 set(include "^ *# *include *[<\"]")
 forbid(engine "${include}keepout/(adapters|solvers|factory|fixtures|control|robot)/" "the engine knows no other part")
-foreach(part all_indices bullet ccd cgal embree fcl include ompl src)
+foreach(part all_indices bullet ccd cgal embree fcl include src)
   forbid(adapters/${part} "${include}keepout/(solvers|factory|fixtures|control|robot|urdf)/" "adapters know only the engine")
 endforeach()
 forbid(solvers "${include}keepout/(adapters|factory|fixtures|control|robot)/" "solvers know only the engine")
@@ -38,11 +38,12 @@ foreach(library IN LISTS libraries)
          "one library's adapter knows no other's")
 endforeach()
 
-# Planning is a library of its own, which knows the engine and OMPL alone.
-forbid(adapters/ompl "${include}keepout/adapters/" "planning knows only the engine")
+# Planning is a library of its own, which knows the engine, robots and OMPL alone.
+forbid(adapters/ompl "${include}keepout/(adapters|solvers|factory|fixtures|control|urdf)/" "planning knows only the engine and robots")
 forbid(engine "${include}(ompl/|keepout/ompl/)" "the engine knows no planner")
 forbid(solvers "${include}(ompl/|keepout/ompl/)" "solvers know no planner")
 forbid(factory "${include}(ompl/|keepout/ompl/)" "the factory knows no planner")
+forbid(robot "${include}(ompl/|keepout/ompl/)" "robots know no planner")
 forbid(adapters/src "${include}(ompl/|keepout/ompl/)" "the other adapters know no planner")
 
 # The reader of robots is a library of its own as well, above robot; who wants one asks for it.

@@ -202,6 +202,18 @@ TEST(Example07, PlansAroundTheSphere) {
   EXPECT_GE(motions, 2);
   EXPECT_GT(length, 120.0);  // straight on would be 120
 }
+
+TEST(Example10, PlansForAShaftAroundTheSphere) {
+  int motions = 0;
+  double length = 0.0;
+  const std::string text = output_of(KEEPOUT_EXAMPLE_OMPL_JOINTS);
+  ASSERT_EQ(
+      std::sscanf(text.c_str(), "a path of %d proven joint motions, %lf long", &motions, &length),
+      2)
+      << text;
+  EXPECT_GE(motions, 2);
+  EXPECT_GT(length, 100.0);
+}
 #endif
 
 }  // namespace

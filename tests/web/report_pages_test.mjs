@@ -55,6 +55,10 @@ const files = given
       run("speed", ..."bench --speed --quick --triangles 30000 --steps 20000".split(" ")),
       run("compare", "compare", "cube", "--poses", "6", "--problems", "100", "--pairs", "20"),
       run("plan", "plan", "cube", "--problems", "2", "--resolution", "0.01"),
+      run(
+        "plan_robot",
+        ..."plan cube --robot psm --problems 1 --seeds 2 --resolution 0.01".split(" "),
+      ),
       run("verify", "verify", "cube", "sphere", "--steps", "2000"),
       run(
         "simulate_robot",
@@ -313,7 +317,7 @@ for (const { file, name, record } of pages) {
     await assertSorts(tab, record);
     const tips = await assertTips(tab, record);
     note(`${tips} plots told`);
-    const hasPlots = !["verify", "verify_robot", "simulate_robot", "plan"].includes(
+    const hasPlots = !["verify", "verify_robot", "simulate_robot", "plan", "plan_robot"].includes(
       record.keepout_record,
     );
     assert.equal(tips > 0, hasPlots);

@@ -9,18 +9,19 @@
 
 namespace keepout {
 
-GuardPool::GuardPool(std::function<MotionConstraint()> make, std::size_t most)
+template <class Guard>
+GuardPoolOf<Guard>::GuardPoolOf(std::function<Guard()> make, std::size_t most)
     : make_(std::move(make)), most_(most) {
   if (!make_ || most_ == 0) {
-    throw Error(
-        "a pool of guards needs a function that makes a MotionConstraint, and room for one");
+    throw Error("a pool of guards needs a function that makes a constraint, and room for one");
   }
-  free_.push_back(std::make_unique<MotionConstraint>(make_()));
+  free_.push_back(std::make_unique<Guard>(make_()));
   made_ = 1;
   options_ = free_.front()->options();
 }
 
-void GuardPool::GiveBack::operator()(MotionConstraint* guard) const noexcept {
+template <class Guard>
+void GuardPoolOf<Guard>::GiveBack::operator()(Guard* guard) const noexcept {
   {
     const std::lock_guard lock(pool->mutex_);
     pool->free_.emplace_back(guard);
@@ -28,12 +29,13 @@ void GuardPool::GiveBack::operator()(MotionConstraint* guard) const noexcept {
   pool->returned_.notify_one();
 }
 
-std::unique_ptr<MotionConstraint> GuardPool::made_anew(std::unique_lock<std::mutex>& lock) {
+template <class Guard>
+std::unique_ptr<Guard> GuardPoolOf<Guard>::made_anew(std::unique_lock<std::mutex>& lock) {
   ++made_;
   lock.unlock();  // an index takes its time
-  std::unique_ptr<MotionConstraint> guard;
+  std::unique_ptr<Guard> guard;
   try {
-    guard = std::make_unique<MotionConstraint>(make_());
+    guard = std::make_unique<Guard>(make_());
   } catch (...) {
     // A planner's thread has nobody who would catch it, and there is one to wait for.
   }
@@ -47,7 +49,8 @@ std::unique_ptr<MotionConstraint> GuardPool::made_anew(std::unique_lock<std::mut
   return guard;
 }
 
-GuardPool::Loan GuardPool::borrow() {
+template <class Guard>
+typename GuardPoolOf<Guard>::Loan GuardPoolOf<Guard>::borrow() {
   std::unique_lock lock(mutex_);
   while (true) {
     if (!free_.empty()) {
@@ -63,13 +66,18 @@ GuardPool::Loan GuardPool::borrow() {
   }
 }
 
-std::size_t GuardPool::made() const {
+template <class Guard>
+std::size_t GuardPoolOf<Guard>::made() const {
   const std::lock_guard lock(mutex_);
   return made_;
 }
 
-std::size_t GuardPool::cores() noexcept {
+template <class Guard>
+std::size_t GuardPoolOf<Guard>::cores() noexcept {
   return std::max<std::size_t>(1, std::thread::hardware_concurrency());
 }
+
+template class GuardPoolOf<MotionConstraint>;
+template class GuardPoolOf<InstrumentConstraint>;
 
 }  // namespace keepout

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "keepout/ompl/planning.h"
 
-#include <ompl/base/MotionValidator.h>
 #include <ompl/base/SpaceInformation.h>
-#include <ompl/base/StateValidityChecker.h>
 #include <ompl/base/goals/GoalSampleableRegion.h>
 #include <ompl/base/spaces/RealVectorStateSpace.h>
 #include <ompl/datastructures/NearestNeighbors.h>
@@ -16,12 +14,12 @@
 #include <functional>
 #include <limits>
 #include <memory>
-#include <mutex>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "certified_checkers.h"
 #include "keepout/error.h"
 #include "keepout/ompl/straight_way.h"
 
@@ -74,52 +72,21 @@ Box bounds_of(const base::SpaceInformation& space) {
           Vec3(bounds.high[0], bounds.high[1], bounds.high[2])};
 }
 
-class CertifiedStates final : public base::StateValidityChecker {
- public:
-  CertifiedStates(const base::SpaceInformationPtr& space, std::shared_ptr<GuardPool> guards)
-      : StateValidityChecker(space), guards_(std::move(guards)) {}
+/// What the checkers ask of a tip: see certified_checkers.h.
+struct TipProof {
+  std::shared_ptr<GuardPool> guards;
 
-  bool isValid(const base::State* state) const override {
-    return si_->satisfiesBounds(state) && keeps_margin(*guards_->borrow(), tip_of(state));
+  bool stands(const base::State* state) const {
+    return keeps_margin(*guards->borrow(), tip_of(state));
   }
-
- private:
-  std::shared_ptr<GuardPool> guards_;
-};
-
-class CertifiedMotions final : public base::MotionValidator {
- public:
-  CertifiedMotions(const base::SpaceInformationPtr& space, std::shared_ptr<GuardPool> guards)
-      : MotionValidator(space), guards_(std::move(guards)) {}
-
-  bool checkMotion(const base::State* from, const base::State* to) const override {
-    return counted(si_->satisfiesBounds(to) &&
-                   proves(*guards_->borrow(), tip_of(from), tip_of(to)));
+  bool goes(const base::State* from, const base::State* to) const {
+    return proves(*guards->borrow(), tip_of(from), tip_of(to));
   }
-
-  bool checkMotion(const base::State* from, const base::State* to,
-                   std::pair<base::State*, double>& last_valid) const override {
-    if (checkMotion(from, to)) return true;
-    // Only now, as few ask for it. `last_valid.first` may be one of the two, so it is written last.
-    ProvenPrefix prefix{.end = tip_of(from)};
-    if (si_->satisfiesBounds(to)) {
-      prefix = proven_prefix(*guards_->borrow(), tip_of(from), tip_of(to));
-    }
-    if (last_valid.first != nullptr) put(prefix.end, last_valid.first);
-    last_valid.second = prefix.share;
-    return false;
+  double goes_until(const base::State* from, const base::State* to, base::State* end) const {
+    const ProvenPrefix prefix = proven_prefix(*guards->borrow(), tip_of(from), tip_of(to));
+    put(prefix.end, end);
+    return prefix.share;
   }
-
- private:
-  /// OMPL's own counters are no atomic ones.
-  bool counted(bool is_valid) const {
-    const std::lock_guard lock(count_);
-    ++(is_valid ? valid_ : invalid_);
-    return is_valid;
-  }
-
-  std::shared_ptr<GuardPool> guards_;
-  mutable std::mutex count_;
 };
 
 /// See make_sliding_connect. OMPL's planner with another way to grow its trees: a proven step leads
@@ -266,13 +233,13 @@ base::PlannerStatus SlidingConnect::solve(const base::PlannerTerminationConditio
 std::shared_ptr<base::StateValidityChecker> make_state_validity_checker(
     const std::shared_ptr<base::SpaceInformation>& space, std::shared_ptr<GuardPool> guards) {
   require_tip_space(space, guards);
-  return std::make_shared<CertifiedStates>(space, std::move(guards));
+  return std::make_shared<CertifiedStates<TipProof>>(space, TipProof{std::move(guards)});
 }
 
 std::shared_ptr<base::MotionValidator> make_motion_validator(
     const std::shared_ptr<base::SpaceInformation>& space, std::shared_ptr<GuardPool> guards) {
   require_tip_space(space, guards);
-  return std::make_shared<CertifiedMotions>(space, std::move(guards));
+  return std::make_shared<CertifiedMotions<TipProof>>(space, TipProof{std::move(guards)});
 }
 
 void set_certified_checkers(const std::shared_ptr<base::SpaceInformation>& space,

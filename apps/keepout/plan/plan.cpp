@@ -14,6 +14,7 @@
 #include "named_mesh.h"
 #include "output_file.h"
 #include "plan/planning_run.h"
+#include "plan/robot/plan_robot.h"
 #include "progress.h"
 #include "record/flat_rows.h"
 #include "stop_signal.h"
@@ -68,8 +69,8 @@ OutputFiles outputs_of(const PlanOptions& options) {
            {"--out", options.files.page}}};
 }
 
-void run_scene(const PlanOptions& options, PlanningScene& where, Progress& progress,
-               const StopSignal& stop, std::vector<PlanningRun>& runs) {
+void run_planning_scene(const PlanOptions& options, PlanningScene& where, Progress& progress,
+                        const StopSignal& stop, std::vector<PlanningRun>& runs) {
   const Scene& scene = where.scene;
   progress.show(scene.name() + ", drawing problems");
   const std::vector<Problem> problems =
@@ -109,6 +110,7 @@ std::size_t invalid_of_keepout(const std::vector<PlanningRun>& runs) {
 }  // namespace
 
 int plan(const PlanOptions& options, std::ostream& out) {
+  if (!options.robot.empty()) return plan_with_robot(options, out);
   OutputFiles outputs = outputs_of(options);
   const StopSignal stop;  // after the files, which a second signal removes
   std::vector<PlanningScene> scenes = scenes_of(options);
@@ -117,7 +119,7 @@ int plan(const PlanOptions& options, std::ostream& out) {
   {
     Progress progress("plan", total);
     for (PlanningScene& where : scenes) {
-      if (!stop.has_come()) run_scene(options, where, progress, stop, runs);
+      if (!stop.has_come()) run_planning_scene(options, where, progress, stop, runs);
     }
   }
   const Json record = record_of(options, scenes, runs, runs.size() == total);

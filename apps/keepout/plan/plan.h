@@ -23,7 +23,10 @@ inline const std::vector<std::string> ompl_planners{"RRTConnect", "RRT", "PRM", 
 struct PlanOptions {
   std::optional<std::filesystem::path> mesh;  // none: airway and skull, of the real fixtures
   bool inside = false;                        // plan within the mesh given, not around it
-  std::size_t problems = 12;                  // for each mesh
+  std::string
+      robot;  // of robots_under_test(): plan for all of it, in joint space; empty: for a tip
+  std::size_t problems = 12;  // for each mesh
+  std::size_t seeds = 10;     // with a robot: runs of each problem under each checker
   std::uint64_t seed = 1;
   std::string planner = "RRTConnect";
   double seconds = 5.0;                                  // that a planner has for a problem

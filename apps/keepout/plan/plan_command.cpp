@@ -3,7 +3,9 @@
 
 #include "command_line.h"
 #include "keepout/error.h"
+#include "names.h"
 #include "plan/plan.h"
+#include "verify/robot/start.h"
 
 namespace keepout::app {
 
@@ -15,7 +17,18 @@ void add_plan(CLI::App& app, PlanOptions& options) {
   CLI::Option* mesh = command.add_option(
       "MESH", options.mesh,
       "Mesh file in mm, or a fixture; without one, airway (within) and skull (around)");
-  command.add_flag("--inside", options.inside, "Plan within MESH, not around it")->needs(mesh);
+  CLI::Option* robot =
+      command
+          .add_option("--robot", options.robot,
+                      "Plan for a whole instrument, in joint space; the meshes are then planned "
+                      "around")
+          ->check(one_of(names(robots_under_test())));
+  command.add_flag("--inside", options.inside, "Plan within MESH, not around it")
+      ->needs(mesh)
+      ->excludes(robot);
+  add_number(command, "--seeds", options.seeds, 1, 10'000,
+             "Runs of each problem under each checker, each from a seed of its own")
+      ->needs(robot);
   add_number(command, "--problems", options.problems, 1, 10'000, "Problems of each mesh");
   add_number(command, "--seed", options.seed, 0, largest_seed, "Seed of problems and planners");
   add_name(command, "--planner", options.planner, ompl_planners,
@@ -32,11 +45,13 @@ void add_plan(CLI::App& app, PlanOptions& options) {
       ->check(number_within(1e-6, 1.0, "a share of the extent from 0.000001 to 1", "SHARE"))
       ->capture_default_str();
   add_length(command, "--tool-radius", options.tool_radius, Zero::allowed,
-             "Radius of the ball around the tip");
+             "Radius of the ball around the tip")
+      ->excludes(robot);
   add_length(command, "--margin", options.margin, Zero::refused,
              "Distance to keep between tool and surface");
   add_length(command, "--radius", options.radius, Zero::refused,
-             "Radius of the motion sphere: certified checking cuts motions into pieces so long");
+             "Radius of the motion sphere: certified checking cuts motions into pieces so long")
+      ->excludes(robot);
   add_length(command, "--range", options.range, Zero::allowed,
              "Longest motion that a planner adds; 0: a fifth of the extent, as OMPL has it");
   command.add_flag("--simplify", options.simplify,
@@ -47,7 +62,8 @@ void add_plan(CLI::App& app, PlanOptions& options) {
   command.footer(
       "Ctrl-C ends it early: what is finished is judged, printed and written.\n"
       "The exit status is 0 only if no path that keepout let pass is invalid.\n"
-      "How problems are chosen, and what the columns say: docs/planning.md.");
+      "How problems are chosen, and what the columns say: docs/planning.md.\n\n" +
+      listing("Robots", robots_under_test()));
 }
 
 #ifndef KEEPOUT_HAS_OMPL

@@ -17,13 +17,6 @@
 namespace keepout::app {
 namespace {
 
-double median(std::vector<double> values) {
-  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-  std::sort(values.begin(), values.end());
-  const std::size_t middle = values.size() / 2;
-  return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
-}
-
 template <class Value>
 double median_of(const std::vector<const PlanningRun*>& runs, const Value& value) {
   std::vector<double> values;
@@ -102,6 +95,13 @@ std::vector<std::string> cells_of(const PlanningSummary& row) {
 }
 
 }  // namespace
+
+double median(std::vector<double> values) {
+  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+  std::sort(values.begin(), values.end());
+  const std::size_t middle = values.size() / 2;
+  return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
+}
 
 std::string lead(const PlanOptions& options) {
   return options.planner + ", " + trimmed(options.seconds) + " s for each problem, clearance " +

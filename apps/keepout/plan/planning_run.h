@@ -58,7 +58,7 @@ struct PlannedPath {
   double seconds = 0.0;           // of the planner, and of the simplifier where it was asked for
   double checking_seconds = 0.0;  // of it, in the checker; sliding: in the steer
   std::uint64_t checks = 0;       // motions asked about; sliding: ways
-  std::vector<Vec3> points;       // empty unless solved [mm]
+  std::vector<Vec3> points = {};  // empty unless solved [mm]
 };
 
 /// The same task yields the same path, unless time ran out. `interrupted`: asked by the planner as
@@ -112,6 +112,9 @@ struct PlanningSummary {
   double median_length = 0.0;    // of the solved [mm]
   double checks = 0.0;           // median
 };
+
+/// Of two in the middle their mean; no number where there is none.
+double median(std::vector<double> values);
 
 /// Planner, time, clearance and seed, in words.
 std::string lead(const PlanOptions& options);

@@ -77,6 +77,39 @@ TEST_F(PlanCommandTest, EveryPlannerRuns) {
   }
 }
 
+TEST_F(PlanCommandTest, NoPathOfAWholeInstrumentUnderCertifiedCheckingComesTooClose) {
+  const ProcessOutcome outcome = folder_.run(
+      "plan gear --robot psm --problems 1 --seeds 2 --seconds 20 --resolution 0.02,0.01 "
+      "--json runs.json --csv runs.csv --out page.html");
+  EXPECT_EQ(outcome.status, 0) << outcome.output;
+  EXPECT_NE(outcome.output.find("and 0 of 2 under keepout's"), std::string::npos) << outcome.output;
+  const Json record = Json::parse(std::ifstream(folder_.file("runs.json")));
+  EXPECT_EQ(record.at("keepout_record"), "plan_robot");
+  EXPECT_EQ(record.at("robot"), "psm");
+  const Json& rows = record.at("summaries");
+  ASSERT_EQ(rows.size(), 3u);
+  EXPECT_EQ(rows[2].at("checker"), "certified");
+  EXPECT_EQ(rows[2].at("solved"), 2);
+  EXPECT_EQ(rows[2].at("too_close"), 0);
+  EXPECT_EQ(rows[2].at("unproven"), 0);
+  EXPECT_GE(rows[2].at("motions"), 2 * 2) << "the straight motion is not free";
+  const Json& runs = record.at("runs");
+  ASSERT_EQ(runs.size(), 6u);  // 3 checkers, 2 seeds
+  for (const Json& run : runs) {
+    EXPECT_GE(run.at("advance_mm"), 30.0);
+    if (!run.at("solved")) continue;
+    EXPECT_EQ(run.at("path").front(), run.at("start"));
+    EXPECT_EQ(run.at("path").back(), run.at("goal"));
+    EXPECT_EQ(run.at("motions").get<std::size_t>() + 1, run.at("path").size());
+    // A sampled motion that breaks the margin is not proven either.
+    EXPECT_LE(run.at("too_close"), run.at("unproven"));
+  }
+  EXPECT_NE(runs[4].at("path"), runs[5].at("path")) << "another seed, another path";
+  std::ifstream csv(folder_.file("runs.csv"));
+  EXPECT_EQ(std::count(std::istreambuf_iterator<char>(csv), {}, '\n'), 7);
+  EXPECT_GT(std::filesystem::file_size(folder_.file("page.html")), 1000u);
+}
+
 TEST_F(PlanCommandTest, SaysWhatIsWrong) {
   const auto fails = [&](const std::string& arguments, const std::string& words) {
     const ProcessOutcome outcome = folder_.run("plan " + arguments);
@@ -90,6 +123,10 @@ TEST_F(PlanCommandTest, SaysWhatIsWrong) {
   fails("cortex.stl --json cortex.stl", "same file");
   fails("--inside", "MESH");
   fails("none.stl", "none.stl");
+  fails("cube --robot pms", "psm");
+  fails("cube --robot psm --tool-radius 1", "--tool-radius");
+  fails("cube --robot psm --inside", "--inside");
+  fails("cube --seeds 3", "--robot");
 }
 
 #else

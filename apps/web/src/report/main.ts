@@ -3,6 +3,7 @@
 import { benchmarkSections } from "./benchmark.ts";
 import { comparisonSections } from "./comparison.ts";
 import { showReport } from "./report_page.ts";
+import { robotPlanningSections } from "./robot_planning.ts";
 import { robotVerificationSections } from "./robot_verification.ts";
 import { speedSections } from "./speed.ts";
 import { verificationSections } from "./verification.ts";
@@ -11,6 +12,7 @@ void showReport({
   bench: (main) => main.append(...benchmarkSections("/benchmark", "/comparison")),
   speed: (main) => main.append(...speedSections()),
   compare: (main) => main.append(...comparisonSections("/comparison")),
+  plan_robot: (main) => main.append(...robotPlanningSections()),
   verify: (main) => main.append(...verificationSections()),
   verify_robot: (main) => main.append(...robotVerificationSections()),
 });
