@@ -25,13 +25,6 @@ constexpr std::uint64_t sampled = 2000;  // blocked cycles to each that is searc
 constexpr int hopeless_after =
     50;  // cycles without any motion being proven, until a start is given up
 
-const RobotUnderTest& robot_named(const std::string& name) {
-  const auto robots = robots_under_test();
-  const auto found = std::ranges::find(robots, name, &RobotUnderTest::name);
-  if (found == robots.end()) throw Error("there is no robot '" + name + "'");
-  return *found;
-}
-
 /// Velocity limits are those of a patient arm: the cycle is made so long that they admit a tenth of
 /// a radian and 2.5 mm at speed 1.
 InstrumentOptions options_of(const RobotCampaign& campaign, const Chain& chain, double speed) {
