@@ -13,21 +13,28 @@ export class Capsule {
     color: string,
     opacity: number,
   ) {
-    const isSolid = opacity === 1;
+    // All are drawn as what is transparent, so that what can be seen covers what shines through.
     this.solid = new three.MeshStandardMaterial({
-      transparent: !isSolid,
+      transparent: true,
       opacity,
       roughness: 0.35,
-      depthWrite: isSolid,
+      depthWrite: opacity === 1,
     });
     this.ghost = new three.MeshBasicMaterial({
       transparent: true,
-      opacity: 0.22 * opacity,
+      opacity: 0.3,
       depthTest: false,
       depthWrite: false,
     });
     this.parts = [new three.Mesh(undefined, this.ghost), new three.Mesh(undefined, this.solid)];
+    this.parts.forEach((part, i) => {
+      part.renderOrder = i + 1;
+    });
     this.paint(color);
+  }
+
+  show(isVisible: boolean): void {
+    for (const part of this.parts) part.visible = isVisible;
   }
 
   paint(color: string): void {

@@ -11,6 +11,8 @@ export const heldBody = ({ rows, nearest }: InstrumentState): number => (rows > 
 export class InstrumentReadings {
   private readonly line: StatusLine;
 
+  private readonly rows = new Map<string, HTMLElement>();
+
   constructor(statuses: readonly StatusWords[]) {
     this.line = new StatusLine(statuses);
   }
@@ -25,19 +27,31 @@ export class InstrumentReadings {
     set(figure, millimetres(least));
     set("clearance-words", `from the ${bodies[nearest]?.name} to the surface`);
     const held = heldBody(state);
-    set("held", held < 0 ? "nothing" : `${bodies[held]?.name}`);
-    set(
-      "bodies",
-      bodies
-        .map(({ name }, i) => `${name} ${(state.clearances[i] as number).toFixed(1)}`)
-        .join(", "),
-    );
+    set("held", held < 0 ? "nothing" : `by the ${bodies[held]?.name}`);
+    bodies.forEach(({ name }, i) => {
+      const row = this.rowOf(name);
+      set(row, millimetres(state.clearances[i] as number));
+      row.className = i === held ? "held" : "";
+    });
     const { hand, flange } = state;
     const way = Math.hypot(...hand.place.map((value, i) => value - (flange.place[i] as number)));
     set("hand-off", `${millimetres(way)}, ${degreesBetween(hand, flange).toFixed(0)}°`);
     set("margin-kept", millimetres(margin));
     set("planes", `${state.rows}`);
     set("rounds", `${state.rounds}`);
+  }
+
+  /** Where the clearance of a body stands. */
+  private rowOf(body: string): HTMLElement {
+    let row = this.rows.get(body);
+    if (row === undefined) {
+      row = document.createElement("dd");
+      const name = document.createElement("dt");
+      name.textContent = `From the ${body}`;
+      element("bodies", HTMLElement).append(name, row);
+      this.rows.set(body, row);
+    }
+    return row;
   }
 }
 

@@ -17,7 +17,7 @@ export interface InstrumentMoment {
 }
 
 /** How much of the instrument is seen at first, across the view. [mm] */
-const seenAtFirst = 95;
+const seenAtFirst = 130;
 /** Its jaw has the colour of the tool, the bodies before it are of steel. */
 const steel = "#8d9db5";
 
@@ -36,6 +36,7 @@ export class InstrumentScene extends AnatomyScene {
   constructor(container: HTMLElement, room: () => number, onDraw: () => void) {
     super(container, room, onDraw);
     this.moving.add(this.spring.line, this.trail.line, this.port);
+    this.spring.line.renderOrder = 3;
     this.toolRadius = 4; // which is held by its jaw
   }
 
@@ -128,6 +129,7 @@ export class InstrumentScene extends AnatomyScene {
       new three.Quaternion(...flange.turn).invert(),
     );
     const moved = (at: three.Vector3) => at.sub(tip).applyQuaternion(turn).add(wish);
+    this.wanted.show(wish.distanceTo(tip) > 0.3 || Math.abs(turn.w) < 0.9995);
     this.wanted.place(moved(point(2 * last)), moved(point(2 * last + 1)));
     this.spring.stretch(wish, tip, 0.35, 0.3);
 
