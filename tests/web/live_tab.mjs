@@ -73,7 +73,7 @@ export const limitedCycles = async (tab) =>
 /** Presses a button of the page and gives the file that it saves. */
 export async function savedPath(tab, folder) {
   const before = new Set(readdirSync(folder));
-  await tab.click("#save");
+  await tab.$eval("#save", (button) => button.click()); // on a phone it may be out of sight
   for (let i = 0; i < 200; ++i) {
     await sleep(50);
     const file = readdirSync(folder).find((name) => !before.has(name) && name.endsWith(".txt"));
