@@ -2,6 +2,7 @@
 // The page that `keepout live` writes, what it says, and what it refuses.
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
 #include <array>
 #include <chrono>
 #include <filesystem>
@@ -117,14 +118,14 @@ TEST_F(Live, BeginsWithTheCertifiedRule) {
 }
 
 TEST_F(Live, AnInstrumentBeginsWithAllBodiesClearAndItsPortBesideTheMesh) {
-  const Outcome outcome = run("torus --robot psm --margin 0.5");
+  const Outcome outcome = run("cortex --robot psm --margin 0.5");
   ASSERT_EQ(outcome.status, 0) << outcome.output;
   EXPECT_NE(outcome.output.find("Drag the jaw"), std::string::npos) << outcome.output;
   const Json told = settings();
   EXPECT_EQ(told.at("robot"), "psm");
   EXPECT_EQ(told.at("margin"), 0.5);
   const Json& facts = told.at("meshes").at(0);
-  const auto mesh = std::make_shared<const Mesh>(make_shape("torus"));
+  const auto mesh = std::make_shared<const Mesh>(make_shape("cortex"));
   EXPECT_EQ(facts.at("digest"), index_cache_file(*mesh, {}).stem().string());
   const auto numbers = facts.at("start").at("base").get<std::array<double, 12>>();
   Pose base{Vec3(numbers.data()), Mat3(Eigen::Map<const Mat3>(numbers.data() + 3).transpose())};
