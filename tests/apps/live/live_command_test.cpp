@@ -146,7 +146,7 @@ TEST_F(Live, WhatIsOfABallIsRefusedForAnInstrument) {
   expect_refused("cube --robot psm --activation paper", "--activation", 2);
   expect_refused("cube --robot psm --tool-radius 1", "--tool-radius", 2);
   expect_refused("cube --robot psm --radius 1", "--radius", 2);
-  expect_refused("cube --robot psm --margin 1e4", "cube: there is no room for the instrument");
+  expect_refused("cube --robot psm --margin 25", "cube: there is no room for the instrument");
 }
 
 TEST_F(Live, AMeshThatWasTurnedIsNamedAsItWas) {
