@@ -50,6 +50,7 @@ export class InstrumentLoop {
 
   /** Where the pointer holds the hand; null: it has let go. Ends a replay. */
   hold(pointer: Frame | null): void {
+    if (pointer !== null && ![...pointer.place, ...pointer.turn].every(Number.isFinite)) return;
     if (this.replay !== null && pointer === null) return;
     this.replay = null;
     this.pointer = pointer;
