@@ -9,81 +9,32 @@
  * with files that are dropped, by touch and by keys. Prints times and rates, and asserts none.
  */
 import assert from "node:assert/strict";
-import { execFileSync } from "node:child_process";
-import {
-  mkdirSync,
-  readdirSync,
-  readFileSync,
-  renameSync,
-  rmSync,
-  statSync,
-  writeFileSync,
-} from "node:fs";
-import { createRequire } from "node:module";
+import { readFileSync, statSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, test } from "node:test";
-import { fileURLToPath, pathToFileURL } from "node:url";
+import {
+  handAt,
+  large,
+  launched,
+  limitedCycles,
+  looksWell,
+  note,
+  opened,
+  programsIn,
+  ready,
+  root,
+  savedPath,
+  skull,
+  sleep,
+  small,
+  textOf,
+} from "./live_tab.mjs";
 
 const [keepout, judge, folder, browserPath = "/usr/bin/chromium"] = process.argv.slice(2);
-const root = fileURLToPath(new URL("../..", import.meta.url));
-const packages = createRequire(join(root, "apps/web/package.json"));
-const puppeteer = packages("puppeteer-core");
-const skull = join(process.env.KEEPOUT_CACHE || join(root, ".cache"), "fixtures/skull.stl");
-
-rmSync(folder, { recursive: true, force: true });
-mkdirSync(folder, { recursive: true });
-
-const note = (text) => console.log(`# ${text}`);
-const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
-
-/** What a command prints. */
-const run = (program, ...args) =>
-  execFileSync(program, args, { encoding: "utf8", cwd: folder, maxBuffer: 1 << 26 });
-
+const run = programsIn(folder);
 const page = join(folder, "page.html");
 run(keepout, "live", skull, "--no-open", "--out", page);
-
-const browser = await puppeteer.launch({
-  executablePath: browserPath,
-  args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
-});
-
-/** Opens the page; gives it back once the tool can be dragged. */
-async function opened(viewport) {
-  const tab = await browser.newPage();
-  tab.faults = [];
-  tab.on("pageerror", (error) => tab.faults.push(String(error)));
-  tab.on("console", (line) => {
-    if (line.type() === "error") tab.faults.push(line.text());
-  });
-  await tab.setViewport(viewport);
-  const client = await tab.createCDPSession();
-  await client.send("Browser.setDownloadBehavior", { behavior: "allow", downloadPath: folder });
-  await tab.goto(pathToFileURL(page).href);
-  await ready(tab);
-  return tab;
-}
-
-/** Waits until there is a tool, whose state is told. */
-const ready = (tab) =>
-  tab.waitForFunction(
-    () =>
-      !document.querySelector("#grip").hidden &&
-      document.querySelector("#loading").hidden &&
-      document.querySelector("#clearance").textContent.endsWith("mm"),
-    { timeout: 60_000 },
-  );
-
-/** Where the middle of the hand is on the screen. */
-const handAt = (tab) =>
-  tab.evaluate(() => {
-    const { x, y, width, height } = document.querySelector("#grip").getBoundingClientRect();
-    return { x: x + width / 2, y: y + height / 2 };
-  });
-
-const textOf = (tab, selector) => tab.$eval(selector, (element) => element.textContent);
-const limitedCycles = async (tab) =>
-  Number((await textOf(tab, "#limited")).split(" of ")[0].replaceAll(",", ""));
+const browser = await launched(browserPath);
 
 /** Pushes the hand into the anatomy and rubs it up and down there. */
 async function dragIn(tab, seconds = 4) {
@@ -96,22 +47,6 @@ async function dragIn(tab, seconds = 4) {
     await sleep(8);
   }
   await tab.mouse.up();
-}
-
-/** Presses a button of the page and gives the file that it saves. */
-async function savedPath(tab) {
-  const before = new Set(readdirSync(folder));
-  await tab.click("#save");
-  for (let i = 0; i < 200; ++i) {
-    await sleep(50);
-    const file = readdirSync(folder).find((name) => !before.has(name) && name.endsWith(".txt"));
-    if (file !== undefined) {
-      const kept = `path-${before.size}.txt`; // the next one has the same name
-      renameSync(join(folder, file), join(folder, kept));
-      return kept;
-    }
-  }
-  assert.fail("no path was saved");
 }
 
 /** Numbers of the lines of a path. */
@@ -148,8 +83,6 @@ function differing(lines, rows) {
   ).length;
 }
 
-const large = { width: 1280, height: 800 };
-const small = { width: 390, height: 844, hasTouch: true, isMobile: true };
 let desk; // the page that most tests go on with
 let phone;
 
@@ -164,7 +97,7 @@ test("the page is small, and needs nothing beside it", () => {
 
 test("a drag into the skull: limited, out of it, and the same as keepout replay", async () => {
   const begin = performance.now();
-  desk = await opened(large);
+  desk = await opened(browser, page, folder, large);
   note(
     `the tool can be dragged ${((performance.now() - begin) / 1000).toFixed(1)} s after opening`,
   );
@@ -174,7 +107,7 @@ test("a drag into the skull: limited, out of it, and the same as keepout replay"
       `${await textOf(desk, "#step-time")}; ${await textOf(desk, "#rate")} cycles and ` +
       `${await textOf(desk, "#frames")} frames a second`,
   );
-  const path = await savedPath(desk);
+  const path = await savedPath(desk, folder);
   const lines = linesOf(path);
   const rows = replayed(path, skull, "certified");
   assert.equal(differing(lines, rows), 0, "the page and keepout replay differ");
@@ -205,7 +138,7 @@ test("the same drag without a fixture goes in", async () => {
   await desk.click("#again");
   await sleep(500);
   await dragIn(desk, 2);
-  const rows = linesOf(await savedPath(desk));
+  const rows = linesOf(await savedPath(desk, folder));
   // As replay would write what happened: from tip to tip.
   const steps = rows.slice(1).map((line, i) => {
     const tip = rows[i].slice(3);
@@ -285,7 +218,7 @@ test("files are dropped: a mesh, then what is none, and the page lives on", asyn
 
   const before = await limitedCycles(desk);
   await dragIn(desk, 2);
-  const path = await savedPath(desk);
+  const path = await savedPath(desk, folder);
   assert.equal(differing(linesOf(path), replayed(path, cube, "certified")), 0);
   const limitedAfter = await limitedCycles(desk);
   assert.ok(limitedAfter > before + 100, `limited cycles: ${before} before, ${limitedAfter} after`);
@@ -302,7 +235,7 @@ test("files are dropped: a mesh, then what is none, and the page lives on", asyn
 });
 
 test("led by touch, on a phone", async () => {
-  phone = await opened(small);
+  phone = await opened(browser, page, folder, small);
   const { x, y } = await handAt(phone);
   await phone.touchscreen.touchStart(x + 12, y);
   for (let i = 0; i < 50; ++i) {
@@ -319,20 +252,7 @@ for (const [name, scheme] of [
   ["dark", "dark"],
 ]) {
   test(`controls have names and contrast holds: ${name}`, async () => {
-    const tab = name === "phone" ? phone : desk;
-    await tab.bringToFront();
-    await tab.emulateMediaFeatures([{ name: "prefers-color-scheme", value: scheme }]);
-    await tab.addScriptTag({ path: packages.resolve("axe-core") });
-    const { violations, passes } = await tab.evaluate(() => window.axe.run());
-    assert.ok(
-      passes.some(({ id }) => id === "color-contrast"),
-      "contrast was not looked at",
-    );
-    assert.deepEqual(
-      violations.map(({ id, nodes }) => [id, ...nodes.map((node) => node.html)]),
-      [],
-    );
-    await tab.screenshot({ path: join(folder, `${name}.png`) });
+    await looksWell(name === "phone" ? phone : desk, scheme, join(folder, `${name}.png`));
   });
 }
 

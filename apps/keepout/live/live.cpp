@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "live/live.h"
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -9,8 +10,11 @@
 #include "columns.h"
 #include "command_line.h"
 #include "keepout/activation/registry.h"
+#include "keepout/factory/make_instrument_constraint.h"
+#include "keepout/index/index_cache.h"
 #include "keepout/version.h"
 #include "live/browser.h"
+#include "live/instrument_start.h"
 #include "named_mesh.h"
 #include "names.h"
 #include "number_text.h"
@@ -33,17 +37,34 @@ struct Anatomy {
 };
 
 /// What is wrong with the settings on this mesh, and what should be known, is told here, and not
-/// by the page: the constraint itself is not kept.
-std::vector<std::string> warnings_of(const LoadedMesh& loaded, const LiveOptions& options) {
+/// by the page: the constraint itself is not kept. `start`: where an instrument begins.
+std::vector<std::string> warnings_of(const LoadedMesh& loaded, const LiveOptions& options,
+                                     const std::optional<RobotStart>& start) {
   std::vector<std::string> warnings = loaded.warnings;
-  MotionConstraintSettings settings = options.constraint;
-  if (settings.activation == no_fixture) settings.activation = "all_faces";  // which asks for least
-  settings.warn = [&warnings](const std::string& text) {
+  const auto warn = [&warnings](const std::string& text) {
     warn_on_stderr(text);
     warnings.push_back(text);
   };
+  if (start) {
+    make_instrument_constraint(loaded.mesh, robot_named(options.robot).make(start->base),
+                               {.options = {.margin = options.constraint.margin}, .warn = warn});
+    return warnings;
+  }
+  MotionConstraintSettings settings = options.constraint;
+  if (settings.activation == no_fixture) settings.activation = "all_faces";  // which asks for least
+  settings.warn = warn;
   make_motion_constraint(loaded.mesh, settings);
   return warnings;
+}
+
+/// Where an instrument begins: link 0, its place and the rows of its rotation, and the joints.
+Json json_of(const RobotStart& start) {
+  Json base = Json::array();
+  for (const double x : start.base.position) base.push_back(x);
+  for (const auto& row : start.base.rotation.rowwise()) {
+    for (const double x : row) base.push_back(x);
+  }
+  return {{"base", base}, {"positions", start.positions}};
 }
 
 /// What to type after a command to get the mesh again: its name, and the space that it was turned
@@ -61,13 +82,24 @@ std::string command_name(const std::filesystem::path& mesh, const LoadOptions& l
 Anatomy anatomy_of(const std::filesystem::path& name, const LiveOptions& options) {
   const LoadedMesh loaded = load_named_mesh(name, options.load);
   const PackedMesh bytes = packed(loaded.mesh->vertices(), loaded.mesh->triangles());
-  return {.facts = {{"name", name.filename().string()},
-                    {"command_name", command_name(name, options.load)},
-                    {"vertices", loaded.mesh->vertex_count()},
-                    {"triangles", loaded.mesh->triangle_count()},
-                    {"coordinates", bytes.coordinates},
-                    {"warnings", warnings_of(loaded, options)}},
-          .text = to_base64(gzipped(bytes.bytes))};
+  std::optional<RobotStart> start;
+  if (!options.robot.empty()) {
+    start = instrument_start(name.string(), loaded.mesh, robot_named(options.robot),
+                             options.constraint.margin);
+  }
+  Anatomy anatomy{.facts = {{"name", name.filename().string()},
+                            {"command_name", command_name(name, options.load)},
+                            {"vertices", loaded.mesh->vertex_count()},
+                            {"triangles", loaded.mesh->triangle_count()},
+                            {"coordinates", bytes.coordinates},
+                            {"warnings", warnings_of(loaded, options, start)}},
+                  .text = to_base64(gzipped(bytes.bytes))};
+  if (start) {
+    anatomy.facts["start"] = json_of(*start);
+    // What a cache calls the index of a mesh is the digest of the mesh.
+    anatomy.facts["digest"] = index_cache_file(*loaded.mesh, {}).stem().string();
+  }
+  return anatomy;
 }
 
 /// As it may stand in a script element: nothing in it is read as the element's end.
@@ -87,6 +119,7 @@ void write_anatomy(std::ostream& page, const LiveOptions& options,
                 {"radius", constraint.radius}, {"tool_radius", constraint.tool_radius},
                 {"margin", constraint.margin}, {"max_step", options.max_step},
                 {"meshes", Json::array()}};
+  if (!options.robot.empty()) settings["robot"] = options.robot;
   for (const Anatomy& one : anatomy) settings["meshes"].push_back(one.facts);
   page << R"(<script type="application/json" id="settings">)" << in_script(settings) << "</script>";
   for (std::size_t i = 0; i < anatomy.size(); ++i) {
@@ -101,8 +134,13 @@ void print_page(std::ostream& out, const LiveOptions& options, const std::string
   out << options.page.string() << ", " << formatted("%.1f MB", 1e-6 * static_cast<double>(size))
       << (opened ? ", is being opened in a browser; by hand:" : "; open it in a browser:") << "\n  "
       << url << '\n'
-      << "Drag the red ball, which is the hand, into the anatomy: the blue ball is the tool, which "
-         "goes\nas far as keepout lets it. Drag beside it to turn, and use the wheel to zoom.\n";
+      << (options.robot.empty()
+              ? "Drag the red ball, which is the hand, into the anatomy: the blue ball is the "
+                "tool, "
+                "which goes\nas far as keepout lets it."
+              : "Drag the jaw into the anatomy: the instrument follows as far as keepout proves "
+                "that shaft,\nwrist and jaw keep clear.")
+      << " Drag beside it to turn, and use the wheel to zoom.\n";
 }
 
 }  // namespace
@@ -116,6 +154,11 @@ void add_live(CLI::App& app, LiveOptions& options) {
       ->type_name("")
       ->capture_default_str();
   add_spaces(command, options.load);
+  CLI::Option* const robot =
+      command
+          .add_option("--robot", options.robot,
+                      "Drag the jaw of a whole instrument, in joint space, instead of a ball")
+          ->check(one_of({"psm"}));
   command.add_option("--out", options.page, "Where to write the page")
       ->type_name("PAGE.html")
       ->capture_default_str();
@@ -124,13 +167,16 @@ void add_live(CLI::App& app, LiveOptions& options) {
   std::vector<std::string> rules = names(activation_rules());
   rules.emplace_back(no_fixture);
   add_name(command, "--activation", options.constraint.activation, std::move(rules),
-           "Rule that chooses the planes; none: no fixture");
+           "Rule that chooses the planes; none: no fixture")
+      ->excludes(robot);
   add_length(command, "--tool-radius", options.constraint.tool_radius, Zero::allowed,
-             "Radius of the ball around the tip that shall not touch the surface");
+             "Radius of the ball around the tip that shall not touch the surface")
+      ->excludes(robot);
   add_length(command, "--margin", options.constraint.margin, Zero::allowed,
              "Distance to keep between tool and surface; the certified rule needs one");
   add_length(command, "--radius", options.constraint.radius, Zero::refused,
-             "Radius of the motion sphere");
+             "Radius of the motion sphere")
+      ->excludes(robot);
   add_length(command, "--max-step", options.max_step, Zero::refused,
              "Longest way of the tool in a cycle of 1 ms");
   command.footer(
@@ -140,8 +186,9 @@ void add_live(CLI::App& app, LiveOptions& options) {
 }
 
 void live(const LiveOptions& options, std::ostream& out) {
-  require_within_reach(options.max_step, options.constraint.radius);
-  const std::filesystem::path template_file = page_template_file("live.html");
+  if (options.robot.empty()) require_within_reach(options.max_step, options.constraint.radius);
+  const std::filesystem::path template_file =
+      page_template_file(options.robot.empty() ? "live.html" : "live_robot.html");
   const PageTemplate parts =
       read_page_template(template_file, "<!-- keepout live: the anatomy goes here -->");
   std::vector<NamedPath> inputs{{"the page without an anatomy", template_file}};

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <iosfwd>
+#include <string>
 #include <vector>
 
 #include "keepout/factory/make_motion_constraint.h"
@@ -19,6 +20,7 @@ namespace keepout::app {
 enum class Opening : std::uint8_t { by_the_desktop, by_hand };
 
 struct LiveOptions {
+  std::string robot = {};  // whose instrument is dragged; empty: a ball
   std::vector<std::filesystem::path> meshes{"skull"};
   LoadOptions load = {};
   std::filesystem::path page = "keepout-live.html";            // to be written

@@ -17,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include "anatomy.h"
 #include "clip.h"
 #include "findings.h"
 #include "json_text.h"
@@ -32,24 +33,12 @@
 namespace {
 
 using keepout::Vec3;
+using keepout::web::failure;
 using keepout::web::json;
 using keepout::web::json_list;
+using keepout::web::made;
 
-std::string failure;  // why the last call that returned null failed
-std::string text;     // the last one that was handed out
-
-/// What make() makes; null, with a message, where it throws.
-template <class Make>
-auto made(const Make& make) noexcept -> decltype(make().release()) {
-  try {
-    return make().release();
-  } catch (const std::bad_alloc&) {
-    failure = "there is not enough memory for it";
-  } catch (const std::exception& error) {
-    failure = error.what();
-  }
-  return nullptr;
-}
+std::string text;  // the last one that was handed out
 
 /// Null, with a message, where it throws.
 template <class Make>
@@ -67,29 +56,6 @@ const char* made_text(const Make& make) noexcept {
 const char* literal(std::string_view words) noexcept { return words.data(); }
 
 }  // namespace
-
-/// A mesh, the one index that all guards on it share, and what its file was found to be.
-struct Anatomy {
-  explicit Anatomy(keepout::LoadedMesh loaded)
-      : mesh(std::move(loaded.mesh)),
-        index(std::make_shared<const keepout::WideBvh>(mesh)),
-        warnings(std::move(loaded.warnings)) {}
-
-  explicit Anatomy(keepout::Surface surface)
-      : Anatomy(keepout::LoadedMesh{
-            .mesh = std::make_shared<const keepout::Mesh>(std::move(surface))}) {}
-
-  /// A guard on it.
-  keepout::MotionConstraint guard(const keepout::MotionConstraintSettings& settings) const {
-    return make_motion_constraint(mesh, index, settings);
-  }
-
-  std::shared_ptr<const keepout::Mesh> mesh;
-  std::shared_ptr<const keepout::SpatialIndex> index;
-  std::vector<std::string> warnings;
-  std::unique_ptr<keepout::MotionConstraint>
-      probe;  // what keepout_clearance asks, once it was asked
-};
 
 /// What a control cycle came to, as it lies in memory. Valid until the guard's next call.
 struct Cycle {

@@ -2,19 +2,26 @@
 // The page that `keepout live` writes, what it says, and what it refuses.
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
+#include <array>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "apps/command_process.h"
 #include "apps/page/unpacked_page.h"
 #include "keepout/fixtures/shapes.h"
+#include "keepout/geometry/pose.h"
+#include "keepout/index/index_cache.h"
 #include "keepout/mesh/binary_stl.h"
 #include "keepout/mesh/load_mesh.h"
+#include "keepout/oracle/instrument_oracle.h"
 #include "keepout/version.h"
 #include "live/browser.h"
 
@@ -31,7 +38,9 @@ class Live : public testing::Test {
  protected:
   void SetUp() override {
     fs::create_directory(folder_.file("web"));
-    folder_.write("web/live.html", "<p>before</p>\n" + place + "<p>after</p>\n");
+    for (const std::string page : {"web/live.html", "web/live_robot.html"}) {
+      folder_.write(page, "<p>before</p>\n" + place + "<p>after</p>\n");
+    }
   }
   Outcome run(const std::string& arguments, const std::string& environment = {}) const {
     return folder_.run("live " + arguments,
@@ -106,6 +115,38 @@ TEST_F(Live, BeginsWithTheCertifiedRule) {
   EXPECT_EQ(told.at("tool_radius"), 3.0);
   EXPECT_EQ(told.at("margin"), 0.2);
   EXPECT_EQ(told.at("max_step"), 0.5);
+}
+
+TEST_F(Live, AnInstrumentBeginsWithAllBodiesClearAndItsPortBesideTheMesh) {
+  const Outcome outcome = run("cortex --robot psm --margin 0.5");
+  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  EXPECT_NE(outcome.output.find("Drag the jaw"), std::string::npos) << outcome.output;
+  const Json told = settings();
+  EXPECT_EQ(told.at("robot"), "psm");
+  EXPECT_EQ(told.at("margin"), 0.5);
+  const Json& facts = told.at("meshes").at(0);
+  const auto mesh = std::make_shared<const Mesh>(make_shape("cortex"));
+  EXPECT_EQ(facts.at("digest"), index_cache_file(*mesh, {}).stem().string());
+  const auto numbers = facts.at("start").at("base").get<std::array<double, 12>>();
+  Pose base{Vec3(numbers.data()), Mat3(Eigen::Map<const Mat3>(numbers.data() + 3).transpose())};
+  EXPECT_TRUE((base.rotation * base.rotation.transpose()).isIdentity(1e-12));
+  EXPECT_NEAR(base.rotation.determinant(), 1.0, 1e-12);
+  EXPECT_GT(distance_to(mesh->bounds(), base.position), 0.0);
+  oracle::InstrumentOracle judge(std::make_shared<const oracle::TriangleTree>(mesh),
+                                 oracle::judged_psm(), base);
+  judge.move_to(facts.at("start").at("positions").get<std::vector<double>>());
+  for (std::size_t body = 0; body < judge.bodies(); ++body) {
+    EXPECT_GE(judge.clearance(body, 0.5), 0.5) << body;
+  }
+  EXPECT_LT(judge.clearance(judge.bodies() - 1, 30.0), 25.0) << "the jaw is before the surface";
+}
+
+TEST_F(Live, WhatIsOfABallIsRefusedForAnInstrument) {
+  expect_refused("cube --robot pms", "there is no 'pms'; did you mean 'psm'?", 2);
+  expect_refused("cube --robot psm --activation paper", "--activation", 2);
+  expect_refused("cube --robot psm --tool-radius 1", "--tool-radius", 2);
+  expect_refused("cube --robot psm --radius 1", "--radius", 2);
+  expect_refused("cube --robot psm --margin 25", "cube: there is no room for the instrument");
 }
 
 TEST_F(Live, AMeshThatWasTurnedIsNamedAsItWas) {

@@ -84,8 +84,7 @@ std::vector<std::filesystem::path> meshes_of(const PlanOptions& options) {
 
 void run_scene(const PlanOptions& options, Scene& scene, Progress& progress, const StopSignal& stop,
                std::vector<RobotPlanningRun>& runs) {
-  const RobotUnderTest& robot =
-      *std::ranges::find(robots_under_test(), options.robot, &RobotUnderTest::name);
+  const RobotUnderTest& robot = robot_named(options.robot);
   const auto tree = std::make_shared<const oracle::TriangleTree>(scene.mesh());
   progress.show(scene.name() + ", drawing problems");
   for (const RobotProblem& problem :

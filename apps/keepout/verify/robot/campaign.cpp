@@ -25,13 +25,6 @@ constexpr std::uint64_t sampled = 2000;  // blocked cycles to each that is searc
 constexpr int hopeless_after =
     50;  // cycles without any motion being proven, until a start is given up
 
-const RobotUnderTest& robot_named(const std::string& name) {
-  const auto robots = robots_under_test();
-  const auto found = std::ranges::find(robots, name, &RobotUnderTest::name);
-  if (found == robots.end()) throw Error("there is no robot '" + name + "'");
-  return *found;
-}
-
 bool is_raised(Scenario scenario, std::size_t cycle) noexcept {
   const bool is_odd = (cycle / block) % 2 == 1;
   return scenario == Scenario::raised ? is_odd : scenario == Scenario::wedged && !is_odd;

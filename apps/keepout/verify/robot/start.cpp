@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "keepout/error.h"
 #include "keepout/fixtures/robots.h"
 #include "verify/setup.h"
 
@@ -68,6 +69,13 @@ std::span<const RobotUnderTest> robots_under_test() {
         &oracle::judged_seven_joint_arm,
         {{-1, 1}, {0.2, 0.9}, {-1, 1}, {-1.6, -0.8}, {-1, 1}, {0.3, 1.2}, {-1, 1}}}}};
   return robots;
+}
+
+const RobotUnderTest& robot_named(const std::string& name) {
+  const auto robots = robots_under_test();
+  const auto found = std::ranges::find(robots, name, &RobotUnderTest::name);
+  if (found == robots.end()) throw Error("there is no robot '" + name + "'");
+  return *found;
 }
 
 std::string_view name(Scenario scenario) noexcept {

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -27,6 +28,9 @@ struct RobotUnderTest {
   std::vector<Range> starts;  // of each joint, where motions begin [rad or length]
 };
 std::span<const RobotUnderTest> robots_under_test();
+
+/// The one of a name. Throws Error when there is none.
+const RobotUnderTest& robot_named(const std::string& name);
 
 /// What is done with an instrument.
 enum class Scenario : std::uint8_t {

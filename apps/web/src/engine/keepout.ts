@@ -7,7 +7,7 @@
 export type Vec3 = readonly [x: number, y: number, z: number];
 
 /** What emscripten's module offers of which anything here makes use. */
-interface Module {
+export interface Module {
   readonly HEAPU8: Uint8Array;
   readonly HEAPU32: Uint32Array;
   readonly HEAPF64: Float64Array;
@@ -62,10 +62,10 @@ interface Module {
 }
 
 /** What emscripten's loader makes a module of: build/wasm/keepout.mjs. */
-export type ModuleFactory = (options: {
+export type ModuleFactory<M extends Module = Module> = (options: {
   wasmBinary: Uint8Array;
   locateFile: (name: string) => string;
-}) => Promise<Module>;
+}) => Promise<M>;
 
 /** Which rule keeps the tool out; with "none" it goes wherever the hand leads. */
 export type Rule = "none" | "all_faces" | "paper" | "certified";
@@ -133,17 +133,29 @@ export interface Counterexample {
 }
 
 /** The engine, ready to be asked. What it refuses is thrown, in its own words. */
-export class Keepout {
+export class Keepout<M extends Module = Module> {
   /** Names of generated meshes. */
   readonly shapes: readonly string[];
 
-  private constructor(readonly module: Module) {
+  private constructor(readonly module: M) {
     this.shapes = JSON.parse(this.text(this.given(module._keepout_shapes())));
   }
 
-  static async load(make: ModuleFactory, wasmBinary: Uint8Array): Promise<Keepout> {
+  static async load<M extends Module>(
+    make: ModuleFactory<M>,
+    wasmBinary: Uint8Array,
+  ): Promise<Keepout<M>> {
     // Nothing is looked for: the binary is here.
     return new Keepout(await make({ wasmBinary, locateFile: (name) => name }));
+  }
+
+  /** All there are, by their numbers. */
+  statuses(): { name: string; reason: string }[] {
+    const all = [];
+    for (let i = 0; this.statusName(i) !== "unknown"; ++i) {
+      all.push({ name: this.statusName(i), reason: this.statusReason(i) });
+    }
+    return all;
   }
 
   counterexamples(): Counterexample[] {
@@ -229,13 +241,13 @@ export class Keepout {
     return address;
   }
 
-  private allocate(bytes: number): number {
+  allocate(bytes: number): number {
     const place = this.module._malloc(bytes);
     if (place === 0) throw new Error("there is not enough memory for it");
     return place;
   }
 
-  private withText<T>(text: string, use: (address: number) => T): T {
+  withText<T>(text: string, use: (address: number) => T): T {
     const bytes = new TextEncoder().encode(`${text}\0`);
     const place = this.allocate(bytes.length);
     try {

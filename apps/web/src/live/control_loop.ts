@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import type { Anatomy, Cycle, Guard, GuardSettings, Keepout, Vec3 } from "../engine/keepout.ts";
 import { PathRecord } from "./path_record.ts";
+import { mostCycles } from "./protocol.ts";
 
 /** How long the hand takes to come by 63 % to where the pointer has jumped. [cycles] */
-const handSmoothing = 8;
-/** Statuses up to this one, fallback, come with a motion: see keepout/status.h. */
-const lastOk = 3;
+export const handSmoothing = 8;
+/** Statuses up to this one, yielding, come with a motion: see keepout/status.h. */
+export const lastOk = 4;
 /** Nearer than this the hand is there. [mm] */
 const arrival = 1e-6;
 
@@ -15,7 +16,7 @@ const arrival = 1e-6;
  * the tool goes towards the hand as far as the guard allows.
  */
 export class ControlLoop {
-  readonly record = new PathRecord();
+  readonly record = new PathRecord(6, mostCycles);
   cycles = 0;
   limited = 0;
   /** What the last cycle came to; of none yet: null. */
@@ -96,7 +97,7 @@ export class ControlLoop {
     const wasOk = this.last !== null && this.last.status <= lastOk;
     this.last = this.guard.follow(this.hand_);
     this.tip_ = this.last.tip;
-    this.record.add(this.hand_, before, wasOk);
+    this.record.add([...this.hand_, ...before], wasOk);
     ++this.cycles;
     if (this.last.activeCount > 0) ++this.limited;
     return this.advanceReplay(before);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import type { Vec3 } from "../engine/keepout.ts";
-import type { Scene } from "./scene.ts";
+import type { AnatomyScene } from "./anatomy_scene.ts";
 
 /** How near a pointer must be to take hold, or on the ball. [px] */
 const reach = { mouse: 30, touch: 52 } as const;
@@ -19,25 +19,45 @@ const ways: Readonly<Record<string, Vec3>> = {
   PageDown: [0, 0, -1],
 };
 
+/** How fast keys turn the hand, and how far a pixel of the wheel or of a second finger does. [rad] */
+const turnSpeed = { usual: 1, slow: 0.2 } as const;
+const pixelTurn = 0.004;
+
+/** About which axis of the view each key turns: the one to the right, up, and into it. */
+const turns: Readonly<Record<string, Vec3>> = {
+  w: [-1, 0, 0],
+  s: [1, 0, 0],
+  a: [0, -1, 0],
+  d: [0, 1, 0],
+  q: [0, 0, -1],
+  e: [0, 0, 1],
+};
+
 /**
  * The hand, led by mouse, touch or keys. A pointer that takes hold of it leads it across the view,
  * at the depth where it was taken; the wheel meanwhile leads it deeper. Elsewhere a pointer turns
- * the view. Let go, the hand follows the tool; keys hold it until Escape.
+ * the view. Let go, the hand follows the tool; keys hold it until Escape. A hand that can be turned
+ * is turned by letters, by the wheel with Shift, and by a second finger.
  */
 export class HandInput {
   private hand: Vec3 = [0, 0, 0];
   private pointer: number | null = null;
   private grip: { dx: number; dy: number } = { dx: 0, dy: 0 };
+  private finger = { x: 0, y: 0 }; // where a second one is [px]
   private isHeld = false;
   private readonly keys = new Set<string>();
   private isSlow = false;
   private keyClock = 0;
 
-  /** `hold`: told where the hand is, or null when it lets go. */
+  /**
+   * `hold`: told where the hand is, or null when it lets go. `turn`: told how the hand turns, about
+   * an axis of the mesh's frame, as long as the angle [rad]; without it, it does not.
+   */
   constructor(
-    private readonly scene: Scene,
+    private readonly scene: AnatomyScene,
     private readonly view: HTMLElement,
     private readonly hold: (place: Vec3 | null) => void,
+    private readonly turn?: (rotation: Vec3) => void,
   ) {
     // Before the camera's own controls see it.
     view.addEventListener("pointerdown", (event) => this.take(event), { capture: true });
@@ -51,7 +71,7 @@ export class HandInput {
     view.addEventListener("keydown", (event) => this.press(event));
     view.addEventListener("keyup", (event) => {
       this.isSlow = event.shiftKey;
-      this.keys.delete(event.key);
+      this.keys.delete(keyOf(event));
     });
     view.addEventListener("blur", () => this.keys.clear());
   }
@@ -70,6 +90,10 @@ export class HandInput {
   }
 
   private take(event: PointerEvent): void {
+    if (this.pointer !== null && this.turn) {
+      event.stopPropagation();
+      this.finger = { x: event.clientX, y: event.clientY };
+    }
     if (event.button !== 0 || this.pointer !== null) return;
     const at = this.inView(event);
     const hand = this.scene.project(this.hand);
@@ -91,7 +115,12 @@ export class HandInput {
   private lead(event: PointerEvent): void {
     if (this.pointer === null) return;
     event.stopPropagation();
-    if (event.pointerId !== this.pointer) return;
+    if (event.pointerId !== this.pointer) {
+      const { x, y } = this.finger;
+      this.finger = { x: event.clientX, y: event.clientY };
+      this.turnBy([pixelTurn * (event.clientY - y), pixelTurn * (event.clientX - x), 0]);
+      return;
+    }
     const at = this.inView(event);
     this.go(this.scene.unproject(at.x + this.grip.dx, at.y + this.grip.dy, this.hand));
   }
@@ -111,20 +140,24 @@ export class HandInput {
     if (this.pointer === null) return;
     event.stopPropagation();
     event.preventDefault();
-    this.move([0, 0, -wheelDepth * event.deltaY]);
+    // With Shift, some browsers say that the wheel went across.
+    const pixels = event.deltaY || event.deltaX;
+    if (event.shiftKey && this.turn) this.turnBy([0, 0, pixelTurn * pixels]);
+    else this.move([0, 0, -wheelDepth * pixels]);
   }
 
   private press(event: KeyboardEvent): void {
     if (event.altKey || event.ctrlKey || event.metaKey) return;
     this.isSlow = event.shiftKey;
     if (event.key === "Escape") this.release();
-    if (ways[event.key] === undefined) return;
+    const key = keyOf(event);
+    if (ways[key] === undefined && (turns[key] === undefined || !this.turn)) return;
     event.preventDefault();
     if (this.keys.size === 0) {
       this.keyClock = performance.now();
       requestAnimationFrame(() => this.leadByKeys());
     }
-    this.keys.add(event.key);
+    this.keys.add(key);
   }
 
   private leadByKeys(): void {
@@ -133,17 +166,23 @@ export class HandInput {
     const seconds = Math.min(now - this.keyClock, 200) / 1000;
     this.keyClock = now;
     if (this.keys.size === 0) return;
-    const distance = seconds * (this.isSlow ? keySpeed.slow : keySpeed.usual);
-    const way = [0, 1, 2].map((axis) =>
-      [...this.keys].reduce((sum, key) => sum + distance * (ways[key]?.[axis] ?? 0), 0),
-    );
-    this.move(way as unknown as Vec3);
+    const speed = this.isSlow ? "slow" : "usual";
+    const sum = (table: typeof ways, length: number) =>
+      [0, 1, 2].map((axis) =>
+        [...this.keys].reduce((all, key) => all + length * (table[key]?.[axis] ?? 0), 0),
+      ) as unknown as Vec3;
+    this.move(sum(ways, seconds * keySpeed[speed]));
+    this.turnBy(sum(turns, seconds * turnSpeed[speed]));
     requestAnimationFrame(() => this.leadByKeys());
   }
 
   private move(way: Vec3): void {
     const across = this.scene.across(...way);
     this.go(this.hand.map((value, i) => value + (across[i] as number)) as unknown as Vec3);
+  }
+
+  private turnBy(angles: Vec3): void {
+    if (angles.some((angle) => angle !== 0)) this.turn?.(this.scene.across(...angles));
   }
 
   private go(hand: Vec3): void {
@@ -161,3 +200,6 @@ export class HandInput {
     };
   }
 }
+
+/** What was pressed, letters as they are without Shift. */
+const keyOf = ({ key }: KeyboardEvent): string => (key.length === 1 ? key.toLowerCase() : key);

@@ -4,10 +4,18 @@ import type { GuardSettings, Rule, Vec3 } from "../engine/keepout.ts";
 import { ClearanceChart } from "./clearance_chart.ts";
 import { CounterexampleView } from "./counterexample_view.ts";
 import { HandInput } from "./hand_input.ts";
-import { element, embeddedText, grouped, type PageSettings, toast } from "./page.ts";
+import {
+  element,
+  embeddedText,
+  grouped,
+  made,
+  type PageSettings,
+  roomBetweenCards,
+  save,
+  toast,
+} from "./page.ts";
 import { type PathHeader, parsePath, pathText, replayCommand } from "./path_file.ts";
-import { PathRecord } from "./path_record.ts";
-import type { FromWorker, Source, State, ToWorker } from "./protocol.ts";
+import { type FromWorker, mostCycles, type Source, type State, type ToWorker } from "./protocol.ts";
 import { Readings, showFindings } from "./readings.ts";
 import { Scene } from "./scene.ts";
 
@@ -52,23 +60,13 @@ page.meshes.forEach((mesh, i) => {
 chooseMesh();
 
 const view = element("view", HTMLElement);
-const scene = makeScene();
+const scene = made(() => new Scene(view, () => roomBetweenCards(view), placeGrip));
 const chart = new ClearanceChart(element("chart", HTMLElement));
 const failures = new CounterexampleView();
 const input = new HandInput(scene, view, (place) => {
   grip.classList.remove("new");
   tell({ kind: "hand", place });
 });
-
-function makeScene(): Scene {
-  try {
-    return new Scene(view, roomBetweenCards, () => placeGrip());
-  } catch (error) {
-    element("loading", HTMLElement).textContent =
-      "This browser draws nothing here: WebGL 2 is missing, or switched off.";
-    throw error;
-  }
-}
 
 function tell(message: ToWorker): void {
   worker.postMessage(message);
@@ -84,7 +82,7 @@ function hear(message: FromWorker): void {
       return;
     case "surface":
       input.drop();
-      scene.show(message.positions, message.corners, message.origin);
+      scene.show(message);
       chart.clear();
       state = null;
       shown = awaited;
@@ -135,12 +133,6 @@ function hear(message: FromWorker): void {
   }
 }
 
-/** The share of the view's width between the columns of cards; on a phone they are below it. */
-function roomBetweenCards(): number {
-  const column = document.querySelector(".column")?.getBoundingClientRect().right ?? 0;
-  return Math.max(1 - (2 * (column + 40)) / view.clientWidth, 0.3);
-}
-
 /** The tool begins beside the anatomy. */
 function begin(): void {
   const place = scene.placeBeside(settings.toolRadius + settings.margin);
@@ -161,9 +153,7 @@ function show(now: State): void {
 
 /** The ring around the hand, where the view has it. */
 function placeGrip(): void {
-  if (state === null) return;
-  const { x, y } = scene.project(state.hand);
-  grip.style.transform = `translate(${0.5 * (1 + x) * view.clientWidth}px, ${0.5 * (1 - y) * view.clientHeight}px)`;
+  if (state !== null) grip.style.transform = scene.shift(state.hand);
 }
 
 // What is chosen.
@@ -280,17 +270,14 @@ function takePath(use: "save" | "replay", lines: Float64Array, made: GuardSettin
     return;
   }
   const header: PathHeader = { keepout: page.keepout, mesh: shown.command, settings: made };
-  const link = document.createElement("a");
-  link.href = URL.createObjectURL(new Blob([pathText(header, lines)], { type: "text/plain" }));
-  link.download = `keepout-path-${nameOf(shown).replaceAll(/[^\w.-]/g, "_")}.txt`;
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
-  const isFull = lines.length / 6 >= PathRecord.capacity;
+  const file = `keepout-path-${nameOf(shown).replaceAll(/[^\w.-]/g, "_")}.txt`;
+  save(file, pathText(header, lines));
+  const isFull = lines.length / 6 >= mostCycles;
   toast(
     `${grouped(lines.length / 6)} cycles saved${isFull ? ", the first ten minutes" : ""}. ` +
       (made.rule === "none"
         ? "Open the file here to see them again."
-        : `To do them again outside: ${replayCommand(header, link.download)}`),
+        : `To do them again outside: ${replayCommand(header, file)}`),
   );
 }
 

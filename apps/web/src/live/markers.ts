@@ -67,6 +67,30 @@ export class Trail {
   }
 }
 
+/** The spring between hand and tool. */
+export class Spring {
+  readonly line = new three.Mesh(
+    new three.CylinderGeometry(1, 1, 1, 12),
+    new three.MeshBasicMaterial({
+      color: colors.hand,
+      transparent: true,
+      opacity: 0.75,
+      depthTest: false,
+    }),
+  );
+
+  /** From here to there; not seen where that is shorter than `least`. */
+  stretch(from: three.Vector3, to: three.Vector3, radius: number, least: number): void {
+    const way = to.clone().sub(from);
+    const length = way.length();
+    this.line.visible = length > least;
+    if (!this.line.visible) return;
+    this.line.position.copy(from).addScaledVector(way, 0.5);
+    this.line.quaternion.setFromUnitVectors(new three.Vector3(0, 1, 0), way.divideScalar(length));
+    this.line.scale.set(radius, length, radius);
+  }
+}
+
 /** An active plane: a disc with a rim, of radius 1. */
 export function sheet(): three.Group {
   const shared = { color: colors.plane, side: three.DoubleSide, transparent: true };

@@ -27,6 +27,40 @@ export function embeddedText(id: string): string {
 /** For people: 1,234,567. */
 export const grouped = (count: number): string => Math.round(count).toLocaleString("en");
 
+/** The element of an identifier shows a text: changed where it has changed, as a screen reader shall not hear what has not. */
+export function set(where: string | Element | null, text: string): void {
+  const place = typeof where === "string" ? document.getElementById(where) : where;
+  if (place && place.textContent !== text) place.textContent = text;
+}
+
+export const millimetres = (length: number): string => `${length.toFixed(2)} mm`;
+
+/** Hands a file to whoever looks at the page. */
+export function save(name: string, text: string): void {
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(new Blob([text], { type: "text/plain" }));
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
+}
+
+/** The share of the view's width between the columns of cards; on a phone they are below it. */
+export function roomBetweenCards(view: HTMLElement): number {
+  const column = document.querySelector(".column")?.getBoundingClientRect().right ?? 0;
+  return Math.max(1 - (2 * (column + 40)) / view.clientWidth, 0.3);
+}
+
+/** A scene in the view; where it cannot be made, the page says why. */
+export function made<T>(makeScene: () => T): T {
+  try {
+    return makeScene();
+  } catch (error) {
+    element("loading", HTMLElement).textContent =
+      "This browser draws nothing here: WebGL 2 is missing, or switched off.";
+    throw error;
+  }
+}
+
 let toastEnd: ReturnType<typeof setTimeout> | undefined;
 
 /** A word to the user, for as long as it takes to read. */

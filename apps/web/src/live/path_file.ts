@@ -80,6 +80,6 @@ function parseHeader(text: string, line: number): PathHeader {
 }
 
 /** The fewest digits that read back exactly; JavaScript would lose the sign of zero. */
-function numberText(value: number): string {
+export function numberText(value: number): string {
   return Object.is(value, -0) ? "-0" : String(value);
 }

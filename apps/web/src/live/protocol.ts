@@ -2,6 +2,8 @@
 /** What the page and its worker, in which keepout runs, tell each other. */
 import type { Counterexample, Findings, GuardSettings, Plane, Vec3 } from "../engine/keepout.ts";
 import type { PackedSurface } from "../page/embedded_surface.ts";
+import type { DrawnSurface } from "./drawn_surface.ts";
+import type { LoopState, StatusWords } from "./status_line.ts";
 
 /** A mesh that `keepout live` has put into the page: see apps/keepout/live. */
 export interface EmbeddedMesh extends PackedSurface {
@@ -10,6 +12,9 @@ export interface EmbeddedMesh extends PackedSurface {
   readonly command_name: string;
   readonly warnings: readonly string[];
 }
+
+/** Of a path: ten minutes at 1 kHz. */
+export const mostCycles = 600_000;
 
 /** Where an anatomy comes from. */
 export type Source =
@@ -34,14 +39,11 @@ export type ToWorker =
   | { readonly kind: "pause"; readonly paused: boolean };
 
 /** What the last cycles came to: told some sixty times a second. */
-export interface State {
-  /** Of the worker's clock, at the last cycle. [ms] */
-  readonly time: number;
+export interface State extends LoopState {
   readonly tip: Vec3;
   readonly hand: Vec3;
   /** On the hand. [N] */
   readonly force: Vec3;
-  readonly status: number;
   /** From the ball of the tool to the surface; below 0 inside. NaN where unknown. [mm] */
   readonly toolClearance: number;
   /** The same of a ball as large where the hand is. [mm] */
@@ -49,31 +51,15 @@ export interface State {
   readonly planes: readonly Plane[];
   readonly planeCount: number;
   readonly triangles: number;
-  /** All cycles since the anatomy was loaded, and those in which a plane held the tool back. */
-  readonly cycles: number;
-  readonly limited: number;
-  /** Cycles that were due and not run, as the processor was busy. */
-  readonly lost: number;
-  /** Of a cycle, over the last second. [us] */
-  readonly stepTime: number;
-  /** Cycles a second, over the last second. */
-  readonly rate: number;
 }
 
 export type FromWorker =
   | {
       readonly kind: "ready";
       readonly shapes: readonly string[];
-      readonly statuses: readonly { readonly name: string; readonly reason: string }[];
+      readonly statuses: readonly StatusWords[];
     }
-  /** What to draw: (n, 3) coordinates from `origin` on, and (m, 3) corners. */
-  | {
-      readonly kind: "surface";
-      readonly name: string;
-      readonly origin: Vec3;
-      readonly positions: Float32Array;
-      readonly corners: Uint32Array;
-    }
+  | ({ readonly kind: "surface" } & DrawnSurface)
   | { readonly kind: "findings"; readonly findings: Findings }
   /** The index is built: the tool can be placed. */
   | { readonly kind: "guarded" }

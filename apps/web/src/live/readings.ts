@@ -1,40 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import { type Findings, type GuardSettings, spring } from "../engine/keepout.ts";
-import { element, grouped } from "./page.ts";
+import { element, grouped, millimetres, set } from "./page.ts";
 import type { State } from "./protocol.ts";
-
-/** How each status is to be taken: the colour of its chip. */
-const moods: Readonly<Record<string, "free" | "limited">> = {
-  free: "free",
-  limited: "limited",
-  recovering: "limited",
-  fallback: "limited",
-};
+import { StatusLine, type StatusWords } from "./status_line.ts";
 
 /** The card that tells what keepout does. */
 export class Readings {
-  private readonly status = element("status", HTMLElement);
+  private readonly line: StatusLine;
   private readonly figure = element("clearance", HTMLElement);
-  private readonly spoken = element("spoken", HTMLElement);
-  private spokenAt = 0;
-  private frames = { at: performance.now(), count: 0 };
 
-  constructor(private readonly statuses: readonly { name: string; reason: string }[]) {}
+  constructor(statuses: readonly StatusWords[]) {
+    this.line = new StatusLine(statuses);
+  }
 
   /** `frames`: drawn since the beginning. */
   show(state: State, settings: GuardSettings, frames: number): void {
-    const { name, reason } = this.statuses[state.status] ?? { name: "unknown", reason: "" };
     const isGuarded = settings.rule !== "none";
-    this.status.className = moods[name] ?? "stopped";
-    set(this.status.querySelector("b"), isGuarded ? name.replaceAll("_", " ") : "no fixture");
-    set(this.status.querySelector("span"), isGuarded ? reason : "nothing holds the tool back");
-
-    // What a screen reader says is heard out before it changes.
-    if (state.time - this.spokenAt > 2000) {
-      this.spokenAt = state.time;
-      set(this.spoken, isGuarded ? `${name}: ${reason}` : "no fixture");
-    }
-
+    this.line.show(state, isGuarded, frames);
     const isInside = state.toolClearance < 0;
     this.figure.parentElement?.classList.toggle("inside", isInside);
     set(this.figure, Number.isNaN(state.toolClearance) ? "–" : millimetres(state.toolClearance));
@@ -50,19 +32,6 @@ export class Readings {
     set("margin-kept", isGuarded ? millimetres(settings.margin) : "–");
     set("planes", isGuarded ? `${state.planes.length} of ${state.planeCount}` : "–");
     set("triangles", isGuarded ? grouped(state.triangles) : "–");
-    set("step-time", state.rate > 0 ? `${state.stepTime.toFixed(1)} µs` : "–");
-    set("rate", state.rate > 0 ? grouped(state.rate) : "–");
-    set("limited", `${grouped(state.limited)} of ${grouped(state.cycles)}`);
-    set("lost", grouped(state.lost));
-    this.countFrames(frames);
-  }
-
-  private countFrames(frames: number): void {
-    const now = performance.now();
-    if (now - this.frames.at < 1000) return;
-    const rate = (1000 * (frames - this.frames.count)) / (now - this.frames.at);
-    set("frames", rate.toFixed(0));
-    this.frames = { at: now, count: frames };
   }
 }
 
@@ -97,14 +66,4 @@ function item(text: string): HTMLLIElement {
 
 function sentence(advice: string): string {
   return `What to do: ${advice}.`;
-}
-
-function millimetres(length: number): string {
-  return `${length.toFixed(2)} mm`;
-}
-
-/** Changes a text where it has changed: a screen reader shall not hear what has not. */
-function set(where: string | Element | null, text: string): void {
-  const place = typeof where === "string" ? document.getElementById(where) : where;
-  if (place && place.textContent !== text) place.textContent = text;
 }

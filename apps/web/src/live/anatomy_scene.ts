@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: BSD-3-Clause
+import * as three from "three";
+import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import type { Vec3 } from "../engine/keepout.ts";
+import { StillPicture } from "../page/still_picture.ts";
+import type { DrawnSurface } from "./drawn_surface.ts";
+import { colors } from "./markers.ts";
+
+/** The anatomy, and what moves in it, which who extends this says. */
+export abstract class AnatomyScene {
+  readonly camera = new three.PerspectiveCamera(32, 1, 0.1, 10_000);
+  private readonly renderer: three.WebGLRenderer;
+  protected readonly controls: OrbitControls;
+  private readonly still: StillPicture;
+  protected readonly anatomy: three.Mesh<three.BufferGeometry, three.MeshLambertMaterial>;
+  protected readonly moving = new three.Scene();
+  private readonly lit: three.Group[] = [];
+  /** Pixels drawn for each of the screen's, along a side, at most. */
+  private readonly finest: number;
+  protected corners = new Uint32Array();
+  private origin = new three.Vector3();
+  protected size = 100; // of the anatomy's box: its diagonal [mm]
+  protected toolRadius = 1;
+  private isDue = false;
+  private drawn = 0;
+
+  /**
+   * Draws into a container, and again whenever something in it changes. `room`: the share of its
+   * width that nothing covers, in the middle.
+   */
+  constructor(
+    protected readonly container: HTMLElement,
+    protected readonly room: () => number,
+    private readonly onDraw: () => void,
+  ) {
+    // The still picture has smooth edges of its own.
+    this.renderer = new three.WebGLRenderer({ antialias: false, alpha: true });
+    // Without a graphics processor every pixel takes its time.
+    const isSlow = /swiftshader|llvmpipe|software/i.test(nameOfProcessor(this.renderer));
+    this.finest = isSlow ? 0.6 : 1;
+    this.renderer.autoClear = false;
+    this.renderer.setClearColor(0, 0);
+    container.prepend(this.renderer.domElement);
+    this.camera.up.set(0, 0, 1);
+
+    const light = new three.Scene();
+    const material = new three.MeshLambertMaterial({ color: colors.bone, side: three.DoubleSide });
+    this.anatomy = new three.Mesh(new three.BufferGeometry(), material);
+    this.anatomy.frustumCulled = false;
+    light.add(this.anatomy, this.lights());
+    this.still = new StillPicture(light, this.camera, isSlow ? 0 : 4);
+
+    this.moving.add(this.lights());
+    this.moving.visible = false;
+
+    this.controls = new OrbitControls(this.camera, this.renderer.domElement);
+    this.renderer.domElement.addEventListener("webglcontextrestored", () => {
+      this.still.outdate();
+      this.redraw();
+    });
+    this.controls.addEventListener("change", () => {
+      this.still.outdate();
+      this.redraw();
+    });
+    new ResizeObserver(() => this.resize()).observe(container);
+    this.resize();
+  }
+
+  /** Frames drawn since the beginning. */
+  get frames(): number {
+    return this.drawn;
+  }
+
+  /** Another anatomy: looked at from one side, as large as the view. */
+  show({ positions, corners, origin }: DrawnSurface): void {
+    const geometry = new three.BufferGeometry();
+    geometry.setAttribute("position", new three.BufferAttribute(positions, 3));
+    geometry.setIndex(new three.BufferAttribute(corners, 1));
+    geometry.computeVertexNormals();
+    geometry.computeBoundingBox();
+    this.anatomy.geometry.dispose();
+    this.anatomy.geometry = geometry;
+    this.corners = corners;
+    this.origin.set(...origin);
+    this.size = (geometry.boundingBox as three.Box3).getSize(new three.Vector3()).length();
+    this.camera.near = 0.002 * this.size;
+    this.camera.far = 10 * this.size;
+    this.controls.minDistance = 0.02 * this.size;
+    this.controls.maxDistance = 4 * this.size;
+    this.controls.target.set(0, 0, 0);
+    this.camera.position
+      .set(-0.15, 0.95, 0.16)
+      .normalize()
+      .multiplyScalar(this.size * Math.max(1.15, 0.94 / (this.camera.aspect * this.room())));
+    this.controls.update();
+    this.moving.visible = false;
+    this.resize();
+  }
+
+  setToolRadius(radius: number): void {
+    this.toolRadius = radius;
+    this.redraw();
+  }
+
+  /** How large the tool's ball is in the view, where it is. [px] */
+  ballRadius(place: Vec3): number {
+    const depth = this.inside(place).distanceTo(this.camera.position);
+    const halfHeight = depth * Math.tan((0.5 * this.camera.fov * Math.PI) / 180);
+    return (0.5 * this.container.clientHeight * this.toolRadius) / halfHeight;
+  }
+
+  /** Where a place is in the view, from -1 to 1 both ways, and how deep. */
+  project(place: Vec3): three.Vector3 {
+    return this.inside(place).project(this.camera);
+  }
+
+  /** The same as a shift of CSS from the upper left. */
+  shift(place: Vec3): string {
+    const { x, y } = this.project(place);
+    const { clientWidth, clientHeight } = this.container;
+    return `translate(${0.5 * (1 + x) * clientWidth}px, ${0.5 * (1 - y) * clientHeight}px)`;
+  }
+
+  /** The place at the depth of another one, where the view is pointed at. */
+  unproject(x: number, y: number, depthOf: Vec3): Vec3 {
+    const depth = this.inside(depthOf).project(this.camera).z;
+    return this.outside(new three.Vector3(x, y, depth).unproject(this.camera));
+  }
+
+  /** A way given in the axes of the view: to the right, up, and into it. [mm] */
+  across(right: number, up: number, into: number): Vec3 {
+    return new three.Vector3(right, up, -into)
+      .transformDirection(this.camera.matrixWorld)
+      .multiplyScalar(Math.hypot(right, up, into))
+      .toArray() as Vec3;
+  }
+
+  /** Draws when the browser next does. */
+  redraw(): void {
+    if (this.isDue) return;
+    this.isDue = true;
+    requestAnimationFrame(() => {
+      this.isDue = false;
+      this.draw();
+    });
+  }
+
+  /** Puts what moves where it is. */
+  protected abstract arrange(): void;
+
+  private draw(): void {
+    for (const lights of this.lit) lights.quaternion.copy(this.camera.quaternion);
+    this.arrange();
+    this.still.draw(this.renderer);
+    this.renderer.render(this.moving, this.camera);
+    ++this.drawn;
+    this.onDraw();
+  }
+
+  private resize(): void {
+    const { clientWidth: width, clientHeight: height } = this.container;
+    if (width === 0 || height === 0) return;
+    this.renderer.setPixelRatio(
+      Math.min(window.devicePixelRatio, 2, this.finest * window.devicePixelRatio),
+    );
+    this.renderer.setSize(width, height);
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+    this.still.outdate();
+    this.redraw();
+  }
+
+  /** Lights that stay with the view: from its upper left, and faintly from all sides. */
+  private lights(): three.Group {
+    const group = new three.Group();
+    const sky = new three.HemisphereLight("#ffffff", "#6b6259", 0.9);
+    const key = new three.DirectionalLight("#fff3e2", 2.6);
+    key.position.set(-0.9, 1.1, 0.9);
+    const rim = new three.DirectionalLight("#cfe2ff", 0.7);
+    rim.position.set(1.6, 0.1, 0.1);
+    group.add(sky, key, rim);
+    this.lit.push(group);
+    return group;
+  }
+
+  /** From the frame of the mesh to that of the scene, whose origin is the middle of the anatomy. */
+  protected inside(place: Vec3): three.Vector3 {
+    return new three.Vector3(...place).sub(this.origin);
+  }
+
+  protected outside(point: three.Vector3): Vec3 {
+    return point.clone().add(this.origin).toArray() as Vec3;
+  }
+}
+
+/** What draws, as the browser names it. */
+function nameOfProcessor(renderer: three.WebGLRenderer): string {
+  const gl = renderer.getContext();
+  const names = gl.getExtension("WEBGL_debug_renderer_info");
+  return String(gl.getParameter(names ? names.UNMASKED_RENDERER_WEBGL : gl.RENDERER));
+}

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The judge of campaigns on a path that the page of `keepout live --robot` has saved:
+// judge_instrument_path MESH PATH. It has kinematics and distances of its own, and asks nothing of
+// the engine but how finely it tells lengths apart. Prints as JSON how many cycles there are, and
+// how many of them begin elsewhere than the one before ended, come closer than margin - band, have
+// the mesh in a body, or break a joint's limits; how close the closest comes; how far the tip goes
+// in all, and by how much the jaw turns from where it began, at the most [rad]; and in how many
+// cycles it makes less than half of the way that is asked for, with a body no farther off than the
+// margin. [mm]
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <iostream>
+#include <limits>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "keepout/error.h"
+#include "keepout/factory/make_instrument_constraint.h"
+#include "keepout/index/index_cache.h"
+#include "keepout/mesh/load_mesh.h"
+#include "verify/robot/judge.h"
+#include "verify/robot/start.h"
+
+namespace {
+
+using Json = nlohmann::json;
+using keepout::Vec3;
+
+constexpr std::string_view mark = "# path: ";
+
+/// What is JSON in the head of a path; leaves the stream behind it.
+Json head_of(std::istream& path) {
+  for (std::string line; std::getline(path, line);) {
+    if (line.starts_with(mark)) return Json::parse(line.substr(mark.size()));
+  }
+  throw keepout::Error("the path has no head");
+}
+
+keepout::Pose base_of(const Json& head) {
+  const auto numbers = head.at("base").get<std::array<double, 12>>();
+  keepout::Pose base;
+  for (int i = 0; i < 3; ++i) {
+    base.position[i] = numbers[i];
+    for (int j = 0; j < 3; ++j) base.rotation(i, j) = numbers[3 + 3 * i + j];
+  }
+  return base;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  if (argc != 3) {
+    std::cerr << "usage: judge_instrument_path MESH PATH\n";
+    return EXIT_FAILURE;
+  }
+  std::ifstream path(argv[2]);
+  const Json head = head_of(path);
+  const auto mesh = keepout::load_mesh(argv[1], {.check = keepout::MeshCheck::none}).mesh;
+  if (keepout::index_cache_file(*mesh, {}).stem().string() != head.at("digest")) {
+    throw keepout::Error("the path is of another mesh");
+  }
+  const keepout::InstrumentOptions options{
+      .margin = head.at("margin"), .band = head.at("band"), .period = head.at("period")};
+  const auto& robot = keepout::app::robot_named(head.at("robot"));
+  const keepout::Instrument instrument = robot.make(base_of(head));
+  const double tolerance =
+      keepout::make_instrument_constraint(mesh, instrument, {.options = options}).tolerance();
+  keepout::oracle::InstrumentOracle oracle(
+      std::make_shared<const keepout::oracle::TriangleTree>(mesh), robot.judged(), base_of(head));
+  const std::size_t joints = static_cast<std::size_t>(instrument.chain().size());
+  std::optional<keepout::app::RobotJudge> judge;
+  keepout::Random random(1);
+  std::vector<double> positions;
+  Vec3 tip = Vec3::Zero(), first_way = Vec3::Zero();
+  std::size_t cycles = 0, jumps = 0, below = 0, in_mesh = 0, limits = 0, held = 0;
+  double nearest = std::numeric_limits<double>::infinity(), way = 0.0, turn = 0.0;
+  const auto jaw_now = [&]() -> Vec3 {
+    const keepout::oracle::Segment& jaw = oracle.axis(oracle.bodies() - 1);
+    return (jaw.to - jaw.from).normalized();
+  };
+  const auto tip_now = [&] { return oracle.axis(oracle.bodies() - 1).to; };
+  for (std::string line; std::getline(path, line); ++cycles) {
+    std::istringstream words(line);
+    std::vector<double> numbers;
+    for (std::string word; words >> word;) numbers.push_back(std::stod(word));
+    if (numbers.size() != 2 * joints + 6) throw keepout::Error("a line of the path is cut off");
+    const auto increment = numbers.begin() + static_cast<std::ptrdiff_t>(joints);
+    const std::vector<double> from(numbers.begin(), increment);
+    if (!judge) {
+      judge.emplace(oracle, instrument.chain(), random, from, options, tolerance);
+      tip = tip_now();
+      first_way = jaw_now();
+      positions = from;
+    }
+    jumps += from == positions ? 0 : 1;
+    for (std::size_t k = 0; k < joints; ++k) positions[k] = from[k] + numbers[joints + k];
+    const keepout::app::RobotVerdict verdict = judge->judge(positions);
+    below += verdict.is_below ? 1 : 0;
+    in_mesh += verdict.least < 0.0 ? 1 : 0;
+    limits += verdict.limits_broken ? 1 : 0;
+    nearest = std::min(nearest, verdict.least);
+    const Vec3 made = tip_now() - tip;
+    const Vec3 asked(numbers.data() + 2 * joints);
+    const bool is_near = verdict.least <= options.margin;
+    held += is_near && asked.norm() > 0.05 && made.dot(asked) < 0.5 * asked.squaredNorm() ? 1 : 0;
+    way += made.norm();
+    tip = tip_now();
+    turn = std::max(turn, std::acos(std::clamp(jaw_now().dot(first_way), -1.0, 1.0)));
+  }
+  std::cout
+      << Json{{"cycles", cycles}, {"jumps", jumps},
+              {"below", below},   {"in_mesh", in_mesh},
+              {"limits", limits}, {"nearest", std::isfinite(nearest) ? Json(nearest) : Json()},
+              {"way", way},       {"turn", turn},
+              {"held", held},     {"kept", options.margin - options.band}}
+      << '\n';
+  return cycles > 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+} catch (const std::exception& error) {
+  std::cerr << "judge_instrument_path: " << error.what() << '\n';
+  return EXIT_FAILURE;
+}

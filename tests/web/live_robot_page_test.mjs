@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * The page of `keepout live --robot`, in a real browser and with real input:
+ *
+ *   live_robot_page_test.mjs KEEPOUT JUDGE_INSTRUMENT_PATH FOLDER [BROWSER]
+ *
+ * A hand drags the jaw of an instrument into the skull and about in it; what its joints did is
+ * judged by the oracle of `keepout verify --robot`, whose kinematics and distances are its own.
+ * Then it is turned, led by keys and by touch. Prints times and rates, and asserts none.
+ */
+import assert from "node:assert/strict";
+import { readFileSync, statSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
+import { after, test } from "node:test";
+import {
+  handAt,
+  large,
+  launched,
+  limitedCycles,
+  looksWell,
+  note,
+  opened,
+  programsIn,
+  root,
+  savedPath,
+  skull,
+  sleep,
+  small,
+  textOf,
+} from "./live_tab.mjs";
+
+const [keepout, judge, folder, browserPath = "/usr/bin/chromium"] = process.argv.slice(2);
+const run = programsIn(folder);
+const page = join(folder, "page.html");
+run(keepout, "live", skull, "--robot", "psm", "--no-open", "--out", page);
+const browser = await launched(browserPath);
+
+/** What the judge says of a path. */
+const judged = (path) => JSON.parse(run(judge, skull, path));
+
+/** Takes the jaw, leads it down the view into the anatomy, and about there; holds it. */
+async function dragIn(tab, seconds = 6) {
+  const { x, y } = await handAt(tab);
+  await tab.mouse.move(x, y);
+  await tab.mouse.down();
+  const begin = performance.now();
+  for (let t = 0; t < 1; t = (performance.now() - begin) / (1000 * seconds)) {
+    await tab.mouse.move(x + 90 * Math.sin(9 * t), y + 260 * Math.min(1, 3 * t));
+    await sleep(8);
+  }
+}
+
+/** Waits until the instrument was held back in so many cycles; a browser may be slow. */
+async function comesTo(tab, cycles) {
+  for (let i = 0; i < 200 && (await limitedCycles(tab)) < cycles; ++i) await sleep(50);
+  assert.ok((await limitedCycles(tab)) >= cycles, "it is not led into the skull");
+}
+
+let desk; // the page that most tests go on with
+let phone;
+
+test("the page is small, and needs nothing beside it", () => {
+  const text = readFileSync(page, "utf8");
+  const wasm = statSync(join(root, "build/wasm/keepout_robot.wasm")).size;
+  note(`page ${(text.length / 1e6).toFixed(2)} MB, wasm ${(wasm / 1e3).toFixed(0)} kB`);
+  assert.ok(text.length <= 6e6, "the page is larger than 6 MB");
+  assert.ok(wasm <= 600e3, "keepout_robot.wasm is larger than 600 kB");
+  assert.doesNotMatch(text, /(src|href)="(?!data:)[^"]*"/, "it names another file");
+});
+
+test("the jaw dragged into the skull: held back, and all bodies clear, says the judge", async () => {
+  desk = await opened(browser, page, folder, large);
+  await dragIn(desk);
+  assert.equal(await textOf(desk, "#status b"), "limited");
+  assert.match(await textOf(desk, "#status span"), /hold the motion back/);
+  assert.match(await textOf(desk, "#held"), /^by the (shaft|wrist|jaw)$/);
+  assert.match(await textOf(desk, "#clearance"), /^0\.2\d mm$/);
+  await desk.screenshot({ path: join(folder, "dragged.png") });
+  await desk.mouse.up();
+  note(
+    `limited: ${await textOf(desk, "#limited")}; lost: ${await textOf(desk, "#lost")}; a step takes ` +
+      `${await textOf(desk, "#step-time")}; ${await textOf(desk, "#rate")} cycles and ` +
+      `${await textOf(desk, "#frames")} frames a second`,
+  );
+  const path = await savedPath(desk, folder);
+  const verdict = judged(path);
+  note(JSON.stringify(verdict));
+  const { jumps, below, in_mesh, limits } = verdict;
+  assert.deepEqual([jumps, below, in_mesh, limits], [0, 0, 0, 0]);
+  assert.ok(verdict.way > 20, `the jaw went ${verdict.way} mm only`);
+  assert.ok(verdict.held >= 500, `held back in ${verdict.held} cycles only`);
+  assert.ok(verdict.nearest !== null && verdict.nearest >= verdict.kept - 1e-9);
+
+  // That judge sees what is too close: had the margin been larger, it would say so.
+  const text = readFileSync(join(folder, path), "utf8");
+  const { margin } = JSON.parse(text.match(/^# path: (.*)$/m)[1]);
+  writeFileSync(
+    join(folder, "stricter.txt"),
+    text.replace(`"margin":${margin}`, `"margin":${margin + 0.3}`),
+  );
+  assert.ok(judged("stricter.txt").below > 0, "the judge sees nothing");
+});
+
+test("it is turned by the wheel and by keys, and the hand with it", async () => {
+  await desk.click("#again");
+  await sleep(700);
+  const { x, y } = await handAt(desk);
+  await desk.mouse.move(x, y);
+  await desk.mouse.down();
+  await desk.keyboard.down("Shift");
+  for (let i = 0; i < 20; ++i) await desk.mouse.wheel({ deltaY: 10 });
+  await desk.keyboard.up("Shift");
+  await sleep(500);
+  await desk.keyboard.down("d");
+  await sleep(300);
+  await desk.keyboard.up("d");
+  await sleep(500);
+  await desk.mouse.up();
+  const turned = judged(await savedPath(desk, folder));
+  note(JSON.stringify(turned));
+  assert.ok(turned.turn > 0.5, `turned by ${turned.turn} rad only`);
+  assert.deepEqual([turned.jumps, turned.below, turned.limits], [0, 0, 0]);
+});
+
+test("led by keys, into the skull and out of hand", async () => {
+  await desk.click("#again");
+  await sleep(300);
+  const before = await limitedCycles(desk);
+  await desk.focus("#view");
+  await desk.keyboard.down("ArrowDown");
+  await comesTo(desk, before + 100);
+  await desk.keyboard.up("ArrowDown");
+  assert.doesNotMatch(await textOf(desk, "#hand-off"), /^0\.00 mm/);
+  await desk.keyboard.press("Escape");
+  await desk.waitForFunction(() =>
+    document.querySelector("#hand-off").textContent.startsWith("0.00 mm"),
+  );
+});
+
+test("a wider margin is come up to, and kept", async () => {
+  await desk.$eval("#margin", (slider) => {
+    slider.value = "1";
+    slider.dispatchEvent(new Event("input"));
+  });
+  await desk.waitForFunction(
+    () => Number.parseFloat(document.querySelector("#clearance").textContent) > 0.99,
+  );
+  await dragIn(desk, 2);
+  assert.match(await textOf(desk, "#clearance"), /^(1\.|0\.99|0\.998)/);
+  await desk.mouse.up();
+  const verdict = judged(await savedPath(desk, folder));
+  note(JSON.stringify(verdict));
+  assert.deepEqual([verdict.jumps, verdict.below, verdict.limits], [0, 0, 0]);
+});
+
+test("a path is played again, the same in every bit", async () => {
+  await desk.click("#replay");
+  await desk.waitForFunction(
+    () => document.querySelector("#toast").textContent.startsWith("Replayed"),
+    { timeout: 60_000 },
+  );
+  assert.match(await textOf(desk, "#toast"), /bit for bit/);
+});
+
+test("led by touch, on a phone, and turned by a second finger", async () => {
+  phone = await opened(browser, page, folder, small);
+  const { x, y } = await handAt(phone);
+  const finger = await phone.touchscreen.touchStart(x, y);
+  for (let i = 0; i < 50; ++i) {
+    await finger.move(x, y + 3 * i);
+    await sleep(20);
+  }
+  await comesTo(phone, 100);
+  const second = await phone.touchscreen.touchStart(x + 60, y);
+  for (let i = 0; i < 30; ++i) await second.move(x + 60 + 5 * i, y);
+  await sleep(500);
+  await second.end();
+  await finger.end();
+  const verdict = judged(await savedPath(phone, folder));
+  note(JSON.stringify(verdict));
+  assert.ok(verdict.turn > 0.1, `turned by ${verdict.turn} rad only`);
+  assert.deepEqual([verdict.jumps, verdict.below, verdict.limits], [0, 0, 0]);
+});
+
+for (const [name, scheme] of [
+  ["phone", "dark"],
+  ["light", "light"],
+  ["dark", "dark"],
+]) {
+  test(`controls have names and contrast holds: ${name}`, async () => {
+    await looksWell(name === "phone" ? phone : desk, scheme, join(folder, `${name}.png`));
+  });
+}
+
+test("nothing was complained of", () => assert.deepEqual([...desk.faults, ...phone.faults], []));
+
+after(() => browser.close());
