@@ -58,7 +58,9 @@ TEST(HapticProxy, StaysInItsGuidesAndPullsTheHandBackIntoThem) {
   options.guides = {{"corridor", Region::slab(above, Vec3::UnitX(), 1.0)}};
   HapticProxy proxy(guard_of(cube()), options);
   proxy.engage(above);
-  const HapticCycle cycle = lead(proxy, above, above + Vec3(3.0, 0.5, 0.0), 200);
+  const Vec3 aside = above + Vec3(3.0, 0.5, 0.0);
+  lead(proxy, above, aside, 200);
+  const HapticCycle cycle = proxy.cycle(aside);  // at rest
   EXPECT_LE(cycle.proxy.x(), above.x() + 1.0 + options.guides[0].band);
   EXPECT_NEAR(cycle.proxy.y(), above.y() + 0.5, accuracy) << "along the corridor it follows";
   EXPECT_TRUE(proxy.guides()[0].holds);

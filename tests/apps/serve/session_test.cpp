@@ -275,13 +275,13 @@ TEST_F(SessionTest, AnInstrumentKeepsGuidesAndAnatomyThatIsAddedAndMoves) {
     return R"({"do":"place","mesh":1,"frame":[[1,0,0,0],[0,1,0,0],[0,0,1,)" + height +
            "],[0,0,0,1]]" + more + '}';
   };
-  // The tip is at 200 - 60 - 3.7, and the wall comes up to it from 2.1 mm below.
-  ASSERT_EQ(done(place("134.2", R"(,"linear":[0,0,200])"))["ok"], true);
+  // The tip is at 200 - 60 - 3.7, and the wall comes up to the jaw from 2.05 mm below.
+  ASSERT_EQ(done(place("133.25", R"(,"linear":[0,0,200])"))["ok"], true);
   const Json pushed = step("[0,0,0]");
   EXPECT_EQ(pushed["nearest_mesh"], 1) << pushed;
   EXPECT_EQ(pushed["status"], "limited");
   EXPECT_LT(pushed["increment"][2], -0.05) << "it is drawn back";
-  ASSERT_EQ(done(place("134.2", R"(,"linear":[0,0,30000])"))["ok"], true);
+  ASSERT_EQ(done(place("133.25", R"(,"linear":[0,0,30000])"))["ok"], true);
   const Json outrun = step("[0,0,0]");
   EXPECT_TRUE(!outrun["ok"] || outrun["status"] == "yielding") << outrun;
   EXPECT_LT(outrun["level"], 1.0);
