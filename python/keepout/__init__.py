@@ -42,6 +42,7 @@ from ._core import (
     activations,
     chain_of_table,
     fit_rigid,
+    free_ball,
     indices,
     load_mesh,
     narrow_phases,

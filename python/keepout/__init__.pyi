@@ -46,6 +46,7 @@ __all__ = [
     "activations",
     "chain_of_table",
     "fit_rigid",
+    "free_ball",
     "indices",
     "load_mesh",
     "narrow_phases",
@@ -453,6 +454,8 @@ class Instrument:
     @property
     def bodies(self) -> list[Body]: ...
     def recommended_band(self, period: float, least: float = 0.002) -> float: ...
+
+def free_ball(radius: float) -> Instrument: ...
 
 class InstrumentStep:
     @property

@@ -97,6 +97,10 @@ void bind_instrument(py::module_& module) {
         return py::str("<keepout.Instrument: {} bodies on {} joints>")
             .format(self.bodies().size(), self.chain().size());
       });
+  module.def(
+      "free_ball", &free_ball, py::arg("radius"),
+      "The Instrument that is the ball of a tool's tip, on three joints that slide along the\n"
+      "axes without limits: q is where its centre is. radius: [length]");
 }
 
 }  // namespace keepout::python

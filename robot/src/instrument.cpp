@@ -2,6 +2,7 @@
 #include "keepout/robot/instrument.h"
 
 #include <algorithm>
+#include <string>
 #include <utility>
 
 #include "keepout/error.h"
@@ -59,6 +60,16 @@ Instrument::Instrument(Chain chain, std::vector<Body> bodies)
     throw Error("an instrument has at most " + std::to_string(most_points) +
                 " points that differ, not " + std::to_string(points_.size()));
   }
+}
+
+Instrument free_ball(double radius) {
+  std::vector<Joint> slides;
+  for (int axis = 0; axis < 3; ++axis) {
+    slides.push_back({.name = std::string(1, static_cast<char>('x' + axis)),
+                      .kind = JointKind::prismatic,
+                      .axis = Vec3::Unit(axis)});
+  }
+  return {Chain(std::move(slides)), {{"ball", {{3, Vec3::Zero()}}, radius}}};
 }
 
 }  // namespace keepout

@@ -17,16 +17,18 @@ def at(x, y, z):
     return pose
 
 
-def ball_guard(radius=1.0, **options):
-    """A ball on three joints that slide along the axes, beside a sphere of 50 mm."""
-    slides = [
-        Joint(name, kind="prismatic", axis=axis, lower=-500, upper=500, velocity=2000)
-        for name, axis in zip("xyz", np.eye(3))
-    ]
-    body = Body("ball", [(3, (0, 0, 0))], radius)
+def ball_guard(speed=None, **options):
+    """A ball of 1 mm, as fast as it likes or not, beside a sphere of 50 mm."""
+    instrument = keepout.free_ball(1.0)
+    if speed is not None:
+        slides = [
+            Joint(name, kind="prismatic", axis=axis, lower=-500, upper=500, velocity=speed)
+            for name, axis in zip("xyz", np.eye(3))
+        ]
+        instrument = Instrument(Chain(slides), [Body("ball", [(3, (0, 0, 0))], 1.0)])
     index = keepout.Index(keepout.Mesh(*sphere(64, 50.0)))
     guard = InstrumentGuard(
-        index.mesh, Instrument(Chain(slides), [body]), index=index, period=period,
+        index.mesh, instrument, index=index, period=period,
         damping=1e-9, orientation_weight=0, **options,
     )  # fmt: skip
     return guard, index
@@ -64,7 +66,7 @@ def test_each_mesh_has_a_margin_and_a_place_of_its_own():
 
 
 def test_what_outruns_the_joints_is_named():
-    guard, _ = ball_guard(margin=0.5)
+    guard, _ = ball_guard(speed=2000, margin=0.5)
     guard.place(0, None, linear=(2100, 0, 0))  # mm a second; the joints have 2000
     q = np.array([52.0, 0.0, 0.0])
     seen = []

@@ -108,7 +108,7 @@ TEST(SeveralMeshes, APlacedMeshIsTheSameAsARobotThatIsPlacedTheOtherWay) {
   const auto mesh = std::make_shared<const Mesh>(make_shape("gear"));
   const Pose pose{Vec3(300, -200, 100),
                   Eigen::AngleAxisd(1.1, Vec3(3, 1, -2).normalized()).toRotationMatrix()};
-  const Instrument instrument = ball(0.5);
+  const Instrument instrument = free_ball(0.5);
   const Chain& chain = instrument.chain();
   const std::vector<Joint> joints{chain.joint(1), chain.joint(2), chain.joint(3)};
   InstrumentConstraint home = guard_of(mesh, instrument);

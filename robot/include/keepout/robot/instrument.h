@@ -57,4 +57,9 @@ class Instrument {
   std::vector<std::array<std::uint8_t, most_points_of_a_body>> numbers_;
 };
 
+/// The ball of a tool's tip on three joints that slide along the axes of the world, without limits:
+/// q is where its centre is. So a tip has what instruments have, several meshes that move, and
+/// guides; beside one mesh that stands still MotionConstraint is several times faster. [length]
+Instrument free_ball(double radius);
+
 }  // namespace keepout
