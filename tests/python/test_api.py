@@ -36,6 +36,7 @@ def test_status_is_the_one_of_cpp():
         Status.limited,
         Status.recovering,
         Status.fallback,
+        Status.yielding,
     ]
 
 

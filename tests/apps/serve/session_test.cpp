@@ -258,7 +258,7 @@ TEST_F(SessionTest, AnInstrumentKeepsGuidesAndAnatomyThatIsAddedAndMoves) {
   EXPECT_FALSE(step("[0,0,-0.1]").contains("guides"));
 
   const std::string over_tip = R"({"do":"guides","of":"instrument","guides":)"
-                               R"(["upright=axis:4:0,0,1:0,0,1:0.001"]})";
+                               R"(["upright=axis:4:0,0,1:0,0,-1:0.5"]})";
   ASSERT_EQ(done(over_tip)["ok"], true);
   const Json guided = step("[0.1,0,0]");
   EXPECT_EQ(guided["guides"][0]["name"], "upright");
@@ -275,8 +275,8 @@ TEST_F(SessionTest, AnInstrumentKeepsGuidesAndAnatomyThatIsAddedAndMoves) {
     return R"({"do":"place","mesh":1,"frame":[[1,0,0,0],[0,1,0,0],[0,0,1,)" + height +
            "],[0,0,0,1]]" + more + '}';
   };
-  // The tip is at 200 - 60 - 3.7, and the wall comes up to the jaw from 2.05 mm below.
-  ASSERT_EQ(done(place("133.25", R"(,"linear":[0,0,200])"))["ok"], true);
+  // The tip is at 200 - 60 - 3.7, and the wall comes up to the jaw from 2.001 mm below.
+  ASSERT_EQ(done(place("133.299", R"(,"linear":[0,0,200])"))["ok"], true);
   const Json pushed = step("[0,0,0]");
   EXPECT_EQ(pushed["nearest_mesh"], 1) << pushed;
   EXPECT_EQ(pushed["status"], "limited");
