@@ -52,9 +52,9 @@ Status BodyWatch::open_pair(std::size_t p, InstrumentStep& result) noexcept {
   }
   if (nearest <= touching_within * tolerance) return Status::touching;
   const double room = std::min(options_.band, 0.5 * nearest);
-  kept_[p] = certified_distance(distance, pair.floor, target(p), room, tolerance);
-  aims_[p] = own_margin(p);
-  pair.floor = kept_[p];
+  pair.kept = certified_distance(distance, pair.floor, target(p), room, tolerance);
+  pair.aim = own_margin(p);
+  pair.floor = pair.kept;
   is_recovering_ = is_recovering_ || is_recovering(p);
   if (!is_recovering(p)) slow_down(p, distance);
   return Status::free;
@@ -69,8 +69,8 @@ void BodyWatch::slow_down(std::size_t p, double distance) noexcept {
   const double share = std::min(options_.period / options_.slowing_time, 1.0);
   const double raised = (1.0 - share) * left - motion(p).drift(memory_.pairs[p].body);
   if (!(raised > 0.0)) return;
-  kept_[p] += raised;
-  aims_[p] += raised;
+  memory_.pairs[p].kept += raised;
+  memory_.pairs[p].aim += raised;
 }
 
 void BodyWatch::close() noexcept {
@@ -87,7 +87,7 @@ bool BodyWatch::was_moved_by_others(std::size_t m) noexcept {
   const std::size_t first = m * memory_.instrument.bodies().size();
   for (std::size_t b = 0; b < memory_.instrument.bodies().size(); ++b) {
     // So far around its core all is free.
-    const double free = 0.5 * (radius(first + b) + kept_[first + b]);
+    const double free = 0.5 * (radius(first + b) + memory_.pairs[first + b].kept);
     for (const std::uint8_t p : memory_.instrument.points_of(b)) {
       if (!((mesh.motion.at_start()[p] - mesh.ended_at[p]).norm() <= free)) return true;
     }

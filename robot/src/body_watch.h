@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <array>
+#include <algorithm>
 #include <cstddef>
 
 #include "cycle_memory.h"
@@ -22,21 +22,23 @@ class BodyWatch {
   /// The distance that a pair is certified for in this cycle: margin - band, or what is left of it.
   /// [length]
   double kept(std::size_t pair) const noexcept {
-    return kept_[pair] - (1.0 - level_) * std::max(kept_[pair], 0.0);
+    return memory_.pairs[pair].kept - given_way(pair);
   }
   /// The margin that its rows aim at in this cycle, beyond the body's radius. [length]
-  double margin(std::size_t pair) const noexcept { return aims_[pair]; }
+  double margin(std::size_t pair) const noexcept { return memory_.pairs[pair].aim; }
   /// Keeps only a share of that from now on: what can be done where a mesh comes on too fast.
   void lower_to(double level) noexcept { level_ = level; }
   /// How much less than the margin rows aim at, so. [length]
   double given_way(std::size_t pair) const noexcept {
-    return (1.0 - level_) * std::max(kept_[pair], 0.0);
+    return (1.0 - level_) * std::max(memory_.pairs[pair].kept, 0.0);
   }
 
   /// Whether some body is closer than margin - band.
   bool is_recovering() const noexcept { return is_recovering_; }
   /// Whether that pair is.
-  bool is_recovering(std::size_t pair) const noexcept { return kept_[pair] < target(pair); }
+  bool is_recovering(std::size_t pair) const noexcept {
+    return memory_.pairs[pair].kept < target(pair);
+  }
 
   /// Makes sure that all triangles nearer than that to a body's core are known. False: there is no
   /// room, or no work left. [length]
@@ -69,8 +71,6 @@ class BodyWatch {
 
   CycleMemory& memory_;
   const InstrumentOptions& options_;
-  std::array<double, most_pairs> kept_{};  // of each pair in this cycle [length]
-  std::array<double, most_pairs> aims_{};  // [length]
   double level_ = 1.0;
   bool is_recovering_ = false;
 };

@@ -8,6 +8,7 @@
 #include <memory>
 #include <vector>
 
+#include "certificate.h"
 #include "contact_row.h"
 #include "keepout/buffer.h"
 #include "keepout/index/query.h"
@@ -45,6 +46,10 @@ struct PairMemory {
   double reach = 0.0;  // of its last motion [length]
   double guard = 0.0;  // how much farther than needed triangles are looked for [length]
   double floor = 0.0;  // what was certified last [length]
+  // Of this cycle.
+  double kept = 0.0;                  // what is to be certified, where meshes are not too fast
+  double aim = 0.0;                   // the margin that rows aim at [length]
+  Certificate::Failure failure = {};  // what the last trial could not be proven for
 };
 
 /// The same of a guide.

@@ -201,7 +201,7 @@ bool JointCycle::answer() noexcept {
   if (kept_by_guides_ < PointMotion::cells) has_failed_[failed_guide_] = true;
   const bool is_new_plane =
       kept_by_guides_ < PointMotion::cells && rows_.answer(failed_guide_, kept_by_guides_);
-  const bool is_new_row = rows_.answer(failures_);
+  const bool is_new_row = rows_.answer();
   return (is_new_plane || is_new_row) && !memory_.rows.overflowed();
 }
 
@@ -314,7 +314,7 @@ void JointCycle::judge(Trial& trial) noexcept {
   for (std::size_t p = 0; p < memory_.pairs.size(); ++p) {
     PairMemory& pair = memory_.pairs[p];
     RelativeMotion& motion = memory_.meshes[pair.mesh].motion;
-    failures_[p] = {};
+    pair.failure = {};
     pair.reach = motion.farthest(pair.body);
     const double needed =
         memory_.instrument.bodies()[pair.body].radius + watch_.kept(p) + pair.reach;
@@ -331,8 +331,8 @@ void JointCycle::judge(Trial& trial) noexcept {
     for (const ContactRow& row : memory_.rows) {
       if (row.owner == p) certificate.try_first(row.normal);
     }
-    failures_[p] = certificate.judge(triangles, pair.reach);
-    trial.cell = std::min(trial.cell, failures_[p].cell);
+    pair.failure = certificate.judge(triangles, pair.reach);
+    trial.cell = std::min(trial.cell, pair.failure.cell);
   }
 }
 

@@ -71,7 +71,6 @@ class JointCycle {
   BodyWatch watch_;
   GuideWatch guides_;
   WorkingRows rows_;
-  WorkingRows::Failures failures_;
   int kept_by_guides_ = 0;        // up to which cell all guides were kept by the last trial
   std::size_t failed_guide_ = 0;  // and which was not, beyond
   std::array<bool, Guide::most> has_failed_{};  // in any trial

@@ -62,13 +62,14 @@ void WorkingRows::start_recovery(std::size_t p) noexcept {
   }
 }
 
-bool WorkingRows::answer(const Failures& failures) noexcept {
+bool WorkingRows::answer() noexcept {
   bool changed = false;
   for (std::size_t p = 0; p < memory_.pairs.size(); ++p) {
-    if (failures[p].triangle == nullptr) continue;
-    const NearTriangle& triangle = *failures[p].triangle;
+    const Certificate::Failure& failure = memory_.pairs[p].failure;
+    if (failure.triangle == nullptr) continue;
+    const NearTriangle& triangle = *failure.triangle;
     const std::size_t before = memory_.rows.size();
-    add(p, triangle, std::max(failures[p].cell, 1));
+    add(p, triangle, std::max(failure.cell, 1));
     const bool is_new = memory_.rows.size() > before;
     changed = changed || is_new || correct(p, triangle.id);
   }

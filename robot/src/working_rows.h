@@ -13,9 +13,6 @@ namespace keepout {
 /// as trial motions fail. They lie in the cycles' memory.
 class WorkingRows {
  public:
-  /// What a trial could not be proven for, by pair of body and mesh.
-  using Failures = std::array<Certificate::Failure, most_pairs>;
-
   /// None yet. All must outlive it.
   WorkingRows(CycleMemory& memory, BodyWatch& watch, GuideWatch& guides,
               const InstrumentOptions& options) noexcept
@@ -24,9 +21,9 @@ class WorkingRows {
   /// Begins with the rows that held the last cycle back, and in recovery with those of what is too
   /// close.
   void start() noexcept;
-  /// Adds rows for what spoke against the last motion, or corrects those there are. Whether
-  /// anything was changed.
-  bool answer(const Failures& failures) noexcept;
+  /// Adds rows for what spoke against the last motion (PairMemory::failure), or corrects those
+  /// there are. Whether anything was changed.
+  bool answer() noexcept;
   /// The same for a guide that was not kept beyond a cell.
   bool answer(std::size_t guide, int cell) noexcept;
 
