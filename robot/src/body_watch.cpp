@@ -51,7 +51,8 @@ Status BodyWatch::open_pair(std::size_t p, InstrumentStep& result) noexcept {
     result.nearest_mesh = static_cast<int>(pair.mesh);
   }
   if (nearest <= touching_within * tolerance) return Status::touching;
-  const double room = std::min(options_.band, 0.5 * nearest);
+  // Half of what there is at the most: of its distance, or of its core's where it reaches through.
+  const double room = std::min(options_.band, 0.5 * (distance > 0.0 ? distance : nearest));
   pair.kept = certified_distance(distance, pair.floor, target(p), room, tolerance);
   pair.aim = own_margin(p);
   pair.floor = pair.kept;

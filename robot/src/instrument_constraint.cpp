@@ -92,10 +92,15 @@ struct InstrumentConstraint::State {
   void require_usable(const InstrumentOptions& o) const {
     const auto within = [](double x, double low) { return x >= low && x <= longest_length; };
     double margin = o.margin;  // the least
-    for (const MeshMemory& mesh : memory.meshes) margin = std::min(margin, mesh.margin(o));
-    if (!within(o.margin, shortest_length) || !within(margin, shortest_length) || !(o.band > 0.0) ||
-        !(o.band < margin)) {
-      throw Error("the margins must be above zero, and the band above zero and below each of them");
+    bool all_within = within(o.margin, shortest_length);
+    for (const MeshMemory& mesh : memory.meshes) {
+      margin = std::min(margin, mesh.margin(o));
+      all_within = all_within && within(mesh.margin(o), shortest_length);
+    }
+    if (!all_within || !(o.band > 0.0) || !(o.band < margin)) {
+      throw Error(
+          "the margins must be above zero, and lengths, and the band above zero and below each of "
+          "them");
     }
     if (!within(o.slowing_within, 0.0) || !(o.slowing_time > 0.0 && o.slowing_time < largest)) {
       throw Error("slowing_within must not be below zero, and slowing_time must be above it");
@@ -125,7 +130,8 @@ struct InstrumentConstraint::State {
   Status check(std::span<const double> q) noexcept {
     memory.budget.renew();
     for (const MeshMemory& mesh : memory.meshes) {
-      if (mesh.is_misplaced) return Status::invalid_input;
+      const bool is_too_fast = !(options.period * mesh.velocity.angular.norm() <= fastest_turn);
+      if (mesh.is_misplaced || is_too_fast) return Status::invalid_input;
       if (!mesh.near->is_current()) return Status::mesh_changed;
     }
     const auto n = static_cast<std::size_t>(instrument.chain().size());
@@ -141,9 +147,11 @@ struct InstrumentConstraint::State {
     return true;
   }
 
-  /// A cycle has passed, whatever came of it: what moves is where it leads.
-  void pass_time() noexcept {
+  /// A cycle has passed, whatever came of it: what moves is where it leads, and where nothing was
+  /// proven nothing is kept.
+  void pass_time(InstrumentStep& result) noexcept {
     if (!memory.is_moving()) return;
+    if (!result.ok()) result.level = 0.0;
     for (MeshMemory& mesh : memory.meshes) {
       mesh.pose.position += options.period * mesh.velocity.linear;
       const double turn = options.period * mesh.velocity.angular.norm();
@@ -187,7 +195,7 @@ InstrumentStep InstrumentConstraint::step(std::span<const double> q,
     state_->instrument.chain().place(q, chain);
     result = state_->step(flange_task(chain, desired, state_->options), q);
   }
-  state_->pass_time();
+  state_->pass_time(result);
   return result;
 }
 
@@ -203,7 +211,7 @@ InstrumentStep InstrumentConstraint::step(std::span<const double> q,
   }
   InstrumentStep result{.status = status};
   if (is_ok(status)) result = state_->step(joint_task(desired, weights), q);
-  state_->pass_time();
+  state_->pass_time(result);
   return result;
 }
 
@@ -321,7 +329,7 @@ void InstrumentConstraint::place(std::size_t mesh, const Pose& pose,
   placed.is_misplaced = !is_one || !is_within(pose.position, far) ||
                         !is_within(off, rotation_digits) || !(pose.rotation.determinant() > 0.0) ||
                         !is_within(velocity.linear, largest) ||
-                        !is_within(velocity.angular, fastest_turn / state_->options.period);
+                        !is_within(velocity.angular, largest);
   if (placed.is_misplaced) return;
   placed.pose = {pose.position, Eigen::Quaterniond(pose.rotation).normalized().matrix()};
   placed.velocity = velocity;

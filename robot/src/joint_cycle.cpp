@@ -276,11 +276,18 @@ SolveStatus JointCycle::pose(const JointTask& task, const Softness& softness,
   double* number = memory_.matrix.data();
   std::size_t count = 0;
   for (const ContactRow& row : memory_.rows) {
-    for (std::size_t k = 0; k < n; ++k) *number++ = task.unit[k] * row.gradient[k];
+    double steepest = 0.0;
+    for (std::size_t k = 0; k < n; ++k) {
+      *number++ = task.unit[k] * row.gradient[k];
+      steepest = std::max(steepest, std::abs(number[-1]));
+    }
     const double soft = row.owner < most_pairs ? softness.bodies : softness.guides;
     const double bound = (row.bound > 0.0 ? soft * row.bound : row.bound) + row.correction;
     const double given = row.owner < most_pairs ? watch_.given_way(row.owner) : 0.0;
-    memory_.bounds[count++] = (soft > 0.0 ? bound : std::min(bound, 0.0)) - row.drift - given;
+    double least = (soft > 0.0 ? bound : std::min(bound, 0.0)) - row.drift - given;
+    // What no joint can do is not asked for: whether it is safe the certificate tells.
+    if (steepest <= memory_.tolerance) least = std::min(least, 0.0);
+    memory_.bounds[count++] = least;
   }
   for (std::size_t k = 0; k < n; ++k) {
     for (const double sign : {1.0, -1.0}) {

@@ -87,7 +87,7 @@ double RelativeMotion::farthest(std::size_t body) noexcept {
 }
 
 double RelativeMotion::drift(std::size_t body) noexcept {
-  if (is_at_home_) return 0.0;
+  if (!is_moving()) return 0.0;
   double most = 0.0;
   for (const std::uint8_t p : instrument_->points_of(body)) {
     most = std::max(most, with_mesh({}, motion_->at_start()[p]).path);

@@ -53,6 +53,8 @@ class RelativeMotion {
   double bend(std::size_t point) const noexcept { return bounds_[point].bend; }
   /// How far any point of a body is from its start at the most, on the way. [length]
   double farthest(std::size_t body) noexcept;
+  /// Whether the mesh moves in the cycle.
+  bool is_moving() const noexcept { return turn_ > 0.0 || !way_.linear.isZero(0.0); }
   /// How far the mesh alone moves a body at the most. [length]
   double drift(std::size_t body) noexcept;
 

@@ -178,7 +178,7 @@ TEST(SeveralMeshes, WhatOutrunsTheJointsIsNamed) {
       const double clear_before = clearance(at, 1.0, *cube, guard.place_of(0));
       const InstrumentStep step = step_of(guard, at, Vec3::Zero());
       if (!step.ok()) {
-        ASSERT_EQ(step.level, step.status == Status::touching ? 1.0 : 0.0);
+        ASSERT_EQ(step.level, 0.0);
         ASSERT_TRUE(step.increment.empty());
         ++stopped;
         break;
@@ -218,9 +218,54 @@ TEST(SeveralMeshes, APlaceThatIsNoneStopsUntilThereIsOne) {
   }
   guard.place(0, {}, {.linear = Vec3(0, test::nan, 0)});
   EXPECT_EQ(step_of(guard, at, Vec3::UnitX()).status, Status::invalid_input);
+  guard.place(0, {}, {.angular = Vec3(0, 0, 1001.0)});
+  EXPECT_EQ(step_of(guard, at, Vec3::UnitX()).status, Status::invalid_input) << "in 1 ms";
+  EXPECT_EQ(step_of(guard, at, Vec3::UnitX()).level, 0.0);
   guard.place(0, {});
   guard.place(2, {});
   EXPECT_EQ(step_of(guard, at, Vec3::UnitX()).status, Status::invalid_input) << "there are two";
+}
+
+// A body that no joint moves is too close to a mesh that stands still: the others are led on all
+// the same, however the mesh is placed, and whatever rounding makes of the place.
+TEST(SeveralMeshes, WhatNoJointCanDoIsNotAskedFor) {
+  const auto cube = cube_of(10.0);
+  const Instrument free = free_ball(1.0);
+  std::vector<Joint> joints;
+  for (int k = 1; k <= 3; ++k) joints.push_back(free.chain().joint(k));
+  const Instrument instrument(Chain(joints), {{"post", {{0, Vec3(0.3, 0.1, 16.1)}}, 1.0},
+                                              {"ball", {{3, Vec3::Zero()}}, 1.0}});
+  Random random(3);
+  for (int i = 0; i < test::trials(200); ++i) {
+    InstrumentConstraint guard = guard_of(cube, instrument, {.orientation_weight = 0.0});
+    const Vec3 axis = random.direction();
+    const Mat3 turned = Eigen::AngleAxisd(random.uniform(0.0, 3.0), axis).toRotationMatrix();
+    // Its upper face is 0.1 below the post, wherever its frame is.
+    guard.place(0, {Vec3(0, 0, 10.0), Mat3::Identity()});
+    guard.add_mesh(cube, std::make_shared<WideBvh>(cube));
+    guard.place(1, {Vec3(6.1, 0, 16.0), turned});
+    for (const Vec3& way : {Vec3(0, 0, 0), Vec3(1e-9, 0, 0), Vec3(-0.1, 0, 0)}) {
+      const InstrumentStep step = step_of(guard, Vec3(-30, 0, 40), way);
+      ASSERT_TRUE(step.ok() || step.status == Status::touching || step.status == Status::inside)
+          << step.reason();
+    }
+  }
+}
+
+// What is left to a motion of a body that is too close is half of its distance at the most.
+TEST(SeveralMeshes, ABodyThatIsTooCloseNeverUsesUpItsDistance) {
+  const auto cube = cube_of(10.0);
+  InstrumentConstraint guard =
+      guard_of(cube, free_ball(1.0), {.margin = 0.5, .band = 0.05, .recovery = 0.0});
+  for (const double distance : {0.2, 0.05, 0.01, 0.001}) {
+    guard.forget();
+    const Vec3 at(6.0 + distance, 0.1, 0.2);
+    const MotionProof proof = guard.prove({at.data(), 3}, std::vector<double>{-0.1, 0, 0});
+    EXPECT_EQ(proof.status, Status::recovering);
+    EXPECT_GE(distance - 0.1 * proof.share, 0.5 * distance - 1e-9);
+    const Vec3 to = moved(at, step_of(guard, at, Vec3(-1, 0, 0)));
+    EXPECT_GE(clearance(to, 1.0, *cube, {}), 0.5 * distance - 1e-9);
+  }
 }
 
 TEST(SeveralMeshes, SaysWhatIsWrongWithOneAndStaysAsItWas) {
@@ -231,6 +276,7 @@ TEST(SeveralMeshes, SaysWhatIsWrongWithOneAndStaysAsItWas) {
   EXPECT_THROW(guard.add_mesh(cube_of(10.0), index), Error) << "of another mesh";
   EXPECT_THROW(guard.add_mesh(cube, index, 0.001), Error) << "below the band";
   EXPECT_THROW(guard.add_mesh(cube, index, test::nan), Error);
+  EXPECT_THROW(guard.add_mesh(cube, index, test::infinity), Error);
   EXPECT_THROW(guard.follow(cube, index, 1), Error);
   EXPECT_EQ(guard.mesh_count(), 1u);
   EXPECT_TRUE(step_of(guard, Vec3(30, 0, 0), Vec3::UnitX()).ok());

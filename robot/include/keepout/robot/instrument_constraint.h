@@ -162,10 +162,12 @@ class InstrumentConstraint {
   /// Says where a mesh is as the next cycle begins, and how it moves: its frame's origin
   /// [length/s], and its turn about that [rad/s]. Nothing is built anew. A mesh that moves is taken
   /// to go on so with every step, until it is placed again: so a loop places it in each cycle, as
-  /// it is measured. What the mesh is off that, in a cycle, belongs into its margin. Where `mesh`
-  /// is no number of one, or the pose is none, or far beyond all lengths at hand, every step is
-  /// invalid_input until it is placed well. Proofs take meshes to stay where they are. Allocates
-  /// nothing, throws nothing.
+  /// it is measured. What the mesh is off that, in a cycle, belongs into its margin. A rotation is
+  /// to be one to 1e-6 in each element of R^T R; it is made one. Where the pose is none, or far
+  /// beyond all lengths at hand, or a speed is no number below 1e9, place and velocity stay as they
+  /// were, and every step is invalid_input until the mesh is placed well: the first one, where
+  /// there is none of that number. A turn of more than a radian in a cycle is invalid_input as
+  /// well. Proofs take meshes to stay where they are. Allocates nothing, throws nothing.
   void place(std::size_t mesh, const Pose& pose, const Twist& velocity = {}) noexcept;
 
   /// Where a mesh is, as the next cycle begins. Precondition: there is one of that number.
