@@ -12,7 +12,7 @@
 namespace keepout::app {
 namespace {
 
-constexpr const char* place = "<!-- keepout report: the record goes here -->";
+constexpr const char* record_mark = "<!-- keepout report: the record goes here -->";
 
 /// What shows anatomy comes with what draws it.
 PageTemplate template_for(const Json& record) {
@@ -20,7 +20,7 @@ PageTemplate template_for(const Json& record) {
   return read_page_template(
       page_template_file(kind.starts_with("simulate") || kind == "plan" ? "report_with_anatomy.html"
                                                                         : "report.html"),
-      place);
+      record_mark);
 }
 
 }  // namespace
