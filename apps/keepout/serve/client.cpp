@@ -93,6 +93,8 @@ void open_instrument(Client& client, const std::shared_ptr<const Mesh>& mesh,
   take(settings.options.period, request.period);
   take(settings.options.recovery, request.recovery);
   take(settings.options.orientation_weight, request.orientation_weight);
+  take(settings.options.slowing_within, request.slowing_within);
+  take(settings.options.slowing_time, request.slowing_time);
   try {
     client.instrument = make_instrument_constraint(mesh, index, instrument_of(request), settings);
     client.guide_names.clear();

@@ -33,7 +33,7 @@ struct VerbKeys {
   std::string_view name;
   Verb verb;
   std::array<std::string_view, 2> needed;
-  std::array<std::string_view, 9> optional;
+  std::array<std::string_view, 11> optional;
 };
 
 constexpr std::array<VerbKeys, 12> verbs{
@@ -44,7 +44,7 @@ constexpr std::array<VerbKeys, 12> verbs{
       Verb::instrument,
       {"urdf", "capsules"},
       {"base_link", "tip_link", "scale", "frame", "margin", "band", "period", "recovery",
-       "orientation_weight"}},
+       "orientation_weight", "slowing_within", "slowing_time"}},
      {"joint_step", Verb::joint_step, {"q"}, {"linear", "angular", "increment", "weights"}},
      {"tool", Verb::tool, {"tool"}, {"narrow_phase"}},
      {"guides", Verb::guides, {"guides"}, {"of"}},
@@ -285,6 +285,8 @@ Request::Request(const RequestLimits& limits)
       period(number("period")),
       recovery(number("recovery")),
       orientation_weight(number("orientation_weight")),
+      slowing_within(number("slowing_within")),
+      slowing_time(number("slowing_time")),
       q(joints("q")),
       linear(table("linear", {1, 1, 1, 3, 3}, "an array of three numbers")),
       angular(table("angular", {1, 1, 1, 3, 3}, "an array of three numbers")),

@@ -96,6 +96,8 @@ struct Request {
   NumberTable period;
   NumberTable recovery;
   NumberTable orientation_weight;
+  NumberTable slowing_within;
+  NumberTable slowing_time;
   NumberTable q;
   NumberTable linear;
   NumberTable angular;
@@ -103,12 +105,12 @@ struct Request {
   NumberTable weights;
   NumberTable mesh;  // its number
 
-  std::array<NumberTable*, 21> tables() noexcept {
-    return {&tip,    &desired, &jacobian, &rows,      &bounds,
-            &radius, &motions, &scale,    &frame,     &capsules,
-            &margin, &band,    &period,   &recovery,  &orientation_weight,
-            &q,      &linear,  &angular,  &increment, &weights,
-            &mesh};
+  std::array<NumberTable*, 23> tables() noexcept {
+    return {&tip,    &desired,        &jacobian,    &rows,      &bounds,
+            &radius, &motions,        &scale,       &frame,     &capsules,
+            &margin, &band,           &period,      &recovery,  &orientation_weight,
+            &q,      &linear,         &angular,     &increment, &weights,
+            &mesh,   &slowing_within, &slowing_time};
   }
   std::array<TextValue*, 7> texts() noexcept {
     return {&urdf, &base_link, &tip_link, &tool, &narrow_phase, &of, &file};

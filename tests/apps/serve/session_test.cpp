@@ -254,7 +254,9 @@ TEST_F(SessionTest, AnInstrumentKeepsGuidesAndAnatomyThatIsAddedAndMoves) {
       done(R"({"do":"place","mesh":0,"frame":[[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]})")["error"]
                                                                                           ["kind"],
       "no_instrument");
-  ASSERT_EQ(done(std::string(open_line))["bodies"], 3);
+  std::string slowed(open_line);
+  slowed.insert(slowed.size() - 1, R"(,"slowing_within":20,"slowing_time":0.1)");
+  ASSERT_EQ(done(slowed)["bodies"], 3);
   EXPECT_FALSE(step("[0,0,-0.1]").contains("guides"));
 
   const std::string over_tip = R"({"do":"guides","of":"instrument","guides":)"
