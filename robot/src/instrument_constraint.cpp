@@ -224,6 +224,9 @@ MotionProof InstrumentConstraint::prove(std::span<const double> q,
   if (!is_ok(status)) return {.status = status};
   // What steps have gained is none of a planner's business.
   const CycleMemory::Floors floors = state_->memory.floors();
+  // Nor is how fast a step would be allowed to go there.
+  InstrumentOptions options = state_->options;
+  options.slowing_within = 0.0;
   // In parts, where there is more near a long motion than there is room for.
   constexpr double least_part = 1.0 / 64.0;
   MotionProof proof{.status = Status::free};
@@ -239,9 +242,9 @@ MotionProof InstrumentConstraint::prove(std::span<const double> q,
     state_->memory.forget_motion();
     state_->memory.forget_floors();
     InstrumentStep result;
-    const double proven = JointCycle(state_->memory, state_->options, {from.data(), q.size()},
-                                     JointCycle::Meshes::still)
-                              .prove(motion, result);
+    const double proven =
+        JointCycle(state_->memory, options, {from.data(), q.size()}, JointCycle::Meshes::still)
+            .prove(motion, result);
     if (result.status == Status::over_capacity && part > least_part) {
       part *= 0.5;
       continue;

@@ -313,6 +313,9 @@ TEST(Slowing, UsesUpAShareOfTheWayThatIsLeft) {
       {.slowing_within = 2.0, .slowing_time = 0.02, .damping = 1e-9, .orientation_weight = 0.0});
   Vec3 at(9.5, 0, 0);  // 3.5 from it
   const double share = 1e-3 / 0.02;
+  const Vec3 near(6.5, 0, 0);
+  EXPECT_TRUE(guard.prove({near.data(), 3}, std::vector<double>{-0.29, 0, 0}).is_clear())
+      << "proofs are not slowed down";
   int slowed = 0;
   double slowest = 1.0;  // along the surface
   for (int i = 0; i < 200; ++i) {
