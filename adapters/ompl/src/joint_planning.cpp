@@ -122,9 +122,9 @@ void require_joint_space(const std::shared_ptr<base::SpaceInformation>& space,
 }
 
 /// A motion, in pieces on which no point of a body goes farther than the thickest body is wide.
-/// What is near a long motion is much, and mostly far from any part of it: pieces cost a fifth or a
-/// tenth. As their ends are rounded, by 1e-16 of a position, they are apart from the motion by a
-/// small part of the tolerance.
+/// What is near a long motion is much, and mostly far from any part of it: pieces cost less. As
+/// their ends are rounded, by 1e-16 of a position, they are apart from the motion by a small part
+/// of the tolerance.
 struct Pieces {
   Pieces(const Instrument& instrument, const double* q, const double* to)
       : n(static_cast<std::size_t>(instrument.chain().size())), from(q), end(to) {

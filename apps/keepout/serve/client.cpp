@@ -121,11 +121,15 @@ void set_guides(Client& client, const RequestLimits& limits, const Request& requ
   try {
     if (request.of.text != "instrument") {
       std::vector<TipGuide> guides;
+      std::vector<std::string> names;
       for (const std::string& text : request.guides.texts) {
         guides.push_back(tip_guide_of_text(text));
+        names.push_back(guides.back().name);
       }
-      client.guides.reset();
-      if (!guides.empty()) client.guides.emplace(std::move(guides), limits.joints, limits.rows);
+      std::optional<TipGuides> made;
+      if (!guides.empty()) made.emplace(std::move(guides), limits.joints, limits.rows);
+      client.guides = std::move(made);
+      client.tip_guide_names = std::move(names);
       return;
     }
     InstrumentConstraint& instrument = instrument_of(client);

@@ -20,6 +20,7 @@ struct Client {
   std::optional<InstrumentConstraint> instrument = std::nullopt;  // that he has opened
   std::optional<MotionConstraint> tool = std::nullopt;            // of a tool that he has opened
   std::optional<TipGuides> guides = std::nullopt;                 // that his tip is to keep
+  std::vector<std::string> tip_guide_names = {};                  // of these
   std::vector<std::string> guide_names = {};                      // of his instrument
 };
 

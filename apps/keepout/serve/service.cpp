@@ -254,9 +254,7 @@ void Service::append_single_step(Client& client, std::string& out) {
   }
   append_step(out, step(client, motion), request_.jacobian.columns);
   if (client.guides) {
-    std::vector<std::string> names;
-    for (const TipGuide& guide : client.guides->guides()) names.push_back(guide.name);
-    append_guides(out, names, client.guides->states(), client.guides->softening());
+    append_guides(out, client.tip_guide_names, client.guides->states(), client.guides->softening());
   }
 }
 

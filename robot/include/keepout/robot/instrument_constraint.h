@@ -80,14 +80,14 @@ struct InstrumentStep {
   int rounds = 0;        // how often a trial motion was judged
   std::size_t rows = 0;  // that hold the motion back, joint limits apart
   std::size_t triangles = 0;  // in reach of one body and one trial motion, at the most
-  /// From the body nearest to a mesh, as the cycle began; of bodies no farther off than the margin
-  /// and its band, and that there was work left to look at. Negative when the body reaches through
-  /// the surface. [length]
+  /// From the body nearest to a mesh, as the cycle began; of bodies no farther off than that mesh's
+  /// margin and the band, or slowing_within, and that there was work left to look at. Negative when
+  /// the body reaches through the surface. [length]
   std::optional<double> distance = std::nullopt;
   int nearest = -1;       // the number of that body
   int nearest_mesh = -1;  // and of the mesh
   /// The share of what is certified (InstrumentConstraint: F) that could be: below 1 where a mesh
-  /// came on faster than the joints can give way; nothing then, if there is no motion.
+  /// came on faster than the joints can give way; 0 where a mesh moves and there is no motion.
   double level = 1.0;
   std::span<const GuideState> guides = {};  // of each guide, in the order in which they were given
   Softening softening = Softening::none;    // what gave way
