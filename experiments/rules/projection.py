@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The nearest motion that planes allow, for rules that are not keepout's own."""
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import nnls
+
+from .rule import Corridor
+
+#: A half space of motions d: normal . d >= offset.
+Plane = tuple[NDArray[np.float64], float]
+
+
+def nearest_motion(desired: NDArray[np.float64], planes: list[Plane]) -> NDArray[np.float64] | None:
+    """The d nearest to `desired` with normal . d >= offset for each plane; None where there is none.
+
+    Least distance programming (Lawson and Hanson, "Solving Least Squares Problems", 1974, chapter 23).
+    """
+    short = [(n, o - n @ desired) for n, o in planes if n @ desired < o]
+    if not short:
+        return desired
+    normals = np.array([n for n, _ in planes])
+    missing = np.array([o for _, o in planes]) - normals @ desired
+    scale = max(1e-12, float(np.abs(missing).max()))
+    target = np.array([0.0, 0.0, 0.0, 1.0])
+    system = np.vstack([normals.T, missing / scale])
+    weights, residual = nnls(system, target)
+    if residual < 1e-9:
+        return None
+    rest = system @ weights - target
+    return desired - rest[:3] / rest[3] * scale
+
+
+def corridor_planes(corridor: Corridor | None, tip: NDArray[np.float64]) -> list[Plane]:
+    """Those that keep a tip within the corridor, and lead it back without haste if it is outside."""
+    if corridor is None:
+        return []
+    normal = np.array(corridor.normal)
+    beside = float(normal @ (tip - np.array(corridor.point)))
+    low = min(0.0, beside + corridor.half_width)  # outside already: it may stay, but not go farther
+    high = min(0.0, corridor.half_width - beside)
+    return [
+        (normal, -(beside + corridor.half_width) if low == 0.0 else 0.0),
+        (-normal, -(corridor.half_width - beside) if high == 0.0 else 0.0),
+    ]
