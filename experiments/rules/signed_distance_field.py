@@ -23,8 +23,11 @@ from .rule import Task
 #: A grid has no more voxels: 800 MB of single precision.
 MOST_VOXELS = 200_000_000
 
-#: Room around a mesh that is sampled as a whole [mm].
+#: What is sampled around a mesh or a corridor [mm].
 AROUND = 5.0
+
+#: How far a corridor is sampled from its point [mm].
+FAR_ALONG = 40.0
 
 
 class VoxelGrid:
@@ -102,27 +105,11 @@ def shared_grid(
     return VoxelGrid(index.mesh, index, cell, low, high)
 
 
-def grid_around(
-    index: keepout.Index, cell: float, center: ArrayLike, half_size: float = 30.0
-) -> VoxelGrid:
-    """A shared grid of the cube of twice `half_size` [mm] about a place: enough for a task there."""
-    x, y, z = np.asarray(center, dtype=np.float64).tolist()
-    return shared_grid(
-        index, cell, (x - half_size, y - half_size, z - half_size),
-        (x + half_size, y + half_size, z + half_size))
-
-
-def grid_of_mesh(index: keepout.Index, cell: float) -> VoxelGrid:
-    """A shared grid of the whole mesh; ValueError if that takes more than MOST_VOXELS."""
-    low, high = index.mesh.bounds[0] - AROUND, index.mesh.bounds[1] + AROUND
-    return shared_grid(index, cell, tuple(low.tolist()), tuple(high.tolist()))
-
-
 class SignedDistanceField:
     """The rule n . motion >= -(distance - margin), n along the gradient: a rule.Rule.
 
-    Outside of the grid every motion is free. Without a `grid` it is that of the whole mesh if
-    this has at most MOST_VOXELS, else the cube of so many about the corridor's point.
+    Outside of the grid every motion is free. Without a `grid` it is that of the whole mesh, or, where
+    there is a corridor, of this within FAR_ALONG of its point; both with AROUND more.
     """
 
     def __init__(
@@ -131,9 +118,8 @@ class SignedDistanceField:
         self._task = task
         self.grid = grid or _grid_for(task, index, cell)
 
-    def step(
-        self, tip: NDArray[np.float64], desired: NDArray[np.float64]
-    ) -> NDArray[np.float64]:
+    def step(self, tip: NDArray[np.float64], desired: NDArray[np.float64]) -> NDArray[np.float64]:
+        """No motion at all where the plane and the corridor exclude each other."""
         x, y, z = tip.tolist()
         distance, n_x, n_y, n_z = self.grid.look(x, y, z)
         room = distance - self._task.margin
@@ -159,10 +145,10 @@ def _shape(low: NDArray[np.float64], high: NDArray[np.float64], cell: float) -> 
 
 
 def _grid_for(task: Task, index: keepout.Index, cell: float) -> VoxelGrid:
-    low, high = task.mesh.bounds
-    if np.prod(_shape(low - AROUND, high + AROUND, cell), dtype=float) <= MOST_VOXELS:
-        return grid_of_mesh(index, cell)
-    if task.corridor is None:
-        raise ValueError(f"the mesh has more than {MOST_VOXELS} voxels of {cell} mm: give a grid")
-    side = round(MOST_VOXELS ** (1 / 3)) - 2
-    return grid_around(index, cell, task.corridor.point, 0.5 * side * cell)
+    low, high = task.mesh.bounds[0] - AROUND, task.mesh.bounds[1] + AROUND
+    if task.corridor is not None:
+        point, normal = np.array(task.corridor.point), np.abs(task.corridor.normal)
+        along = FAR_ALONG * np.sqrt(np.maximum(0.0, 1.0 - normal**2))
+        half_size = along + (task.corridor.half_width + AROUND) * normal
+        low, high = np.maximum(low, point - half_size), np.minimum(high, point + half_size)
+    return shared_grid(index, cell, tuple(low.tolist()), tuple(high.tolist()))

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from experiments.rules.rule import Corridor, Task
-from experiments.rules.signed_distance_field import SignedDistanceField, VoxelGrid, grid_around
+from experiments.rules.signed_distance_field import SignedDistanceField, VoxelGrid
 from experiments.sides import are_solid, is_closed, lattice_is_solid
 
 
@@ -128,9 +128,8 @@ def test_the_rule_keeps_the_margin_off_a_plane_and_lets_the_tip_slide():
 def test_the_corridor_is_kept_besides():
     mesh = box([-40, -40, -4], [40, 40, 0])
     corridor = Corridor((0, 0, 0), (0, 1, 0), 1.0)
-    index = keepout.Index(mesh)
-    rule = SignedDistanceField(
-        Task(mesh, corridor=corridor), index, 0.5, grid_around(index, 0.5, [0, 0, 0], 4.0))
+    rule = SignedDistanceField(Task(mesh, corridor=corridor), keepout.Index(mesh), 0.5)
+    assert rule.grid.values.shape[1] == 2 * (1 + 5) * 2 + 1  # the corridor's width, and around it
     tip = np.array([0.1, 0.1, 1.0])
     for _ in range(40):
         tip = tip + rule.step(tip, np.array([0.0, 0.1, -0.1]))
@@ -138,9 +137,11 @@ def test_the_corridor_is_kept_besides():
 
 
 def test_trials_share_a_grid():
-    index = keepout.Index(box([-4, -4, -4], [4, 4, 4]))
-    assert grid_around(index, 1.0, [0, 0, 0]) is grid_around(index, 1.0, np.zeros(3))
-    assert grid_around(index, 1.0, [0, 0, 0]) is not grid_around(index, 0.5, [0, 0, 0])
+    mesh = box([-4, -4, -4], [4, 4, 4])
+    index, task = keepout.Index(mesh), Task(mesh)
+    grid = SignedDistanceField(task, index, 1.0).grid
+    assert SignedDistanceField(task, index, 1.0).grid is grid
+    assert SignedDistanceField(task, index, 0.5).grid is not grid
 
 
 def test_a_box_too_large_is_refused():
