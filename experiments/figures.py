@@ -46,7 +46,7 @@ class Look:
 
 
 #: Of each mode. Colours are apart for colour-blind eyes too, and stand out from the paper by 3 : 1
-#: or more. Add your own mode here: tests/experiments/test_figures.py says whether its colour does.
+#: or more. Add yours here; tests/experiments/test_figures.py says whether its colour will do.
 MODES = {
     "none": Look("no fixture", "#17202e", "#e8edf4"),
     "all_faces": Look("all faces", "#939646", "#ffdc31"),
