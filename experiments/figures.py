@@ -164,7 +164,7 @@ def svg(fig: Figure) -> str:
     The same figure gives the same bytes. Raises ValueError for what would not follow into the dark.
     """
     file = io.StringIO()
-    fig.savefig(file, format="svg", metadata=dict.fromkeys(("Creator", "Date", "Format", "Type")))
+    fig.savefig(file, format="svg")
     titles = [
         ax.get_title() or f"{ax.get_ylabel()} by {ax.get_xlabel() or 'mode'}" for ax in fig.axes
     ]
@@ -184,6 +184,7 @@ def svg(fig: Figure) -> str:
     text = re.sub(r"'DejaVu Sans'[^;\"]*", "system-ui, sans-serif", text)
     # Formulas are set letter by letter, for one font: let words run in whichever is there.
     text = re.sub(r'(<tspan [^>]*x="[^" ]+)[^"]*"', r'\1"', text)
+    # No date, no comments; what its style says, _style() says too.
     text = re.sub(r"\s*<!--.*?-->|\s*<metadata>.*?</metadata>|<defs>\s*<style.*?</defs>", "", text,
                   flags=re.DOTALL)
     # matplotlib numbers everything; what nothing refers to would only be twice on a page.
