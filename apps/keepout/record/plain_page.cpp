@@ -112,12 +112,9 @@ void print_plain_page(std::ostream& out, const Json& record) {
   for (const Json& text : record.at("account")) print_paragraph(out, text);
   out << "<p>Made again by: <code>" << escaped(record.at("command").get<std::string>())
       << "</code></p>\n";
+  if (record.contains("experiments")) print_experiments(out, record["experiments"]);
   for (const auto& [key, value] : record.items()) {
-    if (key == "experiments") {
-      print_experiments(out, value);
-    } else {
-      print_member(out, key, value);
-    }
+    if (key != "experiments") print_member(out, key, value);
   }
   out << "</body>\n</html>\n";
 }

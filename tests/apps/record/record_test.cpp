@@ -91,20 +91,13 @@ TEST(PlainPage, ShowsWordsAndRowsAsText) {
 TEST(PlainPage, ShowsExperimentsInTablesAndInPicturesThatDoNothing) {
   Json record = new_record({.kind = "experiments", .headline = "Redone"});
   EXPECT_EQ(fault_of(record), "");
-  const Json first = {{"name", "e3"},
-                      {"title", "E3 <Path>"},
-                      {"headline", "Smoother."},
-                      {"claims", {{{"about", "depth"}, {"paper", "0.39 mm"}, {"note", "a < b"}}}},
-                      {"tables",
-                       {{{"title", "By mode"},
-                         {"columns", {"mode", "p"}},
-                         {"rows", {{"none", "< 0.001"}}},
-                         {"note", "Less is better."}}}},
-                      {"figures",
-                       {{{"name", "box"},
-                         {"title", "A \"box\""},
-                         {"caption", "Each point."},
-                         {"svg", "<svg><script>harm()</script></svg>"}}}}};
+  const Json first = Json::parse(R"({
+    "name": "e3", "title": "E3 <Path>", "headline": "Smoother.",
+    "claims": [{"about": "depth", "paper": "0.39 mm", "note": "a < b"}],
+    "tables": [{"title": "By mode", "columns": ["mode", "p"], "rows": [["none", "< 0.001"]],
+                "note": "Less is better."}],
+    "figures": [{"name": "box", "title": "A \"box\"", "caption": "Each point.",
+                 "svg": "<svg><script>harm()</script></svg>"}]})");
   Json second = first;
   second["title"] = "E4";
   record["experiments"] = {first, second};
@@ -124,6 +117,8 @@ TEST(PlainPage, ShowsExperimentsInTablesAndInPicturesThatDoNothing) {
     EXPECT_NE(page.find(words), std::string::npos) << words << " in " << page;
   }
   EXPECT_EQ(page.find("<script"), std::string::npos);
+  EXPECT_EQ(page.find("<h2>"), page.find("<h2>Beside the paper"));
+  EXPECT_EQ(page.find("<h2>experiments"), std::string::npos);
 }
 
 TEST(FlatRows, AsCsvKeepEveryDigitAndQuoteWhatMustBe) {
