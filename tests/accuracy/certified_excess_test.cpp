@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "accuracy/best_step.h"
 #include "keepout/factory/make_motion_constraint.h"
 #include "keepout/fixtures/poses.h"
 #include "keepout/fixtures/real_mesh.h"
@@ -17,9 +16,13 @@
 #include "keepout/index/pd_tree.h"
 #include "keepout/index/query.h"
 #include "keepout/mesh/load_mesh.h"
+#include "keepout/oracle/best_step.h"
 
 namespace keepout::test {
 namespace {
+
+using oracle::best_step;
+using oracle::BestStep;
 
 /// A tip in or near contact, and what it is asked to do there.
 struct State {

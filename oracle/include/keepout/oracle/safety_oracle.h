@@ -85,6 +85,9 @@ class SafetyOracle {
   /// finite coordinates.
   double distance(const Vec3& point) const;
 
+  /// Finds triangles, for who has questions of his own about the mesh.
+  const TriangleTree& tree() const noexcept { return *tree_; }
+
   /// Strictly inside a closed mesh, exactly, whatever the winding; nothing when an edge of the mesh
   /// has an odd number of triangles. Some 10 us to 100 us.
   std::optional<bool> inside(const Vec3& point) const { return inside_test_->inside(point); }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "accuracy/best_step.h"
+#include "keepout/oracle/best_step.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -10,9 +10,7 @@
 #include <queue>
 #include <vector>
 
-#include "keepout/geometry/closest_point.h"
-
-namespace keepout::test {
+namespace keepout::oracle {
 namespace {
 
 // Inside, lengths are in units of |desired| and relative to the tip, so the desired motion is a
@@ -23,6 +21,34 @@ constexpr std::size_t most_cells = 20000;  // of the branch and bound, when to g
 constexpr std::size_t first_cells = 64;
 constexpr std::size_t first_descents = 4;
 constexpr double parallel = 1e-9;  // planes whose normals span less make no line
+
+struct ClosestPoint {
+  Vec3 offset;  // from the point asked about
+  double distance;
+};
+
+/// Where a triangle, which may be a segment or a point, is nearest to a point: at the foot of the
+/// perpendicular if that is in it, and otherwise on one of its sides.
+ClosestPoint closest_point(const Triangle& t, const Vec3& point) {
+  Vec3 best = t[0] - point;
+  for (int i = 0; i < 3; ++i) {
+    const Vec3 side = t[(i + 1) % 3] - t[i];
+    const double length2 = side.squaredNorm();
+    const double share =
+        length2 > 0.0 ? std::clamp((point - t[i]).dot(side) / length2, 0.0, 1.0) : 0.0;
+    const Vec3 offset = t[i] + share * side - point;
+    if (offset.squaredNorm() < best.squaredNorm()) best = offset;
+  }
+  const Vec3 normal = (t[1] - t[0]).cross(t[2] - t[0]).stableNormalized();
+  const auto is_within = [&](int i) {
+    return normal.cross(t[(i + 1) % 3] - t[i]).dot(point - t[i]) >= 0.0;
+  };
+  if (normal.squaredNorm() > 0.5 && is_within(0) && is_within(1) && is_within(2)) {
+    const Vec3 offset = (t[0] - point).dot(normal) * normal;
+    if (offset.squaredNorm() < best.squaredNorm()) best = offset;
+  }
+  return {best, best.norm()};
+}
 
 /// A triangle to keep away from. The motions that it leaves are all but a convex set, its shadow.
 struct Obstacle {
@@ -406,4 +432,4 @@ BestStep best_step(const Mesh& mesh, std::span<const TriangleId> near, const Vec
   return {motion, (motion - desired).norm(), unit * best.bound};
 }
 
-}  // namespace keepout::test
+}  // namespace keepout::oracle

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "accuracy/best_step.h"
+#include "keepout/oracle/best_step.h"
 
 #include <gtest/gtest.h>
 
@@ -20,6 +20,9 @@
 
 namespace keepout::test {
 namespace {
+
+using oracle::best_step;
+using oracle::BestStep;
 
 std::vector<TriangleId> within(const Mesh& mesh, const Vec3& point, double radius) {
   std::vector<TriangleId> out;

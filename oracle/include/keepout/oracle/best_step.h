@@ -6,7 +6,7 @@
 #include "keepout/ids.h"
 #include "keepout/mesh/mesh.h"
 
-namespace keepout::test {
+namespace keepout::oracle {
 
 /// The best safe straight step: what a step that gives away something is measured against.
 struct BestStep {
@@ -23,11 +23,10 @@ struct BestStep {
 /// exceeds `bound` by at most 1e-4 |desired|, unless the search gives up (it may where a whole
 /// curve of motions is equally good; the two then tell by how much). As a rule the cost is exact to
 /// 1e-6 |desired|, and the clearance is kept to 1e-12 of the problem's size. Milliseconds a call.
-/// All that it shares with the engine is the closest point of a triangle.
 ///
 /// Preconditions: all is finite, the tip is on no triangle, and `near` names every triangle within
 /// |desired| / 2 + margin of tip + desired / 2; others do no harm.
 BestStep best_step(const Mesh& mesh, std::span<const TriangleId> near, const Vec3& tip,
                    const Vec3& desired, double margin);
 
-}  // namespace keepout::test
+}  // namespace keepout::oracle

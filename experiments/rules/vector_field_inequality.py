@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A vector field inequality for the nearest point of the surface.
+
+Marinho, Adorno, Harada, Mitsuishi, "Dynamic active constraints for surgical robots using vector field
+inequalities", IEEE T-RO 35, 2019. Taken from it: the distance d of the tip from an obstacle may fall
+no faster than -d' <= eta (d - d_safe), here with the static point of the surface that is nearest.
+
+Our reading: a mesh is the obstacle by its one nearest point, with n = (tip - point) / d, and d_safe is
+the margin. Over a period T that is n . dx >= -eta T (d - d_safe); eta is 1 / T, the greatest for which
+the inequality keeps d from passing d_safe in one period, and the one that slows the tip least. Below
+d_safe the inequality asks for a motion outwards, as the article has it, but not for one that is longer
+than the motion sphere. On the surface n is the normal of the face; the side is not told, so a tip below
+the surface is led on inwards.
+"""
+from __future__ import annotations
+
+import keepout
+import numpy as np
+from numpy.typing import NDArray
+
+from .projection import Plane, corridor_planes, nearest_motion
+from .rule import Task
+
+
+class VectorFieldInequality:
+    """One plane each cycle."""
+
+    NAME = "vector_field"
+    ETA_PERIOD = 1.0  # eta T
+
+    def __init__(self, task: Task, index: keepout.Index) -> None:
+        self._task = task
+        self._index = index
+        self._normals = task.mesh.normals
+
+    def step(self, tip: NDArray[np.float64], desired: NDArray[np.float64]) -> NDArray[np.float64]:
+        margin, gain = self._task.margin, self.ETA_PERIOD
+        planes: list[Plane] = corridor_planes(self._task.corridor, tip)
+        # Of a point that is farther off no desired motion violates the inequality.
+        reach = margin + float(np.sqrt(desired @ desired)) / gain
+        hits = self._index.hits(tip, reach)
+        if len(hits):
+            nearest = int(hits.distances.argmin())
+            distance = float(hits.distances[nearest])
+            if distance > 0.0:
+                normal = hits.offsets[nearest] / -distance
+            else:
+                normal = self._normals[hits.triangles[nearest]]
+            planes.append((normal, min(self._task.radius, -gain * (distance - margin))))
+        motion = nearest_motion(desired, planes)
+        return np.zeros(3) if motion is None else motion
