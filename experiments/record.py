@@ -40,7 +40,7 @@ def write_record(
         "command": command,
         "complete": complete,
         "subject": f"The experiments of Li et al., IROS 2020, {'in full' if scale.full else 'quick'}",
-        "headline": f"{compared} numbers of the paper, beside what its rule does here, what is "
+        "headline": f"{compared} number{'s' * (compared != 1)} of the paper, beside what its rule does here, what is "
         "certified, and what is best",
         "account": [],
         "machine": _machine(),
