@@ -105,4 +105,4 @@ def test_modes_are_told_apart_by_all_eyes(paper, shade):
     for eyes, seen in EYES.items():
         for one, other in itertools.combinations(colors, 2):
             first, second = (lab(np.array(seen) @ linear(colors[it])) for it in (one, other))
-            assert np.linalg.norm(first - second) > 15.0, f"{one} and {other} are alike, with {eyes}"
+            assert np.linalg.norm(first - second) > 15.0, f"{one} is like {other}, with {eyes}"
