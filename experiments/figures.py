@@ -79,7 +79,6 @@ matplotlib.rcParams.update({
     "svg.hashsalt": "keepout",
     "font.sans-serif": ["DejaVu Sans"],  # wider than what is shown: nothing will overlap
     "font.size": 9,
-    "axes.labelsize": 9,
     "axes.titlesize": 9.5,
     "axes.titleweight": "bold",
     "axes.edgecolor": SOFT,
@@ -94,10 +93,8 @@ matplotlib.rcParams.update({
     "xtick.labelcolor": INK,
     "ytick.labelcolor": INK,
     "legend.frameon": False,
-    "legend.fontsize": 8.5,
     "lines.linewidth": 1.4,
     "lines.markersize": 4,
-    "patch.linewidth": 0.8,
 })
 
 
@@ -194,17 +191,14 @@ def svg(fig: Figure) -> str:
     head = [f"<title>{escape('; '.join(titles))}</title>"]
     head += [f"<desc>Drawn are: {escape('; '.join(drawn))}.</desc>"] if drawn else []
     head += [f"<style>{_style(names)}</style>"]
-    opening = re.search(r"<svg ", text)
-    assert opening, "matplotlib writes an SVG"
-    root, content = text[opening.end():].split(">", 1)
-    return f'<svg role="img" {root}>\n ' + "\n ".join(head) + content
+    root, content = text[text.index("<svg ") :].removeprefix("<svg").split(">", 1)
+    return f'<svg role="img"{root}>\n ' + "\n ".join(head) + content
 
 
 def _style(names: set[str]) -> str:
-    """The custom properties of these names. What matplotlib leaves out is black: of the ink."""
-    looks = {name: look for name, look in _LOOKS.items() if name in names}
-    light = ";".join(f"--{name}:{look.light}" for name, look in looks.items())
-    dark = ";".join(f"--{name}:{look.dark}" for name, look in looks.items())
+    """The custom properties of these names. What matplotlib gives no colour is of the ink."""
+    light = ";".join(f"--{name}:{_LOOKS[name].light}" for name in sorted(names))
+    dark = ";".join(f"--{name}:{_LOOKS[name].dark}" for name in sorted(names))
     return (
         f"svg{{{light};fill:var(--ink)}}"
         f"@media screen and (prefers-color-scheme:dark){{svg{{{dark}}}}}"

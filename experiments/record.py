@@ -28,10 +28,12 @@ def write_record(
 ) -> None:
     """Writes what was found, by name with its title, as JSON.
 
-    `complete`: nothing was left out or stopped. `command` does it again. `date` is ISO 8601, UTC; by
-    default it is now.
+    `complete`: nothing was left out or stopped. `command` does it again. `date` is ISO 8601, UTC;
+    by default it is now.
     """
+    extent = "full" if scale.full else "quick"
     compared = sum(claim.paper != "-" for _, found in findings.values() for claim in found.claims)
+    numbers = "1 number" if compared == 1 else f"{compared} numbers"
     record = {
         "keepout_record": "experiments",
         "format": FORMAT,
@@ -39,12 +41,12 @@ def write_record(
         "date": date or datetime.now(timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ"),
         "command": command,
         "complete": complete,
-        "subject": f"The experiments of Li et al., IROS 2020, {'in full' if scale.full else 'quick'}",
-        "headline": f"{compared} numbers of the paper, beside what its rule does here, what is "
-        "certified, and what is best",
+        "subject": f"The experiments of Li et al., IROS 2020: {extent}",
+        "headline": f"{numbers} of the paper, beside what its rule does here, what the certified "
+        "rule does, and what is best",
         "account": [],
         "machine": _machine(),
-        "settings": {"scale": "full" if scale.full else "quick", "seed": str(scale.seed)},
+        "settings": {"scale": extent, "seed": str(scale.seed)},
         "experiments": [
             {"name": name, "title": title, **asdict(found)}
             for name, (title, found) in findings.items()
