@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Whether two modes differ, by how much, and how sure that is.
 
-The paper's p values are of Student's test, which takes both modes to vary alike; Welch's does not, and
-is what is to be believed. Samples are whole trials, one number each: what is measured every millimetre
-of one cut is not independent, and counting it as if it were makes p values too small.
+The paper's p values are of Student's test, which takes both modes to vary alike; Welch's does not,
+and is what is to be believed. Samples are whole trials, one number each: what is measured every
+millimetre of one cut is not independent, and counting it as if it were makes p values too small.
 """
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Summary:
-    """What is left of a sample when it is printed: mean, standard deviation (of n - 1), and size."""
+    """What is printed of a sample: mean, standard deviation (of n - 1), and size."""
 
     mean: float
     sd: float
@@ -33,7 +33,7 @@ class Summary:
 
 @dataclass(frozen=True)
 class MeanTest:
-    """Of the hypothesis that both means are equal: the statistic, its degrees of freedom, two-sided p."""
+    """Of equal means: the statistic, its degrees of freedom, and the two-sided p."""
 
     t: float
     dof: float
@@ -42,7 +42,7 @@ class MeanTest:
 
 @dataclass(frozen=True)
 class Effect:
-    """Hedges' g and its interval: the difference a - b in standard deviations. NaN where unknown."""
+    """Hedges' g, the difference a - b in standard deviations, and its interval. NaN: unknown."""
 
     g: float
     low: float
@@ -66,7 +66,7 @@ def welch(a: Summary, b: Summary) -> MeanTest:
 def hedges_g(a: Summary, b: Summary) -> float:
     """(a - b) / pooled deviation, times the usual 1 - 3 / (4 dof - 1), as small samples exaggerate.
 
-    Hedges, "Distribution theory for Glass's estimator of effect size", 1981. NaN without any spread.
+    Hedges, "Distribution theory for Glass's estimator of effect size", 1981. NaN without spread.
     """
     spread = _pooled_sd(a, b)
     if spread == 0.0:
@@ -80,8 +80,8 @@ def effect(
     """Hedges' g with the interval of the BCa bootstrap, each mode resampled by itself.
 
     Efron, "Better bootstrap confidence intervals", 1987: corrected for bias, and for a spread that
-    changes with g (by the jackknife over trials of both modes). Fewer than three trials of a mode are
-    too few to resample: the interval is NaN then. The same seed gives the same interval.
+    changes with g (by the jackknife over trials of both modes). Fewer than three trials of a mode
+    are too few to resample: the interval is NaN then. The same seed gives the same interval.
     """
     a, b = np.asarray(a, dtype=np.float64), np.asarray(b, dtype=np.float64)
     g = hedges_g(Summary.of(a), Summary.of(b))
@@ -151,15 +151,15 @@ def _hedges_g_of_rows(a: Array, b: Array) -> Array:
 
 
 def _acceleration(a: Array, b: Array) -> float:
-    """A sixth of the skewness of g's dependence on each trial, of two samples."""
+    """A sixth of the skewness of how each trial moves g, over both modes."""
+    without_a = np.array([np.delete(a, i) for i in range(len(a))])
+    without_b = np.array([np.delete(b, i) for i in range(len(b))])
     cubes = squares = 0.0
-    for left_out_of_a, sample in ((True, a), (False, b)):
-        left_out = [np.delete(sample, i) for i in range(len(sample))]
-        without = np.array([
-            hedges_g(*map(Summary.of, (rest, b) if left_out_of_a else (a, rest)))
-            for rest in left_out
-        ])
-        influence = (len(sample) - 1) * (without.mean() - without)
-        cubes += np.sum(influence**3) / len(sample) ** 3
-        squares += np.sum(influence**2) / len(sample) ** 2
-    return float(cubes / (6 * squares**1.5)) if np.isfinite(cubes) and squares > 0.0 else 0.0
+    for g in (
+        _hedges_g_of_rows(without_a, np.tile(b, (len(a), 1))),
+        _hedges_g_of_rows(np.tile(a, (len(b), 1)), without_b),
+    ):
+        influence = (len(g) - 1) / len(g) * (g.mean() - g)
+        cubes += float(np.sum(influence**3))
+        squares += float(np.sum(influence**2))
+    return cubes / (6 * squares**1.5) if np.isfinite(cubes) and squares > 0.0 else 0.0
