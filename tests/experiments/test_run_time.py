@@ -1,11 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import math
 import os
+from pathlib import Path
 
 import pytest
 
 from experiments import e2_run_time, published
 from experiments.experiment import Unit
+
+CACHE = os.environ.get("KEEPOUT_CACHE", Path(__file__).resolve().parents[2] / ".cache")
+BUNNY = Path(CACHE) / "fixtures" / "bunny.stl"
 
 
 def test_where_a_rate_is_reached_is_found_on_a_power_law():
@@ -20,7 +24,9 @@ def test_the_paper_s_own_rates_fall_below_1_khz_near_where_it_says():
     assert math.isclose(at, published.TRIANGLES_AT_1_KHZ, rel_tol=0.5)
 
 
-@pytest.mark.skipif("KEEPOUT_COMMAND" not in os.environ, reason="needs the command keepout")
+@pytest.mark.skipif(
+    "KEEPOUT_COMMAND" not in os.environ or not BUNNY.exists(),
+    reason="needs the command keepout, and the bunny: fixtures/prepare bunny")
 def test_rows_are_the_same_but_for_times_and_verified():
     unit = Unit("few", {"triangles": 5000, "indices": ["wide_bvh", "pd_tree_1997"], "queries": 60,
                         "seed": 4})
