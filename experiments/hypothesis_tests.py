@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Whether two modes differ, by how much, and how sure that is.
 
-The paper's p values are of Student's test, which takes both modes to vary alike; Welch's does not, and
-is what is to be believed. Samples are whole trials, one number each: what is measured every millimetre
-of one cut is not independent, and counting it as if it were makes p values too small.
+The paper's p values are of Student's test, which takes both modes to vary alike; Welch's does not,
+and is what is to be believed. Samples are whole trials, one number each: what is measured every
+millimetre of one cut is not independent, and counting it as if it were makes p values too small.
 """
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Summary:
-    """What is left of a sample when it is printed: mean, standard deviation (of n - 1), and size."""
+    """What is printed of a sample: mean, standard deviation (of n - 1), and size."""
 
     mean: float
     sd: float
@@ -33,7 +33,7 @@ class Summary:
 
 @dataclass(frozen=True)
 class MeanTest:
-    """Of the hypothesis that both means are equal: the statistic, its degrees of freedom, two-sided p."""
+    """Of equal means: the statistic, its degrees of freedom, and the two-sided p."""
 
     t: float
     dof: float
@@ -42,7 +42,7 @@ class MeanTest:
 
 @dataclass(frozen=True)
 class Effect:
-    """Hedges' g and its interval: the difference a - b in standard deviations. NaN where unknown."""
+    """Hedges' g, the difference a - b in standard deviations, and its interval. NaN: unknown."""
 
     g: float
     low: float
@@ -66,7 +66,7 @@ def welch(a: Summary, b: Summary) -> MeanTest:
 def hedges_g(a: Summary, b: Summary) -> float:
     """(a - b) / pooled deviation, times the usual 1 - 3 / (4 dof - 1), as small samples exaggerate.
 
-    Hedges, "Distribution theory for Glass's estimator of effect size", 1981. NaN without any spread.
+    Hedges, "Distribution theory for Glass's estimator of effect size", 1981. NaN without spread.
     """
     spread = _pooled_sd(a, b)
     if spread == 0.0:
@@ -80,27 +80,18 @@ def effect(
     """Hedges' g with the interval of the BCa bootstrap, each mode resampled by itself.
 
     Efron, "Better bootstrap confidence intervals", 1987: corrected for bias, and for a spread that
-    changes with g (by the jackknife over trials of both modes). Fewer than three trials of a mode are
-    too few to resample: the interval is NaN then. The same seed gives the same interval.
+    changes with g. Fewer than three trials of a mode are too few to resample: the interval is NaN
+    then. The same seed gives the same interval.
     """
     a, b = np.asarray(a, dtype=np.float64), np.asarray(b, dtype=np.float64)
     g = hedges_g(Summary.of(a), Summary.of(b))
     if min(len(a), len(b)) < 3 or not np.isfinite(g):
         return Effect(g, float("nan"), float("nan"))
-    random = np.random.default_rng(seed)
-    drawn_a = a[random.integers(0, len(a), (resamples, len(a)))]
-    drawn_b = b[random.integers(0, len(b), (resamples, len(b)))]
-    resampled = _hedges_g_of_rows(drawn_a, drawn_b)
-    resampled = resampled[np.isfinite(resampled)]  # without those of no spread at all
-    below = np.mean(resampled < g) + 0.5 * np.mean(resampled == g)
-    bias = stats.norm.ppf(np.clip(below, 1 / resamples, 1 - 1 / resamples))
-    acceleration = _acceleration(a, b)
-    edges = []
-    for quantile in ((1 - confidence) / 2, (1 + confidence) / 2):
-        shifted = bias + stats.norm.ppf(quantile)
-        edges.append(stats.norm.cdf(bias + shifted / (1 - acceleration * shifted)))
-    low, high = np.quantile(resampled, edges)
-    return Effect(g, float(low), float(high))
+    interval = stats.bootstrap(
+        (a, b), _hedges_g_along, method="BCa", n_resamples=resamples, confidence_level=confidence,
+        random_state=seed,
+    ).confidence_interval
+    return Effect(g, float(interval.low), float(interval.high))
 
 
 def holm(p_values: Sequence[float]) -> list[float]:
@@ -122,8 +113,8 @@ def in_words(p_after_holm: float, size: Effect) -> str:
     if not np.isfinite(size.g):
         return f"{p}, no spread"
     if not np.isfinite(size.low):
-        return f"{p}, g = {size.g:.2f}"
-    return f"{p}, g = {size.g:.2f} [{size.low:.2f}, {size.high:.2f}]"
+        return f"{p}, g = {size.g:.3g}"
+    return f"{p}, g = {size.g:.3g} [{size.low:.3g}, {size.high:.3g}]"
 
 
 def _test(difference: float, error: float, dof: float) -> MeanTest:
@@ -139,27 +130,12 @@ def _pooled_sd(a: Summary, b: Summary) -> float:
     return float(np.sqrt(squares / (a.n + b.n - 2)))
 
 
-def _hedges_g_of_rows(a: Array, b: Array) -> Array:
-    """Hedges' g for each row of resamples, (r, n_a) and (r, n_b)."""
-    n_a, n_b = a.shape[1], b.shape[1]
-    squares = (n_a - 1) * a.var(axis=1, ddof=1) + (n_b - 1) * b.var(axis=1, ddof=1)
-    spread = np.sqrt(squares / (n_a + n_b - 2))
-    difference = a.mean(axis=1) - b.mean(axis=1)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        g: Array = difference / spread * (1 - 3 / (4 * (n_a + n_b - 2) - 1))
+def _hedges_g_along(a: Array, b: Array, axis: int = -1) -> Array:
+    """Hedges' g of many samples at once; a million at most, as resamples may have no spread."""
+    n_a, n_b = a.shape[axis], b.shape[axis]
+    squares = (n_a - 1) * a.var(axis, ddof=1) + (n_b - 1) * b.var(axis, ddof=1)
+    difference = a.mean(axis) - b.mean(axis)
+    spread = np.maximum(np.sqrt(squares / (n_a + n_b - 2)), 1e-6 * np.abs(difference))
+    ratio = difference / np.where(difference == 0.0, 1.0, spread)
+    g: Array = ratio * (1 - 3 / (4 * (n_a + n_b - 2) - 1))
     return g
-
-
-def _acceleration(a: Array, b: Array) -> float:
-    """A sixth of the skewness of g's dependence on each trial, of two samples."""
-    cubes = squares = 0.0
-    for left_out_of_a, sample in ((True, a), (False, b)):
-        left_out = [np.delete(sample, i) for i in range(len(sample))]
-        without = np.array([
-            hedges_g(*map(Summary.of, (rest, b) if left_out_of_a else (a, rest)))
-            for rest in left_out
-        ])
-        influence = (len(sample) - 1) * (without.mean() - without)
-        cubes += np.sum(influence**3) / len(sample) ** 3
-        squares += np.sum(influence**2) / len(sample) ** 2
-    return float(cubes / (6 * squares**1.5)) if np.isfinite(cubes) and squares > 0.0 else 0.0

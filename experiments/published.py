@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The numbers that the paper prints, and where: Li et al., IROS 2020.
 
-Nothing here is measured by us but `AUTHORS_CODE`. Numbers that only its plots show are not here: two
-points of the rate are given in words, the others are in a picture. Standard deviations are as
-printed; the paper does not say whether they are of n or n - 1.
+Nothing here is measured by us but `AUTHORS_CODE`. What only its plots show is not here: of the
+rate, two points are given in words. Standard deviations are as printed; the paper does not say
+whether they are of n or n - 1.
 """
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ CUT_OFF = 20.0  # [Hz] V-A: of the spectral arc length
 
 @dataclass(frozen=True)
 class Rate:
-    """How fast a control loop runs on a mesh of so many triangles; `radius` in mm, None: not given."""
+    """How fast a loop runs on a mesh of so many triangles; `radius` in mm, None: not given."""
 
     triangles: int
     khz: float

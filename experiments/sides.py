@@ -3,8 +3,8 @@
 
 A vertical line from below to a point enters and leaves the solid; the turns are counted with their
 sense, so that parts which overlap stay solid. Nothing is decided by a tolerance: a line through an
-edge or a vertex is moved aside by less than any number, the same way for all triangles (Edelsbrunner
-and Muecke, "Simulation of simplicity", 1990). Right for closed meshes; an open one has no sides.
+edge or a vertex is moved aside by less than any number, the same way for all triangles
+(Edelsbrunner and Muecke, "Simulation of simplicity", 1990). An open mesh has no sides.
 """
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ PAIRS_AT_ONCE = 1_000_000
 
 
 def crossings(mesh: keepout.Mesh, lines: Array, row: float) -> tuple[Numbers, Array, Numbers]:
-    """Where vertical lines pass through the mesh: which line, at which height, +1 entering, -1 leaving.
+    """Where vertical lines pass through: which line, at which height, +1 entering or -1 leaving.
 
     `lines` are their x and y, (n, 2). They are looked up in rows of y of this width [mm], such as
     their spacing, within which they are sorted by x.
@@ -59,7 +59,7 @@ def crossings(mesh: keepout.Mesh, lines: Array, row: float) -> tuple[Numbers, Ar
 
 
 def is_closed(mesh: keepout.Mesh) -> bool:
-    """Whether each edge has as many triangles on one side as on the other: only then there are sides."""
+    """Whether each edge has as many triangles on one side as on the other: then there are sides."""
     start = mesh.triangles.astype(np.int64)
     end = np.roll(start, -1, axis=1)
     count = len(mesh.vertices)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""How smooth a motion is, from its speed alone: the length of the curve that the speed's spectrum draws.
+"""How smooth a motion is, from its speed alone: how long a curve the speed's spectrum draws.
 
-A smooth motion's spectrum falls once and stays low; each jerk adds a hump, and length. Both measures
-are negative, have no unit, and are larger (nearer to zero) for what is smoother. Neither depends on
-how fast or how far the motion goes; both depend on how long it takes, as more happens in more time.
+A smooth motion's spectrum falls once and stays low; each jerk adds a hump, and length. Both
+measures are negative, have no unit, and are larger (nearer to zero) for what is smoother. Neither
+depends on how fast or how far the motion goes; both on how long it takes: more happens then.
 """
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ PADDING = 4
 def spectral_arc_length(speed: Array, rate: float, cut_off: float = 20.0) -> float:
     """SAL as the paper has it (V-A), from 0 to the fixed `cut_off` [Hz].
 
-    Of `speed`, (n,) in any unit, sampled at `rate` [Hz]. Balasubramanian, Melendez-Calderon, Burdet,
-    "A robust and sensitive metric for quantifying movement smoothness", IEEE TBME 59, 2012. The
-    paper's spectrum is normalised by its value at 0, the distance that was moved.
+    Of `speed`, (n,) in any unit, sampled at `rate` [Hz]. The spectrum is normalised by its value
+    at 0, the distance that was moved. Balasubramanian, Melendez-Calderon, Burdet, "A robust and
+    sensitive metric for quantifying movement smoothness", IEEE TBME 59, 2012.
     """
     frequency, amplitude = _spectrum(speed, rate, cut_off)
     return _minus_length(frequency, amplitude)
 
 
 def sparc(speed: Array, rate: float, cut_off: float = 10.0, threshold: float = 0.05) -> float:
-    """The same up to where the spectrum falls below `threshold` for good, at `cut_off` [Hz] at most.
+    """The same, up to where the spectrum falls below `threshold` for good; at most to `cut_off`.
 
     So it is not lengthened by noise, nor by a band in which nothing happens. Balasubramanian,
     Melendez-Calderon, Roby-Brami, Burdet, "On the analysis of movement smoothness", Journal of
@@ -55,6 +55,6 @@ def _spectrum(speed: Array, rate: float, cut_off: float) -> tuple[Array, Array]:
 
 
 def _minus_length(frequency: Array, amplitude: Array) -> float:
-    """Of the polyline of these points, with the frequencies scaled to a width of 1, and negative."""
+    """Of the polyline of these points, with the frequencies scaled to a width of 1."""
     across = np.diff(frequency) / (frequency[-1] - frequency[0])
     return -float(np.sum(np.hypot(across, np.diff(amplitude))))

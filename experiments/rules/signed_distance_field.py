@@ -2,10 +2,10 @@
 """What is mostly used today: distances on a grid of voxels, and one plane from their gradient.
 
 The distance of each voxel is exact; what is between them is interpolated, and what is thinner than
-they are is lost. The rule is that of a single active constraint: the tip moves no farther towards the
-surface than the field says there is room (Bowyer, Davies, Rodriguez y Baena, "Active
-constraints/virtual fixtures: a survey", 2014; as a linear inequality Marinho et al., "Dynamic active
-constraints for surgical robots using vector-field inequalities", 2019).
+they are is lost. The rule is that of a single active constraint: the tip moves no farther towards
+the surface than the field says there is room (Bowyer, Davies, Rodriguez y Baena, "Active
+constraints/virtual fixtures: a survey", 2014; as a linear inequality Marinho et al., "Dynamic
+active constraints for surgical robots using vector-field inequalities", 2019).
 """
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ class VoxelGrid:
         if self.is_signed:
             solid = lattice_is_solid(mesh, self.low, self.cell, shape)
             np.negative(self.values, out=self.values, where=solid)
-        self._flat = memoryview(self.values.reshape(-1))  # gives plain floats, and at once
+        self._flat = self.values.reshape(-1).data  # a memoryview gives plain floats, and at once
         self._strides = (shape[1] * shape[2], shape[2])
 
     @property
@@ -108,8 +108,8 @@ def shared_grid(
 class SignedDistanceField:
     """The rule n . motion >= -(distance - margin), n along the gradient: a rule.Rule.
 
-    Outside of the grid every motion is free. Without a `grid` it is that of the whole mesh, or, where
-    there is a corridor, of this within FAR_ALONG of its point; both with AROUND more.
+    Outside of the grid every motion is free. Without a `grid` it is that of the whole mesh, or,
+    where there is a corridor, of this within FAR_ALONG of its point; both with AROUND more.
     """
 
     def __init__(
@@ -139,7 +139,9 @@ class SignedDistanceField:
         return np.zeros(3) if motion is None else motion
 
 
-def _shape(low: NDArray[np.float64], high: NDArray[np.float64], cell: float) -> tuple[int, int, int]:
+def _shape(
+    low: NDArray[np.float64], high: NDArray[np.float64], cell: float
+) -> tuple[int, int, int]:
     cells = np.ceil((high - low) / cell - 1e-9).astype(int) + 1
     return int(cells[0]), int(cells[1]), int(cells[2])
 
