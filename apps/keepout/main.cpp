@@ -34,6 +34,10 @@ namespace {
 // What main returns, and `keepout --help` says. 0 and 1 are EXIT_SUCCESS and EXIT_FAILURE.
 constexpr int exit_usage = 2;
 
+/// What ./run does besides, without this command.
+constexpr const char* also_run =
+    "\nThe experiments of the paper, done again: ./run experiments, and with --full all of them.\n";
+
 constexpr const char* exit_statuses =
     "Exit status: 0 if all went well; 1 if something failed, or what was to be checked does not "
     "hold;\n"
@@ -230,7 +234,8 @@ int run(int argc, char** argv) {
   CLI::App app("keepout keeps a tool out of a triangle mesh of anatomy. All lengths are in mm.",
                called_as(argv[0]));
   app.get_formatter()->label("SUBCOMMAND", "COMMAND");
-  app.footer(mesh_names_help() + '\n' + exit_statuses);
+  const bool is_run = app.get_name() == "./run";
+  app.footer(mesh_names_help() + (is_run ? also_run : "") + '\n' + exit_statuses);
   app.set_version_flag("--version", KEEPOUT_VERSION);
   app.set_help_all_flag("--help-all", "Help on every command");
   app.require_subcommand(1);

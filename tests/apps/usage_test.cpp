@@ -141,6 +141,11 @@ TEST(Usage, HelpCallsTheCommandWhatTheUserHasCalledIt) {
   const Outcome by_run =
       folder.run("simulate cub --raduis 1", R"(bash -c 'exec -a ./run "$0" "$@"' )");
   EXPECT_NE(by_run.output.find("See './run simulate --help'."), std::string::npos) << by_run.output;
+  // What only ./run does is told by it alone.
+  const std::string help_of_run =
+      folder.run("--help", R"(bash -c 'exec -a ./run "$0" "$@"' )").output;
+  EXPECT_NE(help_of_run.find("./run experiments"), std::string::npos) << help_of_run;
+  EXPECT_EQ(folder.run("--help").output.find("experiments"), std::string::npos);
 }
 
 }  // namespace

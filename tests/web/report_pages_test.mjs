@@ -10,12 +10,13 @@
  */
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import { mkdirSync, readdirSync, readFileSync, rmSync, statSync } from "node:fs";
+import { mkdirSync, readdirSync, readFileSync, rmSync, statSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { basename, join } from "node:path";
 import { after, test } from "node:test";
 import { fileURLToPath, pathToFileURL } from "node:url";
 import { gunzipSync } from "node:zlib";
+import { experimentsRecord } from "./experiments_record.mjs";
 
 const [keepout, folder, browserPath = "/usr/bin/chromium"] = process.argv.slice(2);
 const root = fileURLToPath(new URL("../..", import.meta.url));
@@ -44,6 +45,9 @@ function run(name, ...args) {
   return file;
 }
 
+const experimentsFile = join(folder, "experiments.json");
+writeFileSync(experimentsFile, JSON.stringify(experimentsRecord));
+
 const files = given
   ? readdirSync(given)
       .filter((name) => name.endsWith(".json"))
@@ -64,6 +68,7 @@ const files = given
         "simulate_robot",
         ..."simulate gear --robot psm --strokes 3 --cycles 200 --speed 5".split(" "),
       ),
+      run("experiments", "report", experimentsFile),
       run("verify_robot", ..."verify cube gear --robot psm --cycles 300".split(" ")),
     ];
 
@@ -317,9 +322,7 @@ for (const { file, name, record } of pages) {
     await assertSorts(tab, record);
     const tips = await assertTips(tab, record);
     note(`${tips} plots told`);
-    const hasPlots = !["verify", "verify_robot", "simulate_robot", "plan", "plan_robot"].includes(
-      record.keepout_record,
-    );
+    const hasPlots = ["simulate", "bench", "speed", "compare"].includes(record.keepout_record);
     assert.equal(tips > 0, hasPlots);
     // What legends and choices change is of the record too.
     for (const list of await tab.$$(".selection select")) {
@@ -358,6 +361,54 @@ for (const { file, name, record } of pages) {
     await tab.close();
   });
 }
+
+const experiments = pages.find(({ record }) => record.experiments);
+test("claims come first; pictures of a record do nothing", { skip: given }, async () => {
+  const tab = await opened(experiments.file, large);
+  const claimed = await tab.$$eval("main > section:first-of-type tbody th > :first-child", (all) =>
+    all.map((one) => one.textContent),
+  );
+  const claims = experiments.record.experiments.flatMap((one) => one.claims);
+  const abouts = claims.map(({ about }) => about);
+  assert.deepEqual(claimed, abouts);
+  const seen = await tab.$$eval(".picture_of_record", (all) =>
+    all.map(({ shadowRoot, textContent }) => {
+      const shapes = [...(shadowRoot?.querySelectorAll("*") ?? [])];
+      return {
+        told: textContent,
+        names: shapes.map(({ localName }) => localName),
+        attributes: shapes.flatMap((one) => one.getAttributeNames()),
+        size: shadowRoot?.querySelector("path")?.getBoundingClientRect().width ?? 0,
+        color: shadowRoot ? getComputedStyle(shadowRoot.querySelector("path")).fill : "",
+        used: shadowRoot?.querySelector("use")?.getAttribute("href"),
+      };
+    }),
+  );
+  const [good, hostile, broken] = seen;
+  assert.deepEqual(good.names, ["svg", "title", "style", "path", "use", "text"]);
+  assert.ok(good.size > 100, `the path is ${good.size} wide`);
+  assert.equal(good.color, "rgb(24, 100, 220)");
+  assert.equal(good.used, "#line");
+  assert.deepEqual(hostile.names, ["svg", "path", "g", "use"]);
+  assert.deepEqual(
+    hostile.attributes.filter((name) => /^on|href|^filter$/.test(name)),
+    [],
+  );
+  assert.match(broken.told, /no SVG/);
+  assert.equal(await tab.evaluate(() => window.harmed), undefined);
+  // In the dark it is another colour; on paper never.
+  const colorNow = () =>
+    tab.$eval(
+      ".picture_of_record",
+      ({ shadowRoot }) => getComputedStyle(shadowRoot.querySelector("path")).fill,
+    );
+  await tab.emulateMediaFeatures([{ name: "prefers-color-scheme", value: "dark" }]);
+  assert.equal(await colorNow(), "rgb(91, 155, 255)");
+  await tab.emulateMediaType("print");
+  assert.equal(await colorNow(), "rgb(24, 100, 220)");
+  assert.deepEqual(tab.faults, []);
+  await tab.close();
+});
 
 const bench = pages.find(({ record }) => record.benchmark?.rows.length);
 test("the table of all rows is filtered by words", { skip: !bench }, async () => {

@@ -2,9 +2,11 @@
 #include "record/plain_page.h"
 
 #include <ostream>
+#include <span>
 #include <vector>
 
 #include "number_text.h"
+#include "page/base64.h"
 #include "record/flat_rows.h"
 
 namespace keepout::app {
@@ -13,7 +15,8 @@ namespace {
 constexpr const char* style =
     "body{font:16px/1.5 system-ui,sans-serif;max-width:72em;margin:2em auto;padding:0 1em}"
     ".scroll{overflow:auto;max-height:40em}table{border-collapse:collapse;font-size:14px}"
-    "th,td{padding:4px 8px;border-bottom:1px solid #8886;text-align:left;vertical-align:top}";
+    "th,td{padding:4px 8px;border-bottom:1px solid #8886;text-align:left;vertical-align:top}"
+    "figure{margin:1em 0}img{max-width:100%}";
 
 std::string escaped(const std::string& text) {
   std::string result;
@@ -60,6 +63,44 @@ void print_member(std::ostream& out, const std::string& name, const Json& value)
   }
 }
 
+void print_paragraph(std::ostream& out, const Json& text) {
+  if (text != "") out << "<p>" << escaped(text.get<std::string>()) << "</p>\n";
+}
+
+/// A picture that is an image runs no scripts and fetches nothing, whatever is in it.
+void print_figure(std::ostream& out, const Json& figure) {
+  const std::string picture = figure.at("svg").get<std::string>();
+  const std::span bytes(reinterpret_cast<const std::uint8_t*>(picture.data()), picture.size());
+  const std::string title = escaped(figure.at("title").get<std::string>());
+  out << "<figure><img alt=\"" << title << "\" src=\"data:image/svg+xml;base64," << to_base64(bytes)
+      << "\"><figcaption><b>" << title << "</b> "
+      << escaped(figure.at("caption").get<std::string>()) << "</figcaption></figure>\n";
+}
+
+/// The paper's numbers beside ours, of all experiments; then what each found.
+void print_experiments(std::ostream& out, const Json& experiments) {
+  Json claims = Json::array();
+  for (const Json& experiment : experiments) {
+    for (const Json& claim : experiment.at("claims")) {
+      claims.push_back({{"experiment", experiment.at("title")}});
+      claims.back().update(claim);
+    }
+  }
+  print_table(out, "Beside the paper", flat(claims));
+  for (const Json& experiment : experiments) {
+    const std::string title = experiment.at("title").get<std::string>();
+    out << "<h2>" << escaped(title) << "</h2>\n";
+    print_paragraph(out, experiment.at("headline"));
+    for (const Json& table : experiment.at("tables")) {
+      print_table(out, table.at("title").get<std::string>(),
+                  {table.at("columns").get<std::vector<std::string>>(),
+                   table.at("rows").get<std::vector<std::vector<Json>>>()});
+      print_paragraph(out, table.at("note"));
+    }
+    for (const Json& figure : experiment.at("figures")) print_figure(out, figure);
+  }
+}
+
 }  // namespace
 
 void print_plain_page(std::ostream& out, const Json& record) {
@@ -68,12 +109,13 @@ void print_plain_page(std::ostream& out, const Json& record) {
       << "<meta name=\"color-scheme\" content=\"light dark\">\n<title>" << headline
       << "</title>\n<style>" << style << "</style>\n</head>\n<body>\n<p>"
       << escaped(record.at("subject").get<std::string>()) << "</p>\n<h1>" << headline << "</h1>\n";
-  for (const Json& text : record.at("account")) {
-    out << "<p>" << escaped(text.get<std::string>()) << "</p>\n";
-  }
+  for (const Json& text : record.at("account")) print_paragraph(out, text);
   out << "<p>Made again by: <code>" << escaped(record.at("command").get<std::string>())
       << "</code></p>\n";
-  for (const auto& [key, value] : record.items()) print_member(out, key, value);
+  if (record.contains("experiments")) print_experiments(out, record["experiments"]);
+  for (const auto& [key, value] : record.items()) {
+    if (key != "experiments") print_member(out, key, value);
+  }
   out << "</body>\n</html>\n";
 }
 

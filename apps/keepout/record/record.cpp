@@ -47,8 +47,8 @@ Json new_record(const RecordHead& head) {
 }
 
 std::string fault_of(const Json& json) {
-  constexpr std::array kinds{"simulate", "simulate_robot", "bench",  "speed",       "compare",
-                             "plan",     "plan_robot",     "verify", "verify_robot"};
+  constexpr std::array kinds{"simulate", "simulate_robot", "bench",  "speed",        "compare",
+                             "plan",     "plan_robot",     "verify", "verify_robot", "experiments"};
   const std::string none =
       "is no whole record; 'keepout simulate', 'bench', 'compare', 'plan' and 'verify' write one "
       "where --json says";

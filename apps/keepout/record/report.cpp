@@ -8,6 +8,7 @@
 
 #include "keepout/error.h"
 #include "output_file.h"
+#include "record/plain_page.h"
 #include "record/record.h"
 #include "record/report_page.h"
 
@@ -55,7 +56,15 @@ void report(const ReportOptions& options, std::ostream& out) {
   const Json record = read_record(options.record);
   const std::filesystem::path page = options.page.value_or(page_of(options.record));
   OutputFiles outputs(std::array{NamedPath{"FILE", options.record}}, {{"--out", page}});
-  print_report(*outputs.stream("--out"), record);
+  // What another command has kept has a plain page already; of experiments there is none yet.
+  const bool is_first = record.at("keepout_record") == "experiments";
+  const std::string missing = is_first ? missing_template(record) : "";
+  if (missing.empty()) {
+    print_report(*outputs.stream("--out"), record);
+  } else {
+    print_plain_page(*outputs.stream("--out"), record);
+    out << "a plain page of tables and pictures: " << missing << '\n';
+  }
   outputs.commit();
   out << record.at("headline").get<std::string>() << "\nreport: " << page.string() << '\n';
 }

@@ -88,6 +88,39 @@ TEST(PlainPage, ShowsWordsAndRowsAsText) {
   }
 }
 
+TEST(PlainPage, ShowsExperimentsInTablesAndInPicturesThatDoNothing) {
+  Json record = new_record({.kind = "experiments", .headline = "Redone"});
+  EXPECT_EQ(fault_of(record), "");
+  const Json first = Json::parse(R"({
+    "name": "e3", "title": "E3 <Path>", "headline": "Smoother.",
+    "claims": [{"about": "depth", "paper": "0.39 mm", "note": "a < b"}],
+    "tables": [{"title": "By mode", "columns": ["mode", "p"], "rows": [["none", "< 0.001"]],
+                "note": "Less is better."}],
+    "figures": [{"name": "box", "title": "A \"box\"", "caption": "Each point.",
+                 "svg": "<svg><script>harm()</script></svg>"}]})");
+  Json second = first;
+  second["title"] = "E4";
+  record["experiments"] = {first, second};
+  std::ostringstream out;
+  print_plain_page(out, record);
+  const std::string page = out.str();
+  for (const char* words :
+       {"<h2>Beside the paper</h2>", "<th>experiment</th><th>about</th><th>paper</th>",
+        "<td>E3 &lt;Path&gt;</td><td>depth</td><td>0.39 mm</td><td>a &lt; b</td>",
+        "<td>E4</td><td>depth</td>", "<h2>E3 &lt;Path&gt;</h2>\n<p>Smoother.</p>",
+        "<tr><th>mode</th><th>p</th></tr>", "<tr><td>none</td><td>&lt; 0.001</td></tr>",
+        "<p>Less is better.</p>",
+        "<img alt=\"A &quot;box&quot;\" "
+        "src=\"data:image/svg+xml;base64,PHN2Zz48c2NyaXB0Pmhhcm0oKTwvc2"
+        "NyaXB0Pjwvc3ZnPg==\">",
+        "</b> Each point.</figcaption>"}) {
+    EXPECT_NE(page.find(words), std::string::npos) << words << " in " << page;
+  }
+  EXPECT_EQ(page.find("<script"), std::string::npos);
+  EXPECT_EQ(page.find("<h2>"), page.find("<h2>Beside the paper"));
+  EXPECT_EQ(page.find("<h2>experiments"), std::string::npos);
+}
+
 TEST(FlatRows, AsCsvKeepEveryDigitAndQuoteWhatMustBe) {
   std::ostringstream out;
   const Json rows = {{{"a", 0.1}, {"b", nullptr}, {"z", 1e-17}, {"e", {1, 2}}},

@@ -122,6 +122,22 @@ TEST_F(Report, IsRefusedOfWhatIsNoRecord) {
   expect_refused("report v.json --out v.json", "is the same file");
 }
 
+TEST_F(Report, OfExperimentsIsPlainAsLongAsItsFrontEndIsMissing) {
+  Json head = {{"keepout_record", "experiments"}, {"format", 1}, {"complete", true}};
+  for (const char* text : {"version", "date", "command", "subject", "headline"}) head[text] = "so";
+  for (const char* list : {"account", "experiments"}) head[list] = Json::array();
+  head["machine"] = nullptr;
+  head["settings"] = Json::object();
+  folder_.write("e.json", head.dump());
+  const Outcome plain = run("report e.json", without);
+  EXPECT_EQ(plain.status, 0) << plain.output;
+  EXPECT_NE(plain.output.find("a plain page"), std::string::npos) << plain.output;
+  EXPECT_NE(contents("e.html").find("<h1>so</h1>"), std::string::npos);
+  ASSERT_EQ(run("report e.json").status, 0);
+  EXPECT_EQ(record_in("e.html"), head);
+  EXPECT_TRUE(contents("e.html").starts_with("<p>report</p>"));
+}
+
 TEST_F(Report, EveryCommandWritesOne) {
   for (const std::string command :
        {"verify cube.stl --steps 500", "compare cube.stl --poses 6 --problems 30 --pairs 10",

@@ -2,6 +2,7 @@
 /** The reports that show no anatomy. */
 import { benchmarkSections } from "./benchmark.ts";
 import { comparisonSections } from "./comparison.ts";
+import { experimentSections } from "./experiments.ts";
 import { showReport } from "./report_page.ts";
 import { robotPlanningSections } from "./robot_planning.ts";
 import { robotVerificationSections } from "./robot_verification.ts";
@@ -14,5 +15,6 @@ void showReport({
   compare: (main) => main.append(...comparisonSections("/comparison")),
   plan_robot: (main) => main.append(...robotPlanningSections()),
   verify: (main) => main.append(...verificationSections()),
+  experiments: (main) => main.append(...experimentSections()),
   verify_robot: (main) => main.append(...robotVerificationSections()),
 });

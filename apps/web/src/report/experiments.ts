@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/** The sections of the paper's experiments, done again. */
+import { drawnSvg } from "./drawn_svg.ts";
+import { below, entries, valueAt } from "./record.ts";
+import { lead, panels, section } from "./report_page.ts";
+import { make, paragraphs, show, shown } from "./shown.ts";
+import { type Column, scrolled, table } from "./table.ts";
+
+/** The paper's numbers beside ours, of all experiments; then what each found. */
+export function experimentSections(): HTMLElement[] {
+  const all = entries("/experiments");
+  return [...claims(all), ...all.map(found)];
+}
+
+/** Where the experiment is that a claim is of. */
+const experimentOf = (claim: string): string => claim.split("/").slice(0, 3).join("/");
+
+const claimColumns: readonly Column[] = [
+  {
+    heading: "what",
+    from: "/about",
+    content: (claim) => [
+      shown(`${claim}/about`),
+      make("span", { class: "of" }, shown(`${experimentOf(claim)}/title`)),
+    ],
+  },
+  { heading: "paper", from: "/paper", look: "name" },
+  { heading: "its rule here", from: "/reproduction", look: "name" },
+  { heading: "certified", from: "/certified", look: "name" },
+  { heading: "best", from: "/best", look: "name" },
+  { heading: "how sure", from: "/sure", look: "name" },
+  { heading: "why it differs", from: "/note", look: "words" },
+];
+
+function claims(all: readonly string[]): HTMLElement[] {
+  const rows = all.flatMap((experiment) => entries(below(experiment, "claims")));
+  if (rows.length === 0) return [];
+  return [
+    section(
+      "Beside the paper",
+      lead(
+        "What the paper prints; what its rule does here, under the same conditions as the others; what the certified rule does; and which does best.",
+      ),
+      scrolled(table(rows, claimColumns), "scroll claims"),
+    ),
+  ];
+}
+
+/** What an experiment found: in a sentence, in tables, in pictures. */
+function found(experiment: string): HTMLElement {
+  const heading = show(make("h2", { class: "part" }), `${experiment}/title`);
+  const tables = entries(`${experiment}/tables`).flatMap((one) => [
+    show(make("h3"), `${one}/title`),
+    scrolled(textTable(one)),
+    ...paragraphs(`${one}/note`, "lead note"),
+  ]);
+  const figures = entries(`${experiment}/figures`).map((one) => panels(picture(one)));
+  return make(
+    "section",
+    {},
+    heading,
+    ...paragraphs(`${experiment}/headline`, "account"),
+    ...tables,
+    ...figures,
+  );
+}
+
+const isNumber = (text: string): boolean => /^([-−–+]?\d|[<>≤≥]|[-–]?$)/.test(text);
+
+/** A table whose headings and rows are text in the record. */
+function textTable(pointer: string): HTMLTableElement {
+  const headings = entries(`${pointer}/columns`);
+  const rows = entries(`${pointer}/rows`);
+  const columns = headings.map((from, place): Column => {
+    const areNumbers = rows.every((row) => isNumber(valueAt<string>(below(row, place)) ?? ""));
+    return {
+      heading: valueAt<string>(from) ?? "",
+      from: `/${place}`,
+      ...(areNumbers ? {} : { look: "name" }),
+    };
+  });
+  const made = table(rows, columns);
+  for (const [place, button] of [...made.querySelectorAll("thead button")].entries()) {
+    show(button, headings[place] ?? "");
+  }
+  return made;
+}
+
+/** A picture with its title above and its caption below, which scrolls sideways where it is narrow. */
+function picture(figure: string): HTMLElement {
+  const title = valueAt<string>(`${figure}/title`) ?? "";
+  const drawn = drawnSvg(valueAt<string>(`${figure}/svg`) ?? "", title);
+  drawn.className = "picture_of_record";
+  const name = show(make("span", { class: "name" }), `${figure}/title`);
+  return make(
+    "figure",
+    {},
+    make("figcaption", {}, name, make("br"), shown(`${figure}/caption`)),
+    make("div", { class: "sideways", tabindex: "0" }, drawn),
+  );
+}

@@ -1,0 +1,239 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Modes compared with a free hand: means, tests, effects, box plots, and the paper's number beside each.
+
+A trial counts once. The paper tests samples 1 mm apart as if they were independent, which they are
+not; its own test, on the samples, stands beside ours. Significant means below 0.05 after Holm over all
+comparisons of an experiment, by Welch's test on trials.
+"""
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from . import figures, hypothesis_tests, modes
+from .experiment import Claim, Figure, Findings, Row, Table
+from .hypothesis_tests import Effect, Summary
+from .planned_path import Array
+from .published import Comparison
+
+
+@dataclass(frozen=True)
+class Measure:
+    """A member of the rows that modes are compared by."""
+
+    member: str
+    name: str
+    unit: str
+    published: Comparison | None = None
+    samples: str | None = None  # the member with the samples that the paper tests
+    higher_is_better: bool = False
+    why: str = ""  # where the reproduction disagrees with the paper: why
+
+    def values(self, rows: list[Row], mode: str) -> Array:
+        values = [row[self.member] for row in rows if row["mode"] == mode]
+        return np.array([value for value in values if value is not None], dtype=np.float64)
+
+    def paper_values(self, rows: list[Row], mode: str) -> Array:
+        """What the paper tests: the samples where it has such, absolute; else the trials."""
+        if self.samples is None:
+            return self.values(rows, mode)
+        samples = [row[self.samples] for row in rows if row["mode"] == mode]
+        return np.abs(np.concatenate(samples)) if samples else np.array([])
+
+    def text(self, values: Array) -> str:
+        if len(values) == 0:
+            return "-"
+        spread = f" ± {values.std(ddof=1):.2f}" if len(values) > 1 else ""
+        return f"{values.mean():.2f}{spread}"
+
+
+@dataclass(frozen=True)
+class Against:
+    """A mode against no fixture."""
+
+    measure: Measure
+    mode: str
+    student: float  # p of the paper's test, on what the paper tests
+    welch: float  # p on trials
+    holm: float  # that, after Holm over the experiment
+    effect: Effect
+
+
+def compare(experiment: str, rows: list[Row], measures: tuple[Measure, ...], seed: int) -> Findings:
+    """All modes with no fixture, by all measures. Rows: one a trial, with `mode`."""
+    present = [mode for mode in modes.MODES if any(row["mode"] == mode for row in rows)]
+    against = _tests(rows, measures, present, seed)
+    return Findings(
+        headline=_headline(rows, against),
+        claims=[_claim(m, rows, present, against) for m in measures if m.published],
+        tables=[_means(rows, measures, present), _safety(rows, present), _tests_table(rows, against)],
+        figures=[_boxes(experiment, m, rows, present) for m in measures],
+    )
+
+
+def _tests(
+    rows: list[Row], measures: tuple[Measure, ...], present: list[str], seed: int
+) -> list[Against]:
+    found = []
+    for measure in measures:
+        free = measure.values(rows, modes.NO_FIXTURE)
+        for mode in present:
+            values = measure.values(rows, mode)
+            if mode == modes.NO_FIXTURE or min(len(free), len(values)) < 2:
+                continue
+            of_paper = [
+                Summary.of(measure.paper_values(rows, which)) for which in (modes.NO_FIXTURE, mode)
+            ]
+            found.append(
+                Against(
+                    measure,
+                    mode,
+                    student=hypothesis_tests.student(*of_paper).p,
+                    welch=hypothesis_tests.welch(Summary.of(free), Summary.of(values)).p,
+                    holm=1.0,
+                    effect=hypothesis_tests.effect(free, values, seed),
+                )
+            )
+    after = hypothesis_tests.holm([a.welch for a in found])
+    return [
+        Against(a.measure, a.mode, a.student, a.welch, p, a.effect)
+        for a, p in zip(found, after, strict=True)
+    ]
+
+
+def _claim(measure: Measure, rows: list[Row], present: list[str], against: list[Against]) -> Claim:
+    paper = measure.published
+    assert paper is not None
+    unit = f" {measure.unit}" if measure.unit else ""
+
+    def pair(mode: str) -> str:
+        """Free hand and mode, as the paper prints them: of what it tests."""
+        free, held = (measure.paper_values(rows, m) for m in (modes.NO_FIXTURE, mode))
+        p = next((a.student for a in against if a.measure is measure and a.mode == mode), None)
+        tested = "" if p is None else f", p = {p:.2g}"
+        return f"{measure.text(free)} → {measure.text(held)}{unit}{tested}"
+
+    means = {mode: measure.paper_values(rows, mode).mean() for mode in present}
+    sign = 1.0 if measure.higher_is_better else -1.0
+    best = max(means, key=lambda mode: sign * means[mode])
+    certified = next((a for a in against if a.measure is measure and a.mode == "certified"), None)
+    return Claim(
+        about=f"{paper.about} ({paper.section}), free hand → fixture",
+        paper=f"{paper.free.mean:g} ± {paper.free.sd:g} → {paper.fixture.mean:g} ± "
+        f"{paper.fixture.sd:g}{unit}, p = {paper.p:.2g}",
+        reproduction=pair("paper"),
+        certified=pair("certified"),
+        best=f"{figures.label(best)}: {means[best]:.2f}{unit}",
+        sure="certified against no fixture, trials: "
+        + (hypothesis_tests.in_words(certified.holm, certified.effect) if certified else "too few"),
+        note=measure.why,
+    )
+
+
+def _means(rows: list[Row], measures: tuple[Measure, ...], present: list[str]) -> Table:
+    return Table(
+        "Means of trials, ± standard deviation",
+        ["mode", "trials", *(m.name + (f" [{m.unit}]" if m.unit else "") for m in measures)],
+        [
+            [figures.label(mode), str(sum(row["mode"] == mode for row in rows))]
+            + [m.text(m.values(rows, mode)) for m in measures]
+            for mode in present
+        ],
+    )
+
+
+def _safety(rows: list[Row], present: list[str]) -> Table:
+    def greatest(mode: str, member: str) -> str:
+        return f"{max(row[member] for row in rows if row['mode'] == mode):.3f}"
+
+    def total(mode: str, member: str) -> int:
+        return sum(row[member] for row in rows if row["mode"] == mode)
+
+    return Table(
+        "What came into the anatomy",
+        ["mode", "setpoint passes through, registered frame", "deepest setpoint, registered frame [mm]",
+         "deepest tip, true frame [mm]", "registration error [mm]", "tip deeper than that error [mm]",
+         "not finished"],
+        [
+            [
+                figures.label(mode),
+                str(total(mode, "crossings")),
+                greatest(mode, "deepest_registered_mm"),
+                greatest(mode, "deepest_mm"),
+                greatest(mode, "registration_error_mm"),
+                greatest(mode, "beyond_registration_mm"),
+                str(sum(not row["finished"] for row in rows if row["mode"] == mode)),
+            ]
+            for mode in present
+        ],
+        "The fixture answers for its setpoint in the frame that it was told. What the tip does in the true "
+        "frame is the registration's too: greatest values of all trials.",
+    )
+
+
+def _tests_table(rows: list[Row], against: list[Against]) -> Table:
+    return Table(
+        "Each fixture against no fixture",
+        ["measure", "mode", "no fixture", "fixture", "Student, as the paper", "Welch, trials",
+         "after Holm", "Hedges' g"],
+        [
+            [
+                a.measure.name,
+                figures.label(a.mode),
+                a.measure.text(a.measure.values(rows, modes.NO_FIXTURE)),
+                a.measure.text(a.measure.values(rows, a.mode)),
+                f"{a.student:.2g}",
+                f"{a.welch:.2g}",
+                f"{a.holm:.2g}",
+                hypothesis_tests.in_words(a.holm, a.effect).split(", ", 1)[1],
+            ]
+            for a in against
+        ],
+        f"Holm over these {len(against)} comparisons. g is positive where no fixture has more.",
+    )
+
+
+def _boxes(experiment: str, measure: Measure, rows: list[Row], present: list[str]) -> Figure:
+    groups = {mode: measure.values(rows, mode) for mode in present}
+    fig, ax = figures.new(160, 70)
+    unit = f" [{measure.unit}]" if measure.unit else ""
+    figures.box_plot(ax, {m: v for m, v in groups.items() if len(v)}, measure.name + unit)
+    return Figure(
+        f"{experiment}_{measure.member}",
+        measure.name[0].upper() + measure.name[1:],
+        "A point is a trial; boxes are quartiles.",
+        figures.svg(fig),
+    )
+
+
+def _headline(rows: list[Row], against: list[Against]) -> str:
+    certified = [row for row in rows if row["mode"] == "certified"]
+    entered = sum(row["crossings"] + (row["deepest_registered_mm"] > 0.0) for row in certified)
+    better = [a for a in against if a.mode == "certified" and a.holm < 0.05]
+    names = ", ".join(f"{a.measure.name} (p = {a.holm:.1g})" for a in better if a.measure.published)
+    return (
+        f"certified: {len(certified)} trials, in the frame of the fixture {entered} of them entered; "
+        f"different from no fixture after Holm: {names or 'nothing'}."
+    )
+
+
+def sweep_table(rows: list[Row], members: tuple[str, ...]) -> Table:
+    """Tremor by tremor, and without any error of the set-up; rows have `tremor` [mm] and `ideal`."""
+    kinds = sorted({(row["mode"], row["ideal"], row["tremor"]) for row in rows},
+                   key=lambda kind: (modes.MODES.index(kind[0]), kind[1], kind[2]))
+    lines = []
+    for mode, ideal, tremor in kinds:
+        here = [r for r in rows if (r["mode"], r["ideal"], r["tremor"]) == (mode, ideal, tremor)]
+        lines.append(
+            [figures.label(mode), f"{1000 * tremor:.0f}", "none" if ideal else "all", str(len(here))]
+            + [str(sum(r["crossings"] for r in here))]
+            + [f"{max(r['deepest_registered_mm'] for r in here):.3f}"]
+            + [f"{np.mean([r[member] for r in here]):.2f}" for member in members]
+        )
+    return Table(
+        "Tremor, and a set-up without errors",
+        ["mode", "tremor [µm]", "errors of the set-up", "trials", "passes through", "deepest setpoint [mm]",
+         *(member.removesuffix("_mm").removesuffix("_s").replace("_", " ") for member in members)],
+        lines,
+    )

@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""E3: the outside of a pre-cut skull is traced along a planned path (section V-A).
+
+30 mm on the outside of the CT skull; the slot is there already, so nothing stops the tip but the
+fixture, which has the whole skull of half a million triangles for its mesh. Five repetitions a
+mode. Measured: smoothness, as spectral arc length up to 20 Hz as in the paper and as SPARC; how far the tip is
+from the surface in depth, and from the path across.
+"""
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+from keepout_peers import Judge
+
+from . import anatomy, figures, modes, published
+from .comparison import Measure, compare, sweep_table
+from .experiment import Figure, Findings, Row, Scale, Unit
+from .operator_model import Operator
+from .set_up_errors import SetUp
+from .teleoperation import measures, operate
+from .trial import Course
+
+NAME = "e3_path_tracing"
+TITLE = "E3 Path tracing (section V-A)"
+
+#: Tremor of all comparisons, and the sweep [mm RMS at the tip].
+TREMOR = 0.13
+SWEEP = (0.0, 0.05, 0.25)
+SWEPT = ("none", "paper", "certified")
+DRAWN = ("none", "paper", "certified")  # in the overlay
+
+
+def units(scale: Scale) -> list[Unit]:
+    """Five trials a mode, as the paper's; full: twenty, a sweep of tremor, and no errors of the set-up."""
+    repetitions = 20 if scale.full else 5
+
+    def of(mode: str, tremor: float, ideal: bool, number: int) -> Unit:
+        name = f"{mode}-tremor{round(tremor * 1000)}um{'-ideal' if ideal else ''}-{number}"
+        settings = {"mode": mode, "tremor": tremor, "ideal": ideal, "number": number}
+        return Unit(name, settings | {"seed": scale.seed})
+
+    swept = [of(m, t, False, n) for m in SWEPT for t in SWEEP for n in range(5 if scale.full else 1)]
+    ideal = [of(m, TREMOR, True, n) for m in modes.MODES for n in range(5 if scale.full else 1)]
+    return [of(m, TREMOR, False, n) for m in modes.MODES for n in range(repetitions)] + swept + ideal
+
+
+@lru_cache(maxsize=1)
+def _judge() -> Judge:
+    mesh = anatomy.real_index("skull").mesh
+    return Judge(mesh.vertices, mesh.triangles)
+
+
+def run(unit: Unit) -> list[Row]:
+    """One trial."""
+    told = unit.settings
+    course = Course(path=anatomy.skull_path(), depth=0.0, speed=2.0)
+    operator = Operator(tremor=told["tremor"])
+    setup = SetUp.ideal() if told["ideal"] else SetUp()
+    seeds = (told["seed"], 3, told["number"], round(told["tremor"] * 1000))
+    index = anatomy.real_index("skull")
+    trial = operate(told["mode"], course, index, operator, setup, seeds)
+    along, across, depth = course.path.depths(trial.trace.tip[trial.trace.begun :])
+    drawn = told["mode"] in DRAWN and not told["ideal"] and told["number"] < 5
+    return [
+        {name: told[name] for name in ("mode", "tremor", "ideal", "number")}
+        | measures(trial, course, _judge())
+        | {
+            "absolute_depth_mm": float(np.abs(depth).mean()),
+            "deviation_mm": float(np.abs(across).mean()),
+            "along_mm": np.round(along[::25], 2).tolist() if drawn else None,
+            "height_mm": np.round(-depth[::25], 4).tolist() if drawn else None,
+        }
+    ]
+
+
+MEASURES = (
+    Measure("spectral_arc_length", "spectral arc length, 20 Hz", "", published.SAL),
+    Measure("sparc", "SPARC, 10 Hz", ""),
+    Measure("absolute_depth_mm", "distance from the surface, in depth", "mm"),
+    Measure("deepest_mm", "deepest below the surface", "mm"),
+    Measure("deviation_mm", "distance from the path, across", "mm"),
+    Measure("duration_s", "duration", "s"),
+    Measure("force_n", "force of the fixture on the hand", "N"),
+    Measure("absorbed_mj", "energy that the fixture took from the hand", "mJ"),
+    Measure("chatter_um", "chatter of the setpoint above 30 Hz", "um"),
+)
+
+
+def findings(rows: list[Row], scale: Scale) -> Findings:
+    """Compared mode by mode with no fixture; the overlay of trajectories; the sweep of tremor."""
+    main = [row for row in rows if row["tremor"] == TREMOR and not row["ideal"]]
+    found = compare(NAME, main, MEASURES, scale.seed).with_figure(_overlay(main))
+    swept = ("spectral_arc_length", "sparc", "absolute_depth_mm", "deviation_mm")
+    return found.with_table(sweep_table(rows, swept))
+
+
+def _overlay(rows: list[Row]) -> Figure:
+    """The trajectories on the section of the skull, as the paper's figure 9."""
+    fig, axes = figures.new(160, 120, rows=len(DRAWN))
+    for ax, mode in zip(axes, DRAWN, strict=True):
+        for row in (row for row in rows if row["mode"] == mode and row["along_mm"]):
+            ax.plot(row["along_mm"], row["height_mm"], color=figures.color(mode), linewidth=0.6)
+        ax.axhline(0.0, color=figures.INK, linewidth=1.0)
+        ax.set(ylabel="height [mm]", ylim=(-3.2, 3.2), title=figures.label(mode))
+    axes[-1].set_xlabel("along the path [mm]")
+    return Figure(
+        f"{NAME}_overlay",
+        "Trajectories on the section of the skull",
+        "Height of the tip over the planned outside of the skull, five trials a mode.",
+        figures.svg(fig),
+    )

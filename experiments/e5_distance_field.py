@@ -1,0 +1,301 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""E5: the distance field that is mostly used today, beside the mesh itself, where anatomy is thin.
+
+On closed meshes of anatomy, in the box with the most thin walls: by how much a grid's distances err,
+which walls it does not have, what it takes, and where a tip gets that is pushed at such walls under
+its rule, under the paper's and under the certified one. Not in the paper. The aneurysm of the
+fixtures is open at its ends: it has no inside, and is left out.
+"""
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import keepout
+import numpy as np
+from numpy.typing import NDArray
+from scipy import stats
+
+from . import figures
+from .anatomy import mesh_file
+from .experiment import Claim, Figure, Findings, Row, Scale, Table, Unit
+from .hypothesis_tests import holm
+from .modes import make_rule
+from .rules.rule import Rule, Task
+from .rules.signed_distance_field import SignedDistanceField, VoxelGrid
+from .sides import are_solid
+
+Array = NDArray[np.float64]
+
+NAME = "e5_distance_field"
+TITLE = "E5 A distance field beside the mesh, at thin walls"
+
+ANATOMY = ("skull", "airway")
+FULL_ANATOMY = ("skull", "airway", "brain", "liver", "skull_1m")
+#: Meshes of what is hollow: the tool is in it, and solid is what is around it.
+HOLLOW = ("airway",)
+
+CELLS = {"sdf_0.25": 0.25, "sdf_0.5": 0.5, "sdf_1": 1.0}  # [mm]
+MODES = ("paper", "certified", *CELLS)
+
+HALF_BOX = 16.0  # of what is sampled [mm]
+INNER = 12.5  # of it, where walls are pushed at and distances are looked at
+NEAR = 2.0  # distances are looked at so near to the surface [mm]
+THICKEST = 4.0  # of what is a wall here [mm]
+PUSHED_AT = 1.0  # tips are pushed at walls thinner than this [mm]
+CELLS_THICK = (1, 2, 4)  # walls thinner than so many cells are counted
+OPPOSED = 1.9  # of 2: how far apart, in radii, a ball in a wall touches front and back
+START = 1.0  # the tip begins so far before a wall [mm]
+PUSH, SLIDE, CYCLES = 0.1, 0.03, 120  # what the hand wants in each cycle, into and along it [mm]
+
+
+@dataclass(frozen=True)
+class Walls:
+    """Places on walls, (n, 3); the unit way into each; half its thickness; and the middle of it."""
+
+    front: Array
+    inwards: Array
+    half: Array
+    middle: Array
+
+    def where(self, which: NDArray[Any]) -> Walls:
+        return Walls(self.front[which], self.inwards[which], self.half[which], self.middle[which])
+
+
+def units(scale: Scale) -> list[Unit]:
+    return [
+        Unit(f"{anatomy}_{mode}", {
+            "anatomy": anatomy, "mode": mode, "seed": scale.seed,
+            "samples": 20_000 if scale.full else 4000, "loops": 1000 if scale.full else 60,
+        }, alone=True)
+        for anatomy in (FULL_ANATOMY if scale.full else ANATOMY) for mode in MODES
+    ]
+
+
+def run(unit: Unit) -> list[Row]:
+    """One row: of a mode on a mesh. Lengths in mm, memory in bytes, shares of 1."""
+    asked = unit.settings
+    mesh = keepout.load_mesh(mesh_file(asked["anatomy"]))
+    if asked["anatomy"] in HOLLOW:
+        mesh = keepout.Mesh(mesh.vertices, mesh.triangles[:, ::-1])
+    begun = time.perf_counter()
+    index = keepout.Index(mesh)
+    built = time.perf_counter() - begun
+    random = np.random.default_rng(asked["seed"])  # the same places for all modes
+    center, walls = thinnest_place(index, random, asked["samples"])
+    lattice = np.indices((28,) * 3).reshape(3, -1).T * 0.9 + center - INNER + random.random(3) * 0.3
+
+    row: Row = {
+        "anatomy": asked["anatomy"], "mode": asked["mode"], "triangles": len(mesh),
+        "center": " ".join(f"{x:.2f}" for x in center), "walls": len(walls.half),
+    }
+    task = Task(mesh)
+    cell = CELLS.get(asked["mode"])
+    if cell is None:
+        row |= {"memory": index.memory, "memory_whole": index.memory, "measured_build_s": built}
+    else:
+        begun = time.perf_counter()
+        grid = VoxelGrid(mesh, index, cell, center - HALF_BOX, center + HALF_BOX)
+        row |= {"cell": cell, "memory": grid.memory, "measured_build_s": time.perf_counter() - begun}
+        row["memory_whole"] = int(np.prod(np.ptp(mesh.bounds, axis=0) / cell + 1)) * 4
+        row |= errors(grid, index, lattice) | lost_walls(grid, walls)
+
+    def new_rule() -> Rule | None:
+        if cell is not None:
+            return SignedDistanceField(task, index, cell, grid)
+        return make_rule(asked["mode"], task, index)
+
+    return [row | pushed(new_rule, index, walls, random, asked["loops"])]
+
+
+def signed_distances(index: keepout.Index, points: Array) -> Array:
+    """Of (n, 3) points to a closed mesh, exactly; negative in the solid."""
+    solid = are_solid(index.mesh, points, row=0.5)
+    return np.where(solid, -1.0, 1.0) * index.distances(points)
+
+
+def thinnest_place(
+    index: keepout.Index, random: np.random.Generator, samples: int
+) -> tuple[Array, Walls]:
+    """The center of the box that has the most thin walls of some samples, and its walls, sampled anew."""
+    everywhere = walls_at(index, *surface_points(index.mesh, random, samples))
+    thin = everywhere.front[everywhere.half < 0.25 * THICKEST]
+    apart = np.abs(thin[:, None] - thin[None]).max(axis=2)
+    center = thin[np.argmax((apart < INNER).sum(axis=1))]
+    corners = index.mesh.vertices[index.mesh.triangles]
+    inside = np.abs(corners.mean(axis=1) - center).max(axis=1) < INNER - 1.0
+    return center, walls_at(index, *surface_points(index.mesh, random, samples, inside))
+
+
+def surface_points(
+    mesh: keepout.Mesh, random: np.random.Generator, count: int,
+    chosen: NDArray[np.bool_] | None = None,
+) -> tuple[Array, Array]:
+    """Points all over the chosen triangles, and the ways inwards there: (count, 3) each."""
+    a, b, c = (mesh.vertices[mesh.triangles[:, i]] for i in range(3))
+    normals = np.cross(b - a, c - a)
+    area = np.linalg.norm(normals, axis=1)
+    weight = area if chosen is None else np.where(chosen, area, 0.0)
+    which = random.choice(len(area), count, p=weight / weight.sum())
+    u, v = random.random((2, count, 1))
+    u, v = np.where(u + v > 1.0, 1.0 - u, u), np.where(u + v > 1.0, 1.0 - v, v)
+    points = a[which] + u * (b - a)[which] + v * (c - a)[which]
+    return points, -normals[which] / area[which, None]
+
+
+def walls_at(index: keepout.Index, points: Array, inwards: Array) -> Walls:
+    """Those of the places where a wall is, no thicker than THICKEST.
+
+    The largest ball in the solid that touches a place is found by bisection; it lies in a wall if it
+    touches the other side straight across, and not beside the place, as in a groove.
+    """
+    low, high = np.zeros(len(points)), np.full(len(points), 0.5 * THICKEST)
+    for _ in range(30):
+        radius = 0.5 * (low + high)
+        fits = index.distances(points + radius[:, None] * inwards) >= radius * (1 - 1e-6) - 1e-9
+        low, high = np.where(fits, radius, low), np.where(fits, high, radius)
+    middle = points + low[:, None] * inwards
+    is_wall = np.zeros(len(points), dtype=bool)
+    for i in np.flatnonzero((low > 0.01) & (low < 0.499 * THICKEST)):
+        touched = index.hits(middle[i], low[i] * 1.001 + 1e-6).points
+        across = np.linalg.norm(touched - points[i], axis=1).max(initial=0.0)
+        is_wall[i] = across > OPPOSED * low[i]
+    return Walls(points, inwards, low, middle).where(is_wall)
+
+
+def errors(grid: VoxelGrid, index: keepout.Index, points: Array) -> Row:
+    """By how much the grid's distances err at those of the points that are near the surface [mm]."""
+    exact = signed_distances(index, points)
+    near = np.abs(exact) < NEAR
+    wrong = np.abs(grid.distances(points[near]) - exact[near])
+    return {
+        "error_mean": float(wrong.mean()), "error_p99": float(np.quantile(wrong, 0.99)),
+        "error_max": float(wrong.max()), "error_points": int(near.sum()),
+    }
+
+
+def lost_walls(grid: VoxelGrid, walls: Walls) -> Row:
+    """Of walls thinner than some cells: how many there are, and the share whose middle is free."""
+    free = grid.distances(walls.middle) >= 0.0
+    row: Row = {}
+    for cells in CELLS_THICK:
+        thin = 2 * walls.half < cells * grid.cell
+        row[f"walls_{cells}_cells"] = int(thin.sum())
+        row[f"lost_{cells}_cells"] = float(free[thin].mean()) if thin.any() else None
+    return row
+
+
+def pushed(
+    new_rule: Callable[[], Rule | None], index: keepout.Index, walls: Walls,
+    random: np.random.Generator, loops: int,
+) -> Row:
+    """Tips that are pushed at walls: how deep they get, judged by exact distances, and step times."""
+    walls = walls.where(2 * walls.half < PUSHED_AT)
+    room = signed_distances(index, walls.front - START * walls.inwards)
+    walls = walls.where(room > 0.5 * START)
+    walls = walls.where(random.permutation(len(walls.half))[:loops])
+    slide = np.cross(walls.inwards, random.normal(size=walls.inwards.shape))
+    slide *= SLIDE / np.linalg.norm(slide, axis=1, keepdims=True)
+    tips = np.empty((len(walls.half), CYCLES + 1, 3))
+    tips[:, 0] = walls.front - START * walls.inwards
+    times = []
+    for loop, wanted in enumerate(PUSH * walls.inwards + slide):
+        rule = new_rule()
+        assert rule is not None, "all modes here have a rule"
+        for cycle in range(CYCLES):
+            begun = time.perf_counter_ns()
+            motion = rule.step(tips[loop, cycle], wanted)
+            times.append(time.perf_counter_ns() - begun)
+            tips[loop, cycle + 1] = tips[loop, cycle] + motion
+    distance = signed_distances(index, tips.reshape(-1, 3)).reshape(tips.shape[:2])
+    inside = distance < -1e-6  # [mm]: deeper than rounding
+    out_again = np.array([(~row[np.argmax(row):]).any() if row.any() else False for row in inside])
+    return {
+        "loops": len(tips), "entered": int(inside.any(axis=1).sum()), "passed": int(out_again.sum()),
+        "deepest": float(np.maximum(0.0, -distance).max()), "least_distance": float(distance.min()),
+        "below_half_margin": int((distance.min(axis=1) < 0.1).sum()),
+        "measured_step_us": float(np.median(times)) * 1e-3,
+    }
+
+
+def findings(rows: list[Row], scale: Scale) -> Findings:
+    table = Table(
+        "A grid of distances, and the mesh itself",
+        ["anatomy", "mode", "error mean / 99 % / max [mm]", "walls lost, < 1 / 2 / 4 cells",
+         "memory, box / all [MB]", "built in [s]", "step [us]", "entered / passed", "deepest [mm]"],
+        [[
+            row["anatomy"], figures.label(row["mode"]), _errors(row), _lost(row),
+            f"{row['memory'] / 1e6:.1f} / {row['memory_whole'] / 1e6:.0f}",
+            f"{row['measured_build_s']:.2f}", f"{row['measured_step_us']:.1f}",
+            f"{row['entered']} / {row['passed']} of {row['loops']}", f"{row['deepest']:.2f}",
+        ] for row in rows],
+        f"In a box of {2 * HALF_BOX:g} mm with the most thin walls. Errors within {NEAR:g} mm of the "
+        "surface. A wall is lost where the field is free half-way through it. Grids are stepped in "
+        "Python, the other rules in C++, called from Python. Passed: out again after it has entered.",
+    )
+    fields = [row for row in rows if row["mode"] in CELLS]
+    ours = [row for row in rows if row["mode"] == "certified"]
+    entered, loops = sum(row["entered"] for row in fields), sum(row["loops"] for row in fields)
+    headline = (
+        f"Pushed at thin walls, the tip entered in {entered} of {loops} loops under distance fields, "
+        f"{max(row['deepest'] for row in fields):.2f} mm deep at most, and in "
+        f"{sum(row['entered'] for row in ours)} of {sum(row['loops'] for row in ours)} under certified.")
+    return Findings(headline, _claims(rows), [table], [_figure(rows)])
+
+
+def _errors(row: Row) -> str:
+    if "cell" not in row:
+        return "-"
+    return f"{row['error_mean']:.3f} / {row['error_p99']:.2f} / {row['error_max']:.2f}"
+
+
+def _lost(row: Row) -> str:
+    shares = [row.get(f"lost_{cells}_cells") for cells in CELLS_THICK]
+    return " / ".join("-" if share is None else f"{100 * share:.0f} %" for share in shares)
+
+
+def _claims(rows: list[Row]) -> list[Claim]:
+    """How often each field lets the tip in, against certified: Fisher's exact test, then Holm."""
+    counts = {}
+    for mode in MODES:
+        own = [row for row in rows if row["mode"] == mode]
+        entered = sum(row["entered"] for row in own)
+        counts[mode] = (entered, sum(row["loops"] for row in own) - entered)
+    p_values = [stats.fisher_exact([counts[mode], counts["certified"]])[1] for mode in CELLS]
+    said = {mode: f"{inside} of {inside + outside}" for mode, (inside, outside) in counts.items()}
+    best = min(MODES, key=lambda mode: (counts[mode][0], mode != "certified"))
+    return [
+        Claim(
+            f"loops at thin walls that enter: {figures.label(mode)} {said[mode]}", "-", said["paper"],
+            said["certified"], figures.label(best), f"p = {p:.2g}, field against certified (Fisher)")
+        for mode, p in zip(CELLS, holm(p_values))
+    ]
+
+
+def _figure(rows: list[Row]) -> Figure:
+    fig, (left, right) = figures.new(160, 75, columns=2)
+    for anatomy, line in zip(sorted({row["anatomy"] for row in rows}), ("-", "--", ":", "-.", (0, (1, 5)))):
+        own = [row for row in rows if row["anatomy"] == anatomy]
+        fields = sorted((row for row in own if row["mode"] in CELLS), key=lambda row: row["cell"])
+        cells = [row["cell"] for row in fields]
+        for part, marker in (("error_p99", "o"), ("error_max", "x")):
+            left.plot(cells, [row[part] for row in fields], color="black", linestyle=line,
+                      marker=marker, label=f"{anatomy}, {'99 %' if marker == 'o' else 'largest'}")
+        right.plot(cells, [row["memory_whole"] / 1e6 for row in fields], color="black",
+                   linestyle=line, marker="o", label=f"{anatomy}, grid")
+        index = next(row for row in own if row["mode"] == "certified")
+        right.plot(cells, [index["memory_whole"] / 1e6] * len(cells), linestyle=line,
+                   color=figures.color("certified"), label=f"{anatomy}, index of the mesh")
+    left.set(xscale="log", yscale="log", ylabel="error near the surface [mm]")
+    right.set(xscale="log", yscale="log", ylabel="memory, whole mesh [MB]")
+    for ax in (left, right):
+        ax.set_xlabel("voxel [mm]")
+        ax.set_xticks(list(CELLS.values()), [f"{cell:g}" for cell in CELLS.values()])
+        ax.minorticks_off()
+        ax.legend()
+    return Figure(
+        "error_and_memory", "Error and memory of a distance field",
+        "How wrong the field is within 2 mm of the surface, and what it takes of memory. The "
+        "certified rule asks the mesh: its distances do not depend on a voxel.", figures.svg(fig))

@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The operator: what he intends, what his hand adds, and an arm that feels the fixture's force.
+
+The hand means to follow a planned path. What it does instead is the sum of
+
+- a bias, the same all through a trial: the place that stereo vision gets wrong;
+- a slow error below 2 Hz. Of the voluntary motion of eye surgeons 98.9 % of the power is below that
+  (Riviere, Rader, Khosla, "Characteristics of hand motion of eye surgeons", 1997);
+- physiological tremor from 8 to 12 Hz. 0.05, 0.13 and 0.25 mm RMS at the tip of an instrument are
+  what was measured holding still and actuating (0.049 and 0.133 mm, the same article) and without
+  sight of the tip (0.254 mm, Becker et al., "Active guidance of a handheld micromanipulator", 2011).
+
+The arm is a mass on a spring and a damper between the place intended and the handle, the usual form
+(Speich, Shao, Goldfarb, "Modeling the human hand as it interacts with a telemanipulation system",
+Mechatronics 15, 2005; Fu and Cavusoglu, "Human arm-and-hand dynamics model with variability
+analyses for a stylus-based haptic interface", IEEE SMC-B 42, 2012). The values are ours, of the order
+that such articles find for a light grip, near critical damping.
+
+The amounts of bias and slow error are not from the literature: they are fitted to what the paper
+prints of cutting WITHOUT a fixture (`docs/experiments.md` has the table). What is said of any
+fixture is then a prediction, with nothing left to fit.
+"""
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import signal
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Operator:
+    """Errors at the tip in mm, across the path and along the tool's axis (in depth)."""
+
+    bias_across: float = 0.1  # standard deviation from trial to trial [mm]
+    bias_in_depth: float = 0.25
+    slow_across: float = 0.3  # root mean square within a trial [mm]
+    slow_in_depth: float = 0.75
+    slow_corner: float = 0.08  # of the slow error's first-order spectrum, cut at 2 Hz [Hz]
+    tremor: float = 0.13  # root mean square of the vector, 8 to 12 Hz [mm]
+    mass: float = 0.15  # of hand and handle [kg]
+    stiffness: float = 0.4  # of the arm [N/mm]
+    damping: float = 0.014  # of the arm [N s/mm]
+    motion_scale: float = 1.0  # tip motion a hand motion
+    reaction: float = 0.2  # until the eye's finding acts on the hand's speed [s]
+    tolerance: float = 0.5  # deviation at which the hand goes half as fast [mm]
+    felt_force: float = 0.1  # the least that the hand notices of a fixture [N]
+    leaning: float = 1.5  # how far beyond a fixture the hand aims, to lean on it [mm]
+
+
+def slow_error(random: np.random.Generator, cycles: int, period: float, corner: float) -> Array:
+    """(cycles, 3), each axis of mean square 1 in expectation: first-order noise without what is above 2 Hz."""
+    settle = int(3.0 / (2 * np.pi * corner) / period)
+    white = random.standard_normal((settle + cycles, 3))
+    pole = np.exp(-2 * np.pi * corner * period)
+    drift = signal.lfilter([np.sqrt(1 - pole**2)], [1, -pole], white, axis=0)
+    low_pass = signal.butter(4, 2.0, fs=1 / period, output="sos")
+    smooth: Array = signal.sosfiltfilt(low_pass, drift, axis=0)
+    return smooth[settle:]
+
+
+def tremor(random: np.random.Generator, cycles: int, period: float, rms: float) -> Array:
+    """(cycles, 3) [mm]: band noise from 8 to 12 Hz, whose vector has this root mean square."""
+    if rms == 0.0:
+        return np.zeros((cycles, 3))
+    band = signal.butter(3, [8.0, 12.0], "bandpass", fs=1 / period, output="sos")
+    noise: Array = signal.sosfiltfilt(band, random.standard_normal((cycles, 3)), axis=0)
+    return noise * (rms / np.sqrt(np.mean(np.sum(noise**2, axis=1))))
+
+
+class Arm:
+    """The mass, the spring and the damper. Places and speeds are those of the handle [mm, mm/s]."""
+
+    def __init__(self, operator: Operator, place: Array) -> None:
+        self.place = place.copy()
+        self.speed = np.zeros(3)
+        self._operator = operator
+
+    def move(self, intended: Array, intended_speed: Array, force: Array, period: float) -> Array:
+        """One cycle of `period` [s] under the `force` [N] of the handle; where the handle is then.
+
+        Semi-implicit Euler: stable, as the damper's part is taken at the cycle's end.
+        """
+        arm = self._operator
+        mass = arm.mass / 1000.0  # in N s^2/mm, for forces in N of lengths in mm
+        pull = arm.stiffness * (intended - self.place) + arm.damping * intended_speed + force
+        self.speed = (self.speed + pull * (period / mass)) / (1.0 + arm.damping * period / mass)
+        self.place = self.place + self.speed * period
+        return self.place

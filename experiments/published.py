@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The numbers that the paper prints, and where: Li et al., IROS 2020.
+
+Nothing here is measured by us but `AUTHORS_CODE`. Numbers that only its plots show are not here: two
+points of the rate are given in words, the others are in a picture. Standard deviations are as
+printed; the paper does not say whether they are of n or n - 1.
+"""
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from .hypothesis_tests import Summary
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Free hand against fixture, as printed. `n` counts what the paper's test counts."""
+
+    about: str
+    section: str
+    unit: str
+    free: Summary
+    fixture: Summary
+    p: float  # as printed: of the pooled two-sided Student test, but for that of PENETRATION_DEPTH
+
+
+SAL = Comparison(
+    "spectral arc length", "V-A", "", Summary(-20.98, 0.79, 5), Summary(-10.02, 3.7, 5), 1.9e-4)
+
+#: Durations are 232 and 237 s, 212 and 196 s. The first two have a deviation of 3.5, not of 3.8.
+DURATION = Comparison(
+    "duration", "V-B", "s", Summary(234.0, 3.8, 2), Summary(204.0, 11.0, 2), 0.069)
+DURATIONS_FREE = (232.0, 237.0)
+DURATIONS_FIXTURE = (212.0, 196.0)
+
+#: Two trials of 30 places each, 1 mm apart; 60 are tested as if they were independent.
+PATH_DEVIATION = Comparison(
+    "cutting path deviation", "V-B", "mm",
+    Summary(0.63, 0.30, 60), Summary(0.37, 0.24, 60), 2.3e-6)
+PATH_DEVIATION_MAX_FREE = 1.27
+PATH_DEVIATION_MAX_FIXTURE = 0.86
+
+#: Absolute depths. The printed p does not follow from the printed summaries, which give 3e-8.
+PENETRATION_DEPTH = Comparison(
+    "absolute penetration depth", "V-B", "mm",
+    Summary(0.83, 0.51, 60), Summary(0.39, 0.26, 60), 7.9e-3)
+OVER_CUT_MAX_FREE, UNDER_CUT_MAX_FREE = 2.46, 1.35
+#: The paper calls the second of these the minimum under-cut, and must mean the maximum.
+OVER_CUT_MAX_FIXTURE, UNDER_CUT_MAX_FIXTURE = 0.87, 0.96
+
+COMPARISONS = (SAL, DURATION, PATH_DEVIATION, PENETRATION_DEPTH)
+
+# The set-up of section V.
+SKULL_THICKNESS = 2.0  # [mm] V
+PATH_LENGTH = 30.0  # [mm] V
+FIDUCIALS = 6  # V
+CORRIDOR_HALF_WIDTH = 1.0  # [mm] V: across the sagittal plane
+MOTION_SPHERE_RADIUS = 5.0  # [mm] V; that of IV-B is not given
+CUT_OFF = 20.0  # [Hz] V-A: of the spectral arc length
+
+
+@dataclass(frozen=True)
+class Rate:
+    """How fast a control loop runs on a mesh of so many triangles; `radius` in mm, None: not given."""
+
+    triangles: int
+    khz: float
+    radius: float | None = None
+
+
+#: IV-B, in words: C++ with cisst, Ubuntu 18.04, Intel Core i7-8700, a Stanford bunny.
+RATES = (Rate(51_978, 7.73), Rate(989_376, 0.180))
+#: IV-B: "less than approximately 200,000 triangles" keep the 1 kHz of a teleoperated loop.
+TRIANGLES_AT_1_KHZ = 200_000
+
+#: The authors' published code (cisstMesh, sawConstraintController) as we timed it: one core, g++ 12
+#: -O3, medians of closed-loop contact states on a bunny of 150 mm, with a step of the radius.
+AUTHORS_CODE = (
+    Rate(51_978, 19.7, 5.0), Rate(200_000, 5.90, 5.0), Rate(989_374, 0.749, 5.0),
+    Rate(51_978, 35.2, 1.0), Rate(989_374, 1.21, 1.0), Rate(989_374, 1.35, 0.25),
+)

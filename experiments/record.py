@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The record of the experiments, of which `keepout report` makes the page: docs/records.md."""
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import tempfile
+from dataclasses import asdict
+from datetime import datetime, timezone
+from pathlib import Path
+from typing import Any
+
+import keepout
+
+from .experiment import Findings, Scale
+
+FORMAT = 1  # as in apps/keepout/record/record.cpp
+
+
+def write_record(
+    path: Path,
+    scale: Scale,
+    findings: dict[str, tuple[str, Findings]],
+    complete: bool,
+    command: str,
+    date: str | None = None,
+) -> None:
+    """Writes what was found, by name with its title, as JSON.
+
+    `complete`: nothing was left out or stopped. `command` does it again. `date` is ISO 8601, UTC;
+    by default it is now.
+    """
+    extent = "full" if scale.full else "quick"
+    compared = sum(claim.paper != "-" for _, found in findings.values() for claim in found.claims)
+    numbers = "1 number" if compared == 1 else f"{compared} numbers"
+    record = {
+        "keepout_record": "experiments",
+        "format": FORMAT,
+        "version": keepout.__version__,
+        "date": date or datetime.now(timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ"),
+        "command": command,
+        "complete": complete,
+        "subject": f"The experiments of Li et al., IROS 2020: {extent}",
+        "headline": f"{numbers} of the paper, beside what its rule does here, what the certified "
+        "rule does, and what is best",
+        "account": [],
+        "machine": _machine(),
+        "settings": {"scale": extent, "seed": str(scale.seed)},
+        "experiments": [
+            {"name": name, "title": title, **asdict(found)}
+            for name, (title, found) in findings.items()
+        ],
+    }
+    path.write_text(json.dumps(record, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+
+
+def _machine() -> dict[str, Any] | None:
+    """This machine as other records tell of it: that of a comparison of next to nothing.
+
+    The command is $KEEPOUT_COMMAND, which ./run experiments sets; without it nothing is told.
+    """
+    program = os.environ.get("KEEPOUT_COMMAND")
+    if not program:
+        return None
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder, "record.json")
+        least = ["cube", "--poses", "6", "--problems", "10", "--pairs", "10"]
+        arguments = ["compare", *least, "--json", str(file)]
+        subprocess.run([program, *arguments], check=True, capture_output=True)
+        machine: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))["machine"]
+    return machine

@@ -1,0 +1,28 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The rules that keepout itself has: all faces, the paper's, and the certified one."""
+from __future__ import annotations
+
+import keepout
+import numpy as np
+from numpy.typing import NDArray
+
+from .rule import Task
+
+
+class KeepoutRule:
+    """A `keepout.MotionConstraint` with an activation rule and, if there is one, the corridor as a guide."""
+
+    def __init__(self, task: Task, index: keepout.Index, activation: str) -> None:
+        self._guard = keepout.MotionConstraint(
+            task.mesh, index=index, activation=activation, radius=task.radius, margin=task.margin
+        )
+        if task.corridor:
+            slab = keepout.Region.slab(
+                task.corridor.point, task.corridor.normal, task.corridor.half_width
+            )
+            self._guard.set_guides([keepout.TipGuide("corridor", slab)])
+
+    def step(self, tip: NDArray[np.float64], desired: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Zero wherever keepout refuses the motion; a step's status says why."""
+        motion: NDArray[np.float64] = self._guard.step(tip, desired).motion
+        return motion

@@ -1,0 +1,185 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Runs the units of experiments on all processors, and keeps the rows of each that is done.
+
+What is kept is a file for each unit, `kept/<experiment>/<unit>.json`. It is used again when the unit,
+keepout and the sources of the experiments are what they were, so that a run that was stopped goes on
+where it was. The tables are written from all rows: `<experiment>.csv`, which depends on the seed
+alone, and `<experiment>_times.csv` with what was measured by the clock.
+"""
+from __future__ import annotations
+
+import csv
+import hashlib
+import importlib
+import json
+import multiprocessing
+import signal
+import sys
+import time
+from collections.abc import Iterator
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from pathlib import Path
+from types import ModuleType
+
+import keepout
+
+from .experiment import Row, Unit
+
+#: Members of a row that are measured by the clock begin with this.
+TIMED = "measured_"
+
+
+def source_digest() -> str:
+    """Of everything that a row depends on but its unit."""
+    digest = hashlib.sha256(keepout.__version__.encode())
+    module = Path(keepout.__file__).parent
+    sources = [*Path(__file__).parent.rglob("*.py"), *module.parent.glob("*.so"), *module.glob("*.so")]
+    for source in sorted(sources):
+        digest.update(source.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+def _be_a_worker() -> None:
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the process that waits for this one
+
+
+def _run(module: str, unit: Unit) -> list[Row]:
+    rows: list[Row] = importlib.import_module(module).run(unit)
+    return rows
+
+
+class Kept:
+    """The rows of units that are done, in a folder."""
+
+    def __init__(self, folder: Path, digest: str) -> None:
+        self._folder = folder
+        self._digest = digest
+
+    def _file(self, experiment: str, unit: Unit) -> Path:
+        return self._folder / experiment / f"{unit.name}.json"
+
+    def rows(self, experiment: str, unit: Unit) -> list[Row] | None:
+        try:
+            text = json.loads(self._file(experiment, unit).read_text())
+        except (OSError, ValueError):
+            return None
+        same = text.get("digest") == self._digest and text.get("settings") == _plain(unit.settings)
+        rows: list[Row] | None = text["rows"] if same else None
+        return rows
+
+    def keep(self, experiment: str, unit: Unit, rows: list[Row]) -> list[Row]:
+        """Writes them, and gives them back as they are read again: the same rows at the first run and later."""
+        file = self._file(experiment, unit)
+        file.parent.mkdir(parents=True, exist_ok=True)
+        text = json.dumps({"digest": self._digest, "settings": unit.settings, "rows": rows}, indent=1)
+        part = file.with_suffix(".part")
+        part.write_text(text + "\n")
+        part.replace(file)
+        plain: list[Row] = json.loads(text)["rows"]
+        return plain
+
+
+def _plain(value: object) -> object:
+    return json.loads(json.dumps(value))
+
+
+class Progress:
+    """A line on the terminal, or a line a minute in a file: what is done, and how long the rest may take."""
+
+    def __init__(self, units: int) -> None:
+        self._units = units
+        self._done = self._kept = 0
+        self._begun = self._shown = time.monotonic()
+
+    def count(self, name: str, *, kept: bool) -> None:
+        self._done += 1
+        self._kept += kept
+        now = time.monotonic()
+        last = self._done == self._units
+        ran = self._done - self._kept
+        if not (sys.stderr.isatty() or last or now - self._shown >= 60.0):
+            return
+        self._shown = now
+        left = (now - self._begun) / ran * (self._units - self._done) if ran else 0.0
+        rest = f", {left / 60:.0f} min left" if left >= 60 else f", {left:.0f} s left" if left else ""
+        line = f"{self._done} of {self._units} units{rest}: {name}"
+        if sys.stderr.isatty():
+            print(f"\r\033[K{line}", end="\n" if last else "", file=sys.stderr, flush=True)
+        else:
+            print(line, file=sys.stderr, flush=True)
+
+
+def run_units(
+    experiments: list[ModuleType], units: dict[str, list[Unit]], folder: Path, jobs: int
+) -> dict[str, list[Row]]:
+    """The rows of all units, by experiment, in the order of the units.
+
+    Units that measure times run one after another, before the others. KeyboardInterrupt: those that
+    are done are kept.
+    """
+    kept = Kept(folder / "kept", source_digest())
+    progress = Progress(sum(len(of) for of in units.values()))
+    results: dict[tuple[str, str], list[Row]] = {}
+    left: list[tuple[ModuleType, Unit]] = []
+    for experiment in experiments:
+        for unit in units[experiment.NAME]:
+            rows = kept.rows(experiment.NAME, unit)
+            if rows is None:
+                left.append((experiment, unit))
+            else:
+                results[experiment.NAME, unit.name] = rows
+                progress.count(f"{experiment.NAME} {unit.name}", kept=True)
+
+    def done(experiment: ModuleType, unit: Unit, rows: list[Row]) -> None:
+        results[experiment.NAME, unit.name] = kept.keep(experiment.NAME, unit, rows)
+        progress.count(f"{experiment.NAME} {unit.name}", kept=False)
+
+    for alone in (True, False):
+        batch = [(e, u) for e, u in left if u.alone is alone]
+        if not batch:
+            continue
+        with ProcessPoolExecutor(1 if alone else jobs, initializer=_be_a_worker) as pool:
+            running: dict[Future[list[Row]], tuple[ModuleType, Unit]] = {}
+            try:
+                for experiment, unit in batch:
+                    running[pool.submit(_run, experiment.__name__, unit)] = (experiment, unit)
+                while running:
+                    finished, _ = wait(running, return_when=FIRST_COMPLETED)
+                    for future in finished:
+                        done(*running.pop(future), future.result())
+            except BaseException:
+                pool.shutdown(wait=False, cancel_futures=True)
+                for worker in multiprocessing.active_children():
+                    worker.terminate()
+                raise
+    return {e.NAME: [r for u in units[e.NAME] for r in results[e.NAME, u.name]] for e in experiments}
+
+
+def write_tables(experiment: str, rows: list[Row], folder: Path) -> Iterator[Path]:
+    """Writes the tables of an experiment; gives their files."""
+    members = list(dict.fromkeys(name for row in rows for name in row))
+    timed = [name for name in members if name.startswith(TIMED)]
+    steady = [name for name in members if not name.startswith(TIMED)]
+    texts = [name for name in steady if any(isinstance(row.get(name), str) for row in rows)]
+    tables = {experiment: steady}
+    if timed:
+        tables[f"{experiment}_times"] = texts + timed
+    for name, columns in tables.items():
+        file = folder / f"{name}.csv"
+        with file.open("w", newline="") as out:
+            writer = csv.writer(out, lineterminator="\n")
+            writer.writerow(columns)
+            writer.writerows([_cell(row.get(column)) for column in columns] for row in rows)
+        yield file
+
+
+def _cell(value: object) -> str:
+    if value is None:
+        return ""
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, float):
+        return repr(value)
+    if isinstance(value, list):
+        return " ".join(_cell(entry) for entry in value)
+    return str(value)

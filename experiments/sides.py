@@ -1,0 +1,155 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""On which side of a closed mesh points are: what a distance needs to have a sign.
+
+A vertical line from below to a point enters and leaves the solid; the turns are counted with their
+sense, so that parts which overlap stay solid. Nothing is decided by a tolerance: a line through an
+edge or a vertex is moved aside by less than any number, the same way for all triangles (Edelsbrunner
+and Muecke, "Simulation of simplicity", 1990). Right for closed meshes; an open one has no sides.
+"""
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import keepout
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Numbers = NDArray[np.int64]
+
+#: So many pairs of a line and a triangle are looked at together: some hundred MB.
+PAIRS_AT_ONCE = 1_000_000
+
+
+def crossings(mesh: keepout.Mesh, lines: Array, row: float) -> tuple[Numbers, Array, Numbers]:
+    """Where vertical lines pass through the mesh: which line, at which height, +1 entering, -1 leaving.
+
+    `lines` are their x and y, (n, 2). They are looked up in rows of y of this width [mm], such as
+    their spacing, within which they are sorted by x.
+    """
+    vertices, corners = mesh.vertices, mesh.triangles.astype(np.int64)
+    low, high = lines.min(axis=0), lines.max(axis=0)
+    span = high[0] - low[0] + 1.0
+    key = np.floor((lines[:, 1] - low[1]) / row) * span + (lines[:, 0] - low[0])
+    order = np.argsort(key, kind="stable")
+    key = key[order]
+
+    flat = vertices[corners][:, :, :2]
+    lowest, highest = flat.min(axis=1), flat.max(axis=1)
+    near = np.flatnonzero(np.all((lowest <= high) & (highest >= low), axis=1))
+    lowest = np.clip(lowest[near], low, high) - low
+    highest = np.clip(highest[near], low, high) - low
+    first_row = np.floor(lowest[:, 1] / row)
+    rows = (np.floor(highest[:, 1] / row) - first_row + 1).astype(np.int64)
+    which = np.repeat(np.arange(len(near)), rows)  # a triangle in one of its rows
+    at_row = first_row[which] + _counted_up(rows)
+    begin = np.searchsorted(key, at_row * span + lowest[which, 0], "left")
+    end = np.searchsorted(key, at_row * span + highest[which, 0], "right")
+
+    found: list[tuple[Numbers, Array, Numbers]] = []
+    for part in _parts(end - begin):
+        many = end[part] - begin[part]
+        line = order[np.repeat(begin[part], many) + _counted_up(many)]
+        triangle = corners[near[np.repeat(which[part], many)]]
+        found.append(_crossings_of_pairs(vertices, triangle, line, lines))
+    if not found:
+        return np.zeros(0, np.int64), np.zeros(0), np.zeros(0, np.int64)
+    line, height, turn = (np.concatenate(column) for column in zip(*found))
+    return line, height, turn
+
+
+def is_closed(mesh: keepout.Mesh) -> bool:
+    """Whether each edge has as many triangles on one side as on the other: only then there are sides."""
+    start = mesh.triangles.astype(np.int64)
+    end = np.roll(start, -1, axis=1)
+    count = len(mesh.vertices)
+    forth, back = (start * count + end).ravel(), (end * count + start).ravel()
+    return bool(np.array_equal(np.sort(forth), np.sort(back)))
+
+
+def turns_outside(mesh: keepout.Mesh) -> int:
+    """How often the outermost room is wound about: 0, or 1 of a mesh whose normals point inwards.
+
+    Of such a mesh, as of an airway in which the tool is to stay, all that is outside is solid.
+    """
+    a, b, c = (mesh.vertices[mesh.triangles[:, i]] for i in range(3))
+    return int(np.sum(np.einsum("ij,ij->i", a, np.cross(b, c))) < 0.0)
+
+
+def are_solid(mesh: keepout.Mesh, points: Array, row: float) -> NDArray[np.bool_]:
+    """Which of the points, (n, 3), are in the solid of a closed mesh; `row` as for `crossings`."""
+    line, height, turn = crossings(mesh, points[:, :2], row)
+    below = height < points[line, 2]
+    winding = np.bincount(line[below], turn[below], len(points)) + turns_outside(mesh)
+    return winding > 0.5
+
+
+def lattice_is_solid(
+    mesh: keepout.Mesh, low: Array, cell: float, shape: tuple[int, int, int]
+) -> NDArray[np.bool_]:
+    """The same of the places low + cell (i, j, k), of a closed mesh: (nx, ny, nz)."""
+    columns = np.indices(shape[:2]).reshape(2, -1).T * cell + low[:2]
+    line, height, turn = crossings(mesh, columns, cell)
+    level = np.clip(np.floor((height - low[2]) / cell) + 1, 0, shape[2]).astype(np.int64)
+    order = np.argsort(line, kind="stable")
+    line, level, turn = line[order], level[order], turn[order]
+    outside = turns_outside(mesh)
+    solid = np.empty(shape, dtype=bool)
+    plane = shape[1] * (shape[2] + 1)  # of one i; the last level is above all places
+    edges = np.searchsorted(line, np.arange(shape[0] + 1) * shape[1])
+    for i in range(shape[0]):
+        part = slice(edges[i], edges[i + 1])
+        place = (line[part] - i * shape[1]) * (shape[2] + 1) + level[part]
+        change = np.bincount(place, turn[part], plane).reshape(shape[1], -1)[:, :-1]
+        solid[i] = np.cumsum(change, axis=1) + outside > 0.5
+    return solid
+
+
+def _crossings_of_pairs(
+    vertices: Array, triangle: Numbers, line: Numbers, lines: Array
+) -> tuple[Numbers, Array, Numbers]:
+    """Of each line with the triangle beside it, those that cross."""
+    place = lines[line]
+    sides, areas = zip(*(
+        _side(vertices, triangle[:, (i + 1) % 3], triangle[:, (i + 2) % 3], place)
+        for i in range(3)
+    ))
+    crossed = (sides[0] == sides[1]) & (sides[1] == sides[2]) & (sides[0] != 0)
+    weights = np.array([np.abs(area[crossed]) for area in areas])
+    total = weights.sum(axis=0)
+    weights = np.where(total > 0.0, weights, 1.0) / np.where(total > 0.0, total, 3.0)
+    height = np.einsum("ij,ji->j", weights, vertices[triangle[crossed], 2])
+    return line[crossed], height, -sides[0][crossed]
+
+
+def _side(vertices: Array, start: Numbers, end: Numbers, place: Array) -> tuple[Numbers, Array]:
+    """+1 where a place is left of an edge, -1 right of it, and twice the area that they span.
+
+    Computed of each edge in one direction only, so that both its triangles get opposite answers;
+    on the edge itself of the place moved by (e, e^2), for an e that is smaller than any number.
+    """
+    forward = np.where(start < end, 1, -1)
+    a, b = vertices[np.minimum(start, end), :2], vertices[np.maximum(start, end), :2]
+    along, to = b - a, place - a
+    area = along[:, 0] * to[:, 1] - along[:, 1] * to[:, 0]
+    side = np.sign(area)
+    side = np.where(side == 0.0, -np.sign(along[:, 1]), side)
+    side = np.where(side == 0.0, np.sign(along[:, 0]), side)
+    return forward * side.astype(np.int64), area
+
+
+def _counted_up(counts: Numbers) -> Numbers:
+    """0, 1, ... counts[0] - 1, 0, 1, ... counts[1] - 1, and so on."""
+    total = int(counts.sum())
+    return np.arange(total) - np.repeat(np.cumsum(counts) - counts, counts)
+
+
+def _parts(counts: Numbers) -> Iterator[slice]:
+    """Consecutive parts whose counts add up to PAIRS_AT_ONCE, or to one entry that has more."""
+    total = np.cumsum(counts)
+    begin = 0
+    while begin < len(counts):
+        done = int(total[begin - 1]) if begin else 0
+        end = max(begin + 1, int(np.searchsorted(total, done + PAIRS_AT_ONCE, "right")))
+        yield slice(begin, end)
+        begin = end

@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the experiments of section V have in common: a trial of a mode, and what is measured of it."""
+from __future__ import annotations
+
+import zlib
+from dataclasses import dataclass
+
+import keepout
+import numpy as np
+from keepout_peers import Judge
+from scipy import signal
+
+from . import modes
+from .experiment import Row
+from .operator_model import Operator
+from .planned_path import Array
+from .rules.rule import Corridor, Task
+from .set_up_errors import RigidMotion, SetUp, fiducials_around, registered_from_true
+from .smoothness import spectral_arc_length, sparc
+from .trial import Course, Trace, run_trial
+
+MARGIN = 0.01  # [mm] that each rule keeps: the paper has none, and the certified rule needs some
+CORRIDOR = 1.0  # [mm] on each side of the sagittal plane (V)
+
+
+@dataclass(frozen=True)
+class Trial:
+    """A trace, and where its fixture took the anatomy to be."""
+
+    trace: Trace
+    registered: RigidMotion
+
+
+def operate(
+    mode: str,
+    course: Course,
+    index: keepout.Index,
+    operator: Operator,
+    setup: SetUp,
+    seeds: tuple[int, ...],
+) -> Trial:
+    """One trial of a mode. Each mode, and each of the `seeds`, is another operator on another day."""
+    random = np.random.default_rng([*seeds, zlib.crc32(mode.encode())])
+    path = course.path
+    middle = len(path.points) // 2
+    fiducials = fiducials_around(path.points[middle], path.up[middle])
+    registered = registered_from_true(setup, fiducials, random)
+    a, b, c = path.points[0].tolist()
+    x, y, z = path.across.tolist()
+    task = Task(
+        index.mesh,
+        margin=MARGIN,
+        radius=course.radius,
+        period=course.period,
+        corridor=Corridor((a, b, c), (x, y, z), CORRIDOR),
+    )
+    rule = modes.make_rule(mode, task, index)
+    return Trial(run_trial(course, rule, operator, setup, registered, random), registered)
+
+
+def measures(trial: Trial, course: Course, judge: Judge) -> Row:
+    """What is measured of any trial, behind the approach.
+
+    `crossings` and `deepest_registered_mm` are of the setpoint in the frame of the fixture: what the
+    rule itself let through. `deepest_mm` is of the tip in the true frame, and `beyond_registration_mm`
+    is by how much that is more than the registration displaces the place.
+    """
+    trace, start = trial.trace, trial.trace.begun
+    rate = 1.0 / course.period
+    tip, setpoint = trace.tip[start:], trace.setpoint[start:]
+    speed = np.linalg.norm(np.diff(tip, axis=0), axis=1) * rate
+    depth = -judge.distances(tip)
+    displaced = np.linalg.norm(trial.registered(tip) - tip, axis=1)
+    held = trace.force[start:] > 0.0
+    work = np.cumsum(trace.power) * course.period  # that the force did on the hand [uJ]
+    return {
+        "finished": trace.finished,
+        "duration_s": len(trace.tip) * course.period,
+        "spectral_arc_length": spectral_arc_length(speed, rate),
+        "sparc": sparc(speed, rate),
+        "crossings": int(judge.crossings(setpoint[:-1], setpoint[1:]).sum()),
+        "deepest_registered_mm": max(0.0, float(-judge.distances(setpoint).min())),
+        "deepest_mm": max(0.0, float(depth.max())),
+        "registration_error_mm": float(displaced.max()),
+        "beyond_registration_mm": max(0.0, float((depth - displaced).max())),
+        "force_n": float(trace.force[start:].mean()),
+        "greatest_force_n": float(trace.force[start:].max()),
+        "contact_n": float(trace.contact[start:].mean()),
+        "absorbed_mj": float(-work[-1] / 1000.0),
+        "generated_mj": float(max(0.0, work.max()) / 1000.0),
+        "chatter_um": chatter(setpoint, held, rate) if held.any() else None,
+    }
+
+
+def chatter(setpoint: Array, held: Array, rate: float) -> float:
+    """Root mean square of what the setpoint does above 30 Hz while the fixture holds it back [um].
+
+    A hand does nothing there: it is what fixture and hand do to one another.
+    """
+    high_pass = signal.butter(4, 30.0, "highpass", fs=rate, output="sos")
+    fast = signal.sosfiltfilt(high_pass, setpoint, axis=0)
+    return float(1000.0 * np.sqrt(np.mean(np.sum(fast[held] ** 2, axis=1))))

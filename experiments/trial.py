@@ -1,0 +1,149 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""One trial: the operator follows the path with the robot, at 1 kHz, with a fixture or without.
+
+    hand -> handle -> latency -> goal -> [ fixture, in the registered frame ] -> setpoint -> lag -> tip
+      ^                                               |
+      +------------------ force, latency -------------+
+
+Where the fixture does not let the tip go, the handle is pulled towards the tip with a force
+proportional to how far the two are apart (section V-A of the paper).
+"""
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from .bone import Bone, BoneProperties
+from .operator_model import Arm, Operator, slow_error, tremor
+from .planned_path import Array, PlannedPath
+from .rules.rule import Rule
+from .set_up_errors import RigidMotion, SetUp
+
+APPROACH = 1.0  # the hand comes down onto the path within this time [s]
+START_HEIGHT = 3.0  # from this height [mm]
+
+
+@dataclass(frozen=True)
+class Course:
+    """What is to be done: follow `path` at `speed`, `depth` below the outer surface."""
+
+    path: PlannedPath
+    depth: float  # [mm]
+    speed: float  # [mm/s] that the operator takes where nothing slows him
+    bone: BoneProperties | None = None  # None: nothing is in the way
+    force_per_mm: float = 0.3  # of the fixture on the handle [N/mm]
+    greatest_force: float = 4.0  # that the handle can exert [N]
+    radius: float = 5.0  # of the motion sphere: no step is longer [mm]
+    period: float = 0.001  # of the control cycle [s]
+    time_limit: float = 500.0  # [s]
+
+
+@dataclass(frozen=True)
+class Trace:
+    """What happened, cycle by cycle, (n, 3) in mm or (n,), and the kerf at each point of the path."""
+
+    tip: Array  # where the tip truly was
+    setpoint: Array  # where the fixture let it go, in the registered frame
+    goal: Array  # where the hand wanted it, in the registered frame
+    force: Array  # (n,) of the fixture on the handle [N]
+    power: Array  # (n,) of that force on the handle [mW]
+    contact: Array  # (n,) of the tip on the bone [N]
+    kerf: Array  # (points of the path,) [mm]
+    begun: int  # the first cycle behind the approach
+    finished: bool  # the path's end was reached within the time limit
+
+
+def run_trial(
+    course: Course,
+    rule: Rule | None,
+    operator: Operator,
+    setup: SetUp,
+    registered: RigidMotion,
+    random: np.random.Generator,
+) -> Trace:
+    """Simulates one trial. Without a rule there is no fixture, and the hand does not lean on one."""
+    path, period = course.path, course.period
+    if rule is None:
+        operator = replace(operator, leaning=0.0)
+    most = int(course.time_limit / period)
+    amounts = np.array([operator.slow_across, operator.slow_in_depth])
+    slow = slow_error(random, most, period, operator.slow_corner)[:, :2] * amounts
+    slow = slow + random.standard_normal(2) * [operator.bias_across, operator.bias_in_depth]
+    shake = tremor(random, most, period, operator.tremor)
+    true_frame = registered.inverse()
+    delay = round(setup.latency / period)
+    reaction = max(1, round(operator.reaction / period))
+    follow = 1.0 if setup.lag == 0.0 else 1.0 - np.exp(-period / setup.lag)
+    bone = Bone(path, course.bone, setup.tip_stiffness) if course.bone else None
+
+    start = path.points[0] + START_HEIGHT * path.up[0]
+    scale = operator.motion_scale
+    arm = Arm(operator, start / scale)
+    intended = start / scale
+    setpoint = robot = registered(start)
+    goals = np.tile(setpoint, (most, 1))
+    tips, setpoints = np.empty((most, 3)), np.empty((most, 3))
+    pulls, contacts, powers = np.zeros((most, 3)), np.zeros(most), np.zeros(most)
+    seen = np.zeros(most)  # what the eye makes of the deviation, as a factor of the speed
+    along, approach = 0.0, int(APPROACH / period)
+    cycle, none = 0, np.zeros(3)
+
+    for cycle in range(most):
+        # The operator: where he means to be, and how fast he goes on.
+        number = path.number(along)
+        up = path.up[number]
+        height = max(0.0, 1.0 - cycle / approach) * START_HEIGHT
+        below = course.depth + operator.leaning + slow[cycle, 1] - height
+        meant = (path.points[number] + slow[cycle, 0] * path.across - below * up) / scale
+        pull = pulls[cycle - delay] if cycle >= delay else none
+        handle = arm.move(meant, (meant - intended) / period, pull, period)
+        intended = meant
+        if cycle >= approach:
+            along += course.speed * period * (seen[cycle - reaction] if cycle >= reaction else 1.0)
+
+        # The robot: goal, fixture, setpoint, and where the tip comes to be.
+        goals[cycle] = registered(scale * handle + shake[cycle])
+        goal = goals[cycle - delay] if cycle >= delay else goals[0]
+        desired = goal - setpoint
+        length = np.sqrt(desired @ desired)
+        if length > course.radius:
+            desired = desired * (course.radius / length)
+        if rule is None:
+            setpoint = setpoint + desired
+        else:
+            setpoint = setpoint + rule.step(setpoint, desired)
+            pulled = course.force_per_mm * (setpoint - goal)
+            size = np.sqrt(pulled @ pulled)
+            if size > course.greatest_force:
+                pulled = pulled * (course.greatest_force / size)
+            pulls[cycle] = true_frame.rotation @ pulled
+        powers[cycle] = pull @ arm.speed
+        robot = robot + follow * (setpoint - robot)
+        tip = true_frame(robot)
+        if bone:
+            tip, contacts[cycle] = bone.press(tip, period)
+        tips[cycle], setpoints[cycle] = tip, setpoint
+
+        # The eye: how far beside the path, and how far above where it is meant to be; a hand that
+        # feels a fixture takes that for the depth to go to.
+        offset = tip - path.points[number]
+        aside = offset @ path.across
+        feels = pull @ pull > operator.felt_force**2
+        hanging = 0.0 if feels else max(0.0, offset @ up + below - operator.leaning)
+        seen[cycle] = 1.0 / (1.0 + (aside * aside + hanging * hanging) / operator.tolerance**2)
+        if along >= path.length:
+            break
+
+    ran = cycle + 1
+    return Trace(
+        tip=tips[:ran],
+        setpoint=setpoints[:ran],
+        goal=goals[np.maximum(np.arange(ran) - delay, 0)],
+        force=np.linalg.norm(pulls[:ran], axis=1),
+        power=powers[:ran],
+        contact=contacts[:ran],
+        kerf=bone.cut if bone else np.zeros(len(path.points)),
+        begun=min(approach, ran - 1),
+        finished=along >= path.length,
+    )
