@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "judge.h"
 
+#include <algorithm>
+#include <limits>
 #include <vector>
 
 #include "keepout/error.h"
@@ -39,14 +41,24 @@ Eigen::VectorXd Judge::distances(const Eigen::Ref<const Rows>& points) {
 }
 
 Eigen::VectorXd Judge::least_distances(const Eigen::Ref<const Rows>& starts,
-                                       const Eigen::Ref<const Rows>& ends) {
+                                       const Eigen::Ref<const Rows>& ends, double reach) {
   require_pairs(starts, ends);
   require_finite(starts.allFinite() && ends.allFinite());
+  const oracle::TriangleTree& tree = oracle_.tree();
+  std::vector<TriangleId> near;
   Eigen::VectorXd out(starts.rows());
   for (Eigen::Index i = 0; i < starts.rows(); ++i) {
-    const Vec3 start = starts.row(i);
-    const double reach = oracle_.distance(start) * (1.0 + 1e-6);  // of the whole way it is no more
-    out[i] = oracle_.check(start, ends.row(i), 0.0, reach).distance;
+    const oracle::Segment motion{starts.row(i), ends.row(i)};
+    near.clear();
+    const double at_start = oracle_.distance(motion.from);  // of the whole way it is no more
+    tree.collect_within(std::min(reach, at_start), motion, near);
+    double least = at_start;
+    for (const TriangleId t : near) {
+      const Triangle triangle = tree.mesh().triangle(t);
+      if (oracle::bracket_distance(motion, triangle).low >= least) continue;
+      least = std::min(least, oracle::narrow_distance(motion, triangle).estimate);
+    }
+    out[i] = least <= reach ? least : std::numeric_limits<double>::infinity();
   }
   return out;
 }

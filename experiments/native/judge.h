@@ -26,9 +26,10 @@ class Judge {
   /// Of each point from the mesh, less than 0 inside of a closed one. [length]
   Eigen::VectorXd distances(const Eigen::Ref<const Rows>& points);
 
-  /// Of each straight motion from the mesh at its nearest; 0 if and only if it touches. [length]
+  /// Of each straight motion from the mesh at its nearest: 0 if and only if it touches, and
+  /// infinite where it is more than `reach`. The less the reach, the faster. [length]
   Eigen::VectorXd least_distances(const Eigen::Ref<const Rows>& starts,
-                                  const Eigen::Ref<const Rows>& ends);
+                                  const Eigen::Ref<const Rows>& ends, double reach);
 
   /// Which straight motions touch the mesh, exactly.
   Eigen::Array<bool, Eigen::Dynamic, 1> crossings(const Eigen::Ref<const Rows>& starts,

@@ -5,6 +5,7 @@
 #include <pybind11/stl.h>
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <string>
 #include <utility>
@@ -49,8 +50,11 @@ are judged fastest in their order. Lengths are in the unit of the mesh.)")
       .def_property_readonly("closed", &Judge::closed, "Whether the mesh has an inside.")
       .def("distances", &Judge::distances, "points"_a, Unlocked(),
            "Of (n, 3) points from the mesh: (n,), less than 0 inside of a closed one.")
-      .def("least_distances", &Judge::least_distances, "starts"_a, "ends"_a, Unlocked(),
-           "Of n straight motions from the mesh: (n,), 0 if and only if one touches.")
+      .def("least_distances", &Judge::least_distances, "starts"_a, "ends"_a,
+           "reach"_a = std::numeric_limits<double>::infinity(), Unlocked(),
+           "Of n straight motions from the mesh: (n,), 0 if and only if one touches, infinite "
+           "where it "
+           "is more than `reach`; the less that is, the faster.")
       .def("crossings", &Judge::crossings, "starts"_a, "ends"_a, Unlocked(),
            "Which of n straight motions touch the mesh: (n,) of bool, exact.")
       .def("best_step", &Judge::best_step, "tip"_a, "desired"_a, "margin"_a, Unlocked(),

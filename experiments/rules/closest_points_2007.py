@@ -14,6 +14,8 @@ keepout's own rules do. Only points within |desired| + margin are asked for: no 
 """
 from __future__ import annotations
 
+from functools import lru_cache
+
 import keepout
 import numpy as np
 from numpy.typing import NDArray
@@ -25,44 +27,22 @@ RECOVERY = 0.05  # outwards in one cycle at the most [mm]
 ON_BORDER = 1e-9  # a barycentric coordinate that counts as 0
 
 
-class ClosestPoints2007:
-    """A plane for each local minimum of the distance."""
+class _Surface:
+    """What closest points are told apart by: edges of triangles, and who else is at edge and vertex."""
 
-    NAME = "closest_points_2007"
-
-    def __init__(self, task: Task, index: keepout.Index) -> None:
-        self._task = task
-        self._index = index
-        self._normals = task.mesh.normals
-        corners = np.asarray(task.mesh.triangles, dtype=np.int64)
-        self._corners = corners
-        first, second, third = task.mesh.vertices[corners].transpose(1, 0, 2)
-        self._first, self._u, self._v = first, second - first, third - first
-        self._uu, self._vv = (self._u**2).sum(1), (self._v**2).sum(1)
-        self._uv = (self._u * self._v).sum(1)
+    def __init__(self, mesh: keepout.Mesh) -> None:
+        self.normals = mesh.normals
+        self.vertices = mesh.vertices
+        self.corners = np.asarray(mesh.triangles, dtype=np.int64)
+        self.first, second, third = mesh.vertices[self.corners].transpose(1, 0, 2)
+        self.u, self.v = second - self.first, third - self.first
         # How many triangles there are at each vertex, and at each edge by its key.
-        self._count = len(task.mesh.vertices)
-        self._at_vertex = np.bincount(corners.ravel(), minlength=self._count)
-        ends = np.sort(np.vstack([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]]), axis=1)
-        self._edges, self._at_edge = np.unique(ends @ [self._count, 1], return_counts=True)
+        self.count = len(mesh.vertices)
+        self.at_vertex = np.bincount(self.corners.ravel(), minlength=self.count)
+        ends = np.sort(np.vstack([self.corners[:, [i, (i + 1) % 3]] for i in range(3)]), axis=1)
+        self.edges, self.at_edge = np.unique(ends @ [self.count, 1], return_counts=True)
 
-    def step(self, tip: NDArray[np.float64], desired: NDArray[np.float64]) -> NDArray[np.float64]:
-        margin = self._task.margin
-        planes: list[Plane] = corridor_planes(self._task.corridor, tip)
-        hits = self._index.hits(tip, margin + float(np.sqrt(desired @ desired)))
-        if len(hits):
-            distances = hits.distances
-            for i in self._minima(hits.triangles, hits.points):
-                distance = float(distances[i])
-                if distance > 0.0:
-                    normal = hits.offsets[i] / -distance
-                else:
-                    normal = self._normals[hits.triangles[i]]
-                planes.append((normal, min(margin - distance, RECOVERY)))
-        motion = nearest_motion(desired, planes)
-        return np.zeros(3) if motion is None else motion
-
-    def _minima(
+    def minima(
         self, triangles: NDArray[np.uint32], points: NDArray[np.float64]
     ) -> NDArray[np.int64]:
         """One of the triangles at each local minimum: its number among those given."""
@@ -72,24 +52,22 @@ class ClosestPoints2007:
         if not zeros.any():
             return np.arange(len(triangles))
         # What the closest point lies on, as a number: a vertex, an edge by its ends, or a triangle.
-        corners = self._corners[triangles]
-        ends = np.sort(np.where(on_border, -1, corners), axis=1)
-        vertices, edges = ends[:, 2], ends[:, 1] * self._count + ends[:, 2]
-        lies_on = np.where(zeros == 0, -1 - triangles.astype(np.int64), edges + self._count)
+        ends = np.sort(np.where(on_border, -1, self.corners[triangles]), axis=1)
+        vertices, edges = ends[:, 2], ends[:, 1] * self.count + ends[:, 2]
+        lies_on = np.where(zeros == 0, -1 - triangles.astype(np.int64), edges + self.count)
         lies_on = np.where(zeros >= 2, vertices, lies_on)
-        needed = np.ones(len(triangles), dtype=np.int64)
-        at_edge = np.minimum(np.searchsorted(self._edges, edges), len(self._edges) - 1)
-        needed = np.where(zeros == 1, self._at_edge[at_edge], needed)
-        needed = np.where(zeros >= 2, self._at_vertex[vertices], needed)
+        at_edge = self.at_edge[np.searchsorted(self.edges, edges) % len(self.edges)]
+        needed = np.where(zeros == 1, at_edge, 1)
+        needed = np.where(zeros >= 2, self.at_vertex[vertices], needed)
         _, first, agreeing = np.unique(lies_on, return_index=True, return_counts=True)
         return first[agreeing >= needed[first]]
 
     def _barycentric(
         self, triangles: NDArray[np.uint32], points: NDArray[np.float64]
     ) -> NDArray[np.float64]:
-        """Of a point of each triangle, (k, 3); of a triangle without an area, all 0 but the nearest."""
-        u, v, w = self._u[triangles], self._v[triangles], points - self._first[triangles]
-        uu, vv, uv = self._uu[triangles], self._vv[triangles], self._uv[triangles]
+        """Of a point of each triangle, (k, 3); without an area, those of the nearest corner."""
+        u, v, w = self.u[triangles], self.v[triangles], points - self.first[triangles]
+        uu, vv, uv = (u * u).sum(axis=1), (v * v).sum(axis=1), (u * v).sum(axis=1)
         wu, wv = (w * u).sum(axis=1), (w * v).sum(axis=1)
         size = uu * vv - uv * uv
         flat = size <= 1e-18 * uu * vv
@@ -97,6 +75,39 @@ class ClosestPoints2007:
         second, third = (vv * wu - uv * wv) / size, (uu * wv - uv * wu) / size
         weights = np.column_stack([1.0 - second - third, second, third])
         if flat.any():
-            apart = np.linalg.norm(points[:, None] - self._task.mesh.vertices[self._corners[triangles]], axis=2)
-            weights[flat] = np.eye(3)[apart[flat].argmin(axis=1)]
+            corners = self.vertices[self.corners[triangles[flat]]]
+            apart = np.linalg.norm(points[flat][:, None] - corners, axis=2)
+            weights[flat] = np.eye(3)[apart.argmin(axis=1)]
         return weights
+
+
+@lru_cache(maxsize=2)
+def _surface_of(mesh: keepout.Mesh) -> _Surface:
+    return _Surface(mesh)  # for all trials on it
+
+
+class ClosestPoints2007:
+    """A plane for each local minimum of the distance."""
+
+    NAME = "closest_points_2007"
+
+    def __init__(self, task: Task, index: keepout.Index) -> None:
+        self._task = task
+        self._index = index
+        self._surface = _surface_of(task.mesh)
+
+    def step(self, tip: NDArray[np.float64], desired: NDArray[np.float64]) -> NDArray[np.float64]:
+        margin = self._task.margin
+        planes: list[Plane] = corridor_planes(self._task.corridor, tip)
+        hits = self._index.hits(tip, margin + float(np.sqrt(desired @ desired)))
+        if len(hits):
+            distances = hits.distances
+            for i in self._surface.minima(hits.triangles, hits.points):
+                distance = float(distances[i])
+                if distance > 0.0:
+                    normal = hits.offsets[i] / -distance
+                else:
+                    normal = self._surface.normals[hits.triangles[i]]
+                planes.append((normal, min(margin - distance, RECOVERY)))
+        motion = nearest_motion(desired, planes)
+        return np.zeros(3) if motion is None else motion

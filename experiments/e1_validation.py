@@ -1,0 +1,289 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""E1: does each rule keep a point out of each shape? (section IV-A: 11 shapes, all kept out of)
+
+A hand tries to lead the tip in, loop by loop, with the same seeds for every mode. What became of the
+tip is told by the judge, which shares nothing with keepout, and how much motion was given away by the
+best safe step of all, which branch and bound finds. Only closed shapes count: around the border of an
+open one a tip may pass, and come back from behind, which rules of one side let it.
+"""
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import lru_cache
+from time import perf_counter
+from typing import Any
+
+import keepout
+import numpy as np
+from scipy.stats import binomtest
+
+from . import figures
+from .experiment import Claim, Figure, Findings, Row, Scale, Table, Unit
+from .modes import FIXTURES, MODES, make_rule
+from .point_hand import ROUTES, PointHand, place_outside
+from .rules.rule import Task
+
+NAME = "e1_validation"
+TITLE = "E1 Validation on shapes (section IV-A)"
+
+#: The paper's rule as it is printed, without a margin; with the margin of all others it is "paper".
+AS_PUBLISHED = "paper_published"
+MARGIN = 0.2  # [mm]
+REACH = 2.0 * MARGIN  # clearances are told up to this [mm]
+#: Without a margin a tip may lie on the surface; nearer than this it does, on whichever side. [mm]
+TOUCH = 1e-6
+
+#: Of a quick run: small ones of each kind, and the skull.
+QUICK_SHAPES = ("cube", "sphere", "concave_sphere", "pyramid", "gear", "thin_plates", "star_bumps",
+                "cortex", "far_cube", "pinion", "femur", "saddle_terrain", "skull")
+#: Fields finer than this are left to full runs: a shape takes minutes to sample.
+QUICK_WITHOUT = ("sdf_0.25", "sdf_0.5")
+
+CYCLES = 300  # of a loop
+LOOPS = 10  # of a shape and a mode; ten times as many in a full run
+BEST_STEPS = 3  # of a loop, that are held against the best safe step
+
+#: The rows of a shape and a mode.
+Loops = dict[tuple[str, str], list[Row]]
+
+
+def units(scale: Scale) -> list[Unit]:
+    """One for each shape and mode, shape after shape, so that a process keeps what it has read."""
+    import keepout_peers
+
+    shapes = [name for name, _ in keepout_peers.named_meshes()] if scale.full else QUICK_SHAPES
+    modes = [m for m in (*MODES, AS_PUBLISHED) if scale.full or m not in QUICK_WITHOUT]
+    loops = LOOPS * (10 if scale.full else 1)
+    return [
+        Unit(f"{shape}_{mode}", {"shape": shape, "mode": mode, "loops": loops, "seed": scale.seed})
+        for shape in shapes
+        for mode in modes
+    ]
+
+
+def run(unit: Unit) -> list[Row]:
+    """A row for each loop; a single one with `refused` where a rule does not take the shape."""
+    shape, mode = unit.settings["shape"], unit.settings["mode"]
+    index, judge = _surface(shape)
+    margin = 0.0 if mode == AS_PUBLISHED else MARGIN
+    task = Task(index.mesh, margin=margin)
+    rows: list[Row] = []
+    for number in range(unit.settings["loops"]):
+        about: Row = {"shape": shape, "mode": mode, "loop": number}
+        random = np.random.default_rng([unit.settings["seed"], number, *shape.encode()])
+        try:
+            rule = make_rule("paper" if mode == AS_PUBLISHED else mode, task, index)
+        except ValueError as refusal:
+            return [about | {"refused": str(refusal)}]
+        rows.append(about | _loop(index, judge, rule, task, ROUTES[number % len(ROUTES)], random))
+    return rows
+
+
+@lru_cache(maxsize=1)
+def _surface(shape: str) -> tuple[keepout.Index, Any]:
+    import keepout_peers
+
+    vertices, triangles = keepout_peers.named_mesh(shape)
+    mesh = keepout.Mesh(vertices, triangles)
+    return keepout.Index(mesh), keepout_peers.Judge(vertices, triangles)
+
+
+def _loop(
+    index: keepout.Index, judge: Any, rule: Any, task: Task, route: str, random: np.random.Generator
+) -> Row:
+    """One loop: a tip that starts outside, a hand, a rule, and what the judge says of it."""
+    longest = task.radius * 10.0 ** random.uniform(-2.0, 0.0)  # [mm]
+    tip = place_outside(index, 1.5 * MARGIN, 2.0, random)
+    sample = random.random(CYCLES)  # which steps are held against the best
+    hand = PointHand(index, route, longest, random)
+    tips, asked = np.empty((CYCLES + 1, 3)), np.empty((CYCLES, 3))
+    tips[0] = tip
+    seconds = 0.0
+    for cycle in range(CYCLES):
+        desired = asked[cycle] = hand.next(tip)
+        begun = perf_counter()
+        motion = desired if rule is None else rule.step(tip, desired)
+        seconds += perf_counter() - begun
+        tips[cycle + 1] = tip = tip + motion
+    return {"route": route, "longest": longest, **_judged(judge, tips, asked, sample, task.margin),
+            "measured_step_us": 1e6 * seconds / CYCLES}
+
+
+def _judged(
+    judge: Any, tips: np.ndarray, asked: np.ndarray, sample: np.ndarray, margin: float
+) -> Row:
+    """Of a loop: whether the tip got in, depth and clearance; and what was lost until it got in."""
+    starts, ends = tips[:-1], tips[1:]
+    distances = judge.distances(tips)  # less than 0 inside, which is free where normals point inwards
+    clearances = np.minimum(judge.least_distances(starts, ends, REACH), REACH)
+    depths = -np.sign(distances[0]) * distances
+    entered = clearances == 0.0
+    if margin == 0.0:  # what touches may still be outside
+        clear = np.abs(distances) > TOUCH
+        entered = (entered & clear[:-1] & clear[1:]) | (judge.closed & (depths[1:] > TOUCH))
+    before = int(entered.argmax()) if entered.any() else len(asked)
+    kept = np.minimum(margin, np.abs(distances[:-1]))[:before]  # a tip that is nearer may stay so
+    lost = np.linalg.norm(ends - starts - asked, axis=1)[:before]
+    length = np.linalg.norm(asked, axis=1)[:before]
+    room = judge.least_distances(starts[:before], starts[:before] + asked[:before], REACH)
+    free = (room >= margin) & (room > 0.0) & (length > 0.0)
+    safe = clearances[:before] >= kept * (1.0 - 1e-6)
+    limited = np.flatnonzero(~free & safe & (length > 0.0) & (distances[:-1][:before] != 0.0))
+    excess = []
+    for i in limited[np.argsort(sample[limited])][:BEST_STEPS]:
+        _, cost, _ = judge.best_step(starts[i], asked[i], margin)
+        excess.append((lost[i] - cost) / length[i])
+    return {
+        "closed": judge.closed,
+        "crossed": bool(entered.any()),
+        "depth": float(max(0.0, depths.max())) if judge.closed else None,
+        "clearance": float(clearances.min()),
+        "unsafe": int((~safe).sum()),
+        "free_asked": float(length[free].sum()),
+        "free_lost": float(lost[free].sum()),
+        "excess": float(np.sum(excess)),
+        "excess_of": len(excess),
+    }
+
+
+def findings(rows: list[Row], scale: Scale) -> Findings:
+    """Which modes kept the tip out of which shapes, and what they took for it."""
+    shapes = list(dict.fromkeys(row["shape"] for row in rows))
+    modes = list(dict.fromkeys(row["mode"] for row in rows))
+    loops: Loops = {(s, m): [] for s in shapes for m in modes}
+    for row in rows:
+        if "refused" not in row:
+            loops[row["shape"], row["mode"]].append(row)
+    closed = [s for s in shapes if any(r["closed"] for m in modes for r in loops[s, m])]
+    counted = {m: [row for s in closed for row in loops[s, m]] for m in modes}
+
+    def told(mode: str) -> str:
+        tried = [s for s in closed if loops[s, mode]]
+        kept = sum(_crossed(loops[s, mode]) == 0 for s in tried)
+        return f"{kept} of {len(tried)} shapes, {_crossed(counted[mode])} of {len(counted[mode])} loops"
+
+    safe = [m for m in modes if m in FIXTURES and not _crossed(counted[m])
+            and all(loops[s, m] for s in closed)]
+    best = min(safe, key=lambda m: _excess(counted[m]), default=None)
+    claims = [
+        Claim(
+            about="shapes that the tip is kept out of, and loops in which it got in (IV-A)",
+            paper="11 of 11 shapes",
+            reproduction=told(AS_PUBLISHED),
+            certified=told("certified"),
+            best=figures.label(best) if best else "none",
+            sure=_mcnemar(counted[AS_PUBLISHED], counted["certified"]),
+            note="best: of those that kept out of all, the one nearest to the best safe steps",
+        ),
+        Claim(
+            about="free motion that is not allowed (IV-A)",
+            paper="-",
+            reproduction=_number(100 * _lost(counted[AS_PUBLISHED]), 1, " %"),
+            certified=_number(100 * _lost(counted["certified"]), 1, " %"),
+            best=figures.label(min(safe, key=lambda m: _lost(counted[m]))) if safe else "none",
+            sure=_sign_test(closed, loops),
+            note="planes of triangles that the tip does not run into, as far as the sphere reaches",
+        ),
+    ]
+    headline = (f"Kept out of by the paper's rule as printed: {told(AS_PUBLISHED)} got in; by the "
+                f"certified rule: {told('certified')}. Free motion lost: {claims[1].reproduction} and "
+                f"{claims[1].certified}.")
+    tables = [_overview(modes, counted, told), _by_shape(shapes, closed, modes, loops)]
+    return Findings(headline, claims, tables, [_picture(shapes, modes, loops)])
+
+
+def _crossed(loops: list[Row]) -> int:
+    return sum(row["crossed"] for row in loops)
+
+
+def _excess(loops: list[Row]) -> float:
+    """Mean of (|u - u_desired| - that of the best safe step) / |u_desired|, of safe steps."""
+    steps = sum(row["excess_of"] for row in loops)
+    return sum(row["excess"] for row in loops) / steps if steps else float("nan")
+
+
+def _lost(loops: list[Row]) -> float:
+    asked = sum(row["free_asked"] for row in loops)
+    return sum(row["free_lost"] for row in loops) / asked if asked else float("nan")
+
+
+def _mcnemar(ours: list[Row], theirs: list[Row]) -> str:
+    """The exact test of pairs of loops with the same shape and seed, two-sided."""
+    other = {(row["shape"], row["loop"]): row["crossed"] for row in theirs}
+    pairs = [(row["crossed"], other[row["shape"], row["loop"]]) for row in ours
+             if (row["shape"], row["loop"]) in other]
+    only_first = sum(a and not b for a, b in pairs)
+    only_second = sum(b and not a for a, b in pairs)
+    if only_first + only_second == 0:
+        return "no loop differs"
+    p = binomtest(only_first, only_first + only_second).pvalue
+    return f"McNemar, {only_first} against {only_second} of {len(pairs)} loops, p = {p:.2g}"
+
+
+def _sign_test(closed: list[str], loops: Loops) -> str:
+    """Of shapes: whether the printed rule loses more free motion than the certified one, two-sided."""
+    lost = [(_lost(loops[s, AS_PUBLISHED]), _lost(loops[s, "certified"])) for s in closed]
+    more, less = sum(a > b for a, b in lost), sum(a < b for a, b in lost)
+    if more + less == 0:
+        return "no shape differs"
+    return f"sign test, more on {more} shapes, less on {less}, p = {binomtest(more, more + less).pvalue:.2g}"
+
+
+def _number(value: float, digits: int, unit: str = "") -> str:
+    return "-" if np.isnan(value) else f"{value:.{digits}f}{unit}"
+
+
+def _overview(
+    modes: list[str], counted: dict[str, list[Row]], told: Callable[[str], str]
+) -> Table:
+    rows = []
+    for mode in modes:
+        loops = counted[mode]
+        depths = [row["depth"] for row in loops if row["depth"] is not None]
+        rows.append([
+            _label(mode), told(mode), f"{max(depths, default=float('nan')):.2f}",
+            f"{min((row['clearance'] for row in loops), default=float('nan')):.3g}",
+            _number(100 * _lost(loops), 2, " %"), _number(100 * _excess(loops), 1, " %"),
+        ])
+    note = (f"Closed shapes that it never got into, and loops of {CYCLES} cycles in which it did. "
+            "Lost is motion that was free and was not allowed; excess is what safe steps that "
+            "something limits fall short of the best safe step, in lengths of the motion asked for.")
+    columns = ["mode", "kept out of, got in", "deepest [mm]", "least clearance [mm]", "lost", "excess"]
+    return Table("Modes over all closed shapes", columns, rows, note)
+
+
+def _by_shape(shapes: list[str], closed: list[str], modes: list[str], loops: Loops) -> Table:
+    def cell(of: list[Row]) -> str:
+        if not of:
+            return "refused"
+        depths = [row["depth"] for row in of if row["depth"] is not None]
+        deepest = f", {max(depths):.1f} mm" if depths and max(depths) > 0.0 else ""
+        return f"{_crossed(of)}/{len(of)}{deepest}" if _crossed(of) else "0"
+
+    rows = [[shape if shape in closed else f"{shape} (open)", *(cell(loops[shape, mode]) for mode in modes)] for shape in shapes]
+    return Table("Loops in which the tip crossed the surface", ["shape", *map(_label, modes)], rows,
+                 "Crossed of all loops, and how deep the tip got at the worst. Open shapes do not count.")
+
+
+def _picture(shapes: list[str], modes: list[str], loops: Loops) -> Figure:
+    fig, ax = figures.new(170, 30 + 6.5 * len(shapes))
+    for column, mode in enumerate(modes):
+        shares = np.array([_crossed(loops[s, mode]) / max(1, len(loops[s, mode])) for s in shapes])
+        ax.scatter(np.full(len(shapes), column), range(len(shapes)), s=150.0 * shares,
+                   color=figures.color(_of_look(mode)))
+    ax.set_xticks(range(len(modes)), [_label(mode) for mode in modes], rotation=35, ha="right",
+                  rotation_mode="anchor")
+    ax.set_yticks(range(len(shapes)), shapes)
+    ax.set_xlim(-0.6, len(modes) - 0.4)
+    ax.set_ylim(len(shapes) - 0.4, -0.6)
+    caption = ("The area of a dot is the share of loops in which the tip crossed the surface; no dot "
+               "is none.")
+    return Figure("e1_crossings", "Where the tip got in", caption, figures.svg(fig))
+
+
+def _of_look(mode: str) -> str:
+    return "paper" if mode == AS_PUBLISHED else mode
+
+
+def _label(mode: str) -> str:
+    return "the paper's, no margin" if mode == AS_PUBLISHED else figures.label(mode)

@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The judge of the experiments, against what is known of a box."""
+import numpy as np
+import pytest
+
+peers = pytest.importorskip("keepout_peers")
+
+CORNERS = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=float)
+QUADS = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+TRIANGLES = np.array([t for a, b, c, d in QUADS for t in ((a, b, c), (a, c, d))])
+
+
+def box_distance(points):
+    """Of points from the box with corners at -1 and 1, less than 0 inside."""
+    beyond = np.abs(points) - 1.0
+    outside = np.linalg.norm(np.maximum(beyond, 0.0), axis=-1)
+    return outside + np.minimum(beyond.max(axis=-1), 0.0)
+
+
+@pytest.fixture
+def judge():
+    return peers.Judge(CORNERS, TRIANGLES)
+
+
+@pytest.fixture
+def motions():
+    random = np.random.default_rng(3)
+    starts = random.uniform(-2.0, 2.0, (400, 3))
+    return starts, starts + random.normal(scale=0.8, size=(400, 3))
+
+
+def test_distances_have_the_sign_of_the_side(judge, motions):
+    points = np.vstack(motions)
+    assert judge.closed
+    assert judge.distances(points) == pytest.approx(box_distance(points), abs=1e-12)
+
+
+def test_an_open_mesh_has_no_inside(motions):
+    judge = peers.Judge(CORNERS, TRIANGLES[:-2])
+    assert not judge.closed
+    assert (judge.distances(motions[0]) >= 0.0).all()
+
+
+def test_least_distances_are_those_of_many_points_on_the_way(judge, motions):
+    starts, ends = motions
+    shares = np.linspace(0.0, 1.0, 2001)[:, None, None]
+    sampled = np.abs(box_distance(starts + shares * (ends - starts))).min(axis=0)
+    least = judge.least_distances(starts, ends)
+    half_a_gap = np.linalg.norm(ends - starts, axis=1) / 4000.0
+    assert (least <= sampled + 1e-12).all()
+    assert (least >= sampled - half_a_gap - 1e-12).all()
+
+
+def test_least_distances_beyond_the_reach_are_infinite(judge, motions):
+    least, near = judge.least_distances(*motions), judge.least_distances(*motions, reach=0.3)
+    assert 0 < (least > 0.3).sum() < len(least)
+    assert np.array_equal(near, np.where(least <= 0.3, least, np.inf))
+
+
+def test_motions_that_touch_cross(judge, motions):
+    starts, ends = motions
+    crossings = judge.crossings(starts, ends)
+    assert np.array_equal(crossings, judge.least_distances(starts, ends) == 0.0)
+    leads_in_or_out = (box_distance(starts) < 0.0) != (box_distance(ends) < 0.0)
+    assert leads_in_or_out.any() and crossings[leads_in_or_out].all()
+    away = box_distance(starts) > np.linalg.norm(ends - starts, axis=1)
+    assert away.any() and not crossings[away].any()
+
+
+def test_the_best_step_slides_at_the_margin(judge):
+    motion, cost, bound = judge.best_step([0.0, 0.0, 1.5], [0.3, 0.0, -1.0], 0.2)
+    assert motion == pytest.approx([0.3, 0.0, -0.3], abs=1e-5)
+    assert cost == pytest.approx(0.7, abs=1e-5)
+    assert bound <= cost
+    free, cost, _ = judge.best_step([0.0, 0.0, 1.5], [0.3, 0.0, 1.0], 0.2)
+    assert np.array_equal(free, [0.3, 0.0, 1.0]) and cost == 0.0
+
+
+def test_what_makes_no_sense_is_refused(judge):
+    with pytest.raises(ValueError, match="finite"):
+        judge.distances([[0.0, 0.0, np.nan]])
+    with pytest.raises(ValueError, match="each start"):
+        judge.crossings(np.zeros((2, 3)), np.zeros((1, 3)))
+    with pytest.raises(ValueError, match="on the mesh"):
+        judge.best_step([0.0, 0.0, 1.0], [0.0, 0.0, 1.0], 0.2)
