@@ -219,21 +219,28 @@ def _headline(rows: list[Row], against: list[Against]) -> str:
 
 
 def sweep_table(rows: list[Row], members: tuple[str, ...]) -> Table:
-    """Tremor by tremor, and without any error of the set-up; rows have `tremor` [mm] and `ideal`."""
-    kinds = sorted({(row["mode"], row["ideal"], row["tremor"]) for row in rows},
-                   key=lambda kind: (modes.MODES.index(kind[0]), kind[1], kind[2]))
+    """By tremor, corridor and errors of the set-up; rows have `tremor`, `corridor` [mm] and `ideal`."""
+
+    def kind(row: Row) -> tuple[int, bool, float, float]:
+        return modes.MODES.index(row["mode"]), row["ideal"], row["corridor"], row["tremor"]
+
     lines = []
-    for mode, ideal, tremor in kinds:
-        here = [r for r in rows if (r["mode"], r["ideal"], r["tremor"]) == (mode, ideal, tremor)]
+    for of in sorted({kind(row) for row in rows}):
+        here = [row for row in rows if kind(row) == of]
+        mode, ideal, corridor, tremor = of
         lines.append(
-            [figures.label(mode), f"{1000 * tremor:.0f}", "none" if ideal else "all", str(len(here))]
-            + [str(sum(r["crossings"] for r in here))]
+            [figures.label(modes.MODES[mode]), f"{1000 * tremor:.0f}"]
+            + ["-" if modes.MODES[mode] == modes.NO_FIXTURE else f"{corridor:g}"]
+            + ["none" if ideal else "all", str(len(here)), str(sum(r["crossings"] for r in here))]
             + [f"{max(r['deepest_registered_mm'] for r in here):.3f}"]
+            + [f"{max(r['deepest_mm'] for r in here):.3f}"]
             + [f"{np.mean([r[member] for r in here]):.2f}" for member in members]
         )
     return Table(
-        "Tremor, and a set-up without errors",
-        ["mode", "tremor [µm]", "errors of the set-up", "trials", "passes through", "deepest setpoint [mm]",
+        "Tremor, corridor, and a set-up without errors",
+        ["mode", "tremor [µm]", "corridor ± [mm]", "errors of the set-up", "trials",
+         "setpoint passes through", "deepest setpoint [mm]", "deepest tip [mm]",
          *(member.removesuffix("_mm").removesuffix("_s").replace("_", " ") for member in members)],
         lines,
+        "Means of trials; depths are the greatest.",
     )

@@ -18,7 +18,7 @@ from .comparison import Measure, compare, sweep_table
 from .experiment import Figure, Findings, Row, Scale, Unit
 from .operator_model import Operator
 from .set_up_errors import SetUp
-from .teleoperation import measures, operate
+from .teleoperation import CORRIDOR, measures, operate
 from .trial import Course
 
 NAME = "e3_path_tracing"
@@ -64,6 +64,7 @@ def run(unit: Unit) -> list[Row]:
     drawn = told["mode"] in DRAWN and not told["ideal"] and told["number"] < 5
     return [
         {name: told[name] for name in ("mode", "tremor", "ideal", "number")}
+        | {"corridor": CORRIDOR}
         | measures(trial, course, _judge())
         | {
             "absolute_depth_mm": float(np.abs(depth).mean()),

@@ -17,7 +17,7 @@ from .comparison import Measure, compare, sweep_table
 from .experiment import Findings, Row, Scale, Unit
 from .operator_model import Operator
 from .set_up_errors import SetUp
-from .teleoperation import Trial, measures, operate
+from .teleoperation import CORRIDOR, Trial, measures, operate
 from .trial import Course
 
 NAME = "e4_cutting"
@@ -27,24 +27,26 @@ TITLE = "E4 Cutting (section V-B)"
 TREMOR = 0.13
 SWEEP = (0.0, 0.05, 0.25)
 SWEPT = ("none", "paper", "certified")
+CORRIDORS = (0.25, 0.5)  # [mm] besides that of the paper
 SAMPLES = 30
 
 
 def units(scale: Scale) -> list[Unit]:
-    """Quick: two trials a mode, as the paper's. Full: ten, a sweep of tremor, and no errors of the set-up."""
-    repetitions = 10 if scale.full else 2
+    """Quick: two trials a mode, as the paper's. Full: ten; sweeps of tremor and corridor; no errors of the set-up."""
 
-    def of(mode: str, tremor: float, ideal: bool, number: int) -> Unit:
-        name = f"{mode}-tremor{round(tremor * 1000)}um{'-ideal' if ideal else ''}-{number}"
-        settings = {"mode": mode, "tremor": tremor, "ideal": ideal, "number": number}
-        return Unit(name, settings | {"seed": scale.seed})
+    def of(mode: str, number: int, tremor: float = TREMOR, ideal: bool = False,
+           corridor: float = CORRIDOR) -> Unit:
+        kind = f"tremor{round(tremor * 1000)}um-corridor{round(corridor * 1000)}um"
+        settings = {"mode": mode, "tremor": tremor, "ideal": ideal, "corridor": corridor,
+                    "number": number, "seed": scale.seed}
+        return Unit(f"{mode}-{kind}{'-ideal' if ideal else ''}-{number}", settings)
 
-    of_all = [of(mode, TREMOR, False, n) for mode in modes.MODES for n in range(repetitions)]
+    of_all = [of(mode, n) for mode in modes.MODES for n in range(10 if scale.full else 2)]
+    ideal = [of(mode, n, ideal=True) for mode in SWEPT for n in range(2 if scale.full else 1)]
+    narrow = [of("certified", n, corridor=c) for c in CORRIDORS for n in range(5 if scale.full else 1)]
     if not scale.full:
-        return of_all
-    swept = [of(m, t, False, n) for m in SWEPT for t in SWEEP for n in range(5)]
-    ideal = [of(m, TREMOR, True, n) for m in SWEPT for n in range(2)]
-    return of_all + swept + ideal
+        return of_all + ideal + narrow
+    return of_all + ideal + narrow + [of(m, n, tremor=t) for m in SWEPT for t in SWEEP for n in range(5)]
 
 
 def run(unit: Unit) -> list[Row]:
@@ -56,11 +58,11 @@ def run(unit: Unit) -> list[Row]:
     course = Course(path=path, depth=anatomy.SHELL, speed=0.17, bone=bone)
     operator = Operator(tremor=told["tremor"])
     seeds = (told["seed"], 4, told["number"], round(told["tremor"] * 1000))
-    trial = operate(told["mode"], course, index, operator, setup, seeds)
+    trial = operate(told["mode"], course, index, operator, setup, seeds, told["corridor"])
     judge = Judge(index.mesh.vertices, index.mesh.triangles)
     deviation, depth = cut(trial, course)
     return [
-        {name: told[name] for name in ("mode", "tremor", "ideal", "number")}
+        {name: told[name] for name in ("mode", "tremor", "ideal", "corridor", "number")}
         | measures(trial, course, judge)
         | {
             "deviation_mm": float(np.mean(deviation)),
@@ -110,9 +112,11 @@ MEASURES = (
 
 
 def findings(rows: list[Row], scale: Scale) -> Findings:
-    """Compared mode by mode with no fixture; then the sweep of tremor."""
-    main = [row for row in rows if row["tremor"] == TREMOR and not row["ideal"]]
-    found = compare(NAME, main, MEASURES, scale.seed)
-    if not scale.full:
-        return found
-    return found.with_table(sweep_table(rows, ("deviation_mm", "absolute_depth_mm", "duration_s", "spectral_arc_length")))
+    """Compared mode by mode with no fixture; then the sweeps."""
+    main = [
+        row
+        for row in rows
+        if row["tremor"] == TREMOR and not row["ideal"] and row["corridor"] == CORRIDOR
+    ]
+    swept = ("deviation_mm", "absolute_depth_mm", "duration_s")
+    return compare(NAME, main, MEASURES, scale.seed).with_table(sweep_table(rows, swept))

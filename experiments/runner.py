@@ -16,7 +16,6 @@ import multiprocessing
 import signal
 import sys
 import time
-from collections.abc import Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from pathlib import Path
 from types import ModuleType
@@ -155,8 +154,8 @@ def run_units(
     return {e.NAME: [r for u in units[e.NAME] for r in results[e.NAME, u.name]] for e in experiments}
 
 
-def write_tables(experiment: str, rows: list[Row], folder: Path) -> Iterator[Path]:
-    """Writes the tables of an experiment; gives their files."""
+def write_tables(experiment: str, rows: list[Row], folder: Path) -> None:
+    """Writes the tables of an experiment."""
     members = list(dict.fromkeys(name for row in rows for name in row))
     timed = [name for name in members if name.startswith(TIMED)]
     steady = [name for name in members if not name.startswith(TIMED)]
@@ -165,12 +164,10 @@ def write_tables(experiment: str, rows: list[Row], folder: Path) -> Iterator[Pat
     if timed:
         tables[f"{experiment}_times"] = texts + timed
     for name, columns in tables.items():
-        file = folder / f"{name}.csv"
-        with file.open("w", newline="") as out:
+        with (folder / f"{name}.csv").open("w", newline="") as out:
             writer = csv.writer(out, lineterminator="\n")
             writer.writerow(columns)
             writer.writerows([_cell(row.get(column)) for column in columns] for row in rows)
-        yield file
 
 
 def _cell(value: object) -> str:

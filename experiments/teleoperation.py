@@ -38,6 +38,7 @@ def operate(
     operator: Operator,
     setup: SetUp,
     seeds: tuple[int, ...],
+    corridor: float = CORRIDOR,
 ) -> Trial:
     """One trial of a mode. Each mode, and each of the `seeds`, is another operator on another day."""
     random = np.random.default_rng([*seeds, zlib.crc32(mode.encode())])
@@ -52,7 +53,7 @@ def operate(
         margin=MARGIN,
         radius=course.radius,
         period=course.period,
-        corridor=Corridor((a, b, c), (x, y, z), CORRIDOR),
+        corridor=Corridor((a, b, c), (x, y, z), corridor),
     )
     rule = modes.make_rule(mode, task, index)
     return Trial(run_trial(course, rule, operator, setup, registered, random), registered)

@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The command line: runs experiments, writes their tables, their figures and the report."""
+from __future__ import annotations
+
+import argparse
+import os
+import shlex
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import keepout
+
+from . import (
+    e1_validation,
+    e2_run_time,
+    e3_path_tracing,
+    e4_cutting,
+    e5_distance_field,
+    record,
+    runner,
+    summary,
+)
+from .experiment import Findings, Scale
+
+EXPERIMENTS = (e1_validation, e2_run_time, e3_path_tracing, e4_cutting, e5_distance_field)
+
+
+def parser() -> argparse.ArgumentParser:
+    names = ", ".join(f"{e.NAME.split('_')[0]} ({e.NAME[3:].replace('_', ' ')})" for e in EXPERIMENTS)
+    of = argparse.ArgumentParser(
+        prog="./run experiments",
+        description="Runs the experiments of Li et al. (IROS 2020) again, with their rule, keepout's and "
+        "others. Writes tables, figures and a report. What is done is kept: a run that was stopped "
+        "goes on where it was. See docs/experiments.md.",
+    )
+    of.add_argument("--full", action="store_true", help="all shapes, sizes and repetitions: an hour and more")
+    of.add_argument("--seed", type=int, default=1, help="of all random numbers (default: 1)")
+    of.add_argument("--only", metavar="E1,E3", default="", help=f"some of {names}")
+    of.add_argument("--out", type=Path, metavar="FOLDER", help="where to write (default: out/experiments, "
+                    "with --full out/experiments_full)")
+    of.add_argument("--jobs", type=int, metavar="N", help="processes at once (default: one a processor)")
+    of.add_argument("--fresh", action="store_true", help="begin anew, and forget what is kept")
+    return of
+
+
+def main(arguments: list[str]) -> int:
+    told = parser().parse_args(arguments)
+    chosen = {name.strip().lower() for name in told.only.split(",") if name.strip()}
+    known = {e.NAME.split("_")[0]: e for e in EXPERIMENTS}
+    wrong = sorted(chosen - set(known))
+    if wrong:
+        parser().error(f"--only: there is no {', '.join(wrong)}; there are {', '.join(known)}")
+    if told.seed < 0:
+        parser().error("--seed: give a whole number from 0")
+    if told.jobs is not None and told.jobs < 1:
+        parser().error("--jobs: give 1 or more")
+    experiments = [e for name, e in known.items() if not chosen or name in chosen]
+    folder: Path = told.out or Path("out") / ("experiments_full" if told.full else "experiments")
+    (folder / "figures").mkdir(parents=True, exist_ok=True)
+    if told.fresh:
+        shutil.rmtree(folder / "kept", ignore_errors=True)
+
+    scale = Scale(full=told.full, seed=told.seed)
+    units = {e.NAME: e.units(scale) for e in experiments}
+    jobs = told.jobs or len(os.sched_getaffinity(0))
+    try:
+        rows = runner.run_units(experiments, units, folder, jobs)
+    except KeyboardInterrupt:
+        print(f"\nkeepout: stopped. What is done is kept in {folder}; the same line goes on from there.",
+              file=sys.stderr)
+        return 130
+
+    findings: dict[str, tuple[str, Findings]] = {}
+    for experiment in experiments:
+        name = experiment.NAME
+        runner.write_tables(name, rows[name], folder)
+        found = experiment.findings(rows[name], scale)
+        for figure in found.figures:
+            (folder / "figures" / f"{figure.name}.svg").write_text(figure.svg)
+        findings[name] = (experiment.TITLE, found)
+        print(f"{experiment.TITLE}\n  {found.headline}")
+    command = shlex.join(["./run", "experiments", *arguments])
+    (folder / "README.md").write_text(summary.text(findings, command, keepout.__version__))
+    file = folder / "experiments.json"
+    record.write_record(file, scale, findings, complete=True, command=command)
+    reported = _report(file)
+    print(f"tables and figures in {folder}; {'report' if reported else 'record'} in {reported or file}")
+    return 0
+
+
+def _report(file: Path) -> Path | None:
+    """The page of a record, where the command that makes it is known."""
+    command = os.environ.get("KEEPOUT_COMMAND")
+    if not command:
+        return None
+    page = file.with_suffix(".html")
+    subprocess.run([command, "report", str(file), "--out", str(page)], check=True, stdout=sys.stderr)
+    return page
+
+
+if __name__ == "__main__":
+    try:
+        sys.exit(main(sys.argv[1:]))
+    except (keepout.Error, OSError, subprocess.CalledProcessError) as error:
+        print(f"keepout: {error}", file=sys.stderr)
+        sys.exit(1)
