@@ -55,7 +55,7 @@ def run(unit: Unit) -> list[Row]:
     path, index = anatomy.phantom()
     setup = SetUp.ideal() if told["ideal"] else SetUp()
     bone = None if told["ideal"] else BoneProperties()  # no force, no deflection
-    course = Course(path=path, depth=anatomy.SHELL, speed=0.17, bone=bone)
+    course = Course(path=path, depth=anatomy.SHELL, speed=0.22, bone=bone)
     operator = Operator(tremor=told["tremor"])
     seeds = (told["seed"], 4, told["number"], round(told["tremor"] * 1000))
     trial = operate(told["mode"], course, index, operator, setup, seeds, told["corridor"])

@@ -35,11 +35,11 @@ Array = NDArray[np.float64]
 class Operator:
     """Errors at the tip in mm, across the path and along the tool's axis (in depth)."""
 
-    bias_across: float = 0.1  # standard deviation from trial to trial [mm]
+    bias_across: float = 0.2  # standard deviation from trial to trial [mm]
     bias_in_depth: float = 0.25
-    slow_across: float = 0.3  # root mean square within a trial [mm]
-    slow_in_depth: float = 0.75
-    slow_corner: float = 0.08  # of the slow error's first-order spectrum, cut at 2 Hz [Hz]
+    slow_across: float = 0.28  # root mean square within a trial [mm]
+    slow_in_depth: float = 0.6
+    slow_corner: float = 0.03  # of the slow error's first-order spectrum, cut at 2 Hz [Hz]
     tremor: float = 0.13  # root mean square of the vector, 8 to 12 Hz [mm]
     mass: float = 0.15  # of hand and handle [kg]
     stiffness: float = 0.4  # of the arm [N/mm]
