@@ -57,7 +57,7 @@ MODES = {
     "sdf_0.25": Look("distance field, 0.25 mm", "#174835", "#1c7f5d"),
     "sdf_0.5": Look("distance field, 0.5 mm", "#4a7a50", "#a4f87f"),
     "sdf_1": Look("distance field, 1 mm", "#2ea38d", "#63ffb2"),
-    "fcl_advancement": Look("FCL, advancement", "#940a00", "#ca3621"),
+    "fcl_continuous": Look("FCL, continuous", "#940a00", "#ca3621"),
     "bullet_sweep": Look("Bullet, sweep", "#a465ba", "#baa0db"),
 }
 

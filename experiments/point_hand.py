@@ -8,13 +8,13 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-#: push: straight in. slide: along the surface, leaning on it. wedge: at corners and edges nearby, and
-#: beyond. press: held behind the surface, with a tremor. through: at vertices anywhere on the mesh.
+#: push: straight in. slide: along the surface, leaning on it. wedge: at corners and edges nearby,
+#: and beyond. press: held behind the surface, with a tremor. through: at vertices anywhere.
 ROUTES = ("push", "slide", "wedge", "press", "through")
 
 
 class PointHand:
-    """What is asked of a tip, cycle by cycle, along one of ROUTES; each motion is at most `longest` mm.
+    """What is asked of a tip, cycle by cycle, along one of ROUTES; at most `longest` mm each.
 
     The same generator and the same tips give the same motions.
     """
@@ -87,7 +87,7 @@ def nearest(index: keepout.Index, point: Array) -> tuple[int, Array]:
 def place_outside(
     index: keepout.Index, clearance: float, height: float, random: np.random.Generator
 ) -> Array:
-    """A place over the surface, on the side that the normals point to, `height` mm above it or less.
+    """A place on the side that the normals point to, `height` mm above the surface or less.
 
     ValueError where none with that clearance [mm] is found: between sheets that are too close.
     """

@@ -4,8 +4,8 @@
 The motion is shortened to the share after which a ball of the margin's radius touches, and never
 turned. With a corridor, the desired motion is first brought into it. A tip that is in contact or
 deeper gets what the library says of it: FCL tells such a ball to be in collision from the start, so
-that it stays where it is for good; Bullet lets it go wherever it does not come nearer. How either is
-asked is in experiments/native/continuous_collision.h and convex_sweep.h.
+that it stays where it is for good; Bullet lets it go wherever it does not come nearer. How either
+is asked is in experiments/native/continuous_collision.h and convex_sweep.h.
 """
 from __future__ import annotations
 

@@ -1,16 +1,17 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A vector field inequality for the nearest point of the surface.
 
-Marinho, Adorno, Harada, Mitsuishi, "Dynamic active constraints for surgical robots using vector field
-inequalities", IEEE T-RO 35, 2019. Taken from it: the distance d of the tip from an obstacle may fall
-no faster than -d' <= eta (d - d_safe), here with the static point of the surface that is nearest.
+Marinho, Adorno, Harada, Mitsuishi, "Dynamic active constraints for surgical robots using vector
+field inequalities", IEEE T-RO 35, 2019. Taken from it: the distance d of the tip from an obstacle
+may fall no faster than -d' <= eta (d - d_safe), here with the static point of the surface that is
+nearest.
 
-Our reading: a mesh is the obstacle by its one nearest point, with n = (tip - point) / d, and d_safe is
-the margin. Over a period T that is n . dx >= -eta T (d - d_safe); eta is 1 / T, the greatest for which
-the inequality keeps d from passing d_safe in one period, and the one that slows the tip least. Below
-d_safe the inequality asks for a motion outwards, as the article has it, but not for one that is longer
-than the motion sphere. On the surface n is the normal of the face; the side is not told, so a tip below
-the surface is led on inwards.
+Our reading: a mesh is the obstacle by its one nearest point, with n = (tip - point) / d, and d_safe
+is the margin. Over a period T that is n . dx >= -eta T (d - d_safe); eta is 1 / T, the greatest for
+which the inequality keeps d from passing d_safe in one period, and the one that slows the tip
+least. Below d_safe the inequality asks for a motion outwards, as the article has it, but not for
+one that is longer than the motion sphere. On the surface n is the normal of the face; the side is
+not told, so a tip below the surface is led on inwards.
 """
 from __future__ import annotations
 

@@ -23,7 +23,8 @@ TWO_OF_A_QUAD = [(0, 1, 2), (0, 2, 3)]
 #: Of fixtures/src/counterexamples.cpp, CE5: the paper's rule leads the tip through.
 OCTAHEDRON = np.array([[4, 1, 0], [-3, 2, -2], [6, 4, 1], [1, -6, -2], [-6, 3, 4], [0, -2, -1]],
                       dtype=float)
-OF_OCTAHEDRON = [(0, 2, 4), (2, 1, 4), (1, 3, 4), (3, 0, 4), (2, 0, 5), (1, 2, 5), (3, 1, 5), (0, 3, 5)]
+OF_OCTAHEDRON = [(0, 2, 4), (2, 1, 4), (1, 3, 4), (3, 0, 4),
+                 (2, 0, 5), (1, 2, 5), (3, 1, 5), (0, 3, 5)]
 
 
 def rule_on(mode, vertices, triangles, **task):
@@ -87,7 +88,7 @@ def test_a_point_on_an_edge_is_a_closest_point_only_if_its_triangles_agree():
     down = np.array([1.0, 0.0, -1.0]) / np.sqrt(2.0)  # along the face at the right
     up = np.array([1.0, 0.0, 1.0]) / np.sqrt(2.0)
     beside = rule.step(2.0 * down + 0.5 * up, -3.0 * down)
-    assert beside == pytest.approx(-3.0 * down)  # beyond the ridge, which a plane there would forbid
+    assert beside == pytest.approx(-3.0 * down)  # over the ridge: a plane there would forbid it
 
 
 @pytest.mark.parametrize("mode", ["closest_points_2007", "vector_field"])
