@@ -27,6 +27,8 @@ TITLE = "E3 Path tracing (section V-A)"
 #: Tremor of all comparisons, and the sweep [mm RMS at the tip].
 TREMOR = 0.13
 SWEEP = (0.0, 0.05, 0.25)
+SPEED = 2.0  # [mm/s]
+ADJUSTING = 0.4  # [mm RMS in depth], fitted to the paper's arc length of free hands
 SWEPT = ("none", "paper", "certified")
 DRAWN = ("none", "paper", "certified")  # in the overlay
 
@@ -54,8 +56,8 @@ def _judge() -> Judge:
 def run(unit: Unit) -> list[Row]:
     """One trial."""
     told = unit.settings
-    course = Course(path=anatomy.skull_path(), depth=0.0, speed=2.0)
-    operator = Operator(tremor=told["tremor"])
+    course = Course(path=anatomy.skull_path(), depth=0.0, speed=SPEED, time_limit=240.0)
+    operator = Operator(tremor=told["tremor"], adjusting=ADJUSTING)
     setup = SetUp.ideal() if told["ideal"] else SetUp()
     seeds = (told["seed"], 3, told["number"], round(told["tremor"] * 1000))
     index = anatomy.real_index("skull")

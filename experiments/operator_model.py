@@ -6,6 +6,8 @@ The hand means to follow a planned path. What it does instead is the sum of
 - a bias, the same all through a trial: the place that stereo vision gets wrong;
 - a slow error below 2 Hz. Of the voluntary motion of eye surgeons 98.9 % of the power is below that
   (Riviere, Rader, Khosla, "Characteristics of hand motion of eye surgeons", 1997);
+- adjustments in depth, up and down again from 0.5 to 2 Hz, of a hand whose eye is not sure of it: the
+  paper's argument for smoothness is that a fixture takes them away;
 - physiological tremor from 8 to 12 Hz. 0.05, 0.13 and 0.25 mm RMS at the tip of an instrument are
   what was measured holding still and actuating (0.049 and 0.133 mm, the same article) and without
   sight of the tip (0.254 mm, Becker et al., "Active guidance of a handheld micromanipulator", 2011).
@@ -16,8 +18,8 @@ Mechatronics 15, 2005; Fu and Cavusoglu, "Human arm-and-hand dynamics model with
 analyses for a stylus-based haptic interface", IEEE SMC-B 42, 2012). The values are ours, of the order
 that such articles find for a light grip, near critical damping.
 
-The amounts of bias and slow error are not from the literature: they are fitted to what the paper
-prints of cutting WITHOUT a fixture (`docs/experiments.md` has the table). What is said of any
+The amounts of bias, slow error and adjustments are not from the literature: they are fitted to what the paper
+prints of hands WITHOUT a fixture (`docs/experiments.md` has the table). What is said of any
 fixture is then a prediction, with nothing left to fit.
 """
 from __future__ import annotations
@@ -40,6 +42,7 @@ class Operator:
     slow_across: float = 0.28  # root mean square within a trial [mm]
     slow_in_depth: float = 0.6
     slow_corner: float = 0.03  # of the slow error's first-order spectrum, cut at 2 Hz [Hz]
+    adjusting: float = 0.0  # root mean square, in depth, 0.5 to 2 Hz [mm]
     tremor: float = 0.13  # root mean square of the vector, 8 to 12 Hz [mm]
     mass: float = 0.15  # of hand and handle [kg]
     stiffness: float = 0.4  # of the arm [N/mm]
@@ -62,12 +65,19 @@ def slow_error(random: np.random.Generator, cycles: int, period: float, corner: 
     return smooth[settle:]
 
 
+def adjustments(random: np.random.Generator, cycles: int, period: float, rms: float) -> Array:
+    """(cycles,) [mm]: band noise from 0.5 to 2 Hz with this root mean square."""
+    return _band(random.standard_normal((cycles, 1)), 0.5, 2.0, period, rms)[:, 0]
+
+
 def tremor(random: np.random.Generator, cycles: int, period: float, rms: float) -> Array:
     """(cycles, 3) [mm]: band noise from 8 to 12 Hz, whose vector has this root mean square."""
-    if rms == 0.0:
-        return np.zeros((cycles, 3))
-    band = signal.butter(3, [8.0, 12.0], "bandpass", fs=1 / period, output="sos")
-    noise: Array = signal.sosfiltfilt(band, random.standard_normal((cycles, 3)), axis=0)
+    return _band(random.standard_normal((cycles, 3)), 8.0, 12.0, period, rms)
+
+
+def _band(white: Array, low: float, high: float, period: float, rms: float) -> Array:
+    band = signal.butter(3, [low, high], "bandpass", fs=1 / period, output="sos")
+    noise: Array = signal.sosfiltfilt(band, white, axis=0)
     return noise * (rms / np.sqrt(np.mean(np.sum(noise**2, axis=1))))
 
 

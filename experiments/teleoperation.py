@@ -60,16 +60,17 @@ def operate(
 
 
 def measures(trial: Trial, course: Course, judge: Judge) -> Row:
-    """What is measured of any trial, behind the approach.
+    """What is measured of any trial, behind the approach; None for what has no meaning there.
 
-    `crossings` and `deepest_registered_mm` are of the setpoint in the frame of the fixture: what the
-    rule itself let through. `deepest_mm` is of the tip in the true frame, and `beyond_registration_mm`
+    `crossings` and `deepest_registered_mm` are of the setpoint in the frame of the fixture, all the way: what
+    the rule itself let through. `deepest_mm` is of the tip in the true frame, and `beyond_registration_mm`
     is by how much that is more than the registration displaces the place.
     """
     trace, start = trial.trace, trial.trace.begun
     rate = 1.0 / course.period
     tip, setpoint = trace.tip[start:], trace.setpoint[start:]
     speed = np.linalg.norm(np.diff(tip, axis=0), axis=1) * rate
+    moved = bool(speed.any())
     depth = -judge.distances(tip)
     displaced = np.linalg.norm(trial.registered(tip) - tip, axis=1)
     held = trace.force[start:] > 0.0
@@ -77,10 +78,10 @@ def measures(trial: Trial, course: Course, judge: Judge) -> Row:
     return {
         "finished": trace.finished,
         "duration_s": len(trace.tip) * course.period,
-        "spectral_arc_length": spectral_arc_length(speed, rate),
-        "sparc": sparc(speed, rate),
-        "crossings": int(judge.crossings(setpoint[:-1], setpoint[1:]).sum()),
-        "deepest_registered_mm": max(0.0, float(-judge.distances(setpoint).min())),
+        "spectral_arc_length": spectral_arc_length(speed, rate) if moved else None,
+        "sparc": sparc(speed, rate) if moved else None,
+        "crossings": int(judge.crossings(trace.setpoint[:-1], trace.setpoint[1:]).sum()),
+        "deepest_registered_mm": max(0.0, float(-judge.distances(trace.setpoint).min())),
         "deepest_mm": max(0.0, float(depth.max())),
         "registration_error_mm": float(displaced.max()),
         "beyond_registration_mm": max(0.0, float((depth - displaced).max())),

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from .bone import Bone, BoneProperties
-from .operator_model import Arm, Operator, slow_error, tremor
+from .operator_model import Arm, Operator, adjustments, slow_error, tremor
 from .planned_path import Array, PlannedPath
 from .rules.rule import Rule
 from .set_up_errors import RigidMotion, SetUp
@@ -34,9 +34,10 @@ class Course:
     bone: BoneProperties | None = None  # None: nothing is in the way
     force_per_mm: float = 0.3  # of the fixture on the handle [N/mm]
     greatest_force: float = 4.0  # that the handle can exert [N]
-    radius: float = 5.0  # of the motion sphere: no step is longer [mm]
+    radius: float = 5.0  # of the motion sphere, as the paper's [mm]
+    top_speed: float = 100.0  # of the setpoint [mm/s]
     period: float = 0.001  # of the control cycle [s]
-    time_limit: float = 500.0  # [s]
+    time_limit: float = 400.0  # [s]
 
 
 @dataclass(frozen=True)
@@ -70,8 +71,10 @@ def run_trial(
     amounts = np.array([operator.slow_across, operator.slow_in_depth])
     slow = slow_error(random, most, period, operator.slow_corner)[:, :2] * amounts
     slow = slow + random.standard_normal(2) * [operator.bias_across, operator.bias_in_depth]
+    slow[:, 1] += adjustments(random, most, period, operator.adjusting)
     shake = tremor(random, most, period, operator.tremor)
     true_frame = registered.inverse()
+    longest = min(course.radius, course.top_speed * period)
     delay = round(setup.latency / period)
     reaction = max(1, round(operator.reaction / period))
     follow = 1.0 if setup.lag == 0.0 else 1.0 - np.exp(-period / setup.lag)
@@ -107,8 +110,8 @@ def run_trial(
         goal = goals[cycle - delay] if cycle >= delay else goals[0]
         desired = goal - setpoint
         length = np.sqrt(desired @ desired)
-        if length > course.radius:
-            desired = desired * (course.radius / length)
+        if length > longest:
+            desired = desired * (longest / length)
         if rule is None:
             setpoint = setpoint + desired
         else:
