@@ -228,7 +228,7 @@ def _mcnemar(ours: list[Row], theirs: list[Row]) -> str:
 def _sign_test(closed: list[str], loops: Loops) -> str:
     """Of shapes: does the printed rule lose more free motion than the certified one? Two-sided."""
     lost = [(_lost(loops[s, AS_PUBLISHED]), _lost(loops[s, "certified"])) for s in closed]
-    more, less = sum(a > b for a, b in lost), sum(a < b for a, b in lost)
+    more, less = sum(a > b + 1e-9 for a, b in lost), sum(a < b - 1e-9 for a, b in lost)
     if more + less == 0:
         return "no shape differs"
     p = binomtest(more, more + less).pvalue

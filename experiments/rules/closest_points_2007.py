@@ -100,9 +100,12 @@ class ClosestPoints2007:
     def step(self, tip: NDArray[np.float64], desired: NDArray[np.float64]) -> NDArray[np.float64]:
         margin = self._task.margin
         planes: list[Plane] = corridor_planes(self._task.corridor, tip)
+        motion = nearest_motion(desired, planes)
         hits = self._index.hits(tip, margin + float(np.sqrt(desired @ desired)))
-        if len(hits):
-            distances = hits.distances
+        distances = hits.distances
+        # No plane is needed where none would be violated: n . motion < margin - d.
+        enough = distances * (distances - margin)
+        if motion is None or (hits.offsets @ motion >= enough).any():
             for i in self._surface.minima(hits.triangles, hits.points):
                 distance = float(distances[i])
                 if distance > 0.0:
@@ -110,5 +113,5 @@ class ClosestPoints2007:
                 else:
                     normal = self._surface.normals[hits.triangles[i]]
                 planes.append((normal, min(margin - distance, RECOVERY)))
-        motion = nearest_motion(desired, planes)
+            motion = nearest_motion(desired, planes)
         return np.zeros(3) if motion is None else motion
