@@ -103,6 +103,6 @@ def _report(file: Path) -> Path | None:
 if __name__ == "__main__":
     try:
         sys.exit(main(sys.argv[1:]))
-    except (keepout.Error, OSError, subprocess.CalledProcessError) as error:
+    except (keepout.Error, OSError, runner.UnitError, subprocess.CalledProcessError) as error:
         print(f"keepout: {error}", file=sys.stderr)
         sys.exit(1)

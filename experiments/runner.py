@@ -47,6 +47,10 @@ def _run(module: str, unit: Unit) -> list[Row]:
     return rows
 
 
+class UnitError(RuntimeError):
+    """A unit failed: which, and why. What was done before is kept."""
+
+
 class Kept:
     """The rows of units that are done, in a folder."""
 
@@ -145,7 +149,10 @@ def run_units(
                 while running:
                     finished, _ = wait(running, return_when=FIRST_COMPLETED)
                     for future in finished:
-                        done(*running.pop(future), future.result())
+                        experiment, unit = running.pop(future)
+                        if fault := future.exception():
+                            raise UnitError(f"{experiment.NAME} {unit.name}: {fault!r:.500}")
+                        done(experiment, unit, future.result())
             except BaseException:
                 pool.shutdown(wait=False, cancel_futures=True)
                 for worker in multiprocessing.active_children():

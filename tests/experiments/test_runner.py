@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What is done is kept and used again, tables are the same bytes, and times stand apart."""
+import sys
+import types
+from pathlib import Path
+
+import pytest
+from experiments import __main__ as command
+from experiments import runner, summary
+from experiments.experiment import Claim, Findings, Scale, Table, Unit
+
+
+@pytest.fixture
+def counted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> types.ModuleType:
+    """An experiment that notes in a file each time that it is run."""
+    module = types.ModuleType("counted_experiment")
+    module.NAME = "counted"
+    log = tmp_path / "log"
+
+    def run(unit: Unit) -> list[dict]:
+        with log.open("a") as out:
+            out.write(unit.name + "\n")
+        third = unit.settings["number"] / 3
+        return [{"number": unit.settings["number"], "third": third, "all": [third, 1], "measured_s": 0.5}]
+
+    module.run, module.log = run, log
+    monkeypatch.setitem(sys.modules, module.__name__, module)
+    return module
+
+
+def ran(experiment: types.ModuleType) -> list[str]:
+    return experiment.log.read_text().split()
+
+
+def units(count: int) -> dict[str, list[Unit]]:
+    return {"counted": [Unit(f"unit-{n}", {"number": n}) for n in range(count)]}
+
+
+def test_a_second_run_does_only_what_is_not_kept(counted: types.ModuleType, tmp_path: Path) -> None:
+    first = runner.run_units([counted], units(2), tmp_path, 1)
+    more = runner.run_units([counted], units(3), tmp_path, 1)
+    assert ran(counted) == ["unit-0", "unit-1", "unit-2"]
+    assert more["counted"][:2] == first["counted"]
+    changed = {"counted": [Unit("unit-0", {"number": 7})]}
+    assert runner.run_units([counted], changed, tmp_path, 1)["counted"][0]["number"] == 7
+
+
+def test_other_sources_make_what_is_kept_void(
+    counted: types.ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    runner.run_units([counted], units(1), tmp_path, 1)
+    monkeypatch.setattr(runner, "source_digest", lambda: "other")
+    runner.run_units([counted], units(1), tmp_path, 1)
+    assert ran(counted) == ["unit-0", "unit-0"]
+
+
+def test_a_torn_file_is_done_again(counted: types.ModuleType, tmp_path: Path) -> None:
+    runner.run_units([counted], units(1), tmp_path, 1)
+    file = tmp_path / "kept" / "counted" / "unit-0.json"
+    file.write_text(file.read_text()[:40])
+    runner.run_units([counted], units(1), tmp_path, 1)
+    assert ran(counted) == ["unit-0", "unit-0"]
+
+
+def test_a_unit_that_fails_is_named_and_the_others_are_kept(
+    counted: types.ModuleType, tmp_path: Path
+) -> None:
+    wrong = {"counted": [*units(1)["counted"], Unit("wrong", {"number": "x"})]}
+    with pytest.raises(runner.UnitError, match="counted wrong: TypeError"):
+        runner.run_units([counted], wrong, tmp_path, 1)
+    runner.run_units([counted], units(1), tmp_path, 1)
+    assert ran(counted) == ["unit-0", "wrong"]
+
+
+def test_times_stand_in_a_table_of_their_own(counted: types.ModuleType, tmp_path: Path) -> None:
+    rows = runner.run_units([counted], units(2), tmp_path, 2)["counted"]
+    runner.write_tables("counted", rows, tmp_path)
+    steady = (tmp_path / "counted.csv").read_text()
+    assert steady == "number,third,all\n0,0.0,0.0 1\n1,0.3333333333333333,0.3333333333333333 1\n"
+    assert (tmp_path / "counted_times.csv").read_text().splitlines()[0] == "measured_s"
+
+
+def test_a_summary_has_claims_before_tables(tmp_path: Path) -> None:
+    found = Findings(
+        "It was found.",
+        claims=[Claim("depth", "1", "2", "3|4", "certified", "p = 1", "why")],
+        tables=[Table("Table", ["a"], [["b"]], "Note.")],
+    )
+    text = summary.text({"e": ("E0", found)}, "./run experiments", "1.0")
+    assert text.index("| depth | 1 | 2 | 3\\|4 |") < text.index("## E0") < text.index("**Table.** Note.")
+
+
+@pytest.mark.parametrize(
+    "arguments, names", [(["--only", "e9"], "e9"), (["--seed", "-1"], "--seed"), (["--jobs", "0"], "--jobs")]
+)
+def test_a_wrong_argument_is_named(
+    arguments: list[str], names: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit) as exit_:
+        command.main(arguments)
+    assert exit_.value.code == 2
+    assert names in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("full", [False, True])
+def test_units_have_names_of_their_own_that_files_can_have(full: bool) -> None:
+    for experiment in command.EXPERIMENTS:
+        names = [unit.name for unit in experiment.units(Scale(full=full))]
+        assert len(names) == len(set(names)) > 0
+        assert all(set(name) <= set("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_.") for name in names)

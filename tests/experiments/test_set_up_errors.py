@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Registration errs as theory says, bone is cut as fast as it is pressed, the phantom is as described."""
+import keepout
+import numpy as np
+import pytest
+from experiments.bone import Bone, BoneProperties
+from experiments.planned_path import PlannedPath
+from experiments.set_up_errors import SetUp, fiducials_around, registered_from_true
+
+UP = np.array([0.0, 0.0, 1.0])
+
+
+def straight_path(length: float = 30.0, spacing: float = 0.05) -> PlannedPath:
+    along = np.arange(0.0, length + spacing / 2, spacing)
+    flat = np.zeros_like(along)
+    return PlannedPath(
+        np.stack([flat, along, flat], 1), np.tile(UP, (len(along), 1)), np.array([1.0, 0.0, 0.0]), spacing
+    )
+
+
+def test_registration_errs_as_target_error_predicts() -> None:
+    place = np.array([10.0, 20.0, 30.0])
+    fiducials = fiducials_around(place, UP)
+    errors = []
+    for seed in range(3000):
+        registered = registered_from_true(SetUp(fle=0.65), fiducials, np.random.default_rng(seed))
+        errors.append(registered(place) - place)
+    fit = keepout.fit_rigid(fiducials, fiducials)
+    predicted = np.sqrt(np.trace(keepout.target_error(fit, place, fle=0.65)))
+    assert np.sqrt(np.mean(np.sum(np.square(errors), axis=1))) == pytest.approx(predicted, rel=0.05)
+
+
+def test_a_registration_and_its_inverse_cancel() -> None:
+    fiducials = fiducials_around(np.zeros(3), UP)
+    registered = registered_from_true(SetUp(), fiducials, np.random.default_rng(1))
+    points = np.random.default_rng(2).uniform(-50, 50, (20, 3))
+    assert registered.inverse()(registered(points)) == pytest.approx(points, abs=1e-9)
+    assert np.abs(registered(points) - points).max() > 0.01
+
+
+def test_an_ideal_set_up_has_no_error() -> None:
+    registered = registered_from_true(SetUp.ideal(), fiducials_around(np.zeros(3), UP), np.random.default_rng(1))
+    points = np.random.default_rng(2).uniform(-50, 50, (20, 3))
+    assert np.array_equal(registered(points), points)
+
+
+def test_bone_is_cut_as_fast_as_it_is_pressed() -> None:
+    properties = BoneProperties(resistance=2.5)
+    bone = Bone(straight_path(), properties, tip_stiffness=4.0)
+    cut, depth, forces = [], 0.0, []
+    for cycle in range(4000):
+        depth = 0.0003 * cycle  # 0.3 mm/s
+        tip, force = bone.press(np.array([0.0, 15.0, -depth]), 0.001)
+        cut.append(-tip[2])
+        forces.append(force)
+    feed = (cut[-1] - cut[-1001]) / 1.0
+    assert feed == pytest.approx(0.3, rel=0.01)
+    assert forces[-1] == pytest.approx(properties.resistance * 0.3, rel=0.01)
+    assert depth - cut[-1] == pytest.approx(forces[-1] / 4.0)
+
+
+def test_behind_the_shell_the_tool_falls_through() -> None:
+    bone = Bone(straight_path(), BoneProperties(), tip_stiffness=4.0)
+    held = []
+    for _ in range(20000):
+        tip, force = bone.press(np.array([0.0, 15.0, -3.0]), 0.001)
+        held.append((-tip[2], force))
+    cut = np.array([depth for depth, _ in held])
+    through = int(np.argmax(cut > 2.0))
+    before, after = cut[through - 1] - cut[through - 101], cut[through + 100] - cut[through]
+    assert after > 5.0 * before
+    assert cut[-1] == pytest.approx(3.0, abs=1e-6)
+
+
+def test_places_are_told_by_along_across_and_depth() -> None:
+    path = straight_path()
+    along, across, depth = path.depths(np.array([[0.3, 12.0, -0.7], [-0.2, 40.0, 1.0]]))
+    assert along == pytest.approx([12.0, 30.0], abs=path.spacing)
+    assert across == pytest.approx([0.3, -0.2])
+    assert depth == pytest.approx([0.7, -1.0])
