@@ -2,7 +2,7 @@
 """Runs the units of experiments on all processors, and keeps the rows of each that is done.
 
 What is kept is a file for each unit, `kept/<experiment>/<unit>.json`. It is used again when the unit,
-keepout and the sources of the experiments are what they were, so that a run that was stopped goes on
+keepout and the sources that its rows depend on are what they were, so that a run that was stopped goes on
 where it was. The tables are written from all rows: `<experiment>.csv`, which depends on the seed
 alone, and `<experiment>_times.csv` with what was measured by the clock.
 """
@@ -17,6 +17,7 @@ import signal
 import sys
 import time
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from functools import cache
 from pathlib import Path
 from types import ModuleType
 
@@ -28,12 +29,22 @@ from .experiment import Row, Unit
 TIMED = "measured_"
 
 
-def source_digest() -> str:
-    """Of everything that a row depends on but its unit."""
+#: Modules that rows do not depend on: they are made of the rows.
+_SHOWING = ("__main__", "comparison", "figures", "published", "record", "runner", "summary")
+
+
+def source_digest(experiment: str) -> str:
+    """Of everything that the rows of an experiment depend on but their unit."""
     digest = hashlib.sha256(keepout.__version__.encode())
     module = Path(keepout.__file__).parent
-    sources = [*Path(__file__).parent.rglob("*.py"), *module.parent.glob("*.so"), *module.glob("*.so")]
-    for source in sorted(sources):
+    here = Path(__file__).parent
+    others = [file for file in here.glob("e[0-9]_*.py") if file.stem != experiment]
+    sources = [
+        file
+        for file in here.rglob("*.py")
+        if file not in others and file.stem not in _SHOWING
+    ]
+    for source in sorted([*sources, *module.parent.glob("*.so"), *module.glob("*.so")]):
         digest.update(source.read_bytes())
     return digest.hexdigest()[:16]
 
@@ -54,9 +65,13 @@ class UnitError(RuntimeError):
 class Kept:
     """The rows of units that are done, in a folder."""
 
-    def __init__(self, folder: Path, digest: str) -> None:
+    def __init__(self, folder: Path) -> None:
         self._folder = folder
-        self._digest = digest
+
+    @staticmethod
+    @cache
+    def _digest(experiment: str) -> str:
+        return source_digest(experiment)
 
     def _file(self, experiment: str, unit: Unit) -> Path:
         return self._folder / experiment / f"{unit.name}.json"
@@ -66,7 +81,7 @@ class Kept:
             text = json.loads(self._file(experiment, unit).read_text())
         except (OSError, ValueError):
             return None
-        same = text.get("digest") == self._digest and text.get("settings") == _plain(unit.settings)
+        same = text.get("digest") == self._digest(experiment) and text.get("settings") == _plain(unit.settings)
         rows: list[Row] | None = text["rows"] if same else None
         return rows
 
@@ -74,7 +89,8 @@ class Kept:
         """Writes them, and gives them back as they are read again: the same rows at the first run and later."""
         file = self._file(experiment, unit)
         file.parent.mkdir(parents=True, exist_ok=True)
-        text = json.dumps({"digest": self._digest, "settings": unit.settings, "rows": rows}, indent=1)
+        kept = {"digest": self._digest(experiment), "settings": unit.settings, "rows": rows}
+        text = json.dumps(kept, indent=1)
         part = file.with_suffix(".part")
         part.write_text(text + "\n")
         part.replace(file)
@@ -120,7 +136,7 @@ def run_units(
     Units that measure times run one after another, before the others. KeyboardInterrupt: those that
     are done are kept.
     """
-    kept = Kept(folder / "kept", source_digest())
+    kept = Kept(folder / "kept")
     progress = Progress(sum(len(of) for of in units.values()))
     results: dict[tuple[str, str], list[Row]] = {}
     left: list[tuple[ModuleType, Unit]] = []

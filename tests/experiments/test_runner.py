@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What is done is kept and used again, tables are the same bytes, and times stand apart."""
+import shutil
 import sys
 import types
 from pathlib import Path
@@ -49,9 +50,26 @@ def test_other_sources_make_what_is_kept_void(
     counted: types.ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     runner.run_units([counted], units(1), tmp_path, 1)
-    monkeypatch.setattr(runner, "source_digest", lambda: "other")
+    monkeypatch.setattr(runner.Kept, "_digest", staticmethod(lambda experiment: "other"))
     runner.run_units([counted], units(1), tmp_path, 1)
     assert ran(counted) == ["unit-0", "unit-0"]
+
+
+def test_rows_depend_on_their_own_experiment_and_not_on_how_they_are_shown(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    copy = tmp_path / "experiments"
+    shutil.copytree(Path(runner.__file__).parent, copy, ignore=shutil.ignore_patterns("native"))
+    monkeypatch.setattr(runner, "__file__", str(copy / "runner.py"))
+    before = {name: runner.source_digest(name) for name in ("e3_path_tracing", "e4_cutting")}
+    for shown in ("figures.py", "comparison.py"):
+        (copy / shown).write_text("# another look\n")
+    assert {name: runner.source_digest(name) for name in before} == before
+    (copy / "e4_cutting.py").write_text("# another experiment\n")
+    assert runner.source_digest("e3_path_tracing") == before["e3_path_tracing"]
+    assert runner.source_digest("e4_cutting") != before["e4_cutting"]
+    (copy / "trial.py").write_text("# another trial\n")
+    assert runner.source_digest("e3_path_tracing") != before["e3_path_tracing"]
 
 
 def test_a_torn_file_is_done_again(counted: types.ModuleType, tmp_path: Path) -> None:
