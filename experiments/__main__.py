@@ -18,13 +18,21 @@ from . import (
     e3_path_tracing,
     e4_cutting,
     e5_distance_field,
+    e6_counterexamples,
     record,
     runner,
     summary,
 )
 from .experiment import Findings, Scale
 
-EXPERIMENTS = (e1_validation, e2_run_time, e3_path_tracing, e4_cutting, e5_distance_field)
+EXPERIMENTS = (
+    e1_validation,
+    e2_run_time,
+    e3_path_tracing,
+    e4_cutting,
+    e5_distance_field,
+    e6_counterexamples,
+)
 
 
 def parser() -> argparse.ArgumentParser:

@@ -148,5 +148,5 @@ def run_trial(
         contact=contacts[:ran],
         kerf=bone.cut if bone else np.zeros(len(path.points)),
         begun=min(approach, ran - 1),
-        finished=along >= path.length,
+        finished=bool(along >= path.length),
     )

@@ -15,6 +15,7 @@
 #include "convex_sweep.h"
 #include "judge.h"
 #include "keepout/error.h"
+#include "keepout/fixtures/counterexamples.h"
 #include "keepout/fixtures/real_mesh.h"
 #include "keepout/fixtures/shapes.h"
 #include "keepout/mesh/load_mesh.h"
@@ -86,20 +87,33 @@ std::vector<std::pair<std::string, std::string>> named_meshes() {
   return out;
 }
 
-std::pair<Rows, CornerRows> named_mesh(const std::string& name) {
-  std::shared_ptr<const Mesh> mesh;
-  for (const Shape& shape : shapes()) {
-    if (shape.name == name) mesh = std::make_shared<const Mesh>(shape.make());
-  }
-  if (!mesh) mesh = load_mesh(fixture_path(name)).mesh;
-  Rows vertices(mesh->vertex_count(), 3);
-  for (VertexId v = 0; v < mesh->vertex_count(); ++v) vertices.row(v) = mesh->vertex(v);
-  CornerRows triangles(mesh->triangle_count(), 3);
-  for (TriangleId t = 0; t < mesh->triangle_count(); ++t) {
-    const Corners& c = mesh->corners(t);
+/// The vertices and the triangles of a mesh, as arrays.
+std::pair<Rows, CornerRows> arrays_of(const Mesh& mesh) {
+  Rows vertices(mesh.vertex_count(), 3);
+  for (VertexId v = 0; v < mesh.vertex_count(); ++v) vertices.row(v) = mesh.vertex(v);
+  CornerRows triangles(mesh.triangle_count(), 3);
+  for (TriangleId t = 0; t < mesh.triangle_count(); ++t) {
+    const Corners& c = mesh.corners(t);
     triangles.row(t) << c[0], c[1], c[2];
   }
   return {std::move(vertices), std::move(triangles)};
+}
+
+std::pair<Rows, CornerRows> named_mesh(const std::string& name) {
+  for (const Shape& shape : shapes()) {
+    if (shape.name == name) return arrays_of(Mesh(shape.make()));
+  }
+  return arrays_of(*load_mesh(fixture_path(name)).mesh);
+}
+
+py::list all_counterexamples() {
+  py::list out;
+  for (const Counterexample& example : counterexamples()) {
+    const auto [vertices, triangles] = arrays_of(Mesh(example.surface));
+    out.append(py::make_tuple(std::string(example.name), vertices, triangles, example.tip,
+                              example.desired, example.radius));
+  }
+  return out;
 }
 
 }  // namespace
@@ -116,6 +130,9 @@ PYBIND11_MODULE(keepout_peers, module) {
   bind_library<ConvexSweep>(module, "ConvexSweep", "Bullet's sweep of a ball past a mesh.");
   module.def("named_meshes", &named_meshes,
              "Name and kind of each mesh that keepout names: solid, sheet, broken; or real.");
+  module.def("counterexamples", &all_counterexamples,
+             "Meshes and motions on which some reading of the paper's Algorithm 1 fails: name, "
+             "vertices, triangles, tip, desired motion and radius of the motion sphere of each.");
   module.def(
       "named_mesh", &named_mesh, "name"_a, Unlocked(),
       "Its vertices, (n, 3) in mm, and triangles, (m, 3). ValueError: unknown, or not prepared.");

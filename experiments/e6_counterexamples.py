@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""E6: small meshes on which the paper's algorithm fails, or some reading of it does (section III).
+
+Section III-B enumerates the local cases and finds the algorithm complete. On nine meshes of a few triangles
+one motion is asked for, and the judge tells whether the motion that a rule allows passes through. They were found
+by search, one of them closed and well made: docs/activation.md says what goes wrong in each.
+"""
+from __future__ import annotations
+
+import keepout
+import numpy as np
+
+from . import figures
+from .experiment import Claim, Findings, Row, Scale, Table, Unit
+from .modes import FIXTURES, make_rule
+from .rules.rule import Task
+
+NAME = "e6_counterexamples"
+TITLE = "E6 Counterexamples (section III)"
+
+MARGIN = 0.001  # [mm]
+CYCLES = 20  # the motion is asked for again and again
+
+
+def units(scale: Scale) -> list[Unit]:
+    return [Unit(mode, {"mode": mode}) for mode in FIXTURES]
+
+
+def run(unit: Unit) -> list[Row]:
+    """A row for each counterexample."""
+    import keepout_peers
+
+    rows: list[Row] = []
+    for name, vertices, triangles, tip, desired, radius in keepout_peers.counterexamples():
+        index = keepout.Index(keepout.Mesh(vertices, triangles))
+        judge = keepout_peers.Judge(vertices, triangles)
+        task = Task(index.mesh, margin=MARGIN, radius=radius)
+        rule = make_rule(unit.settings["mode"], task, index)
+        assert rule is not None, "a fixture has a rule"
+        places = [np.array(tip)]
+        for _ in range(CYCLES):
+            places.append(places[-1] + rule.step(places[-1], desired))
+        ways = np.array(places)
+        # A tip that starts on the surface touches it: what counts is a motion that leads through.
+        starts_free = judge.distances(ways[:1])[0] != 0.0
+        through = judge.crossings(ways[:-1], ways[1:]) if starts_free else np.zeros(CYCLES, bool)
+        rows.append(
+            {
+                "example": name,
+                "mode": unit.settings["mode"],
+                "closed": judge.closed,
+                "first_step_passes": bool(through[0]),
+                "passes": bool(through.any()),
+                "first_share": float(np.linalg.norm(ways[1] - ways[0]) / np.linalg.norm(desired)),
+            }
+        )
+    return rows
+
+
+def findings(rows: list[Row], scale: Scale) -> Findings:
+    examples = list(dict.fromkeys(row["example"] for row in rows))
+    of = {(row["example"], row["mode"]): row for row in rows}
+    passed = {m: [e for e in examples if of[e, m]["passes"]] for m in FIXTURES}
+
+    def said(mode: str) -> str:
+        return f"{len(passed[mode])} of {len(examples)} passed through"
+
+    def cell(row: Row) -> str:
+        if row["first_step_passes"]:
+            return "passes at once"
+        return "passes later" if row["passes"] else "held"
+
+    fewest = min(len(p) for p in passed.values())
+    return Findings(
+        f"The paper's rule: {said('paper')} ({', '.join(passed['paper']) or 'none'}); certified: "
+        f"{said('certified')}.",
+        claims=[
+            Claim(
+                about="completeness: local cases in which the tip is let through (III-B)",
+                paper="none",
+                reproduction=said("paper"),
+                certified=said("certified"),
+                best=", ".join(figures.label(m) for m in FIXTURES if len(passed[m]) == fewest),
+                sure="each is a proof by example, judged in exact arithmetic",
+                note="a neighbour whose closest point is nearer takes a triangle's place, and its plane "
+                "need not cover that triangle",
+            )
+        ],
+        tables=[
+            Table(
+                f"Each rule on each counterexample, {CYCLES} cycles",
+                ["mesh", "closed", *map(figures.label, FIXTURES)],
+                [
+                    [e, "yes" if of[e, "paper"]["closed"] else "no"]
+                    + [cell(of[e, m]) for m in FIXTURES]
+                    for e in examples
+                ],
+                "Grids coarser than a mesh of a few millimetres cannot hold it. On CE4 the tip starts on the "
+                "surface, which counts as held.",
+            )
+        ],
+    )

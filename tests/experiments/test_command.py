@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The whole way, on the experiment that takes a second: command, tables, summary, record and page."""
+import csv
+import json
+import os
+import re
+import subprocess
+import sys
+from dataclasses import asdict
+from pathlib import Path
+
+import pytest
+from experiments.bone import BoneProperties
+from experiments.operator_model import Operator
+from experiments.set_up_errors import SetUp
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def run(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+    line = [sys.executable, "-m", "experiments", "--only", "e6", "--out", str(folder), *arguments]
+    return subprocess.run(line, capture_output=True, text=True, cwd=ROOT, check=False)
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("experiments")
+    done = run(folder)
+    assert done.returncode == 0, done.stderr
+    return folder
+
+
+def test_the_papers_rule_fails_where_it_is_on_record_and_certified_nowhere(made: Path) -> None:
+    with (made / "e6_counterexamples.csv").open() as table:
+        rows = list(csv.DictReader(table))
+    passed = {mode: {row["example"] for row in rows if row["mode"] == mode and row["passes"] == "yes"}
+              for mode in ("paper", "certified", "all_faces")}
+    assert passed["paper"] == {"CE2_boundary", "CE5_closed_octahedron", "CE6b_saddle", "CE6c_larger_saddle"}
+    assert passed["certified"] == passed["all_faces"] == set()
+
+
+def test_two_runs_with_a_seed_write_the_same_bytes(made: Path, tmp_path: Path) -> None:
+    assert run(tmp_path).returncode == 0
+    for name in ("e6_counterexamples.csv", "README.md"):
+        told, before = ((folder / name).read_text().replace(str(folder), "") for folder in (tmp_path, made))
+        assert told == before
+
+
+def test_summary_record_and_page_say_the_same(made: Path) -> None:
+    record = json.loads((made / "experiments.json").read_text())
+    headline = record["experiments"][0]["headline"]
+    assert headline in (made / "README.md").read_text()
+    assert record["keepout_record"] == "experiments" and record["complete"]
+    if "KEEPOUT_COMMAND" in os.environ:
+        assert (made / "experiments.html").stat().st_size > 1000
+
+
+def test_a_folder_that_cannot_be_written_is_named(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("in the way")
+    done = run(tmp_path / "file")
+    assert done.returncode == 1
+    assert "file" in done.stderr and "Traceback" not in done.stderr
+
+
+def test_the_page_has_the_values_that_are_simulated() -> None:
+    """Each row of the table of values in docs/experiments.md: names, and their values in their order."""
+    page = (ROOT / "docs" / "experiments.md").read_text()
+    known = {
+        f"{type(of).__name__}.{name}": value
+        for of in (Operator(), SetUp(), BoneProperties())
+        for name, value in asdict(of).items()
+    }
+    rows = re.findall(r"^\| (`(?:Operator|SetUp|BoneProperties)\.\w+`(?:, `\w+\.\w+`)*) \| ([^|]+) \|", page, re.MULTILINE)
+    told = set()
+    for names, values in rows:
+        numbers = [float(number) for number in re.findall(r"\d+\.?\d*", values)]
+        of_row = re.findall(r"`(\w+\.\w+)`", names)
+        assert numbers == [known[name] for name in of_row], names
+        told.update(of_row)
+    untold = set(known) - told
+    assert untold == {"Operator.adjusting", "Operator.motion_scale", "BoneProperties.behind"}
