@@ -114,9 +114,9 @@ def _claim(measure: Measure, rows: list[Row], present: list[str], against: list[
         tested = "" if p is None else f", p = {p:.2g}"
         return f"{measure.text(free)} → {measure.text(held)}{unit}{tested}"
 
-    means = {mode: measure.paper_values(rows, mode).mean() for mode in present}
+    means = {mode: measure.paper_values(rows, mode).mean() for mode in _sound(rows, present)}
     sign = 1.0 if measure.higher_is_better else -1.0
-    best = max(means, key=lambda mode: sign * means[mode])
+    best = max(means, key=lambda mode: sign * means[mode], default=None)
     certified = next((a for a in against if a.measure is measure and a.mode == "certified"), None)
     return Claim(
         about=f"{paper.about} ({paper.section}), free hand → fixture",
@@ -124,11 +124,22 @@ def _claim(measure: Measure, rows: list[Row], present: list[str], against: list[
         f"{paper.fixture.sd:g}{unit}, p = {paper.p:.2g}",
         reproduction=pair("paper"),
         certified=pair("certified"),
-        best=f"{figures.label(best)}: {means[best]:.2f}{unit}",
+        best=f"{figures.label(best)}: {means[best]:.2f}{unit}, of those that finished and let nothing in"
+        if best
+        else "none finished and let nothing in",
         sure="certified against no fixture, trials: "
         + (hypothesis_tests.in_words(certified.holm, certified.effect) if certified else "too few"),
         note=measure.why,
     )
+
+
+def _sound(rows: list[Row], present: list[str]) -> list[str]:
+    """The modes whose trials all came to the path's end, with a setpoint that never got in."""
+
+    def is_sound(row: Row) -> bool:
+        return bool(row["finished"]) and not row["crossings"] and row["deepest_registered_mm"] == 0.0
+
+    return [mode for mode in present if all(is_sound(row) for row in rows if row["mode"] == mode)]
 
 
 def _means(rows: list[Row], measures: tuple[Measure, ...], present: list[str]) -> Table:
@@ -218,6 +229,11 @@ def _headline(rows: list[Row], against: list[Against]) -> str:
     )
 
 
+def _mean(values: list[float | None]) -> str:
+    told = [value for value in values if value is not None]
+    return f"{np.mean(told):.2f}" if told else "-"
+
+
 def sweep_table(rows: list[Row], members: tuple[str, ...]) -> Table:
     """By tremor, corridor and errors of the set-up; rows have `tremor`, `corridor` [mm] and `ideal`."""
 
@@ -234,7 +250,7 @@ def sweep_table(rows: list[Row], members: tuple[str, ...]) -> Table:
             + ["none" if ideal else "all", str(len(here)), str(sum(r["crossings"] for r in here))]
             + [f"{max(r['deepest_registered_mm'] for r in here):.3f}"]
             + [f"{max(r['deepest_mm'] for r in here):.3f}"]
-            + [f"{np.mean([r[member] for r in here]):.2f}" for member in members]
+            + [_mean([row[member] for row in here]) for member in members]
         )
     return Table(
         "Tremor, corridor, and a set-up without errors",

@@ -69,7 +69,7 @@ def units(scale: Scale) -> list[Unit]:
     return [
         Unit(anatomy, {
             "anatomy": anatomy, "seed": scale.seed, "samples": 20_000 if scale.full else 4000,
-            "loops": 1000 if scale.full else 60,
+            "loops": 240 if scale.full else 60,
         }, alone=True)
         for anatomy in (FULL_ANATOMY if scale.full else ANATOMY)
     ]

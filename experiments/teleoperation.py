@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import keepout
 import numpy as np
 from keepout_peers import Judge
+from numpy.typing import NDArray
 from scipy import signal
 
 from . import modes
@@ -64,7 +65,8 @@ def measures(trial: Trial, course: Course, judge: Judge) -> Row:
 
     `crossings` and `deepest_registered_mm` are of the setpoint in the frame of the fixture, all the way: what
     the rule itself let through. `deepest_mm` is of the tip in the true frame, and `beyond_registration_mm`
-    is by how much that is more than the registration displaces the place.
+    is by how much that is more than the registration displaces the place. `energy_mj` is what the fixture's
+    force has done on the handle; less than 0 is what it took.
     """
     trace, start = trial.trace, trial.trace.begun
     rate = 1.0 / course.period
@@ -74,7 +76,6 @@ def measures(trial: Trial, course: Course, judge: Judge) -> Row:
     depth = -judge.distances(tip)
     displaced = np.linalg.norm(trial.registered(tip) - tip, axis=1)
     held = trace.force[start:] > 0.0
-    work = np.cumsum(trace.power) * course.period  # that the force did on the hand [uJ]
     return {
         "finished": trace.finished,
         "duration_s": len(trace.tip) * course.period,
@@ -88,13 +89,12 @@ def measures(trial: Trial, course: Course, judge: Judge) -> Row:
         "force_n": float(trace.force[start:].mean()),
         "greatest_force_n": float(trace.force[start:].max()),
         "contact_n": float(trace.contact[start:].mean()),
-        "absorbed_mj": float(-work[-1] / 1000.0),
-        "generated_mj": float(max(0.0, work.max()) / 1000.0),
+        "energy_mj": float(trace.power.sum() * course.period),
         "chatter_um": chatter(setpoint, held, rate) if held.any() else None,
     }
 
 
-def chatter(setpoint: Array, held: Array, rate: float) -> float:
+def chatter(setpoint: Array, held: NDArray[np.bool_], rate: float) -> float:
     """Root mean square of what the setpoint does above 30 Hz while the fixture holds it back [um].
 
     A hand does nothing there: it is what fixture and hand do to one another.

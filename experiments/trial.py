@@ -96,8 +96,8 @@ def run_trial(
         # The operator: where he means to be, and how fast he goes on.
         number = path.number(along)
         up = path.up[number]
-        height = max(0.0, 1.0 - cycle / approach) * START_HEIGHT
-        below = course.depth + operator.leaning + slow[cycle, 1] - height
+        above = max(0.0, 1.0 - cycle / approach) * START_HEIGHT
+        below = course.depth + operator.leaning + slow[cycle, 1] - above
         meant = (path.points[number] + slow[cycle, 0] * path.across - below * up) / scale
         pull = pulls[cycle - delay] if cycle >= delay else none
         handle = arm.move(meant, (meant - intended) / period, pull, period)
@@ -128,13 +128,14 @@ def run_trial(
             tip, contacts[cycle] = bone.press(tip, period)
         tips[cycle], setpoints[cycle] = tip, setpoint
 
-        # The eye: how far beside the path, and how far above where it is meant to be; a hand that
-        # feels a fixture takes that for the depth to go to.
+        # The eye: how far from the place on the path, seen from above, and how far above where it is
+        # meant to be; a hand that feels a fixture takes that for the depth to go to.
         offset = tip - path.points[number]
-        aside = offset @ path.across
+        height = offset @ up
+        aside_squared = offset @ offset - height * height
         feels = pull @ pull > operator.felt_force**2
-        hanging = 0.0 if feels else max(0.0, offset @ up + below - operator.leaning)
-        seen[cycle] = 1.0 / (1.0 + (aside * aside + hanging * hanging) / operator.tolerance**2)
+        hanging = 0.0 if feels else max(0.0, height + below - operator.leaning)
+        seen[cycle] = 1.0 / (1.0 + (aside_squared + hanging * hanging) / operator.tolerance**2)
         if along >= path.length:
             break
 

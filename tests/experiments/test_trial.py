@@ -54,10 +54,23 @@ def test_certified_holds_a_hand_that_leans_on_it_and_no_fixture_does_not() -> No
     assert all(row["force_n"] == 0.0 for row in free)
 
 
-def test_the_fixture_takes_energy_and_does_not_make_any() -> None:
-    _, held = short_trial("certified")
-    assert held["absorbed_mj"] > -0.2
-    assert held["generated_mj"] < 1.0
+def test_energy_is_what_the_force_does_on_the_handle() -> None:
+    trial, held = short_trial("certified")
+    path, index = anatomy.phantom()
+    assert held["energy_mj"] == pytest.approx(np.sum(trial.trace.power) * 0.001)
+    assert held["energy_mj"] != 0.0
+    # The force is at most 0.3 N/mm times the way between goal and setpoint, and so is its power.
+    apart = np.linalg.norm(trial.trace.setpoint - trial.trace.goal, axis=1)
+    assert np.all(trial.trace.force <= 0.3 * apart + 1e-9)
+
+
+def test_a_tool_that_is_stuck_does_not_come_to_the_end_of_the_path() -> None:
+    path, _ = anatomy.phantom()
+    along = {}
+    for mode in ("fcl_continuous", "certified"):
+        trial, _ = short_trial(mode, cut=False)
+        along[mode] = float(path.depths(trial.trace.tip[-1:])[0][0])
+    assert along["fcl_continuous"] < 0.5 < 2.0 < along["certified"]
 
 
 def test_the_same_seed_is_the_same_trial_and_another_is_not() -> None:
