@@ -8,6 +8,7 @@ alone, and `<experiment>_times.csv` with what was measured by the clock.
 """
 from __future__ import annotations
 
+import ast
 import csv
 import hashlib
 import importlib
@@ -36,17 +37,26 @@ _SHOWING = ("__main__", "comparison", "figures", "published", "record", "runner"
 def source_digest(experiment: str) -> str:
     """Of everything that the rows of an experiment depend on but their unit."""
     digest = hashlib.sha256(keepout.__version__.encode())
-    module = Path(keepout.__file__).parent
-    here = Path(__file__).parent
-    others = [file for file in here.glob("e[0-9]_*.py") if file.stem != experiment]
-    sources = [
-        file
-        for file in here.rglob("*.py")
-        if file not in others and file.stem not in _SHOWING
-    ]
-    for source in sorted([*sources, *module.parent.glob("*.so"), *module.glob("*.so")]):
+    package = Path(keepout.__file__).parent
+    libraries = [*package.parent.glob("*.so"), *package.glob("*.so"), *package.glob("*.py")]
+    for source in sorted([*libraries, *_imported(Path(__file__).parent / f"{experiment}.py", set())]):
         digest.update(source.read_bytes())
     return digest.hexdigest()[:16]
+
+
+def _imported(source: Path, known: set[Path]) -> set[Path]:
+    """A module, and all modules beside it that it imports, directly or not, without those that show."""
+    if source in known or not source.exists() or source.stem in _SHOWING:
+        return known
+    known.add(source)
+    for statement in ast.walk(ast.parse(source.read_text())):
+        if isinstance(statement, ast.ImportFrom) and statement.level:
+            folder = source.parents[statement.level - 1]
+            module = statement.module
+            names = [module.replace(".", "/")] if module else [of.name for of in statement.names]
+            for name in names:
+                _imported(folder / f"{name}.py", known)
+    return known
 
 
 def _be_a_worker() -> None:

@@ -68,8 +68,14 @@ def test_rows_depend_on_their_own_experiment_and_not_on_how_they_are_shown(
     (copy / "e4_cutting.py").write_text("# another experiment\n")
     assert runner.source_digest("e3_path_tracing") == before["e3_path_tracing"]
     assert runner.source_digest("e4_cutting") != before["e4_cutting"]
+    runs = runner.source_digest("e2_run_time")
     (copy / "trial.py").write_text("# another trial\n")
     assert runner.source_digest("e3_path_tracing") != before["e3_path_tracing"]
+    assert runner.source_digest("e2_run_time") == runs  # which has no trials
+    (copy / "rules" / "projection.py").write_text("# another projection\n")
+    before = runner.source_digest("e1_validation")
+    (copy / "rules" / "vector_field_inequality.py").write_text("# another rule\n")
+    assert runner.source_digest("e1_validation") != before
 
 
 def test_a_torn_file_is_done_again(counted: types.ModuleType, tmp_path: Path) -> None:
