@@ -60,21 +60,22 @@ def main(arguments: list[str]) -> int:
     wrong = sorted(chosen - set(known))
     if wrong:
         parser().error(f"--only: there is no {', '.join(wrong)}; there are {', '.join(known)}")
-    if told.seed < 0:
-        parser().error("--seed: give a whole number from 0")
+    if not 0 <= told.seed < 2**32:
+        parser().error("--seed: give a whole number from 0 to 4294967295")
     if told.jobs is not None and told.jobs < 1:
         parser().error("--jobs: give 1 or more")
     experiments = [e for name, e in known.items() if not chosen or name in chosen]
     folder: Path = told.out or Path("out") / ("experiments_full" if told.full else "experiments")
     (folder / "figures").mkdir(parents=True, exist_ok=True)
     if told.fresh:
-        shutil.rmtree(folder / "kept", ignore_errors=True)
+        for experiment in experiments:
+            shutil.rmtree(runner.folder_kept(folder, told.seed) / experiment.NAME, ignore_errors=True)
 
     scale = Scale(full=told.full, seed=told.seed)
     units = {e.NAME: e.units(scale) for e in experiments}
     jobs = told.jobs or len(os.sched_getaffinity(0))
     try:
-        rows = runner.run_units(experiments, units, folder, jobs)
+        rows = runner.run_units(experiments, units, runner.folder_kept(folder, told.seed), jobs)
     except KeyboardInterrupt:
         print(f"\nkeepout: stopped. What is done is kept in {folder}; the same line goes on from there.",
               file=sys.stderr)
@@ -92,7 +93,7 @@ def main(arguments: list[str]) -> int:
     command = shlex.join(["./run", "experiments", *arguments])
     (folder / "README.md").write_text(summary.text(findings, command, keepout.__version__))
     file = folder / "experiments.json"
-    record.write_record(file, scale, findings, complete=True, command=command)
+    record.write_record(file, scale, findings, complete=len(experiments) == len(EXPERIMENTS), command=command)
     reported = _report(file)
     print(f"tables and figures in {folder}; {'report' if reported else 'record'} in {reported or file}")
     return 0

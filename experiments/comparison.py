@@ -18,6 +18,10 @@ from .planned_path import Array
 from .published import Comparison
 
 
+#: A rule whose setpoint is never so deep in its own frame may be called best [mm].
+SOUND = 0.05
+
+
 @dataclass(frozen=True)
 class Measure:
     """A member of the rows that modes are compared by."""
@@ -28,6 +32,7 @@ class Measure:
     published: Comparison | None = None
     samples: str | None = None  # the member with the samples that the paper tests
     higher_is_better: bool = False
+    tested: bool = True  # False: what is nothing without a fixture by construction
     why: str = ""  # where the reproduction disagrees with the paper: why
 
     def values(self, rows: list[Row], mode: str) -> Array:
@@ -39,7 +44,8 @@ class Measure:
         if self.samples is None:
             return self.values(rows, mode)
         samples = [row[self.samples] for row in rows if row["mode"] == mode]
-        return np.abs(np.concatenate(samples)) if samples else np.array([])
+        told = [sample for of_trial in samples for sample in of_trial if sample is not None]
+        return np.abs(np.array(told, dtype=np.float64))
 
     def text(self, values: Array) -> str:
         if len(values) == 0:
@@ -77,6 +83,8 @@ def _tests(
 ) -> list[Against]:
     found = []
     for measure in measures:
+        if not measure.tested:
+            continue
         free = measure.values(rows, modes.NO_FIXTURE)
         for mode in present:
             values = measure.values(rows, mode)
@@ -115,6 +123,7 @@ def _claim(measure: Measure, rows: list[Row], present: list[str], against: list[
         return f"{measure.text(free)} → {measure.text(held)}{unit}{tested}"
 
     means = {mode: measure.paper_values(rows, mode).mean() for mode in _sound(rows, present)}
+    means.pop(modes.NO_FIXTURE, None)
     sign = 1.0 if measure.higher_is_better else -1.0
     best = max(means, key=lambda mode: sign * means[mode], default=None)
     certified = next((a for a in against if a.measure is measure and a.mode == "certified"), None)
@@ -124,9 +133,9 @@ def _claim(measure: Measure, rows: list[Row], present: list[str], against: list[
         f"{paper.fixture.sd:g}{unit}, p = {paper.p:.2g}",
         reproduction=pair("paper"),
         certified=pair("certified"),
-        best=f"{figures.label(best)}: {means[best]:.2f}{unit}, of those that finished and let nothing in"
+        best=f"{figures.label(best)}: {means[best]:.2f}{unit}, of those that finished with a setpoint never {SOUND:g} mm deep"
         if best
-        else "none finished and let nothing in",
+        else f"none finished with a setpoint never {SOUND:g} mm deep",
         sure="certified against no fixture, trials: "
         + (hypothesis_tests.in_words(certified.holm, certified.effect) if certified else "too few"),
         note=measure.why,
@@ -134,10 +143,10 @@ def _claim(measure: Measure, rows: list[Row], present: list[str], against: list[
 
 
 def _sound(rows: list[Row], present: list[str]) -> list[str]:
-    """The modes whose trials all came to the path's end, with a setpoint that never got in."""
+    """The modes whose trials all came to the path's end, with a setpoint that never was SOUND deep."""
 
     def is_sound(row: Row) -> bool:
-        return bool(row["finished"]) and not row["crossings"] and row["deepest_registered_mm"] == 0.0
+        return bool(row["finished"]) and row["deepest_registered_mm"] < SOUND
 
     return [mode for mode in present if all(is_sound(row) for row in rows if row["mode"] == mode)]
 
@@ -220,12 +229,18 @@ def _boxes(experiment: str, measure: Measure, rows: list[Row], present: list[str
 
 def _headline(rows: list[Row], against: list[Against]) -> str:
     certified = [row for row in rows if row["mode"] == "certified"]
-    entered = sum(row["crossings"] + (row["deepest_registered_mm"] > 0.0) for row in certified)
-    better = [a for a in against if a.mode == "certified" and a.holm < 0.05]
-    names = ", ".join(f"{a.measure.name} (p = {a.holm:.1g})" for a in better if a.measure.published)
+    entered = sum(bool(r["crossings"] or r["deepest_registered_mm"] > 0.0) for r in certified)
+    sure = [a for a in against if a.mode == "certified" and a.holm < 0.05]
+
+    def told(one: Against) -> str:
+        free, held = (one.measure.values(rows, m).mean() for m in (modes.NO_FIXTURE, one.mode))
+        is_better = (held > free) == one.measure.higher_is_better
+        said = "better" if is_better else "worse"
+        return f"{said} in {one.measure.name}, {free:.2f} to {held:.2f} (p = {one.holm:.1g})"
+
     return (
-        f"certified: {len(certified)} trials, in the frame of the fixture {entered} of them entered; "
-        f"different from no fixture after Holm: {names or 'nothing'}."
+        f"certified: {len(certified)} trials, {entered} of which entered in the frame of the fixture. Beside "
+        f"no fixture, after Holm: {'; '.join(map(told, sure)) or 'nothing differs for certain'}."
     )
 
 

@@ -130,11 +130,11 @@ def _judged(
     length = np.linalg.norm(asked, axis=1)[:before]
     room = judge.least_distances(starts[:before], starts[:before] + asked[:before], REACH)
     free = (room >= margin) & (room > 0.0) & (length > 0.0)
-    safe = clearances[:before] >= kept * (1.0 - 1e-6)
+    safe = (clearances[:before] >= kept * (1.0 - 1e-6)) & (clearances[:before] > 0.0)
     limited = np.flatnonzero(~free & safe & (length > 0.0) & (distances[:-1][:before] != 0.0))
     excess = []
     for i in limited[np.argsort(sample[limited])][:BEST_STEPS]:
-        _, cost, _ = judge.best_step(starts[i], asked[i], margin)
+        _, cost, _ = judge.best_step(starts[i], asked[i], float(kept[i]))
         excess.append((lost[i] - cost) / length[i])
     return {
         "closed": judge.closed,

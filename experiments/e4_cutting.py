@@ -61,12 +61,14 @@ def run(unit: Unit) -> list[Row]:
     trial = operate(told["mode"], course, index, operator, setup, seeds, told["corridor"])
     judge = Judge(index.mesh.vertices, index.mesh.triangles)
     deviation, depth = cut(trial, course)
+    reached = [at for at in deviation if at is not None]
     return [
         {name: told[name] for name in ("mode", "tremor", "ideal", "corridor", "number")}
         | measures(trial, course, judge)
         | {
-            "deviation_mm": float(np.mean(deviation)),
-            "greatest_deviation_mm": float(np.max(deviation)),
+            "millimetres_reached": len(reached),
+            "deviation_mm": float(np.mean(reached)) if trial.trace.finished else None,
+            "greatest_deviation_mm": float(np.max(reached)) if trial.trace.finished else None,
             "depth_mm": float(np.mean(depth)),
             "absolute_depth_mm": float(np.mean(np.abs(depth))),
             "over_cut_mm": max(0.0, float(np.max(depth))),
@@ -77,18 +79,20 @@ def run(unit: Unit) -> list[Row]:
     ]
 
 
-def cut(trial: Trial, course: Course) -> tuple[list[float], list[float]]:
+def cut(trial: Trial, course: Course) -> tuple[list[float | None], list[float]]:
     """Deviation and penetration depth at each millimetre of the path [mm].
 
-    Without bone to cut there is no kerf, and the tip's own depth takes its place.
+    Where the tip never was within the bone there is no deviation: None. Without bone to cut there is
+    no kerf, and the tip's own depth takes its place.
     """
     path, trace = course.path, trial.trace
     along, across, depth = path.depths(trace.tip[trace.begun :])
     millimetre = np.minimum(along.astype(int), SAMPLES - 1)
-    deviations, depths = [], []
+    deviations: list[float | None] = []
+    depths: list[float] = []
     for number in range(SAMPLES):
         here = (millimetre == number) & (depth > 0.0)
-        deviations.append(float(np.abs(across[here]).max(initial=0.0)))
+        deviations.append(float(np.abs(across[here]).max()) if here.any() else None)
         if course.bone:
             kerf = float(trace.kerf[path.number(number + 0.5)])
         else:
@@ -117,8 +121,9 @@ MEASURES = (
     Measure("over_cut_mm", "greatest over-cut", "mm"),
     Measure("under_cut_mm", "greatest under-cut", "mm"),
     Measure("contact_n", "force on the bone", "N"),
-    Measure("force_n", "force of the fixture on the hand", "N"),
-    Measure("energy_mj", "energy that the fixture gave to the hand", "mJ"),
+    Measure("millimetres_reached", "how much of the path was cut into", "mm"),
+    Measure("force_n", "force of the fixture on the hand", "N", tested=False),
+    Measure("energy_mj", "energy that the fixture gave to the hand", "mJ", tested=False),
     Measure("chatter_um", "chatter of the setpoint above 30 Hz", "µm"),
 )
 

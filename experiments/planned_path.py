@@ -31,6 +31,15 @@ class PlannedPath:
         """Of the point nearest to a place along the path [mm]; the ends stand for what is beyond."""
         return min(max(round(along / self.spacing), 0), len(self.points) - 1)
 
+    def at(self, along: float) -> tuple[Array, Array]:
+        """The place and `up` there, between points; the ends stand for what is beyond."""
+        place = min(max(along / self.spacing, 0.0), len(self.points) - 1.0)
+        low = min(int(place), len(self.points) - 2)
+        share = place - low
+        ends = slice(low, low + 2)
+        weights = np.array([1.0 - share, share])
+        return weights @ self.points[ends], weights @ self.up[ends]
+
     @cached_property
     def _heading(self) -> tuple[Array, Array]:
         heading = self.points[-1] - self.points[0]

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs the units of experiments on all processors, and keeps the rows of each that is done.
 
-What is kept is a file for each unit, `kept/<experiment>/<unit>.json`. It is used again when the unit,
+What is kept is a file for each unit, `kept/seed<seed>/<experiment>/<unit>.json`. It is used again when the unit,
 keepout and the sources that its rows depend on are what they were, so that a run that was stopped goes on
 where it was. The tables are written from all rows: `<experiment>.csv`, which depends on the seed
 alone, and `<experiment>_times.csv` with what was measured by the clock.
@@ -72,6 +72,11 @@ class UnitError(RuntimeError):
     """A unit failed: which, and why. What was done before is kept."""
 
 
+def folder_kept(folder: Path, seed: int) -> Path:
+    """Where the rows of a seed are kept, of what is written to a folder."""
+    return folder / "kept" / f"seed{seed}"
+
+
 class Kept:
     """The rows of units that are done, in a folder."""
 
@@ -90,6 +95,8 @@ class Kept:
         try:
             text = json.loads(self._file(experiment, unit).read_text())
         except (OSError, ValueError):
+            return None
+        if not isinstance(text, dict):
             return None
         same = text.get("digest") == self._digest(experiment) and text.get("settings") == _plain(unit.settings)
         rows: list[Row] | None = text["rows"] if same else None
@@ -139,14 +146,14 @@ class Progress:
 
 
 def run_units(
-    experiments: list[ModuleType], units: dict[str, list[Unit]], folder: Path, jobs: int
+    experiments: list[ModuleType], units: dict[str, list[Unit]], kept_in: Path, jobs: int
 ) -> dict[str, list[Row]]:
     """The rows of all units, by experiment, in the order of the units.
 
     Units that measure times run one after another, before the others. KeyboardInterrupt: those that
     are done are kept.
     """
-    kept = Kept(folder / "kept")
+    kept = Kept(kept_in)
     progress = Progress(sum(len(of) for of in units.values()))
     results: dict[tuple[str, str], list[Row]] = {}
     left: list[tuple[ModuleType, Unit]] = []

@@ -61,7 +61,8 @@ def operate(
 
 
 def measures(trial: Trial, course: Course, judge: Judge) -> Row:
-    """What is measured of any trial, behind the approach; None for what has no meaning there.
+    """What is measured of any trial, behind the approach; None for what has no meaning there, such as
+    the duration of a trial that was not finished.
 
     `crossings` and `deepest_registered_mm` are of the setpoint in the frame of the fixture, all the way: what
     the rule itself let through. `deepest_mm` is of the tip in the true frame, and `beyond_registration_mm`
@@ -72,15 +73,14 @@ def measures(trial: Trial, course: Course, judge: Judge) -> Row:
     rate = 1.0 / course.period
     tip, setpoint = trace.tip[start:], trace.setpoint[start:]
     speed = np.linalg.norm(np.diff(tip, axis=0), axis=1) * rate
-    moved = bool(speed.any())
     depth = -judge.distances(tip)
     displaced = np.linalg.norm(trial.registered(tip) - tip, axis=1)
     held = trace.force[start:] > 0.0
     return {
         "finished": trace.finished,
-        "duration_s": len(trace.tip) * course.period,
-        "spectral_arc_length": spectral_arc_length(speed, rate) if moved else None,
-        "sparc": sparc(speed, rate) if moved else None,
+        "duration_s": len(trace.tip) * course.period if trace.finished else None,
+        "spectral_arc_length": spectral_arc_length(speed, rate) if trace.finished else None,
+        "sparc": sparc(speed, rate) if trace.finished else None,
         "crossings": int(judge.crossings(trace.setpoint[:-1], trace.setpoint[1:]).sum()),
         "deepest_registered_mm": max(0.0, float(-judge.distances(trace.setpoint).min())),
         "deepest_mm": max(0.0, float(depth.max())),
@@ -97,7 +97,7 @@ def measures(trial: Trial, course: Course, judge: Judge) -> Row:
 def chatter(setpoint: Array, held: NDArray[np.bool_], rate: float) -> float:
     """Root mean square of what the setpoint does above 30 Hz while the fixture holds it back [um].
 
-    A hand does nothing there: it is what fixture and hand do to one another.
+    A hand alone does next to nothing there: it is what fixture and hand do to one another.
     """
     high_pass = signal.butter(4, 30.0, "highpass", fs=rate, output="sos")
     fast = signal.sosfiltfilt(high_pass, setpoint, axis=0)

@@ -21,6 +21,7 @@ from .rules.rule import Rule
 from .set_up_errors import RigidMotion, SetUp
 
 APPROACH = 1.0  # the hand comes down onto the path within this time [s]
+NEAR_THE_END = 1.0  # a tip so near to the path's end has finished [mm]
 START_HEIGHT = 3.0  # from this height [mm]
 
 
@@ -52,7 +53,7 @@ class Trace:
     contact: Array  # (n,) of the tip on the bone [N]
     kerf: Array  # (points of the path,) [mm]
     begun: int  # the first cycle behind the approach
-    finished: bool  # the path's end was reached within the time limit
+    finished: bool  # the tip came to the path's end within the time limit
 
 
 def run_trial(
@@ -94,11 +95,10 @@ def run_trial(
 
     for cycle in range(most):
         # The operator: where he means to be, and how fast he goes on.
-        number = path.number(along)
-        up = path.up[number]
+        place, up = path.at(along)
         above = max(0.0, 1.0 - cycle / approach) * START_HEIGHT
         below = course.depth + operator.leaning + slow[cycle, 1] - above
-        meant = (path.points[number] + slow[cycle, 0] * path.across - below * up) / scale
+        meant = (place + slow[cycle, 0] * path.across - below * up) / scale
         pull = pulls[cycle - delay] if cycle >= delay else none
         handle = arm.move(meant, (meant - intended) / period, pull, period)
         intended = meant
@@ -130,7 +130,7 @@ def run_trial(
 
         # The eye: how far from the place on the path, seen from above, and how far above where it is
         # meant to be; a hand that feels a fixture takes that for the depth to go to.
-        offset = tip - path.points[number]
+        offset = tip - place
         height = offset @ up
         aside_squared = offset @ offset - height * height
         feels = pull @ pull > operator.felt_force**2
@@ -149,5 +149,5 @@ def run_trial(
         contact=contacts[:ran],
         kerf=bone.cut if bone else np.zeros(len(path.points)),
         begun=min(approach, ran - 1),
-        finished=bool(along >= path.length),
+        finished=bool(path.depths(tips[cycle : cycle + 1])[0][0] >= path.length - NEAR_THE_END),
     )

@@ -9,8 +9,8 @@ the motion is the nearest one that they allow.
 Our reading: closest points are the local minima of the distance on the surface, that is those that
 all triangles around them agree upon: a point in a face, on an edge whose triangles, or at a vertex
 all of whose triangles, have it for their closest. The normal is n = (x - CP) / |x - CP|, and that
-of the face where x is on it. A tip nearer than the margin is led outwards, by 0.05 mm a cycle at
-the most, as keepout's own rules do. Only points within |desired| + margin are asked for: no others
+of the face where x is on it; below the surface, which the nearest point tells, it is turned round. A
+tip nearer than the margin is led outwards, by RECOVERY a cycle at the most. Only points within |desired| + margin are asked for: no others
 bind.
 """
 from __future__ import annotations
@@ -22,9 +22,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .projection import Plane, corridor_planes, nearest_motion
-from .rule import Task
+from .rule import RECOVERY, Task
+from .side import is_outside
 
-RECOVERY = 0.05  # outwards in one cycle at the most [mm]
 ON_BORDER = 1e-9  # a barycentric coordinate that counts as 0
 
 
@@ -104,11 +104,12 @@ class ClosestPoints2007:
         hits = self._index.hits(tip, margin + float(np.sqrt(desired @ desired)))
         distances = hits.distances
         # No plane is needed where none would be violated: n . motion < margin - d.
+        sign = 1.0 if is_outside(hits, self._surface.normals) else -1.0
         enough = distances * (distances - margin)
-        if motion is None or (hits.offsets @ motion >= enough).any():
+        if sign < 0.0 or motion is None or (hits.offsets @ motion >= enough).any():
             for i in self._surface.minima(hits.triangles, hits.points):
-                distance = float(distances[i])
-                if distance > 0.0:
+                distance = sign * float(distances[i])
+                if distance != 0.0:
                     normal = hits.offsets[i] / -distance
                 else:
                     normal = self._surface.normals[hits.triangles[i]]

@@ -10,6 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 
+#: A tip nearer than the margin is led off it by so much in a cycle at the most, by each rule [mm].
+RECOVERY = 0.05
+
+
 @dataclass(frozen=True)
 class Corridor:
     """The tip stays within `half_width` [mm] of the plane through `point` with the unit `normal`."""

@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..sides import is_closed, lattice_is_solid
 from .projection import Plane, corridor_planes, nearest_motion
-from .rule import Task
+from .rule import RECOVERY, Task
 
 #: A grid has no more voxels: 800 MB of single precision.
 MOST_VOXELS = 200_000_000
@@ -122,7 +122,7 @@ class SignedDistanceField:
         """No motion at all where the plane and the corridor exclude each other."""
         x, y, z = tip.tolist()
         distance, n_x, n_y, n_z = self.grid.look(x, y, z)
-        room = distance - self._task.margin
+        room = max(distance - self._task.margin, -RECOVERY)
         steep = sqrt(n_x * n_x + n_y * n_y + n_z * n_z)
         planes: list[Plane] = corridor_planes(self._task.corridor, tip)
         if distance < inf and steep > 0.0:  # where the field is flat it says nothing

@@ -9,9 +9,9 @@ nearest.
 Our reading: a mesh is the obstacle by its one nearest point, with n = (tip - point) / d, and d_safe
 is the margin. Over a period T that is n . dx >= -eta T (d - d_safe); eta is 1 / T, the greatest for
 which the inequality keeps d from passing d_safe in one period, and the one that slows the tip
-least. Below d_safe the inequality asks for a motion outwards, as the article has it, but not for
-one that is longer than the motion sphere. On the surface n is the normal of the face; the side is
-not told, so a tip below the surface is led on inwards.
+least. Below d_safe the inequality asks for a motion outwards, as the article has it, by RECOVERY at
+the most. On the surface n is the normal of the face. A point has no inside, and a mesh has: below
+the surface d is negative and n turned round, as it is for the rules that it is compared with.
 """
 from __future__ import annotations
 
@@ -20,7 +20,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .projection import Plane, corridor_planes, nearest_motion
-from .rule import Task
+from .rule import RECOVERY, Task
+from .side import is_outside
 
 
 class VectorFieldInequality:
@@ -45,8 +46,10 @@ class VectorFieldInequality:
             distance = float(hits.distances[nearest])
             if distance > 0.0:
                 normal = hits.offsets[nearest] / -distance
+                if not is_outside(hits, self._normals):
+                    distance, normal = -distance, -normal
             else:
                 normal = self._normals[hits.triangles[nearest]]
-            planes.append((normal, min(self._task.radius, -gain * (distance - margin))))
+            planes.append((normal, min(RECOVERY, -gain * (distance - margin))))
         motion = nearest_motion(desired, planes)
         return np.zeros(3) if motion is None else motion

@@ -50,7 +50,8 @@ def test_summary_record_and_page_say_the_same(made: Path) -> None:
     record = json.loads((made / "experiments.json").read_text())
     headline = record["experiments"][0]["headline"]
     assert headline in (made / "README.md").read_text()
-    assert record["keepout_record"] == "experiments" and record["complete"]
+    assert record["keepout_record"] == "experiments"
+    assert not record["complete"]  # --only leaves the others out
     if "KEEPOUT_COMMAND" in os.environ:
         assert (made / "experiments.html").stat().st_size > 1000
 
@@ -78,4 +79,4 @@ def test_the_page_has_the_values_that_are_simulated() -> None:
         assert numbers == [known[name] for name in of_row], names
         told.update(of_row)
     untold = set(known) - told
-    assert untold == {"Operator.adjusting", "Operator.motion_scale", "BoneProperties.behind"}
+    assert untold == {"Operator.motion_scale", "BoneProperties.behind"}

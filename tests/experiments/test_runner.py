@@ -80,10 +80,11 @@ def test_rows_depend_on_their_own_experiment_and_not_on_how_they_are_shown(
 
 def test_a_torn_file_is_done_again(counted: types.ModuleType, tmp_path: Path) -> None:
     runner.run_units([counted], units(1), tmp_path, 1)
-    file = tmp_path / "kept" / "counted" / "unit-0.json"
-    file.write_text(file.read_text()[:40])
-    runner.run_units([counted], units(1), tmp_path, 1)
-    assert ran(counted) == ["unit-0", "unit-0"]
+    file = tmp_path / "counted" / "unit-0.json"
+    for torn in (file.read_text()[:40], "[]", "{}"):
+        file.write_text(torn)
+        runner.run_units([counted], units(1), tmp_path, 1)
+    assert ran(counted) == ["unit-0"] * 4
 
 
 def test_a_unit_that_fails_is_named_and_the_others_are_kept(
@@ -115,7 +116,7 @@ def test_a_summary_has_claims_before_tables(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "arguments, names", [(["--only", "e9"], "e9"), (["--seed", "-1"], "--seed"), (["--jobs", "0"], "--jobs")]
+    "arguments, names", [(["--only", "e9"], "e9"), (["--seed", "-1"], "--seed"), (["--seed", "4294967296"], "--seed"), (["--jobs", "0"], "--jobs")]
 )
 def test_a_wrong_argument_is_named(
     arguments: list[str], names: str, capsys: pytest.CaptureFixture[str]
