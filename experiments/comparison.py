@@ -174,7 +174,7 @@ def _safety(rows: list[Row], present: list[str]) -> Table:
         "What came into the anatomy",
         ["mode", "setpoint passes through, registered frame", "deepest setpoint, registered frame [mm]",
          "deepest tip, true frame [mm]", "registration error [mm]", "tip deeper than that error [mm]",
-         "not finished"],
+         "tip short of the path's end"],
         [
             [
                 figures.label(mode),

@@ -43,7 +43,7 @@ def units(scale: Scale) -> list[Unit]:
         return Unit(name, settings | {"seed": scale.seed})
 
     swept = [of(m, t, False, n) for m in SWEPT for t in SWEEP for n in range(5 if scale.full else 1)]
-    ideal = [of(m, TREMOR, True, n) for m in modes.MODES for n in range(5 if scale.full else 1)]
+    ideal = [of(m, TREMOR, True, n) for m in modes.MODES for n in range(3 if scale.full else 1)]
     return [of(m, TREMOR, False, n) for m in modes.MODES for n in range(repetitions)] + swept + ideal
 
 
@@ -56,7 +56,7 @@ def _judge() -> Judge:
 def run(unit: Unit) -> list[Row]:
     """One trial."""
     told = unit.settings
-    course = Course(path=anatomy.skull_path(), depth=0.0, speed=SPEED, time_limit=240.0)
+    course = Course(path=anatomy.skull_path(), depth=0.0, speed=SPEED, time_limit=90.0)
     operator = Operator(tremor=told["tremor"], adjusting=ADJUSTING)
     setup = SetUp.ideal() if told["ideal"] else SetUp()
     seeds = (told["seed"], 3, told["number"], round(told["tremor"] * 1000))
