@@ -34,7 +34,7 @@ NAME = "e5_distance_field"
 TITLE = "E5 A distance field beside the mesh, at thin walls"
 
 ANATOMY = ("skull", "airway")
-FULL_ANATOMY = ("skull", "airway", "brain", "liver")
+FULL_ANATOMY = ("skull", "airway", "brain")
 #: Meshes of what is hollow: the tool is in it, and solid is what is around it.
 HOLLOW = ("airway",)
 
