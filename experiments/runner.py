@@ -124,19 +124,24 @@ class Progress:
 
     def __init__(self, units: int) -> None:
         self._units = units
-        self._done = self._kept = 0
+        self._done = self._ran = 0
         self._begun = self._shown = time.monotonic()
+        self._alone = True
+
+    def begin(self, *, alone: bool) -> None:
+        """From now on units run that are `alone` or not; what is left is told of those that are not."""
+        self._alone, self._ran, self._begun = alone, 0, time.monotonic()
 
     def count(self, name: str, *, kept: bool) -> None:
         self._done += 1
-        self._kept += kept
+        self._ran += not kept
         now = time.monotonic()
         last = self._done == self._units
-        ran = self._done - self._kept
         if not (sys.stderr.isatty() or last or now - self._shown >= 60.0):
             return
         self._shown = now
-        left = (now - self._begun) / ran * (self._units - self._done) if ran else 0.0
+        told = self._ran and not self._alone
+        left = (now - self._begun) / self._ran * (self._units - self._done) if told else 0.0
         rest = f", {left / 60:.0f} min left" if left >= 60 else f", {left:.0f} s left" if left else ""
         line = f"{self._done} of {self._units} units{rest}: {name}"
         if sys.stderr.isatty():
@@ -174,6 +179,7 @@ def run_units(
         batch = [(e, u) for e, u in left if u.alone is alone]
         if not batch:
             continue
+        progress.begin(alone=alone)
         with ProcessPoolExecutor(1 if alone else jobs, initializer=_be_a_worker) as pool:
             running: dict[Future[list[Row]], tuple[ModuleType, Unit]] = {}
             try:
