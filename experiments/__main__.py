@@ -39,6 +39,7 @@ def parser() -> argparse.ArgumentParser:
     names = ", ".join(f"{e.NAME.split('_')[0]} ({e.NAME[3:].replace('_', ' ')})" for e in EXPERIMENTS)
     of = argparse.ArgumentParser(
         prog="./run experiments",
+        allow_abbrev=False,
         description="Runs the experiments of Li et al. (IROS 2020) again, with their rule, keepout's and "
         "others. Writes tables, figures and a report. What is done is kept: a run that was stopped "
         "goes on where it was. See docs/experiments.md.",
@@ -46,8 +47,8 @@ def parser() -> argparse.ArgumentParser:
     of.add_argument("--full", action="store_true", help="all shapes, sizes and repetitions: an hour and more")
     of.add_argument("--seed", type=int, default=1, help="of all random numbers (default: 1)")
     of.add_argument("--only", metavar="E1,E3", default="", help=f"some of {names}")
-    of.add_argument("--out", type=Path, metavar="FOLDER", help="where to write (default: out/experiments, "
-                    "with --full out/experiments_full)")
+    of.add_argument("--out", type=Path, metavar="FOLDER", help="where to write (default: out/experiments "
+                    "beside run, with --full out/experiments_full)")
     of.add_argument("--jobs", type=int, metavar="N", help="processes at once (default: one a processor)")
     of.add_argument("--fresh", action="store_true", help="begin anew, and forget what is kept")
     return of
@@ -65,7 +66,8 @@ def main(arguments: list[str]) -> int:
     if told.jobs is not None and told.jobs < 1:
         parser().error("--jobs: give 1 or more")
     experiments = [e for name, e in known.items() if not chosen or name in chosen]
-    folder: Path = told.out or Path("out") / ("experiments_full" if told.full else "experiments")
+    root = Path(__file__).resolve().parent.parent
+    folder: Path = told.out or root / "out" / ("experiments_full" if told.full else "experiments")
     (folder / "figures").mkdir(parents=True, exist_ok=True)
     if told.fresh:
         for experiment in experiments:

@@ -116,7 +116,7 @@ def test_a_summary_has_claims_before_tables(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "arguments, names", [(["--only", "e9"], "e9"), (["--seed", "-1"], "--seed"), (["--seed", "4294967296"], "--seed"), (["--jobs", "0"], "--jobs")]
+    "arguments, names", [(["--only", "e9"], "e9"), (["--seed", "-1"], "--seed"), (["--seed", "4294967296"], "--seed"), (["--jobs", "0"], "--jobs"), (["--ful"], "--ful")]
 )
 def test_a_wrong_argument_is_named(
     arguments: list[str], names: str, capsys: pytest.CaptureFixture[str]
