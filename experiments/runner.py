@@ -187,7 +187,7 @@ def run_units(
                     running[pool.submit(_run, experiment.__name__, unit)] = (experiment, unit)
                 while running:
                     finished, _ = wait(running, return_when=FIRST_COMPLETED)
-                    for future in finished:
+                    for future in sorted(finished, key=lambda one: one.exception() is not None):
                         experiment, unit = running.pop(future)
                         if fault := future.exception():
                             raise UnitError(f"{experiment.NAME} {unit.name}: {fault!r:.500}")
