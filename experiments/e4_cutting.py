@@ -32,7 +32,7 @@ SAMPLES = 30
 
 
 def units(scale: Scale) -> list[Unit]:
-    """Quick: two trials a mode, as the paper's. Full: five; sweeps of tremor and corridor; no errors of the set-up."""
+    """Quick: two trials a mode, as the paper's. Full: four; sweeps of tremor and corridor; no errors of the set-up."""
 
     def of(mode: str, number: int, tremor: float = TREMOR, ideal: bool = False,
            corridor: float = CORRIDOR) -> Unit:
@@ -41,12 +41,12 @@ def units(scale: Scale) -> list[Unit]:
                     "number": number, "seed": scale.seed}
         return Unit(f"{mode}-{kind}{'-ideal' if ideal else ''}-{number}", settings)
 
-    of_all = [of(mode, n) for mode in modes.MODES for n in range(5 if scale.full else 2)]
-    ideal = [of(mode, n, ideal=True) for mode in SWEPT for n in range(2 if scale.full else 1)]
-    narrow = [of("certified", n, corridor=c) for c in CORRIDORS for n in range(4 if scale.full else 1)]
+    of_all = [of(mode, n) for mode in modes.MODES for n in range(4 if scale.full else 2)]
+    ideal = [of(mode, 0, ideal=True) for mode in SWEPT]
+    narrow = [of("certified", n, corridor=c) for c in CORRIDORS for n in range(2 if scale.full else 1)]
     if not scale.full:
         return of_all + ideal + narrow
-    return of_all + ideal + narrow + [of(m, n, tremor=t) for m in SWEPT for t in SWEEP for n in range(2)]
+    return of_all + ideal + narrow + [of(mode, 0, tremor=t) for mode in SWEPT for t in SWEEP]
 
 
 def run(unit: Unit) -> list[Row]:

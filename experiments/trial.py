@@ -91,7 +91,7 @@ def run_trial(
     pulls, contacts, powers = np.zeros((most, 3)), np.zeros(most), np.zeros(most)
     seen = np.zeros(most)  # what the eye makes of the deviation, as a factor of the speed
     along, approach = 0.0, int(APPROACH / period)
-    cycle, none = 0, np.zeros(3)
+    cycle, none, finished = 0, np.zeros(3), False
 
     for cycle in range(most):
         # The operator: where he means to be, and how fast he goes on.
@@ -136,8 +136,11 @@ def run_trial(
         feels = pull @ pull > operator.felt_force**2
         hanging = 0.0 if feels else max(0.0, height + below - operator.leaning)
         seen[cycle] = 1.0 / (1.0 + (aside_squared + hanging * hanging) / operator.tolerance**2)
+        # At the end the hand waits for a tip that has stayed behind.
         if along >= path.length:
-            break
+            finished = bool(path.depths(tip[None])[0][0] >= path.length - NEAR_THE_END)
+            if finished:
+                break
 
     ran = cycle + 1
     return Trace(
@@ -149,5 +152,5 @@ def run_trial(
         contact=contacts[:ran],
         kerf=bone.cut if bone else np.zeros(len(path.points)),
         begun=min(approach, ran - 1),
-        finished=bool(path.depths(tips[cycle : cycle + 1])[0][0] >= path.length - NEAR_THE_END),
+        finished=finished,
     )
