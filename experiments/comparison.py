@@ -7,6 +7,7 @@ comparisons of an experiment, by Welch's test on trials.
 """
 from __future__ import annotations
 
+import textwrap
 from dataclasses import dataclass
 
 import numpy as np
@@ -218,7 +219,8 @@ def _boxes(experiment: str, measure: Measure, rows: list[Row], present: list[str
     groups = {mode: measure.values(rows, mode) for mode in present}
     fig, ax = figures.new(160, 70)
     unit = f" [{measure.unit}]" if measure.unit else ""
-    figures.box_plot(ax, {m: v for m, v in groups.items() if len(v)}, measure.name + unit)
+    label = textwrap.fill(measure.name + unit, 26)
+    figures.box_plot(ax, {m: v for m, v in groups.items() if len(v)}, label)
     return Figure(
         f"{experiment}_{measure.member}",
         measure.name[0].upper() + measure.name[1:],
