@@ -236,13 +236,11 @@ def _headline(rows: list[Row], against: list[Against]) -> str:
 
     def told(one: Against) -> str:
         free, held = (one.measure.values(rows, m).mean() for m in (modes.NO_FIXTURE, one.mode))
-        is_better = (held > free) == one.measure.higher_is_better
-        said = "better" if is_better else "worse"
-        return f"{said} in {one.measure.name}, {free:.2f} to {held:.2f} (p = {one.holm:.1g})"
+        return f"{one.measure.name}, {free:.2f} to {held:.2f} (p = {one.holm:.1g})"
 
     return (
         f"certified: {len(certified)} trials, {entered} of which entered in the frame of the fixture. Beside "
-        f"no fixture, after Holm: {'; '.join(map(told, sure)) or 'nothing differs for certain'}."
+        f"no fixture, what differs after Holm: {'; '.join(map(told, sure)) or 'nothing for certain'}."
     )
 
 
