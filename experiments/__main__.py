@@ -44,7 +44,7 @@ def parser() -> argparse.ArgumentParser:
         "others. Writes tables, figures and a report. What is done is kept: a run that was stopped "
         "goes on where it was. See docs/experiments.md.",
     )
-    of.add_argument("--full", action="store_true", help="all shapes, sizes and repetitions: an hour and more")
+    of.add_argument("--full", action="store_true", help="all shapes and sizes, more repetitions: about an hour")
     of.add_argument("--seed", type=int, default=1, help="of all random numbers (default: 1)")
     of.add_argument("--only", metavar="E1,E3", default="", help=f"some of {names}")
     of.add_argument("--out", type=Path, metavar="FOLDER", help="where to write (default: out/experiments "
