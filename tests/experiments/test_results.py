@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""README.md says of the committed results what stands in them."""
+import re
+from pathlib import Path
+
+RESULTS = Path(__file__).resolve().parents[2] / "experiments" / "results"
+TEXT = (RESULTS / "README.md").read_text()
+
+
+def rows_of(title: str) -> list[dict[str, str]]:
+    """The rows of each table with this title, by the names of their columns."""
+    found = []
+    for part in TEXT.split(f"**{title}.**")[1:]:
+        lines = [line for line in part.split("\n\n", 2)[1].splitlines() if line.startswith("|")]
+        heads = [cell.strip() for cell in lines[0].strip("|").split("|")]
+        found += [
+            dict(zip(heads, (cell.strip() for cell in line.strip("|").split("|")), strict=True))
+            for line in lines[2:]
+        ]
+    return found
+
+
+def test_certified_let_the_tip_into_nothing_in_the_frame_that_it_was_told() -> None:
+    rows = [row for row in rows_of("What came into the anatomy") if row["mode"] == "certified"]
+    assert len(rows) == 2  # tracing and cutting
+    for row in rows:
+        assert row["setpoint passes through, registered frame"] == "0"
+        assert float(row["deepest setpoint, registered frame [mm]"]) == 0.0
+        assert float(row["tip deeper than that error [mm]"]) == 0.0
+        assert row["tip short of the path's end"] == "0"
+    swept = [row for row in rows_of("Tremor, corridor, and a set-up without errors") if row["mode"] == "certified"]
+    assert len(swept) > 5
+    assert all(row["setpoint passes through"] == "0" and float(row["deepest setpoint [mm]"]) == 0.0 for row in swept)
+
+
+def test_certified_kept_out_of_every_shape_and_every_thin_wall() -> None:
+    of = {row["mode"]: row for row in rows_of("Modes over all closed shapes")}
+    kept, shapes, got_in = map(int, re.findall(r"(\d+) of (\d+) shapes, (\d+) of", of["certified"]["kept out of, got in"])[0])
+    assert kept == shapes > 11 and got_in == 0
+    assert all(row["certified"] == "0" for row in rows_of("Loops in which the tip crossed the surface"))
+    walls = [row for row in rows_of("A grid of distances, and the mesh itself") if row["mode"] == "certified"]
+    assert walls and all(row["entered / passed"].startswith("0 / 0 of") for row in walls)
+
+
+def test_four_of_nine_counterexamples_pass_the_papers_rule_and_none_the_certified() -> None:
+    rows = rows_of("Each rule on each counterexample, 20 cycles")
+    assert len(rows) == 9
+    assert sum(row["the paper's rule"] != "held" for row in rows) == 4
+    assert all(row["certified"] == "held" for row in rows)
+
+
+def test_every_figure_of_the_summary_is_there() -> None:
+    named = re.findall(r"\(figures/([\w.]+)\)", TEXT)
+    assert len(named) > 10
+    assert {file.name for file in (RESULTS / "figures").iterdir()} == set(named)
