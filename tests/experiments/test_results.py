@@ -49,6 +49,17 @@ def test_four_of_nine_counterexamples_pass_the_papers_rule_and_none_the_certifie
     assert all(row["certified"] == "held" for row in rows)
 
 
+def test_by_the_papers_test_depth_and_duration_gain_and_deviation_and_smoothness_do_not() -> None:
+    tested = {row["measure"]: row for row in rows_of("Each fixture against no fixture") if row["mode"] == "certified"}
+
+    def gains(measure: str, sign: float) -> bool:
+        free, held = (float(tested[measure][column].split(" ")[0]) for column in ("no fixture", "fixture"))
+        return sign * (held - free) > 0.0 and float(tested[measure]["Student, as the paper"]) < 0.05
+
+    assert gains("absolute penetration depth", -1.0) and gains("duration", -1.0)
+    assert not gains("cutting path deviation", -1.0) and not gains("spectral arc length, 20 Hz", 1.0)
+
+
 def test_every_figure_of_the_summary_is_there() -> None:
     named = re.findall(r"\(figures/([\w.]+)\)", TEXT)
     assert len(named) > 10
