@@ -26,6 +26,7 @@ SMALL = {
     "compare": {"--poses": "6", "--problems": "30", "--pairs": "10"},
     "live": {"--no-open": None},
     "plan": {"--problems": "1", "--seconds": "2"},
+    "experiments": {"--only": "e6", "--out": "experiments"},
 }
 
 
@@ -67,13 +68,17 @@ def main():
     folder.mkdir(parents=True)
     # As ./run ends, once all is built.
     run = folder / "run"
-    run.write_text(f'#!/bin/bash\nexec -a ./run "{keepout}" "$@"\n')
+    run.write_text(
+        '#!/bin/bash\n'
+        f'[ "$1" != experiments ] || exec /usr/bin/python3 -m experiments "${{@:2}}"\n'
+        f'exec -a ./run "{keepout}" "$@"\n')
     run.chmod(0o755)
     environment = dict(os.environ, KEEPOUT_PREPARE=str(root / "fixtures/prepare"),
-                       KEEPOUT_WEB=str(web_page(root, folder)))
+                       KEEPOUT_WEB=str(web_page(root, folder)), KEEPOUT_COMMAND=str(keepout),
+                       PYTHONPATH=f"{keepout.parents[2] / 'python'}:{root}")
     commands = commands_of((root / "README.md").read_text(encoding="utf-8"))
     missing = [n for n in ("inspect", "replay", "simulate", "serve", "verify", "bench", "compare", "live", "plan",
-                           "register", "report")
+                           "register", "report", "experiments")
                if not any(c.startswith(f"./run {n}") for c in commands)]
     if missing:
         sys.exit(f"README.md does not show {', '.join(missing)}: has the page changed its form?")
