@@ -16,6 +16,7 @@ from typing import Any
 
 import keepout
 import numpy as np
+from keepout_peers import Judge
 from numpy.typing import NDArray
 from scipy import stats
 
@@ -26,7 +27,7 @@ from .hypothesis_tests import holm
 from .modes import make_rule
 from .rules.rule import Rule, Task
 from .rules.signed_distance_field import SignedDistanceField, VoxelGrid
-from .sides import are_solid
+from .sides import turns_outside
 
 Array = NDArray[np.float64]
 
@@ -65,6 +66,24 @@ class Walls:
         return Walls(self.front[which], self.inwards[which], self.half[which], self.middle[which])
 
 
+class Truth:
+    """What is so of a closed mesh, by the judge: an airway whose normals point inwards is free inside."""
+
+    def __init__(self, mesh: keepout.Mesh) -> None:
+        self._judge = Judge(mesh.vertices, mesh.triangles)
+        self._sign = -1.0 if turns_outside(mesh) else 1.0
+
+    def distances(self, points: Array) -> Array:
+        """Of (n, 3) points; negative in the solid."""
+        signed: Array = self._sign * self._judge.distances(points)
+        return signed
+
+    def entered(self, tips: Array) -> bool:
+        """Whether the way through the places (n, 3) touches the mesh, or one is in the solid."""
+        touches = self._judge.crossings(tips[:-1], tips[1:]).any()
+        return bool(touches or self.distances(tips).min() < 0.0)
+
+
 def units(scale: Scale) -> list[Unit]:
     return [
         Unit(anatomy, {
@@ -84,12 +103,13 @@ def run(unit: Unit) -> list[Row]:
     begun = time.perf_counter()
     index = keepout.Index(mesh)
     built = time.perf_counter() - begun
+    truth = Truth(mesh)
     random = np.random.default_rng(asked["seed"])
     center, walls = thinnest_place(index, random, asked["samples"])
     places = np.indices((28,) * 3).reshape(3, -1).T * 0.9 + center - INNER + random.random(3) * 0.3
     is_thin = 2 * walls.half < THIN
     thin, thicker = (
-        pushes_at(index, walls.where(which), random, asked["loops"])
+        pushes_at(truth, walls.where(which), random, asked["loops"])
         for which in (is_thin, ~is_thin)
     )
     task = Task(mesh)
@@ -99,9 +119,9 @@ def run(unit: Unit) -> list[Row]:
             "anatomy": asked["anatomy"], "mode": mode, "triangles": len(mesh),
             "center": " ".join(f"{x:.2f}" for x in center), "walls": len(walls.half),
         }
-        beside = pushed(new_rule, index, *thicker)
+        beside = pushed(new_rule, truth, *thicker)
         row |= {f"thicker_{name}": beside[name] for name in ("loops", "entered", "deepest")}
-        return row | more | pushed(new_rule, index, *thin)
+        return row | more | pushed(new_rule, truth, *thin)
 
     memory = {"memory": index.memory, "memory_whole": index.memory, "measured_build_s": built}
     rows = [
@@ -115,7 +135,7 @@ def run(unit: Unit) -> list[Row]:
         whole = int(np.prod(np.ptp(mesh.bounds, axis=0) / cell + 1)) * grid.values.itemsize
         field = {
             "cell": cell, "memory": grid.memory, "memory_whole": whole, "measured_build_s": built,
-        } | errors(grid, index, places) | lost_walls(grid, walls)
+        } | errors(grid, truth, places) | lost_walls(grid, walls)
         rows.append(row_of(mode, partial(SignedDistanceField, task, index, cell, grid), field))
     return rows
 
@@ -124,12 +144,6 @@ def _rule(mode: str, task: Task, index: keepout.Index) -> Rule:
     rule = make_rule(mode, task, index)
     assert rule is not None, "both modes are fixtures"
     return rule
-
-
-def signed_distances(index: keepout.Index, points: Array) -> Array:
-    """Of (n, 3) points to a closed mesh, exactly; negative in the solid."""
-    solid = are_solid(index.mesh, points, row=0.5)
-    return np.where(solid, -1.0, 1.0) * index.distances(points)
 
 
 def thinnest_place(
@@ -181,9 +195,9 @@ def walls_at(index: keepout.Index, points: Array, inwards: Array) -> Walls:
     return Walls(points, inwards, low, middle).where(is_wall)
 
 
-def errors(grid: VoxelGrid, index: keepout.Index, points: Array) -> Row:
+def errors(grid: VoxelGrid, truth: Truth, points: Array) -> Row:
     """By how much the grid's distances err at those points that are near the surface [mm]."""
-    exact = signed_distances(index, points)
+    exact = truth.distances(points)
     near = np.abs(exact) < NEAR
     wrong = np.abs(grid.distances(points[near]) - exact[near])
     return {
@@ -204,10 +218,10 @@ def lost_walls(grid: VoxelGrid, walls: Walls) -> Row:
 
 
 def pushes_at(
-    index: keepout.Index, walls: Walls, random: np.random.Generator, loops: int
+    truth: Truth, walls: Walls, random: np.random.Generator, loops: int
 ) -> tuple[Array, Array]:
     """Where tips start before walls, if free there, and what they want in each cycle."""
-    room = signed_distances(index, walls.front - START * walls.inwards)
+    room = truth.distances(walls.front - START * walls.inwards)
     walls = walls.where(room > 0.5 * START)
     walls = walls.where(random.permutation(len(walls.half))[:loops])
     slide = np.cross(walls.inwards, random.normal(size=walls.inwards.shape))
@@ -216,9 +230,9 @@ def pushes_at(
 
 
 def pushed(
-    new_rule: Callable[[], Rule], index: keepout.Index, starts: Array, wanted: Array
+    new_rule: Callable[[], Rule], truth: Truth, starts: Array, wanted: Array
 ) -> Row:
-    """Tips that are pushed at walls: how deep they get, by exact distances, and step times."""
+    """Tips that are pushed at walls: how many get in, how deep, and step times."""
     tips = np.empty((len(starts), CYCLES + 1, 3))
     tips[:, 0] = starts
     times = []
@@ -229,11 +243,11 @@ def pushed(
             motion = rule.step(tips[loop, cycle], desired)
             times.append(time.perf_counter_ns() - begun)
             tips[loop, cycle + 1] = tips[loop, cycle] + motion
-    distance = signed_distances(index, tips.reshape(-1, 3)).reshape(tips.shape[:2])
-    inside = distance < -1e-6  # [mm]: deeper than rounding
+    distance = np.array([truth.distances(of_loop) for of_loop in tips])
+    inside = distance < 0.0
     out_again = np.maximum.accumulate(inside, axis=1) & ~inside
     return {
-        "loops": len(tips), "entered": int(inside.any(axis=1).sum()),
+        "loops": len(tips), "entered": int(sum(map(truth.entered, tips))),
         "passed": int(out_again.any(axis=1).sum()),
         "deepest": float(np.maximum(0.0, -distance).max()), "least_distance": float(distance.min()),
         "below_half_margin": int((distance.min(axis=1) < 0.1).sum()),

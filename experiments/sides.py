@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""On which side of a closed mesh points are: what a distance needs to have a sign.
+"""On which side of a closed mesh the places of a lattice are: what a grid of distances needs.
 
 A vertical line from below to a point enters and leaves the solid; the turns are counted with their
 sense, so that parts which overlap stay solid. Nothing is decided by a tolerance: a line through an
@@ -76,18 +76,10 @@ def turns_outside(mesh: keepout.Mesh) -> int:
     return int(np.sum(np.einsum("ij,ij->i", a, np.cross(b, c))) < 0.0)
 
 
-def are_solid(mesh: keepout.Mesh, points: Array, row: float) -> NDArray[np.bool_]:
-    """Which of the points, (n, 3), are in the solid of a closed mesh; `row` as for `crossings`."""
-    line, height, turn = crossings(mesh, points[:, :2], row)
-    below = height < points[line, 2]
-    winding = np.bincount(line[below], turn[below], len(points)) + turns_outside(mesh)
-    return winding > 0.5
-
-
 def lattice_is_solid(
     mesh: keepout.Mesh, low: Array, cell: float, shape: tuple[int, int, int]
 ) -> NDArray[np.bool_]:
-    """The same of the places low + cell (i, j, k), of a closed mesh: (nx, ny, nz)."""
+    """Which of the places low + cell (i, j, k) are in the solid of a closed mesh: (nx, ny, nz)."""
     columns = np.indices(shape[:2]).reshape(2, -1).T * cell + low[:2]
     line, height, turn = crossings(mesh, columns, cell)
     level = np.clip(np.floor((height - low[2]) / cell) + 1, 0, shape[2]).astype(np.int64)

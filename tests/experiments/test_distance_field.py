@@ -5,7 +5,7 @@ import pytest
 
 from experiments.rules.rule import Corridor, Task
 from experiments.rules.signed_distance_field import SignedDistanceField, VoxelGrid
-from experiments.sides import are_solid, is_closed, lattice_is_solid
+from experiments.sides import is_closed, lattice_is_solid
 
 
 def box(low, high):
@@ -43,22 +43,21 @@ def test_sides_of_a_ball_also_on_lines_through_its_vertices_and_edges():
     sure = (far < 9.9) | (far > 10.0 + 1e-9)
     solid = lattice_is_solid(mesh, np.full(3, -12.0), 1.0, (25, 25, 25)).ravel()
     np.testing.assert_array_equal(solid[sure], far[sure] < 10.0)
-    np.testing.assert_array_equal(are_solid(mesh, places, row=0.7)[sure], far[sure] < 10.0)
 
 
 def test_a_mesh_inside_out_is_solid_all_around():
     mesh = ball()
     turned = keepout.Mesh(mesh.vertices, mesh.triangles[:, ::-1])
-    places = np.random.default_rng(1).uniform(-12, 12, (500, 3))
-    np.testing.assert_array_equal(are_solid(turned, places, 1.0), ~are_solid(mesh, places, 1.0))
+    lattice = (np.full(3, -12.1), 0.7, (35, 35, 35))
+    np.testing.assert_array_equal(lattice_is_solid(turned, *lattice), ~lattice_is_solid(mesh, *lattice))
 
 
 def test_parts_that_overlap_stay_solid():
     one, other = box([0, 0, 0], [4, 4, 4]), box([2, 2, 2], [6, 6, 6])
     both = keepout.Mesh(
         np.vstack([one.vertices, other.vertices]), np.vstack([one.triangles, other.triangles + 8]))
-    places = np.array([[1, 1, 1], [3, 3, 3], [5, 5, 5], [1, 1, 5.0]])
-    assert are_solid(both, places, 1.0).tolist() == [True, True, True, False]
+    solid = lattice_is_solid(both, np.ones(3), 2.0, (3, 3, 3))
+    assert solid[0, 0, 0] and solid[1, 1, 1] and solid[2, 2, 2] and not solid[0, 0, 2]
 
 
 @pytest.mark.parametrize("cell", [1.0, 0.5])
