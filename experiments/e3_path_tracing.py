@@ -2,9 +2,9 @@
 """E3: the outside of a pre-cut skull is traced along a planned path (section V-A).
 
 30 mm on the outside of the CT skull; the slot is there already, so nothing stops the tip but the
-fixture, which has the whole skull of half a million triangles for its mesh. Five repetitions a
-mode. Measured: smoothness, as spectral arc length up to 20 Hz as in the paper and as SPARC; how far
-the tip is from the planned depth, which is the outside smoothed by 1 mm, and from the path across.
+fixture, which has the whole skull of half a million triangles for its mesh. Measured: smoothness,
+as spectral arc length up to 20 Hz as in the paper and as SPARC; how far the tip is from the planned
+depth, which is the outside smoothed by 1 mm, and from the path across.
 """
 from __future__ import annotations
 
@@ -18,19 +18,14 @@ from .comparison import Measure, compare, sweep_table
 from .experiment import Figure, Findings, Row, Scale, Unit
 from .operator_model import Operator
 from .set_up_errors import SetUp
-from .teleoperation import CORRIDOR, measures, operate
+from .teleoperation import CORRIDOR, SWEEP, SWEPT, TREMOR, measures, operate
 from .trial import Course
 
 NAME = "e3_path_tracing"
 TITLE = "E3 Path tracing (section V-A)"
 
-#: Tremor of all comparisons, and the sweep [mm RMS at the tip].
-TREMOR = 0.13
-SWEEP = (0.0, 0.05, 0.25)
 SPEED = 2.0  # [mm/s], ours: the paper does not say
 ADJUSTING = 0.4  # [mm RMS in depth], ours: the arc length hardly depends on it
-SWEPT = ("none", "paper", "certified")
-DRAWN = ("none", "paper", "certified")  # in the overlay
 
 
 def units(scale: Scale) -> list[Unit]:
@@ -63,7 +58,7 @@ def run(unit: Unit) -> list[Row]:
     index = anatomy.real_index("skull")
     trial = operate(told["mode"], course, index, operator, setup, seeds)
     along, across, depth = course.path.depths(trial.trace.tip[trial.trace.begun :])
-    drawn = told["mode"] in DRAWN and not told["ideal"] and told["number"] < 5
+    drawn = told["mode"] in SWEPT and not told["ideal"] and told["number"] < 5
     return [
         {name: told[name] for name in ("mode", "tremor", "ideal", "number")}
         | {"corridor": CORRIDOR}
@@ -104,9 +99,9 @@ def findings(rows: list[Row], scale: Scale) -> Findings:
 
 
 def _overlay(rows: list[Row]) -> Figure:
-    """The trajectories on the section of the skull, as the paper's figure 9."""
-    fig, axes = figures.new(160, 120, rows=len(DRAWN))
-    for ax, mode in zip(axes, DRAWN, strict=True):
+    """The trajectories on the section of the skull, as the paper overlays them."""
+    fig, axes = figures.new(160, 120, rows=len(SWEPT))
+    for ax, mode in zip(axes, SWEPT, strict=True):
         for row in (row for row in rows if row["mode"] == mode and row["along_mm"]):
             ax.plot(row["along_mm"], row["height_mm"], color=figures.color(mode), linewidth=0.6)
         ax.axhline(0.0, color=figures.INK, linewidth=1.0)

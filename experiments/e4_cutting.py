@@ -17,16 +17,12 @@ from .comparison import Measure, compare, sweep_table
 from .experiment import Findings, Row, Scale, Unit
 from .operator_model import Operator
 from .set_up_errors import SetUp
-from .teleoperation import CORRIDOR, Trial, measures, operate
+from .teleoperation import CORRIDOR, SWEEP, SWEPT, TREMOR, Trial, measures, operate
 from .trial import Course
 
 NAME = "e4_cutting"
 TITLE = "E4 Cutting (section V-B)"
 
-#: Tremor of all comparisons, and the sweep [mm RMS at the tip].
-TREMOR = 0.13
-SWEEP = (0.0, 0.05, 0.25)
-SWEPT = ("none", "paper", "certified")
 CORRIDORS = (0.25, 0.5)  # [mm] besides that of the paper
 SAMPLES = 30
 

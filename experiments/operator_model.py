@@ -8,9 +8,9 @@ The hand means to follow a planned path. What it does instead is the sum of
   (Riviere, Rader, Khosla, "Characteristics of hand motion of eye surgeons", 1997);
 - adjustments in depth, up and down again from 0.5 to 2 Hz, of a hand whose eye is not sure of it: the
   paper's argument for smoothness is that a fixture takes them away;
-- physiological tremor from 8 to 12 Hz. 0.05, 0.13 and 0.25 mm RMS at the tip of an instrument are
+- physiological tremor from 8 to 12 Hz. 0.05, 0.13 and 0.25 mm RMS, here of the robot's goal, are
   what was measured holding still and actuating (0.049 and 0.133 mm, the same article) and without
-  sight of the tip (0.254 mm, Becker et al., "Active guidance of a handheld micromanipulator", 2011).
+  sight of the tip (0.254 mm in the axis with most of it: PubMed Central PMC3032442).
 
 The arm is a mass on a spring and a damper between the place intended and the handle, the usual form
 (Speich, Shao, Goldfarb, "Modeling the human hand as it interacts with a telemanipulation system",
@@ -18,8 +18,8 @@ Mechatronics 15, 2005; Fu and Cavusoglu, "Human arm-and-hand dynamics model with
 analyses for a stylus-based haptic interface", IEEE SMC-B 42, 2012). The values are ours, of the order
 that such articles find for a light grip, near critical damping.
 
-The amounts of bias, slow error and adjustments are not from the literature: they are fitted to what the paper
-prints of hands WITHOUT a fixture (`docs/experiments.md` has the table). What is said of any
+The amounts of bias and slow error are not from the literature: they are fitted to what the paper prints
+of cutting WITHOUT a fixture (`docs/experiments.md` has the table). What is said of any
 fixture is then a prediction, with nothing left to fit.
 """
 from __future__ import annotations

@@ -23,6 +23,12 @@ from .trial import Course, Trace, run_trial
 MARGIN = 0.01  # [mm] that each rule keeps: the paper has none, and the certified rule needs some
 CORRIDOR = 1.0  # [mm] on each side of the sagittal plane (V)
 
+#: Tremor of all comparisons, and the sweep [mm RMS of the goal].
+TREMOR = 0.13
+SWEEP = (0.0, 0.05, 0.25)
+#: The modes that are swept, and whose trajectories are drawn.
+SWEPT = ("none", "paper", "certified")
+
 
 @dataclass(frozen=True)
 class Trial:
