@@ -7,72 +7,134 @@
 namespace keepout {
 namespace {
 
+/// The name of a status and its reason for each Subject, in their order.
 struct Outcome {
   std::string_view name;
-  std::string_view reason;
+  std::array<std::string_view, 3> reasons;
 };
+
+constexpr std::string_view never = "a status that this kind of result never has";
 
 // In the order of the enumeration.
 constexpr std::array outcomes{
-    Outcome{"free", "nothing holds the motion back"},
-    Outcome{"limited", "planes of nearby triangles hold the motion back"},
-    Outcome{"recovering", "the tip was closer than the margin, or inside: the motion leads it out"},
+    Outcome{"free",
+            {"the motion is the one asked for", "the motion is the one asked for",
+             "every motion within the planes and the radius keeps the margin"}},
+    Outcome{"limited",
+            {"the motion is the nearest one that the constraints in `limits` allow",
+             "the motion is the nearest one that the constraints in `limits` allow", never}},
+    Outcome{"recovering",
+            {"the tip was nearer than the margin, inside, or out of a guide's region: the motion "
+             "leads it back",
+             "a body was nearer than the margin, or a guide was out of its region: the motion "
+             "leads it back",
+             never}},
     Outcome{"fallback",
-            "the best motion could not be proven within the budget of work: this is a shorter one "
-            "that was"},
+            {"only a shorter motion could be proved: `limits` names what stops the rest",
+             "only a shorter motion could be proved: `limits` names what stops the rest", never}},
     Outcome{"yielding",
-            "anatomy comes on faster than the instrument can give way: this motion is proven to "
-            "keep less than the margin, how much is told; slow it down, or make room"},
+            {never,
+             "a mesh approaches faster than the instrument can retreat: the motion is proved to "
+             "keep less than the margin, see `level`; slow the mesh down, or make room",
+             never}},
     Outcome{"infeasible",
-            "no motion satisfies all planes: the tip is closer than the margin on several sides, "
-            "or the joints cannot move it away; retreat, or lower the margin"},
+            {"no motion satisfies all planes and rows: the tip is nearer than the margin on "
+             "several sides, or the joints cannot move it away; retreat, or lower `margin`",
+             "no joint increment satisfies all rows: bodies are nearer than the margin on several "
+             "sides, or the joints cannot move them away; retreat, or lower `margin`",
+             never}},
     Outcome{"ill_posed",
-            "the Jacobian lacks full column rank, or all but, as it does with more than three "
-            "joints: set damping above 0"},
+            {"the Jacobian lacks full column rank, or almost, as it does with more than three "
+             "joints: set `damping` above 0",
+             "the task leaves a joint increment undetermined: set `damping` above 0", never}},
     Outcome{"invalid_input",
-            "a number is missing, not finite, beyond 1e15 (of a Jacobian or rows 1e30), or so far "
-            "from the origin that the step is lost in its digits, or a Jacobian has other than 3 "
-            "rows: check the tip, the increment and the Jacobian"},
+            {"a number is missing, not finite, beyond 1e15 (of a Jacobian or rows 1e30), or so "
+             "far from the origin that rounding hides the step, or a Jacobian has other than 3 "
+             "rows: check the tip, the increment and the Jacobian",
+             "a joint position, the desired motion or a weight is missing, not finite or out of "
+             "range, or a mesh has no valid pose or turns by more than 1 rad in a cycle: check q, "
+             "the desired motion, and the last place()",
+             "the tip or the radius is not finite, negative or beyond 1e15"}},
     Outcome{"beyond_reach",
-            "the motion is longer than the radius of the motion sphere: ask for less in a cycle, "
-            "or declare a larger radius; are motion, radius and mesh in one unit, as mm?"},
+            {"the motion is longer than the radius of the motion sphere: ask for less in a cycle, "
+             "or raise `radius`; are motion, radius and mesh in one unit, such as mm?",
+             never, never}},
     Outcome{"over_capacity",
-            "more triangles, planes or joints than room was made for: lower the radius, or raise "
-            "the capacity (of joints: Capacity::variables, max_joints in Python); or is the mesh "
-            "in "
-            "metres, so that a radius in mm holds all of it?"},
-    Outcome{
-        "unsolved",
-        "no motion could be proven within the budget of work, the cycle's or the solver's: ask for "
-        "a shorter one"},
-    Outcome{
-        "inside",
-        "the tip is on the forbidden side, deeper than `deepest`, or a Jacobian, rows or too small "
-        "a recovery keep it from being led out: lead it out by hand, or by steps without them; if "
-        "it is outside, the mesh is wound inside out"},
+            {"more triangles, planes, rows or joints than the capacity holds: lower `radius`, or "
+             "raise Capacity::triangles, planes, extra_rows or variables (max_triangles, "
+             "max_planes, max_rows, max_joints in Python); or is the mesh in meters, so that a "
+             "radius in mm holds all of it?",
+             "more triangles near a body, or more planes, than the capacity holds: raise "
+             "InstrumentCapacity::triangles or planes (max_triangles, max_planes in Python), or "
+             "simplify the mesh",
+             "more triangles or planes than the capacity holds: lower the radius of the polytope, "
+             "or raise Capacity::triangles or planes"}},
+    Outcome{"unsolved",
+            {"the search ended without a motion that could be proved: ask for a shorter motion, or "
+             "one in another direction",
+             "the search ended without a motion that could be proved: ask for a shorter motion, or "
+             "one in another direction",
+             never}},
+    Outcome{"inside",
+            {"the tip is on the forbidden side, deeper than `deepest`, or a Jacobian, rows, a "
+             "guide or too small a `recovery` keep it from being led out: lead it out by hand, or "
+             "by steps without them; if it is outside, the mesh is wound inside out",
+             "a body is on the forbidden side: move it out by hand; if it is outside, the mesh is "
+             "wound inside out",
+             never}},
     Outcome{"touching",
-            "the tip touches the surface, and which side is free cannot be told: move it off by "
-            "hand"},
+            {"the tip touches the surface, and its free side is unknown: move it off by hand",
+             "the core of a body touches the surface, and its free side is unknown: move it off by "
+             "hand",
+             "the tip is on the surface, to within rounding, and no side of it is certain: go back "
+             "to the last free place"}},
     Outcome{"margin_too_small",
-            "the margin is lost in the rounding of lengths this large: raise the margin or the "
-            "tool radius, or move the origin closer; or is the mesh in micrometres?"},
+            {"the margin is lost in the rounding of lengths this large: raise `margin` or "
+             "`tool_radius`, or move the origin closer; or is the mesh in micrometers?",
+             "the margin or the band is lost in the rounding of lengths this large: place() put a "
+             "mesh too far from the origin; move the origin closer, or raise `margin` and `band`",
+             never}},
     Outcome{"mesh_changed",
-            "the index was refit to another mesh: have the motion constraint follow it, and look "
-            "where the tip is now"},
+            {"the index was refit to another mesh: call follow(), and check where the tip is now",
+             "the index was refit to another mesh: call follow(), and check where the bodies are "
+             "now",
+             "the index was refit to another mesh: call follow()"}},
+    Outcome{"out_of_budget",
+            {"the work budget of the cycle ended before a motion was proved: ask for a shorter "
+             "motion, simplify the mesh, or raise Capacity::looks (max_looks in Python)",
+             "the work budget of the cycle ended before a motion was proved: ask for a shorter "
+             "motion, simplify the mesh, or raise InstrumentCapacity::looks (max_looks in Python)",
+             "the work budget ended before the polytope was complete: lower the radius of the "
+             "polytope, or raise Capacity::looks"}},
+    Outcome{"unsupported",
+            {never, never,
+             "the rule guards a whole tool, and planes around its tip would not guard the rest: "
+             "use a rule that guards a tip"}},
 };
 static_assert(outcomes.size() == status_count);
 
-constexpr Outcome unknown{"unknown", "unknown status"};
-
-const Outcome& outcome_of(Status status) noexcept {
-  const auto place = static_cast<std::size_t>(status);
-  return place < outcomes.size() ? outcomes[place] : unknown;
-}
+// In the order of the enumeration.
+constexpr std::array<std::string_view, limit_count> limit_names{
+    "mesh",          "guide",  "joint_position", "joint_velocity", "rows",          "radius",
+    "linearization", "budget", "capacity",       "truncated",      "joints_outside"};
 
 }  // namespace
 
-std::string_view name(Status status) noexcept { return outcome_of(status).name; }
+std::string_view name(Status status) noexcept {
+  const auto place = static_cast<std::size_t>(status);
+  return place < outcomes.size() ? outcomes[place].name : "unknown";
+}
 
-std::string_view reason(Status status) noexcept { return outcome_of(status).reason; }
+std::string_view reason(Status status, Subject subject) noexcept {
+  const auto place = static_cast<std::size_t>(status);
+  const auto column = static_cast<std::size_t>(subject);
+  if (place >= outcomes.size() || column >= outcomes[place].reasons.size()) return "unknown status";
+  return outcomes[place].reasons[column];
+}
+
+std::string_view name(Limit limit) noexcept {
+  const auto place = static_cast<std::size_t>(limit);
+  return place < limit_names.size() ? limit_names[place] : "unknown";
+}
 
 }  // namespace keepout

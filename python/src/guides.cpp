@@ -7,7 +7,7 @@
 
 #include "arrays.h"
 #include "bindings.h"
-#include "keepout/robot/guide.h"
+#include "keepout/step/guide.h"
 #include "keepout/step/tip_guides.h"
 
 namespace keepout::python {

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "guide_kinematics.h"
+
 namespace keepout {
 namespace {
 
@@ -16,7 +18,7 @@ void GuideWatch::open() noexcept {
   const ChainState& chain = memory_.motion.chain_at_start();
   for (std::size_t g = 0; g < memory_.guides.size(); ++g) {
     const Guide& guide = memory_.guides[g].guide;
-    const double excess = guide.region().excess(guide.place(chain));
+    const double excess = guide.region().excess(guided_point(guide, chain));
     const double tolerance = guide.is_angular() ? angular_tolerance : memory_.tolerance;
     double& floor = memory_.guides[g].floor;
     floor = certified_distance(-excess, floor, -guide.band(), guide.band(), tolerance);
@@ -48,7 +50,7 @@ int GuideWatch::judge(std::size_t& failed) noexcept {
 GuideWatch::Standing GuideWatch::standing(std::size_t g, int cell) noexcept {
   const Guide& guide = memory_.guides[g].guide;
   const ChainState& chain = chain_at(cell);
-  return {guide.region().excess(guide.place(chain)), guide.share(chain)};
+  return {guide.region().excess(guided_point(guide, chain)), guided_fraction(guide, chain)};
 }
 
 /// The grid's last point up to which the part from lo to hi is proven.
@@ -61,8 +63,8 @@ int GuideWatch::proven_until(std::size_t g, int lo, const Standing& at_lo, int h
   const double part = static_cast<double>(hi - lo) / PointMotion::cells;
   const double slide = std::abs(at_hi.share - at_lo.share) / part;
   const auto n = static_cast<std::size_t>(memory_.instrument.chain().size());
-  const double bend =
-      guide.bend(memory_.motion.chain_at_start(), {memory_.motion.increment().data(), n}, slide);
+  const double bend = guided_bend(guide, memory_.motion.chain_at_start(),
+                                  {memory_.motion.increment().data(), n}, slide);
   if (std::max(at_lo.excess, at_hi.excess) + bend * part * part / 8.0 <= allowed_[g]) return hi;
   if (hi - lo == 1) return lo;
   const int middle = (lo + hi) / 2;
@@ -74,25 +76,26 @@ int GuideWatch::proven_until(std::size_t g, int lo, const Standing& at_lo, int h
 std::optional<ContactRow> GuideWatch::row(std::size_t g, int cell) noexcept {
   const Guide& guide = memory_.guides[g].guide;
   const Region& region = guide.region();
-  const Vec3 outward = region.outward(guide.place(chain_at(cell)));
+  const Vec3 outward = region.outward(guided_point(guide, chain_at(cell)));
   if (outward.isZero(0.0)) return std::nullopt;
   const ChainState& chain = memory_.motion.chain_at_start();
   ContactRow row{.owner = most_pairs + g, .triangle = no_triangle};
   row.normal = -outward;
   row.level = row.normal.dot(region.origin()) - region.radius();
-  row.start_height = row.normal.dot(guide.place(chain)) - row.level;
+  row.start_height = row.normal.dot(guided_point(guide, chain)) - row.level;
   // What is out is led back as fast as bodies are led off, turns by as much as moves a tool so.
   const double per_length = guide.is_angular() ? std::max(options_.orientation_weight, 1.0) : 1.0;
   row.bound = std::min(-row.start_height, options_.recovery / per_length);
   for (int k = 1; k <= chain.size(); ++k) {
-    row.gradient[static_cast<std::size_t>(k - 1)] = row.normal.dot(guide.derivative(chain, k));
+    row.gradient[static_cast<std::size_t>(k - 1)] =
+        row.normal.dot(guided_derivative(guide, chain, k));
   }
   return row;
 }
 
 double GuideWatch::height_at_end(const ContactRow& row) noexcept {
   const Guide& guide = memory_.guides[row.owner - most_pairs].guide;
-  return row.normal.dot(guide.place(chain_at(PointMotion::cells))) - row.level;
+  return row.normal.dot(guided_point(guide, chain_at(PointMotion::cells))) - row.level;
 }
 
 const ChainState& GuideWatch::chain_at(int cell) noexcept {

@@ -39,7 +39,7 @@ class GuideWatch {
   /// How a guide stands at a share of the motion.
   struct Standing {
     double excess;
-    double share;  // see Guide::share
+    double share;  // see guided_fraction
   };
 
   Standing standing(std::size_t guide, int cell) noexcept;

@@ -134,16 +134,16 @@ void JointCycle::carry_out(const Trial& best, InstrumentStep& result) noexcept {
 
 /// What held the motion back, and what gave way to it.
 void JointCycle::tell_of_guides(const Trial& best, InstrumentStep& result) noexcept {
-  result.softening = best.softening;
+  result.relaxation = best.relaxation;
   for (const WarmRow& warm : memory_.warm) {
     if (warm.owner < most_pairs) continue;
-    memory_.guide_states[warm.owner - most_pairs].holds = true;
+    memory_.guide_states[warm.owner - most_pairs].limits = true;
   }
   const bool is_cut = !is_ok(result.status) || is_shortened_ || best.share < 1.0;
   for (std::size_t g = 0; g < memory_.guides.size(); ++g) {
     GuideState& state = memory_.guide_states[g];
-    state.holds = state.holds || (is_cut && has_failed_[g]);
-    state.gave_way = best.softening != Softening::none && state.excess > 0.0;
+    state.limits = state.limits || (is_cut && has_failed_[g]);
+    state.relaxed = best.relaxation != Relaxation::none && state.excess > 0.0;
   }
 }
 
@@ -236,11 +236,11 @@ SolveStatus JointCycle::solve(const JointTask& task, Trial& trial) noexcept {
   Solution solution;
   // What leads back gives way where it contradicts itself, or where the solver comes to no end,
   // guides first: in the end standing still is allowed.
-  constexpr Softness softer[] = {{Softening::none, 1.0, 1.0},
-                                 {Softening::guides, 0.0, 1.0},
-                                 {Softening::bodies, 0.0, 0.5},
-                                 {Softening::bodies, 0.0, 0.25},
-                                 {Softening::bodies, 0.0, 0.0}};
+  constexpr Softness relaxations[] = {{Relaxation::none, 1.0, 1.0},
+                                      {Relaxation::guides, 0.0, 1.0},
+                                      {Relaxation::recovery, 0.0, 0.5},
+                                      {Relaxation::recovery, 0.0, 0.25},
+                                      {Relaxation::recovery, 0.0, 0.0}};
   bool guides_lead = false;
   bool bodies_lead = false;
   for (const ContactRow& row : memory_.rows) {
@@ -248,12 +248,12 @@ SolveStatus JointCycle::solve(const JointTask& task, Trial& trial) noexcept {
     lead = lead || row.bound > 0.0;
   }
   SolveStatus solved = SolveStatus::infeasible;
-  for (const Softness& softness : softer) {
-    if (softness.name == Softening::guides && !guides_lead) continue;
+  for (const Softness& softness : relaxations) {
+    if (softness.name == Relaxation::guides && !guides_lead) continue;
     solved = pose(task, softness, solution);
-    trial.softening = softness.name;
-    if (softness.name == Softening::bodies && !bodies_lead) {
-      trial.softening = guides_lead ? Softening::guides : Softening::none;
+    trial.relaxation = softness.name;
+    if (softness.name == Relaxation::recovery && !bodies_lead) {
+      trial.relaxation = guides_lead ? Relaxation::guides : Relaxation::none;
     }
     if (solved == SolveStatus::optimal || solved == SolveStatus::ill_posed) break;
   }

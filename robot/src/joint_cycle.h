@@ -35,7 +35,7 @@ class JointCycle {
  private:
   /// How much of what rows lead back is asked for.
   struct Softness {
-    Softening name;
+    Relaxation name;
     double guides;
     double bodies;
   };
@@ -48,7 +48,7 @@ class JointCycle {
     double cost = 0.0;     // of that
     bool is_held = false;  // by a row or a joint's limit
     std::size_t rows = 0;  // that hold it
-    Softening softening = Softening::none;  // what gave way
+    Relaxation relaxation = Relaxation::none;  // what gave way
   };
 
   void search(const JointTask& task, Trial& best, InstrumentStep& result) noexcept;

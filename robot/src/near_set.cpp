@@ -74,6 +74,7 @@ bool NearSet::look(Neighborhood& near, std::span<const Vec3> core, double radius
   candidates.clear();
   near.index().collect_near({from_, to_, radius + beyond_}, candidates);
   budget.spend(16 + candidates.size());
+  if (candidates.overflowed()) budget.mark_overflow();
   if (candidates.overflowed() || budget.is_spent()) return false;
   const Mesh& mesh = near.mesh();
   // Everything that matters is within the radius of the core.
@@ -92,7 +93,10 @@ bool NearSet::look(Neighborhood& near, std::span<const Vec3> core, double radius
     for (std::uint32_t lanes = may_be_near(block, screen); lanes != 0; lanes &= lanes - 1) {
       const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
       if (lane >= count) break;
-      if (ids_.size() == room_) return false;
+      if (ids_.size() == room_) {
+        budget.mark_overflow();
+        return false;
+      }
       blocks_[ids_.size() / NearBlock::lanes].set(ids_.size() % NearBlock::lanes, corners[lane],
                                                   core_.front());
       ids_.push_back(found[first + lane]);

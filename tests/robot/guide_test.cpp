@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "keepout/robot/guide.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -10,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "guide_kinematics.h"
 #include "keepout/adapters/index_registry.h"
 #include "keepout/error.h"
 #include "keepout/fixtures/random.h"
@@ -54,7 +53,7 @@ double farthest_out(const Bench& bench, const Guide& guide, const std::vector<do
     for (std::size_t k = 0; k < step.increment.size(); ++k) {
       there[k] += s / 16.0 * step.increment[k];
     }
-    most = std::max(most, guide.region().excess(guide.place(bench.at(there))));
+    most = std::max(most, guide.region().excess(guided_point(guide, bench.at(there))));
   }
   return most;
 }
@@ -109,12 +108,12 @@ TEST(Guide, BoundsTheBendOfItsPlace) {
     std::vector<double> increment;
     for (int k = 1; k <= chain.size(); ++k) increment.push_back(random.uniform(-0.3, 0.3));
     for (const Guide& guide : guides) {
-      const double bend = guide.bend(state, increment, 0.0);
+      const double bend = guided_bend(guide, state, increment, 0.0);
       Vec3 places[33];
       for (int s = 0; s <= 32; ++s) {
         std::vector<double> there = q;
         for (std::size_t k = 0; k < there.size(); ++k) there[k] += s / 32.0 * increment[k];
-        places[s] = guide.place(bench.at(there));
+        places[s] = guided_point(guide, bench.at(there));
       }
       for (int s = 1; s < 32; ++s) {
         const double second = (places[s - 1] - 2.0 * places[s] + places[s + 1]).norm() * 32 * 32;
@@ -140,12 +139,12 @@ std::vector<int> wander(Bench& bench, const std::vector<Guide>& guides, std::vec
     const InstrumentStep step = bench.guard.step(q, {.linear = linear, .angular = angular});
     EXPECT_TRUE(step.ok()) << step.reason();
     EXPECT_EQ(step.guides.size(), guides.size());
-    EXPECT_EQ(step.softening, Softening::none);
+    EXPECT_EQ(step.relaxation, Relaxation::none);
     if (!step.ok() || step.guides.size() != guides.size()) return held;
     for (std::size_t g = 0; g < guides.size(); ++g) {
       const double out = farthest_out(bench, guides[g], q, step);
       EXPECT_LE(out, guides[g].band() + 3e-9) << guides[g].name() << " in cycle " << i;
-      held[g] += step.guides[g].holds ? 1 : 0;
+      held[g] += step.guides[g].limits ? 1 : 0;
     }
     for (std::size_t k = 0; k < q.size(); ++k) {
       q[k] += step.increment[k];
@@ -196,9 +195,9 @@ TEST(Guide, LeadsBackWhatIsOut) {
     const InstrumentStep step = bench.guard.step(q, {.linear = Vec3(-0.2, 0, 0)});
     ASSERT_EQ(step.status, Status::recovering) << step.reason();
     ASSERT_NEAR(step.guides[0].excess, last, 1e-9);
-    EXPECT_FALSE(step.guides[0].gave_way);
+    EXPECT_FALSE(step.guides[0].relaxed);
     for (std::size_t k = 0; k < q.size(); ++k) q[k] += step.increment[k];
-    const double now = guide.region().excess(guide.place(bench.at(q)));
+    const double now = guide.region().excess(guided_point(guide, bench.at(q)));
     ASSERT_LE(now, last + guide.band());
     last = now;
   }
@@ -216,8 +215,8 @@ TEST(Guide, GivesWayWithAWordOnItWhereOthersContradict) {
   for (int i = 0; i < 50; ++i) {
     const InstrumentStep step = bench.guard.step(q, {.linear = Vec3(0.3, 0.3, 0.1)});
     ASSERT_EQ(step.status, Status::recovering) << step.reason();
-    EXPECT_EQ(step.softening, Softening::guides);
-    EXPECT_TRUE(step.guides[0].gave_way && step.guides[1].gave_way);
+    EXPECT_EQ(step.relaxation, Relaxation::guides);
+    EXPECT_TRUE(step.guides[0].relaxed && step.guides[1].relaxed);
     for (std::size_t k = 0; k < q.size(); ++k) q[k] += step.increment[k];
   }
   const Vec3 moved = bench.at(q).at(tip.link, tip.position) - at;
@@ -268,8 +267,8 @@ TEST(Guide, NeverLeadsIntoTheMesh) {
     for (std::size_t k = 0; k < q.size(); ++k) q[k] += step.increment[k];
   }
   EXPECT_NEAR(step.distance.value_or(1.0), 0.2, 0.003) << "it came as near as it may";
-  EXPECT_EQ(step.softening, Softening::guides);
-  EXPECT_TRUE(step.guides[1].gave_way);
+  EXPECT_EQ(step.relaxation, Relaxation::guides);
+  EXPECT_TRUE(step.guides[1].relaxed);
 }
 
 TEST(Guide, RefusesWhatIsNone) {

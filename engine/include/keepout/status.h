@@ -7,36 +7,79 @@
 
 namespace keepout {
 
-/// How a step ended. The first five come with a motion, which may be carried out and may be zero;
-/// the others with zero motion.
+/// How a step or a query ended. The first five come with a motion, which may be executed and may be
+/// zero; every other one comes with zero motion.
 enum class Status : std::uint8_t {
-  free,           // no plane holds the motion back
-  limited,        // the motion is the best one that the planes allow
-  recovering,     // the tip was too close or inside: the motion leads it out
-  fallback,       // only a shorter motion could be proven, within the budget of work
-  yielding,       // anatomy comes on faster than can be given way to: less than the margin is kept
-  infeasible,     // no motion satisfies all planes: the tip is too close on several sides
-  ill_posed,      // the Jacobian lacks full column rank and there is no damping
-  invalid_input,  // a number is not finite or out of range
-  beyond_reach,   // the motion asked for, or solved, is longer than the motion sphere's radius
-  over_capacity,  // more triangles, planes or variables than room was made for
-  unsolved,       // nothing could be proven within the budget of work, the cycle's or the solver's
-  inside,         // the tip is on the forbidden side, and is not led out
-  touching,       // the tip is on the surface, and which side is free cannot be told
-  margin_too_small,  // the margin is lost in the rounding of lengths this large
+  free,              // the motion asked for; of a polytope: its planes are complete
+  limited,           // the nearest motion that the constraints allow: see Limits
+  recovering,        // something was too close or out of its region: the motion recovers from it
+  fallback,          // a shorter motion: nothing longer was proved, see Limits
+  yielding,          // a mesh approaches too fast: the motion keeps less than the margin
+  infeasible,        // the constraints contradict each other
+  ill_posed,         // the Jacobian lacks full column rank and there is no damping
+  invalid_input,     // a number is not finite or out of range
+  beyond_reach,      // the motion asked for is longer than the motion sphere's radius
+  over_capacity,     // more triangles, planes, rows or joints than the capacity holds
+  unsolved,          // the search ended without a motion that could be proved
+  inside,            // the tip or a body is on the forbidden side, and is not led out
+  touching,          // on the surface: the free side is unknown
+  margin_too_small,  // the margin or band is lost in the rounding of lengths this large
   mesh_changed,      // the index was refit to another mesh, which is not followed yet
+  out_of_budget,     // the work budget of the cycle ended before a motion was proved
+  unsupported,       // the rule cannot answer this query
 };
 
-/// How many there are.
-inline constexpr std::size_t status_count = static_cast<std::size_t>(Status::mesh_changed) + 1;
+/// Number of statuses.
+inline constexpr std::size_t status_count = static_cast<std::size_t>(Status::unsupported) + 1;
 
-/// A motion comes with it, which may be carried out.
+/// Subject of a step or query: the reasons name what it has.
+enum class Subject : std::uint8_t { tip, instrument, polytope };
+
+/// Returns true if a motion comes with the status, which may be executed.
 constexpr bool is_ok(Status status) noexcept { return status <= Status::yielding; }
 
-/// The name as it stands in the enumeration, for files and logs.
+/// Returns the name as it stands in the enumeration, for files and logs.
 std::string_view name(Status status) noexcept;
 
-/// One line on what happened and what to do about it.
-std::string_view reason(Status status) noexcept;
+/// Returns one line on what happened and what to do about it.
+std::string_view reason(Status status, Subject subject) noexcept;
+
+/// A cause that kept a motion from being the one asked for, or a finding that goes with it.
+enum class Limit : std::uint8_t {
+  mesh,            // the required clearance from a mesh
+  guide,           // a guide: see GuideState
+  joint_position,  // a position limit of a joint
+  joint_velocity,  // a velocity or increment limit of a joint
+  rows,            // the caller's own rows
+  radius,          // the radius of the motion sphere
+  linearization,   // the true motion of the joints departs too far from the linear task
+  budget,          // the work budget of the cycle ended
+  capacity,        // a store was too small
+  truncated,       // only a part of a motion was proved, or one towards a nearer target
+  joints_outside,  // a joint starts outside its position limits; it may stay or come back
+};
+
+/// Number of limits.
+inline constexpr std::size_t limit_count = static_cast<std::size_t>(Limit::joints_outside) + 1;
+
+/// Returns the name as it stands in the enumeration, for files and logs.
+std::string_view name(Limit limit) noexcept;
+
+/// A set of limits.
+class Limits {
+ public:
+  constexpr void add(Limit limit) noexcept { bits_ |= bit(limit); }
+  constexpr bool has(Limit limit) const noexcept { return (bits_ & bit(limit)) != 0; }
+  constexpr bool empty() const noexcept { return bits_ == 0; }
+  /// Returns the set as bits: bit i is limit i.
+  constexpr std::uint16_t bits() const noexcept { return bits_; }
+  constexpr bool operator==(const Limits&) const noexcept = default;
+
+ private:
+  static constexpr std::uint16_t bit(Limit limit) noexcept {
+    return static_cast<std::uint16_t>(1u << static_cast<unsigned>(limit));
+  }
+  std::uint16_t bits_ = 0;
+};
 
 }  // namespace keepout

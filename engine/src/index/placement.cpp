@@ -58,12 +58,13 @@ struct Nearest {
   Triangle faced;  // of all that meets there, what faces the tip the most
 };
 
-/// Asks the index for what touches a ball. Whether there was room, and work left to look at it.
+/// Asks the index for what touches a ball. Returns false without room, or work left to look at it.
 bool collect(Neighborhood& near, const Ball& ball) noexcept {
   TriangleBuffer& candidates = near.candidates();
   candidates.clear();
   near.index().collect(ball, candidates);
   near.budget().spend(work_of_hit * candidates.size());
+  if (candidates.overflowed()) near.budget().mark_overflow();
   return !candidates.overflowed() && !near.budget().is_spent();
 }
 

@@ -49,6 +49,7 @@ bool Neighborhood::look(const Ball& ball) noexcept {
   if (!ball.center.allFinite() || !(ball.radius >= 0.0)) return false;
   index_->collect(ball, candidates_);
   budget_.spend(work_of_hit * candidates_.size());
+  if (candidates_.overflowed()) budget_.mark_overflow();
   if (candidates_.overflowed() || budget_.is_spent()) return false;
   refine(*mesh_, ball, candidates_.view(), hits_);
   return true;
@@ -95,7 +96,10 @@ std::optional<Hit> find_nearest(const Mesh& mesh, const SpatialIndex& index, con
       empty = radius;
     }
     const double next = 2.0 * radius < crowded ? 2.0 * radius : empty + 0.5 * (crowded - empty);
-    if (!(next > empty && next < crowded)) return std::nullopt;
+    if (!(next > empty && next < crowded)) {
+      budget.mark_overflow();
+      return std::nullopt;
+    }
     radius = next;
   }
   return std::nullopt;

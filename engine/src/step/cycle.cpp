@@ -18,24 +18,6 @@ constexpr int most_rounds = 256;
 
 constexpr int most_halvings = 8;
 
-Status status_of(SolveStatus solved) noexcept {
-  switch (solved) {
-    case SolveStatus::optimal:
-      return Status::free;
-    case SolveStatus::infeasible:
-      return Status::infeasible;
-    case SolveStatus::ill_posed:
-      return Status::ill_posed;
-    case SolveStatus::invalid_input:
-      return Status::invalid_input;
-    case SolveStatus::over_capacity:
-      return Status::over_capacity;
-    case SolveStatus::iteration_limit:
-      break;
-  }
-  return Status::unsolved;
-}
-
 /// Makes a solver's projection of the aim as exact as the planes are: what it left undone is made
 /// up for, and the motion ends in the ball over the aim, where triangles were looked for.
 Vec3 sharpened(const Vec3& motion, const Vec3& aim, std::span<const HalfSpace> planes) noexcept {

@@ -67,7 +67,7 @@ bool lead_out_from_inside(Neighborhood& near, const Motion& motion, const StepOp
                           Workspace& work, Step& step) noexcept {
   const auto placement = place(near, motion.tip);
   if (!placement) {
-    step.status = Status::over_capacity;
+    step.status = near.budget().status_at_end();
     return true;
   }
   if (placement->is_free) return false;

@@ -194,19 +194,19 @@ void MotionConstraint::step_as_checked(const Motion& motion, SideWatch& sides, S
 }
 
 Polytope MotionConstraint::free_polytope(const Vec3& tip, double radius) noexcept {
-  PolytopeStatus status = PolytopeStatus::whole_tool;
+  Status status = Status::unsupported;
   if (!is_current()) {
-    status = PolytopeStatus::mesh_changed;
+    status = Status::mesh_changed;
   } else if (!activation_->guards_a_tool()) {
     near_->budget().renew();
     const double kept = distance_kept(options_);
-    // What is no ball is refused there.
+    // around() refuses a ball that is not one.
     const bool fits = near_->look({tip, radius + kept}) || !(radius >= 0.0 && tip.allFinite());
     status =
         fits ? polytope_.around(tip, radius, kept, near_->hits(), near_->budget(), polytope_planes_)
-             : PolytopeStatus::over_capacity;
+             : near_->budget().status_at_end();
   }
-  if (status != PolytopeStatus::found) hold_still(polytope_planes_);
+  if (status != Status::free) hold_still(polytope_planes_);
   return {status, polytope_planes_.view()};
 }
 

@@ -3,22 +3,22 @@
 
 namespace keepout {
 
-std::string_view reason(SolveStatus status) noexcept {
+Status status_of(SolveStatus status) noexcept {
   switch (status) {
     case SolveStatus::optimal:
-      return "optimal: no motion that satisfies the constraints is better";
+      return Status::free;
     case SolveStatus::infeasible:
-      return "infeasible: the constraints contradict each other";
+      return Status::infeasible;
     case SolveStatus::ill_posed:
-      return "ill-posed: the task leaves a direction of motion free; give it more rows or damping";
+      return Status::ill_posed;
     case SolveStatus::invalid_input:
-      return "invalid input: a number is not finite or out of range, or the shapes do not agree";
+      return Status::invalid_input;
     case SolveStatus::over_capacity:
-      return "over capacity: the problem has more variables or rows than were reserved";
+      return Status::over_capacity;
     case SolveStatus::iteration_limit:
-      return "iteration limit: the budget of work is spent, or rounding hides the answer";
+      break;
   }
-  return "unknown status";
+  return Status::unsolved;
 }
 
 }  // namespace keepout

@@ -7,33 +7,16 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <string_view>
 #include <vector>
 
 #include "keepout/activation/activation.h"
 #include "keepout/index/query.h"
 #include "keepout/mesh/mesh.h"
+#include "keepout/status.h"
 
 namespace keepout {
 
 struct TriangleFromTip;
-
-/// What became of a free polytope. Anything but `found` comes with planes that allow standing still
-/// and nothing else.
-enum class PolytopeStatus : std::uint8_t {
-  found,          // the planes are complete
-  touching,       // the tip is on the mesh, to within rounding: no side of it is certain
-  invalid_input,  // a number is not finite or out of range, or a hit is of no triangle of the mesh
-  over_capacity,  // more hits or planes than room was made for, or work than the budget allows
-  whole_tool,     // the rule guards more than the tip, which is all that the planes are for
-  mesh_changed    // the index was refit to another mesh, which is not followed yet
-};
-
-/// The name as it stands in the enumeration, for files and logs.
-std::string_view name(PolytopeStatus status) noexcept;
-
-/// One line on what happened and what to do about it.
-std::string_view reason(PolytopeStatus status) noexcept;
 
 /// How many planes it takes to allow standing still and nothing else.
 inline constexpr std::size_t planes_to_hold_still = 6;
@@ -64,7 +47,9 @@ class FreePolytope {
   /// Makes all memory here, for up to `triangles` hits in a call. Throws Error without a mesh.
   FreePolytope(std::shared_ptr<const Mesh> mesh, std::size_t triangles);
 
-  /// Replaces the contents of `planes` by the polytope around `tip`; all offsets are <= 0.
+  /// Replaces the contents of `planes` by the polytope around `tip`; all offsets are <= 0. Returns
+  /// free, or why the planes allow standing still only: touching, invalid_input, over_capacity or
+  /// out_of_budget.
   ///
   /// `radius`, `margin` [length], >= 0. `hits`: all triangles within the ball of radius + margin
   /// around the tip, in any order; closest points relative to the tip (refine). `planes` needs room
@@ -72,9 +57,9 @@ class FreePolytope {
   ///
   /// The normals, the offsets and their order are the same, bit for bit but for the sign of a zero,
   /// however the triangles are numbered, wound and rotated. Allocates nothing.
-  [[nodiscard]] PolytopeStatus around(const Vec3& tip, double radius, double margin,
-                                      std::span<const Hit> hits, Budget& budget,
-                                      HalfSpaceBuffer& planes) noexcept;
+  [[nodiscard]] Status around(const Vec3& tip, double radius, double margin,
+                              std::span<const Hit> hits, Budget& budget,
+                              HalfSpaceBuffer& planes) noexcept;
 
  private:
   /// A hit, and what it is sorted by.
@@ -84,10 +69,10 @@ class FreePolytope {
   };
   struct Query;
 
-  PolytopeStatus prepare(Query& query, std::span<const Hit> hits) const noexcept;
+  Status prepare(Query& query, std::span<const Hit> hits) const noexcept;
   std::span<const Turn> by_distance(std::span<const Hit> hits) noexcept;
-  PolytopeStatus separate(const Query& query, std::span<const Hit> hits, Budget& budget,
-                          HalfSpaceBuffer& planes) noexcept;
+  Status separate(const Query& query, std::span<const Hit> hits, Budget& budget,
+                  HalfSpaceBuffer& planes) noexcept;
   std::optional<HalfSpace> plane_for(const Query& query, const Hit& hit,
                                      const TriangleFromTip& seen) const noexcept;
   std::size_t probes_left_by(const HalfSpace& plane, double radius) const noexcept;

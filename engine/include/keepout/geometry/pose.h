@@ -21,4 +21,10 @@ struct Pose {
   }
 };
 
+/// A point that a link of a chain carries.
+struct LinkPoint {
+  int link = 0;                  // 0 is the base, which does not move
+  Vec3 position = Vec3::Zero();  // in the frame of the link [length]
+};
+
 }  // namespace keepout

@@ -6,6 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "keepout/status.h"
+
 namespace keepout {
 
 /// The work that a control cycle may do, whatever happens in it: counted in looks, so that it is
@@ -24,13 +26,24 @@ class Budget {
       : all_(static_cast<std::int64_t>(looks < unlimited ? looks : unlimited)), left_(all_) {}
 
   /// A new cycle begins.
-  void renew() noexcept { left_ = all_; }
+  void renew() noexcept {
+    left_ = all_;
+    overflowed_ = false;
+  }
 
   /// Takes so many looks away.
   void spend(std::size_t looks) noexcept { left_ -= static_cast<std::int64_t>(looks); }
 
-  /// Takes all away: nothing more is to be looked at.
+  /// Spends all: nothing more may be looked at.
   void spend_all() noexcept { left_ = 0; }
+
+  /// Notes that a store was too small for what was found.
+  void mark_overflow() noexcept { overflowed_ = true; }
+
+  /// Returns why the work ended: over_capacity if a store was too small, else out_of_budget.
+  Status status_at_end() const noexcept {
+    return overflowed_ ? Status::over_capacity : Status::out_of_budget;
+  }
 
   /// Whether nothing is left.
   bool is_spent() const noexcept { return left_ <= 0; }
@@ -48,6 +61,7 @@ class Budget {
   template <class Attempt>
   auto halved(const Attempt& attempt) noexcept(noexcept(attempt())) {
     const std::int64_t aside = left_ / 2;
+    overflowed_ = false;
     left_ -= aside;
     auto result = attempt();
     left_ += aside;
@@ -57,6 +71,7 @@ class Budget {
  private:
   std::int64_t all_;
   std::int64_t left_;
+  bool overflowed_ = false;
 };
 
 }  // namespace keepout

@@ -9,6 +9,7 @@
 
 #include "keepout/geometry/shapes.h"
 #include "keepout/status.h"
+#include "keepout/step/guide.h"
 #include "keepout/step/tip_jacobian.h"
 
 namespace keepout {
@@ -54,12 +55,16 @@ struct Step {
   Status status = Status::invalid_input;   // how it ended
   Vec3 motion = Vec3::Zero();              // of the tip; zero unless ok() [length]
   std::span<const double> increment = {};  // u: the tip's, or the joints' (n); empty unless ok()
-  /// All that were posed to the solver. A rule may leave out those on which the answer cannot
-  /// depend: see Surroundings::is_projected.
+  /// All that were posed to the solver: those of the mesh, then those of guides, whose source is
+  /// no_triangle. A rule may leave out those on which the answer cannot depend: see
+  /// Surroundings::is_projected.
   std::span<const HalfSpace> planes = {};
-  /// Which of them hold the motion back; empty unless ok(). From planes.size() on, extra rows.
+  /// The planes that limit the motion; empty unless ok(). From planes.size() on, extra rows.
   std::span<const std::uint32_t> active = {};
-  std::size_t triangles = 0;  // that it rests on: see Activation::triangles
+  Limits limits = {};                        // what kept the motion from being the one asked for
+  std::span<const GuideState> guides = {};   // one for each guide, in the order of set_guides
+  Relaxation relaxation = Relaxation::none;  // what was relaxed
+  std::size_t triangles = 0;                 // that it rests on: see Activation::triangles
   /// From the tip, where it was as the step began, to the nearest triangle, on whichever side. Told
   /// where it is known anyway, which is under the certified rule, of a tip no farther off than the
   /// distance kept, or one that is led out from inside; and of every other tip if
@@ -70,7 +75,7 @@ struct Step {
   /// Whether there is a motion that may be carried out; it may be zero.
   bool ok() const noexcept { return is_ok(status); }
   /// One line on what happened and what to do about it; a literal.
-  std::string_view reason() const noexcept { return keepout::reason(status); }
+  std::string_view reason() const noexcept { return keepout::reason(status, Subject::tip); }
 };
 
 /// The time that each part of a step took, to know them apart. What a failed step does not reach

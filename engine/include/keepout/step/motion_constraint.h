@@ -27,13 +27,13 @@ enum class Inside : std::uint8_t {
 
 /// Planes around a tip.
 struct Polytope {
-  PolytopeStatus status = PolytopeStatus::invalid_input;  // how it ended
-  std::span<const HalfSpace> planes;  // unless found, they allow standing still only
+  Status status = Status::invalid_input;  // free if the planes are complete
+  std::span<const HalfSpace> planes;      // unless ok(), they allow standing still only
 
   /// Whether the planes are complete.
-  bool ok() const noexcept { return status == PolytopeStatus::found; }
+  bool ok() const noexcept { return is_ok(status); }
   /// One line on what happened and what to do about it; a literal.
-  std::string_view reason() const noexcept { return keepout::reason(status); }
+  std::string_view reason() const noexcept { return keepout::reason(status, Subject::polytope); }
 };
 
 /// Keeps a tool tip out of a mesh: puts an index, a rule and a solver together, with their memory.

@@ -4,9 +4,9 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <span>
-#include <string_view>
 
 #include "keepout/geometry/shapes.h"
+#include "keepout/status.h"
 
 namespace keepout {
 
@@ -59,8 +59,8 @@ enum class SolveStatus : std::uint8_t {
   iteration_limit  // gave up: the budget of work is spent, or rounding hides the answer
 };
 
-/// One line on what happened and why.
-std::string_view reason(SolveStatus status) noexcept;
+/// Returns what a solve that failed means for the step; free for an optimal one.
+Status status_of(SolveStatus status) noexcept;
 
 /// What a solver leaves behind. Views into the solver's own memory, valid until its next solve.
 struct Solution {

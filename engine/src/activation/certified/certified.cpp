@@ -35,6 +35,7 @@ class CertifiedRule::FirstMeeting final : public EncounterVisitor {
     if (terms_.is_covered(corners, trial_, planes_)) return first.time;
     if (!is_known) {
       if (facets_.size() == facets_.capacity()) {
+        budget_.mark_overflow();
         budget_.spend_all();
         return first.time;
       }
@@ -127,7 +128,7 @@ Opening CertifiedRule::start(const Surroundings& around, HalfSpaceBuffer&) noexc
   // motion asked for, should the tip keep the margin: it is the first trial.
   const double least = around.margin - lost_below * tau;
   aim_is_free_ = meet(around.aim, {}, least, at_aim_.emplace());
-  if (budget().is_spent()) return {Status::over_capacity};
+  if (budget().is_spent()) return {budget().status_at_end()};
   const Facet* near = nearest();
   const std::optional<double> distance = known_distance(near, around.margin, tau);
   if (near == nullptr || near->distance() >= least) return {.distance = distance};

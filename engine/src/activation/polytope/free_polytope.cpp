@@ -101,28 +101,28 @@ FreePolytope::FreePolytope(std::shared_ptr<const Mesh> mesh, std::size_t triangl
   turns_.resize(std::min(triangles, mesh_->triangle_count()));
 }
 
-PolytopeStatus FreePolytope::around(const Vec3& tip, double radius, double margin,
-                                    std::span<const Hit> hits, Budget& budget,
-                                    HalfSpaceBuffer& planes) noexcept {
+Status FreePolytope::around(const Vec3& tip, double radius, double margin,
+                            std::span<const Hit> hits, Budget& budget,
+                            HalfSpaceBuffer& planes) noexcept {
   planes.clear();
   Query query{.tip = tip, .radius = radius, .margin = margin};
-  PolytopeStatus status = prepare(query, hits);
-  if (status == PolytopeStatus::found) status = separate(query, hits, budget, planes);
-  if (status != PolytopeStatus::found) hold_still(planes);
+  Status status = prepare(query, hits);
+  if (status == Status::free) status = separate(query, hits, budget, planes);
+  if (status != Status::free) hold_still(planes);
   return status;
 }
 
-PolytopeStatus FreePolytope::prepare(Query& query, std::span<const Hit> hits) const noexcept {
+Status FreePolytope::prepare(Query& query, std::span<const Hit> hits) const noexcept {
   if (!(query.tip.array().abs() <= longest_length).all() || !is_length(query.radius) ||
       !is_length(query.margin)) {
-    return PolytopeStatus::invalid_input;
+    return Status::invalid_input;
   }
-  if (hits.size() > turns_.size()) return PolytopeStatus::over_capacity;
+  if (hits.size() > turns_.size()) return Status::over_capacity;
   double nearest = longest_length;
   double size2 = 0.0;
   for (const Hit& hit : hits) {
     if (hit.triangle >= mesh_->triangle_count() || !is_length(hit.closest.distance)) {
-      return PolytopeStatus::invalid_input;
+      return Status::invalid_input;
     }
     nearest = std::min(nearest, hit.closest.distance);
     for (const VertexId v : mesh_->corners(hit.triangle)) {
@@ -130,12 +130,12 @@ PolytopeStatus FreePolytope::prepare(Query& query, std::span<const Hit> hits) co
     }
   }
   query.rounding = 1e-12 * query.radius + 2e-14 * std::sqrt(size2);
-  if (nearest <= query.rounding) return PolytopeStatus::touching;
+  if (nearest <= query.rounding) return Status::touching;
   // At the margin but for rounding, the margin itself is kept, so that step by step nothing adds
   // up.
   query.kept = nearest >= query.margin - 0.25 * query.rounding ? query.margin : nearest;
   query.reach = query.radius + query.kept;
-  return PolytopeStatus::found;
+  return Status::free;
 }
 
 std::span<const FreePolytope::Turn> FreePolytope::by_distance(std::span<const Hit> hits) noexcept {
@@ -151,17 +151,17 @@ std::span<const FreePolytope::Turn> FreePolytope::by_distance(std::span<const Hi
   return turns;
 }
 
-PolytopeStatus FreePolytope::separate(const Query& query, std::span<const Hit> hits, Budget& budget,
-                                      HalfSpaceBuffer& planes) noexcept {
+Status FreePolytope::separate(const Query& query, std::span<const Hit> hits, Budget& budget,
+                              HalfSpaceBuffer& planes) noexcept {
   // In looks; that of a hit is mostly for the memory of its corners, and for sorting.
   constexpr std::size_t work_of_plane = 24;
   budget.spend(2 * work_of_hit * hits.size());
-  if (budget.is_spent()) return PolytopeStatus::over_capacity;
+  if (budget.is_spent()) return Status::out_of_budget;
   is_left_.fill(true);
   std::size_t latest = 0;  // neighbours tend to be behind the same plane
   for (const Turn& turn : by_distance(hits)) {
     if (turn.distance > query.reach) break;
-    if (budget.is_spent()) return PolytopeStatus::over_capacity;
+    if (budget.is_spent()) return Status::out_of_budget;
     const Hit& hit = hits[turn.hit];
     const TriangleFromTip seen = triangle_from_tip(mesh_->triangle(hit.triangle), query.tip);
     const auto is_behind = [&](const HalfSpace& plane) {
@@ -175,12 +175,12 @@ PolytopeStatus FreePolytope::separate(const Query& query, std::span<const Hit> h
 
     const std::optional<HalfSpace> plane = plane_for(query, hit, seen);
     budget.spend(work_of_plane);
-    if (!plane) return PolytopeStatus::touching;
-    if (planes.size() == planes.capacity()) return PolytopeStatus::over_capacity;
+    if (!plane) return Status::touching;
+    if (planes.size() == planes.capacity()) return Status::over_capacity;
     planes.push(*plane);
     remove_probes(*plane, query.radius);
   }
-  return PolytopeStatus::found;
+  return Status::free;
 }
 
 std::optional<HalfSpace> FreePolytope::plane_for(const Query& query, const Hit& hit,
@@ -210,45 +210,6 @@ void FreePolytope::remove_probes(const HalfSpace& plane, double radius) noexcept
   for (std::size_t i = 0; i < probe_count; ++i) {
     if (plane.normal.dot(probes_[i]) * radius < plane.offset) is_left_[i] = false;
   }
-}
-
-std::string_view name(PolytopeStatus status) noexcept {
-  switch (status) {
-    case PolytopeStatus::found:
-      return "found";
-    case PolytopeStatus::touching:
-      return "touching";
-    case PolytopeStatus::invalid_input:
-      return "invalid_input";
-    case PolytopeStatus::over_capacity:
-      return "over_capacity";
-    case PolytopeStatus::whole_tool:
-      return "whole_tool";
-    case PolytopeStatus::mesh_changed:
-      return "mesh_changed";
-  }
-  return "unknown";
-}
-
-std::string_view reason(PolytopeStatus status) noexcept {
-  switch (status) {
-    case PolytopeStatus::found:
-      return "every motion within the planes and the ball keeps its distance";
-    case PolytopeStatus::touching:
-      return "the tip is on the mesh, to within rounding, and no side of it is certain: go back to "
-             "the last place that was free";
-    case PolytopeStatus::invalid_input:
-      return "a number is not finite, negative or beyond 1e15, or a hit is of another mesh";
-    case PolytopeStatus::over_capacity:
-      return "more triangles or planes than room was made for, or more work than a cycle's: lower "
-             "the radius or raise the capacity";
-    case PolytopeStatus::whole_tool:
-      return "the rule guards a whole tool, and planes around its tip would say nothing of the "
-             "rest";
-    case PolytopeStatus::mesh_changed:
-      return "the index was refit to another mesh: have the motion constraint follow it";
-  }
-  return "unknown status";
 }
 
 }  // namespace keepout

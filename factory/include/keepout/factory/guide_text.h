@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "keepout/robot/guide.h"
+#include "keepout/step/guide.h"
 #include "keepout/step/tip_guides.h"
 
 namespace keepout {

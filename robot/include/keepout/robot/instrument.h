@@ -11,12 +11,6 @@
 
 namespace keepout {
 
-/// A point that a link carries.
-struct LinkPoint {
-  int link = 0;                  // 0 is the base, which does not move
-  Vec3 position = Vec3::Zero();  // in the frame of the link [length]
-};
-
 /// A part of an instrument that shall keep clear: all within `radius` of the convex hull of its
 /// points. One point is a ball, two are a capsule, more are a blade. The points of a capsule may be
 /// on different links: a shaft from its port to its wrist.

@@ -11,9 +11,9 @@
 #include "keepout/geometry/pose.h"
 #include "keepout/index/spatial_index.h"
 #include "keepout/mesh/mesh.h"
-#include "keepout/robot/guide.h"
 #include "keepout/robot/instrument.h"
 #include "keepout/status.h"
+#include "keepout/step/guide.h"
 #include "keepout/step/options.h"
 #include "keepout/step/solver.h"
 
@@ -89,13 +89,14 @@ struct InstrumentStep {
   /// The share of what is certified (InstrumentConstraint: F) that could be: below 1 where a mesh
   /// came on faster than the joints can give way; 0 where a mesh moves and there is no motion.
   double level = 1.0;
-  std::span<const GuideState> guides = {};  // of each guide, in the order in which they were given
-  Softening softening = Softening::none;    // what gave way
+  std::span<const GuideState> guides = {};   // of each guide, in the order in which they were given
+  Relaxation relaxation = Relaxation::none;  // what was relaxed
+  Limits limits = {};                        // what kept the motion from being the one asked for
 
   /// Whether there is a motion that may be carried out; it may be zero.
   bool ok() const noexcept { return is_ok(status); }
   /// One line on what happened and what to do about it; a literal.
-  std::string_view reason() const noexcept { return keepout::reason(status); }
+  std::string_view reason() const noexcept { return keepout::reason(status, Subject::instrument); }
 };
 
 /// How much of a motion is certified.

@@ -1,19 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "keepout/robot/guide.h"
+#include "keepout/step/guide.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
 #include "keepout/error.h"
-#include "keepout/robot/motion_bounds.h"
 
 namespace keepout {
 namespace {
 
 constexpr double usual_band = 0.002;           // [length], as InstrumentOptions::band
-constexpr double most_angle = 3.0;             // where chords still tell angles apart [rad]
+constexpr double most_angle = 3.0;             // beyond it chords hardly grow with the angle [rad]
 constexpr double usual_angular_band = 0.0002;  // [rad]
 
 Vec3 unit(const Vec3& direction, const std::string& name) {
@@ -43,7 +42,7 @@ Guide::Guide(Kind kind, std::string name, const LinkPoint& first, const LinkPoin
       region_(region),
       band_(kind == Kind::axis ? usual_angular_band : usual_band) {
   for (const LinkPoint& point : {first_, second_}) {
-    if (point.link < 0 || point.link > Chain::most_joints) {
+    if (point.link < 0) {
       throw Error("guide '" + name_ + "' is on link " + std::to_string(point.link) +
                   ", which no chain has");
     }
@@ -51,6 +50,10 @@ Guide::Guide(Kind kind, std::string name, const LinkPoint& first, const LinkPoin
       throw Error("guide '" + name_ + "' has a point that is not finite, or too far away");
     }
   }
+}
+
+Guide Guide::point(std::string name, const Region& region) {
+  return point(std::move(name), LinkPoint{}, region);
 }
 
 Guide Guide::point(std::string name, const LinkPoint& point, const Region& region) {
@@ -96,54 +99,10 @@ Guide Guide::with_band(double band) const {
 
 int Guide::link() const noexcept { return std::max(first_.link, second_.link); }
 
-Vec3 Guide::place(const ChainState& state) const noexcept {
-  if (kind_ == Kind::axis)
-    return state.at(first_.link, first_.position) - state.at(first_.link, Vec3::Zero());
-  const Vec3 from = state.at(first_.link, first_.position);
-  if (kind_ == Kind::point) return from;
-  return from + share(state) * (state.at(second_.link, second_.position) - from);
-}
-
-double Guide::share(const ChainState& state) const noexcept {
-  if (kind_ != Kind::shaft) return 0.0;
-  const Vec3 from = state.at(first_.link, first_.position);
-  const Vec3 along = state.at(second_.link, second_.position) - from;
-  const double length2 = along.squaredNorm();
-  return length2 > 0.0 ? std::clamp(along.dot(region_.origin() - from) / length2, 0.0, 1.0) : 0.0;
-}
-
-Vec3 Guide::derivative(const ChainState& state, int k) const noexcept {
-  if (kind_ == Kind::axis) return state.angular(k, first_.link).cross(place(state));
-  const Vec3 from = state.linear(k, first_.link, state.at(first_.link, first_.position));
-  if (kind_ == Kind::point) return from;
-  const Vec3 to = state.linear(k, second_.link, state.at(second_.link, second_.position));
-  return from + share(state) * (to - from);
-}
-
-double Guide::bend(const ChainState& state, std::span<const double> increment,
-                   double slide) const noexcept {
-  if (kind_ == Kind::axis) {
-    // As motion_bounds, of which only what turns is left.
-    const Vec3 direction = place(state);
-    double path = 0.0;
-    double bend = 0.0;
-    for (int k = first_.link; k >= 1; --k) {
-      if (!state.turns(k)) continue;
-      const double turn = std::abs(increment[static_cast<std::size_t>(k - 1)]);
-      const double way = turn * (state.axis(k).cross(direction).norm() + path);
-      bend += turn * (way + 2.0 * path);
-      path += way;
-    }
-    return bend;
-  }
-  const auto of = [&](const LinkPoint& point) {
-    return motion_bounds(state, increment, point.link, state.at(point.link, point.position));
-  };
-  const MotionBounds first = of(first_);
-  if (kind_ == Kind::point) return first.bend;
-  // p = (1 - u) a + u b, u linear: p'' = (1 - u) a'' + u b'' + 2 u' (b' - a').
-  const MotionBounds second = of(second_);
-  return std::max(first.bend, second.bend) + 2.0 * slide * (first.path + second.path);
+std::string_view name(Relaxation relaxation) noexcept {
+  constexpr std::array<std::string_view, 3> names{"none", "guides", "recovery"};
+  const auto place = static_cast<std::size_t>(relaxation);
+  return place < names.size() ? names[place] : "unknown";
 }
 
 }  // namespace keepout

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "keepout/geometry/pose.h"
+#include "keepout/geometry/region.h"
+
+namespace keepout {
+
+/// A guidance constraint (guidance virtual fixture): keeps a tip, or a part of an instrument, in a
+/// convex region. Guides compose. Each holds on the whole executed motion and is never left by more
+/// than its band; the clearance from meshes has priority over all guides.
+///
+/// If guides and clearance contradict each other, first guides stop leading back what is out, then
+/// recovery from what is too close slows down: see Relaxation.
+class Guide {
+ public:
+  static constexpr std::size_t most = 16;  // of a tip or an instrument
+
+  /// How the guided place follows from the points.
+  enum class Kind : std::uint8_t { point, axis, shaft };
+
+  /// Returns a guide for the tip of a MotionConstraint. `region`: in the frame of the mesh. Like
+  /// all functions below it throws Error for a number that is not finite or out of range.
+  static Guide point(std::string name, const Region& region);
+
+  /// Returns a guide for a point that a link of an instrument carries.
+  static Guide point(std::string name, const LinkPoint& point, const Region& region);
+
+  /// Returns a guide that keeps an axis of a link, a direction in the link's frame, within `angle`
+  /// (up to 3) of a direction in the mesh's frame. [rad]
+  static Guide axis(std::string name, int link, const Vec3& axis, const Vec3& direction,
+                    double angle);
+
+  /// Returns a guide for a remote center of motion (RCM): the straight shaft between two points,
+  /// which may be on different links, passes within `tolerance` of a place such as a trocar.
+  /// [length]
+  static Guide remote_center(std::string name, const LinkPoint& from, const LinkPoint& to,
+                             const Vec3& center, double tolerance);
+
+  /// Returns three guides, one for each axis, that keep the orientation of a link within `angle` of
+  /// `rotation`, given in the mesh's frame. [rad]
+  static std::vector<Guide> orientation(const std::string& name, int link, const Mat3& rotation,
+                                        double angle);
+
+  /// Returns the name, for messages and records.
+  const std::string& name() const noexcept { return name_; }
+  /// Returns the region; of an axis, it bounds the tips of unit vectors.
+  const Region& region() const noexcept { return region_; }
+  Kind kind() const noexcept { return kind_; }
+  /// Returns true if the guide bounds a direction and not a place: its excess is then almost an
+  /// angle. [rad]
+  bool is_angular() const noexcept { return kind_ == Kind::axis; }
+  /// Returns by how much the region may be left, which curvature needs. [length, or rad]
+  double band() const noexcept { return band_; }
+  /// Returns the same guide with another band. Throws Error unless it is above 0.
+  Guide with_band(double band) const;
+
+  /// Returns the guided point, the unit direction of an axis, or the first point of a shaft.
+  const LinkPoint& first() const noexcept { return first_; }
+  /// Returns the second point of a shaft; else the first.
+  const LinkPoint& second() const noexcept { return second_; }
+  /// Returns the last link that matters to the guide.
+  int link() const noexcept;
+
+ private:
+  Guide(Kind kind, std::string name, const LinkPoint& first, const LinkPoint& second,
+        const Region& region);
+
+  Kind kind_;
+  std::string name_;
+  LinkPoint first_;
+  LinkPoint second_;
+  Region region_;
+  double band_;
+};
+
+/// What was relaxed in a cycle because not all constraints could be met. Nothing relaxed gets
+/// worse.
+enum class Relaxation : std::uint8_t {
+  none,     // only the task was compromised
+  guides,   // guides do not lead back what is out: see GuideState::relaxed
+  recovery  // nor do bodies, or the tip, recover clearance as fast as options.recovery says
+};
+
+/// Returns the name as it stands in the enumeration, for files and logs.
+std::string_view name(Relaxation relaxation) noexcept;
+
+/// The state of a guide in a cycle.
+struct GuideState {
+  double excess = 0.0;   // how far out of its region at the start; below 0 inside [length or rad]
+  bool limits = false;   // it limits the motion
+  bool relaxed = false;  // it does not lead back what is out, because constraints contradict it
+};
+
+}  // namespace keepout

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "guide_kinematics.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "keepout/robot/motion_bounds.h"
+
+namespace keepout {
+
+Vec3 guided_point(const Guide& guide, const ChainState& state) noexcept {
+  if (guide.kind() == Guide::Kind::axis)
+    return state.at(guide.first().link, guide.first().position) -
+           state.at(guide.first().link, Vec3::Zero());
+  const Vec3 from = state.at(guide.first().link, guide.first().position);
+  if (guide.kind() == Guide::Kind::point) return from;
+  return from + guided_fraction(guide, state) *
+                    (state.at(guide.second().link, guide.second().position) - from);
+}
+
+double guided_fraction(const Guide& guide, const ChainState& state) noexcept {
+  if (guide.kind() != Guide::Kind::shaft) return 0.0;
+  const Vec3 from = state.at(guide.first().link, guide.first().position);
+  const Vec3 along = state.at(guide.second().link, guide.second().position) - from;
+  const double length2 = along.squaredNorm();
+  return length2 > 0.0 ? std::clamp(along.dot(guide.region().origin() - from) / length2, 0.0, 1.0)
+                       : 0.0;
+}
+
+Vec3 guided_derivative(const Guide& guide, const ChainState& state, int k) noexcept {
+  if (guide.kind() == Guide::Kind::axis)
+    return state.angular(k, guide.first().link).cross(guided_point(guide, state));
+  const Vec3 from =
+      state.linear(k, guide.first().link, state.at(guide.first().link, guide.first().position));
+  if (guide.kind() == Guide::Kind::point) return from;
+  const Vec3 to =
+      state.linear(k, guide.second().link, state.at(guide.second().link, guide.second().position));
+  return from + guided_fraction(guide, state) * (to - from);
+}
+
+double guided_bend(const Guide& guide, const ChainState& state, std::span<const double> increment,
+                   double slide) noexcept {
+  if (guide.kind() == Guide::Kind::axis) {
+    // Like motion_bounds, but only rotations matter.
+    const Vec3 direction = guided_point(guide, state);
+    double path = 0.0;
+    double bend = 0.0;
+    for (int k = guide.first().link; k >= 1; --k) {
+      if (!state.turns(k)) continue;
+      const double turn = std::abs(increment[static_cast<std::size_t>(k - 1)]);
+      const double way = turn * (state.axis(k).cross(direction).norm() + path);
+      bend += turn * (way + 2.0 * path);
+      path += way;
+    }
+    return bend;
+  }
+  const auto of = [&](const LinkPoint& point) {
+    return motion_bounds(state, increment, point.link, state.at(point.link, point.position));
+  };
+  const MotionBounds first = of(guide.first());
+  if (guide.kind() == Guide::Kind::point) return first.bend;
+  // p = (1 - u) a + u b, u linear: p'' = (1 - u) a'' + u b'' + 2 u' (b' - a').
+  const MotionBounds second = of(guide.second());
+  return std::max(first.bend, second.bend) + 2.0 * slide * (first.path + second.path);
+}
+
+}  // namespace keepout
