@@ -255,10 +255,10 @@ void add_convex_tool(CLI::App& command, MotionConstraintSettings& settings) {
       ->needs(tool);
 }
 
-void add_guides(CLI::App& command, std::vector<TipGuide>& guides) {
+void add_guides(CLI::App& command, std::vector<Guide>& guides) {
   const auto take = [&guides](const std::vector<std::string>& texts) {
     try {
-      for (const std::string& text : texts) guides.push_back(tip_guide_of_text(text));
+      for (const std::string& text : texts) guides.push_back(guide_of_text(text));
     } catch (const Error& error) {
       throw CLI::ValidationError("--guide", error.what());
     }
@@ -270,7 +270,7 @@ void add_guides(CLI::App& command, std::vector<TipGuide>& guides) {
           "one of: " +
               std::string(region_forms))
       ->type_name("GUIDE")
-      ->expected(1, static_cast<int>(TipGuides::most));
+      ->expected(1, static_cast<int>(Guide::most));
 }
 
 std::string usage_error(const CLI::App& app, const CLI::ParseError& error) {

@@ -11,7 +11,7 @@
 
 #include "keepout/factory/make_motion_constraint.h"
 #include "keepout/mesh/load_mesh.h"
-#include "keepout/step/tip_guides.h"
+#include "keepout/step/guide.h"
 
 namespace keepout::app {
 
@@ -92,8 +92,7 @@ void add_activation(CLI::App& command, std::string& activation);
 void add_convex_tool(CLI::App& command, MotionConstraintSettings& settings);
 
 /// Of a command that guards one tip: regions that it is to stay in. Precondition: its
-/// Capacity::extra_rows is at least TipGuides::most_rows.
-void add_guides(CLI::App& command, std::vector<TipGuide>& guides);
+void add_guides(CLI::App& command, std::vector<Guide>& guides);
 
 /// What is wrong with a command line, in words that name the option and its value, with a hint at
 /// what was meant and at the help. `error`: what app.parse() threw, and no call for help.

@@ -11,7 +11,7 @@
 #include "keepout/control/registration.h"
 #include "keepout/factory/make_motion_constraint.h"
 #include "keepout/mesh/load_mesh.h"
-#include "keepout/step/tip_guides.h"
+#include "keepout/step/guide.h"
 #include "record/record.h"
 #include "simulate/hand.h"
 
@@ -56,7 +56,7 @@ struct ReplayOptions {
   std::filesystem::path steps;                  // STEPS.csv, to be written
   std::optional<std::filesystem::path> planes;  // PLANES.csv, to be written: all that were posed
   MotionConstraintSettings constraint;
-  std::vector<TipGuide> guides = {};  // that the tip keeps as well
+  std::vector<Guide> guides = {};  // that the tip keeps as well
   Loop loop = Loop::open;
   double max_step = 1.0;  // longest increment asked for in a closed loop [mm]
 };

@@ -58,8 +58,8 @@ void replay(const ReplayOptions& options, std::ostream& out) {
   settings.warn = warn_on_stderr;
   settings.distances = Distances::always;
   MotionConstraint constraint = make_motion_constraint(loaded.mesh, settings);
-  TipGuides guides(options.guides);
-  std::size_t held_by_guides = 0;
+  constraint.set_guides(options.guides);
+  std::size_t limited_by_guides = 0;
 
   std::map<std::string_view, std::size_t> counts;
   {
@@ -71,8 +71,8 @@ void replay(const ReplayOptions& options, std::ostream& out) {
           closed_loop ? Motion{.tip = tip, .desired = clipped(line.first - tip, options.max_step)}
                       : Motion{.tip = line.first, .desired = line.second};
       StageTimes times;
-      const Step step = guides.step(constraint, motion, times);
-      held_by_guides += std::ranges::any_of(guides.states(), &GuideState::holds) ? 1 : 0;
+      const Step step = constraint.step(motion, times);
+      limited_by_guides += step.limits.has(Limit::guide) ? 1 : 0;
       write_step(steps, number, motion, step, times);
       if (planes != nullptr) write_planes(*planes, number, step);
       tip += step.motion;
@@ -83,7 +83,7 @@ void replay(const ReplayOptions& options, std::ostream& out) {
 
   out << counted(poses.size(), "step") << " -> " << options.steps.string() << '\n';
   for (const auto& [status, count] : counts) out << "  " << status << ": " << count << '\n';
-  if (!options.guides.empty()) out << "  held by guides: " << held_by_guides << '\n';
+  if (!options.guides.empty()) out << "  limited by guides: " << limited_by_guides << '\n';
 }
 
 }  // namespace keepout::app

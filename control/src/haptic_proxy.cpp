@@ -64,16 +64,12 @@ std::string_view reason(CycleStatus status) noexcept { return text_of(status, 1)
 HapticProxy::HapticProxy(MotionConstraint guard, const HapticOptions& options)
     : guard_(std::move(guard)),
       options_(checked(options)),
-      guides_(options.guides),
       longest_(std::min(options.top_speed * options.period, guard_.options().radius)),
       passivity_(options.largest_brake) {
   StepOptions slowed = guard_.options();
   slowed.recovery = std::min(slowed.recovery, longest_);
   guard_.set_options(slowed);
-  if (guides_.rows() > guard_.capacity().extra_rows) {
-    throw Error("haptic proxy: the guides need Capacity::extra_rows of " +
-                std::to_string(guides_.rows()));
-  }
+  guard_.set_guides(options.guides);
 }
 
 CycleStatus HapticProxy::engage(const Vec3& tip) noexcept {
@@ -105,32 +101,28 @@ HapticCycle HapticProxy::cycle(const Vec3& hand) noexcept {
   const bool is_cut = distance > radius;
   Motion motion{.tip = proxy_, .desired = wanted};
   if (is_cut) motion.desired *= radius / distance;
-  Step step = guides_.step(guard_, motion);
-  const Status status = step.status;
-  const double length = step.motion.norm();
-  // It is the motion that is cut, and not the way wanted: a hand that presses into the surface and
-  // slides would else be slowed down. The engine is asked about the shorter one as well.
-  const bool is_slowed = step.ok() && length > longest_;
-  if (is_slowed) {
-    motion.desired = step.motion * (longest_ / length);
-    step = guides_.step(guard_, motion);
-  }
+  const Step step = guard_.step(motion);
+  guide_states_ = step.guides;
   if (!step.ok()) {
     HapticCycle stood = stand(CycleStatus::stopped, hand);
     stood.step = step.status;
     return stood;
   }
-  // Free motion arrives, to the last bit: no force is left in free space.
-  const bool arrives = !is_cut && !is_slowed && step.motion == motion.desired;
-  // A tip that is too close is led off beside what was asked for, and so farther. Of that way any
-  // part is proven; what leads out from inside alone is not, and is no longer than the recovery.
+  // The top speed shortens the motion that was found, and not the one that was asked for: an
+  // operator who presses into the surface and slides would be slowed down by that. Any part of a
+  // proved motion is proved as well. A motion that leads out from inside is not proved, and is no
+  // longer than the recovery, which the constructor limits to `longest_`.
   const double share = std::min(1.0, longest_ / step.motion.norm());  // 1 where nothing moves
+  // A free motion ends exactly at the goal: no force is left in free space.
+  const bool arrives = !is_cut && share == 1.0 && step.motion == motion.desired;
   const Vec3 before = proxy_;
   proxy_ = arrives ? hand : Vec3(proxy_ + share * step.motion);
   fade(1.0);
   book(hand, proxy_ - before);
   update_force();
-  return finish(CycleStatus::guarded, status);
+  HapticCycle guarded = finish(CycleStatus::guarded, step.status);
+  guarded.limits = step.limits;
+  return guarded;
 }
 
 HapticCycle HapticProxy::stand(CycleStatus why, const Vec3& hand) noexcept {
@@ -198,7 +190,7 @@ void HapticProxy::update_force() noexcept {
 }
 
 HapticCycle HapticProxy::finish(CycleStatus status, Status step) const noexcept {
-  return {status, step, proxy_, held_.total()};
+  return {.status = status, .step = step, .proxy = proxy_, .force = held_.total()};
 }
 
 }  // namespace keepout

@@ -20,7 +20,7 @@ class KeepoutRule:
             slab = keepout.Region.slab(
                 task.corridor.point, task.corridor.normal, task.corridor.half_width
             )
-            self._guard.set_guides([keepout.TipGuide("corridor", slab)])
+            self._guard.set_guides([keepout.Guide.point("corridor", slab)])
 
     def step(self, tip: NDArray[np.float64], desired: NDArray[np.float64]) -> NDArray[np.float64]:
         """Zero wherever keepout refuses the motion; a step's status says why."""

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "keepout/error.h"
+#include "keepout/robot/chain.h"
 #include "text_fields.h"
 
 namespace keepout {
@@ -24,7 +25,7 @@ Region region_of(Part f) {
   if (f.size() == 4 && f[0] == "slab") return Region::slab(point(f[1]), point(f[2]), number(f[3]));
   if (f.size() == 4 && f[0] == "tube") return Region::tube(point(f[1]), point(f[2]), number(f[3]));
   if (f.size() == 3 && f[0] == "ball") return Region::ball(point(f[1]), number(f[2]));
-  throw Error("there is no such region");
+  throw Error("there is no such guide or region");
 }
 
 int link_of(std::string_view field) {
@@ -50,41 +51,32 @@ Named named_fields(std::string_view text) {
   return named;
 }
 
-template <class Read>
-auto read(std::string_view text, std::string_view forms, const Read& read_fields) {
-  try {
-    const Named named = named_fields(text);
-    return read_fields(named.name, Part(named.fields));
-  } catch (const Error& error) {
-    throw Error("the guide " + in_quotes(text) + ": " + error.what() + "; write [NAME=]" +
-                std::string(forms));
+Guide guide_of(const std::string& name, Part f) {
+  if (f.size() > 3 && f[0] == "point") {
+    return Guide::point(name, {link_of(f[1]), point(f[2])}, region_of(f.subspan(3)));
   }
+  if (f.size() == 5 && f[0] == "axis") {
+    return Guide::axis(name, link_of(f[1]), point(f[2]), point(f[3]), number(f[4]));
+  }
+  if (f.size() == 7 && f[0] == "remote_center") {
+    return Guide::remote_center(name, {link_of(f[1]), point(f[2])}, {link_of(f[3]), point(f[4])},
+                                point(f[5]), number(f[6]));
+  }
+  return Guide::point(name, region_of(f));
 }
 
 }  // namespace
 
-TipGuide tip_guide_of_text(std::string_view text) {
-  return read(text, region_forms, [](const std::string& name, Part f) {
-    return TipGuide{.name = name, .region = region_of(f)};
-  });
-}
-
 Guide guide_of_text(std::string_view text) {
-  const std::string forms =
-      std::string(guide_forms) + ", where REGION is " + std::string(region_forms);
-  return read(text, forms, [](const std::string& name, Part f) {
-    if (f.size() > 3 && f[0] == "point") {
-      return Guide::point(name, {link_of(f[1]), point(f[2])}, region_of(f.subspan(3)));
-    }
-    if (f.size() == 5 && f[0] == "axis") {
-      return Guide::axis(name, link_of(f[1]), point(f[2]), point(f[3]), number(f[4]));
-    }
-    if (f.size() == 7 && f[0] == "remote_center") {
-      return Guide::remote_center(name, {link_of(f[1]), point(f[2])}, {link_of(f[3]), point(f[4])},
-                                  point(f[5]), number(f[6]));
-    }
-    throw Error("there is no such guide");
-  });
+  try {
+    const Named named = named_fields(text);
+    return guide_of(named.name, named.fields);
+  } catch (const Error& error) {
+    throw Error("the guide " + in_quotes(text) + ": " + error.what() +
+                "; write [NAME=]REGION for a tip, or [NAME=] and one of " +
+                std::string(guide_forms) + " for an instrument, where REGION is " +
+                std::string(region_forms));
+  }
 }
 
 }  // namespace keepout

@@ -37,7 +37,6 @@ from ._core import (
     RigidFit,
     Step,
     TableRow,
-    TipGuide,
     __version__,
     activations,
     chain_of_table,

@@ -27,16 +27,18 @@ class Status(IntEnum):
     recovering = 2  # the tip was too close or inside: the motion leads it out
     fallback = 3  # only a shorter motion could be proven, within the budget of work
     yielding = 4  # anatomy comes on too fast: less than the margin is kept
-    infeasible = 5  # no motion satisfies all planes: the tip is too close on several sides
+    infeasible = 5  # the constraints contradict each other
     ill_posed = 6  # the Jacobian lacks full column rank and there is no damping
     invalid_input = 7  # a number is not finite or out of range
-    beyond_reach = 8  # the motion asked for, or solved, is longer than the motion sphere's radius
-    over_capacity = 9  # more triangles, planes or variables than room was made for
-    unsolved = 10  # the solver gave up, or its answer does not satisfy the planes
-    inside = 11  # the tip is on the forbidden side, and joints or rows are in the way out
-    touching = 12  # the tip is on the surface, and which side is free cannot be told
-    margin_too_small = 13  # the margin is lost in the rounding of lengths this large
+    beyond_reach = 8  # the motion asked for is longer than the motion sphere's radius
+    over_capacity = 9  # more triangles, planes, rows or joints than the capacity holds
+    unsolved = 10  # the search ended without a motion that could be proved
+    inside = 11  # the tip or a body is on the forbidden side, and is not led out
+    touching = 12  # on the surface: the free side is unknown
+    margin_too_small = 13  # the margin or band is lost in the rounding of lengths this large
     mesh_changed = 14  # the index was refit to another mesh, which is not followed yet
+    out_of_budget = 15  # the work budget of the cycle ended before a motion was proved
+    unsupported = 16  # the rule cannot answer this query
 
     def __str__(self) -> str:
         return self.name
@@ -50,12 +52,12 @@ class Status(IntEnum):
         """Whether a motion comes with it, which may be carried out."""
         return self <= Status.yielding
 
-    @property
-    def reason(self) -> str:
-        """One line on what happened and what to do about it."""
+    def reason_for(self, subject: str) -> str:
+        """Returns one line on what happened to a subject and what to do about it. `subject`: 'tip',
+        'instrument' or 'polytope'."""
         from . import _core  # which imports this file first
 
-        return _core.status_reason(self)
+        return _core.status_reason(self, subject)
 
 
 class _Batch:

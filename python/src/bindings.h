@@ -15,7 +15,7 @@
 #include "keepout/geometry/shapes.h"
 #include "keepout/index/spatial_index.h"
 #include "keepout/mesh/load_mesh.h"
-#include "keepout/step/guide_state.h"
+#include "keepout/step/guide.h"
 #include "keepout/step/motion.h"
 
 namespace keepout::python {
@@ -61,7 +61,7 @@ struct Planes {
 
 /// A free polytope, and whether it is one.
 struct FreeSpace : Planes {
-  PolytopeStatus status = PolytopeStatus::invalid_input;
+  Status status = Status::invalid_input;
 };
 
 /// A step that outlives the next one.
@@ -74,11 +74,12 @@ struct StepResult {
   std::size_t triangles;
   std::optional<double> distance;
   std::vector<GuideState> guides;
-  Softening softening;
+  Relaxation relaxation;
+  Limits limits;
 };
 
-/// What a softening is called in Python: none, guides or bodies.
-const char* softening_name(Softening softening);
+/// Returns the names of all limits in a set.
+py::tuple names_of(Limits limits);
 
 // Each adds one concept to the module; the order matters where one is an argument of the next.
 void bind_status(py::module_& module);

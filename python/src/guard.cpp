@@ -96,12 +96,17 @@ MotionConstraint Guard::make() const {
   return make_motion_constraint(index_->mesh, index_->index, settings_);
 }
 
+/// Makes one for a worker, with the guides that there are. Without Python's lock.
+MotionConstraint Guard::make_guided() const {
+  MotionConstraint made = make_motion_constraint(index_->mesh, index_->index, settings_);
+  made.set_guides({constraint_.guides().begin(), constraint_.guides().end()});
+  return made;
+}
+
 template <class Item>
 void Guard::do_each(std::size_t items, std::size_t chunk, unsigned threads, const Item& item) {
-  const auto make = [this] {
-    return make_motion_constraint(index_->mesh, index_->index, settings_);
-  };
-  workers_.do_each(items, chunk, threads, make, item);
+  workers_.do_each(
+      items, chunk, threads, [this] { return make_guided(); }, item);
 }
 
 StepResult Guard::step(const py::object& tip, const py::object& desired, const py::object& jacobian,
@@ -132,8 +137,7 @@ StepResult Guard::step(const py::object& tip, const py::object& desired, const p
     if (count > 0) motion.rows.emplace(matrix.data(), bounds.data(), count);
   }
   const InUse in_use(constraint_in_use_);
-  const bool is_guided = !guides_.guides().empty();
-  const Step step = is_guided ? guides_.step(constraint_, motion) : constraint_.step(motion);
+  const Step step = constraint_.step(motion);
   return {.status = step.status,
           .motion = step.motion,
           .increment = {step.increment.begin(), step.increment.end()},
@@ -141,19 +145,16 @@ StepResult Guard::step(const py::object& tip, const py::object& desired, const p
           .active = {step.active.begin(), step.active.end()},
           .triangles = step.triangles,
           .distance = step.distance,
-          .guides = {guides_.states().begin(), guides_.states().end()},
-          .softening = is_guided ? guides_.softening() : Softening::none};
+          .guides = {step.guides.begin(), step.guides.end()},
+          .relaxation = step.relaxation,
+          .limits = step.limits};
 }
 
-void Guard::set_guides(std::vector<TipGuide> guides) {
-  const Capacity& room = settings_.capacity;
-  TipGuides made(std::move(guides), room.variables, room.extra_rows);
-  if (made.rows() > room.extra_rows) {
-    refuse("guides", "max_rows of at least " + std::to_string(made.rows()) + " for so many",
-           std::to_string(room.extra_rows));
-  }
+void Guard::set_guides(std::vector<Guide> guides) {
+  const InUse no_batch(workers_.in_use());
   const InUse in_use(constraint_in_use_);
-  guides_ = std::move(made);
+  constraint_.set_guides(guides);
+  for (MotionConstraint& worker : workers_.constraints()) worker.set_guides(guides);
 }
 
 FreeSpace Guard::free_polytope(const py::object& tip, double radius) {

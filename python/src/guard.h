@@ -10,7 +10,6 @@
 
 #include "bindings.h"
 #include "keepout/factory/make_motion_constraint.h"
-#include "keepout/step/tip_guides.h"
 #include "workers.h"
 
 namespace keepout::python {
@@ -27,7 +26,7 @@ class Guard {
                   const py::object& rows);
   FreeSpace free_polytope(const py::object& tip, double radius);
   void forget();
-  void set_guides(std::vector<TipGuide> guides);
+  void set_guides(std::vector<Guide> guides);
   void follow(std::shared_ptr<IndexHandle> index);
   py::object steps(const py::object& tips, const py::object& desired,
                    std::optional<py::ssize_t> threads, const py::object& out);
@@ -41,6 +40,7 @@ class Guard {
 
  private:
   MotionConstraint make() const;
+  MotionConstraint make_guided() const;
 
   /// See Workers.
   template <class Item>
@@ -49,7 +49,6 @@ class Guard {
   std::shared_ptr<IndexHandle> index_;
   MotionConstraintSettings settings_;
   MotionConstraint constraint_;
-  TipGuides guides_{{}};
   std::mutex constraint_in_use_;
   Workers<MotionConstraint> workers_;
 };

@@ -8,7 +8,6 @@
 #include "arrays.h"
 #include "bindings.h"
 #include "keepout/step/guide.h"
-#include "keepout/step/tip_guides.h"
 
 namespace keepout::python {
 namespace {
@@ -17,15 +16,11 @@ constexpr const char* region_doc =
     R"(A convex region that something is to stay in, in the frame of the mesh: made by half_space, slab,
 tube or ball.)";
 
-constexpr const char* tip_guide_doc =
-    R"(A region that the tip of a MotionConstraint is to stay in: see MotionConstraint.set_guides.
-
-name: for messages. region: a Region. band: by how much it may be left, above 0 [length].)";
-
 constexpr const char* guide_doc =
-    R"(Where something of an instrument is to stay, whatever the hand asks for: made by point, axis,
-remote_center or orientation, for InstrumentGuard.set_guides. Guides compose; each is kept on the
-whole true motion of the joints.)";
+    R"(A guidance constraint: keeps a tip, or a part of an instrument, in a convex region. Made by
+point, axis, remote_center or orientation, for MotionConstraint.set_guides (of a tip: only
+point(name, region)) and InstrumentGuard.set_guides. Guides compose; each holds on the whole
+executed motion.)";
 
 Mat3 matrix_of(const py::object& rotation) {
   const Doubles numbers = doubles(rotation, {"rotation", {3, 3}, "(3, 3)"});
@@ -33,16 +28,16 @@ Mat3 matrix_of(const py::object& rotation) {
 }
 
 void bind_states(py::module_& module) {
-  py::class_<GuideState>(module, "GuideState", "How a guide fared in a step.")
+  py::class_<GuideState>(module, "GuideState", "The state of a guide in a step.")
       .def_readonly("excess", &GuideState::excess,
                     "How far out of its region as the step began; below 0 in it [length, or all "
                     "but rad].")
-      .def_readonly("holds", &GuideState::holds, "Whether it holds the motion back.")
-      .def_readonly("gave_way", &GuideState::gave_way,
-                    "Whether it does not lead back what is out, as others contradict.")
+      .def_readonly("limits", &GuideState::limits, "True if it limits the motion.")
+      .def_readonly("relaxed", &GuideState::relaxed,
+                    "True if it does not lead back what is out, because constraints contradict it.")
       .def("__repr__", [](const GuideState& self) {
         return py::str("<keepout.GuideState: excess {:g}{}{}>")
-            .format(self.excess, self.holds ? ", holds" : "", self.gave_way ? ", gave way" : "");
+            .format(self.excess, self.limits ? ", limits" : "", self.relaxed ? ", relaxed" : "");
       });
 }
 
@@ -82,23 +77,16 @@ void bind_region(py::module_& module) {
 
 }  // namespace
 
-const char* softening_name(Softening softening) {
-  if (softening == Softening::none) return "none";
-  return softening == Softening::guides ? "guides" : "bodies";
-}
-
 void bind_guides(py::module_& module) {
   bind_states(module);
   bind_region(module);
-  py::class_<TipGuide>(module, "TipGuide", tip_guide_doc)
-      .def(py::init([](std::string name, const Region& region, double band) {
-             return TipGuide{std::move(name), region, band};
-           }),
-           py::arg("name"), py::arg("region"), py::kw_only(), py::arg("band") = 0.002)
-      .def_readonly("name", &TipGuide::name, "For messages.")
-      .def_readonly("region", &TipGuide::region, "Where the tip is to stay: a Region.")
-      .def_readonly("band", &TipGuide::band, "By how much it may be left [length].");
   py::class_<Guide>(module, "Guide", guide_doc)
+      .def_static(
+          "point",
+          [](std::string name, const Region& region) {
+            return Guide::point(std::move(name), region);
+          },
+          py::arg("name"), py::arg("region"), "The tip of a MotionConstraint stays in a Region.")
       .def_static(
           "point",
           [](std::string name, int link, const py::object& position, const Region& region) {

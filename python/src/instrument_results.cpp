@@ -37,10 +37,15 @@ void bind_instrument_results(py::module_& module) {
           "closer than the margin and its band, negative where it reaches through the surface.")
       .def_property_readonly(
           "guides", [](const Result& self) { return self.guides; },
-          "How each guide fared, in the order of set_guides: a list of GuideState.")
+          "The state of each guide, in the order of set_guides: a list of GuideState.")
       .def_property_readonly(
-          "softening", [](const Result& self) { return softening_name(self.step.softening); },
-          "What gave way, as all could not be had: 'none', 'guides' or 'bodies'.")
+          "relaxation", [](const Result& self) { return name(self.step.relaxation); },
+          "What was relaxed because not all constraints could be met: 'none', 'guides' or\n"
+          "'recovery'.")
+      .def_property_readonly(
+          "limits", [](const Result& self) { return names_of(self.step.limits); },
+          "What kept the motion from being the one asked for: a tuple of names such as 'mesh' or\n"
+          "'joint_velocity'.")
       .def_property_readonly(
           "nearest",
           [](const Result& self) {
@@ -68,7 +73,8 @@ void bind_instrument_results(py::module_& module) {
           "status", [](const MotionProof& self) { return status_object(self.status); },
           "How it ended: a Status; 'recovering' where some body is too close as it starts.")
       .def_property_readonly(
-          "reason", [](const MotionProof& self) { return reason(self.status); },
+          "reason",
+          [](const MotionProof& self) { return reason(self.status, Subject::instrument); },
           "One line on what happened and what to do about it.")
       .def_readonly("share", &MotionProof::share,
                     "Proven is the motion from its start to here: 1 if all of it is.")

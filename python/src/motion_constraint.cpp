@@ -161,9 +161,8 @@ void bind_motion_constraint(py::module_& module) {
            "Forgets where the last step led: the next tip is placed anew, as at the start.")
       .def(
           "set_guides", &Guard::set_guides, py::arg("guides"),
-          "Keeps the tip in these regions as well from the next step on, instead of those there\n"
-          "are: a list of at most 16 TipGuide. In `step` alone, not in batches. They take up to 4\n"
-          "of max_rows each.")
+          "Keeps the tip in the regions of these guides as well, instead of those that there are:\n"
+          "a list of at most 16 Guide.point(name, region). In steps and batches from now on.")
       .def(
           "follow", &Guard::follow, py::arg("index"),
           "Goes on with anatomy that has moved: an Index of the moved mesh, such as\n"

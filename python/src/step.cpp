@@ -21,7 +21,23 @@ Status status_from(py::ssize_t value) {
   return static_cast<Status>(value);
 }
 
+Subject subject_from(const std::string& name) {
+  if (name == "tip") return Subject::tip;
+  if (name == "instrument") return Subject::instrument;
+  if (name == "polytope") return Subject::polytope;
+  refuse("subject", "'tip', 'instrument' or 'polytope'", "'" + name + "'");
+}
+
 }  // namespace
+
+py::tuple names_of(Limits limits) {
+  py::list names;
+  for (std::size_t i = 0; i < limit_count; ++i) {
+    const auto limit = static_cast<Limit>(i);
+    if (limits.has(limit)) names.append(py::str(name(limit)));
+  }
+  return py::tuple(names);
+}
 
 py::object status_object(Status status) {
   return py::reinterpret_borrow<py::object>(members[static_cast<std::size_t>(status)]);
@@ -34,8 +50,12 @@ void bind_status(py::module_& module) {
   }
   module.attr("status_names") = py::tuple(py::cast(names));
   module.def(
-      "status_reason", [](py::ssize_t value) { return reason(status_from(value)); },
-      py::arg("status"), "One line on what a status means and what to do about it.");
+      "status_reason",
+      [](py::ssize_t value, const std::string& subject) {
+        return reason(status_from(value), subject_from(subject));
+      },
+      py::arg("status"), py::arg("subject"),
+      "Returns one line on what a status means for a subject, and what to do about it.");
   // The enumeration is Python's own, as that is what numpy compares quickly.
   const py::object type = py::module_::import("keepout._results").attr("Status");
   for (std::size_t i = 0; i < status_count; ++i) members[i] = type(i).release().ptr();
@@ -66,14 +86,13 @@ void bind_planes(py::module_& module) {
       "The free space around a tip as planes: see MotionConstraint.free_polytope. One that is not\n"
       "ok allows standing still only.")
       .def_property_readonly(
-          "status", [](const FreeSpace& self) { return name(self.status); },
-          "'found', or what went wrong: 'touching', 'invalid_input', 'over_capacity', "
-          "'whole_tool'.")
+          "status", [](const FreeSpace& self) { return status_object(self.status); },
+          "Status.free if the planes are complete, or the Status that says why not.")
       .def_property_readonly(
-          "ok", [](const FreeSpace& self) { return self.status == PolytopeStatus::found; },
+          "ok", [](const FreeSpace& self) { return is_ok(self.status); },
           "Whether the planes are complete.")
       .def_property_readonly(
-          "reason", [](const FreeSpace& self) { return reason(self.status); },
+          "reason", [](const FreeSpace& self) { return reason(self.status, Subject::polytope); },
           "One line on what happened and what to do about it.")
       .def("__repr__", [](const FreeSpace& self) {
         return py::str("<keepout.Polytope: {}, {} planes>")
@@ -91,7 +110,7 @@ void bind_step(py::module_& module) {
           "ok", [](const StepResult& self) { return is_ok(self.status); },
           "Whether the motion may be carried out; it may be zero.")
       .def_property_readonly(
-          "reason", [](const StepResult& self) { return reason(self.status); },
+          "reason", [](const StepResult& self) { return reason(self.status, Subject::tip); },
           "One line on what happened and what to do about it.")
       .def_property_readonly(
           "motion",
@@ -111,7 +130,7 @@ void bind_step(py::module_& module) {
       .def_property_readonly(
           "active",
           [](const py::object& self) { return view(self.cast<const StepResult&>().active, self); },
-          "(a,) uint32: which planes hold the motion back, by position; from len(planes) on, rows.")
+          "(a,) uint32: the planes that limit the motion, by position; from len(planes) on, rows.")
       .def_readonly("triangles", &StepResult::triangles, "How many triangles the step rests on.")
       .def_readonly(
           "distance", &StepResult::distance,
@@ -119,10 +138,14 @@ void bind_step(py::module_& module) {
           "rule does not come by it, unless the constraint was made with "
           "distances='always'.")
       .def_readonly("guides", &StepResult::guides,
-                    "How each guide fared, in the order of set_guides: a list of GuideState.")
+                    "The state of each guide, in the order of set_guides: a list of GuideState.")
       .def_property_readonly(
-          "softening", [](const StepResult& self) { return softening_name(self.softening); },
-          "What gave way, as all could not be had: 'none' or 'guides'.")
+          "relaxation", [](const StepResult& self) { return name(self.relaxation); },
+          "What was relaxed because not all constraints could be met: 'none', 'guides' or\n"
+          "'recovery'.")
+      .def_property_readonly(
+          "limits", [](const StepResult& self) { return names_of(self.limits); },
+          "What kept the motion from being the one asked for: a tuple of names such as 'mesh'.")
       .def("__repr__", [](const StepResult& self) {
         const Vec3& u = self.motion;
         return py::str("<keepout.Step: {}, motion ({}, {}, {})>")

@@ -73,7 +73,7 @@ TEST(MovingAnatomy, IsFollowedOnAnIndexThatIsRefit) {
       ASSERT_EQ(stale.status, Status::mesh_changed);
       ASSERT_EQ(stale.motion, Vec3::Zero());
       ASSERT_FALSE(guard.is_current());
-      ASSERT_EQ(guard.free_polytope(tip, radius).status, PolytopeStatus::mesh_changed);
+      ASSERT_EQ(guard.free_polytope(tip, radius).status, Status::mesh_changed);
       ASSERT_EQ(guard.free_polytope(tip, radius).planes.size(), planes_to_hold_still);
 
       guard.follow(mesh, tree);

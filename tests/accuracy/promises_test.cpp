@@ -39,18 +39,6 @@ Surface scaled(Surface surface, double factor) {
   return surface;
 }
 
-/// A cone around the z axis, its tip at the origin, open at its base.
-Surface cone(VertexId faces, double slope) {
-  Surface surface;
-  surface.vertices.emplace_back(0.0, 0.0, 0.0);
-  for (VertexId i = 0; i < faces; ++i) {
-    const double angle = 2.0 * std::numbers::pi * i / faces;
-    surface.vertices.emplace_back(10.0 * std::cos(angle), 10.0 * std::sin(angle), -10.0 * slope);
-    surface.triangles.push_back({0, i + 1, (i + 1) % faces + 1});
-  }
-  return surface;
-}
-
 // Lengths beyond what is computed with are refused, whatever they are of.
 
 TEST(Range, LengthsOutsideAreRefusedWithAWordOnThem) {
@@ -223,74 +211,6 @@ TEST(CoordinatesOf, AMeshTooLargeForItsMarginIsWarnedOf) {
   make_motion_constraint(mesh, {.warn = warn, .radius = 10.0, .margin = 1e-2});
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_NE(warnings[0].find("keep more than"), std::string::npos) << warnings[0];
-}
-
-// One budget for a cycle, whatever happens in it.
-
-/// Counts the triangles that a walk shows, and is otherwise the walk of a tree.
-class CountedTree final : public SpatialIndex {
- public:
-  explicit CountedTree(const std::shared_ptr<const Mesh>& mesh) : SpatialIndex(mesh), tree_(mesh) {}
-
-  void collect(const Ball& ball, TriangleBuffer& candidates) const noexcept override {
-    tree_.collect(ball, candidates);
-  }
-  TriangleId nearest(const Vec3& point, Budget& budget) const noexcept override {
-    return tree_.nearest(point, budget);
-  }
-  std::size_t memory() const noexcept override { return tree_.memory(); }
-  std::unique_ptr<MotionWalk> walk_along_motions(Budget& budget) const override {
-    return std::make_unique<Walk>(tree_.walk_along_motions(budget), *this);
-  }
-
-  mutable std::size_t visits = 0;
-
- private:
-  class Walk final : public MotionWalk, private EncounterVisitor {
-   public:
-    Walk(std::unique_ptr<MotionWalk> walk, const CountedTree& tree)
-        : walk_(std::move(walk)), tree_(tree) {}
-
-    bool begin(const Start& start) noexcept override { return walk_->begin(start); }
-    void begin_again(double level) noexcept override { walk_->begin_again(level); }
-    bool is_free() const noexcept override { return walk_->is_free(); }
-    bool walk(const Vec3& motion, EncounterVisitor& visitor) noexcept override {
-      visitor_ = &visitor;
-      return walk_->walk(motion, *this);
-    }
-    std::size_t room() const noexcept override { return walk_->room(); }
-
-   private:
-    double visit(const Encounter& its) noexcept override {
-      ++tree_.visits;
-      return visitor_->visit(its);
-    }
-
-    std::unique_ptr<MotionWalk> walk_;
-    const CountedTree& tree_;
-    EncounterVisitor* visitor_ = nullptr;
-  };
-
-  WideBvh tree_;
-};
-
-TEST(BudgetOfACycle, HoldsUnderTheTipOfACone) {
-  constexpr std::size_t stated = Capacity::looks_of_a_walk;
-  for (const VertexId faces : {400u, 4'000u, 20'000u}) {
-    for (const double slope : {0.3, 1.0, 3.0}) {
-      SCOPED_TRACE(testing::Message() << faces << " faces, slope " << slope);
-      const auto mesh = mesh_of(cone(faces, slope));
-      const auto tree = std::make_shared<CountedTree>(mesh);
-      auto guard = make_motion_constraint(mesh, tree, {.radius = 5.0, .margin = 1.0});
-      for (const double off : {0.5, 0.99, 1.0, 1.5, 3.0}) {
-        tree->visits = 0;
-        const Step step =
-            guard.step({.tip = Vec3(1e-4, 2e-4, off), .desired = Vec3(0.01, 0.02, -4.0)});
-        EXPECT_LE(tree->visits, stated) << name(step.status);
-        EXPECT_LE(guard.looks(), stated + stated / 64) << name(step.status);
-      }
-    }
-  }
 }
 
 // However little a tip is led off that is too close, it comes no closer.

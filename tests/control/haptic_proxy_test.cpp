@@ -55,17 +55,17 @@ TEST(HapticProxy, FollowsTheHandExactlyAndWithoutForceInFreeSpace) {
 TEST(HapticProxy, StaysInItsGuidesAndPullsTheHandBackIntoThem) {
   const SpringDamper spring{.stiffness = 0.7, .damping = 0.002, .largest_force = 4.0};
   HapticOptions options{.spring = spring};
-  options.guides = {{"corridor", Region::slab(above, Vec3::UnitX(), 1.0)}};
+  options.guides = {Guide::point("corridor", Region::slab(above, Vec3::UnitX(), 1.0))};
   HapticProxy proxy(guard_of(cube()), options);
   proxy.engage(above);
   const Vec3 aside = above + Vec3(3.0, 0.5, 0.0);
   lead(proxy, above, aside, 200);
   const HapticCycle cycle = proxy.cycle(aside);  // at rest
-  EXPECT_LE(cycle.proxy.x(), above.x() + 1.0 + options.guides[0].band);
+  EXPECT_LE(cycle.proxy.x(), above.x() + 1.0 + options.guides[0].band());
   EXPECT_NEAR(cycle.proxy.y(), above.y() + 0.5, accuracy) << "along the corridor it follows";
-  EXPECT_TRUE(proxy.guides()[0].holds);
+  EXPECT_TRUE(proxy.guides()[0].limits);
   EXPECT_NEAR(cycle.force.x(), -0.7 * 2.0, 0.01);
-  options.guides.assign(TipGuides::most + 1, options.guides[0]);
+  options.guides.assign(Guide::most + 1, options.guides[0]);
   EXPECT_THROW(HapticProxy(guard_of(cube()), options), Error);
 }
 
@@ -214,7 +214,7 @@ TEST(HapticProxy, WhenTheEngineRefusesTheProxyStandsAndTheForceFadesWithTheHand)
     const HapticCycle cycle = proxy.cycle({0.1 * i, 0, 0});
     EXPECT_EQ(cycle.status, CycleStatus::stopped);
     EXPECT_EQ(cycle.step, Status::inside);
-    EXPECT_EQ(cycle.reason(), reason(Status::inside));
+    EXPECT_EQ(cycle.reason(), reason(Status::inside, Subject::tip));
     EXPECT_EQ(cycle.proxy, Vec3::Zero());
     EXPECT_NEAR(cycle.force.x(), -0.1 * i * std::max(0.0, 1.0 - i / 20.0), 1e-12);
   }

@@ -108,7 +108,7 @@ def test_joints_and_rows(guard):
 def test_more_than_three_joints_want_damping(mesh):
     jacobian = np.random.default_rng(3).normal(size=(3, 7))
     undamped = keepout.MotionConstraint(mesh).step((0, 0, 14), (0, 0, -1), jacobian)
-    assert undamped.status is Status.ill_posed and "set damping above 0" in undamped.reason
+    assert undamped.status is Status.ill_posed and "set `damping` above 0" in undamped.reason
     assert keepout.MotionConstraint(mesh, damping=1e-6).step((0, 0, 14), (0, 0, -1), jacobian).ok
 
 

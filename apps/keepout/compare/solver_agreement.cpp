@@ -70,7 +70,7 @@ double difference(const RecordedProblem& problem, const Solution& solution,
   return apart == 0.0 ? 0.0 : apart / reach;
 }
 
-/// What the library said and what was found; of our own solvers, what they say.
+/// Returns what a library claimed and what was found; of our own solvers, the status.
 std::string outcome(const Solver& solver, SolveStatus status) {
 #if KEEPOUT_HAS_NLOPT
   if (const auto* nlopt = dynamic_cast<const NloptSolver*>(&solver)) {
@@ -80,7 +80,7 @@ std::string outcome(const Solver& solver, SolveStatus status) {
 #else
   static_cast<void>(solver);
 #endif
-  return std::string(reason(status));
+  return std::string(name(status));
 }
 
 /// Takes one answer down.

@@ -41,7 +41,21 @@ void append_numbers(std::string& out, const Numbers& numbers) {
   append_list(out, numbers, [&](double number) { append_number(out, number); });
 }
 
-/// What became of a step or a polytope, with a reason unless it is ok.
+/// Appends the names of all limits of a step, if there are any.
+void append_limits(std::string& out, Limits limits) {
+  if (limits.empty()) return;
+  out += ",\"limits\":";
+  char before = '[';
+  for (std::size_t i = 0; i < limit_count; ++i) {
+    const auto limit = static_cast<Limit>(i);
+    if (!limits.has(limit)) continue;
+    out += std::exchange(before, ',');
+    append_string(out, name(limit));
+  }
+  out += ']';
+}
+
+/// Appends how a step or a polytope ended, with a reason unless it is ok.
 template <class Result>
 void append_outcome(std::string& out, const Result& result) {
   out += result.ok() ? "\"ok\":true,\"status\":" : "\"ok\":false,\"status\":";
@@ -91,6 +105,7 @@ void end_answer(std::string& out) { out += "}\n"; }
 
 void append_step(std::string& out, const Step& step, std::size_t joints) {
   append_outcome(out, step);
+  append_limits(out, step.limits);
   out += ",\"motion\":";
   append_numbers(out, step.motion);
   if (joints > 0) append_increment(out, step.increment, joints);
@@ -122,6 +137,7 @@ void append_instrument(std::string& out, const Instrument& instrument) {
 
 void append_joint_step(std::string& out, const InstrumentStep& step, std::size_t joints) {
   append_outcome(out, step);
+  append_limits(out, step.limits);
   append_increment(out, step.increment, joints);
   out += ",\"share\":";
   append_number(out, step.share);
@@ -137,19 +153,18 @@ void append_joint_step(std::string& out, const InstrumentStep& step, std::size_t
 }
 
 void append_guides(std::string& out, std::span<const std::string> names,
-                   std::span<const GuideState> states, Softening softening) {
+                   std::span<const GuideState> states, Relaxation relaxation) {
   if (states.empty()) return;
-  constexpr std::string_view words[] = {"none", "guides", "bodies"};
-  out += ",\"softening\":";
-  append_string(out, words[static_cast<std::size_t>(softening)]);
+  out += ",\"relaxation\":";
+  append_string(out, name(relaxation));
   out += ",\"guides\":";
   append_list(out, std::views::iota(std::size_t{0}, states.size()), [&](std::size_t g) {
     out += "{\"name\":";
     append_string(out, names[g]);
     out += ",\"excess\":";
     append_number(out, states[g].excess);
-    out += states[g].holds ? ",\"holds\":true" : ",\"holds\":false";
-    out += states[g].gave_way ? ",\"gave_way\":true}" : ",\"gave_way\":false}";
+    out += states[g].limits ? ",\"limits\":true" : ",\"limits\":false";
+    out += states[g].relaxed ? ",\"relaxed\":true}" : ",\"relaxed\":false}";
   });
 }
 

@@ -36,9 +36,10 @@ void append_instrument(std::string& out, const Instrument& instrument);
 /// What became of the step of an instrument of so many joints.
 void append_joint_step(std::string& out, const InstrumentStep& step, std::size_t joints);
 
-/// How the guides of a step fared, by name, and what gave way; nothing where there are none.
+/// Appends the state of each guide of a step, by name, and what was relaxed; nothing without
+/// guides.
 void append_guides(std::string& out, std::span<const std::string> names,
-                   std::span<const GuideState> states, Softening softening);
+                   std::span<const GuideState> states, Relaxation relaxation);
 
 /// The whole answer to a line that was not carried out.
 void append_error(std::string& out, std::string_view id, std::string_view kind,

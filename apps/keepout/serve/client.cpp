@@ -111,36 +111,34 @@ void open_tool(Client& client, const std::shared_ptr<const Mesh>& mesh,
   settings.narrow_phase = request.narrow_phase.is_given ? request.narrow_phase.text : "exact";
   try {
     settings.tool = tool_of_text(request.tool.text);
-    client.tool = make_motion_constraint(mesh, index, settings);
+    MotionConstraint made = make_motion_constraint(mesh, index, settings);
+    if (client.own) made.set_guides({client.own->guides().begin(), client.own->guides().end()});
+    client.own = std::move(made);
   } catch (const Error& error) {
     throw Refusal{"no_tool", printable(error.what())};
   }
 }
 
-void set_guides(Client& client, const RequestLimits& limits, const Request& request) {
+void set_guides(Client& client, const std::shared_ptr<const Mesh>& mesh,
+                const std::shared_ptr<const SpatialIndex>& index,
+                const MotionConstraintSettings& settings, const Request& request) {
   try {
-    if (request.of.text != "instrument") {
-      std::vector<TipGuide> guides;
-      std::vector<std::string> names;
-      for (const std::string& text : request.guides.texts) {
-        guides.push_back(tip_guide_of_text(text));
-        names.push_back(guides.back().name);
-      }
-      std::optional<TipGuides> made;
-      if (!guides.empty()) made.emplace(std::move(guides), limits.joints, limits.rows);
-      client.guides = std::move(made);
-      client.tip_guide_names = std::move(names);
-      return;
-    }
-    InstrumentConstraint& instrument = instrument_of(client);
     std::vector<Guide> guides;
     std::vector<std::string> names;
     for (const std::string& text : request.guides.texts) {
       guides.push_back(guide_of_text(text));
       names.push_back(guides.back().name());
     }
-    instrument.set_guides(std::move(guides));
-    client.guide_names = std::move(names);
+    if (request.of.text == "instrument") {
+      instrument_of(client).set_guides(std::move(guides));
+      client.guide_names = std::move(names);
+      return;
+    }
+    if (!client.own && !guides.empty()) {
+      client.own = make_motion_constraint(mesh, index, settings);
+    }
+    if (client.own) client.own->set_guides(std::move(guides));
+    client.tip_guide_names = std::move(names);
   } catch (const Error& error) {
     throw Refusal{"no_guide", printable(error.what())};
   }

@@ -9,7 +9,6 @@
 #include "keepout/factory/make_instrument_constraint.h"
 #include "keepout/factory/make_motion_constraint.h"
 #include "keepout/step/side_watch.h"
-#include "keepout/step/tip_guides.h"
 #include "serve/request.h"
 
 namespace keepout::app {
@@ -18,10 +17,9 @@ namespace keepout::app {
 struct Client {
   SideWatch tip;                                                  // where his last step led it
   std::optional<InstrumentConstraint> instrument = std::nullopt;  // that he has opened
-  std::optional<MotionConstraint> tool = std::nullopt;            // of a tool that he has opened
-  std::optional<TipGuides> guides = std::nullopt;                 // that his tip is to keep
-  std::vector<std::string> tip_guide_names = {};                  // of these
-  std::vector<std::string> guide_names = {};                      // of his instrument
+  std::optional<MotionConstraint> own = std::nullopt;  // for a tool or guides of this client
+  std::vector<std::string> tip_guide_names = {};       // of its tip
+  std::vector<std::string> guide_names = {};           // of its instrument
 };
 
 /// Opens the instrument of a request in place of the one that there was; `settings` are what it
@@ -37,9 +35,12 @@ void open_tool(Client& client, const std::shared_ptr<const Mesh>& mesh,
                const std::shared_ptr<const SpatialIndex>& index, MotionConstraintSettings settings,
                const Request& request);
 
-/// Has his tip, or his instrument, keep the guides of a request in place of those there are.
-/// Throws Refusal, "no_guide", and leaves those, for what is no guide, and "no_instrument".
-void set_guides(Client& client, const RequestLimits& limits, const Request& request);
+/// Sets the guides of a request for the client's tip or instrument, in place of those that there
+/// are. A tip with guides gets a constraint of its own, as `settings` say. Throws Refusal,
+/// "no_guide", and keeps the old guides, for a text that is no guide, and "no_instrument".
+void set_guides(Client& client, const std::shared_ptr<const Mesh>& mesh,
+                const std::shared_ptr<const SpatialIndex>& index,
+                const MotionConstraintSettings& settings, const Request& request);
 
 /// Keeps his instrument out of one more mesh, with an index as `settings` say, and returns its
 /// number. Throws Refusal, "no_anatomy", and leaves all as it was, and "no_instrument". Reads a

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "keepout/robot/instrument.h"
-#include "keepout/step/tip_guides.h"
+#include "keepout/step/guide.h"
 #include "names.h"
 #include "serve/answer.h"
 
@@ -258,7 +258,7 @@ NumberTable joints(std::string_view name) {
 }  // namespace
 
 Request::Request(const RequestLimits& limits)
-    : guides{.name = "guides", .most = TipGuides::most},
+    : guides{.name = "guides", .most = Guide::most},
       tip(table("tip", {1, 1, 1, 3, 3}, "an array of three numbers")),
       desired(table("desired", {1, 1, 1, 3, 3}, "an array of three numbers")),
       jacobian(table("jacobian", {2, 3, 3, 1, limits.joints},

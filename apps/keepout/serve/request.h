@@ -73,7 +73,7 @@ struct Request {
 
   std::string id;  // as JSON, to be echoed; null if there is none, or none that can be read
   Verb verb = Verb::ping;
-  TextList guides;  // as tip_guide_of_text or guide_of_text reads each
+  TextList guides;  // as guide_of_text reads each
   NumberTable tip;
   NumberTable desired;
   NumberTable jacobian;  // (3, n)

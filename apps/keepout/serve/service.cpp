@@ -25,7 +25,7 @@ MotionConstraintSettings with_room_for(MotionConstraintSettings settings,
                                        const RequestLimits& limits) {
   settings.distances = Distances::always;
   settings.capacity.variables = std::max<std::size_t>(limits.joints, 3);
-  settings.capacity.extra_rows = limits.rows + TipGuides::most_rows;
+  settings.capacity.extra_rows = limits.rows;
   return settings;
 }
 
@@ -36,13 +36,24 @@ std::string members_of(const OrderedJson& object) {
   return text.substr(1, text.size() - 2);
 }
 
-template <class Ending>
-OrderedJson statuses(Ending last, bool (*is_ok)(Ending)) {
+/// Returns all statuses: `reason` is that of a tip.
+OrderedJson statuses() {
   OrderedJson list = OrderedJson::array();
-  for (int i = 0; i <= static_cast<int>(last); ++i) {
-    const auto status = static_cast<Ending>(i);
-    list.push_back({{"ok", is_ok(status)}, {"status", name(status)}, {"reason", reason(status)}});
+  for (std::size_t i = 0; i < status_count; ++i) {
+    const auto status = static_cast<Status>(i);
+    list.push_back({{"ok", is_ok(status)},
+                    {"status", name(status)},
+                    {"reason", reason(status, Subject::tip)},
+                    {"instrument_reason", reason(status, Subject::instrument)},
+                    {"polytope_reason", reason(status, Subject::polytope)}});
   }
+  return list;
+}
+
+/// Returns the names of all limits.
+OrderedJson limits() {
+  OrderedJson list = OrderedJson::array();
+  for (std::size_t i = 0; i < limit_count; ++i) list.push_back(name(static_cast<Limit>(i)));
   return list;
 }
 
@@ -145,12 +156,7 @@ Service::Service(std::shared_ptr<const Mesh> mesh, const ServiceSettings& settin
       request_(settings.limits),
       jacobian_(3, static_cast<Eigen::Index>(settings.limits.joints)),
       info_(members_of(info(*mesh, settings))),
-      statuses_(
-          members_of({{"statuses", statuses<Status>(Status::mesh_changed, &is_ok)},
-                      {"polytope_statuses",
-                       statuses<PolytopeStatus>(PolytopeStatus::mesh_changed, [](PolytopeStatus s) {
-                         return s == PolytopeStatus::found;
-                       })}})) {}
+      statuses_(members_of({{"statuses", statuses()}, {"limits", limits()}})) {}
 
 std::size_t Service::answer(const Line& line, Client& client, std::string& out) {
   if (line.is_too_long) {
@@ -207,11 +213,11 @@ std::size_t Service::carry_out(Client& client, std::string& out) {
       if (client.instrument->mesh_count() > 1 && step.distance) {
         out += ",\"nearest_mesh\":" + std::to_string(step.nearest_mesh);
       }
-      append_guides(out, client.guide_names, step.guides, step.softening);
+      append_guides(out, client.guide_names, step.guides, step.relaxation);
       break;
     }
     case Verb::guides:
-      set_guides(client, limits_, request_);
+      set_guides(client, mesh_, index_, settings_, request_);
       out += "\"ok\":true";
       break;
     case Verb::anatomy:
@@ -228,15 +234,13 @@ std::size_t Service::carry_out(Client& client, std::string& out) {
   return 1;
 }
 
-/// Of a tool that he has opened, or that of all.
+/// Returns the client's own constraint, or the one that clients share.
 MotionConstraint& Service::constraint_of(Client& client) noexcept {
-  return client.tool ? *client.tool : constraint_;
+  return client.own ? *client.own : constraint_;
 }
 
 Step Service::step(Client& client, const Motion& motion) noexcept {
-  MotionConstraint& constraint = constraint_of(client);
-  return client.guides ? client.guides->step(constraint, motion, client.tip)
-                       : constraint.step(motion, client.tip);
+  return constraint_of(client).step(motion, client.tip);
 }
 
 void Service::append_single_step(Client& client, std::string& out) {
@@ -252,10 +256,9 @@ void Service::append_single_step(Client& client, std::string& out) {
     motion.rows = ExtraRows(request_.rows.numbers.data(), request_.bounds.numbers.data(),
                             static_cast<Eigen::Index>(request_.rows.rows));
   }
-  append_step(out, step(client, motion), request_.jacobian.columns);
-  if (client.guides) {
-    append_guides(out, client.tip_guide_names, client.guides->states(), client.guides->softening());
-  }
+  const Step step = this->step(client, motion);
+  append_step(out, step, request_.jacobian.columns);
+  append_guides(out, client.tip_guide_names, step.guides, step.relaxation);
 }
 
 void Service::append_batch(Client& client, std::string& out) {

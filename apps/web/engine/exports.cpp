@@ -265,9 +265,11 @@ const char* keepout_status_name(std::uint32_t status) {
   return literal(name(static_cast<keepout::Status>(status)));
 }
 
-/// One line on what a status means and what to do about it.
-const char* keepout_status_reason(std::uint32_t status) {
-  return literal(reason(static_cast<keepout::Status>(status)));
+/// Returns one line on what a status means and what to do about it. `subject`: 0 a tip, 1 an
+/// instrument.
+const char* keepout_status_reason(std::uint32_t status, std::uint32_t subject) {
+  return literal(
+      reason(static_cast<keepout::Status>(status), static_cast<keepout::Subject>(subject)));
 }
 
 /// The names of the generated shapes, as a JSON list.

@@ -79,9 +79,11 @@ Cycle::Cycle(Activation& rule, Solver& solver, Workspace& work, Budget& budget,
       motion_(motion),
       around_(surroundings_of(motion, options, rule.reach())),
       times_(times) {
-  // With joints, rows or damping the answer is none.
-  around_.is_projected =
-      !motion.jacobian && !motion.rows && options.damping == 0.0 && solver.reads_planes();
+  // Guides that lead back may ask for more than the projection of the aim can give.
+  if (work.guides.leads_back()) around_.reach = around_.searched = Reach::sphere;
+  // With joints, rows or damping the answer is no projection.
+  around_.is_projected = !motion.jacobian && !motion.rows && options.damping == 0.0 &&
+                         solver.reads_planes() && !work.guides.leads_back();
   if (times_ != nullptr) last_ = std::chrono::steady_clock::now();
 }
 
@@ -107,7 +109,7 @@ void Cycle::run(Step& result) noexcept {
   if (is_ok(opening.status)) {
     settled = settle();
     ended(&StageTimes::solve);
-    result.planes = work_.planes.view();
+    result.planes = work_.posed();
   }
   result.status = settled.status;
   result.triangles = rule_.triangles();
@@ -115,9 +117,32 @@ void Cycle::run(Step& result) noexcept {
   // Number by number, as the increment: no zero has a sign.
   for (int axis = 0; axis < 3; ++axis) result.motion[axis] = settled.motion[axis] + 0.0;
   result.increment = work_.increment();
-  result.active = work_.active();
+  report(result);
   if (halvings_ > 0) result.status = Status::fallback;
   if (recovering) result.status = Status::recovering;
+}
+
+/// Reports what limits the answer.
+void Cycle::report(Step& result) noexcept {
+  result.planes = work_.posed_for_answer();
+  result.active = work_.active();
+  result.relaxation = work_.relaxation();
+  result.limits = work_.limits();
+  const std::size_t of_mesh = work_.planes.size();
+  for (const std::uint32_t row : result.active) {
+    if (row < of_mesh) {
+      const bool is_bound = work_.planes[row].source == no_triangle;
+      result.limits.add(is_bound ? Limit::radius : Limit::mesh);
+    } else if (row < result.planes.size()) {
+      result.limits.add(Limit::guide);
+      work_.guides.note_active(row - of_mesh);
+    } else {
+      result.limits.add(Limit::rows);
+    }
+  }
+  if (halvings_ == 0) return;
+  result.limits.add(Limit::truncated);
+  result.limits.add(halved_for_ == Status::over_capacity ? Limit::capacity : Limit::budget);
 }
 
 /// Has the rule look at the triangles that matter for the aim, and begin with them.
@@ -125,17 +150,21 @@ Opening Cycle::open() noexcept {
   work_.planes.clear();
   const bool fits = rule_.look_around(around_);
   ended(&StageTimes::query);
-  if (!fits) return {Status::over_capacity};
+  if (!fits) return {budget_.status_at_end()};
   const Opening opening = rule_.start(around_, work_.planes);
   ended(&StageTimes::activation);
   return opening;
 }
 
-/// Where there are more triangles than room: a shorter way has fewer.
+/// Where there are more triangles than room, or than the budget allows: a shorter way has fewer.
 Opening Cycle::open_as_far_as_fits() noexcept {
   const auto attempt = [&] { return budget_.halved([&] { return open(); }); };
   Opening opening = attempt();
-  while (opening.status == Status::over_capacity && halvings_ < most_halvings) {
+  const auto is_too_much = [&] {
+    return opening.status == Status::over_capacity || opening.status == Status::out_of_budget;
+  };
+  while (is_too_much() && halvings_ < most_halvings) {
+    halved_for_ = opening.status;
     around_.searched = around_.reach;
     around_.aim *= 0.5;
     if (around_.reach == Reach::sphere) around_.longest *= 0.5;
@@ -158,6 +187,7 @@ Cycle::Trial Cycle::settle() noexcept {
 /// Solves, and as long as the rule objects to the trial motion, solves again with its plane. What
 /// that leaves of the budget is for a part of the last trial.
 Cycle::Trial Cycle::find() noexcept {
+  limits_ = {};
   Trial last{Status::unsolved, Vec3::Zero()};
   double free_share = 0.0;  // of the last trial
   const std::optional<Trial> found = budget_.halved([&] { return try_in_turn(last, free_share); });
@@ -173,6 +203,7 @@ std::optional<Cycle::Trial> Cycle::try_in_turn(Trial& last, double& free_share) 
     const bool has_part = free_share > 0.0 && !motion_.jacobian;
     if (!is_ok(trial.status)) {
       if (!has_part) return trial;
+      note(trial.status);
       work_.solution = {};
       break;
     }
@@ -182,11 +213,18 @@ std::optional<Cycle::Trial> Cycle::try_in_turn(Trial& last, double& free_share) 
       free_share = 0.0;
       continue;
     }
+    // No half-space was left that excludes it.
+    if (!work_.guides.allow(trial.motion)) {
+      last = trial;
+      free_share = 1.0;
+      break;
+    }
     const Judgement judgement = rule_.judge(around_, trial.motion, work_.planes);
     if (judgement.verdict == Verdict::accepted) {
-      work_.keep_answer(motion_, trial.motion, 1.0);
+      work_.keep_answer(motion_, trial.motion, 1.0, relaxation_, {});
       return Trial{work_.solution.active.empty() ? trial.status : Status::limited, trial.motion};
     }
+    if (budget_.is_spent()) note(budget_.status_at_end());
     if (budget_.is_spent() && has_part) {  // nothing is known of this one
       work_.solution = {};
       break;
@@ -198,41 +236,79 @@ std::optional<Cycle::Trial> Cycle::try_in_turn(Trial& last, double& free_share) 
   return std::nullopt;
 }
 
-/// The part of the last trial up to the first contact, provided that it stands the same test.
+/// The part of the last trial up to the first contact, within the guides' regions, provided that it
+/// stands the same test.
 Cycle::Trial Cycle::fall_back(const Trial& trial, double free_share) noexcept {
-  const double share = free_share * (1.0 - 1e-9);
+  const double allowed = work_.guides.allowed_fraction(trial.motion);
+  const double share = std::min(free_share * (1.0 - 1e-9), allowed);
   const Vec3 part = share * trial.motion;
   if (!(share > 0.0) || !allow_parts(motion_.rows) ||
       rule_.judge(around_, part, work_.planes).verdict != Verdict::accepted) {
-    return {Status::unsolved, Vec3::Zero()};
+    if (limits_.has(Limit::capacity)) return {Status::over_capacity, Vec3::Zero()};
+    return {limits_.has(Limit::budget) ? Status::out_of_budget : Status::unsolved, Vec3::Zero()};
   }
-  work_.keep_answer(motion_, part, share);
+  limits_.add(Limit::truncated);
+  if (free_share < 1.0) limits_.add(Limit::mesh);
+  if (allowed < 1.0) limits_.add(Limit::guide);
+  work_.guides.note_left_by(trial.motion);
+  work_.keep_answer(motion_, part, share, relaxation_, limits_);
   return {Status::fallback, part};
 }
 
-/// The nearest motion that the planes allow; not judged yet. free, or what went wrong.
+/// Notes that the search was cut short.
+void Cycle::note(Status ended) noexcept {
+  if (ended == Status::out_of_budget) limits_.add(Limit::budget);
+  if (ended == Status::over_capacity) limits_.add(Limit::capacity);
+}
+
+/// The nearest motion that planes and guides allow; the rule has not judged it yet. free, or what
+/// went wrong. If no half-space of a guide is left to add, the motion may leave its region.
 Cycle::Trial Cycle::solve() noexcept {
+  Trial trial = solve_once();
+  while (is_ok(trial.status) && !work_.guides.allow(trial.motion)) {
+    budget_.spend(1);
+    if (!work_.guides.exclude(trial.motion)) break;
+    trial = solve_once();
+  }
+  return trial;
+}
+
+Cycle::Trial Cycle::solve_once() noexcept {
   if (work_.planes.overflowed()) return {Status::over_capacity, Vec3::Zero()};
+  const bool is_bare = work_.planes.empty() && work_.guides.planes().empty();
   // The projection of the aim on no plane: it needs no solver.
-  if (work_.planes.empty() && around_.is_projected) {
+  if (is_bare && around_.is_projected) {
     work_.solution = {};
     return {Status::free, around_.aim};
   }
   std::optional<Vec3> answer;
   Status solved = attempt(answer);
-  // Planes that contradict each other, or all but, so that what satisfies them is out of the world.
+  // Planes may contradict each other, or nearly, so that the solver finds a point out of the world,
+  // or comes to no end.
   const auto contradict = [&] {
-    return solved == Status::infeasible || solved == Status::ill_posed;
+    return solved == Status::infeasible || solved == Status::ill_posed ||
+           solved == Status::unsolved;
   };
-  while (contradict() && rule_.relax(work_.planes)) solved = attempt(answer);
+  while (contradict() && relax()) solved = attempt(answer);
   if (is_ok(solved) && !answer->allFinite()) solved = Status::unsolved;
   if (!is_ok(solved)) return {solved, Vec3::Zero()};
   if (around_.reach == Reach::sphere) return {Status::free, *answer};
-  return {Status::free, sharpened(*answer, around_.aim, work_.planes.view())};
+  return {Status::free, sharpened(*answer, around_.aim, work_.posed())};
+}
+
+/// Relaxes what leads back: guides first. Returns true if any plane changed.
+bool Cycle::relax() noexcept {
+  if (work_.guides.relax()) {
+    relaxation_ = std::max(relaxation_, Relaxation::guides);
+    return true;
+  }
+  if (!rule_.relax(work_.planes)) return false;
+  relaxation_ = Relaxation::recovery;
+  return true;
 }
 
 Status Cycle::attempt(std::optional<Vec3>& answer) noexcept {
-  if (budget_.is_spent()) return Status::unsolved;
+  if (budget_.is_spent()) return budget_.status_at_end();
   const StepProblem problem = work_.pose(motion_, around_.aim, options_.damping);
   work_.solution = {};
   const SolveStatus solved = solver_.solve(problem, work_.solution);
@@ -289,7 +365,7 @@ Cycle::Trial Cycle::branch(const Trial& best) noexcept {
       // Solved once more: the solver has gone on since.
       const Trial trial = solve();
       if (!is_ok(trial.status) || trial.motion != nearest->motion) break;
-      work_.keep_answer(motion_, trial.motion, 1.0);
+      work_.keep_answer(motion_, trial.motion, 1.0, relaxation_, {});
       return {Status::limited, trial.motion};
     }
     if (verdict == Verdict::blocked) continue;
@@ -312,6 +388,7 @@ Cycle::Trial Cycle::branch(const Trial& best) noexcept {
 void Cycle::open_branch(const Trial& best) noexcept {
   const Trial trial = solve();
   if (!is_ok(trial.status) || trial.motion.norm() > around_.longest) return;
+  if (!work_.guides.allow(trial.motion)) return;
   if (!is_worthwhile(trial.motion, best.motion)) return;
   work_.branches.push((around_.aim - trial.motion).norm(), trial.motion, work_.planes.view());
 }

@@ -15,17 +15,17 @@ namespace keepout {
 
 /// One control cycle: the motion nearest to the one desired which the rule allows. The rule looks
 /// around and opens with planes; then, in turn, the solver proposes a trial motion within the
-/// planes, and the rule judges it and may add a plane, until it has no objection. A better motion
-/// is then looked for while the options allow. On any trouble the motion is zero and the status
-/// says why; no solver is taken at its word.
+/// planes, and the guides and the rule judge it and may add a plane, until none has an objection. A
+/// better motion is then looked for while the options allow. On any trouble the motion is zero and
+/// the status says why; no solver is taken at its word.
 ///
 /// What it proposes trials with is not trusted: only the rule's judgement stands between a trial
 /// and the robot.
 class Cycle {
  public:
   /// Preconditions: rule and solver are prepared for the workspace's capacity; the motion is
-  /// checked. Work is taken from the budget. What each stage takes is added to `times`, unless
-  /// null.
+  /// checked; the workspace's guides are open. Work is taken from the budget. What each stage takes
+  /// is added to `times`, unless null.
   Cycle(Activation& rule, Solver& solver, Workspace& work, Budget& budget,
         const StepOptions& options, const Motion& motion, StageTimes* times) noexcept;
 
@@ -47,7 +47,11 @@ class Cycle {
   std::optional<Trial> try_in_turn(Trial& last, double& free_share) noexcept;
   Trial fall_back(const Trial& trial, double free_share) noexcept;
   Trial solve() noexcept;
+  Trial solve_once() noexcept;
   Status attempt(std::optional<Vec3>& answer) noexcept;
+  bool relax() noexcept;
+  void note(Status ended) noexcept;
+  void report(Step& result) noexcept;
   Trial refine(Trial best) noexcept;
   Trial branch(const Trial& best) noexcept;
   void open_branch(const Trial& best) noexcept;
@@ -61,7 +65,10 @@ class Cycle {
   const StepOptions& options_;
   const Motion& motion_;
   Surroundings around_;
-  int halvings_ = 0;  // of the way, until there was room for the triangles around it
+  int halvings_ = 0;   // of the aim, until its region was small enough
+  Status halved_for_;  // over_capacity or out_of_budget, if there are any
+  Relaxation relaxation_ = Relaxation::none;
+  Limits limits_;  // of the search at hand: those that are no active row
 
   StageTimes* times_;
   std::chrono::steady_clock::time_point last_;

@@ -56,7 +56,7 @@ Step led_out(const Placement& placement, Neighborhood& near, const Motion& motio
       lead_out(near, motion.tip, placement, longest_way(options), well_off(near.mesh(), options));
   work.solution = {};
   result.motion.array() += 0.0;  // no zero has a sign
-  work.keep_answer(motion, result.motion, 1.0);
+  work.keep_answer(motion, result.motion, 1.0, Relaxation::none, {});
   result.increment = work.increment();
   return result;
 }
@@ -71,11 +71,11 @@ bool lead_out_from_inside(Neighborhood& near, const Motion& motion, const StepOp
     return true;
   }
   if (placement->is_free) return false;
-  if (!may_be_led(motion, options, near.mesh()) || placement->distance > options.deepest) {
-    step.status = Status::inside;
-    step.distance = placement->distance;
-  } else {
-    step = led_out(*placement, near, motion, options, work);
+  const bool may_be =
+      may_be_led(motion, options, near.mesh()) && placement->distance <= options.deepest;
+  if (may_be) step = led_out(*placement, near, motion, options, work);
+  if (!may_be || !work.guides.allow(step.motion)) {
+    step = {.status = Status::inside, .distance = placement->distance};
   }
   return true;
 }
@@ -86,7 +86,7 @@ bool lead_off_surface(Neighborhood& near, const Motion& motion, const StepOption
   const auto placement = place(near, motion.tip);
   if (!placement) return false;
   const Step off = led_out(*placement, near, motion, options, work);
-  if (off.motion.isZero(0.0)) return false;
+  if (off.motion.isZero(0.0) || !work.guides.allow(off.motion)) return false;
   step = off;
   return true;
 }

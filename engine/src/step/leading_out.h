@@ -18,7 +18,8 @@ Vec3 lead_out(Neighborhood& near, const Vec3& tip, const Placement& placement, d
 
 /// Whether a tip is on the forbidden side; then `step` becomes the one that leads it out, in place
 /// of the one asked for. It is `inside`, with zero motion, when the tip is deeper than
-/// options.deepest, and with a Jacobian or rows, as there is no straight way out. Preconditions:
+/// options.deepest, if a guide forbids the way out, and with a Jacobian or rows, as there is no
+/// straight way out then. Preconditions:
 /// the mesh is watertight; the motion is checked.
 bool lead_out_from_inside(Neighborhood& near, const Motion& motion, const StepOptions& options,
                           Workspace& work, Step& step) noexcept;

@@ -88,8 +88,9 @@ MotionConstraint::MotionConstraint(std::shared_ptr<const Mesh> mesh,
         "that guards a whole tool, ask for Inside::taken_as_is");
   }
   prepare();
-  solver_->reserve(static_cast<int>(std::max<std::size_t>(capacity.variables, 3)),
-                   static_cast<int>(capacity.planes + capacity.extra_rows));
+  solver_->reserve(
+      static_cast<int>(std::max<std::size_t>(capacity.variables, 3)),
+      static_cast<int>(capacity.planes + TipGuides::most_planes + capacity.extra_rows));
   require_usable(options_);
   makes_queries_ = near_->ball().radius >= 0.0;  // once it has been asked at all
 }
@@ -121,6 +122,12 @@ void MotionConstraint::set_options(const StepOptions& options) {
   require_usable(options);
   options_ = options;
 }
+
+void MotionConstraint::set_guides(std::vector<Guide> guides) {
+  work_->guides = TipGuides(std::move(guides));
+}
+
+std::span<const Guide> MotionConstraint::guides() const noexcept { return work_->guides.guides(); }
 
 /// In range, and so that rounding leaves something of the margin.
 void MotionConstraint::require_usable(const StepOptions& options) {
@@ -169,7 +176,11 @@ Step MotionConstraint::step(const Motion& motion, SideWatch& sides, StageTimes* 
   near_->budget().renew();
   result.status = check(motion, options_);
   // What is refused says nothing of where the tip is.
-  if (is_ok(result.status)) step_as_checked(motion, sides, times, result);
+  if (is_ok(result.status)) {
+    step_as_checked(motion, sides, times, result);
+    result.guides = work_->guides.states(result.relaxation);
+    if (result.ok() && work_->guides.is_recovering()) result.status = Status::recovering;
+  }
   const bool is_asked = options_.distances == Distances::always && !result.distance;
   if (is_asked && result.status != Status::invalid_input) {
     const auto nearest = find_nearest(*near_, motion.tip);
@@ -181,6 +192,7 @@ Step MotionConstraint::step(const Motion& motion, SideWatch& sides, StageTimes* 
 /// A tip on the forbidden side is led out; any other steps as the rule allows.
 void MotionConstraint::step_as_checked(const Motion& motion, SideWatch& sides, StageTimes* times,
                                        Step& result) noexcept {
+  work_->guides.open(motion.tip, options_.recovery);
   if (watch_ && sides.has_to_place(motion.tip, mesh()) &&
       lead_out_from_inside(*near_, motion, options_, *work_, result)) {
     return;

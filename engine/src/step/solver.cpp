@@ -3,6 +3,12 @@
 
 namespace keepout {
 
+std::string_view name(SolveStatus status) noexcept {
+  return status == SolveStatus::optimal           ? "optimal"
+         : status == SolveStatus::iteration_limit ? "iteration_limit"
+                                                  : name(status_of(status));
+}
+
 Status status_of(SolveStatus status) noexcept {
   switch (status) {
     case SolveStatus::optimal:

@@ -14,6 +14,10 @@ constexpr std::array<double, 9> identity{1, 0, 0, 0, 1, 0, 0, 0, 1};
 // Ways around one triangle: the plane of the contact, of the face, and of each edge.
 constexpr std::size_t most_ways = 5;
 
+std::size_t most_rows(const Capacity& capacity) {
+  return capacity.planes + TipGuides::most_planes + capacity.extra_rows;
+}
+
 }  // namespace
 
 void Branches::push(double cost, const Vec3& motion, std::span<const HalfSpace> planes) noexcept {
@@ -45,10 +49,11 @@ Workspace::Workspace(const Capacity& capacity, const Solver& solver)
       extra_rows_(static_cast<Eigen::Index>(capacity.extra_rows)),
       writes_planes_(!solver.reads_planes()),
       jacobian_(3 * static_cast<std::size_t>(variables_)),
-      rows_((capacity.planes + capacity.extra_rows) * static_cast<std::size_t>(variables_)),
-      bounds_(capacity.planes + capacity.extra_rows),
+      rows_(most_rows(capacity) * static_cast<std::size_t>(variables_)),
+      bounds_(most_rows(capacity)),
+      posed_(capacity.planes + TipGuides::most_planes),
       answer_{Buffer<double>(static_cast<std::size_t>(variables_)),
-              Buffer<std::uint32_t>(capacity.planes + capacity.extra_rows)},
+              Buffer<std::uint32_t>(most_rows(capacity))},
       earlier_answer_(answer_) {}
 
 bool Workspace::has_room_for(const Motion& motion) const noexcept {
@@ -66,8 +71,9 @@ StepProblem Workspace::pose(const Motion& motion, const Vec3& aim, double dampin
       jacobian = jacobian_.data();
     }
   }
-  if (writes_planes_) write_rows_of_planes(motion.jacobian ? jacobian : nullptr, n);
-  const auto m = static_cast<Eigen::Index>(planes.size());
+  const std::span<const HalfSpace> half_spaces = posed();
+  if (writes_planes_) write_rows_of(half_spaces, motion.jacobian ? jacobian : nullptr, n);
+  const auto m = static_cast<Eigen::Index>(half_spaces.size());
   const Eigen::Index extra = motion.rows ? motion.rows->count() : 0;
   if (extra > 0) {
     std::copy_n(motion.rows->matrix(), extra * n, rows_.data() + m * n);
@@ -79,23 +85,35 @@ StepProblem Workspace::pose(const Motion& motion, const Vec3& aim, double dampin
           .rows = {rows_.data(), m + extra, n},
           .bounds = {bounds_.data(), m + extra},
           .damping = damping,
-          .planes = planes.view()};
+          .planes = half_spaces};
 }
 
 /// Without a Jacobian they are the normals themselves.
-void Workspace::write_rows_of_planes(const double* jacobian, Eigen::Index variables) noexcept {
+void Workspace::write_rows_of(std::span<const HalfSpace> posed, const double* jacobian,
+                              Eigen::Index variables) noexcept {
   double* row = rows_.data();
-  for (std::size_t p = 0; p < planes.size(); ++p, row += variables) {
+  for (std::size_t p = 0; p < posed.size(); ++p, row += variables) {
     if (jacobian != nullptr) {
-      write_row(planes[p].normal, jacobian, variables, row);
+      write_row(posed[p].normal, jacobian, variables, row);
     } else {
-      std::copy_n(planes[p].normal.data(), 3, row);
+      std::copy_n(posed[p].normal.data(), 3, row);
     }
-    bounds_[p] = planes[p].offset;
+    bounds_[p] = posed[p].offset;
   }
 }
 
-void Workspace::keep_answer(const Motion& motion, const Vec3& tip_motion, double share) noexcept {
+std::span<const HalfSpace> Workspace::posed(std::size_t guide_planes) noexcept {
+  if (guide_planes == 0) return planes.view();
+  posed_.assign(planes.view());
+  for (const HalfSpace& plane : guides.planes().first(guide_planes)) posed_.push(plane);
+  return posed_.view();
+}
+
+void Workspace::keep_answer(const Motion& motion, const Vec3& tip_motion, double share,
+                            Relaxation relaxation, Limits limits) noexcept {
+  answer_.guide_planes = guides.planes().size();
+  answer_.relaxation = relaxation;
+  answer_.limits = limits;
   answer_.increment.clear();
   // The sum with 0 takes the sign off a zero, which else that of some zero in the input decides.
   if (motion.jacobian) {

@@ -11,6 +11,7 @@
 #include "keepout/step/motion.h"
 #include "keepout/step/options.h"
 #include "keepout/step/solver.h"
+#include "tip_guides.h"
 
 namespace keepout {
 
@@ -63,15 +64,22 @@ class Workspace {
   /// Whether there is room for the motion's joints and rows.
   bool has_room_for(const Motion& motion) const noexcept;
 
-  /// The problem whose rows are the planes, then those of the caller: on the tip's own increment
-  /// without a Jacobian, on the joints' with one, n^T J. `aim`: where the tip shall go. [length]
+  /// The problem whose rows are the planes, those of guides, then those of the caller: on the tip's
+  /// own increment without a Jacobian, on the joints' with one, n^T J. `aim`: where the tip shall
+  /// go. [length]
   /// Precondition: has_room_for(motion).
   StepProblem pose(const Motion& motion, const Vec3& aim, double damping) noexcept;
 
   /// Takes down the last solution as the answer, which outlives the solver's next one: `share` of
-  /// it, or where the tip itself is what moves, `tip_motion`.
-  void keep_answer(const Motion& motion, const Vec3& tip_motion, double share) noexcept;
+  /// it, or where the tip itself is what moves, `tip_motion`. `relaxation`, `limits`: what was
+  /// relaxed for it, and what limits it that is no active row.
+  void keep_answer(const Motion& motion, const Vec3& tip_motion, double share,
+                   Relaxation relaxation, Limits limits) noexcept;
 
+  /// Returns the planes and those of guides, as the solver gets them.
+  std::span<const HalfSpace> posed() noexcept { return posed(guides.planes().size()); }
+
+  TipGuides guides;                // of the tip
   HalfSpaceBuffer planes;          // that the trial at hand has to satisfy
   HalfSpaceBuffer earlier_planes;  // of the motion that is to be improved upon
   HalfSpaceBuffer ways;            // around one triangle
@@ -86,23 +94,35 @@ class Workspace {
 
   /// What was taken down.
   std::span<const double> increment() const noexcept { return answer_.increment.view(); }
-  /// The rows that hold it back: planes, then those of the caller.
+  /// The rows that limit it: planes, those of guides, then those of the caller.
   std::span<const std::uint32_t> active() const noexcept { return answer_.active.view(); }
+  /// Returns the planes and those of guides that it was found with.
+  std::span<const HalfSpace> posed_for_answer() noexcept { return posed(answer_.guide_planes); }
+  /// Returns what was relaxed for it.
+  Relaxation relaxation() const noexcept { return answer_.relaxation; }
+  /// Returns what limits it that is no active row.
+  Limits limits() const noexcept { return answer_.limits; }
 
  private:
   struct Answer {
     Buffer<double> increment;      // (variables)
-    Buffer<std::uint32_t> active;  // (planes + extra rows)
+    Buffer<std::uint32_t> active;  // (planes + those of guides + extra rows)
+    std::size_t guide_planes = 0;  // that were posed
+    Relaxation relaxation = Relaxation::none;
+    Limits limits = {};
   };
 
-  void write_rows_of_planes(const double* jacobian, Eigen::Index variables) noexcept;
+  std::span<const HalfSpace> posed(std::size_t guide_planes) noexcept;
+  void write_rows_of(std::span<const HalfSpace> posed, const double* jacobian,
+                     Eigen::Index variables) noexcept;
 
   Eigen::Index variables_;   // the most columns of a Jacobian; at least 3
   Eigen::Index extra_rows_;  // the most rows of the caller's own
   bool writes_planes_;
   std::vector<double> jacobian_;  // (3, variables), column by column, of one that is not so
-  std::vector<double> rows_;      // (planes + extra rows, variables), row by row
-  std::vector<double> bounds_;    // (planes + extra rows)
+  std::vector<double> rows_;      // (planes + those of guides + extra rows, variables), row by row
+  std::vector<double> bounds_;    // (planes + those of guides + extra rows)
+  HalfSpaceBuffer posed_;         // planes and those of guides
   Vec3 desired_ = Vec3::Zero();
   Answer answer_;
   Answer earlier_answer_;

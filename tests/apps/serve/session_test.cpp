@@ -156,22 +156,22 @@ TEST_F(SessionTest, GuidesThatAClientSetsHoldHisTipAsByHandAndNobodyElses) {
       ask(session, R"({"do":"guides","guides":["corridor=slab:0,0,0:1,0,0:0.5","ball:0,0,0:90"]})"),
       "{\"id\":null,\"ok\":true}\n");
   MotionConstraint own = make_motion_constraint(mesh_, settings().constraint);
-  TipGuides guides({{"corridor", Region::slab(Vec3::Zero(), Vec3::UnitX(), 0.5)},
-                    {"ball", Region::ball(Vec3::Zero(), 90.0)}});
+  own.set_guides({Guide::point("corridor", Region::slab(Vec3::Zero(), Vec3::UnitX(), 0.5)),
+                  Guide::point("ball", Region::ball(Vec3::Zero(), 90.0))});
   Vec3 tip(0, 0, 80);
   std::size_t held = 0;
   Random random(4);
   for (int cycle = 0; cycle < 200; ++cycle) {
     const Vec3 desired = 0.3 * random.direction() + Vec3(0.1, 0, 0.2);
-    const Step step = guides.step(own, {.tip = tip, .desired = desired});
+    const Step step = own.step({.tip = tip, .desired = desired});
     const std::string answer = ask(session, step_line(tip, desired));
     ASSERT_TRUE(same_bits(motion_in(answer), step.motion)) << answer;
     const Json told = Json::parse(answer);
-    ASSERT_EQ(told["softening"], "none");
+    ASSERT_EQ(told["relaxation"], "none");
     for (std::size_t g = 0; g < 2; ++g) {
-      ASSERT_EQ(told["guides"][g]["excess"], guides.states()[g].excess);
-      ASSERT_EQ(told["guides"][g]["holds"], guides.states()[g].holds);
-      held += guides.states()[g].holds;
+      ASSERT_EQ(told["guides"][g]["excess"], step.guides[g].excess);
+      ASSERT_EQ(told["guides"][g]["limits"], step.guides[g].limits);
+      held += step.guides[g].limits;
     }
     tip += step.motion;
   }

@@ -52,7 +52,7 @@ TEST(ConvexToolRule, AsksForNoPolytopeAroundTheTipAlone) {
   MotionConstraint shaft = guard(shape("cube"), ConvexTool::capsule({0, 0, 0}, {0, 0, -10}, 0.5),
                                  nullptr, {.radius = radius, .margin = margin});
   const Polytope polytope = shaft.free_polytope(Vec3(0, 0, 61), 5.0);
-  EXPECT_EQ(polytope.status, PolytopeStatus::whole_tool);
+  EXPECT_EQ(polytope.status, Status::unsupported);
   EXPECT_FALSE(polytope.ok());
   // What is returned all the same allows standing still only.
   EXPECT_EQ(polytope.planes.size(), planes_to_hold_still);

@@ -39,7 +39,7 @@ std::vector<Hit> hits_of(const std::shared_ptr<const Mesh>& mesh, const Question
 }
 
 struct Answer {
-  PolytopeStatus status;
+  Status status;
   std::vector<HalfSpace> planes;
   std::vector<Hit> hits;
 };
@@ -50,7 +50,7 @@ Answer polytope(const std::shared_ptr<const Mesh>& mesh, const Question& q,
   HalfSpaceBuffer planes(planes_capacity);
   std::vector<Hit> hits = hits_of(mesh, q);
   Budget unlimited;
-  const PolytopeStatus status = free.around(q.tip, q.radius, q.margin, hits, unlimited, planes);
+  const Status status = free.around(q.tip, q.radius, q.margin, hits, unlimited, planes);
   return {status, {planes.begin(), planes.end()}, std::move(hits)};
 }
 
@@ -236,8 +236,8 @@ TEST(FreePolytope, EveryMotionWithinItKeepsItsDistance) {
         const Question question{tip, radius, margin};
         const Answer answer = polytope(mesh, question);
         ++asked;
-        if (answer.status == PolytopeStatus::touching) continue;
-        ASSERT_EQ(answer.status, PolytopeStatus::found);
+        if (answer.status == Status::touching) continue;
+        ASSERT_EQ(answer.status, Status::free);
         ++found;
         for (const HalfSpace& plane : answer.planes) {
           ASSERT_LE(plane.offset, 0.0);
@@ -260,10 +260,10 @@ TEST(FreePolytope, CounterexamplesToThePapersRuleAreKeptClear) {
       const Question question{example.tip, example.radius, margin};
       const Answer answer = polytope(mesh, question);
       if (example.name == "CE4_on_a_ridge") {
-        EXPECT_EQ(answer.status, PolytopeStatus::touching);
+        EXPECT_EQ(answer.status, Status::touching);
         continue;
       }
-      ASSERT_EQ(answer.status, PolytopeStatus::found);
+      ASSERT_EQ(answer.status, Status::free);
       EXPECT_EQ(Attack(*mesh, question, answer).run(random), 0);
     }
   }
@@ -284,7 +284,7 @@ TEST(FreePolytope, CrowdsOfTrianglesOfAnySizeAreKeptClear) {
     const auto mesh = std::make_shared<const Mesh>(surface);
     const Question question{Vec3::Zero(), 1.0, random.uniform(0.0, 0.1)};
     const Answer answer = polytope(mesh, question);
-    ASSERT_EQ(answer.status, PolytopeStatus::found);
+    ASSERT_EQ(answer.status, Status::free);
     EXPECT_EQ(Attack(*mesh, question, answer).run(random), 0) << "round " << round;
   }
 }
@@ -343,7 +343,7 @@ TEST(FreePolytope, VeryNearToAnEdgeThereIsStillASide) {
       const auto mesh = std::make_shared<const Mesh>(Surface{{a, b, c}, {{0, 1, 2}}});
       const Question question{a + random.uniform() * (b - a) + distance * away, 1.0, 0.25};
       const Answer answer = polytope(mesh, question);
-      ASSERT_EQ(answer.status, PolytopeStatus::found) << distance << " at " << angle;
+      ASSERT_EQ(answer.status, Status::free) << distance << " at " << angle;
       EXPECT_EQ(Attack(*mesh, question, answer).run(random), 0);
     }
   }
@@ -356,7 +356,7 @@ TEST(FreePolytope, OnTheMeshNoSideIsGuessed) {
     Random random(5);
     for (const Vec3& tip : vertex_points(*mesh, 5, random)) {
       const Answer answer = polytope(mesh, {tip, 1.0, 0.25});
-      EXPECT_EQ(answer.status, PolytopeStatus::touching);
+      EXPECT_EQ(answer.status, Status::touching);
       EXPECT_TRUE(is_within(answer.planes, Vec3::Zero()));
       for (int i = 0; i < 10; ++i) {
         const Vec3 any = 1e-9 * random.direction();
@@ -436,7 +436,7 @@ TEST(FreePolytope, ItLeavesMoreThanAPlaneForEachHitAndWithFewerPlanes) {
     constexpr int tips = 20;
     for (const Vec3& tip : surface_points(*mesh, tips, 0.5, random)) {
       const Answer answer = polytope(mesh, {tip, 3.0, 0.25});
-      ASSERT_EQ(answer.status, PolytopeStatus::found) << shape.name;
+      ASSERT_EQ(answer.status, Status::free) << shape.name;
       const std::vector<HalfSpace> naive = naive_planes(answer.hits, 0.25);
       of_shape += share_of_ball(answer.planes, 3.0, random) / tips;
       naive_of_shape += share_of_ball(naive, 3.0, random) / tips;
@@ -458,9 +458,9 @@ TEST(FreePolytope, WhatDoesNotFitIsAStatusAndHoldsStill) {
   const Question question{{0, 0, 47}, 5.0, 0.5};
   const std::size_t needed = polytope(mesh, question).planes.size();
   ASSERT_GT(needed, 7u);
-  EXPECT_EQ(polytope(mesh, question, needed).status, PolytopeStatus::found);
+  EXPECT_EQ(polytope(mesh, question, needed).status, Status::free);
   const Answer short_by_one = polytope(mesh, question, needed - 1);
-  EXPECT_EQ(short_by_one.status, PolytopeStatus::over_capacity);
+  EXPECT_EQ(short_by_one.status, Status::over_capacity);
   EXPECT_TRUE(is_within(short_by_one.planes, Vec3::Zero()));
   EXPECT_FALSE(is_within(short_by_one.planes, Vec3(0, 0, -1e-9)));
 
@@ -468,18 +468,18 @@ TEST(FreePolytope, WhatDoesNotFitIsAStatusAndHoldsStill) {
   Budget unlimited;
   FreePolytope two_hits(mesh, 2);
   EXPECT_EQ(two_hits.around(question.tip, 5.0, 0.5, hits_of(mesh, question), unlimited, planes),
-            PolytopeStatus::over_capacity);
+            Status::over_capacity);
   EXPECT_EQ(planes.size(), 6u);
 
   HalfSpaceBuffer tiny(2);
   FreePolytope free(mesh, 1000);
   EXPECT_EQ(free.around(question.tip, 5.0, 0.5, hits_of(mesh, question), unlimited, tiny),
-            PolytopeStatus::over_capacity);
+            Status::over_capacity);
   EXPECT_TRUE(tiny.overflowed());
 
   Budget too_little(needed);
   EXPECT_EQ(free.around(question.tip, 5.0, 0.5, hits_of(mesh, question), too_little, planes),
-            PolytopeStatus::over_capacity);
+            Status::out_of_budget);
   EXPECT_EQ(planes.size(), 6u);
 }
 
@@ -490,26 +490,24 @@ TEST(FreePolytope, WhatIsNoNumberIsRefused) {
   Budget unlimited;
   const double nan = std::nan("");
   const Vec3 tip(2, 2, 2);
-  EXPECT_EQ(free.around(tip, 1.0, 0.1, {}, unlimited, planes), PolytopeStatus::found);
+  EXPECT_EQ(free.around(tip, 1.0, 0.1, {}, unlimited, planes), Status::free);
   EXPECT_TRUE(planes.empty());
-  EXPECT_EQ(free.around({nan, 0, 0}, 1.0, 0.1, {}, unlimited, planes),
-            PolytopeStatus::invalid_input);
+  EXPECT_EQ(free.around({nan, 0, 0}, 1.0, 0.1, {}, unlimited, planes), Status::invalid_input);
   EXPECT_EQ(planes.size(), 6u);
-  EXPECT_EQ(free.around(tip, -1.0, 0.1, {}, unlimited, planes), PolytopeStatus::invalid_input);
-  EXPECT_EQ(free.around(tip, 1.0, nan, {}, unlimited, planes), PolytopeStatus::invalid_input);
+  EXPECT_EQ(free.around(tip, -1.0, 0.1, {}, unlimited, planes), Status::invalid_input);
+  EXPECT_EQ(free.around(tip, 1.0, nan, {}, unlimited, planes), Status::invalid_input);
   std::vector<Hit> hits{{4, {Vec3::UnitX(), 1.0, Feature::face}}};
-  EXPECT_EQ(free.around(tip, 1.0, 0.1, hits, unlimited, planes), PolytopeStatus::invalid_input);
+  EXPECT_EQ(free.around(tip, 1.0, 0.1, hits, unlimited, planes), Status::invalid_input);
   hits[0] = {0, {Vec3::UnitX(), nan, Feature::face}};
-  EXPECT_EQ(free.around(tip, 1.0, 0.1, hits, unlimited, planes), PolytopeStatus::invalid_input);
+  EXPECT_EQ(free.around(tip, 1.0, 0.1, hits, unlimited, planes), Status::invalid_input);
   EXPECT_THROW(FreePolytope(nullptr, 4), Error);
 }
 
 TEST(FreePolytope, EveryStatusHasANameAndAReason) {
-  for (const PolytopeStatus status :
-       {PolytopeStatus::found, PolytopeStatus::touching, PolytopeStatus::invalid_input,
-        PolytopeStatus::over_capacity, PolytopeStatus::whole_tool, PolytopeStatus::mesh_changed}) {
+  for (const Status status : {Status::free, Status::touching, Status::invalid_input,
+                              Status::over_capacity, Status::unsupported, Status::mesh_changed}) {
     EXPECT_NE(name(status), "unknown");
-    EXPECT_NE(reason(status), "unknown status");
+    EXPECT_NE(reason(status, Subject::polytope), "unknown status");
   }
 }
 

@@ -77,7 +77,7 @@ TEST(MotionConstraintPolytope, FailuresAllowStandingStillOnly) {
   auto guard = make_motion_constraint(mesh, {});
   auto small = make_motion_constraint(mesh, {.capacity = {.triangles = 10}});
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  const auto expect_still = [](const Polytope& polytope, PolytopeStatus status) {
+  const auto expect_still = [](const Polytope& polytope, Status status) {
     EXPECT_EQ(polytope.status, status);
     EXPECT_FALSE(polytope.ok());
     EXPECT_FALSE(polytope.reason().empty());
@@ -85,11 +85,11 @@ TEST(MotionConstraintPolytope, FailuresAllowStandingStillOnly) {
     EXPECT_FALSE(allows(polytope, Vec3(1e-9, 0, 0)));
     EXPECT_FALSE(allows(polytope, Vec3(0, -1e-9, 0)));
   };
-  expect_still(guard.free_polytope(Vec3(nan, 0, 0), 1.0), PolytopeStatus::invalid_input);
-  expect_still(guard.free_polytope(Vec3(0, 0, 60), nan), PolytopeStatus::invalid_input);
-  expect_still(guard.free_polytope(Vec3(0, 0, 60), -1.0), PolytopeStatus::invalid_input);
-  expect_still(guard.free_polytope(mesh->vertex(0), 1.0), PolytopeStatus::touching);
-  expect_still(small.free_polytope(Vec3(0, 0, 55), 20.0), PolytopeStatus::over_capacity);
+  expect_still(guard.free_polytope(Vec3(nan, 0, 0), 1.0), Status::invalid_input);
+  expect_still(guard.free_polytope(Vec3(0, 0, 60), nan), Status::invalid_input);
+  expect_still(guard.free_polytope(Vec3(0, 0, 60), -1.0), Status::invalid_input);
+  expect_still(guard.free_polytope(mesh->vertex(0), 1.0), Status::touching);
+  expect_still(small.free_polytope(Vec3(0, 0, 55), 20.0), Status::over_capacity);
 }
 
 }  // namespace

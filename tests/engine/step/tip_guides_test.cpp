@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "keepout/step/tip_guides.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -16,6 +14,7 @@
 #include "keepout/geometry/closest_point.h"
 #include "keepout/index/wide_bvh.h"
 #include "keepout/solvers/active_set.h"
+#include "keepout/step/motion_constraint.h"
 #include "trials.h"
 
 namespace keepout {
@@ -50,9 +49,9 @@ TEST(TipGuides, KeepCorridorLineAndMeshAtOnce) {
     if (loop.mesh->vertex(v).z() > top.z()) top = loop.mesh->vertex(v);
   }
   const Vec3 start = top + Vec3(0, 0, 4);
-  TipGuides guides({{"corridor", Region::slab(start, Vec3(1, 0, 0), 1.0)},
-                    {"line", Region::tube(start, Vec3(0, 1, 0.1), 6.0)},
-                    {"reach", Region::ball(start, 8.0)}});
+  loop.guard.set_guides({Guide::point("corridor", Region::slab(start, Vec3(1, 0, 0), 1.0)),
+                         Guide::point("line", Region::tube(start, Vec3(0, 1, 0.1), 6.0)),
+                         Guide::point("reach", Region::ball(start, 8.0))});
   Random random(1);
   Vec3 tip = start;
   std::vector<int> held(3, 0);
@@ -62,16 +61,17 @@ TEST(TipGuides, KeepCorridorLineAndMeshAtOnce) {
     const Vec3 desired =
         random.uniform(0.0, 1.0) *
         (Vec3(std::sin(i / 7), std::cos(i / 50), std::sin(i / 90)) + 0.5 * random.direction());
-    const Step step = guides.step(loop.guard, {.tip = tip, .desired = desired});
+    const Step step = loop.guard.step({.tip = tip, .desired = desired});
     ASSERT_TRUE(step.ok()) << step.reason();
     for (const double share : {0.25, 0.5, 0.75, 1.0}) {
-      for (const TipGuide& guide : guides.guides()) {
-        ASSERT_LE(guide.region.excess(tip + share * step.motion), guide.band + 1e-12) << guide.name;
+      for (const Guide& guide : loop.guard.guides()) {
+        ASSERT_LE(guide.region().excess(tip + share * step.motion), guide.band() + 1e-12)
+            << guide.name();
       }
     }
     tip += step.motion;
     way += step.motion.norm();
-    for (std::size_t g = 0; g < 3; ++g) held[g] += guides.states()[g].holds ? 1 : 0;
+    for (std::size_t g = 0; g < 3; ++g) held[g] += step.guides[g].limits ? 1 : 0;
     if (i % 20 != 0) continue;
     const double distance = loop.distance(tip);
     ASSERT_GE(distance, 1.0 + kept_off - 1e-9);
@@ -88,7 +88,8 @@ TEST(TipGuides, MakeTheNearestStepThatARoundRegionAllows) {
   const Vec3 axis = Vec3(1, 2, 0.5).normalized();
   const Vec3 on_axis = loop.mesh->bounds().high + Vec3::Constant(50.0);
   const double radius = 2.0;
-  TipGuides guides({{"tube", Region::tube(on_axis, axis, radius)}});
+  const Guide tube = Guide::point("tube", Region::tube(on_axis, axis, radius));
+  loop.guard.set_guides({tube});
   Random random(2);
   int out = 0;
   for (int i = 0; i < test::trials(2000); ++i) {
@@ -98,9 +99,9 @@ TEST(TipGuides, MakeTheNearestStepThatARoundRegionAllows) {
     const Vec3 aim = tip + desired - on_axis;
     const Vec3 across = aim - axis.dot(aim) * axis;
     const double beyond = std::max(across.norm() - radius, 0.0);
-    const Step step = guides.step(loop.guard, {.tip = tip, .desired = desired});
+    const Step step = loop.guard.step({.tip = tip, .desired = desired});
     ASSERT_TRUE(step.ok());
-    ASSERT_LE((step.motion - desired).norm(), 1.001 * beyond + guides.guides()[0].band);
+    ASSERT_LE((step.motion - desired).norm(), 1.001 * beyond + tube.band());
     out += beyond > 0.1 ? 1 : 0;
   }
   EXPECT_GT(out, test::trials(300));
@@ -112,84 +113,91 @@ TEST(TipGuides, HoldWhateverJointsMoveTheTip) {
   options.damping = 1e-6;
   loop.guard.set_options(options);
   const Vec3 tip = loop.mesh->bounds().high + Vec3(0, 0, 3);
-  TipGuides guides({{"corridor", Region::slab(tip, Vec3(1, 1, 0), 0.5)}}, 5, 1);
+  const Guide corridor = Guide::point("corridor", Region::slab(tip, Vec3(1, 1, 0), 0.5));
+  loop.guard.set_guides({corridor});
   Random random(3);
   for (int i = 0; i < test::trials(500); ++i) {
     Eigen::Matrix<double, 3, 5> jacobian;
     for (int c = 0; c < 5; ++c) jacobian.col(c) = random.uniform(0.5, 2.0) * random.direction();
     const double row[5] = {0, 0, 1, 0, 0};
     const double bound[1] = {-0.1};
-    const Step step = guides.step(loop.guard, {.tip = tip,
-                                               .desired = 2.0 * random.direction(),
-                                               .jacobian = jacobian,
-                                               .rows = ExtraRows(row, bound, 1)});
+    const Step step = loop.guard.step({.tip = tip,
+                                       .desired = 2.0 * random.direction(),
+                                       .jacobian = jacobian,
+                                       .rows = ExtraRows(row, bound, 1)});
     ASSERT_TRUE(step.ok()) << step.reason();
-    ASSERT_LE(guides.guides()[0].region.excess(tip + step.motion), 0.002 + 1e-9);
+    ASSERT_LE(corridor.region().excess(tip + step.motion), 0.002 + 1e-9);
     ASSERT_GE(step.increment[2], -0.1 - 1e-9) << "the caller's own row";
   }
-  const Eigen::Matrix<double, 3, 6> too_many = Eigen::Matrix<double, 3, 6>::Random();
-  EXPECT_EQ(
-      guides.step(loop.guard, {.tip = tip, .desired = Vec3::Zero(), .jacobian = too_many}).status,
-      Status::over_capacity);
+  const Eigen::Matrix<double, 3, 8> too_many = Eigen::Matrix<double, 3, 8>::Random();
+  EXPECT_EQ(loop.guard.step({.tip = tip, .desired = Vec3::Zero(), .jacobian = too_many}).status,
+            Status::over_capacity);
 }
 
 TEST(TipGuides, LeadBackWhatIsOutAndSayWhatGivesWay) {
   Loop loop("cube");
   Vec3 tip = loop.mesh->bounds().high + Vec3(0, 0, 5);
   const Vec3 x = Vec3::UnitX();
-  TipGuides back({{"side", Region::half_space(tip + x, x)}});
+  loop.guard.set_guides({Guide::point("side", Region::half_space(tip + x, x))});
   for (int i = 0; i < 19; ++i) {
-    const Step step = back.step(loop.guard, {.tip = tip, .desired = -0.1 * x});
+    const Step step = loop.guard.step({.tip = tip, .desired = -0.1 * x});
     ASSERT_EQ(step.status, Status::recovering);
     ASSERT_NEAR(step.motion.x(), loop.guard.options().recovery, 1e-9);
     tip += step.motion;
   }
-  TipGuides apart(
-      {{"left", Region::half_space(tip - x, -x)}, {"right", Region::half_space(tip + x, x)}});
-  const Step step = apart.step(loop.guard, {.tip = tip, .desired = Vec3(0.3, 0.4, 0)});
+  loop.guard.set_guides({Guide::point("left", Region::half_space(tip - x, -x)),
+                         Guide::point("right", Region::half_space(tip + x, x))});
+  const Step step = loop.guard.step({.tip = tip, .desired = Vec3(0.3, 0.4, 0)});
   ASSERT_EQ(step.status, Status::recovering) << step.reason();
   EXPECT_NEAR((step.motion - Vec3(0, 0.4, 0)).norm(), 0.0, 1e-6);
-  EXPECT_EQ(apart.softening(), Softening::guides);
-  EXPECT_TRUE(apart.states()[0].gave_way && apart.states()[1].gave_way);
-  EXPECT_NEAR(apart.states()[0].excess, 1.0, 1e-12);
+  EXPECT_EQ(step.relaxation, Relaxation::guides);
+  EXPECT_TRUE(step.guides[0].relaxed && step.guides[1].relaxed);
+  EXPECT_NEAR(step.guides[0].excess, 1.0, 1e-12);
 }
 
 // Regions that contradict each other stop leading back; along them the tip moves on.
 TEST(TipGuides, LeaveNoTipStandingThatMayMove) {
   Loop loop("cube");
   const Vec3 tip(0, 0, 150);
-  TipGuides guides({{"side", Region::half_space(tip + Vec3(0.15, 0, 0), Vec3::UnitX())},
-                    {"ball", Region::ball(tip + Vec3(-2, 0, 0), 1.9)}});
-  const Step step = guides.step(loop.guard, {.tip = tip, .desired = Vec3(0, 0, 0.1)});
+  loop.guard.set_guides(
+      {Guide::point("side", Region::half_space(tip + Vec3(0.15, 0, 0), Vec3::UnitX())),
+       Guide::point("ball", Region::ball(tip + Vec3(-2, 0, 0), 1.9))});
+  const Step step = loop.guard.step({.tip = tip, .desired = Vec3(0, 0, 0.1)});
   ASSERT_EQ(step.status, Status::recovering) << step.reason();
-  for (const TipGuide& guide : guides.guides()) {
-    EXPECT_LE(guide.region.excess(tip + step.motion), guide.region.excess(tip) + 1e-9);
+  for (const Guide& guide : loop.guard.guides()) {
+    EXPECT_LE(guide.region().excess(tip + step.motion), guide.region().excess(tip) + 1e-9);
   }
   Random random(4);
   int stuck = 0;
   for (int i = 0; i < test::trials(2000); ++i) {
-    std::vector<TipGuide> some;
+    std::vector<Guide> some;
     for (int g = 0; g < 3; ++g) {
       const double radius = random.uniform(0.3, 2.0);
       const Vec3 center = tip + (radius + random.uniform(-0.2, 0.3)) * random.direction();
-      some.push_back({"ball", Region::ball(center, radius)});
+      some.push_back(Guide::point("ball", Region::ball(center, radius)));
     }
-    TipGuides many(some);
+    loop.guard.set_guides(some);
     const Step one =
-        many.step(loop.guard, {.tip = tip, .desired = random.uniform() * random.direction()});
+        loop.guard.step({.tip = tip, .desired = random.uniform() * random.direction()});
     stuck += one.ok() ? 0 : 1;
-    for (const TipGuide& guide : many.guides()) {
-      ASSERT_LE(guide.region.excess(tip + one.motion),
-                std::max(guide.region.excess(tip), guide.band) + 1e-9);
+    for (const Guide& guide : some) {
+      ASSERT_LE(guide.region().excess(tip + one.motion),
+                std::max(guide.region().excess(tip), guide.band()) + 1e-9);
     }
   }
   EXPECT_EQ(stuck, 0);
 }
 
-TEST(TipGuides, RefuseWhatIsNone) {
-  const TipGuide guide{"a", Region::ball(Vec3::Zero(), 1.0)};
-  EXPECT_THROW(TipGuides(std::vector<TipGuide>(17, guide)), Error);
-  EXPECT_THROW(TipGuides({{"a", guide.region, 0.0}}), Error);
+TEST(TipGuides, AreRefusedIfTheyAreTooManyOrOfAnInstrument) {
+  Loop loop("cube");
+  const Guide guide = Guide::point("a", Region::ball(Vec3::Zero(), 1.0));
+  loop.guard.set_guides({guide});
+  EXPECT_THROW(loop.guard.set_guides(std::vector<Guide>(17, guide)), Error);
+  EXPECT_THROW(loop.guard.set_guides({Guide::axis("b", 0, Vec3::UnitX(), Vec3::UnitX(), 0.1)}),
+               Error);
+  EXPECT_THROW(loop.guard.set_guides({Guide::point("c", {2, Vec3::Zero()}, guide.region())}),
+               Error);
+  EXPECT_EQ(loop.guard.guides().size(), 1u) << "nothing changes";
 }
 
 }  // namespace

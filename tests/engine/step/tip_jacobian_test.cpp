@@ -144,7 +144,7 @@ TEST(TipJacobian, OfMoreThanThreeJointsTellsThatItNeedsDamping) {
   const Step step = undamped.step(motion);
   EXPECT_EQ(step.status, Status::ill_posed);
   EXPECT_NE(step.reason().find("more than three joints"), std::string_view::npos);
-  EXPECT_NE(step.reason().find("set damping above 0"), std::string_view::npos);
+  EXPECT_NE(step.reason().find("set `damping` above 0"), std::string_view::npos);
   MotionConstraint damped = guard_with(1e-6);
   EXPECT_TRUE(damped.step(motion).ok());
 }

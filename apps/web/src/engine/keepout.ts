@@ -21,7 +21,7 @@ export interface Module {
   _keepout_shapes(): number;
   _keepout_counterexamples(): number;
   _keepout_status_name(status: number): number;
-  _keepout_status_reason(status: number): number;
+  _keepout_status_reason(status: number, subject: number): number;
   _keepout_anatomy_of_surface(
     vertices: number,
     vertexCount: number,
@@ -149,11 +149,11 @@ export class Keepout<M extends Module = Module> {
     return new Keepout(await make({ wasmBinary, locateFile: (name) => name }));
   }
 
-  /** All there are, by their numbers. */
-  statuses(): { name: string; reason: string }[] {
+  /** Returns all statuses by number, with their reasons for a tip or an instrument. */
+  statuses(subject: "tip" | "instrument"): { name: string; reason: string }[] {
     const all = [];
     for (let i = 0; this.statusName(i) !== "unknown"; ++i) {
-      all.push({ name: this.statusName(i), reason: this.statusReason(i) });
+      all.push({ name: this.statusName(i), reason: this.statusReason(i, subject) });
     }
     return all;
   }
@@ -166,8 +166,8 @@ export class Keepout<M extends Module = Module> {
     return this.text(this.module._keepout_status_name(status));
   }
 
-  statusReason(status: number): string {
-    return this.text(this.module._keepout_status_reason(status));
+  private statusReason(status: number, subject: "tip" | "instrument"): string {
+    return this.text(this.module._keepout_status_reason(status, subject === "tip" ? 0 : 1));
   }
 
   /** Of a surface that is welded already: (n, 3) coordinates and (m, 3) numbers of vertices. */

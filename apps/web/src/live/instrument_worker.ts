@@ -97,7 +97,7 @@ async function handle(message: ToInstrument): Promise<void> {
     case "start":
       page = message.page;
       keepout = await Keepout.load(makeModule, new Uint8Array(await unpacked(message.engine)));
-      tell({ kind: "ready", statuses: keepout.statuses() });
+      tell({ kind: "ready", statuses: keepout.statuses("instrument") });
       setInterval(run, 1);
       return;
     case "load":

@@ -29,6 +29,7 @@ const moods: Readonly<Record<string, "free" | "limited">> = {
   limited: "limited",
   recovering: "limited",
   fallback: "limited",
+  yielding: "limited",
 };
 
 /** How the last cycle ended, in a chip and in words, and how the loop keeps its time. */

@@ -98,7 +98,7 @@ async function load(source: Source, settings: GuardSettings): Promise<void> {
 
 async function start(engine: string): Promise<void> {
   keepout = await Keepout.load(makeModule, new Uint8Array(await unpacked(engine)));
-  tell({ kind: "ready", shapes: keepout.shapes, statuses: keepout.statuses() });
+  tell({ kind: "ready", shapes: keepout.shapes, statuses: keepout.statuses("tip") });
   setInterval(run, 1);
 }
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "keepout/control/haptic_force.h"
+#include "keepout/step/guide.h"
 #include "keepout/step/motion_constraint.h"
-#include "keepout/step/tip_guides.h"
 
 namespace keepout {
 
@@ -42,13 +42,14 @@ struct HapticOptions {
   /// How long the force takes to die when cycles fail, and to come back [s], >= period
   double fade = 0.05;
   double largest_brake = 0.0;  // of the passivity controller [N s / length]; 0: it only observes
-  std::vector<TipGuide> guides = {};  // that the proxy stays in as well, in the frame of the mesh
+  std::vector<Guide> guides = {};  // of the proxy, in the frame of the mesh: Guide::point
 };
 
 /// What a cycle came to.
 struct HapticCycle {
   CycleStatus status = CycleStatus::not_engaged;  // how it ended
   Status step = Status::invalid_input;  // the engine's; of guarded and stopped cycles only
+  Limits limits = {};                   // what limited the step
   Vec3 proxy = Vec3::Zero();            // where the tool shall be [length]
   Vec3 force = Vec3::Zero();            // on the hand, from now on until the next cycle [N]
 
@@ -56,7 +57,8 @@ struct HapticCycle {
   bool ok() const noexcept { return is_ok(status); }
   /// One line on what happened and what to do about it; of a stopped cycle, the engine's.
   std::string_view reason() const noexcept {
-    return status == CycleStatus::stopped ? keepout::reason(step) : keepout::reason(status);
+    return status == CycleStatus::stopped ? keepout::reason(step, Subject::tip)
+                                          : keepout::reason(status);
   }
 };
 
@@ -71,8 +73,8 @@ struct HapticCycle {
 /// seconds.
 class HapticProxy {
  public:
-  /// Throws Error for an option out of range, and for guides that the guard's Capacity::extra_rows
-  /// has no room for. The step of a cycle, top_speed * period, is cut to
+  /// Throws Error for an option out of range, and for guides as MotionConstraint::set_guides does.
+  /// The step of a cycle, top_speed * period, is cut to
   /// the radius of the motion sphere; and the guard's recovery to that step.
   HapticProxy(MotionConstraint guard, const HapticOptions& options);
 
@@ -96,8 +98,10 @@ class HapticProxy {
   const Vec3& proxy() const noexcept { return proxy_; }
   /// Whether it has been placed, and not been let go since.
   bool engaged() const noexcept { return engaged_; }
-  /// How each of the options' guides fared in the last cycle that was guarded.
-  std::span<const GuideState> guides() const noexcept { return guides_.states(); }
+  /// Returns the state of each of the options' guides in the last step; empty before it.
+  std::span<const GuideState> guides() const noexcept { return guide_states_; }
+  /// Returns the work of the last step: see Budget.
+  std::size_t looks() const noexcept { return guard_.looks(); }
   /// What went to and fro since it was engaged.
   const EnergyReport& energy() const noexcept { return energy_; }
   /// As they were given.
@@ -114,17 +118,17 @@ class HapticProxy {
 
   MotionConstraint guard_;
   HapticOptions options_;
-  TipGuides guides_;
   double longest_;  // way of the proxy in a cycle [length]
   PassivityObserver passivity_;
   EnergyReport energy_;
   HeldForce held_;  // since the last cycle
   Vec3 proxy_ = Vec3::Zero();
-  Vec3 hand_ = Vec3::Zero();      // where it was last seen
-  Vec3 hand_way_ = Vec3::Zero();  // in the cycle past; zero when it was not seen twice
-  double stretch_ = 0.0;          // between proxy and hand in the last cycle [length]
-  double rate_ = 0.0;             // of the stretch [length / s]
-  double share_ = 1.0;            // of the force that has not faded
+  Vec3 hand_ = Vec3::Zero();                  // where it was last seen
+  Vec3 hand_way_ = Vec3::Zero();              // in the cycle past; zero when it was not seen twice
+  double stretch_ = 0.0;                      // between proxy and hand in the last cycle [length]
+  double rate_ = 0.0;                         // of the stretch [length / s]
+  double share_ = 1.0;                        // of the force that has not faded
+  std::span<const GuideState> guide_states_;  // views of the guard's
   bool engaged_ = false;
   bool seen_ = false;  // whether the last cycle saw the hand
 };

@@ -62,6 +62,8 @@ class CertifiedRule final : public Activation {
   bool meet(const Vec3& trial, std::span<const HalfSpace> planes, double too_close,
             Meeting& meeting) noexcept;
   const Facet* nearest() const noexcept;
+  void choose_walls(double too_close) noexcept;
+  void answer_walls(HalfSpaceBuffer& planes) noexcept;
   const Facet& facet(TriangleId source) const noexcept;
 
   std::unique_ptr<MotionWalk> walk_;
@@ -71,6 +73,8 @@ class CertifiedRule final : public Activation {
   bool aim_is_free_ = false;       // nothing comes near the motion asked for
   std::optional<Meeting> at_aim_;  // what it meets, planes apart, where that is known
   Buffer<Facet> facets_;           // that were asked about
+  static constexpr std::size_t most_walls = 12;
+  Buffer<Facet> walls_{most_walls};  // near a tip that is too close: one for each direction
 };
 
 }  // namespace keepout

@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "keepout/activation/activation.h"
 #include "keepout/activation/free_polytope.h"
@@ -64,9 +65,9 @@ class MotionConstraint {
   MotionConstraint& operator=(MotionConstraint&&) noexcept;
   ~MotionConstraint();
 
-  /// The nearest motion that the rule allows: one control cycle. The result's views stay valid
-  /// until the next step. Allocates nothing, throws nothing. On any trouble the motion is zero and
-  /// the status says why.
+  /// The nearest motion that the rule and the guides allow: one control cycle. The result's views
+  /// stay valid until the next step. Allocates nothing, throws nothing. On any trouble the motion
+  /// is zero and the status says why.
   Step step(const Motion& motion) noexcept;
 
   /// The same, and what each stage took; not so looking for a distance, see Distances::always.
@@ -96,6 +97,15 @@ class MotionConstraint {
 
   /// How much work the last step or polytope was: see Budget and Capacity::looks.
   std::size_t looks() const noexcept { return near_->budget().spent(); }
+
+  /// Keeps the tip in these guides' regions as well from the next step on, instead of those that
+  /// there are: see Guide. Within the same cycle and work budget as the mesh. Throws Error, and
+  /// changes nothing, for more than Guide::most or a guide of a link. Allocates, and is not for the
+  /// control path.
+  void set_guides(std::vector<Guide> guides);
+
+  /// Returns the guides.
+  std::span<const Guide> guides() const noexcept;
 
   /// Forgets where the last step led, so that the next tip is placed anew however near it is, as at
   /// the start: for motions that have nothing to do with each other.

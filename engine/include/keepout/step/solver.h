@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <span>
+#include <string_view>
 
 #include "keepout/geometry/shapes.h"
 #include "keepout/status.h"
@@ -58,6 +59,9 @@ enum class SolveStatus : std::uint8_t {
   over_capacity,   // more variables or rows than reserved
   iteration_limit  // gave up: the budget of work is spent, or rounding hides the answer
 };
+
+/// Returns the name as it stands in the enumeration, for files and logs.
+std::string_view name(SolveStatus status) noexcept;
 
 /// Returns what a solve that failed means for the step; free for an optimal one.
 Status status_of(SolveStatus status) noexcept;

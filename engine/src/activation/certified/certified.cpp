@@ -87,6 +87,15 @@ class CertifiedRule::FirstMeeting final : public EncounterVisitor {
   Meeting& meeting_;
 };
 
+namespace {
+
+// Cosines of normals: of walls that lead off alike, and of those that are almost parallel, which
+// solvers find contradictory by their rounding.
+constexpr double alike = 0.8;
+constexpr double almost_parallel = 0.99;
+
+}  // namespace
+
 CertifiedRule::CertifiedRule() : terms_(std::make_unique<CertifiedTerms>()), facets_(0) {}
 
 CertifiedRule::~CertifiedRule() = default;
@@ -120,6 +129,7 @@ bool CertifiedRule::look_around(const Surroundings& around) noexcept {
 Opening CertifiedRule::start(const Surroundings& around, HalfSpaceBuffer&) noexcept {
   aim_is_free_ = false;
   at_aim_.reset();
+  walls_.clear();
   const double tau = terms_->tolerance;
   if (!(around.margin > needed_margin * tau)) return {Status::margin_too_small};
   if (walk_->is_free()) return {};
@@ -143,6 +153,7 @@ Opening CertifiedRule::start(const Surroundings& around, HalfSpaceBuffer&) noexc
   const double lift = std::max(std::min(around.recovery, missing), tau);
   const Vec3 aim = way_out(around, near->normal(), lift);
   *terms_ = CertifiedTerms::leading_off(near->distance(), lift, tau);
+  choose_walls(least);
   walk_->begin_again(terms_->target);
   facets_.clear();
   return {Status::recovering, aim, distance};
@@ -163,6 +174,41 @@ const Facet* CertifiedRule::nearest() const noexcept {
   };
   const Facet* found = std::min_element(facets_.begin(), facets_.end(), nearer);
   return found == facets_.end() ? nullptr : found;
+}
+
+/// Chooses facets nearer to the tip than `too_close` that face it from different directions, the
+/// nearest first.
+void CertifiedRule::choose_walls(double too_close) noexcept {
+  const auto is_new = [&](const Facet& facet) {
+    return facet.distance() < too_close &&
+           std::none_of(walls_.begin(), walls_.end(), [&](const Facet& wall) {
+             return wall.normal().dot(facet.normal()) > alike;
+           });
+  };
+  while (walls_.size() < most_walls) {
+    budget().spend(1 + facets_.size() / 8);
+    const Facet* next = nullptr;
+    for (const Facet& facet : facets_) {
+      const bool is_nearer = next == nullptr || facet.distance() < next->distance() ||
+                             (facet.distance() == next->distance() && facet.before(*next));
+      if (is_nearer && is_new(facet)) next = &facet;
+    }
+    if (next == nullptr) return;
+    walls_.push(*next);
+  }
+}
+
+/// Adds the planes of all walls at once: one by one, between many faces, they cost the budget.
+void CertifiedRule::answer_walls(HalfSpaceBuffer& planes) noexcept {
+  for (const Facet& wall : walls_) {
+    const bool is_led = std::any_of(planes.begin(), planes.end(), [&](const HalfSpace& plane) {
+      return plane.source == wall.source() || plane.normal.dot(wall.normal()) > almost_parallel;
+    });
+    if (is_led || facets_.size() == facets_.capacity()) continue;
+    planes.push({wall.normal(), wall.support(wall.normal()) + terms_->target, wall.source()});
+    facets_.push(wall);
+  }
+  walls_.clear();
 }
 
 Judgement CertifiedRule::judge(const Surroundings& around, const Vec3& trial,
@@ -187,6 +233,7 @@ Judgement CertifiedRule::judge(const Surroundings& around, const Vec3& trial,
     return {Verdict::blocked, free_share};
   }
   planes.push(terms_->answer(facets_[meeting.facet], around, trial, plane));
+  if (walls_.size() > 1) answer_walls(planes);
   return {Verdict::objected, free_share};
 }
 

@@ -2,10 +2,8 @@
 #pragma once
 
 #include <string_view>
-#include <vector>
 
 #include "keepout/step/guide.h"
-#include "keepout/step/tip_guides.h"
 
 namespace keepout {
 
@@ -14,19 +12,16 @@ inline constexpr std::string_view region_forms =
     "half_space:X,Y,Z:INTO or slab:X,Y,Z:NORMAL:HALF_WIDTH or tube:X,Y,Z:DIRECTION:RADIUS or "
     "ball:X,Y,Z:RADIUS";
 
-/// The same of what guides an instrument.
+/// The forms of the text of an instrument's guide.
 inline constexpr std::string_view guide_forms =
     "point:LINK:X,Y,Z:REGION or axis:LINK:AXIS:DIRECTION:ANGLE or "
     "remote_center:LINK:X,Y,Z:LINK:X,Y,Z:CENTER:TOLERANCE";
 
-/// A guide of a tip from a text, [NAME=]REGION, such as "corridor=slab:0,0,50:1,0,0:1": see Region.
-/// Directions are three numbers of any length; all is in the frame and the unit of the mesh. A
-/// guide without a name is called as its form. Throws Error, which names what is wrong and the
-/// forms.
-TipGuide tip_guide_of_text(std::string_view text);
-
-/// A guide of an instrument, [NAME=]FORM: see Guide. LINK is a link's number, 0 the base; its
-/// points are in its frame [length], angles in radians. Throws as that of a tip.
+/// Returns the guide that a text describes, [NAME=]FORM, where FORM is REGION for a tip, such as
+/// "corridor=slab:0,0,50:1,0,0:1", or one of `guide_forms` for an instrument: see Region and Guide.
+/// Regions are in the frame and unit of the mesh; directions are three numbers of any length. LINK
+/// is a link's number, 0 the base; its points are in its frame [length], angles in radians. The
+/// name is the form's if none is given. Throws Error, which names what is wrong and the forms.
 Guide guide_of_text(std::string_view text);
 
 }  // namespace keepout

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "keepout/activation/activation.h"
+#include "keepout/step/guide.h"
+
+namespace keepout {
+
+/// The guides of a tip in a control cycle: a second source of half-spaces, beside the rule.
+///
+/// A tip inside a region leaves it by no more than the guide's band; a tip outside moves no farther
+/// out. An excess is convex, so the end of a straight motion decides for the whole of it. A
+/// half-space that touches a region excludes only motions that leave the region, so half-spaces are
+/// only ever added in a cycle.
+class TipGuides {
+ public:
+  static constexpr std::size_t most_planes_of_a_guide = 8;
+  static constexpr std::size_t most_planes = Guide::most * most_planes_of_a_guide;
+
+  TipGuides() : planes_(0) {}
+  /// Throws Error for more than Guide::most guides, or a guide that is not of a tip.
+  explicit TipGuides(std::vector<Guide> guides);
+
+  std::span<const Guide> guides() const noexcept { return guides_; }
+  bool empty() const noexcept { return guides_.empty(); }
+
+  /// Begins a cycle with the half-spaces of the regions that the tip is outside of. They lead it
+  /// back by up to `recovery`. [length]
+  void open(const Vec3& tip, double recovery) noexcept;
+
+  /// Returns true if a guide is left by more than its band.
+  bool is_recovering() const noexcept;
+  /// Returns true if a half-space asks for motion.
+  bool leads_back() const noexcept;
+  /// Stops leading back. Returns true if any half-space changed.
+  bool relax() noexcept;
+
+  /// Returns true if a motion stays as far within all regions as this cycle requires.
+  bool allow(const Vec3& motion) const noexcept;
+  /// Returns a fraction of a motion that is allowed; 1 if all of it is.
+  double allowed_fraction(const Vec3& motion) const noexcept;
+  /// Adds a half-space for each region that a motion leaves. Returns false if there is none to add.
+  bool exclude(const Vec3& motion) noexcept;
+  /// Notes that the guides which a motion leaves limit the step.
+  void note_left_by(const Vec3& motion) noexcept;
+  /// Notes that the guide of a half-space limits the step.
+  void note_active(std::size_t plane) noexcept { states_[guide_of_[plane]].limits = true; }
+
+  /// Returns the half-spaces of this cycle; their source is no_triangle.
+  std::span<const HalfSpace> planes() const noexcept { return planes_.view(); }
+  /// Returns the state of each guide, for a step that this was relaxed for.
+  std::span<const GuideState> states(Relaxation relaxation) noexcept;
+
+ private:
+  Vec3 at_end(const Vec3& motion) const noexcept { return tip_ + motion; }
+  bool add(std::size_t guide, const Vec3& at) noexcept;
+
+  std::vector<Guide> guides_;
+  std::vector<GuideState> states_;
+  std::vector<double> allowed_;  // excess of each in this cycle [length]
+  HalfSpaceBuffer planes_;
+  std::vector<std::size_t> guide_of_;  // of each half-space
+  Vec3 tip_ = Vec3::Zero();
+  double recovery_ = 0.0;  // 0 once relaxed
+};
+
+}  // namespace keepout

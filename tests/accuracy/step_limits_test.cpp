@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Step::limits names what kept a motion from being the one asked for, and nothing else.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "accuracy/certified_loop.h"
+#include "random_places.h"
+#include "trials.h"
+
+namespace keepout::test {
+namespace {
+
+/// A random question near a shape, with guides, rows and joints or without.
+struct Question {
+  Vec3 tip;
+  Vec3 desired;
+  std::optional<Eigen::Matrix3d> jacobian = std::nullopt;
+  std::array<double, 6> rows{};
+  std::array<double, 2> bounds{};
+  std::size_t row_count = 0;
+  std::vector<Guide> guides;
+
+  Motion motion() const {
+    Motion motion{.tip = tip, .desired = desired};
+    if (jacobian) motion.jacobian.emplace(*jacobian);
+    if (row_count > 0) {
+      motion.rows.emplace(rows.data(), bounds.data(), static_cast<Eigen::Index>(row_count));
+    }
+    return motion;
+  }
+};
+
+Question random_question(const Vec3& tip, Random& random) {
+  Question q;
+  q.tip = tip;
+  q.desired = random.uniform(0.0, 2.0) * random.direction();
+  if (random.below(4) == 0) {
+    q.jacobian.emplace();
+    for (int c = 0; c < 3; ++c) q.jacobian->col(c) = random.uniform(0.3, 2.0) * random.direction();
+  }
+  if (random.below(3) == 0) {
+    q.row_count = 1 + random.below(2);
+    for (double& number : q.rows) number = random.uniform(-1.0, 1.0);
+    for (double& bound : q.bounds) bound = random.uniform(-0.5, 1.0);
+  }
+  for (std::size_t g = random.below(4); g-- > 1;) {
+    const double radius = random.uniform(0.3, 2.0);
+    const Vec3 center = tip + (radius + random.uniform(-0.6, 0.1)) * random.direction();
+    q.guides.push_back(Guide::point("ball", Region::ball(center, radius)));
+  }
+  return q;
+}
+
+/// What a motion misses of the one asked for. [length]
+double missed(const Question& q, const Step& step) { return (step.motion - q.desired).norm(); }
+
+class StepLimits : public testing::Test {
+ protected:
+  std::shared_ptr<const Mesh> mesh_ = std::make_shared<const Mesh>(make_shape("gear"));
+  MotionConstraintSettings settings_{.radius = 2.0, .tool_radius = 0.5, .margin = 0.2};
+  MotionConstraint guard_ = make_motion_constraint(mesh_, settings_);
+  // Far away in all directions, for steps without the mesh.
+  MotionConstraint bare_ = make_motion_constraint(
+      std::make_shared<const Mesh>(Surface{{{1e6, 0, 0}, {1e6, 1, 0}, {1e6, 0, 1}}, {{0, 1, 2}}}),
+      settings_);
+};
+
+TEST_F(StepLimits, NameACauseThatChangesTheMotionWhenItIsTakenAway) {
+  Random random(5);
+  std::array<int, limit_count> seen{};
+  const int count = trials(20'000);
+  const std::vector<Vec3> tips =
+      surface_points(*mesh_, static_cast<std::size_t>(count), 1.2, random);
+  for (int i = 0; i < count; ++i) {
+    SCOPED_TRACE(i);
+    Question q = random_question(tips[static_cast<std::size_t>(i)], random);
+    guard_.set_guides(q.guides);
+    guard_.forget();
+    const Step step = guard_.step(q.motion());
+    const Vec3 motion = step.motion;
+    const Limits limits = step.limits;
+    if (!step.ok()) {
+      EXPECT_TRUE(limits.empty());
+      continue;
+    }
+    ASSERT_FALSE(step.status == Status::limited && limits.empty());
+    if (step.status == Status::free) {
+      ASSERT_TRUE(limits.empty());
+      ASSERT_LE(missed(q, step), 1e-9);
+    }
+    if (step.status != Status::recovering) {
+      ASSERT_EQ(step.status == Status::fallback, limits.has(Limit::truncated));
+    }
+    for (const GuideState& guide : step.guides) {
+      ASSERT_TRUE(!guide.limits || limits.has(Limit::guide));
+    }
+    for (std::size_t l = 0; l < limit_count; ++l) {
+      if (limits.has(static_cast<Limit>(l))) ++seen[l];
+    }
+    if (step.status != Status::limited) continue;
+    if (limits.has(Limit::mesh)) {
+      bare_.set_guides(q.guides);
+      ASSERT_NE(bare_.step(q.motion()).motion, motion);
+    }
+    if (limits.has(Limit::guide)) {
+      guard_.set_guides({});
+      ASSERT_NE(guard_.step(q.motion()).motion, motion);
+      guard_.set_guides(q.guides);
+    }
+    if (limits.has(Limit::rows)) {
+      q.row_count = 0;
+      ASSERT_NE(guard_.step(q.motion()).motion, motion);
+    }
+  }
+  for (const Limit limit : {Limit::mesh, Limit::guide, Limit::rows, Limit::radius}) {
+    EXPECT_GT(seen[static_cast<std::size_t>(limit)], trials(20)) << name(limit);
+  }
+}
+
+TEST_F(StepLimits, SayOfATruncatedRecoveryThatItIsOne) {
+  settings_.capacity.triangles = 8;
+  settings_.index = "pd_tree";
+  settings_.inside = Inside::taken_as_is;
+  MotionConstraint narrow = make_motion_constraint(mesh_, settings_);
+  Random random(6);
+  int recoveries = 0;
+  int fallbacks = 0;
+  std::vector<Vec3> tips = surface_points(*mesh_, 3'000, 0.65, random);
+  const std::vector<Vec3> farther = surface_points(*mesh_, 3'000, 1.2, random);
+  tips.insert(tips.end(), farther.begin(), farther.end());
+  for (const Vec3& tip : tips) {
+    const Step step = narrow.step({.tip = tip, .desired = 1.9 * random.direction()});
+    if (!step.ok() || !step.limits.has(Limit::truncated)) continue;
+    ASSERT_TRUE(step.limits.has(Limit::capacity) || step.limits.has(Limit::mesh));
+    recoveries += step.status == Status::recovering ? 1 : 0;
+    fallbacks += step.status == Status::fallback ? 1 : 0;
+  }
+  EXPECT_GT(recoveries, 10);
+  EXPECT_GT(fallbacks, 10);
+}
+
+}  // namespace
+}  // namespace keepout::test

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One work budget for a cycle, whatever happens in it: with guides and in a haptic proxy too.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "accuracy/certified_loop.h"
+#include "keepout/control/haptic_proxy.h"
+#include "keepout/index/wide_bvh.h"
+#include "trials.h"
+
+namespace keepout::test {
+namespace {
+
+/// Returns a cone around the z axis, its tip at the origin, open at its base.
+Surface cone(VertexId faces, double slope) {
+  Surface surface;
+  surface.vertices.emplace_back(0.0, 0.0, 0.0);
+  for (VertexId i = 0; i < faces; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / faces;
+    surface.vertices.emplace_back(10.0 * std::cos(angle), 10.0 * std::sin(angle), -10.0 * slope);
+    surface.triangles.push_back({0, i + 1, (i + 1) % faces + 1});
+  }
+  return surface;
+}
+
+/// Counts the triangles that a walk shows, and is otherwise the walk of a tree.
+class CountedTree final : public SpatialIndex {
+ public:
+  explicit CountedTree(const std::shared_ptr<const Mesh>& mesh) : SpatialIndex(mesh), tree_(mesh) {}
+
+  void collect(const Ball& ball, TriangleBuffer& candidates) const noexcept override {
+    tree_.collect(ball, candidates);
+  }
+  TriangleId nearest(const Vec3& point, Budget& budget) const noexcept override {
+    return tree_.nearest(point, budget);
+  }
+  std::size_t memory() const noexcept override { return tree_.memory(); }
+  std::unique_ptr<MotionWalk> walk_along_motions(Budget& budget) const override {
+    return std::make_unique<Walk>(tree_.walk_along_motions(budget), *this);
+  }
+
+  mutable std::size_t visits = 0;
+
+ private:
+  class Walk final : public MotionWalk, private EncounterVisitor {
+   public:
+    Walk(std::unique_ptr<MotionWalk> walk, const CountedTree& tree)
+        : walk_(std::move(walk)), tree_(tree) {}
+
+    bool begin(const Start& start) noexcept override { return walk_->begin(start); }
+    void begin_again(double level) noexcept override { walk_->begin_again(level); }
+    bool is_free() const noexcept override { return walk_->is_free(); }
+    bool walk(const Vec3& motion, EncounterVisitor& visitor) noexcept override {
+      visitor_ = &visitor;
+      return walk_->walk(motion, *this);
+    }
+    std::size_t room() const noexcept override { return walk_->room(); }
+
+   private:
+    double visit(const Encounter& its) noexcept override {
+      ++tree_.visits;
+      return visitor_->visit(its);
+    }
+
+    std::unique_ptr<MotionWalk> walk_;
+    const CountedTree& tree_;
+    EncounterVisitor* visitor_ = nullptr;
+  };
+
+  WideBvh tree_;
+};
+
+constexpr std::size_t stated = Capacity::looks_of_a_walk;
+
+/// A tip near the tip of a cone, where many triangles are equally near.
+struct Scene {
+  explicit Scene(VertexId faces, double slope)
+      : mesh(std::make_shared<const Mesh>(cone(faces, slope))),
+        tree(std::make_shared<CountedTree>(mesh)) {}
+
+  MotionConstraint guard() const {
+    return make_motion_constraint(mesh, tree, {.radius = 5.0, .margin = 1.0});
+  }
+
+  std::shared_ptr<const Mesh> mesh;
+  std::shared_ptr<CountedTree> tree;
+};
+
+constexpr double heights[] = {0.5, 0.99, 1.0, 1.5, 3.0};
+
+Vec3 above(double height) { return {1e-4, 2e-4, height}; }
+
+template <class Check>
+void for_each_scene(const Check& check) {
+  for (const VertexId faces : {400u, 4'000u, 20'000u}) {
+    for (const double slope : {0.3, 1.0, 3.0}) {
+      SCOPED_TRACE(testing::Message() << faces << " faces, slope " << slope);
+      check(Scene(faces, slope));
+    }
+  }
+}
+
+/// Returns sixteen round regions about a place, some of which leave it out.
+std::vector<Guide> balls_about(const Vec3& place) {
+  std::vector<Guide> guides;
+  for (std::size_t g = 0; g < Guide::most; ++g) {
+    const double angle = 2.0 * std::numbers::pi * static_cast<double>(g) / Guide::most;
+    const Vec3 beside(2.0 * std::cos(angle), 2.0 * std::sin(angle), 0.3);
+    guides.push_back(
+        Guide::point("ball", Region::ball(place + beside, 2.03 + (g % 3 == 0 ? 0.01 : 0.0))));
+  }
+  return guides;
+}
+
+TEST(BudgetOfACycle, HoldsUnderTheTipOfACone) {
+  for_each_scene([](const Scene& scene) {
+    MotionConstraint guard = scene.guard();
+    for (const double height : heights) {
+      scene.tree->visits = 0;
+      const Step step = guard.step({.tip = above(height), .desired = Vec3(0.01, 0.02, -4.0)});
+      EXPECT_LE(scene.tree->visits, stated) << name(step.status);
+      EXPECT_LE(guard.looks(), stated + stated / 64) << name(step.status);
+    }
+  });
+}
+
+TEST(BudgetOfACycle, HoldsWithGuides) {
+  std::size_t guided = 0;
+  for_each_scene([&](const Scene& scene) {
+    MotionConstraint guard = scene.guard();
+    for (const double height : heights) {
+      guard.set_guides(balls_about(above(height)));
+      scene.tree->visits = 0;
+      const Step step = guard.step({.tip = above(height), .desired = Vec3(0.01, 0.02, -4.0)});
+      EXPECT_LE(scene.tree->visits, stated) << name(step.status);
+      EXPECT_LE(guard.looks(), stated + stated / 64) << name(step.status);
+      guided += step.limits.has(Limit::guide) ? 1 : 0;
+    }
+  });
+  EXPECT_GE(guided, 10u);
+}
+
+// A top speed below the motion found made the proxy step twice, and guides up to eight times each.
+TEST(BudgetOfACycle, HoldsInAHapticProxyWithGuides) {
+  std::size_t moved = 0;
+  for_each_scene([&](const Scene& scene) {
+    for (const double height : heights) {
+      const HapticOptions options{.top_speed = 20.0, .guides = balls_about(above(height))};
+      HapticProxy proxy(scene.guard(), options);
+      proxy.engage(above(height));
+      for (int cycle = 0; cycle < 3; ++cycle) {
+        const Vec3 before = proxy.proxy();
+        scene.tree->visits = 0;
+        const HapticCycle result = proxy.cycle(above(height) + Vec3(0.01, 1.0, -4.0));
+        EXPECT_LE(scene.tree->visits, stated) << name(result.step);
+        EXPECT_LE(proxy.looks(), stated + stated / 64) << name(result.step);
+        moved += result.proxy != before ? 1 : 0;
+      }
+    }
+  });
+  EXPECT_GE(moved, 20u);
+}
+
+// Faces one by one used to cost half of the budget here, in 613 of 100,000 steps, for no motion.
+TEST(BudgetOfACycle, SufficesInsideConesOfUpTo400Faces) {
+  Random random(3);
+  int found = 0;
+  const int count = trials(300);
+  for (int i = 0; i < count; ++i) {
+    const auto faces = static_cast<VertexId>(100 + random.below(301));
+    const double slope = -random.uniform(1.0, 6.0);
+    SCOPED_TRACE(testing::Message() << faces << " faces, slope " << slope);
+    const Scene scene(faces, slope);
+    MotionConstraint guard = scene.guard();
+    const double height = std::sqrt(1.0 + 1.0 / (slope * slope));  // as far off as the margin
+    const Vec3 tip = random.uniform(0.7, 0.999) * Vec3(0, 0, height) + 1e-3 * random.direction();
+    const Vec3 desired = random.uniform(0.1, 4.0) * random.direction();
+    const Step step = guard.step({.tip = tip, .desired = desired});
+    EXPECT_EQ(step.status, Status::recovering);
+    found += step.motion.norm() > 0.0 ? 1 : 0;
+  }
+  EXPECT_EQ(found, count);
+}
+
+TEST(BudgetOfACycle, EndsInAStatusOfItsOwn) {
+  const Scene scene(4'000, 1.0);
+  const auto status = [&](const char* index, const Capacity& capacity) {
+    MotionConstraint guard = make_motion_constraint(scene.mesh, {.index = index,
+                                                                 .radius = 5.0,
+                                                                 .margin = 1.0,
+                                                                 .inside = Inside::taken_as_is,
+                                                                 .capacity = capacity});
+    return guard.step({.tip = above(0.99), .desired = Vec3(0.01, 0.02, -4.0)}).status;
+  };
+  EXPECT_EQ(status("wide_bvh", {.looks = 300}), Status::out_of_budget);
+  EXPECT_EQ(status("pd_tree", {.looks = 300}), Status::out_of_budget);
+  EXPECT_EQ(status("pd_tree", {.triangles = 100}), Status::over_capacity);
+  EXPECT_TRUE(is_ok(status("wide_bvh", {.triangles = 100, .looks = Budget::unlimited})))
+      << "a walk needs no room for candidates";
+}
+
+}  // namespace
+}  // namespace keepout::test
