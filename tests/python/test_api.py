@@ -30,7 +30,10 @@ def test_parts_are_listed_and_each_can_be_used(mesh):
 def test_status_is_the_one_of_cpp():
     assert tuple(status.name for status in Status) == _core.status_names
     assert [int(status) for status in Status] == list(range(len(Status)))
-    assert all(len(status.reason) > 10 for status in Status)
+    for subject in ("tip", "instrument", "polytope"):
+        assert all(len(status.reason_for(subject)) > 10 for status in Status)
+    with pytest.raises(keepout.Error, match="subject"):
+        Status.free.reason_for("robot")
     assert [s for s in Status if s.ok] == [
         Status.free,
         Status.limited,
@@ -150,7 +153,7 @@ def test_a_guard_follows_anatomy_that_moves():
 
 def test_the_free_polytope_keeps_the_distance(guard):
     polytope = guard.free_polytope((0, 0, 11.0), radius=2.0)
-    assert polytope.ok and polytope.status == "found" and len(polytope) > 0
+    assert polytope.ok and polytope.status is Status.free and len(polytope) > 0
     random = np.random.default_rng(1)
     d = random.normal(size=(2000, 3))
     d = d[np.linalg.norm(d, axis=1) <= 2.0]

@@ -346,8 +346,8 @@ TEST_F(SessionTest, InfoAndStatusesTellWhatThereIs) {
   const Json statuses = Json::parse(ask(session, R"({"do":"statuses"})"));
   EXPECT_EQ(statuses["statuses"].size(), status_count);
   for (const Json& status : statuses["statuses"]) EXPECT_NE(status["status"], "unknown");
-  EXPECT_EQ(statuses["statuses"].back()["status"], "mesh_changed");
-  EXPECT_EQ(statuses["polytope_statuses"].size(), 6u);
+  EXPECT_EQ(statuses["statuses"].back()["status"], "unsupported");
+  EXPECT_EQ(statuses["limits"].size(), limit_count);
 }
 
 TEST_F(SessionTest, AClientWhoDoesNotReadIsNotAnsweredAnyFurther) {
