@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <utility>
 
 #include "accuracy/certified_loop.h"
 #include "keepout/index/query.h"
@@ -35,25 +37,55 @@ double log_uniform(Random& random, double low, double high) {
   return std::pow(10.0, random.uniform(std::log10(low), std::log10(high)));
 }
 
+/// Steps that are no longer than the radius, from above the surface to along it, that would end too
+/// close by 1e-9 to 1e-4 of the radius.
+void glance(Loop& loop, double radius, std::size_t tips, Random& random, int& moved) {
+  const double beyond = 0.3 * radius * random.uniform();
+  for (const Vec3& tip : places(loop, tips, loop.margin() + beyond, random)) {
+    const Vec3 in = towards_surface(loop, tip);
+    for (int i = 0; i < 6; ++i) {
+      const double missing = radius * log_uniform(random, 1e-9, 1e-4);
+      const Vec3 desired =
+          (beyond + missing) * in + 0.5 * radius * random.uniform() * across(in, random);
+      ASSERT_NO_FATAL_FAILURE(expect_safe(loop, tip, loop.step(tip, desired), moved));
+    }
+  }
+}
+
 TEST(ShallowBreach, OfAMotionThatGlancesIsSeen) {
   Random random(6);
   int moved = 0;
   constexpr const char* names[] = {"gear", "cortex", "sphere", "cube", "needles", "fan"};
   for (int trial = 0; trial < trials(12); ++trial) {
-    const double margin = trial % 2 == 0 ? 0.2 : 1.0;
-    Loop loop(make_shape(names[trial % 6]), {.radius = 1.0, .margin = margin});
     SCOPED_TRACE(names[trial % 6]);
-    const double beyond = random.uniform(0.0, 0.3);
-    for (const Vec3& tip : places(loop, 12, margin + beyond, random)) {
-      const Vec3 in = towards_surface(loop, tip);
-      for (int i = 0; i < 6; ++i) {
-        const Vec3 desired = (beyond + log_uniform(random, 1e-9, 1e-4)) * in +
-                             random.uniform(0.0, 0.5) * across(in, random);
-        ASSERT_NO_FATAL_FAILURE(expect_safe(loop, tip, loop.step(tip, desired), moved));
-      }
-    }
+    Loop loop(make_shape(names[trial % 6]), {.radius = 1.0, .margin = trial % 2 == 0 ? 0.2 : 1.0});
+    ASSERT_NO_FATAL_FAILURE(glance(loop, 1.0, 12, random, moved));
   }
   EXPECT_GT(moved, trials(400));
+}
+
+// Its coordinates are no floats, so each is off by up to 2^-24 of the mesh's size. The triangles,
+// the margin and the motions are as small.
+TEST(ShallowBreach, BesideSmallTrianglesOfALargeMeshIsSeen) {
+  Random random(9);
+  int moved = 0;
+  constexpr double size = 1e-3;
+  for (int trial = 0; trial < trials(10); ++trial) {
+    Surface surface;
+    for (const double side : {-100.0, 100.0}) {
+      const Vec3 middle = side * random.direction();
+      for (int t = 0; t < 20; ++t) {
+        for (int corner = 0; corner < 3; ++corner) {
+          surface.vertices.push_back(middle + size * random.direction());
+        }
+        const auto last = static_cast<VertexId>(surface.vertices.size() - 1);
+        surface.triangles.push_back({last - 2, last - 1, last});
+      }
+    }
+    Loop loop(std::move(surface), {.radius = size, .margin = size});
+    ASSERT_NO_FATAL_FAILURE(glance(loop, size, 10, random, moved));
+  }
+  EXPECT_GT(moved, trials(300));
 }
 
 // The region of a motion has its farthest points straight ahead and straight behind, and the box of
@@ -62,13 +94,13 @@ TEST(ShallowBreach, OfAMotionThatGlancesIsSeen) {
 TEST(ShallowBreach, OfAMotionStraightAtAFaceIsSeen) {
   Random random(7);
   int moved = 0;
-  for (const double margin : {0.2, 1.0, 4.0}) {
-    Loop loop(make_cube(20.0), {.radius = 2.0, .margin = margin});
+  for (const double margin : {0.005, 0.2, 1.0, 4.0}) {
+    Loop loop(make_cube(5.0), {.radius = 10.0, .margin = margin});
     const double face = loop.mesh().bounds().high.x();
-    for (int i = 0; i < trials(600); ++i) {
+    for (int i = 0; i < trials(2000); ++i) {
       const auto axis = static_cast<Eigen::Index>(random.below(3));
-      const double length = random.uniform(0.1, 1.9);
-      const double missing = log_uniform(random, 1e-8, 1e-3) * (margin + length);
+      const double length = random.uniform(0.1, 9.0);
+      const double missing = log_uniform(random, 1e-9, 1e-3) * (margin + length);
       Vec3 tip(random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5));
       tip *= face;
       tip[axis] = face + margin + length - missing;
