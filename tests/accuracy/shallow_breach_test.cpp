@@ -115,6 +115,22 @@ TEST(ShallowBreach, OfAMotionStraightAtAFaceIsSeen) {
   EXPECT_GT(moved, trials(400));
 }
 
+// The second tolerance is for what a solver's rounding leaves of a plane.
+TEST(ShallowBreach, OfAMotionWithoutPlanesIsOneToleranceAtTheMost) {
+  Random random(10);
+  int free = 0;
+  Loop loop(make_shape("cube"), {.radius = 1.0, .margin = 0.2});
+  for (const Vec3& tip : places(loop, trials(300), 0.5, random)) {
+    const double missing = random.uniform(0.5, 2.0) * loop.tolerance(tip);
+    const Vec3 desired = (0.3 + missing) * towards_surface(loop, tip);
+    const Step step = loop.step(tip, desired);
+    if (step.status != Status::free || !step.planes.empty()) continue;
+    ASSERT_LE(loop.loss(tip, tip + step.motion, loop.distance(tip)), 1.1) << tip.transpose();
+    ++free;
+  }
+  EXPECT_GT(free, trials(50));
+}
+
 // A damped step ends beside the desired one. That nothing is near the one does not prove the other.
 TEST(ShallowBreach, BesideADesiredMotionThatIsFreeIsSeen) {
   Random random(5);
