@@ -86,6 +86,42 @@ TEST(FloatSlack, NoProofOfALeafClaimsMoreThanItsPlaneDoes) {
   EXPECT_GT(clear_of_a_motion, test::trials(10'000));
 }
 
+// Motions that are far longer than the margin, and end where it just touches a box.
+TEST(FloatSlack, NoBoxIsPassedOverThatAMotionComesWithinTheMarginOf) {
+  Random random(3);
+  const auto point = [&] {
+    return Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+  };
+  for (int trial = 0; trial < test::trials(5000); ++trial) {
+    NodeBlock node{};
+    for (std::size_t lane = 0; lane < NodeBlock::lanes; ++lane) {
+      const Vec3 low = 10.0 * point();
+      for (int axis = 0; axis < 3; ++axis) {
+        node.low[axis][lane] = static_cast<float>(low[axis]);
+        node.high[axis][lane] = node.low[axis][lane] + static_cast<float>(random.uniform(1, 5));
+      }
+    }
+    const double margin = 1e-3;
+    const std::size_t lane = random.below(NodeBlock::lanes);
+    const auto across = static_cast<Eigen::Index>(random.below(3));
+    Vec3 end;
+    for (int axis = 0; axis < 3; ++axis) {
+      end[axis] = random.uniform(node.low[axis][lane], node.high[axis][lane]);
+    }
+    end[across] = node.low[across][lane] - margin * (1.0 - 1e-9);
+    Vec3 motion = 10.0 * point();
+    motion[across] = std::abs(motion[across]);
+    const Vec3 tip = end - motion;
+    const float in_float[3] = {static_cast<float>(motion.x()), static_cast<float>(motion.y()),
+                               static_cast<float>(motion.z())};
+    BoxEntries entries;
+    enter_boxes(node, float_tip(tip), in_float, float_reach(margin, motion.norm(), tip, 0.0),
+                entries);
+    ASSERT_TRUE((entries.reached >> lane & 1u) != 0) << trial;
+    ASSERT_LE(entries.time[lane], 1.0f) << trial;
+  }
+}
+
 // Balls that just touch a box.
 TEST(FloatSlack, AFrontierHasEveryBoxThatItsBallTouches) {
   const auto mesh = beginning_of("cortex", LeafBlock::lanes * NodeBlock::lanes);
