@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A tip that is too close retreats by at least a tolerance in each cycle, however little `recovery`
-// is: else what rounding takes in one cycle would not come back in the next.
+// A tip that is too close retreats by at least one tolerance per cycle, even if `recovery` is
+// smaller. Otherwise the loss by rounding in one cycle would add up with that of the next.
 #include <gtest/gtest.h>
 
 #include "accuracy/certified_loop.h"

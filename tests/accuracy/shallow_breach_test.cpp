@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Motions that would end too close by a millionth to a thousandth of their length: the sizes by
-// which an early acceptance or a search region that is too small goes wrong.
+// Motions that would end too close by a small fraction of their length, 1e-9 to 1e-3. An early
+// acceptance or a search region that is slightly wrong lets such motions pass.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -37,8 +37,8 @@ double log_uniform(Random& random, double low, double high) {
   return std::pow(10.0, random.uniform(std::log10(low), std::log10(high)));
 }
 
-/// Steps that are no longer than the radius, from above the surface to along it, that would end too
-/// close by 1e-9 to 1e-4 of the radius.
+/// Commands motions from beyond the margin that would end too close by 1e-9 to 1e-4 of the radius,
+/// and fails if one of them is made.
 void glance(Loop& loop, double radius, std::size_t tips, Random& random, int& moved) {
   const double beyond = 0.3 * radius * random.uniform();
   for (const Vec3& tip : places(loop, tips, loop.margin() + beyond, random)) {
@@ -64,8 +64,8 @@ TEST(ShallowBreach, OfAMotionThatGlancesIsSeen) {
   EXPECT_GT(moved, trials(400));
 }
 
-// Its coordinates are no floats, so each is off by up to 2^-24 of the mesh's size. The triangles,
-// the margin and the motions are as small.
+// The index rounds these coordinates to single precision, by up to 2^-24 of the size of the mesh.
+// Triangles, margin and motions are a hundred thousand times smaller than the mesh.
 TEST(ShallowBreach, BesideSmallTrianglesOfALargeMeshIsSeen) {
   Random random(9);
   int moved = 0;
@@ -88,9 +88,8 @@ TEST(ShallowBreach, BesideSmallTrianglesOfALargeMeshIsSeen) {
   EXPECT_GT(moved, trials(300));
 }
 
-// The region of a motion has its farthest points straight ahead and straight behind, and the box of
-// a face that is square to an axis is no larger than the face. So only the last bit of the region
-// has the face in it.
+// The search region of a motion reaches farthest straight ahead. The bounding box of a face that is
+// square to an axis is no larger than the face. So the face touches only the rim of the region.
 TEST(ShallowBreach, OfAMotionStraightAtAFaceIsSeen) {
   Random random(7);
   int moved = 0;
@@ -104,7 +103,7 @@ TEST(ShallowBreach, OfAMotionStraightAtAFaceIsSeen) {
       Vec3 tip(random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5));
       tip *= face;
       tip[axis] = face + margin + length - missing;
-      // From afar, and from next to where the last step was, which keeps what is known of there.
+      // The first of these tips is far from the last step, so that the traversal cache is rebuilt.
       for (int repeat = 0; repeat < 3; ++repeat) {
         const Vec3 desired = -length * Vec3::Unit(axis);
         ASSERT_NO_FATAL_FAILURE(expect_safe(loop, tip, loop.step(tip, desired), moved));
@@ -115,7 +114,7 @@ TEST(ShallowBreach, OfAMotionStraightAtAFaceIsSeen) {
   EXPECT_GT(moved, trials(400));
 }
 
-// The second tolerance is for what a solver's rounding leaves of a plane.
+// A motion along a plane may lose a second one, to the rounding of the solver.
 TEST(ShallowBreach, OfAMotionWithoutPlanesIsOneToleranceAtTheMost) {
   Random random(10);
   int free = 0;
@@ -131,7 +130,8 @@ TEST(ShallowBreach, OfAMotionWithoutPlanesIsOneToleranceAtTheMost) {
   EXPECT_GT(free, trials(50));
 }
 
-// A damped step ends beside the desired one. That nothing is near the one does not prove the other.
+// Damping makes the solver answer with a motion beside the desired one. The desired motion is
+// clear, which does not prove that the answer is.
 TEST(ShallowBreach, BesideADesiredMotionThatIsFreeIsSeen) {
   Random random(5);
   int moved = 0;

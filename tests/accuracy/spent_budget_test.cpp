@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Steps whose work budget or memory runs out at any point: each step is safe, or there is none.
+// The work budget or the memory of a step runs out at an arbitrary point. Then the step is safe, or
+// nothing moves.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,7 +13,7 @@
 namespace keepout::test {
 namespace {
 
-/// A cone with its tip at the origin and its axis along -z.
+/// Returns a cone with its tip at the origin and its axis along -z.
 Surface cone(VertexId faces, double slope) {
   Surface surface{{Vec3::Zero()}, {}};
   for (VertexId i = 0; i < faces; ++i) {
@@ -58,9 +59,9 @@ TEST(SpentBudget, NoStepIsUnsafeWhereverTheWorkEnds) {
   EXPECT_GT(stopped, trials(50));
 }
 
-// Above the tip of a cone of many faces: the budget never ends, but the memory for prepared
-// triangles and for those that are visited later does.
-TEST(SpentBudget, NoStepIsUnsafeWhereMoreTrianglesAreNearThanThereIsRoomFor) {
+// The tip is above a cone of many faces. The budget lasts, but not the memory for prepared
+// triangles and for triangles that the traversal defers.
+TEST(SpentBudget, NoStepIsUnsafeWhereMoreTrianglesAreNearThanFitInMemory) {
   Random random(4);
   int moved = 0;
   for (const VertexId faces : {3000u, 30000u}) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The distance that a cycle has certified is the least that the next cycles keep: it is neither
-// used up a tolerance at a time, nor forgotten where a mesh has taken a part of it.
+// The certified clearance of one cycle is the least clearance of the next ones. Rounding does not
+// use it up over many cycles, and a mesh that comes on lowers it only as far as reported.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,14 +16,15 @@
 namespace keepout {
 namespace {
 
+/// Returns a constraint that keeps an instrument off a mesh.
 InstrumentConstraint beside(const std::shared_ptr<const Mesh>& mesh, Instrument instrument,
                             const InstrumentOptions& options) {
   return {mesh, std::make_shared<WideBvh>(mesh), std::move(instrument),
           std::make_unique<ActiveSet>(), options};
 }
 
-// Each cycle may end two tolerances below what it certifies. If the next one took that for its
-// start, the body would creep on by as much.
+// A cycle may end up to two tolerances below the certified clearance. If the next cycle certified
+// from there, the body would come nearer by as much in each cycle.
 TEST(CertifiedFloor, IsNotUsedUpByATolerancePerCycle) {
   const InstrumentOptions options{.damping = 0.0};
   InstrumentConstraint guard = beside(test::wall(0.0), free_ball(0.0), options);
@@ -40,13 +41,13 @@ TEST(CertifiedFloor, IsNotUsedUpByATolerancePerCycle) {
       ASSERT_GE(q[0], kept - 3.0 * guard.tolerance()) << "cycle " << cycle;
       moved += !step.increment.empty() && step.increment[0] < 0.0 ? 1 : 0;
     }
-    EXPECT_GT(moved, 0) << "there is something to use up";
+    EXPECT_GT(moved, 0) << "the command moves the body";
   }
 }
 
-// A wall comes on to a point on an arm. The arm turns about an axis behind the wall, so the point
-// cannot evade it, and every turn takes the point nearer to it. After it has come to rest, the arm
-// may turn by no more than what is left over the level that the cycle with the wall kept.
+// A wall comes on to a point on an arm, which turns about an axis behind the wall: every turn
+// brings the point nearer to the wall, so the point cannot evade it. When the wall rests, the arm
+// may turn only until the point has the clearance that the cycle with the moving wall reported.
 TEST(CertifiedFloor, OfACycleThatYieldedIsKeptWhenTheMeshRests) {
   constexpr double lever = 100.0;
   constexpr double spare = 1e-4;
@@ -70,7 +71,7 @@ TEST(CertifiedFloor, OfACycleThatYieldedIsKeptWhenTheMeshRests) {
   guard.place(0, rest);
   for (int cycle = 0; cycle < 10; ++cycle) {
     const InstrumentStep step = guard.step(q, std::vector<double>{0.004});
-    ASSERT_EQ(step.level, 1.0) << "of what is left";
+    ASSERT_EQ(step.level, 1.0) << name(step.status);
     if (step.ok()) q[0] += step.increment[0];
     const double clear = lever * std::cos(q[0]) - 1.0 - rest.position.x();
     ASSERT_GE(clear, level * kept - 3.0 * guard.tolerance()) << name(step.status) << cycle;
@@ -78,7 +79,7 @@ TEST(CertifiedFloor, OfACycleThatYieldedIsKeptWhenTheMeshRests) {
       EXPECT_TRUE(step.ok()) << step.reason();
     }
   }
-  EXPECT_GT(q[0], 1e-4) << "and it moves";
+  EXPECT_GT(q[0], 1e-4) << "the arm moves";
 }
 
 }  // namespace

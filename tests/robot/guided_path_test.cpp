@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Guided places that are within their regions at both ends of a motion, and not in between.
+// Motions whose guided point is inside its region at both ends, and outside in between.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -27,7 +27,7 @@ struct Guided {
     guard.set_guides({guide});
   }
 
-  /// How far out the guided place gets on q + s dq, at 65 poses.
+  /// Returns how far the guided point leaves its region on q + s dq, at 65 poses.
   double farthest_out(const std::vector<double>& q, std::span<const double> dq) const {
     double most = -1e30;
     for (int s = 0; s <= 64; ++s) {
@@ -45,9 +45,9 @@ struct Guided {
   InstrumentConstraint guard;
 };
 
-// The ends of the shaft move on straight lines, and it goes through the remote center at the start
-// and at the end of the motion. In between the guided place slides from one of its ends to the
-// other, and is off the center by a quarter of what both move across.
+// The ends of the shaft move on straight lines. The shaft passes through the remote center at the
+// start and at the end of the motion. In between the guided point slides from one end of the shaft
+// to the other, and misses the center by a quarter of the sideways displacement of both ends.
 TEST(GuidedPath, OfAShaftThatSlidesIsKeptInBetween) {
   constexpr double length = 10.0;
   const Joint insertion{.kind = JointKind::prismatic, .axis = Vec3::UnitX()};
@@ -64,13 +64,13 @@ TEST(GuidedPath, OfAShaftThatSlidesIsKeptInBetween) {
     const InstrumentStep step = shaft.guard.step(q, desired);
     ASSERT_TRUE(step.ok()) << step.reason();
     EXPECT_LE(shaft.farthest_out(q, step.increment), port.band() + 3.0 * shaft.guard.tolerance());
-    EXPECT_LT(step.increment[0], -0.01) << "and it moves";
+    EXPECT_LT(step.increment[0], -0.01) << "the shaft moves";
   }
 }
 
-// A point on one joint that turns: its bound is exact. `missing`: by how much the middle of the arc
-// would be out beyond the band, as a fraction of the sagitta.
-TEST(GuidedPath, OfAPointThatTurnsIsKeptInTheMiddleAndNoFartherIn) {
+// For one revolute joint the second-derivative bound is exact. `missing` is the excess beyond the
+// band in the middle of the arc, as a fraction of the sagitta.
+TEST(GuidedPath, OfAPointThatTurnsIsKeptInTheMiddleOfItsArc) {
   constexpr double lever = 100.0;
   constexpr double turn = 0.04;
   const double sagitta = lever * (1.0 - std::cos(0.5 * turn));
@@ -86,7 +86,8 @@ TEST(GuidedPath, OfAPointThatTurnsIsKeptInTheMiddleAndNoFartherIn) {
     const InstrumentStep step = arm.guard.step(q, std::vector<double>{turn});
     ASSERT_TRUE(step.ok()) << step.reason();
     EXPECT_LE(arm.farthest_out(q, step.increment), band + 3.0 * arm.guard.tolerance());
-    EXPECT_EQ(step.increment[0] > (1.0 - 1e-9) * turn, missing < 0.0) << "whole or not";
+    EXPECT_EQ(step.increment[0] > (1.0 - 1e-9) * turn, missing < 0.0)
+        << "the whole motion is made if it is clear";
   }
 }
 

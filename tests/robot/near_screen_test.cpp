@@ -15,9 +15,9 @@
 namespace keepout {
 namespace {
 
-// Triangles about the foot of the perpendicular from the core, where the plane that the screen
-// tries is the one that decides: only what rounding may take keeps them.
-TEST(NearScreen, PassesOverNoTriangleThatIsAsNearAsAsked) {
+// Each triangle surrounds the foot of the perpendicular from the core, so that the plane that the
+// screen tries is the best one. Then only the slack for rounding keeps the triangle.
+TEST(NearScreen, PassesOverNoTriangleWithinTheDistance) {
   Random random(1);
   int passed_over = 0;
   for (int trial = 0; trial < test::trials(5000); ++trial) {

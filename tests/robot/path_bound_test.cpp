@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A motion on which the certificate's bounds are exact, so that none of them can be any smaller.
+// The certificate on motions for which its second-derivative bound is exact: no smaller bound is
+// safe.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,7 +15,7 @@
 namespace keepout {
 namespace {
 
-/// A point on an arm that turns past a wall, nearest to it in the middle of the turn.
+/// A point on an arm turns past a wall. It is nearest to the wall in the middle of the turn.
 struct TurnPastAWall {
   static constexpr double lever = 100.0;
   static constexpr double turn = 0.04;
@@ -46,8 +47,8 @@ struct TurnPastAWall {
   double clear_share;  // of the motion, until the point is nearer than the certified distance
 };
 
-// On the plain arc the planes decide. Where the base slides back by the chord, the path ends where
-// it begins, and the balls about its ends and its maximum displacement decide.
+// On the plain arc the separating planes decide. If the base slides back by the chord, the path
+// ends where it begins: then the maximum displacement decides, and the ball about the start.
 TEST(PathBound, AMotionWhoseMiddleComesTooNearIsNotCertifiedWhole) {
   for (const double slide : {0.0, 1.0}) {
     for (const double missing : {5e-4, 0.01, 0.1, 0.3, 0.45, 0.9}) {

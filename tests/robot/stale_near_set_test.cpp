@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The triangles near a body are kept from cycle to cycle, for as long as it has moved less than
-// they were looked for beyond what the cycle needs.
+// The set of triangles near a body is reused from cycle to cycle, while the body is so near to
+// where the set was made that the set still has all triangles that the cycle needs.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -14,9 +14,8 @@
 namespace keepout {
 namespace {
 
-// The ball is taken ever farther from where the triangles near it were looked for, 1 % more each
-// time. A wall is where it just does not allow the next motion. So for some of these ways the wall
-// was not found then, and must be looked for now.
+// The ball is displaced from where its set was made, by 1 % more in each trial. A wall is just near
+// enough to forbid the motion after that. For some displacements the set does not have the wall.
 TEST(StaleNearSet, IsNotUsedWhereTheBodyHasMovedTooFar) {
   constexpr double radius = 1.0;
   const auto mesh = test::wall(0.0);
@@ -36,7 +35,7 @@ TEST(StaleNearSet, IsNotUsedWhereTheBodyHasMovedTooFar) {
       const InstrumentStep step = guard.step(q, std::vector<double>{-motion, 0.0, 0.0});
       ASSERT_TRUE(step.ok()) << step.reason();
       ASSERT_GE(q[0] + step.increment[0] - radius, kept - 3.0 * guard.tolerance())
-          << "after a way of " << way << " and a motion of " << motion;
+          << "after a displacement of " << way << " and a motion of " << motion;
     }
   }
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What single precision claims, held to double precision: one slack for rounding at a time, in a
-// place where it is the only one.
+// The filters in single precision against the same claims in double precision. Each test is about
+// one slack for rounding, in a case where no other slack covers the rounding.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -19,7 +19,7 @@
 namespace keepout {
 namespace {
 
-/// Sixteen triangles of about that size in one leaf; all coordinates are floats.
+/// Returns sixteen triangles of about that size, which one leaf holds. All coordinates are floats.
 std::shared_ptr<const Mesh> one_leaf(double size, Random& random) {
   Surface surface;
   for (VertexId t = 0; t < LeafBlock::lanes; ++t) {
@@ -31,7 +31,7 @@ std::shared_ptr<const Mesh> one_leaf(double size, Random& random) {
   return std::make_shared<const Mesh>(std::move(surface));
 }
 
-/// How far a plane of that normal keeps a triangle off the tip, beyond the margin.
+/// Returns by how much more than the margin a plane of that normal separates triangle and tip.
 double clear_in_double(const Vec3& n, const Triangle& triangle, const Vec3& tip, double margin) {
   double support = n.dot(triangle[0] - tip);
   for (const Vec3& corner : triangle) support = std::max(support, n.dot(corner - tip));
@@ -42,8 +42,8 @@ Vec3 normal_of(const ProofBlock& proofs, std::size_t lane) {
   return Vec3(proofs.n[0][lane], proofs.n[1][lane], proofs.n[2][lane]).normalized();
 }
 
-// First triangles that are far larger than margin and motion, then a motion that is far longer than
-// margin and triangles.
+// In the first case the triangles are far larger than margin and motion. In the second the motion
+// is far longer than margin and triangles.
 TEST(FloatSlack, NoProofOfALeafClaimsMoreThanItsPlaneDoes) {
   Random random(1);
   int clear_of_a_motion = 0;
@@ -58,7 +58,7 @@ TEST(FloatSlack, NoProofOfALeafClaimsMoreThanItsPlaneDoes) {
       LeafFilter filter;
       look(index.leaves()[0], float_tip(tip), reach, filter);
       for (int i = 0; i < 10; ++i) {
-        // Ends a little beyond where the plane of one of the triangles allows it.
+        // The motion ends slightly beyond the last point that the plane of one triangle allows.
         const std::size_t chosen = random.below(LeafBlock::lanes);
         const Vec3 n = normal_of(filter.at_tip, chosen);
         const double allowed = std::max(double{filter.at_tip.clear[chosen]}, 0.0);
@@ -86,7 +86,7 @@ TEST(FloatSlack, NoProofOfALeafClaimsMoreThanItsPlaneDoes) {
   EXPECT_GT(clear_of_a_motion, test::trials(10'000));
 }
 
-// Motions that are far longer than the margin, and end where it just touches a box.
+// The motions are far longer than the margin, and end just within it of a box.
 TEST(FloatSlack, NoBoxIsPassedOverThatAMotionComesWithinTheMarginOf) {
   Random random(3);
   const auto point = [&] {
@@ -122,7 +122,7 @@ TEST(FloatSlack, NoBoxIsPassedOverThatAMotionComesWithinTheMarginOf) {
   }
 }
 
-// Balls that just touch a box.
+// Each ball just touches one of the boxes.
 TEST(FloatSlack, AFrontierHasEveryBoxThatItsBallTouches) {
   const auto mesh = beginning_of("cortex", LeafBlock::lanes * NodeBlock::lanes);
   const WideBvh index(mesh);
@@ -156,7 +156,8 @@ TEST(FloatSlack, AFrontierHasEveryBoxThatItsBallTouches) {
   }
 }
 
-// Not only the triangles in them, which the cylinders below hold with a slack of their own.
+// It is not enough that they hold the triangles: the cylinders below have a slack of their own,
+// which would hide a missing one here.
 TEST(FloatSlack, CylindersOfNodesHoldTheCylindersBelow) {
   int held = 0;
   for (const char* name : {"cortex", "gear", "needles", "sphere"}) {
@@ -178,7 +179,7 @@ TEST(FloatSlack, CylindersOfNodesHoldTheCylindersBelow) {
           const double sine = its_axis.cross(axis).norm();
           const double height = std::abs(axis.dot(way)) + cosine * below.half_height[i];
           ASSERT_LE(height + sine * below.radius[i], above.half_height[lane]) << name << ' ' << i;
-          // Its nearest point to the axis is inside; the farthest one is no farther than that.
+          // An upper bound of the distance of its farthest point from the axis.
           const double away = (way - axis.dot(way) * axis).norm() + sine * below.half_height[i];
           ASSERT_LE(away + below.radius[i], above.radius[lane]) << name << ' ' << i;
           ++held;

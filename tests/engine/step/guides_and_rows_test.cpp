@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Guides beside rows of the caller's own that ask for motion.
+// Guidance constraints together with the caller's own rows, some of which require motion.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -15,9 +15,9 @@
 namespace keepout {
 namespace {
 
-// So narrow a band takes more planes than there are rounds for, and the step has to be cut: then a
-// row that asks for motion is not satisfied any more.
-TEST(GuidesAndRows, AStepThatIsOkDoesAllThatARowAsksFor) {
+// With so narrow a band, the planes of the rounds do not keep the tip in its region. A part of the
+// motion would, but it would not satisfy a row that requires motion.
+TEST(GuidesAndRows, AStepThatIsOkSatisfiesTheRows) {
   const auto mesh = std::make_shared<const Mesh>(make_shape("cube"));
   MotionConstraint guard(mesh, std::make_shared<WideBvh>(mesh), std::make_unique<CertifiedRule>(),
                          std::make_unique<ActiveSet>(), {.radius = 5.0, .margin = 0.2});

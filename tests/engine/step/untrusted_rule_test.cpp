@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A rule that contradicts itself.
+// The step checks the answers of a rule that contradicts itself.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -12,7 +12,7 @@
 namespace keepout {
 namespace {
 
-/// Accepts no motion but standing still, and yet says that all of each trial is free.
+/// Rejects every motion, and yet reports that the whole of it is free.
 class Boaster final : public Activation {
  public:
   Opening start(const Surroundings&, HalfSpaceBuffer&) noexcept override { return {}; }
@@ -22,7 +22,7 @@ class Boaster final : public Activation {
   }
 };
 
-TEST(UntrustedRule, NoPartOfATrialIsMadeThatItDoesNotAccept) {
+TEST(UntrustedRule, NoPartOfATrialIsMadeThatTheRuleRejects) {
   const auto mesh = std::make_shared<const Mesh>(make_shape("cube"));
   MotionConstraint guard(mesh, std::make_unique<WideBvh>(mesh), std::make_unique<Boaster>(),
                          std::make_unique<ActiveSet>(), {.radius = 5.0});

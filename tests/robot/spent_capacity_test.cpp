@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Cycles of an instrument whose work budget or memory runs out at any point.
+// The work budget or the memory of an instrument's cycle runs out at an arbitrary point.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -59,7 +59,7 @@ struct Swing {
     }
   }
 
-  /// Fails unless the parts that are certified are clear. Counts what is certified and moves.
+  /// Fails unless all certified parts of the motion are clear. Counts the motions with such a part.
   void expect_safe(int& counted) {
     const MotionProof proof = guard.prove(start, motion);
     expect_clear(motion, proof.share);
@@ -75,7 +75,7 @@ struct Swing {
   InstrumentConstraint guard;
 };
 
-TEST(SpentRoom, NothingIsCertifiedThatIsNotClearWhereverTheWorkEnds) {
+TEST(SpentCapacity, NothingIsCertifiedThatIsNotClearWhereverTheWorkEnds) {
   Swing whole({});
   const MotionProof proof = whole.guard.prove(whole.start, whole.motion);
   ASSERT_GT(proof.share, 0.5);
@@ -94,7 +94,7 @@ TEST(SpentRoom, NothingIsCertifiedThatIsNotClearWhereverTheWorkEnds) {
   EXPECT_GT(certified, test::trials(50));
 }
 
-TEST(SpentRoom, NothingIsCertifiedThatIsNotClearWhereverTheRoomEnds) {
+TEST(SpentCapacity, NothingIsCertifiedThatIsNotClearHoweverFewTrianglesFit) {
   int certified = 0;
   for (std::size_t room = 1; room <= 64; ++room) {
     SCOPED_TRACE(testing::Message() << "room " << room);
@@ -104,8 +104,8 @@ TEST(SpentRoom, NothingIsCertifiedThatIsNotClearWhereverTheRoomEnds) {
   EXPECT_GT(certified, 10);
 }
 
-// The index has room for all of them, the set for fewer.
-TEST(SpentRoom, ANearSetThatCannotHoldAllTrianglesKnowsNothing) {
+// The index has room for all triangles, the set for fewer.
+TEST(SpentCapacity, ANearSetThatCannotHoldAllTrianglesKnowsNothing) {
   const auto mesh = std::make_shared<const Mesh>(make_cube(50.0));
   Neighborhood near(mesh, std::make_shared<WideBvh>(mesh), mesh->triangle_count());
   const std::vector<Vec3> core{Vec3::Zero()};
