@@ -111,7 +111,7 @@ class SolverContract : public testing::TestWithParam<SolverBackend> {
   }
 
   testing::AssertionResult checked(const Problem& problem, SolveStatus status) {
-    if (status != SolveStatus::optimal) return testing::AssertionFailure() << reason(status);
+    if (status != SolveStatus::optimal) return testing::AssertionFailure() << name(status);
     const KktResidual residual = kkt_residual(problem.view(), solution_);
     worst_ = std::max(worst_, residual.worst());
     if (residual.worst() <= GetParam().accuracy) return testing::AssertionSuccess();
@@ -139,7 +139,7 @@ class SolverContract : public testing::TestWithParam<SolverBackend> {
     const SolveStatus status = solve(problem);
     if (status == SolveStatus::infeasible) return testing::AssertionSuccess();
     if (status != SolveStatus::iteration_limit || allowance_.gives_up[kind] == 0) {
-      return testing::AssertionFailure() << reason(status);
+      return testing::AssertionFailure() << name(status);
     }
     ++given_up_[kind];
     return testing::AssertionSuccess();

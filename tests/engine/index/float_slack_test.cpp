@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The filters in single precision against the same claims in double precision. Each test is about
+// one slack for rounding, in a case where no other slack covers the rounding.
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <set>
+#include <vector>
+
+#include "engine/index/exact_index.h"
+#include "keepout/fixtures/random.h"
+#include "tree_walk/filters.h"
+#include "tree_walk/frontier.h"
+#include "trials.h"
+
+namespace keepout {
+namespace {
+
+/// Returns sixteen triangles of about that size, which one leaf holds. All coordinates are floats.
+std::shared_ptr<const Mesh> one_leaf(double size, Random& random) {
+  Surface surface;
+  for (VertexId t = 0; t < LeafBlock::lanes; ++t) {
+    for (int corner = 0; corner < 3; ++corner) {
+      surface.vertices.emplace_back((size * random.direction()).cast<float>().cast<double>());
+    }
+    surface.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
+  }
+  return std::make_shared<const Mesh>(std::move(surface));
+}
+
+/// Returns by how much more than the margin a plane of that normal separates triangle and tip.
+double clear_in_double(const Vec3& n, const Triangle& triangle, const Vec3& tip, double margin) {
+  double support = n.dot(triangle[0] - tip);
+  for (const Vec3& corner : triangle) support = std::max(support, n.dot(corner - tip));
+  return -support - margin;
+}
+
+Vec3 normal_of(const ProofBlock& proofs, std::size_t lane) {
+  return Vec3(proofs.n[0][lane], proofs.n[1][lane], proofs.n[2][lane]).normalized();
+}
+
+// In the first case the triangles are far larger than margin and motion. In the second the motion
+// is far longer than margin and triangles.
+TEST(FloatSlack, NoProofOfALeafClaimsMoreThanItsPlaneDoes) {
+  Random random(1);
+  int clear_of_a_motion = 0;
+  for (const double size : {100.0, 1.0}) {
+    for (int trial = 0; trial < test::trials(300); ++trial) {
+      const double margin = 0.01;
+      const double longest = size == 1.0 ? 1e3 : 0.01;
+      const auto mesh = one_leaf(size, random);
+      const WideBvh index(mesh);
+      const Vec3 tip = random.uniform(0.0, 2.0) * size * random.direction();
+      const FloatReach reach = float_reach(margin, longest, tip, index.frame().error);
+      LeafFilter filter;
+      look(index.leaves()[0], float_tip(tip), reach, filter);
+      for (int i = 0; i < 10; ++i) {
+        // The motion ends slightly beyond the last point that the plane of one triangle allows.
+        const std::size_t chosen = random.below(LeafBlock::lanes);
+        const Vec3 n = normal_of(filter.at_tip, chosen);
+        const double allowed = std::max(double{filter.at_tip.clear[chosen]}, 0.0);
+        const double beyond = longest * std::pow(10.0, random.uniform(-9.0, -6.0));
+        Vec3 motion = random.direction();
+        motion -= n.dot(motion) * n;
+        motion *= 0.9 * longest / motion.norm();
+        motion -= std::min(allowed + beyond, 0.4 * longest) * n;
+        const float in_float[3] = {static_cast<float>(motion.x()), static_cast<float>(motion.y()),
+                                   static_cast<float>(motion.z())};
+        Suspects suspects;
+        find_suspects(filter, in_float, suspects);
+        for (std::size_t lane = 0; lane < LeafBlock::lanes; ++lane) {
+          const Triangle triangle = mesh->triangle(index.leaves()[0].triangle(lane));
+          const Vec3 its = normal_of(filter.at_tip, lane);
+          const double clear = clear_in_double(its, triangle, tip, margin);
+          ASSERT_LE(filter.at_tip.clear[lane], clear);
+          if ((suspects.mask >> lane & 1u) != 0) continue;
+          ASSERT_GE(clear + its.dot(motion), 0.0) << "at the end";
+          ++clear_of_a_motion;
+        }
+      }
+    }
+  }
+  EXPECT_GT(clear_of_a_motion, test::trials(10'000));
+}
+
+// The motions are far longer than the margin, and end just within it of a box.
+TEST(FloatSlack, NoBoxIsPassedOverThatAMotionComesWithinTheMarginOf) {
+  Random random(3);
+  const auto point = [&] {
+    return Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+  };
+  for (int trial = 0; trial < test::trials(5000); ++trial) {
+    NodeBlock node{};
+    for (std::size_t lane = 0; lane < NodeBlock::lanes; ++lane) {
+      const Vec3 low = 10.0 * point();
+      for (int axis = 0; axis < 3; ++axis) {
+        node.low[axis][lane] = static_cast<float>(low[axis]);
+        node.high[axis][lane] = node.low[axis][lane] + static_cast<float>(random.uniform(1, 5));
+      }
+    }
+    const double margin = 1e-3;
+    const std::size_t lane = random.below(NodeBlock::lanes);
+    const auto across = static_cast<Eigen::Index>(random.below(3));
+    Vec3 end;
+    for (int axis = 0; axis < 3; ++axis) {
+      end[axis] = random.uniform(node.low[axis][lane], node.high[axis][lane]);
+    }
+    end[across] = node.low[across][lane] - margin * (1.0 - 1e-9);
+    Vec3 motion = 10.0 * point();
+    motion[across] = std::abs(motion[across]);
+    const Vec3 tip = end - motion;
+    const float in_float[3] = {static_cast<float>(motion.x()), static_cast<float>(motion.y()),
+                               static_cast<float>(motion.z())};
+    BoxEntries entries;
+    enter_boxes(node, float_tip(tip), in_float, float_reach(margin, motion.norm(), tip, 0.0),
+                entries);
+    ASSERT_TRUE((entries.reached >> lane & 1u) != 0) << trial;
+    ASSERT_LE(entries.time[lane], 1.0f) << trial;
+  }
+}
+
+// Each ball just touches one of the boxes.
+TEST(FloatSlack, AFrontierHasEveryBoxThatItsBallTouches) {
+  const auto mesh = beginning_of("cortex", LeafBlock::lanes * NodeBlock::lanes);
+  const WideBvh index(mesh);
+  ASSERT_EQ(index.nodes().size(), 1u);
+  const NodeBlock& root = index.nodes()[0];
+  Random random(2);
+  for (int trial = 0; trial < test::trials(2000); ++trial) {
+    const Vec3 center = mesh->bounds().center() + mesh->bounds().size().norm() *
+                                                      random.uniform(0.5, 2.0) * random.direction();
+    const Vec3 from_origin = center - index.frame().origin;
+    std::vector<double> distances;
+    for (std::size_t lane = 0; lane < NodeBlock::lanes; ++lane) {
+      Vec3 off = Vec3::Zero();
+      for (int axis = 0; axis < 3; ++axis) {
+        off[axis] = std::max({root.low[axis][lane] - from_origin[axis],
+                              from_origin[axis] - root.high[axis][lane], 0.0});
+      }
+      distances.push_back(off.norm());
+    }
+    const std::size_t touched = random.below(NodeBlock::lanes);
+    const double radius = distances[touched] * (1.0 + 1e-10);
+    Frontier frontier;
+    frontier.gather(index, {center, radius});
+    std::set<std::uint32_t> found;
+    for (const NodeBlock& block : frontier.blocks()) {
+      found.insert(std::begin(block.child), std::end(block.child));
+    }
+    for (std::size_t lane = 0; lane < NodeBlock::lanes; ++lane) {
+      ASSERT_TRUE(distances[lane] > radius || found.contains(root.child[lane])) << lane;
+    }
+  }
+}
+
+// It is not enough that they hold the triangles: the cylinders below have a slack of their own,
+// which would hide a missing one here.
+TEST(FloatSlack, CylindersOfNodesHoldTheCylindersBelow) {
+  int held = 0;
+  for (const char* name : {"cortex", "gear", "needles", "sphere"}) {
+    const WideBvh index(shared_shape(name));
+    const auto vector_of = [](const float(&from)[3][NodeBlock::lanes], std::size_t lane) {
+      return Vec3(from[0][lane], from[1][lane], from[2][lane]);
+    };
+    for (std::size_t node = 0; node < index.nodes().size(); ++node) {
+      const CylinderBlock& above = index.cylinders()[node];
+      for (std::size_t lane = 0; lane < NodeBlock::lanes; ++lane) {
+        const std::uint32_t child = index.nodes()[node].child[lane];
+        if (!index.nodes()[node].is_used(lane) || (child & NodeBlock::leaf) != 0) continue;
+        const CylinderBlock& below = index.cylinders()[child];
+        const Vec3 axis = vector_of(above.axis, lane).normalized();
+        for (std::size_t i = 0; i < NodeBlock::lanes && index.nodes()[child].is_used(i); ++i) {
+          const Vec3 way = vector_of(below.middle, i) - vector_of(above.middle, lane);
+          const Vec3 its_axis = vector_of(below.axis, i).normalized();
+          const double cosine = std::abs(its_axis.dot(axis));
+          const double sine = its_axis.cross(axis).norm();
+          const double height = std::abs(axis.dot(way)) + cosine * below.half_height[i];
+          ASSERT_LE(height + sine * below.radius[i], above.half_height[lane]) << name << ' ' << i;
+          // An upper bound of the distance of its farthest point from the axis.
+          const double away = (way - axis.dot(way) * axis).norm() + sine * below.half_height[i];
+          ASSERT_LE(away + below.radius[i], above.radius[lane]) << name << ' ' << i;
+          ++held;
+        }
+      }
+    }
+  }
+  EXPECT_GT(held, 100);
+}
+
+TEST(FloatSlack, AMeshIsNotExactIfOneCoordinateOfItsLastVertexIsNoFloat) {
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const VertexId last : {3u, 4u, 7u, 8u, 9u}) {
+      Surface surface{{}, {{0, 1, last}}};
+      for (VertexId v = 0; v <= last; ++v) surface.vertices.emplace_back(v, 0.5 * v * v, 1.0);
+      EXPECT_TRUE(WideBvh(std::make_shared<const Mesh>(surface)).frame().is_exact());
+      surface.vertices[last][axis] += 1e-9;
+      EXPECT_FALSE(WideBvh(std::make_shared<const Mesh>(surface)).frame().is_exact()) << axis;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace keepout

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Guidance constraints together with the caller's own rows, some of which require motion.
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "keepout/activation/certified.h"
+#include "keepout/fixtures/random.h"
+#include "keepout/fixtures/shapes.h"
+#include "keepout/index/wide_bvh.h"
+#include "keepout/solvers/active_set.h"
+#include "keepout/step/motion_constraint.h"
+#include "trials.h"
+
+namespace keepout {
+namespace {
+
+// With so narrow a band, the planes of the rounds do not keep the tip in its region. A part of the
+// motion would, but it would not satisfy a row that requires motion.
+TEST(GuidesAndRows, AStepThatIsOkSatisfiesTheRows) {
+  const auto mesh = std::make_shared<const Mesh>(make_shape("cube"));
+  MotionConstraint guard(mesh, std::make_shared<WideBvh>(mesh), std::make_unique<CertifiedRule>(),
+                         std::make_unique<ActiveSet>(), {.radius = 5.0, .margin = 0.2});
+  Random random(8);
+  int ok = 0;
+  for (int i = 0; i < test::trials(300); ++i) {
+    const Vec3 tip(0, 0, 150);
+    const double size = random.uniform(1.0, 3.0);
+    const Vec3 out = random.direction();
+    guard.set_guides(
+        {Guide::point("ball", Region::ball(tip - 0.999 * size * out, size)).with_band(1e-12)});
+    const Vec3 row = random.direction();
+    const double bound = random.uniform(0.01, 0.5);
+    const Step step = guard.step({.tip = tip,
+                                  .desired = random.uniform(0.5, 3.0) * random.direction(),
+                                  .rows = ExtraRows(row.data(), &bound, 1)});
+    ASSERT_TRUE(step.ok() || step.motion.isZero(0.0));
+    if (!step.ok()) continue;
+    ASSERT_GE(row.dot(step.motion), bound - 1e-9) << name(step.status);
+    ++ok;
+  }
+  EXPECT_GT(ok, test::trials(50));
+}
+
+}  // namespace
+}  // namespace keepout

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The step checks the answers of a rule that contradicts itself.
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "keepout/fixtures/shapes.h"
+#include "keepout/index/wide_bvh.h"
+#include "keepout/solvers/active_set.h"
+#include "keepout/step/motion_constraint.h"
+
+namespace keepout {
+namespace {
+
+/// Rejects every motion, and yet reports that the whole of it is free.
+class Boaster final : public Activation {
+ public:
+  Opening start(const Surroundings&, HalfSpaceBuffer&) noexcept override { return {}; }
+  Judgement judge(const Surroundings&, const Vec3& trial, HalfSpaceBuffer&) noexcept override {
+    if (trial.isZero(0.0)) return {Judgement::Verdict::accepted};
+    return {Judgement::Verdict::blocked, 1.0};
+  }
+};
+
+TEST(UntrustedRule, NoPartOfATrialIsMadeThatTheRuleRejects) {
+  const auto mesh = std::make_shared<const Mesh>(make_shape("cube"));
+  MotionConstraint guard(mesh, std::make_unique<WideBvh>(mesh), std::make_unique<Boaster>(),
+                         std::make_unique<ActiveSet>(), {.radius = 5.0});
+  const Step step = guard.step({.tip = Vec3(0, 0, 60), .desired = Vec3(0, 0, -1)});
+  EXPECT_FALSE(step.ok());
+  EXPECT_EQ(step.motion, Vec3::Zero());
+  EXPECT_TRUE(step.increment.empty());
+}
+
+}  // namespace
+}  // namespace keepout

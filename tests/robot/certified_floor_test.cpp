@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The certified clearance of one cycle is the least clearance of the next ones. Rounding does not
+// use it up over many cycles, and a mesh that comes on lowers it only as far as reported.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "keepout/index/wide_bvh.h"
+#include "keepout/robot/instrument_constraint.h"
+#include "keepout/solvers/active_set.h"
+#include "robot/wall.h"
+
+namespace keepout {
+namespace {
+
+/// Returns a constraint that keeps an instrument off a mesh.
+InstrumentConstraint beside(const std::shared_ptr<const Mesh>& mesh, Instrument instrument,
+                            const InstrumentOptions& options) {
+  return {mesh, std::make_shared<WideBvh>(mesh), std::move(instrument),
+          std::make_unique<ActiveSet>(), options};
+}
+
+// A cycle may end up to two tolerances below the certified clearance. If the next cycle certified
+// from there, the body would come nearer by as much in each cycle.
+TEST(CertifiedFloor, IsNotUsedUpByATolerancePerCycle) {
+  const InstrumentOptions options{.damping = 0.0};
+  InstrumentConstraint guard = beside(test::wall(0.0), free_ball(0.0), options);
+  const double kept = options.margin - options.band;
+  for (const double share : {0.3, 0.9, 1.4, 1.9}) {
+    SCOPED_TRACE(share);
+    guard.forget();
+    std::vector<double> q{kept, 0.0, 0.0};
+    int moved = 0;
+    for (int cycle = 0; cycle < 100; ++cycle) {
+      const InstrumentStep step =
+          guard.step(q, std::vector<double>{-share * guard.tolerance(), 0.0, 0.0});
+      for (std::size_t k = 0; k < step.increment.size(); ++k) q[k] += step.increment[k];
+      ASSERT_GE(q[0], kept - 3.0 * guard.tolerance()) << "cycle " << cycle;
+      moved += !step.increment.empty() && step.increment[0] < 0.0 ? 1 : 0;
+    }
+    EXPECT_GT(moved, 0) << "the command moves the body";
+  }
+}
+
+// A wall comes on to a point on an arm, which turns about an axis behind the wall: every turn
+// brings the point nearer to the wall, so the point cannot evade it. When the wall rests, the arm
+// may turn only until the point has the clearance that the cycle with the moving wall reported.
+TEST(CertifiedFloor, OfACycleThatYieldedIsKeptWhenTheMeshRests) {
+  constexpr double lever = 100.0;
+  constexpr double spare = 1e-4;
+  const Instrument arm(Chain({{.kind = JointKind::revolute}}),
+                       {{"point", {{1, Vec3(lever, 0, 0)}}, 1.0}});
+  InstrumentOptions options{.recovery = 0.0};
+  const double kept = options.margin - options.band;
+  InstrumentConstraint guard = beside(test::wall(0.0), arm, options);
+  const double level = 0.75;
+  const double at = lever - 1.0 - level * kept - spare;  // where the wall comes to rest
+  const double way = options.margin - level * kept - spare;
+  guard.place(0, {Vec3(at - way, 0, 0), Mat3::Identity()},
+              {.linear = Vec3(way / options.period, 0, 0)});
+  std::vector<double> q{0.0};
+  const InstrumentStep yielded = guard.step(q, std::vector<double>{0.0});
+  ASSERT_EQ(yielded.status, Status::yielding) << yielded.reason();
+  ASSERT_EQ(yielded.level, level);
+  q[0] += yielded.increment[0];
+  const Pose rest = guard.place_of(0);
+  ASSERT_NEAR(rest.position.x(), at, 1e-9);
+  guard.place(0, rest);
+  for (int cycle = 0; cycle < 10; ++cycle) {
+    const InstrumentStep step = guard.step(q, std::vector<double>{0.004});
+    ASSERT_EQ(step.level, 1.0) << name(step.status);
+    if (step.ok()) q[0] += step.increment[0];
+    const double clear = lever * std::cos(q[0]) - 1.0 - rest.position.x();
+    ASSERT_GE(clear, level * kept - 3.0 * guard.tolerance()) << name(step.status) << cycle;
+    if (cycle == 0) {
+      EXPECT_TRUE(step.ok()) << step.reason();
+    }
+  }
+  EXPECT_GT(q[0], 1e-4) << "the arm moves";
+}
+
+}  // namespace
+}  // namespace keepout
