@@ -54,7 +54,7 @@ TEST_P(SolverInfeasibility, ContradictionsOnlyFarAwayAreNeverSolvedWrongly) {
       ASSERT_TRUE(optimal(problem)) << "seed " << i;
     } else {
       ASSERT_TRUE(status == SolveStatus::infeasible || status == SolveStatus::iteration_limit)
-          << "seed " << i << ": " << reason(status);
+          << "seed " << i << ": " << name(status);
     }
   }
   EXPECT_GT(recognised, (GetParam().library == nullptr ? 0.95 : 0.8) * posed);
