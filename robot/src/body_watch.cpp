@@ -20,7 +20,7 @@ Status BodyWatch::open(InstrumentStep& result) noexcept {
     Core core;
     memory_.pairs[p].near.start_cycle(motion(p).core(memory_.pairs[p].body, 0, core));
     const Status of_pair = open_pair(p, result);
-    if (of_pair == Status::over_capacity) return of_pair;
+    if (of_pair == Status::over_capacity || of_pair == Status::out_of_budget) return of_pair;
     if (!is_ok(of_pair)) status = of_pair;
   }
   for (std::size_t m = 0; m < memory_.meshes.size() && is_ok(status); ++m) {
@@ -33,17 +33,17 @@ Status BodyWatch::open(InstrumentStep& result) noexcept {
 Status BodyWatch::open_pair(std::size_t p, InstrumentStep& result) noexcept {
   PairMemory& pair = memory_.pairs[p];
   const double tolerance = memory_.tolerance;
-  if (!look(p, vicinity(p))) return Status::over_capacity;
+  if (const Status looked = look(p, vicinity(p)); !is_ok(looked)) return looked;
   double nearest = std::numeric_limits<double>::infinity();
   const double known = radius(p) + own_margin(p) + std::max(options_.band, options_.slowing_within);
   // All at once that the cycle is likely to ask for.
   for (NearTriangle& triangle : pair.near.nearer_than(vicinity(p), memory_.budget)) {
     if (!(triangle.least < known)) break;
-    if (is_worn_out()) return Status::over_capacity;
+    if (is_worn_out()) return Status::out_of_budget;
     pair.near.know(triangle, memory_.budget);
     nearest = std::min(nearest, triangle.at_start.distance);
   }
-  if (is_worn_out()) return Status::over_capacity;
+  if (is_worn_out()) return Status::out_of_budget;
   const double distance = nearest - radius(p);
   if (nearest <= known && !(result.distance && *result.distance <= distance)) {
     result.distance = distance;
@@ -104,7 +104,7 @@ Status BodyWatch::side(std::size_t m) noexcept {
     mesh.near->budget() = memory_.budget;
     const auto placement = place(*mesh.near, mesh.motion.at_start()[last]);
     memory_.budget = mesh.near->budget();
-    if (!placement || is_worn_out()) return Status::over_capacity;
+    if (!placement || is_worn_out()) return memory_.budget.status_at_end();
     if (!placement->is_free) return Status::inside;
   }
   return Status::free;
@@ -129,9 +129,9 @@ double BodyWatch::moved(std::size_t p) noexcept {
   return most;
 }
 
-bool BodyWatch::look(std::size_t p, double needed) noexcept {
+Status BodyWatch::look(std::size_t p, double needed) noexcept {
   PairMemory& pair = memory_.pairs[p];
-  if (pair.near.radius() >= 0.0 && pair.near.radius() - moved(p) >= needed) return true;
+  if (pair.near.radius() >= 0.0 && pair.near.radius() - moved(p) >= needed) return Status::free;
   Core core;
   const std::span<const Vec3> now = motion(p).core(pair.body, 0, core);
   // Farther where there is little, so that it is looked for seldom; less far where there is much.
@@ -144,16 +144,17 @@ bool BodyWatch::look(std::size_t p, double needed) noexcept {
     if (pair.near.look(near, now, needed + share * pair.guard, memory_.budget)) {
       if (share < 1.0 || pair.near.size() > many) pair.guard *= 0.5;
       if (pair.near.size() < few) pair.guard *= 2.0;
-      return true;
+      return Status::free;
     }
     if (is_worn_out()) break;
   }
   pair.near.forget();
-  return false;
+  const bool is_full = near.candidates().overflowed() || pair.near.is_full();
+  return is_full ? Status::over_capacity : Status::out_of_budget;
 }
 
 NearTriangle* BodyWatch::find(std::size_t p, TriangleId id) noexcept {
-  if (!look(p, vicinity(p))) return nullptr;
+  if (!is_ok(look(p, vicinity(p)))) return nullptr;
   NearSet& near = memory_.pairs[p].near;
   const std::span<NearTriangle> nearby = near.nearer_than(vicinity(p), memory_.budget);
   memory_.budget.spend(1 + nearby.size() / 64);

@@ -40,9 +40,9 @@ class BodyWatch {
     return memory_.pairs[pair].kept < target(pair);
   }
 
-  /// Makes sure that all triangles nearer than that to a body's core are known. False: there is no
-  /// room, or no work left. [length]
-  [[nodiscard]] bool look(std::size_t pair, double needed) noexcept;
+  /// Makes sure that all triangles nearer than `needed` to a body's core are known. Returns free,
+  /// or what was missing: over_capacity or out_of_budget. [length]
+  [[nodiscard]] Status look(std::size_t pair, double needed) noexcept;
   /// A triangle that may hold the body, its gap known; null if it is not near any more.
   NearTriangle* find(std::size_t pair, TriangleId id) noexcept;
 

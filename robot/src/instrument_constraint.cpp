@@ -245,7 +245,9 @@ MotionProof InstrumentConstraint::prove(std::span<const double> q,
     const double proven =
         JointCycle(state_->memory, options, {from.data(), q.size()}, JointCycle::Meshes::still)
             .prove(motion, result);
-    if (result.status == Status::over_capacity && part > least_part) {
+    const bool was_too_much =
+        result.status == Status::over_capacity || result.status == Status::out_of_budget;
+    if (was_too_much && part > least_part) {
       part *= 0.5;
       continue;
     }

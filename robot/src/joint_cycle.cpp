@@ -11,6 +11,12 @@ constexpr int most_rounds = 16;
 constexpr double least_asked = 1.0 / 16.0;  // of what is desired
 constexpr double worthwhile = 1e-6;         // a share of the cost
 
+void add_all(Limits& limits, const Limits& others) noexcept {
+  for (std::size_t i = 0; i < limit_count; ++i) {
+    if (others.has(static_cast<Limit>(i))) limits.add(static_cast<Limit>(i));
+  }
+}
+
 }  // namespace
 
 JointCycle::JointCycle(CycleMemory& memory, const InstrumentOptions& options,
@@ -38,7 +44,12 @@ void JointCycle::run(const JointTask& task, InstrumentStep& result) noexcept {
   guides_.open();
   result.guides = memory_.guide_states;
   result.status = watch_.open(result);
-  if (!is_ok(result.status)) return;
+  if (box_.starts_outside()) result.limits.add(Limit::joints_outside);
+  if (!is_ok(result.status)) {
+    trouble_ = result.status;
+    name_limits({}, result);
+    return;
+  }
   Trial best{.cost = task.cost(memory_.increment)};
   rows_.start();
   if (meshes_move_) {
@@ -50,6 +61,7 @@ void JointCycle::run(const JointTask& task, InstrumentStep& result) noexcept {
   if (is_ok(result.status) && result.status != Status::yielding && is_recovering())
     result.status = Status::recovering;
   tell_of_guides(best, result);
+  name_limits(best, result);
   result.rounds = rounds_;
   result.rows = best.rows;
   result.triangles = in_reach_;
@@ -70,7 +82,7 @@ void JointCycle::search(const JointTask& task, Trial& best, InstrumentStep& resu
   } else if (best.share < 1.0 || asked < 1.0) {
     result.status = Status::fallback;
   } else {
-    result.status = best.is_held ? Status::limited : Status::free;
+    result.status = best.held.empty() ? Status::free : Status::limited;
   }
 }
 
@@ -89,10 +101,10 @@ void JointCycle::search_beside_moving(const JointTask& task, Trial& best,
     attempt(task, asked, best);
     if (best.cell < PointMotion::cells) continue;
     result.level = level;
-    result.status = level < 1.0    ? Status::yielding
-                    : asked < 1.0  ? Status::fallback
-                    : best.is_held ? Status::limited
-                                   : Status::free;
+    result.status = level < 1.0         ? Status::yielding
+                    : asked < 1.0       ? Status::fallback
+                    : best.held.empty() ? Status::free
+                                        : Status::limited;
     return;
   }
   result.level = 0.0;
@@ -108,11 +120,47 @@ bool JointCycle::attempt(const JointTask& task, double asked, Trial& best) noexc
   if (is_shortened_) rows_.forgive_curvature(0.0625);
   const bool is_spent = memory_.budget.halved([&] {
     const JointTask part = task.scaled(asked);
-    if (seek(part, best)) turn(part, best);
+    if (seek(part, best)) {
+      turn(part, best);
+    } else {
+      note_failure();
+    }
     return is_worn_out();
   });
-  if (is_spent) trouble_ = Status::over_capacity;
-  return trouble_ == Status::free || trouble_ == Status::over_capacity;
+  if (is_spent && trouble_ == Status::free) trouble_ = Status::out_of_budget;
+  if (trouble_ == Status::over_capacity) stopped_.add(Limit::capacity);
+  if (trouble_ == Status::out_of_budget) stopped_.add(Limit::budget);
+  return trouble_ == Status::free || trouble_ == Status::over_capacity ||
+         trouble_ == Status::out_of_budget;
+}
+
+/// Notes what the last trial of an attempt could not be proved for, or, where the rows contradict
+/// each other, whose they are.
+void JointCycle::note_failure() noexcept {
+  if (trouble_ == Status::infeasible) {
+    for (const ContactRow& row : memory_.rows) {
+      stopped_.add(row.owner < most_pairs ? Limit::mesh : Limit::guide);
+    }
+    return;
+  }
+  // A proof that the budget ended says nothing about its subject.
+  if (kept_by_guides_ < PointMotion::cells && !is_worn_out()) stopped_.add(Limit::guide);
+  for (const PairMemory& pair : memory_.pairs) {
+    if (pair.failure.triangle != nullptr) stopped_.add(Limit::mesh);
+  }
+}
+
+/// Names what kept the motion from being the one asked for.
+void JointCycle::name_limits(const Trial& best, InstrumentStep& result) noexcept {
+  Limits& limits = result.limits;
+  if (result.status == Status::touching || result.status == Status::inside) limits.add(Limit::mesh);
+  if (trouble_ == Status::over_capacity) limits.add(Limit::capacity);
+  if (trouble_ == Status::out_of_budget) limits.add(Limit::budget);
+  add_all(limits, best.held);
+  const bool is_cut = is_shortened_ || best.share < 1.0;
+  if (!is_cut) return;
+  add_all(limits, stopped_);
+  if (is_ok(result.status)) limits.add(Limit::truncated);
 }
 
 void JointCycle::carry_out(const Trial& best, InstrumentStep& result) noexcept {
@@ -156,7 +204,7 @@ double JointCycle::prove(const JointVector& increment, InstrumentStep& result) n
   judge(trial);
   if (is_recovering()) result.status = Status::recovering;
   if (trouble_ != Status::free) result.status = trouble_;
-  if (is_worn_out()) result.status = Status::over_capacity;
+  if (is_worn_out() && is_ok(result.status)) result.status = Status::out_of_budget;
   return is_ok(result.status) ? static_cast<double>(trial.cell) / PointMotion::cells : 0.0;
 }
 
@@ -181,6 +229,7 @@ bool JointCycle::seek(const JointTask& task, Trial& best) noexcept {
     const double affordable = still + 2.0 * options_.band;
     if (!is_recovering() && !meshes_move_ && trial.cost > affordable * affordable) {
       trial.share = task.best_share(trial.increment, trial.share);
+      trial.held.add(Limit::linearization);
       trial.cost = task.cost_of_share(trial.increment, trial.share);
     }
     if (trial.cell == PointMotion::cells && trial.share == 1.0) {
@@ -202,6 +251,7 @@ bool JointCycle::answer() noexcept {
   const bool is_new_plane =
       kept_by_guides_ < PointMotion::cells && rows_.answer(failed_guide_, kept_by_guides_);
   const bool is_new_row = rows_.answer();
+  if (memory_.rows.overflowed()) trouble_ = Status::over_capacity;
   return (is_new_plane || is_new_row) && !memory_.rows.overflowed();
 }
 
@@ -264,10 +314,24 @@ SolveStatus JointCycle::solve(const JointTask& task, Trial& trial) noexcept {
     if (!std::isfinite(solution.u[k])) return SolveStatus::iteration_limit;
     trial.increment[k] = task.unit[k] * solution.u[k];
   }
-  box_.clip(trial.increment);
-  trial.is_held = !solution.active.empty();
+  trial.held = held_by(solution);
+  if (box_.clip(trial.increment)) trial.held.add(Limit::joint_position);
   trial.rows = rows_.hold(solution.active);
   return solved;
+}
+
+/// The kinds of the rows that hold a solution.
+Limits JointCycle::held_by(const Solution& solution) const noexcept {
+  Limits held;
+  for (const std::uint32_t number : solution.active) {
+    if (number < memory_.rows.size()) {
+      held.add(memory_.rows[number].owner < most_pairs ? Limit::mesh : Limit::guide);
+    } else {
+      const std::size_t side = box_rows_[number - memory_.rows.size()];
+      held.add(box_.limit(side / 2, side % 2 == 1));
+    }
+  }
+  return held;
 }
 
 SolveStatus JointCycle::pose(const JointTask& task, const Softness& softness,
@@ -289,6 +353,7 @@ SolveStatus JointCycle::pose(const JointTask& task, const Softness& softness,
     if (steepest <= memory_.tolerance) least = std::min(least, 0.0);
     memory_.bounds[count++] = least;
   }
+  std::size_t box_rows = 0;
   for (std::size_t k = 0; k < n; ++k) {
     for (const double sign : {1.0, -1.0}) {
       const double bound = sign > 0.0 ? box_.low()[k] : -box_.high()[k];
@@ -297,6 +362,7 @@ SolveStatus JointCycle::pose(const JointTask& task, const Softness& softness,
       number[k] = sign;
       number += n;
       memory_.bounds[count++] = bound / task.unit[k];
+      box_rows_[box_rows++] = static_cast<std::uint8_t>(2 * k + (sign > 0.0 ? 0 : 1));
     }
   }
   const StepProblem problem{{task.jacobian.data(), task.rows, task.joints},
@@ -325,9 +391,9 @@ void JointCycle::judge(Trial& trial) noexcept {
     pair.reach = motion.farthest(pair.body);
     const double needed =
         memory_.instrument.bodies()[pair.body].radius + watch_.kept(p) + pair.reach;
-    if (!watch_.look(p, needed)) {
+    if (const Status looked = watch_.look(p, needed); !is_ok(looked)) {
       trial.cell = 0;
-      trouble_ = Status::over_capacity;
+      trouble_ = looked;
       return;
     }
     const std::span<NearTriangle> triangles = pair.near.nearer_than(needed, budget);

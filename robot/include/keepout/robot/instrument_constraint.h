@@ -91,7 +91,10 @@ struct InstrumentStep {
   double level = 1.0;
   std::span<const GuideState> guides = {};   // of each guide, in the order in which they were given
   Relaxation relaxation = Relaxation::none;  // what was relaxed
-  Limits limits = {};                        // what kept the motion from being the one asked for
+  /// What kept the motion from being the one asked for: of a status with a motion, all that holds
+  /// or shortens it; else what no motion could be proved for. A joint that starts outside its
+  /// position limits is named with any status.
+  Limits limits = {};
 
   /// Whether there is a motion that may be carried out; it may be zero.
   bool ok() const noexcept { return is_ok(status); }
@@ -107,6 +110,8 @@ struct MotionProof {
   double share = 0.0;  // q + s dq is proven for s from 0 to here, whatever the status: 1 if all is
   std::optional<double> distance = std::nullopt;  // as InstrumentStep::distance [length]
 
+  /// Returns one line on what happened and what to do about it.
+  std::string_view reason() const noexcept { return keepout::reason(status, Subject::instrument); }
   /// Whether the instrument keeps the whole margin, less its band, on the whole motion.
   bool is_clear() const noexcept { return status == Status::free && share == 1.0; }
 };
