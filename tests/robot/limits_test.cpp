@@ -151,13 +151,11 @@ TEST(Limits, NameAJointThatStartsOutside) {
 
 // A budget that ends, a store that is too small, and what they are called.
 TEST(Limits, TellASpentBudgetFromASmallStore) {
-  const auto mesh = std::make_shared<const Mesh>(make_shape("gear"));
+  const auto mesh = std::make_shared<const Mesh>(make_cube(2.0));
   const auto status = [&](const InstrumentCapacity& capacity) {
-    InstrumentConstraint guard(
-        mesh, make_index("wide_bvh", mesh), psm({Vec3(30, 10, 120), Mat3::Identity()}),
-        make_solver("active_set"), {.margin = 10.0, .check_sides = false}, capacity);
-    const std::vector<double> q{0.1, -0.1, 60.0, 0.2, 0.1, -0.2};
-    return guard.step(q, {.linear = Vec3(0, 0, -60), .angular = Vec3(0.3, 0, 0)});
+    InstrumentConstraint guard(mesh, make_index("wide_bvh", mesh), free_ball(1.0),
+                               make_solver("active_set"), {.check_sides = false}, capacity);
+    return guard.step(std::vector<double>{0.0, 0.0, 51.3}, {.linear = Vec3(0, 0, -5)});
   };
   const InstrumentStep spent = status({.looks = 20});
   EXPECT_EQ(spent.status, Status::out_of_budget) << spent.reason();
