@@ -89,7 +89,7 @@ struct CycleMemory {
   const Instrument& instrument;
   Solver& solver;
   Budget budget;            // of a cycle, for all meshes
-  double largest_position;  // of a prismatic joint: what is farther off is refused [length]
+  double largest_position;  // of a prismatic joint or a mesh: farther off is refused [length]
   double tolerance;         // distances are told apart down to this [length]
   PointMotion motion;
   std::vector<MeshMemory> meshes;
@@ -111,8 +111,11 @@ struct CycleMemory {
   }
   /// Makes what depends on the meshes, which may be others by now; forgets all. Allocates.
   void prepare();
-  /// Makes what depends on where they are.
+  /// Makes what depends on where they are. How far meshes may be placed and joints may go does not
+  /// depend on it, so that repeated placing cannot raise it.
   void measure() noexcept;
+  /// Returns true if tolerance is too large for the least margin, the band, or a guide's band.
+  bool is_lost_in_rounding(const InstrumentOptions& options) const noexcept;
   /// Whether any mesh moves.
   bool is_moving() const noexcept {
     return std::any_of(meshes.begin(), meshes.end(), [](const MeshMemory& mesh) {

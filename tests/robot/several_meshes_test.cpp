@@ -209,9 +209,9 @@ TEST(SeveralMeshes, APlaceThatIsNoneStopsUntilThereIsOne) {
   const Mat3 mirrored = -Mat3::Identity();
   for (const Pose& bad : {Pose{Vec3(test::nan, 0, 0)}, Pose{Vec3(1e30, 0, 0)},
                           Pose{Vec3::Zero(), stretched}, Pose{Vec3::Zero(), mirrored}}) {
-    guard.place(1, bad);
+    EXPECT_EQ(guard.place(1, bad), Status::invalid_input);
     EXPECT_EQ(step_of(guard, at, Vec3::UnitX()).status, Status::invalid_input);
-    guard.place(0, {});
+    EXPECT_EQ(guard.place(0, {}), Status::free);
     EXPECT_EQ(step_of(guard, at, Vec3::UnitX()).status, Status::invalid_input) << "the other one";
     guard.place(1, {Vec3(0, 20, 0)});
     EXPECT_EQ(step_of(guard, at, Vec3::UnitX()).status, Status::free);
@@ -222,8 +222,55 @@ TEST(SeveralMeshes, APlaceThatIsNoneStopsUntilThereIsOne) {
   EXPECT_EQ(step_of(guard, at, Vec3::UnitX()).status, Status::invalid_input) << "in 1 ms";
   EXPECT_EQ(step_of(guard, at, Vec3::UnitX()).level, 0.0);
   guard.place(0, {});
-  guard.place(2, {});
-  EXPECT_EQ(step_of(guard, at, Vec3::UnitX()).status, Status::invalid_input) << "there are two";
+  EXPECT_EQ(guard.place(2, {}), Status::invalid_input) << "there are two";
+  EXPECT_EQ(step_of(guard, at, Vec3::UnitX()).status, Status::free) << "no mesh was touched";
+}
+
+/// A square sheet in the plane z = 0.
+std::shared_ptr<const Mesh> sheet_of(double half) {
+  Surface surface;
+  surface.vertices = {{-half, -half, 0}, {half, -half, 0}, {half, half, 0}, {-half, half, 0}};
+  surface.triangles = {{0, 1, 2}, {0, 2, 3}};
+  return std::make_shared<const Mesh>(std::move(surface));
+}
+
+// Each place is at most as far off as the lengths at hand allow, however far the last one was: 100
+// times farther again and again, rounding would outgrow the margin, and all would be certified.
+TEST(SeveralMeshes, PlacesDoNotRatchet) {
+  const auto sheet = sheet_of(500.0);
+  InstrumentConstraint guard = guard_of(sheet, free_ball(1.0));
+  double x = 5e3;
+  int accepted = 0;
+  for (; x < 1e12; x *= 50.0) {
+    if (guard.place(0, {Vec3(x, 0, 0)}) != Status::free) break;
+    ++accepted;
+    Vec3 at(x, 0, 4.0);
+    for (int i = 0; i < 3; ++i) at = moved(at, step_of(guard, at, Vec3(0, 0, -3)));
+    EXPECT_GE(at.z(), 1.198 - 1e-6) << x;
+    EXPECT_LT(4.0 * guard.tolerance(), guard.options().band) << x;
+  }
+  EXPECT_EQ(accepted, 1) << "2.5e5 is beyond 100 times the sheet";
+}
+
+// A mesh that its velocity carries away, until rounding hides the margin.
+TEST(SeveralMeshes, AMeshThatGoesTooFarIsNamed) {
+  const auto sheet = sheet_of(500.0);
+  InstrumentConstraint guard = guard_of(sheet, free_ball(1.0));
+  ASSERT_EQ(guard.place(0, {}, {.linear = Vec3(9e8, 0, 0)}), Status::free);
+  bool ended = false;
+  for (int i = 0; i < 40'000; ++i) {
+    const double x = guard.place_of(0).position.x();
+    const Vec3 at(x, 0, 1.25);
+    const InstrumentStep step = step_of(guard, at, Vec3(0, 0, -3));
+    if (step.ok()) {
+      ASSERT_FALSE(ended);
+      ASSERT_LT(4.0 * guard.tolerance(), guard.options().band);
+    }
+    ended = ended || step.status == Status::margin_too_small;
+  }
+  EXPECT_TRUE(ended);
+  EXPECT_EQ(guard.place(0, {}), Status::free);
+  EXPECT_TRUE(step_of(guard, Vec3(0, 0, 1.25), Vec3::Zero()).ok()) << "and it can come back";
 }
 
 // A body that no joint moves is too close to a mesh that stands still: the others are led on all

@@ -165,16 +165,21 @@ class InstrumentConstraint {
   std::size_t add_mesh(std::shared_ptr<const Mesh> mesh, std::shared_ptr<const SpatialIndex> index,
                        double margin = 0.0);
 
-  /// Says where a mesh is as the next cycle begins, and how it moves: its frame's origin
+  /// Sets the pose of a mesh as the next cycle begins, and its velocity: of its frame's origin
   /// [length/s], and its turn about that [rad/s]. Nothing is built anew. A mesh that moves is taken
   /// to go on so with every step, until it is placed again: so a loop places it in each cycle, as
-  /// it is measured. What the mesh is off that, in a cycle, belongs into its margin. A rotation is
-  /// to be one to 1e-6 in each element of R^T R; it is made one. Where the pose is none, or far
-  /// beyond all lengths at hand, or a speed is no number below 1e9, place and velocity stay as they
-  /// were, and every step is invalid_input until the mesh is placed well: the first one, where
-  /// there is none of that number. A turn of more than a radian in a cycle is invalid_input as
-  /// well. Proofs take meshes to stay where they are. Allocates nothing, throws nothing.
-  void place(std::size_t mesh, const Pose& pose, const Twist& velocity = {}) noexcept;
+  /// it is measured. The error of that prediction within a cycle belongs into the mesh's margin.
+  ///
+  /// The rotation must be one to 1e-6 in each element of R^T R; it is made exact. The position must
+  /// be within 100 times the lengths of instrument and meshes, each component of the velocity below
+  /// 1e9. Returns free if the pose is accepted. Otherwise returns invalid_input: the mesh keeps its
+  /// last pose and velocity, and step() returns invalid_input until a valid pose is set. A number
+  /// that no mesh has is invalid_input and changes nothing.
+  ///
+  /// step() returns invalid_input while a mesh turns by more than a radian in a cycle, and
+  /// margin_too_small while it is so far away that rounding hides the margin or a band. Proofs take
+  /// meshes to stay where they are. Allocates nothing, throws nothing.
+  Status place(std::size_t mesh, const Pose& pose, const Twist& velocity = {}) noexcept;
 
   /// Where a mesh is, as the next cycle begins. Precondition: there is one of that number.
   const Pose& place_of(std::size_t mesh) const noexcept;
