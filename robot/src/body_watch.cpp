@@ -19,7 +19,16 @@ Status BodyWatch::open(InstrumentStep& result) noexcept {
   for (std::size_t p = 0; p < memory_.pairs.size(); ++p) {
     Core core;
     memory_.pairs[p].near.start_cycle(motion(p).core(memory_.pairs[p].body, 0, core));
-    const Status of_pair = open_pair(p, result);
+    PairMemory& pair = memory_.pairs[p];
+    pair.failure = {};
+    pair.level = 1.0;
+    pair.is_dropped = false;
+    pair.is_settled = false;
+    Status of_pair = open_pair(p, result);
+    if (meshes_move_ && (of_pair == Status::touching || of_pair == Status::over_capacity)) {
+      drop(p, of_pair);
+      of_pair = Status::free;
+    }
     if (of_pair == Status::over_capacity || of_pair == Status::out_of_budget) return of_pair;
     if (!is_ok(of_pair)) status = of_pair;
   }
@@ -75,10 +84,47 @@ void BodyWatch::slow_down(std::size_t p, double distance) noexcept {
 }
 
 void BodyWatch::close() noexcept {
-  if (level_ == 1.0) return;
   for (std::size_t p = 0; p < memory_.pairs.size(); ++p) {
-    memory_.pairs[p].floor = std::min(memory_.pairs[p].floor, kept(p));
+    PairMemory& pair = memory_.pairs[p];
+    if (pair.level < 1.0 || pair.is_dropped) pair.floor = std::min(pair.floor, kept(p));
+    pair.is_side_unknown = pair.is_side_unknown || pair.is_dropped;
   }
+}
+
+void BodyWatch::lower(std::size_t p, double most, Status reason) noexcept {
+  PairMemory& pair = memory_.pairs[p];
+  constexpr double quarter = 0.25;
+  const double next = quarter * std::floor(std::min(most, pair.level - quarter) / quarter);
+  if (pair.kept > 0.0 && next >= 0.0) {
+    pair.level = next;
+  } else {
+    drop(p, reason);
+  }
+}
+
+void BodyWatch::drop(std::size_t p, Status reason) noexcept {
+  memory_.pairs[p].level = 0.0;
+  memory_.pairs[p].is_dropped = true;
+  memory_.pairs[p].failure = {};
+  if (!is_immovable(p)) dropped_for_ = reason;
+}
+
+bool BodyWatch::is_immovable(std::size_t p) const noexcept {
+  const auto& points = memory_.instrument.points_of(memory_.pairs[p].body);
+  return std::all_of(points.begin(), points.end(), [&](std::uint8_t number) {
+    return memory_.instrument.points()[number].link == 0;
+  });
+}
+
+double BodyWatch::name_degraded() noexcept {
+  double least = 1.0;
+  for (const PairMemory& pair : memory_.pairs) {
+    if (pair.level == 1.0) continue;
+    least = std::min(least, pair.level);
+    memory_.degraded.push(
+        {static_cast<int>(pair.body), static_cast<int>(pair.mesh), pair.level, !pair.is_dropped});
+  }
+  return least;
 }
 
 /// Whether a body is where no step has led it beside a mesh, so that its side is unknown.
@@ -87,6 +133,7 @@ bool BodyWatch::was_moved_by_others(std::size_t m) noexcept {
   if (mesh.side_of != mesh.near->mesh().id()) return true;
   const std::size_t first = m * memory_.instrument.bodies().size();
   for (std::size_t b = 0; b < memory_.instrument.bodies().size(); ++b) {
+    if (memory_.pairs[first + b].is_side_unknown) return true;
     // So far around its core all is free.
     const double free = 0.5 * (radius(first + b) + memory_.pairs[first + b].kept);
     for (const std::uint8_t p : memory_.instrument.points_of(b)) {
@@ -99,13 +146,17 @@ bool BodyWatch::was_moved_by_others(std::size_t m) noexcept {
 /// No core meets the surface, so each is on one side of it, and one point tells which.
 Status BodyWatch::side(std::size_t m) noexcept {
   MeshMemory& mesh = memory_.meshes[m];
+  const std::size_t first = m * memory_.instrument.bodies().size();
   for (std::size_t b = 0; b < memory_.instrument.bodies().size(); ++b) {
+    if (memory_.pairs[first + b].is_dropped) continue;
     const std::uint8_t last = memory_.instrument.points_of(b).back();
     mesh.near->budget() = memory_.budget;
     const auto placement = place(*mesh.near, mesh.motion.at_start()[last]);
     memory_.budget = mesh.near->budget();
     if (!placement || is_worn_out()) return memory_.budget.status_at_end();
-    if (!placement->is_free) return Status::inside;
+    if (!placement->is_free && !meshes_move_) return Status::inside;
+    if (!placement->is_free) drop(first + b, Status::inside);
+    memory_.pairs[first + b].is_side_unknown = false;
   }
   return Status::free;
 }

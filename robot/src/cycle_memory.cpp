@@ -120,7 +120,10 @@ void CycleMemory::forget_floors() noexcept {
 void CycleMemory::forget_motion() noexcept {
   warm.clear();
   for (MeshMemory& mesh : meshes) mesh.side_of = 0;
-  for (PairMemory& pair : pairs) pair.reach = 0.0;
+  for (PairMemory& pair : pairs) {
+    pair.reach = 0.0;
+    pair.is_side_unknown = false;  // as it is of all, by side_of
+  }
 }
 
 }  // namespace keepout

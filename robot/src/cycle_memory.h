@@ -43,12 +43,16 @@ struct PairMemory {
   std::size_t body;
   std::size_t mesh;
   NearSet near;
-  double reach = 0.0;  // of its last motion [length]
-  double guard = 0.0;  // how much farther than needed triangles are looked for [length]
-  double floor = 0.0;  // what was certified last [length]
+  double reach = 0.0;            // of its last motion [length]
+  double guard = 0.0;            // how much farther than needed triangles are looked for [length]
+  double floor = 0.0;            // what was certified last [length]
+  bool is_side_unknown = false;  // it was dropped, so that the body may have crossed the surface
   // Of this cycle.
-  double kept = 0.0;                  // what is to be certified, where meshes are not too fast
-  double aim = 0.0;                   // the margin that rows aim at [length]
+  double kept = 0.0;        // what is to be certified, where meshes are not too fast
+  double aim = 0.0;         // the margin that rows aim at [length]
+  double level = 1.0;       // the fraction of `kept` that is to be certified
+  bool is_dropped = false;  // nothing is certified of it: no motion was found that would be
+  bool is_settled = false;  // no joint moves the body, and its proof is done
   Certificate::Failure failure = {};  // what the last trial could not be proven for
 };
 
@@ -95,7 +99,8 @@ struct CycleMemory {
   std::vector<MeshMemory> meshes;
   std::vector<PairMemory> pairs;  // all bodies with the first mesh, with the second, and so on
   std::vector<GuideMemory> guides;
-  std::vector<GuideState> guide_states;  // of the last cycle
+  std::vector<GuideState> guide_states;            // of the last cycle
+  Buffer<DegradedClearance> degraded{most_pairs};  // of the last cycle
   Buffer<ContactRow> rows;
   Buffer<ContactRow> earlier_rows;  // put aside while better ones are tried
   Buffer<WarmRow> warm;

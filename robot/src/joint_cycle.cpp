@@ -24,7 +24,7 @@ JointCycle::JointCycle(CycleMemory& memory, const InstrumentOptions& options,
     : memory_(memory),
       options_(options),
       box_(memory, options.period, q),
-      watch_(memory, options),
+      watch_(memory, options, meshes == Meshes::moving && memory.is_moving()),
       guides_(memory, options),
       rows_(memory, watch_, guides_, options),
       meshes_move_(meshes == Meshes::moving && memory.is_moving()) {
@@ -41,6 +41,7 @@ JointCycle::JointCycle(CycleMemory& memory, const InstrumentOptions& options,
 
 void JointCycle::run(const JointTask& task, InstrumentStep& result) noexcept {
   memory_.increment.fill(0.0);
+  memory_.degraded.clear();
   guides_.open();
   result.guides = memory_.guide_states;
   result.status = watch_.open(result);
@@ -57,6 +58,7 @@ void JointCycle::run(const JointTask& task, InstrumentStep& result) noexcept {
   } else {
     search(task, best, result);
   }
+  result.degraded = memory_.degraded.view();
   watch_.close();
   if (is_ok(result.status) && result.status != Status::yielding && is_recovering())
     result.status = Status::recovering;
@@ -84,32 +86,6 @@ void JointCycle::search(const JointTask& task, Trial& best, InstrumentStep& resu
   } else {
     result.status = best.held.empty() ? Status::free : Status::limited;
   }
-}
-
-/// Less and less of what is asked for, down to what only gives way; and then less and less of what
-/// is to be kept.
-void JointCycle::search_beside_moving(const JointTask& task, Trial& best,
-                                      InstrumentStep& result) noexcept {
-  struct Attempt {
-    double asked;
-    double level;
-  };
-  constexpr Attempt attempts[] = {{1.0, 1.0}, {0.25, 1.0}, {0.0, 1.0}, {0.0, 0.75},
-                                  {0.0, 0.5}, {0.0, 0.25}, {0.0, 0.0}};
-  for (const auto& [asked, level] : attempts) {
-    watch_.lower_to(level);
-    attempt(task, asked, best);
-    if (best.cell < PointMotion::cells) continue;
-    result.level = level;
-    result.status = level < 1.0         ? Status::yielding
-                    : asked < 1.0       ? Status::fallback
-                    : best.held.empty() ? Status::free
-                                        : Status::limited;
-    return;
-  }
-  result.level = 0.0;
-  result.status = trouble_ != Status::free ? trouble_ : Status::unsolved;
-  rows_.remember_all();
 }
 
 /// For a share of what is asked for, with half of the work that is left. Whether another share may
@@ -191,7 +167,11 @@ void JointCycle::tell_of_guides(const Trial& best, InstrumentStep& result) noexc
   for (std::size_t g = 0; g < memory_.guides.size(); ++g) {
     GuideState& state = memory_.guide_states[g];
     state.limits = state.limits || (is_cut && has_failed_[g]);
-    state.relaxed = best.relaxation != Relaxation::none && state.excess > 0.0;
+    state.relaxed =
+        (best.relaxation != Relaxation::none && state.excess > 0.0) || guides_.is_dropped(g);
+    if (guides_.is_dropped(g) && result.relaxation == Relaxation::none) {
+      result.relaxation = Relaxation::guides;
+    }
   }
 }
 
@@ -341,6 +321,11 @@ SolveStatus JointCycle::pose(const JointTask& task, const Softness& softness,
   std::size_t count = 0;
   for (const ContactRow& row : memory_.rows) {
     double steepest = 0.0;
+    if (is_left_out_[row.owner]) {
+      number = std::fill_n(number, n, 0.0);
+      memory_.bounds[count++] = 0.0;
+      continue;
+    }
     for (std::size_t k = 0; k < n; ++k) {
       *number++ = task.unit[k] * row.gradient[k];
       steepest = std::max(steepest, std::abs(number[-1]));
@@ -379,34 +364,40 @@ SolveStatus JointCycle::pose(const JointTask& task, const Softness& softness,
 
 /// How much of a motion is certified, and of each pair what speaks against the rest.
 void JointCycle::judge(Trial& trial) noexcept {
-  Budget& budget = memory_.budget;
   memory_.motion.move(trial.increment, options_.certified);
   for (MeshMemory& mesh : memory_.meshes) mesh.motion.move();
   kept_by_guides_ = guides_.judge(failed_guide_);
   trial.cell = kept_by_guides_;
   for (std::size_t p = 0; p < memory_.pairs.size(); ++p) {
-    PairMemory& pair = memory_.pairs[p];
-    RelativeMotion& motion = memory_.meshes[pair.mesh].motion;
-    pair.failure = {};
-    pair.reach = motion.farthest(pair.body);
-    const double needed =
-        memory_.instrument.bodies()[pair.body].radius + watch_.kept(p) + pair.reach;
-    if (const Status looked = watch_.look(p, needed); !is_ok(looked)) {
+    if (!watch_.is_watched(p)) continue;
+    if (const Status looked = judge_pair(p); !is_ok(looked)) {
       trial.cell = 0;
       trouble_ = looked;
       return;
     }
-    const std::span<NearTriangle> triangles = pair.near.nearer_than(needed, budget);
-    if (triangles.empty()) continue;
-    in_reach_ = std::max(in_reach_, triangles.size());
-    Certificate certificate(memory_.instrument, pair.body, motion, pair.near, watch_.kept(p),
-                            memory_.tolerance, budget);
-    for (const ContactRow& row : memory_.rows) {
-      if (row.owner == p) certificate.try_first(row.normal);
-    }
-    pair.failure = certificate.judge(triangles, pair.reach);
-    trial.cell = std::min(trial.cell, pair.failure.cell);
+    trial.cell = std::min(trial.cell, memory_.pairs[p].failure.cell);
   }
+}
+
+/// Judges the motion at hand for one pair. Returns free, or what is missing to look at it.
+Status JointCycle::judge_pair(std::size_t p) noexcept {
+  Budget& budget = memory_.budget;
+  PairMemory& pair = memory_.pairs[p];
+  RelativeMotion& motion = memory_.meshes[pair.mesh].motion;
+  pair.failure = {};
+  pair.reach = motion.farthest(pair.body);
+  const double needed = memory_.instrument.bodies()[pair.body].radius + watch_.kept(p) + pair.reach;
+  if (const Status looked = watch_.look(p, needed); !is_ok(looked)) return looked;
+  const std::span<NearTriangle> triangles = pair.near.nearer_than(needed, budget);
+  if (triangles.empty()) return Status::free;
+  in_reach_ = std::max(in_reach_, triangles.size());
+  Certificate certificate(memory_.instrument, pair.body, motion, pair.near, watch_.kept(p),
+                          memory_.tolerance, budget);
+  for (const ContactRow& row : memory_.rows) {
+    if (row.owner == p) certificate.try_first(row.normal);
+  }
+  pair.failure = certificate.judge(triangles, pair.reach);
+  return Status::free;
 }
 
 }  // namespace keepout

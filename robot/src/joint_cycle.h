@@ -52,13 +52,19 @@ class JointCycle {
   };
 
   void search(const JointTask& task, Trial& best, InstrumentStep& result) noexcept;
+  // Beside meshes that move (beside_moving.cpp).
   void search_beside_moving(const JointTask& task, Trial& best, InstrumentStep& result) noexcept;
+  void settle_immovable() noexcept;
+  bool degrade(const JointTask& task) noexcept;
+  bool degrade_conflict(const JointTask& task) noexcept;
+  double reachable_level(std::size_t pair) const noexcept;
   bool attempt(const JointTask& task, double asked, Trial& best) noexcept;
   bool seek(const JointTask& task, Trial& best) noexcept;
   void turn(const JointTask& task, Trial& best) noexcept;
   SolveStatus solve(const JointTask& task, Trial& trial) noexcept;
   SolveStatus pose(const JointTask& task, const Softness& softness, Solution& solution) noexcept;
   void judge(Trial& trial) noexcept;
+  Status judge_pair(std::size_t pair) noexcept;
   bool answer() noexcept;
   Limits held_by(const Solution& solution) const noexcept;
   void note_failure() noexcept;
@@ -80,6 +86,7 @@ class JointCycle {
   Status trouble_ = Status::free;               // why nothing can be judged
   bool is_shortened_ = false;                   // whether less than all was asked for at last
   Limits stopped_ = {};                         // what attempts failed by
+  std::array<bool, most_pairs + Guide::most> is_left_out_{};     // owners of rows not to be posed
   std::array<std::uint8_t, 2 * Chain::most_joints> box_rows_{};  // of the problem: see pose
   bool meshes_move_;
   int rounds_ = 0;

@@ -252,6 +252,94 @@ TEST(SeveralMeshes, PlacesDoNotRatchet) {
   EXPECT_EQ(accepted, 1) << "2.5e5 is beyond 100 times the sheet";
 }
 
+/// Three slides carry a tip that can retreat from a sheet that comes on at 20 mm/s for 8 mm.
+struct ComingSheet {
+  explicit ComingSheet(const std::vector<Body>& others, const Chain& chain = free_ball(1.0).chain())
+      : guard(guard_of(sheet_of(50.0), instrument(chain, others), {.orientation_weight = 0.0})) {}
+
+  static Instrument instrument(const Chain& chain, std::vector<Body> bodies) {
+    bodies.insert(bodies.begin(), {"tip", {{3, Vec3::Zero()}}, 1.0});
+    return {chain, bodies};
+  }
+
+  /// Runs to the end; the operator asks for `way` in each cycle.
+  void run(const Vec3& way) {
+    for (int i = 0; i < 400; ++i) {
+      const double z = -8.0 + 0.02 * i;
+      guard.place(0, {Vec3(0, 0, z)}, {.linear = Vec3(0, 0, 20)});
+      const InstrumentStep step = guard.step(q, {.linear = way});
+      stopped += step.ok() ? 0 : 1;
+      for (const DegradedClearance& each : step.degraded) {
+        named[static_cast<std::size_t>(each.body)] += 1;
+        dropped[static_cast<std::size_t>(each.body)] += each.is_certified ? 0 : 1;
+        EXPECT_LT(each.level, 1.0);
+        EXPECT_EQ(each.mesh, 0);
+      }
+      EXPECT_EQ(!step.degraded.empty(), step.status == Status::yielding || !step.ok()) << i;
+      for (std::size_t k = 0; k < step.increment.size(); ++k) q[k] += step.increment[k];
+      least = std::min(least, q[2] - (z + 0.02) - 1.0);
+    }
+  }
+
+  InstrumentConstraint guard;
+  std::vector<double> q{0.0, 0.0, -6.0};
+  int stopped = 0;
+  int named[3] = {};
+  int dropped[3] = {};
+  double least = 1.0;  // of the tip
+};
+
+// A body that cannot retreat must not keep the others from it, nor cost them any of their distance.
+TEST(MovingSheet, TakesNothingFromABodyThatCanRetreat) {
+  ComingSheet alone({});
+  alone.run(Vec3::Zero());
+  EXPECT_EQ(alone.stopped, 0);
+  EXPECT_GE(alone.least, 0.198 - 1e-8);
+  EXPECT_EQ(alone.named[0], 0);
+
+  const std::vector<Body> posts[] = {{{"ball", {{0, Vec3(5, 0, -4)}}, 1.0}},
+                                     {{"shaft", {{0, Vec3(5, 0, -4)}, {0, Vec3(9, 0, 4)}}, 1.0}},
+                                     {{"needle", {{0, Vec3(5, 0, -4)}, {0, Vec3(9, 0, 4)}}, 0.0}}};
+  for (const std::vector<Body>& post : posts) {
+    SCOPED_TRACE(post[0].name);
+    ComingSheet beside(post);
+    beside.run(Vec3::Zero());
+    EXPECT_EQ(beside.stopped, 0);
+    EXPECT_GE(beside.least, 0.198 - 1e-8);
+    EXPECT_EQ(beside.named[0], 0) << "the tip keeps all of its distance";
+    EXPECT_GT(beside.named[1], 40) << "and the post does not";
+    EXPECT_GT(beside.dropped[1], 40);
+  }
+}
+
+// The same of a body on a joint that has come to its limit.
+TEST(MovingSheet, TakesNothingFromABodyBesideOneThatIsBlocked) {
+  // A slide up to its limit that carries a ball, and beyond it two slides that carry the tip.
+  std::vector<Joint> joints{{.kind = JointKind::prismatic,
+                             .origin = {Vec3(8, 0, 0)},
+                             .limits = {.lower = -6.0, .upper = -4.0, .velocity = 1000.0}},
+                            {.kind = JointKind::prismatic,
+                             .axis = Vec3::UnitX(),
+                             .limits = {.lower = -10.0, .upper = 10.0, .velocity = 1000.0}},
+                            {.kind = JointKind::prismatic,
+                             .limits = {.lower = -50.0, .upper = 50.0, .velocity = 1000.0}}};
+  ComingSheet blocked({{"blocked", {{1, Vec3::Zero()}}, 1.0}}, Chain(joints));
+  blocked.q = {-5.0, -8.0, 0.0};
+  for (int i = 0; i < 400; ++i) {
+    const double z = -8.0 + 0.02 * i;
+    blocked.guard.place(0, {Vec3(0, 0, z)}, {.linear = Vec3(0, 0, 20)});
+    const InstrumentStep step = blocked.guard.step(blocked.q, Twist{});
+    for (std::size_t k = 0; k < step.increment.size(); ++k) blocked.q[k] += step.increment[k];
+    const double clear = blocked.q[0] + blocked.q[2] - (z + 0.02) - 1.0;
+    ASSERT_GE(clear, 0.198 - 1e-8) << i << ' ' << name(step.status) << ' ' << step.level;
+    for (const DegradedClearance& each : step.degraded) {
+      ASSERT_EQ(each.body, 1);
+      blocked.named[1] += 1;
+    }
+  }
+  EXPECT_GT(blocked.named[1], 50);
+}
+
 // A mesh that its velocity carries away, until rounding hides the margin.
 TEST(SeveralMeshes, AMeshThatGoesTooFarIsNamed) {
   const auto sheet = sheet_of(500.0);

@@ -72,6 +72,14 @@ struct InstrumentCapacity {
   std::size_t looks = 0;
 };
 
+/// A body that keeps less than its certified distance from a mesh in a cycle.
+struct DegradedClearance {
+  int body = -1;             // its number
+  int mesh = -1;             // and that of the mesh
+  double level = 0.0;        // the fraction of the certified distance that it keeps, below 1
+  bool is_certified = true;  // false: nothing is certified for it, and level is 0
+};
+
 /// What one cycle may do. Views stay valid until the next step.
 struct InstrumentStep {
   Status status = Status::invalid_input;   // how it ended
@@ -86,9 +94,12 @@ struct InstrumentStep {
   std::optional<double> distance = std::nullopt;
   int nearest = -1;       // the number of that body
   int nearest_mesh = -1;  // and of the mesh
-  /// The share of what is certified (InstrumentConstraint: F) that could be: below 1 where a mesh
-  /// came on faster than the joints can give way; 0 where a mesh moves and there is no motion.
+  /// The least level of all pairs of body and mesh, 1 if all keep what is certified for them
+  /// (InstrumentConstraint: F): below 1 if a mesh approaches faster than a body can retreat; 0 if a
+  /// body could not be certified at all, or a mesh moves and there is no motion.
   double level = 1.0;
+  /// The pairs of body and mesh that keep less; every other pair keeps what is certified for it.
+  std::span<const DegradedClearance> degraded = {};
   std::span<const GuideState> guides = {};   // of each guide, in the order in which they were given
   Relaxation relaxation = Relaxation::none;  // what was relaxed
   /// What kept the motion from being the one asked for: of a status with a motion, all that holds
@@ -127,9 +138,9 @@ struct MotionProof {
 /// dist(body(q + s dq), mesh) >= radius + F - 3 tolerance for all s in [0, 1] and all bodies; joint
 /// limits hold all along. Proof: docs/joint-space-step.md.
 ///
-/// Of a mesh that moves, the same, wherever it is at s, if it moves in the cycle as `place` was
-/// told; but for level F in place of F, and with the whole of an increment: a part of it is not
-/// safe then.
+/// If a mesh moves in the cycle as `place` says, the same holds wherever it is at s, for the whole
+/// of an increment: a part of it is not safe then. A pair of body and mesh that
+/// InstrumentStep::degraded names keeps level F in place of F, or nothing; all other pairs keep F.
 ///
 /// Not thread-safe: one for each control loop; mesh and index may be shared.
 class InstrumentConstraint {
