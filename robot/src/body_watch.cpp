@@ -19,8 +19,17 @@ Status BodyWatch::open(InstrumentStep& result) noexcept {
   for (std::size_t p = 0; p < memory_.pairs.size(); ++p) {
     Core core;
     memory_.pairs[p].near.start_cycle(motion(p).core(memory_.pairs[p].body, 0, core));
-    const Status of_pair = open_pair(p, result);
-    if (of_pair == Status::over_capacity) return of_pair;
+    PairMemory& pair = memory_.pairs[p];
+    pair.failure = {};
+    pair.level = 1.0;
+    pair.is_dropped = false;
+    pair.is_settled = false;
+    Status of_pair = open_pair(p, result);
+    if (meshes_move_ && (of_pair == Status::touching || of_pair == Status::over_capacity)) {
+      drop(p, of_pair);
+      of_pair = Status::free;
+    }
+    if (of_pair == Status::over_capacity || of_pair == Status::out_of_budget) return of_pair;
     if (!is_ok(of_pair)) status = of_pair;
   }
   for (std::size_t m = 0; m < memory_.meshes.size() && is_ok(status); ++m) {
@@ -33,17 +42,17 @@ Status BodyWatch::open(InstrumentStep& result) noexcept {
 Status BodyWatch::open_pair(std::size_t p, InstrumentStep& result) noexcept {
   PairMemory& pair = memory_.pairs[p];
   const double tolerance = memory_.tolerance;
-  if (!look(p, vicinity(p))) return Status::over_capacity;
+  if (const Status looked = look(p, vicinity(p)); !is_ok(looked)) return looked;
   double nearest = std::numeric_limits<double>::infinity();
   const double known = radius(p) + own_margin(p) + std::max(options_.band, options_.slowing_within);
   // All at once that the cycle is likely to ask for.
   for (NearTriangle& triangle : pair.near.nearer_than(vicinity(p), memory_.budget)) {
     if (!(triangle.least < known)) break;
-    if (is_worn_out()) return Status::over_capacity;
+    if (is_worn_out()) return Status::out_of_budget;
     pair.near.know(triangle, memory_.budget);
     nearest = std::min(nearest, triangle.at_start.distance);
   }
-  if (is_worn_out()) return Status::over_capacity;
+  if (is_worn_out()) return Status::out_of_budget;
   const double distance = nearest - radius(p);
   if (nearest <= known && !(result.distance && *result.distance <= distance)) {
     result.distance = distance;
@@ -75,10 +84,47 @@ void BodyWatch::slow_down(std::size_t p, double distance) noexcept {
 }
 
 void BodyWatch::close() noexcept {
-  if (level_ == 1.0) return;
   for (std::size_t p = 0; p < memory_.pairs.size(); ++p) {
-    memory_.pairs[p].floor = std::min(memory_.pairs[p].floor, kept(p));
+    PairMemory& pair = memory_.pairs[p];
+    if (pair.level < 1.0 || pair.is_dropped) pair.floor = std::min(pair.floor, kept(p));
+    pair.is_side_unknown = pair.is_side_unknown || pair.is_dropped;
   }
+}
+
+void BodyWatch::lower(std::size_t p, double most, Status reason) noexcept {
+  PairMemory& pair = memory_.pairs[p];
+  constexpr double quarter = 0.25;
+  const double next = quarter * std::floor(std::min(most, pair.level - quarter) / quarter);
+  if (pair.kept > 0.0 && next >= 0.0) {
+    pair.level = next;
+  } else {
+    drop(p, reason);
+  }
+}
+
+void BodyWatch::drop(std::size_t p, Status reason) noexcept {
+  memory_.pairs[p].level = 0.0;
+  memory_.pairs[p].is_dropped = true;
+  memory_.pairs[p].failure = {};
+  if (!is_immovable(p)) dropped_for_ = reason;
+}
+
+bool BodyWatch::is_immovable(std::size_t p) const noexcept {
+  const auto& points = memory_.instrument.points_of(memory_.pairs[p].body);
+  return std::all_of(points.begin(), points.end(), [&](std::uint8_t number) {
+    return memory_.instrument.points()[number].link == 0;
+  });
+}
+
+double BodyWatch::name_degraded() noexcept {
+  double least = 1.0;
+  for (const PairMemory& pair : memory_.pairs) {
+    if (pair.level == 1.0) continue;
+    least = std::min(least, pair.level);
+    memory_.degraded.push(
+        {static_cast<int>(pair.body), static_cast<int>(pair.mesh), pair.level, !pair.is_dropped});
+  }
+  return least;
 }
 
 /// Whether a body is where no step has led it beside a mesh, so that its side is unknown.
@@ -87,6 +133,7 @@ bool BodyWatch::was_moved_by_others(std::size_t m) noexcept {
   if (mesh.side_of != mesh.near->mesh().id()) return true;
   const std::size_t first = m * memory_.instrument.bodies().size();
   for (std::size_t b = 0; b < memory_.instrument.bodies().size(); ++b) {
+    if (memory_.pairs[first + b].is_side_unknown) return true;
     // So far around its core all is free.
     const double free = 0.5 * (radius(first + b) + memory_.pairs[first + b].kept);
     for (const std::uint8_t p : memory_.instrument.points_of(b)) {
@@ -99,13 +146,17 @@ bool BodyWatch::was_moved_by_others(std::size_t m) noexcept {
 /// No core meets the surface, so each is on one side of it, and one point tells which.
 Status BodyWatch::side(std::size_t m) noexcept {
   MeshMemory& mesh = memory_.meshes[m];
+  const std::size_t first = m * memory_.instrument.bodies().size();
   for (std::size_t b = 0; b < memory_.instrument.bodies().size(); ++b) {
+    if (memory_.pairs[first + b].is_dropped) continue;
     const std::uint8_t last = memory_.instrument.points_of(b).back();
     mesh.near->budget() = memory_.budget;
     const auto placement = place(*mesh.near, mesh.motion.at_start()[last]);
     memory_.budget = mesh.near->budget();
-    if (!placement || is_worn_out()) return Status::over_capacity;
-    if (!placement->is_free) return Status::inside;
+    if (!placement || is_worn_out()) return memory_.budget.status_at_end();
+    if (!placement->is_free && !meshes_move_) return Status::inside;
+    if (!placement->is_free) drop(first + b, Status::inside);
+    memory_.pairs[first + b].is_side_unknown = false;
   }
   return Status::free;
 }
@@ -129,9 +180,9 @@ double BodyWatch::moved(std::size_t p) noexcept {
   return most;
 }
 
-bool BodyWatch::look(std::size_t p, double needed) noexcept {
+Status BodyWatch::look(std::size_t p, double needed) noexcept {
   PairMemory& pair = memory_.pairs[p];
-  if (pair.near.radius() >= 0.0 && pair.near.radius() - moved(p) >= needed) return true;
+  if (pair.near.radius() >= 0.0 && pair.near.radius() - moved(p) >= needed) return Status::free;
   Core core;
   const std::span<const Vec3> now = motion(p).core(pair.body, 0, core);
   // Farther where there is little, so that it is looked for seldom; less far where there is much.
@@ -144,16 +195,17 @@ bool BodyWatch::look(std::size_t p, double needed) noexcept {
     if (pair.near.look(near, now, needed + share * pair.guard, memory_.budget)) {
       if (share < 1.0 || pair.near.size() > many) pair.guard *= 0.5;
       if (pair.near.size() < few) pair.guard *= 2.0;
-      return true;
+      return Status::free;
     }
     if (is_worn_out()) break;
   }
   pair.near.forget();
-  return false;
+  const bool is_full = near.candidates().overflowed() || pair.near.is_full();
+  return is_full ? Status::over_capacity : Status::out_of_budget;
 }
 
 NearTriangle* BodyWatch::find(std::size_t p, TriangleId id) noexcept {
-  if (!look(p, vicinity(p))) return nullptr;
+  if (!is_ok(look(p, vicinity(p)))) return nullptr;
   NearSet& near = memory_.pairs[p].near;
   const std::span<NearTriangle> nearby = near.nearer_than(vicinity(p), memory_.budget);
   memory_.budget.spend(1 + nearby.size() / 64);

@@ -13,10 +13,12 @@ namespace keepout {
 class BodyWatch {
  public:
   /// The motions' start must be where joints and meshes are. Both must outlive it.
-  BodyWatch(CycleMemory& memory, const InstrumentOptions& options) noexcept
-      : memory_(memory), options_(options) {}
+  BodyWatch(CycleMemory& memory, const InstrumentOptions& options, bool meshes_move) noexcept
+      : memory_(memory), options_(options), meshes_move_(meshes_move) {}
 
-  /// Looks at all pairs: free, or why nothing may move. The distance goes to the result.
+  /// Looks at all pairs. Returns free, or why nothing may move. The distance goes to the result.
+  /// Beside meshes that move, a pair that stops all motion is dropped instead, and its status kept
+  /// in `dropped_for`: the other bodies may have to retreat.
   Status open(InstrumentStep& result) noexcept;
 
   /// The distance that a pair is certified for in this cycle: margin - band, or what is left of it.
@@ -26,12 +28,26 @@ class BodyWatch {
   }
   /// The margin that its rows aim at in this cycle, beyond the body's radius. [length]
   double margin(std::size_t pair) const noexcept { return memory_.pairs[pair].aim; }
-  /// Keeps only a share of that from now on: what can be done where a mesh comes on too fast.
-  void lower_to(double level) noexcept { level_ = level; }
-  /// How much less than the margin rows aim at, so. [length]
+  /// By how much less than the margin rows aim, as the pair's clearance is degraded. [length]
   double given_way(std::size_t pair) const noexcept {
-    return (1.0 - level_) * std::max(memory_.pairs[pair].kept, 0.0);
+    const PairMemory& its = memory_.pairs[pair];
+    return (1.0 - its.level) * std::max(its.kept, 0.0);
   }
+  /// Returns true if motions are to be proved clear for the pair.
+  bool is_watched(std::size_t pair) const noexcept {
+    return !memory_.pairs[pair].is_dropped && !memory_.pairs[pair].is_settled;
+  }
+  /// Lowers the pair's level to the next quarter that is no more than `most`; drops the pair, for
+  /// that reason, where no level is left.
+  void lower(std::size_t pair, double most, Status reason) noexcept;
+  /// Takes the pair out of what is certified.
+  void drop(std::size_t pair, Status reason) noexcept;
+  /// Returns true if no joint moves the pair's body.
+  bool is_immovable(std::size_t pair) const noexcept;
+  /// Returns why the last pair was dropped whose body joints move; free if none was.
+  Status dropped_for() const noexcept { return dropped_for_; }
+  /// Returns the least level of all pairs, and puts those below 1 into the memory.
+  double name_degraded() noexcept;
 
   /// Whether some body is closer than margin - band.
   bool is_recovering() const noexcept { return is_recovering_; }
@@ -40,9 +56,9 @@ class BodyWatch {
     return memory_.pairs[pair].kept < target(pair);
   }
 
-  /// Makes sure that all triangles nearer than that to a body's core are known. False: there is no
-  /// room, or no work left. [length]
-  [[nodiscard]] bool look(std::size_t pair, double needed) noexcept;
+  /// Makes sure that all triangles nearer than `needed` to a body's core are known. Returns free,
+  /// or what was missing: over_capacity or out_of_budget. [length]
+  [[nodiscard]] Status look(std::size_t pair, double needed) noexcept;
   /// A triangle that may hold the body, its gap known; null if it is not near any more.
   NearTriangle* find(std::size_t pair, TriangleId id) noexcept;
 
@@ -71,7 +87,8 @@ class BodyWatch {
 
   CycleMemory& memory_;
   const InstrumentOptions& options_;
-  double level_ = 1.0;
+  bool meshes_move_;
+  Status dropped_for_ = Status::free;
   bool is_recovering_ = false;
 };
 

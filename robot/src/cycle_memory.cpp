@@ -22,10 +22,11 @@ double reach_beyond_axis(const Instrument& instrument, std::size_t body) {
   return most * (1.0 + 1e-12);
 }
 
-/// The lengths that there are: of the ways from joint to joint, of what is carried, of a mesh.
-double size_of(const Instrument& instrument, const MeshMemory& mesh) {
-  const Box bounds = mesh.near->mesh().bounds();
-  double size = instrument.chain().base().position.norm() + mesh.pose.position.norm() +
+/// Returns the lengths at hand but for where the mesh is: of the ways from joint to joint, of what
+/// is carried, of the mesh. [length]
+double size_of(const Instrument& instrument, const Mesh& mesh) {
+  const Box bounds = mesh.bounds();
+  double size = instrument.chain().base().position.norm() +
                 bounds.low.cwiseAbs().cwiseMax(bounds.high.cwiseAbs()).norm();
   for (int k = 1; k <= instrument.chain().size(); ++k) {
     size += instrument.chain().joint(k).origin.position.norm();
@@ -69,9 +70,25 @@ void CycleMemory::prepare() {
 
 void CycleMemory::measure() noexcept {
   double size = 0.0;
-  for (const MeshMemory& mesh : meshes) size = std::max(size, size_of(instrument, mesh));
+  double size_with_poses = 0.0;
+  for (const MeshMemory& mesh : meshes) {
+    const double own = size_of(instrument, mesh.near->mesh());
+    size = std::max(size, own);
+    size_with_poses = std::max(size_with_poses, own + mesh.pose.position.norm());
+  }
   largest_position = std::max(100.0 * size, 100.0);
-  tolerance = 1e-12 * (size + std::min(instrument.chain().reach(), largest_position));
+  tolerance = 1e-12 * (size_with_poses + std::min(instrument.chain().reach(), largest_position));
+}
+
+bool CycleMemory::is_lost_in_rounding(const InstrumentOptions& options) const noexcept {
+  double margin = options.margin;
+  for (const MeshMemory& mesh : meshes) margin = std::min(margin, mesh.margin(options));
+  // The certified distance, and the band, are told apart from rounding.
+  const double least = 4.0 * tolerance;
+  return !(margin - options.band > least) || !(options.band > least) ||
+         std::any_of(guides.begin(), guides.end(), [&](const GuideMemory& each) {
+           return !each.guide.is_angular() && !(each.guide.band() > least);
+         });
 }
 
 void CycleMemory::forget() noexcept {
@@ -103,7 +120,10 @@ void CycleMemory::forget_floors() noexcept {
 void CycleMemory::forget_motion() noexcept {
   warm.clear();
   for (MeshMemory& mesh : meshes) mesh.side_of = 0;
-  for (PairMemory& pair : pairs) pair.reach = 0.0;
+  for (PairMemory& pair : pairs) {
+    pair.reach = 0.0;
+    pair.is_side_unknown = false;  // as it is of all, by side_of
+  }
 }
 
 }  // namespace keepout

@@ -43,12 +43,16 @@ struct PairMemory {
   std::size_t body;
   std::size_t mesh;
   NearSet near;
-  double reach = 0.0;  // of its last motion [length]
-  double guard = 0.0;  // how much farther than needed triangles are looked for [length]
-  double floor = 0.0;  // what was certified last [length]
+  double reach = 0.0;            // of its last motion [length]
+  double guard = 0.0;            // how much farther than needed triangles are looked for [length]
+  double floor = 0.0;            // what was certified last [length]
+  bool is_side_unknown = false;  // it was dropped, so that the body may have crossed the surface
   // Of this cycle.
-  double kept = 0.0;                  // what is to be certified, where meshes are not too fast
-  double aim = 0.0;                   // the margin that rows aim at [length]
+  double kept = 0.0;        // what is to be certified, where meshes are not too fast
+  double aim = 0.0;         // the margin that rows aim at [length]
+  double level = 1.0;       // the fraction of `kept` that is to be certified
+  bool is_dropped = false;  // nothing is certified of it: no motion was found that would be
+  bool is_settled = false;  // no joint moves the body, and its proof is done
   Certificate::Failure failure = {};  // what the last trial could not be proven for
 };
 
@@ -89,13 +93,14 @@ struct CycleMemory {
   const Instrument& instrument;
   Solver& solver;
   Budget budget;            // of a cycle, for all meshes
-  double largest_position;  // of a prismatic joint: what is farther off is refused [length]
+  double largest_position;  // of a prismatic joint or a mesh: farther off is refused [length]
   double tolerance;         // distances are told apart down to this [length]
   PointMotion motion;
   std::vector<MeshMemory> meshes;
   std::vector<PairMemory> pairs;  // all bodies with the first mesh, with the second, and so on
   std::vector<GuideMemory> guides;
-  std::vector<GuideState> guide_states;  // of the last cycle
+  std::vector<GuideState> guide_states;            // of the last cycle
+  Buffer<DegradedClearance> degraded{most_pairs};  // of the last cycle
   Buffer<ContactRow> rows;
   Buffer<ContactRow> earlier_rows;  // put aside while better ones are tried
   Buffer<WarmRow> warm;
@@ -111,8 +116,11 @@ struct CycleMemory {
   }
   /// Makes what depends on the meshes, which may be others by now; forgets all. Allocates.
   void prepare();
-  /// Makes what depends on where they are.
+  /// Makes what depends on where they are. How far meshes may be placed and joints may go does not
+  /// depend on it, so that repeated placing cannot raise it.
   void measure() noexcept;
+  /// Returns true if tolerance is too large for the least margin, the band, or a guide's band.
+  bool is_lost_in_rounding(const InstrumentOptions& options) const noexcept;
   /// Whether any mesh moves.
   bool is_moving() const noexcept {
     return std::any_of(meshes.begin(), meshes.end(), [](const MeshMemory& mesh) {

@@ -38,6 +38,7 @@ int GuideWatch::judge(std::size_t& failed) noexcept {
   cell_of_chain_ = 0;
   int proven = PointMotion::cells;
   for (std::size_t g = 0; g < memory_.guides.size() && proven > 0; ++g) {
+    if (is_dropped_[g]) continue;
     const Standing at_end = standing(g, PointMotion::cells);
     const int until = proven_until(g, 0, standing(g, 0), PointMotion::cells, at_end);
     if (until >= proven) continue;

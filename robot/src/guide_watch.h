@@ -25,6 +25,12 @@ class GuideWatch {
   /// Whether that guide is.
   bool is_recovering(std::size_t guide) const noexcept;
 
+  /// Takes a guide out of what is proved in this cycle: it contradicts the clearance from a mesh
+  /// that moves.
+  void drop(std::size_t guide) noexcept { is_dropped_[guide] = true; }
+  /// Returns true if it was.
+  bool is_dropped(std::size_t guide) const noexcept { return is_dropped_[guide]; }
+
   /// Up to which cell all guides are proven to be kept on the motion at hand; and, if not to the
   /// last, which one was not.
   int judge(std::size_t& failed) noexcept;
@@ -53,6 +59,7 @@ class GuideWatch {
   int cell_of_chain_ = 0;  // where that is, on the motion at hand; 0: not known
   bool is_recovering_ = false;
   std::array<double, Guide::most> allowed_{};  // excess of each in this cycle
+  std::array<bool, Guide::most> is_dropped_{};
 };
 
 }  // namespace keepout

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <span>
 
 #include "cycle_memory.h"
@@ -19,14 +21,26 @@ class IncrementBox {
   /// The largest, at least 0.
   const JointVector& high() const noexcept { return high_; }
 
-  /// Takes an increment back into the box.
-  void clip(JointVector& increment) const noexcept;
+  /// Returns which limit of a joint, counted from 0, bounds its increment upwards or downwards.
+  Limit limit(std::size_t joint, bool upwards) const noexcept {
+    return (upwards ? is_high_a_position_ : is_low_a_position_)[joint] ? Limit::joint_position
+                                                                       : Limit::joint_velocity;
+  }
+  /// Returns true if a joint starts outside its position limits.
+  bool starts_outside() const noexcept { return starts_outside_; }
+
+  /// Takes an increment back into the box. Returns true if a joint without limits would have gone
+  /// farther than the next cycle accepts (CycleMemory::farthest), which is a position limit too.
+  bool clip(JointVector& increment) const noexcept;
 
  private:
   const CycleMemory& memory_;
   std::span<const double> q_;
   JointVector low_;
   JointVector high_;
+  std::array<bool, Chain::most_joints> is_low_a_position_{};
+  std::array<bool, Chain::most_joints> is_high_a_position_{};
+  bool starts_outside_ = false;
 };
 
 }  // namespace keepout

@@ -111,12 +111,10 @@ struct InstrumentConstraint::State {
           "recovery, damping, orientation weight and refinements must not be below zero, and the "
           "period must be above it");
     }
-    // The certified distance, and the band, are told apart from rounding.
-    const double least = 4.0 * memory.tolerance;
-    if (!(margin - o.band > least) || !(o.band > least)) {
+    if (memory.is_lost_in_rounding(o)) {
       throw Error(
-          "the margin or its band is lost in the rounding of an instrument and a mesh of this "
-          "size: each must be well above 1e-11 of both");
+          "the margin, its band or a guide's band is lost in the rounding of an instrument and a "
+          "mesh of this size: each must be well above 1e-11 of both");
     }
   }
 
@@ -134,6 +132,8 @@ struct InstrumentConstraint::State {
       if (mesh.is_misplaced || is_too_fast) return Status::invalid_input;
       if (!mesh.near->is_current()) return Status::mesh_changed;
     }
+    // Meshes move, so rounding may have outgrown the margin since it was set.
+    if (memory.is_lost_in_rounding(options)) return Status::margin_too_small;
     const auto n = static_cast<std::size_t>(instrument.chain().size());
     return q.size() == n && are_positions(q) ? Status::free : Status::invalid_input;
   }
@@ -245,7 +245,9 @@ MotionProof InstrumentConstraint::prove(std::span<const double> q,
     const double proven =
         JointCycle(state_->memory, options, {from.data(), q.size()}, JointCycle::Meshes::still)
             .prove(motion, result);
-    if (result.status == Status::over_capacity && part > least_part) {
+    const bool was_too_much =
+        result.status == Status::over_capacity || result.status == Status::out_of_budget;
+    if (was_too_much && part > least_part) {
       part *= 0.5;
       continue;
     }
@@ -319,24 +321,24 @@ void InstrumentConstraint::follow(std::shared_ptr<const Mesh> moved,
             number, state.options);
 }
 
-void InstrumentConstraint::place(std::size_t mesh, const Pose& pose,
-                                 const Twist& velocity) noexcept {
+Status InstrumentConstraint::place(std::size_t mesh, const Pose& pose,
+                                   const Twist& velocity) noexcept {
   CycleMemory& memory = state_->memory;
-  const double far = memory.largest_position;
+  if (mesh >= memory.meshes.size()) return Status::invalid_input;
   const auto is_within = [](const auto& numbers, double most) {
     return (numbers.array().abs() <= most).all();  // false for NaN
   };
   const Mat3 off = pose.rotation.transpose() * pose.rotation - Mat3::Identity();
-  const bool is_one = mesh < memory.meshes.size();
-  MeshMemory& placed = memory.meshes[is_one ? mesh : 0];
-  placed.is_misplaced = !is_one || !is_within(pose.position, far) ||
+  MeshMemory& placed = memory.meshes[mesh];
+  placed.is_misplaced = !is_within(pose.position, memory.largest_position) ||
                         !is_within(off, rotation_digits) || !(pose.rotation.determinant() > 0.0) ||
                         !is_within(velocity.linear, largest) ||
                         !is_within(velocity.angular, largest);
-  if (placed.is_misplaced) return;
+  if (placed.is_misplaced) return Status::invalid_input;
   placed.pose = {pose.position, Eigen::Quaterniond(pose.rotation).normalized().matrix()};
   placed.velocity = velocity;
   memory.measure();
+  return Status::free;
 }
 
 void InstrumentConstraint::set_guides(std::vector<Guide> guides) {

@@ -11,6 +11,12 @@ constexpr int most_rounds = 16;
 constexpr double least_asked = 1.0 / 16.0;  // of what is desired
 constexpr double worthwhile = 1e-6;         // a share of the cost
 
+void add_all(Limits& limits, const Limits& others) noexcept {
+  for (std::size_t i = 0; i < limit_count; ++i) {
+    if (others.has(static_cast<Limit>(i))) limits.add(static_cast<Limit>(i));
+  }
+}
+
 }  // namespace
 
 JointCycle::JointCycle(CycleMemory& memory, const InstrumentOptions& options,
@@ -18,7 +24,7 @@ JointCycle::JointCycle(CycleMemory& memory, const InstrumentOptions& options,
     : memory_(memory),
       options_(options),
       box_(memory, options.period, q),
-      watch_(memory, options),
+      watch_(memory, options, meshes == Meshes::moving && memory.is_moving()),
       guides_(memory, options),
       rows_(memory, watch_, guides_, options),
       meshes_move_(meshes == Meshes::moving && memory.is_moving()) {
@@ -35,10 +41,16 @@ JointCycle::JointCycle(CycleMemory& memory, const InstrumentOptions& options,
 
 void JointCycle::run(const JointTask& task, InstrumentStep& result) noexcept {
   memory_.increment.fill(0.0);
+  memory_.degraded.clear();
   guides_.open();
   result.guides = memory_.guide_states;
   result.status = watch_.open(result);
-  if (!is_ok(result.status)) return;
+  if (box_.starts_outside()) result.limits.add(Limit::joints_outside);
+  if (!is_ok(result.status)) {
+    trouble_ = result.status;
+    name_limits({}, result);
+    return;
+  }
   Trial best{.cost = task.cost(memory_.increment)};
   rows_.start();
   if (meshes_move_) {
@@ -46,10 +58,12 @@ void JointCycle::run(const JointTask& task, InstrumentStep& result) noexcept {
   } else {
     search(task, best, result);
   }
+  result.degraded = memory_.degraded.view();
   watch_.close();
   if (is_ok(result.status) && result.status != Status::yielding && is_recovering())
     result.status = Status::recovering;
   tell_of_guides(best, result);
+  name_limits(best, result);
   result.rounds = rounds_;
   result.rows = best.rows;
   result.triangles = in_reach_;
@@ -70,34 +84,8 @@ void JointCycle::search(const JointTask& task, Trial& best, InstrumentStep& resu
   } else if (best.share < 1.0 || asked < 1.0) {
     result.status = Status::fallback;
   } else {
-    result.status = best.is_held ? Status::limited : Status::free;
+    result.status = best.held.empty() ? Status::free : Status::limited;
   }
-}
-
-/// Less and less of what is asked for, down to what only gives way; and then less and less of what
-/// is to be kept.
-void JointCycle::search_beside_moving(const JointTask& task, Trial& best,
-                                      InstrumentStep& result) noexcept {
-  struct Attempt {
-    double asked;
-    double level;
-  };
-  constexpr Attempt attempts[] = {{1.0, 1.0}, {0.25, 1.0}, {0.0, 1.0}, {0.0, 0.75},
-                                  {0.0, 0.5}, {0.0, 0.25}, {0.0, 0.0}};
-  for (const auto& [asked, level] : attempts) {
-    watch_.lower_to(level);
-    attempt(task, asked, best);
-    if (best.cell < PointMotion::cells) continue;
-    result.level = level;
-    result.status = level < 1.0    ? Status::yielding
-                    : asked < 1.0  ? Status::fallback
-                    : best.is_held ? Status::limited
-                                   : Status::free;
-    return;
-  }
-  result.level = 0.0;
-  result.status = trouble_ != Status::free ? trouble_ : Status::unsolved;
-  rows_.remember_all();
 }
 
 /// For a share of what is asked for, with half of the work that is left. Whether another share may
@@ -108,11 +96,47 @@ bool JointCycle::attempt(const JointTask& task, double asked, Trial& best) noexc
   if (is_shortened_) rows_.forgive_curvature(0.0625);
   const bool is_spent = memory_.budget.halved([&] {
     const JointTask part = task.scaled(asked);
-    if (seek(part, best)) turn(part, best);
+    if (seek(part, best)) {
+      turn(part, best);
+    } else {
+      note_failure();
+    }
     return is_worn_out();
   });
-  if (is_spent) trouble_ = Status::over_capacity;
-  return trouble_ == Status::free || trouble_ == Status::over_capacity;
+  if (is_spent && trouble_ == Status::free) trouble_ = Status::out_of_budget;
+  if (trouble_ == Status::over_capacity) stopped_.add(Limit::capacity);
+  if (trouble_ == Status::out_of_budget) stopped_.add(Limit::budget);
+  return trouble_ == Status::free || trouble_ == Status::over_capacity ||
+         trouble_ == Status::out_of_budget;
+}
+
+/// Notes what the last trial of an attempt could not be proved for, or, where the rows contradict
+/// each other, whose they are.
+void JointCycle::note_failure() noexcept {
+  if (trouble_ == Status::infeasible) {
+    for (const ContactRow& row : memory_.rows) {
+      stopped_.add(row.owner < most_pairs ? Limit::mesh : Limit::guide);
+    }
+    return;
+  }
+  // A proof that the budget ended says nothing about its subject.
+  if (kept_by_guides_ < PointMotion::cells && !is_worn_out()) stopped_.add(Limit::guide);
+  for (const PairMemory& pair : memory_.pairs) {
+    if (pair.failure.triangle != nullptr) stopped_.add(Limit::mesh);
+  }
+}
+
+/// Names what kept the motion from being the one asked for.
+void JointCycle::name_limits(const Trial& best, InstrumentStep& result) noexcept {
+  Limits& limits = result.limits;
+  if (result.status == Status::touching || result.status == Status::inside) limits.add(Limit::mesh);
+  if (trouble_ == Status::over_capacity) limits.add(Limit::capacity);
+  if (trouble_ == Status::out_of_budget) limits.add(Limit::budget);
+  add_all(limits, best.held);
+  const bool is_cut = is_shortened_ || best.share < 1.0;
+  if (!is_cut) return;
+  add_all(limits, stopped_);
+  if (is_ok(result.status)) limits.add(Limit::truncated);
 }
 
 void JointCycle::carry_out(const Trial& best, InstrumentStep& result) noexcept {
@@ -143,7 +167,11 @@ void JointCycle::tell_of_guides(const Trial& best, InstrumentStep& result) noexc
   for (std::size_t g = 0; g < memory_.guides.size(); ++g) {
     GuideState& state = memory_.guide_states[g];
     state.limits = state.limits || (is_cut && has_failed_[g]);
-    state.relaxed = best.relaxation != Relaxation::none && state.excess > 0.0;
+    state.relaxed =
+        (best.relaxation != Relaxation::none && state.excess > 0.0) || guides_.is_dropped(g);
+    if (guides_.is_dropped(g) && result.relaxation == Relaxation::none) {
+      result.relaxation = Relaxation::guides;
+    }
   }
 }
 
@@ -156,7 +184,7 @@ double JointCycle::prove(const JointVector& increment, InstrumentStep& result) n
   judge(trial);
   if (is_recovering()) result.status = Status::recovering;
   if (trouble_ != Status::free) result.status = trouble_;
-  if (is_worn_out()) result.status = Status::over_capacity;
+  if (is_worn_out() && is_ok(result.status)) result.status = Status::out_of_budget;
   return is_ok(result.status) ? static_cast<double>(trial.cell) / PointMotion::cells : 0.0;
 }
 
@@ -181,6 +209,7 @@ bool JointCycle::seek(const JointTask& task, Trial& best) noexcept {
     const double affordable = still + 2.0 * options_.band;
     if (!is_recovering() && !meshes_move_ && trial.cost > affordable * affordable) {
       trial.share = task.best_share(trial.increment, trial.share);
+      trial.held.add(Limit::linearization);
       trial.cost = task.cost_of_share(trial.increment, trial.share);
     }
     if (trial.cell == PointMotion::cells && trial.share == 1.0) {
@@ -202,6 +231,7 @@ bool JointCycle::answer() noexcept {
   const bool is_new_plane =
       kept_by_guides_ < PointMotion::cells && rows_.answer(failed_guide_, kept_by_guides_);
   const bool is_new_row = rows_.answer();
+  if (memory_.rows.overflowed()) trouble_ = Status::over_capacity;
   return (is_new_plane || is_new_row) && !memory_.rows.overflowed();
 }
 
@@ -264,10 +294,24 @@ SolveStatus JointCycle::solve(const JointTask& task, Trial& trial) noexcept {
     if (!std::isfinite(solution.u[k])) return SolveStatus::iteration_limit;
     trial.increment[k] = task.unit[k] * solution.u[k];
   }
-  box_.clip(trial.increment);
-  trial.is_held = !solution.active.empty();
+  trial.held = held_by(solution);
+  if (box_.clip(trial.increment)) trial.held.add(Limit::joint_position);
   trial.rows = rows_.hold(solution.active);
   return solved;
+}
+
+/// The kinds of the rows that hold a solution.
+Limits JointCycle::held_by(const Solution& solution) const noexcept {
+  Limits held;
+  for (const std::uint32_t number : solution.active) {
+    if (number < memory_.rows.size()) {
+      held.add(memory_.rows[number].owner < most_pairs ? Limit::mesh : Limit::guide);
+    } else {
+      const std::size_t side = box_rows_[number - memory_.rows.size()];
+      held.add(box_.limit(side / 2, side % 2 == 1));
+    }
+  }
+  return held;
 }
 
 SolveStatus JointCycle::pose(const JointTask& task, const Softness& softness,
@@ -277,6 +321,11 @@ SolveStatus JointCycle::pose(const JointTask& task, const Softness& softness,
   std::size_t count = 0;
   for (const ContactRow& row : memory_.rows) {
     double steepest = 0.0;
+    if (is_left_out_[row.owner]) {
+      number = std::fill_n(number, n, 0.0);
+      memory_.bounds[count++] = 0.0;
+      continue;
+    }
     for (std::size_t k = 0; k < n; ++k) {
       *number++ = task.unit[k] * row.gradient[k];
       steepest = std::max(steepest, std::abs(number[-1]));
@@ -289,6 +338,7 @@ SolveStatus JointCycle::pose(const JointTask& task, const Softness& softness,
     if (steepest <= memory_.tolerance) least = std::min(least, 0.0);
     memory_.bounds[count++] = least;
   }
+  std::size_t box_rows = 0;
   for (std::size_t k = 0; k < n; ++k) {
     for (const double sign : {1.0, -1.0}) {
       const double bound = sign > 0.0 ? box_.low()[k] : -box_.high()[k];
@@ -297,6 +347,7 @@ SolveStatus JointCycle::pose(const JointTask& task, const Softness& softness,
       number[k] = sign;
       number += n;
       memory_.bounds[count++] = bound / task.unit[k];
+      box_rows_[box_rows++] = static_cast<std::uint8_t>(2 * k + (sign > 0.0 ? 0 : 1));
     }
   }
   const StepProblem problem{{task.jacobian.data(), task.rows, task.joints},
@@ -313,34 +364,40 @@ SolveStatus JointCycle::pose(const JointTask& task, const Softness& softness,
 
 /// How much of a motion is certified, and of each pair what speaks against the rest.
 void JointCycle::judge(Trial& trial) noexcept {
-  Budget& budget = memory_.budget;
   memory_.motion.move(trial.increment, options_.certified);
   for (MeshMemory& mesh : memory_.meshes) mesh.motion.move();
   kept_by_guides_ = guides_.judge(failed_guide_);
   trial.cell = kept_by_guides_;
   for (std::size_t p = 0; p < memory_.pairs.size(); ++p) {
-    PairMemory& pair = memory_.pairs[p];
-    RelativeMotion& motion = memory_.meshes[pair.mesh].motion;
-    pair.failure = {};
-    pair.reach = motion.farthest(pair.body);
-    const double needed =
-        memory_.instrument.bodies()[pair.body].radius + watch_.kept(p) + pair.reach;
-    if (!watch_.look(p, needed)) {
+    if (!watch_.is_watched(p)) continue;
+    if (const Status looked = judge_pair(p); !is_ok(looked)) {
       trial.cell = 0;
-      trouble_ = Status::over_capacity;
+      trouble_ = looked;
       return;
     }
-    const std::span<NearTriangle> triangles = pair.near.nearer_than(needed, budget);
-    if (triangles.empty()) continue;
-    in_reach_ = std::max(in_reach_, triangles.size());
-    Certificate certificate(memory_.instrument, pair.body, motion, pair.near, watch_.kept(p),
-                            memory_.tolerance, budget);
-    for (const ContactRow& row : memory_.rows) {
-      if (row.owner == p) certificate.try_first(row.normal);
-    }
-    pair.failure = certificate.judge(triangles, pair.reach);
-    trial.cell = std::min(trial.cell, pair.failure.cell);
+    trial.cell = std::min(trial.cell, memory_.pairs[p].failure.cell);
   }
+}
+
+/// Judges the motion at hand for one pair. Returns free, or what is missing to look at it.
+Status JointCycle::judge_pair(std::size_t p) noexcept {
+  Budget& budget = memory_.budget;
+  PairMemory& pair = memory_.pairs[p];
+  RelativeMotion& motion = memory_.meshes[pair.mesh].motion;
+  pair.failure = {};
+  pair.reach = motion.farthest(pair.body);
+  const double needed = memory_.instrument.bodies()[pair.body].radius + watch_.kept(p) + pair.reach;
+  if (const Status looked = watch_.look(p, needed); !is_ok(looked)) return looked;
+  const std::span<NearTriangle> triangles = pair.near.nearer_than(needed, budget);
+  if (triangles.empty()) return Status::free;
+  in_reach_ = std::max(in_reach_, triangles.size());
+  Certificate certificate(memory_.instrument, pair.body, motion, pair.near, watch_.kept(p),
+                          memory_.tolerance, budget);
+  for (const ContactRow& row : memory_.rows) {
+    if (row.owner == p) certificate.try_first(row.normal);
+  }
+  pair.failure = certificate.judge(triangles, pair.reach);
+  return Status::free;
 }
 
 }  // namespace keepout

@@ -46,20 +46,29 @@ class JointCycle {
     int cell = 0;          // proven is the motion up to here
     double share = 0.0;    // of the motion, up to there, that is made: whatever costs least
     double cost = 0.0;     // of that
-    bool is_held = false;  // by a row or a joint's limit
-    std::size_t rows = 0;  // that hold it
+    Limits held = {};      // by which kinds of rows or limits of joints
+    std::size_t rows = 0;  // that hold it, limits of joints apart
     Relaxation relaxation = Relaxation::none;  // what gave way
   };
 
   void search(const JointTask& task, Trial& best, InstrumentStep& result) noexcept;
+  // Beside meshes that move (beside_moving.cpp).
   void search_beside_moving(const JointTask& task, Trial& best, InstrumentStep& result) noexcept;
+  void settle_immovable() noexcept;
+  bool degrade(const JointTask& task) noexcept;
+  bool degrade_conflict(const JointTask& task) noexcept;
+  double reachable_level(std::size_t pair) const noexcept;
   bool attempt(const JointTask& task, double asked, Trial& best) noexcept;
   bool seek(const JointTask& task, Trial& best) noexcept;
   void turn(const JointTask& task, Trial& best) noexcept;
   SolveStatus solve(const JointTask& task, Trial& trial) noexcept;
   SolveStatus pose(const JointTask& task, const Softness& softness, Solution& solution) noexcept;
   void judge(Trial& trial) noexcept;
+  Status judge_pair(std::size_t pair) noexcept;
   bool answer() noexcept;
+  Limits held_by(const Solution& solution) const noexcept;
+  void note_failure() noexcept;
+  void name_limits(const Trial& best, InstrumentStep& result) noexcept;
   void tell_of_guides(const Trial& best, InstrumentStep& result) noexcept;
   bool is_recovering() const noexcept { return watch_.is_recovering() || guides_.is_recovering(); }
   void carry_out(const Trial& best, InstrumentStep& result) noexcept;
@@ -76,6 +85,9 @@ class JointCycle {
   std::array<bool, Guide::most> has_failed_{};  // in any trial
   Status trouble_ = Status::free;               // why nothing can be judged
   bool is_shortened_ = false;                   // whether less than all was asked for at last
+  Limits stopped_ = {};                         // what attempts failed by
+  std::array<bool, most_pairs + Guide::most> is_left_out_{};     // owners of rows not to be posed
+  std::array<std::uint8_t, 2 * Chain::most_joints> box_rows_{};  // of the problem: see pose
   bool meshes_move_;
   int rounds_ = 0;
   std::size_t in_reach_ = 0;  // triangles of one body and one trial, at the most

@@ -45,6 +45,8 @@ class NearSet {
   std::span<const Vec3> core() const noexcept { return core_; }
   /// How many triangles there are.
   std::size_t size() const noexcept { return ids_.size(); }
+  /// Returns true if no more triangles fit.
+  bool is_full() const noexcept { return ids_.size() == room_; }
 
   /// A new cycle, with the core elsewhere.
   void start_cycle(std::span<const Vec3> core) noexcept;

@@ -22,7 +22,7 @@ void WorkingRows::start() noexcept {
     if (const auto row = guides_.row(g, 0)) memory_.rows.push(*row);
   }
   for (std::size_t p = 0; p < memory_.pairs.size(); ++p) {
-    if (watch_.is_recovering(p)) start_recovery(p);
+    if (watch_.is_watched(p) && watch_.is_recovering(p)) start_recovery(p);
   }
 }
 
@@ -30,8 +30,10 @@ void WorkingRows::start() noexcept {
 std::optional<ContactRow> WorkingRows::row_of(const WarmRow& warm, int cell) noexcept {
   if (warm.owner >= most_pairs) {
     const std::size_t guide = warm.owner - most_pairs;
-    return guide < memory_.guides.size() ? guides_.row(guide, cell) : std::nullopt;
+    const bool is_kept = guide < memory_.guides.size() && !guides_.is_dropped(guide);
+    return is_kept ? guides_.row(guide, cell) : std::nullopt;
   }
+  if (!watch_.is_watched(warm.owner)) return std::nullopt;
   const NearTriangle* triangle = watch_.find(warm.owner, warm.triangle);
   return triangle == nullptr ? std::nullopt : make_.witness(warm.owner, *triangle, cell);
 }
@@ -131,6 +133,14 @@ bool WorkingRows::correct(std::size_t owner, TriangleId triangle) noexcept {
     changed = true;
   }
   return changed;
+}
+
+void WorkingRows::remove(std::size_t owner) noexcept {
+  std::size_t left = 0;
+  for (const ContactRow& row : memory_.rows) {
+    if (row.owner != owner) memory_.rows[left++] = row;
+  }
+  memory_.rows.shrink(left);
 }
 
 std::size_t WorkingRows::hold(std::span<const std::uint32_t> active) noexcept {

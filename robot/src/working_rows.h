@@ -27,6 +27,8 @@ class WorkingRows {
   /// The same for a guide that was not kept beyond a cell.
   bool answer(std::size_t guide, int cell) noexcept;
 
+  /// Takes the rows of a pair or a guide away (ContactRow::owner).
+  void remove(std::size_t owner) noexcept;
   /// Notes which rows hold a solution back, by their numbers; numbers beyond the rows are not ours.
   /// Returns how many do.
   std::size_t hold(std::span<const std::uint32_t> active) noexcept;

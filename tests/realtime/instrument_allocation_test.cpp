@@ -67,7 +67,7 @@ TEST(InstrumentConstraint, AllocatesNothingWhateverTheOutcome) {
   EXPECT_EQ(allocations(), before);
   const std::set<Status> kinds(seen.begin(), seen.end());
   for (const Status status : {Status::free, Status::limited, Status::recovering, Status::touching,
-                              Status::invalid_input, Status::over_capacity, Status::inside}) {
+                              Status::invalid_input, Status::out_of_budget, Status::inside}) {
     EXPECT_TRUE(kinds.contains(status)) << name(status);
   }
 }

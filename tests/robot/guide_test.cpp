@@ -70,7 +70,7 @@ TEST(Guide, IsAboutWhatItSays) {
     const double share =
         std::clamp(along.dot(center - state.at(0, Vec3::Zero())) / along.squaredNorm(), 0.0, 1.0);
     const Vec3 nearest = state.at(0, Vec3::Zero()) + share * along;
-    EXPECT_NEAR((shaft.place(state) - nearest).norm(), 0.0, 1e-9);
+    EXPECT_NEAR((guided_point(shaft, state) - nearest).norm(), 0.0, 1e-9);
 
     // Of three axes each within its angle, no turn is more than what was asked for.
     const Mat3 wanted = state.link(6).rotation;
@@ -81,7 +81,7 @@ TEST(Guide, IsAboutWhatItSays) {
     for (double& number : other) number += random.uniform(-0.5, 0.5) * angle;
     const ChainState there = bench.at(other);
     const bool is_kept = std::all_of(axes.begin(), axes.end(), [&](const Guide& axis) {
-      return axis.region().excess(axis.place(there)) <= 0.0;
+      return axis.region().excess(guided_point(axis, there)) <= 0.0;
     });
     const double turn = Eigen::AngleAxisd(wanted.transpose() * there.link(6).rotation).angle();
     if (is_kept) {

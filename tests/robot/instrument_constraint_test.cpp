@@ -177,7 +177,7 @@ TEST(InstrumentConstraint, ProvesWhatIsFreeAndNothingElse) {
     for (double& number : dq) number = random.uniform(-0.4, 0.4);
     dq[2] *= 25.0;
     const MotionProof proof = guard.prove(q, dq);
-    ASSERT_TRUE(is_ok(proof.status)) << reason(proof.status);
+    ASSERT_TRUE(is_ok(proof.status)) << proof.reason();
     double least = test::infinity;
     for (int s = 0; s <= 20; ++s) {
       std::vector<double> there = q;
@@ -205,7 +205,7 @@ TEST(InstrumentConstraint, ProvesLongMotionsInPartsWhereThereIsNoRoomForThemAtOn
   const std::vector<double> q = straight_down(20.0);
   const double free = insertion_above_cube(instrument, *mesh, 0.2) - 20.0;
   const MotionProof clear = guard.prove(q, std::vector<double>{0, 0, free - 0.01, 0, 0, 0});
-  EXPECT_EQ(clear.status, Status::free) << reason(clear.status);
+  EXPECT_EQ(clear.status, Status::free) << clear.reason();
   EXPECT_TRUE(clear.is_clear());
   const MotionProof through = guard.prove(q, std::vector<double>{0, 0, 100.0, 0, 0, 0});
   EXPECT_EQ(through.status, Status::limited);
@@ -228,12 +228,12 @@ TEST(InstrumentConstraint, ProvesLongMotionsInPartsWhereThereIsNoWorkForThemAtOn
     return std::pair(proof, guard.looks());
   };
   const auto [whole, looks] = prove(0);
-  ASSERT_GT(whole.share, 0.2) << reason(whole.status);
+  ASSERT_GT(whole.share, 0.2) << whole.reason();
   ASSERT_GT(looks, 50);
   const auto [parts, spent] = prove(looks - 1);
-  EXPECT_EQ(parts.status, whole.status) << reason(parts.status);
+  EXPECT_EQ(parts.status, whole.status) << parts.reason();
   EXPECT_NEAR(parts.share, whole.share, 1.0 / 64.0);
-  EXPECT_EQ(prove(3).first.status, Status::over_capacity);
+  EXPECT_EQ(prove(3).first.status, Status::out_of_budget);
 }
 
 TEST(InstrumentConstraint, ChecksTheSideOnceItIsToldTo) {

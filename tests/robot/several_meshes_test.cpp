@@ -209,9 +209,9 @@ TEST(SeveralMeshes, APlaceThatIsNoneStopsUntilThereIsOne) {
   const Mat3 mirrored = -Mat3::Identity();
   for (const Pose& bad : {Pose{Vec3(test::nan, 0, 0)}, Pose{Vec3(1e30, 0, 0)},
                           Pose{Vec3::Zero(), stretched}, Pose{Vec3::Zero(), mirrored}}) {
-    guard.place(1, bad);
+    EXPECT_EQ(guard.place(1, bad), Status::invalid_input);
     EXPECT_EQ(step_of(guard, at, Vec3::UnitX()).status, Status::invalid_input);
-    guard.place(0, {});
+    EXPECT_EQ(guard.place(0, {}), Status::free);
     EXPECT_EQ(step_of(guard, at, Vec3::UnitX()).status, Status::invalid_input) << "the other one";
     guard.place(1, {Vec3(0, 20, 0)});
     EXPECT_EQ(step_of(guard, at, Vec3::UnitX()).status, Status::free);
@@ -222,8 +222,143 @@ TEST(SeveralMeshes, APlaceThatIsNoneStopsUntilThereIsOne) {
   EXPECT_EQ(step_of(guard, at, Vec3::UnitX()).status, Status::invalid_input) << "in 1 ms";
   EXPECT_EQ(step_of(guard, at, Vec3::UnitX()).level, 0.0);
   guard.place(0, {});
-  guard.place(2, {});
-  EXPECT_EQ(step_of(guard, at, Vec3::UnitX()).status, Status::invalid_input) << "there are two";
+  EXPECT_EQ(guard.place(2, {}), Status::invalid_input) << "there are two";
+  EXPECT_EQ(step_of(guard, at, Vec3::UnitX()).status, Status::free) << "no mesh was touched";
+}
+
+/// A square sheet in the plane z = 0.
+std::shared_ptr<const Mesh> sheet_of(double half) {
+  Surface surface;
+  surface.vertices = {{-half, -half, 0}, {half, -half, 0}, {half, half, 0}, {-half, half, 0}};
+  surface.triangles = {{0, 1, 2}, {0, 2, 3}};
+  return std::make_shared<const Mesh>(std::move(surface));
+}
+
+// Each place is at most as far off as the lengths at hand allow, however far the last one was: 100
+// times farther again and again, rounding would outgrow the margin, and all would be certified.
+TEST(SeveralMeshes, PlacesDoNotRatchet) {
+  const auto sheet = sheet_of(500.0);
+  InstrumentConstraint guard = guard_of(sheet, free_ball(1.0));
+  double x = 5e3;
+  int accepted = 0;
+  for (; x < 1e12; x *= 50.0) {
+    if (guard.place(0, {Vec3(x, 0, 0)}) != Status::free) break;
+    ++accepted;
+    Vec3 at(x, 0, 4.0);
+    for (int i = 0; i < 3; ++i) at = moved(at, step_of(guard, at, Vec3(0, 0, -3)));
+    EXPECT_GE(at.z(), 1.198 - 1e-6) << x;
+    EXPECT_LT(4.0 * guard.tolerance(), guard.options().band) << x;
+  }
+  EXPECT_EQ(accepted, 1) << "2.5e5 is beyond 100 times the sheet";
+}
+
+/// Three slides carry a tip that can retreat from a sheet that comes on at 20 mm/s for 8 mm.
+struct ComingSheet {
+  explicit ComingSheet(const std::vector<Body>& others, const Chain& chain = free_ball(1.0).chain())
+      : guard(guard_of(sheet_of(50.0), instrument(chain, others), {.orientation_weight = 0.0})) {}
+
+  static Instrument instrument(const Chain& chain, std::vector<Body> bodies) {
+    bodies.insert(bodies.begin(), {"tip", {{3, Vec3::Zero()}}, 1.0});
+    return {chain, bodies};
+  }
+
+  /// Runs to the end; the operator asks for `way` in each cycle.
+  void run(const Vec3& way) {
+    for (int i = 0; i < 400; ++i) {
+      const double z = -8.0 + 0.02 * i;
+      guard.place(0, {Vec3(0, 0, z)}, {.linear = Vec3(0, 0, 20)});
+      const InstrumentStep step = guard.step(q, {.linear = way});
+      stopped += step.ok() ? 0 : 1;
+      for (const DegradedClearance& each : step.degraded) {
+        named[static_cast<std::size_t>(each.body)] += 1;
+        dropped[static_cast<std::size_t>(each.body)] += each.is_certified ? 0 : 1;
+        EXPECT_LT(each.level, 1.0);
+        EXPECT_EQ(each.mesh, 0);
+      }
+      EXPECT_EQ(!step.degraded.empty(), step.status == Status::yielding || !step.ok()) << i;
+      for (std::size_t k = 0; k < step.increment.size(); ++k) q[k] += step.increment[k];
+      least = std::min(least, q[2] - (z + 0.02) - 1.0);
+    }
+  }
+
+  InstrumentConstraint guard;
+  std::vector<double> q{0.0, 0.0, -6.0};
+  int stopped = 0;
+  int named[3] = {};
+  int dropped[3] = {};
+  double least = 1.0;  // of the tip
+};
+
+// A body that cannot retreat must not keep the others from it, nor cost them any of their distance.
+TEST(MovingSheet, TakesNothingFromABodyThatCanRetreat) {
+  ComingSheet alone({});
+  alone.run(Vec3::Zero());
+  EXPECT_EQ(alone.stopped, 0);
+  EXPECT_GE(alone.least, 0.198 - 1e-8);
+  EXPECT_EQ(alone.named[0], 0);
+
+  const std::vector<Body> posts[] = {{{"ball", {{0, Vec3(5, 0, -4)}}, 1.0}},
+                                     {{"shaft", {{0, Vec3(5, 0, -4)}, {0, Vec3(9, 0, 4)}}, 1.0}},
+                                     {{"needle", {{0, Vec3(5, 0, -4)}, {0, Vec3(9, 0, 4)}}, 0.0}}};
+  for (const std::vector<Body>& post : posts) {
+    SCOPED_TRACE(post[0].name);
+    ComingSheet beside(post);
+    beside.run(Vec3::Zero());
+    EXPECT_EQ(beside.stopped, 0);
+    EXPECT_GE(beside.least, 0.198 - 1e-8);
+    EXPECT_EQ(beside.named[0], 0) << "the tip keeps all of its distance";
+    EXPECT_GT(beside.named[1], 40) << "and the post does not";
+    EXPECT_GT(beside.dropped[1], 40);
+  }
+}
+
+// The same of a body on a joint that has come to its limit.
+TEST(MovingSheet, TakesNothingFromABodyBesideOneThatIsBlocked) {
+  // A slide up to its limit that carries a ball, and beyond it two slides that carry the tip.
+  std::vector<Joint> joints{{.kind = JointKind::prismatic,
+                             .origin = {Vec3(8, 0, 0)},
+                             .limits = {.lower = -6.0, .upper = -4.0, .velocity = 1000.0}},
+                            {.kind = JointKind::prismatic,
+                             .axis = Vec3::UnitX(),
+                             .limits = {.lower = -10.0, .upper = 10.0, .velocity = 1000.0}},
+                            {.kind = JointKind::prismatic,
+                             .limits = {.lower = -50.0, .upper = 50.0, .velocity = 1000.0}}};
+  ComingSheet blocked({{"blocked", {{1, Vec3::Zero()}}, 1.0}}, Chain(joints));
+  blocked.q = {-5.0, -8.0, 0.0};
+  for (int i = 0; i < 400; ++i) {
+    const double z = -8.0 + 0.02 * i;
+    blocked.guard.place(0, {Vec3(0, 0, z)}, {.linear = Vec3(0, 0, 20)});
+    const InstrumentStep step = blocked.guard.step(blocked.q, Twist{});
+    for (std::size_t k = 0; k < step.increment.size(); ++k) blocked.q[k] += step.increment[k];
+    const double clear = blocked.q[0] + blocked.q[2] - (z + 0.02) - 1.0;
+    ASSERT_GE(clear, 0.198 - 1e-8) << i << ' ' << name(step.status) << ' ' << step.level;
+    for (const DegradedClearance& each : step.degraded) {
+      ASSERT_EQ(each.body, 1);
+      blocked.named[1] += 1;
+    }
+  }
+  EXPECT_GT(blocked.named[1], 50);
+}
+
+// A mesh that its velocity carries away, until rounding hides the margin.
+TEST(SeveralMeshes, AMeshThatGoesTooFarIsNamed) {
+  const auto sheet = sheet_of(500.0);
+  InstrumentConstraint guard = guard_of(sheet, free_ball(1.0));
+  ASSERT_EQ(guard.place(0, {}, {.linear = Vec3(9e8, 0, 0)}), Status::free);
+  bool ended = false;
+  for (int i = 0; i < 40'000; ++i) {
+    const double x = guard.place_of(0).position.x();
+    const Vec3 at(x, 0, 1.25);
+    const InstrumentStep step = step_of(guard, at, Vec3(0, 0, -3));
+    if (step.ok()) {
+      ASSERT_FALSE(ended);
+      ASSERT_LT(4.0 * guard.tolerance(), guard.options().band);
+    }
+    ended = ended || step.status == Status::margin_too_small;
+  }
+  EXPECT_TRUE(ended);
+  EXPECT_EQ(guard.place(0, {}), Status::free);
+  EXPECT_TRUE(step_of(guard, Vec3(0, 0, 1.25), Vec3::Zero()).ok()) << "and it can come back";
 }
 
 // A body that no joint moves is too close to a mesh that stands still: the others are led on all

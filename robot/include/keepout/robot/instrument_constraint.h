@@ -72,6 +72,14 @@ struct InstrumentCapacity {
   std::size_t looks = 0;
 };
 
+/// A body that keeps less than its certified distance from a mesh in a cycle.
+struct DegradedClearance {
+  int body = -1;             // its number
+  int mesh = -1;             // and that of the mesh
+  double level = 0.0;        // the fraction of the certified distance that it keeps, below 1
+  bool is_certified = true;  // false: nothing is certified for it, and level is 0
+};
+
 /// What one cycle may do. Views stay valid until the next step.
 struct InstrumentStep {
   Status status = Status::invalid_input;   // how it ended
@@ -86,12 +94,18 @@ struct InstrumentStep {
   std::optional<double> distance = std::nullopt;
   int nearest = -1;       // the number of that body
   int nearest_mesh = -1;  // and of the mesh
-  /// The share of what is certified (InstrumentConstraint: F) that could be: below 1 where a mesh
-  /// came on faster than the joints can give way; 0 where a mesh moves and there is no motion.
+  /// The least level of all pairs of body and mesh, 1 if all keep what is certified for them
+  /// (InstrumentConstraint: F): below 1 if a mesh approaches faster than a body can retreat; 0 if a
+  /// body could not be certified at all, or a mesh moves and there is no motion.
   double level = 1.0;
+  /// The pairs of body and mesh that keep less; every other pair keeps what is certified for it.
+  std::span<const DegradedClearance> degraded = {};
   std::span<const GuideState> guides = {};   // of each guide, in the order in which they were given
   Relaxation relaxation = Relaxation::none;  // what was relaxed
-  Limits limits = {};                        // what kept the motion from being the one asked for
+  /// What kept the motion from being the one asked for: of a status with a motion, all that holds
+  /// or shortens it; else what no motion could be proved for. A joint that starts outside its
+  /// position limits is named with any status.
+  Limits limits = {};
 
   /// Whether there is a motion that may be carried out; it may be zero.
   bool ok() const noexcept { return is_ok(status); }
@@ -107,6 +121,8 @@ struct MotionProof {
   double share = 0.0;  // q + s dq is proven for s from 0 to here, whatever the status: 1 if all is
   std::optional<double> distance = std::nullopt;  // as InstrumentStep::distance [length]
 
+  /// Returns one line on what happened and what to do about it.
+  std::string_view reason() const noexcept { return keepout::reason(status, Subject::instrument); }
   /// Whether the instrument keeps the whole margin, less its band, on the whole motion.
   bool is_clear() const noexcept { return status == Status::free && share == 1.0; }
 };
@@ -122,9 +138,9 @@ struct MotionProof {
 /// dist(body(q + s dq), mesh) >= radius + F - 3 tolerance for all s in [0, 1] and all bodies; joint
 /// limits hold all along. Proof: docs/joint-space-step.md.
 ///
-/// Of a mesh that moves, the same, wherever it is at s, if it moves in the cycle as `place` was
-/// told; but for level F in place of F, and with the whole of an increment: a part of it is not
-/// safe then.
+/// If a mesh moves in the cycle as `place` says, the same holds wherever it is at s, for the whole
+/// of an increment: a part of it is not safe then. A pair of body and mesh that
+/// InstrumentStep::degraded names keeps level F in place of F, or nothing; all other pairs keep F.
 ///
 /// Not thread-safe: one for each control loop; mesh and index may be shared.
 class InstrumentConstraint {
@@ -160,16 +176,21 @@ class InstrumentConstraint {
   std::size_t add_mesh(std::shared_ptr<const Mesh> mesh, std::shared_ptr<const SpatialIndex> index,
                        double margin = 0.0);
 
-  /// Says where a mesh is as the next cycle begins, and how it moves: its frame's origin
+  /// Sets the pose of a mesh as the next cycle begins, and its velocity: of its frame's origin
   /// [length/s], and its turn about that [rad/s]. Nothing is built anew. A mesh that moves is taken
   /// to go on so with every step, until it is placed again: so a loop places it in each cycle, as
-  /// it is measured. What the mesh is off that, in a cycle, belongs into its margin. A rotation is
-  /// to be one to 1e-6 in each element of R^T R; it is made one. Where the pose is none, or far
-  /// beyond all lengths at hand, or a speed is no number below 1e9, place and velocity stay as they
-  /// were, and every step is invalid_input until the mesh is placed well: the first one, where
-  /// there is none of that number. A turn of more than a radian in a cycle is invalid_input as
-  /// well. Proofs take meshes to stay where they are. Allocates nothing, throws nothing.
-  void place(std::size_t mesh, const Pose& pose, const Twist& velocity = {}) noexcept;
+  /// it is measured. The error of that prediction within a cycle belongs into the mesh's margin.
+  ///
+  /// The rotation must be one to 1e-6 in each element of R^T R; it is made exact. The position must
+  /// be within 100 times the lengths of instrument and meshes, each component of the velocity below
+  /// 1e9. Returns free if the pose is accepted. Otherwise returns invalid_input: the mesh keeps its
+  /// last pose and velocity, and step() returns invalid_input until a valid pose is set. A number
+  /// that no mesh has is invalid_input and changes nothing.
+  ///
+  /// step() returns invalid_input while a mesh turns by more than a radian in a cycle, and
+  /// margin_too_small while it is so far away that rounding hides the margin or a band. Proofs take
+  /// meshes to stay where they are. Allocates nothing, throws nothing.
+  Status place(std::size_t mesh, const Pose& pose, const Twist& velocity = {}) noexcept;
 
   /// Where a mesh is, as the next cycle begins. Precondition: there is one of that number.
   const Pose& place_of(std::size_t mesh) const noexcept;

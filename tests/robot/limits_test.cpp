@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// InstrumentStep::limits: every limited step names its causes, and each cause is one.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "keepout/adapters/index_registry.h"
+#include "keepout/fixtures/random.h"
+#include "keepout/fixtures/robots.h"
+#include "keepout/fixtures/shapes.h"
+#include "keepout/robot/instrument_constraint.h"
+#include "keepout/solvers/registry.h"
+#include "robot/configurations.h"
+#include "trials.h"
+
+namespace keepout {
+namespace {
+
+struct Removed {
+  bool mesh = false;
+  bool guides = false;
+  bool positions = false;
+  bool velocities = false;
+};
+
+/// Returns the psm above the origin without some limits of its joints.
+Instrument robot_without(const Removed& removed) {
+  const Instrument whole = psm({Vec3(30, 10, 120), Mat3::Identity()});
+  std::vector<Joint> joints;
+  for (int k = 1; k <= whole.chain().size(); ++k) {
+    Joint joint = whole.chain().joint(k);
+    if (removed.positions) joint.limits.lower = -test::infinity;
+    if (removed.positions) joint.limits.upper = test::infinity;
+    if (removed.velocities) joint.limits.velocity = test::infinity;
+    joints.push_back(joint);
+  }
+  return {Chain(std::move(joints), whole.chain().base(), whole.chain().flange()),
+          {whole.bodies().begin(), whole.bodies().end()}};
+}
+
+InstrumentConstraint guard_without(const Removed& removed, const std::vector<Guide>& guides) {
+  Surface surface = make_shape("gear");
+  if (removed.mesh) {
+    for (Vec3& v : surface.vertices) v += Vec3(0, 0, -2000);
+  }
+  const auto mesh = std::make_shared<const Mesh>(std::move(surface));
+  InstrumentConstraint guard(mesh, make_index("wide_bvh", mesh), robot_without(removed),
+                             make_solver("active_set"), {.period = 0.02, .check_sides = false});
+  if (!removed.guides) guard.set_guides(guides);
+  return guard;
+}
+
+double difference(const InstrumentStep& one, const InstrumentStep& other) {
+  if (one.increment.size() != other.increment.size()) return test::infinity;
+  double most = 0.0;
+  for (std::size_t k = 0; k < one.increment.size(); ++k) {
+    most = std::max(most, std::abs(one.increment[k] - other.increment[k]));
+  }
+  return most;
+}
+
+TEST(Limits, NameEveryCauseAndOnlyCauses) {
+  const LinkPoint tip{6, Vec3(0, 10.2, 0)};
+  const std::vector<double> start{0.1, -0.1, 60.0, 0.2, 0.1, -0.2};
+  ChainState state;
+  robot_without({}).chain().place(start, state);
+  const std::vector<Guide> guides{Guide::point(
+      "corridor", tip, Region::slab(state.at(tip.link, tip.position), Vec3(1, 0.2, 0), 8.0))};
+  struct Cause {
+    Limit limit;
+    InstrumentConstraint without;
+  };
+  std::array<Cause, 4> causes{
+      Cause{Limit::mesh, guard_without({.mesh = true}, guides)},
+      Cause{Limit::guide, guard_without({.guides = true}, guides)},
+      Cause{Limit::joint_position, guard_without({.positions = true}, guides)},
+      Cause{Limit::joint_velocity, guard_without({.velocities = true}, guides)}};
+  InstrumentConstraint guard = guard_without({}, guides);
+  InstrumentConstraint alone = guard_without({true, true, true, true}, guides);
+  Random random(3);
+  std::array<int, 4> seen{};
+  int free = 0;
+  std::vector<double> q = start;
+  for (int i = 0; i < test::trials(100'000); ++i) {
+    if (i % 200 == 0) {
+      q = start;
+      guard.forget();
+    }
+    const double speed = i / 200 % 3 == 0 ? 6.0 : 1.0;
+    const Vec3 along(std::cos(i / 200), std::sin(i / 200), -0.8);
+    const Twist desired{.linear = speed * (0.5 * along + 0.5 * random.direction()),
+                        .angular = speed * 0.05 * random.direction()};
+    const InstrumentStep step = guard.step(q, desired);
+    if (step.status == Status::limited) {
+      ASSERT_FALSE(step.limits.empty()) << i;
+    }
+    if (step.status == Status::free) {
+      ASSERT_TRUE(step.limits.empty()) << i;
+      ASSERT_LT(difference(step, alone.step(q, desired)), 1e-9) << i;
+      ++free;
+    }
+    ASSERT_EQ(step.limits.has(Limit::truncated), step.status == Status::fallback) << i;
+    for (std::size_t c = 0; c < causes.size(); ++c) {
+      if (!step.limits.has(causes[c].limit)) continue;
+      ++seen[c];
+      causes[c].without.forget();
+      ASSERT_GT(difference(step, causes[c].without.step(q, desired)), 0.0)
+          << name(causes[c].limit) << " does not limit step " << i;
+    }
+    for (std::size_t k = 0; k < step.increment.size(); ++k) q[k] += step.increment[k];
+  }
+  EXPECT_GT(free, test::trials(3000));
+  for (std::size_t c = 0; c < causes.size(); ++c) {
+    EXPECT_GT(seen[c], test::trials(300)) << name(causes[c].limit);
+  }
+}
+
+TEST(Limits, OfAnArmFarFromEveryMeshAreThoseOfItsJoints) {
+  InstrumentConstraint guard = guard_without({.mesh = true}, {});
+  Random random(5);
+  std::vector<double> q{0, 0, 60, 0, 0, 0};
+  int limited = 0;
+  for (int i = 0; i < test::trials(20'000); ++i) {
+    if (i % 200 == 0) q = test::configuration(guard.instrument().chain(), random);
+    const InstrumentStep step =
+        guard.step(q, {.linear = 8.0 * random.direction(), .angular = 0.3 * random.direction()});
+    ASSERT_TRUE(step.ok());
+    ASSERT_FALSE(step.limits.has(Limit::mesh)) << i;
+    ASSERT_FALSE(step.limits.has(Limit::guide)) << i;
+    limited += step.status == Status::limited ? 1 : 0;
+    for (std::size_t k = 0; k < q.size(); ++k) q[k] += step.increment[k];
+  }
+  EXPECT_GT(limited, test::trials(2000));
+}
+
+TEST(Limits, NameAJointThatStartsOutside) {
+  InstrumentConstraint guard = guard_without({.mesh = true}, {});
+  std::vector<double> q{0, 0, 60, 0, 0, 0};
+  EXPECT_FALSE(guard.step(q, Twist{}).limits.has(Limit::joints_outside));
+  q[2] = guard.instrument().chain().joint(3).limits.upper + 1.0;
+  const InstrumentStep step = guard.step(q, {.linear = Vec3(0, 0, -1)});
+  EXPECT_TRUE(step.ok());
+  EXPECT_TRUE(step.limits.has(Limit::joints_outside));
+  EXPECT_LE(step.increment[2], 0.0);
+}
+
+// A budget that ends, a store that is too small, and what they are called.
+TEST(Limits, TellASpentBudgetFromASmallStore) {
+  const auto mesh = std::make_shared<const Mesh>(make_cube(2.0));
+  const auto status = [&](const InstrumentCapacity& capacity) {
+    InstrumentConstraint guard(mesh, make_index("wide_bvh", mesh), free_ball(1.0),
+                               make_solver("active_set"), {.check_sides = false}, capacity);
+    return guard.step(std::vector<double>{0.0, 0.0, 51.3}, {.linear = Vec3(0, 0, -5)});
+  };
+  const InstrumentStep spent = status({.looks = 20});
+  EXPECT_EQ(spent.status, Status::out_of_budget) << spent.reason();
+  EXPECT_TRUE(spent.limits.has(Limit::budget));
+  EXPECT_FALSE(spent.limits.has(Limit::capacity) || spent.limits.has(Limit::mesh));
+  const InstrumentStep small = status({.triangles = 1});
+  EXPECT_EQ(small.status, Status::over_capacity) << small.reason();
+  EXPECT_TRUE(small.limits.has(Limit::capacity));
+  EXPECT_FALSE(small.limits.has(Limit::budget) || small.limits.has(Limit::mesh));
+}
+
+}  // namespace
+}  // namespace keepout
