@@ -102,14 +102,14 @@ std::optional<RobotStart> find_start(Scene& scene,
       start.positions.push_back(random.uniform(low, high));
     }
     // The base follows from where the tool shall be; about its axis it is turned at random.
-    std::vector<oracle::Segment> axes(judged.bodies.size());
-    oracle::place(judged, {}, start.positions, axes);
-    const Vec3 along = axes.back().to - axes.back().from;
+    const oracle::Segment tool =
+        axis_of(judged.bodies.back(), oracle::place(judged, {}, start.positions));
+    const Vec3 along = tool.to - tool.from;
     const double roll = random.uniform(-std::numbers::pi, std::numbers::pi);
     start.base.rotation = (Eigen::AngleAxisd(roll, target->way) *
                            Eigen::Quaterniond::FromTwoVectors(along, target->way))
                               .toRotationMatrix();
-    start.base.position = target->tip - start.base.rotation * axes.back().to;
+    start.base.position = target->tip - start.base.rotation * tool.to;
     if (clearance(judged, start, tree, margin) < margin) continue;
     if (scenario != Scenario::overlapping) return start;
     // Pushed on until the tool, or a thicker body, overlaps as far.
