@@ -72,7 +72,7 @@ std::optional<RobotStroke> make_robot_stroke(
   std::optional<RobotStart> start;
   Facing facing_most;
   for (int i = 0; i < (is_leaning ? starts_to_lean : 1); ++i) {
-    const auto drawn = find_start(scene, tree, robot, Scenario::approach, margin, random);
+    const auto drawn = find_start(scene, tree, robot, Begin::apart, margin, random);
     if (!drawn) break;
     const oracle::JudgedRobot judged = robot.judged();
     const auto links = oracle::place(judged, drawn->base, drawn->positions);

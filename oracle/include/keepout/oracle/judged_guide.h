@@ -27,6 +27,7 @@ struct JudgedGuide {
   Vec3 origin = Vec3::Zero();      // [length]
   Vec3 direction = Vec3::UnitZ();  // unit: into a half-space, normal of a slab, along a tube
   double radius = 0.0;             // of a slab half the width; of a half-space 0 [length]
+  double band = 0.0;               // by how much the region may be left [length, or chord]
 };
 
 /// Returns how far the guided point is out of its region, in long double; below 0 it is inside.
