@@ -99,18 +99,64 @@ bool Hull::contains(const Vec3& point) const noexcept {
   return is_solid;
 }
 
-Bracket Hull::distance(const Triangle& triangle) const {
+/// A way from triangle to hull that is about the shortest: a few steps towards the point of least
+/// norm of all differences. Source: Frank, Wolfe, "An algorithm for quadratic programming", 1956.
+Vec3 Hull::direction_from(const Triangle& triangle) const noexcept {
+  constexpr int steps = 12;
+  Vec3 way = points_[0] - triangle[0];
+  for (int i = 0; i < steps; ++i) {
+    const auto lower = [&](const Vec3& a, const Vec3& b) { return way.dot(a) < way.dot(b); };
+    const Vec3 corner =
+        *std::ranges::min_element(points_, lower) - *std::ranges::max_element(triangle, lower);
+    const Vec3 step = corner - way;
+    const double gain = -way.dot(step);
+    if (!(gain > 1e-12 * way.squaredNorm())) break;
+    way += std::min(gain / step.squaredNorm(), 1.0) * step;
+  }
+  return way;
+}
+
+Bracket Hull::distance(const Triangle& triangle, double enough) const {
   constexpr double infinity = std::numeric_limits<double>::infinity();
+  Vec3 along = direction_from(triangle);
+  const double length = along.norm();
+  along = length > 0.0 ? Vec3(along / length) : Vec3::Zero();
+  // Heights over the hull's centre are rounded by some ten roundings of the lengths.
+  std::array<double, most_points> heights{};
+  std::array<double, 3> of_corners{};
+  double size = radius_;
+  for (std::size_t c = 0; c < 3; ++c) {
+    of_corners[c] = along.dot(triangle[c] - center_);
+    size = std::max(size, (triangle[c] - center_).norm());
+  }
+  const double rounding = 0x1p-46 * (size + center_.lpNorm<1>());
+  double lowest = infinity;
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    heights[i] = along.dot(points_[i] - center_) - rounding;
+    lowest = std::min(lowest, heights[i]);
+  }
+  const double highest = std::ranges::max(of_corners);
+  if (lowest - highest > enough) return {lowest - highest, length, length + rounding};
+
+  double high = length + rounding;
   Bracket least{infinity, infinity, infinity};
-  const auto take = [&least](const Bracket& of) {
+  const auto take = [&](const Segment& segment, const Triangle& other) {
+    const Bracket of = narrow_distance(segment, other);
     least = {std::min(least.low, of.low), std::min(least.estimate, of.estimate),
              std::min(least.high, of.high)};
+    high = std::min(high, of.high);
   };
-  for (const auto& [i, j] : edges_) take(narrow_distance({points_[i], points_[j]}, triangle));
+  for (const auto& [i, j] : edges_) {
+    if (std::min(heights[i], heights[j]) - highest > high) continue;
+    take({points_[i], points_[j]}, triangle);
+    if (high == 0.0) return least;
+  }
   for (const auto& [i, j, k] : faces_) {
+    const double low = std::min({heights[i], heights[j], heights[k]});
     for (std::size_t e = 0; e < 3; ++e) {
-      take(narrow_distance({triangle[e], triangle[(e + 1) % 3]},
-                           {points_[i], points_[j], points_[k]}));
+      if (low - std::max(of_corners[e], of_corners[(e + 1) % 3]) > high) continue;
+      take({triangle[e], triangle[(e + 1) % 3]}, {points_[i], points_[j], points_[k]});
+      if (high == 0.0) return least;
     }
   }
   if (contains(triangle[0])) return {0.0, 0.0, 0.0};

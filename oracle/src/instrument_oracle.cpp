@@ -101,13 +101,15 @@ double InstrumentOracle::clearance(std::size_t body, double reach) {
   if (!(nearest + around.travelled < around.known)) look_around(around, core, nearest);
   std::vector<Entry>& heap = around.heap;
   auto end = heap.end();  // of the heap; behind it is what was looked at by now
-  while (end != heap.begin() && heap.front().key - around.travelled <= nearest) {
+  // What is nearer by less than a billionth of the distance makes no difference.
+  const auto matters = [&](double low) { return low < nearest * (1.0 - 0.5e-9); };
+  while (end != heap.begin() && matters(heap.front().key - around.travelled)) {
     std::ranges::pop_heap(heap.begin(), end, std::greater(), &Entry::key);
     Entry& entry = *--end;
     const Neighbor& neighbor = around.neighbors[entry.neighbor];
     double low = core.least_distance(neighbor.center) - neighbor.radius;
-    if (low <= nearest) {
-      const Bracket distance = core.distance(neighbor.triangle);
+    if (matters(low)) {
+      const Bracket distance = core.distance(neighbor.triangle, nearest);
       low = distance.low;
       found = found || distance.estimate <= nearest;
       nearest = std::min(nearest, distance.estimate);

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -18,6 +19,9 @@ namespace keepout::oracle {
 /// once. Doubtful ones are included: all of them are within the hull, so they cannot make the
 /// distance too small. Only a triangle that is wholly inside is found otherwise, as a point in a
 /// solid.
+///
+/// Most pairs are passed over by a direction that separates them. However it was found, no pair is
+/// nearer than its heights along it say.
 class Hull {
  public:
   static constexpr std::size_t most_points = 8;
@@ -37,10 +41,12 @@ class Hull {
   double least_distance(const Vec3& point) const noexcept;
 
   /// Brackets the distance from a triangle narrowly; 0 if and only if they touch, or the triangle
-  /// is inside by more than rounding.
-  Bracket distance(const Triangle& triangle) const;
+  /// is inside by more than rounding. If it is surely more than `enough`, the bracket may be wide.
+  Bracket distance(const Triangle& triangle,
+                   double enough = std::numeric_limits<double>::infinity()) const;
 
  private:
+  Vec3 direction_from(const Triangle& triangle) const noexcept;
   bool contains(const Vec3& point) const noexcept;
 
   std::vector<Vec3> points_;
