@@ -2,6 +2,7 @@
 #include "keepout/oracle/instrument_oracle.h"
 
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <limits>
 #include <utility>
@@ -15,17 +16,16 @@ constexpr std::size_t many = 256;
 constexpr double least_slack = 1.0 / 64.0;
 constexpr double largest_slack = 16.0;
 
-double distance_of(const Vec3& point, const Segment& segment) noexcept {
-  const Vec3 way = segment.to - segment.from;
-  const Vec3 offset = point - segment.from;
-  const double squared = way.squaredNorm();
-  const double along = squared > 0.0 ? std::clamp(offset.dot(way) / squared, 0.0, 1.0) : 0.0;
-  return (offset - along * way).norm();
+/// More than rounding can do to a distance between such places. [length]
+double rounding_of(const Hull& core, const Vec3& point) noexcept {
+  return 0x1p-46 * (core.center().lpNorm<1>() + core.radius() + point.lpNorm<1>());
 }
 
-/// More than rounding can do to a distance between such places. [length]
-double rounding_of(const Segment& segment, const Vec3& point) noexcept {
-  return 0x1p-46 * (segment.from.lpNorm<1>() + segment.to.lpNorm<1>() + point.lpNorm<1>());
+/// The farthest that any point of a core has moved: one of its corners. [length]
+double moved(std::span<const Vec3> from, std::span<const Vec3> to) noexcept {
+  double most = 0.0;
+  for (std::size_t i = 0; i < from.size(); ++i) most = std::max(most, (to[i] - from[i]).norm());
+  return most;
 }
 
 }  // namespace
@@ -35,11 +35,24 @@ InstrumentOracle::InstrumentOracle(std::shared_ptr<const TriangleTree> tree, Jud
     : tree_(std::move(tree)),
       robot_(std::move(robot)),
       base_(base),
-      axes_(robot_.bodies.size()),
-      surroundings_(robot_.bodies.size()) {}
+      surroundings_(robot_.bodies.size()) {
+  for (const JudgedBody& body : robot_.bodies) {
+    std::vector<Vec3> points;
+    for (const JudgedPoint& point : body.points) points.push_back(point.position);
+    cores_.emplace_back(points);
+  }
+}
 
 void InstrumentOracle::move_to(std::span<const double> positions) {
-  place(robot_, base_, positions, axes_);
+  links_ = place(robot_, base_, positions);
+  for (std::size_t b = 0; b < cores_.size(); ++b) {
+    std::array<Vec3, Hull::most_points> points;
+    const std::vector<JudgedPoint>& judged = robot_.bodies[b].points;
+    for (std::size_t i = 0; i < judged.size(); ++i) {
+      points[i] = links_[static_cast<std::size_t>(judged[i].link)].at(judged[i].position);
+    }
+    cores_[b].move_to({points.data(), judged.size()});
+  }
 }
 
 void InstrumentOracle::move_to(std::span<const double> positions, const Pose& base) {
@@ -47,11 +60,14 @@ void InstrumentOracle::move_to(std::span<const double> positions, const Pose& ba
   move_to(positions);
 }
 
-void InstrumentOracle::look_around(Surroundings& around, const Segment& axis, double reach) {
+void InstrumentOracle::look_around(Surroundings& around, const Hull& core, double reach) {
   around.travelled = 0.0;
   around.known = reach + around.slack;
   found_.clear();
-  tree_->collect_within(around.known, axis, found_);
+  const bool is_segment = core.points().size() < 3;
+  const Segment middle = is_segment ? Segment{core.points().front(), core.points().back()}
+                                    : Segment{core.center(), core.center()};
+  tree_->collect_within(around.known + (is_segment ? 0.0 : core.radius()), middle, found_);
   around.neighbors.clear();
   around.heap.clear();
   for (const TriangleId t : found_) {
@@ -60,8 +76,8 @@ void InstrumentOracle::look_around(Surroundings& around, const Segment& axis, do
     const Vec3 center = 0.5 * bounds.low + 0.5 * bounds.high;
     const double radius = std::max({(triangle[0] - center).norm(), (triangle[1] - center).norm(),
                                     (triangle[2] - center).norm()}) +
-                          rounding_of(axis, center);
-    const double low = distance_of(center, axis) - radius;
+                          rounding_of(core, center);
+    const double low = core.least_distance(center) - radius;
     if (low > around.known) continue;
     around.heap.push_back({low, static_cast<std::uint32_t>(around.neighbors.size())});
     around.neighbors.push_back({triangle, center, radius});
@@ -73,26 +89,27 @@ void InstrumentOracle::look_around(Surroundings& around, const Segment& axis, do
 }
 
 double InstrumentOracle::clearance(std::size_t body, double reach) {
-  const Segment& axis = axes_[body];
+  const Hull& core = cores_[body];
   const double radius = robot_.bodies[body].radius;
   double nearest = reach + radius;
   bool found = false;
   Surroundings& around = surroundings_[body];
-  // No point of the axis has moved farther than its farther end, nor has any distance changed more.
-  around.travelled +=
-      std::max((axis.from - around.last.from).norm(), (axis.to - around.last.to).norm()) +
-      rounding_of(axis, around.last.to);
-  around.last = axis;
-  if (!(nearest + around.travelled < around.known)) look_around(around, axis, nearest);
+  // No point of the core has moved farther than a corner, nor has any distance changed more.
+  if (around.last.empty()) around.last.assign(core.points().begin(), core.points().end());
+  around.travelled += moved(around.last, core.points()) + rounding_of(core, around.last.front());
+  around.last.assign(core.points().begin(), core.points().end());
+  if (!(nearest + around.travelled < around.known)) look_around(around, core, nearest);
   std::vector<Entry>& heap = around.heap;
   auto end = heap.end();  // of the heap; behind it is what was looked at by now
-  while (end != heap.begin() && heap.front().key - around.travelled <= nearest) {
+  // What is nearer by less than a billionth of the distance makes no difference.
+  const auto matters = [&](double low) { return low < nearest * (1.0 - 0.5e-9); };
+  while (end != heap.begin() && matters(heap.front().key - around.travelled)) {
     std::ranges::pop_heap(heap.begin(), end, std::greater(), &Entry::key);
     Entry& entry = *--end;
     const Neighbor& neighbor = around.neighbors[entry.neighbor];
-    double low = distance_of(neighbor.center, axis) - neighbor.radius;
-    if (low <= nearest) {
-      const Bracket distance = narrow_distance(axis, neighbor.triangle);
+    double low = core.least_distance(neighbor.center) - neighbor.radius;
+    if (matters(low)) {
+      const Bracket distance = core.distance(neighbor.triangle, nearest);
       low = distance.low;
       found = found || distance.estimate <= nearest;
       nearest = std::min(nearest, distance.estimate);

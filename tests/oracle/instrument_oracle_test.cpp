@@ -23,7 +23,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 /// A rod that one joint turns about an axis through the origin, and another moves along it.
 JudgedRobot rod(double length, double radius) {
   return {.table = {{}, {.slides = true}},
-          .bodies = {{{{{2}, {2, Vec3(length, 0.0, 0.3 * length)}}}, radius}}};
+          .bodies = {{{{2}, {2, Vec3(length, 0.0, 0.3 * length)}}, radius}}};
 }
 
 double brute_force(const Mesh& mesh, const Segment& axis) {
@@ -95,7 +95,6 @@ INSTANTIATE_TEST_SUITE_P(InstrumentOracle, InstrumentOracleOnEveryShape,
 
 void expect_same_places(const JudgedRobot& judged, Instrument (*make)(const Pose&)) {
   Random random(3);
-  std::vector<Segment> axes(judged.bodies.size());
   for (int i = 0; i < test::trials(1000); ++i) {
     const Pose base{
         200.0 * random.direction(),
@@ -107,21 +106,23 @@ void expect_same_places(const JudgedRobot& judged, Instrument (*make)(const Pose
     for (int k = 1; k <= chain.size(); ++k) {
       q.push_back(random.uniform(chain.joint(k).limits.lower, chain.joint(k).limits.upper));
     }
-    place(judged, chain.base(), q, axes);
+    const std::vector<LinkFrame> links = place(judged, chain.base(), q);
     ChainState state;
     chain.place(q, state);
     ASSERT_EQ(instrument.bodies().size(), judged.bodies.size());
-    for (std::size_t b = 0; b < axes.size(); ++b) {
+    for (std::size_t b = 0; b < judged.bodies.size(); ++b) {
       const Body& body = instrument.bodies()[b];
+      const Segment axis = axis_of(judged.bodies[b], links);
       ASSERT_EQ(body.points.size(), 2u);
       EXPECT_EQ(body.radius, judged.bodies[b].radius);
       const Vec3 from = state.at(body.points[0].link, body.points[0].position);
       const Vec3 to = state.at(body.points[1].link, body.points[1].position);
-      EXPECT_LE((from - axes[b].from).norm(), 1e-12 * 2000.0) << body.name;
-      EXPECT_LE((to - axes[b].to).norm(), 1e-12 * 2000.0) << body.name;
+      EXPECT_LE((from - axis.from).norm(), 1e-12 * 2000.0) << body.name;
+      EXPECT_LE((to - axis.to).norm(), 1e-12 * 2000.0) << body.name;
     }
     // What is steered is where the last body ends.
-    EXPECT_LE((state.flange().position - axes.back().to).norm(), 1e-12 * 2000.0);
+    EXPECT_LE((state.flange().position - axis_of(judged.bodies.back(), links).to).norm(),
+              1e-12 * 2000.0);
   }
 }
 

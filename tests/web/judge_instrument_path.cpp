@@ -73,8 +73,7 @@ int main(int argc, char** argv) try {
   const keepout::Instrument instrument = robot.make(base_of(head));
   const double tolerance =
       keepout::make_instrument_constraint(mesh, instrument, {.options = options}).tolerance();
-  keepout::oracle::InstrumentOracle oracle(
-      std::make_shared<const keepout::oracle::TriangleTree>(mesh), robot.judged(), base_of(head));
+  const auto tree = std::make_shared<const keepout::oracle::TriangleTree>(mesh);
   const std::size_t joints = static_cast<std::size_t>(instrument.chain().size());
   std::optional<keepout::app::RobotJudge> judge;
   keepout::Random random(1);
@@ -83,10 +82,11 @@ int main(int argc, char** argv) try {
   std::size_t cycles = 0, jumps = 0, below = 0, in_mesh = 0, limits = 0, held = 0;
   double nearest = std::numeric_limits<double>::infinity(), way = 0.0, turn = 0.0;
   const auto jaw_now = [&]() -> Vec3 {
-    const keepout::oracle::Segment& jaw = oracle.axis(oracle.bodies() - 1);
+    const keepout::oracle::InstrumentOracle& oracle = judge->oracle();
+    const keepout::oracle::Segment jaw = oracle.axis(oracle.bodies() - 1);
     return (jaw.to - jaw.from).normalized();
   };
-  const auto tip_now = [&] { return oracle.axis(oracle.bodies() - 1).to; };
+  const auto tip_now = [&] { return judge->oracle().axis(judge->oracle().bodies() - 1).to; };
   for (std::string line; std::getline(path, line); ++cycles) {
     std::istringstream words(line);
     std::vector<double> numbers;
@@ -95,7 +95,8 @@ int main(int argc, char** argv) try {
     const auto increment = numbers.begin() + static_cast<std::ptrdiff_t>(joints);
     const std::vector<double> from(numbers.begin(), increment);
     if (!judge) {
-      judge.emplace(oracle, instrument.chain(), random, from, options, tolerance);
+      judge.emplace(keepout::app::JudgedScene{robot.judged(), base_of(head), {{tree}}},
+                    instrument.chain(), random, from, options, tolerance);
       tip = tip_now();
       first_way = jaw_now();
       positions = from;

@@ -21,7 +21,7 @@ RobotStart instrument_start(const std::string& mesh_name, const std::shared_ptr<
   std::optional<RobotStart> first;
   for (std::uint64_t seed = 1; seed <= starts_tried; ++seed) {
     Random random(seed);
-    auto start = find_start(scene, tree, robot, Scenario::approach, margin, random);
+    auto start = find_start(scene, tree, robot, Begin::apart, margin, random);
     if (!start) break;  // thousands of places were tried: there is no room
     const Vec3& port = start->base.position;
     if ((port.array() < box.low.array()).any() || (port.array() > box.high.array()).any()) {

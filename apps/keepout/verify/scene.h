@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "keepout/fixtures/random.h"
 #include "keepout/index/query.h"
 #include "keepout/mesh/mesh.h"
 #include "keepout/oracle/safety_oracle.h"
@@ -54,10 +55,12 @@ class Scene {
   bool free_inside_ = false;  // the normals point into what is enclosed
 };
 
-/// A mesh that a campaign may load: the same, maybe in several places, one scene each.
+/// A mesh that a campaign may load: the same, maybe in several places, one scene each; or a kind of
+/// mesh, of which one is drawn anew for each start of an instrument.
 struct Arena {
   std::string mesh;
-  std::function<std::vector<Scene>()> load;
+  std::function<std::vector<Scene>()> load = {};
+  std::function<std::shared_ptr<Scene>(Random&)> draw = {};  // instead
 };
 
 /// Each generated shape, where it was made and 1e4 mm away.

@@ -18,6 +18,7 @@
 #include "keepout/adapters/index_registry.h"
 #include "keepout/error.h"
 #include "result.h"
+#include "verify/robot/hostile_mesh.h"
 #include "verify/robot/result.h"
 
 namespace keepout::app {
@@ -75,26 +76,30 @@ Json run(const VerifyOptions& options, std::ostream& out) {
   return result_of(run, findings);
 }
 
-/// Those that are named, or the largest real ones and a small one.
-std::vector<std::filesystem::path> meshes_for_robot(const VerifyOptions& options) {
-  if (!options.meshes.empty()) return options.meshes;
-  return {"skull", "airway", "brain", "femur"};
+/// The meshes that are named. Without a name, for a robot that is named the largest real ones and a
+/// small one, else small hostile ones that are drawn.
+std::vector<Arena> arenas_for_robot(const VerifyOptions& options) {
+  VerifyOptions on = options;
+  if (on.meshes.empty()) {
+    if (options.robot.robot.empty()) return hostile_arenas(options.index);
+    on.meshes = {"skull", "airway", "brain", "femur"};
+  }
+  std::vector<std::string> missing;
+  return arenas_of(on, missing);
 }
 
 Json run_with_robot(const VerifyOptions& options) {
-  VerifyOptions on = options;
-  on.meshes = meshes_for_robot(options);
-  std::vector<std::string> missing;
-  const std::vector<Arena> arenas = arenas_of(on, missing);
+  const RobotCampaign& campaign = options.robot;
+  const std::vector<Arena> arenas = arenas_for_robot(options);
   const StopSignal stop;
-  Progress progress("verify", cycle_count(on.robot, arenas.size()));
+  Progress progress("verify", cycle_count(campaign, arenas.size()));
   const auto advanced = [&](const RobotTally& row, std::uint64_t cycles) {
     progress.advance(cycles);
-    progress.show(row.mesh + ", " + std::string(name(row.scenario)));
+    progress.show(row.mesh + ", " + row.scenario);
     return stop.has_come() ? Next::stop : Next::go_on;
   };
-  const std::vector<RobotTally> tallies = run_robot_campaign(on.robot, arenas, advanced);
-  return result_of(on.robot, on.command, on.index, tallies, arenas.size());
+  const std::vector<RobotTally> tallies = run_robot_campaign(campaign, arenas, advanced);
+  return result_of(campaign, options.command, options.index, tallies, arenas.size());
 }
 
 int verify_with_robot(const VerifyOptions& options, OutputFiles& outputs, std::ostream& out) {
@@ -106,13 +111,21 @@ int verify_with_robot(const VerifyOptions& options, OutputFiles& outputs, std::o
   return record["complete"].get<bool>() ? EXIT_SUCCESS : exit_interrupted;
 }
 
-/// What there is to say of a campaign with a robot.
+/// Options of a campaign in joint space: with --robot, or --scenario.
 void add_robot(CLI::App& command, RobotCampaign& robot, std::vector<CLI::Option*>& of_a_run) {
+  std::vector<CLI::Option*> of_joints;  // of no use without one of the two
   CLI::Option* named =
       command.add_option("--robot", robot.robot, "Try it with a whole instrument, in joint space")
           ->check(one_of(names(robots_under_test())));
-  const auto add = [&](CLI::Option* option) { of_a_run.push_back(option->needs(named)); };
-  of_a_run.push_back(named);
+  CLI::Option* chosen =
+      command.add_option("--scenario", robot.scenarios, "Kinds of attack, in joint space as well")
+          ->check(one_of(names(app::scenarios())))
+          ->delimiter(',');
+  of_a_run.insert(of_a_run.end(), {named, chosen});
+  const auto add = [&](CLI::Option* option) {
+    of_a_run.push_back(option);
+    of_joints.push_back(option);
+  };
   add(command.add_option("--cycles", robot.cycles, "Cycles for each mesh, scenario and speed")
           ->type_name("NUMBER")
           ->transform(large_count())
@@ -129,6 +142,12 @@ void add_robot(CLI::App& command, RobotCampaign& robot, std::vector<CLI::Option*
           ->default_str("actual"));
   add(add_length(command, "--margin", robot.margin, Zero::refused,
                  "Distance that bodies keep beyond their radius"));
+  command.final_callback([named, chosen, of_joints] {
+    for (const CLI::Option* option : of_joints) {
+      if (option->empty() || !named->empty() || !chosen->empty()) continue;
+      throw CLI::RequiresError(option->get_name(), "--robot or --scenario");
+    }
+  });
 }
 
 /// What --shard may be told; nothing is wrong with it when the text is empty.
@@ -150,18 +169,21 @@ void add_verify(CLI::App& app, VerifyOptions& options) {
       "MESH", options.meshes, "Mesh files in mm, or fixtures; without one, all fixtures"));
   add_robot(command, options.robot, of_a_run);
   CLI::Option* const robot = command.get_option("--robot");
+  CLI::Option* const scenario = command.get_option("--scenario");
   of_a_run.push_back(command.add_option("--steps", options.steps, "Steps of the whole campaign")
                          ->type_name("NUMBER")
                          ->transform(large_count())
                          ->capture_default_str()
-                         ->excludes(robot));
+                         ->excludes(robot)
+                         ->excludes(scenario));
   of_a_run.push_back(add_number(command, "--seed", options.seed, 0, largest_seed,
                                 "Seed: same seed and steps, same campaign"));
   of_a_run.push_back(command.add_option("--shard", options.shard, "Do part I of N of the campaign")
                          ->type_name("I/N")
                          ->check(check_shard)
                          ->capture_default_str()
-                         ->excludes(robot));
+                         ->excludes(robot)
+                         ->excludes(scenario));
   of_a_run.push_back(add_name(command, "--index", options.index, names(index_backends()),
                               "Index that finds triangles"));
   options.files.add_to(command);
@@ -172,8 +194,13 @@ void add_verify(CLI::App& app, VerifyOptions& options) {
   command.footer(
       "Ctrl-C ends it early: what is finished is printed and written.\n"
       "The exit status is 0 only if no step broke what docs/certified-step.md promises, and with\n"
-      "--robot docs/joint-space-step.md; but with --motion linearised nothing is promised.\n\n" +
-      listing("Robots", robots_under_test()));
+      "--robot or --scenario docs/joint-space-step.md and docs/guides.md; but with --motion\n"
+      "linearised nothing is promised.\n\n"
+      "--scenario without --robot draws a chain and bodies anew for each start, and without MESH\n"
+      "a mesh of up to 400 triangles: soup, fan, sheets, cone, bowl, saddle. 'stuck', "
+      "'tip_guides'\n"
+      "and 'convex_tool' have a robot of their own.\n\n" +
+      listing("Scenarios", scenarios()) + "\n" + listing("Robots", robots_under_test()));
 }
 
 int verify(const VerifyOptions& options, std::ostream& out) {
@@ -182,7 +209,9 @@ int verify(const VerifyOptions& options, std::ostream& out) {
   for (const auto& file : options.merge) inputs.push_back({"--merge", file});
   OutputFiles outputs(inputs,
                       {{"--json", options.files.kept_json()}, {"--out", options.files.page}});
-  if (!options.robot.robot.empty()) return verify_with_robot(options, outputs, out);
+  if (!options.robot.robot.empty() || !options.robot.scenarios.empty()) {
+    return verify_with_robot(options, outputs, out);
+  }
   Json result = options.merge.empty() ? run(options, out) : merged(options.merge);
   if (!options.merge.empty()) {  // not what one of the shards was made by
     result["command"] = options.command;

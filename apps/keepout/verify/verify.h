@@ -25,7 +25,7 @@ struct VerifyOptions {
   std::string index = "wide_bvh";
   RecordFiles files;
   std::vector<std::filesystem::path> merge;  // records to add up, instead of a campaign
-  RobotCampaign robot;                       // instead, where it names one
+  RobotCampaign robot;                       // instead, where it names a robot or scenarios
   std::string command;                       // that does it again
 };
 

@@ -52,7 +52,7 @@ TEST_P(RobotCampaignWith, NoCycleComesTooCloseOrBreaksAJointsLimit) {
   const auto rows = run({.robot = GetParam(), .cycles = 1000, .seed = 20261123}, arenas);
   EXPECT_EQ(rows.size(), 5 * arenas.size());
   for (const RobotTally& row : rows) {
-    const std::string where = row.mesh + ", " + std::string(name(row.scenario));
+    const std::string where = row.mesh + ", " + row.scenario;
     EXPECT_EQ(row.below, 0u) << where << ": " << row.least_beyond;
     EXPECT_EQ(row.limits_broken, 0u) << where;
     EXPECT_TRUE(row.cycles == 1000u || row.is_out_of_starts) << where;
@@ -93,13 +93,18 @@ class RobotJudgeOverAPlate : public testing::Test {
 
   static Positions at(double insertion, double yaw = 0.0) { return {yaw, 0.0, insertion}; }
   RobotJudge judge_from(const Positions& positions) {
-    return {oracle_, arm_.chain(), random_, positions, options_, 1e-9};
+    return {{oracle::judged_psm(), arm_.chain().base(), {{tree_}}},
+            arm_.chain(),
+            random_,
+            positions,
+            options_,
+            1e-9};
   }
 
   Instrument arm_ = psm({Vec3(0.3, 0.2, 120.0)});
   std::shared_ptr<const Mesh> mesh_ = std::make_shared<const Mesh>(make_shape("flat_plate"));
-  oracle::InstrumentOracle oracle_{std::make_shared<const oracle::TriangleTree>(mesh_),
-                                   oracle::judged_psm(), arm_.chain().base()};
+  std::shared_ptr<const oracle::TriangleTree> tree_ =
+      std::make_shared<const oracle::TriangleTree>(mesh_);
   Random random_{1};
   InstrumentOptions options_{.margin = 0.2, .band = 0.002, .period = 10.0};
 };

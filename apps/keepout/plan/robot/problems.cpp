@@ -67,7 +67,7 @@ std::vector<RobotProblem> draw_robot_problems(
   std::vector<RobotProblem> problems;
   for (std::size_t i = 0; i < most_starts * count && problems.size() < count; ++i) {
     // The hand begins with more than it is to keep.
-    const auto start = find_start(scene, tree, robot, Scenario::approach, 2.1 * margin, random);
+    const auto start = find_start(scene, tree, robot, Begin::apart, 2.1 * margin, random);
     if (!start) break;
     std::optional<RobotProblem> problem = led_by_hand(scene, tree, robot, *start, margin, random);
     if (!problem) continue;

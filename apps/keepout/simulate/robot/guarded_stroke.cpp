@@ -58,8 +58,8 @@ std::vector<GuardedCycle> follow(const RobotStroke& stroke, Scene& scene,
                                   .margin = margin});
   }
   std::vector<double> q = stroke.start.positions;
-  oracle::InstrumentOracle oracle(tree, robot.judged(), stroke.start.base);
-  RobotJudge judge(oracle, chain, random, q, options, joints.tolerance());
+  RobotJudge judge({robot.judged(), stroke.start.base, {{tree}}}, chain, random, q, options,
+                   joints.tolerance());
   const double kept = margin - options.band - 3.0 * joints.tolerance();
   std::vector<GuardedCycle> cycles;
   for (const Pose& goal : stroke.hand) {
@@ -83,7 +83,7 @@ std::vector<GuardedCycle> follow(const RobotStroke& stroke, Scene& scene,
     GuardedCycle& cycle = cycles.emplace_back();
     for (std::size_t b = 0; b < body_names.size(); ++b) {
       cycle.clearances[b] = judge.least()[b];
-      cycle.places[b] = oracle.axis(b).to;
+      cycle.places[b] = judge.oracle().axis(b).to;
       add(tally.bodies[b], cycle.clearances[b]);
     }
   }

@@ -72,13 +72,12 @@ std::optional<RobotStroke> make_robot_stroke(
   std::optional<RobotStart> start;
   Facing facing_most;
   for (int i = 0; i < (is_leaning ? starts_to_lean : 1); ++i) {
-    const auto drawn = find_start(scene, tree, robot, Scenario::approach, margin, random);
+    const auto drawn = find_start(scene, tree, robot, Begin::apart, margin, random);
     if (!drawn) break;
     const oracle::JudgedRobot judged = robot.judged();
-    std::vector<oracle::Segment> axes(judged.bodies.size());
-    oracle::place(judged, drawn->base, drawn->positions, axes);
-    const Facing one =
-        is_leaning ? facing(scene, axes.front(), 0.5, 0.95) : facing(scene, axes.back(), 1.0, 1.0);
+    const auto links = oracle::place(judged, drawn->base, drawn->positions);
+    const Facing one = is_leaning ? facing(scene, axis_of(judged.bodies.front(), links), 0.5, 0.95)
+                                  : facing(scene, axis_of(judged.bodies.back(), links), 1.0, 1.0);
     if (start && one.distance >= facing_most.distance) continue;
     start = drawn;
     facing_most = one;

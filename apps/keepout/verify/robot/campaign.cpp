@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "verify/robot/campaign.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
 #include "keepout/activation/certified.h"
-#include "keepout/error.h"
-#include "keepout/registry.h"
 #include "keepout/solvers/registry.h"
 #include "keepout/step/motion_constraint.h"
 #include "verify/robot/excess.h"
@@ -21,51 +21,95 @@ constexpr std::size_t block = 500;      // cycles for which a margin stays raise
 constexpr double raise = 0.5;           // [mm]
 constexpr double blocked_below = 0.05;  // of the motion asked for
 constexpr double useful_above = 0.05;   // of the largest reduction of the cost
-constexpr std::uint64_t sampled = 2000;  // blocked cycles to each that is searched
+constexpr double movable_above = 0.1;   // of the motion asked for
+constexpr double strayed_above = 1.05;  // of what standing still misses
+// Blocked cycles to each that is searched: a search costs as much as a thousand cycles.
+constexpr std::uint64_t sampled = 2000;
+constexpr std::uint64_t sampled_where_drawn = 100;
 constexpr int hopeless_after =
     50;  // cycles without any motion being proven, until a start is given up
+constexpr double skipped = 1.0 / 3.0;  // of all placements of a mesh that moves
 
-bool is_raised(Scenario scenario, std::size_t cycle) noexcept {
+bool is_raised(const Scenario& scenario, std::size_t cycle) noexcept {
   const bool is_odd = (cycle / block) % 2 == 1;
-  return scenario == Scenario::raised ? is_odd : scenario == Scenario::wedged && !is_odd;
+  return scenario.raises_margin && (scenario.begin == Begin::wedged ? !is_odd : is_odd);
 }
 
 /// What is being worked on: a row, and what it is made with.
 struct RobotRow {
-  Scene& scene;
-  std::shared_ptr<const oracle::TriangleTree> tree;
-  const RobotUnderTest& robot;
   const RobotCampaign& campaign;
+  const Scenario& scenario;
+  std::function<JudgedMesh(Random&)> draw_mesh;
+  bool is_drawn;                // the mesh, or the robot
+  const RobotUnderTest* robot;  // null: drawn
   RobotTally tally;
   std::vector<double> times = {};        // [us]
   std::vector<double> point_times = {};  // [us]
 };
 
+/// How far the flange is from where it is wanted, as the judge sees it, and how far it was; both
+/// weighed as the task.
+struct Missed {
+  double moving, standing;
+};
+
+Missed missed(const RobotSetup& setup, const oracle::JudgedRobot& robot,
+              std::span<const double> from, std::span<const double> to, const Twist& desired) {
+  const auto before = oracle::place(robot, setup.start.base, from);
+  const auto after = oracle::place(robot, setup.start.base, to);
+  const Vec3 way = axis_of(robot.bodies.back(), after).to - axis_of(robot.bodies.back(), before).to;
+  const Mat3 turned = (after.back().axes * before.back().axes.transpose()).cast<double>();
+  const Eigen::AngleAxisd turn(turned);
+  const double weight = setup.options.orientation_weight;
+  const Vec3 turn_off = weight * (turn.angle() * turn.axis() - desired.angular);
+  return {std::hypot((way - desired.linear).norm(), turn_off.norm()),
+          std::hypot(desired.linear.norm(), weight * desired.angular.norm())};
+}
+
+JudgedScene judged_scene(const RobotSetup& setup) {
+  JudgedScene scene{.robot = setup.robot.judged(),
+                    .base = setup.start.base,
+                    .meshes = {},
+                    .guides = setup.guides,
+                    .has_band = setup.scenario->attacked == Attacked::instrument};
+  for (const SetupMesh& mesh : setup.meshes) {
+    scene.meshes.push_back({mesh.mesh.tree, mesh.margin, mesh.motion.first});
+  }
+  return scene;
+}
+
 /// One instrument, from where it begins.
 class RobotAttempt {
  public:
-  RobotAttempt(RobotRow& row, const RobotStart& start, Random& random)
+  RobotAttempt(RobotRow& row, RobotSetup setup, Random& random)
       : row_(row),
         random_(random),
-        instrument_(row.robot.make(start.base)),
-        usual_(options_of(row.campaign, instrument_.chain(), row.tally.speed)),
-        constraint_(row.scene.mesh(), row.scene.shared_index(), instrument_,
-                    make_solver("active_set"), usual_),
-        point_(row.scene.mesh(), row.scene.shared_index(), std::make_unique<CertifiedRule>(),
-               make_solver("active_set"),
-               {.radius = 10.0 * row.tally.speed,
-                .tool_radius = instrument_.bodies().back().radius,
-                .margin = usual_.margin}),
-        oracle_(row.tree, row.robot.judged(), instrument_.chain().base()),
-        judge_(oracle_, instrument_.chain(), random, start.positions, usual_,
-               constraint_.tolerance()),
-        hand_(row.scene, random, row.tally.speed),
-        positions_(start.positions) {}
+        setup_(std::move(setup)),
+        judged_(setup_.robot.judged()),
+        chain_(setup_.robot.make(setup_.start.base).chain()),
+        subject_(row.campaign.make_subject(setup_)),
+        judge_(judged_scene(setup_), chain_, random, setup_.start.positions, setup_.options,
+               subject_->tolerance()),
+        hand_(*setup_.meshes[0].mesh.scene, random, setup_.speed),
+        positions_(setup_.start.positions),
+        poses_(setup_.meshes.size()),
+        velocities_(setup_.meshes.size()),
+        levels_(setup_.meshes.size() * judged_.bodies.size()) {
+    for (std::size_t m = 0; m < poses_.size(); ++m) poses_[m] = setup_.meshes[m].motion.first;
+    if (row.is_drawn) return;
+    const Scene& scene = *setup_.meshes[0].mesh.scene;
+    point_.emplace(scene.mesh(), scene.shared_index(), std::make_unique<CertifiedRule>(),
+                   make_solver("active_set"),
+                   StepOptions{.radius = 10.0 * setup_.speed,
+                               .tool_radius = judged_.bodies.back().radius,
+                               .margin = setup_.options.margin});
+  }
 
   void run(std::uint64_t cycles) {
     int failures = 0;
     for (std::uint64_t cycle = 0; cycle < cycles && failures < hopeless_after; ++cycle) {
       if (cycle % block == 0) set_margin(cycle);
+      if (setup_.scenario->moves) place_meshes(cycle);
       failures = make_cycle() ? 0 : failures + 1;
       if (!waited_) continue;
       ++*waited_;
@@ -79,39 +123,98 @@ class RobotAttempt {
 
  private:
   void set_margin(std::size_t cycle) {
-    InstrumentOptions options = usual_;
-    if (is_raised(row_.tally.scenario, cycle)) options.margin += raise;
-    if (options.margin != constraint_.options().margin) {
-      constraint_.set_options(options);
+    InstrumentOptions options = setup_.options;
+    if (is_raised(row_.scenario, cycle)) options.margin += raise;
+    if (options.margin != margin_) {
+      subject_->set_options(options);
       judge_.follow(options);
     }
+    margin_ = options.margin;
     waited_.reset();  // what has not recovered within a block has not in time
-    const bool is_new = cycle == 0 || is_raised(row_.tally.scenario, cycle);
+    const bool is_new = cycle == 0 || is_raised(row_.scenario, cycle);
     if (is_new && !judge_.is_recovered()) {
       ++row_.tally.recoveries;
       waited_ = 0;
     }
   }
 
-  /// Whether there was a motion, be it none at all, that may be carried out.
+  /// Says where the meshes are and how they move: to where they are to be a cycle later. Now and
+  /// then nothing is said of one, which goes on as it did.
+  void place_meshes(std::uint64_t cycle) {
+    for (std::size_t m = 0; m < poses_.size(); ++m) {
+      const MeshMotion& motion = setup_.meshes[m].motion;
+      if (cycle > 0 && (motion.is_still() || random_.uniform() < skipped)) continue;
+      const Pose then = motion.at(static_cast<double>(cycle) + 1.0);
+      const double period = setup_.options.period;
+      const Eigen::AngleAxisd turn(Mat3(then.rotation * poses_[m].rotation.transpose()));
+      velocities_[m] = {.linear = (then.position - poses_[m].position) / period,
+                        .angular = turn.angle() / period * turn.axis()};
+      subject_->place(m, poses_[m], velocities_[m]);
+      judge_.place(m, poses_[m], velocities_[m]);
+    }
+  }
+
+  /// Lets a cycle pass for the meshes.
+  void move_meshes() {
+    const double period = setup_.options.period;
+    for (std::size_t m = 0; m < poses_.size(); ++m) {
+      poses_[m].position += period * velocities_[m].linear;
+      const double turn = period * velocities_[m].angular.norm();
+      if (!(turn > 0.0)) continue;
+      const Eigen::AngleAxisd by(turn, velocities_[m].angular.normalized());
+      poses_[m].rotation =
+          (by * Eigen::Quaterniond(poses_[m].rotation)).normalized().toRotationMatrix();
+    }
+  }
+
+  /// What is asked of the flange, by somebody who looks at the first mesh.
+  Twist wanted(const Vec3& flange) {
+    const Pose& mesh = poses_[0];
+    Twist twist = hand_.next(mesh.rotation.transpose() * (flange - mesh.position));
+    twist.linear = mesh.rotation * twist.linear;
+    twist.angular = mesh.rotation * twist.angular;
+    return twist;
+  }
+
+  /// Returns true if there was a motion, be it none at all, that may be carried out.
   bool make_cycle() {
     RobotTally& tally = row_.tally;
     ChainState state;
-    instrument_.chain().place(positions_, state);
-    const Twist desired = hand_.next(state.flange().position);
+    chain_.place(positions_, state);
+    const Twist desired = wanted(state.flange().position);
     const BenchClock::time_point start = BenchClock::now();
-    const InstrumentStep step = constraint_.step(positions_, desired);
+    const InstrumentStep step = subject_->step(positions_, desired);
     row_.times.push_back(microseconds_since(start));
-    const BenchClock::time_point after = BenchClock::now();
-    point_.step({.tip = state.flange().position, .desired = desired.linear});
-    row_.point_times.push_back(microseconds_since(after));
-    RobotTask::Increment made = RobotTask::Increment::Zero(instrument_.chain().size());
+    if (point_) {
+      const BenchClock::time_point after = BenchClock::now();
+      point_->step({.tip = state.flange().position, .desired = desired.linear});
+      row_.point_times.push_back(microseconds_since(after));
+    }
+    RobotTask::Increment made = RobotTask::Increment::Zero(chain_.size());
     std::vector<double> next = positions_;
     for (std::size_t k = 0; step.ok() && k < next.size(); ++k) {
       made[static_cast<Eigen::Index>(k)] = step.increment[k];
       next[k] += step.increment[k];
     }
-    const RobotVerdict verdict = judge_.judge(next);
+    count_blocked(step, made, desired);
+    for (std::size_t p = 0; p < levels_.size(); ++p) {
+      const std::size_t body = p % judged_.bodies.size();
+      levels_[p] =
+          setup_.must_keep == body ? 1.0 : promised_level(step, body, p / judged_.bodies.size());
+    }
+    note(step, judge_.judge(next, levels_));
+    if (step.status == Status::free && setup_.scenario->attacked == Attacked::instrument) {
+      const Missed off = missed(setup_, judged_, positions_, next, desired);
+      tally.strayed += off.moving > strayed_above * off.standing ? 1 : 0;
+    }
+    if (tally.first_breach == 0 && breaches(tally) > 0) tally.first_breach = tally.cycles;
+    move_meshes();
+    positions_ = next;
+    return step.ok();
+  }
+
+  void note(const InstrumentStep& step, const RobotVerdict& verdict) {
+    RobotTally& tally = row_.tally;
     ++tally.cycles;
     ++tally.statuses[static_cast<std::size_t>(step.status)];
     tally.below += verdict.is_below ? 1 : 0;
@@ -120,49 +223,82 @@ class RobotAttempt {
       tally.deepest = std::max(tally.deepest, -verdict.least);
     }
     tally.limits_broken += verdict.limits_broken ? 1 : 0;
+    tally.guides_left += verdict.is_guide_left ? 1 : 0;
     tally.least_beyond = std::min(tally.least_beyond, verdict.beyond);
+    tally.least_in_tau = std::min(tally.least_in_tau, verdict.beyond / subject_->tolerance());
+    tally.least_guide_in_tau = std::min(tally.least_guide_in_tau, verdict.guide_room);
     const auto rounds = static_cast<std::uint64_t>(step.rounds);
     tally.rounds += rounds;
     tally.most_rounds = std::max(tally.most_rounds, rounds);
     tally.rows += step.rows;
-    tally.most_looks = std::max<std::uint64_t>(tally.most_looks, constraint_.looks());
-    const RobotTask task(instrument_.chain(), positions_, desired, constraint_.options());
+    tally.most_looks = std::max<std::uint64_t>(tally.most_looks, subject_->looks());
+  }
+
+  /// Counts cycles that make next to nothing of what is asked, and searches beside some of them for
+  /// a motion. What is led out has other things to do than what it is asked for; beside a mesh that
+  /// moves nothing is searched, as standing still need not be allowed there.
+  void count_blocked(const InstrumentStep& step, const RobotTask::Increment& made,
+                     const Twist& desired) {
+    RobotTally& tally = row_.tally;
+    if (step.status == Status::recovering) return;
+    InstrumentOptions options = setup_.options;
+    options.margin = margin_;
+    const RobotTask task(chain_, positions_, desired, options);
     const RobotTask::Increment none = RobotTask::Increment::Zero(made.size());
-    const bool is_led = step.status == Status::recovering;
-    tally.worse += !is_led && task.cost(made) > 1.05 * task.cost(none) ? 1 : 0;
-    // What is led out has other things to do than what it is asked for.
-    if (!is_led && task.share(made) < blocked_below && tally.blocked++ % sampled == 0) {
-      const double more = excess(task, instrument_.chain(), positions_, {made.data(), next.size()},
-                                 constraint_.options(), oracle_, random_);
-      ++tally.samples;
-      tally.excess += more;
-      tally.useful += more > useful_above ? 1 : 0;
-    }
-    positions_ = next;
-    return step.ok();
+    tally.worse += task.cost(made) > 1.05 * task.cost(none) ? 1 : 0;
+    if (!(task.share(made) < blocked_below)) return;
+    const std::uint64_t every = row_.is_drawn ? sampled_where_drawn : sampled;
+    if (tally.blocked++ % every != 0 || setup_.scenario->moves) return;
+    const Search found =
+        search(task, positions_, {made.data(), positions_.size()}, judge_, random_);
+    ++tally.samples;
+    tally.excess += found.saved;
+    tally.useful += found.saved > useful_above ? 1 : 0;
+    tally.movable += found.share >= movable_above ? 1 : 0;
   }
 
   RobotRow& row_;
   Random& random_;
-  Instrument instrument_;
-  InstrumentOptions usual_;
-  InstrumentConstraint constraint_;
-  MotionConstraint point_;  // of a ball at the tip alone: timed beside it
-  oracle::InstrumentOracle oracle_;
+  RobotSetup setup_;
+  oracle::JudgedRobot judged_;
+  Chain chain_;
+  std::unique_ptr<RobotSubject> subject_;
+  std::optional<MotionConstraint> point_;  // of a ball at the tip alone: timed beside it
   RobotJudge judge_;
   RobotHand hand_;
   std::vector<double> positions_;
+  std::vector<Pose> poses_;              // of the meshes
+  std::vector<Twist> velocities_;        // of the meshes
+  std::vector<double> levels_;           // see RobotJudge::judge
+  double margin_ = 0.0;                  // at present [mm]
   std::optional<std::uint64_t> waited_;  // for a margin that is not kept yet [cycles]
 };
 
-/// The scenarios at each speed: what is not an approach is done at the first one only.
-std::vector<std::pair<Scenario, double>> rows_of(const RobotCampaign& campaign) {
-  std::vector<std::pair<Scenario, double>> rows;
-  for (const double speed : campaign.speeds) rows.emplace_back(Scenario::approach, speed);
-  for (const Scenario s : {Scenario::raised, Scenario::overlapping, Scenario::wedged}) {
-    rows.emplace_back(s, campaign.speeds.front());
+void run_row(RobotRow& row, const std::function<Next(const RobotTally&, std::uint64_t)>& advanced,
+             Next& next) {
+  RobotTally& tally = row.tally;
+  const RobotCampaign& campaign = row.campaign;
+  const auto number = static_cast<std::uint64_t>(&row.scenario - scenarios().data());
+  const std::uint64_t longest = row.is_drawn ? cycles_of_a_drawn_start : cycles_of_a_start;
+  int misses = 0;  // setups without a place to begin, one after the other
+  for (std::uint64_t draw = 0; tally.cycles < campaign.cycles && next == Next::go_on; ++draw) {
+    Random of_seed(campaign.seed + 1000 * number);
+    Random random(of_seed.bits() ^ draw);
+    const auto options = [&](const Chain& chain) {
+      return options_of(campaign, chain, tally.speed);
+    };
+    auto setup = draw_setup(row.scenario, row.robot, tally.speed, random, row.draw_mesh, options);
+    // Where all is drawn, the next draw may well do.
+    const int most_misses = row.is_drawn ? 20 : 1;
+    misses = setup ? 0 : misses + 1;
+    tally.is_out_of_starts = misses >= most_misses;
+    if (tally.is_out_of_starts) break;
+    if (!setup) continue;
+    ++tally.starts;
+    const std::uint64_t before = tally.cycles;
+    RobotAttempt(row, std::move(*setup), random).run(std::min(longest, campaign.cycles - before));
+    next = advanced(tally, tally.cycles - before);
   }
-  return rows;
 }
 
 }  // namespace
@@ -178,47 +314,61 @@ InstrumentOptions options_of(const RobotCampaign& campaign, const Chain& chain, 
   return options;
 }
 
-std::uint64_t cycle_count(const RobotCampaign& campaign, std::size_t meshes) noexcept {
-  return campaign.cycles * meshes * (campaign.speeds.size() + 3);
+std::vector<RobotRowPlan> rows_of(const RobotCampaign& campaign) {
+  std::vector<RobotRowPlan> rows;
+  const auto add = [&](const Scenario& scenario, std::size_t speeds) {
+    for (std::size_t s = 0; s < speeds; ++s) rows.push_back({&scenario, campaign.speeds[s]});
+  };
+  for (const std::string& name : campaign.scenarios) {
+    add(scenario_named(name), campaign.speeds.size());
+  }
+  for (std::size_t s = 0; campaign.scenarios.empty() && s < usual_scenarios; ++s) {
+    add(scenarios()[s], s == 0 ? campaign.speeds.size() : 1);
+  }
+  return rows;
+}
+
+std::uint64_t cycle_count(const RobotCampaign& campaign, std::size_t meshes) {
+  return campaign.cycles * meshes * rows_of(campaign).size();
+}
+
+std::uint64_t breaches(const RobotTally& tally) noexcept {
+  return tally.below + tally.limits_broken + tally.guides_left;
 }
 
 std::vector<RobotTally> run_robot_campaign(
     const RobotCampaign& campaign, std::span<const Arena> arenas,
     const std::function<Next(const RobotTally&, std::uint64_t)>& advanced) {
-  const RobotUnderTest& robot = robot_named(campaign.robot);
+  const RobotUnderTest* robot = campaign.robot.empty() ? nullptr : &robot_named(campaign.robot);
   std::vector<RobotTally> tallies;
-  for (std::size_t a = 0; a < arenas.size(); ++a) {
-    std::vector<Scene> scenes = arenas[a].load();
-    Scene& scene = scenes.front();
-    const auto tree = std::make_shared<const oracle::TriangleTree>(scene.mesh());
+  Next next = Next::go_on;
+  for (const Arena& arena : arenas) {
+    const auto judged = [](std::shared_ptr<Scene> scene) {
+      auto tree = std::make_shared<const oracle::TriangleTree>(scene->mesh());
+      return JudgedMesh{std::move(scene), std::move(tree)};
+    };
+    std::optional<JudgedMesh> loaded;
+    if (arena.load) loaded = judged(std::make_shared<Scene>(std::move(arena.load().front())));
+    const auto draw_mesh = [&](Random& random) {
+      return loaded ? *loaded : judged(arena.draw(random));
+    };
     for (const auto& [scenario, speed] : rows_of(campaign)) {
-      RobotRow row{scene,
-                   tree,
-                   robot,
-                   campaign,
-                   {.mesh = arenas[a].mesh,
-                    .triangles = scene.mesh()->triangle_count(),
-                    .scenario = scenario,
-                    .speed = speed}};
-      RobotTally& tally = row.tally;
+      const bool is_drawn = !loaded || robot == nullptr || scenario->carrier == Carrier::slides;
+      RobotRow row{.campaign = campaign,
+                   .scenario = *scenario,
+                   .draw_mesh = draw_mesh,
+                   .is_drawn = is_drawn,
+                   .robot = robot,
+                   .tally = {.mesh = arena.mesh,
+                             .triangles = loaded ? loaded->scene->mesh()->triangle_count() : 0,
+                             .scenario = std::string(scenario->name),
+                             .speed = speed}};
       const BenchClock::time_point start = BenchClock::now();
-      Next next = Next::go_on;
-      while (tally.cycles < campaign.cycles && next == Next::go_on) {
-        Random of_seed(campaign.seed + 1000 * static_cast<std::uint64_t>(scenario));
-        Random random(of_seed.bits() ^ tally.starts);
-        const auto begin = find_start(scene, tree, robot, scenario, campaign.margin, random);
-        tally.is_out_of_starts = !begin;
-        if (!begin) break;
-        ++tally.starts;
-        const std::uint64_t before = tally.cycles;
-        RobotAttempt(row, *begin, random)
-            .run(std::min(cycles_of_a_start, campaign.cycles - before));
-        next = advanced(tally, tally.cycles - before);
-      }
-      tally.step = timing_of(row.times);
-      tally.point = timing_of(row.point_times);
-      tally.seconds = microseconds_since(start) * 1e-6;
-      tallies.push_back(tally);
+      run_row(row, advanced, next);
+      row.tally.step = timing_of(row.times);
+      row.tally.point = timing_of(row.point_times);
+      row.tally.seconds = microseconds_since(start) * 1e-6;
+      tallies.push_back(std::move(row.tally));
       if (next == Next::stop) return tallies;
     }
   }

@@ -5,37 +5,53 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "bench/timing.h"
 #include "keepout/robot/instrument_constraint.h"
 #include "verify/campaign.h"
-#include "verify/robot/start.h"
+#include "verify/robot/robot_setup.h"
+#include "verify/robot/subject.h"
 
 namespace keepout::app {
 
 /// What a campaign with a whole instrument does.
 struct RobotCampaign {
-  std::string robot = {};                // of robots_under_test()
-  std::uint64_t cycles = 200'000;        // of each row
-  std::vector<double> speeds{1.0, 5.0};  // multiples of what a hand at speed 1 asks for
+  std::string robot = {};  // of robots_under_test(); empty: one is drawn anew for each start
+  std::vector<std::string> scenarios = {};  // of scenarios(); none: the usual ones
+  std::uint64_t cycles = 200'000;           // of each row
+  std::vector<double> speeds{1.0, 5.0};     // multiples of what a hand at speed 1 asks for
   CertifiedMotion motion = CertifiedMotion::actual;
   double margin = 0.2;  // [mm]
   std::uint64_t seed = 1;
+  /// What is attacked; tests put something worse in its place.
+  std::function<std::unique_ptr<RobotSubject>(const RobotSetup&)> make_subject = &app::make_subject;
 };
+
+/// What a row of a campaign does.
+struct RobotRowPlan {
+  const Scenario* scenario;
+  double speed;
+};
+/// The rows for each mesh: scenarios that are named at each speed; of the usual ones the first at
+/// each speed, the others at the first speed only. Throws Error for a scenario that there is not.
+std::vector<RobotRowPlan> rows_of(const RobotCampaign& campaign);
 
 /// How a robot is guarded in a campaign. Velocity limits are those of a patient arm: the cycle is
 /// made so long that they admit a tenth of a radian and 2.5 mm at speed 1.
 InstrumentOptions options_of(const RobotCampaign& campaign, const Chain& chain, double speed);
 
 inline constexpr std::uint64_t cycles_of_a_start = 2000;
+inline constexpr std::uint64_t cycles_of_a_drawn_start = 400;  // where mesh or robot are drawn
 
 /// What came out on one mesh, in one scenario at one speed.
 struct RobotTally {
   std::string mesh;
   std::uint64_t triangles = 0;
-  Scenario scenario = Scenario::approach;
+  std::string scenario;
   double speed = 1.0;
   std::uint64_t starts = 0;
   std::uint64_t cycles = 0;
@@ -44,9 +60,16 @@ struct RobotTally {
   std::uint64_t in_mesh = 0;      // of them, those in which a body reached through the surface
   double deepest = 0.0;           // of those [mm]
   std::uint64_t limits_broken = 0;
+  std::uint64_t guides_left = 0;  // cycles that left a guide by more than is promised
+  /// Cycles without anything in the way (status free) that ended farther from what was asked than
+  /// standing still, by more than a twentieth, with the true motion of the flange.
+  std::uint64_t strayed = 0;
+  std::uint64_t first_breach = 0;  // the number of the first cycle of the row with a breach; or 0
   /// Of all cycles, the smallest clearance beyond what was to be kept. Infinite when none came
   /// near. [mm]
   double least_beyond = std::numeric_limits<double>::infinity();
+  double least_in_tau = std::numeric_limits<double>::infinity();        // the same in tolerances
+  double least_guide_in_tau = std::numeric_limits<double>::infinity();  // of guides
   std::array<std::uint64_t, status_count> statuses{};
   /// Cycles that led nothing out, and made less than a twentieth of the motion asked for, or one
   /// that costs more than none at all, by a twentieth.
@@ -59,13 +82,14 @@ struct RobotTally {
   double excess = 0.0;           // of all samples
   std::uint64_t samples = 0;     // blocked cycles that were searched for a better motion
   std::uint64_t useful = 0;      // of them, those where there was one worth the name
+  std::uint64_t movable = 0;     // of them, those where a tenth of the motion asked for was allowed
   std::uint64_t recoveries = 0;  // how often a body was closer than a margin just set
   std::uint64_t recovered = 0;   // of them, within 500 cycles
   std::uint64_t recovery_cycles = 0;  // that those took
   double seconds = 0.0;
 };
 
-/// Runs it, a row for each speed and mesh, and at the first speed one for each other scenario.
+/// Runs it, all rows on one mesh after the other.
 /// `advanced` is told the cycles after each start; where it says stop, the rows are of what was
 /// done. Throws Error when there is no such robot.
 std::vector<RobotTally> run_robot_campaign(
@@ -73,6 +97,9 @@ std::vector<RobotTally> run_robot_campaign(
     const std::function<Next(const RobotTally&, std::uint64_t)>& advanced);
 
 /// How many cycles that is on so many meshes.
-std::uint64_t cycle_count(const RobotCampaign& campaign, std::size_t meshes) noexcept;
+std::uint64_t cycle_count(const RobotCampaign& campaign, std::size_t meshes);
+
+/// Cycles in which something that is promised was not kept.
+std::uint64_t breaches(const RobotTally& tally) noexcept;
 
 }  // namespace keepout::app

@@ -11,20 +11,6 @@ namespace keepout::app {
 namespace {
 
 constexpr int search_trials = 800;
-constexpr int searched_poses = 9;
-
-bool is_within_limits(const Chain& chain, std::span<const double> positions,
-                      const RobotTask::Increment& dq, double period) {
-  for (int k = 1; k <= chain.size(); ++k) {
-    const JointLimits& limits = chain.joint(k).limits;
-    const double to = positions[static_cast<std::size_t>(k - 1)] + dq[k - 1];
-    if (!(to >= limits.lower && to <= limits.upper) ||
-        !(std::abs(dq[k - 1]) <= std::min(limits.increment, limits.velocity * period))) {
-      return false;
-    }
-  }
-  return true;
-}
 
 }  // namespace
 
@@ -32,12 +18,13 @@ RobotTask::RobotTask(const Chain& chain, std::span<const double> positions, cons
                      const InstrumentOptions& options)
     : jacobian_(6, chain.size()), desired_(6), damping_(chain.size()) {
   const double weight = options.orientation_weight;
+  const double of_slides = weight > 0.0 ? weight : 1.0;  // what a slide's damping is relative to
   ChainState state;
   chain.place(positions, state);
   for (int k = 1; k <= chain.size(); ++k) {
     jacobian_.col(k - 1) << state.linear(k, chain.size(), state.flange().position),
         weight * state.angular(k, chain.size());
-    damping_[k - 1] = options.damping / (state.turns(k) ? 1.0 : weight * weight);
+    damping_[k - 1] = options.damping / (state.turns(k) ? 1.0 : of_slides * of_slides);
   }
   desired_ << desired.linear, weight * desired.angular;
 }
@@ -54,27 +41,14 @@ RobotTask::Increment RobotTask::scales() const {
   return desired_.norm() / lengths.max(1e-3 * lengths.maxCoeff());
 }
 
-double excess(const RobotTask& task, const Chain& chain, std::span<const double> positions,
-              std::span<const double> made, const InstrumentOptions& options,
-              oracle::InstrumentOracle& oracle, Random& random) {
-  const double kept = options.margin - 0.1 * options.band;
-  std::vector<double> at(positions.begin(), positions.end());
-  std::vector<double> floors(oracle.bodies());
-  oracle.move_to(at);
-  for (std::size_t b = 0; b < floors.size(); ++b) {
-    floors[b] = std::min(kept, oracle.clearance(b, kept));
-  }
-  const auto is_clear = [&](const RobotTask::Increment& dq) {
-    for (int i = searched_poses - 1; i > 0; --i) {  // where it ends is most likely to be too close
-      for (std::size_t k = 0; k < at.size(); ++k) {
-        at[k] = positions[k] + dq[static_cast<Eigen::Index>(k)] * i / (searched_poses - 1);
-      }
-      oracle.move_to(at);
-      for (std::size_t b = 0; b < floors.size(); ++b) {
-        if (oracle.clearance(b, floors[b]) < floors[b]) return false;
-      }
+Search search(const RobotTask& task, std::span<const double> positions,
+              std::span<const double> made, RobotJudge& judge, Random& random) {
+  std::vector<double> next(positions.size());
+  const auto is_allowed = [&](const RobotTask::Increment& dq) {
+    for (std::size_t k = 0; k < next.size(); ++k) {
+      next[k] = positions[k] + dq[static_cast<Eigen::Index>(k)];
     }
-    return true;
+    return judge.would_allow(next);
   };
   RobotTask::Increment best =
       Eigen::Map<const Eigen::VectorXd>(made.data(), static_cast<Eigen::Index>(made.size()));
@@ -87,9 +61,7 @@ double excess(const RobotTask& task, const Chain& chain, std::span<const double>
     for (Eigen::Index k = 0; k < trial.size(); ++k) {
       trial[k] += size * random.uniform(-1.0, 1.0) * scales[k];
     }
-    const bool is_better = task.cost(trial) < least &&
-                           is_within_limits(chain, positions, trial, options.period) &&
-                           is_clear(trial);
+    const bool is_better = task.cost(trial) < least && is_allowed(trial);
     if (is_better) {
       best = trial;
       least = task.cost(trial);
@@ -97,7 +69,7 @@ double excess(const RobotTask& task, const Chain& chain, std::span<const double>
     size *= is_better ? 2.0 : 0.95;
     if (size < 1e-4) size = 0.5;  // it has settled: once more from afar
   }
-  return (cost - least) / task.largest_reduction();
+  return {(cost - least) / task.largest_reduction(), task.share(best)};
 }
 
 }  // namespace keepout::app

@@ -5,8 +5,8 @@
 #include <span>
 
 #include "keepout/fixtures/random.h"
-#include "keepout/oracle/instrument_oracle.h"
 #include "keepout/robot/instrument_constraint.h"
+#include "verify/robot/judge.h"
 
 namespace keepout::app {
 
@@ -37,12 +37,15 @@ class RobotTask {
   Eigen::VectorXd damping_;   // of each joint (n)
 };
 
-/// How much more of its cost a step could have saved, as a share of the largest reduction: what a
-/// local random search finds among joint increments that the joints' limits admit, and whose motion
-/// the judge finds clear by all but a tenth of the band at nine poses; a body that is closer to
-/// begin with need not be clearer than that.
-double excess(const RobotTask& task, const Chain& chain, std::span<const double> positions,
-              std::span<const double> made, const InstrumentOptions& options,
-              oracle::InstrumentOracle& oracle, Random& random);
+/// What a search found beside a step.
+struct Search {
+  double saved;  // of its cost, as a share of the largest reduction
+  double share;  // of the motion asked for that the best motion found makes
+};
+
+/// Searches for a better motion than the one that was made, locally and at random, among joint
+/// increments that the judge would allow in the coming cycle.
+Search search(const RobotTask& task, std::span<const double> positions,
+              std::span<const double> made, RobotJudge& judge, Random& random);
 
 }  // namespace keepout::app

@@ -1,17 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "verify/robot/judge.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <utility>
 
 namespace keepout::app {
 namespace {
 
-constexpr int poses_of_a_cycle = 6;
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr int parts_of_a_cycle = 8;
+constexpr int refinements = 3;               // around the worst place
+constexpr double angular_tolerance = 1e-12;  // [chord]
 
-/// Whether a joint may go there, but for what sums are rounded: one that is outside of its limits
-/// may stay, or come back.
+/// Returns true if a joint may go there, but for what sums are rounded: one that is outside of its
+/// limits may stay, or come back.
 bool is_allowed(const Joint& joint, double from, double to, double period) {
   const JointLimits& limits = joint.limits;
   const double rounding = 1e-14 * (std::abs(from) + std::abs(to));
@@ -20,69 +24,201 @@ bool is_allowed(const Joint& joint, double from, double to, double period) {
          std::abs(to - from) <= std::min(limits.increment, limits.velocity * period) + rounding;
 }
 
+/// What is certified of something that should keep `target`, is at `distance`, and was promised
+/// `floor` last: docs/joint-space-step.md, "What is promised" and "Recovery".
+double certified(double distance, double floor, double target, double band, double tolerance) {
+  if (distance >= target - 3.0 * tolerance) return target;
+  const double room = distance > 0.0 ? std::min(band, 0.5 * distance) : band;
+  return std::clamp(distance - room, std::min(floor, target), target);
+}
+
 }  // namespace
 
-RobotJudge::RobotJudge(oracle::InstrumentOracle& oracle, const Chain& chain, Random& random,
+RobotJudge::RobotJudge(JudgedScene scene, const Chain& limits, Random& random,
                        std::span<const double> positions, const InstrumentOptions& options,
                        double tolerance)
-    : oracle_(&oracle),
-      chain_(&chain),
+    : bodies_(scene.robot.bodies.size()),
+      base_(scene.base),
+      guides_(std::move(scene.guides)),
+      limits_(&limits),
       random_(&random),
       positions_(positions.begin(), positions.end()),
-      options_(options),
+      between_(positions_),
       tolerance_(tolerance),
-      clearances_(oracle.bodies()),
-      floors_(oracle.bodies(), -std::numeric_limits<double>::infinity()) {
-  look(positions_, clearances_);
+      has_band_(scene.has_band),
+      least_(bodies_) {
+  for (JudgedScene::Mesh& mesh : scene.meshes) {
+    meshes_.push_back({oracle::InstrumentOracle(std::move(mesh.tree), scene.robot, base_),
+                       mesh.margin, mesh.pose});
+  }
+  kept_.resize(meshes_.size() * bodies_ + guides_.size());
+  distances_.resize(kept_.size());
+  follow(options);
+}
+
+double RobotJudge::margin(std::size_t mesh) const noexcept {
+  return meshes_[mesh].margin > 0.0 ? meshes_[mesh].margin : options_.margin;
+}
+
+double RobotJudge::tolerance(std::size_t kept) const noexcept {
+  const std::size_t pairs = meshes_.size() * bodies_;
+  const bool is_angular =
+      kept >= pairs && guides_[kept - pairs].kind == oracle::JudgedGuide::Kind::axis;
+  return is_angular ? angular_tolerance : tolerance_;
 }
 
 void RobotJudge::follow(const InstrumentOptions& options) {
   options_ = options;
-  look(positions_, clearances_);
+  if (!has_band_) options_.band = 0.0;
+  look(positions_, 0.0, distances_);
+  for (std::size_t i = 0; i < kept_.size(); ++i) kept_[i].distance = distances_[i];
+}
+
+void RobotJudge::place(std::size_t mesh, const Pose& pose, const Twist& velocity) {
+  meshes_[mesh].pose = pose;
+  meshes_[mesh].velocity = velocity;
+  is_placed_anew_ = true;
 }
 
 bool RobotJudge::is_recovered() const noexcept {
-  return std::ranges::min(clearances_) >= options_.margin - options_.band - 3.0 * tolerance_;
+  for (std::size_t p = 0; p < meshes_.size() * bodies_; ++p) {
+    const double target = margin(p / bodies_) - options_.band;
+    if (kept_[p].distance < target - 3.0 * tolerance_) return false;
+  }
+  return true;
 }
 
-void RobotJudge::look(std::span<const double> positions, std::span<double> clearances) {
-  oracle_->move_to(positions);
-  for (std::size_t b = 0; b < clearances.size(); ++b) {
-    clearances[b] = oracle_->clearance(b, options_.margin);
+Pose RobotJudge::pose_at(const Mesh& mesh, double share) const {
+  const double time = share * options_.period;
+  Pose pose = mesh.pose;
+  pose.position += time * mesh.velocity.linear;
+  const double turn = time * mesh.velocity.angular.norm();
+  if (turn > 0.0) {
+    pose.rotation = (Eigen::AngleAxisd(turn, mesh.velocity.angular.normalized()) *
+                     Eigen::Quaterniond(mesh.pose.rotation))
+                        .normalized()
+                        .toRotationMatrix();
   }
+  return pose;
 }
 
-RobotVerdict RobotJudge::judge(std::span<const double> next) {
-  const std::vector<double> from = positions_;
-  least_ = clearances_;
-  RobotVerdict verdict{};
-  for (std::size_t b = 0; b < least_.size(); ++b) {
-    floors_[b] = std::min(std::max(floors_[b], clearances_[b] - options_.band),
-                          options_.margin - options_.band);
+/// Measures all distances at a share of the way to `next`.
+void RobotJudge::look(std::span<const double> next, double share, std::span<double> distances) {
+  for (std::size_t k = 0; k < positions_.size(); ++k) {
+    between_[k] = share == 1.0 ? next[k] : positions_[k] + share * (next[k] - positions_[k]);
   }
-  for (std::size_t k = 0; k < from.size(); ++k) {
-    verdict.limits_broken =
-        verdict.limits_broken ||
-        !is_allowed(chain_->joint(static_cast<int>(k) + 1), from[k], next[k], options_.period);
-  }
-  for (int i = 1; i < poses_of_a_cycle && !std::ranges::equal(next, from); ++i) {
-    // One at the end, and one at random in each quarter.
-    const double s =
-        i == poses_of_a_cycle - 1 ? 1.0 : (i - random_->uniform()) / (poses_of_a_cycle - 2);
-    for (std::size_t k = 0; k < from.size(); ++k) {
-      positions_[k] = s == 1.0 ? next[k] : from[k] + s * (next[k] - from[k]);
+  for (std::size_t m = 0; m < meshes_.size(); ++m) {
+    const Pose pose = pose_at(meshes_[m], share);
+    const Mat3 back = pose.rotation.transpose();
+    meshes_[m].oracle.move_to(between_,
+                              {back * (base_.position - pose.position), back * base_.rotation});
+    for (std::size_t b = 0; b < bodies_; ++b) {
+      distances[m * bodies_ + b] = meshes_[m].oracle.clearance(b, margin(m));
     }
-    look(positions_, clearances_);
-    std::ranges::transform(least_, clearances_, least_.begin(),
-                           [](double a, double b) { return std::min(a, b); });
   }
-  verdict.least = std::ranges::min(least_);
-  verdict.beyond = std::numeric_limits<double>::infinity();
-  for (std::size_t b = 0; b < least_.size(); ++b) {
-    verdict.beyond = std::min(verdict.beyond, least_[b] - floors_[b]);
+  if (guides_.empty()) return;
+  const auto links = oracle::place(meshes_[0].oracle.robot(), base_, between_);
+  for (std::size_t g = 0; g < guides_.size(); ++g) {
+    distances[meshes_.size() * bodies_ + g] = -excess(guides_[g], links);
+  }
+}
+
+/// Looks, remembers what is least, and returns the smallest room there is: distance less what is
+/// due.
+double RobotJudge::look_and_note(std::span<const double> next, double share) {
+  look(next, share, distances_);
+  double room = infinity;
+  for (std::size_t i = 0; i < kept_.size(); ++i) {
+    kept_[i].least = std::min(kept_[i].least, distances_[i]);
+    room = std::min(room, distances_[i] - kept_[i].due);
+  }
+  return room;
+}
+
+/// Finds what is certified in this cycle, and promised.
+void RobotJudge::open(std::span<const double> levels) {
+  if (is_placed_anew_) follow(options_);
+  is_placed_anew_ = false;
+  const std::size_t pairs = meshes_.size() * bodies_;
+  for (std::size_t i = 0; i < kept_.size(); ++i) {
+    Kept& kept = kept_[i];
+    const bool is_pair = i < pairs;
+    const double band = is_pair || !has_band_ ? options_.band : guides_[i - pairs].band;
+    const double target = is_pair ? margin(i / bodies_) - options_.band : -guides_[i - pairs].band;
+    const double floor = certified(kept.distance, kept.floor, target, band, tolerance(i));
+    const double level = is_pair && !levels.empty() ? levels[i] : 1.0;
+    kept.due = level > 0.0 ? floor - (1.0 - level) * std::max(floor, 0.0) : -infinity;
+    kept.floor = kept.due;
+    kept.least = kept.distance;
+  }
+}
+
+RobotVerdict RobotJudge::judge(std::span<const double> next, std::span<const double> levels) {
+  RobotVerdict verdict;
+  for (std::size_t k = 0; k < positions_.size(); ++k) {
+    verdict.limits_broken =
+        verdict.limits_broken || !is_allowed(limits_->joint(static_cast<int>(k) + 1), positions_[k],
+                                             next[k], options_.period);
+  }
+  open(levels);
+  const bool is_still =
+      std::ranges::equal(next, positions_) && std::ranges::all_of(meshes_, [](const Mesh& mesh) {
+        return mesh.velocity.linear.isZero(0.0) && mesh.velocity.angular.isZero(0.0);
+      });
+  if (!is_still) {
+    double worst = infinity;
+    double at = 1.0;
+    const auto try_at = [&](double share) {
+      const double room = look_and_note(next, share);
+      if (room < worst) at = share;
+      worst = std::min(worst, room);
+    };
+    for (int i = 0; i < parts_of_a_cycle; ++i) try_at((i + random_->uniform()) / parts_of_a_cycle);
+    double step = 0.5 / parts_of_a_cycle;
+    for (int i = 0; i < refinements && worst < options_.margin; ++i, step *= 0.5) {
+      const double middle = at;
+      try_at(std::max(middle - step, 0.0));
+      try_at(std::min(middle + step, 1.0));
+    }
+    look_and_note(next, 1.0);  // where the next cycle begins
+    for (std::size_t i = 0; i < kept_.size(); ++i) kept_[i].distance = distances_[i];
+    std::ranges::copy(next, positions_.begin());
+    for (Mesh& mesh : meshes_) mesh.pose = pose_at(mesh, 1.0);
+  }
+  std::ranges::fill(least_, infinity);
+  for (std::size_t i = 0; i < kept_.size(); ++i) {
+    const double room = kept_[i].least - kept_[i].due;
+    if (i < meshes_.size() * bodies_) {
+      least_[i % bodies_] = std::min(least_[i % bodies_], kept_[i].least);
+      verdict.least = std::min(verdict.least, kept_[i].least);
+      verdict.beyond = std::min(verdict.beyond, room);
+    } else {
+      verdict.guide_room = std::min(verdict.guide_room, room / tolerance(i));
+    }
   }
   verdict.is_below = !(verdict.beyond >= -3.0 * tolerance_);
+  verdict.is_guide_left = !(verdict.guide_room >= -3.0);
   return verdict;
+}
+
+bool RobotJudge::would_allow(std::span<const double> next) {
+  constexpr int poses = 9;
+  const std::size_t pairs = meshes_.size() * bodies_;
+  for (std::size_t k = 0; k < positions_.size(); ++k) {
+    if (!is_allowed(limits_->joint(static_cast<int>(k) + 1), positions_[k], next[k],
+                    options_.period)) {
+      return false;
+    }
+  }
+  for (int i = poses - 1; i > 0; --i) {  // where it ends is most likely to be too close
+    look(next, static_cast<double>(i) / (poses - 1), distances_);
+    for (std::size_t k = 0; k < kept_.size(); ++k) {
+      const double wanted =
+          k < pairs ? margin(k / bodies_) - 0.1 * options_.band : -0.9 * guides_[k - pairs].band;
+      if (distances_[k] < std::min(wanted, kept_[k].distance)) return false;
+    }
+  }
+  return true;
 }
 
 }  // namespace keepout::app

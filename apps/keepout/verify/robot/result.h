@@ -14,7 +14,7 @@ namespace keepout::app {
 Json result_of(const RobotCampaign& campaign, const std::string& command, const std::string& index,
                const std::vector<RobotTally>& tallies, std::size_t meshes);
 
-/// How many cycles broke the theorem, or a joint's limits.
+/// Returns how many cycles broke the theorem, left a guide, or broke a joint's limits.
 std::uint64_t robot_breaches(const Json& record);
 
 /// The rows of such a record, and what they say.

@@ -22,9 +22,9 @@ struct Target {
   Vec3 way;  // unit, along the tool
 };
 
-Target before_surface(const SurfacePoint& on, Random& random) {
+Target before_surface(const SurfacePoint& on, double ahead, Random& random) {
   const Vec3 way = -(on.normal + 0.7 * random.uniform() * random.direction()).normalized();
-  return {on.point - random.uniform(5.0, 20.0) * way, way};
+  return {on.point - random.uniform(0.25, 1.0) * ahead * way, way};
 }
 
 /// Along the normal to the place that is as far from another wall, where a tool that keeps `least`
@@ -78,40 +78,36 @@ const RobotUnderTest& robot_named(const std::string& name) {
   return *found;
 }
 
-std::string_view name(Scenario scenario) noexcept {
-  constexpr std::array<std::string_view, 4> names{"approach", "raised", "overlapping", "wedged"};
-  return names[static_cast<std::size_t>(scenario)];
-}
-
 std::optional<RobotStart> find_start(Scene& scene,
                                      const std::shared_ptr<const oracle::TriangleTree>& tree,
-                                     const RobotUnderTest& robot, Scenario scenario, double margin,
-                                     Random& random) {
+                                     const RobotUnderTest& robot, Begin begin, double margin,
+                                     Random& random, double ahead) {
   const oracle::JudgedRobot judged = robot.judged();
   const double tool = judged.bodies.back().radius;
   for (int i = 0; i < tries; ++i) {
     SurfacePoint on = on_face(*scene.mesh(), random);
     // What has no free side is approached from either.
     if (!scene.has_sides() && random.uniform() < 0.5) on.normal = -on.normal;
-    const std::optional<Target> target = scenario == Scenario::wedged
+    const std::optional<Target> target = begin == Begin::wedged
                                              ? between_walls(scene, on, tool + margin, random)
-                                             : before_surface(on, random);
+                                             : before_surface(on, ahead, random);
     if (!target) continue;
     RobotStart start;
     for (const auto& [low, high] : robot.starts) {
       start.positions.push_back(random.uniform(low, high));
     }
     // The base follows from where the tool shall be; about its axis it is turned at random.
-    std::vector<oracle::Segment> axes(judged.bodies.size());
-    oracle::place(judged, {}, start.positions, axes);
-    const Vec3 along = axes.back().to - axes.back().from;
+    const oracle::Segment axis =
+        axis_of(judged.bodies.back(), oracle::place(judged, {}, start.positions));
+    const bool has_length = axis.from != axis.to;
+    const Vec3 along = has_length ? Vec3(axis.to - axis.from) : random.direction();
     const double roll = random.uniform(-std::numbers::pi, std::numbers::pi);
     start.base.rotation = (Eigen::AngleAxisd(roll, target->way) *
                            Eigen::Quaterniond::FromTwoVectors(along, target->way))
                               .toRotationMatrix();
-    start.base.position = target->tip - start.base.rotation * axes.back().to;
+    start.base.position = target->tip - start.base.rotation * axis.to;
     if (clearance(judged, start, tree, margin) < margin) continue;
-    if (scenario != Scenario::overlapping) return start;
+    if (begin != Begin::overlapping) return start;
     // Pushed on until the tool, or a thicker body, overlaps as far.
     const double wanted = -random.uniform(0.05, 0.45) * tool;
     double overlap = 0.0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -12,6 +12,7 @@
 #include "keepout/fixtures/random.h"
 #include "keepout/oracle/instrument_oracle.h"
 #include "keepout/robot/instrument.h"
+#include "verify/robot/scenario.h"
 #include "verify/scene.h"
 
 namespace keepout::app {
@@ -23,8 +24,8 @@ struct RobotUnderTest {
   };
   std::string_view name;
   std::string_view description;
-  Instrument (*make)(const Pose& base);
-  oracle::JudgedRobot (*judged)();
+  std::function<Instrument(const Pose& base)> make;
+  std::function<oracle::JudgedRobot()> judged;
   std::vector<Range> starts;  // of each joint, where motions begin [rad or length]
 };
 std::span<const RobotUnderTest> robots_under_test();
@@ -32,26 +33,17 @@ std::span<const RobotUnderTest> robots_under_test();
 /// The one of a name. Throws Error when there is none.
 const RobotUnderTest& robot_named(const std::string& name);
 
-/// What is done with an instrument.
-enum class Scenario : std::uint8_t {
-  approach,     // it is led to the surface, and all about it
-  raised,       // the same, while the margin is raised every other 500 cycles
-  overlapping,  // it begins with the surface within a body, by up to half its radius
-  wedged        // it begins between two walls, where the margin is raised at once
-};
-std::string_view name(Scenario scenario) noexcept;
-
 /// Where an instrument begins.
 struct RobotStart {
   Pose base;
   std::vector<double> positions;  // of the joints
 };
 
-/// A random one whose bodies keep the margin, but for the overlapping scenario; none when many
-/// tries find none.
+/// Draws a start whose bodies keep the margin, unless they are to overlap; empty when many tries
+/// find none. `ahead`: how far the tool is from the surface, at most, along its way. [mm]
 std::optional<RobotStart> find_start(Scene& scene,
                                      const std::shared_ptr<const oracle::TriangleTree>& tree,
-                                     const RobotUnderTest& robot, Scenario scenario, double margin,
-                                     Random& random);
+                                     const RobotUnderTest& robot, Begin begin, double margin,
+                                     Random& random, double ahead = 20.0);
 
 }  // namespace keepout::app

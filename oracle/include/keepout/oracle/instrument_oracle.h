@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "keepout/oracle/hull.h"
 #include "keepout/oracle/judged_robot.h"
 #include "keepout/oracle/triangle_tree.h"
 
@@ -18,7 +19,8 @@ namespace keepout::oracle {
 /// were near, and how far it has gone since. The answers do not depend on it. One oracle a thread.
 class InstrumentOracle {
  public:
-  /// `base`: where link 0 is.
+  /// `base`: the pose of link 0. Throws std::invalid_argument for a body without points or with
+  /// more than Hull::most_points.
   InstrumentOracle(std::shared_ptr<const TriangleTree> tree, JudgedRobot robot, const Pose& base);
 
   const JudgedRobot& robot() const noexcept { return robot_; }
@@ -26,15 +28,21 @@ class InstrumentOracle {
 
   /// From now on the joints are at `positions` [rad or length].
   void move_to(std::span<const double> positions);
-  /// The same, and link 0 is at `base`, as the mesh sees it: of a mesh that moves.
+  /// Like move_to(positions), but also moves link 0 to `base`, as the mesh sees it: for a mesh that
+  /// moves.
   void move_to(std::span<const double> positions, const Pose& base);
 
-  /// The axis of a body, where it is now. [length]
-  const Segment& axis(std::size_t body) const noexcept { return axes_[body]; }
+  /// The frames of the links at these positions, the base first, as the mesh sees them.
+  std::span<const LinkFrame> links() const noexcept { return links_; }
 
-  /// How far the surface of the body is from the mesh, to 1e-9 of the distance of its axis and
+  /// The segment from a body's first point to its last one: the axis of a capsule. [length]
+  Segment axis(std::size_t body) const noexcept {
+    return {cores_[body].points().front(), cores_[body].points().back()};
+  }
+
+  /// The distance of the surface of the body from the mesh, to 1e-9 of the distance of its core and
   /// some 1e-12 of the coordinates; less than 0 when the mesh reaches into it, and minus its radius
-  /// only where its axis touches. Infinite when that is more than `reach`. [length]
+  /// only where its core touches. Infinite when that is more than `reach`. [length]
   double clearance(std::size_t body, double reach);
 
  private:
@@ -54,17 +62,18 @@ class InstrumentOracle {
     double known = -1.0;  // all triangles that were nearer than that are here
     double slack = 1.0;   // beyond what was asked for
     double travelled = 0.0;
-    Segment last = {};  // where its axis was
+    std::vector<Vec3> last = {};  // the points of its core at the last call
     std::vector<Neighbor> neighbors = {};
     std::vector<Entry> heap = {};  // those that may be nearest first
   };
 
-  void look_around(Surroundings& around, const Segment& axis, double reach);
+  void look_around(Surroundings& around, const Hull& core, double reach);
 
   std::shared_ptr<const TriangleTree> tree_;
   JudgedRobot robot_;
   Pose base_;
-  std::vector<Segment> axes_;
+  std::vector<LinkFrame> links_;
+  std::vector<Hull> cores_;
   std::vector<Surroundings> surroundings_;
   std::vector<TriangleId> found_;
 };

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "verify/robot/drawn_robot.h"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include "keepout/robot/denavit_hartenberg.h"
+
+namespace keepout::app {
+namespace {
+
+constexpr double turning_velocity = 1.0;   // [rad/s]
+constexpr double sliding_velocity = 25.0;  // [mm/s]
+
+/// A robot as it is drawn: the judge's table and bodies, and what else the library needs.
+struct Drawn {
+  oracle::JudgedRobot judged;
+  std::vector<JointLimits> limits;
+};
+
+Body body_of(const oracle::JudgedBody& judged) {
+  Body body{.name = "body", .radius = judged.radius};
+  for (const oracle::JudgedPoint& point : judged.points) {
+    body.points.push_back({point.link, point.position});
+  }
+  return body;
+}
+
+Instrument instrument_of(const Drawn& drawn, const Pose& base) {
+  constexpr double right = std::numbers::pi / 2.0;
+  std::vector<DenavitHartenberg> table;
+  for (std::size_t k = 0; k < drawn.judged.table.size(); ++k) {
+    const oracle::TableRow& row = drawn.judged.table[k];
+    table.push_back({.name = "joint",
+                     .kind = row.slides ? JointKind::prismatic : JointKind::revolute,
+                     .a = row.a,
+                     .alpha = right * row.alpha_quarters,
+                     .d = row.d,
+                     .theta = right * row.theta_quarters,
+                     .limits = drawn.limits[k]});
+  }
+  std::vector<Body> bodies;
+  for (const oracle::JudgedBody& body : drawn.judged.bodies) bodies.push_back(body_of(body));
+  const Vec3 tip = drawn.judged.bodies.back().points.back().position;
+  return {Chain(joints_of(table, DhConvention::modified).joints, base, {tip, Mat3::Identity()}),
+          std::move(bodies)};
+}
+
+RobotUnderTest robot_of(Drawn drawn) {
+  std::vector<RobotUnderTest::Range> starts;
+  for (const JointLimits& limits : drawn.limits) {
+    const double middle = 0.5 * (limits.lower + limits.upper);
+    const double half = 0.3 * (limits.upper - limits.lower);
+    starts.push_back({middle - half, middle + half});
+  }
+  return {.name = "drawn",
+          .description = "",
+          .make = [drawn](const Pose& base) { return instrument_of(drawn, base); },
+          .judged = [drawn] { return drawn.judged; },
+          .starts = std::move(starts)};
+}
+
+JointLimits turning(double range) {
+  return {.lower = -range, .upper = range, .velocity = turning_velocity};
+}
+JointLimits sliding(double range) {
+  return {.lower = -range, .upper = range, .velocity = sliding_velocity};
+}
+
+double drawn_radius(Random& random) {
+  return random.uniform() < 0.2 ? 0.0 : random.uniform(0.05, 3.0);
+}
+
+/// Points about a place of a link, the place itself last; flat in every other case.
+oracle::JudgedBody blade_at(int link, const Vec3& place, double size, Random& random) {
+  oracle::JudgedBody blade{.points = {}, .radius = 0.3 * drawn_radius(random)};
+  const Vec3 normal = random.direction();
+  const bool is_flat = random.uniform() < 0.5;
+  for (std::size_t i = 0, count = 2 + random.below(6); i < count; ++i) {
+    Vec3 offset = size * random.uniform() * random.direction();
+    if (is_flat) offset -= offset.dot(normal) * normal;
+    blade.points.push_back({link, place + offset});
+  }
+  blade.points.push_back({link, place});
+  return blade;
+}
+
+/// Three joints that slide along z, y and x of the base, but for their signs.
+void add_slides(Drawn& drawn, double range) {
+  drawn.judged.table.push_back({.slides = true});
+  drawn.judged.table.push_back({.slides = true, .alpha_quarters = 1, .theta_quarters = 1});
+  drawn.judged.table.push_back({.slides = true, .alpha_quarters = 1});
+  for (int k = 0; k < 3; ++k) drawn.limits.push_back(sliding(range));
+}
+
+}  // namespace
+
+RobotUnderTest drawn_robot(Random& random) {
+  Drawn drawn;
+  const std::size_t joints = 3 + random.below(5);
+  const bool has_right_angles = random.uniform() < 0.5;
+  for (std::size_t k = 0; k < joints; ++k) {
+    const bool slides = random.uniform() < 0.25;
+    drawn.judged.table.push_back(
+        {.slides = slides,
+         .a = random.uniform() < 0.5 ? 0.0 : random.uniform(0.0, 60.0),
+         .alpha_quarters =
+             has_right_angles ? std::floor(random.uniform(-1.0, 2.0)) : random.uniform(-2.0, 2.0),
+         .d = random.uniform(0.0, 60.0),
+         .theta_quarters = has_right_angles ? 0.0 : random.uniform(-2.0, 2.0)});
+    drawn.limits.push_back(slides ? sliding(random.uniform(5.0, 60.0))
+                                  : turning(random.uniform(0.5, 3.0)));
+  }
+  const int last = static_cast<int>(joints);
+  const std::size_t bodies = 1 + random.below(3);
+  for (std::size_t b = 0; b < bodies; ++b) {
+    // The last body is on the last link, and is the tool.
+    const int link = b + 1 == bodies ? last : 1 + static_cast<int>(random.below(joints));
+    const Vec3 place = random.uniform(0.0, 15.0) * random.direction();
+    const double kind = random.uniform();
+    if (kind < 0.25) {
+      drawn.judged.bodies.push_back({{{link, place}}, drawn_radius(random)});
+    } else if (kind < 0.6) {
+      const int from = random.uniform() < 0.5 ? link : link - 1;
+      const Vec3 other = random.uniform(0.0, 15.0) * random.direction();
+      drawn.judged.bodies.push_back({{{from, other}, {link, place}}, drawn_radius(random)});
+    } else {
+      drawn.judged.bodies.push_back(blade_at(link, place, random.uniform(1.0, 12.0), random));
+    }
+  }
+  return robot_of(std::move(drawn));
+}
+
+RobotUnderTest sliding_ball(Random& random) {
+  Drawn drawn;
+  add_slides(drawn, 500.0);
+  drawn.judged.bodies.push_back({{{3, Vec3::Zero()}}, drawn_radius(random)});
+  return robot_of(std::move(drawn));
+}
+
+RobotUnderTest sliding_hull(Random& random) {
+  Drawn drawn;
+  add_slides(drawn, 500.0);
+  drawn.judged.bodies.push_back(blade_at(3, Vec3::Zero(), random.uniform(0.5, 15.0), random));
+  return robot_of(std::move(drawn));
+}
+
+RobotUnderTest robot_with_stuck_bodies(Random& random) {
+  Drawn drawn;
+  drawn.judged.table.push_back({.slides = true});
+  drawn.limits.push_back({.lower = -100.0, .upper = 0.0, .velocity = sliding_velocity});
+  add_slides(drawn, 500.0);
+  const auto beside = [&](int link) {
+    const Vec3 place = random.uniform(8.0, 16.0) * random.direction();
+    return random.uniform() < 0.5 ? oracle::JudgedBody{{{link, place}}, random.uniform(0.1, 2.0)}
+                                  : blade_at(link, place, 4.0, random);
+  };
+  drawn.judged.bodies.push_back(beside(0));
+  drawn.judged.bodies.push_back(beside(1));
+  drawn.judged.bodies.push_back(random.uniform() < 0.5
+                                    ? oracle::JudgedBody{{{4, Vec3::Zero()}}, drawn_radius(random)}
+                                    : blade_at(4, Vec3::Zero(), 6.0, random));
+  RobotUnderTest robot = robot_of(std::move(drawn));
+  robot.starts = {{0.0, 0.0}, {0.0, 0.0}, {0.0, 0.0}, {0.0, 0.0}};
+  return robot;
+}
+
+RobotUnderTest with_blade(const RobotUnderTest& robot, Random& random) {
+  const oracle::JudgedRobot judged = robot.judged();
+  const oracle::JudgedPoint tip = judged.bodies.back().points.back();
+  const oracle::JudgedBody blade =
+      blade_at(tip.link, tip.position, random.uniform(2.0, 12.0), random);
+  RobotUnderTest bladed = robot;
+  bladed.make = [make = robot.make, blade](const Pose& base) {
+    const Instrument bare = make(base);
+    std::vector<Body> bodies(bare.bodies().begin(), bare.bodies().end());
+    bodies.push_back(body_of(blade));
+    return Instrument(bare.chain(), std::move(bodies));
+  };
+  bladed.judged = [judged, blade] {
+    oracle::JudgedRobot all = judged;
+    all.bodies.push_back(blade);
+    return all;
+  };
+  return bladed;
+}
+
+RobotUnderTest without_velocity_limits(const RobotUnderTest& robot) {
+  RobotUnderTest fast = robot;
+  fast.make = [make = robot.make](const Pose& base) {
+    const Instrument limited = make(base);
+    std::vector<Joint> joints;
+    for (int k = 1; k <= limited.chain().size(); ++k) {
+      joints.push_back(limited.chain().joint(k));
+      joints.back().limits.velocity = std::numeric_limits<double>::infinity();
+    }
+    return Instrument(Chain(std::move(joints), base, limited.chain().flange()),
+                      {limited.bodies().begin(), limited.bodies().end()});
+  };
+  return fast;
+}
+
+}  // namespace keepout::app

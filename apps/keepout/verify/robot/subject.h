@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "keepout/robot/instrument_constraint.h"
+#include "verify/robot/robot_setup.h"
+
+namespace keepout::app {
+
+/// What is put to the test: the step that users get, as a scenario asks for it. Tests put worse
+/// ones in its place.
+class RobotSubject {
+ public:
+  virtual ~RobotSubject() = default;
+
+  virtual void set_options(const InstrumentOptions& options) = 0;
+  virtual void place(std::size_t mesh, const Pose& pose, const Twist& velocity) = 0;
+  /// Views in the result stay valid until the next step.
+  virtual InstrumentStep step(std::span<const double> positions, const Twist& desired) = 0;
+  /// The work of the last step.
+  virtual std::size_t looks() const { return 0; }
+  /// The tolerance that the step claims for itself. [length]
+  virtual double tolerance() const = 0;
+};
+
+std::unique_ptr<RobotSubject> make_subject(const RobotSetup& setup);
+
+/// The share of the certified distance that a step promises to body and mesh. This is the one place
+/// that knows how a step tells it.
+double promised_level(const InstrumentStep& step, std::size_t body, std::size_t mesh);
+
+}  // namespace keepout::app

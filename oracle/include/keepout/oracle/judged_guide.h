@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "keepout/oracle/judged_robot.h"
+
+namespace keepout::oracle {
+
+/// A guide told once more, in the judge's own terms: something of a robot, and the convex region in
+/// which it is to stay.
+struct JudgedGuide {
+  enum class Kind : std::uint8_t {
+    point,         // `first` stays in the region
+    axis,          // the direction `first.position` of a link; the region is a ball about a unit
+                   // vector, whose radius is the chord of an angle
+    remote_center  // the point of the segment from `first` to `second` that is nearest to the
+                   // region's origin
+  };
+  enum class Region : std::uint8_t { half_space, slab, tube, ball };
+
+  Kind kind = Kind::point;
+  JudgedPoint first = {};
+  JudgedPoint second = {};
+  Region region = Region::ball;
+  Vec3 origin = Vec3::Zero();      // [length]
+  Vec3 direction = Vec3::UnitZ();  // unit: into a half-space, normal of a slab, along a tube
+  double radius = 0.0;             // of a slab half the width; of a half-space 0 [length]
+  double band = 0.0;               // by how much the region may be left [length, or chord]
+};
+
+/// Returns how far the guided point is out of its region, in long double; below 0 it is inside.
+/// `links`: of the robot, in the frame of the region. [length, or chord]
+double excess(const JudgedGuide& guide, std::span<const LinkFrame> links);
+
+}  // namespace keepout::oracle

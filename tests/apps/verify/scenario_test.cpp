@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// keepout verify --scenario: what is promised in each scenario holds, and a step that is broken in
+// a way of its own is found out.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "apps/command_process.h"
+#include "trials.h"
+#include "verify/robot/campaign.h"
+#include "verify/robot/hostile_mesh.h"
+
+namespace keepout::app {
+namespace {
+
+using Make = std::unique_ptr<RobotSubject> (*)(const RobotSetup&);
+
+/// A short campaign of one scenario on one kind of mesh.
+RobotTally run(const std::string& scenario, const std::string& mesh, std::uint64_t cycles,
+               Make make = &make_subject) {
+  std::vector<Arena> arenas = hostile_arenas("wide_bvh");
+  std::erase_if(arenas, [&](const Arena& arena) { return arena.mesh != mesh; });
+  const RobotCampaign campaign{.scenarios = {scenario},
+                               .cycles = test::trials(cycles),
+                               .speeds = {1.0},
+                               .make_subject = make};
+  return run_robot_campaign(campaign, arenas,
+                            [](const RobotTally&, std::uint64_t) { return Next::go_on; })
+      .at(0);
+}
+
+class EveryScenario : public testing::TestWithParam<std::pair<const char*, const char*>> {};
+INSTANTIATE_TEST_SUITE_P(
+    Verify, EveryScenario,
+    testing::Values(std::pair{"approach", "cone"}, std::pair{"approach", "sheets"},
+                    std::pair{"guides", "soup"}, std::pair{"blade", "saddle"},
+                    std::pair{"moving", "bowl"}, std::pair{"meshes", "fan"},
+                    std::pair{"unlimited", "saddle"}, std::pair{"tip_guides", "soup"},
+                    std::pair{"convex_tool", "cone"}),
+    [](const auto& row) { return std::string(row.param.first) + "_" + row.param.second; });
+
+TEST_P(EveryScenario, KeepsWhatIsPromised) {
+  const RobotTally row = run(GetParam().first, GetParam().second, 2000);
+  EXPECT_EQ(row.below, 0u) << row.least_in_tau;
+  EXPECT_EQ(row.guides_left, 0u) << row.least_guide_in_tau;
+  EXPECT_EQ(row.limits_broken, 0u);
+  EXPECT_EQ(row.cycles, test::trials(std::uint64_t{2000}));
+  EXPECT_GT(row.blocked, test::trials(20u)) << "and it was pressed on something";
+}
+
+/// Changes the setup before the step is made of it: the judge goes on with what was drawn.
+template <class Change>
+std::unique_ptr<RobotSubject> changed(const RobotSetup& setup, const Change& change) {
+  RobotSetup other = setup;
+  change(other);
+  return make_subject(other);
+}
+
+std::unique_ptr<RobotSubject> with_wide_guides(const RobotSetup& setup) {
+  return changed(setup, [](RobotSetup& other) {
+    for (oracle::JudgedGuide& guide : other.guides) {
+      guide.radius += 3.0 * guide.band;
+      if (guide.region == oracle::JudgedGuide::Region::half_space) {
+        guide.radius = 0.0;
+        guide.origin -= 3.0 * guide.band * guide.direction;
+      }
+    }
+  });
+}
+
+std::unique_ptr<RobotSubject> without_the_last_mesh(const RobotSetup& setup) {
+  class LessPlaced final : public RobotSubject {
+   public:
+    explicit LessPlaced(const RobotSetup& setup) : meshes_(setup.meshes.size() - 1) {
+      RobotSetup other = setup;
+      other.meshes.pop_back();
+      subject_ = make_subject(other);
+    }
+    void set_options(const InstrumentOptions& o) override { subject_->set_options(o); }
+    void place(std::size_t mesh, const Pose& pose, const Twist& velocity) override {
+      if (mesh < meshes_) subject_->place(mesh, pose, velocity);
+    }
+    InstrumentStep step(std::span<const double> q, const Twist& desired) override {
+      return subject_->step(q, desired);
+    }
+    double tolerance() const override { return subject_->tolerance(); }
+
+   private:
+    std::size_t meshes_;
+    std::unique_ptr<RobotSubject> subject_;
+  };
+  return std::make_unique<LessPlaced>(setup);
+}
+
+/// Without the first of three points or more of the last body.
+std::unique_ptr<RobotSubject> with_a_corner_cut_off(const RobotSetup& setup) {
+  return changed(setup, [](RobotSetup& other) {
+    const auto cut = [](auto& points) { points.erase(points.begin()); };
+    other.robot.make = [make = other.robot.make, cut](const Pose& base) {
+      const Instrument whole = make(base);
+      std::vector<Body> bodies(whole.bodies().begin(), whole.bodies().end());
+      cut(bodies.back().points);
+      return Instrument(whole.chain(), std::move(bodies));
+    };
+    other.robot.judged = [judged = other.robot.judged(), cut] {
+      oracle::JudgedRobot robot = judged;
+      cut(robot.bodies.back().points);
+      return robot;
+    };
+  });
+}
+
+/// Passes everything on; the base of subjects that are broken in a single respect.
+class Broken : public RobotSubject {
+ public:
+  explicit Broken(const RobotSetup& setup) : subject_(make_subject(setup)) {}
+  void set_options(const InstrumentOptions& o) override { subject_->set_options(o); }
+  void place(std::size_t mesh, const Pose& pose, const Twist& velocity) override {
+    subject_->place(mesh, pose, velocity);
+  }
+  InstrumentStep step(std::span<const double> q, const Twist& desired) override {
+    return subject_->step(q, desired);
+  }
+  double tolerance() const override { return subject_->tolerance(); }
+
+ private:
+  std::unique_ptr<RobotSubject> subject_;
+};
+
+/// Knows where meshes are, and not how they move.
+class Velocityless final : public Broken {
+ public:
+  using Broken::Broken;
+  void place(std::size_t mesh, const Pose& pose, const Twist&) override {
+    Broken::place(mesh, pose, {});
+  }
+};
+
+/// Keeps a margin that is ten tolerances too small.
+class Careless final : public Broken {
+ public:
+  using Broken::Broken;
+  void set_options(const InstrumentOptions& options) override {
+    InstrumentOptions less = options;
+    less.margin -= 10.0 * tolerance();
+    Broken::set_options(less);
+  }
+};
+
+/// Stands still where it should give way.
+class Frozen final : public Broken {
+ public:
+  using Broken::Broken;
+  InstrumentStep step(std::span<const double> q, const Twist& desired) override {
+    InstrumentStep step = Broken::step(q, desired);
+    if (step.status != Status::free) return {.status = Status::unsolved, .level = 0.0};
+    return step;
+  }
+};
+
+/// Makes twice the motion that is free.
+class Overshooting final : public Broken {
+ public:
+  using Broken::Broken;
+  InstrumentStep step(std::span<const double> q, const Twist& desired) override {
+    InstrumentStep step = Broken::step(q, desired);
+    if (step.status != Status::free) return step;
+    longer_.assign(step.increment.begin(), step.increment.end());
+    for (double& x : longer_) x *= 2.2;
+    step.increment = longer_;
+    return step;
+  }
+
+ private:
+  std::vector<double> longer_;
+};
+
+template <class Kind>
+std::unique_ptr<RobotSubject> make(const RobotSetup& setup) {
+  return std::make_unique<Kind>(setup);
+}
+
+constexpr std::uint64_t enough = 10'000;  // cycles
+
+void expect_caught(const RobotTally& row, std::uint64_t count) {
+  EXPECT_GT(count, 0u);
+  EXPECT_GT(row.first_breach, 0u);
+  std::printf("%s: first breach in cycle %llu\n", row.scenario.c_str(),
+              static_cast<unsigned long long>(row.first_breach));
+}
+
+TEST(SabotagedScenario, GuidesThatAreTooWideAreCaught) {
+  const RobotTally row = run("guides", "saddle", enough, with_wide_guides);
+  expect_caught(row, row.guides_left);
+}
+
+TEST(SabotagedScenario, GuidesOfATipThatAreTooWideAreCaught) {
+  const RobotTally row = run("tip_guides", "saddle", enough, with_wide_guides);
+  expect_caught(row, row.guides_left);
+}
+
+TEST(SabotagedScenario, AMeshWhoseVelocityIsNotKnownIsCaught) {
+  const RobotTally row = run("moving", "bowl", enough, make<Velocityless>);
+  expect_caught(row, row.below);
+}
+
+TEST(SabotagedScenario, AMeshThatIsForgottenIsCaught) {
+  const RobotTally row = run("meshes", "bowl", enough, without_the_last_mesh);
+  expect_caught(row, row.below);
+}
+
+TEST(SabotagedScenario, ACornerOfABladeThatIsForgottenIsCaught) {
+  const RobotTally row = run("blade", "saddle", enough, with_a_corner_cut_off);
+  expect_caught(row, row.below);
+}
+
+TEST(SabotagedScenario, ACornerOfAConvexToolThatIsForgottenIsCaught) {
+  const RobotTally row = run("convex_tool", "saddle", enough, with_a_corner_cut_off);
+  expect_caught(row, row.below);
+}
+
+TEST(SabotagedScenario, AToolThatDoesNotGiveWayIsCaught) {
+  const RobotTally row = run("stuck", "saddle", enough, make<Frozen>);
+  expect_caught(row, row.below);
+}
+
+TEST(SabotagedScenario, AMarginThatIsTenTolerancesTooSmallIsCaught) {
+  const RobotTally row = run("convex_tool", "saddle", enough, make<Careless>);
+  expect_caught(row, row.below);
+}
+
+TEST(SabotagedScenario, MotionsThatOvershootAreCounted) {
+  const RobotTally row = run("unlimited", "saddle", 2000, make<Overshooting>);
+  EXPECT_GT(row.strayed, test::trials(100u));
+}
+
+TEST(SabotagedScenario, AStepThatStandsStillForNothingIsCounted) {
+  const RobotTally lazy = run("approach", "saddle", 2000, make<Frozen>);
+  EXPECT_GT(lazy.movable, lazy.samples / 4);
+}
+
+TEST(VerifyScenario, IsChosenByNameAndUnknownNamesSuggest) {
+  const test::CommandFolder folder;
+  const test::ProcessOutcome outcome =
+      folder.run("verify cortex --scenario tip_guides,convex_tool --cycles 200 --speed 1");
+  EXPECT_EQ(outcome.status, 0) << outcome.output;
+  EXPECT_NE(outcome.output.find("No breach in 400 cycles."), std::string::npos) << outcome.output;
+  const test::ProcessOutcome refused = folder.run("verify --scenario guide");
+  EXPECT_NE(refused.status, 0);
+  EXPECT_NE(refused.output.find("did you mean 'guides'"), std::string::npos) << refused.output;
+}
+
+}  // namespace
+}  // namespace keepout::app

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The judge's distance of hull and triangle against a reference that shares nothing with it: the
+// point of least norm of the Minkowski difference, over all subsets of its points.
+#include "keepout/oracle/hull.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "keepout/fixtures/random.h"
+#include "keepout/fixtures/shapes.h"
+#include "keepout/oracle/instrument_oracle.h"
+#include "random_places.h"
+#include "trials.h"
+
+namespace keepout::oracle {
+namespace {
+
+using Real = long double;
+using Vector = Eigen::Matrix<Real, 3, 1>;
+
+/// The point of least norm of the affine hull of up to four points; infinite unless it is in their
+/// convex hull.
+Real least_norm(const std::vector<Vector>& points) {
+  const auto n = static_cast<Eigen::Index>(points.size()) - 1;
+  Eigen::Matrix<Real, 3, Eigen::Dynamic> sides(3, n);
+  for (Eigen::Index i = 0; i < n; ++i)
+    sides.col(i) = points[static_cast<std::size_t>(i) + 1] - points[0];
+  Vector at = points[0];
+  if (n > 0) {
+    const Eigen::Matrix<Real, Eigen::Dynamic, 1> weights =
+        sides.colPivHouseholderQr().solve(Vector(-points[0]));
+    if (weights.minCoeff() < -1e-12L || weights.sum() > 1 + 1e-12L) {
+      return std::numeric_limits<Real>::infinity();
+    }
+    at += sides * weights;
+  }
+  return at.norm();
+}
+
+double reference(const std::vector<Vec3>& hull, const Triangle& triangle) {
+  std::vector<Vector> all;
+  for (const Vec3& p : hull) {
+    for (const Vec3& v : triangle) all.push_back(p.cast<Real>() - v.cast<Real>());
+  }
+  Real least = std::numeric_limits<Real>::infinity();
+  std::vector<Vector> chosen;
+  const auto visit = [&](const auto& self, std::size_t first) -> void {
+    if (!chosen.empty()) least = std::min(least, least_norm(chosen));
+    if (chosen.size() == 4) return;
+    for (std::size_t i = first; i < all.size(); ++i) {
+      chosen.push_back(all[i]);
+      self(self, i + 1);
+      chosen.pop_back();
+    }
+  };
+  visit(visit, 0);
+  return static_cast<double>(least);
+}
+
+TEST(Hull, TheDistanceIsThatOfTheReference) {
+  Random random(20261124);
+  int touching = 0;
+  int apart = 0;
+  for (int i = 0; i < test::trials(600); ++i) {
+    std::vector<Vec3> points;
+    const std::size_t count = 1 + random.below(6);
+    const double thickness = random.uniform() < 0.3 ? 0.0 : random.uniform();  // flat blades too
+    for (std::size_t p = 0; p < count; ++p) {
+      points.push_back(random.uniform(0.1, 1.0) * random.direction());
+      points.back().z() *= thickness;
+    }
+    const Vec3 place = random.uniform(0.0, 1.0) * random.direction();
+    const double size = std::pow(10.0, random.uniform(-2.0, 1.0));
+    Triangle triangle;
+    for (Vec3& corner : triangle) corner = place + size * random.direction();
+    const Hull hull(points);
+    const Bracket found = hull.distance(triangle);
+    const double expected = reference(points, triangle);
+    EXPECT_NEAR(found.estimate, expected, 1e-9 * expected + 1e-12) << i;
+    EXPECT_LE(found.low, expected * (1 + 1e-9) + 1e-12) << i;
+    for (const Vec3& corner : triangle) {
+      EXPECT_LE(hull.least_distance(corner), reference(points, {corner, corner, corner}) + 1e-12);
+    }
+    ++(expected < 1e-12 ? touching : apart);
+  }
+  EXPECT_GT(touching, test::trials(20));
+  EXPECT_GT(apart, test::trials(100));
+}
+
+std::vector<Vec3> box() {
+  std::vector<Vec3> corners;
+  for (int i = 0; i < 8; ++i) corners.emplace_back(i & 1, (i >> 1) & 1, (i >> 2) & 1);
+  return corners;
+}
+
+TEST(Hull, OfABoxIsWhatItIsByHand) {
+  const Hull hull(box());
+  const auto distance = [&](const Vec3& a, const Vec3& b, const Vec3& c) {
+    return hull.distance({a, b, c}).estimate;
+  };
+  EXPECT_DOUBLE_EQ(distance({0.5, 0.5, 1.25}, {0.6, 0.5, 2}, {0.5, 0.6, 2}), 0.25);      // face
+  EXPECT_DOUBLE_EQ(distance({2, -3, 2}, {2, 4, 2}, {3, 0, 3}), std::sqrt(2.0));          // edge
+  EXPECT_DOUBLE_EQ(distance({-1, -1, -1}, {-2, -1, -1}, {-1, -2, -1}), std::sqrt(3.0));  // corner
+  EXPECT_DOUBLE_EQ(distance({-5, -5, 1.5}, {5, -5, 1.5}, {0, 9, 1.5}), 0.5);    // over all of it
+  EXPECT_EQ(distance({-5, -5, 0.5}, {5, -5, 0.5}, {0, 9, 0.5}), 0.0);           // through all of it
+  EXPECT_EQ(distance({0.5, 0.5, 0.5}, {0.6, 0.5, 0.5}, {0.5, 0.6, 0.5}), 0.0);  // within
+}
+
+TEST(Hull, HasOneToEightPoints) {
+  EXPECT_THROW(Hull({}), std::invalid_argument);
+  std::vector<Vec3> nine = box();
+  nine.emplace_back(0.5, 0.5, 0.5);
+  EXPECT_THROW(Hull{nine}, std::invalid_argument);
+}
+
+/// A blade that one joint turns about an axis through the origin, and another moves along it.
+JudgedRobot blade(double size, double radius, Random& random) {
+  JudgedBody body{.points = {}, .radius = radius};
+  const std::size_t count = 3 + random.below(6);
+  for (std::size_t i = 0; i < count; ++i) {
+    body.points.push_back({2, size * random.uniform() * random.direction()});
+  }
+  return {.table = {{}, {.slides = true}}, .bodies = {body}};
+}
+
+class BladeOnEveryShape : public testing::TestWithParam<Shape> {};
+
+TEST_P(BladeOnEveryShape, ClearanceIsThatOfAPlainLoopHoweverItGotThere) {
+  const auto mesh = std::make_shared<const Mesh>(GetParam().make());
+  const auto tree = std::make_shared<const TriangleTree>(mesh);
+  const double size = mesh->bounds().size().norm();
+  Random random(20261124);
+  int near = 0;
+  for (int path = 0; path < test::trials(3); ++path) {
+    const double radius = random.uniform(0.0, 0.01) * size;
+    const JudgedRobot robot = blade(random.uniform(0.005, 0.05) * size, radius, random);
+    const Vec3 on = random_points(*mesh, 1, random).front();
+    InstrumentOracle oracle(tree, robot, {on});
+    std::array<double, 2> q{};
+    for (int step = 0; step < 10; ++step) {
+      const double pace = step % 5 == 4 ? 1.0 : 0.02;
+      q[0] += pace * random.uniform(-1.0, 1.0);
+      q[1] += pace * random.uniform(-0.1, 0.1) * size;
+      oracle.move_to(q);
+      const std::vector<LinkFrame> links = place(robot, {on}, q);
+      std::vector<Vec3> points;
+      for (const JudgedPoint& p : robot.bodies[0].points) points.push_back(links[2].at(p.position));
+      const Hull hull(points);
+      double expected = std::numeric_limits<double>::infinity();
+      for (TriangleId t = 0; t < mesh->triangle_count(); ++t) {
+        const Triangle triangle = mesh->triangle(t);
+        const double far =
+            std::max((triangle[1] - triangle[0]).norm(), (triangle[2] - triangle[0]).norm());
+        if (hull.least_distance(triangle[0]) - far > expected) continue;
+        expected = std::min(expected, hull.distance(triangle).estimate);
+      }
+      expected -= radius;
+      const double reach = expected + random.uniform(-0.1, 0.1) * size;
+      const double found = oracle.clearance(0, reach);
+      if (reach < expected) {
+        EXPECT_EQ(found, std::numeric_limits<double>::infinity());
+        continue;
+      }
+      ++near;
+      EXPECT_NEAR(found, expected, 1e-9 * (expected + radius) + 1e-14 * size);
+    }
+  }
+  EXPECT_GT(near, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Hull, BladeOnEveryShape,
+                         testing::ValuesIn(shapes().begin(), shapes().end()),
+                         [](const auto& row) { return std::string(row.param.name); });
+
+}  // namespace
+}  // namespace keepout::oracle
