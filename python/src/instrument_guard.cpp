@@ -68,11 +68,14 @@ InstrumentStepResult InstrumentGuard::step(const py::object& q, const py::object
   }
   const auto joints = static_cast<std::size_t>(at.size());
   const auto result = [&](const InstrumentStep& step) {
-    InstrumentStepResult kept{
-        step, std::vector<double>(joints, 0.0), {step.guides.begin(), step.guides.end()}};
+    InstrumentStepResult kept{step,
+                              std::vector<double>(joints, 0.0),
+                              {step.guides.begin(), step.guides.end()},
+                              {step.degraded.begin(), step.degraded.end()}};
     std::copy(step.increment.begin(), step.increment.end(), kept.increment.begin());
     kept.step.increment = {};
     kept.step.guides = {};
+    kept.step.degraded = {};
     return kept;
   };
   if (has_twist) {
@@ -181,7 +184,10 @@ void InstrumentGuard::place(std::size_t mesh, const py::object& pose, const py::
   const Pose at = pose_of(pose, "pose");
   require_mesh(mesh);
   const InUse no_step(constraint_in_use_);
-  constraint_.place(mesh, at, velocity);
+  if (is_ok(constraint_.place(mesh, at, velocity))) return;
+  refuse("pose", "a rotation and a position, and speeds, that are plausible beside the mesh",
+         "one that is not: it keeps its previous pose, and steps are invalid_input until it has a "
+         "valid one");
 }
 
 py::array_t<double> InstrumentGuard::place_of(std::size_t mesh) {

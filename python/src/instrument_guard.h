@@ -21,6 +21,7 @@ struct InstrumentStepResult {
   InstrumentStep step;  // but for its increment and guides
   std::vector<double> increment;
   std::vector<GuideState> guides;
+  std::vector<DegradedClearance> degraded;
 };
 
 /// An instrument constraint as Python holds it: one for its own steps, and one for each worker that

@@ -63,6 +63,19 @@ void bind_instrument_results(py::module_& module) {
           "level", [](const Result& self) { return self.step.level; },
           "How much could be kept of what is certified otherwise: below 1 where a mesh came on\n"
           "faster than the joints can give way.")
+      .def_property_readonly(
+          "degraded",
+          [](const Result& self) {
+            py::list pairs;
+            for (const DegradedClearance& pair : self.degraded) {
+              const py::object level =
+                  pair.is_certified ? py::object(py::float_(pair.level)) : py::object(py::none());
+              pairs.append(py::make_tuple(pair.body, pair.mesh, level));
+            }
+            return py::tuple(pairs);
+          },
+          "The pairs of body and mesh that keep less than is certified for them: a tuple of\n"
+          "(body, mesh, level); level is None if nothing is certified for the pair.")
       .def("__repr__", [](const Result& self) {
         return py::str("<keepout.InstrumentStep: {}, increment {}>")
             .format(name(self.step.status), py::cast(self.increment));

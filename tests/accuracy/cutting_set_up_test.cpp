@@ -89,7 +89,7 @@ TEST(CuttingSetUp, KeepsCorridorSkullAndJointsWhateverTheHandDoes) {
       q[k] += step.increment[k];
       ASSERT_TRUE(q[k] >= limits.lower && q[k] <= limits.upper) << "joint " << k + 1;
     }
-    held += step.guides[0].holds ? 1 : 0;
+    held += step.guides[0].limits ? 1 : 0;
     blocked += step.distance ? 1 : 0;
     cut += step.increment.empty() ? 0.0 : std::abs(step.increment[1]);
   }

@@ -87,7 +87,8 @@ def test_a_place_that_is_none_stops_it():
         with pytest.raises(keepout.Error, match="last row"):
             guard.place(0, bad)
     stretched = np.diag([1.1, 1, 1, 1])
-    guard.place(0, stretched)
+    with pytest.raises(keepout.Error, match="previous pose"):
+        guard.place(0, stretched)
     q = (70.0, 0, 0)
     assert guard.step(q, linear=(1, 0, 0)).status == Status.invalid_input
     guard.place(0, None)

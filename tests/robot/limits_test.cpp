@@ -65,12 +65,12 @@ double difference(const InstrumentStep& one, const InstrumentStep& other) {
 }
 
 TEST(Limits, NameEveryCauseAndOnlyCauses) {
-  const LinkPoint tip{6, Vec3(0, 10.2, 0)};
+  const LinkPoint jaw{6, Vec3(0, 10.2, 0)};
   const std::vector<double> start{0.1, -0.1, 60.0, 0.2, 0.1, -0.2};
   ChainState state;
   robot_without({}).chain().place(start, state);
   const std::vector<Guide> guides{Guide::point(
-      "corridor", tip, Region::slab(state.at(tip.link, tip.position), Vec3(1, 0.2, 0), 8.0))};
+      "corridor", jaw, Region::slab(state.at(jaw.link, jaw.position), Vec3(1, 0.2, 0), 8.0))};
   struct Cause {
     Limit limit;
     InstrumentConstraint without;

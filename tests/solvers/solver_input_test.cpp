@@ -137,14 +137,14 @@ TEST(SolverRegistry, LibrariesStateTheirVersionAndOurOwnNone) {
   }
 }
 
-TEST(SolveStatus, EveryStatusHasAReasonOfItsOwn) {
-  std::vector<std::string_view> reasons;
+TEST(SolveStatus, EveryStatusHasANameOfItsOwn) {
+  std::vector<std::string_view> names;
   for (int status = 0; status <= static_cast<int>(SolveStatus::iteration_limit); ++status) {
-    reasons.push_back(reason(static_cast<SolveStatus>(status)));
-    EXPECT_FALSE(reasons.back().empty());
+    names.push_back(name(static_cast<SolveStatus>(status)));
+    EXPECT_FALSE(names.back().empty());
   }
-  std::ranges::sort(reasons);
-  EXPECT_EQ(std::ranges::adjacent_find(reasons), reasons.end());
+  std::ranges::sort(names);
+  EXPECT_EQ(std::ranges::adjacent_find(names), names.end());
 }
 
 }  // namespace

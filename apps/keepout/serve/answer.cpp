@@ -55,6 +55,22 @@ void append_limits(std::string& out, Limits limits) {
   out += ']';
 }
 
+/// Appends the pairs of body and mesh that keep less, if there are any; level null if a pair keeps
+/// nothing.
+void append_degraded(std::string& out, std::span<const DegradedClearance> degraded) {
+  if (degraded.empty()) return;
+  out += ",\"degraded\":";
+  append_list(out, degraded, [&](const DegradedClearance& pair) {
+    out += "{\"body\":";
+    append_digits(out, pair.body);
+    out += ",\"mesh\":";
+    append_digits(out, pair.mesh);
+    out += ",\"level\":";
+    append_number(out, pair.is_certified ? pair.level : std::nan(""));
+    out += '}';
+  });
+}
+
 /// Appends how a step or a polytope ended, with a reason unless it is ok.
 template <class Result>
 void append_outcome(std::string& out, const Result& result) {
@@ -145,6 +161,7 @@ void append_joint_step(std::string& out, const InstrumentStep& step, std::size_t
     out += ",\"level\":";
     append_number(out, step.level);
   }
+  append_degraded(out, step.degraded);
   if (!step.distance) return;
   out += ",\"distance\":";
   append_number(out, *step.distance);

@@ -170,10 +170,15 @@ void place_anatomy(Client& client, const Request& request) {
                   "'mesh' must be the number of a mesh, 0 to " + std::to_string(count - 1)};
   }
   try {
-    instrument.place(static_cast<std::size_t>(number), pose_of(request.frame), twist_of(request));
+    const Status placed = instrument.place(static_cast<std::size_t>(number), pose_of(request.frame),
+                                           twist_of(request));
+    if (is_ok(placed)) return;
   } catch (const Error& error) {
     throw Refusal{"no_anatomy", error.what()};
   }
+  throw Refusal{"no_anatomy",
+                "'frame', 'linear' or 'angular' is implausible beside the mesh: it keeps its "
+                "previous pose, and joint steps are invalid_input until it has a valid one"};
 }
 
 InstrumentStep joint_step(Client& client, const Request& request) {

@@ -41,8 +41,8 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(std::pair{"approach", "cone"}, std::pair{"approach", "sheets"},
                     std::pair{"guides", "soup"}, std::pair{"blade", "saddle"},
                     std::pair{"moving", "bowl"}, std::pair{"meshes", "fan"},
-                    std::pair{"unlimited", "saddle"}, std::pair{"tip_guides", "soup"},
-                    std::pair{"convex_tool", "cone"}),
+                    std::pair{"stuck", "saddle"}, std::pair{"unlimited", "saddle"},
+                    std::pair{"tip_guides", "soup"}, std::pair{"convex_tool", "cone"}),
     [](const auto& row) { return std::string(row.param.first) + "_" + row.param.second; });
 
 TEST_P(EveryScenario, KeepsWhatIsPromised) {

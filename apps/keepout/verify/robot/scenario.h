@@ -19,7 +19,7 @@ enum class Begin : std::uint8_t {
 /// The step that is attacked.
 enum class Attacked : std::uint8_t {
   instrument,  // InstrumentConstraint
-  tip,         // MotionConstraint with TipGuides
+  tip,         // MotionConstraint with guides
   convex_tool  // MotionConstraint with ConvexToolRule
 };
 

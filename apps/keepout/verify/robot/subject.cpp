@@ -12,7 +12,6 @@
 #include "keepout/activation/convex_tool_rule.h"
 #include "keepout/solvers/registry.h"
 #include "keepout/step/motion_constraint.h"
-#include "keepout/step/tip_guides.h"
 
 namespace keepout::app {
 namespace {
@@ -87,17 +86,17 @@ class TipSubject final : public RobotSubject {
         longest_edge_(setup.meshes[0].mesh.scene->longest_edge()),
         increment_(static_cast<std::size_t>(chain_.size())) {
     chain_.place(setup.start.positions, state_);
-    std::vector<TipGuide> guides;
-    for (const JudgedGuide& guide : setup.guides) {
-      guides.push_back({"guide", region_of(guide), guide.band});
-    }
-    guides_.emplace(std::move(guides));
     options_ = {.radius = 2.0 * setup.speed,
                 .tool_radius = is_hull_ ? 0.0 : bodies_.back().radius,
                 .margin = setup.options.margin};
     constraint_.emplace(setup.meshes[0].mesh.scene->mesh(),
                         setup.meshes[0].mesh.scene->shared_index(), rule(),
                         make_solver("active_set"), options_);
+    std::vector<Guide> guides;
+    for (const JudgedGuide& guide : setup.guides) {
+      guides.push_back(Guide::point("guide", region_of(guide)).with_band(guide.band));
+    }
+    constraint_->set_guides(std::move(guides));
   }
 
   void set_options(const InstrumentOptions& options) override {
@@ -108,7 +107,7 @@ class TipSubject final : public RobotSubject {
   InstrumentStep step(std::span<const double> positions, const Twist& desired) override {
     chain_.place(positions, state_);
     const Motion motion{.tip = state_.flange().position, .desired = desired.linear};
-    const Step made = guides_->step(*constraint_, motion);
+    const Step made = constraint_->step(motion);
     InstrumentStep step{.status = made.status};
     if (!made.ok()) return step;
     for (int k = 1; k <= chain_.size(); ++k) {
@@ -145,7 +144,6 @@ class TipSubject final : public RobotSubject {
   bool is_hull_;
   double longest_edge_;  // of the mesh [length]
   StepOptions options_;
-  std::optional<TipGuides> guides_;
   std::optional<MotionConstraint> constraint_;
   std::vector<double> increment_;
 };
@@ -159,8 +157,13 @@ std::unique_ptr<RobotSubject> make_subject(const RobotSetup& setup) {
   return std::make_unique<TipSubject>(setup);
 }
 
-double promised_level(const InstrumentStep& step, std::size_t /*body*/, std::size_t /*mesh*/) {
-  return step.level;
+double promised_level(const InstrumentStep& step, std::size_t body, std::size_t mesh) {
+  if (!step.ok()) return step.level;
+  for (const DegradedClearance& pair : step.degraded) {
+    const bool is_it = pair.body == static_cast<int>(body) && pair.mesh == static_cast<int>(mesh);
+    if (is_it) return pair.level;
+  }
+  return 1.0;
 }
 
 }  // namespace keepout::app
