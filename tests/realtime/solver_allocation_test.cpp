@@ -49,7 +49,7 @@ TEST(SolverAllocation, OurOwnSolverAllocatesNothingAfterReserve) {
   for (const SolveStatus status :
        {SolveStatus::optimal, SolveStatus::infeasible, SolveStatus::ill_posed,
         SolveStatus::invalid_input, SolveStatus::over_capacity}) {
-    EXPECT_GT(outcomes[static_cast<std::size_t>(status)], 0) << reason(status);
+    EXPECT_GT(outcomes[static_cast<std::size_t>(status)], 0) << name(status);
   }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "serve/client.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <string>
@@ -130,6 +131,11 @@ void set_guides(Client& client, const std::shared_ptr<const Mesh>& mesh,
       names.push_back(guides.back().name());
     }
     if (request.of.text == "instrument") {
+      const auto of_base = std::ranges::find(guides, 0, &Guide::link);
+      if (of_base != guides.end()) {
+        throw Error("guide '" + of_base->name() +
+                    "' is of a tip, or of the base: name a link, as " + std::string(guide_forms));
+      }
       instrument_of(client).set_guides(std::move(guides));
       client.guide_names = std::move(names);
       return;

@@ -326,7 +326,7 @@ TEST_F(SessionTest, AFailingStepIsAnAnswerWithZeroMotionAndAReason) {
   const Json answer = Json::parse(ask(session, step_line({0, 0, 60}, {0, 0, -5})));
   EXPECT_EQ(answer["ok"], false);
   EXPECT_EQ(answer["status"], "beyond_reach");
-  EXPECT_EQ(answer["reason"], reason(Status::beyond_reach));
+  EXPECT_EQ(answer["reason"], reason(Status::beyond_reach, Subject::tip));
   EXPECT_EQ(answer["motion"], Json({0, 0, 0}));
   const Json joints = Json::parse(
       ask(session,
