@@ -35,11 +35,23 @@ struct Start {
   Vec3 press;  // unit vector, towards the surface
 };
 
+using GuidesOf = std::vector<Guide> (*)(const Start&);
+
+std::vector<Guide> no_guides(const Start&) { return {}; }
+
+/// Returns a corridor, and a ball that begins beyond the tip.
+std::vector<Guide> corridor_and_ball(const Start& start) {
+  return {Guide::point("corridor", Region::slab(start.tip, Vec3(0.6, 0.8, 0.0), 0.3)),
+          Guide::point("ball", Region::ball(start.tip - start.press, 0.9))};
+}
+
 /// Closed loops, each from its own place, that press into the surface half of the time.
-std::vector<Cycle> loops(MotionConstraint& guard, const std::vector<Start>& starts, int count) {
+std::vector<Cycle> loops(MotionConstraint& guard, const std::vector<Start>& starts, int count,
+                         GuidesOf guides_of = no_guides) {
   std::vector<Cycle> out;
   Random random(5);
   for (const Start& start : starts) {
+    guard.set_guides(guides_of(start));
     Vec3 tip = start.tip;
     Vec3 drift = Vec3::Zero();
     for (int i = 0; i < count; ++i) {
@@ -55,9 +67,10 @@ std::vector<Cycle> loops(MotionConstraint& guard, const std::vector<Start>& star
 
 /// For a surface that no tip is placed on: then the winding plays no part.
 std::vector<Cycle> loops(const Surface& surface, MotionConstraintSettings with,
-                         const std::vector<Start>& starts, int count) {
+                         const std::vector<Start>& starts, int count,
+                         GuidesOf guides_of = no_guides) {
   auto guard = make_motion_constraint(std::make_shared<const Mesh>(surface), with);
-  return loops(guard, starts, count);
+  return loops(guard, starts, count, guides_of);
 }
 
 std::vector<Start> starts_on(const Surface& surface, std::size_t count) {
@@ -134,6 +147,25 @@ TEST_P(CertifiedDeterminism, TheWindingDoesNotMatter) {
   for (int i = 0; i < 2; ++i) {
     ASSERT_EQ(loops(rewound(renumbered(surface, random), random), with, starts, 100), expected);
   }
+}
+
+TEST_P(CertifiedDeterminism, HoldsWithGuides) {
+  const Surface surface = GetParam().make();
+  const std::vector<Start> starts = starts_on(surface, 2);
+  MotionConstraintSettings with = settings();
+  with.inside = Inside::taken_as_is;
+  const std::vector<Cycle> expected = loops(surface, with, starts, 40, corridor_and_ball);
+  EXPECT_NE(expected, loops(surface, with, starts, 40)) << "the guides limit motions";
+  for (const IndexBackend& backend : index_backends()) {
+    MotionConstraintSettings other = with;
+    other.index = backend.name;
+    ASSERT_EQ(loops(surface, other, starts, 40, corridor_and_ball), expected) << backend.name;
+  }
+  on_each_simd_target(
+      [&] { EXPECT_TRUE(loops(surface, with, starts, 40, corridor_and_ball) == expected); });
+  Random random(7);
+  const Surface other = rewound(renumbered(surface, random), random);
+  EXPECT_EQ(loops(other, with, starts, 40, corridor_and_ball), expected);
 }
 
 TEST_P(CertifiedDeterminism, OneCycleDoesNotDependOnThoseBefore) {

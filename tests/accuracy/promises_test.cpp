@@ -139,6 +139,35 @@ TEST_P(AfterRefit, NoStepMovesAndNoPolytopeIsFound) {
 
 INSTANTIATE_TEST_SUITE_P(Rules, AfterRefit, testing::Values("certified", "paper", "all_faces"));
 
+/// Fails if a guard moves after its mesh has moved, or did not move before.
+void expect_standstill_after_refit(const MotionConstraintSettings& settings,
+                                   const std::vector<Guide>& guides) {
+  const Surface cube = make_cube(5.0);
+  const auto mesh = mesh_of(cube);
+  const auto tree = std::make_shared<WideBvh>(mesh);
+  auto guard = make_motion_constraint(mesh, tree, settings);
+  guard.set_guides(guides);
+  const double top = mesh->bounds().high.z();
+  const Motion motion{.tip = Vec3(0.3, 0.2, top + 2.0), .desired = Vec3(0.1, 0.0, -0.1)};
+  EXPECT_NE(guard.step(motion).motion, Vec3::Zero());
+  tree->refit(mesh_of(moved(cube, Vec3(0.0, 0.0, 0.1))));
+  const Step step = guard.step(motion);
+  EXPECT_EQ(step.status, Status::mesh_changed);
+  EXPECT_EQ(step.motion, Vec3::Zero());
+}
+
+TEST(AfterRefit, NoStepMovesWithGuides) {
+  const Vec3 out(-1.0, 0.0, 0.0);  // the guide leads the tip back
+  expect_standstill_after_refit({.radius = 5.0, .margin = 0.2},
+                                {Guide::point("side", Region::half_space(out, out))});
+}
+
+TEST(AfterRefit, NoStepMovesAConvexTool) {
+  expect_standstill_after_refit(
+      {.radius = 5.0, .tool = ConvexTool::box({Vec3(-1, -1, -1), Vec3(1, 1, 1)}), .margin = 0.2},
+      {});
+}
+
 // What a running guard holds on to cannot be replaced behind its back.
 
 TEST(WhatAGuardRestsOn, IsNotAssignedTo) {

@@ -11,6 +11,8 @@
 #include "accuracy/certified_loop.h"
 #include "keepout/control/haptic_proxy.h"
 #include "keepout/index/wide_bvh.h"
+#include "keepout/robot/instrument_constraint.h"
+#include "keepout/solvers/active_set.h"
 #include "trials.h"
 
 namespace keepout::test {
@@ -167,6 +169,60 @@ TEST(BudgetOfACycle, HoldsInAHapticProxyWithGuides) {
 }
 
 // Faces one by one used to cost half of the budget here, in 613 of 100,000 steps, for no motion.
+/// Counts the cycles of an instrument beside three cones.
+struct InstrumentCycles {
+  int guided = 0;
+  int stopped = 0;
+  int costly = 0;
+};
+
+/// Fails if a cycle does more work than stated. Each guide holds the tip in its region. The speed
+/// is that of two of the cones.
+InstrumentCycles instrument_cycles(std::vector<Guide> (*regions_about)(const Vec3&), double speed) {
+  InstrumentCycles count;
+  for_each_scene([&](const Scene& scene) {
+    InstrumentConstraint guard(scene.mesh, scene.tree, free_ball(0.5),
+                               std::make_unique<ActiveSet>(),
+                               {.margin = 0.6, .check_sides = false});
+    for (const double side : {-1.0, 1.0}) {
+      const std::size_t mesh = guard.add_mesh(scene.mesh, scene.tree, 0.5);
+      guard.place(mesh, {Vec3(0.3 * side, 0, -0.1)}, {.linear = Vec3(0, 0, speed)});
+    }
+    for (const double height : heights) {
+      const Vec3 at = above(height);
+      std::vector<Guide> guides;
+      for (const Guide& of_tip : regions_about(at)) {
+        guides.push_back(Guide::point(of_tip.name(), {3, Vec3::Zero()}, of_tip.region()));
+      }
+      guard.set_guides(guides);
+      const InstrumentStep step = guard.step({at.data(), 3}, {.linear = Vec3(0.5, 0.02, -4.0)});
+      EXPECT_LE(guard.looks(), stated + stated / 64) << name(step.status);
+      EXPECT_TRUE(step.ok() || step.increment.empty()) << name(step.status);
+      count.guided += step.limits.has(Limit::guide) ? 1 : 0;
+      count.stopped += step.ok() ? 0 : 1;
+      count.costly += guard.looks() > stated / 2 ? 1 : 0;
+      guard.prove({at.data(), 3}, std::vector<double>{0.1, 0.0, -4.0});
+      EXPECT_LE(guard.looks(), stated + stated / 64) << "of the last part of a proof";
+    }
+  });
+  return count;
+}
+
+TEST(BudgetOfACycle, HoldsForAnInstrumentBesideMovingMeshes) {
+  const InstrumentCycles count =
+      instrument_cycles([](const Vec3&) { return std::vector<Guide>(); }, 200.0);
+  EXPECT_EQ(count.guided, 0);
+  EXPECT_GT(count.stopped, 5);
+  EXPECT_GT(count.costly, 5);
+}
+
+TEST(BudgetOfACycle, HoldsForAnInstrumentWithGuides) {
+  const InstrumentCycles count = instrument_cycles(balls_about, 0.0);
+  EXPECT_GT(count.guided, 10);
+  EXPECT_GT(count.stopped, 5);
+  EXPECT_GT(count.costly, 5);
+}
+
 TEST(BudgetOfACycle, SufficesInsideConesOfUpTo400Faces) {
   Random random(3);
   int found = 0;

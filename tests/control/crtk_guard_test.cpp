@@ -10,6 +10,7 @@
 
 #include "control/guarded_shapes.h"
 #include "keepout/error.h"
+#include "keepout/index/wide_bvh.h"
 
 namespace keepout {
 namespace {
@@ -184,6 +185,31 @@ TEST_F(Crtk, ARobotThatIsNotWhereItWasSentIsWaitedFor) {
   EXPECT_EQ(guard.servo_cp(pose_at(above)), CycleStatus::guarded);
   guard.measured_cp({{nan, nan, nan}, tilted});
   EXPECT_EQ(guard.servo_cp(pose_at(above)), CycleStatus::invalid_pose);
+}
+
+TEST_F(Crtk, ARobotIsKeptInTheGuides) {
+  const Guide corridor = Guide::point("corridor", Region::slab(above, Vec3::UnitX(), 1.0));
+  CrtkGuard guard = make({.haptic = {.guides = {corridor}}});
+  guard.engage(pose_at(above));
+  for (int i = 1; i <= 200; ++i) guard.servo_cp(pose_at(above + 0.02 * i * Vec3(1.0, 0.1, 0.0)));
+  const Vec3 sent = registration().point_to_mesh(guard.setpoint_cp()->position);
+  EXPECT_NEAR(corridor.region().excess(sent), 0.0, corridor.band() + 1e-9);
+  EXPECT_NEAR(sent.y(), above.y() + 0.4, 1e-5) << "along the corridor it follows";
+  EXPECT_TRUE(guard.cycle().limits.has(Limit::guide));
+}
+
+TEST_F(Crtk, ARobotStandsOnceTheMeshHasMoved) {
+  const auto tree = std::make_shared<WideBvh>(cube());
+  CrtkGuard guard(make_motion_constraint(cube(), tree, {.margin = kept}), registration(), {});
+  guard.engage(pose_at(above));
+  EXPECT_EQ(guard.servo_cp(pose_at(above)), CycleStatus::guarded);
+  const Vec3 before = guard.setpoint_cp()->position;
+  Surface moved = make_cube(10.0);
+  for (Vec3& v : moved.vertices) v.z() += 1.0;
+  tree->refit(shared(moved));
+  EXPECT_EQ(guard.servo_cp(pose_at(above + Vec3(0.1, 0, 0))), CycleStatus::stopped);
+  EXPECT_EQ(guard.cycle().step, Status::mesh_changed);
+  EXPECT_EQ(guard.setpoint_cp()->position, before);
 }
 
 TEST_F(Crtk, AnotherRegistrationIsTakenOnLettingGo) {

@@ -9,6 +9,7 @@
 #include "control/guarded_shapes.h"
 #include "keepout/error.h"
 #include "keepout/fixtures/random.h"
+#include "keepout/index/wide_bvh.h"
 #include "trials.h"
 
 namespace keepout {
@@ -219,6 +220,21 @@ TEST(HapticProxy, WhenTheEngineRefusesTheProxyStandsAndTheForceFadesWithTheHand)
     EXPECT_NEAR(cycle.force.x(), -0.1 * i * std::max(0.0, 1.0 - i / 20.0), 1e-12);
   }
   expect_balance(proxy.energy());
+}
+
+TEST(HapticProxy, StandsOnceItsMeshHasMoved) {
+  const auto tree = std::make_shared<WideBvh>(cube());
+  HapticProxy proxy(make_motion_constraint(cube(), tree, {.margin = kept}), {});
+  proxy.engage(above);
+  EXPECT_EQ(proxy.cycle(above + Vec3(0.1, 0, 0)).status, CycleStatus::guarded);
+  const Vec3 before = proxy.proxy();
+  Surface moved = make_cube(10.0);
+  for (Vec3& v : moved.vertices) v.z() += 1.0;
+  tree->refit(shared(moved));
+  const HapticCycle cycle = proxy.cycle(above);
+  EXPECT_EQ(cycle.status, CycleStatus::stopped);
+  EXPECT_EQ(cycle.step, Status::mesh_changed);
+  EXPECT_EQ(cycle.proxy, before);
 }
 
 TEST(HapticProxy, AHandOutOfReachIsTakenForAFault) {

@@ -25,6 +25,7 @@
 #include "keepout/fixtures/random.h"
 #include "keepout/fixtures/robots.h"
 #include "keepout/fixtures/shapes.h"
+#include "keepout/index/wide_bvh.h"
 #include "keepout/oracle/instrument_oracle.h"
 #include "trials.h"
 
@@ -190,6 +191,34 @@ TEST(JointPlanning, AMotionThatLeavesTheBoundsEndsAtItsStart) {
   EXPECT_FALSE(at.space->isValid(b.get()));
   const JointState nowhere(at.space, Joints(6, std::numeric_limits<double>::quiet_NaN()));
   EXPECT_FALSE(at.space->isValid(nowhere.get()));
+}
+
+TEST(JointPlanning, AMotionOutOfAGuideIsInvalid) {
+  const Workplace at = workplace("cube");
+  const JointState from(at.space, {0, 0, 20, 0, 0, 0}), to(at.space, {0, 0, 24, 0, 0, 0});
+  EXPECT_TRUE(make_motion_validator(at.space, at.guards)->checkMotion(from.get(), to.get()));
+  ChainState chain;
+  at.instrument.chain().place(from.q(), chain);
+  const Guide near =
+      Guide::point("near", {6, Vec3::Zero()}, Region::ball(chain.link(6).position, 1.0));
+  const auto guided = std::make_shared<InstrumentPool>([&at, &near] {
+    InstrumentConstraint guard = make_instrument_constraint(at.mesh, at.instrument, {});
+    guard.set_guides({near});
+    return guard;
+  });
+  EXPECT_FALSE(make_motion_validator(at.space, guided)->checkMotion(from.get(), to.get()));
+}
+
+TEST(JointPlanning, NothingIsValidOnceTheMeshHasMoved) {
+  const Workplace at = workplace("cube");
+  const auto tree = std::make_shared<WideBvh>(at.mesh);
+  const auto guards = std::make_shared<InstrumentPool>(
+      [&] { return make_instrument_constraint(at.mesh, tree, at.instrument, {}); }, 1);
+  const JointState from(at.space, {0, 0, 20, 0, 0, 0}), to(at.space, {0, 0, 24, 0, 0, 0});
+  const auto validator = make_motion_validator(at.space, guards);
+  EXPECT_TRUE(validator->checkMotion(from.get(), to.get()));
+  tree->refit(std::make_shared<const Mesh>(make_shape("cube")));
+  EXPECT_FALSE(validator->checkMotion(from.get(), to.get()));
 }
 
 TEST(JointPlanning, TheLastValidStateMayBeTheMotionsOwn) {

@@ -20,6 +20,7 @@
 #include "keepout/factory/make_motion_constraint.h"
 #include "keepout/fixtures/random.h"
 #include "keepout/fixtures/shapes.h"
+#include "keepout/index/wide_bvh.h"
 #include "keepout/oracle/safety_oracle.h"
 
 namespace keepout {
@@ -184,6 +185,36 @@ TEST(Planning, AMotionThatLeavesTheBoundsEndsAtItsStart) {
   EXPECT_FALSE(validator->checkMotion(from.get(), to.get(), last_valid));
   EXPECT_EQ(last_valid.second, 0.0);
   EXPECT_EQ(last.tip(), from.tip());
+}
+
+TEST(Planning, AMotionOutOfAGuideIsInvalid) {
+  const SharedMesh mesh = mesh_of("cube");
+  const base::SpaceInformationPtr space = space_around(*mesh);
+  const Vec3 start(0, 0, 55);
+  const auto guards = std::make_shared<GuardPool>([mesh, start] {
+    MotionConstraint guard = make_motion_constraint(mesh, {.margin = margin});
+    guard.set_guides({Guide::point("corridor", Region::slab(start, Vec3::UnitX(), 1.0))});
+    return guard;
+  });
+  const TipState from(space, start), along(space, {0, 3, 55}), out(space, {3, 0, 55});
+  const auto validator = make_motion_validator(space, guards);
+  EXPECT_TRUE(validator->checkMotion(from.get(), along.get()));
+  EXPECT_FALSE(validator->checkMotion(from.get(), out.get()));
+  EXPECT_FALSE(make_state_validity_checker(space, guards)->isValid(out.get()));
+}
+
+TEST(Planning, NothingIsValidOnceTheMeshHasMoved) {
+  const SharedMesh mesh = mesh_of("cube");
+  const auto tree = std::make_shared<WideBvh>(mesh);
+  const base::SpaceInformationPtr space = space_around(*mesh);
+  const auto guards = std::make_shared<GuardPool>(
+      [mesh, tree] { return make_motion_constraint(mesh, tree, {.margin = margin}); }, 1);
+  const TipState from(space, {0, 0, 55}), to(space, {0, 3, 55});
+  const auto validator = make_motion_validator(space, guards);
+  EXPECT_TRUE(validator->checkMotion(from.get(), to.get()));
+  tree->refit(mesh_of("cube"));
+  EXPECT_FALSE(validator->checkMotion(from.get(), to.get()));
+  EXPECT_FALSE(make_state_validity_checker(space, guards)->isValid(from.get()));
 }
 
 TEST(Planning, ValidatorsCountAndMayBeCalledFromManyThreads) {

@@ -39,8 +39,18 @@ TEST(InstrumentConstraint, AllocatesNothingWhateverTheOutcome) {
   // Two meshes, one of which comes on, at times faster than can be given way to.
   InstrumentConstraint& beside_two = guards.front();
   beside_two.add_mesh(cube, cube_index, 0.5);
+  // Guides of a point, an axis and a shaft; the two half-spaces have no point in common.
+  const LinkPoint tip{6, Vec3(0, 10.2, 0)};
+  guards[1].set_guides(
+      {Guide::point("beyond", tip, Region::half_space(Vec3(300, 0, 0), Vec3::UnitX())),
+       Guide::point("before", tip, Region::half_space(Vec3(-100, 0, 0), -Vec3::UnitX())),
+       Guide::axis("axis", 6, Vec3::UnitX(), Vec3::UnitZ(), 0.5),
+       Guide::remote_center("port", {0, Vec3::Zero()}, {4, Vec3::Zero()}, Vec3(100, 30, -40),
+                            1.0)});
   std::vector<Status> seen;
   seen.reserve(100'000);
+  int guided = 0;
+  int relaxed = 0;
   std::vector<double> q(6);
   const std::vector<double> bad(5);
   Random random(2);
@@ -56,6 +66,8 @@ TEST(InstrumentConstraint, AllocatesNothingWhateverTheOutcome) {
         const InstrumentStep step = guard.step(
             q, Twist{.linear = 2.0 * random.direction(), .angular = 0.1 * random.direction()});
         seen.push_back(step.status);
+        guided += step.limits.has(Limit::guide) ? 1 : 0;
+        relaxed += step.relaxation == Relaxation::guides ? 1 : 0;
         for (std::size_t k = 0; k < step.increment.size(); ++k) q[k] += step.increment[k];
       }
       seen.push_back(guard.step(q, q).status);
@@ -65,6 +77,8 @@ TEST(InstrumentConstraint, AllocatesNothingWhateverTheOutcome) {
     }
   }
   EXPECT_EQ(allocations(), before);
+  EXPECT_GT(guided, 100);
+  EXPECT_GT(relaxed, 100);
   const std::set<Status> kinds(seen.begin(), seen.end());
   for (const Status status : {Status::free, Status::limited, Status::recovering, Status::touching,
                               Status::invalid_input, Status::out_of_budget, Status::inside}) {

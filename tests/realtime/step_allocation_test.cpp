@@ -130,5 +130,56 @@ TEST(Step, AllocatesNothingWhateverItsPartsAndItsOutcome) {
   }
 }
 
+TEST(Step, AllocatesNothingWithGuides) {
+  const auto mesh = std::make_shared<const Mesh>(make_shape("cortex"));
+  Random random(2);
+  const std::vector<Vec3> tips = surface_points(*mesh, 60, 0.5, random);
+  Eigen::Matrix<double, 3, 7> jacobian;
+  for (int i = 0; i < jacobian.size(); ++i) jacobian.data()[i] = normal(random);
+  const Eigen::Matrix<double, 3, 8> too_many = Eigen::Matrix<double, 3, 8>::Ones();
+  for (const IndexBackend& index : index_backends()) {
+    if (index.allocation != Allocation::never) continue;
+    SCOPED_TRACE(std::string(index.name));
+    MotionConstraint guard = make_motion_constraint(
+        mesh, {.index = std::string(index.name), .radius = 4.0, .margin = 0.1, .damping = 1e-6});
+    std::set<Status> seen;
+    int limited = 0;
+    int relaxed = 0;
+    for (std::size_t i = 0; i < tips.size(); ++i) {
+      const Vec3& tip = tips[i];
+      const Vec3 way = random.direction();
+      std::vector<Guide> guides{Guide::point("corridor", Region::slab(tip, way, 0.3)),
+                                Guide::point("ball", Region::ball(tip, 0.5))};
+      if (i % 2 == 0) {  // the tip is outside two regions that have no point in common
+        const Vec3 x = Vec3::UnitX();
+        guides.push_back(Guide::point("one", Region::half_space(tip + 0.1 * x, x)));
+        guides.push_back(Guide::point("other", Region::half_space(tip - 0.1 * x, -x)));
+      }
+      guard.set_guides(guides);
+      const Vec3 desired = 2.0 * random.direction();
+      const Motion motions[] = {{.tip = tip, .desired = desired},
+                                {.tip = tip, .desired = desired, .jacobian = jacobian},
+                                {.tip = tip, .desired = desired, .jacobian = too_many},
+                                {.tip = tip, .desired = 10.0 * desired}};
+      Status status[4] = {};
+      const std::size_t before = allocations();
+      for (std::size_t m = 0; m < 4; ++m) {
+        const Step step = guard.step(motions[m]);
+        status[m] = step.status;
+        limited += step.limits.has(Limit::guide) ? 1 : 0;
+        relaxed += step.relaxation == Relaxation::guides ? 1 : 0;
+      }
+      EXPECT_EQ(allocations(), before);
+      seen.insert(std::begin(status), std::end(status));
+    }
+    EXPECT_GT(limited, 20);
+    EXPECT_GT(relaxed, 20);
+    for (const Status status :
+         {Status::limited, Status::recovering, Status::over_capacity, Status::beyond_reach}) {
+      EXPECT_TRUE(seen.contains(status)) << name(status);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace keepout

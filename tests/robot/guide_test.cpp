@@ -14,6 +14,7 @@
 #include "keepout/fixtures/random.h"
 #include "keepout/fixtures/robots.h"
 #include "keepout/fixtures/shapes.h"
+#include "keepout/index/wide_bvh.h"
 #include "keepout/robot/instrument_constraint.h"
 #include "keepout/solvers/registry.h"
 #include "robot/configurations.h"
@@ -269,6 +270,30 @@ TEST(Guide, NeverLeadsIntoTheMesh) {
   EXPECT_NEAR(step.distance.value_or(1.0), 0.2, 0.003) << "it came as near as it may";
   EXPECT_EQ(step.relaxation, Relaxation::guides);
   EXPECT_TRUE(step.guides[1].relaxed);
+}
+
+TEST(Guide, IsKeptWhenTheMeshIsFollowed) {
+  Bench bench;
+  std::vector<double> q{0.1, -0.1, 60.0, 0.2, 0.1, -0.2};
+  const Vec3 at = bench.at(q).at(tip.link, tip.position);
+  const Guide guide = Guide::point("ball", tip, Region::ball(at, 0.5));
+  bench.guard.set_guides({guide});
+  const Twist aside{.linear = Vec3(1.0, 0.0, 0.0)};
+  const auto tree = std::make_shared<WideBvh>(bench.mesh);
+  bench.guard.follow(bench.mesh, tree);
+  const auto other = std::make_shared<const Mesh>(make_shape("gear"));
+  tree->refit(other);
+  const InstrumentStep none = bench.guard.step(q, aside);
+  EXPECT_EQ(none.status, Status::mesh_changed);
+  EXPECT_TRUE(none.increment.empty());
+  bench.guard.follow(other, tree);
+  for (int i = 0; i < 5; ++i) {
+    const InstrumentStep step = bench.guard.step(q, aside);
+    ASSERT_TRUE(step.ok()) << step.reason();
+    EXPECT_LE(farthest_out(bench, guide, q, step), guide.band() + 3e-9);
+    EXPECT_TRUE(step.limits.has(Limit::guide));
+    for (std::size_t k = 0; k < q.size(); ++k) q[k] += step.increment[k];
+  }
 }
 
 TEST(Guide, RefusesWhatIsNone) {

@@ -157,6 +157,45 @@ TEST(InstrumentConstraint, KeepsEveryBodyClearOnEveryIndexAndEverySolver) {
   }
 }
 
+TEST(InstrumentConstraint, KeepsEveryBodyClearWhateverASolverAnswers) {
+  class Liar final : public Solver {
+   public:
+    void reserve(int variables, int) override { u_.resize(static_cast<std::size_t>(variables)); }
+    SolveStatus solve(const StepProblem&, Solution& solution) noexcept override {
+      for (double& u : u_) u = random_.uniform(-0.02, 0.02);
+      u_[2] = random_.uniform(-0.5, 3.0);  // the insertion, down into the cube
+      solution.u = u_;
+      return SolveStatus::optimal;
+    }
+
+   private:
+    Random random_{1};
+    std::vector<double> u_;
+  };
+  const auto mesh = std::make_shared<const Mesh>(make_cube(20.0));
+  const Instrument instrument = psm_above();
+  InstrumentConstraint guard(mesh, std::make_shared<WideBvh>(mesh), instrument,
+                             std::make_unique<Liar>(), {.period = 0.05});
+  const double kept = guard.options().margin - guard.options().band - 3.0 * guard.tolerance();
+  const std::vector<double> start = straight_down(insertion_above_cube(instrument, *mesh, 1.0));
+  std::vector<double> q = start;
+  int moves = 0;
+  for (int i = 0; i < test::trials(500); ++i) {
+    if (i % 20 == 0) {
+      q = start;
+      guard.forget();
+    }
+    const InstrumentStep step = guard.step(q, {.linear = Vec3(0, 0, -0.5)});
+    ASSERT_TRUE(step.ok() || step.increment.empty());
+    for (const double share : {0.5, 1.0}) {
+      ASSERT_GE(clearance(instrument, *mesh, moved(q, step, share)), kept) << name(step.status);
+    }
+    moves += step.ok() && moved(q, step) != q ? 1 : 0;
+    q = moved(q, step);
+  }
+  EXPECT_GT(moves, test::trials(25));
+}
+
 // Shares of random motions, also large ones, that are said to be proven are free, densely sampled;
 // and motions that are free are nearly all proven.
 TEST(InstrumentConstraint, ProvesWhatIsFreeAndNothingElse) {
@@ -316,6 +355,7 @@ TEST(InstrumentConstraint, FollowsAnatomyThatDeforms) {
     mesh = at(0.1 * refit);
     tree->refit(mesh);
     EXPECT_EQ(guard.step(q, Twist{}).status, Status::mesh_changed);
+    EXPECT_EQ(guard.prove(q, std::vector<double>(6, 0.0)).status, Status::mesh_changed);
     guard.follow(mesh, tree);
     EXPECT_EQ(&guard.mesh(), mesh.get());
     double before = clearance(instrument, *mesh, q);
@@ -441,6 +481,10 @@ TEST(InstrumentConstraint, MovesNothingThatIsThroughTheSurfaceOrBehindIt) {
   const Instrument ball(chain, {{.points = {{1, Vec3::Zero()}}, .radius = 1.0}});
   auto inside = guard_of(mesh, ball);
   const std::vector<double> q{0.0};
+  EXPECT_EQ(inside.step(q, Twist{}).status, Status::inside);
+  EXPECT_TRUE(inside.step(q, Twist{}).increment.empty());
+  EXPECT_EQ(inside.prove(q, q).status, Status::inside);
+  inside.set_guides({Guide::point("down", {1, Vec3::Zero()}, Region::ball(Vec3(0, 0, -90), 1.0))});
   EXPECT_EQ(inside.step(q, Twist{}).status, Status::inside);
   auto unchecked = guard_of(mesh, ball, {.check_sides = false});
   EXPECT_EQ(unchecked.step(q, Twist{}).status, Status::free) << "of any surface, the side it is on";

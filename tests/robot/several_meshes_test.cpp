@@ -162,6 +162,29 @@ TEST(SeveralMeshes, AMeshThatComesOnIsGivenWayTo) {
   EXPECT_GT(limited, 300);
 }
 
+// The operator presses sideways. The ball goes before the cube, and stays in its corridor.
+TEST(SeveralMeshes, AMeshThatComesOnIsGivenWayToWithinTheGuides) {
+  const auto cube = cube_of(10.0);
+  const Vec3 start(7.0, 0.3, 0.2);
+  const Guide corridor =
+      Guide::point("corridor", {3, Vec3::Zero()}, Region::slab(start, Vec3(0.1, 1.0, 0.0), 0.5));
+  InstrumentConstraint guard = guard_of(cube, ball(1.0));
+  guard.set_guides({corridor});
+  guard.place(0, {}, {.linear = Vec3(50, 0, 0), .angular = Vec3(0, 0, 0.5)});
+  Vec3 at = start;
+  int held = 0;
+  for (int i = 0; i < 400; ++i) {
+    const InstrumentStep step = step_of(guard, at, Vec3(-0.02, i < 200 ? 0.05 : -0.05, 0.0));
+    ASSERT_TRUE(step.ok()) << step.reason();
+    ASSERT_EQ(step.level, 1.0) << i;
+    held += step.limits.has(Limit::mesh) && step.limits.has(Limit::guide) ? 1 : 0;
+    at = moved(at, step);
+    ASSERT_GE(clearance(at, 1.0, *cube, guard.place_of(0)), 0.198 - 1e-8) << i;
+    ASSERT_LE(corridor.region().excess(at), corridor.band() + 1e-9) << i;
+  }
+  EXPECT_GT(held, 100);
+}
+
 // Faster than the joints can go: less and less is kept, which is told; and then nothing is proven.
 TEST(SeveralMeshes, WhatOutrunsTheJointsIsNamed) {
   const auto cube = cube_of(10.0);

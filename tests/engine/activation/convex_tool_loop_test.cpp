@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -161,6 +162,37 @@ TEST(ConvexToolLoop, JointsAreHeldToTheSamePlanes) {
       tip += step.motion;
     }
     EXPECT_GT(held, 10);
+  }
+}
+
+TEST(ConvexToolLoop, GuidesHoldAsWell) {
+  const auto mesh = shape("gear");
+  const auto vertices = mesh->vertices();
+  const Vec3 top = *std::ranges::max_element(vertices, {}, [](const Vec3& v) { return v.z(); });
+  const Vec3 start = top + Vec3(0, 0, 8.0);
+  const Guide corridor = Guide::point("corridor", Region::tube(start, Vec3::UnitZ(), 1.0));
+  Random random(9);
+  for (const test::NamedTool& named : test::tools_of_each_kind(3.0, random)) {
+    SCOPED_TRACE(named.name);
+    MotionConstraint constraint = guard(mesh, named.tool);
+    constraint.set_guides({corridor});
+    ToolJudge judge(mesh, named.tool);
+    Vec3 tip = start;
+    int held = 0, guided = 0;
+    for (int cycle = 0; cycle < 100; ++cycle) {
+      const Vec3 desired = Vec3(0.2, 0, -0.6) + 0.7 * random.direction();
+      const Step step = constraint.step({.tip = tip, .desired = desired});
+      held += step.limits.has(Limit::mesh);
+      guided += step.limits.has(Limit::guide);
+      const Vec3 next = tip + step.motion;
+      ASSERT_LE(corridor.region().excess(next), corridor.band() + 1e-9);
+      if (!step.motion.isZero(0.0)) {
+        ASSERT_GE(judge.clearance(tip, next, margin - tiny), margin - tiny) << step.reason();
+      }
+      tip = next;
+    }
+    EXPECT_GT(held, 10);
+    EXPECT_GT(guided, 10);
   }
 }
 

@@ -188,6 +188,54 @@ TEST(TipGuides, LeaveNoTipStandingThatMayMove) {
   EXPECT_EQ(stuck, 0);
 }
 
+// A tip inside escapes through the surface if the guides allow it; else it stands still.
+TEST(TipGuides, HoldATipInsideThatIsLedOut) {
+  Loop loop("cube");
+  MotionConstraint guard(loop.mesh, std::make_shared<WideBvh>(loop.mesh),
+                         std::make_unique<CertifiedRule>(), std::make_unique<ActiveSet>(),
+                         loop.guard.options(), {}, Inside::led_out);
+  const Vec3 up = Vec3::UnitZ();
+  const double surface = loop.mesh->bounds().high.z();
+  const Vec3 inside(3, 4, surface - 1.0);
+  guard.set_guides({Guide::point("up", Region::half_space(inside, up))});
+  const Step out = guard.step({.tip = inside, .desired = Vec3(1, 0, 0)});
+  EXPECT_EQ(out.status, Status::recovering) << out.reason();
+  EXPECT_GT(out.motion.z(), 0.0);
+  guard.forget();
+  guard.set_guides({Guide::point("down", Region::half_space(inside, -up))});
+  const Step held = guard.step({.tip = inside, .desired = Vec3(1, 0, 0)});
+  EXPECT_EQ(held.status, Status::inside) << held.reason();
+  EXPECT_EQ(held.motion, Vec3::Zero());
+}
+
+TEST(TipGuides, HoldWhateverASolverAnswers) {
+  class Liar final : public Solver {
+   public:
+    void reserve(int, int) override {}
+    SolveStatus solve(const StepProblem& problem, Solution& solution) noexcept override {
+      solution.u = {problem.desired.data(), 3};
+      return SolveStatus::optimal;
+    }
+  };
+  Loop loop("cube");
+  MotionConstraint guard(loop.mesh, std::make_shared<WideBvh>(loop.mesh),
+                         std::make_unique<CertifiedRule>(), std::make_unique<Liar>(),
+                         loop.guard.options());
+  Random random(5);
+  int left = 0;
+  for (int i = 0; i < test::trials(500); ++i) {
+    const Vec3 tip = loop.mesh->bounds().high + Vec3::Constant(50.0);
+    const Guide ball = Guide::point("ball", Region::ball(tip + 0.5 * random.direction(), 1.0));
+    guard.set_guides({ball});
+    const Vec3 desired = random.uniform(0.0, 4.0) * random.direction();
+    const Step step = guard.step({.tip = tip, .desired = desired});
+    ASSERT_TRUE(step.ok() || step.motion.isZero(0.0)) << name(step.status);
+    ASSERT_LE(ball.region().excess(tip + step.motion), ball.band() + 1e-9);
+    left += ball.region().excess(tip + desired) > ball.band() ? 1 : 0;
+  }
+  EXPECT_GT(left, test::trials(100));
+}
+
 TEST(TipGuides, AreRefusedIfTheyAreTooManyOrOfAnInstrument) {
   Loop loop("cube");
   const Guide guide = Guide::point("a", Region::ball(Vec3::Zero(), 1.0));
