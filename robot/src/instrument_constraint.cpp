@@ -347,7 +347,7 @@ void InstrumentConstraint::set_guides(std::vector<Guide> guides) {
                 std::to_string(guides.size()));
   }
   for (const Guide& guide : guides) {
-    if (!guide.is_angular() && !(guide.band() > 4.0 * state_->memory.tolerance)) {
+    if (!(guide.band() > 4.0 * state_->memory.tolerance_of(guide))) {
       throw Error("the band of guide '" + guide.name() +
                   "' is lost in the rounding of an instrument and a mesh of this size");
     }
