@@ -251,6 +251,11 @@ MotionProof InstrumentConstraint::prove(std::span<const double> q,
       part *= 0.5;
       continue;
     }
+    // A later part that begins too close is certified for less than the first one.
+    if (proof.share > 0.0 && result.status == Status::recovering &&
+        proof.status != Status::recovering) {
+      break;
+    }
     if (proof.share == 0.0) proof.distance = result.distance;
     if (proof.share == 0.0 || !is_ok(result.status)) proof.status = result.status;
     proof.share += part * proven;
