@@ -188,6 +188,23 @@ TEST(TipGuides, LeaveNoTipStandingThatMayMove) {
   EXPECT_EQ(stuck, 0);
 }
 
+// A motion that leads out of the mesh is not proved, so it has no priority over guides.
+TEST(TipGuides, MayForbidTheWayOutOfTheMesh) {
+  const auto mesh = std::make_shared<const Mesh>(make_shape("cube"));
+  MotionConstraint guard(mesh, std::make_shared<WideBvh>(mesh), std::make_unique<CertifiedRule>(),
+                         std::make_unique<ActiveSet>(), {.radius = 5.0, .margin = kept_off}, {},
+                         Inside::led_out);
+  const Motion motion{.tip = Vec3(0, 0, mesh->bounds().high.z() - 1.0), .desired = Vec3::Zero()};
+  const Step out = guard.step(motion);
+  ASSERT_EQ(out.status, Status::recovering);
+  EXPECT_NEAR(out.motion.z(), guard.options().recovery, 1e-12);
+  guard.set_guides({Guide::point("below", Region::half_space(motion.tip, -Vec3::UnitZ()))});
+  const Step guided = guard.step(motion);
+  EXPECT_EQ(guided.status, Status::inside);
+  EXPECT_TRUE(guided.motion.isZero(0.0));
+  EXPECT_NE(guided.reason().find("a guide"), std::string_view::npos);
+}
+
 TEST(TipGuides, AreRefusedIfTheyAreTooManyOrOfAnInstrument) {
   Loop loop("cube");
   const Guide guide = Guide::point("a", Region::ball(Vec3::Zero(), 1.0));
