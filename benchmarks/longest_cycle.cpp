@@ -83,7 +83,20 @@ struct Scene {
   double near = 1.0;  // tips are so far from the middle at most [length]
   Vec3 middle = Vec3::Zero();
   bool with_joints = false;
+  bool with_guides = false;
 };
+
+/// Returns sixteen round regions about a place, some of which leave it out.
+std::vector<Guide> balls_about(const Vec3& place) {
+  std::vector<Guide> guides;
+  for (std::size_t g = 0; g < Guide::most; ++g) {
+    const double angle = 2.0 * std::numbers::pi * static_cast<double>(g) / Guide::most;
+    const Vec3 beside(2.0 * std::cos(angle), 2.0 * std::sin(angle), 0.3);
+    const double radius = g % 3 == 0 ? 2.04 : 2.03;
+    guides.push_back(Guide::point("ball", Region::ball(place + beside, radius)));
+  }
+  return guides;
+}
 
 std::vector<Scene> scenes() {
   std::vector<Scene> all;
@@ -105,6 +118,16 @@ std::vector<Scene> scenes() {
                  {.radius = 5.0, .margin = 1.0, .refinements = 1'000, .nodes = 65'536},
                  1.5,
                  {0, 0, 1}});
+  for (const VertexId faces : {400u, 4'000u}) {
+    Scene guided{std::to_string(faces) + " faces, 16 round guides", cone(faces, 1.0)};
+    guided.middle = {0, 0, 1};
+    guided.with_guides = true;
+    all.push_back(guided);
+    guided.name = "the same, 7 joints";
+    guided.settings.damping = 1e-6;
+    guided.with_joints = true;
+    all.push_back(guided);
+  }
   all.push_back({"centre of a sphere of 1 M triangles", sphere(700, 50.0), {}, 1e-3});
   all.push_back({"the same of 2 M, about the centre", sphere(1'000, 60.0), {}, 0.5});
   all.push_back({"the same, margin as far as the wall",
@@ -179,6 +202,7 @@ void measure(const Scene& scene, Longest& of_steps, Longest& of_polytopes) {
       for (int c = 0; c < 7; ++c) jacobian.col(c) = random.direction();
       motion.jacobian = jacobian;
     }
+    if (scene.with_guides) guard.set_guides(balls_about(tip));
     measure(
         guard, [&] { return name(guard.step(motion).status); }, steps);
     measure(

@@ -87,7 +87,7 @@ bool CycleMemory::is_lost_in_rounding(const InstrumentOptions& options) const no
   const double least = 4.0 * tolerance;
   return !(margin - options.band > least) || !(options.band > least) ||
          std::any_of(guides.begin(), guides.end(), [&](const GuideMemory& each) {
-           return !each.guide.is_angular() && !(each.guide.band() > least);
+           return !(each.guide.band() > 4.0 * tolerance_of(each.guide));
          });
 }
 

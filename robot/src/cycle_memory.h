@@ -114,6 +114,11 @@ struct CycleMemory {
   double farthest(int k) const noexcept {
     return instrument.chain().joint(k).kind == JointKind::prismatic ? largest_position : 100.0;
   }
+  /// Returns the same for a guide. A direction is rounded by some 1e-15, and joint positions by
+  /// some 1e-14 rad, whatever the lengths. [length or rad]
+  double tolerance_of(const Guide& guide) const noexcept {
+    return guide.is_angular() ? 1e-12 : tolerance;
+  }
   /// Makes what depends on the meshes, which may be others by now; forgets all. Allocates.
   void prepare();
   /// Makes what depends on where they are. How far meshes may be placed and joints may go does not

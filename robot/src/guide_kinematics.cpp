@@ -10,9 +10,9 @@
 namespace keepout {
 
 Vec3 guided_point(const Guide& guide, const ChainState& state) noexcept {
+  // Not the difference of two places, whose rounding would grow with the distance from the origin.
   if (guide.kind() == Guide::Kind::axis)
-    return state.at(guide.first().link, guide.first().position) -
-           state.at(guide.first().link, Vec3::Zero());
+    return state.link(guide.first().link).rotation * guide.first().position;
   const Vec3 from = state.at(guide.first().link, guide.first().position);
   if (guide.kind() == Guide::Kind::point) return from;
   return from + guided_fraction(guide, state) *

@@ -9,8 +9,7 @@
 namespace keepout {
 namespace {
 
-constexpr double angular_tolerance = 1e-12;  // [rad]
-constexpr std::size_t work_of_guide = 2;     // in looks
+constexpr std::size_t work_of_guide = 2;  // in looks
 
 }  // namespace
 
@@ -19,11 +18,14 @@ void GuideWatch::open() noexcept {
   for (std::size_t g = 0; g < memory_.guides.size(); ++g) {
     const Guide& guide = memory_.guides[g].guide;
     const double excess = guide.region().excess(guided_point(guide, chain));
-    const double tolerance = guide.is_angular() ? angular_tolerance : memory_.tolerance;
+    const double tolerance = memory_.tolerance_of(guide);
     double& floor = memory_.guides[g].floor;
     floor = certified_distance(-excess, floor, -guide.band(), guide.band(), tolerance);
-    // As a body's: what is there, if rounding has left less than what is certified.
-    allowed_[g] = std::min(-floor + 3.0 * tolerance, std::max(-floor + 2.0 * tolerance, excess));
+    // Like a body's: what is there if rounding has left less than what is certified; then a motion
+    // has to gain something, so that rounding adds up to nothing.
+    allowed_[g] = std::max(-floor + 2.0 * tolerance, excess);
+    const bool owes = excess > -floor + 2.0 * tolerance;
+    at_end_[g] = owes ? excess - tolerance / 8.0 : allowed_[g];
     is_recovering_ = is_recovering_ || is_recovering(g);
     memory_.guide_states[g] = {.excess = excess};
   }
@@ -37,10 +39,16 @@ bool GuideWatch::is_recovering(std::size_t g) const noexcept {
 int GuideWatch::judge(std::size_t& failed) noexcept {
   cell_of_chain_ = 0;
   int proven = PointMotion::cells;
+  const JointVector& increment = memory_.motion.increment();
+  if (std::all_of(increment.begin(), increment.end(), [](double x) { return x == 0.0; })) {
+    return proven;  // guides do not move
+  }
   for (std::size_t g = 0; g < memory_.guides.size() && proven > 0; ++g) {
     if (is_dropped_[g]) continue;
     const Standing at_end = standing(g, PointMotion::cells);
-    const int until = proven_until(g, 0, standing(g, 0), PointMotion::cells, at_end);
+    const bool gains_too_little = at_end_[g] < allowed_[g] && at_end.excess > at_end_[g];
+    const int until =
+        gains_too_little ? 0 : proven_until(g, 0, standing(g, 0), PointMotion::cells, at_end);
     if (until >= proven) continue;
     proven = until;
     failed = g;

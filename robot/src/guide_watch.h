@@ -59,6 +59,7 @@ class GuideWatch {
   int cell_of_chain_ = 0;  // where that is, on the motion at hand; 0: not known
   bool is_recovering_ = false;
   std::array<double, Guide::most> allowed_{};  // excess of each in this cycle
+  std::array<double, Guide::most> at_end_{};   // excess that each may have at the end of a motion
   std::array<bool, Guide::most> is_dropped_{};
 };
 

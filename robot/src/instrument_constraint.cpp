@@ -251,6 +251,11 @@ MotionProof InstrumentConstraint::prove(std::span<const double> q,
       part *= 0.5;
       continue;
     }
+    // A later part that begins too close is certified for less than the first one.
+    if (proof.share > 0.0 && result.status == Status::recovering &&
+        proof.status != Status::recovering) {
+      break;
+    }
     if (proof.share == 0.0) proof.distance = result.distance;
     if (proof.share == 0.0 || !is_ok(result.status)) proof.status = result.status;
     proof.share += part * proven;
@@ -347,7 +352,7 @@ void InstrumentConstraint::set_guides(std::vector<Guide> guides) {
                 std::to_string(guides.size()));
   }
   for (const Guide& guide : guides) {
-    if (!guide.is_angular() && !(guide.band() > 4.0 * state_->memory.tolerance)) {
+    if (!(guide.band() > 4.0 * state_->memory.tolerance_of(guide))) {
       throw Error("the band of guide '" + guide.name() +
                   "' is lost in the rounding of an instrument and a mesh of this size");
     }

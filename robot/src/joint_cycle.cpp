@@ -80,6 +80,10 @@ void JointCycle::search(const JointTask& task, Trial& best, InstrumentStep& resu
   }
   if (best.cell == 0) {
     result.status = trouble_ != Status::free ? trouble_ : Status::unsolved;
+    // Guides that contradict each other leave a motion that is proved: to stand still.
+    const bool is_search_over =
+        result.status == Status::unsolved || result.status == Status::infeasible;
+    if (is_search_over && stopped_.has(Limit::guide)) result.status = Status::fallback;
     rows_.remember_all();
   } else if (best.share < 1.0 || asked < 1.0) {
     result.status = Status::fallback;

@@ -104,7 +104,10 @@ void WorkingRows::add(std::size_t p, const NearTriangle& triangle, int cell) noe
     has_ends = has_ends || !row.point.has_value();
   }
   if (witnesses < 2) {
-    if (const auto row = make_.witness(p, triangle, cell)) memory_.rows.push(*row);
+    auto row = make_.witness(p, triangle, cell);
+    // A core that touches there shows no normal: then the one as the cycle begins.
+    if (!row) row = make_.witness(p, triangle, 0);
+    if (row) memory_.rows.push(*row);
   } else if (!has_ends) {
     for (const std::uint8_t end : memory_.instrument.points_of(memory_.pairs[p].body)) {
       if (memory_.instrument.points()[end].link == 0) continue;

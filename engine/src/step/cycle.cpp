@@ -80,10 +80,11 @@ Cycle::Cycle(Activation& rule, Solver& solver, Workspace& work, Budget& budget,
       around_(surroundings_of(motion, options, rule.reach())),
       times_(times) {
   // Guides that lead back may ask for more than the projection of the aim can give.
-  if (work.guides.leads_back()) around_.reach = around_.searched = Reach::sphere;
+  const bool leads_back = !work.guides.empty() && work.guides.leads_back();
+  if (leads_back) around_.reach = around_.searched = Reach::sphere;
   // With joints, rows or damping the answer is no projection.
   around_.is_projected = !motion.jacobian && !motion.rows && options.damping == 0.0 &&
-                         solver.reads_planes() && !work.guides.leads_back();
+                         solver.reads_planes() && !leads_back;
   if (times_ != nullptr) last_ = std::chrono::steady_clock::now();
 }
 
@@ -128,6 +129,11 @@ void Cycle::report(Step& result) noexcept {
   result.active = work_.active();
   result.relaxation = work_.relaxation();
   result.limits = work_.limits();
+  if (halvings_ > 0) {
+    result.limits.add(Limit::truncated);
+    result.limits.add(halved_for_ == Status::over_capacity ? Limit::capacity : Limit::budget);
+  }
+  if (result.active.empty()) return;
   const std::size_t of_mesh = work_.planes.size();
   for (const std::uint32_t row : result.active) {
     if (row < of_mesh) {
@@ -140,9 +146,6 @@ void Cycle::report(Step& result) noexcept {
       result.limits.add(Limit::rows);
     }
   }
-  if (halvings_ == 0) return;
-  result.limits.add(Limit::truncated);
-  result.limits.add(halved_for_ == Status::over_capacity ? Limit::capacity : Limit::budget);
 }
 
 /// Has the rule look at the triangles that matter for the aim, and begin with them.
@@ -264,6 +267,12 @@ void Cycle::note(Status ended) noexcept {
 /// The nearest motion that planes and guides allow; the rule has not judged it yet. free, or what
 /// went wrong. If no half-space of a guide is left to add, the motion may leave its region.
 Cycle::Trial Cycle::solve() noexcept {
+  // The projection of the aim on no plane: it needs no solver.
+  const bool is_bare = work_.planes.empty() && !work_.planes.overflowed();
+  if (is_bare && around_.is_projected && work_.guides.empty()) {
+    work_.solution = {};
+    return {Status::free, around_.aim};
+  }
   Trial trial = solve_once();
   while (is_ok(trial.status) && !work_.guides.allow(trial.motion)) {
     budget_.spend(1);
@@ -275,12 +284,6 @@ Cycle::Trial Cycle::solve() noexcept {
 
 Cycle::Trial Cycle::solve_once() noexcept {
   if (work_.planes.overflowed()) return {Status::over_capacity, Vec3::Zero()};
-  const bool is_bare = work_.planes.empty() && work_.guides.planes().empty();
-  // The projection of the aim on no plane: it needs no solver.
-  if (is_bare && around_.is_projected) {
-    work_.solution = {};
-    return {Status::free, around_.aim};
-  }
   std::optional<Vec3> answer;
   Status solved = attempt(answer);
   // Planes may contradict each other, or nearly, so that the solver finds a point out of the world,

@@ -178,8 +178,10 @@ Step MotionConstraint::step(const Motion& motion, SideWatch& sides, StageTimes* 
   // What is refused says nothing of where the tip is.
   if (is_ok(result.status)) {
     step_as_checked(motion, sides, times, result);
-    result.guides = work_->guides.states(result.relaxation);
-    if (result.ok() && work_->guides.is_recovering()) result.status = Status::recovering;
+    if (TipGuides& guides = work_->guides; !guides.empty()) {
+      result.guides = guides.states(result.relaxation);
+      if (result.ok() && guides.is_recovering()) result.status = Status::recovering;
+    }
   }
   const bool is_asked = options_.distances == Distances::always && !result.distance;
   if (is_asked && result.status != Status::invalid_input) {
@@ -192,7 +194,7 @@ Step MotionConstraint::step(const Motion& motion, SideWatch& sides, StageTimes* 
 /// A tip on the forbidden side is led out; any other steps as the rule allows.
 void MotionConstraint::step_as_checked(const Motion& motion, SideWatch& sides, StageTimes* times,
                                        Step& result) noexcept {
-  work_->guides.open(motion.tip, options_.recovery);
+  if (!work_->guides.empty()) work_->guides.open(motion.tip, options_.recovery);
   if (watch_ && sides.has_to_place(motion.tip, mesh()) &&
       lead_out_from_inside(*near_, motion, options_, *work_, result)) {
     return;

@@ -83,7 +83,7 @@ std::span<const GuideState> TipGuides::states(Relaxation relaxation) noexcept {
   return states_;
 }
 
-bool TipGuides::allow(const Vec3& motion) const noexcept {
+bool TipGuides::all_allow(const Vec3& motion) const noexcept {
   for (std::size_t g = 0; g < guides_.size(); ++g) {
     if (!(guides_[g].region().excess(at_end(motion)) <= allowed_[g])) return false;
   }

@@ -40,7 +40,7 @@ class TipGuides {
   bool relax() noexcept;
 
   /// Returns true if a motion stays as far within all regions as this cycle requires.
-  bool allow(const Vec3& motion) const noexcept;
+  bool allow(const Vec3& motion) const noexcept { return empty() || all_allow(motion); }
   /// Returns a fraction of a motion that is allowed; 1 if all of it is.
   double allowed_fraction(const Vec3& motion) const noexcept;
   /// Adds a half-space for each region that a motion leaves. Returns false if there is none to add.
@@ -57,6 +57,7 @@ class TipGuides {
 
  private:
   Vec3 at_end(const Vec3& motion) const noexcept { return tip_ + motion; }
+  bool all_allow(const Vec3& motion) const noexcept;
   bool add(std::size_t guide, const Vec3& at) noexcept;
 
   std::vector<Guide> guides_;

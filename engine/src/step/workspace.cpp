@@ -102,8 +102,7 @@ void Workspace::write_rows_of(std::span<const HalfSpace> posed, const double* ja
   }
 }
 
-std::span<const HalfSpace> Workspace::posed(std::size_t guide_planes) noexcept {
-  if (guide_planes == 0) return planes.view();
+std::span<const HalfSpace> Workspace::joined(std::size_t guide_planes) noexcept {
   posed_.assign(planes.view());
   for (const HalfSpace& plane : guides.planes().first(guide_planes)) posed_.push(plane);
   return posed_.view();

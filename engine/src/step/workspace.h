@@ -77,7 +77,7 @@ class Workspace {
                    Relaxation relaxation, Limits limits) noexcept;
 
   /// Returns the planes and those of guides, as the solver gets them.
-  std::span<const HalfSpace> posed() noexcept { return posed(guides.planes().size()); }
+  std::span<const HalfSpace> posed() noexcept { return with_guides(guides.planes().size()); }
 
   TipGuides guides;                // of the tip
   HalfSpaceBuffer planes;          // that the trial at hand has to satisfy
@@ -97,7 +97,9 @@ class Workspace {
   /// The rows that limit it: planes, those of guides, then those of the caller.
   std::span<const std::uint32_t> active() const noexcept { return answer_.active.view(); }
   /// Returns the planes and those of guides that it was found with.
-  std::span<const HalfSpace> posed_for_answer() noexcept { return posed(answer_.guide_planes); }
+  std::span<const HalfSpace> posed_for_answer() noexcept {
+    return with_guides(answer_.guide_planes);
+  }
   /// Returns what was relaxed for it.
   Relaxation relaxation() const noexcept { return answer_.relaxation; }
   /// Returns what limits it that is no active row.
@@ -112,7 +114,10 @@ class Workspace {
     Limits limits = {};
   };
 
-  std::span<const HalfSpace> posed(std::size_t guide_planes) noexcept;
+  std::span<const HalfSpace> with_guides(std::size_t guide_planes) noexcept {
+    return guide_planes == 0 ? planes.view() : joined(guide_planes);
+  }
+  std::span<const HalfSpace> joined(std::size_t guide_planes) noexcept;
   void write_rows_of(std::span<const HalfSpace> posed, const double* jacobian,
                      Eigen::Index variables) noexcept;
 

@@ -188,24 +188,21 @@ TEST(TipGuides, LeaveNoTipStandingThatMayMove) {
   EXPECT_EQ(stuck, 0);
 }
 
-// A tip inside escapes through the surface if the guides allow it; else it stands still.
-TEST(TipGuides, HoldATipInsideThatIsLedOut) {
-  Loop loop("cube");
-  MotionConstraint guard(loop.mesh, std::make_shared<WideBvh>(loop.mesh),
-                         std::make_unique<CertifiedRule>(), std::make_unique<ActiveSet>(),
-                         loop.guard.options(), {}, Inside::led_out);
-  const Vec3 up = Vec3::UnitZ();
-  const double surface = loop.mesh->bounds().high.z();
-  const Vec3 inside(3, 4, surface - 1.0);
-  guard.set_guides({Guide::point("up", Region::half_space(inside, up))});
-  const Step out = guard.step({.tip = inside, .desired = Vec3(1, 0, 0)});
-  EXPECT_EQ(out.status, Status::recovering) << out.reason();
-  EXPECT_GT(out.motion.z(), 0.0);
-  guard.forget();
-  guard.set_guides({Guide::point("down", Region::half_space(inside, -up))});
-  const Step held = guard.step({.tip = inside, .desired = Vec3(1, 0, 0)});
-  EXPECT_EQ(held.status, Status::inside) << held.reason();
-  EXPECT_EQ(held.motion, Vec3::Zero());
+// A motion that leads out of the mesh is not proved, so it has no priority over guides.
+TEST(TipGuides, MayForbidTheWayOutOfTheMesh) {
+  const auto mesh = std::make_shared<const Mesh>(make_shape("cube"));
+  MotionConstraint guard(mesh, std::make_shared<WideBvh>(mesh), std::make_unique<CertifiedRule>(),
+                         std::make_unique<ActiveSet>(), {.radius = 5.0, .margin = kept_off}, {},
+                         Inside::led_out);
+  const Motion motion{.tip = Vec3(0, 0, mesh->bounds().high.z() - 1.0), .desired = Vec3::Zero()};
+  const Step out = guard.step(motion);
+  ASSERT_EQ(out.status, Status::recovering);
+  EXPECT_NEAR(out.motion.z(), guard.options().recovery, 1e-12);
+  guard.set_guides({Guide::point("below", Region::half_space(motion.tip, -Vec3::UnitZ()))});
+  const Step guided = guard.step(motion);
+  EXPECT_EQ(guided.status, Status::inside);
+  EXPECT_TRUE(guided.motion.isZero(0.0));
+  EXPECT_NE(guided.reason().find("a guide"), std::string_view::npos);
 }
 
 TEST(TipGuides, HoldWhateverASolverAnswers) {

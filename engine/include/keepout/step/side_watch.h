@@ -31,7 +31,8 @@ class SideWatch {
 
   /// Whether it has to be asked on which side of a mesh a tip is: whether no step has led there.
   bool has_to_place(const Vec3& tip, const Mesh& mesh) const noexcept {
-    return is_on_ && !(distance_to_way(tip) <= free_around_ && mesh.id() == mesh_id_);
+    const bool is_free = (tip - free_tip_).norm() <= free_around_ || is_near_way(tip);
+    return is_on_ && !(is_free && mesh.id() == mesh_id_);
   }
 
   /// Notes where a step from the free side of a mesh has led to.
@@ -49,12 +50,13 @@ class SideWatch {
   void forget() noexcept { free_tip_ = Motion::unset; }
 
  private:
-  /// Returns the distance of a tip from the straight way of the last step, which is free. [length]
-  double distance_to_way(const Vec3& tip) const noexcept {
-    const Vec3 off = tip - free_tip_;
+  /// Returns true if a tip is near the straight way of the last step, which is free as well.
+  bool is_near_way(const Vec3& tip) const noexcept {
     const double length2 = way_back_.squaredNorm();
-    const double share = length2 > 0.0 ? std::clamp(off.dot(way_back_) / length2, 0.0, 1.0) : 0.0;
-    return (off - share * way_back_).norm();
+    if (!(length2 > 0.0)) return false;
+    const Vec3 off = tip - free_tip_;
+    const double share = std::clamp(off.dot(way_back_) / length2, 0.0, 1.0);
+    return (off - share * way_back_).norm() <= free_around_;
   }
 
   bool is_on_ = true;
