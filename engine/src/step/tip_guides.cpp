@@ -35,8 +35,10 @@ void TipGuides::open(const Vec3& tip, double recovery) noexcept {
   planes_.clear();
   for (std::size_t g = 0; g < guides_.size(); ++g) {
     const double excess = guides_[g].region().excess(tip);
+    // Motions along the boundary end beside it by the rounding of their coordinates.
+    const double rounding = 1e-15 * (tip.lpNorm<1>() + guides_[g].region().origin().lpNorm<1>());
     states_[g] = {.excess = excess};
-    allowed_[g] = std::max(guides_[g].band(), excess);
+    allowed_[g] = std::max(guides_[g].band(), excess) + rounding;
     if (excess > 0.0) add(g, tip);
   }
 }
