@@ -36,6 +36,10 @@ bool GuideWatch::is_recovering(std::size_t g) const noexcept {
   return memory_.guides[g].floor < -memory_.guides[g].guide.band();
 }
 
+double GuideWatch::allowance(std::size_t g, double unused) const noexcept {
+  return std::max(at_end_[g] - unused * memory_.guides[g].guide.band(), 0.0);
+}
+
 int GuideWatch::judge(std::size_t& failed) noexcept {
   cell_of_chain_ = 0;
   int proven = PointMotion::cells;

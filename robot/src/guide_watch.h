@@ -25,6 +25,10 @@ class GuideWatch {
   /// Whether that guide is.
   bool is_recovering(std::size_t guide) const noexcept;
 
+  /// Returns the excess that a relaxed guide may end with, if a fraction of its band is kept
+  /// unused. [length or rad]
+  double allowance(std::size_t guide, double unused) const noexcept;
+
   /// Takes a guide out of what is proved in this cycle: it contradicts the clearance from a mesh
   /// that moves.
   void drop(std::size_t guide) noexcept { is_dropped_[guide] = true; }

@@ -33,11 +33,12 @@ class JointCycle {
   double prove(const JointVector& increment, InstrumentStep& result) noexcept;
 
  private:
-  /// How much of what rows lead back is asked for.
+  /// How far rows are relaxed.
   struct Softness {
     Relaxation name;
-    double guides;
-    double bodies;
+    double
+        guides;  // 1: guides pull back; below: the fraction of a guide's band that is kept unused
+    double bodies;  // the fraction of a body's recovery that is demanded
   };
 
   /// A motion, and the part of it that is certified.
@@ -63,6 +64,9 @@ class JointCycle {
   void turn(const JointTask& task, Trial& best) noexcept;
   SolveStatus solve(const JointTask& task, Trial& trial) noexcept;
   SolveStatus pose(const JointTask& task, const Softness& softness, Solution& solution) noexcept;
+  bool is_far_fetched(const JointTask& task, const Softness& relaxed, Solution& solution) noexcept;
+  double body_bound(const ContactRow& row, const Softness& softness) const noexcept;
+  double guide_bound(const ContactRow& row, const Softness& softness) const noexcept;
   void judge(Trial& trial) noexcept;
   Status judge_pair(std::size_t pair) noexcept;
   bool answer() noexcept;
