@@ -40,6 +40,13 @@ double GuideWatch::allowance(std::size_t g, double unused) const noexcept {
   return std::max(at_end_[g] - unused * memory_.guides[g].guide.band(), 0.0);
 }
 
+bool GuideWatch::bends_by_more(const ContactRow& row,
+                               std::span<const double> increment) const noexcept {
+  const Guide& guide = memory_.guides[row.owner - most_pairs].guide;
+  const double bend = guided_bend(guide, memory_.motion.chain_at_start(), increment, 0.0);
+  return bend / 2.0 > row.bound + row.correction + guide.band();
+}
+
 int GuideWatch::judge(std::size_t& failed) noexcept {
   cell_of_chain_ = 0;
   int proven = PointMotion::cells;

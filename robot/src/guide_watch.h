@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <span>
 
 #include "cycle_memory.h"
 
@@ -28,6 +29,10 @@ class GuideWatch {
   /// Returns the excess that a relaxed guide may end with, if a fraction of its band is kept
   /// unused. [length or rad]
   double allowance(std::size_t guide, double unused) const noexcept;
+
+  /// Returns true if the second-derivative bound of a motion allows its guide to end farther out
+  /// than it started, by more than its band, although the row pulls the guide back.
+  bool bends_by_more(const ContactRow& row, std::span<const double> increment) const noexcept;
 
   /// Takes a guide out of what is proved in this cycle: it contradicts the clearance from a mesh
   /// that moves.

@@ -277,23 +277,24 @@ SolveStatus JointCycle::solve(const JointTask& task, Trial& trial) noexcept {
       {Relaxation::recovery, 0.0, 0.25}, {Relaxation::recovery, 0.0, 0.0}};
   bool guides_lead = false;
   bool bodies_lead = false;
-  const bool has_failed =
-      std::any_of(has_failed_.begin(), has_failed_.end(), [](bool failed) { return failed; });
   for (const ContactRow& row : memory_.rows) {
     bool& lead = row.owner < most_pairs ? bodies_lead : guides_lead;
     lead = lead || row.bound > 0.0;
   }
   SolveStatus solved = SolveStatus::infeasible;
-  for (const Softness& softness : relaxations) {
+  for (std::size_t i = 0; i < std::size(relaxations); ++i) {
+    const Softness& softness = relaxations[i];
     if (softness.name == Relaxation::guides && !guides_lead) continue;
+    if (guides_lead && i < relaxed_) continue;
     solved = pose(task, softness, solution);
     trial.relaxation = softness.name;
     if (softness.name == Relaxation::recovery && !bodies_lead) {
       trial.relaxation = guides_lead ? Relaxation::guides : Relaxation::none;
     }
-    if (softness.name == Relaxation::none && solved == SolveStatus::optimal && guides_lead &&
-        has_failed && is_far_fetched(task, relaxations[1], solution)) {
-      trial.relaxation = Relaxation::guides;
+    if (softness.guides > 0.0 && solved == SolveStatus::optimal && guides_lead &&
+        is_far_fetched(task, softness, relaxations[2], solution)) {
+      relaxed_ = std::max(relaxed_, i + 1);
+      continue;
     }
     if (solved == SolveStatus::optimal || solved == SolveStatus::ill_posed) break;
   }
@@ -324,30 +325,33 @@ Limits JointCycle::held_by(const Solution& solution) const noexcept {
   return held;
 }
 
-/// Returns true if pulling all guides back takes a motion that is much longer than to pull them
-/// back one by one, and than to relax them. The rows of guides that miss each other by little are
-/// nearly opposite: to satisfy all of them takes a motion so long that its curvature leaves the
-/// guides again. `solution` is the motion; another one if false is returned after a comparison.
-bool JointCycle::is_far_fetched(const JointTask& task, const Softness& relaxed,
-                                Solution& solution) noexcept {
+/// Returns true if pulling all guides back takes a motion that leaves one of them again, and that
+/// is much longer than to pull them back one by one, and than to relax them. The rows of guides
+/// that miss each other by little are nearly opposite: only a very long motion satisfies all of
+/// them. `solution` is the motion; the relaxed one if true is returned.
+bool JointCycle::is_far_fetched(const JointTask& task, const Softness& tried,
+                                const Softness& relaxed, Solution& solution) noexcept {
   constexpr double most = 8.0;
+  const auto n = static_cast<std::size_t>(task.joints);
   const auto length_of = [](const Solution& its) {
     return std::sqrt(std::inner_product(its.u.begin(), its.u.end(), its.u.begin(), 0.0));
   };
+  JointVector increment{};
+  for (std::size_t k = 0; k < n; ++k) increment[k] = task.unit[k] * solution.u[k];
   double one_by_one = 0.0;
+  bool bends_too_much = false;
   for (const ContactRow& row : memory_.rows) {
     if (row.owner < most_pairs || !(row.bound > 0.0)) continue;
     double steepest2 = 0.0;
-    for (std::size_t k = 0; k < static_cast<std::size_t>(task.joints); ++k) {
-      steepest2 += std::pow(task.unit[k] * row.gradient[k], 2);
-    }
+    for (std::size_t k = 0; k < n; ++k) steepest2 += std::pow(task.unit[k] * row.gradient[k], 2);
     if (steepest2 > 0.0) one_by_one += (row.bound + row.correction) / std::sqrt(steepest2);
+    bends_too_much = bends_too_much || guides_.bends_by_more(row, {increment.data(), n});
   }
   const double length = length_of(solution);
-  if (!(length > most * one_by_one)) return false;
+  if (!bends_too_much || !(length > most * one_by_one)) return false;
   const bool is_shorter = pose(task, relaxed, solution) == SolveStatus::optimal &&
                           length > most * (one_by_one + length_of(solution));
-  if (!is_shorter) pose(task, {Relaxation::none, 1.0, 1.0}, solution);
+  if (!is_shorter) pose(task, tried, solution);
   return is_shorter;
 }
 

@@ -64,7 +64,8 @@ class JointCycle {
   void turn(const JointTask& task, Trial& best) noexcept;
   SolveStatus solve(const JointTask& task, Trial& trial) noexcept;
   SolveStatus pose(const JointTask& task, const Softness& softness, Solution& solution) noexcept;
-  bool is_far_fetched(const JointTask& task, const Softness& relaxed, Solution& solution) noexcept;
+  bool is_far_fetched(const JointTask& task, const Softness& tried, const Softness& relaxed,
+                      Solution& solution) noexcept;
   double body_bound(const ContactRow& row, const Softness& softness) const noexcept;
   double guide_bound(const ContactRow& row, const Softness& softness) const noexcept;
   void judge(Trial& trial) noexcept;
@@ -92,6 +93,7 @@ class JointCycle {
   Limits stopped_ = {};                         // what attempts failed by
   std::array<bool, most_pairs + Guide::most> is_left_out_{};     // owners of rows not to be posed
   std::array<std::uint8_t, 2 * Chain::most_joints> box_rows_{};  // of the problem: see pose
+  std::size_t relaxed_ = 0;  // the least relaxation of guides that is left to try in this cycle
   bool meshes_move_;
   int rounds_ = 0;
   std::size_t in_reach_ = 0;  // triangles of one body and one trial, at the most
