@@ -26,6 +26,7 @@ void GuideWatch::open() noexcept {
     allowed_[g] = std::max(-floor + 2.0 * tolerance, excess);
     const bool owes = excess > -floor + 2.0 * tolerance;
     at_end_[g] = owes ? excess - tolerance / 8.0 : allowed_[g];
+    owes_ = owes_ || owes;
     is_recovering_ = is_recovering_ || is_recovering(g);
     memory_.guide_states[g] = {.excess = excess};
   }

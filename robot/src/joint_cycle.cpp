@@ -59,6 +59,7 @@ void JointCycle::run(const JointTask& task, InstrumentStep& result) noexcept {
   } else {
     search(task, best, result);
   }
+  if (owes_ || guides_.owes()) check_cut(best);
   result.degraded = memory_.degraded.view();
   watch_.close();
   if (is_ok(result.status) && result.status != Status::yielding && is_recovering())
@@ -142,6 +143,20 @@ void JointCycle::name_limits(const Trial& best, InstrumentStep& result) noexcept
   if (!is_cut) return;
   add_all(limits, stopped_);
   if (is_ok(result.status)) limits.add(Limit::truncated);
+}
+
+/// Judges the part of a motion that is made as a motion of its own, as its end must make up for
+/// what rounding took. If that fails, there is no motion.
+void JointCycle::check_cut(Trial& best) noexcept {
+  if (!(best.share > 0.0 && best.share < 1.0)) return;
+  Trial cut;
+  for (std::size_t k = 0; k < cut.increment.size(); ++k) {
+    cut.increment[k] = best.share * best.increment[k];
+  }
+  judge(cut);
+  if (cut.cell == PointMotion::cells) return;
+  best.share = 0.0;
+  best.increment.fill(0.0);
 }
 
 void JointCycle::carry_out(const Trial& best, InstrumentStep& result) noexcept {
@@ -460,6 +475,7 @@ Status JointCycle::judge_pair(std::size_t p) noexcept {
     if (row.owner == p) certificate.try_first(row.normal);
   }
   pair.failure = certificate.judge(triangles, pair.reach);
+  owes_ = owes_ || certificate.owes();
   return Status::free;
 }
 

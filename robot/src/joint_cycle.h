@@ -76,6 +76,7 @@ class JointCycle {
   void name_limits(const Trial& best, InstrumentStep& result) noexcept;
   void tell_of_guides(const Trial& best, InstrumentStep& result) noexcept;
   bool is_recovering() const noexcept { return watch_.is_recovering() || guides_.is_recovering(); }
+  void check_cut(Trial& best) noexcept;
   void carry_out(const Trial& best, InstrumentStep& result) noexcept;
   bool is_worn_out() const noexcept { return memory_.budget.is_spent(); }
 
@@ -95,6 +96,7 @@ class JointCycle {
   std::array<std::uint8_t, 2 * Chain::most_joints> box_rows_{};  // of the problem: see pose
   std::size_t relaxed_ = 0;  // the least relaxation of guides that is left to try in this cycle
   bool meshes_move_;
+  bool owes_ = false;  // a body owes what rounding took: see Certificate::owes
   int rounds_ = 0;
   std::size_t in_reach_ = 0;  // triangles of one body and one trial, at the most
 };
