@@ -41,13 +41,19 @@ Certificate::Failure Certificate::judge(std::span<NearTriangle> triangles, doubl
     if (is_covered(triangle)) continue;
     near_.know(triangle, budget_);
     if (triangle.at_start.distance >= out_of_reach) continue;
-    // What is kept, or what is there if rounding has left less.
+    // What is kept, or what is there if rounding has left less. Then a motion has to end a little
+    // farther off, and a body that does not move is kept, so that rounding does not add up.
     const double distance = triangle.at_start.distance - radius_;
-    due_ = distance >= kept_
-               ? kept_
-               : std::max(kept_ - tolerance_, std::min(kept_, distance + 2.0 * tolerance_));
+    due_ = std::min(kept_, distance + 2.0 * tolerance_);
+    const bool owes = due_ < kept_;
+    if (owes && reach == 0.0) continue;
+    owes_ = owes_ || owes;
     const Gap at_end = gap_at(PointMotion::cells, *triangle.corners);
-    const int cell = proven_until(triangle, 0, triangle.at_start, PointMotion::cells, at_end);
+    const bool gains_too_little =
+        owes && at_end.distance < triangle.at_start.distance + tolerance_ / 8.0;
+    const int cell = gains_too_little
+                         ? 0
+                         : proven_until(triangle, 0, triangle.at_start, PointMotion::cells, at_end);
     if (budget_.is_spent()) return {0, nullptr};
     if (cell > latest_ || cell == PointMotion::cells) continue;
     if (cell == latest_ && first.triangle != nullptr && first.triangle->id < triangle.id) continue;

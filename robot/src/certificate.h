@@ -37,6 +37,9 @@ class Certificate {
   /// The first of the triangles to speak against the motion, of equals the first by number.
   /// `reach`: how far the body gets on it (PointMotion::farthest). [length]
   Failure judge(std::span<NearTriangle> triangles, double reach) noexcept;
+  /// Returns true if rounding has left less than `kept` of a triangle that was judged, so that the
+  /// end of the motion must be farther off than its start.
+  bool owes() const noexcept { return owes_; }
 
  private:
   /// A normal, and the least height of the body over it on the whole motion.
@@ -61,6 +64,7 @@ class Certificate {
   double kept_;
   double tolerance_;
   Budget& budget_;
+  bool owes_ = false;
   double due_ = 0.0;                 // what the triangle at hand is kept clear of [length]
   int latest_ = PointMotion::cells;  // what is proven farther than that makes no difference
   std::array<Plane, most_planes> planes_;

@@ -154,7 +154,8 @@ void ContactRows::finish(ContactRow& row, const Vec3& at, const Triangle& corner
   const RelativeMotion& seen = motion(row.owner);
   row.level = support(corners, row.normal) + radius(row.owner) + watch_.margin(row.owner);
   row.start_height = row.normal.dot(at) - row.level;
-  row.bound = std::min(-row.start_height, options_.recovery);
+  // At least by a tolerance, which a body owes that rounding has brought closer than is certified.
+  row.bound = std::min(-row.start_height, std::max(options_.recovery, memory_.tolerance));
   // Of a mesh that is still, none at all: no rounding either, which no joint might make up for.
   if (!seen.is_moving()) return;
   row.drift = row.normal.dot(seen.seen(seen.place_in_world(at), PointMotion::cells) - at);

@@ -76,7 +76,7 @@ void CycleMemory::measure() noexcept {
     size = std::max(size, own);
     size_with_poses = std::max(size_with_poses, own + mesh.pose.position.norm());
   }
-  largest_position = std::max(100.0 * size, 100.0);
+  largest_position = 100.0 * size;
   tolerance = 1e-12 * (size_with_poses + std::min(instrument.chain().reach(), largest_position));
 }
 

@@ -81,7 +81,6 @@ inline double certified_distance(double distance, double floor, double target, d
   const double held = std::min(floor, target);
   const double missing = held - distance;
   if (missing > 4.0 * tolerance) return distance - room;
-  if (missing > 3.0 * tolerance) return distance;  // lost to rounding
   return std::min(std::max(held, distance - room), target);
 }
 

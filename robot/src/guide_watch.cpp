@@ -26,6 +26,7 @@ void GuideWatch::open() noexcept {
     allowed_[g] = std::max(-floor + 2.0 * tolerance, excess);
     const bool owes = excess > -floor + 2.0 * tolerance;
     at_end_[g] = owes ? excess - tolerance / 8.0 : allowed_[g];
+    owes_ = owes_ || owes;
     is_recovering_ = is_recovering_ || is_recovering(g);
     memory_.guide_states[g] = {.excess = excess};
   }
@@ -34,6 +35,17 @@ void GuideWatch::open() noexcept {
 
 bool GuideWatch::is_recovering(std::size_t g) const noexcept {
   return memory_.guides[g].floor < -memory_.guides[g].guide.band();
+}
+
+double GuideWatch::allowance(std::size_t g, double unused) const noexcept {
+  return std::max(at_end_[g] - unused * memory_.guides[g].guide.band(), 0.0);
+}
+
+bool GuideWatch::bends_by_more(const ContactRow& row,
+                               std::span<const double> increment) const noexcept {
+  const Guide& guide = memory_.guides[row.owner - most_pairs].guide;
+  const double bend = guided_bend(guide, memory_.motion.chain_at_start(), increment, 0.0);
+  return bend / 2.0 > row.bound + row.correction + guide.band();
 }
 
 int GuideWatch::judge(std::size_t& failed) noexcept {

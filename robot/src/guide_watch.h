@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <span>
 
 #include "cycle_memory.h"
 
@@ -24,6 +25,18 @@ class GuideWatch {
   bool is_recovering() const noexcept { return is_recovering_; }
   /// Whether that guide is.
   bool is_recovering(std::size_t guide) const noexcept;
+
+  /// Returns the excess that a relaxed guide may end with, if a fraction of its band is kept
+  /// unused. [length or rad]
+  double allowance(std::size_t guide, double unused) const noexcept;
+
+  /// Returns true if rounding has put a guide farther out than it may be, so that the end of a
+  /// motion must be farther in than its start.
+  bool owes() const noexcept { return owes_; }
+
+  /// Returns true if the second-derivative bound of a motion allows its guide to end farther out
+  /// than it started, by more than its band, although the row pulls the guide back.
+  bool bends_by_more(const ContactRow& row, std::span<const double> increment) const noexcept;
 
   /// Takes a guide out of what is proved in this cycle: it contradicts the clearance from a mesh
   /// that moves.
@@ -58,6 +71,7 @@ class GuideWatch {
   ChainState chain_;
   int cell_of_chain_ = 0;  // where that is, on the motion at hand; 0: not known
   bool is_recovering_ = false;
+  bool owes_ = false;
   std::array<double, Guide::most> allowed_{};  // excess of each in this cycle
   std::array<double, Guide::most> at_end_{};   // excess that each may have at the end of a motion
   std::array<bool, Guide::most> is_dropped_{};

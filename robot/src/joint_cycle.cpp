@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace keepout {
 namespace {
@@ -58,6 +59,7 @@ void JointCycle::run(const JointTask& task, InstrumentStep& result) noexcept {
   } else {
     search(task, best, result);
   }
+  if (owes_ || guides_.owes()) check_cut(best);
   result.degraded = memory_.degraded.view();
   watch_.close();
   if (is_ok(result.status) && result.status != Status::yielding && is_recovering())
@@ -141,6 +143,20 @@ void JointCycle::name_limits(const Trial& best, InstrumentStep& result) noexcept
   if (!is_cut) return;
   add_all(limits, stopped_);
   if (is_ok(result.status)) limits.add(Limit::truncated);
+}
+
+/// Judges the part of a motion that is made as a motion of its own, as its end must make up for
+/// what rounding took. If that fails, there is no motion.
+void JointCycle::check_cut(Trial& best) noexcept {
+  if (!(best.share > 0.0 && best.share < 1.0)) return;
+  Trial cut;
+  for (std::size_t k = 0; k < cut.increment.size(); ++k) {
+    cut.increment[k] = best.share * best.increment[k];
+  }
+  judge(cut);
+  if (cut.cell == PointMotion::cells) return;
+  best.share = 0.0;
+  best.increment.fill(0.0);
 }
 
 void JointCycle::carry_out(const Trial& best, InstrumentStep& result) noexcept {
@@ -268,13 +284,12 @@ void JointCycle::turn(const JointTask& task, Trial& best) noexcept {
 
 SolveStatus JointCycle::solve(const JointTask& task, Trial& trial) noexcept {
   Solution solution;
-  // What leads back gives way where it contradicts itself, or where the solver comes to no end,
-  // guides first: in the end standing still is allowed.
-  constexpr Softness relaxations[] = {{Relaxation::none, 1.0, 1.0},
-                                      {Relaxation::guides, 0.0, 1.0},
-                                      {Relaxation::recovery, 0.0, 0.5},
-                                      {Relaxation::recovery, 0.0, 0.25},
-                                      {Relaxation::recovery, 0.0, 0.0}};
+  // Constraints that pull back are relaxed if they contradict each other, or if the solver does not
+  // converge: guides first. The last relaxation allows zero motion.
+  constexpr Softness relaxations[] = {
+      {Relaxation::none, 1.0, 1.0},      {Relaxation::guides, 0.5, 1.0},
+      {Relaxation::guides, 0.0, 1.0},    {Relaxation::recovery, 0.0, 0.5},
+      {Relaxation::recovery, 0.0, 0.25}, {Relaxation::recovery, 0.0, 0.0}};
   bool guides_lead = false;
   bool bodies_lead = false;
   for (const ContactRow& row : memory_.rows) {
@@ -282,12 +297,19 @@ SolveStatus JointCycle::solve(const JointTask& task, Trial& trial) noexcept {
     lead = lead || row.bound > 0.0;
   }
   SolveStatus solved = SolveStatus::infeasible;
-  for (const Softness& softness : relaxations) {
+  for (std::size_t i = 0; i < std::size(relaxations); ++i) {
+    const Softness& softness = relaxations[i];
     if (softness.name == Relaxation::guides && !guides_lead) continue;
+    if (guides_lead && i < relaxed_) continue;
     solved = pose(task, softness, solution);
     trial.relaxation = softness.name;
     if (softness.name == Relaxation::recovery && !bodies_lead) {
       trial.relaxation = guides_lead ? Relaxation::guides : Relaxation::none;
+    }
+    if (softness.guides > 0.0 && solved == SolveStatus::optimal && guides_lead &&
+        is_far_fetched(task, softness, relaxations[2], solution)) {
+      relaxed_ = std::max(relaxed_, i + 1);
+      continue;
     }
     if (solved == SolveStatus::optimal || solved == SolveStatus::ill_posed) break;
   }
@@ -318,6 +340,56 @@ Limits JointCycle::held_by(const Solution& solution) const noexcept {
   return held;
 }
 
+/// Returns true if pulling all guides back takes a motion that leaves one of them again, and that
+/// is much longer than to pull them back one by one, and than to relax them. The rows of guides
+/// that miss each other by little are nearly opposite: only a very long motion satisfies all of
+/// them. `solution` is the motion; the relaxed one if true is returned.
+bool JointCycle::is_far_fetched(const JointTask& task, const Softness& tried,
+                                const Softness& relaxed, Solution& solution) noexcept {
+  constexpr double most = 8.0;
+  const auto n = static_cast<std::size_t>(task.joints);
+  const auto length_of = [](const Solution& its) {
+    return std::sqrt(std::inner_product(its.u.begin(), its.u.end(), its.u.begin(), 0.0));
+  };
+  JointVector increment{};
+  for (std::size_t k = 0; k < n; ++k) increment[k] = task.unit[k] * solution.u[k];
+  double one_by_one = 0.0;
+  bool bends_too_much = false;
+  for (const ContactRow& row : memory_.rows) {
+    if (row.owner < most_pairs || !(row.bound > 0.0)) continue;
+    double steepest2 = 0.0;
+    for (std::size_t k = 0; k < n; ++k) steepest2 += std::pow(task.unit[k] * row.gradient[k], 2);
+    if (steepest2 > 0.0) one_by_one += (row.bound + row.correction) / std::sqrt(steepest2);
+    bends_too_much = bends_too_much || guides_.bends_by_more(row, {increment.data(), n});
+  }
+  const double length = length_of(solution);
+  if (!bends_too_much || !(length > most * one_by_one)) return false;
+  const bool is_shorter = pose(task, relaxed, solution) == SolveStatus::optimal &&
+                          length > most * (one_by_one + length_of(solution));
+  if (!is_shorter) pose(task, tried, solution);
+  return is_shorter;
+}
+
+/// Returns the least change of a body row's height that a motion must make. [length]
+double JointCycle::body_bound(const ContactRow& row, const Softness& softness) const noexcept {
+  const double bound = (row.bound > 0.0 ? softness.bodies * row.bound : row.bound) + row.correction;
+  return (softness.bodies > 0.0 ? bound : std::min(bound, 0.0)) - row.drift -
+         watch_.given_way(row.owner);
+}
+
+/// Returns the same for a guide's row. A relaxed guide that is out of its region is held to the
+/// region grown by what the guide may be out in this cycle, less a fraction of its band.
+/// [length or rad]
+double JointCycle::guide_bound(const ContactRow& row, const Softness& softness) const noexcept {
+  double bound = row.bound;
+  if (softness.guides < 1.0) {
+    const double out = guides_.allowance(row.owner - most_pairs, softness.guides);
+    bound = std::min(bound, -row.start_height - out);
+  }
+  bound += row.correction;
+  return softness.bodies > 0.0 ? bound : std::min(bound, 0.0);
+}
+
 SolveStatus JointCycle::pose(const JointTask& task, const Softness& softness,
                              Solution& solution) noexcept {
   const auto n = static_cast<std::size_t>(task.joints);
@@ -334,10 +406,7 @@ SolveStatus JointCycle::pose(const JointTask& task, const Softness& softness,
       *number++ = task.unit[k] * row.gradient[k];
       steepest = std::max(steepest, std::abs(number[-1]));
     }
-    const double soft = row.owner < most_pairs ? softness.bodies : softness.guides;
-    const double bound = (row.bound > 0.0 ? soft * row.bound : row.bound) + row.correction;
-    const double given = row.owner < most_pairs ? watch_.given_way(row.owner) : 0.0;
-    double least = (soft > 0.0 ? bound : std::min(bound, 0.0)) - row.drift - given;
+    double least = row.owner < most_pairs ? body_bound(row, softness) : guide_bound(row, softness);
     // What no joint can do is not asked for: whether it is safe the certificate tells.
     if (steepest <= memory_.tolerance) least = std::min(least, 0.0);
     memory_.bounds[count++] = least;
@@ -372,6 +441,11 @@ void JointCycle::judge(Trial& trial) noexcept {
   for (MeshMemory& mesh : memory_.meshes) mesh.motion.move();
   kept_by_guides_ = guides_.judge(failed_guide_);
   trial.cell = kept_by_guides_;
+  if (trial.cell == 0) {
+    // Nothing is proved whatever bodies do, and a motion that guides reject at once may be long.
+    for (PairMemory& pair : memory_.pairs) pair.failure = {};
+    return;
+  }
   for (std::size_t p = 0; p < memory_.pairs.size(); ++p) {
     if (!watch_.is_watched(p)) continue;
     if (const Status looked = judge_pair(p); !is_ok(looked)) {
@@ -401,6 +475,7 @@ Status JointCycle::judge_pair(std::size_t p) noexcept {
     if (row.owner == p) certificate.try_first(row.normal);
   }
   pair.failure = certificate.judge(triangles, pair.reach);
+  owes_ = owes_ || certificate.owes();
   return Status::free;
 }
 

@@ -33,11 +33,12 @@ class JointCycle {
   double prove(const JointVector& increment, InstrumentStep& result) noexcept;
 
  private:
-  /// How much of what rows lead back is asked for.
+  /// How far rows are relaxed.
   struct Softness {
     Relaxation name;
-    double guides;
-    double bodies;
+    double
+        guides;  // 1: guides pull back; below: the fraction of a guide's band that is kept unused
+    double bodies;  // the fraction of a body's recovery that is demanded
   };
 
   /// A motion, and the part of it that is certified.
@@ -63,6 +64,10 @@ class JointCycle {
   void turn(const JointTask& task, Trial& best) noexcept;
   SolveStatus solve(const JointTask& task, Trial& trial) noexcept;
   SolveStatus pose(const JointTask& task, const Softness& softness, Solution& solution) noexcept;
+  bool is_far_fetched(const JointTask& task, const Softness& tried, const Softness& relaxed,
+                      Solution& solution) noexcept;
+  double body_bound(const ContactRow& row, const Softness& softness) const noexcept;
+  double guide_bound(const ContactRow& row, const Softness& softness) const noexcept;
   void judge(Trial& trial) noexcept;
   Status judge_pair(std::size_t pair) noexcept;
   bool answer() noexcept;
@@ -71,6 +76,7 @@ class JointCycle {
   void name_limits(const Trial& best, InstrumentStep& result) noexcept;
   void tell_of_guides(const Trial& best, InstrumentStep& result) noexcept;
   bool is_recovering() const noexcept { return watch_.is_recovering() || guides_.is_recovering(); }
+  void check_cut(Trial& best) noexcept;
   void carry_out(const Trial& best, InstrumentStep& result) noexcept;
   bool is_worn_out() const noexcept { return memory_.budget.is_spent(); }
 
@@ -88,7 +94,9 @@ class JointCycle {
   Limits stopped_ = {};                         // what attempts failed by
   std::array<bool, most_pairs + Guide::most> is_left_out_{};     // owners of rows not to be posed
   std::array<std::uint8_t, 2 * Chain::most_joints> box_rows_{};  // of the problem: see pose
+  std::size_t relaxed_ = 0;  // the least relaxation of guides that is left to try in this cycle
   bool meshes_move_;
+  bool owes_ = false;  // a body owes what rounding took: see Certificate::owes
   int rounds_ = 0;
   std::size_t in_reach_ = 0;  // triangles of one body and one trial, at the most
 };

@@ -2,6 +2,8 @@
 #include "working_rows.h"
 
 #include <algorithm>
+#include <array>
+#include <utility>
 
 namespace keepout {
 namespace {
@@ -14,11 +16,13 @@ constexpr int most_corrections = 3;    // of a row
 
 void WorkingRows::start() noexcept {
   memory_.rows.clear();
+  std::array<bool, Guide::most> has_row{};  // a guide has one plane where the cycle begins
   for (const WarmRow& warm : memory_.warm) {
+    if (warm.owner >= most_pairs && std::exchange(has_row[warm.owner - most_pairs], true)) continue;
     if (const auto row = row_of(warm, 0)) memory_.rows.push(*row);
   }
   for (std::size_t g = 0; g < memory_.guides.size(); ++g) {
-    if (!guides_.is_recovering(g)) continue;
+    if (!guides_.is_recovering(g) || has_row[g]) continue;
     if (const auto row = guides_.row(g, 0)) memory_.rows.push(*row);
   }
   for (std::size_t p = 0; p < memory_.pairs.size(); ++p) {

@@ -3,6 +3,7 @@
 // use it up over many cycles, and a mesh that comes on lowers it only as far as reported.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <utility>
@@ -42,6 +43,36 @@ TEST(CertifiedFloor, IsNotUsedUpByATolerancePerCycle) {
       moved += !step.increment.empty() && step.increment[0] < 0.0 ? 1 : 0;
     }
     EXPECT_GT(moved, 0) << "the command moves the body";
+  }
+}
+
+// A body that rounding has brought 2 to 3 tolerances below the certified clearance loses nothing
+// more, however long the command presses it on.
+TEST(CertifiedFloor, LosesThreeTolerancesAtMostInAll) {
+  for (const double recovery : {0.0, 1e-30, 0.05}) {
+    for (const double below : {2.0, 2.2, 2.6, 2.95}) {
+      SCOPED_TRACE(testing::Message() << recovery << ' ' << below);
+      const InstrumentOptions options{.recovery = recovery, .damping = 0.0};
+      InstrumentConstraint guard = beside(test::wall(0.0), free_ball(0.0), options);
+      const double kept = options.margin - options.band;
+      const double tau = guard.tolerance();
+      std::vector<double> q{kept, 0.0, 0.0};
+      static_cast<void>(guard.step(q, std::vector<double>{0.0, 0.0, 0.0}));
+      double least = kept;
+      int moved = 0;
+      for (int cycle = 0; cycle < 20'000; ++cycle) {
+        // Another controller holds the body there in every other cycle.
+        if (cycle % 2 == 0) q[0] = kept - below * tau;
+        const InstrumentStep step = guard.step(
+            q, std::vector<double>{-0.01 * tau * (cycle % 7), 1e-4 * (cycle % 3 - 1), 0.0});
+        const double before = q[0];
+        for (std::size_t k = 0; k < step.increment.size(); ++k) q[k] += step.increment[k];
+        moved += step.ok() && q[0] != before ? 1 : 0;
+        least = std::min(least, q[0]);
+      }
+      EXPECT_GE(least, kept - 3.0 * tau);
+      EXPECT_GT(moved, 1'000);
+    }
   }
 }
 

@@ -31,7 +31,8 @@ TEST(CertifiedDistance, BelowTheTargetLosesNothingThatWasCertified) {
   EXPECT_EQ(certified_at(0.15, 0.149), 0.149);
   EXPECT_EQ(certified_at(0.15, 0.1), 0.15 - left_to_a_motion)
       << "and gains what was recovered, less the room";
-  EXPECT_EQ(certified_at(0.15, 0.15 + 3.5 * told_apart), 0.15) << "lost to rounding";
+  EXPECT_EQ(certified_at(0.15, 0.15 + 3.5 * told_apart), 0.15 + 3.5 * told_apart)
+      << "rounding lowers nothing";
   EXPECT_EQ(certified_at(0.15, 0.19), 0.15 - left_to_a_motion) << "moved by somebody else";
 }
 

@@ -38,14 +38,18 @@ struct CapsuleScreen {
     const double size = std::max({from.lpNorm<1>(), to.lpNorm<1>(), capsule.radius,
                                   (bounds.low - frame.origin).lpNorm<1>(),
                                   (bounds.high - frame.origin).lpNorm<1>()});
-    if (!(size < 1e17 && capsule.radius >= 0.0)) return;  // nor is a NaN
+    // Below 1e-12 the inverse of a square may overflow. Rejects NaN as well.
+    if (!(size > 1e-12 && size < 1e17 && capsule.radius >= 0.0)) return;
     fits = true;
     // Each sum and product below rounds by 2^-24 of at most four times the size: a handful of them.
     constexpr double rounding = 0x1p-17;
     thickness = static_cast<float>(2.0 * (capsule.radius + frame.error) + rounding * size);
     const double way2 = (to - from).squaredNorm();
     length2 = static_cast<float>(way2);
-    inverse2 = way2 > 1e-30 ? static_cast<float>(1.0 / way2) : 0.0f;
+    // A segment that is shorter than what rounding may take is a point: its middle is as near as
+    // the rounding added to the thickness says.
+    const bool is_point = way2 <= rounding * rounding * size * size / 64.0;
+    inverse2 = is_point ? 0.0f : static_cast<float>(1.0 / way2);
     for (int axis = 0; axis < 3; ++axis) {
       middle[axis] = static_cast<float>(from[axis] + to[axis]);
       along[axis] = static_cast<float>(to[axis] - from[axis]);

@@ -230,32 +230,6 @@ TEST(SabotagedScenario, AToolThatDoesNotGiveWayIsCaught) {
   expect_caught(row, row.below);
 }
 
-/// Guards the last body alone, and promises nothing to others.
-class ToolAlone final : public Broken {
- public:
-  explicit ToolAlone(const RobotSetup& setup) : Broken(with_tool_alone(setup)) {}
-  InstrumentStep step(std::span<const double> q, const Twist& desired) override {
-    InstrumentStep step = Broken::step(q, desired);
-    step.level = 0.0;
-    return step;
-  }
-
- private:
-  static RobotSetup with_tool_alone(RobotSetup setup) {
-    setup.robot.make = [make = setup.robot.make](const Pose& base) {
-      const Instrument whole = make(base);
-      return Instrument(whole.chain(), {whole.bodies().back()});
-    };
-    return setup;
-  }
-};
-
-TEST(StuckScenario, TheToolCouldGiveWayInEachCycle) {
-  const RobotTally row = run("stuck", "saddle", enough, make<ToolAlone>);
-  EXPECT_EQ(row.below, 0u) << row.least_in_tau << " first in cycle " << row.first_breach;
-  EXPECT_GT(row.rows, test::trials(100u));
-}
-
 TEST(SabotagedScenario, AMarginThatIsTenTolerancesTooSmallIsCaught) {
   const RobotTally row = run("convex_tool", "saddle", enough, make<Careless>);
   expect_caught(row, row.below);
