@@ -9,6 +9,7 @@ namespace {
 
 constexpr int most_rounds = 16;
 constexpr double least_asked = 1.0 / 16.0;  // of what is desired
+constexpr double enough = 0.5;              // of a motion is made: nothing shorter is tried
 constexpr double worthwhile = 1e-6;         // a share of the cost
 constexpr int most_dampings = 3;            // of an attempt whose motions stray
 
@@ -71,13 +72,13 @@ void JointCycle::run(const JointTask& task, InstrumentStep& result) noexcept {
   if (is_ok(result.status)) carry_out(best, result);
 }
 
-/// Where not even the first part of a motion can be proven, a shorter one bends less, and meets
-/// less. The rows that were found stay.
+/// If less than half of a motion can be proved, a shorter one bends less, and meets less. The rows
+/// that were found stay.
 void JointCycle::search(const JointTask& task, Trial& best, InstrumentStep& result) noexcept {
   double asked = 1.0;
   for (; asked >= least_asked; asked *= 0.25) {
     const bool goes_on = attempt(task, asked, best);
-    if (best.share > 0.0 || best.cell == PointMotion::cells || !goes_on) break;
+    if (best.share >= enough || !goes_on) break;
   }
   if (best.cell == 0) {
     result.status = trouble_ != Status::free ? trouble_ : Status::unsolved;
@@ -101,6 +102,8 @@ bool JointCycle::attempt(const JointTask& task, double asked, Trial& best) noexc
   if (is_shortened_) rows_.forgive_curvature(0.0625);
   const bool is_spent = memory_.budget.halved([&] {
     JointTask part = task.scaled(asked);
+    // A motion is shortened as it bends too much: damping takes most from the largest turns.
+    if (is_shortened_ && !meshes_move_ && task.turn_weight) part = part.damped();
     for (int dampings = 0;; ++dampings) {
       has_strayed_ = false;
       if (seek(task, part, best)) {
