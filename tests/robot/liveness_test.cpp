@@ -24,7 +24,7 @@
 namespace keepout {
 namespace {
 
-constexpr double size = 20.0;           // of a mesh, from its middle [mm]
+constexpr double mesh_size = 20.0;      // of a mesh, from its middle [mm]
 constexpr double step_length = 0.5;     // asked of the flange in a cycle [mm]
 constexpr double blocked_below = 0.05;  // of what is asked
 constexpr double movable_above = 0.1;   // of what is asked
@@ -33,7 +33,7 @@ constexpr int search_trials = 300;
 Surface soup(Random& random) {
   Surface surface;
   for (std::size_t t = 0, count = 20 + random.below(380); t < count; ++t) {
-    const Vec3 place = size * std::cbrt(random.uniform()) * random.direction();
+    const Vec3 place = mesh_size * std::cbrt(random.uniform()) * random.direction();
     const double edge = std::pow(10.0, random.uniform(-0.5, 1.0));
     const auto first = static_cast<VertexId>(surface.vertices.size());
     for (int i = 0; i < 3; ++i) surface.vertices.push_back(place + edge * random.direction());
@@ -48,7 +48,8 @@ void add_disk(Surface& surface, std::size_t rings, std::size_t columns,
   const auto first = static_cast<VertexId>(surface.vertices.size());
   surface.vertices.emplace_back(0.0, 0.0, height(0.0, 0.0));
   for (std::size_t i = 0; i < rings * columns; ++i) {
-    const double out = size * static_cast<double>(1 + i / columns) / static_cast<double>(rings);
+    const double out =
+        mesh_size * static_cast<double>(1 + i / columns) / static_cast<double>(rings);
     const double angle =
         2.0 * std::numbers::pi * static_cast<double>(i % columns) / static_cast<double>(columns);
     const double x = out * std::cos(angle);
@@ -100,7 +101,7 @@ Surface cone(Random& random) {
 /// A bowl, or a saddle.
 Surface quadric(Random& random, double sign) {
   Surface surface;
-  const double depth = random.uniform(0.2, 1.2) / size;
+  const double depth = random.uniform(0.2, 1.2) / mesh_size;
   add_disk(surface, 4 + random.below(8), 16,
            [&](double x, double y) { return depth * (x * x + sign * y * y); });
   return surface;
@@ -144,7 +145,7 @@ Instrument draw_instrument(Random& random, const Vec3& flange_at, std::vector<do
   return {chain, std::move(bodies)};
 }
 
-struct Tally {
+struct Cycles {
   int cycles = 0;
   int no_motion = 0;
   int out_of_budget = 0;
@@ -168,7 +169,7 @@ class Scene {
   /// Returns false if the instrument begins too close.
   bool is_clear() { return prover_->prove(q_, std::vector<double>(q_.size(), 0.0)).is_clear(); }
 
-  void run(int cycles, Tally& tally) {
+  void run(int cycles, Cycles& tally) {
     for (int i = 0; i < cycles; ++i) {
       if (i % 12 == 0) target_ = place_on_mesh();
       const Vec3 wanted = (target_ - flange(q_)).normalized() + 0.3 * random_.direction();
@@ -268,7 +269,7 @@ TEST(Liveness, BlockedCyclesOnHostileMeshesAreBlocked) {
   int blocked = 0;
   int movable = 0;
   for (const auto& [name, make] : kinds) {
-    Tally tally;
+    Cycles tally;
     for (const std::uint64_t seed : {1u, 70000u}) {
       Random random(seed);
       const int enough = tally.cycles + test::trials(6000);
