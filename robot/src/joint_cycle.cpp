@@ -10,7 +10,9 @@ namespace {
 
 constexpr int most_rounds = 16;
 constexpr double least_asked = 1.0 / 16.0;  // of what is desired
+constexpr double enough = 0.5;              // of a motion is made: nothing shorter is tried
 constexpr double worthwhile = 1e-6;         // a share of the cost
+constexpr int most_dampings = 3;            // of an attempt whose motions stray
 
 void add_all(Limits& limits, const Limits& others) noexcept {
   for (std::size_t i = 0; i < limit_count; ++i) {
@@ -72,13 +74,13 @@ void JointCycle::run(const JointTask& task, InstrumentStep& result) noexcept {
   if (is_ok(result.status)) carry_out(best, result);
 }
 
-/// Where not even the first part of a motion can be proven, a shorter one bends less, and meets
-/// less. The rows that were found stay.
+/// If less than half of a motion can be proved, a shorter one bends less, and meets less. The rows
+/// that were found stay.
 void JointCycle::search(const JointTask& task, Trial& best, InstrumentStep& result) noexcept {
   double asked = 1.0;
   for (; asked >= least_asked; asked *= 0.25) {
     const bool goes_on = attempt(task, asked, best);
-    if (best.share > 0.0 || best.cell == PointMotion::cells || !goes_on) break;
+    if (best.share >= enough || !goes_on) break;
   }
   if (best.cell == 0) {
     result.status = trouble_ != Status::free ? trouble_ : Status::unsolved;
@@ -101,13 +103,23 @@ bool JointCycle::attempt(const JointTask& task, double asked, Trial& best) noexc
   is_shortened_ = asked < 1.0;
   if (is_shortened_) rows_.forgive_curvature(0.0625);
   const bool is_spent = memory_.budget.halved([&] {
-    const JointTask part = task.scaled(asked);
-    if (seek(part, best)) {
-      turn(part, best);
-    } else {
-      note_failure();
+    JointTask part = task.scaled(asked);
+    // A motion is shortened as it bends too much: damping takes most from the largest turns.
+    if (is_shortened_ && !meshes_move_ && task.turn_weight) part = part.damped();
+    for (int dampings = 0;; ++dampings) {
+      has_strayed_ = false;
+      if (seek(task, part, best)) {
+        turn(task, part, best);
+        if (dampings > 0) best.held.add(Limit::linearization);
+      } else {
+        note_failure();
+      }
+      const bool is_over =
+          !has_strayed_ || dampings == most_dampings || is_worn_out() || trouble_ != Status::free;
+      if (is_over) return is_worn_out();
+      part = part.damped();
+      rows_.forgive_curvature(0.0625);
     }
-    return is_worn_out();
   });
   if (is_spent && trouble_ == Status::free) trouble_ = Status::out_of_budget;
   if (trouble_ == Status::over_capacity) stopped_.add(Limit::capacity);
@@ -209,11 +221,14 @@ double JointCycle::prove(const JointVector& increment, InstrumentStep& result) n
 }
 
 /// Solves and judges until a motion is certified; else `best` is the best part of those tried, if
-/// any is better than standing still, or than what is best already.
-bool JointCycle::seek(const JointTask& task, Trial& best) noexcept {
+/// any is better than standing still, or than what is best already. `part`: the task that is solved
+/// for; motions are compared by `task`.
+bool JointCycle::seek(const JointTask& task, const JointTask& part, Trial& best) noexcept {
+  const bool was_found = best.cell > 0;
+  const double cost_before = best.cost;
   for (int round = 0; round < most_rounds; ++round) {
     Trial trial;
-    const SolveStatus solved = solve(task, trial);
+    const SolveStatus solved = solve(part, trial);
     if (solved != SolveStatus::optimal) {
       if (solved == SolveStatus::ill_posed) trouble_ = Status::ill_posed;
       if (solved == SolveStatus::infeasible) trouble_ = Status::infeasible;
@@ -232,7 +247,14 @@ bool JointCycle::seek(const JointTask& task, Trial& best) noexcept {
       trial.held.add(Limit::linearization);
       trial.cost = task.cost_of_share(trial.increment, trial.share);
     }
+    if (trial.share > 0.0 && part.standing_miss() > 0.0 && strays(task, trial)) {
+      has_strayed_ = true;
+      stopped_.add(Limit::linearization);
+      if (meshes_move_ && trial.cell == PointMotion::cells) return false;
+      cut_to_best(task, trial);
+    }
     if (trial.cell == PointMotion::cells && trial.share == 1.0) {
+      if (was_found && !(trial.cost < cost_before)) return false;
       best = trial;
       return true;
     }
@@ -257,22 +279,22 @@ bool JointCycle::answer() noexcept {
 
 /// Turns the rows that hold a certified motion back to where its end is, while that makes a better
 /// one.
-void JointCycle::turn(const JointTask& task, Trial& best) noexcept {
+void JointCycle::turn(const JointTask& task, const JointTask& part, Trial& best) noexcept {
   for (int refinement = 0; refinement < options_.refinements; ++refinement) {
     if (best.rows == 0 || is_worn_out()) return;
     rows_.put_aside();
     if (!rows_.turn()) return;
     Trial trial;
-    bool is_better = solve(task, trial) == SolveStatus::optimal;
+    bool is_better = solve(part, trial) == SolveStatus::optimal;
     if (is_better) {
       trial.share = 1.0;
       trial.cost = task.cost(trial.increment);
-      is_better = trial.cost < best.cost * (1.0 - worthwhile);
+      is_better = part.cost(trial.increment) < part.cost(best.increment) * (1.0 - worthwhile);
     }
     if (is_better) {
       ++rounds_;
       judge(trial);
-      is_better = trial.cell == PointMotion::cells;
+      is_better = trial.cell == PointMotion::cells && !strays(task, trial);
     }
     if (!is_better) {
       rows_.take_back();

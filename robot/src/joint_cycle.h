@@ -60,8 +60,8 @@ class JointCycle {
   bool degrade_conflict(const JointTask& task) noexcept;
   double reachable_level(std::size_t pair) const noexcept;
   bool attempt(const JointTask& task, double asked, Trial& best) noexcept;
-  bool seek(const JointTask& task, Trial& best) noexcept;
-  void turn(const JointTask& task, Trial& best) noexcept;
+  bool seek(const JointTask& task, const JointTask& part, Trial& best) noexcept;
+  void turn(const JointTask& task, const JointTask& part, Trial& best) noexcept;
   SolveStatus solve(const JointTask& task, Trial& trial) noexcept;
   SolveStatus pose(const JointTask& task, const Softness& softness, Solution& solution) noexcept;
   bool is_far_fetched(const JointTask& task, const Softness& tried, const Softness& relaxed,
@@ -71,6 +71,9 @@ class JointCycle {
   void judge(Trial& trial) noexcept;
   Status judge_pair(std::size_t pair) noexcept;
   bool answer() noexcept;
+  // The true motion of the flange (true_flange.cpp).
+  bool strays(const JointTask& task, const Trial& trial) noexcept;
+  void cut_to_best(const JointTask& task, Trial& trial) noexcept;
   Limits held_by(const Solution& solution) const noexcept;
   void note_failure() noexcept;
   void name_limits(const Trial& best, InstrumentStep& result) noexcept;
@@ -91,6 +94,7 @@ class JointCycle {
   std::array<bool, Guide::most> has_failed_{};  // in any trial
   Status trouble_ = Status::free;               // why nothing can be judged
   bool is_shortened_ = false;                   // whether less than all was asked for at last
+  bool has_strayed_ = false;                    // a trial of the last attempt: see strays
   Limits stopped_ = {};                         // what attempts failed by
   std::array<bool, most_pairs + Guide::most> is_left_out_{};     // owners of rows not to be posed
   std::array<std::uint8_t, 2 * Chain::most_joints> box_rows_{};  // of the problem: see pose

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "joint_task.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -48,6 +49,59 @@ double JointTask::best_share(const JointVector& increment, double most) const no
   return std::max(gain / square, 0.0);
 }
 
+JointTask JointTask::damped() const noexcept {
+  double largest2 = 0.0;  // of the columns of J
+  for (int k = 0; k < joints; ++k) {
+    double length2 = 0.0;
+    for (int row = 0; row < rows; ++row) {
+      const double part = jacobian[static_cast<std::size_t>(k * rows + row)];
+      length2 += part * part;
+    }
+    largest2 = std::max(largest2, length2);
+  }
+  JointTask task = *this;
+  task.damping = std::max(16.0 * damping, 1e-6 * largest2);
+  return task;
+}
+
+double JointTask::standing_miss() const noexcept {
+  double sum = 0.0;
+  for (int row = 0; row < rows; ++row) {
+    sum += desired[static_cast<std::size_t>(row)] * desired[static_cast<std::size_t>(row)];
+  }
+  return std::sqrt(sum);
+}
+
+double JointTask::linear_miss(const JointVector& increment, double share) const noexcept {
+  const double square = cost_of_share(increment, share) - damping_cost(increment, share);
+  return std::sqrt(std::max(square, 0.0));
+}
+
+double JointTask::true_miss(const Pose& from, const Pose& to) const noexcept {
+  const Vec3 way = to.position - from.position;
+  Vec3 turn = Vec3::Zero();
+  if (*turn_weight > 0.0) {
+    const Eigen::AngleAxisd turned(Mat3(to.rotation * from.rotation.transpose()));
+    turn = *turn_weight * turned.angle() * turned.axis();
+  }
+  double sum = 0.0;
+  for (int row = 0; row < rows; ++row) {
+    const double made = row < 3 ? way[row] : turn[row - 3];
+    const double off = made - desired[static_cast<std::size_t>(row)];
+    sum += off * off;
+  }
+  return std::sqrt(sum);
+}
+
+double JointTask::damping_cost(const JointVector& increment, double share) const noexcept {
+  double sum = 0.0;
+  for (int k = 0; k < joints; ++k) {
+    const double u = share * in_units(increment, k);
+    sum += damping * u * u;
+  }
+  return sum;
+}
+
 JointTask JointTask::scaled(double share) const noexcept {
   JointTask task = *this;
   for (double& number : task.desired) number *= share;
@@ -59,7 +113,10 @@ JointTask flange_task(const ChainState& chain, const Twist& desired,
   const bool turns = options.orientation_weight > 0.0;
   // What a prismatic joint moves by is as much as a radian that moves the flange as far.
   const double length = turns ? options.orientation_weight : 1.0;
-  JointTask task{.rows = turns ? 6 : 3, .joints = chain.size(), .damping = options.damping};
+  JointTask task{.rows = turns ? 6 : 3,
+                 .joints = chain.size(),
+                 .damping = options.damping,
+                 .turn_weight = options.orientation_weight};
   const Vec3 tip = chain.flange().position;
   const auto put = [&](int column, const Vec3& linear, const Vec3& angular) {
     double* to = column < 0 ? task.desired.data() : task.jacobian.data() + column * task.rows;

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <span>
 
 #include "keepout/robot/instrument_constraint.h"
@@ -21,6 +22,8 @@ struct JointTask {
   int joints = 0;
   double damping = 0.0;
   JointVector unit{};  // [rad or length]
+  /// The weight of a turn of the flange [length/rad]; empty if the task is not one of the flange.
+  std::optional<double> turn_weight = std::nullopt;
 
   /// What an increment dq costs.
   double cost(const JointVector& increment) const noexcept;
@@ -35,6 +38,17 @@ struct JointTask {
   }
   /// The same task, but for a share of what is desired.
   JointTask scaled(double share) const noexcept;
+  /// The same task with 16 times the damping, or with some where there is none.
+  JointTask damped() const noexcept;
+  /// Returns |v|: what standing still misses.
+  double standing_miss() const noexcept;
+  /// Returns |J u - v|: what a share of an increment misses if the flange moves linearly.
+  double linear_miss(const JointVector& increment, double share) const noexcept;
+  /// Returns what a motion of the flange from one pose to another misses, in the metric of v.
+  /// Precondition: it is a task of the flange.
+  double true_miss(const Pose& from, const Pose& to) const noexcept;
+  /// Returns damping |u|^2 of a share of an increment.
+  double damping_cost(const JointVector& increment, double share) const noexcept;
 };
 
 /// Moves the flange by a twist: its way, and its turn times options.orientation_weight.

@@ -61,11 +61,25 @@ const Vec3* PointMotion::at(int cell) noexcept {
   budget_->spend(work_of_place);
   this->place(cell, state_);
   fill(state_, place);
+  if (cell == cells) {
+    flange_at_end_ = state_.flange();
+    flange_motion_ = motion_;
+  }
   return place.points.data();
 }
 
+Pose PointMotion::flange_at(double share) noexcept {
+  if (share == 1.0 && flange_motion_ == motion_) return flange_at_end_;
+  budget_->spend(work_of_place);
+  place_at(share, state_);
+  return state_.flange();
+}
+
 void PointMotion::place(int cell, ChainState& state) const noexcept {
-  const double share = static_cast<double>(cell) / cells;
+  place_at(static_cast<double>(cell) / cells, state);
+}
+
+void PointMotion::place_at(double share, ChainState& state) const noexcept {
   const auto n = static_cast<std::size_t>(instrument_->chain().size());
   JointVector q;
   for (std::size_t k = 0; k < n; ++k) q[k] = q_[k] + share * increment_[k];

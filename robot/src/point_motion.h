@@ -48,6 +48,8 @@ class PointMotion {
   const ChainState& chain_at_start() const noexcept { return start_; }
   /// Where the chain is at a share of the motion.
   void place(int cell, ChainState& state) const noexcept;
+  /// Returns the pose of the flange at a share of the motion, in [0, 1].
+  Pose flange_at(double share) noexcept;
 
   /// What bounds the way of a point.
   const MotionBounds& bounds(std::size_t point) const noexcept { return bounds_[point]; }
@@ -60,6 +62,7 @@ class PointMotion {
     std::uint64_t motion = 0;  // of which motion; 0: none
   };
 
+  void place_at(double share, ChainState& state) const noexcept;
   void fill(const ChainState& state, Place& place) const noexcept;
 
   const Instrument* instrument_;
@@ -73,6 +76,8 @@ class PointMotion {
   std::array<Vec3, Instrument::most_points> straight_;  // J dq, of the linearised motion
   std::vector<Place> places_;                           // (cells + 1)
   std::uint64_t motion_ = 0;
+  Pose flange_at_end_;
+  std::uint64_t flange_motion_ = 0;  // the motion that it is of; 0: none
 };
 
 }  // namespace keepout

@@ -238,6 +238,7 @@ TEST(SabotagedScenario, AMarginThatIsTenTolerancesTooSmallIsCaught) {
 TEST(SabotagedScenario, MotionsThatOvershootAreCounted) {
   const RobotTally row = run("unlimited", "saddle", 2000, make<Overshooting>);
   EXPECT_GT(row.strayed, test::trials(100u));
+  EXPECT_GE(breaches(row), row.strayed);
 }
 
 TEST(SabotagedScenario, AStepThatStandsStillForNothingIsCounted) {

@@ -333,7 +333,7 @@ std::uint64_t cycle_count(const RobotCampaign& campaign, std::size_t meshes) {
 }
 
 std::uint64_t breaches(const RobotTally& tally) noexcept {
-  return tally.below + tally.limits_broken + tally.guides_left;
+  return tally.below + tally.limits_broken + tally.guides_left + tally.strayed;
 }
 
 std::vector<RobotTally> run_robot_campaign(

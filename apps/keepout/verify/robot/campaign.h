@@ -62,7 +62,7 @@ struct RobotTally {
   std::uint64_t limits_broken = 0;
   std::uint64_t guides_left = 0;  // cycles that left a guide by more than is promised
   /// Cycles without anything in the way (status free) that ended farther from what was asked than
-  /// standing still, by more than a twentieth, with the true motion of the flange.
+  /// standing still, by more than a twentieth, with the true motion of the flange: a breach.
   std::uint64_t strayed = 0;
   std::uint64_t first_breach = 0;  // the number of the first cycle of the row with a breach; or 0
   /// Of all cycles, the smallest clearance beyond what was to be kept. Infinite when none came

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The true motion of the flange, against the linear task that the solver is given. Joints without
+// velocity limits turn far near a singular pose, where the two differ most.
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "keepout/fixtures/random.h"
+#include "keepout/index/wide_bvh.h"
+#include "keepout/robot/instrument_constraint.h"
+#include "keepout/solvers/active_set.h"
+#include "robot/configurations.h"
+#include "robot/wall.h"
+#include "trials.h"
+
+namespace keepout {
+namespace {
+
+constexpr int steps_of_a_chain = 25;
+
+Chain draw_chain(Random& random) {
+  std::vector<Joint> joints;
+  for (int k = 0; k < 6; ++k) {
+    joints.push_back(
+        {.origin = {random.uniform(0.0, 100.0) * random.direction()}, .axis = random.direction()});
+  }
+  return Chain(std::move(joints), {}, {random.uniform(0.0, 100.0) * random.direction()});
+}
+
+/// Returns the distance of a pose from another one that is moved by a twist, as the task weighs it.
+double missed(const Pose& from, const Pose& to, const Twist& desired, double weight) {
+  const Eigen::AngleAxisd turn(Mat3(to.rotation * from.rotation.transpose()));
+  return std::hypot((to.position - from.position - desired.linear).norm(),
+                    weight * (turn.angle() * turn.axis() - desired.angular).norm());
+}
+
+struct Tally {
+  int shortened = 0;  // by the departure from the linear task
+  int truncated = 0;
+  std::vector<double> missed = {};  // of each step, as a fraction of what standing still misses
+};
+
+void run(double speed, Tally& tally) {
+  Random random(341);
+  const auto mesh = test::wall(5000.0);
+  const auto index = std::make_shared<WideBvh>(mesh);
+  for (int scene = 0; scene < test::trials(2000) / steps_of_a_chain; ++scene) {
+    const Chain chain = draw_chain(random);
+    InstrumentConstraint guard(mesh, index, {chain, {{"tip", {{6, Vec3::Zero()}}, 1.0}}},
+                               std::make_unique<ActiveSet>(), {});
+    const double weight = guard.options().orientation_weight;
+    std::vector<double> q = test::configuration(chain, random);
+    for (int i = 0; i < steps_of_a_chain; ++i) {
+      const Twist desired{.linear = speed * 0.5 * random.direction(),
+                          .angular = speed * 0.02 * random.direction()};
+      const InstrumentStep step = guard.step(q, desired);
+      ASSERT_TRUE(step.ok()) << step.reason();
+      ChainState before;
+      chain.place(q, before);
+      for (std::size_t k = 0; k < q.size(); ++k) q[k] += step.increment[k];
+      ChainState after;
+      chain.place(q, after);
+      tally.missed.push_back(missed(before.flange(), after.flange(), desired, weight) /
+                             missed(before.flange(), before.flange(), desired, weight));
+      ASSERT_LE(tally.missed.back(), 1.05) << name(step.status);
+      const bool is_shortened = step.limits.has(Limit::linearization);
+      tally.shortened += is_shortened ? 1 : 0;
+      tally.truncated += step.limits.has(Limit::truncated) ? 1 : 0;
+      // Far from the mesh, nothing else shortens a motion.
+      ASSERT_EQ(step.status == Status::fallback, step.limits.has(Limit::truncated));
+      ASSERT_TRUE(is_shortened || step.status == Status::free);
+      for (double& position : q) position = std::remainder(position, 2.0 * std::numbers::pi);
+    }
+  }
+}
+
+class TrueFlange : public testing::TestWithParam<int> {};
+
+TEST_P(TrueFlange, NeverEndsFartherFromWhatWasAskedThanWhereItStood) {
+  Tally tally;
+  run(GetParam(), tally);
+  ASSERT_FALSE(HasFatalFailure());
+  std::ranges::sort(tally.missed);
+  const auto at = [&](double share) {
+    return tally.missed[static_cast<std::size_t>(share * static_cast<double>(tally.missed.size()))];
+  };
+  RecordProperty("shortened", tally.shortened);
+  RecordProperty("truncated", tally.truncated);
+  RecordProperty("median_missed", std::to_string(at(0.5)));
+  RecordProperty("p90_missed", std::to_string(at(0.9)));
+  RecordProperty("max_missed", std::to_string(tally.missed.back()));
+  // The median stays near that of the linear task at x1 (0.10), and below it at x20 (1.1).
+  EXPECT_LT(at(0.5), GetParam() == 1 ? 0.15 : 0.6);
+  EXPECT_GT(tally.shortened, test::trials(200));
+  EXPECT_GT(tally.truncated, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Speeds, TrueFlange, testing::Values(1, 5, 20));
+
+}  // namespace
+}  // namespace keepout
