@@ -21,8 +21,9 @@ constexpr std::array outcomes{
             {"the motion is the one asked for", "the motion is the one asked for",
              "every motion within the planes and the radius keeps the margin"}},
     Outcome{"limited",
-            {"the motion is the nearest one that the constraints in `limits` allow",
-             "the motion is the nearest one that the constraints in `limits` allow", never}},
+            {"constraints limit the motion to the nearest one that they allow: `limits` names them",
+             "constraints limit the motion to the nearest one that they allow: `limits` names them",
+             never}},
     Outcome{"recovering",
             {"the tip was nearer than the margin, inside, or out of a guide's region: the motion "
              "leads it back",

@@ -12,7 +12,7 @@ library_folder() { dirname "$(dirname "$(find "$1" -path '*/pkgconfig/keepout.pc
 run_consumer() {
   local answer
   answer=$(LD_LIBRARY_PATH=$(library_folder "$2") "$1" "$here/cube.obj")
-  [ "$answer" = "1.000000 -1.500000: planes of nearby triangles hold the motion back" ] ||
+  [ "$answer" = "1.000000 -1.500000: constraints limit the motion to the nearest one that they allow: \`limits\` names them" ] ||
     fail "the consumer answers: $answer"
 }
 

@@ -72,7 +72,7 @@ test("the jaw dragged into the skull: held back, and all bodies clear, says the 
   desk = await opened(browser, page, folder, large);
   await dragIn(desk);
   assert.equal(await textOf(desk, "#status b"), "limited");
-  assert.match(await textOf(desk, "#status span"), /hold the motion back/);
+  assert.match(await textOf(desk, "#status span"), /limit the motion/);
   assert.match(await textOf(desk, "#held"), /^by the (shaft|wrist|jaw)$/);
   assert.match(await textOf(desk, "#clearance"), /^0\.2\d mm$/);
   await desk.screenshot({ path: join(folder, "dragged.png") });

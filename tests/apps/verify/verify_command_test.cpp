@@ -73,7 +73,7 @@ TEST_F(Verify, WhatIsInterruptedKeepsWhatIsFinishedAndIsNotTakenForWhole) {
     // Once it is surely in the midst of it.
     const Outcome outcome =
         run("cube.stl --steps 1e9 --shard 1/2 --json part.json",
-            "timeout --preserve-status -k 30 -s " + std::string(signal) + " 2 ");
+            "timeout --preserve-status -k 30 -s " + std::string(signal) + " 5 ");
     EXPECT_EQ(outcome.status, 130) << outcome.output;
     const nlohmann::json part = read("part.json");
     const auto done = part["total"]["steps"].get<std::uint64_t>();
