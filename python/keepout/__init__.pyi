@@ -2,7 +2,7 @@
 # Shapes, units and failures are in the docstrings of the module: help(keepout.MotionConstraint).
 from collections.abc import Sequence
 from os import PathLike
-from typing import Literal
+from typing import Literal, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray

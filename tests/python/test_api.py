@@ -161,7 +161,7 @@ def test_the_free_polytope_keeps_the_distance(guard):
     assert len(d) > 100
     assert np.all(guard.index.distances((0, 0, 11.0) + d) >= 0.5 - 1e-9)
     refused = guard.free_polytope((np.nan, 0, 0), 1.0)
-    assert not refused.ok and refused.status == "invalid_input" and len(refused) == 6
+    assert not refused.ok and refused.status is Status.invalid_input and len(refused) == 6
 
 
 def test_queries_and_hits_are_those_of_brute_force(mesh):

@@ -68,11 +68,15 @@ std::string_view name(Limit limit) noexcept;
 /// A set of limits.
 class Limits {
  public:
+  /// Adds a limit.
   constexpr void add(Limit limit) noexcept { bits_ |= bit(limit); }
+  /// Returns true if the set has a limit.
   constexpr bool has(Limit limit) const noexcept { return (bits_ & bit(limit)) != 0; }
+  /// Returns true if there is no limit.
   constexpr bool empty() const noexcept { return bits_ == 0; }
   /// Returns the set as bits: bit i is limit i.
   constexpr std::uint16_t bits() const noexcept { return bits_; }
+  /// Returns true if both sets are equal.
   constexpr bool operator==(const Limits&) const noexcept = default;
 
  private:

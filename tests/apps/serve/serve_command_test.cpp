@@ -363,7 +363,9 @@ TEST_F(ServeCommand, ItsAnswersAreThoseOfReplayBitForBit) {
     ASSERT_EQ(cells.size(), 18u);
     if (expected.back() == '}') expected += ',';
     limited += cells[1] == "limited";
-    expected += "{\"ok\":true,\"status\":\"" + cells[1] + "\",\"motion\":[";
+    expected += "{\"ok\":true,\"status\":\"" + cells[1] + "\",";
+    if (cells[1] == "limited") expected += "\"limits\":[\"mesh\"],";
+    expected += "\"motion\":[";
     for (std::size_t i = 8; i < 11; ++i) {
       app::append_number(expected, std::stod(cells[i]));
       expected += i < 10 ? ',' : ']';

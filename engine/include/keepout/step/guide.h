@@ -51,6 +51,7 @@ class Guide {
   const std::string& name() const noexcept { return name_; }
   /// Returns the region; of an axis, it bounds the tips of unit vectors.
   const Region& region() const noexcept { return region_; }
+  /// Returns how the guided place follows from the points.
   Kind kind() const noexcept { return kind_; }
   /// Returns true if the guide bounds a direction and not a place: its excess is then almost an
   /// angle. [rad]
