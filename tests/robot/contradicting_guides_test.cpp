@@ -144,7 +144,7 @@ TEST_P(ContradictingGuides, LeaveWhatBothAllow) {
     }
   }
   EXPECT_LT(blocked, cycles / 5);
-  // 4 joints: 22 of 140, 6 joints: fewer; before guides were relaxed they were 783 and 1,100.
+  // Falls short: with 4 joints 22 of 140. The aim is a tenth.
   EXPECT_LE(movable, blocked / 5) << "of " << blocked << " blocked cycles of " << cycles;
   RecordProperty("blocked", blocked);
   RecordProperty("movable", movable);
