@@ -93,7 +93,7 @@ bool JointCycle::degrade(const JointTask& task) noexcept {
 /// Finds a least set of pairs and guides whose rows contradict each other (each is left out in
 /// turn, and stays out if the others still do), and gives way in these alone.
 bool JointCycle::degrade_conflict(const JointTask& task) noexcept {
-  constexpr Softness softest{Relaxation::recovery, 0.0, 0.0};
+  constexpr Softness softest{Relaxation::recovery, 0.0, false, 0.0};
   std::array<bool, most_pairs + Guide::most> is_owner{};
   for (const ContactRow& row : memory_.rows) is_owner[row.owner] = true;
   Solution solution;

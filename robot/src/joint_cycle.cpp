@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace keepout {
 namespace {
@@ -13,12 +12,6 @@ constexpr double least_asked = 1.0 / 16.0;  // of what is desired
 constexpr double enough = 0.5;              // of a motion is made: nothing shorter is tried
 constexpr double worthwhile = 1e-6;         // a share of the cost
 constexpr int most_dampings = 3;            // of an attempt whose motions stray
-
-void add_all(Limits& limits, const Limits& others) noexcept {
-  for (std::size_t i = 0; i < limit_count; ++i) {
-    if (others.has(static_cast<Limit>(i))) limits.add(static_cast<Limit>(i));
-  }
-}
 
 }  // namespace
 
@@ -51,7 +44,7 @@ void JointCycle::run(const JointTask& task, InstrumentStep& result) noexcept {
   if (box_.starts_outside()) result.limits.add(Limit::joints_outside);
   if (!is_ok(result.status)) {
     trouble_ = result.status;
-    name_limits({}, result);
+    report_limits({}, result);
     return;
   }
   Trial best{.cost = task.cost(memory_.increment)};
@@ -66,8 +59,8 @@ void JointCycle::run(const JointTask& task, InstrumentStep& result) noexcept {
   watch_.close();
   if (is_ok(result.status) && result.status != Status::yielding && is_recovering())
     result.status = Status::recovering;
-  tell_of_guides(best, result);
-  name_limits(best, result);
+  report_guides(best, result);
+  report_limits(best, result);
   result.rounds = rounds_;
   result.rows = best.rows;
   result.triangles = in_reach_;
@@ -128,35 +121,6 @@ bool JointCycle::attempt(const JointTask& task, double asked, Trial& best) noexc
          trouble_ == Status::out_of_budget;
 }
 
-/// Notes what the last trial of an attempt could not be proved for, or, where the rows contradict
-/// each other, whose they are.
-void JointCycle::note_failure() noexcept {
-  if (trouble_ == Status::infeasible) {
-    for (const ContactRow& row : memory_.rows) {
-      stopped_.add(row.owner < most_pairs ? Limit::mesh : Limit::guide);
-    }
-    return;
-  }
-  // A proof that the budget ended says nothing about its subject.
-  if (kept_by_guides_ < PointMotion::cells && !is_worn_out()) stopped_.add(Limit::guide);
-  for (const PairMemory& pair : memory_.pairs) {
-    if (pair.failure.triangle != nullptr) stopped_.add(Limit::mesh);
-  }
-}
-
-/// Names what kept the motion from being the one asked for.
-void JointCycle::name_limits(const Trial& best, InstrumentStep& result) noexcept {
-  Limits& limits = result.limits;
-  if (result.status == Status::touching || result.status == Status::inside) limits.add(Limit::mesh);
-  if (trouble_ == Status::over_capacity) limits.add(Limit::capacity);
-  if (trouble_ == Status::out_of_budget) limits.add(Limit::budget);
-  add_all(limits, best.held);
-  const bool is_cut = is_shortened_ || best.share < 1.0;
-  if (!is_cut) return;
-  add_all(limits, stopped_);
-  if (is_ok(result.status)) limits.add(Limit::truncated);
-}
-
 /// Judges the part of a motion that is made as a motion of its own, as its end must make up for
 /// what rounding took. If that fails, there is no motion.
 void JointCycle::check_cut(Trial& best) noexcept {
@@ -185,25 +149,6 @@ void JointCycle::carry_out(const Trial& best, InstrumentStep& result) noexcept {
     const Vec3* ended = mesh.motion.at(PointMotion::cells);
     std::copy(ended, ended + memory_.instrument.points().size(), mesh.ended_at.begin());
     mesh.side_of = options_.check_sides ? mesh.near->mesh().id() : 0;
-  }
-}
-
-/// What held the motion back, and what gave way to it.
-void JointCycle::tell_of_guides(const Trial& best, InstrumentStep& result) noexcept {
-  result.relaxation = best.relaxation;
-  for (const WarmRow& warm : memory_.warm) {
-    if (warm.owner < most_pairs) continue;
-    memory_.guide_states[warm.owner - most_pairs].limits = true;
-  }
-  const bool is_cut = !is_ok(result.status) || is_shortened_ || best.share < 1.0;
-  for (std::size_t g = 0; g < memory_.guides.size(); ++g) {
-    GuideState& state = memory_.guide_states[g];
-    state.limits = state.limits || (is_cut && has_failed_[g]);
-    state.relaxed =
-        (best.relaxation != Relaxation::none && state.excess > 0.0) || guides_.is_dropped(g);
-    if (guides_.is_dropped(g) && result.relaxation == Relaxation::none) {
-      result.relaxation = Relaxation::guides;
-    }
   }
 }
 
@@ -243,11 +188,14 @@ bool JointCycle::seek(const JointTask& task, const JointTask& part, Trial& best)
     const double still = std::sqrt(task.cost_of_share(trial.increment, 0.0));
     const double affordable = still + 2.0 * options_.band;
     if (!is_recovering() && !meshes_move_ && trial.cost > affordable * affordable) {
+      // Guides that are within their bands are pulled back only where the task does not pay for it.
+      if (relax_guides()) continue;
       trial.share = task.best_share(trial.increment, trial.share);
       trial.held.add(Limit::linearization);
       trial.cost = task.cost_of_share(trial.increment, trial.share);
     }
     if (trial.share > 0.0 && part.standing_miss() > 0.0 && strays(task, trial)) {
+      if (relax_guides()) continue;
       has_strayed_ = true;
       stopped_.add(Limit::linearization);
       if (meshes_move_ && trial.cell == PointMotion::cells) return false;
@@ -302,159 +250,6 @@ void JointCycle::turn(const JointTask& task, const JointTask& part, Trial& best)
     }
     best = trial;
   }
-}
-
-SolveStatus JointCycle::solve(const JointTask& task, Trial& trial) noexcept {
-  Solution solution;
-  // Constraints that pull back are relaxed if they contradict each other, or if the solver does not
-  // converge: guides first. The last relaxation allows zero motion.
-  constexpr Softness relaxations[] = {
-      {Relaxation::none, 1.0, 1.0},      {Relaxation::guides, 0.5, 1.0},
-      {Relaxation::guides, 0.0, 1.0},    {Relaxation::recovery, 0.0, 0.5},
-      {Relaxation::recovery, 0.0, 0.25}, {Relaxation::recovery, 0.0, 0.0}};
-  bool guides_lead = false;
-  bool bodies_lead = false;
-  for (const ContactRow& row : memory_.rows) {
-    bool& lead = row.owner < most_pairs ? bodies_lead : guides_lead;
-    lead = lead || row.bound > 0.0;
-  }
-  SolveStatus solved = SolveStatus::infeasible;
-  for (std::size_t i = 0; i < std::size(relaxations); ++i) {
-    const Softness& softness = relaxations[i];
-    if (softness.name == Relaxation::guides && !guides_lead) continue;
-    if (guides_lead && i < relaxed_) continue;
-    solved = pose(task, softness, solution);
-    trial.relaxation = softness.name;
-    if (softness.name == Relaxation::recovery && !bodies_lead) {
-      trial.relaxation = guides_lead ? Relaxation::guides : Relaxation::none;
-    }
-    if (softness.guides > 0.0 && solved == SolveStatus::optimal && guides_lead &&
-        is_far_fetched(task, softness, relaxations[2], solution)) {
-      relaxed_ = std::max(relaxed_, i + 1);
-      continue;
-    }
-    if (solved == SolveStatus::optimal || solved == SolveStatus::ill_posed) break;
-  }
-  if (solved != SolveStatus::optimal) return solved;
-  const auto n = static_cast<std::size_t>(task.joints);
-  trial.increment.fill(0.0);
-  for (std::size_t k = 0; k < n; ++k) {
-    if (!std::isfinite(solution.u[k])) return SolveStatus::iteration_limit;
-    trial.increment[k] = task.unit[k] * solution.u[k];
-  }
-  trial.held = held_by(solution);
-  if (box_.clip(trial.increment)) trial.held.add(Limit::joint_position);
-  trial.rows = rows_.hold(solution.active);
-  return solved;
-}
-
-/// The kinds of the rows that hold a solution.
-Limits JointCycle::held_by(const Solution& solution) const noexcept {
-  Limits held;
-  for (const std::uint32_t number : solution.active) {
-    if (number < memory_.rows.size()) {
-      held.add(memory_.rows[number].owner < most_pairs ? Limit::mesh : Limit::guide);
-    } else {
-      const std::size_t side = box_rows_[number - memory_.rows.size()];
-      held.add(box_.limit(side / 2, side % 2 == 1));
-    }
-  }
-  return held;
-}
-
-/// Returns true if pulling all guides back takes a motion that leaves one of them again, and that
-/// is much longer than to pull them back one by one, and than to relax them. The rows of guides
-/// that miss each other by little are nearly opposite: only a very long motion satisfies all of
-/// them. `solution` is the motion; the relaxed one if true is returned.
-bool JointCycle::is_far_fetched(const JointTask& task, const Softness& tried,
-                                const Softness& relaxed, Solution& solution) noexcept {
-  constexpr double most = 8.0;
-  const auto n = static_cast<std::size_t>(task.joints);
-  const auto length_of = [](const Solution& its) {
-    return std::sqrt(std::inner_product(its.u.begin(), its.u.end(), its.u.begin(), 0.0));
-  };
-  JointVector increment{};
-  for (std::size_t k = 0; k < n; ++k) increment[k] = task.unit[k] * solution.u[k];
-  double one_by_one = 0.0;
-  bool bends_too_much = false;
-  for (const ContactRow& row : memory_.rows) {
-    if (row.owner < most_pairs || !(row.bound > 0.0)) continue;
-    double steepest2 = 0.0;
-    for (std::size_t k = 0; k < n; ++k) steepest2 += std::pow(task.unit[k] * row.gradient[k], 2);
-    if (steepest2 > 0.0) one_by_one += (row.bound + row.correction) / std::sqrt(steepest2);
-    bends_too_much = bends_too_much || guides_.bends_by_more(row, {increment.data(), n});
-  }
-  const double length = length_of(solution);
-  if (!bends_too_much || !(length > most * one_by_one)) return false;
-  const bool is_shorter = pose(task, relaxed, solution) == SolveStatus::optimal &&
-                          length > most * (one_by_one + length_of(solution));
-  if (!is_shorter) pose(task, tried, solution);
-  return is_shorter;
-}
-
-/// Returns the least change of a body row's height that a motion must make. [length]
-double JointCycle::body_bound(const ContactRow& row, const Softness& softness) const noexcept {
-  const double bound = (row.bound > 0.0 ? softness.bodies * row.bound : row.bound) + row.correction;
-  return (softness.bodies > 0.0 ? bound : std::min(bound, 0.0)) - row.drift -
-         watch_.given_way(row.owner);
-}
-
-/// Returns the same for a guide's row. A relaxed guide that is out of its region is held to the
-/// region grown by what the guide may be out in this cycle, less a fraction of its band.
-/// [length or rad]
-double JointCycle::guide_bound(const ContactRow& row, const Softness& softness) const noexcept {
-  double bound = row.bound;
-  if (softness.guides < 1.0) {
-    const double out = guides_.allowance(row.owner - most_pairs, softness.guides);
-    bound = std::min(bound, -row.start_height - out);
-  }
-  bound += row.correction;
-  return softness.bodies > 0.0 ? bound : std::min(bound, 0.0);
-}
-
-SolveStatus JointCycle::pose(const JointTask& task, const Softness& softness,
-                             Solution& solution) noexcept {
-  const auto n = static_cast<std::size_t>(task.joints);
-  double* number = memory_.matrix.data();
-  std::size_t count = 0;
-  for (const ContactRow& row : memory_.rows) {
-    double steepest = 0.0;
-    if (is_left_out_[row.owner]) {
-      number = std::fill_n(number, n, 0.0);
-      memory_.bounds[count++] = 0.0;
-      continue;
-    }
-    for (std::size_t k = 0; k < n; ++k) {
-      *number++ = task.unit[k] * row.gradient[k];
-      steepest = std::max(steepest, std::abs(number[-1]));
-    }
-    double least = row.owner < most_pairs ? body_bound(row, softness) : guide_bound(row, softness);
-    // What no joint can do is not asked for: whether it is safe the certificate tells.
-    if (steepest <= memory_.tolerance) least = std::min(least, 0.0);
-    memory_.bounds[count++] = least;
-  }
-  std::size_t box_rows = 0;
-  for (std::size_t k = 0; k < n; ++k) {
-    for (const double sign : {1.0, -1.0}) {
-      const double bound = sign > 0.0 ? box_.low()[k] : -box_.high()[k];
-      if (!std::isfinite(bound)) continue;
-      std::fill_n(number, n, 0.0);
-      number[k] = sign;
-      number += n;
-      memory_.bounds[count++] = bound / task.unit[k];
-      box_rows_[box_rows++] = static_cast<std::uint8_t>(2 * k + (sign > 0.0 ? 0 : 1));
-    }
-  }
-  const StepProblem problem{{task.jacobian.data(), task.rows, task.joints},
-                            {task.desired.data(), task.rows},
-                            {memory_.matrix.data(), static_cast<Eigen::Index>(count), task.joints},
-                            {memory_.bounds.data(), static_cast<Eigen::Index>(count)},
-                            task.damping};
-  solution = {};
-  const SolveStatus solved = memory_.solver.solve(problem, solution);
-  memory_.budget.spend(4 + static_cast<std::size_t>(std::max(solution.iterations, 0)) *
-                               (2 + count / 4));
-  return solved;
 }
 
 /// How much of a motion is certified, and of each pair what speaks against the rest.

@@ -13,6 +13,14 @@
 
 namespace keepout {
 
+/// How far rows are relaxed.
+struct Softness {
+  Relaxation name;
+  double unused;      // the fraction of a guide's band that is left to curvature; 1: no relaxation
+  bool pulls_guides;  // towards their regions; false: they only hold
+  double bodies;      // the fraction of a body's recovery that is demanded
+};
+
 /// One cycle of an instrument: solve, judge, add rows, until the motion is certified; then the
 /// increment is it, or the part of one that was. Allocates nothing, throws nothing.
 class JointCycle {
@@ -33,14 +41,6 @@ class JointCycle {
   double prove(const JointVector& increment, InstrumentStep& result) noexcept;
 
  private:
-  /// How far rows are relaxed.
-  struct Softness {
-    Relaxation name;
-    double
-        guides;  // 1: guides pull back; below: the fraction of a guide's band that is kept unused
-    double bodies;  // the fraction of a body's recovery that is demanded
-  };
-
   /// A motion, and the part of it that is certified.
   struct Trial {
     JointVector increment{};
@@ -62,22 +62,25 @@ class JointCycle {
   bool attempt(const JointTask& task, double asked, Trial& best) noexcept;
   bool seek(const JointTask& task, const JointTask& part, Trial& best) noexcept;
   void turn(const JointTask& task, const JointTask& part, Trial& best) noexcept;
+  // The problem (joint_problem.cpp).
   SolveStatus solve(const JointTask& task, Trial& trial) noexcept;
+  bool relax_guides() noexcept;
   SolveStatus pose(const JointTask& task, const Softness& softness, Solution& solution) noexcept;
   bool is_far_fetched(const JointTask& task, const Softness& tried, const Softness& relaxed,
                       Solution& solution) noexcept;
   double body_bound(const ContactRow& row, const Softness& softness) const noexcept;
   double guide_bound(const ContactRow& row, const Softness& softness) const noexcept;
+  Limits held_by(const Solution& solution) const noexcept;
   void judge(Trial& trial) noexcept;
   Status judge_pair(std::size_t pair) noexcept;
   bool answer() noexcept;
   // The true motion of the flange (true_flange.cpp).
   bool strays(const JointTask& task, const Trial& trial) noexcept;
   void cut_to_best(const JointTask& task, Trial& trial) noexcept;
-  Limits held_by(const Solution& solution) const noexcept;
+  // The report (joint_report.cpp).
   void note_failure() noexcept;
-  void name_limits(const Trial& best, InstrumentStep& result) noexcept;
-  void tell_of_guides(const Trial& best, InstrumentStep& result) noexcept;
+  void report_limits(const Trial& best, InstrumentStep& result) noexcept;
+  void report_guides(const Trial& best, InstrumentStep& result) noexcept;
   bool is_recovering() const noexcept { return watch_.is_recovering() || guides_.is_recovering(); }
   void check_cut(Trial& best) noexcept;
   void carry_out(const Trial& best, InstrumentStep& result) noexcept;

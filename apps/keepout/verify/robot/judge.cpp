@@ -214,7 +214,7 @@ bool RobotJudge::would_allow(std::span<const double> next) {
     look(next, static_cast<double>(i) / (poses - 1), distances_);
     for (std::size_t k = 0; k < kept_.size(); ++k) {
       const double wanted =
-          k < pairs ? margin(k / bodies_) - 0.1 * options_.band : -0.9 * guides_[k - pairs].band;
+          k < pairs ? margin(k / bodies_) - 0.1 * options_.band : -0.1 * guides_[k - pairs].band;
       if (distances_[k] < std::min(wanted, kept_[k].distance)) return false;
     }
   }

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The quadratic problem of a cycle: its solution, and the relaxation of planes that contradict each
+// other.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "cycle.h"
+
+namespace keepout {
+namespace {
+
+/// Makes a solver's projection of the aim as exact as the planes are: what it left undone is made
+/// up for, and the motion ends in the ball over the aim, where triangles were looked for.
+Vec3 sharpened(const Vec3& motion, const Vec3& aim, std::span<const HalfSpace> planes) noexcept {
+  // Solvers differ in their last digits; alternating projections on the planes that are violated
+  // settle them. Each is at most a last digit for an exact solver.
+  constexpr int most_corrections = 32;
+  Vec3 z = motion;
+  const double digits2 = 1e-30 * aim.squaredNorm();
+  for (int i = 0; i < most_corrections; ++i) {
+    const HalfSpace* worst = nullptr;
+    double violation = 0.0;
+    for (const HalfSpace& plane : planes) {
+      const double missing = plane.offset - plane.normal.dot(z);
+      if (!(missing > violation)) continue;
+      violation = missing;
+      worst = &plane;
+    }
+    if (worst == nullptr || !(violation * violation > digits2)) break;
+    z += violation * worst->normal;
+  }
+  const double along = aim.dot(z);
+  const double length2 = z.squaredNorm();
+  if (along < length2) z *= std::max(along, 0.0) / length2;
+  return z;
+}
+
+/// Of a solve, in looks: each iteration goes over all rows, and the first over the Jacobian's
+/// square.
+std::size_t work_of(const StepProblem& problem, const Solution& solution) noexcept {
+  constexpr std::size_t numbers_in_a_look = 48;  // as of sixteen planes
+  const auto numbers = static_cast<std::size_t>(problem.rows.rows() * problem.rows.cols());
+  const auto variables = static_cast<std::size_t>(problem.rows.cols());
+  const auto iterations = static_cast<std::size_t>(std::max(solution.iterations, 0));
+  return variables * variables * variables / 512 +
+         (1 + iterations) * (4 + numbers / numbers_in_a_look);
+}
+
+}  // namespace
+
+/// The nearest motion that planes and guides allow; the rule has not judged it yet. free, or what
+/// went wrong. If no half-space of a guide is left to add, the motion may leave its region.
+Cycle::Trial Cycle::solve() noexcept {
+  // The projection of the aim on no plane: it needs no solver.
+  const bool is_bare = work_.planes.empty() && !work_.planes.overflowed();
+  if (is_bare && around_.is_projected && work_.guides.empty()) {
+    work_.solution = {};
+    return {Status::free, around_.aim};
+  }
+  Trial trial = solve_once();
+  while (is_ok(trial.status) && !work_.guides.allow(trial.motion)) {
+    budget_.spend(1);
+    if (!work_.guides.exclude(trial.motion)) break;
+    trial = solve_once();
+  }
+  return trial;
+}
+
+Cycle::Trial Cycle::solve_once() noexcept {
+  if (work_.planes.overflowed()) return {Status::over_capacity, Vec3::Zero()};
+  std::optional<Vec3> answer;
+  Status solved = attempt(answer);
+  // Planes may contradict each other, or nearly, so that the solver finds a point out of the world,
+  // or comes to no end.
+  const auto contradict = [&] {
+    return solved == Status::infeasible || solved == Status::ill_posed ||
+           solved == Status::unsolved;
+  };
+  while (contradict() && relax()) solved = attempt(answer);
+  if (is_ok(solved) && !answer->allFinite()) solved = Status::unsolved;
+  if (!is_ok(solved)) return {solved, Vec3::Zero()};
+  if (around_.reach == Reach::sphere) return {Status::free, *answer};
+  return {Status::free, sharpened(*answer, around_.aim, work_.posed())};
+}
+
+/// Relaxes what leads back: guides first. Returns true if any plane changed.
+bool Cycle::relax() noexcept {
+  if (work_.guides.relax()) {
+    relaxation_ = std::max(relaxation_, Relaxation::guides);
+    return true;
+  }
+  if (!rule_.relax(work_.planes)) return false;
+  relaxation_ = Relaxation::recovery;
+  return true;
+}
+
+Status Cycle::attempt(std::optional<Vec3>& answer) noexcept {
+  if (budget_.is_spent()) return budget_.status_at_end();
+  const StepProblem problem = work_.pose(motion_, around_.aim, options_.damping);
+  work_.solution = {};
+  const SolveStatus solved = solver_.solve(problem, work_.solution);
+  budget_.spend(work_of(problem, work_.solution));
+  if (solved != SolveStatus::optimal) return status_of(solved);
+  if (work_.solution.u.size() != static_cast<std::size_t>(problem.jacobian.cols())) {
+    return Status::unsolved;
+  }
+  answer = tip_motion(problem, work_.solution, 1e-10 * options_.radius);
+  return answer ? Status::free : Status::ill_posed;
+}
+
+std::optional<Vec3> tip_motion(const StepProblem& problem, const Solution& solution,
+                               double rounding) noexcept {
+  // Of the sum below, relative to the way: each of its products and sums rounds by half of that.
+  const double digits = std::numeric_limits<double>::epsilon() *
+                        (1.0 + 0.5 * static_cast<double>(problem.jacobian.cols()));
+  if (moves_a_point(problem)) {
+    const double* u = solution.u.data();
+    const double way = std::abs(u[0]) + std::abs(u[1]) + std::abs(u[2]);
+    if (!(digits * way <= rounding)) return std::nullopt;
+    return std::optional<Vec3>(std::in_place, Eigen::Map<const Vec3>(u));
+  }
+  Vec3 motion = Vec3::Zero();
+  double way = 0.0;  // of the tip, were all joints to move it alike
+  for (Eigen::Index c = 0; c < problem.jacobian.cols(); ++c) {
+    const double u = solution.u[static_cast<std::size_t>(c)];
+    motion += problem.jacobian.col(c) * u;
+    way += problem.jacobian.col(c).norm() * std::abs(u);
+  }
+  if (!(digits * way <= rounding)) return std::nullopt;
+  return motion;
+}
+
+}  // namespace keepout
