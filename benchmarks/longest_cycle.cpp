@@ -23,18 +23,6 @@
 namespace keepout {
 namespace {
 
-/// A cone around the z axis, its tip at the origin, open at its base.
-Surface cone(VertexId faces, double slope) {
-  Surface surface;
-  surface.vertices.emplace_back(0.0, 0.0, 0.0);
-  for (VertexId i = 0; i < faces; ++i) {
-    const double angle = 2.0 * std::numbers::pi * i / faces;
-    surface.vertices.emplace_back(10.0 * std::cos(angle), 10.0 * std::sin(angle), -10.0 * slope);
-    surface.triangles.push_back({0, i + 1, (i + 1) % faces + 1});
-  }
-  return surface;
-}
-
 /// A watertight sphere around the origin, of 2 n (n - 1) triangles.
 Surface sphere(VertexId n, double radius) {
   Surface surface;
@@ -104,22 +92,23 @@ std::vector<Scene> scenes() {
     for (const double slope : {0.1, 1.0, 5.0}) {
       char name[64];
       std::snprintf(name, sizeof name, "tip of a cone, %u faces, slope %g", unsigned{faces}, slope);
-      all.push_back({name, cone(faces, slope), {.radius = 5.0, .margin = 1.0}, 1.5, {0, 0, 1}});
+      all.push_back(
+          {name, make_cone(faces, slope), {.radius = 5.0, .margin = 1.0}, 1.5, {0, 0, 1}});
     }
   }
   all.push_back({"the same, 7 joints",
-                 cone(4'000, 1.0),
+                 make_cone(4'000, 1.0),
                  {.radius = 5.0, .margin = 1.0, .damping = 1e-6},
                  1.5,
                  {0, 0, 1},
                  true});
   all.push_back({"the same, 65,536 nodes, 1,000 refinements",
-                 cone(4'000, 1.0),
+                 make_cone(4'000, 1.0),
                  {.radius = 5.0, .margin = 1.0, .refinements = 1'000, .nodes = 65'536},
                  1.5,
                  {0, 0, 1}});
   for (const VertexId faces : {400u, 4'000u}) {
-    Scene guided{std::to_string(faces) + " faces, 16 round guides", cone(faces, 1.0)};
+    Scene guided{std::to_string(faces) + " faces, 16 round guides", make_cone(faces, 1.0)};
     guided.middle = {0, 0, 1};
     guided.with_guides = true;
     all.push_back(guided);

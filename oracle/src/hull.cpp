@@ -10,7 +10,7 @@
 namespace keepout::oracle {
 namespace {
 
-// Of the cube of the hull's size: a volume below that is taken for flat, and a face for one.
+// A fraction of the cube of the hull's size: a smaller volume is treated as flat.
 constexpr double flat = 1e-10;
 
 double cubed(double x) noexcept { return x * x * x; }

@@ -101,7 +101,7 @@ double InstrumentOracle::clearance(std::size_t body, double reach) {
   if (!(nearest + around.travelled < around.known)) look_around(around, core, nearest);
   std::vector<Entry>& heap = around.heap;
   auto end = heap.end();  // of the heap; behind it is what was looked at by now
-  // What is nearer by less than a billionth of the distance makes no difference.
+  // A distance that is smaller by less than a billionth makes no difference.
   const auto matters = [&](double low) { return low < nearest * (1.0 - 0.5e-9); };
   while (end != heap.begin() && matters(heap.front().key - around.travelled)) {
     std::ranges::pop_heap(heap.begin(), end, std::greater(), &Entry::key);

@@ -44,7 +44,8 @@ void bind_instrument_results(py::module_& module) {
           "'recovery'.")
       .def_property_readonly(
           "limits", [](const Result& self) { return names_of(self.step.limits); },
-          "What kept the motion from being the one asked for: a tuple of names such as 'mesh' or\n"
+          "The causes that kept the motion from being the commanded one: a tuple of names such as "
+          "'mesh' or\n"
           "'joint_velocity'.")
       .def_property_readonly(
           "nearest",

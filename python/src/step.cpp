@@ -145,7 +145,8 @@ void bind_step(py::module_& module) {
           "'recovery'.")
       .def_property_readonly(
           "limits", [](const StepResult& self) { return names_of(self.limits); },
-          "What kept the motion from being the one asked for: a tuple of names such as 'mesh'.")
+          "The causes that kept the motion from being the commanded one: a tuple of names such as "
+          "'mesh'.")
       .def("__repr__", [](const StepResult& self) {
         const Vec3& u = self.motion;
         return py::str("<keepout.Step: {}, motion ({}, {}, {})>")

@@ -38,7 +38,7 @@ void JointCycle::search_beside_moving(const JointTask& task, Trial& best,
     result.status = trouble_ != Status::free ? trouble_ : Status::unsolved;
     rows_.remember_all();
   } else if (watch_.dropped_for() != Status::free && stands_still) {
-    // Nothing retreats, so there is no motion to make beside what could not be certified.
+    // No body retreats, and a body that could not be certified allows no other motion.
     result.level = 0.0;
     result.status = watch_.dropped_for();
   } else if (!memory_.degraded.empty()) {

@@ -41,8 +41,9 @@ Certificate::Failure Certificate::judge(std::span<NearTriangle> triangles, doubl
     if (is_covered(triangle)) continue;
     near_.know(triangle, budget_);
     if (triangle.at_start.distance >= out_of_reach) continue;
-    // What is kept, or what is there if rounding has left less. Then a motion has to end a little
-    // farther off, and a body that does not move is kept, so that rounding does not add up.
+    // The certified distance, or the present distance if rounding has left less. Then the motion
+    // must end a little farther away, and a body that does not move passes, so that rounding does
+    // not accumulate.
     const double distance = triangle.at_start.distance - radius_;
     due_ = std::min(kept_, distance + 2.0 * tolerance_);
     const bool owes = due_ < kept_;

@@ -356,6 +356,10 @@ void InstrumentConstraint::set_guides(std::vector<Guide> guides) {
       throw Error("the band of guide '" + guide.name() +
                   "' is lost in the rounding of an instrument and a mesh of this size");
     }
+    if (guide.link() == 0) {
+      throw Error("guide '" + guide.name() +
+                  "' is on link 0, the base, which no joint moves: give it a link of the chain");
+    }
     if (guide.link() <= state_->instrument.chain().size()) continue;
     throw Error("guide '" + guide.name() + "' is on link " + std::to_string(guide.link()) +
                 "; there are links 0 to " + std::to_string(state_->instrument.chain().size()));

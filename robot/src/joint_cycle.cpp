@@ -259,7 +259,8 @@ void JointCycle::judge(Trial& trial) noexcept {
   kept_by_guides_ = guides_.judge(failed_guide_);
   trial.cell = kept_by_guides_;
   if (trial.cell == 0) {
-    // Nothing is proved whatever bodies do, and a motion that guides reject at once may be long.
+    // Nothing is proved, whatever the bodies do. A motion that guides reject at once may be long,
+    // so judging the bodies would cost much work.
     for (PairMemory& pair : memory_.pairs) pair.failure = {};
     return;
   }

@@ -13,7 +13,7 @@
 
 namespace keepout {
 
-/// How far rows are relaxed.
+/// One step of the relaxation of rows.
 struct Softness {
   Relaxation name;
   double unused;      // the fraction of a guide's band that is left to curvature; 1: no relaxation

@@ -156,7 +156,8 @@ SolveStatus JointCycle::pose(const JointTask& task, const Softness& softness,
       steepest = std::max(steepest, std::abs(number[-1]));
     }
     double least = row.owner < most_pairs ? body_bound(row, softness) : guide_bound(row, softness);
-    // What no joint can do is not asked for: whether it is safe the certificate tells.
+    // A row that no joint can change must not demand a motion; the certificate decides if it is
+    // safe.
     if (steepest <= memory_.tolerance) least = std::min(least, 0.0);
     memory_.bounds[count++] = least;
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What a joint cycle reports: the limits and the guides that kept a motion from being the commanded
+// The report of a joint cycle: the limits and guides that kept a motion from being the commanded
 // one.
 #include "joint_cycle.h"
 

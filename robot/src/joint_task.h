@@ -38,7 +38,7 @@ struct JointTask {
   }
   /// The same task, but for a share of what is desired.
   JointTask scaled(double share) const noexcept;
-  /// The same task with 16 times the damping, or with some where there is none.
+  /// Returns the task with 16 times the damping, or with some damping if it has none.
   JointTask damped() const noexcept;
   /// Returns |v|: what standing still misses.
   double standing_miss() const noexcept;

@@ -5,24 +5,12 @@
 
 #include <cmath>
 #include <cstddef>
-#include <numbers>
 
 #include "accuracy/certified_loop.h"
 #include "trials.h"
 
 namespace keepout::test {
 namespace {
-
-/// Returns a cone with its tip at the origin and its axis along -z.
-Surface cone(VertexId faces, double slope) {
-  Surface surface{{Vec3::Zero()}, {}};
-  for (VertexId i = 0; i < faces; ++i) {
-    const double angle = 2.0 * std::numbers::pi * i / faces;
-    surface.vertices.emplace_back(10.0 * std::cos(angle), 10.0 * std::sin(angle), -10.0 * slope);
-    surface.triangles.push_back({0, i + 1, (i + 1) % faces + 1});
-  }
-  return surface;
-}
 
 /// Fails unless the step is safe, or moves nothing. Counts the steps that move.
 void expect_safe(Loop& loop, const Vec3& tip, const Step& step, int& moved) {
@@ -44,8 +32,9 @@ TEST(SpentBudget, NoStepIsUnsafeWhereverTheWorkEnds) {
     MotionConstraintSettings settings{.radius = 3.0, .margin = 0.5};
     settings.capacity.looks = static_cast<std::size_t>(std::exp2(random.uniform(2.0, 16.0)));
     constexpr const char* names[] = {"gear", "cortex", "sphere", "fan"};
-    Loop loop(trial % 5 == 4 ? cone(3000, random.uniform(0.1, 2.0)) : make_shape(names[trial % 5]),
-              settings);
+    Loop loop(
+        trial % 5 == 4 ? make_cone(3000, random.uniform(0.1, 2.0)) : make_shape(names[trial % 5]),
+        settings);
     SCOPED_TRACE(testing::Message() << "trial " << trial << ", looks " << settings.capacity.looks);
     for (const Vec3& tip : places(loop, 6, random.uniform(0.05, 0.8), random)) {
       for (int i = 0; i < 6; ++i) {
@@ -68,7 +57,7 @@ TEST(SpentBudget, NoStepIsUnsafeWhereMoreTrianglesAreNearThanFitInMemory) {
     for (const double slope : {0.05, 0.3, 1.0}) {
       MotionConstraintSettings settings{.radius = 5.0, .margin = 1.0};
       settings.capacity.looks = std::size_t{1} << 30;
-      Loop loop(cone(faces, slope), settings);
+      Loop loop(make_cone(faces, slope), settings);
       SCOPED_TRACE(testing::Message() << faces << " faces, slope " << slope);
       for (int i = 0; i < trials(8); ++i) {
         const Vec3 tip(random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3),

@@ -55,7 +55,7 @@ Question random_question(const Vec3& tip, Random& random) {
   return q;
 }
 
-/// What a motion misses of the one asked for. [length]
+/// Returns the distance between the commanded and the executed motion. [length]
 double missed(const Question& q, const Step& step) { return (step.motion - q.desired).norm(); }
 
 class StepLimits : public testing::Test {

@@ -10,6 +10,7 @@
 
 #include "accuracy/certified_loop.h"
 #include "keepout/control/haptic_proxy.h"
+#include "keepout/fixtures/shapes.h"
 #include "keepout/index/wide_bvh.h"
 #include "keepout/robot/instrument_constraint.h"
 #include "keepout/solvers/active_set.h"
@@ -17,18 +18,6 @@
 
 namespace keepout::test {
 namespace {
-
-/// Returns a cone around the z axis, its tip at the origin, open at its base.
-Surface cone(VertexId faces, double slope) {
-  Surface surface;
-  surface.vertices.emplace_back(0.0, 0.0, 0.0);
-  for (VertexId i = 0; i < faces; ++i) {
-    const double angle = 2.0 * std::numbers::pi * i / faces;
-    surface.vertices.emplace_back(10.0 * std::cos(angle), 10.0 * std::sin(angle), -10.0 * slope);
-    surface.triangles.push_back({0, i + 1, (i + 1) % faces + 1});
-  }
-  return surface;
-}
 
 /// Counts the triangles that a walk shows, and is otherwise the walk of a tree.
 class CountedTree final : public SpatialIndex {
@@ -82,7 +71,7 @@ constexpr std::size_t stated = Capacity::looks_of_a_walk;
 /// A tip near the tip of a cone, where many triangles are equally near.
 struct Scene {
   explicit Scene(VertexId faces, double slope)
-      : mesh(std::make_shared<const Mesh>(cone(faces, slope))),
+      : mesh(std::make_shared<const Mesh>(make_cone(faces, slope))),
         tree(std::make_shared<CountedTree>(mesh)) {}
 
   MotionConstraint guard() const {

@@ -57,6 +57,14 @@ def lever_guard(**options):
     return InstrumentGuard(wall, Instrument(chain, [shaft]), margin=0.5, band=0.01, **options)
 
 
+def test_a_work_budget_that_ends_is_reported():
+    guard = lever_guard(max_looks=1)
+    step = guard.step([0.28], increment=[0.01])
+    assert step.status is Status.out_of_budget and "max_looks" in step.reason
+    assert not step.ok and step.increment.tolist() == [0.0] and "budget" in step.limits
+    assert lever_guard().step([0.28], increment=[0.01]).ok
+
+
 def test_the_shaft_stops_at_the_wall():
     down = {"linear": (0, 0, -0.1)}
     for asked in (down, {**down, "angular": (0, 0.002, 0)}, {"increment": [0.002]}):

@@ -78,6 +78,8 @@ def test_what_outruns_the_joints_is_named():
             break
         assert (step.level < 1.0) == (step.status == Status.yielding)
         q = q + step.increment
+        named = () if step.level == 1.0 else ((0, 0, step.level),)
+        assert step.degraded == named
     assert Status.yielding in seen and not step.ok
 
 

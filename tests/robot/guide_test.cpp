@@ -309,6 +309,7 @@ TEST(Guide, RefusesWhatIsNone) {
   const Guide axis = Guide::axis("a", 6, Vec3::UnitX(), Vec3::UnitX(), 0.5);
   EXPECT_THROW(bench.guard.set_guides({axis.with_band(1e-15)}), Error) << "lost in rounding";
   EXPECT_THROW(bench.guard.set_guides(std::vector<Guide>(17, guide)), Error);
+  EXPECT_THROW(bench.guard.set_guides({Guide::point("a tip's", guide.region())}), Error);
   EXPECT_THROW(bench.guard.set_guides({Guide::point("a", {7, Vec3::Zero()}, guide.region())}),
                Error);
 }

@@ -335,7 +335,7 @@ TEST(MovingSheet, TakesNothingFromABodyThatCanRetreat) {
   }
 }
 
-// The same of a body on a joint that has come to its limit.
+// As above, but the body that cannot give way is on a joint that has reached its limit.
 TEST(MovingSheet, TakesNothingFromABodyBesideOneThatIsBlocked) {
   // A slide up to its limit that carries a ball, and beyond it two slides that carry the tip.
   std::vector<Joint> joints{{.kind = JointKind::prismatic,

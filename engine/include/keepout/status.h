@@ -7,8 +7,8 @@
 
 namespace keepout {
 
-/// How a step or a query ended. The first five come with a motion, which may be executed and may be
-/// zero; every other one comes with zero motion.
+/// The outcome of a step or a query. The first five come with a motion that may be executed, which
+/// may be zero; every other one comes with zero motion.
 enum class Status : std::uint8_t {
   free,              // the motion asked for; of a polytope: its planes are complete
   limited,           // the nearest motion that the constraints allow: see Limits

@@ -122,7 +122,7 @@ Opening Cycle::open() noexcept {
   return opening;
 }
 
-/// Where there are more triangles than room, or than the budget allows: a shorter way has fewer.
+/// Opens the cycle. Halves the target until its triangles fit the capacity and the budget.
 Opening Cycle::open_as_far_as_fits() noexcept {
   const auto attempt = [&] { return budget_.halved([&] { return open(); }); };
   Opening opening = attempt();

@@ -12,8 +12,8 @@
 namespace keepout {
 namespace {
 
-/// Makes a solver's projection of the aim as exact as the planes are: what it left undone is made
-/// up for, and the motion ends in the ball over the aim, where triangles were looked for.
+/// Returns a solver's projection of the target, corrected to the accuracy of the planes. The motion
+/// ends in the ball over the target, in which the index was searched.
 Vec3 sharpened(const Vec3& motion, const Vec3& aim, std::span<const HalfSpace> planes) noexcept {
   // Solvers differ in their last digits; alternating projections on the planes that are violated
   // settle them. Each is at most a last digit for an exact solver.
@@ -38,8 +38,8 @@ Vec3 sharpened(const Vec3& motion, const Vec3& aim, std::span<const HalfSpace> p
   return z;
 }
 
-/// Of a solve, in looks: each iteration goes over all rows, and the first over the Jacobian's
-/// square.
+/// Returns the work units of a solve: each iteration visits all rows, and the first one the square
+/// of the Jacobian.
 std::size_t work_of(const StepProblem& problem, const Solution& solution) noexcept {
   constexpr std::size_t numbers_in_a_look = 48;  // as of sixteen planes
   const auto numbers = static_cast<std::size_t>(problem.rows.rows() * problem.rows.cols());
@@ -51,8 +51,9 @@ std::size_t work_of(const StepProblem& problem, const Solution& solution) noexce
 
 }  // namespace
 
-/// The nearest motion that planes and guides allow; the rule has not judged it yet. free, or what
-/// went wrong. If no half-space of a guide is left to add, the motion may leave its region.
+/// Returns the nearest motion that planes and guides allow, which the rule has not judged yet, with
+/// status free, or a failure. If no half-space of a guide is left to add, the motion may leave the
+/// region of the guide.
 Cycle::Trial Cycle::solve() noexcept {
   // The projection of the aim on no plane: it needs no solver.
   const bool is_bare = work_.planes.empty() && !work_.planes.overflowed();
@@ -86,7 +87,7 @@ Cycle::Trial Cycle::solve_once() noexcept {
   return {Status::free, sharpened(*answer, around_.aim, work_.posed())};
 }
 
-/// Relaxes what leads back: guides first. Returns true if any plane changed.
+/// Relaxes constraints that pull back: guides first. Returns true if any plane changed.
 bool Cycle::relax() noexcept {
   if (work_.guides.relax()) {
     relaxation_ = std::max(relaxation_, Relaxation::guides);
@@ -113,7 +114,7 @@ Status Cycle::attempt(std::optional<Vec3>& answer) noexcept {
 
 std::optional<Vec3> tip_motion(const StepProblem& problem, const Solution& solution,
                                double rounding) noexcept {
-  // Of the sum below, relative to the way: each of its products and sums rounds by half of that.
+  // The relative rounding error of the sum below: each product and each sum rounds by half of it.
   const double digits = std::numeric_limits<double>::epsilon() *
                         (1.0 + 0.5 * static_cast<double>(problem.jacobian.cols()));
   if (moves_a_point(problem)) {

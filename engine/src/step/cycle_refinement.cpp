@@ -73,7 +73,7 @@ Cycle::Trial Cycle::branch(const Trial& best) noexcept {
   return best;
 }
 
-/// Opens a node for the planes at hand, unless it cannot lead to a better motion.
+/// Adds a node for the present planes, unless it cannot contain a better motion.
 void Cycle::open_branch(const Trial& best) noexcept {
   const Trial trial = solve();
   if (!is_ok(trial.status) || trial.motion.norm() > around_.longest) return;
@@ -82,7 +82,8 @@ void Cycle::open_branch(const Trial& best) noexcept {
   work_.branches.push((around_.aim - trial.motion).norm(), trial.motion, work_.planes.view());
 }
 
-/// Whether a motion is nearer to the aim by more than a millionth of it.
+/// Returns true if a motion is nearer to the target than the best one, by more than a millionth of
+/// the target.
 bool Cycle::is_worthwhile(const Vec3& motion, const Vec3& best) const noexcept {
   const Vec3& aim = around_.aim;
   return (aim - motion).norm() < (aim - best).norm() - 1e-6 * aim.norm();

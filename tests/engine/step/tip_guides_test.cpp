@@ -107,6 +107,30 @@ TEST(TipGuides, MakeTheNearestStepThatARoundRegionAllows) {
   EXPECT_GT(out, test::trials(300));
 }
 
+// Eight half-spaces cannot enclose a ball to within a tiny band, so that only a part of the last
+// trial is executed.
+TEST(TipGuides, HoldWhereNoHalfSpaceIsLeftToAdd) {
+  Loop loop("cube");
+  const Vec3 middle = loop.mesh->bounds().high + Vec3::Constant(50.0);
+  Random random(5);
+  int truncated = 0;
+  for (int i = 0; i < test::trials(2000); ++i) {
+    const double radius = random.uniform(0.5, 3.0);
+    const Guide ball = Guide::point("ball", Region::ball(middle, radius)).with_band(1e-9);
+    loop.guard.set_guides({ball});
+    const Vec3 tip = middle + radius * std::sqrt(random.uniform()) * random.direction();
+    const Step step =
+        loop.guard.step({.tip = tip, .desired = random.uniform(1.0, 4.5) * random.direction()});
+    ASSERT_TRUE(step.ok()) << step.reason();
+    ASSERT_LE(ball.region().excess(tip + step.motion), ball.band() + 1e-12);
+    if (step.status != Status::fallback) continue;
+    ++truncated;
+    EXPECT_TRUE(step.limits.has(Limit::guide) && step.limits.has(Limit::truncated));
+    EXPECT_TRUE(step.guides[0].limits);
+  }
+  EXPECT_GT(truncated, test::trials(20));
+}
+
 TEST(TipGuides, HoldWhateverJointsMoveTheTip) {
   Loop loop("cube");
   StepOptions options = loop.guard.options();

@@ -1,278 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "verify/robot/campaign.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <utility>
 
-#include "keepout/activation/certified.h"
-#include "keepout/solvers/registry.h"
-#include "keepout/step/motion_constraint.h"
-#include "verify/robot/excess.h"
-#include "verify/robot/hand.h"
-#include "verify/robot/judge.h"
+#include "verify/robot/attempt.h"
 
 namespace keepout::app {
 namespace {
-
-constexpr std::size_t block = 500;      // cycles for which a margin stays raised, and then does not
-constexpr double raise = 0.5;           // [mm]
-constexpr double blocked_below = 0.05;  // of the motion asked for
-constexpr double useful_above = 0.05;   // of the largest reduction of the cost
-constexpr double movable_above = 0.1;   // of the motion asked for
-constexpr double strayed_above = 1.05;  // of what standing still misses
-// Blocked cycles to each that is searched: a search costs as much as a thousand cycles.
-constexpr std::uint64_t sampled = 2000;
-constexpr std::uint64_t sampled_where_drawn = 100;
-constexpr int hopeless_after =
-    50;  // cycles without any motion being proven, until a start is given up
-constexpr double skipped = 1.0 / 3.0;  // of all placements of a mesh that moves
-
-bool is_raised(const Scenario& scenario, std::size_t cycle) noexcept {
-  const bool is_odd = (cycle / block) % 2 == 1;
-  return scenario.raises_margin && (scenario.begin == Begin::wedged ? !is_odd : is_odd);
-}
-
-/// What is being worked on: a row, and what it is made with.
-struct RobotRow {
-  const RobotCampaign& campaign;
-  const Scenario& scenario;
-  std::function<JudgedMesh(Random&)> draw_mesh;
-  bool is_drawn;                // the mesh, or the robot
-  const RobotUnderTest* robot;  // null: drawn
-  RobotTally tally;
-  std::vector<double> times = {};        // [us]
-  std::vector<double> point_times = {};  // [us]
-};
-
-/// How far the flange is from where it is wanted, as the judge sees it, and how far it was; both
-/// weighed as the task.
-struct Missed {
-  double moving, standing;
-};
-
-Missed missed(const RobotSetup& setup, const oracle::JudgedRobot& robot,
-              std::span<const double> from, std::span<const double> to, const Twist& desired) {
-  const auto before = oracle::place(robot, setup.start.base, from);
-  const auto after = oracle::place(robot, setup.start.base, to);
-  const Vec3 way = axis_of(robot.bodies.back(), after).to - axis_of(robot.bodies.back(), before).to;
-  const Mat3 turned = (after.back().axes * before.back().axes.transpose()).cast<double>();
-  const Eigen::AngleAxisd turn(turned);
-  const double weight = setup.options.orientation_weight;
-  const Vec3 turn_off = weight * (turn.angle() * turn.axis() - desired.angular);
-  return {std::hypot((way - desired.linear).norm(), turn_off.norm()),
-          std::hypot(desired.linear.norm(), weight * desired.angular.norm())};
-}
-
-JudgedScene judged_scene(const RobotSetup& setup) {
-  JudgedScene scene{.robot = setup.robot.judged(),
-                    .base = setup.start.base,
-                    .meshes = {},
-                    .guides = setup.guides,
-                    .has_band = setup.scenario->attacked == Attacked::instrument};
-  for (const SetupMesh& mesh : setup.meshes) {
-    scene.meshes.push_back({mesh.mesh.tree, mesh.margin, mesh.motion.first});
-  }
-  return scene;
-}
-
-/// One instrument, from where it begins.
-class RobotAttempt {
- public:
-  RobotAttempt(RobotRow& row, RobotSetup setup, Random& random)
-      : row_(row),
-        random_(random),
-        setup_(std::move(setup)),
-        judged_(setup_.robot.judged()),
-        chain_(setup_.robot.make(setup_.start.base).chain()),
-        subject_(row.campaign.make_subject(setup_)),
-        judge_(judged_scene(setup_), chain_, random, setup_.start.positions, setup_.options,
-               subject_->tolerance()),
-        hand_(*setup_.meshes[0].mesh.scene, random, setup_.speed),
-        positions_(setup_.start.positions),
-        poses_(setup_.meshes.size()),
-        velocities_(setup_.meshes.size()),
-        levels_(setup_.meshes.size() * judged_.bodies.size()) {
-    for (std::size_t m = 0; m < poses_.size(); ++m) poses_[m] = setup_.meshes[m].motion.first;
-    if (row.is_drawn) return;
-    const Scene& scene = *setup_.meshes[0].mesh.scene;
-    point_.emplace(scene.mesh(), scene.shared_index(), std::make_unique<CertifiedRule>(),
-                   make_solver("active_set"),
-                   StepOptions{.radius = 10.0 * setup_.speed,
-                               .tool_radius = judged_.bodies.back().radius,
-                               .margin = setup_.options.margin});
-  }
-
-  void run(std::uint64_t cycles) {
-    int failures = 0;
-    for (std::uint64_t cycle = 0; cycle < cycles && failures < hopeless_after; ++cycle) {
-      if (cycle % block == 0) set_margin(cycle);
-      if (setup_.scenario->moves) place_meshes(cycle);
-      failures = make_cycle() ? 0 : failures + 1;
-      if (!waited_) continue;
-      ++*waited_;
-      if (judge_.is_recovered()) {
-        ++row_.tally.recovered;
-        row_.tally.recovery_cycles += *waited_;
-        waited_.reset();
-      }
-    }
-  }
-
- private:
-  void set_margin(std::size_t cycle) {
-    InstrumentOptions options = setup_.options;
-    if (is_raised(row_.scenario, cycle)) options.margin += raise;
-    if (options.margin != margin_) {
-      subject_->set_options(options);
-      judge_.follow(options);
-    }
-    margin_ = options.margin;
-    waited_.reset();  // what has not recovered within a block has not in time
-    const bool is_new = cycle == 0 || is_raised(row_.scenario, cycle);
-    if (is_new && !judge_.is_recovered()) {
-      ++row_.tally.recoveries;
-      waited_ = 0;
-    }
-  }
-
-  /// Says where the meshes are and how they move: to where they are to be a cycle later. Now and
-  /// then nothing is said of one, which goes on as it did.
-  void place_meshes(std::uint64_t cycle) {
-    for (std::size_t m = 0; m < poses_.size(); ++m) {
-      const MeshMotion& motion = setup_.meshes[m].motion;
-      if (cycle > 0 && (motion.is_still() || random_.uniform() < skipped)) continue;
-      const Pose then = motion.at(static_cast<double>(cycle) + 1.0);
-      const double period = setup_.options.period;
-      const Eigen::AngleAxisd turn(Mat3(then.rotation * poses_[m].rotation.transpose()));
-      velocities_[m] = {.linear = (then.position - poses_[m].position) / period,
-                        .angular = turn.angle() / period * turn.axis()};
-      subject_->place(m, poses_[m], velocities_[m]);
-      judge_.place(m, poses_[m], velocities_[m]);
-    }
-  }
-
-  /// Lets a cycle pass for the meshes.
-  void move_meshes() {
-    const double period = setup_.options.period;
-    for (std::size_t m = 0; m < poses_.size(); ++m) {
-      poses_[m].position += period * velocities_[m].linear;
-      const double turn = period * velocities_[m].angular.norm();
-      if (!(turn > 0.0)) continue;
-      const Eigen::AngleAxisd by(turn, velocities_[m].angular.normalized());
-      poses_[m].rotation =
-          (by * Eigen::Quaterniond(poses_[m].rotation)).normalized().toRotationMatrix();
-    }
-  }
-
-  /// What is asked of the flange, by somebody who looks at the first mesh.
-  Twist wanted(const Vec3& flange) {
-    const Pose& mesh = poses_[0];
-    Twist twist = hand_.next(mesh.rotation.transpose() * (flange - mesh.position));
-    twist.linear = mesh.rotation * twist.linear;
-    twist.angular = mesh.rotation * twist.angular;
-    return twist;
-  }
-
-  /// Returns true if there was a motion, be it none at all, that may be carried out.
-  bool make_cycle() {
-    RobotTally& tally = row_.tally;
-    ChainState state;
-    chain_.place(positions_, state);
-    const Twist desired = wanted(state.flange().position);
-    const BenchClock::time_point start = BenchClock::now();
-    const InstrumentStep step = subject_->step(positions_, desired);
-    row_.times.push_back(microseconds_since(start));
-    if (point_) {
-      const BenchClock::time_point after = BenchClock::now();
-      point_->step({.tip = state.flange().position, .desired = desired.linear});
-      row_.point_times.push_back(microseconds_since(after));
-    }
-    RobotTask::Increment made = RobotTask::Increment::Zero(chain_.size());
-    std::vector<double> next = positions_;
-    for (std::size_t k = 0; step.ok() && k < next.size(); ++k) {
-      made[static_cast<Eigen::Index>(k)] = step.increment[k];
-      next[k] += step.increment[k];
-    }
-    count_blocked(step, made, desired);
-    for (std::size_t p = 0; p < levels_.size(); ++p) {
-      const std::size_t body = p % judged_.bodies.size();
-      levels_[p] =
-          setup_.must_keep == body ? 1.0 : promised_level(step, body, p / judged_.bodies.size());
-    }
-    note(step, judge_.judge(next, levels_));
-    if (step.status == Status::free && setup_.scenario->attacked == Attacked::instrument) {
-      const Missed off = missed(setup_, judged_, positions_, next, desired);
-      tally.strayed += off.moving > strayed_above * off.standing ? 1 : 0;
-    }
-    if (tally.first_breach == 0 && breaches(tally) > 0) tally.first_breach = tally.cycles;
-    move_meshes();
-    positions_ = next;
-    return step.ok();
-  }
-
-  void note(const InstrumentStep& step, const RobotVerdict& verdict) {
-    RobotTally& tally = row_.tally;
-    ++tally.cycles;
-    ++tally.statuses[static_cast<std::size_t>(step.status)];
-    tally.below += verdict.is_below ? 1 : 0;
-    if (verdict.is_below && verdict.least < 0.0) {
-      ++tally.in_mesh;
-      tally.deepest = std::max(tally.deepest, -verdict.least);
-    }
-    tally.limits_broken += verdict.limits_broken ? 1 : 0;
-    tally.guides_left += verdict.is_guide_left ? 1 : 0;
-    tally.least_beyond = std::min(tally.least_beyond, verdict.beyond);
-    tally.least_in_tau = std::min(tally.least_in_tau, verdict.beyond / subject_->tolerance());
-    tally.least_guide_in_tau = std::min(tally.least_guide_in_tau, verdict.guide_room);
-    const auto rounds = static_cast<std::uint64_t>(step.rounds);
-    tally.rounds += rounds;
-    tally.most_rounds = std::max(tally.most_rounds, rounds);
-    tally.rows += step.rows;
-    tally.most_looks = std::max<std::uint64_t>(tally.most_looks, subject_->looks());
-  }
-
-  /// Counts cycles that make next to nothing of what is asked, and searches beside some of them for
-  /// a motion. What is led out has other things to do than what it is asked for; beside a mesh that
-  /// moves nothing is searched, as standing still need not be allowed there.
-  void count_blocked(const InstrumentStep& step, const RobotTask::Increment& made,
-                     const Twist& desired) {
-    RobotTally& tally = row_.tally;
-    if (step.status == Status::recovering) return;
-    InstrumentOptions options = setup_.options;
-    options.margin = margin_;
-    const RobotTask task(chain_, positions_, desired, options);
-    const RobotTask::Increment none = RobotTask::Increment::Zero(made.size());
-    tally.worse += task.cost(made) > 1.05 * task.cost(none) ? 1 : 0;
-    if (!(task.share(made) < blocked_below)) return;
-    const std::uint64_t every = row_.is_drawn ? sampled_where_drawn : sampled;
-    if (tally.blocked++ % every != 0 || setup_.scenario->moves) return;
-    const Search found =
-        search(task, positions_, {made.data(), positions_.size()}, judge_, random_);
-    ++tally.samples;
-    tally.excess += found.saved;
-    tally.useful += found.saved > useful_above ? 1 : 0;
-    tally.movable += found.share >= movable_above ? 1 : 0;
-  }
-
-  RobotRow& row_;
-  Random& random_;
-  RobotSetup setup_;
-  oracle::JudgedRobot judged_;
-  Chain chain_;
-  std::unique_ptr<RobotSubject> subject_;
-  std::optional<MotionConstraint> point_;  // of a ball at the tip alone: timed beside it
-  RobotJudge judge_;
-  RobotHand hand_;
-  std::vector<double> positions_;
-  std::vector<Pose> poses_;              // of the meshes
-  std::vector<Twist> velocities_;        // of the meshes
-  std::vector<double> levels_;           // see RobotJudge::judge
-  double margin_ = 0.0;                  // at present [mm]
-  std::optional<std::uint64_t> waited_;  // for a margin that is not kept yet [cycles]
-};
 
 void run_row(RobotRow& row, const std::function<Next(const RobotTally&, std::uint64_t)>& advanced,
              Next& next) {
@@ -288,7 +24,7 @@ void run_row(RobotRow& row, const std::function<Next(const RobotTally&, std::uin
       return options_of(campaign, chain, tally.speed);
     };
     auto setup = draw_setup(row.scenario, row.robot, tally.speed, random, row.draw_mesh, options);
-    // Where all is drawn, the next draw may well do.
+    // If mesh and robot are drawn, the next draw may have a start.
     const int most_misses = row.is_drawn ? 20 : 1;
     misses = setup ? 0 : misses + 1;
     tally.is_out_of_starts = misses >= most_misses;
@@ -296,7 +32,7 @@ void run_row(RobotRow& row, const std::function<Next(const RobotTally&, std::uin
     if (!setup) continue;
     ++tally.starts;
     const std::uint64_t before = tally.cycles;
-    RobotAttempt(row, std::move(*setup), random).run(std::min(longest, campaign.cycles - before));
+    run_attempt(row, std::move(*setup), random, std::min(longest, campaign.cycles - before));
     next = advanced(tally, tally.cycles - before);
   }
 }

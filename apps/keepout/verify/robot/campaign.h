@@ -27,11 +27,11 @@ struct RobotCampaign {
   CertifiedMotion motion = CertifiedMotion::actual;
   double margin = 0.2;  // [mm]
   std::uint64_t seed = 1;
-  /// What is attacked; tests put something worse in its place.
+  /// Makes the step that is attacked. Tests replace it by a sabotaged one.
   std::function<std::unique_ptr<RobotSubject>(const RobotSetup&)> make_subject = &app::make_subject;
 };
 
-/// What a row of a campaign does.
+/// The plan of one row of a campaign.
 struct RobotRowPlan {
   const Scenario* scenario;
   double speed;

@@ -21,10 +21,10 @@ RobotUnderTest sliding_hull(Random& random);
 /// more body is on the base.
 RobotUnderTest robot_with_stuck_bodies(Random& random);
 
-/// The same robot with a blade of 3 to 8 points on its last link, as the last body.
+/// Returns a copy of the robot with a blade of 3 to 8 points on its last link, as the last body.
 RobotUnderTest with_blade(const RobotUnderTest& robot, Random& random);
 
-/// The same robot without limits of velocity.
+/// Returns a copy of the robot without velocity limits.
 RobotUnderTest without_velocity_limits(const RobotUnderTest& robot);
 
 }  // namespace keepout::app

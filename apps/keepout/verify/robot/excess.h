@@ -37,7 +37,7 @@ class RobotTask {
   Eigen::VectorXd damping_;   // of each joint (n)
 };
 
-/// What a search found beside a step.
+/// The result of a search for a better motion than the step made.
 struct Search {
   double saved;  // of its cost, as a share of the largest reduction
   double share;  // of the motion asked for that the best motion found makes

@@ -27,7 +27,7 @@ struct RobotVerdict {
   bool limits_broken = false;  // a joint left its limits, or went farther than a cycle admits
 };
 
-/// What is judged, in the judge's terms.
+/// The robot, meshes and guides in the terms of the judge.
 struct JudgedScene {
   struct Mesh {
     std::shared_ptr<const oracle::TriangleTree> tree;
@@ -79,7 +79,7 @@ class RobotJudge {
   /// margin. [length]
   std::span<const double> least() const noexcept { return least_; }
 
-  /// Where the instrument is, beside the first mesh. Valid until the next call.
+  /// Returns the oracle of the instrument beside the first mesh. Valid until the next call.
   const oracle::InstrumentOracle& oracle() const noexcept { return meshes_.front().oracle; }
 
   /// Returns true if no body is closer than margin - band.

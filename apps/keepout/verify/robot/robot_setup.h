@@ -20,8 +20,8 @@ struct JudgedMesh {
   std::shared_ptr<const oracle::TriangleTree> tree;
 };
 
-/// How a mesh moves, cycle by cycle: it swings along one axis and about another, or comes on along
-/// one and goes back.
+/// The motion of a mesh: it swings along one axis and about another, or approaches along one axis
+/// and returns.
 struct MeshMotion {
   Pose first = {};             // its pose in cycle 0
   Vec3 along = Vec3::UnitX();  // unit

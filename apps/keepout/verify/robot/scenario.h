@@ -9,7 +9,7 @@
 
 namespace keepout::app {
 
-/// How an instrument stands to the surface when a motion begins.
+/// The position of an instrument relative to the surface when a run begins.
 enum class Begin : std::uint8_t {
   apart,        // before the surface, all bodies clear
   overlapping,  // with the surface within a body, by up to half its radius

@@ -11,8 +11,8 @@
 
 namespace keepout::app {
 
-/// What is put to the test: the step that users get, as a scenario asks for it. Tests put worse
-/// ones in its place.
+/// The step under test: the one that users get, as a scenario requires it. Tests replace it by
+/// sabotaged ones.
 class RobotSubject {
  public:
   virtual ~RobotSubject() = default;

@@ -15,13 +15,14 @@ namespace keepout {
 /// convex region. Guides compose. Each holds on the whole executed motion and is never left by more
 /// than its band; the clearance from meshes has priority over all guides.
 ///
-/// If guides and clearance contradict each other, first guides stop leading back what is out, then
-/// recovery from what is too close slows down: see Relaxation.
+/// If guides and clearance contradict each other, guides first stop pulling back points outside
+/// their regions, then recovery of clearance slows down: see Relaxation.
 class Guide {
  public:
   static constexpr std::size_t most = 16;  // of a tip or an instrument
 
-  /// How the guided place follows from the points.
+  /// The kind of guided quantity: a point, the direction of an axis, or the point of a shaft that
+  /// is nearest to the region.
   enum class Kind : std::uint8_t { point, axis, shaft };
 
   /// Returns a guide for the tip of a MotionConstraint. `region`: in the frame of the mesh. Like
@@ -51,7 +52,7 @@ class Guide {
   const std::string& name() const noexcept { return name_; }
   /// Returns the region; of an axis, it bounds the tips of unit vectors.
   const Region& region() const noexcept { return region_; }
-  /// Returns how the guided place follows from the points.
+  /// Returns the kind of guided quantity.
   Kind kind() const noexcept { return kind_; }
   /// Returns true if the guide bounds a direction and not a place: its excess is then almost an
   /// angle. [rad]
@@ -80,12 +81,12 @@ class Guide {
   double band_;
 };
 
-/// What was relaxed in a cycle because not all constraints could be met. Nothing relaxed gets
-/// worse.
+/// The constraints that a cycle relaxed because not all could be met. A relaxed guide moves no
+/// farther out than its band.
 enum class Relaxation : std::uint8_t {
   none,     // only the task was compromised
-  guides,   // guides do not lead back what is out: see GuideState::relaxed
-  recovery  // nor do bodies, or the tip, recover clearance as fast as options.recovery says
+  guides,   // guides do not pull back points outside their regions: see GuideState::relaxed
+  recovery  // besides, the tip or bodies recover clearance more slowly than options.recovery
 };
 
 /// Returns the name as it stands in the enumeration, for files and logs.
@@ -95,7 +96,7 @@ std::string_view name(Relaxation relaxation) noexcept;
 struct GuideState {
   double excess = 0.0;   // how far out of its region at the start; below 0 inside [length or rad]
   bool limits = false;   // it limits the motion
-  bool relaxed = false;  // it does not lead back what is out, because constraints contradict it
+  bool relaxed = false;  // it does not pull its point back, because that contradicts or costs more
 };
 
 }  // namespace keepout

@@ -102,9 +102,9 @@ struct InstrumentStep {
   std::span<const DegradedClearance> degraded = {};
   std::span<const GuideState> guides = {};   // of each guide, in the order in which they were given
   Relaxation relaxation = Relaxation::none;  // what was relaxed
-  /// What kept the motion from being the one asked for: of a status with a motion, all that holds
-  /// or shortens it; else what no motion could be proved for. A joint that starts outside its
-  /// position limits is named with any status.
+  /// The causes that kept the motion from being the commanded one. With a motion: all constraints
+  /// that limit or shorten it. Without: the constraints for which no motion could be proved.
+  /// joints_outside is reported with any status.
   Limits limits = {};
 
   /// Whether there is a motion that may be carried out; it may be zero.
@@ -206,10 +206,10 @@ class InstrumentConstraint {
   /// Forgets what the last cycle left: for motions that have nothing to do with each other.
   void forget() noexcept;
 
-  /// Keeps these guides as well from the next step on, instead of those there are: see Guide.
-  /// Throws Error, and changes nothing, for more than Guide::most, a link that the chain has not,
-  /// or a band that is lost in rounding. What is out of its region begins anew: it may come farther
-  /// out by a band once more. Allocates, and is not for the control path.
+  /// Replaces the guides from the next step on: see Guide. A guided point outside its region may
+  /// move farther out by one band again. Throws Error, and changes nothing, for more guides than
+  /// Guide::most, a link that the chain does not have or that no joint moves (0), or a band that is
+  /// lost in rounding. Allocates: not for the control path.
   void set_guides(std::vector<Guide> guides);
 
   /// Goes on with anatomy that has moved: with a mesh and an index of it, which may be the one at
