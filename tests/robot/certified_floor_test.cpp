@@ -76,6 +76,23 @@ TEST(CertifiedFloor, LosesThreeTolerancesAtMostInAll) {
   }
 }
 
+// Rounding adds up over motions along a wall, unless each regains what rounding took.
+TEST(CertifiedFloor, IsRegainedByAMotionThatStartsBelowIt) {
+  const InstrumentOptions options;
+  InstrumentConstraint guard = beside(test::wall(0.0), free_ball(0.0), options);
+  const double kept = options.margin - options.band;
+  const double tau = guard.tolerance();
+  const auto share = [&](double below, double along, double up) {
+    guard.forget();
+    const std::vector<double> q{kept - below * tau, 0.0, 0.0};
+    return guard.prove(q, std::vector<double>{up * tau, along, 0.0}).share;
+  };
+  EXPECT_EQ(share(1.0, 0.1, 0.0), 1.0);
+  EXPECT_EQ(share(2.5, 0.1, 0.0), 0.0);
+  EXPECT_EQ(share(2.5, 0.1, 0.05), 0.0);
+  EXPECT_EQ(share(2.5, 0.1, 0.3), 1.0);
+}
+
 // A wall comes on to a point on an arm, which turns about an axis behind the wall: every turn
 // brings the point nearer to the wall, so the point cannot evade it. When the wall rests, the arm
 // may turn only until the point has the clearance that the cycle with the moving wall reported.

@@ -232,7 +232,9 @@ TEST(ContradictingGuides, CostNoClearanceFromAMeshThatComesOn) {
       ASSERT_EQ(step.level, 1.0);
       for (std::size_t k = 0; k < q.size(); ++k) q[k] += step.increment[k];
       ASSERT_GE(q[2] - (z + 0.02) - 1.0, 0.198 - 1e-8) << cycle;
-      relaxed += step.relaxation == Relaxation::guides ? 1 : 0;
+      if (step.relaxation != Relaxation::guides) continue;
+      ++relaxed;
+      ASSERT_TRUE(step.limits.has(Limit::guide)) << cycle;
     }
     EXPECT_GT(relaxed, 20);
   }

@@ -42,5 +42,36 @@ TEST(GuidesAndRows, AStepThatIsOkSatisfiesTheRows) {
   EXPECT_GT(ok, test::trials(50));
 }
 
+// The solver ignores all rows. Its motion satisfies the caller's row but leaves the guide; the part
+// that stays in the guide breaks the row.
+TEST(GuidesAndRows, NoPartOfATrialIsExecutedThatBreaksARow) {
+  class Deaf final : public Solver {
+   public:
+    void reserve(int, int) override {}
+    SolveStatus solve(const StepProblem& problem, Solution& solution) noexcept override {
+      solution.u = {problem.desired.data(), 3};
+      return SolveStatus::optimal;
+    }
+  };
+  const auto mesh = std::make_shared<const Mesh>(make_shape("cube"));
+  MotionConstraint guard(mesh, std::make_shared<WideBvh>(mesh), std::make_unique<CertifiedRule>(),
+                         std::make_unique<Deaf>(), {.radius = 5.0, .margin = 0.2});
+  const Vec3 tip(0, 0, 150);
+  const Mat3 identity = Mat3::Identity();
+  guard.set_guides({Guide::point("ball", Region::ball(tip, 1.0))});
+  Random random(9);
+  for (int i = 0; i < test::trials(100); ++i) {
+    const Vec3 desired = random.uniform(2.0, 4.0) * random.direction();
+    const double bound = 0.9 * desired.squaredNorm();
+    // With a Jacobian no projection corrects the solver's answer.
+    Motion motion{.tip = tip, .desired = desired, .jacobian = identity};
+    ASSERT_EQ(guard.step(motion).status, Status::fallback) << "without a row a part is executed";
+    motion.rows = ExtraRows(desired.data(), &bound, 1);
+    const Step step = guard.step(motion);
+    ASSERT_FALSE(step.ok()) << name(step.status);
+    ASSERT_TRUE(step.motion.isZero(0.0));
+  }
+}
+
 }  // namespace
 }  // namespace keepout
