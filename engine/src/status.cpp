@@ -116,8 +116,8 @@ static_assert(outcomes.size() == status_count);
 
 // In the order of the enumeration.
 constexpr std::array<std::string_view, limit_count> limit_names{
-    "mesh",          "guide",  "joint_position", "joint_velocity", "rows",          "radius",
-    "linearization", "budget", "capacity",       "truncated",      "joints_outside"};
+    "mesh",          "guide",  "joint_position", "joint_velocity", "rows",           "radius",
+    "linearization", "budget", "capacity",       "truncated",      "joints_outside", "singularity"};
 
 }  // namespace
 

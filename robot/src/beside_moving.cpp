@@ -4,6 +4,7 @@
 // nothing; and what cannot be proved for one body must not keep the others from retreating.
 #include <algorithm>
 #include <array>
+#include <bitset>
 
 #include "joint_cycle.h"
 
@@ -14,9 +15,9 @@ constexpr int most_degradations = 32;  // of a cycle
 
 }  // namespace
 
-/// Asks for less and less of the task, down to retreating only. Then guides that contradict the
-/// clearance are dropped, then pairs of body and mesh that cannot be kept are lowered, by quarters,
-/// until a motion is proved for all the others.
+/// Searches for less and less of the task, down to a mere retreat. Then stands still, if that is
+/// proved. Then drops guides that contradict the clearance, and then lowers the clearance of pairs
+/// of body and mesh by quarters, until a motion is proved for all other pairs.
 void JointCycle::search_beside_moving(const JointTask& task, Trial& best,
                                       InstrumentStep& result) noexcept {
   settle_immovable();
@@ -29,7 +30,9 @@ void JointCycle::search_beside_moving(const JointTask& task, Trial& best,
   // Beside a body that touches or is inside, or that is not known, nothing but a retreat is made.
   const bool is_whole = watch_.dropped_for() == Status::free;
   bool found = (is_whole && (is_found(1.0) || is_found(0.25))) || is_found(0.0);
-  for (int i = 0; i < most_degradations && !found && degrade(task); ++i) found = is_found(0.0);
+  for (int i = 0; i < most_degradations && !found && degrade(task, best); ++i) {
+    found = best.cell == PointMotion::cells || is_found(0.0);
+  }
   result.level = found ? watch_.name_degraded() : 0.0;
   const bool stands_still =
       std::all_of(best.increment.begin(), best.increment.end(), [](double x) { return x == 0.0; });
@@ -72,22 +75,43 @@ void JointCycle::settle_immovable() noexcept {
   }
 }
 
-/// Gives way in what the last attempt failed by: guides first. Returns false if nothing is left.
-bool JointCycle::degrade(const JointTask& task) noexcept {
-  if (trouble_ == Status::infeasible) return degrade_conflict(task.scaled(0.0));
-  if (kept_by_guides_ < PointMotion::cells && !guides_.is_dropped(failed_guide_)) {
-    guides_.drop(failed_guide_);
-    rows_.remove(most_pairs + failed_guide_);
+/// Stands still if that is proved beside the meshes that move.
+bool JointCycle::stand_still(const JointTask& task, Trial& best) noexcept {
+  Trial trial{.share = 1.0, .cost = task.cost({})};
+  judge(trial);
+  if (trial.cell != PointMotion::cells) return false;
+  trouble_ = Status::free;
+  best = trial;
+  return true;
+}
+
+/// Gives way where the last attempt failed: guides stop pulling, then the instrument stands still,
+/// then a guide is dropped, and last the clearance of pairs is lowered. Returns false if nothing is
+/// left to try. If `best` is proved, it stands still.
+bool JointCycle::degrade(const JointTask& task, Trial& best) noexcept {
+  const Status trouble = trouble_;
+  const std::size_t guide = failed_guide_;
+  const bool guide_failed = kept_by_guides_ < PointMotion::cells && !guides_.is_dropped(guide);
+  std::bitset<most_pairs> failed;
+  for (std::size_t p = 0; p < memory_.pairs.size(); ++p) {
+    failed[p] = watch_.is_watched(p) && memory_.pairs[p].failure.cell != PointMotion::cells;
+  }
+  if (trouble == Status::ill_posed) return false;
+  if (trouble != Status::infeasible && guide_failed && relax_guides()) return true;
+  if (stand_still(task, best)) return true;
+  trouble_ = trouble;
+  if (trouble == Status::infeasible) return degrade_conflict(task.scaled(0.0));
+  if (guide_failed) {
+    guides_.drop(guide);
+    rows_.remove(most_pairs + guide);
     return true;
   }
-  bool changed = false;
   for (std::size_t p = 0; p < memory_.pairs.size(); ++p) {
-    if (!watch_.is_watched(p) || memory_.pairs[p].failure.cell == PointMotion::cells) continue;
-    watch_.lower(p, 1.0, trouble_ == Status::free ? Status::unsolved : trouble_);
+    if (!failed[p]) continue;
+    watch_.lower(p, 1.0, trouble == Status::free ? Status::unsolved : trouble);
     if (!watch_.is_watched(p)) rows_.remove(p);
-    changed = true;
   }
-  return changed;
+  return failed.any();
 }
 
 /// Finds a least set of pairs and guides whose rows contradict each other (each is left out in

@@ -59,6 +59,10 @@ void JointCycle::run(const JointTask& task, InstrumentStep& result) noexcept {
   watch_.close();
   if (is_ok(result.status) && result.status != Status::yielding && is_recovering())
     result.status = Status::recovering;
+  if (result.status == Status::free && best.missed > 0.5 * task.standing_miss()) {
+    result.status = Status::limited;
+    best.held.add(Limit::singularity);
+  }
   report_guides(best, result);
   report_limits(best, result);
   result.rounds = rounds_;
@@ -217,7 +221,6 @@ bool JointCycle::seek(const JointTask& task, const JointTask& part, Trial& best)
 
 /// Whether anything was found to say to what the last trial was not certified for.
 bool JointCycle::answer() noexcept {
-  if (kept_by_guides_ < PointMotion::cells) has_failed_[failed_guide_] = true;
   const bool is_new_plane =
       kept_by_guides_ < PointMotion::cells && rows_.answer(failed_guide_, kept_by_guides_);
   const bool is_new_row = rows_.answer();

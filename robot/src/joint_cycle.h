@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <bitset>
 #include <cstddef>
 #include <span>
 
@@ -41,13 +42,17 @@ class JointCycle {
   double prove(const JointVector& increment, InstrumentStep& result) noexcept;
 
  private:
+  using GuideSet = std::bitset<Guide::most>;
+
   /// A motion, and the part of it that is certified.
   struct Trial {
     JointVector increment{};
     int cell = 0;          // proven is the motion up to here
     double share = 0.0;    // of the motion, up to there, that is made: whatever costs least
     double cost = 0.0;     // of that
+    double missed = 0.0;   // of a task of the flange, by its true motion: see strays
     Limits held = {};      // by which kinds of rows or limits of joints
+    GuideSet guides = {};  // whose rows hold it
     std::size_t rows = 0;  // that hold it, limits of joints apart
     Relaxation relaxation = Relaxation::none;  // what gave way
   };
@@ -56,7 +61,8 @@ class JointCycle {
   // Beside meshes that move (beside_moving.cpp).
   void search_beside_moving(const JointTask& task, Trial& best, InstrumentStep& result) noexcept;
   void settle_immovable() noexcept;
-  bool degrade(const JointTask& task) noexcept;
+  bool stand_still(const JointTask& task, Trial& best) noexcept;
+  bool degrade(const JointTask& task, Trial& best) noexcept;
   bool degrade_conflict(const JointTask& task) noexcept;
   double reachable_level(std::size_t pair) const noexcept;
   bool attempt(const JointTask& task, double asked, Trial& best) noexcept;
@@ -70,15 +76,16 @@ class JointCycle {
                       Solution& solution) noexcept;
   double body_bound(const ContactRow& row, const Softness& softness) const noexcept;
   double guide_bound(const ContactRow& row, const Softness& softness) const noexcept;
-  Limits held_by(const Solution& solution) const noexcept;
+  void note_held(const Solution& solution, Trial& trial) const noexcept;
   void judge(Trial& trial) noexcept;
   Status judge_pair(std::size_t pair) noexcept;
   bool answer() noexcept;
   // The true motion of the flange (true_flange.cpp).
-  bool strays(const JointTask& task, const Trial& trial) noexcept;
+  bool strays(const JointTask& task, Trial& trial) noexcept;
   void cut_to_best(const JointTask& task, Trial& trial) noexcept;
   // The report (joint_report.cpp).
   void note_failure() noexcept;
+  void note_guide(std::size_t guide) noexcept;
   void report_limits(const Trial& best, InstrumentStep& result) noexcept;
   void report_guides(const Trial& best, InstrumentStep& result) noexcept;
   bool is_recovering() const noexcept { return watch_.is_recovering() || guides_.is_recovering(); }
@@ -92,13 +99,13 @@ class JointCycle {
   BodyWatch watch_;
   GuideWatch guides_;
   WorkingRows rows_;
-  int kept_by_guides_ = 0;        // up to which cell all guides were kept by the last trial
-  std::size_t failed_guide_ = 0;  // and which was not, beyond
-  std::array<bool, Guide::most> has_failed_{};  // in any trial
-  Status trouble_ = Status::free;               // why nothing can be judged
-  bool is_shortened_ = false;                   // whether less than all was asked for at last
-  bool has_strayed_ = false;                    // a trial of the last attempt: see strays
-  Limits stopped_ = {};                         // what attempts failed by
+  int kept_by_guides_ = PointMotion::cells;  // the last trial satisfies all guides up to this cell
+  std::size_t failed_guide_ = 0;             // and violates this one beyond
+  Status trouble_ = Status::free;            // why nothing can be judged
+  bool is_shortened_ = false;                // whether less than all was asked for at last
+  bool has_strayed_ = false;                 // a trial of the last attempt: see strays
+  Limits stopped_ = {};                      // what attempts failed by
+  GuideSet stopping_guides_ = {};            // of these, the guides
   std::array<bool, most_pairs + Guide::most> is_left_out_{};     // owners of rows not to be posed
   std::array<std::uint8_t, 2 * Chain::most_joints> box_rows_{};  // of the problem: see pose
   std::size_t relaxed_ = 0;  // the least relaxation of guides that is left to try in this cycle

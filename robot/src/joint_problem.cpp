@@ -57,7 +57,7 @@ SolveStatus JointCycle::solve(const JointTask& task, Trial& trial) noexcept {
     if (!std::isfinite(solution.u[k])) return SolveStatus::iteration_limit;
     trial.increment[k] = task.unit[k] * solution.u[k];
   }
-  trial.held = held_by(solution);
+  note_held(solution, trial);
   if (box_.clip(trial.increment)) trial.held.add(Limit::joint_position);
   trial.rows = rows_.hold(solution.active);
   return solved;
@@ -74,18 +74,18 @@ bool JointCycle::relax_guides() noexcept {
   return true;
 }
 
-/// Returns the kinds of the rows that hold a solution.
-Limits JointCycle::held_by(const Solution& solution) const noexcept {
-  Limits held;
+/// Notes the kinds of the rows that hold a solution, and their guides.
+void JointCycle::note_held(const Solution& solution, Trial& trial) const noexcept {
   for (const std::uint32_t number : solution.active) {
     if (number < memory_.rows.size()) {
-      held.add(memory_.rows[number].owner < most_pairs ? Limit::mesh : Limit::guide);
+      const std::size_t owner = memory_.rows[number].owner;
+      trial.held.add(owner < most_pairs ? Limit::mesh : Limit::guide);
+      if (owner >= most_pairs) trial.guides.set(owner - most_pairs);
     } else {
       const std::size_t side = box_rows_[number - memory_.rows.size()];
-      held.add(box_.limit(side / 2, side % 2 == 1));
+      trial.held.add(box_.limit(side / 2, side % 2 == 1));
     }
   }
-  return held;
 }
 
 /// Returns true if pulling all guides back takes a motion that leaves one of them again, and that

@@ -15,17 +15,17 @@ constexpr double slack = 0.01;  // of what is desired
 
 /// Returns true if the flange truly makes less than half of what the linear task promises, or ends
 /// farther from what is desired than it stands. Recoveries and joint tasks never stray.
-bool JointCycle::strays(const JointTask& task, const Trial& trial) noexcept {
+bool JointCycle::strays(const JointTask& task, Trial& trial) noexcept {
   const bool is_judged = task.turn_weight.has_value() && !is_recovering() &&
                          options_.certified == CertifiedMotion::actual;
   if (!is_judged) return false;
   const double standing = task.standing_miss();
   const double predicted = task.linear_miss(trial.increment, trial.share);
-  const double missed = task.true_miss(memory_.motion.chain_at_start().flange(),
-                                       memory_.motion.flange_at(trial.share));
+  trial.missed = task.true_miss(memory_.motion.chain_at_start().flange(),
+                                memory_.motion.flange_at(trial.share));
   // Half of the gain that is promised, and little of what is asked: contacts promise next to
   // nothing.
-  return missed > std::max(predicted, 0.5 * (standing + predicted)) + slack * standing;
+  return trial.missed > std::max(predicted, 0.5 * (standing + predicted)) + slack * standing;
 }
 
 /// Cuts a motion to the fraction, of halves, that costs least for the true flange; to nothing where

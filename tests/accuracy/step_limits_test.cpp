@@ -85,7 +85,9 @@ TEST_F(StepLimits, NameACauseThatChangesTheMotionWhenItIsTakenAway) {
     const Vec3 motion = step.motion;
     const Limits limits = step.limits;
     if (!step.ok()) {
-      EXPECT_TRUE(limits.empty());
+      const bool has_cause =
+          step.status != Status::ill_posed && step.status != Status::beyond_reach;
+      ASSERT_EQ(has_cause, !limits.empty()) << name(step.status);
       continue;
     }
     ASSERT_FALSE(step.status == Status::limited && limits.empty());
@@ -96,9 +98,7 @@ TEST_F(StepLimits, NameACauseThatChangesTheMotionWhenItIsTakenAway) {
     if (step.status != Status::recovering) {
       ASSERT_EQ(step.status == Status::fallback, limits.has(Limit::truncated));
     }
-    for (const GuideState& guide : step.guides) {
-      ASSERT_TRUE(!guide.limits || limits.has(Limit::guide));
-    }
+    ASSERT_EQ(limits.has(Limit::guide), std::ranges::any_of(step.guides, &GuideState::limits));
     for (std::size_t l = 0; l < limit_count; ++l) {
       if (limits.has(static_cast<Limit>(l))) ++seen[l];
     }
@@ -120,6 +120,50 @@ TEST_F(StepLimits, NameACauseThatChangesTheMotionWhenItIsTakenAway) {
   for (const Limit limit : {Limit::mesh, Limit::guide, Limit::rows, Limit::radius}) {
     EXPECT_GT(seen[static_cast<std::size_t>(limit)], trials(20)) << name(limit);
   }
+}
+
+TEST_F(StepLimits, NameASpentBudgetAndASmallStore) {
+  Random random(4);
+  const Vec3 tip = surface_points(*mesh_, 1, 0.8, random).front();
+  settings_.inside = Inside::taken_as_is;
+  const auto step = [&] {
+    return make_motion_constraint(mesh_, settings_).step({.tip = tip, .desired = Vec3(0, 0, 1)});
+  };
+  settings_.capacity.looks = 1;
+  EXPECT_EQ(step().status, Status::out_of_budget);
+  EXPECT_TRUE(step().limits.has(Limit::budget));
+  settings_.capacity = {.triangles = 1, .planes = 1};
+  settings_.index = "pd_tree";
+  EXPECT_EQ(step().status, Status::over_capacity);
+  EXPECT_TRUE(step().limits.has(Limit::capacity));
+}
+
+// The Jacobian moves the tip along x alone.
+TEST_F(StepLimits, NameAJacobianThatCannotMakeTheMotion) {
+  const Eigen::Matrix<double, 3, 1> jacobian(1, 0, 0);
+  const Vec3 tip(0, 0, 0);
+  const Step across = bare_.step({.tip = tip, .desired = Vec3(0, 1, 0), .jacobian = jacobian});
+  EXPECT_EQ(across.status, Status::limited);
+  EXPECT_TRUE(across.limits.has(Limit::singularity));
+  const Step along = bare_.step({.tip = tip, .desired = Vec3(1, 0, 0), .jacobian = jacobian});
+  EXPECT_EQ(along.status, Status::free);
+}
+
+// Two slabs and a ball that the tip is outside of contradict each other so nearly that no solver
+// converges. Standing still satisfies all.
+TEST_F(StepLimits, OfGuidesThatLeaveNoMotionAreTheGuides) {
+  bare_.set_guides(
+      {Guide::point("a", Region::tube({0.239078528, -0.0644965669, -0.0039728495},
+                                      {-0.2604602, -0.965484585, 0}, 0.0363233829)),
+       Guide::point("b", Region::slab({3.85762497, -3.4440309, -1.75609281},
+                                      {-0.706348446, 0.630617516, 0.321548475}, 6.5717728)),
+       Guide::point("c", Region::ball({-2.99761064, 1.66156104, 5.67051919}, 0.041010171))});
+  const Step step = bare_.step(
+      {.tip = {0.2022521542764141, 0.19545175029569609, 0.16873159792513653},
+       .desired = {-0.00048572789346622947, 0.00049591118817117518, 0.00082904879045340031}});
+  ASSERT_TRUE(step.ok()) << name(step.status);
+  EXPECT_TRUE(step.limits.has(Limit::guide));
+  EXPECT_FALSE(step.limits.has(Limit::mesh));
 }
 
 TEST_F(StepLimits, SayOfATruncatedRecoveryThatItIsOne) {

@@ -200,6 +200,52 @@ TEST(Guides, WithinTheirBandsDoNotStopTheTask) {
   EXPECT_LE(movable, cycles / 100) << "of " << blocked << " blocked cycles of " << cycles;
 }
 
+// A planar arm far from a mesh that moves slowly. Its tip is inside a corridor; its elbow is pulled
+// back into another one. The clearance needs neither guide to give way.
+TEST(ContradictingGuides, AreNotDroppedBesideADistantMeshThatMoves) {
+  Surface far;
+  far.vertices = {Vec3(0, 0, 2000), Vec3(100, 0, 2000), Vec3(0, 100, 2000)};
+  far.triangles = {{0, 1, 2}};
+  std::vector<Joint> joints(3);
+  for (int k : {1, 2}) joints[static_cast<std::size_t>(k)].origin.position = Vec3(100, 0, 0);
+  const LinkPoint tip{3, Vec3(100, 0, 0)};
+  const LinkPoint elbow{2, Vec3(100, 0, 0)};
+  Random random(7);
+  const auto across = [&] {
+    const double angle = random.uniform(0.0, 6.28);
+    return Vec3(std::cos(angle), std::sin(angle), 0);
+  };
+  int pulled = 0;
+  for (int scene = 0; scene < test::trials(500); ++scene) {
+    InstrumentConstraint guard =
+        guard_of(far, {Chain(joints, {}, {Vec3(100, 0, 0)}), {{"tip", {tip}, 1.0}}}, {});
+    std::vector<double> q{random.uniform(-1, 1), random.uniform(-2, 2), random.uniform(-2, 2)};
+    ChainState state;
+    guard.instrument().chain().place(q, state);
+    const Vec3 n = across();
+    const Vec3 off = random.uniform(1.1, 3.0) * n;
+    const std::vector<Guide> guides{
+        Guide::point("corridor", tip,
+                     Region::slab(state.at(tip.link, tip.position), across(), 1.0)),
+        Guide::point("elbow", elbow,
+                     Region::slab(state.at(elbow.link, elbow.position) + off, n, 1.0))};
+    guard.set_guides(guides);
+    guard.place(0, {}, {.linear = Vec3(1e-9, 0, 0)});
+    const Vec3 way = 0.5 * across();
+    for (int cycle = 0; cycle < 60; ++cycle) {
+      const InstrumentStep step = guard.step(q, Twist{.linear = way});
+      ASSERT_TRUE(step.ok()) << name(step.status);
+      for (const GuideState& guide : step.guides)
+        ASSERT_FALSE(guide.relaxed && guide.excess <= 0.0);
+      pulled += step.guides[1].excess > 0.0 ? 1 : 0;
+      for (std::size_t k = 0; k < q.size(); ++k) q[k] += step.increment[k];
+      guard.instrument().chain().place(q, state);
+      ASSERT_LE(excess(guides[0], state), guides[0].band() + 1e-9) << "scene " << scene;
+    }
+  }
+  EXPECT_GT(pulled, test::trials(500));
+}
+
 // A sheet comes on to a ball that three guides hold in its way; two of them contradict each other.
 // Guides are dropped first, so the ball keeps all of its clearance.
 TEST(ContradictingGuides, CostNoClearanceFromAMeshThatComesOn) {

@@ -139,6 +139,40 @@ TEST(Limits, OfAnArmFarFromEveryMeshAreThoseOfItsJoints) {
   EXPECT_GT(limited, test::trials(2000));
 }
 
+// A stretched arm cannot move its flange inwards.
+TEST(Limits, NameASingularPose) {
+  const Surface far{{Vec3(0, 0, 2000), Vec3(100, 0, 2000), Vec3(0, 100, 2000)}, {{0, 1, 2}}};
+  const auto mesh = std::make_shared<const Mesh>(far);
+  std::vector<Joint> joints(3);
+  for (int k : {1, 2}) joints[static_cast<std::size_t>(k)].origin.position = Vec3(100, 0, 0);
+  InstrumentConstraint guard(
+      mesh, make_index("wide_bvh", mesh),
+      {Chain(joints, {}, {Vec3(100, 0, 0)}), {{"tip", {{3, Vec3(100, 0, 0)}}, 1.0}}},
+      make_solver("active_set"), {.orientation_weight = 0.0});
+  const std::vector<double> q{0.0, 0.0, 0.0};
+  const InstrumentStep inwards = guard.step(q, {.linear = Vec3(-1, 0, 0)});
+  EXPECT_EQ(inwards.status, Status::limited);
+  Limits singularity;
+  singularity.add(Limit::singularity);
+  EXPECT_EQ(inwards.limits, singularity);
+  const InstrumentStep aside = guard.step(q, {.linear = Vec3(0, 1, 0)});
+  EXPECT_EQ(aside.status, Status::free);
+  EXPECT_TRUE(aside.limits.empty());
+}
+
+TEST(Limits, OfAnIllPosedTaskNameNoGuide) {
+  const auto mesh = std::make_shared<const Mesh>(make_cube(2.0));
+  InstrumentConstraint guard(mesh, make_index("wide_bvh", mesh),
+                             seven_joint_arm({Vec3(0, 0, 2000), Mat3::Identity()}),
+                             make_solver("active_set"), {.damping = 0.0});
+  for (const double speed : {0.0, 1e-9}) {
+    guard.place(0, {}, {.linear = Vec3(speed, 0, 0)});
+    const InstrumentStep step = guard.step(std::vector<double>(7, 0.3), {.linear = Vec3(1, 0, 0)});
+    EXPECT_EQ(step.status, Status::ill_posed);
+    EXPECT_TRUE(step.limits.empty());
+  }
+}
+
 TEST(Limits, NameAJointThatStartsOutside) {
   InstrumentConstraint guard = guard_without({.mesh = true}, {});
   std::vector<double> q{0, 0, 60, 0, 0, 0};

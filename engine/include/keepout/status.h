@@ -10,7 +10,7 @@ namespace keepout {
 /// The outcome of a step or a query. The first five come with a motion that may be executed, which
 /// may be zero; every other one comes with zero motion.
 enum class Status : std::uint8_t {
-  free,              // the motion asked for; of a polytope: its planes are complete
+  free,              // the motion asked for, no limits; of a polytope: its planes are complete
   limited,           // the nearest motion that the constraints allow: see Limits
   recovering,        // something was too close or out of its region: the motion recovers from it
   fallback,          // a shorter motion: nothing longer was proved, see Limits
@@ -57,10 +57,11 @@ enum class Limit : std::uint8_t {
   capacity,        // a store was too small
   truncated,       // only a part of a motion was proved, or one towards a nearer target
   joints_outside,  // a joint starts outside its position limits; it may stay or come back
+  singularity,  // from this pose the joints, as they are damped, make less than half of the motion
 };
 
 /// Number of limits.
-inline constexpr std::size_t limit_count = static_cast<std::size_t>(Limit::joints_outside) + 1;
+inline constexpr std::size_t limit_count = static_cast<std::size_t>(Limit::singularity) + 1;
 
 /// Returns the name as it stands in the enumeration, for files and logs.
 std::string_view name(Limit limit) noexcept;
@@ -70,6 +71,8 @@ class Limits {
  public:
   /// Adds a limit.
   constexpr void add(Limit limit) noexcept { bits_ |= bit(limit); }
+  /// Adds all limits of another set.
+  constexpr void add(const Limits& others) noexcept { bits_ |= others.bits_; }
   /// Returns true if the set has a limit.
   constexpr bool has(Limit limit) const noexcept { return (bits_ & bit(limit)) != 0; }
   /// Returns true if there is no limit.

@@ -75,15 +75,53 @@ void Cycle::run(Step& result) noexcept {
     ended(&StageTimes::solve);
     result.planes = work_.posed();
   }
-  result.status = settled.status;
   result.triangles = rule_.triangles();
-  if (!is_ok(settled.status)) return;
+  if (guides_stop_all(settled.status)) {
+    settled = {Status::fallback, Vec3::Zero()};
+    limits_.add(Limit::truncated);
+    for (std::size_t row = 0; row < work_.guides.planes().size(); ++row) {
+      limits_.add(Limit::guide);
+      work_.guides.note_active(row);
+    }
+    work_.keep_answer(motion_, Vec3::Zero(), 0.0, relaxation_, limits_);
+  }
+  result.status = settled.status;
+  if (!is_ok(settled.status)) {
+    report_failure(result);
+    return;
+  }
   // Number by number, as the increment: no zero has a sign.
   for (int axis = 0; axis < 3; ++axis) result.motion[axis] = settled.motion[axis] + 0.0;
   result.increment = work_.increment();
   report(result);
+  const Vec3 missed = motion_.desired - result.motion;
+  if (result.status == Status::free && motion_.jacobian &&
+      missed.norm() > 0.5 * motion_.desired.norm()) {
+    result.status = Status::limited;
+    result.limits.add(Limit::singularity);
+  }
   if (halvings_ > 0) result.status = Status::fallback;
   if (recovering) result.status = Status::recovering;
+}
+
+/// Returns true if no motion was found and guides are among the constraints, none of which requires
+/// motion. Then standing still satisfies all.
+bool Cycle::guides_stop_all(Status status) const noexcept {
+  const bool is_search_over = status == Status::unsolved || status == Status::infeasible;
+  return is_search_over && !work_.guides.planes().empty() && allow_parts(motion_.rows);
+}
+
+/// Reports the constraints for which no motion was found.
+void Cycle::report_failure(Step& result) noexcept {
+  if (result.status == Status::out_of_budget) result.limits.add(Limit::budget);
+  if (result.status == Status::over_capacity) result.limits.add(Limit::capacity);
+  if (result.status == Status::inside || result.status == Status::touching) {
+    result.limits.add(Limit::mesh);
+  }
+  if (result.status != Status::infeasible && result.status != Status::unsolved) return;
+  if (!work_.planes.empty()) result.limits.add(Limit::mesh);
+  if (!work_.guides.planes().empty()) result.limits.add(Limit::guide);
+  if (motion_.rows) result.limits.add(Limit::rows);
 }
 
 /// Reports what limits the answer.

@@ -82,6 +82,8 @@ Cycle::Trial Cycle::solve_once() noexcept {
   };
   while (contradict() && relax()) solved = attempt(answer);
   if (is_ok(solved) && !answer->allFinite()) solved = Status::unsolved;
+  // Without a Jacobian only rows that almost contradict each other make a problem ill-posed.
+  if (solved == Status::ill_posed && !motion_.jacobian) solved = Status::infeasible;
   if (!is_ok(solved)) return {solved, Vec3::Zero()};
   if (around_.reach == Reach::sphere) return {Status::free, *answer};
   return {Status::free, sharpened(*answer, around_.aim, work_.posed())};
