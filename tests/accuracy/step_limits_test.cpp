@@ -127,7 +127,7 @@ TEST_F(StepLimits, NameASpentBudgetAndASmallStore) {
   const Vec3 tip = surface_points(*mesh_, 1, 0.8, random).front();
   settings_.inside = Inside::taken_as_is;
   const auto step = [&] {
-    return make_motion_constraint(mesh_, settings_).step({.tip = tip, .desired = Vec3(0, 0, 1)});
+    return make_motion_constraint(mesh_, settings_).step({.tip = tip, .desired = -tip.normalized()});
   };
   settings_.capacity.looks = 1;
   EXPECT_EQ(step().status, Status::out_of_budget);
