@@ -76,7 +76,7 @@ void Cycle::run(Step& result) noexcept {
     result.planes = work_.posed();
   }
   result.triangles = rule_.triangles();
-  if (guides_stop_all(settled.status)) {
+  if (!is_ok(settled.status) && guides_stop_all(settled.status)) {
     settled = {Status::fallback, Vec3::Zero()};
     limits_.add(Limit::truncated);
     for (std::size_t row = 0; row < work_.guides.planes().size(); ++row) {
@@ -94,9 +94,8 @@ void Cycle::run(Step& result) noexcept {
   for (int axis = 0; axis < 3; ++axis) result.motion[axis] = settled.motion[axis] + 0.0;
   result.increment = work_.increment();
   report(result);
-  const Vec3 missed = motion_.desired - result.motion;
   if (result.status == Status::free && motion_.jacobian &&
-      missed.norm() > 0.5 * motion_.desired.norm()) {
+      (motion_.desired - result.motion).squaredNorm() > 0.25 * motion_.desired.squaredNorm()) {
     result.status = Status::limited;
     result.limits.add(Limit::singularity);
   }

@@ -62,6 +62,7 @@ Cycle::Trial Cycle::solve() noexcept {
     return {Status::free, around_.aim};
   }
   Trial trial = solve_once();
+  if (work_.guides.empty()) return trial;
   while (is_ok(trial.status) && !work_.guides.allow(trial.motion)) {
     budget_.spend(1);
     if (!work_.guides.exclude(trial.motion)) break;

@@ -88,11 +88,15 @@ MotionConstraint::MotionConstraint(std::shared_ptr<const Mesh> mesh,
         "that guards a whole tool, ask for Inside::taken_as_is");
   }
   prepare();
-  solver_->reserve(
-      static_cast<int>(std::max<std::size_t>(capacity.variables, 3)),
-      static_cast<int>(capacity.planes + TipGuides::most_planes + capacity.extra_rows));
+  reserve_solver(0);
   require_usable(options_);
   makes_queries_ = near_->ball().radius >= 0.0;  // once it has been asked at all
+}
+
+void MotionConstraint::reserve_solver(std::size_t guides) {
+  const std::size_t of_guides = guides * TipGuides::most_planes_of_a_guide;
+  solver_->reserve(static_cast<int>(std::max<std::size_t>(capacity_.variables, 3)),
+                   static_cast<int>(capacity_.planes + of_guides + capacity_.extra_rows));
 }
 
 /// Makes what is made of a mesh.
@@ -124,7 +128,9 @@ void MotionConstraint::set_options(const StepOptions& options) {
 }
 
 void MotionConstraint::set_guides(std::vector<Guide> guides) {
-  work_->guides = TipGuides(std::move(guides));
+  TipGuides prepared(std::move(guides));
+  reserve_solver(prepared.guides().size());
+  work_->guides = std::move(prepared);
 }
 
 std::span<const Guide> MotionConstraint::guides() const noexcept { return work_->guides.guides(); }

@@ -61,7 +61,9 @@ struct Step {
   std::span<const HalfSpace> planes = {};
   /// The planes that limit the motion; empty unless ok(). From planes.size() on, extra rows.
   std::span<const std::uint32_t> active = {};
-  Limits limits = {};                        // what kept the motion from being the one asked for
+  /// The causes that kept the motion from being the commanded one; without a motion, the
+  /// constraints for which none was found.
+  Limits limits = {};
   std::span<const GuideState> guides = {};   // one for each guide, in the order of set_guides
   Relaxation relaxation = Relaxation::none;  // what was relaxed
   std::size_t triangles = 0;                 // that it rests on: see Activation::triangles

@@ -140,6 +140,7 @@ class MotionConstraint {
   void step_as_checked(const Motion& motion, SideWatch& sides, StageTimes* times,
                        Step& result) noexcept;
   void prepare();
+  void reserve_solver(std::size_t guides);
   void require_usable(const StepOptions& options);
 
   std::unique_ptr<Neighborhood> near_;  // the rule holds on to it, wherever this is moved
