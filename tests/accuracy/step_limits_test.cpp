@@ -88,6 +88,7 @@ TEST_F(StepLimits, NameACauseThatChangesTheMotionWhenItIsTakenAway) {
       const bool has_cause =
           step.status != Status::ill_posed && step.status != Status::beyond_reach;
       ASSERT_EQ(has_cause, !limits.empty()) << name(step.status);
+      ASSERT_EQ(limits.has(Limit::guide), std::ranges::any_of(step.guides, &GuideState::limits));
       continue;
     }
     ASSERT_FALSE(step.status == Status::limited && limits.empty());
@@ -169,6 +170,7 @@ TEST_F(StepLimits, OfGuidesThatLeaveNoMotionAreTheGuides) {
   ASSERT_TRUE(step.ok()) << name(step.status);
   EXPECT_TRUE(step.limits.has(Limit::guide));
   EXPECT_FALSE(step.limits.has(Limit::mesh));
+  EXPECT_TRUE(std::ranges::any_of(step.guides, &GuideState::limits));
 }
 
 TEST_F(StepLimits, SayOfATruncatedRecoveryThatItIsOne) {

@@ -79,11 +79,9 @@ void Cycle::run(Step& result) noexcept {
   if (!is_ok(settled.status) && guides_stop_all(settled.status)) {
     settled = {Status::fallback, Vec3::Zero()};
     limits_.add(Limit::truncated);
-    for (std::size_t row = 0; row < work_.guides.planes().size(); ++row) {
-      limits_.add(Limit::guide);
-      work_.guides.note_active(row);
-    }
-    work_.keep_answer(motion_, Vec3::Zero(), 0.0, relaxation_, limits_);
+    limits_.add(Limit::guide);
+    work_.guides.note_all_active();
+    work_.keep_zero_answer(motion_, relaxation_, limits_);
   }
   result.status = settled.status;
   if (!is_ok(settled.status)) {
@@ -112,14 +110,14 @@ bool Cycle::guides_stop_all(Status status) const noexcept {
 
 /// Reports the constraints for which no motion was found.
 void Cycle::report_failure(Step& result) noexcept {
-  if (result.status == Status::out_of_budget) result.limits.add(Limit::budget);
-  if (result.status == Status::over_capacity) result.limits.add(Limit::capacity);
-  if (result.status == Status::inside || result.status == Status::touching) {
-    result.limits.add(Limit::mesh);
-  }
   if (result.status != Status::infeasible && result.status != Status::unsolved) return;
-  if (!work_.planes.empty()) result.limits.add(Limit::mesh);
-  if (!work_.guides.planes().empty()) result.limits.add(Limit::guide);
+  for (const HalfSpace& plane : work_.planes) {
+    result.limits.add(plane.source == no_triangle ? Limit::radius : Limit::mesh);
+  }
+  if (!work_.guides.planes().empty()) {
+    result.limits.add(Limit::guide);
+    work_.guides.note_all_active();
+  }
   if (motion_.rows) result.limits.add(Limit::rows);
 }
 

@@ -189,6 +189,11 @@ Step MotionConstraint::step(const Motion& motion, SideWatch& sides, StageTimes* 
       if (result.ok() && guides.is_recovering()) result.status = Status::recovering;
     }
   }
+  if (result.status == Status::out_of_budget) result.limits.add(Limit::budget);
+  if (result.status == Status::over_capacity) result.limits.add(Limit::capacity);
+  if (result.status == Status::inside || result.status == Status::touching) {
+    result.limits.add(Limit::mesh);
+  }
   const bool is_asked = options_.distances == Distances::always && !result.distance;
   if (is_asked && result.status != Status::invalid_input) {
     const auto nearest = find_nearest(*near_, motion.tip);

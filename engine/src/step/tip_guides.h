@@ -50,6 +50,11 @@ class TipGuides {
   /// Notes that the guide of a half-space limits the step.
   void note_active(std::size_t plane) noexcept { states_[guide_of_[plane]].limits = true; }
 
+  /// Notes that every guide with a half-space limits the step.
+  void note_all_active() noexcept {
+    for (std::size_t plane = 0; plane < planes_.size(); ++plane) note_active(plane);
+  }
+
   /// Returns the half-spaces of this cycle; their source is no_triangle.
   std::span<const HalfSpace> planes() const noexcept { return planes_.view(); }
   /// Returns the state of each guide, for a step that this was relaxed for.

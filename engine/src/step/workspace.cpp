@@ -123,6 +123,14 @@ void Workspace::keep_answer(const Motion& motion, const Vec3& tip_motion, double
   answer_.active.assign(solution.active);
 }
 
+void Workspace::keep_zero_answer(const Motion& motion, Relaxation relaxation,
+                                 Limits limits) noexcept {
+  solution = {};
+  keep_answer(motion, Vec3::Zero(), 0.0, relaxation, limits);
+  const Eigen::Index joints = motion.jacobian ? motion.jacobian->joints() : 0;
+  for (Eigen::Index k = 0; k < joints; ++k) answer_.increment.push(0.0);
+}
+
 void Workspace::set_aside() noexcept {
   take_back();
   planes.clear();

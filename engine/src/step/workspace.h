@@ -76,6 +76,9 @@ class Workspace {
   void keep_answer(const Motion& motion, const Vec3& tip_motion, double share,
                    Relaxation relaxation, Limits limits) noexcept;
 
+  /// Stores zero motion as the answer, whatever the solver returned last.
+  void keep_zero_answer(const Motion& motion, Relaxation relaxation, Limits limits) noexcept;
+
   /// Returns the planes and those of guides, as the solver gets them.
   std::span<const HalfSpace> posed() noexcept { return with_guides(guides.planes().size()); }
 
