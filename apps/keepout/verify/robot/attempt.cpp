@@ -126,12 +126,16 @@ class RobotAttempt {
     }
   }
 
-  /// Says where the meshes are and how they move: to where they are to be a cycle later. Now and
-  /// then nothing is said of one, which goes on as it did.
+  /// Places the meshes with the velocities that lead to their poses a cycle later. One in three
+  /// placements is left out, so that the mesh goes on as before; then it catches up, and may do so
+  /// at several times its speed. A mesh that comes on is always placed: the joints can keep up with
+  /// its speed only.
   void place_meshes(std::uint64_t cycle) {
     for (std::size_t m = 0; m < poses_.size(); ++m) {
       const MeshMotion& motion = setup_.meshes[m].motion;
-      if (cycle > 0 && (motion.is_still() || random_.uniform() < skipped)) continue;
+      const bool may_skip = cycle > 0 && !motion.comes_on;
+      if (cycle > 0 && motion.is_still()) continue;
+      if (may_skip && random_.uniform() < skipped) continue;
       const Pose then = motion.at(static_cast<double>(cycle) + 1.0);
       const double period = setup_.options.period;
       const Eigen::AngleAxisd turn(Mat3(then.rotation * poses_[m].rotation.transpose()));
