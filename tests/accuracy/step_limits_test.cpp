@@ -88,6 +88,7 @@ TEST_F(StepLimits, NameACauseThatChangesTheMotionWhenItIsTakenAway) {
       const bool has_cause =
           step.status != Status::ill_posed && step.status != Status::beyond_reach;
       ASSERT_EQ(has_cause, !limits.empty()) << name(step.status);
+      ASSERT_TRUE(step.status != Status::ill_posed || q.jacobian);
       ASSERT_EQ(limits.has(Limit::guide), std::ranges::any_of(step.guides, &GuideState::limits));
       continue;
     }
@@ -153,6 +154,17 @@ TEST_F(StepLimits, NameAJacobianThatCannotMakeTheMotion) {
   EXPECT_TRUE(across.limits.has(Limit::singularity));
   const Step along = bare_.step({.tip = tip, .desired = Vec3(1, 0, 0), .jacobian = jacobian});
   EXPECT_EQ(along.status, Status::free);
+  // A retreat that the joints can make is not the commanded motion, and no singularity.
+  Random random(6);
+  const Mat3 identity = Mat3::Identity();
+  int retreats = 0;
+  for (const Vec3& near : surface_points(*mesh_, 200, 0.6, random)) {
+    const Step step =
+        guard_.step({.tip = near, .desired = -near.normalized(), .jacobian = identity});
+    EXPECT_FALSE(step.limits.has(Limit::singularity));
+    retreats += step.status == Status::recovering ? 1 : 0;
+  }
+  EXPECT_GT(retreats, 20);
 }
 
 // Two slabs and a ball that the tip is outside of contradict each other so nearly that no solver

@@ -187,9 +187,10 @@ TEST(Limits, NameAJointThatStartsOutside) {
 // A budget that ends, a store that is too small, and what they are called.
 TEST(Limits, TellASpentBudgetFromASmallStore) {
   const auto mesh = std::make_shared<const Mesh>(make_cube(2.0));
-  const auto status = [&](const InstrumentCapacity& capacity) {
+  const auto status = [&](const InstrumentCapacity& capacity, double speed = 0.0) {
     InstrumentConstraint guard(mesh, make_index("wide_bvh", mesh), free_ball(1.0),
                                make_solver("active_set"), {.check_sides = false}, capacity);
+    guard.place(0, {}, {.linear = Vec3(0, 0, speed)});
     return guard.step(std::vector<double>{0.0, 0.0, 51.3}, {.linear = Vec3(0, 0, -5)});
   };
   const InstrumentStep spent = status({.looks = 20});
@@ -200,6 +201,8 @@ TEST(Limits, TellASpentBudgetFromASmallStore) {
   EXPECT_EQ(small.status, Status::over_capacity) << small.reason();
   EXPECT_TRUE(small.limits.has(Limit::capacity));
   EXPECT_FALSE(small.limits.has(Limit::budget) || small.limits.has(Limit::mesh));
+  const InstrumentStep moving = status({.triangles = 1}, -1.0);
+  EXPECT_TRUE(moving.limits.has(Limit::capacity)) << name(moving.status);
 }
 
 }  // namespace

@@ -76,24 +76,27 @@ void Cycle::run(Step& result) noexcept {
     result.planes = work_.posed();
   }
   result.triangles = rule_.triangles();
-  if (!is_ok(settled.status) && guides_stop_all(settled.status)) {
-    settled = {Status::fallback, Vec3::Zero()};
-    limits_.add(Limit::truncated);
-    limits_.add(Limit::guide);
-    work_.guides.note_all_active();
-    work_.keep_zero_answer(motion_, relaxation_, limits_);
+  if (settled.status == Status::infeasible || settled.status == Status::unsolved) {
+    const Limits constraints = unsatisfied();
+    if (!constraints.has(Limit::guide) || !allow_parts(motion_.rows)) {
+      result.limits = constraints;
+    } else {
+      // Standing still satisfies guides, and rows that require no motion.
+      settled = {Status::fallback, Vec3::Zero()};
+      limits_.add(constraints);
+      limits_.add(Limit::truncated);
+      work_.keep_zero_answer(motion_, relaxation_, limits_);
+    }
   }
   result.status = settled.status;
-  if (!is_ok(settled.status)) {
-    report_failure(result);
-    return;
-  }
+  if (!is_ok(settled.status)) return;
   // Number by number, as the increment: no zero has a sign.
   for (int axis = 0; axis < 3; ++axis) result.motion[axis] = settled.motion[axis] + 0.0;
   result.increment = work_.increment();
   report(result);
+  // In a recovery the target is the retreat, not the commanded motion.
   if (result.status == Status::free && motion_.jacobian &&
-      (motion_.desired - result.motion).squaredNorm() > 0.25 * motion_.desired.squaredNorm()) {
+      (around_.aim - result.motion).squaredNorm() > 0.25 * around_.aim.squaredNorm()) {
     result.status = Status::limited;
     result.limits.add(Limit::singularity);
   }
@@ -101,24 +104,18 @@ void Cycle::run(Step& result) noexcept {
   if (recovering) result.status = Status::recovering;
 }
 
-/// Returns true if no motion was found and guides are among the constraints, none of which requires
-/// motion. Then standing still satisfies all.
-bool Cycle::guides_stop_all(Status status) const noexcept {
-  const bool is_search_over = status == Status::unsolved || status == Status::infeasible;
-  return is_search_over && !work_.guides.planes().empty() && allow_parts(motion_.rows);
-}
-
-/// Reports the constraints for which no motion was found.
-void Cycle::report_failure(Step& result) noexcept {
-  if (result.status != Status::infeasible && result.status != Status::unsolved) return;
+/// Returns the kinds of the constraints for which no motion was found, and notes their guides.
+Limits Cycle::unsatisfied() noexcept {
+  Limits constraints;
   for (const HalfSpace& plane : work_.planes) {
-    result.limits.add(plane.source == no_triangle ? Limit::radius : Limit::mesh);
+    constraints.add(plane.source == no_triangle ? Limit::radius : Limit::mesh);
   }
   if (!work_.guides.planes().empty()) {
-    result.limits.add(Limit::guide);
+    constraints.add(Limit::guide);
     work_.guides.note_all_active();
   }
-  if (motion_.rows) result.limits.add(Limit::rows);
+  if (motion_.rows) constraints.add(Limit::rows);
+  return constraints;
 }
 
 /// Reports what limits the answer.

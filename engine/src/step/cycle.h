@@ -51,9 +51,8 @@ class Cycle {
   Status attempt(std::optional<Vec3>& answer) noexcept;
   bool relax() noexcept;
   void note(Status ended) noexcept;
-  bool guides_stop_all(Status status) const noexcept;
+  Limits unsatisfied() noexcept;
   void report(Step& result) noexcept;
-  void report_failure(Step& result) noexcept;
   Trial refine(Trial best) noexcept;
   Trial branch(const Trial& best) noexcept;
   void open_branch(const Trial& best) noexcept;

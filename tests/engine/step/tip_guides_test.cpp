@@ -263,6 +263,37 @@ TEST(TipGuides, HoldWhateverASolverAnswers) {
   EXPECT_GT(truncated, test::trials(100));
 }
 
+// Zero motion has an increment for each joint, whatever the solver left in its solution.
+TEST(TipGuides, ThatNoSolverSatisfiesStopTheJoints) {
+  class Hopeless final : public Solver {
+   public:
+    void reserve(int, int) override {}
+    SolveStatus solve(const StepProblem&, Solution&) noexcept override {
+      return SolveStatus::infeasible;
+    }
+  };
+  Loop loop("cube");
+  MotionConstraint guard(loop.mesh, std::make_shared<WideBvh>(loop.mesh),
+                         std::make_unique<CertifiedRule>(), std::make_unique<Hopeless>(),
+                         loop.guard.options());
+  const Vec3 tip = loop.mesh->bounds().high + Vec3::Constant(50.0);
+  const Eigen::Matrix<double, 3, 5> jacobian = Eigen::Matrix<double, 3, 5>::Ones();
+  Motion motion{.tip = tip, .desired = Vec3(1, 0, 0), .jacobian = jacobian};
+  EXPECT_EQ(guard.step(motion).status, Status::infeasible) << "no guide is the cause";
+  guard.set_guides({Guide::point("ball", Region::ball(tip + Vec3(2, 0, 0), 1.0))});
+  const Step step = guard.step(motion);
+  ASSERT_EQ(step.status, Status::recovering) << step.reason();
+  EXPECT_TRUE(step.motion.isZero(0.0));
+  ASSERT_EQ(step.increment.size(), 5u);
+  EXPECT_TRUE(std::ranges::all_of(step.increment, [](double u) { return u == 0.0; }));
+  EXPECT_TRUE(step.limits.has(Limit::guide) && step.guides[0].limits);
+  EXPECT_FALSE(step.limits.has(Limit::mesh));
+  const double row[5] = {1, 0, 0, 0, 0};
+  const double bound[1] = {0.1};
+  motion.rows = ExtraRows(row, bound, 1);
+  EXPECT_EQ(guard.step(motion).status, Status::infeasible) << "a row requires motion";
+}
+
 TEST(TipGuides, AreRefusedIfTheyAreTooManyOrOfAnInstrument) {
   Loop loop("cube");
   const Guide guide = Guide::point("a", Region::ball(Vec3::Zero(), 1.0));

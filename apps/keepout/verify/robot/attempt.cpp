@@ -66,7 +66,7 @@ JudgedScene judged_scene(const RobotSetup& setup) {
   return scene;
 }
 
-/// One instrument, from where it begins.
+/// The run of one instrument from its start.
 class RobotAttempt {
  public:
   RobotAttempt(RobotRow& row, RobotSetup setup, Random& random)
@@ -133,9 +133,8 @@ class RobotAttempt {
   void place_meshes(std::uint64_t cycle) {
     for (std::size_t m = 0; m < poses_.size(); ++m) {
       const MeshMotion& motion = setup_.meshes[m].motion;
-      const bool may_skip = cycle > 0 && !motion.comes_on;
-      if (cycle > 0 && motion.is_still()) continue;
-      if (may_skip && random_.uniform() < skipped) continue;
+      const auto skips = [&] { return !motion.comes_on && random_.uniform() < skipped; };
+      if (cycle > 0 && (motion.is_still() || skips())) continue;
       const Pose then = motion.at(static_cast<double>(cycle) + 1.0);
       const double period = setup_.options.period;
       const Eigen::AngleAxisd turn(Mat3(then.rotation * poses_[m].rotation.transpose()));
@@ -146,7 +145,7 @@ class RobotAttempt {
     }
   }
 
-  /// Lets a cycle pass for the meshes.
+  /// Moves the meshes by one cycle.
   void move_meshes() {
     const double period = setup_.options.period;
     for (std::size_t m = 0; m < poses_.size(); ++m) {
@@ -168,7 +167,7 @@ class RobotAttempt {
     return twist;
   }
 
-  /// Returns true if there was a motion, be it none at all, that may be carried out.
+  /// Returns true if the step returned a motion that may be executed, which may be zero.
   bool make_cycle() {
     RobotTally& tally = row_.tally;
     ChainState state;
@@ -226,9 +225,9 @@ class RobotAttempt {
     tally.most_looks = std::max<std::uint64_t>(tally.most_looks, subject_->looks());
   }
 
-  /// Counts cycles that make next to nothing of what is asked, and searches beside some of them for
-  /// a motion. What is led out has other things to do than what it is asked for; beside a mesh that
-  /// moves nothing is searched, as standing still need not be allowed there.
+  /// Counts cycles that execute almost nothing of the commanded motion, and searches for a better
+  /// motion in some of them. Skips recoveries, which do not follow the command. Does not search
+  /// beside a moving mesh, where standing still need not be allowed.
   void count_blocked(const InstrumentStep& step, const RobotTask::Increment& made,
                      const Twist& desired) {
     RobotTally& tally = row_.tally;
