@@ -10,7 +10,7 @@ namespace keepout {
 /// The outcome of a step or a query. The first five come with a motion that may be executed, which
 /// may be zero; every other one comes with zero motion.
 enum class Status : std::uint8_t {
-  free,              // the motion asked for, no limits; of a polytope: its planes are complete
+  free,              // the motion asked for: no constraint limits it; of a polytope: complete
   limited,           // the nearest motion that the constraints allow: see Limits
   recovering,        // something was too close or out of its region: the motion recovers from it
   fallback,          // a shorter motion: nothing longer was proved, see Limits

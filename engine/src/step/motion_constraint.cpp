@@ -64,6 +64,13 @@ Capacity checked(Capacity capacity, const StepOptions& options) {
   return capacity;
 }
 
+/// Adds the limit that a status without a motion stands for.
+void name_cause(Status status, Limits& limits) noexcept {
+  if (status == Status::out_of_budget) limits.add(Limit::budget);
+  if (status == Status::over_capacity) limits.add(Limit::capacity);
+  if (status == Status::inside || status == Status::touching) limits.add(Limit::mesh);
+}
+
 }  // namespace
 
 MotionConstraint::MotionConstraint(std::shared_ptr<const Mesh> mesh,
@@ -189,11 +196,7 @@ Step MotionConstraint::step(const Motion& motion, SideWatch& sides, StageTimes* 
       if (result.ok() && guides.is_recovering()) result.status = Status::recovering;
     }
   }
-  if (result.status == Status::out_of_budget) result.limits.add(Limit::budget);
-  if (result.status == Status::over_capacity) result.limits.add(Limit::capacity);
-  if (result.status == Status::inside || result.status == Status::touching) {
-    result.limits.add(Limit::mesh);
-  }
+  if (!result.ok()) name_cause(result.status, result.limits);
   const bool is_asked = options_.distances == Distances::always && !result.distance;
   if (is_asked && result.status != Status::invalid_input) {
     const auto nearest = find_nearest(*near_, motion.tip);
