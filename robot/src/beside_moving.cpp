@@ -20,7 +20,8 @@ constexpr int most_degradations = 32;  // of a cycle
 /// of body and mesh by quarters, until a motion is proved for all other pairs.
 void JointCycle::search_beside_moving(const JointTask& task, Trial& best,
                                       InstrumentStep& result) noexcept {
-  settle_immovable();
+  // Neither bodies that cannot give way nor the task may spend the work that the retreat needs.
+  memory_.budget.halved([&] { return settle_immovable(), true; });
   double asked = 1.0;
   const auto is_found = [&](double share) {
     asked = share;
@@ -29,7 +30,8 @@ void JointCycle::search_beside_moving(const JointTask& task, Trial& best,
   };
   // Beside a body that touches or is inside, or that is not known, nothing but a retreat is made.
   const bool is_whole = watch_.dropped_for() == Status::free;
-  bool found = (is_whole && (is_found(1.0) || is_found(0.25))) || is_found(0.0);
+  bool found = is_whole && memory_.budget.halved([&] { return is_found(1.0) || is_found(0.25); });
+  found = found || is_found(0.0);
   for (int i = 0; i < most_degradations && !found && degrade(task, best); ++i) {
     found = best.cell == PointMotion::cells || is_found(0.0);
   }

@@ -205,6 +205,26 @@ TEST(BudgetOfACycle, HoldsForAnInstrumentBesideMovingMeshes) {
   EXPECT_GT(count.costly, 5);
 }
 
+// A cone comes on below a post of the base, and the proof for the post costs more than a cycle may.
+// The ball far away retreats from a plate all the same.
+TEST(BudgetOfACycle, IsNotSpentByABodyThatCannotGiveWay) {
+  const Scene cone(400, 0.3);
+  const auto plate = std::make_shared<const Mesh>(make_flat_plate(20.0, 1));
+  const Instrument ball = free_ball(0.5);
+  Instrument instrument(ball.chain(), {{"post", {{0, Vec3(0, 0, 0)}}, 0.1}, ball.bodies()[0]});
+  InstrumentConstraint guard(cone.mesh, cone.tree, std::move(instrument),
+                             std::make_unique<ActiveSet>(),
+                             {.margin = 0.2, .check_sides = false});
+  const std::size_t second = guard.add_mesh(plate, std::make_shared<WideBvh>(plate));
+  guard.place(0, {Vec3(0, 0, -0.32)}, {.linear = Vec3(0, 0, 3000)});
+  guard.place(second, {Vec3(100, 0, 0)}, {.linear = Vec3(0, 0, 300)});
+  const Vec3 at(100, 0, 0.75);
+  const InstrumentStep step = guard.step({at.data(), 3}, {.linear = Vec3(0.1, 0, -0.2)});
+  ASSERT_TRUE(step.ok()) << name(step.status);
+  EXPECT_GE(step.increment[2], 0.25 - 1e-9) << "with the plate, which came 0.3 on";
+  for (const DegradedClearance& pair : step.degraded) EXPECT_EQ(pair.body, 0);
+}
+
 TEST(BudgetOfACycle, HoldsForAnInstrumentWithGuides) {
   const InstrumentCycles count = instrument_cycles(balls_about, 0.0);
   EXPECT_GT(count.guided, 10);

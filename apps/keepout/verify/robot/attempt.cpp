@@ -196,7 +196,8 @@ class RobotAttempt {
     note(step, judge_.judge(next, levels_));
     if (step.status == Status::free && setup_.scenario->attacked == Attacked::instrument) {
       const Missed off = missed(setup_, judged_, positions_, next, desired);
-      tally.strayed += off.moving > strayed_above * off.standing ? 1 : 0;
+      const double allowed = strayed_above * off.standing + subject_->tolerance();
+      tally.strayed += off.moving > allowed ? 1 : 0;
     }
     if (tally.first_breach == 0 && breaches(tally) > 0) tally.first_breach = tally.cycles;
     move_meshes();

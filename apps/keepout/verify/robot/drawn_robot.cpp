@@ -87,12 +87,23 @@ oracle::JudgedBody blade_at(int link, const Vec3& place, double size, Random& ra
   return blade;
 }
 
-/// Three joints that slide along z, y and x of the base, but for their signs.
+/// Adds three joints that slide along z, y and x of the base, but for their signs.
 void add_slides(Drawn& drawn, double range) {
   drawn.judged.table.push_back({.slides = true});
   drawn.judged.table.push_back({.slides = true, .alpha_quarters = 1, .theta_quarters = 1});
   drawn.judged.table.push_back({.slides = true, .alpha_quarters = 1});
   for (int k = 0; k < 3; ++k) drawn.limits.push_back(sliding(range));
+}
+
+/// Returns a tip that carries `body`, as a robot of three slides. The step of a tip knows no joint
+/// limits, so the slides are longer than any attempt.
+RobotUnderTest tip_with(oracle::JudgedBody body) {
+  Drawn drawn;
+  add_slides(drawn, 1e5);
+  drawn.judged.bodies.push_back(std::move(body));
+  RobotUnderTest robot = robot_of(std::move(drawn));
+  robot.starts.assign(3, {-150.0, 150.0});
+  return robot;
 }
 
 }  // namespace
@@ -134,17 +145,11 @@ RobotUnderTest drawn_robot(Random& random) {
 }
 
 RobotUnderTest sliding_ball(Random& random) {
-  Drawn drawn;
-  add_slides(drawn, 500.0);
-  drawn.judged.bodies.push_back({{{3, Vec3::Zero()}}, drawn_radius(random)});
-  return robot_of(std::move(drawn));
+  return tip_with({{{3, Vec3::Zero()}}, drawn_radius(random)});
 }
 
 RobotUnderTest sliding_hull(Random& random) {
-  Drawn drawn;
-  add_slides(drawn, 500.0);
-  drawn.judged.bodies.push_back(blade_at(3, Vec3::Zero(), random.uniform(0.5, 15.0), random));
-  return robot_of(std::move(drawn));
+  return tip_with(blade_at(3, Vec3::Zero(), random.uniform(0.5, 15.0), random));
 }
 
 RobotUnderTest robot_with_stuck_bodies(Random& random) {

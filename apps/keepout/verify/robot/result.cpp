@@ -131,7 +131,7 @@ cycles. point us: of the certified step of a ball at the tip, beside each. Lengt
 std::uint64_t robot_breaches(const Json& record) {
   const Json& total = record.at("total");
   std::uint64_t sum = 0;
-  for (const char* kind : {"below", "limits_broken", "guides_left"}) {
+  for (const char* kind : {"below", "limits_broken", "guides_left", "strayed"}) {
     sum += total.at(kind).get<std::uint64_t>();
   }
   return sum;
@@ -165,8 +165,8 @@ Json result_of(const RobotCampaign& campaign, const std::string& command, const 
   if (breaches(total) > 0) {
     headline = counted(total.below, "cycle") + " too close, " + grouped(total.in_mesh) +
                " of them in the mesh, " + counted(total.guides_left, "cycle") +
-               " outside of a guide, and " + counted(total.limits_broken, "joint limit") +
-               " broken, in ";
+               " outside of a guide, " + counted(total.strayed, "cycle") + " astray, and " +
+               counted(total.limits_broken, "joint limit") + " broken, in ";
   }
   std::string speeds;
   for (const double s : campaign.speeds) speeds += (speeds.empty() ? "" : ",") + trimmed(s);
