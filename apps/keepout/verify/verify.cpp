@@ -89,7 +89,8 @@ std::vector<Arena> arenas_for_robot(const VerifyOptions& options) {
 }
 
 Json run_with_robot(const VerifyOptions& options) {
-  const RobotCampaign& campaign = options.robot;
+  RobotCampaign campaign = options.robot;
+  campaign.seed = options.seed;
   const std::vector<Arena> arenas = arenas_for_robot(options);
   const StopSignal stop;
   Progress progress("verify", cycle_count(campaign, arenas.size()));

@@ -155,13 +155,14 @@ TEST_F(RobotJudgeOverAPlate, SeesBrokenLimitsOfJointsAndMotionsThatAreNone) {
 TEST(VerifyRobot, WritesARecordAndTellsOfMistakes) {
   const test::CommandFolder folder;
   const test::ProcessOutcome outcome =
-      folder.run("verify cortex --robot psm --cycles 500 --speed 1,2 --json r.json --out r.html");
+      folder.run("verify cortex --robot psm --cycles 500 --speed 1,2 --seed 7 --json r.json --out r.html");
   ASSERT_EQ(outcome.status, 0) << outcome.output;
   EXPECT_NE(outcome.output.find("No breach in 2,500 cycles."), std::string::npos) << outcome.output;
   std::ifstream file(folder.file("r.json"));
   const Json record = Json::parse(file);
   EXPECT_EQ(record["keepout_record"], "verify_robot");
   EXPECT_EQ(record["complete"], true);
+  EXPECT_EQ(record["settings"]["seed"], "7");
   EXPECT_EQ(record["rows"].size(), 5u);
   EXPECT_EQ(record["rows"][1]["speed"], 2.0);
   EXPECT_EQ(record["total"]["cycles"], 2500u);
