@@ -154,8 +154,8 @@ TEST_F(RobotJudgeOverAPlate, SeesBrokenLimitsOfJointsAndMotionsThatAreNone) {
 
 TEST(VerifyRobot, WritesARecordAndTellsOfMistakes) {
   const test::CommandFolder folder;
-  const test::ProcessOutcome outcome =
-      folder.run("verify cortex --robot psm --cycles 500 --speed 1,2 --seed 7 --json r.json --out r.html");
+  const test::ProcessOutcome outcome = folder.run(
+      "verify cortex --robot psm --cycles 500 --speed 1,2 --seed 7 --json r.json --out r.html");
   ASSERT_EQ(outcome.status, 0) << outcome.output;
   EXPECT_NE(outcome.output.find("No breach in 2,500 cycles."), std::string::npos) << outcome.output;
   std::ifstream file(folder.file("r.json"));
