@@ -108,12 +108,23 @@ bool JointCycle::degrade(const JointTask& task, Trial& best) noexcept {
     rows_.remove(most_pairs + guide);
     return true;
   }
+  prefer_lowered(failed);
   for (std::size_t p = 0; p < memory_.pairs.size(); ++p) {
     if (!failed[p]) continue;
     watch_.lower(p, 1.0, trouble == Status::free ? Status::unsolved : trouble);
     if (!watch_.is_watched(p)) rows_.remove(p);
   }
   return failed.any();
+}
+
+/// Removes the pairs at their full clearance from a set that has others: few pairs give way, and
+/// those entirely, before more do.
+void JointCycle::prefer_lowered(std::bitset<most_pairs>& pairs) const noexcept {
+  std::bitset<most_pairs> lowered;
+  for (std::size_t p = 0; p < memory_.pairs.size(); ++p) {
+    lowered[p] = pairs[p] && memory_.pairs[p].level < 1.0;
+  }
+  if (lowered.any()) pairs = lowered;
 }
 
 /// Finds a least set of pairs and guides whose rows contradict each other (each is left out in
@@ -138,14 +149,16 @@ bool JointCycle::degrade_conflict(const JointTask& task) noexcept {
     rows_.remove(most_pairs + g);
     changed = true;
   }
-  for (std::size_t p = 0; p < memory_.pairs.size() && !changed; ++p) {
-    if (!is_culprit(p)) continue;
-    for (std::size_t other = p; other < memory_.pairs.size(); ++other) {
-      if (!is_culprit(other)) continue;
-      watch_.lower(other, reachable_level(other), Status::infeasible);
-      if (!watch_.is_watched(other)) rows_.remove(other);
+  if (!changed) {
+    std::bitset<most_pairs> culprits;
+    for (std::size_t p = 0; p < memory_.pairs.size(); ++p) culprits[p] = is_culprit(p);
+    prefer_lowered(culprits);
+    for (std::size_t p = 0; p < memory_.pairs.size(); ++p) {
+      if (!culprits[p]) continue;
+      watch_.lower(p, reachable_level(p), Status::infeasible);
+      if (!watch_.is_watched(p)) rows_.remove(p);
+      changed = true;
     }
-    changed = true;
   }
   is_left_out_.fill(false);
   return changed;

@@ -63,6 +63,7 @@ class JointCycle {
   void settle_immovable() noexcept;
   bool stand_still(const JointTask& task, Trial& best) noexcept;
   bool degrade(const JointTask& task, Trial& best) noexcept;
+  void prefer_lowered(std::bitset<most_pairs>& pairs) const noexcept;
   bool degrade_conflict(const JointTask& task) noexcept;
   double reachable_level(std::size_t pair) const noexcept;
   bool attempt(const JointTask& task, double asked, Trial& best) noexcept;
