@@ -31,6 +31,7 @@ void run_row(RobotRow& row, const std::function<Next(const RobotTally&, std::uin
     if (tally.is_out_of_starts) break;
     if (!setup) continue;
     ++tally.starts;
+    tally.period = setup->options.period;
     const std::uint64_t before = tally.cycles;
     run_attempt(row, std::move(*setup), random, std::min(longest, campaign.cycles - before));
     next = advanced(tally, tally.cycles - before);

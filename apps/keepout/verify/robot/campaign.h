@@ -53,6 +53,7 @@ struct RobotTally {
   std::uint64_t triangles = 0;
   std::string scenario;
   double speed = 1.0;
+  double period = 0.0;  // of a control cycle; of the last robot, if robots are drawn [s]
   std::uint64_t starts = 0;
   std::uint64_t cycles = 0;
   bool is_out_of_starts = false;  // no other place was found where one can begin

@@ -66,6 +66,7 @@ const Columns<RobotTally>& robot_columns() {
       {"triangles", &Tally::triangles, "triangles", 9, &count_text},
       {"scenario", &Tally::scenario, "scenario", -11},
       {"speed", &Tally::speed, "speed", 5, &figure<2>},
+      {"cycle_s", [](const Tally& t) { return Json(t.period); }},
       {"starts", &Tally::starts, "starts", 6, &count_text},
       {"cycles", &Tally::cycles, "cycles", 11, &count_text},
       {"below", &Tally::below, "below", 7, &count_text},
