@@ -53,7 +53,7 @@ constexpr std::array outcomes{
              "far from the origin that rounding hides the step, or a Jacobian has other than 3 "
              "rows: check the tip, the increment and the Jacobian",
              "a joint position, the desired motion or a weight is missing, not finite or out of "
-             "range, or a mesh has no valid pose or turns by more than 1 rad in a cycle: check q, "
+             "range, or a mesh has no valid pose or moves or turns too far in a cycle: check q, "
              "the desired motion, and the last place()",
              "the tip or the radius is not finite, negative or beyond 1e15"}},
     Outcome{"beyond_reach",

@@ -10,7 +10,7 @@
 namespace keepout {
 namespace {
 
-constexpr double touching_within = 4.0;  // tolerances
+constexpr double touching_within = 7.0;  // tolerances; its side is certain beyond six
 
 }  // namespace
 
@@ -87,7 +87,9 @@ void BodyWatch::close() noexcept {
   for (std::size_t p = 0; p < memory_.pairs.size(); ++p) {
     PairMemory& pair = memory_.pairs[p];
     if (pair.level < 1.0 || pair.is_dropped) pair.floor = std::min(pair.floor, kept(p));
-    pair.is_side_unknown = pair.is_side_unknown || pair.is_dropped;
+    // A core that is certified to less than three tolerances may have crossed the surface.
+    const bool may_have_crossed = !(radius(p) + kept(p) > 3.0 * memory_.tolerance);
+    pair.is_side_unknown = pair.is_side_unknown || pair.is_dropped || may_have_crossed;
   }
 }
 

@@ -113,8 +113,8 @@ void CycleMemory::set_floors(const Floors& all) noexcept {
 }
 
 void CycleMemory::forget_floors() noexcept {
-  for (PairMemory& pair : pairs) pair.floor = std::numeric_limits<double>::infinity();
-  for (GuideMemory& guide : guides) guide.floor = std::numeric_limits<double>::infinity();
+  for (PairMemory& pair : pairs) pair.floor = -std::numeric_limits<double>::infinity();
+  for (GuideMemory& guide : guides) guide.floor = -std::numeric_limits<double>::infinity();
 }
 
 void CycleMemory::forget_motion() noexcept {

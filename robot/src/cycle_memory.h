@@ -77,7 +77,7 @@ struct WarmRow {
 /// was.
 inline double certified_distance(double distance, double floor, double target, double room,
                                  double tolerance) noexcept {
-  if (distance >= target - 3.0 * tolerance) return target;
+  if (distance >= target - 2.75 * tolerance) return target;
   const double held = std::min(floor, target);
   const double missing = held - distance;
   if (missing > 4.0 * tolerance) return distance - room;

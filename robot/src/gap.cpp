@@ -128,7 +128,7 @@ Gap gap(std::span<const Vec3> core, const Triangle& triangle) noexcept {
   Gap best = proven(nearest, core, triangle);
   // Where the features' directions are rounding, the search may know a better one.
   const double distance = std::sqrt(nearest.distance2);
-  if (best.distance < distance * (1.0 - 1e-9)) {
+  if (best.distance < distance * (1.0 - 1e-11)) {
     const NearestPoints searched = nearest_points(core, triangle);
     if (!searched.overlap && searched.proven > best.distance) {
       best.distance = searched.proven;

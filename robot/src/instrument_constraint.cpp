@@ -128,7 +128,9 @@ struct InstrumentConstraint::State {
   Status check(std::span<const double> q) noexcept {
     memory.budget.renew();
     for (const MeshMemory& mesh : memory.meshes) {
-      const bool is_too_fast = !(options.period * mesh.velocity.angular.norm() <= fastest_turn);
+      const bool is_too_fast =
+          !(options.period * mesh.velocity.angular.norm() <= fastest_turn) ||
+          !(options.period * mesh.velocity.linear.norm() <= memory.largest_position);
       if (mesh.is_misplaced || is_too_fast) return Status::invalid_input;
       if (!mesh.near->is_current()) return Status::mesh_changed;
     }

@@ -13,8 +13,9 @@ constexpr double slack = 0.01;  // of what is desired
 
 }  // namespace
 
-/// Measures what the true motion of the flange misses (Trial::missed). Returns true if it makes less than half of what the linear task promises, or ends
-/// farther from what is desired than it stands. Recoveries and joint tasks never stray.
+/// Measures what the true motion of the flange misses (Trial::missed). Returns true if it makes
+/// less than half of what the linear task promises, or ends farther from what is desired than it
+/// stands. Recoveries and joint tasks never stray.
 bool JointCycle::strays(const JointTask& task, Trial& trial) noexcept {
   const bool is_judged = task.turn_weight.has_value() && !is_recovering() &&
                          options_.certified == CertifiedMotion::actual;

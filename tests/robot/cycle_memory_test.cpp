@@ -20,7 +20,7 @@ double certified_at(double distance, double floor) {
 TEST(CertifiedDistance, IsTheTargetWhereThatIsKeptHoweverLittleWasCertifiedBefore) {
   for (const double floor :
        {-1.0, 0.0, 0.1, wanted_distance, std::numeric_limits<double>::infinity()}) {
-    for (const double beyond : {0.0, 0.001, 0.5, -2.9 * told_apart}) {
+    for (const double beyond : {0.0, 0.001, 0.5, -2.7 * told_apart}) {
       EXPECT_EQ(certified_at(wanted_distance + beyond, floor), wanted_distance)
           << floor << ' ' << beyond;
     }
@@ -34,6 +34,18 @@ TEST(CertifiedDistance, BelowTheTargetLosesNothingThatWasCertified) {
   EXPECT_EQ(certified_at(0.15, 0.15 + 3.5 * told_apart), 0.15 + 3.5 * told_apart)
       << "rounding lowers nothing";
   EXPECT_EQ(certified_at(0.15, 0.19), 0.15 - left_to_a_motion) << "moved by somebody else";
+}
+
+// Theorem 2 needs both: a recovery that is accepted ends within 2.75 tolerances of the target, and
+// a start that no cycle has certified is certified to what it has.
+TEST(CertifiedDistance, IsLessThanTheTargetBeyond2_75TolerancesBelowItUnlessItWasCertified) {
+  const double unknown = -std::numeric_limits<double>::infinity();
+  for (const double below : {2.8, 2.9, 3.5, 3.9}) {
+    const double distance = wanted_distance - below * told_apart;
+    EXPECT_EQ(certified_at(distance, unknown), distance - left_to_a_motion) << below;
+    EXPECT_EQ(certified_at(distance, 0.1), distance - left_to_a_motion) << below;
+    EXPECT_EQ(certified_at(distance, wanted_distance), wanted_distance) << below;
+  }
 }
 
 }  // namespace

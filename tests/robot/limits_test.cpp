@@ -64,6 +64,18 @@ double difference(const InstrumentStep& one, const InstrumentStep& other) {
   return most;
 }
 
+/// Returns true if a joint goes as far as its position limit and its velocity limit allow, to
+/// within rounding. Without one of the two, the other limits it alike.
+bool is_tied(const Chain& chain, const std::vector<double>& q, const InstrumentStep& step,
+             double period) {
+  for (std::size_t k = 0; k < step.increment.size(); ++k) {
+    const JointLimits& limits = chain.joint(static_cast<int>(k) + 1).limits;
+    const double room = step.increment[k] > 0.0 ? limits.upper - q[k] : q[k] - limits.lower;
+    if (std::abs(room - limits.velocity * period) < 1e-12) return true;
+  }
+  return false;
+}
+
 TEST(Limits, NameEveryCauseAndOnlyCauses) {
   const LinkPoint jaw{6, Vec3(0, 10.2, 0)};
   const std::vector<double> start{0.1, -0.1, 60.0, 0.2, 0.1, -0.2};
@@ -109,6 +121,7 @@ TEST(Limits, NameEveryCauseAndOnlyCauses) {
     for (std::size_t c = 0; c < causes.size(); ++c) {
       if (!step.limits.has(causes[c].limit)) continue;
       ++seen[c];
+      if (is_tied(guard.instrument().chain(), q, step, guard.options().period)) continue;
       causes[c].without.forget();
       ASSERT_GT(difference(step, causes[c].without.step(q, desired)), 0.0)
           << name(causes[c].limit) << " does not limit step " << i;

@@ -368,6 +368,9 @@ TEST(SeveralMeshes, AMeshThatGoesTooFarIsNamed) {
   const auto sheet = sheet_of(500.0);
   InstrumentConstraint guard = guard_of(sheet, free_ball(1.0));
   ASSERT_EQ(guard.place(0, {}, {.linear = Vec3(9e8, 0, 0)}), Status::free);
+  EXPECT_EQ(step_of(guard, Vec3(0, 0, 1.25), Vec3::Zero()).status, Status::invalid_input)
+      << "9e5 in a cycle is beyond 100 times the sheet";
+  ASSERT_EQ(guard.place(0, {}, {.linear = Vec3(4e7, 0, 0)}), Status::free);
   bool ended = false;
   for (int i = 0; i < 40'000; ++i) {
     const double x = guard.place_of(0).position.x();

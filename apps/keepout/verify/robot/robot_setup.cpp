@@ -104,7 +104,10 @@ oracle::JudgedGuide draw_guide(const oracle::JudgedRobot& robot, const Links& li
   const oracle::JudgedBody& body = robot.bodies[random.below(robot.bodies.size())];
   const double kind = random.uniform();
   if (is_of_tip || kind < 0.5) {
-    guide.first = is_of_tip ? robot.bodies.back().points.back() : body.points.front();
+    // No joint moves a point of the base.
+    const oracle::JudgedPoint& of_body =
+        body.points.front().link > 0 ? body.points.front() : body.points.back();
+    guide.first = is_of_tip ? robot.bodies.back().points.back() : of_body;
     draw_region(guide, links[static_cast<std::size_t>(guide.first.link)].at(guide.first.position),
                 random);
   } else if (kind < 0.75) {

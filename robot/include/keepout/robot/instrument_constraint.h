@@ -187,7 +187,8 @@ class InstrumentConstraint {
   /// last pose and velocity, and step() returns invalid_input until a valid pose is set. A number
   /// that no mesh has is invalid_input and changes nothing.
   ///
-  /// step() returns invalid_input while a mesh turns by more than a radian in a cycle, and
+  /// step() returns invalid_input while a mesh turns by more than a radian in a cycle, or moves by
+  /// more than 100 times the lengths of instrument and meshes, and
   /// margin_too_small while it is so far away that rounding hides the margin or a band. Proofs take
   /// meshes to stay where they are. Allocates nothing, throws nothing.
   Status place(std::size_t mesh, const Pose& pose, const Twist& velocity = {}) noexcept;
