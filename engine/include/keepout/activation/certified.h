@@ -21,13 +21,16 @@ struct CertifiedTerms;
 ///
 /// It starts without planes. To a trial that comes too close it answers with the plane of the first
 /// contact, which has that triangle, grown by the margin, behind it; so each triangle is answered
-/// at most once in a round. Algorithm, proof and tolerances: docs/certified-step.md.
+/// at most once in a round. Proof: docs/certified-step.md. Search and tolerances:
+/// docs/certified-step-algorithm.md.
 ///
 /// The triangles come from the index, by a walk along each trial motion. What they mean is decided
 /// here, in double, of one triangle at a time: so the answers are the same, bit for bit, on every
 /// index, whatever it left out as surely clear.
 ///
-/// Guarantee: dist(x + s dx, mesh) >= min(margin, dist(x, mesh)) - 3 tolerance for all s in [0, 1].
+/// Guarantee, for every motion dx that judge() accepts, under the assumptions of
+/// docs/certified-step.md: dist(x + s dx, mesh) >= min(margin, dist(x, mesh)) - 3 tolerance for all
+/// s in [0, 1].
 class CertifiedRule final : public Activation {
  public:
   CertifiedRule();
@@ -46,8 +49,9 @@ class CertifiedRule final : public Activation {
   void ways_around(TriangleId source, HalfSpaceBuffer& ways) const noexcept override;
   std::size_t triangles() const noexcept override { return facets_.size(); }
 
-  /// Distances are told apart down to this: some 1e-10 of the largest lengths at hand. It comes
-  /// from the whole mesh, not from the triangles found, so that no index can change it.
+  /// Returns tau, the tolerance of distances at a tip: 2e-10 of longest edge, radius and margin,
+  /// plus 4e-16 of the 1-norm of the tip. It depends on the whole mesh and not on the triangles
+  /// found, so no index can change it.
   /// Precondition: prepare. [length]
   double tolerance(const Surroundings& around) const noexcept;
 
