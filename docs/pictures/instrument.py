@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The picture of docs/joint-space-step.md: an instrument of three joints that move in the plane. Its
+"""The picture of docs/joint-space-step-algorithm.md: an instrument of three joints that move in the plane. Its
 steps are made by `keepout serve`."""
 
 import json

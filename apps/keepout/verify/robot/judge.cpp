@@ -25,7 +25,7 @@ bool is_allowed(const Joint& joint, double from, double to, double period) {
 }
 
 /// Returns the certified distance of a pair or a guide that should keep `target`, is at `distance`,
-/// and was promised `floor` last: docs/joint-space-step.md, "What is promised" and "Recovery".
+/// and was promised `floor` last: docs/joint-space-step.md, "Certified clearance".
 double certified(double distance, double floor, double target, double band, double tolerance) {
   if (distance >= target - 2.75 * tolerance) return target;
   const double room = distance > 0.0 ? std::min(band, 0.5 * distance) : band;
