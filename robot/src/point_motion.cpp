@@ -59,19 +59,20 @@ const Vec3* PointMotion::at(int cell) noexcept {
     return place.points.data();
   }
   budget_->spend(work_of_place);
-  this->place(cell, state_);
+  place_at(share, state_);
+  placed_motion_ = motion_;
+  placed_share_ = share;
   fill(state_, place);
-  if (cell == cells) {
-    flange_at_end_ = state_.flange();
-    flange_motion_ = motion_;
-  }
   return place.points.data();
 }
 
 Pose PointMotion::flange_at(double share) noexcept {
-  if (share == 1.0 && flange_motion_ == motion_) return flange_at_end_;
-  budget_->spend(work_of_place);
-  place_at(share, state_);
+  if (placed_motion_ != motion_ || placed_share_ != share) {
+    budget_->spend(work_of_place);
+    place_at(share, state_);
+    placed_motion_ = motion_;
+    placed_share_ = share;
+  }
   return state_.flange();
 }
 

@@ -76,8 +76,8 @@ class PointMotion {
   std::array<Vec3, Instrument::most_points> straight_;  // J dq, of the linearised motion
   std::vector<Place> places_;                           // (cells + 1)
   std::uint64_t motion_ = 0;
-  Pose flange_at_end_;
-  std::uint64_t flange_motion_ = 0;  // the motion that it is of; 0: none
+  std::uint64_t placed_motion_ = 0;  // of state_: the motion and the share of it; 0: none
+  double placed_share_ = 0.0;
 };
 
 }  // namespace keepout
