@@ -369,7 +369,7 @@ void InstrumentConstraint::set_guides(std::vector<Guide> guides) {
   CycleMemory& memory = state_->memory;
   memory.guides.clear();
   for (Guide& guide : guides) {
-    memory.guides.push_back({std::move(guide), std::numeric_limits<double>::infinity()});
+    memory.guides.push_back({std::move(guide), -std::numeric_limits<double>::infinity()});
   }
   memory.guide_states.assign(memory.guides.size(), {});
   memory.forget_motion();

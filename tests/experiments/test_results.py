@@ -60,6 +60,20 @@ def test_by_the_papers_test_depth_and_duration_gain_and_deviation_and_smoothness
     assert not gains("cutting path deviation", -1.0) and not gains("spectral arc length, 20 Hz", 1.0)
 
 
+def test_the_readme_states_the_results_over_whole_trials() -> None:
+    readme = " ".join((RESULTS.parents[1] / "README.md").read_text().split())
+    rows = {row.strip("|").split("|")[0].split(" (")[0].strip(): row for row in TEXT.split("## E1")[0].splitlines() if row.startswith("|")}
+
+    def cells(name: str) -> list[str]:
+        return [cell.strip() for cell in rows[name].strip("|").split("|")]
+
+    free, held = (number.split(" ")[0] for number in cells("spectral arc length")[3].split(",")[0].split(" \u2192 "))
+    assert float(held) < float(free)  # less smooth
+    sure = {name: re.findall(r"p = ([\d.]+)", cells(name)[5])[0] for name in ("spectral arc length", "absolute penetration depth", "duration")}
+    assert f"spectral arc length {free} to {held}, p = {sure['spectral arc length']} over trials" in readme
+    assert f"p = {sure['absolute penetration depth']} and {sure['duration']}" in readme
+
+
 def test_every_figure_of_the_summary_is_there() -> None:
     named = re.findall(r"\(figures/([\w.]+)\)", TEXT)
     assert len(named) > 10

@@ -1,0 +1,71 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Writes the measured figures of the pages from the records in docs/records:
+
+    python3 docs/figures                      writes all pages
+    python3 docs/figures --check              exits 1 if a page differs from its records
+    python3 docs/figures --names              prints all figures that there are
+    python3 docs/figures --show FILE          prints the figures of a command's --json
+    python3 docs/figures --keep NAME FILE...  keeps a command's --json as a record, then writes all pages
+
+A record belongs to the commit that it was measured at: HEAD, or --commit. With --output-of COMMAND the
+file is what a program printed. docs/records.md says how to measure each record again.
+"""
+
+import argparse
+import json
+import sys
+
+import pages
+import records
+import speed  # noqa: F401, registers what it prints
+import values
+
+
+def is_apart(parts):
+    """Returns true if a path is in a build tree or a hidden directory."""
+    return parts[0] in ("build", "out") or any(part.startswith(".") for part in parts)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser.add_argument("--check", action="store_true")
+    parser.add_argument("--names", action="store_true")
+    parser.add_argument("--show", metavar="FILE")
+    parser.add_argument("--keep", nargs="+", metavar="NAME FILE")
+    parser.add_argument("--commit", default="HEAD")
+    parser.add_argument("--output-of", metavar="COMMAND")
+    arguments = parser.parse_args()
+    if arguments.show:
+        with open(arguments.show, encoding="utf-8") as file:
+            record = json.load(file)
+        for name, value in values.MEASURED_BY[record["keepout_record"]](record):
+            print(f"{name}:{chr(10) if chr(10) in value else ' '}{value}")
+        return 0
+    if arguments.keep:
+        records.keep(arguments.keep[0], arguments.keep[1:], arguments.commit, arguments.output_of)
+    figures = values.of_records(records.read_all())
+    if arguments.names:
+        for name, value in figures.items():
+            print(f"{name}: {value if len(value) < 80 else value[:77] + '...'}")
+        return 0
+    differing = []
+    for path in sorted(records.ROOT.rglob("*.md")):
+        if is_apart(path.relative_to(records.ROOT).parts):
+            continue
+        text = path.read_text(encoding="utf-8")
+        try:
+            written = pages.filled(text, figures)
+        except KeyError as error:
+            sys.exit(f"{path}: there is no figure {error}: see --names")
+        if written != text:
+            differing.append(path)
+            if not arguments.check:
+                path.write_text(written, encoding="utf-8")
+    for path in differing:
+        print(f"{path.relative_to(records.ROOT)}: {'differs from' if arguments.check else 'written from'} the records")
+    return 1 if arguments.check and differing else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

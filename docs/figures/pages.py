@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The figures of the pages, between markers that readers do not see:
+
+    <!--NAME-->TEXT<!--/-->                             in a line
+    <!--NAME-->                                         or lines, up to <!--/--> on a line of its own
+
+NAME is one of the names that values.py makes of the records.
+"""
+
+import re
+
+FIGURE = re.compile(r"<!--([a-z0-9_]+\.[a-z0-9_.]+)-->(.*?)<!--/-->", re.S)
+
+
+def filled(text, values):
+    """Returns a page's text with all of its figures as the records have them. Raises KeyError."""
+
+    def figure(match):
+        value = values[match[1]]
+        if "\n" in value or match[2].startswith("\n"):
+            value = f"\n{value}\n"
+        return f"<!--{match[1]}-->{value}<!--/-->"
+
+    return FIGURE.sub(figure, text)
+
+
+def names_of(text):
+    """Returns the names of all figures of a page."""
+    return [match[1] for match in FIGURE.finditer(text)]
+
+
+def without_figures(text):
+    """Returns a page's text without its figures."""
+    return FIGURE.sub("", text)

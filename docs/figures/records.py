@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The committed records: docs/records/NAME.json.gz, the source of every measured figure of the pages.
+
+A record is what a command wrote with --json, without its traces, or the text that a program printed
+(kind "output"). Around it stand its commit and its sources: the directories whose change makes it stale.
+"""
+
+import gzip
+import json
+import pathlib
+import re
+import subprocess
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+RECORDS = ROOT / "docs" / "records"
+
+# A record is stale if its sources changed more than so much after its commit.
+MOST_DAYS = 30
+MOST_LINES = 5000
+
+TIP = ["engine", "solvers", "factory"]
+INSTRUMENT = TIP + ["robot"]
+SOURCES = {
+    "simulate": TIP + ["apps/keepout/simulate"],
+    "simulate_robot": INSTRUMENT + ["apps/keepout/simulate", "oracle"],
+    "bench": TIP + ["adapters", "apps/keepout/bench"],
+    "speed": TIP + ["adapters", "apps/keepout/bench"],
+    "compare": TIP + ["adapters", "apps/keepout/compare"],
+    "plan": TIP + ["adapters/ompl", "apps/keepout/plan"],
+    "plan_robot": INSTRUMENT + ["adapters/ompl", "apps/keepout/plan"],
+    "verify": TIP + ["apps/keepout/verify", "oracle"],
+    "verify_robot": INSTRUMENT + ["apps/keepout/verify", "oracle"],
+    "output": INSTRUMENT + ["adapters"],
+}
+
+# Traces of single cycles, paths, pictures: what a record is large by.
+TRACES = {"strokes", "hand", "drawn", "crossings", "path", "too_near", "bins", "hashes_of_first", "svg",
+          "anomalies", "base_position", "base_rotation"}
+
+
+def git(*arguments):
+    return subprocess.run(["git", "-C", ROOT, *arguments], check=True, capture_output=True, text=True).stdout
+
+
+def without_traces(value):
+    """Returns a record without its traces, and with numbers of at most nine digits."""
+    if isinstance(value, dict):
+        return {key: without_traces(item) for key, item in value.items()
+                if key not in TRACES or isinstance(item, (int, float))}
+    if isinstance(value, list):
+        return [without_traces(item) for item in value]
+    return float(f"{value:.9g}") if isinstance(value, float) else value
+
+
+def merged(found):
+    """Returns one record of several of the same kind that have rows and a total."""
+    first = found[0]
+    for other in found[1:]:
+        first["rows"] += other["rows"]
+        for key, value in other["total"].items():
+            if isinstance(value, (int, float)):
+                first["total"][key] = (min if key.startswith("least") else max if key.startswith("deepest")
+                                       else int.__add__)(first["total"][key], value)
+    first["command"] = "; ".join(one["command"] for one in found)
+    return first
+
+
+def keep(name, paths, commit, output_of=None):
+    """Stores the record of a file, or of several with rows, as docs/records/NAME.json.gz.
+
+    With `output_of`, the file is what this command printed. Raises ValueError if a run was interrupted.
+    """
+    if output_of:
+        text = pathlib.Path(paths[0]).read_text(encoding="utf-8")
+        record = {"keepout_record": "output", "command": output_of, "text": text}
+    else:
+        found = [json.loads(pathlib.Path(path).read_text(encoding="utf-8")) for path in paths]
+        for path, one in zip(paths, found):
+            one["command"] = re.sub(r" --(json|out) \S+", "", one["command"])  # the user's file
+            if not one.get("complete", True):
+                raise ValueError(f"{path}: the run was interrupted: run it to its end")
+        record = without_traces(merged(found))
+        if record["keepout_record"] in ("plan", "plan_robot"):
+            del record["runs"]  # the summaries have them all
+    kept = {"commit": git("rev-parse", "--short=10", commit).strip(),
+            "sources": SOURCES[record["keepout_record"]], "record": record}
+    RECORDS.mkdir(exist_ok=True)
+    packed = gzip.compress(json.dumps(kept, indent=1, ensure_ascii=False).encode(), mtime=0)
+    (RECORDS / f"{name}.json.gz").write_bytes(packed)
+
+
+def read_all():
+    """Returns the kept records by name."""
+    return {path.name.removesuffix(".json.gz"): json.loads(gzip.decompress(path.read_bytes()))
+            for path in sorted(RECORDS.glob("*.json.gz"))}
+
+
+def has_history():
+    """Returns true if this is a git checkout with all of its history."""
+    try:
+        return git("rev-parse", "--is-shallow-repository").strip() == "false"
+    except (subprocess.CalledProcessError, OSError):
+        return False
+
+
+def staleness(kept):
+    """Returns why a record is stale, or an empty text. Needs the history."""
+    commit, sources = kept["commit"], kept["sources"]
+    try:
+        measured = int(git("show", "-s", "--format=%ct", commit))
+    except subprocess.CalledProcessError:
+        return f"its commit {commit} is not in the history: measure it again"
+    changed = git("log", "-1", "--format=%ct", "--", *sources).strip()
+    days = (int(changed or measured) - measured) / 86400.0
+    if days > MOST_DAYS:
+        return f"its sources changed {days:.0f} days later, more than {MOST_DAYS}: measure it again"
+    lines = 0
+    for row in git("diff", "--numstat", commit, "HEAD", "--", *sources).splitlines():
+        added, removed, path = row.split("\t")
+        if path.endswith((".cpp", ".h")):
+            lines += int(added) + int(removed)
+    if lines > MOST_LINES:
+        return f"{lines} lines of its sources changed since, more than {MOST_LINES}: measure it again"
+    return ""

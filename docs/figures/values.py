@@ -1,0 +1,289 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the pages print of each record: a table or a number for each name.
+
+A function of this file belongs to one kind of record, and yields names and texts. A figure's full name
+is that of the record, a dot, and the name that its function yields.
+"""
+
+MEASURED_BY = {}
+
+
+def of_kind(kind):
+    def register(function):
+        MEASURED_BY[kind] = function
+        return function
+
+    return register
+
+
+def of_records(kept):
+    """Returns the text of every figure by its full name."""
+    figures = {}
+    for name, one in kept.items():
+        record = one["record"]
+        figures[f"{name}.commit"] = one["commit"]
+        figures[f"{name}.command"] = f"`{record['command'].replace('keepout ', './run ')}`"
+        machine = record.get("machine") or next(iter(record.get("shards", [])), {}).get("machine")
+        if isinstance(machine, str):  # a shard of a campaign
+            figures[f"{name}.machine"] = f"{machine}, {record['date'][:10]}, commit {one['commit']}"
+        elif machine:
+            compiler = machine["compiler"].replace("GNU", "GCC")
+            figures[f"{name}.machine"] = (f"{machine['processor']}, {machine['cores']} cores, {compiler}, "
+                                          f"{machine['simd']}, {record['date'][:10]}, commit {one['commit']}")
+        for key, text in MEASURED_BY[record["keepout_record"]](record):
+            figures[f"{name}.{key}"] = text
+    return figures
+
+
+def number(value, digits=3):
+    """Returns a number of so many significant digits, and with separators of thousands."""
+    if value is None:
+        return "-"
+    if value == 0:
+        return "0"
+    if abs(value) >= 10 ** (digits - 1) or float(value).is_integer():
+        return f"{value:,.0f}"
+    return f"{value:#.{digits}g}".rstrip(".")
+
+
+def share(part, whole, digits=2):
+    return f"{number(100.0 * part / whole, digits)} %" if whole else "-"
+
+
+def table(columns, rows, left=1):
+    """Returns a Markdown table; the first `left` columns hold words, the others numbers."""
+    rule = ["---" if i < left else "--:" for i in range(len(columns))]
+    lines = [f"| {' | '.join(columns)} |", f"|{'|'.join(rule)}|"]
+    for row in rows:
+        if len(row) != len(columns):
+            raise ValueError(f"a row of {len(row)} cells below {len(columns)} columns: {row}")
+        lines.append(f"| {' | '.join(map(str, row))} |")
+    return "\n".join(lines)
+
+
+@of_kind("simulate")
+def simulate(record):
+    rows = []
+    for run in record["runs"]:
+        its = run["summary"]
+        is_free = run["rule"] == "none"
+        name = "no fixture" if is_free else f"`{run['rule']}`"
+        if its["deepest_mm"] is None:  # an open surface has no inside
+            inside = ("-", its["crossings"])
+        else:
+            inside = (f"{number(its['deepest_mm'])}{' mm' if its['deepest_mm'] else ''}",
+                      number(its["cycles_inside"]))
+        steps = ["-"] * 4 if is_free else [
+            f"{its['closest_approach_mm']:.2f} mm", number(its["stopped"]),
+            f"{number(its['p50_us'])} µs", f"{number(its['p99_us'])} µs"]
+        rows.append([name, *inside, *steps])
+        for key in ("p50_us", "p99_us", "crossings", "stopped"):
+            yield f"{run['rule']}.{key}", number(its[key])
+    inside = ["deepest inside", "cycles inside"]
+    if record["runs"][0]["summary"]["deepest_mm"] is None:
+        inside = ["inside", "passages through the surface"]
+    yield "table", table(["rule", *inside, "nearest approach", "cycles stopped", "median step", "99 %"], rows)
+    yield "cycles", number(record["runs"][0]["summary"]["cycles"])
+
+
+@of_kind("simulate_robot")
+def simulate_robot(record):
+    bodies = [body["name"] for body in record["bodies"]]
+    rows = []
+    for row in record["rows"]:
+        cells = []
+        for body in bodies:
+            below, inside = row[f"{body}_below"], row[f"{body}_in_mesh"]
+            deepest = f"; {number(row[f'{body}_deepest_mm'])} mm" if inside else ""
+            cells.append(f"{below:,}; {inside:,}{deepest}" if below else "0")
+        rows.append([f"{row['mesh']}, x{row['speed']:g}", row["mode"], *cells, f"{row['refused']:,}"])
+    yield "table", table(["mesh, speed", "mode", *bodies, "no motion"], rows, left=2)
+    for mode in {row["mode"] for row in record["rows"]}:
+        of_mode = [row for row in record["rows"] if row["mode"] == mode]
+        key = mode.replace(" ", "_")
+        yield f"{key}.cycles", f"{sum(row['cycles'] for row in of_mode):,}"
+        yield f"{key}.refused", f"{sum(row['refused'] for row in of_mode):,}"
+        yield f"{key}.below", f"{sum(row[f'{b}_below'] for row in of_mode for b in bodies):,}"
+        yield f"{key}.in_mesh", f"{sum(row[f'{b}_in_mesh'] for row in of_mode for b in bodies):,}"
+        yield f"{key}.deepest_mm", number(max(row[f"{b}_deepest_mm"] for row in of_mode for b in bodies))
+
+
+@of_kind("verify")
+def verify(record):
+    total = record["total"]
+    yield "steps", f"{total['steps']:,}"
+    yield "meshes", str(len(record["meshes"]))
+    yield "breaches", f"{sum(total['breaches'].values()):,}"
+    for kind, count in total["breaches"].items():
+        yield f"breaches.{kind}", f"{count:,}"
+    yield "led_out", f"{total['led_out']:,}"
+    yield "least_mm", f"{total['least_beyond_margin']:.2g}"
+    yield "least_tau", f"{total['least_beyond_margin_in_tau']:.3g}"
+    yield "statuses", ", ".join(f"`{name}` {count:,}" for name, count in total["statuses"].items() if count)
+
+
+def merged_rows(rows):
+    """Returns the sums of a campaign's rows by scenario and speed."""
+    sums = {}
+    for row in rows:
+        its = sums.setdefault((row["scenario"], row["speed"]), {
+            "cycles": 0, "below": 0, "guides_left": 0, "limits_broken": 0, "strayed": 0, "searched": 0,
+            "useful": 0, "movable": 0, "least_beyond_tau": float("inf"), "deepest_mm": 0.0})
+        for key in ("cycles", "below", "guides_left", "limits_broken", "strayed", "useful", "movable"):
+            its[key] += row[key]
+        its["searched"] += row["excess_samples"]
+        if row["least_beyond_tau"] is not None:
+            its["least_beyond_tau"] = min(its["least_beyond_tau"], row["least_beyond_tau"])
+        its["deepest_mm"] = max(its["deepest_mm"], row["deepest_mm"])
+    return sums
+
+
+@of_kind("verify_robot")
+def verify_robot(record):
+    total = record["total"]
+    for key in ("cycles", "below", "in_mesh", "guides_left", "limits_broken", "strayed"):
+        yield key, f"{total[key]:,}"
+    sums = merged_rows(record["rows"])
+    yield "scenarios", table(
+        ["scenario", "speed", "cycles", "below", "guides left", "joint limits broken", "strayed",
+         "blocked, searched", "movable"],
+        [[scenario, f"x{speed:g}", f"{its['cycles']:,}", its["below"], its["guides_left"], its["limits_broken"],
+          its["strayed"], f"{its['searched']:,}", share(its["movable"], its["searched"])]
+         for (scenario, speed), its in sums.items()])
+    yield "by_mesh", table(
+        ["mesh", "scenario", "speed", "cycles", "below", "rounds, mean/max", "blocked", "truncated",
+         "no motion", "excess", "with a useful motion"],
+        [[row["mesh"], row["scenario"], f"x{row['speed']:g}", f"{row['cycles']:,}", row["below"],
+          f"{row['rounds_mean']:.2f}/{row['rounds_max']}", f"{100 * row['blocked_share']:.0f} %",
+          f"{100 * row['cut_share']:.2g} %", f"{100 * row['unmoved_share']:.2g} %",
+          number(row["excess_mean"], 2), f"{row['useful']} of {row['excess_samples']}"]
+         for row in record["rows"] if row["cycles"]], left=2)
+    yield "recovery", table(
+        ["mesh", "scenario", "recovered within 500 cycles", "cycles, mean"],
+        [[row["mesh"], row["scenario"], f"{row['recovered']} of {row['recoveries']}",
+          number(row["recovery_cycles_mean"])]
+         for row in record["rows"] if row["recoveries"] and row["speed"] == 1.0], left=2)
+    percentiles = ("p50", "p99", "p999", "max")
+    timed = [row for row in record["rows"] if row["cycles"] and row["point_us"]["p50"]]
+    yield "times", table(
+        ["mesh", "scenario", "speed", "median, µs", "99 %", "99.9 %", "longest", "work units, at most",
+         "ball at the tip, median, µs", "99 %", "99.9 %", "longest"],
+        [[row["mesh"], row["scenario"], f"x{row['speed']:g}", *(number(row["step_us"][p]) for p in percentiles),
+          f"{row['looks_max']:,}", *(number(row["point_us"][p]) for p in percentiles)] for row in timed], left=2)
+    if timed:
+        first = timed[0]
+        yield "p50", number(first["step_us"]["p50"], 2)
+        yield "p99", number(first["step_us"]["p99"], 2)
+        for p in ("p50", "p99"):
+            yield f"{p}_ratio", number(first["step_us"][p] / first["point_us"][p], 2)
+    yield "by_step_length", step_lengths(record["rows"])
+    yield "undershot_mm", number(max(-min(row["least_beyond_mm"] for row in record["rows"]
+                                          if row["least_beyond_mm"] is not None), 0.0), 2)
+
+
+def step_lengths(rows):
+    """Returns a table by the length of a step, and by the rate of the cycles."""
+    by_speed = {}
+    for row in rows:
+        its = by_speed.setdefault(row["speed"], {"cycle_s": row.get("cycle_s", 0.0), "cycles": 0, "below": 0, "in_mesh": 0,
+                                               "blocked": 0.0, "least": 0.0, "deepest": 0.0})
+        its["blocked"] += row["blocked_share"] * row["cycles"] if row["cycles"] else 0.0
+        for key in ("cycles", "below", "in_mesh"):
+            its[key] += row[key]
+        its["least"] = min(its["least"], row["least_beyond_mm"] or 0.0)
+        its["deepest"] = max(its["deepest"], row["deepest_mm"])
+    return table(
+        ["step length, at most", "cycle rate", "cycles", "in contact", "below the certified clearance", "at most by, mm",
+         "in the mesh", "deepest, mm"],
+        [[f"{0.5 * speed:g} mm, {0.02 * speed:g} rad", f"{number(1.0 / its['cycle_s'])} Hz" if its["cycle_s"] else "-", f"{its['cycles']:,}",
+          share(its["blocked"], its["cycles"]), f"{its['below']:,}", number(-its["least"], 2), f"{its['in_mesh']:,}", number(its["deepest"], 2)]
+         for speed, its in sorted(by_speed.items())])
+
+
+@of_kind("plan")
+def plan(record):
+    rows = [[its["mesh"], its["checker"], f"{its['solved']}/{its['runs']}",
+             f"{its['valid']}/{its['solved']}" if its["solved"] else "-",
+             its["entering"] if its["solved"] else "-",
+             number(its["least_clearance_mm"], 4) if its["solved"] else "-",
+             number(1e3 * its["median_seconds"], 2), number(1e3 * its["median_checking_seconds"], 2),
+             number(its["median_checks"]), number(its["median_length_mm"]) if its["solved"] else "-"]
+            for its in record["summaries"]]
+    yield "table", table(["mesh", "checker", "solved", "valid", "enters", "least clearance, mm", "median time, ms",
+                          "of it in the checker, ms", "motions checked", "length, mm"], rows, left=2)
+    yield from plan_numbers(record)
+
+
+@of_kind("plan_robot")
+def plan_robot(record):
+    rows = [[its["mesh"], its["checker"], f"{its['solved']}/{its['runs']}", f"{its['valid']}/{its['solved']}",
+             its["motions"], its["too_close"], its["entering"],
+             number(its["deepest_mm"], 2) if its["entering"] else "-", number(1e3 * its["median_seconds"], 2),
+             number(its["median_checks"]), number(its["median_length_mm"])]
+            for its in record["summaries"]]
+    yield "table", table(["mesh", "checker", "solved", "valid", "motions", "too close", "in the mesh", "deepest, mm",
+                          "median time, ms", "motions checked", "length, mm"], rows, left=2)
+    yield from plan_numbers(record)
+
+
+def plan_numbers(record):
+    """Yields sums over the meshes for each checker, and its time beside that of `certified`."""
+    for checker in dict.fromkeys(its["checker"] for its in record["summaries"]):
+        of_it = [its for its in record["summaries"] if its["checker"] == checker]
+        key = checker.replace(" %", "").replace(" ", "_")
+        for what in ("runs", "solved", "valid", "entering"):
+            yield f"{key}.{what}", str(sum(its[what] for its in of_it))
+        yield f"{key}.invalid", str(sum(its["solved"] - its["valid"] for its in of_it))
+        yield f"{key}.unsolved", str(sum(its["runs"] - its["solved"] for its in of_it))
+        for its in of_it:
+            certified = next(other for other in record["summaries"]
+                             if other["mesh"] == its["mesh"] and other["checker"] == "certified")
+            yield f"{key}.{its['mesh']}.ms", number(1e3 * its["median_seconds"], 2)
+            yield f"{key}.{its['mesh']}.checks", number(its["median_checks"])
+            yield f"{key}.{its['mesh']}.times_certified", number(its["median_seconds"] / certified["median_seconds"], 2)
+            yield f"{key}.{its['mesh']}.solved", str(its["solved"])
+
+
+@of_kind("output")
+def output(record):
+    """The Markdown table that a program printed."""
+    lines = record["text"].splitlines()
+    yield "table", "\n".join(line for line in lines if line.startswith("|"))
+
+
+@of_kind("compare")
+def compare(record):
+    solvers, phases = record["comparison"]["solvers"], record["comparison"]["narrow_phases"]
+    if solvers:
+        sums = {}
+        for row in solvers["rows"]:
+            its = sums.setdefault(row["solver"], dict.fromkeys(
+                ("problems", "optimal", "infeasible", "gave_up", "wrong", "step_difference", "kkt_residual",
+                 "converged"), 0))
+            for key in ("problems", "optimal", "infeasible", "gave_up", "wrong"):
+                its[key] += row[key]
+            for key in ("step_difference", "kkt_residual"):
+                its[key] = max(its[key], row[key])
+            its["converged"] += sum(count for outcome, count in row["outcomes"].items()
+                                    if outcome.startswith("XTOL_REACHED -> infeasible"))
+        yield "solvers", table(
+            ["solver", "problems", "optimal", "without a solution, proved", "of these, claimed as converged",
+             "given up", "wrong answers that passed", "worst difference, of the motion", "worst KKT residual"],
+            [[f"`{name}`", number(its["problems"], 5), number(its["optimal"], 5), number(its["infeasible"], 5),
+              "-" if name == "active_set" else its["converged"], its["gave_up"], its["wrong"],
+              f"{its['step_difference']:.0e}", f"{its['kkt_residual']:.0e}"] for name, its in sums.items()])
+        for name, its in sums.items():
+            for key in ("problems", "infeasible", "converged", "gave_up", "wrong"):
+                yield f"{name}.{key}", f"{its[key]:,}"
+    if phases:
+        yield "narrow_phases", table(
+            ["tool", "relation", "narrow phase", "pairs", "failed", "contradicted", "error, median", "worst",
+             "unproven", "p50, µs", "p99, µs"],
+            [[row["tool"], row["relation"], f"`{row['backend']}`", row["pairs"], row["failed"], row["contradicted"],
+              short(row["median_error_mm"]), short(row["worst_error_mm"]), short(row["worst_unproven_mm"]),
+              number(row["p50_us"], 2), number(row["p99_us"], 2)] for row in phases["rows"]], left=3)
+
+
+def short(value):
+    """Returns a number of two digits, as a power of ten where it is small."""
+    return "0" if value == 0 else f"{value:.1e}" if abs(value) < 0.01 else f"{value:.2g}"
