@@ -12,7 +12,7 @@ namespace keepout {
 
 /// The work that a control cycle may do, whatever happens in it: counted in looks, so that it is
 /// the same on every run and every processor. A look is one at sixteen boxes or triangles in single
-/// precision, at one triangle in double, or at sixteen planes: some 50 ns to 100 ns.
+/// precision, at one triangle in double, or at sixteen planes.
 ///
 /// Whoever works spends, before or after, and stops once all is spent. What was not looked at then
 /// is not known, so no motion is accepted that could depend on it.
