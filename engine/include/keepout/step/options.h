@@ -64,7 +64,7 @@ struct Capacity {
   /// looks_of_queries on others, which are asked for all that is near.
   std::size_t looks = 0;
 
-  static constexpr std::size_t looks_of_a_walk = std::size_t{1} << 16;
+  static constexpr std::size_t looks_of_a_walk = std::size_t{1} << 16;   // of an index that walks
   static constexpr std::size_t looks_of_queries = std::size_t{1} << 22;  // not for real time
 };
 
