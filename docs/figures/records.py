@@ -95,21 +95,19 @@ def read_all():
             for path in sorted(RECORDS.glob("*.json.gz"))}
 
 
-def has_history():
-    """Returns true if this is a git checkout with all of its history."""
+def is_in_history(commit):
+    """Returns true if this is a git checkout with all of its history, and the commit is in it."""
     try:
+        git("merge-base", "--is-ancestor", commit, "HEAD")
         return git("rev-parse", "--is-shallow-repository").strip() == "false"
     except (subprocess.CalledProcessError, OSError):
         return False
 
 
 def staleness(kept):
-    """Returns why a record is stale, or an empty text. Needs the history."""
+    """Returns why a record is stale, or an empty text. Precondition: is_in_history(its commit)."""
     commit, sources = kept["commit"], kept["sources"]
-    try:
-        measured = int(git("show", "-s", "--format=%ct", commit))
-    except subprocess.CalledProcessError:
-        return f"its commit {commit} is not in the history: measure it again"
+    measured = int(git("show", "-s", "--format=%ct", commit))
     changed = git("log", "-1", "--format=%ct", "--", *sources).strip()
     days = (int(changed or measured) - measured) / 86400.0
     if days > MOST_DAYS:
