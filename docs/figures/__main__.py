@@ -22,11 +22,6 @@ import speed  # noqa: F401, registers what it prints
 import values
 
 
-def is_apart(parts):
-    """Returns true if a path is in a build tree or a hidden directory."""
-    return parts[0] in ("build", "out") or any(part.startswith(".") for part in parts)
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("--check", action="store_true")
@@ -50,9 +45,7 @@ def main():
             print(f"{name}: {value if len(value) < 80 else value[:77] + '...'}")
         return 0
     differing = []
-    for path in sorted(records.ROOT.rglob("*.md")):
-        if is_apart(path.relative_to(records.ROOT).parts):
-            continue
+    for path in pages.of_tree(records.ROOT):
         text = path.read_text(encoding="utf-8")
         try:
             written = pages.filled(text, figures)

@@ -24,6 +24,13 @@ def filled(text, values):
     return FIGURE.sub(figure, text)
 
 
+def of_tree(root):
+    """Returns the paths of all pages, but those in build trees and hidden directories."""
+    inner = lambda path: path.relative_to(root).parts
+    return sorted(path for path in root.rglob("*.md") if inner(path)[0] not in ("build", "out")
+                  and not any(part.startswith(".") for part in inner(path)))
+
+
 def names_of(text):
     """Returns the names of all figures of a page."""
     return [match[1] for match in FIGURE.finditer(text)]

@@ -213,8 +213,7 @@ TEST(BudgetOfACycle, IsNotSpentByABodyThatCannotGiveWay) {
   const Instrument ball = free_ball(0.5);
   Instrument instrument(ball.chain(), {{"post", {{0, Vec3(0, 0, 0)}}, 0.1}, ball.bodies()[0]});
   InstrumentConstraint guard(cone.mesh, cone.tree, std::move(instrument),
-                             std::make_unique<ActiveSet>(),
-                             {.margin = 0.2, .check_sides = false});
+                             std::make_unique<ActiveSet>(), {.margin = 0.2, .check_sides = false});
   const std::size_t second = guard.add_mesh(plate, std::make_shared<WideBvh>(plate));
   guard.place(0, {Vec3(0, 0, -0.32)}, {.linear = Vec3(0, 0, 3000)});
   guard.place(second, {Vec3(100, 0, 0)}, {.linear = Vec3(0, 0, 300)});
