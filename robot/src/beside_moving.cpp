@@ -79,7 +79,7 @@ void JointCycle::settle_immovable() noexcept {
 
 /// Stands still if that is proved beside the meshes that move.
 bool JointCycle::stand_still(const JointTask& task, Trial& best) noexcept {
-  Trial trial{.share = 1.0, .cost = task.cost({})};
+  Trial trial{.share = 1.0, .cost = task.standing * task.standing};
   judge(trial);
   if (trial.cell != PointMotion::cells) return false;
   trouble_ = Status::free;
@@ -131,17 +131,15 @@ void JointCycle::prefer_lowered(std::bitset<most_pairs>& pairs) const noexcept {
 /// turn, and stays out if the others still do), and gives way in these alone.
 bool JointCycle::degrade_conflict(const JointTask& task) noexcept {
   constexpr Softness softest{Relaxation::recovery, 0.0, false, 0.0};
-  std::array<bool, most_pairs + Guide::most> is_owner{};
-  for (const ContactRow& row : memory_.rows) is_owner[row.owner] = true;
+  std::bitset<most_pairs + Guide::most> is_owner;
+  for (const ContactRow& row : memory_.rows) is_owner.set(row.owner);
   Solution solution;
   for (std::size_t owner = 0; owner < is_owner.size() && !memory_.budget.is_spent(); ++owner) {
     if (!is_owner[owner]) continue;
-    is_left_out_[owner] = true;
-    if (pose(task, softest, solution) == SolveStatus::optimal) is_left_out_[owner] = false;
+    left_out_.set(owner);
+    if (pose(task, softest, solution) == SolveStatus::optimal) left_out_.reset(owner);
   }
-  const auto is_culprit = [&](std::size_t owner) {
-    return is_owner[owner] && !is_left_out_[owner];
-  };
+  const auto is_culprit = [&](std::size_t owner) { return is_owner[owner] && !left_out_[owner]; };
   bool changed = false;
   for (std::size_t g = 0; g < memory_.guides.size(); ++g) {
     if (!is_culprit(most_pairs + g)) continue;
@@ -160,7 +158,7 @@ bool JointCycle::degrade_conflict(const JointTask& task) noexcept {
       changed = true;
     }
   }
-  is_left_out_.fill(false);
+  left_out_.reset();
   return changed;
 }
 

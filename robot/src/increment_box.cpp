@@ -32,6 +32,7 @@ bool IncrementBox::clip(JointVector& increment) const noexcept {
     double& step = increment[i];
     step = std::clamp(step, low_[i], high_[i]);
     const double there = q_[i] + step;
+    if (lower <= there && there <= upper) continue;
     is_too_far = is_too_far || (step > 0.0 && there > memory_.farthest(k)) ||
                  (step < 0.0 && there < -memory_.farthest(k));
     // Where the sum rounds to beyond a limit it is shortened by the excess, which is known exactly,

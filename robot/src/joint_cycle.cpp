@@ -47,7 +47,7 @@ void JointCycle::run(const JointTask& task, InstrumentStep& result) noexcept {
     report_limits({}, result);
     return;
   }
-  Trial best{.cost = task.cost(memory_.increment)};
+  Trial best{.cost = task.standing * task.standing};
   rows_.start();
   if (meshes_move_) {
     search_beside_moving(task, best, result);
@@ -59,7 +59,7 @@ void JointCycle::run(const JointTask& task, InstrumentStep& result) noexcept {
   watch_.close();
   if (is_ok(result.status) && result.status != Status::yielding && is_recovering())
     result.status = Status::recovering;
-  if (result.status == Status::free && best.missed > 0.5 * task.standing_miss()) {
+  if (result.status == Status::free && best.missed > 0.5 * task.standing) {
     result.status = Status::limited;
     best.held.add(Limit::singularity);
   }
@@ -189,8 +189,7 @@ bool JointCycle::seek(const JointTask& task, const JointTask& part, Trial& best)
     // margin within the band, only as far as it pays.
     trial.share = static_cast<double>(trial.cell) / PointMotion::cells;
     trial.cost = task.cost_of_share(trial.increment, trial.share);
-    const double still = std::sqrt(task.cost_of_share(trial.increment, 0.0));
-    const double affordable = still + 2.0 * options_.band;
+    const double affordable = task.standing + 2.0 * options_.band;
     if (!is_recovering() && !meshes_move_ && trial.cost > affordable * affordable) {
       // Guides that are within their bands are pulled back only where the task does not pay for it.
       if (relax_guides()) continue;
@@ -198,7 +197,7 @@ bool JointCycle::seek(const JointTask& task, const JointTask& part, Trial& best)
       trial.held.add(Limit::linearization);
       trial.cost = task.cost_of_share(trial.increment, trial.share);
     }
-    if (trial.share > 0.0 && part.standing_miss() > 0.0 && strays(task, trial)) {
+    if (trial.share > 0.0 && part.standing > 0.0 && strays(task, trial)) {
       if (relax_guides()) continue;
       has_strayed_ = true;
       stopped_.add(Limit::linearization);

@@ -107,7 +107,7 @@ class JointCycle {
   bool has_strayed_ = false;                 // a trial of the last attempt: see strays
   Limits stopped_ = {};                      // what attempts failed by
   GuideSet stopping_guides_ = {};            // of these, the guides
-  std::array<bool, most_pairs + Guide::most> is_left_out_{};     // owners of rows not to be posed
+  std::bitset<most_pairs + Guide::most> left_out_ = {};          // owners of rows not to be posed
   std::array<std::uint8_t, 2 * Chain::most_joints> box_rows_{};  // of the problem: see pose
   std::size_t relaxed_ = 0;  // the least relaxation of guides that is left to try in this cycle
   bool meshes_move_;

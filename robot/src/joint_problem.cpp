@@ -146,7 +146,7 @@ SolveStatus JointCycle::pose(const JointTask& task, const Softness& softness,
   std::size_t count = 0;
   for (const ContactRow& row : memory_.rows) {
     double steepest = 0.0;
-    if (is_left_out_[row.owner]) {
+    if (left_out_[row.owner]) {
       number = std::fill_n(number, n, 0.0);
       memory_.bounds[count++] = 0.0;
       continue;

@@ -6,20 +6,27 @@
 #include <cmath>
 
 namespace keepout {
+namespace {
+
+double length_of(const std::array<double, JointTask::most_rows>& v) noexcept {
+  return Eigen::Map<const Eigen::Vector<double, JointTask::most_rows>>(v.data()).norm();
+}
+
+}  // namespace
 
 double JointTask::cost(const JointVector& increment) const noexcept {
+  const auto n = static_cast<std::size_t>(joints);
+  JointVector u;
+  for (std::size_t k = 0; k < n; ++k) u[k] = increment[k] / unit[k];
   double sum = 0.0;
-  for (int row = 0; row < rows; ++row) {
-    double off = -desired[static_cast<std::size_t>(row)];
-    for (int k = 0; k < joints; ++k) {
-      off += jacobian[static_cast<std::size_t>(k * rows + row)] * in_units(increment, k);
+  for (std::size_t row = 0; row < static_cast<std::size_t>(rows); ++row) {
+    double off = -desired[row];
+    for (std::size_t k = 0; k < n; ++k) {
+      off += jacobian[k * static_cast<std::size_t>(rows) + row] * u[k];
     }
     sum += off * off;
   }
-  for (int k = 0; k < joints; ++k) {
-    const double u = in_units(increment, k);
-    sum += damping * u * u;
-  }
+  for (std::size_t k = 0; k < n; ++k) sum += damping * u[k] * u[k];
   return sum;
 }
 
@@ -64,14 +71,6 @@ JointTask JointTask::damped() const noexcept {
   return task;
 }
 
-double JointTask::standing_miss() const noexcept {
-  double sum = 0.0;
-  for (int row = 0; row < rows; ++row) {
-    sum += desired[static_cast<std::size_t>(row)] * desired[static_cast<std::size_t>(row)];
-  }
-  return std::sqrt(sum);
-}
-
 double JointTask::linear_miss(const JointVector& increment, double share) const noexcept {
   const double square = cost_of_share(increment, share) - damping_cost(increment, share);
   return std::sqrt(std::max(square, 0.0));
@@ -105,6 +104,7 @@ double JointTask::damping_cost(const JointVector& increment, double share) const
 JointTask JointTask::scaled(double share) const noexcept {
   JointTask task = *this;
   for (double& number : task.desired) number *= share;
+  task.standing *= share;
   return task;
 }
 
@@ -131,6 +131,7 @@ JointTask flange_task(const ChainState& chain, const Twist& desired,
     task.unit[static_cast<std::size_t>(k - 1)] = unit;
     put(k - 1, unit * chain.linear(k, chain.size(), tip), chain.angular(k, chain.size()));
   }
+  task.standing = length_of(task.desired);
   return task;
 }
 
@@ -143,6 +144,7 @@ JointTask joint_task(std::span<const double> desired, std::span<const double> we
     task.jacobian[k * desired.size() + k] = weight;
     task.desired[k] = weight * desired[k];
   }
+  task.standing = length_of(task.desired);
   return task;
 }
 

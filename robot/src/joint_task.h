@@ -21,7 +21,8 @@ struct JointTask {
   int rows = 0;
   int joints = 0;
   double damping = 0.0;
-  JointVector unit{};  // [rad or length]
+  JointVector unit{};     // [rad or length]
+  double standing = 0.0;  // |v|: what standing still misses
   /// The weight of a turn of the flange [length/rad]; empty if the task is not one of the flange.
   std::optional<double> turn_weight = std::nullopt;
 
@@ -40,8 +41,6 @@ struct JointTask {
   JointTask scaled(double share) const noexcept;
   /// Returns the task with 16 times the damping, or with some damping if it has none.
   JointTask damped() const noexcept;
-  /// Returns |v|: what standing still misses.
-  double standing_miss() const noexcept;
   /// Returns |J u - v|: what a share of an increment misses if the flange moves linearly.
   double linear_miss(const JointVector& increment, double share) const noexcept;
   /// Returns what a motion of the flange from one pose to another misses, in the metric of v.

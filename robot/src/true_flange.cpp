@@ -15,8 +15,9 @@ constexpr double slack = 0.01;  // of what is desired
 
 /// Returns a bound of how far the true motion of the flange ends from the linear one, in the units
 /// of the task: half of the bound of |p''| (motion_bounds.h), whose levers are columns of the
-/// Jacobian. An axis is off by at most the turns a of all joints, so the turn of the flange is off
-/// by at most a^2; the bound is infinite for an a above 1 rad.
+/// Jacobian; the sum |x| + |y| + |z| bounds their lengths. An axis is off by at most the turns a of
+/// all joints, so the turn of the flange is off by at most a^2; the bound is infinite for an a
+/// above 1 rad.
 double most_deviation(const Chain& chain, const JointTask& task,
                       const JointVector& increment) noexcept {
   MotionBounds bounds;
@@ -28,7 +29,7 @@ double most_deviation(const Chain& chain, const JointTask& task,
       continue;
     }
     const Eigen::Map<const Vec3> column(task.jacobian.data() + (k - 1) * task.rows);
-    const double way = (column.norm() + bounds.path) * moved;
+    const double way = (column.lpNorm<1>() + bounds.path) * moved;
     bounds.bend += moved * (way + 2.0 * bounds.path);
     bounds.path += way;
     turns += moved;
@@ -47,7 +48,7 @@ bool JointCycle::strays(const JointTask& task, Trial& trial) noexcept {
   const bool is_judged = task.turn_weight.has_value() && !is_recovering() &&
                          options_.certified == CertifiedMotion::actual;
   if (!is_judged) return false;
-  const double standing = task.standing_miss();
+  const double standing = task.standing;
   trial.missed =
       std::sqrt(trial.cost) + most_deviation(memory_.instrument.chain(), task, trial.increment);
   if (trial.missed <= 0.5 * standing) return false;
@@ -64,7 +65,7 @@ bool JointCycle::strays(const JointTask& task, Trial& trial) noexcept {
 void JointCycle::cut_to_best(const JointTask& task, Trial& trial) noexcept {
   constexpr int most_halvings = 12;
   const Pose start = memory_.motion.chain_at_start().flange();
-  const double standing = task.standing_miss();
+  const double standing = task.standing;
   const double whole = trial.share;
   trial.held.add(Limit::linearization);
   trial.share = 0.0;

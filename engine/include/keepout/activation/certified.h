@@ -65,8 +65,9 @@ class CertifiedRule final : public Activation {
 
   bool meet(const Vec3& trial, std::span<const HalfSpace> planes, double too_close,
             Meeting& meeting) noexcept;
-  const Facet* nearest() const noexcept;
-  void choose_walls(double too_close) noexcept;
+  template <class Accepts>
+  const Facet* nearest(const Accepts& accepts) const noexcept;
+  void choose_walls(const Facet& first, double too_close) noexcept;
   void answer_walls(HalfSpaceBuffer& planes) noexcept;
   const Facet& facet(TriangleId source) const noexcept;
 

@@ -139,7 +139,7 @@ Opening CertifiedRule::start(const Surroundings& around, HalfSpaceBuffer&) noexc
   const double least = around.margin - lost_below * tau;
   aim_is_free_ = meet(around.aim, {}, least, at_aim_.emplace());
   if (budget().is_spent()) return {budget().status_at_end()};
-  const Facet* near = nearest();
+  const Facet* near = nearest([](const Facet&) { return true; });
   const std::optional<double> distance = known_distance(near, around.margin, tau);
   if (near == nullptr || near->distance() >= least) return {.distance = distance};
   aim_is_free_ = false;
@@ -153,7 +153,7 @@ Opening CertifiedRule::start(const Surroundings& around, HalfSpaceBuffer&) noexc
   const double lift = std::max(std::min(around.recovery, missing), tau);
   const Vec3 aim = way_out(around, near->normal(), lift);
   *terms_ = CertifiedTerms::leading_off(near->distance(), lift, tau);
-  choose_walls(least);
+  choose_walls(*near, least);
   walk_->begin_again(terms_->target);
   facets_.clear();
   return {Status::recovering, aim, distance};
@@ -167,34 +167,34 @@ bool CertifiedRule::meet(const Vec3& trial, std::span<const HalfSpace> planes, d
   return walk_->walk(trial, visitor);
 }
 
-/// Of the facets that were asked about; of equals the first by their corners.
-const Facet* CertifiedRule::nearest() const noexcept {
-  const auto nearer = [](const Facet& a, const Facet& b) {
-    return a.distance() < b.distance() || (a.distance() == b.distance() && a.before(b));
-  };
-  const Facet* found = std::min_element(facets_.begin(), facets_.end(), nearer);
-  return found == facets_.end() ? nullptr : found;
+/// Returns the nearest of the facets that `accepts` accepts, of equals the first by their corners;
+/// null if it accepts none.
+template <class Accepts>
+const Facet* CertifiedRule::nearest(const Accepts& accepts) const noexcept {
+  const Facet* found = nullptr;
+  for (const Facet& facet : facets_) {
+    if (found != nullptr && facet.distance() > found->distance()) continue;
+    if (!accepts(facet)) continue;
+    const bool is_first =
+        found == nullptr || facet.distance() < found->distance() || facet.before(*found);
+    if (is_first) found = &facet;
+  }
+  return found;
 }
 
 /// Chooses facets nearer to the tip than `too_close` that face it from different directions, the
-/// nearest first.
-void CertifiedRule::choose_walls(double too_close) noexcept {
+/// nearest first. Precondition: `first` is the nearest, and it is nearer than that.
+void CertifiedRule::choose_walls(const Facet& first, double too_close) noexcept {
   const auto is_new = [&](const Facet& facet) {
     return facet.distance() < too_close &&
            std::none_of(walls_.begin(), walls_.end(), [&](const Facet& wall) {
              return wall.normal().dot(facet.normal()) > alike;
            });
   };
-  while (walls_.size() < most_walls) {
-    budget().spend(1 + facets_.size() / 8);
-    const Facet* next = nullptr;
-    for (const Facet& facet : facets_) {
-      const bool is_nearer = next == nullptr || facet.distance() < next->distance() ||
-                             (facet.distance() == next->distance() && facet.before(*next));
-      if (is_nearer && is_new(facet)) next = &facet;
-    }
-    if (next == nullptr) return;
+  for (const Facet* next = &first; next != nullptr; next = nearest(is_new)) {
     walls_.push(*next);
+    if (walls_.size() == most_walls) return;
+    budget().spend(1 + facets_.size() / 8);
   }
 }
 
