@@ -58,7 +58,7 @@ std::vector<std::string> warnings_of(const LoadedMesh& loaded, const LiveOptions
 }
 
 /// Where an instrument begins: link 0, its place and the rows of its rotation, and the joints.
-Json json_of(const RobotStart& start) {
+Json record_of(const RobotStart& start) {
   Json base = Json::array();
   for (const double x : start.base.position) base.push_back(x);
   for (const auto& row : start.base.rotation.rowwise()) {
@@ -95,7 +95,7 @@ Anatomy anatomy_of(const std::filesystem::path& name, const LiveOptions& options
                             {"warnings", warnings_of(loaded, options, start)}},
                   .text = to_base64(gzipped(bytes.bytes))};
   if (start) {
-    anatomy.facts["start"] = json_of(*start);
+    anatomy.facts["start"] = record_of(*start);
     // What a cache calls the index of a mesh is the digest of the mesh.
     anatomy.facts["digest"] = index_cache_file(*loaded.mesh, {}).stem().string();
   }

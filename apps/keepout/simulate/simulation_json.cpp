@@ -36,7 +36,7 @@ double length(double mm) { return to_digits(mm, 1e6); }
 
 Json place(const Vec3& point) { return {length(point.x()), length(point.y()), length(point.z())}; }
 
-Json json_of(const Stroke& stroke) {
+Json record_of(const Stroke& stroke) {
   Json tips = Json::array(), clearances = Json::array(), times = Json::array();
   std::string outcomes;
   for (const Cycle& cycle : stroke.cycles) {
@@ -51,7 +51,7 @@ Json json_of(const Stroke& stroke) {
           {"outcome", std::move(outcomes)}};
 }
 
-Json json_of(const RunSummary& summary, SurfaceKind surface) {
+Json record_of(const RunSummary& summary, SurfaceKind surface) {
   const auto if_timed = [&](double value) { return summary.max_us > 0.0 ? Json(value) : Json(); };
   const auto if_closed = [&](auto value) {
     return surface == SurfaceKind::closed ? Json(value) : Json();
@@ -79,7 +79,7 @@ Json run_json(const Simulation& simulation, std::size_t number, const RunSummary
   const Run& run = simulation.runs[number];
   const Moment worst = worst_moment(simulation, number);
   Json strokes = Json::array(), crossings = Json::array();
-  for (const Stroke& stroke : run.strokes) strokes.push_back(json_of(stroke));
+  for (const Stroke& stroke : run.strokes) strokes.push_back(record_of(stroke));
   for (const auto& [stroke, cycle] : run.crossings) {
     crossings.push_back({{"stroke", stroke}, {"cycle", cycle}});
   }
@@ -88,7 +88,7 @@ Json run_json(const Simulation& simulation, std::size_t number, const RunSummary
           {"description", explanation(run)},
           {"kept_out", summary.kept_out()},
           {"words", outcome_of(summary, simulation.surface)},
-          {"summary", json_of(summary, simulation.surface)},
+          {"summary", record_of(summary, simulation.surface)},
           {"worst", {{"stroke", worst.stroke}, {"cycle", worst.cycle}}},
           {"strokes", std::move(strokes)},
           {"crossings", std::move(crossings)}};

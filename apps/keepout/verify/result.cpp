@@ -19,7 +19,7 @@ constexpr int campaign_format =
     3;  // raised whenever the trajectories of a seed, or tallies, change
 
 template <class Enum, std::size_t n>
-Json json_of(const std::array<std::uint64_t, n>& counts) {
+Json record_of(const std::array<std::uint64_t, n>& counts) {
   Json json = Json::object();
   for (std::size_t i = 0; i < n; ++i) json[std::string(name(static_cast<Enum>(i)))] = counts[i];
   return json;
@@ -28,15 +28,15 @@ Json json_of(const std::array<std::uint64_t, n>& counts) {
 /// JSON has no infinity.
 Json or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-Json json_of(const Tally& t) {
+Json record_of(const Tally& t) {
   return {{"mesh", t.mesh},
           {"triangles", t.triangles},
           {"trajectories", t.trajectories},
           {"steps", t.steps},
           {"tips", t.tips},
           {"led_out", t.led_out},
-          {"statuses", json_of<Status>(t.statuses)},
-          {"breaches", json_of<Breach>(t.breaches)},
+          {"statuses", record_of<Status>(t.statuses)},
+          {"breaches", record_of<Breach>(t.breaches)},
           {"least_beyond_margin", or_null(t.least)},
           {"least_beyond_margin_in_tau", or_null(t.least_in_tau)},
           {"seconds", t.seconds}};
@@ -147,7 +147,7 @@ bool are_possible(const Json& tally) {
 
 /// Whether what a file says agrees with itself.
 bool is_sound(const Json& result) {
-  Json total = json_of(Tally{.mesh = "total"});
+  Json total = record_of(Tally{.mesh = "total"});
   for (const Json& mesh : result.at("meshes")) {
     if (!are_possible(mesh)) return false;
     add(total, mesh);
@@ -200,9 +200,9 @@ Json result_of(const CampaignRun& run, const Findings& findings) {
   const auto& [index, count] = run.settings.shard;
   const std::uint64_t all = trajectory_count(run.settings.steps);
   Json meshes = Json::array();
-  Json total = json_of(Tally{.mesh = "total"});
+  Json total = record_of(Tally{.mesh = "total"});
   for (const Tally& tally : findings.meshes) {
-    meshes.push_back(json_of(tally));
+    meshes.push_back(record_of(tally));
     add(total, meshes.back());
   }
   total.erase("triangles");

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "keepout/fixtures/random.h"
+#include "keepout/geometry/pose.h"
 
 namespace keepout::app {
 namespace {

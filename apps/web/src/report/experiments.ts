@@ -24,11 +24,11 @@ const claimColumns: readonly Column[] = [
       make("span", { class: "of" }, shown(`${experimentOf(claim)}/title`)),
     ],
   },
+  { heading: "evidence", from: "/sure", look: "name" },
   { heading: "paper", from: "/paper", look: "name" },
   { heading: "its rule here", from: "/reproduction", look: "name" },
   { heading: "certified", from: "/certified", look: "name" },
   { heading: "best", from: "/best", look: "name" },
-  { heading: "how sure", from: "/sure", look: "name" },
   { heading: "why it differs", from: "/note", look: "words" },
 ];
 
