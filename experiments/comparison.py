@@ -120,7 +120,7 @@ def _claim(measure: Measure, rows: list[Row], present: list[str], against: list[
         """Free hand and mode, as the paper prints them: of what it tests."""
         free, held = (measure.paper_values(rows, m) for m in (modes.NO_FIXTURE, mode))
         p = next((a.student for a in against if a.measure is measure and a.mode == mode), None)
-        tested = "" if p is None else f", p = {p:.2g}"
+        tested = "" if p is None else f", pooled p = {p:.2g}"
         return f"{measure.text(free)} → {measure.text(held)}{unit}{tested}"
 
     means = {mode: measure.paper_values(rows, mode).mean() for mode in _sound(rows, present)}
@@ -131,7 +131,7 @@ def _claim(measure: Measure, rows: list[Row], present: list[str], against: list[
     return Claim(
         about=f"{paper.about} ({paper.section}), free hand → fixture",
         paper=f"{paper.free.mean:g} ± {paper.free.sd:g} → {paper.fixture.mean:g} ± "
-        f"{paper.fixture.sd:g}{unit}, p = {paper.p:.2g}",
+        f"{paper.fixture.sd:g}{unit}, pooled p = {paper.p:.2g}",
         reproduction=pair("paper"),
         certified=pair("certified"),
         best=f"{figures.label(best)}: {means[best]:.2f}{unit}, of those that finished with a setpoint never {SOUND:g} mm deep"

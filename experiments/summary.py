@@ -4,6 +4,11 @@ from __future__ import annotations
 
 from .experiment import Findings
 
+_POOLED = (
+    "A pooled p is that of the paper's test, which takes dependent samples as independent. "
+    "The evidence is over whole trials, Holm-corrected, where it says so."
+)
+
 
 def text(findings: dict[str, tuple[str, Findings]], command: str, version: str) -> str:
     """Claims first, all experiments together; then each with its tables and figures."""
@@ -11,12 +16,13 @@ def text(findings: dict[str, tuple[str, Findings]], command: str, version: str) 
     claims = [claim for _, found in findings.values() for claim in found.claims]
     if claims:
         lines += _table(
-            ["", "paper", "its rule here", "certified", "best here", "how sure", "why it differs"],
+            ["", "evidence", "paper", "its rule here", "certified", "best here", "why it differs"],
             [
-                [c.about, c.paper, c.reproduction, c.certified, c.best, c.sure, c.note]
+                [c.about, c.sure, c.paper, c.reproduction, c.certified, c.best, c.note]
                 for c in claims
             ],
         )
+        lines += [_POOLED, ""]
     for title, found in findings.values():
         lines += [f"## {title}", "", found.headline, ""]
         for table in found.tables:
