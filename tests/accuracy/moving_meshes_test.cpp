@@ -146,8 +146,9 @@ TEST_P(MovingMeshes, AreKeptOffWhateverTheHandDoes) {
     }
   }
   std::printf(
-      "%s: %d cycles, near the surface in %d; clearance %.6f mm at least where it was promised; %d "
-      "cycles kept less, and said so; %d without a motion, and said so\n",
+      "| mesh | cycles | near the surface | least clearance where 0.198 mm was certified, mm "
+      "| cycles that could keep less, and said so | without a motion |\n"
+      "|---|--:|--:|--:|--:|--:|\n| %s | %d | %d | %.6f | %d | %d |\n",
       GetParam(), cycles, blocked, nearest, named, stopped);
   RecordProperty("nearest", std::to_string(nearest));
   RecordProperty("named", named);

@@ -108,6 +108,23 @@ TEST(MotionBounds, NoMotionOfTheSevenJointArmIsLongerOrBendsMore) {
   judge(seven_joint_arm(), "seven_joint_arm", 12);
 }
 
+TEST(MotionBounds, OfAPsmAtOneKilohertzAreThoseThatThePageStates) {
+  // docs/joint-space-step-algorithm.md: M / 2 at a lever of 200 mm.
+  const Instrument robot = psm();
+  const Chain& chain = robot.chain();
+  ChainState state;
+  chain.place(std::vector<double>{0.0, 0.0, 200.0, 0.0, 0.0, 0.0}, state);
+  std::vector<double> yaw_and_pitch(6, 0.0);
+  std::vector<double> all(6);
+  for (std::size_t k = 0; k < 6; ++k) {
+    all[k] = 1e-3 * chain.joint(static_cast<int>(k) + 1).limits.velocity;
+    if (k < 2) yaw_and_pitch[k] = all[k];
+  }
+  const Vec3 tip = state.flange().position;
+  EXPECT_NEAR(0.5e3 * motion_bounds(state, yaw_and_pitch, 6, tip).bend, 0.4, 0.05);  // [um]
+  EXPECT_NEAR(0.5e3 * motion_bounds(state, all, 6, tip).bend, 4.8, 0.1);
+}
+
 TEST(MotionBounds, OfOneJointTheyAreExact) {
   const Chain turning({Joint{}});
   const Chain sliding({Joint{.kind = JointKind::prismatic, .axis = Vec3::UnitX()}});
