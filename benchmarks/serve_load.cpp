@@ -25,6 +25,7 @@
 #include "bench/timing.h"
 #include "keepout/fixtures/poses.h"
 #include "keepout/mesh/load_mesh.h"
+#include "machine.h"
 
 namespace {
 
@@ -162,13 +163,6 @@ class Hand {
   char line_[512];
 };
 
-void print(std::vector<double>& times, const char* what) {
-  const app::Timing timing = app::timing_of(times);
-  std::printf("%-10s %8zu  p50 %6.1f  p99 %6.1f  p99.9 %6.1f  max %8.1f us\n", what, times.size(),
-              timing.p50, timing.p99.value_or(timing.max), timing.p999.value_or(timing.max),
-              timing.max);
-}
-
 void run(const Load& load) {
   const LoadedMesh loaded = load_mesh(load.mesh);
   Server server(load);
@@ -177,9 +171,8 @@ void run(const Load& load) {
   const auto count = static_cast<std::size_t>(load.requests);
   const auto every = load.malformed > 0.0 ? static_cast<std::size_t>(1.0 / load.malformed) : count;
   std::vector<double> steps;
-  std::vector<double> bad;
+  std::size_t bad = 0;
   steps.reserve(count);
-  bad.reserve(count / every + 1);
   std::size_t limited = 0;
   std::string resident_early;
   for (std::size_t number = 0; number < count; ++number) {
@@ -194,17 +187,27 @@ void run(const Load& load) {
     if ((answer.find("\"error\"") != std::string_view::npos) != is_bad) {
       throw std::runtime_error("a wrong answer: " + std::string(answer));
     }
-    (is_bad ? bad : steps).push_back(waited);
-    if (is_bad) continue;
+    if (is_bad) {
+      ++bad;
+      continue;
+    }
+    steps.push_back(waited);
     limited += answer.find("\"limited\"") != std::string_view::npos;
     hand.follow(answer);
   }
-  std::printf("%s, %s, %zu requests, %zu of them limited\n", load.mesh.c_str(),
-              load.transport.c_str(), count, limited);
-  print(steps, "step");
-  if (!bad.empty()) print(bad, "malformed");
-  std::printf("server resident: %s after 10,000 requests, %s at the end\n", resident_early.c_str(),
-              server.resident().c_str());
+  const app::Machine machine = app::this_machine();
+  std::printf("machine: %s, %u cores, %s, %s\n", machine.processor.c_str(), machine.cores,
+              machine.compiler.c_str(), machine.simd.c_str());
+  const app::Timing waited = app::timing_of(steps);
+  std::printf(
+      "| over | requests | of them cut off | held back by the surface | p50, µs | p99 | p99.9 | "
+      "max "
+      "| resident after 10,000 | at the end |\n|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n");
+  std::printf("| a %s | %zu | %zu | %.0f %% | %.1f | %.1f | %.0f | %.0f | %s | %s |\n",
+              load.transport.c_str(), count, bad,
+              100.0 * static_cast<double>(limited) / static_cast<double>(steps.size()), waited.p50,
+              waited.p99.value_or(waited.max), waited.p999.value_or(waited.max), waited.max,
+              resident_early.c_str(), server.resident().c_str());
 }
 
 }  // namespace

@@ -5,6 +5,7 @@ A record is what a command wrote with --json, without its traces, or the text th
 (kind "output"). Around it stand its commit and its sources: the directories whose change makes it stale.
 """
 
+import datetime
 import gzip
 import json
 import pathlib
@@ -68,11 +69,14 @@ def merged(found):
 def keep(name, paths, commit, output_of=None):
     """Stores the record of a file, or of several with rows, as docs/records/NAME.json.gz.
 
-    With `output_of`, the file is what this command printed. Raises ValueError if a run was interrupted.
+    With `output_of`, the files are what this command printed; a line "machine: ..." names the machine. Raises ValueError if a run was interrupted.
     """
     if output_of:
-        text = pathlib.Path(paths[0]).read_text(encoding="utf-8")
-        record = {"keepout_record": "output", "command": output_of, "text": text}
+        text = "".join(pathlib.Path(path).read_text(encoding="utf-8") for path in paths)
+        record = {"keepout_record": "output", "command": output_of, "text": text,
+                  "date": datetime.date.today().isoformat()}
+        if machine := re.search(r"^machine: (.*)", text, re.M):
+            record["machine"] = machine[1]
     else:
         found = [json.loads(pathlib.Path(path).read_text(encoding="utf-8")) for path in paths]
         for path, one in zip(paths, found):

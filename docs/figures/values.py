@@ -246,9 +246,9 @@ def plan_numbers(record):
 
 @of_kind("output")
 def output(record):
-    """The Markdown table that a program printed."""
+    """Yields the Markdown table that a program printed, in which each row may have come with its own header."""
     lines = record["text"].splitlines()
-    yield "table", "\n".join(line for line in lines if line.startswith("|"))
+    yield "table", "\n".join(dict.fromkeys(line for line in lines if line.startswith("|")))
 
 
 @of_kind("compare")

@@ -91,7 +91,8 @@ def measure(title, tips, desired, memory):
             ended = subprocess.run(
                 [program, options.mesh, *files, memory, "2"], check=True, capture_output=True
             )
-            cpp_ns.append(float(ended.stdout))
+            nanoseconds, build = ended.stdout.decode().strip().split(" ", 1)
+            cpp_ns.append(float(nanoseconds))
             batch_s.append(taken_by(batch)[1])
             batch_wall.append(taken_by(batch)[0])
             single_s.append(taken_by(single)[1])
@@ -104,19 +105,28 @@ def measure(title, tips, desired, memory):
     assert np.array_equal(out.status, answers[:, 3])
 
     cpp, batched, scalar = min(cpp_ns), 1e9 * min(batch_s) / count, 1e9 * min(single_s) / count
-    print(f"{title} ({count} poses)")
-    print(f"  C++ loop              {cpp:9.0f} ns a step")
-    print(f"  Python, a batch       {batched:9.0f} ns a step  {batched - cpp:+7.0f} ns")
-    print(f"  Python, step by step  {scalar:9.0f} ns a step  {scalar - cpp:+7.0f} ns")
+    cells = [f"{1e-3 * cpp:.2f} µs"]
+    cells += [f"{1e-3 * ns:.2f} µs, {1e-3 * (ns - cpp):+.2f}" for ns in (batched, scalar)]
     if independent:
         assert np.array_equal(out.motion, two.motion)
-        one, both = 1e9 * min(batch_wall) / count, 1e9 * min(two_s) / count
-        print(f"  by the clock, one thread {one:.0f} ns, two {both:.0f} ns: x {one / both:.2f} "
-              f"({max(two_cpu):.2f} processors busy)")  # fmt: skip
+        cells += [f"{min(batch_wall) / min(two_s):.2f}", f"{max(two_cpu):.2f}"]
+    else:
+        cells += ["-", "-"]
+    print(f"| {title} | {' | '.join(cells)} |", flush=True)
+    return build
 
 
-print(f"{mesh}, {watching.index.name}; least of {options.passes} passes")
+def processor():
+    with open("/proc/cpuinfo", encoding="utf-8") as file:
+        names = [line.split(":", 1)[1].strip() for line in file if line.startswith("model name")]
+    return f"{names[0]}, {len(names)} cores"
+
+
+print("| | C++ loop | Python, a batch | Python, step by step | two threads, times as fast | processors busy |")
+print("|---|--:|--:|--:|--:|--:|")
 near = poses_outside(2.0)
-measure("poses up to 2 off the surface, each placed anew", *near, "anew")
-measure("the same, sides taken as they are", *near, "as_is")
-measure("paths along it, step after step", *path(), "remembering")
+measure("paths along the bone, step after step", *path(), "remembering")
+measure("poses by themselves, sides taken as they are", *near, "as_is")
+build = measure("poses by themselves, each placed anew", *near, "anew")
+print(f"machine: {processor()}, {build}")
+print(f"{mesh}, {watching.index.name}; least of {options.passes} passes of {options.poses} poses")
