@@ -20,8 +20,18 @@ bool is_rotation(const Mat3& r) noexcept {
          r.determinant() > 0.0;
 }
 
-/// The rotation nearest to what is one to six digits: rounding adds up along a chain.
-Mat3 exact(const Mat3& r) { return Eigen::Quaterniond(r).normalized().toRotationMatrix(); }
+/// Returns the rotation nearest to a matrix that is a rotation to six digits, rounded once, because
+/// errors of rotations add up along a chain. Newton's method for the polar factor (Higham 1986)
+/// doubles the digits in each step, in extended precision.
+Mat3 nearest_rotation(const Mat3& r) {
+  using Wide = Eigen::Matrix<long double, 3, 3>;
+  Wide wide = r.cast<long double>();
+  for (int step = 0; step < 3; ++step) {
+    const Wide missing = Wide::Identity() - wide.transpose() * wide;
+    wide += 0.5L * (wide * missing).eval();
+  }
+  return wide.cast<double>();
+}
 
 /// One that turns z to an axis.
 Mat3 to_axis(const Vec3& axis) {
@@ -66,8 +76,8 @@ Chain::Chain(std::vector<Joint> joints, const Pose& base, const Pose& flange)
   }
   require_pose(base_, "the base of the chain");
   require_pose(flange_, "the flange of the chain");
-  base_.rotation = exact(base_.rotation);
-  flange_.rotation = exact(flange_.rotation);
+  base_.rotation = nearest_rotation(base_.rotation);
+  flange_.rotation = nearest_rotation(flange_.rotation);
   Mat3 turned = Mat3::Identity();  // from the turned frame of the link before to its own
   to_link_[0] = turned;
   reach_ = flange_.position.norm();
@@ -77,9 +87,9 @@ Chain::Chain(std::vector<Joint> joints, const Pose& base, const Pose& flange)
     if (!joint.name.empty()) which += " ('" + joint.name + "')";
     require_usable(joint, which);
     joint.axis.normalize();
-    joint.origin.rotation = exact(joint.origin.rotation);
-    const Mat3 here = to_axis(joint.axis);
-    ways_[i] = {turned.transpose() * joint.origin.rotation * here,
+    joint.origin.rotation = nearest_rotation(joint.origin.rotation);
+    const Mat3 here = nearest_rotation(to_axis(joint.axis));
+    ways_[i] = {nearest_rotation(turned.transpose() * joint.origin.rotation * here),
                 turned.transpose() * joint.origin.position};
     turned = here;
     to_link_[i + 1] = here.transpose();

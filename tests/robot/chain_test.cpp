@@ -74,6 +74,32 @@ double off_matrices(DhConvention convention, Random& random) {
   return (matrix(state.flange()) - expected).cwiseAbs().maxCoeff();
 }
 
+TEST(Chain, StoresRotationsToOneRounding) {
+  // docs/joint-space-step.md counts sqrt(3) u for each, u = 2^-53; r^T r then misses the identity
+  // by twice that.
+  Random random(12);
+  double most = 0.0;
+  for (int i = 0; i < 2000; ++i) {
+    const Pose base = random_pose(random);
+    Joint joint{.kind = JointKind::prismatic, .origin = random_pose(random)};
+    joint.origin.rotation += 1e-7 * Mat3::Random();  // six digits
+    const Chain chain({joint}, base);
+    ChainState state;
+    chain.place(std::vector<double>{0.0}, state);
+    const Chain without_base({joint});
+    ChainState of_joint;
+    without_base.place(std::vector<double>{0.0}, of_joint);
+    for (const Mat3& r : {state.link(0).rotation, of_joint.link(1).rotation}) {
+      using Wide = Eigen::Matrix<long double, 3, 3>;
+      const Wide wide = r.cast<long double>();
+      const Wide missing = Wide::Identity() - wide.transpose() * wide;
+      most = std::max(most, static_cast<double>(missing.norm()));
+    }
+  }
+  EXPECT_LE(most, 2.0 * std::sqrt(3.0) * 0x1p-53);
+  EXPECT_GT(most, 0.0);
+}
+
 TEST(Chain, ATableIsTheProductOfItsMatrices) {
   Random random(1);
   for (int i = 0; i < 1000; ++i) {

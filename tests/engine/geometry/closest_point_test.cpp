@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include "keepout/activation/facet.h"
 #include "keepout/fixtures/random.h"
 #include "trials.h"
 
@@ -130,6 +131,57 @@ TEST(ClosestPoint, DistanceAgreesWithAnIndependentComputationInQuadruplePrecisio
     }
   }
   EXPECT_LT(worst_relative, 1e-12);
+}
+
+/// A triangle around a tip at 0, at a distance from 4e-10 to 0.1 of its size; every other one is a
+/// needle.
+Triangle near_tip(Random& random) {
+  Triangle t;
+  for (Vec3& corner : t) corner = random.direction() * random.uniform();
+  const double thin = std::pow(10.0, random.uniform(-8.0, -2.0));
+  if (random.below(2) == 0) t[2] = t[random.below(2)] + thin * random.direction();
+  Vec3 at = t[random.below(3)];
+  const std::size_t feature = random.below(3);
+  if (feature > 0) at += random.uniform() * (t[0] - at);
+  if (feature > 1) at += random.uniform() * (t[1] - at);
+  const Vec3 side = random.below(2) == 0
+                        ? random.direction()
+                        : Vec3((t[1] - t[0]).cross(t[2] - t[0])).stableNormalized();
+  const Vec3 tip = at + std::pow(10.0, random.uniform(-9.4, -1.0)) * side;
+  for (Vec3& corner : t) corner -= tip;
+  return t;
+}
+
+/// docs/certified-step.md, assumption A9.
+void expect_a9(const Triangle& t) {
+  const double size = reach(t, Vec3::Zero());
+  const double tau = 2e-10 * size;
+  const double kappa = 0.006 * tau;
+  const double distance = independent_distance(t, Vec3::Zero());
+  if (!(distance >= 3.9 * tau)) return;
+  const Facet facet(t, TriangleId(0));
+  const double proved = -facet.at_tip().support;
+  ASSERT_GE(facet.distance(), distance - kappa);
+  ASSERT_LE(facet.distance(), distance + tau / 128.0);
+  double longest = 0.0;
+  for (int i = 0; i < 3; ++i) longest = std::max(longest, (t[(i + 1) % 3] - t[i]).norm());
+  const double height = (t[1] - t[0]).cross(t[2] - t[0]).norm() / longest;
+  const bool is_needle = height < 0.01 * longest;
+  const bool is_assumed = !is_needle || distance >= 1e-6 * size;
+  ASSERT_GE(proved, distance - (is_assumed ? kappa : 2.0 * tau) - 1e-12 * facet.distance())
+      << "needle: " << is_needle << ", distance / size " << distance / size;
+}
+
+TEST(Facet, DistancesNearTheTipAreAsTheProofAssumes) {
+  // The worst that a search found: the normal proves 0.0133 tau less than the distance.
+  expect_a9({Vec3(-0x1.251e468024715p-1, -0x1.1f496e2a4161p-1, 0x1.0234b444f1349p-1),
+             Vec3(0x1.9772aa3be8f97p-6, 0x1.8f578a807abb7p-6, -0x1.66eb08564746fp-6),
+             Vec3(0x1.d29fb74670cfep-6, 0x1.c9a67ebe64fa2p-6, -0x1.9b34a36e320c3p-6)});
+  Random random(6);
+  for (int i = 0; i < test::trials(1'000'000); ++i) {
+    const Triangle triangle = near_tip(random);
+    ASSERT_NO_FATAL_FAILURE(expect_a9(triangle)) << "triangle " << i;
+  }
 }
 
 TEST(ClosestPoint, OffsetIsAPointOfTheTriangleAtTheDistanceGiven) {
