@@ -13,8 +13,6 @@ import re
 import sys
 
 # Pages whose times have no record yet: make one, and take the page off this list.
-PAGES_WITHOUT_RECORDS = {"python.md", "serve.md"}
-
 FENCE = re.compile(r"^( {0,3})(`{3,}|~{3,}).*?^ {0,3}\2`*~* *$", re.M | re.S)
 TIME = re.compile(r"\b\d[\d.,]* ?(?:µs|us|ns)\b")
 RULE = re.compile(r"^ *\|?(?: *:?-+:? *\|)+ *:?-* *:?-* *\|? *$")
@@ -63,7 +61,7 @@ def main(root):
         printed.update(name.split(".")[0] for name in pages.names_of(text))
         if pages.filled(text, figures) != text:
             problems.append(f"{inner}: differs from its records: run 'python3 docs/figures'")
-        if inner.parts[0] in ("docs", "README.md", "benchmarks") and inner.name not in PAGES_WITHOUT_RECORDS:
+        if inner.parts[0] in ("docs", "README.md", "benchmarks"):
             problems += [f"{inner}: {time[0]} is not the figure of a record"
                          for time in TIME.finditer(pages.without_figures(FENCE.sub("", text)))]
     problems += [f"docs/records/{name}: no page prints it" for name in kept if name not in printed]

@@ -112,7 +112,7 @@ def test_a_summary_has_claims_before_tables(tmp_path: Path) -> None:
         tables=[Table("Table", ["a"], [["b"]], "Note.")],
     )
     text = summary.text({"e": ("E0", found)}, "./run experiments", "1.0")
-    assert text.index("| depth | 1 | 2 | 3\\|4 |") < text.index("## E0") < text.index("**Table.** Note.")
+    assert text.index("| depth | p = 1 | 1 | 2 | 3\\|4 |") < text.index("## E0") < text.index("**Table.** Note.")
 
 
 @pytest.mark.parametrize(
