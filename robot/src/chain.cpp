@@ -20,26 +20,48 @@ bool is_rotation(const Mat3& r) noexcept {
          r.determinant() > 0.0;
 }
 
-/// Returns the rotation nearest to a matrix that is a rotation to six digits, rounded once, because
-/// errors of rotations add up along a chain. Newton's method for the polar factor (Higham 1986)
-/// doubles the digits in each step, in extended precision.
-Mat3 nearest_rotation(const Mat3& r) {
-  using Wide = Eigen::Matrix<long double, 3, 3>;
-  Wide wide = r.cast<long double>();
-  for (int step = 0; step < 3; ++step) {
-    const Wide missing = Wide::Identity() - wide.transpose() * wide;
-    wide += 0.5L * (wide * missing).eval();
+/// Returns what a . b misses of a number near it, as if computed with twice the digits (Ogita, Rump
+/// and Oishi 2005).
+double missing_of(double target, const Vec3& a, const Vec3& b) {
+  double sum = target;
+  double error = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    const double product = -a[i] * b[i];
+    const double next = sum + product;
+    const double added = next - sum;
+    error += (sum - (next - added)) + (product - added) + std::fma(-a[i], b[i], -product);
+    sum = next;
   }
-  return wide.cast<double>();
+  return sum + error;
 }
 
-/// One that turns z to an axis.
+/// Returns the rotation nearest to a matrix that is a rotation to six digits, rounded once, because
+/// errors of rotations add up along a chain. Newton's method for the polar factor (Higham 1986)
+/// doubles the digits in each step.
+Mat3 nearest_rotation(Mat3 r) {
+  for (int step = 0; step < 3; ++step) {
+    Mat3 missing;  // of r^T r, to the identity
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j)
+        missing(i, j) = missing_of(i == j ? 1.0 : 0.0, r.col(i), r.col(j));
+    }
+    r += (0.5 * r * missing).eval();
+  }
+  return r;
+}
+
+/// Returns the rotation that turns z, or -z if that is nearer, to an axis on the shortest way; with
+/// -z after half a turn about x, so that z is turned to the axis.
 Mat3 to_axis(const Vec3& axis) {
-  if (axis == Vec3::UnitZ()) return Mat3::Identity();
-  // Over the nearer of z and -z: the turn to a vector almost opposite is known to few digits.
   const double side = std::copysign(1.0, axis.z());
-  return Eigen::Quaterniond::FromTwoVectors(side * Vec3::UnitZ(), axis).toRotationMatrix() *
-         Vec3(1.0, side, side).asDiagonal();
+  const double x = axis.x();
+  const double y = axis.y();
+  const double share = 1.0 / (1.0 + std::abs(axis.z()));
+  Mat3 r;
+  r << 1.0 - share * x * x, -side * share * x * y, x,   //
+      -share * x * y, side * (1.0 - share * y * y), y,  //
+      -side * x, -y, axis.z();
+  return nearest_rotation(r);
 }
 
 void require_pose(const Pose& pose, const std::string& whose) {
@@ -88,7 +110,7 @@ Chain::Chain(std::vector<Joint> joints, const Pose& base, const Pose& flange)
     require_usable(joint, which);
     joint.axis.normalize();
     joint.origin.rotation = nearest_rotation(joint.origin.rotation);
-    const Mat3 here = nearest_rotation(to_axis(joint.axis));
+    const Mat3 here = to_axis(joint.axis);
     ways_[i] = {nearest_rotation(turned.transpose() * joint.origin.rotation * here),
                 turned.transpose() * joint.origin.position};
     turned = here;

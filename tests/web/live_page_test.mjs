@@ -164,7 +164,7 @@ test("led by keys", async () => {
     await desk.keyboard.up(key);
   }
   assert.ok((await limitedCycles(desk)) > before + 100, "keys do not lead into the skull");
-  assert.notEqual(await textOf(desk, "#newtons"), "0.00 N");
+  await desk.waitForFunction(() => document.querySelector("#newtons").textContent !== "0.00 N");
   await desk.keyboard.press("Escape");
   await desk.waitForFunction(() => document.querySelector("#newtons").textContent === "0.00 N");
 });
