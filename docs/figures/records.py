@@ -69,7 +69,8 @@ def merged(found):
 def keep(name, paths, commit, output_of=None):
     """Stores the record of a file, or of several with rows, as docs/records/NAME.json.gz.
 
-    With `output_of`, the files are what this command printed; a line "machine: ..." names the machine. Raises ValueError if a run was interrupted.
+    With `output_of`, the files are what this command printed; a line "machine: ..." names the machine.
+    Raises ValueError if a run was interrupted.
     """
     if output_of:
         text = "".join(pathlib.Path(path).read_text(encoding="utf-8") for path in paths)

@@ -24,8 +24,9 @@ def of_records(kept):
         figures[f"{name}.commit"] = one["commit"]
         figures[f"{name}.command"] = f"`{record['command'].replace('keepout ', './run ')}`"
         machine = record.get("machine") or next(iter(record.get("shards", [])), {}).get("machine")
-        if isinstance(machine, str):  # a shard of a campaign
-            figures[f"{name}.machine"] = f"{machine}, {record['date'][:10]}, commit {one['commit']}"
+        if isinstance(machine, str):  # of a shard of a campaign, or printed
+            text = machine.replace("GNU", "GCC")
+            figures[f"{name}.machine"] = f"{text}, {record['date'][:10]}, commit {one['commit']}"
         elif machine:
             compiler = machine["compiler"].replace("GNU", "GCC")
             figures[f"{name}.machine"] = (f"{machine['processor']}, {machine['cores']} cores, {compiler}, "
@@ -246,7 +247,7 @@ def plan_numbers(record):
 
 @of_kind("output")
 def output(record):
-    """Yields the Markdown table that a program printed, in which each row may have come with its own header."""
+    """Yields the Markdown table that a program printed. A header that it repeats is left out."""
     lines = record["text"].splitlines()
     yield "table", "\n".join(dict.fromkeys(line for line in lines if line.startswith("|")))
 

@@ -12,7 +12,6 @@ import pathlib
 import re
 import sys
 
-# Pages whose times have no record yet: make one, and take the page off this list.
 FENCE = re.compile(r"^( {0,3})(`{3,}|~{3,}).*?^ {0,3}\2`*~* *$", re.M | re.S)
 TIME = re.compile(r"\b\d[\d.,]* ?(?:µs|us|ns)\b")
 RULE = re.compile(r"^ *\|?(?: *:?-+:? *\|)+ *:?-* *:?-* *\|? *$")
