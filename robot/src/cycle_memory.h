@@ -11,8 +11,11 @@
 #include "certificate.h"
 #include "contact_row.h"
 #include "keepout/buffer.h"
+#include "keepout/geometry/pose.h"
+#include "keepout/geometry/twist.h"
 #include "keepout/index/query.h"
-#include "keepout/robot/instrument_constraint.h"
+#include "keepout/robot/instrument_options.h"
+#include "keepout/robot/instrument_step.h"
 #include "keepout/step/guide.h"
 #include "keepout/step/solver.h"
 #include "near_set.h"
@@ -63,7 +66,10 @@ struct GuideMemory {
 };
 
 /// Bodies and meshes, at the most.
-constexpr std::size_t most_pairs = Instrument::most_bodies * InstrumentConstraint::most_meshes;
+constexpr std::size_t most_pairs = Instrument::most_bodies * InstrumentCapacity::most_meshes;
+
+/// Beyond that no number is one of a task, a speed or a duration.
+constexpr double largest_number = 1e9;
 
 /// A row that held a motion back: the next cycle begins with it.
 struct WarmRow {
@@ -125,6 +131,8 @@ struct CycleMemory {
   void measure() noexcept;
   /// Returns true if tolerance is too large for the least margin, the band, or a guide's band.
   bool is_lost_in_rounding(const InstrumentOptions& options) const noexcept;
+  /// Throws Error unless all options are in range and rounding leaves something of the margins.
+  void require_usable(const InstrumentOptions& options) const;
   /// Whether any mesh moves.
   bool is_moving() const noexcept {
     return std::any_of(meshes.begin(), meshes.end(), [](const MeshMemory& mesh) {

@@ -11,18 +11,17 @@
 #include "joint_cycle.h"
 #include "keepout/error.h"
 #include "keepout/mesh/doctor.h"
+#include "keepout/step/options.h"
 
 namespace keepout {
 namespace {
 
-// Beyond that no number is one of a task.
-constexpr double largest = 1e9;
 constexpr double rotation_digits = 1e-6;  // that a rotation is to have
 constexpr double fastest_turn = 1.0;      // of a mesh in a cycle [rad]
 
 bool are_numbers(std::span<const double> values) noexcept {
   return std::all_of(values.begin(), values.end(),
-                     [](double x) { return std::abs(x) <= largest; });  // false for NaN
+                     [](double x) { return std::abs(x) <= largest_number; });  // false for NaN
 }
 
 std::unique_ptr<Neighborhood> neighborhood_of(std::shared_ptr<const Mesh> mesh,
@@ -32,12 +31,7 @@ std::unique_ptr<Neighborhood> neighborhood_of(std::shared_ptr<const Mesh> mesh,
   if (capacity.triangles == 0) {
     throw Error("the capacity must be of at least one triangle");
   }
-  std::size_t looks = capacity.looks;
-  if (looks == 0) {
-    Budget unused;
-    const bool walks = index->walk_along_motions(unused) != nullptr;
-    looks = walks ? Capacity::looks_of_a_walk : Capacity::looks_of_queries;
-  }
+  const std::size_t looks = capacity.looks > 0 ? capacity.looks : Capacity::default_looks(*index);
   return std::make_unique<Neighborhood>(std::move(mesh), std::move(index), capacity.triangles,
                                         looks);
 }
@@ -73,7 +67,7 @@ struct InstrumentConstraint::State {
     }
     try {
       memory.prepare();
-      require_usable(its_options);
+      memory.require_usable(its_options);
     } catch (...) {
       if (is_new) {
         memory.meshes.pop_back();
@@ -86,36 +80,6 @@ struct InstrumentConstraint::State {
     std::size_t looks = 0;
     for (const MeshMemory& each : memory.meshes) looks = std::max(looks, each.near->budget().all());
     memory.budget = Budget(looks);
-  }
-
-  /// Throws unless all is in range, and rounding leaves something of the margin.
-  void require_usable(const InstrumentOptions& o) const {
-    const auto within = [](double x, double low) { return x >= low && x <= longest_length; };
-    double margin = o.margin;  // the least
-    bool all_within = within(o.margin, shortest_length);
-    for (const MeshMemory& mesh : memory.meshes) {
-      margin = std::min(margin, mesh.margin(o));
-      all_within = all_within && within(mesh.margin(o), shortest_length);
-    }
-    if (!all_within || !(o.band > 0.0) || !(o.band < margin)) {
-      throw Error(
-          "the margins must be above zero, and lengths, and the band above zero and below each of "
-          "them");
-    }
-    if (!within(o.slowing_within, 0.0) || !(o.slowing_time > 0.0 && o.slowing_time < largest)) {
-      throw Error("slowing_within must not be below zero, and slowing_time must be above it");
-    }
-    if (!within(o.recovery, 0.0) || !within(o.damping, 0.0) || !within(o.orientation_weight, 0.0) ||
-        !(o.period > 0.0 && o.period < largest) || o.refinements < 0) {
-      throw Error(
-          "recovery, damping, orientation weight and refinements must not be below zero, and the "
-          "period must be above it");
-    }
-    if (memory.is_lost_in_rounding(o)) {
-      throw Error(
-          "the margin, its band or a guide's band is lost in the rounding of an instrument and a "
-          "mesh of this size: each must be well above 1e-11 of both");
-    }
   }
 
   InstrumentStep step(const JointTask& task, std::span<const double> q) noexcept {
@@ -224,49 +188,7 @@ MotionProof InstrumentConstraint::prove(std::span<const double> q,
     status = Status::invalid_input;
   }
   if (!is_ok(status)) return {.status = status};
-  // What steps have gained is none of a planner's business.
-  const CycleMemory::Floors floors = state_->memory.floors();
-  // Nor is how fast a step would be allowed to go there.
-  InstrumentOptions options = state_->options;
-  options.slowing_within = 0.0;
-  // In parts, where there is more near a long motion than there is room for.
-  constexpr double least_part = 1.0 / 64.0;
-  MotionProof proof{.status = Status::free};
-  double part = 1.0;
-  while (proof.share < 1.0) {
-    JointVector from{};
-    JointVector motion{};
-    for (std::size_t k = 0; k < q.size(); ++k) {
-      from[k] = q[k] + proof.share * increment[k];
-      motion[k] = part * increment[k];
-    }
-    state_->memory.budget.renew();
-    state_->memory.forget_motion();
-    state_->memory.forget_floors();
-    InstrumentStep result;
-    const double proven =
-        JointCycle(state_->memory, options, {from.data(), q.size()}, JointCycle::Meshes::still)
-            .prove(motion, result);
-    const bool was_too_much =
-        result.status == Status::over_capacity || result.status == Status::out_of_budget;
-    if (was_too_much && part > least_part) {
-      part *= 0.5;
-      continue;
-    }
-    // A later part that begins too close is certified for less than the first one.
-    if (proof.share > 0.0 && result.status == Status::recovering &&
-        proof.status != Status::recovering) {
-      break;
-    }
-    if (proof.share == 0.0) proof.distance = result.distance;
-    if (proof.share == 0.0 || !is_ok(result.status)) proof.status = result.status;
-    proof.share += part * proven;
-    if (proven < 1.0 || result.status != Status::free) break;
-  }
-  state_->memory.forget_motion();
-  state_->memory.set_floors(floors);
-  if (proof.status == Status::free && proof.share < 1.0) proof.status = Status::limited;
-  return proof;
+  return prove_in_parts(state_->memory, state_->options, q, increment);
 }
 
 void InstrumentConstraint::forget() noexcept { state_->memory.forget(); }
@@ -284,7 +206,7 @@ const Pose& InstrumentConstraint::place_of(std::size_t mesh) const noexcept {
 const InstrumentOptions& InstrumentConstraint::options() const noexcept { return state_->options; }
 
 void InstrumentConstraint::set_options(const InstrumentOptions& options) {
-  state_->require_usable(options);
+  state_->memory.require_usable(options);
   state_->options = options;
 }
 
@@ -339,8 +261,8 @@ Status InstrumentConstraint::place(std::size_t mesh, const Pose& pose,
   MeshMemory& placed = memory.meshes[mesh];
   placed.is_misplaced = !is_within(pose.position, memory.largest_position) ||
                         !is_within(off, rotation_digits) || !(pose.rotation.determinant() > 0.0) ||
-                        !is_within(velocity.linear, largest) ||
-                        !is_within(velocity.angular, largest);
+                        !is_within(velocity.linear, largest_number) ||
+                        !is_within(velocity.angular, largest_number);
   if (placed.is_misplaced) return Status::invalid_input;
   placed.pose = {pose.position, Eigen::Quaterniond(pose.rotation).normalized().matrix()};
   placed.velocity = velocity;
@@ -377,31 +299,5 @@ void InstrumentConstraint::set_guides(std::vector<Guide> guides) {
 
 double InstrumentConstraint::tolerance() const noexcept { return state_->memory.tolerance; }
 std::size_t InstrumentConstraint::looks() const noexcept { return state_->memory.budget.spent(); }
-
-double recommended_band(const Instrument& instrument, double period, double least) {
-  const Chain& chain = instrument.chain();
-  double most = 0.0;
-  for (const LinkPoint& point : instrument.points()) {
-    double lever = point.position.norm();  // from joint k to the point, at the most
-    double path = 0.0;
-    double bend = 0.0;
-    for (int k = point.link; k >= 1; --k) {
-      const Joint& joint = chain.joint(k);
-      const double step = std::min(joint.limits.velocity * period, joint.limits.increment);
-      if (joint.kind == JointKind::prismatic) {
-        path += step;
-        lever += std::max(std::abs(joint.limits.lower), std::abs(joint.limits.upper));
-      } else {
-        bend += step * ((lever + path) * step + 2.0 * path);
-        path += (lever + path) * step;
-      }
-      lever += joint.origin.position.norm();
-    }
-    // Without a limit the bend is infinite, or 0 times infinity.
-    most = std::isnan(bend) ? std::numeric_limits<double>::infinity() : std::max(most, bend);
-    if (std::isinf(most)) break;
-  }
-  return std::max(least, most / 8.0);
-}
 
 }  // namespace keepout

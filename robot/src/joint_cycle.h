@@ -116,4 +116,10 @@ class JointCycle {
   std::size_t in_reach_ = 0;  // triangles of one body and one trial, at the most
 };
 
+/// Proves a motion of any length, in up to 64 parts if there is more near it than the capacity
+/// holds or the budget of a cycle can examine. Leaves what steps have certified as it is, and does
+/// not slow down near the mesh. Precondition: memory and increment (n) are valid.
+MotionProof prove_in_parts(CycleMemory& memory, const InstrumentOptions& options,
+                           std::span<const double> q, std::span<const double> increment) noexcept;
+
 }  // namespace keepout

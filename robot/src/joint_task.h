@@ -6,7 +6,9 @@
 #include <optional>
 #include <span>
 
-#include "keepout/robot/instrument_constraint.h"
+#include "keepout/geometry/pose.h"
+#include "keepout/geometry/twist.h"
+#include "keepout/robot/instrument_options.h"
 #include "point_motion.h"
 
 namespace keepout {

@@ -2,7 +2,11 @@
 #include "keepout/robot/motion_bounds.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include "keepout/robot/instrument_options.h"
 
 namespace keepout {
 
@@ -22,6 +26,32 @@ MotionBounds motion_bounds(const ChainState& state, std::span<const double> incr
     bounds.path += way;
   }
   return bounds;
+}
+
+double recommended_band(const Instrument& instrument, double period, double least) {
+  const Chain& chain = instrument.chain();
+  double most = 0.0;
+  for (const LinkPoint& point : instrument.points()) {
+    double lever = point.position.norm();  // from joint k to the point, at the most
+    double path = 0.0;
+    double bend = 0.0;
+    for (int k = point.link; k >= 1; --k) {
+      const Joint& joint = chain.joint(k);
+      const double step = std::min(joint.limits.velocity * period, joint.limits.increment);
+      if (joint.kind == JointKind::prismatic) {
+        path += step;
+        lever += std::max(std::abs(joint.limits.lower), std::abs(joint.limits.upper));
+      } else {
+        bend += step * ((lever + path) * step + 2.0 * path);
+        path += (lever + path) * step;
+      }
+      lever += joint.origin.position.norm();
+    }
+    // Without a limit the bend is infinite, or 0 times infinity.
+    most = std::isnan(bend) ? std::numeric_limits<double>::infinity() : std::max(most, bend);
+    if (std::isinf(most)) break;
+  }
+  return std::max(least, most / 8.0);
 }
 
 }  // namespace keepout

@@ -9,7 +9,7 @@
 
 #include "keepout/index/budget.h"
 #include "keepout/robot/instrument.h"
-#include "keepout/robot/instrument_constraint.h"
+#include "keepout/robot/instrument_options.h"
 #include "keepout/robot/motion_bounds.h"
 
 namespace keepout {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "keepout/geometry/pose.h"
+#include "keepout/geometry/twist.h"
 #include "point_motion.h"
 
 namespace keepout {

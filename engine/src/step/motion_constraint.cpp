@@ -43,12 +43,7 @@ std::unique_ptr<Neighborhood> neighborhood_of(std::shared_ptr<const Mesh> mesh,
     throw Error("a motion constraint needs a mesh, an index, an activation rule and a solver");
   }
   require_in_range(*mesh);
-  std::size_t looks = capacity.looks;
-  if (looks == 0) {
-    Budget unused;
-    const bool walks = index->walk_along_motions(unused) != nullptr;
-    looks = walks ? Capacity::looks_of_a_walk : Capacity::looks_of_queries;
-  }
+  const std::size_t looks = capacity.looks > 0 ? capacity.looks : Capacity::default_looks(*index);
   return std::make_unique<Neighborhood>(std::move(mesh), std::move(index), capacity.triangles,
                                         looks);
 }
@@ -72,6 +67,11 @@ void name_cause(Status status, Limits& limits) noexcept {
 }
 
 }  // namespace
+
+std::size_t Capacity::default_looks(const SpatialIndex& index) {
+  Budget unused;
+  return index.walk_along_motions(unused) ? looks_of_a_walk : looks_of_queries;
+}
 
 MotionConstraint::MotionConstraint(std::shared_ptr<const Mesh> mesh,
                                    std::shared_ptr<const SpatialIndex> index,

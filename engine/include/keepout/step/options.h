@@ -8,6 +8,8 @@
 
 namespace keepout {
 
+class SpatialIndex;
+
 /// How far around the tip triangles are looked for.
 enum class Query : std::uint8_t {
   motion,  // as far as the motion asked for can lead, where the rule allows that
@@ -66,6 +68,9 @@ struct Capacity {
 
   static constexpr std::size_t looks_of_a_walk = std::size_t{1} << 16;   // of an index that walks
   static constexpr std::size_t looks_of_queries = std::size_t{1} << 22;  // not for real time
+
+  /// Returns what 0 looks stand for on an index. Allocates.
+  static std::size_t default_looks(const SpatialIndex& index);
 };
 
 }  // namespace keepout

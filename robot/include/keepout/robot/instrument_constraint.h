@@ -3,129 +3,19 @@
 
 #include <cstddef>
 #include <memory>
-#include <optional>
 #include <span>
-#include <string_view>
 #include <vector>
 
 #include "keepout/geometry/pose.h"
+#include "keepout/geometry/twist.h"
 #include "keepout/index/spatial_index.h"
 #include "keepout/mesh/mesh.h"
 #include "keepout/robot/instrument.h"
-#include "keepout/status.h"
-#include "keepout/step/guide.h"
-#include "keepout/step/options.h"
+#include "keepout/robot/instrument_options.h"
+#include "keepout/robot/instrument_step.h"
 #include "keepout/step/solver.h"
 
 namespace keepout {
-
-/// How a frame moves: what is asked of the flange in one cycle; or of a mesh, in a second. In the
-/// axes of the world, which are those of the first mesh unless that is placed elsewhere.
-struct Twist {
-  Vec3 linear = Vec3::Zero();   // of its origin [length]
-  Vec3 angular = Vec3::Zero();  // its turn: axis times angle [rad]
-};
-
-/// On which motion the certificate is taken.
-enum class CertifiedMotion : std::uint8_t {
-  actual,     // the one that the joints make
-  linearised  // of points on straight lines, p + s J dq: what others do. Unsafe; for comparison
-              // only
-};
-
-/// What stays the same from cycle to cycle.
-struct InstrumentOptions {
-  /// Distance to keep beyond each body's radius, from all meshes that have no margin of their own,
-  /// > band [length]
-  double margin = 0.2;
-  /// What is held back of the margin, so that curved motions along a surface are proven: certified
-  /// is margin - band. A wide band costs progress, never safety. See recommended_band. [length]
-  double band = 0.002;
-  double period = 1e-3;    // of a cycle: what velocity limits are multiplied by [s], > 0
-  double recovery = 0.05;  // how far a body that is too close is led away in a cycle, >= 0 [length]
-  /// Bodies come on slower where they are nearer to the margin than that, so that they touch it
-  /// softly: a way of d left to it, they use up no more than d period / slowing_time in a cycle.
-  /// What comes on is the instrument: a mesh that does is not fled. 0: nowhere. [length]
-  double slowing_within = 0.0;
-  double slowing_time = 0.05;  // how long the approach takes to come to an end, > 0 [s]
-  /// Weight of |dq|^2 beside the task of the flange, >= 0: what singular poses give way to. A
-  /// prismatic joint counts as a radian when it moves by orientation_weight, or by a length of 1
-  /// where that is 0. [length^2]
-  double damping = 0.1;
-  /// What a turn of the flange counts beside its way, in lengths, >= 0: a radian off is as bad as
-  /// so much. 0: only its origin is steered. [length / rad]
-  double orientation_weight = 20.0;
-  int refinements = 1;  // how often planes are turned towards a better motion, >= 0
-  /// Whether bodies that no step has led to where they are have to be on the free side of a
-  /// watertight mesh: by its winding, as tips are (docs/conventions.md).
-  bool check_sides = true;
-  CertifiedMotion certified = CertifiedMotion::actual;  // nothing else is safe
-};
-
-/// Room for the largest cycle.
-struct InstrumentCapacity {
-  std::size_t triangles = std::size_t{1} << 14;  // of one mesh, near one body
-  std::size_t planes = 128;                      // posed at the same time
-  /// The work of a cycle, whatever happens in it: see Budget. What cannot be proven with it is not
-  /// moved. 0: Capacity::looks_of_a_walk on an index that walks by itself, as wide_bvh, and
-  /// Capacity::looks_of_queries on others, of which more is asked.
-  std::size_t looks = 0;
-};
-
-/// A body that keeps less than its certified distance from a mesh in a cycle.
-struct DegradedClearance {
-  int body = -1;             // its number
-  int mesh = -1;             // and that of the mesh
-  double level = 0.0;        // the fraction of the certified distance that it keeps, below 1
-  bool is_certified = true;  // false: nothing is certified for it, and level is 0
-};
-
-/// What one cycle may do. Views stay valid until the next step.
-struct InstrumentStep {
-  Status status = Status::invalid_input;   // how it ended
-  std::span<const double> increment = {};  // dq (n); empty unless ok() [rad or length]
-  double share = 0.0;    // that is made of the motion that was found; below 1: it was cut short
-  int rounds = 0;        // how often a trial motion was judged
-  std::size_t rows = 0;  // that hold the motion back, joint limits apart
-  std::size_t triangles = 0;  // in reach of one body and one trial motion, at the most
-  /// From the body nearest to a mesh, as the cycle began; of bodies no farther off than that mesh's
-  /// margin and the band, or slowing_within, and that there was work left to look at. Negative when
-  /// the body reaches through the surface. [length]
-  std::optional<double> distance = std::nullopt;
-  int nearest = -1;       // the number of that body
-  int nearest_mesh = -1;  // and of the mesh
-  /// The least level of all pairs of body and mesh, 1 if all keep what is certified for them
-  /// (InstrumentConstraint: F): below 1 if a mesh approaches faster than a body can retreat; 0 if a
-  /// body could not be certified at all, or a mesh moves and there is no motion.
-  double level = 1.0;
-  /// The pairs of body and mesh that keep less; every other pair keeps what is certified for it.
-  std::span<const DegradedClearance> degraded = {};
-  std::span<const GuideState> guides = {};   // of each guide, in the order in which they were given
-  Relaxation relaxation = Relaxation::none;  // what was relaxed
-  /// The causes that kept the motion from being the commanded one. With a motion: all constraints
-  /// that limit or shorten it. Without: the constraints for which no motion could be proved.
-  /// joints_outside is reported with any status.
-  Limits limits = {};
-
-  /// Whether there is a motion that may be carried out; it may be zero.
-  bool ok() const noexcept { return is_ok(status); }
-  /// One line on what happened and what to do about it; a literal.
-  std::string_view reason() const noexcept { return keepout::reason(status, Subject::instrument); }
-};
-
-/// How much of a motion is certified.
-struct MotionProof {
-  /// free: all of it; limited: a part of it; recovering: some body is too close at its start, and
-  /// certified is that none comes closer by more than the band. Else why nothing more is known.
-  Status status = Status::invalid_input;
-  double share = 0.0;  // q + s dq is proven for s from 0 to here, whatever the status: 1 if all is
-  std::optional<double> distance = std::nullopt;  // as InstrumentStep::distance [length]
-
-  /// Returns one line on what happened and what to do about it.
-  std::string_view reason() const noexcept { return keepout::reason(status, Subject::instrument); }
-  /// Whether the instrument keeps the whole margin, less its band, on the whole motion.
-  bool is_clear() const noexcept { return status == Status::free && share == 1.0; }
-};
 
 /// Keeps a whole instrument out of meshes, in joint space: the joint increment nearest to what is
 /// asked for that provably keeps each body clear, on the motion that the joints really make.
@@ -145,7 +35,7 @@ struct MotionProof {
 /// Not thread-safe: one for each control loop; mesh and index may be shared.
 class InstrumentConstraint {
  public:
-  static constexpr std::size_t most_meshes = 8;  // to be kept out of
+  static constexpr std::size_t most_meshes = InstrumentCapacity::most_meshes;
 
   /// The index must be built on `mesh`. Throws Error when a part is missing, the index is of
   /// another mesh, or an option or a capacity is out of range. Makes all memory here.
@@ -244,10 +134,5 @@ class InstrumentConstraint {
   struct State;
   std::unique_ptr<State> state_;
 };
-
-/// A band that absorbs the curvature of every motion that the joints' limits admit in a cycle of
-/// `period` > 0 seconds: an eighth of the largest bend of any body's point, at least `least`.
-/// Infinite without limits. [length]
-double recommended_band(const Instrument& instrument, double period, double least = 0.002);
 
 }  // namespace keepout

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The proof of a long motion for planners, in parts.
+#include "joint_cycle.h"
+
+namespace keepout {
+
+MotionProof prove_in_parts(CycleMemory& memory, const InstrumentOptions& options,
+                           std::span<const double> q, std::span<const double> increment) noexcept {
+  const CycleMemory::Floors floors = memory.floors();
+  InstrumentOptions unslowed = options;
+  unslowed.slowing_within = 0.0;
+  // In parts, where there is more near a long motion than there is room for.
+  constexpr double least_part = 1.0 / 64.0;
+  MotionProof proof{.status = Status::free};
+  double part = 1.0;
+  while (proof.share < 1.0) {
+    JointVector from{};
+    JointVector motion{};
+    for (std::size_t k = 0; k < q.size(); ++k) {
+      from[k] = q[k] + proof.share * increment[k];
+      motion[k] = part * increment[k];
+    }
+    memory.budget.renew();
+    memory.forget_motion();
+    memory.forget_floors();
+    InstrumentStep result;
+    const double proven =
+        JointCycle(memory, unslowed, {from.data(), q.size()}, JointCycle::Meshes::still)
+            .prove(motion, result);
+    const bool was_too_much =
+        result.status == Status::over_capacity || result.status == Status::out_of_budget;
+    if (was_too_much && part > least_part) {
+      part *= 0.5;
+      continue;
+    }
+    // A later part that begins too close is certified for less than the first one.
+    if (proof.share > 0.0 && result.status == Status::recovering &&
+        proof.status != Status::recovering) {
+      break;
+    }
+    if (proof.share == 0.0) proof.distance = result.distance;
+    if (proof.share == 0.0 || !is_ok(result.status)) proof.status = result.status;
+    proof.share += part * proven;
+    if (proven < 1.0 || result.status != Status::free) break;
+  }
+  memory.forget_motion();
+  memory.set_floors(floors);
+  if (proof.status == Status::free && proof.share < 1.0) proof.status = Status::limited;
+  return proof;
+}
+
+}  // namespace keepout
