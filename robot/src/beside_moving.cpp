@@ -21,32 +21,32 @@ constexpr int most_degradations = 32;  // of a cycle
 void JointCycle::search_beside_moving(const JointTask& task, Trial& best,
                                       InstrumentStep& result) noexcept {
   // Neither bodies that cannot give way nor the task may spend the work that the retreat needs.
-  memory_.budget.halved([&] { return settle_immovable(), true; });
+  context_.budget.halved([&] { return settle_immovable(), true; });
   double asked = 1.0;
   const auto is_found = [&](double share) {
     asked = share;
-    attempt(task, share, best);
-    return best.cell == PointMotion::cells;
+    search_fraction(task, share, best);
+    return best.is_proved();
   };
   // Beside a body that touches or is inside, or that is not known, nothing but a retreat is made.
-  const bool is_whole = watch_.dropped_for() == Status::free;
-  bool found = is_whole && memory_.budget.halved([&] { return is_found(1.0) || is_found(0.25); });
+  const bool is_whole = bodies_.dropped_for() == Status::free;
+  bool found = is_whole && context_.budget.halved([&] { return is_found(1.0) || is_found(0.25); });
   found = found || is_found(0.0);
   for (int i = 0; i < most_degradations && !found && degrade(task, best); ++i) {
-    found = best.cell == PointMotion::cells || is_found(0.0);
+    found = best.is_proved() || is_found(0.0);
   }
-  result.level = found ? watch_.name_degraded() : 0.0;
+  result.level = found ? bodies_.list_degraded() : 0.0;
   const bool stands_still =
       std::all_of(best.increment.begin(), best.increment.end(), [](double x) { return x == 0.0; });
   if (!found) {
-    watch_.name_degraded();
+    bodies_.list_degraded();
     result.status = trouble_ != Status::free ? trouble_ : Status::unsolved;
-    rows_.remember_all();
-  } else if (watch_.dropped_for() != Status::free && stands_still) {
+    rows_.note_all();
+  } else if (bodies_.dropped_for() != Status::free && stands_still) {
     // No body retreats, and a body that could not be certified allows no other motion.
     result.level = 0.0;
-    result.status = watch_.dropped_for();
-  } else if (!memory_.degraded.empty()) {
+    result.status = bodies_.dropped_for();
+  } else if (!bodies_.degraded().empty()) {
     result.status = Status::yielding;
   } else if (asked < 1.0) {
     result.status = Status::fallback;
@@ -59,19 +59,20 @@ void JointCycle::search_beside_moving(const JointTask& task, Trial& best,
 /// that cannot keep their distance, and takes all of them out of what trials are judged for.
 void JointCycle::settle_immovable() noexcept {
   bool is_ready = false;
-  for (std::size_t p = 0; p < memory_.pairs.size(); ++p) {
-    if (!watch_.is_watched(p) || !watch_.is_immovable(p)) continue;
+  for (std::size_t p = 0; p < bodies_.size(); ++p) {
+    if (!bodies_.is_watched(p) || !bodies_.is_immovable(p)) continue;
     if (!is_ready) {
-      memory_.motion.move({}, options_.certified);
-      for (MeshMemory& mesh : memory_.meshes) mesh.motion.move();
+      context_.motion.move({}, context_.options.certified);
+      bodies_.move();
       is_ready = true;
     }
-    while (watch_.is_watched(p)) {
-      const Status looked = judge_pair(p);
-      if (is_ok(looked) && memory_.pairs[p].failure.cell == PointMotion::cells) {
-        memory_.pairs[p].is_settled = true;
+    while (bodies_.is_watched(p)) {
+      Certificate::Failure& failure = memory_.failures[p];
+      const Status status = bodies_.judge(p, rows_.view(), failure);
+      if (is_ok(status) && failure.cell == PointMotion::cells) {
+        bodies_.settle(p);
       } else {
-        watch_.lower(p, 1.0, is_ok(looked) ? Status::unsolved : looked);
+        lower(p, 1.0, is_ok(status) ? Status::unsolved : status);
       }
     }
   }
@@ -79,9 +80,9 @@ void JointCycle::settle_immovable() noexcept {
 
 /// Stands still if that is proved beside the meshes that move.
 bool JointCycle::stand_still(const JointTask& task, Trial& best) noexcept {
-  Trial trial{.share = 1.0, .cost = task.standing * task.standing};
+  Trial trial{.fraction = 1.0, .cost = task.standing * task.standing};
   judge(trial);
-  if (trial.cell != PointMotion::cells) return false;
+  if (!trial.is_proved()) return false;
   trouble_ = Status::free;
   best = trial;
   return true;
@@ -92,14 +93,15 @@ bool JointCycle::stand_still(const JointTask& task, Trial& best) noexcept {
 /// left to try. If `best` is proved, it stands still.
 bool JointCycle::degrade(const JointTask& task, Trial& best) noexcept {
   const Status trouble = trouble_;
-  const std::size_t guide = failed_guide_;
-  const bool guide_failed = kept_by_guides_ < PointMotion::cells && !guides_.is_dropped(guide);
+  const std::size_t guide = by_guides_.guide;
+  const bool guide_failed = by_guides_.cell < PointMotion::cells && !guides_.is_dropped(guide);
   std::bitset<most_pairs> failed;
-  for (std::size_t p = 0; p < memory_.pairs.size(); ++p) {
-    failed[p] = watch_.is_watched(p) && memory_.pairs[p].failure.cell != PointMotion::cells;
+  for (std::size_t p = 0; p < bodies_.size(); ++p) {
+    failed[p] = bodies_.is_watched(p) && memory_.failures[p].cell != PointMotion::cells;
   }
   if (trouble == Status::ill_posed) return false;
-  if (trouble != Status::infeasible && guide_failed && relax_guides()) return true;
+  if (trouble != Status::infeasible && guide_failed && problem_.relax_guides(rows_.view()))
+    return true;
   if (stand_still(task, best)) return true;
   trouble_ = trouble;
   if (trouble == Status::infeasible) return degrade_conflict(task.scaled(0.0));
@@ -108,65 +110,60 @@ bool JointCycle::degrade(const JointTask& task, Trial& best) noexcept {
     rows_.remove(most_pairs + guide);
     return true;
   }
-  prefer_lowered(failed);
-  for (std::size_t p = 0; p < memory_.pairs.size(); ++p) {
+  prefer_degraded(failed);
+  for (std::size_t p = 0; p < bodies_.size(); ++p) {
     if (!failed[p]) continue;
-    watch_.lower(p, 1.0, trouble == Status::free ? Status::unsolved : trouble);
-    if (!watch_.is_watched(p)) rows_.remove(p);
+    lower(p, 1.0, trouble == Status::free ? Status::unsolved : trouble);
+    if (!bodies_.is_watched(p)) rows_.remove(p);
   }
   return failed.any();
 }
 
 /// Removes the pairs at their full clearance from a set that has others: few pairs give way, and
 /// those entirely, before more do.
-void JointCycle::prefer_lowered(std::bitset<most_pairs>& pairs) const noexcept {
+void JointCycle::prefer_degraded(std::bitset<most_pairs>& pairs) const noexcept {
   std::bitset<most_pairs> lowered;
-  for (std::size_t p = 0; p < memory_.pairs.size(); ++p) {
-    lowered[p] = pairs[p] && memory_.pairs[p].level < 1.0;
+  for (std::size_t p = 0; p < bodies_.size(); ++p) {
+    lowered[p] = pairs[p] && bodies_.is_degraded(p);
   }
   if (lowered.any()) pairs = lowered;
 }
 
-/// Finds a least set of pairs and guides whose rows contradict each other (each is left out in
-/// turn, and stays out if the others still do), and gives way in these alone.
+/// Degrades a least set of pairs and guides whose rows contradict each other: its guides are
+/// dropped, or if it has none, the clearance of its pairs is lowered. Returns true if any changed.
 bool JointCycle::degrade_conflict(const JointTask& task) noexcept {
-  constexpr Softness softest{Relaxation::recovery, 0.0, false, 0.0};
-  std::bitset<most_pairs + Guide::most> is_owner;
-  for (const ContactRow& row : memory_.rows) is_owner.set(row.owner);
-  Solution solution;
-  for (std::size_t owner = 0; owner < is_owner.size() && !memory_.budget.is_spent(); ++owner) {
-    if (!is_owner[owner]) continue;
-    left_out_.set(owner);
-    if (pose(task, softest, solution) == SolveStatus::optimal) left_out_.reset(owner);
-  }
-  const auto is_culprit = [&](std::size_t owner) { return is_owner[owner] && !left_out_[owner]; };
+  const OwnerSet conflict = problem_.conflict(task, rows_.view());
   bool changed = false;
-  for (std::size_t g = 0; g < memory_.guides.size(); ++g) {
-    if (!is_culprit(most_pairs + g)) continue;
+  for (std::size_t g = 0; g < guides_.size(); ++g) {
+    if (!conflict[most_pairs + g]) continue;
     guides_.drop(g);
     rows_.remove(most_pairs + g);
     changed = true;
   }
-  if (!changed) {
-    std::bitset<most_pairs> culprits;
-    for (std::size_t p = 0; p < memory_.pairs.size(); ++p) culprits[p] = is_culprit(p);
-    prefer_lowered(culprits);
-    for (std::size_t p = 0; p < memory_.pairs.size(); ++p) {
-      if (!culprits[p]) continue;
-      watch_.lower(p, reachable_level(p), Status::infeasible);
-      if (!watch_.is_watched(p)) rows_.remove(p);
-      changed = true;
-    }
+  if (changed) return true;
+  std::bitset<most_pairs> pairs;
+  for (std::size_t p = 0; p < bodies_.size(); ++p) pairs[p] = conflict[p];
+  prefer_degraded(pairs);
+  for (std::size_t p = 0; p < bodies_.size(); ++p) {
+    if (!pairs[p]) continue;
+    lower(p, reachable_fraction(p), Status::infeasible);
+    if (!bodies_.is_watched(p)) rows_.remove(p);
   }
-  left_out_.reset();
-  return changed;
+  return pairs.any();
 }
 
-/// Returns the level of a pair that the joints' limits allow each of its rows by itself.
-double JointCycle::reachable_level(std::size_t p) const noexcept {
-  const double kept = memory_.pairs[p].kept;
+/// Lowers the clearance of a pair, or drops the pair. A dropped pair has no obstacle.
+void JointCycle::lower(std::size_t p, double most, Status reason) noexcept {
+  bodies_.lower(p, most, reason);
+  if (!bodies_.is_watched(p)) memory_.failures[p] = {};
+}
+
+/// Returns the clearance fraction of a pair that the joints' limits allow each of its rows by
+/// itself.
+double JointCycle::reachable_fraction(std::size_t p) const noexcept {
+  const double clearance = bodies_.full_clearance(p);
   double missing = 0.0;
-  for (const ContactRow& row : memory_.rows) {
+  for (const ContactRow& row : rows_.view()) {
     if (row.owner != p) continue;
     double most = row.drift - std::min(row.bound, 0.0);
     for (std::size_t k = 0; k < row.gradient.size(); ++k) {
@@ -175,7 +172,7 @@ double JointCycle::reachable_level(std::size_t p) const noexcept {
     }
     missing = std::max(missing, -most);
   }
-  return kept > 0.0 ? 1.0 - missing / kept : 0.0;
+  return clearance > 0.0 ? 1.0 - missing / clearance : 0.0;
 }
 
 }  // namespace keepout

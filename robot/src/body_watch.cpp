@@ -5,201 +5,237 @@
 #include <cmath>
 #include <limits>
 
+#include "certified_clearance.h"
 #include "keepout/index/placement.h"
 
 namespace keepout {
-namespace {
 
-constexpr double touching_within = 7.0;  // tolerances; its side is certain beyond six
-
-}  // namespace
-
-Status BodyWatch::open(InstrumentStep& result) noexcept {
-  Status status = Status::free;
-  for (std::size_t p = 0; p < memory_.pairs.size(); ++p) {
+BodyOpening BodyWatch::open() noexcept {
+  memory_.degraded.clear();
+  BodyOpening opening;
+  for (std::size_t p = 0; p < size(); ++p) {
     Core core;
-    memory_.pairs[p].near.start_cycle(motion(p).core(memory_.pairs[p].body, 0, core));
     PairMemory& pair = memory_.pairs[p];
-    pair.failure = {};
-    pair.level = 1.0;
+    pair.near.start_cycle(motion(p).core(pair.body, 0, core));
+    pair.fraction = 1.0;
     pair.is_dropped = false;
     pair.is_settled = false;
-    Status of_pair = open_pair(p, result);
-    if (meshes_move_ && (of_pair == Status::touching || of_pair == Status::over_capacity)) {
+    Status of_pair = open_pair(p, opening);
+    if (context_.meshes_move && (of_pair == Status::touching || of_pair == Status::over_capacity)) {
       drop(p, of_pair);
       of_pair = Status::free;
     }
-    if (of_pair == Status::over_capacity || of_pair == Status::out_of_budget) return of_pair;
-    if (!is_ok(of_pair)) status = of_pair;
+    if (!is_ok(of_pair)) opening.status = of_pair;
+    if (of_pair == Status::over_capacity || of_pair == Status::out_of_budget) return opening;
   }
-  for (std::size_t m = 0; m < memory_.meshes.size() && is_ok(status); ++m) {
-    const bool is_asked = options_.check_sides && memory_.meshes[m].is_watertight;
-    if (is_asked && was_moved_by_others(m)) status = side(m);
+  for (std::size_t m = 0; m < memory_.meshes.size() && is_ok(opening.status); ++m) {
+    const bool is_checked = context_.options.check_sides && memory_.meshes[m].is_watertight;
+    if (is_checked && is_side_unknown(m)) opening.status = classify(m);
   }
-  return status;
+  return opening;
 }
 
-Status BodyWatch::open_pair(std::size_t p, InstrumentStep& result) noexcept {
+Status BodyWatch::open_pair(std::size_t p, BodyOpening& opening) noexcept {
   PairMemory& pair = memory_.pairs[p];
-  const double tolerance = memory_.tolerance;
-  if (const Status looked = look(p, vicinity(p)); !is_ok(looked)) return looked;
+  const InstrumentOptions& options = context_.options;
+  Budget& budget = context_.budget;
+  if (const Status status = gather(p, vicinity(p)); !is_ok(status)) return status;
   double nearest = std::numeric_limits<double>::infinity();
-  const double known = radius(p) + own_margin(p) + std::max(options_.band, options_.slowing_within);
-  // All at once that the cycle is likely to ask for.
-  for (NearTriangle& triangle : pair.near.nearer_than(vicinity(p), memory_.budget)) {
+  const double known = radius(p) + own_margin(p) + std::max(options.band, options.slowing_within);
+  // Measure all gaps that the cycle is likely to need.
+  for (NearTriangle& triangle : nearer_than(p, vicinity(p))) {
     if (!(triangle.least < known)) break;
-    if (is_worn_out()) return Status::out_of_budget;
-    pair.near.know(triangle, memory_.budget);
+    if (budget.is_spent()) return Status::out_of_budget;
+    pair.near.know(triangle, budget);
     nearest = std::min(nearest, triangle.at_start.distance);
   }
-  if (is_worn_out()) return Status::out_of_budget;
+  if (budget.is_spent()) return Status::out_of_budget;
   const double distance = nearest - radius(p);
-  if (nearest <= known && !(result.distance && *result.distance <= distance)) {
-    result.distance = distance;
-    result.nearest = static_cast<int>(pair.body);
-    result.nearest_mesh = static_cast<int>(pair.mesh);
+  if (nearest <= known && !(opening.distance && *opening.distance <= distance)) {
+    opening.distance = distance;
+    opening.nearest = static_cast<int>(pair.body);
+    opening.nearest_mesh = static_cast<int>(pair.mesh);
   }
-  if (nearest <= touching_within * tolerance) return Status::touching;
-  // Half of what there is at the most: of its distance, or of its core's where it reaches through.
-  const double room = std::min(options_.band, 0.5 * (distance > 0.0 ? distance : nearest));
-  pair.kept = certified_distance(distance, pair.floor, target(p), room, tolerance);
-  pair.aim = own_margin(p);
-  pair.floor = pair.kept;
+  if (nearest <= core_touching_within * context_.tolerance) return Status::touching;
+  // At most half of the distance; of the core's distance if the body reaches through the surface.
+  const double room = std::min(options.band, 0.5 * (distance > 0.0 ? distance : nearest));
+  pair.clearance =
+      certified_clearance(distance, pair.certified, target(p), room, context_.tolerance);
+  pair.row_margin = own_margin(p);
+  pair.certified = pair.clearance;
   is_recovering_ = is_recovering_ || is_recovering(p);
   if (!is_recovering(p)) slow_down(p, distance);
   return Status::free;
 }
 
-/// Raises what a body keeps in this cycle, so that it uses up a share only of its way to the margin
-/// (the velocity damper of Faverjon and Tournassoud, ICRA 1987): but for what a mesh itself comes
-/// on.
+/// Raises the clearance of a body in this cycle, so that it uses up only a fraction of the way to
+/// its margin (the velocity damper of Faverjon and Tournassoud, ICRA 1987). The approach of a mesh
+/// that moves is not slowed down.
 void BodyWatch::slow_down(std::size_t p, double distance) noexcept {
+  const InstrumentOptions& options = context_.options;
   const double left = distance - own_margin(p);
-  if (!(left > 0.0 && left < options_.slowing_within)) return;
-  const double share = std::min(options_.period / options_.slowing_time, 1.0);
-  const double raised = (1.0 - share) * left - motion(p).drift(memory_.pairs[p].body);
+  if (!(left > 0.0 && left < options.slowing_within)) return;
+  const double share = std::min(options.period / options.slowing_time, 1.0);
+  const double raised = (1.0 - share) * left - motion(p).drift(body(p));
   if (!(raised > 0.0)) return;
-  memory_.pairs[p].kept += raised;
-  memory_.pairs[p].aim += raised;
+  memory_.pairs[p].clearance += raised;
+  memory_.pairs[p].row_margin += raised;
 }
 
 void BodyWatch::close() noexcept {
-  for (std::size_t p = 0; p < memory_.pairs.size(); ++p) {
+  for (std::size_t p = 0; p < size(); ++p) {
     PairMemory& pair = memory_.pairs[p];
-    if (pair.level < 1.0 || pair.is_dropped) pair.floor = std::min(pair.floor, kept(p));
-    // A core that is certified to less than three tolerances may have crossed the surface.
-    const bool may_have_crossed = !(radius(p) + kept(p) > 3.0 * memory_.tolerance);
+    if (is_degraded(p) || pair.is_dropped) pair.certified = std::min(pair.certified, clearance(p));
+    const bool may_have_crossed =
+        !(radius(p) + clearance(p) > crossing_within * context_.tolerance);
     pair.is_side_unknown = pair.is_side_unknown || pair.is_dropped || may_have_crossed;
+  }
+}
+
+void BodyWatch::remember_end() noexcept {
+  for (MeshMemory& mesh : memory_.meshes) {
+    const Vec3* end = mesh.motion.at(PointMotion::cells);
+    std::copy(end, end + context_.instrument.points().size(), mesh.ended_at.begin());
+    mesh.side_of = context_.options.check_sides ? mesh.near->mesh().id() : 0;
   }
 }
 
 void BodyWatch::lower(std::size_t p, double most, Status reason) noexcept {
   PairMemory& pair = memory_.pairs[p];
   constexpr double quarter = 0.25;
-  const double next = quarter * std::floor(std::min(most, pair.level - quarter) / quarter);
-  if (pair.kept > 0.0 && next >= 0.0) {
-    pair.level = next;
+  const double next = quarter * std::floor(std::min(most, pair.fraction - quarter) / quarter);
+  if (pair.clearance > 0.0 && next >= 0.0) {
+    pair.fraction = next;
   } else {
     drop(p, reason);
   }
 }
 
 void BodyWatch::drop(std::size_t p, Status reason) noexcept {
-  memory_.pairs[p].level = 0.0;
+  memory_.pairs[p].fraction = 0.0;
   memory_.pairs[p].is_dropped = true;
-  memory_.pairs[p].failure = {};
   if (!is_immovable(p)) dropped_for_ = reason;
 }
 
 bool BodyWatch::is_immovable(std::size_t p) const noexcept {
-  const auto& points = memory_.instrument.points_of(memory_.pairs[p].body);
-  return std::all_of(points.begin(), points.end(), [&](std::uint8_t number) {
-    return memory_.instrument.points()[number].link == 0;
+  return std::all_of(points(p).begin(), points(p).end(), [&](std::uint8_t number) {
+    return context_.instrument.points()[number].link == 0;
   });
 }
 
-double BodyWatch::name_degraded() noexcept {
+double BodyWatch::list_degraded() noexcept {
   double least = 1.0;
   for (const PairMemory& pair : memory_.pairs) {
-    if (pair.level == 1.0) continue;
-    least = std::min(least, pair.level);
-    memory_.degraded.push(
-        {static_cast<int>(pair.body), static_cast<int>(pair.mesh), pair.level, !pair.is_dropped});
+    if (pair.fraction == 1.0) continue;
+    least = std::min(least, pair.fraction);
+    memory_.degraded.push({static_cast<int>(pair.body), static_cast<int>(pair.mesh), pair.fraction,
+                           !pair.is_dropped});
   }
   return least;
 }
 
-/// Whether a body is where no step has led it beside a mesh, so that its side is unknown.
-bool BodyWatch::was_moved_by_others(std::size_t m) noexcept {
+void BodyWatch::move() noexcept {
+  for (MeshMemory& mesh : memory_.meshes) mesh.motion.move();
+}
+
+Status BodyWatch::judge(std::size_t p, std::span<const ContactRow> rows,
+                        Certificate::Failure& failure) noexcept {
+  PairMemory& pair = memory_.pairs[p];
+  failure = {};
+  pair.displacement = motion(p).farthest(pair.body);
+  const double needed = radius(p) + clearance(p) + pair.displacement;
+  if (const Status status = gather(p, needed); !is_ok(status)) return status;
+  const std::span<NearTriangle> triangles = nearer_than(p, needed);
+  if (triangles.empty()) return Status::free;
+  in_reach_ = std::max(in_reach_, triangles.size());
+  Certificate certificate(context_.instrument, pair.body, motion(p), pair.near, clearance(p),
+                          context_.tolerance, context_.budget);
+  for (const ContactRow& row : rows) {
+    if (row.owner == p) certificate.try_first(row.normal);
+  }
+  failure = certificate.judge(triangles, pair.displacement);
+  owes_ = owes_ || certificate.owes();
+  return Status::free;
+}
+
+/// Returns true if some body is at a place beside a mesh to which no step has moved it, so that its
+/// side is unknown.
+bool BodyWatch::is_side_unknown(std::size_t m) noexcept {
   MeshMemory& mesh = memory_.meshes[m];
   if (mesh.side_of != mesh.near->mesh().id()) return true;
-  const std::size_t first = m * memory_.instrument.bodies().size();
-  for (std::size_t b = 0; b < memory_.instrument.bodies().size(); ++b) {
-    if (memory_.pairs[first + b].is_side_unknown) return true;
-    // So far around its core all is free.
-    const double free = 0.5 * (radius(first + b) + memory_.pairs[first + b].kept);
-    for (const std::uint8_t p : memory_.instrument.points_of(b)) {
-      if (!((mesh.motion.at_start()[p] - mesh.ended_at[p]).norm() <= free)) return true;
+  const std::size_t bodies = context_.instrument.bodies().size();
+  for (std::size_t p = m * bodies; p < (m + 1) * bodies; ++p) {
+    if (memory_.pairs[p].is_side_unknown) return true;
+    // The core is free within this distance.
+    const double free = 0.5 * (radius(p) + full_clearance(p));
+    for (const std::uint8_t point : points(p)) {
+      if (!((mesh.motion.at_start()[point] - mesh.ended_at[point]).norm() <= free)) return true;
     }
   }
   return false;
 }
 
-/// No core meets the surface, so each is on one side of it, and one point tells which.
-Status BodyWatch::side(std::size_t m) noexcept {
+/// Finds the side of each body by one of its points, as no core meets the surface. Returns free, or
+/// inside, or why the side could not be found.
+Status BodyWatch::classify(std::size_t m) noexcept {
   MeshMemory& mesh = memory_.meshes[m];
-  const std::size_t first = m * memory_.instrument.bodies().size();
-  for (std::size_t b = 0; b < memory_.instrument.bodies().size(); ++b) {
-    if (memory_.pairs[first + b].is_dropped) continue;
-    const std::uint8_t last = memory_.instrument.points_of(b).back();
-    mesh.near->budget() = memory_.budget;
-    const auto placement = place(*mesh.near, mesh.motion.at_start()[last]);
-    memory_.budget = mesh.near->budget();
-    if (!placement || is_worn_out()) return memory_.budget.status_at_end();
-    if (!placement->is_free && !meshes_move_) return Status::inside;
-    if (!placement->is_free) drop(first + b, Status::inside);
-    memory_.pairs[first + b].is_side_unknown = false;
+  Budget& budget = context_.budget;
+  const std::size_t bodies = context_.instrument.bodies().size();
+  for (std::size_t p = m * bodies; p < (m + 1) * bodies; ++p) {
+    if (memory_.pairs[p].is_dropped) continue;
+    mesh.near->budget() = budget;
+    const auto placement = place(*mesh.near, mesh.motion.at_start()[points(p).back()]);
+    budget = mesh.near->budget();
+    if (!placement || budget.is_spent()) return budget.status_at_end();
+    if (!placement->is_free && !context_.meshes_move) return Status::inside;
+    if (!placement->is_free) drop(p, Status::inside);
+    memory_.pairs[p].is_side_unknown = false;
   }
   return Status::free;
 }
 
-/// From a body's core, what it may be held by: the margin, and as much as it moved at last, unless
-/// that was a leap. [length]
+/// Returns the distance from a body's core within which triangles may limit it: the margin, and the
+/// displacement of its last motion unless that was a leap. [length]
 double BodyWatch::vicinity(std::size_t p) const noexcept {
-  const double reach = std::min(memory_.pairs[p].reach, 4.0 * own_margin(p));
-  return radius(p) + own_margin(p) + std::max({options_.band, options_.slowing_within, reach});
+  const InstrumentOptions& options = context_.options;
+  const double moves = std::min(memory_.pairs[p].displacement, 4.0 * own_margin(p));
+  return radius(p) + own_margin(p) + std::max({options.band, options.slowing_within, moves});
 }
 
-/// How far a body's points are from where triangles were looked for. [length]
+/// Returns the distance of a body's points from where they were when triangles were gathered.
+/// [length]
 double BodyWatch::moved(std::size_t p) noexcept {
   const std::span<const Vec3> then = memory_.pairs[p].near.core();
-  const std::span<const std::uint8_t> points = memory_.instrument.points_of(memory_.pairs[p].body);
   const Vec3* now = motion(p).at_start();
   double most = 0.0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    most = std::max(most, (now[points[i]] - then[i]).norm());
+  for (std::size_t i = 0; i < points(p).size(); ++i) {
+    most = std::max(most, (now[points(p)[i]] - then[i]).norm());
   }
   return most;
 }
 
-Status BodyWatch::look(std::size_t p, double needed) noexcept {
+/// Makes sure that all triangles nearer than `needed` to a body's core are known. Returns free, or
+/// over_capacity or out_of_budget. [length]
+Status BodyWatch::gather(std::size_t p, double needed) noexcept {
   PairMemory& pair = memory_.pairs[p];
+  Budget& budget = context_.budget;
   if (pair.near.radius() >= 0.0 && pair.near.radius() - moved(p) >= needed) return Status::free;
   Core core;
   const std::span<const Vec3> now = motion(p).core(pair.body, 0, core);
-  // Farther where there is little, so that it is looked for seldom; less far where there is much.
+  // A wide search is seldom repeated; a narrow one finds fewer triangles.
   constexpr std::size_t few = 8;
   constexpr std::size_t many = 64;
-  const double least = std::max(own_margin(p), pair.reach);
-  pair.guard = std::clamp(pair.guard, least, std::max(16.0 * own_margin(p), 3.0 * pair.reach));
+  const double least = std::max(own_margin(p), pair.displacement);
+  const double most = std::max(16.0 * own_margin(p), 3.0 * pair.displacement);
+  pair.padding = std::clamp(pair.padding, least, most);
   Neighborhood& near = *memory_.meshes[pair.mesh].near;
   for (const double share : {1.0, 0.125, 0.0}) {
-    if (pair.near.look(near, now, needed + share * pair.guard, memory_.budget)) {
-      if (share < 1.0 || pair.near.size() > many) pair.guard *= 0.5;
-      if (pair.near.size() < few) pair.guard *= 2.0;
+    if (pair.near.gather(near, now, needed + share * pair.padding, budget)) {
+      if (share < 1.0 || pair.near.size() > many) pair.padding *= 0.5;
+      if (pair.near.size() < few) pair.padding *= 2.0;
       return Status::free;
     }
-    if (is_worn_out()) break;
+    if (budget.is_spent()) break;
   }
   pair.near.forget();
   const bool is_full = near.candidates().overflowed() || pair.near.is_full();
@@ -207,13 +243,12 @@ Status BodyWatch::look(std::size_t p, double needed) noexcept {
 }
 
 NearTriangle* BodyWatch::find(std::size_t p, TriangleId id) noexcept {
-  if (!is_ok(look(p, vicinity(p)))) return nullptr;
-  NearSet& near = memory_.pairs[p].near;
-  const std::span<NearTriangle> nearby = near.nearer_than(vicinity(p), memory_.budget);
-  memory_.budget.spend(1 + nearby.size() / 64);
+  if (!is_ok(gather(p, vicinity(p)))) return nullptr;
+  const std::span<NearTriangle> nearby = nearer_than(p, vicinity(p));
+  context_.budget.spend(1 + nearby.size() / 64);
   for (NearTriangle& triangle : nearby) {
     if (triangle.id != id) continue;
-    near.know(triangle, memory_.budget);
+    memory_.pairs[p].near.know(triangle, context_.budget);
     return &triangle;
   }
   return nullptr;

@@ -1,95 +1,142 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
+#include <optional>
+#include <span>
 
-#include "cycle_memory.h"
+#include "certificate.h"
+#include "contact_row.h"
+#include "cycle_context.h"
+#include "pair_memory.h"
 
 namespace keepout {
 
-/// How the bodies stand to the meshes as a cycle begins, what each is to keep in it, and what is
-/// near them. A pair is a body and a mesh.
+/// The bodies beside the meshes as a cycle starts.
+struct BodyOpening {
+  Status status = Status::free;                   // free, or why nothing may move
+  std::optional<double> distance = std::nullopt;  // InstrumentStep::distance [length]
+  int nearest = -1;                               // the number of the nearest body
+  int nearest_mesh = -1;
+};
+
+/// The clearances that a cycle certifies for the pairs of a body and a mesh, the triangles near
+/// them, and the proof that a motion maintains the clearances.
 class BodyWatch {
  public:
-  /// The motions' start must be where joints and meshes are. Both must outlive it.
-  BodyWatch(CycleMemory& memory, const InstrumentOptions& options, bool meshes_move) noexcept
-      : memory_(memory), options_(options), meshes_move_(meshes_move) {}
+  /// The motions must start at the poses of joints and meshes. Both must outlive it.
+  BodyWatch(PairMemories& memory, const CycleContext& context) noexcept
+      : memory_(memory), context_(context) {}
 
-  /// Looks at all pairs. Returns free, or why nothing may move. The distance goes to the result.
-  /// Beside meshes that move, a pair that stops all motion is dropped instead, and its status kept
-  /// in `dropped_for`: the other bodies may have to retreat.
-  Status open(InstrumentStep& result) noexcept;
+  /// Measures all pairs. Beside meshes that move, a pair that forbids all motion is dropped
+  /// instead: the other bodies may have to retreat.
+  BodyOpening open() noexcept;
 
-  /// The distance that a pair is certified for in this cycle: margin - band, or what is left of it.
-  /// [length]
-  double kept(std::size_t pair) const noexcept {
-    return memory_.pairs[pair].kept - given_way(pair);
+  /// Returns the number of pairs.
+  std::size_t size() const noexcept { return memory_.pairs.size(); }
+  /// Returns the body of a pair.
+  std::size_t body(std::size_t pair) const noexcept { return memory_.pairs[pair].body; }
+  /// Returns the numbers of the body's points.
+  std::span<const std::uint8_t> points(std::size_t pair) const noexcept {
+    return context_.instrument.points_of(body(pair));
   }
-  /// The margin that its rows aim at in this cycle, beyond the body's radius. [length]
-  double margin(std::size_t pair) const noexcept { return memory_.pairs[pair].aim; }
-  /// By how much less than the margin rows aim, as the pair's clearance is degraded. [length]
-  double given_way(std::size_t pair) const noexcept {
-    const PairMemory& its = memory_.pairs[pair];
-    return (1.0 - its.level) * std::max(its.kept, 0.0);
+  /// Returns the radius of the body. [length]
+  double radius(std::size_t pair) const noexcept {
+    return context_.instrument.bodies()[body(pair)].radius;
   }
-  /// Returns true if motions are to be proved clear for the pair.
+  /// Returns the motion of the instrument in the frame of the pair's mesh.
+  RelativeMotion& motion(std::size_t pair) const noexcept {
+    return memory_.meshes[memory_.pairs[pair].mesh].motion;
+  }
+
+  /// Returns the clearance that is certified for a pair in this cycle: margin - band, or what is
+  /// left of it, less the degradation. [length]
+  double clearance(std::size_t pair) const noexcept {
+    return full_clearance(pair) - degradation(pair);
+  }
+  /// Returns the clearance that a pair has in this cycle while it is not degraded. [length]
+  double full_clearance(std::size_t pair) const noexcept { return memory_.pairs[pair].clearance; }
+  /// Returns the margin that rows demand in this cycle, beyond the body's radius. [length]
+  double row_margin(std::size_t pair) const noexcept { return memory_.pairs[pair].row_margin; }
+  /// Returns the length by which clearance and rows of a degraded pair are lowered. [length]
+  double degradation(std::size_t pair) const noexcept {
+    const PairMemory& one = memory_.pairs[pair];
+    return (1.0 - one.fraction) * std::max(one.clearance, 0.0);
+  }
+  /// Returns true if the pair's clearance is degraded.
+  bool is_degraded(std::size_t pair) const noexcept { return memory_.pairs[pair].fraction < 1.0; }
+  /// Returns true if motions must be proved clear for the pair.
   bool is_watched(std::size_t pair) const noexcept {
     return !memory_.pairs[pair].is_dropped && !memory_.pairs[pair].is_settled;
   }
-  /// Lowers the pair's level to the next quarter that is no more than `most`; drops the pair, for
-  /// that reason, where no level is left.
+  /// Lowers the pair's clearance fraction to the next quarter that is at most `most`. Drops the
+  /// pair, for that reason, if no fraction is left.
   void lower(std::size_t pair, double most, Status reason) noexcept;
-  /// Takes the pair out of what is certified.
-  void drop(std::size_t pair, Status reason) noexcept;
+  /// Notes that the proof of a pair whose body no joint moves is complete.
+  void settle(std::size_t pair) noexcept { memory_.pairs[pair].is_settled = true; }
   /// Returns true if no joint moves the pair's body.
   bool is_immovable(std::size_t pair) const noexcept;
-  /// Returns why the last pair was dropped whose body joints move; free if none was.
+  /// Returns why the last pair was dropped whose body a joint moves; free if none was.
   Status dropped_for() const noexcept { return dropped_for_; }
-  /// Returns the least level of all pairs, and puts those below 1 into the memory.
-  double name_degraded() noexcept;
+  /// Lists the pairs whose clearance is degraded. Returns the least fraction of all pairs.
+  double list_degraded() noexcept;
+  /// Returns the list.
+  std::span<const DegradedClearance> degraded() const noexcept { return memory_.degraded.view(); }
 
-  /// Whether some body is closer than margin - band.
+  /// Returns true if some body is closer than margin - band.
   bool is_recovering() const noexcept { return is_recovering_; }
-  /// Whether that pair is.
+  /// Returns true if the pair's body is.
   bool is_recovering(std::size_t pair) const noexcept {
-    return memory_.pairs[pair].kept < target(pair);
+    return memory_.pairs[pair].clearance < target(pair);
   }
 
-  /// Makes sure that all triangles nearer than `needed` to a body's core are known. Returns free,
-  /// or what was missing: over_capacity or out_of_budget. [length]
-  [[nodiscard]] Status look(std::size_t pair, double needed) noexcept;
-  /// A triangle that may hold the body, its gap known; null if it is not near any more.
+  /// Starts the proof of another motion of the joints.
+  void move() noexcept;
+  /// Proves the motion at hand for one pair. `rows`: their normals are tried first. `failure`: the
+  /// obstacle to the proof. Returns free, or why the triangles are not known: over_capacity or
+  /// out_of_budget.
+  Status judge(std::size_t pair, std::span<const ContactRow> rows,
+               Certificate::Failure& failure) noexcept;
+  /// Returns true if rounding has left less than the clearance of a pair that was judged, so that
+  /// the end of a motion must be farther off than its start.
+  bool owes() const noexcept { return owes_; }
+  /// Returns the number of triangles in reach of one body and one motion, at the most.
+  std::size_t triangles_in_reach() const noexcept { return in_reach_; }
+
+  /// Returns the triangles that may be nearer than `distance` to the body's core, nearest first.
+  std::span<NearTriangle> nearer_than(std::size_t pair, double distance) noexcept {
+    return memory_.pairs[pair].near.nearer_than(distance, context_.budget);
+  }
+  /// Returns a triangle that may limit the body, its gap known; null if it is not near any more.
   NearTriangle* find(std::size_t pair, TriangleId id) noexcept;
 
-  /// Notes what was certified, now that the cycle has ended.
+  /// Remembers the end of the executed motion. `context.motion` must be that motion.
+  void remember_end() noexcept;
+  /// Remembers the certified clearances, at the end of the cycle.
   void close() noexcept;
 
  private:
-  Status open_pair(std::size_t pair, InstrumentStep& result) noexcept;
+  Status open_pair(std::size_t pair, BodyOpening& opening) noexcept;
   void slow_down(std::size_t pair, double distance) noexcept;
-  Status side(std::size_t mesh) noexcept;
-  bool was_moved_by_others(std::size_t mesh) noexcept;
-  double radius(std::size_t pair) const noexcept {
-    return memory_.instrument.bodies()[memory_.pairs[pair].body].radius;
-  }
-  /// Of its mesh, before any slowing down. [length]
+  void drop(std::size_t pair, Status reason) noexcept;
+  [[nodiscard]] Status gather(std::size_t pair, double needed) noexcept;
+  Status classify(std::size_t mesh) noexcept;
+  bool is_side_unknown(std::size_t mesh) noexcept;
   double own_margin(std::size_t pair) const noexcept {
-    return memory_.meshes[memory_.pairs[pair].mesh].margin(options_);
+    return memory_.meshes[memory_.pairs[pair].mesh].margin(context_.options);
   }
-  RelativeMotion& motion(std::size_t pair) noexcept {
-    return memory_.meshes[memory_.pairs[pair].mesh].motion;
+  double target(std::size_t pair) const noexcept {
+    return own_margin(pair) - context_.options.band;
   }
-  double target(std::size_t pair) const noexcept { return own_margin(pair) - options_.band; }
   double vicinity(std::size_t pair) const noexcept;
   double moved(std::size_t pair) noexcept;
-  bool is_worn_out() const noexcept { return memory_.budget.is_spent(); }
 
-  CycleMemory& memory_;
-  const InstrumentOptions& options_;
-  bool meshes_move_;
+  PairMemories& memory_;
+  const CycleContext& context_;
   Status dropped_for_ = Status::free;
   bool is_recovering_ = false;
+  bool owes_ = false;
+  std::size_t in_reach_ = 0;
 };
 
 }  // namespace keepout

@@ -10,18 +10,18 @@
 namespace keepout {
 namespace {
 
-constexpr std::size_t work_of_separation = 1;  // in looks
+constexpr std::size_t work_of_separation = 1;  // in work units
 
 }  // namespace
 
 Certificate::Certificate(const Instrument& instrument, std::size_t body, RelativeMotion& motion,
-                         NearSet& near, double kept, double tolerance, Budget& budget) noexcept
+                         NearSet& near, double clearance, double tolerance, Budget& budget) noexcept
     : body_(body),
       points_(instrument.points_of(body)),
       radius_(instrument.bodies()[body].radius),
       motion_(motion),
       near_(near),
-      kept_(kept),
+      clearance_(clearance),
       tolerance_(tolerance),
       budget_(budget) {}
 
@@ -30,11 +30,12 @@ void Certificate::try_first(const Vec3& normal) noexcept {
   planes_[plane_count_++] = {normal, least_height(normal, 0, PointMotion::cells)};
 }
 
-Certificate::Failure Certificate::judge(std::span<NearTriangle> triangles, double reach) noexcept {
+Certificate::Failure Certificate::judge(std::span<NearTriangle> triangles,
+                                        double displacement) noexcept {
   Failure first;
   latest_ = PointMotion::cells;
   for (NearTriangle& triangle : triangles) {
-    const double out_of_reach = radius_ + kept_ + reach;
+    const double out_of_reach = radius_ + clearance_ + displacement;
     if (triangle.is_known && triangle.at_start.distance >= out_of_reach) continue;
     budget_.spend(1);
     if (budget_.is_spent()) return {0, nullptr};
@@ -45,9 +46,9 @@ Certificate::Failure Certificate::judge(std::span<NearTriangle> triangles, doubl
     // must end a little farther away, and a body that does not move passes, so that rounding does
     // not accumulate.
     const double distance = triangle.at_start.distance - radius_;
-    due_ = std::min(kept_, distance + 2.0 * tolerance_);
-    const bool owes = due_ < kept_;
-    if (owes && reach == 0.0) continue;
+    required_ = std::min(clearance_, distance + 2.0 * tolerance_);
+    const bool owes = required_ < clearance_;
+    if (owes && displacement == 0.0) continue;
     owes_ = owes_ || owes;
     const Gap at_end = gap_at(PointMotion::cells, *triangle.corners);
     const bool gains_too_little =
@@ -70,7 +71,7 @@ Gap Certificate::gap_at(int cell, const Triangle& corners) noexcept {
   return gap(motion_.core(body_, cell, core), corners);
 }
 
-/// Of the body's core over a plane through the origin, on a part of the motion.
+/// Returns the least height of the body's core along a normal on a sub-interval of the motion.
 double Certificate::least_height(const Vec3& normal, int lo, int hi) noexcept {
   const Vec3* at_lo = motion_.at(lo);
   const Vec3* at_hi = motion_.at(hi);
@@ -93,20 +94,20 @@ bool Certificate::separates(const Vec3& normal, const NearTriangle& triangle, in
   budget_.spend(work_of_separation);
   const double least = least_height(normal, lo, hi);
   const double behind = support(*triangle.corners, normal);
-  if (!(least - behind >= radius_ + due_ - 2.0 * tolerance_)) return false;
+  if (!(least - behind >= radius_ + required_ - 2.0 * tolerance_)) return false;
   const bool is_whole = lo == 0 && hi == PointMotion::cells;
   if (is_whole && plane_count_ < most_planes) planes_[plane_count_++] = {normal, least};
   return true;
 }
 
 bool Certificate::is_covered(const NearTriangle& triangle) const noexcept {
-  const double needed = radius_ + kept_ - 2.0 * tolerance_;
+  const double needed = radius_ + clearance_ - 2.0 * tolerance_;
   return std::any_of(planes_.begin(), planes_.begin() + plane_count_, [&](const Plane& plane) {
     return plane.least - support(*triangle.corners, plane.normal) >= needed;
   });
 }
 
-/// The grid's last point up to which the part from lo to hi is proven.
+/// Returns the last cell up to which the sub-interval from lo to hi is proved.
 int Certificate::proven_until(const NearTriangle& triangle, int lo, const Gap& at_lo, int hi,
                               const Gap& at_hi) noexcept {
   if (lo > latest_ || budget_.is_spent()) return lo;
@@ -117,7 +118,7 @@ int Certificate::proven_until(const NearTriangle& triangle, int lo, const Gap& a
   for (const std::uint8_t p : points_) {
     way = std::max(way, (to[p] - from[p]).norm() + motion_.bend(p) * share * share / 8.0);
   }
-  if (at_lo.distance - way >= radius_ + due_) return hi;
+  if (at_lo.distance - way >= radius_ + required_) return hi;
   const bool has_normals = at_lo.distance > 0.0 && at_hi.distance > 0.0;
   if (at_lo.distance > 0.0 && separates(at_lo.normal, triangle, lo, hi)) return hi;
   if (has_normals) {

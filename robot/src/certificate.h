@@ -12,37 +12,37 @@
 
 namespace keepout {
 
-/// The proof that one body keeps clear of triangles on a motion that is not straight
-/// (docs/joint-space-step.md). On a part of the motion, lo to hi, a point's height over a plane is
-/// no less than that of a parabola through both ends, bent by as much as the point's second
-/// derivative allows. So a plane that has the triangle, grown by what it is due, behind it, and the
-/// parabolas of all points of the body before it, proves the body clear on all of that part. Parts
-/// that no plane is found for are halved, down to a cell of the grid.
+/// The proof that one body maintains its clearance from triangles on a motion that is not straight
+/// (docs/joint-space-step.md). On a sub-interval of the motion, a point's height over a plane is at
+/// least that of a parabola through both ends, whose curvature is the bound of the point's second
+/// derivative. A plane proves the body clear on a sub-interval if the triangle, grown by the
+/// required clearance, is behind it and the parabolas of all points of the body are before it.
+/// Sub-intervals without such a plane are halved, down to a cell of the grid.
 class Certificate {
  public:
-  /// A triangle that could not be proven clear, and up to where it was.
+  /// The obstacle to a proof: the triangle that limits it, and how far it reaches.
   struct Failure {
-    int cell = PointMotion::cells;     // proven is the motion up to here; all of it: there is none
+    int cell = PointMotion::cells;     // proved up to here; all of it: there is no obstacle
     NearTriangle* triangle = nullptr;  // null if there is none, or the budget is spent
   };
 
-  /// For a body on its motion beside a mesh, and what is near it. `kept`: what triangles are to be
-  /// kept clear of beyond the radius. All must outlive it. [length]
+  /// For the motion of a body beside a mesh, and the triangles near it. `clearance`: from the
+  /// body's surface. All must outlive it. [length]
   Certificate(const Instrument& instrument, std::size_t body, RelativeMotion& motion, NearSet& near,
-              double kept, double tolerance, Budget& budget) noexcept;
+              double clearance, double tolerance, Budget& budget) noexcept;
 
-  /// Tries planes with this normal before others: one that holds the body back.
+  /// Tries planes with this normal, of a row on the body, before others.
   void try_first(const Vec3& normal) noexcept;
 
-  /// The first of the triangles to speak against the motion, of equals the first by number.
-  /// `reach`: how far the body gets on it (PointMotion::farthest). [length]
-  Failure judge(std::span<NearTriangle> triangles, double reach) noexcept;
-  /// Returns true if rounding has left less than `kept` of a triangle that was judged, so that the
-  /// end of the motion must be farther off than its start.
+  /// Returns the triangle that is first in the way of the motion, of equals the first by number.
+  /// `displacement`: of the body at the most (RelativeMotion::farthest). [length]
+  Failure judge(std::span<NearTriangle> triangles, double displacement) noexcept;
+  /// Returns true if rounding has left less than the clearance from a triangle that was judged, so
+  /// that the end of the motion must be farther off than its start.
   bool owes() const noexcept { return owes_; }
 
  private:
-  /// A normal, and the least height of the body over it on the whole motion.
+  /// A normal, and the least height of the body along it on the whole motion.
   struct Plane {
     Vec3 normal;
     double least;
@@ -61,12 +61,12 @@ class Certificate {
   double radius_;
   RelativeMotion& motion_;
   NearSet& near_;
-  double kept_;
+  double clearance_;
   double tolerance_;
   Budget& budget_;
   bool owes_ = false;
-  double due_ = 0.0;                 // what the triangle at hand is kept clear of [length]
-  int latest_ = PointMotion::cells;  // what is proven farther than that makes no difference
+  double required_ = 0.0;            // the clearance from the triangle at hand [length]
+  int latest_ = PointMotion::cells;  // a proof beyond this cell makes no difference
   std::array<Plane, most_planes> planes_;
   std::size_t plane_count_ = 0;
 };

@@ -4,10 +4,13 @@
 #include <algorithm>
 #include <limits>
 
+#include "keepout/activation/tolerances.h"
+
 namespace keepout {
 namespace {
 
-double reach_beyond_axis(const Instrument& instrument, std::size_t body) {
+/// Returns the largest distance of a body's points from the segment of its first two. [length]
+double distance_beyond_axis(const Instrument& instrument, std::size_t body) {
   const std::vector<LinkPoint>& points = instrument.bodies()[body].points;
   if (points.size() < 3) return 0.0;
   const Vec3& a = points[0].position;
@@ -22,8 +25,8 @@ double reach_beyond_axis(const Instrument& instrument, std::size_t body) {
   return most * (1.0 + 1e-12);
 }
 
-/// Returns the lengths at hand but for where the mesh is: of the ways from joint to joint, of what
-/// is carried, of the mesh. [length]
+/// Returns the sum of the lengths of the chain, the instrument and the mesh, without the pose of
+/// the mesh. [length]
 double size_of(const Instrument& instrument, const Mesh& mesh) {
   const Box bounds = mesh.bounds();
   double size = instrument.chain().base().position.norm() +
@@ -40,30 +43,22 @@ double size_of(const Instrument& instrument, const Mesh& mesh) {
 
 }  // namespace
 
-CycleMemory::CycleMemory(const Instrument& its, Solver& its_solver,
-                         const InstrumentCapacity& capacity)
-    : instrument(its),
-      solver(its_solver),
-      motion(its, budget),
+CycleMemory::CycleMemory(const Instrument& of, Solver& solver, const InstrumentCapacity& capacity)
+    : instrument(of),
+      motion(of, budget),
       rows(capacity.planes),
-      earlier_rows(capacity.planes),
-      warm(capacity.planes),
-      earlier_warm(capacity.planes) {
-  const auto n = static_cast<std::size_t>(its.chain().size());
-  matrix.resize((2 * n + capacity.planes) * n);
-  bounds.resize(2 * n + capacity.planes);
-  solver.reserve(static_cast<int>(n), static_cast<int>(bounds.size()));
-}
+      problem(solver, of.chain().size(), capacity.planes) {}
 
 void CycleMemory::prepare() {
-  pairs.clear();
-  for (std::size_t m = 0; m < meshes.size(); ++m) {
+  bodies.pairs.clear();
+  for (std::size_t m = 0; m < bodies.meshes.size(); ++m) {
     for (std::size_t b = 0; b < instrument.bodies().size(); ++b) {
-      pairs.push_back({.body = b,
-                       .mesh = m,
-                       .near = NearSet(meshes[m].near->room(), reach_beyond_axis(instrument, b))});
+      const std::size_t room = bodies.meshes[m].near->room();
+      bodies.pairs.push_back(
+          {.body = b, .mesh = m, .near = NearSet(room, distance_beyond_axis(instrument, b))});
     }
   }
+  failures.resize(bodies.pairs.size());
   measure();
   forget();
 }
@@ -71,7 +66,7 @@ void CycleMemory::prepare() {
 void CycleMemory::measure() noexcept {
   double size = 0.0;
   double size_with_poses = 0.0;
-  for (const MeshMemory& mesh : meshes) {
+  for (const MeshMemory& mesh : bodies.meshes) {
     const double own = size_of(instrument, mesh.near->mesh());
     size = std::max(size, own);
     size_with_poses = std::max(size_with_poses, own + mesh.pose.position.norm());
@@ -82,47 +77,51 @@ void CycleMemory::measure() noexcept {
 
 bool CycleMemory::is_lost_in_rounding(const InstrumentOptions& options) const noexcept {
   double margin = options.margin;
-  for (const MeshMemory& mesh : meshes) margin = std::min(margin, mesh.margin(options));
-  // The certified distance, and the band, are told apart from rounding.
-  const double least = 4.0 * tolerance;
+  for (const MeshMemory& mesh : bodies.meshes) margin = std::min(margin, mesh.margin(options));
+  const double least = needed_band * tolerance;
   return !(margin - options.band > least) || !(options.band > least) ||
-         std::any_of(guides.begin(), guides.end(), [&](const GuideMemory& each) {
-           return !(each.guide.band() > 4.0 * tolerance_of(each.guide));
+         std::any_of(guides.guides.begin(), guides.guides.end(), [&](const GuideMemory& each) {
+           return !(each.guide.band() > needed_band * tolerance_of(each.guide, tolerance));
          });
 }
 
 void CycleMemory::forget() noexcept {
   forget_motion();
-  for (PairMemory& pair : pairs) {
+  for (PairMemory& pair : bodies.pairs) {
     pair.near.forget();
-    pair.guard = 0.0;
+    pair.padding = 0.0;
   }
-  forget_floors();
+  forget_certified();
 }
 
-CycleMemory::Floors CycleMemory::floors() const noexcept {
-  Floors all{};
-  for (std::size_t p = 0; p < pairs.size(); ++p) all[p] = pairs[p].floor;
-  for (std::size_t g = 0; g < guides.size(); ++g) all[most_pairs + g] = guides[g].floor;
+CycleMemory::Certified CycleMemory::certified() const noexcept {
+  Certified all{};
+  for (std::size_t p = 0; p < bodies.pairs.size(); ++p) all[p] = bodies.pairs[p].certified;
+  for (std::size_t g = 0; g < guides.guides.size(); ++g) {
+    all[most_pairs + g] = guides.guides[g].certified;
+  }
   return all;
 }
 
-void CycleMemory::set_floors(const Floors& all) noexcept {
-  for (std::size_t p = 0; p < pairs.size(); ++p) pairs[p].floor = all[p];
-  for (std::size_t g = 0; g < guides.size(); ++g) guides[g].floor = all[most_pairs + g];
+void CycleMemory::set_certified(const Certified& all) noexcept {
+  for (std::size_t p = 0; p < bodies.pairs.size(); ++p) bodies.pairs[p].certified = all[p];
+  for (std::size_t g = 0; g < guides.guides.size(); ++g) {
+    guides.guides[g].certified = all[most_pairs + g];
+  }
 }
 
-void CycleMemory::forget_floors() noexcept {
-  for (PairMemory& pair : pairs) pair.floor = -std::numeric_limits<double>::infinity();
-  for (GuideMemory& guide : guides) guide.floor = -std::numeric_limits<double>::infinity();
+void CycleMemory::forget_certified() noexcept {
+  Certified unknown;
+  unknown.fill(-std::numeric_limits<double>::infinity());
+  set_certified(unknown);
 }
 
 void CycleMemory::forget_motion() noexcept {
-  warm.clear();
-  for (MeshMemory& mesh : meshes) mesh.side_of = 0;
-  for (PairMemory& pair : pairs) {
-    pair.reach = 0.0;
-    pair.is_side_unknown = false;  // as it is of all, by side_of
+  rows.warm.clear();
+  for (MeshMemory& mesh : bodies.meshes) mesh.side_of = 0;
+  for (PairMemory& pair : bodies.pairs) {
+    pair.displacement = 0.0;
+    pair.is_side_unknown = false;  // all sides are unknown, by side_of
   }
 }
 

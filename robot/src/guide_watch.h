@@ -5,28 +5,52 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <vector>
 
-#include "cycle_memory.h"
+#include "contact_row.h"
+#include "cycle_context.h"
 
 namespace keepout {
 
-/// How the guides stand as a cycle begins, how far out each may come in it, and the proof that a
-/// motion goes no farther: a region's excess is convex and no steeper than 1, so on a part of the
-/// motion it is no more than at one of the ends, and an eighth of the bend.
+/// A guide, and what the cycles remember of it.
+struct GuideMemory {
+  Guide guide;
+  double certified = 0.0;  // by how much inside its region, in the last cycle; below 0: outside
+};
+
+/// The guides of an instrument. Made once for all cycles.
+struct GuideMemories {
+  std::vector<GuideMemory> guides;
+  std::vector<GuideState> states;  // of the last cycle
+};
+
+/// The excess that a cycle allows each guide, and the proof that a motion does not exceed it: a
+/// region's excess is convex and no steeper than 1, so on a sub-interval of the motion it is at
+/// most the larger one of its ends, and an eighth of the second-derivative bound.
 class GuideWatch {
  public:
-  /// The motion's start must be where the joints are. Both must outlive it.
-  GuideWatch(CycleMemory& memory, const InstrumentOptions& options) noexcept
-      : memory_(memory), options_(options) {}
+  /// How far all guides allow a motion.
+  struct Verdict {
+    int cell = PointMotion::cells;  // proved up to here
+    std::size_t guide = 0;          // which is violated beyond, if that is not the end
+  };
 
-  /// Looks at all guides.
+  /// The motion must start at the positions of the joints. Both must outlive it.
+  GuideWatch(GuideMemories& memory, const CycleContext& context) noexcept
+      : memory_(memory), context_(context) {}
+
+  /// Measures all guides.
   void open() noexcept;
-  /// Whether some guide is out by more than its band.
+  /// Returns the number of guides.
+  std::size_t size() const noexcept { return memory_.guides.size(); }
+  /// Returns the state of each guide.
+  std::span<GuideState> states() noexcept { return memory_.states; }
+  /// Returns true if some guide is outside its region by more than its band.
   bool is_recovering() const noexcept { return is_recovering_; }
-  /// Whether that guide is.
+  /// Returns true if that guide is.
   bool is_recovering(std::size_t guide) const noexcept;
 
-  /// Returns the excess that a relaxed guide may end with, if a fraction of its band is kept
+  /// Returns the excess that a relaxed guide may end with, if a fraction of its band must remain
   /// unused. [length or rad]
   double allowance(std::size_t guide, double unused) const noexcept;
 
@@ -41,35 +65,34 @@ class GuideWatch {
   /// Takes a guide out of what is proved in this cycle: it contradicts the clearance from a mesh
   /// that moves.
   void drop(std::size_t guide) noexcept { is_dropped_[guide] = true; }
-  /// Returns true if it was.
+  /// Returns true if the guide was dropped.
   bool is_dropped(std::size_t guide) const noexcept { return is_dropped_[guide]; }
 
-  /// Up to which cell all guides are proven to be kept on the motion at hand; and, if not to the
-  /// last, which one was not.
-  int judge(std::size_t& failed) noexcept;
+  /// Proves the motion at hand for all guides, as far as possible.
+  Verdict judge() noexcept;
 
-  /// A row that keeps a guide behind the plane that touches its region where it is at a share of
-  /// the motion. Nothing in the region's middle, which has no such plane.
+  /// Returns a row that limits a guide by the plane that touches its region at the guided point at
+  /// a cell of the motion; nothing at the region's center, which has no such plane.
   std::optional<ContactRow> row(std::size_t guide, int cell) noexcept;
-  /// Where the row's guide is, relative to its plane's level, at the end of the motion.
+  /// Returns the height of the row's guided point over its plane at the end of the motion.
   double height_at_end(const ContactRow& row) noexcept;
 
  private:
-  /// How a guide stands at a share of the motion.
-  struct Standing {
+  /// A guide at one point of the motion.
+  struct Sample {
     double excess;
-    double share;  // see guided_fraction
+    double fraction;  // see guided_fraction
   };
 
-  Standing standing(std::size_t guide, int cell) noexcept;
-  int proven_until(std::size_t guide, int lo, const Standing& at_lo, int hi,
-                   const Standing& at_hi) noexcept;
+  Sample sample(std::size_t guide, int cell) noexcept;
+  int proven_until(std::size_t guide, int lo, const Sample& at_lo, int hi,
+                   const Sample& at_hi) noexcept;
   const ChainState& chain_at(int cell) noexcept;
 
-  CycleMemory& memory_;
-  const InstrumentOptions& options_;
+  GuideMemories& memory_;
+  const CycleContext& context_;
   ChainState chain_;
-  int cell_of_chain_ = 0;  // where that is, on the motion at hand; 0: not known
+  int cell_of_chain_ = 0;  // the cell that it was computed for; 0: unknown
   bool is_recovering_ = false;
   bool owes_ = false;
   std::array<double, Guide::most> allowed_{};  // excess of each in this cycle

@@ -6,10 +6,9 @@
 
 namespace keepout {
 
-IncrementBox::IncrementBox(const CycleMemory& memory, double period,
+IncrementBox::IncrementBox(const Chain& chain, double largest_position, double period,
                            std::span<const double> q) noexcept
-    : memory_(memory), q_(q) {
-  const Chain& chain = memory.instrument.chain();
+    : chain_(chain), largest_position_(largest_position), q_(q) {
   for (int k = 1; k <= chain.size(); ++k) {
     const auto i = static_cast<std::size_t>(k - 1);
     const JointLimits& limits = chain.joint(k).limits;
@@ -23,20 +22,19 @@ IncrementBox::IncrementBox(const CycleMemory& memory, double period,
 }
 
 bool IncrementBox::clip(JointVector& increment) const noexcept {
-  const Chain& chain = memory_.instrument.chain();
   bool is_too_far = false;
-  for (int k = 1; k <= chain.size(); ++k) {
+  for (int k = 1; k <= chain_.size(); ++k) {
     const auto i = static_cast<std::size_t>(k - 1);
-    const double lower = std::max(chain.joint(k).limits.lower, -memory_.farthest(k));
-    const double upper = std::min(chain.joint(k).limits.upper, memory_.farthest(k));
+    const double far = farthest(chain_, k, largest_position_);
+    const double lower = std::max(chain_.joint(k).limits.lower, -far);
+    const double upper = std::min(chain_.joint(k).limits.upper, far);
     double& step = increment[i];
     step = std::clamp(step, low_[i], high_[i]);
     const double there = q_[i] + step;
     if (lower <= there && there <= upper) continue;
-    is_too_far = is_too_far || (step > 0.0 && there > memory_.farthest(k)) ||
-                 (step < 0.0 && there < -memory_.farthest(k));
-    // Where the sum rounds to beyond a limit it is shortened by the excess, which is known exactly,
-    // or by a last digit where that is lost.
+    is_too_far = is_too_far || (step > 0.0 && there > far) || (step < 0.0 && there < -far);
+    // The sum rounds to beyond a limit. The excess is exact, so the step is shortened by it, or by
+    // one last digit if the excess is lost in rounding.
     for (int again = 0; again < 4; ++again) {
       const double beyond = std::max(q_[i] + step - upper, lower - (q_[i] + step));
       const bool is_towards = step > 0.0 ? q_[i] + step > upper : q_[i] + step < lower;

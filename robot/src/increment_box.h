@@ -5,20 +5,29 @@
 #include <cstddef>
 #include <span>
 
-#include "cycle_memory.h"
+#include "keepout/robot/chain.h"
+#include "keepout/status.h"
+#include "point_motion.h"
 
 namespace keepout {
 
-/// The increments that the limits of the joints allow in a cycle: low <= dq <= high, and q + dq
-/// within them to the last bit.
+/// The bounds of the joints' positions and increments in a cycle: low <= dq <= high, and q + dq
+/// within the position limits, bitwise.
 class IncrementBox {
  public:
-  /// From q (n), in a cycle of so many seconds. The memory, and q, must outlive it.
-  IncrementBox(const CycleMemory& memory, double period, std::span<const double> q) noexcept;
+  /// Returns the largest distance of joint k (1..n) from 0 that a cycle accepts, so that rounding
+  /// stays small: sixteen turns, or `largest_position` of a prismatic joint. [rad or length]
+  static double farthest(const Chain& chain, int k, double largest_position) noexcept {
+    return chain.joint(k).kind == JointKind::prismatic ? largest_position : 100.0;
+  }
 
-  /// The least increments (n), at most 0: a joint that is beyond a limit may stay, or come back.
+  /// From q (n), in a cycle of `period` seconds. Chain and q must outlive it.
+  IncrementBox(const Chain& chain, double largest_position, double period,
+               std::span<const double> q) noexcept;
+
+  /// Returns the least increments (n), at most 0: a joint beyond a limit may stay or return.
   const JointVector& low() const noexcept { return low_; }
-  /// The largest, at least 0.
+  /// Returns the largest increments (n), at least 0.
   const JointVector& high() const noexcept { return high_; }
 
   /// Returns which limit of a joint, counted from 0, bounds its increment upwards or downwards.
@@ -29,12 +38,13 @@ class IncrementBox {
   /// Returns true if a joint starts outside its position limits.
   bool starts_outside() const noexcept { return starts_outside_; }
 
-  /// Takes an increment back into the box. Returns true if a joint without limits would have gone
-  /// farther than the next cycle accepts (CycleMemory::farthest), which is a position limit too.
+  /// Clips an increment to the box. Returns true if a joint without limits would have moved beyond
+  /// farthest(), which is a position limit too.
   bool clip(JointVector& increment) const noexcept;
 
  private:
-  const CycleMemory& memory_;
+  const Chain& chain_;
+  double largest_position_;
   std::span<const double> q_;
   JointVector low_;
   JointVector high_;

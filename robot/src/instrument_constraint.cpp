@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "joint_cycle.h"
+#include "keepout/activation/tolerances.h"
 #include "keepout/error.h"
 #include "keepout/mesh/doctor.h"
 #include "keepout/step/options.h"
@@ -58,10 +59,10 @@ struct InstrumentConstraint::State {
   /// it cannot be used.
   void put(MeshMemory mesh, std::size_t number, const InstrumentOptions& its_options) {
     const std::vector<MeshMemory>::iterator at =
-        memory.meshes.begin() + static_cast<std::ptrdiff_t>(number);
-    const bool is_new = at == memory.meshes.end();
+        memory.bodies.meshes.begin() + static_cast<std::ptrdiff_t>(number);
+    const bool is_new = at == memory.bodies.meshes.end();
     if (is_new) {
-      memory.meshes.push_back(std::move(mesh));
+      memory.bodies.meshes.push_back(std::move(mesh));
     } else {
       std::swap(*at, mesh);
     }
@@ -70,15 +71,16 @@ struct InstrumentConstraint::State {
       memory.require_usable(its_options);
     } catch (...) {
       if (is_new) {
-        memory.meshes.pop_back();
+        memory.bodies.meshes.pop_back();
       } else {
-        std::swap(memory.meshes[number], mesh);
+        std::swap(memory.bodies.meshes[number], mesh);
       }
       memory.prepare();
       throw;
     }
     std::size_t looks = 0;
-    for (const MeshMemory& each : memory.meshes) looks = std::max(looks, each.near->budget().all());
+    for (const MeshMemory& each : memory.bodies.meshes)
+      looks = std::max(looks, each.near->budget().all());
     memory.budget = Budget(looks);
   }
 
@@ -91,7 +93,7 @@ struct InstrumentConstraint::State {
   /// Before anything else: why there can be no step.
   Status check(std::span<const double> q) noexcept {
     memory.budget.renew();
-    for (const MeshMemory& mesh : memory.meshes) {
+    for (const MeshMemory& mesh : memory.bodies.meshes) {
       const bool is_too_fast =
           !(options.period * mesh.velocity.angular.norm() <= fastest_turn) ||
           !(options.period * mesh.velocity.linear.norm() <= memory.largest_position);
@@ -118,7 +120,7 @@ struct InstrumentConstraint::State {
   void pass_time(InstrumentStep& result) noexcept {
     if (!memory.is_moving()) return;
     if (!result.ok()) result.level = 0.0;
-    for (MeshMemory& mesh : memory.meshes) {
+    for (MeshMemory& mesh : memory.bodies.meshes) {
       mesh.pose.position += options.period * mesh.velocity.linear;
       const double turn = options.period * mesh.velocity.angular.norm();
       if (!(turn > 0.0)) continue;
@@ -195,13 +197,13 @@ void InstrumentConstraint::forget() noexcept { state_->memory.forget(); }
 
 const Instrument& InstrumentConstraint::instrument() const noexcept { return state_->instrument; }
 std::size_t InstrumentConstraint::mesh_count() const noexcept {
-  return state_->memory.meshes.size();
+  return state_->memory.bodies.meshes.size();
 }
 const Mesh& InstrumentConstraint::mesh(std::size_t number) const noexcept {
-  return state_->memory.meshes[number].near->mesh();
+  return state_->memory.bodies.meshes[number].near->mesh();
 }
 const Pose& InstrumentConstraint::place_of(std::size_t mesh) const noexcept {
-  return state_->memory.meshes[mesh].pose;
+  return state_->memory.bodies.meshes[mesh].pose;
 }
 const InstrumentOptions& InstrumentConstraint::options() const noexcept { return state_->options; }
 
@@ -214,7 +216,7 @@ std::size_t InstrumentConstraint::add_mesh(std::shared_ptr<const Mesh> mesh,
                                            std::shared_ptr<const SpatialIndex> index,
                                            double margin) {
   State& state = *state_;
-  const std::size_t number = state.memory.meshes.size();
+  const std::size_t number = state.memory.bodies.meshes.size();
   if (number == most_meshes) {
     throw Error("an instrument is kept out of at most " + std::to_string(most_meshes) + " meshes");
   }
@@ -232,10 +234,10 @@ std::size_t InstrumentConstraint::add_mesh(std::shared_ptr<const Mesh> mesh,
 void InstrumentConstraint::follow(std::shared_ptr<const Mesh> moved,
                                   std::shared_ptr<const SpatialIndex> index, std::size_t number) {
   State& state = *state_;
-  if (number >= state.memory.meshes.size()) {
+  if (number >= state.memory.bodies.meshes.size()) {
     throw Error("there is no mesh of number " + std::to_string(number));
   }
-  const MeshMemory& old = state.memory.meshes[number];
+  const MeshMemory& old = state.memory.bodies.meshes[number];
   auto near = neighborhood_of(std::move(moved), std::move(index), state.capacity);
   const bool has_same_triangles =
       std::ranges::equal(near->mesh().triangles(), old.near->mesh().triangles());
@@ -253,12 +255,12 @@ void InstrumentConstraint::follow(std::shared_ptr<const Mesh> moved,
 Status InstrumentConstraint::place(std::size_t mesh, const Pose& pose,
                                    const Twist& velocity) noexcept {
   CycleMemory& memory = state_->memory;
-  if (mesh >= memory.meshes.size()) return Status::invalid_input;
+  if (mesh >= memory.bodies.meshes.size()) return Status::invalid_input;
   const auto is_within = [](const auto& numbers, double most) {
     return (numbers.array().abs() <= most).all();  // false for NaN
   };
   const Mat3 off = pose.rotation.transpose() * pose.rotation - Mat3::Identity();
-  MeshMemory& placed = memory.meshes[mesh];
+  MeshMemory& placed = memory.bodies.meshes[mesh];
   placed.is_misplaced = !is_within(pose.position, memory.largest_position) ||
                         !is_within(off, rotation_digits) || !(pose.rotation.determinant() > 0.0) ||
                         !is_within(velocity.linear, largest_number) ||
@@ -276,7 +278,7 @@ void InstrumentConstraint::set_guides(std::vector<Guide> guides) {
                 std::to_string(guides.size()));
   }
   for (const Guide& guide : guides) {
-    if (!(guide.band() > 4.0 * state_->memory.tolerance_of(guide))) {
+    if (!(guide.band() > needed_band * tolerance_of(guide, state_->memory.tolerance))) {
       throw Error("the band of guide '" + guide.name() +
                   "' is lost in the rounding of an instrument and a mesh of this size");
     }
@@ -288,13 +290,13 @@ void InstrumentConstraint::set_guides(std::vector<Guide> guides) {
     throw Error("guide '" + guide.name() + "' is on link " + std::to_string(guide.link()) +
                 "; there are links 0 to " + std::to_string(state_->instrument.chain().size()));
   }
-  CycleMemory& memory = state_->memory;
+  GuideMemories& memory = state_->memory.guides;
   memory.guides.clear();
   for (Guide& guide : guides) {
     memory.guides.push_back({std::move(guide), -std::numeric_limits<double>::infinity()});
   }
-  memory.guide_states.assign(memory.guides.size(), {});
-  memory.forget_motion();
+  memory.states.assign(memory.guides.size(), {});
+  state_->memory.forget_motion();
 }
 
 double InstrumentConstraint::tolerance() const noexcept { return state_->memory.tolerance; }

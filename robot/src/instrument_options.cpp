@@ -12,7 +12,7 @@ void CycleMemory::require_usable(const InstrumentOptions& o) const {
   const auto within = [](double x, double low) { return x >= low && x <= longest_length; };
   double margin = o.margin;  // the least
   bool all_within = within(o.margin, shortest_length);
-  for (const MeshMemory& mesh : meshes) {
+  for (const MeshMemory& mesh : bodies.meshes) {
     margin = std::min(margin, mesh.margin(o));
     all_within = all_within && within(mesh.margin(o), shortest_length);
   }

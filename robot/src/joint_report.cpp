@@ -5,18 +5,19 @@
 #include "joint_cycle.h"
 
 namespace keepout {
-/// Notes that a guide stopped an attempt.
+
+/// Notes that a guide ended a search.
 void JointCycle::note_guide(std::size_t guide) noexcept {
   stopped_.add(Limit::guide);
   stopping_guides_.set(guide);
 }
 
-/// Notes the kinds of constraints that the last trial of an attempt could not be proved for. If the
+/// Notes the kinds of constraints that the last trial of a search could not be proved for. If the
 /// rows contradict each other, notes the kinds of the rows.
 void JointCycle::note_failure() noexcept {
   if (trouble_ == Status::ill_posed) return;
   if (trouble_ == Status::infeasible) {
-    for (const ContactRow& row : memory_.rows) {
+    for (const ContactRow& row : rows_.view()) {
       if (row.owner < most_pairs) {
         stopped_.add(Limit::mesh);
       } else {
@@ -26,9 +27,9 @@ void JointCycle::note_failure() noexcept {
     return;
   }
   // A proof that the budget ended says nothing about its subject.
-  if (kept_by_guides_ < PointMotion::cells && !is_worn_out()) note_guide(failed_guide_);
-  for (const PairMemory& pair : memory_.pairs) {
-    if (pair.failure.triangle != nullptr) stopped_.add(Limit::mesh);
+  if (by_guides_.cell < PointMotion::cells && !is_spent()) note_guide(by_guides_.guide);
+  for (const Certificate::Failure& failure : memory_.failures) {
+    if (failure.triangle != nullptr) stopped_.add(Limit::mesh);
   }
 }
 
@@ -41,7 +42,7 @@ void JointCycle::report_limits(const Trial& best, InstrumentStep& result) noexce
   if (ended(Status::over_capacity)) limits.add(Limit::capacity);
   if (ended(Status::out_of_budget)) limits.add(Limit::budget);
   limits.add(best.held);
-  const bool is_cut = !is_ok(result.status) || is_shortened_ || best.share < 1.0;
+  const bool is_cut = !is_ok(result.status) || is_shortened_ || best.fraction < 1.0;
   if (!is_cut) return;
   limits.add(stopped_);
   if (is_ok(result.status)) limits.add(Limit::truncated);
@@ -50,9 +51,9 @@ void JointCycle::report_limits(const Trial& best, InstrumentStep& result) noexce
 /// Reports which guides limit the motion, and which were relaxed.
 void JointCycle::report_guides(const Trial& best, InstrumentStep& result) noexcept {
   result.relaxation = best.relaxation;
-  const bool is_cut = !is_ok(result.status) || is_shortened_ || best.share < 1.0;
-  for (std::size_t g = 0; g < memory_.guides.size(); ++g) {
-    GuideState& state = memory_.guide_states[g];
+  const bool is_cut = !is_ok(result.status) || is_shortened_ || best.fraction < 1.0;
+  for (std::size_t g = 0; g < guides_.size(); ++g) {
+    GuideState& state = guides_.states()[g];
     state.limits = best.guides[g] || (is_cut && stopping_guides_[g]);
     state.relaxed =
         (best.relaxation != Relaxation::none && state.excess > 0.0) || guides_.is_dropped(g);

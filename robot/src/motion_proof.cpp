@@ -7,10 +7,9 @@ namespace keepout {
 
 MotionProof prove_in_parts(CycleMemory& memory, const InstrumentOptions& options,
                            std::span<const double> q, std::span<const double> increment) noexcept {
-  const CycleMemory::Floors floors = memory.floors();
+  const CycleMemory::Certified certified = memory.certified();
   InstrumentOptions unslowed = options;
   unslowed.slowing_within = 0.0;
-  // In parts, where there is more near a long motion than there is room for.
   constexpr double least_part = 1.0 / 64.0;
   MotionProof proof{.status = Status::free};
   double part = 1.0;
@@ -23,7 +22,7 @@ MotionProof prove_in_parts(CycleMemory& memory, const InstrumentOptions& options
     }
     memory.budget.renew();
     memory.forget_motion();
-    memory.forget_floors();
+    memory.forget_certified();
     InstrumentStep result;
     const double proven =
         JointCycle(memory, unslowed, {from.data(), q.size()}, JointCycle::Meshes::still)
@@ -45,7 +44,7 @@ MotionProof prove_in_parts(CycleMemory& memory, const InstrumentOptions& options
     if (proven < 1.0 || result.status != Status::free) break;
   }
   memory.forget_motion();
-  memory.set_floors(floors);
+  memory.set_certified(certified);
   if (proof.status == Status::free && proof.share < 1.0) proof.status = Status::limited;
   return proof;
 }

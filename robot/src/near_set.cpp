@@ -61,8 +61,8 @@ NearSet::NearSet(std::size_t room, double beyond) : room_(room), beyond_(beyond)
   normals_.reserve(room);
 }
 
-bool NearSet::look(Neighborhood& near, std::span<const Vec3> core, double radius,
-                   Budget& budget) noexcept {
+bool NearSet::gather(Neighborhood& near, std::span<const Vec3> core, double radius,
+                     Budget& budget) noexcept {
   forget();
   core_.assign(core.begin(), core.end());
   ids_.clear();

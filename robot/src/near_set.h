@@ -33,8 +33,8 @@ class NearSet {
 
   /// Looks for all triangles within `radius` of a core, in the places of its points. False if there
   /// are too many, or the budget is spent: then nothing is known. [length]
-  [[nodiscard]] bool look(Neighborhood& near, std::span<const Vec3> core, double radius,
-                          Budget& budget) noexcept;
+  [[nodiscard]] bool gather(Neighborhood& near, std::span<const Vec3> core, double radius,
+                            Budget& budget) noexcept;
 
   /// Forgets all: nothing is known.
   void forget() noexcept { radius_ = -1.0; }

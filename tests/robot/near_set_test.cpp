@@ -38,7 +38,7 @@ TEST(NearSet, TellsAllThatIsNearOnceAndAllocatesNothing) {
           distances.push_back(gap(core, mesh->triangle(t)).distance);
         }
         const std::size_t before = allocations();
-        ASSERT_TRUE(set.look(near, core, radius, near.budget()));
+        ASSERT_TRUE(set.gather(near, core, radius, near.budget()));
         ASSERT_EQ(allocations(), before);
         for (int cycle = 0; cycle < 3; ++cycle) {
           for (const double share : {0.1, 0.5, 0.9, 1.0}) {

@@ -112,7 +112,7 @@ TEST(SpentCapacity, ANearSetThatCannotHoldAllTrianglesKnowsNothing) {
   for (std::size_t room = 1; room <= mesh->triangle_count(); ++room) {
     NearSet set(room, 0.0);
     const bool holds_all = room == mesh->triangle_count();
-    ASSERT_EQ(set.look(near, core, 200.0, near.budget()), holds_all) << room;
+    ASSERT_EQ(set.gather(near, core, 200.0, near.budget()), holds_all) << room;
     ASSERT_EQ(set.radius() >= 0.0, holds_all) << room;
   }
 }

@@ -1,9 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
+
 #include "keepout/activation/activation.h"
 
 namespace keepout {
+
+/// The most planes that a rule adds in a cycle. A cycle's planes are few, and some hundred under
+/// the tip of a cone of 400 faces; more are a loop that does not end.
+inline constexpr std::size_t most_cutting_planes = 192;
 
 /// The paper's plane {n, p} (eq. 2) with a margin: all motions d that end at least `margin` beyond
 /// the plane through the hit's closest point. `normal` is a unit vector.

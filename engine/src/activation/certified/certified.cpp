@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
-#include "../tolerance_ladder.h"
 #include "certified_terms.h"
 #include "keepout/activation/planes.h"
+#include "keepout/activation/tolerances.h"
 #include "keepout/index/query.h"
 
 namespace keepout {
@@ -229,7 +229,7 @@ Judgement CertifiedRule::judge(const Surroundings& around, const Vec3& trial,
   if (meeting.facet == Encounter::no_note) return {Verdict::accepted};
   const HalfSpace& plane = meeting.contact.plane;
   const double free_share = std::clamp(meeting.contact.time, 0.0, 1.0);
-  if (has_plane(plane.source, planes.view()) || planes.size() >= most_planes) {
+  if (has_plane(plane.source, planes.view()) || planes.size() >= most_cutting_planes) {
     return {Verdict::blocked, free_share};
   }
   planes.push(terms_->answer(facets_[meeting.facet], around, trial, plane));

@@ -7,8 +7,8 @@
 #include <cstddef>
 #include <optional>
 
-#include "../tolerance_ladder.h"
 #include "keepout/activation/planes.h"
+#include "keepout/activation/tolerances.h"
 
 namespace keepout {
 namespace {

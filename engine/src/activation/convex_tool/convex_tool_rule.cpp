@@ -6,8 +6,8 @@
 #include <limits>
 #include <utility>
 
-#include "../tolerance_ladder.h"
 #include "keepout/activation/planes.h"
+#include "keepout/activation/tolerances.h"
 
 namespace keepout {
 namespace {
@@ -157,7 +157,7 @@ Judgement ConvexToolRule::judge(const Surroundings& around, const Vec3& trial,
     is_answered = answered;
   }
   if (!first) return {Verdict::accepted};
-  if (is_answered || planes.size() >= most_planes) return {Verdict::blocked, first->time};
+  if (is_answered || planes.size() >= most_cutting_planes) return {Verdict::blocked, first->time};
   planes.push(first->plane);
   return {Verdict::objected, first->time};
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "cycle_memory.h"
+#include "certified_clearance.h"
 
 #include <gtest/gtest.h>
 
@@ -13,11 +13,11 @@ constexpr double left_to_a_motion = 0.002;
 constexpr double told_apart = 1e-9;
 
 double certified_at(double distance, double floor) {
-  return certified_distance(distance, floor, wanted_distance, left_to_a_motion, told_apart);
+  return certified_clearance(distance, floor, wanted_distance, left_to_a_motion, told_apart);
 }
 
 // Bodies and guides alike: what is certified is what was gained, and no band of it is given away.
-TEST(CertifiedDistance, IsTheTargetWhereThatIsKeptHoweverLittleWasCertifiedBefore) {
+TEST(CertifiedClearance, IsTheTargetWhereThatIsKeptHoweverLittleWasCertifiedBefore) {
   for (const double floor :
        {-1.0, 0.0, 0.1, wanted_distance, std::numeric_limits<double>::infinity()}) {
     for (const double beyond : {0.0, 0.001, 0.5, -2.7 * told_apart}) {
@@ -27,7 +27,7 @@ TEST(CertifiedDistance, IsTheTargetWhereThatIsKeptHoweverLittleWasCertifiedBefor
   }
 }
 
-TEST(CertifiedDistance, BelowTheTargetLosesNothingThatWasCertified) {
+TEST(CertifiedClearance, BelowTheTargetLosesNothingThatWasCertified) {
   EXPECT_EQ(certified_at(0.15, 0.149), 0.149);
   EXPECT_EQ(certified_at(0.15, 0.1), 0.15 - left_to_a_motion)
       << "and gains what was recovered, less the room";
@@ -38,7 +38,7 @@ TEST(CertifiedDistance, BelowTheTargetLosesNothingThatWasCertified) {
 
 // Theorem 2 needs both: a recovery that is accepted ends within 2.75 tolerances of the target, and
 // a start that no cycle has certified is certified to what it has.
-TEST(CertifiedDistance, IsLessThanTheTargetBeyond2_75TolerancesBelowItUnlessItWasCertified) {
+TEST(CertifiedClearance, IsLessThanTheTargetBeyond2_75TolerancesBelowItUnlessItWasCertified) {
   const double unknown = -std::numeric_limits<double>::infinity();
   for (const double below : {2.8, 2.9, 3.5, 3.9}) {
     const double distance = wanted_distance - below * told_apart;

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+namespace keepout {
+
+// The thresholds of the proofs, in units of their tolerance tau. Solvers and the rounding of
+// positions leave errors far below one tau. Each step of the ladder is one: the clearance that a
+// free motion may lose, the clearance that a motion along a plane may lose in addition, and the
+// loss at which the margin counts as violated. Planes aim at the full margin, so that later cycles
+// regain the loss.
+inline constexpr double demand_below = 1.0;
+inline constexpr double floor_below = 2.0;
+inline constexpr double lost_below = 2.75;
+inline constexpr double touching_within = 4.0;
+inline constexpr double needed_margin = 8.0;
+inline constexpr double region_beyond = 8.0;
+
+inline constexpr double contact_slack = 1.0 / 8.0;  // of a contact: small beside demand_below
+
+// Of the core of an instrument's body.
+inline constexpr double moved_beyond = 4.0;          // a larger loss is not rounding: it was moved
+inline constexpr double crossing_within = 3.0;       // it may have crossed the surface
+inline constexpr double core_touching_within = 7.0;  // its side is certain beyond six
+inline constexpr double needed_band = 4.0;           // the least band, and margin beyond the band
+
+}  // namespace keepout
