@@ -183,9 +183,7 @@ Status BodyWatch::classify(std::size_t m) noexcept {
   const std::size_t bodies = context_.instrument.bodies().size();
   for (std::size_t p = m * bodies; p < (m + 1) * bodies; ++p) {
     if (memory_.pairs[p].is_dropped) continue;
-    mesh.near->budget() = budget;
     const auto placement = place(*mesh.near, mesh.motion.at_start()[points(p).back()]);
-    budget = mesh.near->budget();
     if (!placement || budget.is_spent()) return budget.status_at_end();
     if (!placement->is_free && !context_.meshes_move) return Status::inside;
     if (!placement->is_free) drop(p, Status::inside);

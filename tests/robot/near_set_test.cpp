@@ -24,7 +24,8 @@ TEST(NearSet, TellsAllThatIsNearOnceAndAllocatesNothing) {
   std::size_t told_of = 0;
   for (const char* shape : {"cube", "gear"}) {
     const auto mesh = std::make_shared<const Mesh>(make_shape(shape));
-    Neighborhood near(mesh, std::make_shared<WideBvh>(mesh), mesh->triangle_count());
+    Budget budget;
+    Neighborhood near(mesh, std::make_shared<WideBvh>(mesh), mesh->triangle_count(), budget);
     for (const std::size_t points : {1u, 2u, 4u}) {
       const double width = points > 2 ? 1.0 : 0.0;
       NearSet set(near.room(), 2.0 * width);
@@ -38,13 +39,13 @@ TEST(NearSet, TellsAllThatIsNearOnceAndAllocatesNothing) {
           distances.push_back(gap(core, mesh->triangle(t)).distance);
         }
         const std::size_t before = allocations();
-        ASSERT_TRUE(set.gather(near, core, radius, near.budget()));
+        ASSERT_TRUE(set.gather(near, core, radius, budget));
         ASSERT_EQ(allocations(), before);
         for (int cycle = 0; cycle < 3; ++cycle) {
           for (const double share : {0.1, 0.5, 0.9, 1.0}) {
             const std::size_t until = allocations();
-            const std::span<NearTriangle> told = set.nearer_than(share * radius, near.budget());
-            for (NearTriangle& triangle : told) set.know(triangle, near.budget());
+            const std::span<NearTriangle> told = set.nearer_than(share * radius, budget);
+            for (NearTriangle& triangle : told) set.know(triangle, budget);
             ASSERT_EQ(allocations(), until) << shape;
             std::set<TriangleId> ids;
             for (const NearTriangle& triangle : told) {

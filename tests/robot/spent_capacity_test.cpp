@@ -107,12 +107,13 @@ TEST(SpentCapacity, NothingIsCertifiedThatIsNotClearHoweverFewTrianglesFit) {
 // The index has room for all triangles, the set for fewer.
 TEST(SpentCapacity, ANearSetThatCannotHoldAllTrianglesKnowsNothing) {
   const auto mesh = std::make_shared<const Mesh>(make_cube(50.0));
-  Neighborhood near(mesh, std::make_shared<WideBvh>(mesh), mesh->triangle_count());
+  Budget budget;
+  Neighborhood near(mesh, std::make_shared<WideBvh>(mesh), mesh->triangle_count(), budget);
   const std::vector<Vec3> core{Vec3::Zero()};
   for (std::size_t room = 1; room <= mesh->triangle_count(); ++room) {
     NearSet set(room, 0.0);
     const bool holds_all = room == mesh->triangle_count();
-    ASSERT_EQ(set.gather(near, core, 200.0, near.budget()), holds_all) << room;
+    ASSERT_EQ(set.gather(near, core, 200.0, budget), holds_all) << room;
     ASSERT_EQ(set.radius() >= 0.0, holds_all) << room;
   }
 }

@@ -151,7 +151,8 @@ std::vector<IndexAgreement> compare_indices(const IndexComparison& comparison,
     MotionConstraint guard =
         make_motion_constraint(mesh, index, {.activation = rule, .radius = radius});
     const double reach = guard.options().radius + guard.options().margin;
-    Neighborhood around(mesh, index, mesh->triangle_count());
+    Budget budget;
+    Neighborhood around(mesh, index, mesh->triangle_count(), budget);
     Findings findings{.searched = !guard.makes_queries()};
     for (const Motion& motion : motions) {
       if (stopped()) return std::nullopt;

@@ -35,12 +35,12 @@ std::size_t room_for(const Mesh* mesh, const SpatialIndex* index, std::size_t as
 
 Neighborhood::Neighborhood(std::shared_ptr<const Mesh> mesh,
                            std::shared_ptr<const SpatialIndex> index, std::size_t room,
-                           std::size_t looks)
+                           Budget& budget)
     : mesh_(std::move(mesh)),
       index_(std::move(index)),
       candidates_(room_for(mesh_.get(), index_.get(), room)),
       hits_(candidates_.capacity()),
-      budget_(looks) {}
+      budget_(&budget) {}
 
 bool Neighborhood::look(const Ball& ball) noexcept {
   ball_ = ball;
@@ -48,9 +48,9 @@ bool Neighborhood::look(const Ball& ball) noexcept {
   hits_.clear();
   if (!ball.center.allFinite() || !(ball.radius >= 0.0)) return false;
   index_->collect(ball, candidates_);
-  budget_.spend(work_of_hit * candidates_.size());
-  if (candidates_.overflowed()) budget_.mark_overflow();
-  if (candidates_.overflowed() || budget_.is_spent()) return false;
+  budget_->spend(work_of_hit * candidates_.size());
+  if (candidates_.overflowed()) budget_->mark_overflow();
+  if (candidates_.overflowed() || budget_->is_spent()) return false;
   refine(*mesh_, ball, candidates_.view(), hits_);
   return true;
 }

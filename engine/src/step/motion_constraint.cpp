@@ -38,14 +38,13 @@ void require_in_range(const Mesh& mesh) {
 std::unique_ptr<Neighborhood> neighborhood_of(std::shared_ptr<const Mesh> mesh,
                                               std::shared_ptr<const SpatialIndex> index,
                                               const Activation* activation, const Solver* solver,
-                                              const Capacity& capacity) {
+                                              const Capacity& capacity, Budget& budget) {
   if (!mesh || !index || activation == nullptr || solver == nullptr) {
     throw Error("a motion constraint needs a mesh, an index, an activation rule and a solver");
   }
   require_in_range(*mesh);
-  const std::size_t looks = capacity.looks > 0 ? capacity.looks : Capacity::default_looks(*index);
   return std::make_unique<Neighborhood>(std::move(mesh), std::move(index), capacity.triangles,
-                                        looks);
+                                        budget);
 }
 
 /// Throws for what cannot be held.
@@ -68,7 +67,8 @@ void name_cause(Status status, Limits& limits) noexcept {
 
 }  // namespace
 
-std::size_t Capacity::default_looks(const SpatialIndex& index) {
+std::size_t Capacity::looks_or_default(std::size_t looks, const SpatialIndex& index) {
+  if (looks > 0) return looks;
   Budget unused;
   return index.walk_along_motions(unused) ? looks_of_a_walk : looks_of_queries;
 }
@@ -78,7 +78,9 @@ MotionConstraint::MotionConstraint(std::shared_ptr<const Mesh> mesh,
                                    std::unique_ptr<Activation> activation,
                                    std::unique_ptr<Solver> solver, const StepOptions& options,
                                    const Capacity& capacity, Inside inside)
-    : near_(neighborhood_of(mesh, std::move(index), activation.get(), solver.get(), capacity)),
+    : budget_(std::make_unique<Budget>()),
+      near_(neighborhood_of(mesh, std::move(index), activation.get(), solver.get(), capacity,
+                            *budget_)),
       activation_(std::move(activation)),
       solver_(std::move(solver)),
       options_(options),
@@ -109,13 +111,15 @@ void MotionConstraint::reserve_solver(std::size_t guides) {
 /// Makes what is made of a mesh.
 void MotionConstraint::prepare() {
   is_prepared_ = false;
+  *budget_ = Budget(Capacity::looks_or_default(capacity_.looks, index()));
   activation_->prepare(*near_);
   is_prepared_ = true;
 }
 
 void MotionConstraint::follow(std::shared_ptr<const Mesh> moved,
                               std::shared_ptr<const SpatialIndex> index) {
-  auto near = neighborhood_of(moved, std::move(index), activation_.get(), solver_.get(), capacity_);
+  auto near = neighborhood_of(moved, std::move(index), activation_.get(), solver_.get(), capacity_,
+                              *budget_);
   FreePolytope polytope(moved, near->room());
   const bool has_same_triangles = std::ranges::equal(moved->triangles(), mesh().triangles());
   if (!has_same_triangles) watch_ = inside_ == Inside::led_out && is_watertight(*moved);
@@ -150,7 +154,7 @@ void MotionConstraint::require_usable(const StepOptions& options) {
   }
   // At the tip nearest to the origin that there can be, where rounding is least.
   const Box& bounds = mesh().bounds();
-  near_->budget().renew();
+  budget_->renew();
   const Vec3 tip = bounds.low.cwiseMax(Vec3::Zero()).cwiseMin(bounds.high);
   const Surroundings around =
       surroundings_of({.tip = tip, .desired = Vec3::Zero()}, options, activation_->reach());
@@ -186,7 +190,7 @@ Step MotionConstraint::step(const Motion& motion, SideWatch& sides, StageTimes* 
     result.status = Status::mesh_changed;
     return result;
   }
-  near_->budget().renew();
+  budget_->renew();
   result.status = check(motion, options_);
   // What is refused says nothing of where the tip is.
   if (is_ok(result.status)) {
@@ -213,7 +217,7 @@ void MotionConstraint::step_as_checked(const Motion& motion, SideWatch& sides, S
       lead_out_from_inside(*near_, motion, options_, *work_, result)) {
     return;
   }
-  Cycle(*activation_, *solver_, *work_, near_->budget(), options_, motion, times).run(result);
+  Cycle(*activation_, *solver_, *work_, *budget_, options_, motion, times).run(result);
   if (result.status == Status::touching && watch_ && sides.is_on() &&
       lead_off_surface(*near_, motion, options_, *work_, result)) {
     return;
@@ -226,13 +230,13 @@ Polytope MotionConstraint::free_polytope(const Vec3& tip, double radius) noexcep
   if (!is_current()) {
     status = Status::mesh_changed;
   } else if (!activation_->guards_a_tool()) {
-    near_->budget().renew();
+    budget_->renew();
     const double kept = distance_kept(options_);
     // around() refuses a ball that is not one.
     const bool fits = near_->look({tip, radius + kept}) || !(radius >= 0.0 && tip.allFinite());
     status =
-        fits ? polytope_.around(tip, radius, kept, near_->hits(), near_->budget(), polytope_planes_)
-             : near_->budget().status_at_end();
+        fits ? polytope_.around(tip, radius, kept, near_->hits(), *budget_, polytope_planes_)
+             : budget_->status_at_end();
   }
   if (status != Status::free) hold_still(polytope_planes_);
   return {status, polytope_planes_.view()};

@@ -29,7 +29,7 @@ class Scene {
         planes(100),
         turned(100),
         options_(options),
-        near_(mesh, std::make_shared<BruteForce>(mesh), room) {
+        near_(mesh, std::make_shared<BruteForce>(mesh), room, budget_) {
     rule.prepare(near_);
   }
 
@@ -50,6 +50,7 @@ class Scene {
 
  private:
   StepOptions options_;
+  Budget budget_;
   Neighborhood near_;
 };
 

@@ -77,7 +77,8 @@ TEST(ConvexToolRule, ASpheresPlanesAreThoseThroughTheClosestPoints) {
   const Vec3 tip = mesh->vertex(17) * 1.1;
   const Surroundings around = surroundings_of({.tip = tip, .desired = Vec3::Zero()},
                                               {.radius = 5.0, .margin = margin}, Reach::sphere);
-  Neighborhood near(mesh, std::make_shared<BruteForce>(mesh), mesh->triangle_count());
+  Budget budget;
+  Neighborhood near(mesh, std::make_shared<BruteForce>(mesh), mesh->triangle_count(), budget);
   rule.prepare(near);
   EXPECT_GT(rule.region(around).radius, 5.0 + margin + r);
   ASSERT_TRUE(rule.look_around(around));

@@ -179,7 +179,7 @@ TEST(MotionWalk, IsOfferedByWideBvhAndMadeOfHitsForOthers) {
   Budget budget;
   EXPECT_NE(WideBvh(mesh).walk_along_motions(budget), nullptr);
   EXPECT_EQ(PdTree(mesh).walk_along_motions(budget), nullptr);
-  Neighborhood near(mesh, std::make_shared<PdTree>(mesh), 100);
+  Neighborhood near(mesh, std::make_shared<PdTree>(mesh), 100, budget);
   EXPECT_NE(make_motion_walk(near), nullptr);
 }
 

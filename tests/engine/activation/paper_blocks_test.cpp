@@ -44,8 +44,8 @@ class PaperForms {
         tree(std::make_shared<Tree>(mesh)),
         planes(capacity.planes),
         plain_planes(capacity.planes),
-        near_(mesh, tree, capacity.triangles),
-        plain_near_(mesh, std::make_shared<QueriesOnly>(tree), capacity.triangles),
+        near_(mesh, tree, capacity.triangles, budget_),
+        plain_near_(mesh, std::make_shared<QueriesOnly>(tree), capacity.triangles, budget_),
         guard_(constraint(tree, capacity)),
         plain_guard_(constraint(std::make_shared<QueriesOnly>(tree), capacity)) {
     rule_.prepare(near_);
@@ -92,6 +92,7 @@ class PaperForms {
             capacity};
   }
 
+  Budget budget_;
   Neighborhood near_;
   Neighborhood plain_near_;
   PaperRule rule_;

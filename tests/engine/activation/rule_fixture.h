@@ -16,7 +16,8 @@ namespace keepout {
 /// long as the radius, along and across the axes.
 inline std::vector<HalfSpace> planes_at(const std::shared_ptr<const Mesh>& mesh, Activation& rule,
                                         const Vec3& tip, double radius, double margin = 0.0) {
-  Neighborhood near(mesh, std::make_shared<BruteForce>(mesh), mesh->triangle_count());
+  Budget budget;
+  Neighborhood near(mesh, std::make_shared<BruteForce>(mesh), mesh->triangle_count(), budget);
   HalfSpaceBuffer planes(mesh->triangle_count());
   const Surroundings around = surroundings_of({.tip = tip, .desired = Vec3::Zero()},
                                               {.radius = radius, .margin = margin}, Reach::sphere);

@@ -27,7 +27,7 @@ class Placing {
  public:
   explicit Placing(Surface surface)
       : mesh_(std::make_shared<const Mesh>(std::move(surface))),
-        near_(mesh_, std::make_shared<PdTree>(mesh_), mesh_->triangle_count()),
+        near_(mesh_, std::make_shared<PdTree>(mesh_), mesh_->triangle_count(), budget_),
         oracle_(mesh_) {}
 
   const Mesh& mesh() const { return *mesh_; }
@@ -40,6 +40,7 @@ class Placing {
 
  private:
   std::shared_ptr<const Mesh> mesh_;
+  Budget budget_;
   Neighborhood near_;
   oracle::SafetyOracle oracle_;
 };

@@ -35,10 +35,11 @@ void refine(const Mesh& mesh, const Ball& ball, std::span<const TriangleId> cand
 /// them. All memory is made at construction. One for each thread; mesh and index are shared.
 class Neighborhood {
  public:
-  /// With room for so many candidates in a query, or all triangles if they are fewer, and a budget
-  /// of so many looks. Throws Error without a mesh or an index, or if the index is of another mesh.
+  /// With a capacity of `room` candidates in a query, or of all triangles if they are fewer. Queries
+  /// take their work from `budget`, which must outlive this. Throws Error without a mesh or an index,
+  /// or if the index is of another mesh.
   Neighborhood(std::shared_ptr<const Mesh> mesh, std::shared_ptr<const SpatialIndex> index,
-               std::size_t room, std::size_t looks = Budget::unlimited);
+               std::size_t room, Budget& budget);
 
   /// Finds all triangles that touch the ball. False, and no hits, if the index proposes more than
   /// there is room for, or than the budget allows to look at, or the ball is none.
@@ -53,8 +54,9 @@ class Neighborhood {
   TriangleBuffer& candidates() noexcept { return candidates_; }
   /// How many candidates there is room for.
   std::size_t room() const noexcept { return candidates_.capacity(); }
-  /// For all that is asked here, and what is made of it. Whose cycles it is for renews it.
-  Budget& budget() noexcept { return budget_; }
+  /// Returns the work budget, shared with the users of the hits. The owner of the control cycle
+  /// resets it.
+  Budget& budget() const noexcept { return *budget_; }
   /// Whether the index is still of the mesh: not so once it was refit to another.
   bool is_current() const noexcept { return &index_->mesh() == mesh_.get(); }
 
@@ -70,7 +72,7 @@ class Neighborhood {
   Ball ball_ = nowhere;
   TriangleBuffer candidates_;
   HitBuffer hits_;
-  Budget budget_;
+  Budget* budget_;
 };
 
 /// The triangle nearest to a point, and its closest point, relative to `point`; ties go to the

@@ -96,7 +96,7 @@ class MotionConstraint {
   bool is_current() const noexcept { return is_prepared_ && near_->is_current(); }
 
   /// How much work the last step or polytope was: see Budget and Capacity::looks.
-  std::size_t looks() const noexcept { return near_->budget().spent(); }
+  std::size_t looks() const noexcept { return budget_->spent(); }
 
   /// Keeps the tip in these guides' regions as well from the next step on, instead of those that
   /// there are: see Guide. Within the same cycle and work budget as the mesh. Throws Error, and
@@ -143,6 +143,7 @@ class MotionConstraint {
   void reserve_solver(std::size_t guides);
   void require_usable(const StepOptions& options);
 
+  std::unique_ptr<Budget> budget_;  // of a cycle
   std::unique_ptr<Neighborhood> near_;  // the rule holds on to it, wherever this is moved
   std::unique_ptr<Activation> activation_;
   std::unique_ptr<Solver> solver_;

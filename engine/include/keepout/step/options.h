@@ -69,8 +69,8 @@ struct Capacity {
   static constexpr std::size_t looks_of_a_walk = std::size_t{1} << 16;   // of an index that walks
   static constexpr std::size_t looks_of_queries = std::size_t{1} << 22;  // not for real time
 
-  /// Returns what 0 looks stand for on an index. Allocates.
-  static std::size_t default_looks(const SpatialIndex& index);
+  /// Returns `looks`, or if that is 0, the default for an index. Allocates.
+  static std::size_t looks_or_default(std::size_t looks, const SpatialIndex& index);
 };
 
 }  // namespace keepout
