@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "keepout/index/placement.h"
+#include "keepout/index/query.h"
 
 namespace keepout {
 namespace {
@@ -153,11 +153,11 @@ Status BodyWatch::side(std::size_t m) noexcept {
     if (memory_.pairs[first + b].is_dropped) continue;
     const std::uint8_t last = memory_.instrument.points_of(b).back();
     mesh.near->budget() = memory_.budget;
-    const auto placement = place(*mesh.near, mesh.motion.at_start()[last]);
+    const auto side = find_side(*mesh.near, mesh.motion.at_start()[last]);
     memory_.budget = mesh.near->budget();
-    if (!placement || is_worn_out()) return memory_.budget.status_at_end();
-    if (!placement->is_free && !meshes_move_) return Status::inside;
-    if (!placement->is_free) drop(first + b, Status::inside);
+    if (!side || is_worn_out()) return memory_.budget.status_at_end();
+    if (!side->is_outside && !meshes_move_) return Status::inside;
+    if (!side->is_outside) drop(first + b, Status::inside);
     memory_.pairs[first + b].is_side_unknown = false;
   }
   return Status::free;
