@@ -45,53 +45,27 @@ void handle_signals() {
   }
 }
 
-void remember(const std::string& path) {
-  handle_signals();
-  for (PartialFile& file : partial_files) {
-    if (file.exists || path.size() >= file.path.size()) continue;
-    std::copy_n(path.c_str(), path.size() + 1, file.path.begin());
-    file.exists = true;
-    return;
-  }
+/// Returns where a result will be, all links followed.
+std::filesystem::path target_of(const std::filesystem::path& path) {
+  std::error_code error;
+  std::filesystem::path target = follow_links(path, error);
+  if (error) throw Error(path.string() + ": its links lead in a circle");
+  return target;
 }
 
-void forget(std::string_view path) {
-  for (PartialFile& file : partial_files) {
-    if (file.exists && path == file.path.data()) file.exists = false;
+std::string failure_of(const std::error_code& error) {
+  const bool is_folder = error == std::errc::is_a_directory;
+  if (!is_folder && error != std::errc::file_exists) {
+    return "cannot write here (" + error.message() + "); does the folder exist, and is it yours?";
   }
-}
-
-/// What a path leads to when all links are followed, even when nothing is there yet.
-std::filesystem::path follow_links(std::filesystem::path path) {
-  std::error_code none;
-  for (int links = 0; std::filesystem::is_symlink(path, none); ++links) {
-    if (links == 40) throw Error(path.string() + ": its links lead in a circle");
-    // An absolute target takes the place of the whole.
-    path = path.parent_path() / std::filesystem::read_symlink(path);
-  }
-  return path;
-}
-
-void require_regular_or_nothing(const std::filesystem::path& path) {
-  using std::filesystem::file_type;
-  std::error_code none;
-  const file_type type = std::filesystem::status(path, none).type();
-  const char* kind = type == file_type::directory   ? "a folder"
-                     : type == file_type::fifo      ? "a pipe"
-                     : type == file_type::socket    ? "a socket"
-                     : type == file_type::block     ? "a device"
-                     : type == file_type::character ? "a device"
-                                                    : nullptr;
-  if (kind != nullptr) {
-    throw Error(path.string() + ": is " + kind +
-                "; results are written to a regular file only, so give the name of one");
-  }
+  return std::string(is_folder ? "is a folder" : "is a pipe, a socket or a device") +
+         "; results are written to a regular file only, so give the name of one";
 }
 
 /// One name for each file, also for one that does not exist.
 std::filesystem::path unique_name(const std::filesystem::path& path) {
   std::error_code error;
-  const std::filesystem::path absolute = std::filesystem::absolute(follow_links(path), error);
+  const std::filesystem::path absolute = std::filesystem::absolute(target_of(path), error);
   const std::filesystem::path unique = std::filesystem::weakly_canonical(absolute, error);
   return error ? path : unique;
 }
@@ -110,41 +84,39 @@ void refuse_if_same(const NamedPath& output, const NamedPath& other) {
 
 }  // namespace
 
-OutputFile::OutputFile(const std::filesystem::path& path) {
-  require_regular_or_nothing(path);
-  path_ = follow_links(path);
-  partial_ = path_.string() + ".partial-" + std::to_string(::getpid());
-  remember(partial_.string());
-  if (!path_.filename().empty()) stream_.open(partial_, std::ios::binary);
-  if (!stream_.is_open()) {
-    forget(partial_.string());
-    throw Error(path.string() + ": cannot write here; does the folder exist, and is it yours?");
+RemovedBySignals::RemovedBySignals(std::filesystem::path path) : path_(std::move(path)) {
+  handle_signals();
+  const std::string name = path_.string();
+  for (PartialFile& file : partial_files) {
+    if (file.exists || name.size() >= file.path.size()) continue;
+    std::copy_n(name.c_str(), name.size() + 1, file.path.begin());
+    file.exists = true;
+    return;
   }
 }
 
-OutputFile::~OutputFile() {
-  if (partial_.empty()) return;
-  stream_.close();
-  std::error_code ignored;
-  std::filesystem::remove(partial_, ignored);
-  forget(partial_.string());
+RemovedBySignals::~RemovedBySignals() {
+  for (PartialFile& file : partial_files) {
+    if (file.exists && path_ == file.path.data()) file.exists = false;
+  }
+}
+
+OutputFile::OutputFile(const std::filesystem::path& path)
+    : partial_(target_of(path).string() + ".partial-" + std::to_string(::getpid())),
+      file_(path, partial_.path()),
+      path_(path) {
+  if (file_.error()) throw Error(path_.string() + ": " + failure_of(file_.error()));
 }
 
 void OutputFile::finish() {
-  if (stream_.is_open()) stream_.close();
-  if (!stream_) {
-    throw Error(path_.string() + ": could not be written to the end; is the disk full?");
-  }
+  if (!file_.finish()) return;
+  throw Error(path_.string() + ": could not be written to the end; is the disk full?");
 }
 
 void OutputFile::commit() {
-  if (partial_.empty()) return;  // it is there
   finish();
-  std::error_code error;
-  std::filesystem::rename(partial_, path_, error);
+  const std::error_code error = file_.commit();
   if (error) throw Error(path_.string() + ": cannot be replaced (" + error.message() + ")");
-  forget(partial_.string());
-  partial_.clear();
 }
 
 OutputFiles::OutputFiles(std::span<const NamedPath> inputs, std::initializer_list<Asked> outputs) {

@@ -2,44 +2,54 @@
 #pragma once
 
 #include <filesystem>
-#include <fstream>
 #include <initializer_list>
 #include <list>
 #include <optional>
+#include <ostream>
 #include <span>
 #include <string_view>
 #include <utility>
 
+#include "keepout/file_replacement.h"
+
 namespace keepout::app {
 
-/// A file that appears only when it is whole: written beside its place under another name, and
-/// moved there by commit(). Left without a commit, nothing remains, and what stood there before
-/// still stands; so it is, too, when SIGHUP, SIGINT, SIGPIPE or SIGTERM end the process meanwhile.
-///
-/// A link is followed: what it points to is replaced, the link stays. Not thread-safe: one thread
-/// makes and ends all of them.
+/// The name of a partial file, which SIGHUP, SIGINT, SIGPIPE and SIGTERM remove when they end the
+/// process. Not thread-safe.
+class RemovedBySignals {
+ public:
+  explicit RemovedBySignals(std::filesystem::path path);
+  ~RemovedBySignals();
+  RemovedBySignals(const RemovedBySignals&) = delete;
+  RemovedBySignals& operator=(const RemovedBySignals&) = delete;
+
+  const std::filesystem::path& path() const noexcept { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// A file that replaces another when commit() is called. Without a commit nothing remains, and the
+/// old file stays, also if SIGHUP, SIGINT, SIGPIPE or SIGTERM ends the process before. Not
+/// thread-safe: one thread makes and ends all of them.
 class OutputFile {
  public:
-  /// Throws Error when the file cannot be made, and when something else than a regular file stands
-  /// there: a folder, a device, a pipe.
+  /// Throws Error if the file cannot be made, or would replace a directory, a device or a pipe.
   explicit OutputFile(const std::filesystem::path& path);
-  ~OutputFile();
-  OutputFile(const OutputFile&) = delete;
-  OutputFile& operator=(const OutputFile&) = delete;
 
-  std::ostream& stream() noexcept { return stream_; }
+  std::ostream& stream() noexcept { return file_.stream(); }
 
-  /// Ends the writing. Throws Error when something could not be written, a full disk for one. Of
-  /// several files that belong together, finish() all before the commit() of any.
+  /// Ends the writing. Throws Error if a write failed. Of several files that belong together,
+  /// finish() all before the commit() of any.
   void finish();
 
-  /// Finishes, and moves the file to its place. Throws Error when either cannot be done.
+  /// Finishes, and moves the file to its place. Throws Error if either fails.
   void commit();
 
  private:
-  std::filesystem::path path_;  // where it will stand, links followed
-  std::filesystem::path partial_;
-  std::ofstream stream_;
+  RemovedBySignals partial_;
+  FileReplacement file_;
+  std::filesystem::path path_;  // as the user gave it
 };
 
 /// A path, and what the user calls it: MESH, --out.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "file_replacement.h"
+#include "keepout/file_replacement.h"
 
 #include <cerrno>
 #include <random>
@@ -9,16 +9,18 @@ namespace keepout {
 namespace {
 
 std::filesystem::path temporary_beside(const std::filesystem::path& path) {
+  std::error_code ignored;
   std::random_device random;
-  std::filesystem::path temporary = path;
+  std::filesystem::path temporary = follow_links(path, ignored);
   temporary += std::to_string(random()) + std::to_string(random());
   temporary += ".part";
   return temporary;
 }
 
-/// Why no file can be put there: a pipe or a device would be gone, and with it what others know by
-/// its name. No error if there is a file, or nothing.
+/// Returns the reason why no file can be put there: replacing a pipe or a device would remove it.
+/// No error if there is a file, or nothing.
 std::errc obstacle_at(const std::filesystem::path& path) {
+  if (path.filename().empty()) return std::errc::invalid_argument;
   std::error_code ignored;
   const std::filesystem::file_status status = std::filesystem::status(path, ignored);
   if (!std::filesystem::exists(status) || std::filesystem::is_regular_file(status)) return {};
@@ -27,19 +29,33 @@ std::errc obstacle_at(const std::filesystem::path& path) {
 
 }  // namespace
 
-FileReplacement::FileReplacement(const std::filesystem::path& path)
-    : path_(path), temporary_(temporary_beside(path)) {
-  if (const std::errc error = obstacle_at(path); error != std::errc{}) {
-    error_ = std::make_error_code(error);
-    return;
+std::filesystem::path follow_links(std::filesystem::path path, std::error_code& error) {
+  constexpr int most_links = 40;
+  std::error_code missing;
+  for (int links = 0; std::filesystem::is_symlink(path, missing); ++links) {
+    if (links == most_links) error = std::make_error_code(std::errc::too_many_symbolic_link_levels);
+    if (error) break;
+    // An absolute target takes the place of the whole.
+    path = path.parent_path() / std::filesystem::read_symlink(path, error);
   }
+  return path;
+}
+
+FileReplacement::FileReplacement(const std::filesystem::path& path)
+    : FileReplacement(path, temporary_beside(path)) {}
+
+FileReplacement::FileReplacement(const std::filesystem::path& path,
+                                 const std::filesystem::path& temporary)
+    : path_(follow_links(path, error_)), temporary_(temporary) {
+  if (!error_) error_ = std::make_error_code(obstacle_at(path_));
+  if (error_) return;
   errno = 0;
   file_.open(temporary_, std::ios::binary | std::ios::trunc);
   note_failure();
 }
 
 FileReplacement::~FileReplacement() {
-  if (committed_) return;
+  if (is_committed_) return;
   file_.close();
   std::error_code ignored;
   std::filesystem::remove(temporary_, ignored);
@@ -51,13 +67,17 @@ void FileReplacement::write(const void* bytes, std::size_t size) {
   note_failure();
 }
 
-std::error_code FileReplacement::commit() {
+std::error_code FileReplacement::finish() {
   errno = 0;
-  file_.close();
+  if (file_.is_open()) file_.close();
   note_failure();
-  if (error_) return error_;
+  return error_;
+}
+
+std::error_code FileReplacement::commit() {
+  if (is_committed_ || finish()) return error_;
   std::filesystem::rename(temporary_, path_, error_);
-  committed_ = !error_;
+  is_committed_ = !error_;
   return error_;
 }
 

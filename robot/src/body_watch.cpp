@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "certified_clearance.h"
-#include "keepout/index/placement.h"
+#include "keepout/index/query.h"
 
 namespace keepout {
 
@@ -183,10 +183,10 @@ Status BodyWatch::classify(std::size_t m) noexcept {
   const std::size_t bodies = context_.instrument.bodies().size();
   for (std::size_t p = m * bodies; p < (m + 1) * bodies; ++p) {
     if (memory_.pairs[p].is_dropped) continue;
-    const auto placement = place(*mesh.near, mesh.motion.at_start()[points(p).back()]);
-    if (!placement || budget.is_spent()) return budget.status_at_end();
-    if (!placement->is_free && !context_.meshes_move) return Status::inside;
-    if (!placement->is_free) drop(p, Status::inside);
+    const auto side = find_side(*mesh.near, mesh.motion.at_start()[points(p).back()]);
+    if (!side || budget.is_spent()) return budget.status_at_end();
+    if (!side->is_outside && !context_.meshes_move) return Status::inside;
+    if (!side->is_outside) drop(p, Status::inside);
     memory_.pairs[p].is_side_unknown = false;
   }
   return Status::free;

@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "../digest.h"
-#include "../file_replacement.h"
 #include "../read_only_file.h"
 #include "keepout/error.h"
+#include "keepout/file_replacement.h"
 
 namespace keepout {
 namespace {

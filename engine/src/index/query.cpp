@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "../mesh/side_probe.h"
 #include "keepout/error.h"
 
 namespace keepout {
@@ -109,6 +110,46 @@ std::optional<Hit> find_nearest(const Mesh& mesh, const SpatialIndex& index, con
 
 std::optional<Hit> find_nearest(Neighborhood& near, const Vec3& point) noexcept {
   return find_nearest(near.mesh(), near.index(), point, 0.0, near.candidates(), near.budget());
+}
+
+namespace {
+
+/// Collects the triangles that may touch a ball. Returns false if there is no room for them, or the
+/// budget is spent.
+bool collect(Neighborhood& near, const Ball& ball) noexcept {
+  TriangleBuffer& candidates = near.candidates();
+  candidates.clear();
+  near.index().collect(ball, candidates);
+  near.budget().spend(work_of_hit * candidates.size());
+  if (candidates.overflowed()) near.budget().mark_overflow();
+  return !candidates.overflowed() && !near.budget().is_spent();
+}
+
+}  // namespace
+
+std::optional<SideOfSurface> find_side(Neighborhood& near, const Vec3& point) noexcept {
+  // Beyond the box around the mesh all is one side. A point that is so far off that rounding makes
+  // all triangles equally near is replaced by a nearer one.
+  const Box& bounds = near.mesh().bounds();
+  const Vec3 beyond = Vec3::Constant(4.0 * bounds.size().norm());
+  const Vec3 nearer = point.cwiseMax(bounds.low - beyond).cwiseMin(bounds.high + beyond);
+  if (nearer != point) {
+    auto side = find_side(near, nearer);
+    if (!side || side->is_outside) return side;
+    const std::optional<Hit> hit = find_nearest(near, point);
+    if (!hit) return std::nullopt;
+    side->distance = hit->closest.distance;
+    side->outward = hit->closest.offset / hit->closest.distance;
+    return side;
+  }
+  const std::optional<Hit> hit = find_nearest(near, point);
+  if (!hit) return std::nullopt;
+  SideProbe probe(near.mesh(), point, hit->closest);
+  if (!collect(near, probe.nearest_ball())) return std::nullopt;
+  probe.aim({near.candidates().begin(), near.candidates().end()});
+  if (probe.is_on_surface()) return probe.side({});
+  if (!collect(near, probe.probe_ball())) return std::nullopt;
+  return probe.side(near.candidates().view());
 }
 
 NearestTriangle::NearestTriangle(const Mesh& mesh, const SpatialIndex& index)

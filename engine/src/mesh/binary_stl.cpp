@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "../file_replacement.h"
 #include "../huge_pages.h"
 #include "keepout/error.h"
+#include "keepout/file_replacement.h"
 #include "mesh_file.h"
 #include "weld_blocks.h"
 

@@ -5,26 +5,26 @@
 
 namespace keepout {
 
-Vec3 lead_out(Neighborhood& near, const Vec3& tip, const Placement& placement, double longest,
+Vec3 lead_out(Neighborhood& near, const Vec3& tip, const SideOfSurface& side, double longest,
               double off) noexcept {
   // What cannot get through in one go stops short of the surface.
-  if (placement.distance + off > longest) {
-    const double rest = std::max(placement.distance - off, 0.5 * placement.distance);
-    return std::min(longest, rest) * placement.way_out;
+  if (side.distance + off > longest) {
+    const double rest = std::max(side.distance - off, 0.5 * side.distance);
+    return std::min(longest, rest) * side.outward;
   }
   // Close to the surface no farther than needed, as another wall may stand there.
-  const double through = placement.distance + off;
-  Vec3 best = placement.distance * placement.way_out;  // on the surface, and on from there
+  const double through = side.distance + off;
+  Vec3 best = side.distance * side.outward;  // on the surface, and on from there
   double most = 0.0;
   const auto consider = [&](const Vec3& motion) {
     if (most >= 0.5 * off) return;
-    const auto there = place(near, tip + motion);
-    if (!there || !there->is_free || there->distance <= most) return;
+    const auto there = find_side(near, tip + motion);
+    if (!there || !there->is_outside || there->distance <= most) return;
     most = there->distance;
     best = motion;
   };
-  consider(through * placement.way_out);
-  consider(through * placement.normal);
+  consider(through * side.outward);
+  consider(through * side.normal);
   // At a saddle neither need lead out.
   for (int i = 0; i < 27; ++i) {
     const Vec3 towards(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
@@ -49,11 +49,11 @@ bool may_be_led(const Motion& motion, const StepOptions& options, const Mesh& me
   return !motion.jacobian && !motion.rows && longest_way(options) >= well_off(mesh, options);
 }
 
-Step led_out(const Placement& placement, Neighborhood& near, const Motion& motion,
+Step led_out(const SideOfSurface& side, Neighborhood& near, const Motion& motion,
              const StepOptions& options, Workspace& work) noexcept {
-  Step result{.status = Status::recovering, .distance = placement.distance};
+  Step result{.status = Status::recovering, .distance = side.distance};
   result.motion =
-      lead_out(near, motion.tip, placement, longest_way(options), well_off(near.mesh(), options));
+      lead_out(near, motion.tip, side, longest_way(options), well_off(near.mesh(), options));
   work.solution = {};
   result.motion.array() += 0.0;  // no zero has a sign
   work.keep_answer(motion, result.motion, 1.0, Relaxation::none, {});
@@ -65,17 +65,16 @@ Step led_out(const Placement& placement, Neighborhood& near, const Motion& motio
 
 bool lead_out_from_inside(Neighborhood& near, const Motion& motion, const StepOptions& options,
                           Workspace& work, Step& step) noexcept {
-  const auto placement = place(near, motion.tip);
-  if (!placement) {
+  const auto side = find_side(near, motion.tip);
+  if (!side) {
     step.status = near.budget().status_at_end();
     return true;
   }
-  if (placement->is_free) return false;
-  const bool may_be =
-      may_be_led(motion, options, near.mesh()) && placement->distance <= options.deepest;
-  if (may_be) step = led_out(*placement, near, motion, options, work);
+  if (side->is_outside) return false;
+  const bool may_be = may_be_led(motion, options, near.mesh()) && side->distance <= options.deepest;
+  if (may_be) step = led_out(*side, near, motion, options, work);
   if (!may_be || !work.guides.allow(step.motion)) {
-    step = {.status = Status::inside, .distance = placement->distance};
+    step = {.status = Status::inside, .distance = side->distance};
   }
   return true;
 }
@@ -83,9 +82,9 @@ bool lead_out_from_inside(Neighborhood& near, const Motion& motion, const StepOp
 bool lead_off_surface(Neighborhood& near, const Motion& motion, const StepOptions& options,
                       Workspace& work, Step& step) noexcept {
   if (!may_be_led(motion, options, near.mesh())) return false;
-  const auto placement = place(near, motion.tip);
-  if (!placement) return false;
-  const Step off = led_out(*placement, near, motion, options, work);
+  const auto side = find_side(near, motion.tip);
+  if (!side) return false;
+  const Step off = led_out(*side, near, motion, options, work);
   if (off.motion.isZero(0.0) || !work.guides.allow(off.motion)) return false;
   step = off;
   return true;

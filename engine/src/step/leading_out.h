@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "keepout/index/placement.h"
 #include "keepout/index/query.h"
+#include "keepout/mesh/side_of_surface.h"
 #include "keepout/step/motion.h"
 #include "keepout/step/options.h"
 #include "workspace.h"
@@ -13,7 +13,7 @@ namespace keepout {
 /// most `longest`, and no farther than to `off` the surface. The depth falls by as much. From the
 /// surface itself, or closer to it than `off`: as short a way to a place that is found to be free,
 /// or none. [length]
-Vec3 lead_out(Neighborhood& near, const Vec3& tip, const Placement& placement, double longest,
+Vec3 lead_out(Neighborhood& near, const Vec3& tip, const SideOfSurface& side, double longest,
               double off) noexcept;
 
 /// Whether a tip is on the forbidden side; then `step` becomes the one that leads it out, in place

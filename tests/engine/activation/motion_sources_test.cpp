@@ -11,7 +11,7 @@
 
 #include "each_simd_target.h"
 #include "engine/activation/sources.h"
-#include "index/tree_walk/tree_walk.h"
+#include "index/wide_bvh/walk/tree_walk.h"
 #include "keepout/fixtures/poses.h"
 #include "keepout/fixtures/random.h"
 #include "keepout/fixtures/shapes.h"

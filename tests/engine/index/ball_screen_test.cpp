@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ball_screen.h"
+#include "index/tree_parts/ball_screen.h"
 
 #include <gtest/gtest.h>
 

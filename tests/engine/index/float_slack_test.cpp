@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "engine/index/exact_index.h"
+#include "index/wide_bvh/walk/filters.h"
+#include "index/wide_bvh/walk/frontier.h"
 #include "keepout/fixtures/random.h"
-#include "tree_walk/filters.h"
-#include "tree_walk/frontier.h"
 #include "trials.h"
 
 namespace keepout {

@@ -11,6 +11,7 @@
 #include "keepout/geometry/shapes.h"
 #include "keepout/index/spatial_index.h"
 #include "keepout/mesh/mesh.h"
+#include "keepout/mesh/side_of_surface.h"
 
 namespace keepout {
 
@@ -82,6 +83,12 @@ class Neighborhood {
 /// is room for, or when the budget is spent. What was looked for before stays found. Allocates
 /// nothing. Precondition: the point is finite.
 std::optional<Hit> find_nearest(Neighborhood& near, const Vec3& point) noexcept;
+
+/// Classifies a point as inside or outside a watertight mesh that does not cut through itself. The
+/// result does not depend on the order of triangles and corners. Returns nothing if more triangles
+/// are about equally near than there is room for, or if the budget is spent. Allocates nothing.
+/// Precondition: the mesh is watertight.
+std::optional<SideOfSurface> find_side(Neighborhood& near, const Vec3& point) noexcept;
 
 /// The same with memory that grows as needed: for measuring, not for the control path.
 class NearestTriangle {

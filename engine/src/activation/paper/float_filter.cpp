@@ -28,7 +28,7 @@
 // After it, for it tells for whom to compile.
 #include <hwy/cache_control.h>
 
-#include "../../index/ball_screen.h"
+#include "../../index/tree_parts/ball_screen.h"
 #include "../../lane_packing-inl.h"
 #include "../../lanes-inl.h"
 #include "float_filter.h"

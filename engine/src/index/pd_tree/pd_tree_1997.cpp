@@ -8,10 +8,10 @@
 #include <span>
 #include <utility>
 
+#include "../tree_parts/median_split.h"
 #include "keepout/error.h"
 #include "keepout/geometry/closest_point.h"
 #include "keepout/geometry/shapes.h"
-#include "median_split.h"
 
 namespace keepout {
 

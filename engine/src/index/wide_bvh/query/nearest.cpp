@@ -10,11 +10,11 @@
 #include "keepout/index/wide_bvh.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "index/wide_bvh_nearest.cpp"
+#define HWY_TARGET_INCLUDE "index/wide_bvh/query/nearest.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "leaf_test-inl.h"
+#include "../../tree_parts/leaf_test-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace keepout::HWY_NAMESPACE {

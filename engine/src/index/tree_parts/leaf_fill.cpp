@@ -6,10 +6,10 @@
 #include <cstdint>
 #include <cstring>
 
-#include "../parallel.h"
+#include "../../parallel.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "index/leaf_fill.cpp"
+#define HWY_TARGET_INCLUDE "index/tree_parts/leaf_fill.cpp"
 #include <hwy/foreach_target.h>
 // After it, for it tells for whom to compile.
 #include <hwy/cache_control.h>

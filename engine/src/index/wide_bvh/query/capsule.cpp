@@ -12,11 +12,11 @@
 #include "keepout/index/wide_bvh.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "index/wide_bvh_capsule.cpp"
+#define HWY_TARGET_INCLUDE "index/wide_bvh/query/capsule.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "leaf_test-inl.h"
+#include "../../tree_parts/leaf_test-inl.h"
 
 #ifndef KEEPOUT_INDEX_CAPSULE_SCREEN
 #define KEEPOUT_INDEX_CAPSULE_SCREEN

@@ -23,9 +23,9 @@
 namespace keepout {
 namespace {
 
-class Placing {
+class Classifier {
  public:
-  explicit Placing(Surface surface)
+  explicit Classifier(Surface surface)
       : mesh_(std::make_shared<const Mesh>(std::move(surface))),
         near_(mesh_, std::make_shared<PdTree>(mesh_), mesh_->triangle_count(), budget_),
         oracle_(mesh_) {}
@@ -33,7 +33,7 @@ class Placing {
   const Mesh& mesh() const { return *mesh_; }
   bool inside(const Vec3& tip) const { return oracle_.inside(tip).value(); }
   double distance(const Vec3& tip) const { return oracle_.distance(tip); }
-  std::optional<Placement> operator()(const Vec3& tip) { return place(near_, tip); }
+  std::optional<SideOfSurface> operator()(const Vec3& tip) { return find_side(near_, tip); }
   Vec3 way_out(const Vec3& tip, double longest, double off) {
     return lead_out(near_, tip, (*this)(tip).value(), longest, off);
   }
@@ -51,7 +51,7 @@ Surface rotated(Surface surface, double angle) {
   return surface;
 }
 
-/// Places off the surface, by `offset` in some direction, on faces, edges and vertices.
+/// Points off the surface, by `offset` in some direction, on faces, edges and vertices.
 std::vector<Vec3> tips_around(const Mesh& mesh, std::size_t count, Random& random) {
   count = test::trials(count);
   std::vector<Vec3> tips = random_points(mesh, count, random);
@@ -73,22 +73,22 @@ struct Solid {
 
 void PrintTo(const Solid& solid, std::ostream* out) { *out << solid.shape; }
 
-class PlacementOnSolid : public testing::TestWithParam<Solid> {};
+class SideOfSolid : public testing::TestWithParam<Solid> {};
 
-TEST_P(PlacementOnSolid, AgreesWithAnIndependentInsideTest) {
-  Placing placing(rotated(make_shape(GetParam().shape), GetParam().rotation));
+TEST_P(SideOfSolid, AgreesWithAnIndependentInsideTest) {
+  Classifier classify(rotated(make_shape(GetParam().shape), GetParam().rotation));
   const bool inside_out = std::string_view(GetParam().shape) == "concave_sphere";
   Random random(1);
   std::size_t inside = 0, outside = 0;
-  for (const Vec3& tip : tips_around(placing.mesh(), 400, random)) {
-    const auto placement = placing(tip);
-    ASSERT_TRUE(placement.has_value());
-    const double distance = placing.distance(tip);
-    ASSERT_NEAR(placement->distance, distance, 1e-13 * (tip.norm() + 100.0));
-    ASSERT_NEAR(placement->way_out.norm(), 1.0, 1e-12);
+  for (const Vec3& tip : tips_around(classify.mesh(), 400, random)) {
+    const auto side = classify(tip);
+    ASSERT_TRUE(side.has_value());
+    const double distance = classify.distance(tip);
+    ASSERT_NEAR(side->distance, distance, 1e-13 * (tip.norm() + 100.0));
+    ASSERT_NEAR(side->outward.norm(), 1.0, 1e-12);
     if (distance < 1e-11 * (tip.norm() + 100.0)) continue;  // all but on the surface
-    const bool is_inside = placing.inside(tip);
-    ASSERT_EQ(!placement->is_free, is_inside != inside_out)
+    const bool is_inside = classify.inside(tip);
+    ASSERT_EQ(!side->is_outside, is_inside != inside_out)
         << "at " << tip.transpose() << ", distance " << distance;
     ++(is_inside ? inside : outside);
   }
@@ -96,59 +96,59 @@ TEST_P(PlacementOnSolid, AgreesWithAnIndependentInsideTest) {
   EXPECT_GT(outside, test::trials(300u));
 }
 
-TEST_P(PlacementOnSolid, TheWayLeadsToTheSurfaceFromInsideAndOffItFromOutside) {
-  Placing placing(rotated(make_shape(GetParam().shape), GetParam().rotation));
+TEST_P(SideOfSolid, TheWayLeadsToTheSurfaceFromInsideAndOffItFromOutside) {
+  Classifier classify(rotated(make_shape(GetParam().shape), GetParam().rotation));
   Random random(2);
-  for (const Vec3& tip : tips_around(placing.mesh(), 100, random)) {
-    const auto placement = placing(tip);
-    ASSERT_TRUE(placement.has_value());
-    const double distance = placement->distance;
+  for (const Vec3& tip : tips_around(classify.mesh(), 100, random)) {
+    const auto side = classify(tip);
+    ASSERT_TRUE(side.has_value());
+    const double distance = side->distance;
     if (distance < 1e-5) continue;
-    const double towards = placement->is_free ? -1.0 : 1.0;
-    const Vec3 surface = tip + towards * distance * placement->way_out;
-    ASSERT_LE(placing.distance(surface), 1e-12 * (tip.norm() + 100.0));
+    const double towards = side->is_outside ? -1.0 : 1.0;
+    const Vec3 surface = tip + towards * distance * side->outward;
+    ASSERT_LE(classify.distance(surface), 1e-12 * (tip.norm() + 100.0));
   }
 }
 
-TEST_P(PlacementOnSolid, LeadingOutNeverLeadsDeeper) {
-  Placing placing(rotated(make_shape(GetParam().shape), GetParam().rotation));
+TEST_P(SideOfSolid, LeadingOutNeverLeadsDeeper) {
+  Classifier classify(rotated(make_shape(GetParam().shape), GetParam().rotation));
   Random random(3);
   std::size_t forbidden = 0;
-  for (const Vec3& tip : tips_around(placing.mesh(), 100, random)) {
-    const auto placement = placing(tip);
-    ASSERT_TRUE(placement.has_value());
-    if (placement->is_free || placement->distance < 1e-9) continue;
+  for (const Vec3& tip : tips_around(classify.mesh(), 100, random)) {
+    const auto side = classify(tip);
+    ASSERT_TRUE(side.has_value());
+    if (side->is_outside || side->distance < 1e-9) continue;
     ++forbidden;
     for (const double recovery : {1e-3, 0.05, 1.0, 30.0}) {
-      const Vec3 way = placing.way_out(tip, recovery, 1e-4 * recovery);
+      const Vec3 way = classify.way_out(tip, recovery, 1e-4 * recovery);
       ASSERT_LE(way.norm(), recovery * (1.0 + 1e-15));
-      const auto after = placing(tip + way);
+      const auto after = classify(tip + way);
       ASSERT_TRUE(after.has_value());
-      if (after->is_free) continue;
-      ASSERT_LE(after->distance, placement->distance * (1.0 + 1e-9) + 1e-12);
-      if (way.norm() <= placement->distance) {
-        ASSERT_LE(after->distance, placement->distance - way.norm() + 1e-9);
+      if (after->is_outside) continue;
+      ASSERT_LE(after->distance, side->distance * (1.0 + 1e-9) + 1e-12);
+      if (way.norm() <= side->distance) {
+        ASSERT_LE(after->distance, side->distance - way.norm() + 1e-9);
       }
     }
   }
   EXPECT_GT(forbidden, test::trials(50u));
 }
 
-TEST_P(PlacementOnSolid, DoesNotDependOnTheNumbering) {
+TEST_P(SideOfSolid, DoesNotDependOnTheNumbering) {
   const Surface surface = rotated(make_shape(GetParam().shape), GetParam().rotation);
-  Placing placing(surface);
-  Placing other(shuffled(surface, 5));
+  Classifier classify(surface);
+  Classifier other(shuffled(surface, 5));
   Random random(4);
-  for (const Vec3& tip : tips_around(placing.mesh(), 100, random)) {
-    const auto one = placing(tip);
+  for (const Vec3& tip : tips_around(classify.mesh(), 100, random)) {
+    const auto one = classify(tip);
     const auto two = other(tip);
-    ASSERT_EQ(one->is_free, two->is_free);
+    ASSERT_EQ(one->is_outside, two->is_outside);
     ASSERT_EQ(one->distance, two->distance);
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    Solids, PlacementOnSolid,
+    Solids, SideOfSolid,
     testing::Values(Solid{"cube", 0.0}, Solid{"cube", 0.7}, Solid{"sphere", 0.0},
                     Solid{"concave_sphere", 0.0}, Solid{"cylinder", 0.0}, Solid{"pyramid", 0.0},
                     Solid{"pyramid", 0.7}, Solid{"gear", 0.0}, Solid{"gear", 0.7},
@@ -174,7 +174,7 @@ Surface wedge(double opening) {
   return out;
 }
 
-TEST(Placement, RightOverTheRimOfAFaceASharpEdgeDoesNotConfuse) {
+TEST(SideOfSurface, RightOverTheRimOfAFaceASharpEdgeDoesNotConfuse) {
   // There one face's closest point is on its edge and the other's may be beside it, but for
   // rounding: with a sharp edge the two normals contradict each other.
   Random random(5);
@@ -183,23 +183,23 @@ TEST(Placement, RightOverTheRimOfAFaceASharpEdgeDoesNotConfuse) {
     const Eigen::Quaterniond turn(Eigen::AngleAxisd(random.uniform(0.0, 6.0), random.direction()));
     Surface surface = wedge(opening);
     for (Vec3& v : surface.vertices) v = turn * v;
-    Placing placing(surface);
+    Classifier classify(surface);
     // Over the edge, along the normal of one of the two faces, and a trifle to each side.
-    const double side = i % 2 == 0 ? 1.0 : -1.0;
-    const Vec3 normal(std::sin(0.5 * opening), side * std::cos(0.5 * opening), 0.0);
+    const double hand = i % 2 == 0 ? 1.0 : -1.0;
+    const Vec3 normal(std::sin(0.5 * opening), hand * std::cos(0.5 * opening), 0.0);
     const Vec3 edge(0.0, 0.0, random.uniform(-8.0, 8.0));
     for (const double trifle : {0.0, 1e-16, -1e-16, 1e-15, -1e-15, 1e-13, -1e-13}) {
-      const Vec3 along(-std::cos(0.5 * opening), side * std::sin(0.5 * opening), 0.0);
+      const Vec3 along(-std::cos(0.5 * opening), hand * std::sin(0.5 * opening), 0.0);
       const Vec3 tip = turn * (edge + random.uniform(0.1, 2.0) * normal + trifle * along);
-      const auto placement = placing(tip);
-      ASSERT_TRUE(placement.has_value());
-      ASSERT_TRUE(placement->is_free)
+      const auto side = classify(tip);
+      ASSERT_TRUE(side.has_value());
+      ASSERT_TRUE(side->is_outside)
           << "opening " << opening << ", trifle " << trifle << ", case " << i;
     }
   }
 }
 
-TEST(Placement, ASaddleVertexIsNoTrouble) {
+TEST(SideOfSurface, ASaddleVertexIsNoTrouble) {
   // A closed cone over a star: seen from its apex, ridges and valleys in turn.
   Surface surface;
   constexpr int rim = 12;
@@ -215,74 +215,74 @@ TEST(Placement, ASaddleVertexIsNoTrouble) {
     surface.triangles.push_back({i, next, rim});
     surface.triangles.push_back({next, i, rim + 1});
   }
-  Placing placing(surface);
+  Classifier classify(surface);
   Random random(6);
   std::size_t inside = 0;
   for (int i = 0; i < 5'000; ++i) {
     const Vec3 tip = std::pow(10.0, random.uniform(-8.0, 0.5)) * random.direction();
-    const auto placement = placing(tip);
-    if (placement->distance == 0.0) continue;  // on the surface to within rounding
-    const bool is_inside = placing.inside(tip);
-    ASSERT_EQ(!placement->is_free, is_inside) << tip.transpose();
+    const auto side = classify(tip);
+    if (side->distance == 0.0) continue;  // on the surface to within rounding
+    const bool is_inside = classify.inside(tip);
+    ASSERT_EQ(!side->is_outside, is_inside) << tip.transpose();
     if (is_inside) ++inside;
   }
   EXPECT_GT(inside, 1'000u);
   EXPECT_LT(inside, 4'000u);
 }
 
-TEST(Placement, OnTheSurfaceTheNormalLeadsOut) {
-  Placing cube(make_cube(50));
+TEST(SideOfSurface, OnTheSurfaceTheNormalLeadsOut) {
+  Classifier cube(make_cube(50));
   for (const Vec3& tip : {Vec3(3, 4, 50), Vec3(50, 0, 50), Vec3(50, 50, 50)}) {
-    const auto placement = cube(tip);
-    ASSERT_TRUE(placement.has_value());
-    EXPECT_FALSE(placement->is_free);
-    EXPECT_LT(placement->distance, 1e-14);
-    EXPECT_NEAR(placement->way_out.norm(), 1.0, 1e-15);
-    EXPECT_FALSE(cube.inside(tip + 1e-3 * placement->way_out));
+    const auto side = cube(tip);
+    ASSERT_TRUE(side.has_value());
+    EXPECT_FALSE(side->is_outside);
+    EXPECT_LT(side->distance, 1e-14);
+    EXPECT_NEAR(side->outward.norm(), 1.0, 1e-15);
+    EXPECT_FALSE(cube.inside(tip + 1e-3 * side->outward));
   }
 }
 
-TEST(Placement, FarOffIsTheSideThatIsOutsideWhicheverThatIs) {
+TEST(SideOfSurface, FarOffIsTheSideThatIsOutsideWhicheverThatIs) {
   Surface turned = make_sphere(2.0);
   for (auto& corners : turned.triangles) std::swap(corners[0], corners[1]);
-  Placing around(make_sphere(2.0));
-  Placing within(std::move(turned));
+  Classifier around(make_sphere(2.0));
+  Classifier within(std::move(turned));
   Random random(7);
   for (double times = 2.0; times < 1e8; times *= 3.0) {
     const Vec3 tip = times * around.mesh().bounds().size().norm() * random.direction();
-    const std::optional<Placement> outside = around(tip);
+    const std::optional<SideOfSurface> outside = around(tip);
     ASSERT_TRUE(outside.has_value()) << times;
-    EXPECT_TRUE(outside->is_free) << times;
+    EXPECT_TRUE(outside->is_outside) << times;
     EXPECT_LE(outside->distance, around.distance(tip) * (1.0 + 1e-12)) << times;
-    const std::optional<Placement> beyond = within(tip);
+    const std::optional<SideOfSurface> beyond = within(tip);
     ASSERT_TRUE(beyond.has_value()) << times;
-    EXPECT_FALSE(beyond->is_free) << times;
+    EXPECT_FALSE(beyond->is_outside) << times;
     EXPECT_NEAR(beyond->distance, within.distance(tip), 1e-12 * within.distance(tip)) << times;
-    EXPECT_LT(beyond->way_out.dot(tip.normalized()), -0.8) << "to the surface";
+    EXPECT_LT(beyond->outward.dot(tip.normalized()), -0.8) << "to the surface";
   }
 }
 
-TEST(Placement, MoreTrianglesThanThereIsRoomForIsNoPlacement) {
+TEST(SideOfSurface, MoreTrianglesThanThereIsRoomForHaveNoResult) {
   const auto mesh = std::make_shared<const Mesh>(make_cube(50));
   Neighborhood none(mesh, std::make_shared<PdTree>(mesh), 0);
-  EXPECT_FALSE(place(none, Vec3(0, 0, 51)).has_value());
+  EXPECT_FALSE(find_side(none, Vec3(0, 0, 51)).has_value());
 }
 
 TEST(LeadOut, GoesJustBeyondTheSurface) {
-  Placing cube(make_shape("cube"));  // whose faces are at +-50
+  Classifier cube(make_shape("cube"));  // whose faces are at +-50
   EXPECT_LT((cube.way_out({3, 4, 47}, 0.5, 1e-4) - Vec3(0, 0, 0.5)).norm(), 1e-12);
   EXPECT_LT((cube.way_out({3, 4, 47}, 10.0, 1e-4) - Vec3(0, 0, 3.0001)).norm(), 1e-12);
 }
 
 TEST(LeadOut, LeavesTheSurfaceItselfToTheFreeSide) {
   for (const char* shape : {"cube", "gear", "cortex", "star_bumps"}) {
-    Placing placing(make_shape(shape));
-    for (VertexId v = 0; v < placing.mesh().vertex_count(); v += 37) {  // saddles among them
-      const Vec3 tip = placing.mesh().vertex(v);
-      const Vec3 way = placing.way_out(tip, 0.5, 1e-4);
+    Classifier classify(make_shape(shape));
+    for (VertexId v = 0; v < classify.mesh().vertex_count(); v += 37) {  // saddles among them
+      const Vec3 tip = classify.mesh().vertex(v);
+      const Vec3 way = classify.way_out(tip, 0.5, 1e-4);
       ASSERT_GT(way.norm(), 0.0) << shape << " vertex " << v;
       ASSERT_LE(way.norm(), 1.001e-4);
-      ASSERT_FALSE(placing.inside(tip + way)) << shape << " vertex " << v;
+      ASSERT_FALSE(classify.inside(tip + way)) << shape << " vertex " << v;
     }
   }
 }
@@ -297,17 +297,17 @@ TEST(LeadOut, DoesNotLeadIntoANeighborThatStandsCloseBy) {
   for (const Corners& c : one.triangles) {
     boxes.triangles.push_back({c[0] + count, c[1] + count, c[2] + count});
   }
-  Placing placing(boxes);
+  Classifier classify(boxes);
   Vec3 tip(-0.02, 0.1, 0.2);
-  for (int cycle = 0; cycle < 20 && placing.inside(tip); ++cycle) {
-    const double depth = placing.distance(tip);
-    tip += placing.way_out(tip, 0.005, 1e-4);
-    ASSERT_TRUE(!placing.inside(tip) || placing.distance(tip) < depth);
+  for (int cycle = 0; cycle < 20 && classify.inside(tip); ++cycle) {
+    const double depth = classify.distance(tip);
+    tip += classify.way_out(tip, 0.005, 1e-4);
+    ASSERT_TRUE(!classify.inside(tip) || classify.distance(tip) < depth);
   }
   EXPECT_NEAR(tip.x(), 1e-4, 1e-9);
 }
 
-TEST(Placement, ASliverAtASharpRidgeDoesNotConfuse) {
+TEST(SideOfSurface, ASliverAtASharpRidgeDoesNotConfuse) {
   // A wedge whose ridge has a vertex more on the one side than on the other; a triangle without a
   // width closes the seam.
   for (const double half_angle : {0.1, 0.3, 0.8, 1.2}) {
@@ -325,34 +325,34 @@ TEST(Placement, ASliverAtASharpRidgeDoesNotConfuse) {
                    {3, 5, 6},
                    {3, 6, 4}}};  // the bottom
     wedge = rotated(wedge, 0.7);
-    Placing placing(wedge);
-    ASSERT_TRUE(is_watertight(placing.mesh()));
+    Classifier classify(wedge);
+    ASSERT_TRUE(is_watertight(classify.mesh()));
     Random random(2);
     const Vec3 from = wedge.vertices[0], along = wedge.vertices[1] - from;
     for (int i = 0; i < 5000; ++i) {
       const Vec3 tip = from + random.uniform(0.02, 0.98) * along +
                        std::pow(10.0, random.uniform(-4.0, -0.5)) * random.direction();
-      const auto placement = placing(tip);
-      ASSERT_TRUE(placement.has_value());
-      ASSERT_EQ(!placement->is_free, placing.inside(tip)) << half_angle << " " << i;
+      const auto side = classify(tip);
+      ASSERT_TRUE(side.has_value());
+      ASSERT_EQ(!side->is_outside, classify.inside(tip)) << half_angle << " " << i;
     }
   }
 }
 
-TEST(Placement, OverAVertexBetweenLongAndShortTrianglesIsTheSideItIsOn) {
+TEST(SideOfSurface, OverAVertexBetweenLongAndShortTrianglesIsTheSideItIsOn) {
   // The corner of a pinion: two needles and a flat face, of which rounding makes one edge nearer
   // than the vertex. Tips in all directions that the vertex is nearest in.
-  Placing gear(make_shape("gear"));
+  Classifier gear(make_shape("gear"));
   Random random(6);
   std::size_t free = 0, forbidden = 0;
   for (int i = 0; i < 3000; ++i) {
     const Vec3 corner =
         gear.mesh().vertex(static_cast<VertexId>(random.below(gear.mesh().vertex_count())));
     const Vec3 tip = corner + std::pow(10.0, random.uniform(-3.0, 0.5)) * random.direction();
-    const auto placement = gear(tip);
-    ASSERT_TRUE(placement.has_value());
+    const auto side = gear(tip);
+    ASSERT_TRUE(side.has_value());
     const bool inside = gear.inside(tip);
-    ASSERT_EQ(!placement->is_free, inside) << tip.transpose();
+    ASSERT_EQ(!side->is_outside, inside) << tip.transpose();
     ++(inside ? forbidden : free);
   }
   EXPECT_GT(free, 300u);

@@ -9,11 +9,11 @@
 #include <limits>
 #include <utility>
 
-#include "../parallel.h"
+#include "../../../parallel.h"
+#include "../../tree_parts/leaf_fill.h"
+#include "../../tree_parts/median_split.h"
 #include "enclosure.h"
 #include "keepout/error.h"
-#include "leaf_fill.h"
-#include "median_split.h"
 
 namespace keepout {
 namespace {

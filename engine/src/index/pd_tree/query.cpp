@@ -6,12 +6,12 @@
 #include "keepout/index/pd_tree.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "index/pd_tree_query.cpp"
+#define HWY_TARGET_INCLUDE "index/pd_tree/query.cpp"
 #include <hwy/foreach_target.h>
 // After it, for it tells for whom to compile.
 #include <hwy/highway.h>
 
-#include "leaf_test-inl.h"
+#include "../tree_parts/leaf_test-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace keepout::HWY_NAMESPACE {

@@ -2,10 +2,10 @@
 #include "enclosure.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "index/leaf_enclosure.cpp"
+#define HWY_TARGET_INCLUDE "index/wide_bvh/build/leaf_enclosure.cpp"
 #include <hwy/foreach_target.h>
 // After it, for it tells for whom to compile.
-#include "../lanes-inl.h"
+#include "../../../lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace keepout::HWY_NAMESPACE {

@@ -3,11 +3,11 @@
 #include "keepout/index/wide_bvh.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "index/wide_bvh_query.cpp"
+#define HWY_TARGET_INCLUDE "index/wide_bvh/query/ball.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "leaf_test-inl.h"
+#include "../../tree_parts/leaf_test-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace keepout::HWY_NAMESPACE {

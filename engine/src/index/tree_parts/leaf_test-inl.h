@@ -18,8 +18,8 @@
 #include <cstdint>
 #include <span>
 
-#include "../lane_packing-inl.h"
-#include "../lanes-inl.h"
+#include "../../lane_packing-inl.h"
+#include "../../lanes-inl.h"
 #include "ball_screen.h"
 #include "keepout/buffer.h"
 #include "keepout/geometry/closest_point.h"

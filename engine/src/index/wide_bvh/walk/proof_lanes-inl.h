@@ -13,7 +13,7 @@
 #define KEEPOUT_PROOF_LANES_INL_H
 #endif
 
-#include "../../lanes-inl.h"
+#include "../../../lanes-inl.h"
 #include "filters.h"
 
 HWY_BEFORE_NAMESPACE();

@@ -5,7 +5,7 @@
 #include "enclosure.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "index/node_enclosure.cpp"
+#define HWY_TARGET_INCLUDE "index/wide_bvh/build/node_enclosure.cpp"
 #include <hwy/foreach_target.h>
 // After it, for it tells for whom to compile.
 #include <hwy/highway.h>

@@ -2,7 +2,7 @@
 #include <limits>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "index/tree_walk/box_filter.cpp"
+#define HWY_TARGET_INCLUDE "index/wide_bvh/walk/box_filter.cpp"
 #include <hwy/foreach_target.h>
 // After it, for it tells for whom to compile.
 #include "filters.h"

@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "keepout/index/pd_tree.h"
-
 #include <algorithm>
 #include <utility>
 
-#include "../parallel.h"
+#include "../../parallel.h"
+#include "../tree_parts/leaf_fill.h"
+#include "../tree_parts/median_split.h"
 #include "keepout/error.h"
-#include "leaf_fill.h"
-#include "median_split.h"
+#include "keepout/index/pd_tree.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "index/pd_tree.cpp"
+#define HWY_TARGET_INCLUDE "index/pd_tree/build.cpp"
 #include <hwy/foreach_target.h>
 // After it, for it tells for whom to compile.
 #include <hwy/highway.h>

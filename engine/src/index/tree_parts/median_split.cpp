@@ -4,7 +4,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
-#include "../parallel.h"
+#include "../../parallel.h"
 
 namespace keepout {
 
