@@ -95,8 +95,10 @@ void BodyWatch::close() noexcept {
 void BodyWatch::remember_end() noexcept {
   for (MeshMemory& mesh : memory_.meshes) {
     const Vec3* end = mesh.motion.at(PointMotion::cells);
-    std::copy(end, end + context_.instrument.points().size(), mesh.ended_at.begin());
-    mesh.side_of = context_.options.check_sides ? mesh.near->mesh().id() : 0;
+    for (std::size_t i = 0; i < context_.instrument.points().size(); ++i) {
+      mesh.sides.note(mesh.near->mesh(), i, end[i], Vec3::Zero());
+    }
+    if (!context_.options.check_sides) mesh.sides.forget();
   }
 }
 
@@ -162,14 +164,14 @@ Status BodyWatch::judge(std::size_t p, std::span<const ContactRow> rows,
 /// side is unknown.
 bool BodyWatch::is_side_unknown(std::size_t m) noexcept {
   MeshMemory& mesh = memory_.meshes[m];
-  if (mesh.side_of != mesh.near->mesh().id()) return true;
+  if (!mesh.sides.is_of(mesh.near->mesh())) return true;
   const std::size_t bodies = context_.instrument.bodies().size();
   for (std::size_t p = m * bodies; p < (m + 1) * bodies; ++p) {
     if (memory_.pairs[p].is_side_unknown) return true;
     // The core is free within this distance.
     const double free = 0.5 * (radius(p) + full_clearance(p));
     for (const std::uint8_t point : points(p)) {
-      if (!((mesh.motion.at_start()[point] - mesh.ended_at[point]).norm() <= free)) return true;
+      if (!mesh.sides.is_near(point, mesh.motion.at_start()[point], free)) return true;
     }
   }
   return false;

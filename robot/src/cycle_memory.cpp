@@ -118,10 +118,10 @@ void CycleMemory::forget_certified() noexcept {
 
 void CycleMemory::forget_motion() noexcept {
   rows.warm.clear();
-  for (MeshMemory& mesh : bodies.meshes) mesh.side_of = 0;
+  for (MeshMemory& mesh : bodies.meshes) mesh.sides.forget();
   for (PairMemory& pair : bodies.pairs) {
     pair.displacement = 0.0;
-    pair.is_side_unknown = false;  // all sides are unknown, by side_of
+    pair.is_side_unknown = false;  // all sides are unknown, by MeshMemory::sides
   }
 }
 

@@ -27,8 +27,7 @@ bool are_numbers(std::span<const double> values) noexcept {
 
 std::unique_ptr<Neighborhood> neighborhood_of(std::shared_ptr<const Mesh> mesh,
                                               std::shared_ptr<const SpatialIndex> index,
-                                              const InstrumentCapacity& capacity,
-                                              Budget& budget) {
+                                              const InstrumentCapacity& capacity, Budget& budget) {
   if (!mesh || !index) throw Error("an instrument constraint needs a mesh and an index of it");
   if (capacity.triangles == 0) {
     throw Error("the capacity must be of at least one triangle");
@@ -79,8 +78,7 @@ struct InstrumentConstraint::State {
       throw;
     }
     std::size_t looks = 0;
-    for (const MeshMemory& each : memory.bodies.meshes)
-      {
+    for (const MeshMemory& each : memory.bodies.meshes) {
       const SpatialIndex& index = each.near->index();
       looks = std::max(looks, Capacity::looks_or_default(capacity.looks, index));
     }
@@ -224,7 +222,8 @@ std::size_t InstrumentConstraint::add_mesh(std::shared_ptr<const Mesh> mesh,
     throw Error("an instrument is kept out of at most " + std::to_string(most_meshes) + " meshes");
   }
   if (!(margin >= 0.0)) throw Error("the margin of a mesh must not be below zero");
-  auto near = neighborhood_of(std::move(mesh), std::move(index), state.capacity, state.memory.budget);
+  auto near =
+      neighborhood_of(std::move(mesh), std::move(index), state.capacity, state.memory.budget);
   const bool is_closed = is_watertight(near->mesh());
   state.put({.near = std::move(near),
              .own_margin = margin,
@@ -241,7 +240,8 @@ void InstrumentConstraint::follow(std::shared_ptr<const Mesh> moved,
     throw Error("there is no mesh of number " + std::to_string(number));
   }
   const MeshMemory& old = state.memory.bodies.meshes[number];
-  auto near = neighborhood_of(std::move(moved), std::move(index), state.capacity, state.memory.budget);
+  auto near =
+      neighborhood_of(std::move(moved), std::move(index), state.capacity, state.memory.budget);
   const bool has_same_triangles =
       std::ranges::equal(near->mesh().triangles(), old.near->mesh().triangles());
   const bool is_closed = has_same_triangles ? old.is_watertight : is_watertight(near->mesh());

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <array>
 #include <cstddef>
-#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -14,6 +12,7 @@
 #include "keepout/index/query.h"
 #include "keepout/robot/instrument_options.h"
 #include "keepout/robot/instrument_step.h"
+#include "keepout/step/side_memory.h"
 #include "near_set.h"
 #include "relative_motion.h"
 
@@ -24,12 +23,11 @@ struct MeshMemory {
   std::unique_ptr<Neighborhood> near;
   double own_margin;  // 0: that of the options [length]
   bool is_watertight;
-  RelativeMotion motion;      // of the instrument, in the mesh's frame
-  Pose pose = {};             // at the start of the next cycle
-  Twist velocity = {};        // [length/s], [rad/s]
-  bool is_misplaced = false;  // its last pose was rejected
-  std::array<Vec3, Instrument::most_points> ended_at = {};  // end of the last step, in its frame
-  std::uint64_t side_of = 0;  // the mesh that all bodies are on the free side of; 0: unknown
+  RelativeMotion motion;                           // of the instrument, in the mesh's frame
+  Pose pose = {};                                  // at the start of the next cycle
+  Twist velocity = {};                             // [length/s], [rad/s]
+  bool is_misplaced = false;                       // its last pose was rejected
+  SideMemory<Instrument::most_points> sides = {};  // of all points, in its frame
 
   double margin(const InstrumentOptions& options) const noexcept {
     return own_margin > 0.0 ? own_margin : options.margin;

@@ -213,7 +213,7 @@ Step MotionConstraint::step(const Motion& motion, SideWatch& sides, StageTimes* 
 void MotionConstraint::step_as_checked(const Motion& motion, SideWatch& sides, StageTimes* times,
                                        Step& result) noexcept {
   if (!work_->guides.empty()) work_->guides.open(motion.tip, options_.recovery);
-  if (watch_ && sides.has_to_place(motion.tip, mesh()) &&
+  if (watch_ && sides.must_classify(motion.tip, mesh()) &&
       lead_out_from_inside(*near_, motion, options_, *work_, result)) {
     return;
   }

@@ -1,69 +1,52 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <algorithm>
-#include <cstdint>
-
 #include "keepout/mesh/mesh.h"
 #include "keepout/step/motion.h"
 #include "keepout/step/options.h"
+#include "keepout/step/side_memory.h"
 
 namespace keepout {
 
 /// Remembers that a tip is on the free side of the surface, so that certified steps, which never
-/// change sides, keep it there. A tip off the straight way of the last step is placed anew; one
-/// that is found on the forbidden side is led out.
+/// change sides, keep it there. A tip away from the straight way of the last step is classified
+/// again; a tip on the forbidden side escapes.
 class SideWatch {
  public:
-  /// Of a tip that no step has led to. Sides are asked about where the motion constraint does.
+  /// Of a tip before its first step. The motion constraint decides if sides matter.
   SideWatch() = default;
 
-  /// Asks nothing, whatever the motion constraint does: the surface is kept from on whichever side
-  /// the tip is.
+  /// Returns a watch that never classifies the tip: the surface is avoided from either side.
   static SideWatch off() noexcept {
     SideWatch watch;
     watch.is_on_ = false;
     return watch;
   }
 
-  /// Whether it asks.
+  /// Returns true if it classifies tips.
   bool is_on() const noexcept { return is_on_; }
 
-  /// Whether it has to be asked on which side of a mesh a tip is: whether no step has led there.
-  bool has_to_place(const Vec3& tip, const Mesh& mesh) const noexcept {
-    const bool is_free = (tip - free_tip_).norm() <= free_around_ || is_near_way(tip);
-    return is_on_ && !(is_free && mesh.id() == mesh_id_);
+  /// Returns true if the side of a tip is unknown: no step has moved it there.
+  bool must_classify(const Vec3& tip, const Mesh& mesh) const noexcept {
+    return is_on_ && !(memory_.is_of(mesh) && memory_.is_near(0, tip, free_around_));
   }
 
-  /// Notes where a step from the free side of a mesh has led to.
+  /// Notes the end of a step on the free side of a mesh.
   void after(const Motion& motion, const Step& step, const StepOptions& options,
              const Mesh& mesh) noexcept {
-    mesh_id_ = mesh.id();
-    free_tip_ = motion.tip + step.motion;
-    way_back_ = -step.motion;
-    // A margin that is kept leaves more than half of itself free, whatever the tolerance.
-    const bool keeps_the_margin = step.ok() && step.status != Status::recovering;
-    free_around_ = keeps_the_margin ? 0.5 * distance_kept(options) : 0.0;
+    memory_.note(mesh, 0, motion.tip + step.motion, -step.motion);
+    // A step that maintains the margin leaves more than half of it free, whatever the tolerance.
+    const bool maintains_margin = step.ok() && step.status != Status::recovering;
+    free_around_ = maintains_margin ? 0.5 * distance_kept(options) : 0.0;
   }
 
-  /// Forgets it: the next tip is placed anew.
-  void forget() noexcept { free_tip_ = Motion::unset; }
+  /// Forgets the last step: the next tip is classified again.
+  void forget() noexcept { memory_.forget(); }
 
  private:
-  /// Returns true if a tip is near the straight way of the last step, which is free as well.
-  bool is_near_way(const Vec3& tip) const noexcept {
-    const double length2 = way_back_.squaredNorm();
-    if (!(length2 > 0.0)) return false;
-    const Vec3 off = tip - free_tip_;
-    const double share = std::clamp(off.dot(way_back_) / length2, 0.0, 1.0);
-    return (off - share * way_back_).norm() <= free_around_;
-  }
-
   bool is_on_ = true;
-  Vec3 free_tip_ = Motion::unset;  // where the last step ended; at first nowhere
-  Vec3 way_back_ = Vec3::Zero();   // from there to where it began [length]
-  double free_around_ = 0.0;       // how far around it all is free as well [length]
-  std::uint64_t mesh_id_ = 0;      // of which mesh that is said
+  SideMemory<1> memory_;
+  double free_around_ = 0.0;  // the distance around the last way that is free as well [length]
 };
 
 }  // namespace keepout
