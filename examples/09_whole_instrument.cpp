@@ -61,7 +61,7 @@ int main(int argc, char** argv) try {
   // With the joints at 0 the tip is 3.7 mm beyond the port; insertion moves it down.
   keepout::ChainState chain;
   std::vector<double> q(6, 0.0);
-  instrument.chain().place(q, chain);
+  instrument.chain().forward_kinematics(q, chain);
   q[2] = chain.flange().position.z() - (box.high.z() + 10.0);
 
   // A planner's question: 20 mm straight down, through the surface. Nothing moves.
@@ -84,7 +84,7 @@ int main(int argc, char** argv) try {
     }
     for (std::size_t k = 0; k < step.increment.size(); ++k) q[k] += step.increment[k];
   }
-  instrument.chain().place(q, chain);
+  instrument.chain().forward_kinematics(q, chain);
   const Vec3 tip = chain.flange().position;
   std::printf("held back in %d of %d cycles, stopped in %d, nearest %.6f mm of %.1f: the %s\n",
               held, cycles, stopped, nearest, margin,

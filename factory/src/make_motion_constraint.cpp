@@ -15,7 +15,7 @@ namespace {
 
 /// The rule of the settings' tool, or the one they name. Throws Error where they contradict each
 /// other.
-std::unique_ptr<Activation> make_rule(const MotionConstraintSettings& settings) {
+std::unique_ptr<ActivationRule> make_rule(const MotionConstraintSettings& settings) {
 #if KEEPOUT_BALLS_ONLY
   if (settings.tool) throw Error("this build guards balls alone");
   return make_activation(settings.activation);

@@ -54,7 +54,7 @@ py::array_t<double> place(const Chain& chain, const py::object& positions) {
     const std::span<const double> row(q.data() + i * n, static_cast<std::size_t>(n));
     double* const to = poses.mutable_data() + 16 * i;
     if (std::ranges::all_of(row, [](double x) { return std::isfinite(x); })) {
-      chain.place(row, state);
+      chain.forward_kinematics(row, state);
       write(to, state.flange());
     } else {
       std::fill_n(to, 16, std::nan(""));

@@ -121,7 +121,7 @@ Chain::Chain(std::vector<Joint> joints, const Pose& base, const Pose& flange)
   }
 }
 
-void Chain::place(std::span<const double> q, ChainState& state) const noexcept {
+void Chain::forward_kinematics(std::span<const double> q, ChainState& state) const noexcept {
   state.chain_ = this;
   state.size_ = size();
   state.rotation_[0] = base_.rotation;

@@ -161,7 +161,7 @@ InstrumentStep InstrumentConstraint::step(std::span<const double> q,
   InstrumentStep result{.status = status};
   if (is_ok(status)) {
     ChainState chain;
-    state_->instrument.chain().place(q, chain);
+    state_->instrument.chain().forward_kinematics(q, chain);
     result = state_->step(flange_task(chain, desired, state_->options), q);
   }
   state_->pass_time(result);

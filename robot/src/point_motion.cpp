@@ -21,7 +21,7 @@ void PointMotion::start(std::span<const double> q) noexcept {
   ++motion_;
   std::copy(q.begin(), q.end(), q_.begin());
   budget_->spend(work_of_place);
-  instrument_->chain().place(q, start_);
+  instrument_->chain().forward_kinematics(q, start_);
   fill(start_, places_[0]);
 }
 
@@ -84,7 +84,7 @@ void PointMotion::place_at(double share, ChainState& state) const noexcept {
   const auto n = static_cast<std::size_t>(instrument_->chain().size());
   JointVector q;
   for (std::size_t k = 0; k < n; ++k) q[k] = q_[k] + share * increment_[k];
-  instrument_->chain().place({q.data(), n}, state);
+  instrument_->chain().forward_kinematics({q.data(), n}, state);
 }
 
 void PointMotion::fill(const ChainState& state, Place& place) const noexcept {

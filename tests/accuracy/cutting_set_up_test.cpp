@@ -31,7 +31,7 @@ constexpr double half_width = 1.0;  // [mm]
 /// The base from which a psm points straight down to a place, its port so far above it.
 Pose port_above(const Vec3& place, double height) {
   ChainState state;
-  psm().chain().place(std::vector<double>{0, 0, 100, 0, 0, 0}, state);
+  psm().chain().forward_kinematics(std::vector<double>{0, 0, 100, 0, 0, 0}, state);
   const Vec3 way = state.flange().position.normalized();
   return {place + Vec3(0, 0, height),
           Eigen::Quaterniond::FromTwoVectors(way, -Vec3::UnitZ()).toRotationMatrix()};
@@ -47,9 +47,9 @@ TEST(CuttingSetUp, KeepsCorridorSkullAndJointsWhateverTheHandDoes) {
   const Chain& chain = robot.chain();
   std::vector<double> q{0, 0, 0, 0, 0, 0};
   ChainState state;
-  chain.place(q, state);
+  chain.forward_kinematics(q, state);
   q[2] = state.flange().position.z() - top.z() - 3.0;  // 3 mm above the bone
-  chain.place(q, state);
+  chain.forward_kinematics(q, state);
   const LinkPoint tip{6, chain.flange().position};
   InstrumentConstraint guard(mesh, make_index("wide_bvh", mesh), robot, make_solver("active_set"),
                              {.period = 5e-3});

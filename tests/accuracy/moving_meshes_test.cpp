@@ -71,7 +71,7 @@ Pose base_seen(const Pose& mesh, const Twist& velocity, double share, const Pose
 /// The base from which a psm points straight down to a place, its port so far above it.
 Pose port_over(const Vec3& place, double height) {
   ChainState state;
-  psm().chain().place(std::vector<double>{0, 0, 100, 0, 0, 0}, state);
+  psm().chain().forward_kinematics(std::vector<double>{0, 0, 100, 0, 0, 0}, state);
   const Vec3 way = state.flange().position.normalized();
   return {place + Vec3(0, 0, height),
           Eigen::Quaterniond::FromTwoVectors(way, -Vec3::UnitZ()).toRotationMatrix()};
@@ -104,7 +104,7 @@ TEST_P(MovingMeshes, AreKeptOffWhateverTheHandDoes) {
     oracle::InstrumentOracle judge(tree, oracle::judged_psm(), chain.base());
     std::vector<double> q{0, 0, 0, 0, 0, 0};
     ChainState state;
-    chain.place(q, state);
+    chain.forward_kinematics(q, state);
     q[2] = state.flange().position.z() - top.z() - 6.0;  // above the surface, however it swings
     const double promised = guard.options().margin - guard.options().band;
     for (int cycle = 0; cycle < 1000; ++cycle, ++cycles) {
@@ -186,7 +186,7 @@ TEST(DeformingLiver, IsKeptOffBetweenRefitsAndLookedAtAnewAfterEach) {
   const InstrumentOptions& options = guard.options();
   std::vector<double> q{0, 0, 0, 0, 0, 0};
   ChainState state;
-  chain.place(q, state);
+  chain.forward_kinematics(q, state);
   q[2] = state.flange().position.z() - top.z() - 1.0;
   Random random(2);
   int cycles = 0;

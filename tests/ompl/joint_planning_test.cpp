@@ -198,7 +198,7 @@ TEST(JointPlanning, AMotionOutOfAGuideIsInvalid) {
   const JointState from(at.space, {0, 0, 20, 0, 0, 0}), to(at.space, {0, 0, 24, 0, 0, 0});
   EXPECT_TRUE(make_motion_validator(at.space, at.guards)->checkMotion(from.get(), to.get()));
   ChainState chain;
-  at.instrument.chain().place(from.q(), chain);
+  at.instrument.chain().forward_kinematics(from.q(), chain);
   const Guide near =
       Guide::point("near", {6, Vec3::Zero()}, Region::ball(chain.link(6).position, 1.0));
   const auto guided = std::make_shared<InstrumentPool>([&at, &near] {

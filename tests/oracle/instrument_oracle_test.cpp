@@ -108,7 +108,7 @@ void expect_same_places(const JudgedRobot& judged, Instrument (*make)(const Pose
     }
     const std::vector<LinkFrame> links = place(judged, chain.base(), q);
     ChainState state;
-    chain.place(q, state);
+    chain.forward_kinematics(q, state);
     ASSERT_EQ(instrument.bodies().size(), judged.bodies.size());
     for (std::size_t b = 0; b < judged.bodies.size(); ++b) {
       const Body& body = instrument.bodies()[b];

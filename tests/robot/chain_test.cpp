@@ -70,7 +70,7 @@ double off_matrices(DhConvention convention, Random& random) {
     expected *= convention == DhConvention::modified ? Matrix(x * z) : Matrix(z * x);
   }
   ChainState state;
-  chain.place(q, state);
+  chain.forward_kinematics(q, state);
   return (matrix(state.flange()) - expected).cwiseAbs().maxCoeff();
 }
 
@@ -85,7 +85,7 @@ TEST(Chain, StoresRotationsToOneRounding) {
     joint.origin.rotation += 1e-7 * Mat3::Random();  // six digits
     const Chain chain({joint}, base);
     ChainState state;
-    chain.place(std::vector<double>{0.0}, state);
+    chain.forward_kinematics(std::vector<double>{0.0}, state);
     const Chain without_base({joint});
     ChainState of_joint;
     without_base.place(std::vector<double>{0.0}, of_joint);
@@ -121,7 +121,7 @@ TEST(Chain, EachLinkIsMovedAboutItsOwnAxisWhereverThatPoints) {
                       ways[0], random_pose(random));
     const double q[] = {random.uniform(-7, 7), random.uniform(-200, 200)};
     ChainState state;
-    chain.place(q, state);
+    chain.forward_kinematics(q, state);
     const Pose first =
         ways[0] * ways[1] * Pose{Vec3::Zero(), Eigen::AngleAxisd(q[0], turned_about).matrix()};
     const Pose second = first * ways[2] * Pose{q[1] * moved_along};
@@ -142,14 +142,14 @@ TEST(Chain, TheJacobianIsTheDerivativeOfEachPointAndEachLinksTurn) {
     const int link = static_cast<int>(random.below(static_cast<std::size_t>(chain.size()) + 1));
     const Vec3 point = 100.0 * random.direction();
     ChainState state;
-    chain.place(q, state);
+    chain.forward_kinematics(q, state);
     for (int k = 1; k <= chain.size(); ++k) {
       // Four points: the error is some step^4 of the lever, and its rounding.
       const auto at = [&](double steps) {
         std::vector<double> moved = q;
         moved[static_cast<std::size_t>(k - 1)] += steps * step;
         ChainState there;
-        chain.place(moved, there);
+        chain.forward_kinematics(moved, there);
         return matrix(there.link(link) * Pose{point});
       };
       const Matrix slope = (8.0 * (at(1) - at(-1)) - (at(2) - at(-2))) / (12.0 * step);

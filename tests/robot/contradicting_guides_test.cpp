@@ -90,7 +90,7 @@ TEST_P(ContradictingGuides, LeaveWhatBothAllow) {
     std::vector<double> q;
     for (int k = 0; k < n; ++k) q.push_back(random.uniform(-1.5, 1.5));
     ChainState state;
-    chain.place(q, state);
+    chain.forward_kinematics(q, state);
     const Vec3 axis = state.link(n).rotation.col(1);
     const Vec3 side =
         Eigen::AngleAxisd(random.uniform(0.0, 6.28), axis) * Vec3(axis.unitOrthogonal());
@@ -110,7 +110,7 @@ TEST_P(ContradictingGuides, LeaveWhatBothAllow) {
     Vec3 way = Vec3::Zero();
     for (int cycle = 0; cycle < 50; ++cycle, ++cycles) {
       if (cycle % 10 == 0) way = speed * random.direction();
-      chain.place(q, state);
+      chain.forward_kinematics(q, state);
       for (std::size_t g = 0; g < 2; ++g) least[g] = std::min(least[g], excess(guides[g], state));
       const Vec3 from = state.flange().position;
       const auto made = [&](const ChainState& at) {
@@ -122,7 +122,7 @@ TEST_P(ContradictingGuides, LeaveWhatBothAllow) {
       ChainState there;
       for (int s = 1; s <= 8; ++s) {
         for (std::size_t k = 0; k < q.size(); ++k) to[k] = q[k] + s / 8.0 * step.increment[k];
-        chain.place(to, there);
+        chain.forward_kinematics(to, there);
         ASSERT_TRUE(are_kept(there)) << "scene " << scene << " cycle " << cycle;
       }
       if (made(there) < 0.05) {
@@ -133,7 +133,7 @@ TEST_P(ContradictingGuides, LeaveWhatBothAllow) {
           std::vector<double> end = q;
           for (std::size_t k = 0; k < q.size(); ++k) end[k] += other[k];
           ChainState at_end;
-          chain.place(end, at_end);
+          chain.forward_kinematics(end, at_end);
           is_movable =
               made(at_end) >= 0.1 && are_kept(at_end) && guard.prove(q, other).share == 1.0;
           for (double& number : other) number *= 0.5;
@@ -164,7 +164,7 @@ TEST(Guides, WithinTheirBandsDoNotStopTheTask) {
     std::vector<double> q;
     for (int k = 0; k < 3; ++k) q.push_back(random.uniform(-1.5, 1.5));
     ChainState state;
-    chain.place(q, state);
+    chain.forward_kinematics(q, state);
     const Vec3 axis = state.link(3).rotation.col(1);
     const double band = random.uniform(0.005, 0.03);
     const double angle = 0.1 + random.uniform(0.3, 0.9) * band;
@@ -176,14 +176,14 @@ TEST(Guides, WithinTheirBandsDoNotStopTheTask) {
     Vec3 way = Vec3::Zero();
     for (int cycle = 0; cycle < 50; ++cycle, ++cycles) {
       if (cycle % 25 == 0) way = speed * random.direction();
-      chain.place(q, state);
+      chain.forward_kinematics(q, state);
       const InstrumentStep step = guard.step(q, Twist{.linear = way});
       ASSERT_TRUE(step.ok()) << name(step.status) << " in scene " << scene;
       const auto made = [&](const std::vector<double>& increment) {
         std::vector<double> end = q;
         for (std::size_t k = 0; k < end.size(); ++k) end[k] += increment[k];
         ChainState at_end;
-        chain.place(end, at_end);
+        chain.forward_kinematics(end, at_end);
         const double excess_then = excess(guides[0], at_end);
         EXPECT_LE(excess_then, band + 1e-11) << "scene " << scene;
         return 1.0 - (at_end.flange().position - state.flange().position - way).norm() / speed;
@@ -221,7 +221,7 @@ TEST(ContradictingGuides, AreNotDroppedBesideADistantMeshThatMoves) {
         guard_of(far, {Chain(joints, {}, {Vec3(100, 0, 0)}), {{"tip", {tip}, 1.0}}}, {});
     std::vector<double> q{random.uniform(-1, 1), random.uniform(-2, 2), random.uniform(-2, 2)};
     ChainState state;
-    guard.instrument().chain().place(q, state);
+    guard.instrument().chain().forward_kinematics(q, state);
     const Vec3 n = across();
     const Vec3 off = random.uniform(1.1, 3.0) * n;
     const std::vector<Guide> guides{
@@ -239,7 +239,7 @@ TEST(ContradictingGuides, AreNotDroppedBesideADistantMeshThatMoves) {
         ASSERT_FALSE(guide.relaxed && guide.excess <= 0.0);
       pulled += step.guides[1].excess > 0.0 ? 1 : 0;
       for (std::size_t k = 0; k < q.size(); ++k) q[k] += step.increment[k];
-      guard.instrument().chain().place(q, state);
+      guard.instrument().chain().forward_kinematics(q, state);
       ASSERT_LE(excess(guides[0], state), guides[0].band() + 1e-9) << "scene " << scene;
     }
   }

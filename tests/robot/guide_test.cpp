@@ -36,7 +36,7 @@ struct Bench {
 
   ChainState at(const std::vector<double>& q) const {
     ChainState state;
-    instrument.chain().place(q, state);
+    instrument.chain().forward_kinematics(q, state);
     return state;
   }
 

@@ -35,7 +35,7 @@ struct Guided {
       std::vector<double> there = q;
       for (std::size_t k = 0; k < dq.size(); ++k) there[k] += s / 64.0 * dq[k];
       ChainState chain;
-      guard.instrument().chain().place(there, chain);
+      guard.instrument().chain().forward_kinematics(there, chain);
       most = std::max(most, guide.region().excess(guided_point(guide, chain)));
     }
     return most;

@@ -40,7 +40,7 @@ std::vector<double> straight_down(double insertion) { return {0, 0, insertion, 0
 /// triangle.
 double clearance(const Instrument& instrument, const Mesh& mesh, const std::vector<double>& q) {
   ChainState chain;
-  instrument.chain().place(q, chain);
+  instrument.chain().forward_kinematics(q, chain);
   double least = test::infinity;
   for (const Body& body : instrument.bodies()) {
     std::vector<Vec3> points;
@@ -70,7 +70,7 @@ InstrumentConstraint guard_of(std::shared_ptr<const Mesh> mesh, Instrument instr
 Instrument psm_above() {
   ChainState chain;
   const Instrument at_origin = psm();
-  at_origin.chain().place(straight_down(100.0), chain);
+  at_origin.chain().forward_kinematics(straight_down(100.0), chain);
   const Vec3 way = chain.flange().position.normalized();
   Pose base = port_above();
   base.rotation = Eigen::Quaterniond::FromTwoVectors(way, -Vec3::UnitZ()).toRotationMatrix();
@@ -102,12 +102,12 @@ TEST(InstrumentConstraint, StopsAtASurfaceAtTheMarginAndSlidesAlongIt) {
     const InstrumentStep step = guard.step(q, {.linear = Vec3(0.1, 0.0, -0.5)});
     ASSERT_TRUE(step.ok()) << step.reason();
     ChainState chain;
-    instrument.chain().place(q, chain);
+    instrument.chain().forward_kinematics(q, chain);
     before = chain.flange().position;
     q = moved(q, step);
   }
   ChainState chain;
-  instrument.chain().place(q, chain);
+  instrument.chain().forward_kinematics(q, chain);
   EXPECT_NEAR(chain.flange().position.x() - before.x(), 0.1, 0.02) << "it slides";
   const double kept = guard.options().margin - guard.options().band;
   EXPECT_NEAR(clearance(instrument, *mesh, q), guard.options().margin, 2e-3);
@@ -571,7 +571,7 @@ TEST(InstrumentConstraint, ABandForTheLimitsOfItsJointsHoldsEveryBendAtFullSpeed
       dq[j] = limits.velocity * 1e-3 * (random.below(2) == 0 ? 1.0 : -1.0);
     }
     ChainState chain;
-    instrument.chain().place(q, chain);
+    instrument.chain().forward_kinematics(q, chain);
     for (const LinkPoint& point : instrument.points()) {
       const Vec3 at = chain.at(point.link, point.position);
       most = std::max(most, motion_bounds(chain, dq, point.link, at).bend / 8.0);

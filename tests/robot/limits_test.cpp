@@ -80,7 +80,7 @@ TEST(Limits, NameEveryCauseAndOnlyCauses) {
   const LinkPoint jaw{6, Vec3(0, 10.2, 0)};
   const std::vector<double> start{0.1, -0.1, 60.0, 0.2, 0.1, -0.2};
   ChainState state;
-  robot_without({}).chain().place(start, state);
+  robot_without({}).chain().forward_kinematics(start, state);
   const std::vector<Guide> guides{Guide::point(
       "corridor", jaw, Region::slab(state.at(jaw.link, jaw.position), Vec3(1, 0.2, 0), 8.0))};
   struct Cause {

@@ -207,7 +207,7 @@ class Scene {
 
   Vec3 flange(const std::vector<double>& q) const {
     ChainState state;
-    guard_->instrument().chain().place(q, state);
+    guard_->instrument().chain().forward_kinematics(q, state);
     return state.flange().position;
   }
 

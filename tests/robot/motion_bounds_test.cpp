@@ -45,7 +45,7 @@ std::array<Vec3, cells + 1> way(const Chain& chain, const std::vector<double>& q
   ChainState state;
   for (int i = 0; i <= cells; ++i) {
     for (std::size_t k = 0; k < q.size(); ++k) at[k] = q[k] + (double(i) / cells) * increment[k];
-    chain.place(at, state);
+    chain.forward_kinematics(at, state);
     places[static_cast<std::size_t>(i)] = state.at(point.link, point.position);
   }
   return places;
@@ -73,7 +73,7 @@ void judge(const Instrument& robot, const std::string& name, std::uint64_t seed)
     point.position += random.uniform(0.0, body.radius) * random.direction();
 
     ChainState state;
-    chain.place(q, state);
+    chain.forward_kinematics(q, state);
     const MotionBounds bounds =
         motion_bounds(state, increment, point.link, state.at(point.link, point.position));
     const auto places = way(chain, q, increment, point);
@@ -113,7 +113,7 @@ TEST(MotionBounds, OfAPsmAtOneKilohertzAreThoseThatThePageStates) {
   const Instrument robot = psm();
   const Chain& chain = robot.chain();
   ChainState state;
-  chain.place(std::vector<double>{0.0, 0.0, 200.0, 0.0, 0.0, 0.0}, state);
+  chain.forward_kinematics(std::vector<double>{0.0, 0.0, 200.0, 0.0, 0.0, 0.0}, state);
   std::vector<double> yaw_and_pitch(6, 0.0);
   std::vector<double> all(6);
   for (std::size_t k = 0; k < 6; ++k) {

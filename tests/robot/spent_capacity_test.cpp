@@ -34,7 +34,7 @@ struct Swing {
   double clearance(const std::vector<double>& q) const {
     ChainState chain;
     const Instrument& instrument = guard.instrument();
-    instrument.chain().place(q, chain);
+    instrument.chain().forward_kinematics(q, chain);
     double least = test::infinity;
     for (const Body& body : instrument.bodies()) {
       std::vector<Vec3> core;

@@ -62,10 +62,10 @@ void run(double speed, Tally& tally) {
       const InstrumentStep step = guard.step(q, desired);
       ASSERT_TRUE(step.ok()) << step.reason();
       ChainState before;
-      chain.place(q, before);
+      chain.forward_kinematics(q, before);
       for (std::size_t k = 0; k < q.size(); ++k) q[k] += step.increment[k];
       ChainState after;
-      chain.place(q, after);
+      chain.forward_kinematics(q, after);
       tally.missed.push_back(missed(before.flange(), after.flange(), desired, weight) /
                              missed(before.flange(), before.flange(), desired, weight));
       ASSERT_LE(tally.missed.back(), 1.05) << name(step.status);

@@ -77,7 +77,7 @@ Joints weights_of(const Instrument& instrument) {
       const JointLimits& limits = chain.joint(static_cast<int>(k) + 1).limits;
       q[k] = limits.lower + 0.5 * at[k] * (limits.upper - limits.lower);
     }
-    chain.place(q, state);
+    chain.forward_kinematics(q, state);
     for (const LinkPoint& point : instrument.points()) {
       const Vec3 place = state.at(point.link, point.position);
       for (int k = 1; k <= point.link; ++k) {
@@ -133,7 +133,7 @@ struct Pieces {
     Joints way{};
     for (std::size_t k = 0; k < n; ++k) way[k] = end[k] - from[k];
     ChainState state;
-    instrument.chain().place({from, n}, state);
+    instrument.chain().forward_kinematics({from, n}, state);
     double path = 0.0;
     for (const LinkPoint& point : instrument.points()) {
       const Vec3 place = state.at(point.link, point.position);

@@ -156,7 +156,7 @@ std::vector<IndexAgreement> compare_indices(const IndexComparison& comparison,
     Findings findings{.searched = !guard.makes_queries()};
     for (const Motion& motion : motions) {
       if (stopped()) return std::nullopt;
-      const bool fits = around.look({motion.tip, reach});  // unless some come twice
+      const bool fits = around.gather({motion.tip, reach});  // unless some come twice
       const Step step = guard.step(motion);
       TriangleBuffer& candidates = around.candidates();
       std::ranges::sort(candidates);

@@ -112,7 +112,7 @@ void run_trajectory(Scene& scene, Guard& guard, std::uint64_t number, std::uint6
     attempt->joints.attach(motion);
     const Step step = guard.step(motion);
     const Verdict verdict = attempt->judge.judge(motion, step);
-    tally.add(verdict, step.status, distance_kept(attempt->setup.options));
+    tally.add(verdict, step.status, required_clearance(attempt->setup.options));
 
     const auto note = [&](std::string_view what, Json& incidents, std::size_t most) {
       if (incidents.size() >= most) return;

@@ -14,7 +14,7 @@ std::string_view name(Breach breach) noexcept {
 
 double tolerance(const Scene& scene, const StepOptions& options, const Vec3& tip) noexcept {
   const double lengths =
-      scene.longest_edge() + options.radius * (1.0 + 1e-9) + distance_kept(options);
+      scene.longest_edge() + options.radius * (1.0 + 1e-9) + required_clearance(options);
   return 2e-10 * lengths + 4e-16 * tip.lpNorm<1>();
 }
 
@@ -31,7 +31,7 @@ void Judge::take_in(const Vec3& tip) {
   distance_ = oracle_.distance(tip);
   is_touching_ = distance_ <= 4.0 * tau;
   is_forbidden_ = has_sides_ && scene_->is_forbidden(tip);
-  has_kept_ = !is_forbidden_ && distance_ >= distance_kept(options_) - 2.75 * tau;
+  has_kept_ = !is_forbidden_ && distance_ >= required_clearance(options_) - 2.75 * tau;
 }
 
 bool Judge::is_too_long(const Motion& motion, const Step& step) const noexcept {
@@ -65,7 +65,7 @@ Verdict Judge::judge(const Motion& motion, const Step& step) {
   if (to == motion.tip) return verdict;
 
   const double tau = tolerance(*scene_, options_, motion.tip);
-  const double kept = distance_kept(options_);
+  const double kept = required_clearance(options_);
   verdict.tolerance = tau;
   if (is_too_long(motion, step)) {
     verdict.breach = Breach::too_long;

@@ -13,7 +13,7 @@ Path::Path(Scene& scene, Random& random, const Setup& setup)
       random_(&random),
       route_(setup.route),
       longest_(setup.longest_step),
-      kept_(distance_kept(setup.options)),
+      kept_(required_clearance(setup.options)),
       period_(10 + random.below(110)),
       has_all_lengths_(random.uniform() < 0.4) {
   const bool is_watchful = route_ == Route::aim || route_ == Route::slide;

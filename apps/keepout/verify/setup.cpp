@@ -57,7 +57,7 @@ double draw_tool_share(Random& random) {
 void limit_reach(const Scene& scene, Setup& setup) {
   TriangleBuffer found(1500);
   for (int halvings = 0; halvings < 40; ++halvings) {
-    const double kept = distance_kept(setup.options);
+    const double kept = required_clearance(setup.options);
     found.clear();
     scene.index().collect({setup.tip, setup.options.radius + kept}, found);
     if (!found.overflowed()) return;
@@ -127,7 +127,7 @@ double draw_distance(double kept, Random& random) {
 
 template <SurfacePoint (*place)(const Mesh&, Random&)>
 Vec3 off_the_surface(Scene& scene, Setup& setup, Random& random) {
-  const double kept = distance_kept(setup.options);
+  const double kept = required_clearance(setup.options);
   Vec3 tip = Vec3::Zero();
   for (int attempt = 0; attempt < 12; ++attempt) {
     const SurfacePoint on = place(*scene.mesh(), random);
@@ -176,7 +176,7 @@ Vec3 too_close(Scene& scene, Setup& setup, Random& random) {
   const SurfacePoint on = on_any(*scene.mesh(), random);
   const double lost = std::pow(10.0, random.uniform(-9.0, 0.0));
   const double share = random.uniform() < 0.5 ? 1.0 - lost : lost;
-  const double distance = share * distance_kept(setup.options);
+  const double distance = share * required_clearance(setup.options);
   return at_distance(scene, on.point + distance * way_off(setup, on, random), distance);
 }
 
@@ -186,7 +186,8 @@ Vec3 on_surface(Scene& scene, Setup&, Random& random) {
 
 Vec3 behind(Scene& scene, Setup& setup, Random& random) {
   const SurfacePoint on = on_any(*scene.mesh(), random);
-  const double depth = distance_kept(setup.options) * std::pow(10.0, random.uniform(-3.0, 0.7));
+  const double depth =
+      required_clearance(setup.options) * std::pow(10.0, random.uniform(-3.0, 0.7));
   return on.point - depth * on.normal;
 }
 
@@ -194,7 +195,7 @@ Vec3 anywhere(Scene& scene, Setup& setup, Random& random) {
   const Box& bounds = scene.mesh()->bounds();
   Vec3 tip;
   for (int axis = 0; axis < 3; ++axis) {
-    const double beyond = 3.0 * distance_kept(setup.options) + setup.options.radius;
+    const double beyond = 3.0 * required_clearance(setup.options) + setup.options.radius;
     tip[axis] = random.uniform(bounds.low[axis] - beyond, bounds.high[axis] + beyond);
   }
   return tip;

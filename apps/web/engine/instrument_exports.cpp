@@ -83,7 +83,7 @@ struct Manipulator {
   /// The joints are where they are said to be: so are the bodies.
   void place() noexcept {
     keepout::ChainState state;
-    instrument().chain().place(positions, state);
+    instrument().chain().forward_kinematics(positions, state);
     std::copy(positions.begin(), positions.end(), cycle.positions);
     flange = state.flange();
     Eigen::Map<Vec3>(cycle.flange) = flange.position;

@@ -6,19 +6,19 @@
 
 namespace keepout {
 
-bool on_positive_side(const Surroundings& around, const Hit& hit, const Vec3& normal) noexcept {
-  return -normal.dot(hit.closest.offset) >= -around.rounding;
+bool on_positive_side(const CycleProblem& problem, const Hit& hit, const Vec3& normal) noexcept {
+  return -normal.dot(hit.closest.offset) >= -problem.rounding;
 }
 
-bool touches(const Surroundings& around, const Hit& hit) noexcept {
-  return hit.closest.distance <= around.rounding;
+bool touches(const CycleProblem& problem, const Hit& hit) noexcept {
+  return hit.closest.distance <= problem.rounding;
 }
 
-Vec3 way_out(const Surroundings& around, const Vec3& off, double lift) noexcept {
-  const double climb = std::max(off.dot(around.aim), 0.0);
-  Vec3 along = around.aim - off.dot(around.aim) * off;
-  const double up = std::min(climb + lift, around.radius);
-  const double room = std::sqrt(std::max(around.radius * around.radius - up * up, 0.0));
+Vec3 way_out(const CycleProblem& problem, const Vec3& off, double lift) noexcept {
+  const double climb = std::max(off.dot(problem.target), 0.0);
+  Vec3 along = problem.target - off.dot(problem.target) * off;
+  const double up = std::min(climb + lift, problem.radius);
+  const double room = std::sqrt(std::max(problem.radius * problem.radius - up * up, 0.0));
   const double length = along.norm();
   if (length > room) along *= room / length;
   return along + up * off;

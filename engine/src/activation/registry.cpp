@@ -12,7 +12,7 @@ namespace keepout {
 namespace {
 
 template <class Rule>
-std::unique_ptr<Activation> make() {
+std::unique_ptr<ActivationRule> make() {
   return std::make_unique<Rule>();
 }
 
@@ -29,7 +29,7 @@ constexpr std::array rules{
 
 std::span<const ActivationEntry> activation_rules() noexcept { return rules; }
 
-std::unique_ptr<Activation> make_activation(std::string_view name) {
+std::unique_ptr<ActivationRule> make_activation(std::string_view name) {
   return entry_named(name, rules, "activation rule").make();
 }
 

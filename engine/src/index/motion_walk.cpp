@@ -17,7 +17,7 @@ class WalkOfHits final : public MotionWalk {
 
   bool begin(const Start& start) noexcept override {
     tip_ = start.tip;
-    if (!near_.look(start.region)) return false;
+    if (!near_.gather(start.region)) return false;
     begin_again(start.level);
     return true;
   }

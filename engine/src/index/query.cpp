@@ -43,7 +43,7 @@ Neighborhood::Neighborhood(std::shared_ptr<const Mesh> mesh,
       hits_(candidates_.capacity()),
       budget_(&budget) {}
 
-bool Neighborhood::look(const Ball& ball) noexcept {
+bool Neighborhood::gather(const Ball& ball) noexcept {
   ball_ = ball;
   candidates_.clear();
   hits_.clear();

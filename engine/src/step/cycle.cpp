@@ -32,7 +32,7 @@ bool allow_parts(const std::optional<ExtraRows>& rows) noexcept {
 
 }  // namespace
 
-Cycle::Cycle(Activation& rule, Solver& solver, Workspace& work, Budget& budget,
+Cycle::Cycle(ActivationRule& rule, Solver& solver, Workspace& work, Budget& budget,
              const StepOptions& options, const Motion& motion, StageTimes* times) noexcept
     : rule_(rule),
       solver_(solver),
@@ -40,14 +40,14 @@ Cycle::Cycle(Activation& rule, Solver& solver, Workspace& work, Budget& budget,
       budget_(budget),
       options_(options),
       motion_(motion),
-      around_(surroundings_of(motion, options, rule.reach())),
+      problem_(cycle_problem_of(motion, options, rule.end_region())),
       times_(times) {
   // Guides that lead back may ask for more than the projection of the aim can give.
   const bool leads_back = !work.guides.empty() && work.guides.leads_back();
-  if (leads_back) around_.reach = around_.searched = Reach::sphere;
+  if (leads_back) problem_.end_region = problem_.searched_region = EndRegion::motion_sphere;
   // With joints, rows or damping the answer is no projection.
-  around_.is_projected = !motion.jacobian && !motion.rows && options.damping == 0.0 &&
-                         solver.reads_planes() && !leads_back;
+  problem_.is_projected = !motion.jacobian && !motion.rows && options.damping == 0.0 &&
+                          solver.reads_planes() && !leads_back;
   if (times_ != nullptr) last_ = std::chrono::steady_clock::now();
 }
 
@@ -58,45 +58,45 @@ void Cycle::run(Step& result) noexcept {
     return;
   }
   // Halving the aim helps only where the region shrinks with it.
-  Opening opening = around_.reach == Reach::thales ? open_as_far_as_fits() : open();
+  Opening opening = problem_.end_region == EndRegion::target_ball ? open_as_far_as_fits() : open();
   result.distance = opening.distance;
   const bool recovering = opening.status == Status::recovering;
   if (recovering) {
     // The way out is the aim now, and the rule begins once more with what is around that. The
     // motion that leads out is no projection of the aim, but need not be much longer than it.
-    around_.aim = opening.aim;
-    around_.reach = around_.searched = Reach::sphere;
-    around_.longest = std::min(around_.longest, 2.0 * around_.aim.norm());
+    problem_.target = opening.target;
+    problem_.end_region = problem_.searched_region = EndRegion::motion_sphere;
+    problem_.longest = std::min(problem_.longest, 2.0 * problem_.target.norm());
     opening = open_as_far_as_fits();
   }
-  Trial settled{opening.status, Vec3::Zero()};
+  Trial found{opening.status, Vec3::Zero()};
   if (is_ok(opening.status)) {
-    settled = settle();
+    found = search_and_refine();
     ended(&StageTimes::solve);
     result.planes = work_.posed();
   }
   result.triangles = rule_.triangles();
-  if (settled.status == Status::infeasible || settled.status == Status::unsolved) {
+  if (found.status == Status::infeasible || found.status == Status::unsolved) {
     const Limits constraints = unsatisfied();
     if (!constraints.has(Limit::guide) || !allow_parts(motion_.rows)) {
       result.limits = constraints;
     } else {
       // Standing still satisfies guides, and rows that require no motion.
-      settled = {Status::fallback, Vec3::Zero()};
+      found = {Status::fallback, Vec3::Zero()};
       limits_.add(constraints);
       limits_.add(Limit::truncated);
-      work_.keep_zero_answer(motion_, relaxation_, limits_);
+      work_.store_zero_result(motion_, relaxation_, limits_);
     }
   }
-  result.status = settled.status;
-  if (!is_ok(settled.status)) return;
+  result.status = found.status;
+  if (!is_ok(found.status)) return;
   // Number by number, as the increment: no zero has a sign.
-  for (int axis = 0; axis < 3; ++axis) result.motion[axis] = settled.motion[axis] + 0.0;
+  for (int axis = 0; axis < 3; ++axis) result.motion[axis] = found.motion[axis] + 0.0;
   result.increment = work_.increment();
   report(result);
   // In a recovery the target is the retreat, not the commanded motion.
   if (result.status == Status::free && motion_.jacobian &&
-      (around_.aim - result.motion).squaredNorm() > 0.25 * around_.aim.squaredNorm()) {
+      (problem_.target - result.motion).squaredNorm() > 0.25 * problem_.target.squaredNorm()) {
     result.status = Status::limited;
     result.limits.add(Limit::singularity);
   }
@@ -120,7 +120,7 @@ Limits Cycle::unsatisfied() noexcept {
 
 /// Reports what limits the answer.
 void Cycle::report(Step& result) noexcept {
-  result.planes = work_.posed_for_answer();
+  result.planes = work_.posed_for_result();
   result.active = work_.active();
   result.relaxation = work_.relaxation();
   result.limits = work_.limits();
@@ -146,10 +146,10 @@ void Cycle::report(Step& result) noexcept {
 /// Has the rule look at the triangles that matter for the aim, and begin with them.
 Opening Cycle::open() noexcept {
   work_.planes.clear();
-  const bool fits = rule_.look_around(around_);
+  const bool fits = rule_.gather(problem_);
   ended(&StageTimes::query);
   if (!fits) return {budget_.status_at_end()};
-  const Opening opening = rule_.start(around_, work_.planes);
+  const Opening opening = rule_.open(problem_, work_.planes);
   ended(&StageTimes::activation);
   return opening;
 }
@@ -163,9 +163,9 @@ Opening Cycle::open_as_far_as_fits() noexcept {
   };
   while (is_too_much() && halvings_ < most_halvings) {
     halved_for_ = opening.status;
-    around_.searched = around_.reach;
-    around_.aim *= 0.5;
-    if (around_.reach == Reach::sphere) around_.longest *= 0.5;
+    problem_.searched_region = problem_.end_region;
+    problem_.target *= 0.5;
+    if (problem_.end_region == EndRegion::motion_sphere) problem_.longest *= 0.5;
     ++halvings_;
     opening = attempt();
   }
@@ -173,8 +173,8 @@ Opening Cycle::open_as_far_as_fits() noexcept {
 }
 
 /// Finds a motion that the rule accepts, and improves upon it.
-Cycle::Trial Cycle::settle() noexcept {
-  Trial best = find();
+Cycle::Trial Cycle::search_and_refine() noexcept {
+  Trial best = search();
   if (best.status != Status::limited) return best;
   best = refine(best);
   if (options_.nodes == 0) return best;
@@ -184,21 +184,22 @@ Cycle::Trial Cycle::settle() noexcept {
 
 /// Solves, and as long as the rule objects to the trial motion, solves again with its plane. What
 /// that leaves of the budget is for a part of the last trial.
-Cycle::Trial Cycle::find() noexcept {
+Cycle::Trial Cycle::search() noexcept {
   limits_ = {};
   Trial last{Status::unsolved, Vec3::Zero()};
-  double free_share = 0.0;  // of the last trial
-  const std::optional<Trial> found = budget_.halved([&] { return try_in_turn(last, free_share); });
-  return found ? *found : fall_back(last, free_share);
+  double free_fraction = 0.0;  // of the last trial
+  const std::optional<Trial> found =
+      budget_.halved([&] { return solve_and_judge(last, free_fraction); });
+  return found ? *found : cut(last, free_fraction);
 }
 
 /// Nothing if it comes to no end; then `last` is the last trial that was judged, and `free_share`
 /// how much of it nothing speaks against.
-std::optional<Cycle::Trial> Cycle::try_in_turn(Trial& last, double& free_share) noexcept {
+std::optional<Cycle::Trial> Cycle::solve_and_judge(Trial& last, double& free_fraction) noexcept {
   for (int round = 0; round < most_rounds; ++round) {
     const Trial trial = solve();
     // Part of the last trial may be made all the same. With joints its increment is gone.
-    const bool has_part = free_share > 0.0 && !motion_.jacobian;
+    const bool has_part = free_fraction > 0.0 && !motion_.jacobian;
     if (!is_ok(trial.status)) {
       if (!has_part) return trial;
       note(trial.status);
@@ -206,20 +207,20 @@ std::optional<Cycle::Trial> Cycle::try_in_turn(Trial& last, double& free_share) 
       break;
     }
     // Beyond the sphere nothing was looked at.
-    if (trial.motion.norm() > around_.longest) {
-      work_.planes.push(bound_of(trial.motion, around_.longest));
-      free_share = 0.0;
+    if (trial.motion.norm() > problem_.longest) {
+      work_.planes.push(bound_of(trial.motion, problem_.longest));
+      free_fraction = 0.0;
       continue;
     }
     // No half-space was left that excludes it.
     if (!work_.guides.allow(trial.motion)) {
       last = trial;
-      free_share = 1.0;
+      free_fraction = 1.0;
       break;
     }
-    const Judgement judgement = rule_.judge(around_, trial.motion, work_.planes);
+    const Judgement judgement = rule_.judge(problem_, trial.motion, work_.planes);
     if (judgement.verdict == Verdict::accepted) {
-      work_.keep_answer(motion_, trial.motion, 1.0, relaxation_, {});
+      work_.store_result(motion_, trial.motion, 1.0, relaxation_, {});
       return Trial{work_.solution.active.empty() ? trial.status : Status::limited, trial.motion};
     }
     if (budget_.is_spent()) note(budget_.status_at_end());
@@ -228,7 +229,7 @@ std::optional<Cycle::Trial> Cycle::try_in_turn(Trial& last, double& free_share) 
       break;
     }
     last = trial;
-    free_share = judgement.free_share;
+    free_fraction = judgement.free_fraction;
     if (judgement.verdict == Verdict::blocked) break;
   }
   return std::nullopt;
@@ -236,20 +237,20 @@ std::optional<Cycle::Trial> Cycle::try_in_turn(Trial& last, double& free_share) 
 
 /// The part of the last trial up to the first contact, within the guides' regions, provided that it
 /// stands the same test.
-Cycle::Trial Cycle::fall_back(const Trial& trial, double free_share) noexcept {
+Cycle::Trial Cycle::cut(const Trial& trial, double free_fraction) noexcept {
   const double allowed = work_.guides.allowed_fraction(trial.motion);
-  const double share = std::min(free_share * (1.0 - 1e-9), allowed);
+  const double share = std::min(free_fraction * (1.0 - 1e-9), allowed);
   const Vec3 part = share * trial.motion;
   if (!(share > 0.0) || !allow_parts(motion_.rows) ||
-      rule_.judge(around_, part, work_.planes).verdict != Verdict::accepted) {
+      rule_.judge(problem_, part, work_.planes).verdict != Verdict::accepted) {
     if (limits_.has(Limit::capacity)) return {Status::over_capacity, Vec3::Zero()};
     return {limits_.has(Limit::budget) ? Status::out_of_budget : Status::unsolved, Vec3::Zero()};
   }
   limits_.add(Limit::truncated);
-  if (free_share < 1.0) limits_.add(Limit::mesh);
+  if (free_fraction < 1.0) limits_.add(Limit::mesh);
   if (allowed < 1.0) limits_.add(Limit::guide);
   work_.guides.note_left_by(trial.motion);
-  work_.keep_answer(motion_, part, share, relaxation_, limits_);
+  work_.store_result(motion_, part, share, relaxation_, limits_);
   return {Status::fallback, part};
 }
 

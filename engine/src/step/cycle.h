@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "keepout/activation/activation.h"
+#include "keepout/activation/activation_rule.h"
 #include "keepout/step/motion.h"
 #include "keepout/step/options.h"
 #include "keepout/step/solver.h"
@@ -26,7 +26,7 @@ class Cycle {
   /// Preconditions: rule and solver are prepared for the workspace's capacity; the motion is
   /// checked; the workspace's guides are open. Work is taken from the budget. What each stage takes
   /// is added to `times`, unless null.
-  Cycle(Activation& rule, Solver& solver, Workspace& work, Budget& budget,
+  Cycle(ActivationRule& rule, Solver& solver, Workspace& work, Budget& budget,
         const StepOptions& options, const Motion& motion, StageTimes* times) noexcept;
 
   /// Fills a step that is empty so far. Its views are of the workspace. Allocates nothing, throws
@@ -42,13 +42,13 @@ class Cycle {
 
   Opening open() noexcept;
   Opening open_as_far_as_fits() noexcept;
-  Trial settle() noexcept;
-  Trial find() noexcept;
-  std::optional<Trial> try_in_turn(Trial& last, double& free_share) noexcept;
-  Trial fall_back(const Trial& trial, double free_share) noexcept;
+  Trial search_and_refine() noexcept;
+  Trial search() noexcept;
+  std::optional<Trial> solve_and_judge(Trial& last, double& free_fraction) noexcept;
+  Trial cut(const Trial& trial, double free_fraction) noexcept;
   Trial solve() noexcept;
-  Trial solve_once() noexcept;
-  Status attempt(std::optional<Vec3>& answer) noexcept;
+  Trial solve_relaxing() noexcept;
+  Status solve_once(std::optional<Vec3>& motion) noexcept;
   bool relax() noexcept;
   void note(Status ended) noexcept;
   Limits unsatisfied() noexcept;
@@ -59,13 +59,13 @@ class Cycle {
   bool is_worthwhile(const Vec3& motion, const Vec3& best) const noexcept;
   void ended(std::int64_t StageTimes::*stage) noexcept;
 
-  Activation& rule_;
+  ActivationRule& rule_;
   Solver& solver_;
   Workspace& work_;
   Budget& budget_;
   const StepOptions& options_;
   const Motion& motion_;
-  Surroundings around_;
+  CycleProblem problem_;
   int halvings_ = 0;   // of the aim, until its region was small enough
   Status halved_for_;  // over_capacity or out_of_budget, if there are any
   Relaxation relaxation_ = Relaxation::none;

@@ -14,12 +14,12 @@ namespace {
 
 /// Returns a solver's projection of the target, corrected to the accuracy of the planes. The motion
 /// ends in the ball over the target, in which the index was searched.
-Vec3 sharpened(const Vec3& motion, const Vec3& aim, std::span<const HalfSpace> planes) noexcept {
+Vec3 sharpened(const Vec3& motion, const Vec3& target, std::span<const HalfSpace> planes) noexcept {
   // Solvers differ in their last digits; alternating projections on the planes that are violated
   // settle them. Each is at most a last digit for an exact solver.
   constexpr int most_corrections = 32;
   Vec3 z = motion;
-  const double digits2 = 1e-30 * aim.squaredNorm();
+  const double digits2 = 1e-30 * target.squaredNorm();
   for (int i = 0; i < most_corrections; ++i) {
     const HalfSpace* worst = nullptr;
     double violation = 0.0;
@@ -32,7 +32,7 @@ Vec3 sharpened(const Vec3& motion, const Vec3& aim, std::span<const HalfSpace> p
     if (worst == nullptr || !(violation * violation > digits2)) break;
     z += violation * worst->normal;
   }
-  const double along = aim.dot(z);
+  const double along = target.dot(z);
   const double length2 = z.squaredNorm();
   if (along < length2) z *= std::max(along, 0.0) / length2;
   return z;
@@ -57,37 +57,37 @@ std::size_t work_of(const StepProblem& problem, const Solution& solution) noexce
 Cycle::Trial Cycle::solve() noexcept {
   // The projection of the aim on no plane: it needs no solver.
   const bool is_bare = work_.planes.empty() && !work_.planes.overflowed();
-  if (is_bare && around_.is_projected && work_.guides.empty()) {
+  if (is_bare && problem_.is_projected && work_.guides.empty()) {
     work_.solution = {};
-    return {Status::free, around_.aim};
+    return {Status::free, problem_.target};
   }
-  Trial trial = solve_once();
+  Trial trial = solve_relaxing();
   if (work_.guides.empty()) return trial;
   while (is_ok(trial.status) && !work_.guides.allow(trial.motion)) {
     budget_.spend(1);
     if (!work_.guides.exclude(trial.motion)) break;
-    trial = solve_once();
+    trial = solve_relaxing();
   }
   return trial;
 }
 
-Cycle::Trial Cycle::solve_once() noexcept {
+Cycle::Trial Cycle::solve_relaxing() noexcept {
   if (work_.planes.overflowed()) return {Status::over_capacity, Vec3::Zero()};
-  std::optional<Vec3> answer;
-  Status solved = attempt(answer);
+  std::optional<Vec3> motion;
+  Status solved = solve_once(motion);
   // Planes may contradict each other, or nearly, so that the solver finds a point out of the world,
   // or comes to no end.
   const auto contradict = [&] {
     return solved == Status::infeasible || solved == Status::ill_posed ||
            solved == Status::unsolved;
   };
-  while (contradict() && relax()) solved = attempt(answer);
-  if (is_ok(solved) && !answer->allFinite()) solved = Status::unsolved;
+  while (contradict() && relax()) solved = solve_once(motion);
+  if (is_ok(solved) && !motion->allFinite()) solved = Status::unsolved;
   // Without a Jacobian only rows that almost contradict each other make a problem ill-posed.
   if (solved == Status::ill_posed && !motion_.jacobian) solved = Status::infeasible;
   if (!is_ok(solved)) return {solved, Vec3::Zero()};
-  if (around_.reach == Reach::sphere) return {Status::free, *answer};
-  return {Status::free, sharpened(*answer, around_.aim, work_.posed())};
+  if (problem_.end_region == EndRegion::motion_sphere) return {Status::free, *motion};
+  return {Status::free, sharpened(*motion, problem_.target, work_.posed())};
 }
 
 /// Relaxes constraints that pull back: guides first. Returns true if any plane changed.
@@ -101,9 +101,9 @@ bool Cycle::relax() noexcept {
   return true;
 }
 
-Status Cycle::attempt(std::optional<Vec3>& answer) noexcept {
+Status Cycle::solve_once(std::optional<Vec3>& motion) noexcept {
   if (budget_.is_spent()) return budget_.status_at_end();
-  const StepProblem problem = work_.pose(motion_, around_.aim, options_.damping);
+  const StepProblem problem = work_.pose(motion_, problem_.target, options_.damping);
   work_.solution = {};
   const SolveStatus solved = solver_.solve(problem, work_.solution);
   budget_.spend(work_of(problem, work_.solution));
@@ -111,8 +111,8 @@ Status Cycle::attempt(std::optional<Vec3>& answer) noexcept {
   if (work_.solution.u.size() != static_cast<std::size_t>(problem.jacobian.cols())) {
     return Status::unsolved;
   }
-  answer = tip_motion(problem, work_.solution, 1e-10 * options_.radius);
-  return answer ? Status::free : Status::ill_posed;
+  motion = tip_motion(problem, work_.solution, 1e-10 * options_.radius);
+  return motion ? Status::free : Status::ill_posed;
 }
 
 std::optional<Vec3> tip_motion(const StepProblem& problem, const Solution& solution,

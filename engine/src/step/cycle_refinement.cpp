@@ -14,22 +14,22 @@ using Verdict = Judgement::Verdict;
 /// one and options.refinements lasts. All planes go on allowing the motion there is, those of
 /// triangles that are met on the way as well, so nothing is lost.
 Cycle::Trial Cycle::refine(Trial best) noexcept {
-  const Vec3 kept = around_.kept;
+  const Vec3 kept = problem_.accepted;
   for (int refinement = 0; refinement < options_.refinements; ++refinement) {
-    work_.set_aside();
-    around_.kept = best.motion;
-    if (rule_.turn(around_, work_.earlier_planes.view(), work_.planes)) {
-      const Trial next = find();
+    work_.save();
+    problem_.accepted = best.motion;
+    if (rule_.relinearize(problem_, work_.earlier_planes.view(), work_.planes)) {
+      const Trial next = search();
       const bool accepted = next.status == Status::limited || next.status == Status::free;
       if (accepted && is_worthwhile(next.motion, best.motion)) {
         best = next;
         continue;
       }
     }
-    work_.take_back();
+    work_.restore();
     break;
   }
-  around_.kept = kept;
+  problem_.accepted = kept;
   return best;
 }
 
@@ -42,19 +42,19 @@ Cycle::Trial Cycle::refine(Trial best) noexcept {
 /// Bounded by options.nodes. What it returns has stood the same test as any other motion, so the
 /// bound costs quality and never safety.
 Cycle::Trial Cycle::branch(const Trial& best) noexcept {
-  work_.set_aside();
+  work_.save();
   work_.branches.clear();
   open_branch(best);
   for (int node = 0; node < options_.nodes && !budget_.is_spent(); ++node) {
     const Branch* nearest = work_.branches.pop_nearest();
     if (nearest == nullptr) break;
     work_.planes.assign(nearest->planes());
-    const Verdict verdict = rule_.judge(around_, nearest->motion, work_.planes).verdict;
+    const Verdict verdict = rule_.judge(problem_, nearest->motion, work_.planes).verdict;
     if (verdict == Verdict::accepted) {
       // Solved once more: the solver has gone on since.
       const Trial trial = solve();
       if (!is_ok(trial.status) || trial.motion != nearest->motion) break;
-      work_.keep_answer(motion_, trial.motion, 1.0, relaxation_, {});
+      work_.store_result(motion_, trial.motion, 1.0, relaxation_, {});
       return {Status::limited, trial.motion};
     }
     if (verdict == Verdict::blocked) continue;
@@ -69,24 +69,24 @@ Cycle::Trial Cycle::branch(const Trial& best) noexcept {
       open_branch(best);
     }
   }
-  work_.take_back();
+  work_.restore();
   return best;
 }
 
 /// Adds a node for the present planes, unless it cannot contain a better motion.
 void Cycle::open_branch(const Trial& best) noexcept {
   const Trial trial = solve();
-  if (!is_ok(trial.status) || trial.motion.norm() > around_.longest) return;
+  if (!is_ok(trial.status) || trial.motion.norm() > problem_.longest) return;
   if (!work_.guides.allow(trial.motion)) return;
   if (!is_worthwhile(trial.motion, best.motion)) return;
-  work_.branches.push((around_.aim - trial.motion).norm(), trial.motion, work_.planes.view());
+  work_.branches.push((problem_.target - trial.motion).norm(), trial.motion, work_.planes.view());
 }
 
 /// Returns true if a motion is nearer to the target than the best one, by more than a millionth of
 /// the target.
 bool Cycle::is_worthwhile(const Vec3& motion, const Vec3& best) const noexcept {
-  const Vec3& aim = around_.aim;
-  return (aim - motion).norm() < (aim - best).norm() - 1e-6 * aim.norm();
+  const Vec3& target = problem_.target;
+  return (target - motion).norm() < (target - best).norm() - 1e-6 * target.norm();
 }
 
 }  // namespace keepout

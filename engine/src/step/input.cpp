@@ -35,8 +35,8 @@ bool are_usable(const ExtraRows& rows, Eigen::Index variables) noexcept {
 
 bool are_in_range(const StepOptions& options) noexcept {
   return options.radius > 0.0 && is_length(options.radius) && is_length(options.tool_radius) &&
-         is_length(options.margin) && is_length(distance_kept(options)) && options.damping >= 0.0 &&
-         options.damping <= largest_number && options.recovery >= 0.0 &&
+         is_length(options.margin) && is_length(required_clearance(options)) &&
+         options.damping >= 0.0 && options.damping <= largest_number && options.recovery >= 0.0 &&
          options.recovery <= longest_length && is_length(options.deepest) &&
          options.refinements >= 0 && options.refinements <= most_refinements &&
          options.nodes >= 0 && options.nodes <= most_nodes &&
@@ -60,20 +60,20 @@ Status check(const Motion& motion, const StepOptions& options) noexcept {
   return Status::free;
 }
 
-Surroundings surroundings_of(const Motion& motion, const StepOptions& options,
-                             Reach projections) noexcept {
-  // With joints or rows of the caller's own the answer need not be a projection of the aim.
-  const Reach reached = motion.jacobian || motion.rows ? Reach::sphere : projections;
+CycleProblem cycle_problem_of(const Motion& motion, const StepOptions& options,
+                              EndRegion projections) noexcept {
+  // With joints or rows of the caller's own the motion need not be a projection of the target.
+  const EndRegion ends = motion.jacobian || motion.rows ? EndRegion::motion_sphere : projections;
   return {.tip = motion.tip,
-          .aim = motion.desired,
-          .kept = Vec3::Zero(),
+          .target = motion.desired,
+          .accepted = Vec3::Zero(),
           .radius = options.radius,
           .longest = longest_motion(options),
-          .margin = distance_kept(options),
+          .margin = required_clearance(options),
           .recovery = options.recovery,
           .rounding = position_rounding(motion.tip, options),
-          .reach = reached,
-          .searched = options.query == Query::motion ? reached : Reach::sphere,
+          .end_region = ends,
+          .searched_region = options.query == Query::motion ? ends : EndRegion::motion_sphere,
           .is_projected = false};
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "keepout/activation/activation.h"
+#include "keepout/activation/activation_rule.h"
 #include "keepout/status.h"
 #include "keepout/step/motion.h"
 #include "keepout/step/options.h"
@@ -19,12 +19,12 @@ Status check(const Motion& motion, const StepOptions& options) noexcept;
 /// tip's coordinates, and the solver's, some 1e-13 of the motion; both taken a thousand times.
 /// [length]
 inline double position_rounding(const Vec3& tip, const StepOptions& options) noexcept {
-  return 1e-12 * (tip.lpNorm<1>() + distance_kept(options)) + 1e-10 * options.radius;
+  return 1e-12 * (tip.lpNorm<1>() + required_clearance(options)) + 1e-10 * options.radius;
 }
 
 /// What the rule is to be asked about a motion. `projections`: how far the rule's motions can lead
 /// when they are projections of the aim.
-Surroundings surroundings_of(const Motion& motion, const StepOptions& options,
-                             Reach projections) noexcept;
+CycleProblem cycle_problem_of(const Motion& motion, const StepOptions& options,
+                              EndRegion projections) noexcept;
 
 }  // namespace keepout

@@ -37,7 +37,7 @@ namespace {
 
 /// Far above the distance at which the certified rule can no longer tell a side. [length]
 double well_off(const Mesh& mesh, const StepOptions& options) noexcept {
-  const double size = mesh.bounds().size().norm() + options.radius + distance_kept(options);
+  const double size = mesh.bounds().size().norm() + options.radius + required_clearance(options);
   return std::max(1e-4 * options.recovery, 1e-8 * size);
 }
 
@@ -56,7 +56,7 @@ Step led_out(const SideOfSurface& side, Neighborhood& near, const Motion& motion
       lead_out(near, motion.tip, side, longest_way(options), well_off(near.mesh(), options));
   work.solution = {};
   result.motion.array() += 0.0;  // no zero has a sign
-  work.keep_answer(motion, result.motion, 1.0, Relaxation::none, {});
+  work.store_result(motion, result.motion, 1.0, Relaxation::none, {});
   result.increment = work.increment();
   return result;
 }

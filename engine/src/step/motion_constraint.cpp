@@ -37,8 +37,9 @@ void require_in_range(const Mesh& mesh) {
 
 std::unique_ptr<Neighborhood> neighborhood_of(std::shared_ptr<const Mesh> mesh,
                                               std::shared_ptr<const SpatialIndex> index,
-                                              const Activation* activation, const Solver* solver,
-                                              const Capacity& capacity, Budget& budget) {
+                                              const ActivationRule* activation,
+                                              const Solver* solver, const Capacity& capacity,
+                                              Budget& budget) {
   if (!mesh || !index || activation == nullptr || solver == nullptr) {
     throw Error("a motion constraint needs a mesh, an index, an activation rule and a solver");
   }
@@ -75,7 +76,7 @@ std::size_t Capacity::looks_or_default(std::size_t looks, const SpatialIndex& in
 
 MotionConstraint::MotionConstraint(std::shared_ptr<const Mesh> mesh,
                                    std::shared_ptr<const SpatialIndex> index,
-                                   std::unique_ptr<Activation> activation,
+                                   std::unique_ptr<ActivationRule> activation,
                                    std::unique_ptr<Solver> solver, const StepOptions& options,
                                    const Capacity& capacity, Inside inside)
     : budget_(std::make_unique<Budget>()),
@@ -156,11 +157,11 @@ void MotionConstraint::require_usable(const StepOptions& options) {
   const Box& bounds = mesh().bounds();
   budget_->renew();
   const Vec3 tip = bounds.low.cwiseMax(Vec3::Zero()).cwiseMin(bounds.high);
-  const Surroundings around =
-      surroundings_of({.tip = tip, .desired = Vec3::Zero()}, options, activation_->reach());
+  const CycleProblem problem =
+      cycle_problem_of({.tip = tip, .desired = Vec3::Zero()}, options, activation_->end_region());
   work_->planes.clear();
-  const bool fits = activation_->look_around(around);
-  const Opening opening = activation_->start(around, work_->planes);
+  const bool fits = activation_->gather(problem);
+  const Opening opening = activation_->open(problem, work_->planes);
   if (fits && opening.status == Status::margin_too_small) {
     throw Error(
         "the margin is too small for a mesh and a radius of this size: the distance kept, "
@@ -170,7 +171,7 @@ void MotionConstraint::require_usable(const StepOptions& options) {
 }
 
 Ball MotionConstraint::region(const Motion& motion) const noexcept {
-  return activation_->region(surroundings_of(motion, options_, activation_->reach()));
+  return activation_->region(cycle_problem_of(motion, options_, activation_->end_region()));
 }
 
 Step MotionConstraint::step(const Motion& motion) noexcept { return step(motion, sides_, nullptr); }
@@ -231,12 +232,11 @@ Polytope MotionConstraint::free_polytope(const Vec3& tip, double radius) noexcep
     status = Status::mesh_changed;
   } else if (!activation_->guards_a_tool()) {
     budget_->renew();
-    const double kept = distance_kept(options_);
+    const double kept = required_clearance(options_);
     // around() refuses a ball that is not one.
-    const bool fits = near_->look({tip, radius + kept}) || !(radius >= 0.0 && tip.allFinite());
-    status =
-        fits ? polytope_.around(tip, radius, kept, near_->hits(), *budget_, polytope_planes_)
-             : budget_->status_at_end();
+    const bool fits = near_->gather({tip, radius + kept}) || !(radius >= 0.0 && tip.allFinite());
+    status = fits ? polytope_.around(tip, radius, kept, near_->hits(), *budget_, polytope_planes_)
+                  : budget_->status_at_end();
   }
   if (status != Status::free) hold_still(polytope_planes_);
   return {status, polytope_planes_.view()};

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "keepout/activation/activation.h"
+#include "keepout/activation/activation_rule.h"
 #include "keepout/step/guide.h"
 
 namespace keepout {

@@ -52,16 +52,16 @@ Workspace::Workspace(const Capacity& capacity, const Solver& solver)
       rows_(most_rows(capacity) * static_cast<std::size_t>(variables_)),
       bounds_(most_rows(capacity)),
       posed_(capacity.planes + TipGuides::most_planes),
-      answer_{Buffer<double>(static_cast<std::size_t>(variables_)),
+      result_{Buffer<double>(static_cast<std::size_t>(variables_)),
               Buffer<std::uint32_t>(most_rows(capacity))},
-      earlier_answer_(answer_) {}
+      earlier_result_(result_) {}
 
 bool Workspace::has_room_for(const Motion& motion) const noexcept {
   return (!motion.jacobian || motion.jacobian->joints() <= variables_) &&
          (!motion.rows || motion.rows->count() <= extra_rows_);
 }
 
-StepProblem Workspace::pose(const Motion& motion, const Vec3& aim, double damping) noexcept {
+StepProblem Workspace::pose(const Motion& motion, const Vec3& target, double damping) noexcept {
   const Eigen::Index n = motion.jacobian ? motion.jacobian->joints() : 3;
   const double* jacobian = identity.data();
   if (motion.jacobian) {
@@ -79,7 +79,7 @@ StepProblem Workspace::pose(const Motion& motion, const Vec3& aim, double dampin
     std::copy_n(motion.rows->matrix(), extra * n, rows_.data() + m * n);
     std::copy_n(motion.rows->bounds(), extra, bounds_.data() + m);
   }
-  desired_ = aim;
+  desired_ = target;
   return {.jacobian = {jacobian, 3, n},
           .desired = {desired_.data(), 3},
           .rows = {rows_.data(), m + extra, n},
@@ -108,37 +108,37 @@ std::span<const HalfSpace> Workspace::joined(std::size_t guide_planes) noexcept 
   return posed_.view();
 }
 
-void Workspace::keep_answer(const Motion& motion, const Vec3& tip_motion, double share,
-                            Relaxation relaxation, Limits limits) noexcept {
-  answer_.guide_planes = guides.planes().size();
-  answer_.relaxation = relaxation;
-  answer_.limits = limits;
-  answer_.increment.clear();
+void Workspace::store_result(const Motion& motion, const Vec3& tip_motion, double share,
+                             Relaxation relaxation, Limits limits) noexcept {
+  result_.guide_planes = guides.planes().size();
+  result_.relaxation = relaxation;
+  result_.limits = limits;
+  result_.increment.clear();
   // The sum with 0 takes the sign off a zero, which else that of some zero in the input decides.
   if (motion.jacobian) {
-    for (const double u : solution.u) answer_.increment.push(share * u + 0.0);
+    for (const double u : solution.u) result_.increment.push(share * u + 0.0);
   } else {
-    for (const double u : tip_motion) answer_.increment.push(u + 0.0);
+    for (const double u : tip_motion) result_.increment.push(u + 0.0);
   }
-  answer_.active.assign(solution.active);
+  result_.active.assign(solution.active);
 }
 
-void Workspace::keep_zero_answer(const Motion& motion, Relaxation relaxation,
-                                 Limits limits) noexcept {
+void Workspace::store_zero_result(const Motion& motion, Relaxation relaxation,
+                                  Limits limits) noexcept {
   solution = {};
-  keep_answer(motion, Vec3::Zero(), 0.0, relaxation, limits);
+  store_result(motion, Vec3::Zero(), 0.0, relaxation, limits);
   const Eigen::Index joints = motion.jacobian ? motion.jacobian->joints() : 0;
-  for (Eigen::Index k = 0; k < joints; ++k) answer_.increment.push(0.0);
+  for (Eigen::Index k = 0; k < joints; ++k) result_.increment.push(0.0);
 }
 
-void Workspace::set_aside() noexcept {
-  take_back();
+void Workspace::save() noexcept {
+  restore();
   planes.clear();
 }
 
-void Workspace::take_back() noexcept {
+void Workspace::restore() noexcept {
   std::swap(planes, earlier_planes);
-  std::swap(answer_, earlier_answer_);
+  std::swap(result_, earlier_result_);
 }
 
 }  // namespace keepout

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "keepout/activation/activation.h"
+#include "keepout/activation/activation_rule.h"
 #include "keepout/step/motion.h"
 #include "keepout/step/options.h"
 #include "keepout/step/solver.h"
@@ -68,16 +68,16 @@ class Workspace {
   /// own increment without a Jacobian, on the joints' with one, n^T J. `aim`: where the tip shall
   /// go. [length]
   /// Precondition: has_room_for(motion).
-  StepProblem pose(const Motion& motion, const Vec3& aim, double damping) noexcept;
+  StepProblem pose(const Motion& motion, const Vec3& target, double damping) noexcept;
 
   /// Takes down the last solution as the answer, which outlives the solver's next one: `share` of
   /// it, or where the tip itself is what moves, `tip_motion`. `relaxation`, `limits`: what was
   /// relaxed for it, and what limits it that is no active row.
-  void keep_answer(const Motion& motion, const Vec3& tip_motion, double share,
-                   Relaxation relaxation, Limits limits) noexcept;
+  void store_result(const Motion& motion, const Vec3& tip_motion, double share,
+                    Relaxation relaxation, Limits limits) noexcept;
 
   /// Stores zero motion as the answer, whatever the solver returned last.
-  void keep_zero_answer(const Motion& motion, Relaxation relaxation, Limits limits) noexcept;
+  void store_zero_result(const Motion& motion, Relaxation relaxation, Limits limits) noexcept;
 
   /// Returns the planes and those of guides, as the solver gets them.
   std::span<const HalfSpace> posed() noexcept { return with_guides(guides.planes().size()); }
@@ -90,26 +90,26 @@ class Workspace {
   Solution solution;               // the solver's last one
 
   /// Puts planes and answer aside, for a search that may find better ones.
-  void set_aside() noexcept;
+  void save() noexcept;
 
   /// It found none.
-  void take_back() noexcept;
+  void restore() noexcept;
 
   /// What was taken down.
-  std::span<const double> increment() const noexcept { return answer_.increment.view(); }
+  std::span<const double> increment() const noexcept { return result_.increment.view(); }
   /// The rows that limit it: planes, those of guides, then those of the caller.
-  std::span<const std::uint32_t> active() const noexcept { return answer_.active.view(); }
+  std::span<const std::uint32_t> active() const noexcept { return result_.active.view(); }
   /// Returns the planes and those of guides that it was found with.
-  std::span<const HalfSpace> posed_for_answer() noexcept {
-    return with_guides(answer_.guide_planes);
+  std::span<const HalfSpace> posed_for_result() noexcept {
+    return with_guides(result_.guide_planes);
   }
   /// Returns what was relaxed for it.
-  Relaxation relaxation() const noexcept { return answer_.relaxation; }
+  Relaxation relaxation() const noexcept { return result_.relaxation; }
   /// Returns what limits it that is no active row.
-  Limits limits() const noexcept { return answer_.limits; }
+  Limits limits() const noexcept { return result_.limits; }
 
  private:
-  struct Answer {
+  struct Result {
     Buffer<double> increment;      // (variables)
     Buffer<std::uint32_t> active;  // (planes + those of guides + extra rows)
     std::size_t guide_planes = 0;  // that were posed
@@ -132,8 +132,8 @@ class Workspace {
   std::vector<double> bounds_;    // (planes + those of guides + extra rows)
   HalfSpaceBuffer posed_;         // planes and those of guides
   Vec3 desired_ = Vec3::Zero();
-  Answer answer_;
-  Answer earlier_answer_;
+  Result result_;
+  Result earlier_result_;
 };
 
 }  // namespace keepout

@@ -103,7 +103,8 @@ TEST(Campaign, ToolsOfAllRadiiAreDrawn) {
   for (int i = 0; i < 400; ++i) {
     const StepOptions options = draw_setup(scene, random).options;
     EXPECT_GE(options.margin, 0.0);
-    EXPECT_GE(distance_kept(options), least_distance_kept(scene, options.radius) * (1.0 - 1e-15));
+    EXPECT_GE(required_clearance(options),
+              least_distance_kept(scene, options.radius) * (1.0 - 1e-15));
     points += options.tool_radius == 0.0;
     balls += options.tool_radius > 0.0 && options.margin > 0.0;
     without_margin += options.margin == 0.0;

@@ -33,18 +33,18 @@ class Scene {
     rule.prepare(near_);
   }
 
-  Opening open(const Vec3& tip, const Vec3& desired, Reach reach = Reach::thales) {
-    around = surroundings_of({.tip = tip, .desired = desired}, options_, reach);
+  Opening open(const Vec3& tip, const Vec3& desired, EndRegion reach = EndRegion::target_ball) {
+    around = cycle_problem_of({.tip = tip, .desired = desired}, options_, reach);
     planes.clear();
-    if (!rule.look_around(around)) return {Status::over_capacity};
-    return rule.start(around, planes);
+    if (!rule.gather(problem)) return {Status::over_capacity};
+    return rule.open(problem, planes);
   }
 
-  double tau() const { return rule.tolerance(around); }
+  double tau() const { return rule.tolerance(problem); }
 
   std::shared_ptr<const Mesh> mesh;
   CertifiedRule rule;
-  Surroundings around;
+  CycleProblem problem;
   HalfSpaceBuffer planes;
   HalfSpaceBuffer turned;
 
@@ -92,22 +92,22 @@ TEST(CertifiedRule, TooCloseItLeadsStraightAwayByTheRecovery) {
   Scene scene(table(), options);
   const Opening opening = scene.open(above(0.1), Vec3::Zero());
   EXPECT_EQ(opening.status, Status::recovering);
-  EXPECT_LT((opening.aim - Vec3(0, 0, 0.05)).norm(), 1e-15);
+  EXPECT_LT((opening.target - Vec3(0, 0, 0.05)).norm(), 1e-15);
   // No farther than the margin.
-  EXPECT_LT((scene.open(above(0.18), Vec3::Zero()).aim - Vec3(0, 0, 0.02)).norm(), 1e-15);
+  EXPECT_LT((scene.open(above(0.18), Vec3::Zero()).target - Vec3(0, 0, 0.02)).norm(), 1e-15);
 }
 
 TEST(CertifiedRule, TooCloseWhatLeadsAlongOrAwayIsKept) {
   Scene scene(table(), options);
-  const Vec3 down = scene.open(above(0.1), Vec3(0.3, -0.4, -0.5)).aim;
+  const Vec3 down = scene.open(above(0.1), Vec3(0.3, -0.4, -0.5)).target;
   EXPECT_LT((down - Vec3(0.3, -0.4, 0.05)).norm(), 1e-15);
-  const Vec3 up = scene.open(above(0.1), Vec3(0.3, -0.4, 0.5)).aim;
+  const Vec3 up = scene.open(above(0.1), Vec3(0.3, -0.4, 0.5)).target;
   EXPECT_LT((up - Vec3(0.3, -0.4, 0.55)).norm(), 1e-15);
   Random random(1);
   for (int i = 0; i < 1'000; ++i) {
-    const Vec3 aim = scene.open(above(0.1), random.direction()).aim;
-    ASSERT_LE(aim.norm(), 1.0 + 1e-8) << "beyond the motion sphere";
-    ASSERT_GE(aim.z(), 0.05 - 1e-12);
+    const Vec3 target = scene.open(above(0.1), random.direction()).target;
+    ASSERT_LE(target.norm(), 1.0 + 1e-8) << "beyond the motion sphere";
+    ASSERT_GE(target.z(), 0.05 - 1e-12);
   }
 }
 
@@ -147,7 +147,7 @@ TEST(CertifiedRule, LooksWhereMotionsMayLead) {
     ASSERT_LE((tip + motion - scene.rule.region(scene.around).center).norm() + 0.2,
               scene.rule.region(scene.around).radius);
   }
-  scene.open(tip, desired, Reach::sphere);
+  scene.open(tip, desired, EndRegion::motion_sphere);
   EXPECT_EQ(scene.rule.region(scene.around).center, tip);
   EXPECT_GE(scene.rule.region(scene.around).radius, 1.2);
 }
@@ -178,10 +178,10 @@ TEST(CertifiedRule, AnObjectionIsAPlaneThatExcludesTheTrialAndNotTheTip) {
     ASSERT_LE(plane.offset, 3.0 * scene.tau());
     const Facet facet(mesh.triangle(plane.source), tip, plane.source);
     ASSERT_EQ(facet.support(plane.normal) + 0.2, plane.offset);
-    ASSERT_GE(judgement.free_share, 0.0);
-    ASSERT_LE(judgement.free_share, 1.0);
+    ASSERT_GE(judgement.free_fraction, 0.0);
+    ASSERT_LE(judgement.free_fraction, 1.0);
     // Up to the contact the way is free.
-    ASSERT_EQ(scene.rule.judge(scene.around, judgement.free_share * trial, scene.planes).verdict,
+    ASSERT_EQ(scene.rule.judge(scene.around, judgement.free_fraction * trial, scene.planes).verdict,
               Verdict::accepted);
   }
   EXPECT_GT(objections, 50u);
@@ -195,7 +195,7 @@ TEST(CertifiedRule, ATrialAgainstItsOwnPlaneIsBlocked) {
   const std::size_t planes = scene.planes.size();
   const Judgement again = scene.rule.judge(scene.around, trial, scene.planes);
   EXPECT_EQ(again.verdict, Verdict::blocked);
-  EXPECT_NEAR(again.free_share, 0.625, 1e-8);
+  EXPECT_NEAR(again.free_fraction, 0.625, 1e-8);
   EXPECT_EQ(scene.planes.size(), planes);
 }
 
@@ -241,7 +241,7 @@ TEST(CertifiedRule, TurnedPlanesAllowTheTipAndTheMotionAsBefore) {
       // Along the plane, which is what a solver would answer.
       const Vec3 accepted = trial + (old.offset - old.normal.dot(trial)) * old.normal;
       scene.turned.clear();
-      scene.around.kept = accepted;
+      scene.problem.accepted = accepted;
       if (!scene.rule.turn(scene.around, scene.planes.view(), scene.turned)) continue;
       ++changed;
       ASSERT_EQ(scene.turned.size(), 1u);
@@ -260,11 +260,11 @@ TEST(CertifiedRule, TurnedPlanesAllowTheTipAndTheMotionAsBefore) {
 
 TEST(CertifiedRule, IdlePlanesAreDroppedByATurn) {
   Scene scene(table(), options);
-  const Vec3 aim(0.5, 0.0, -0.6);
-  scene.open(Vec3(1.0, -3.0, 0.7), aim);
+  const Vec3 target(0.5, 0.0, -0.6);
+  scene.open(Vec3(1.0, -3.0, 0.7), target);
   scene.planes.push({Vec3::UnitZ(), -0.5, 0});
   scene.turned.clear();
-  scene.around.kept = Vec3(0.5, 0.0, 0.2);
+  scene.problem.accepted = Vec3(0.5, 0.0, 0.2);
   EXPECT_FALSE(scene.rule.turn(scene.around, scene.planes.view(), scene.turned));
   EXPECT_TRUE(scene.turned.empty());
 }

@@ -75,30 +75,31 @@ TEST(ConvexToolRule, ASpheresPlanesAreThoseThroughTheClosestPoints) {
   const double r = 1.5;
   ConvexToolRule rule(ConvexTool::sphere(r));
   const Vec3 tip = mesh->vertex(17) * 1.1;
-  const Surroundings around = surroundings_of({.tip = tip, .desired = Vec3::Zero()},
-                                              {.radius = 5.0, .margin = margin}, Reach::sphere);
+  const CycleProblem problem =
+      cycle_problem_of({.tip = tip, .desired = Vec3::Zero()}, {.radius = 5.0, .margin = margin},
+                       EndRegion::motion_sphere);
   Budget budget;
   Neighborhood near(mesh, std::make_shared<BruteForce>(mesh), mesh->triangle_count(), budget);
   rule.prepare(near);
-  EXPECT_GT(rule.region(around).radius, 5.0 + margin + r);
-  ASSERT_TRUE(rule.look_around(around));
+  EXPECT_GT(rule.region(problem).radius, 5.0 + margin + r);
+  ASSERT_TRUE(rule.gather(problem));
   HalfSpaceBuffer planes(mesh->triangle_count());
-  ASSERT_EQ(rule.start(around, planes).status, Status::free);
+  ASSERT_EQ(rule.open(problem, planes).status, Status::free);
   EXPECT_TRUE(planes.empty());
   Random random(10);
   for (int i = 0; i < 100; ++i) {
     planes.clear();
     const Vec3 trial = 5.0 * random.direction();
-    const Judgement judgement = rule.judge(around, trial, planes);
+    const Judgement judgement = rule.judge(problem, trial, planes);
     if (judgement.verdict == Judgement::Verdict::accepted) continue;
     ASSERT_EQ(planes.size(), 1u);
     const HalfSpace& plane = planes[0];
     // At the contact the plane goes through the point nearest to the centre.
-    const Vec3 there = tip + judgement.free_share * trial;
+    const Vec3 there = tip + judgement.free_fraction * trial;
     const ClosestPoint closest = closest_point(mesh->triangle(plane.source), there);
     EXPECT_NEAR(closest.distance, r + margin, 1e-8);
     EXPECT_NEAR((plane.normal + closest.offset / closest.distance).norm(), 0.0, 1e-7);
-    EXPECT_NEAR(plane.normal.dot(judgement.free_share * trial), plane.offset, 1e-7);
+    EXPECT_NEAR(plane.normal.dot(judgement.free_fraction * trial), plane.offset, 1e-7);
     for (TriangleId t = 0; t < mesh->triangle_count(); ++t) {
       EXPECT_GE(closest_point(mesh->triangle(t), there).distance, r + margin - 1e-8);
     }

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "keepout/activation/activation.h"
+#include "keepout/activation/activation_rule.h"
 #include "keepout/index/brute_force.h"
 #include "keepout/mesh/mesh.h"
 #include "step/input.h"
@@ -14,18 +14,20 @@ namespace keepout {
 
 /// The planes that a rule activates at a tip: those it begins with, and its answers to motions as
 /// long as the radius, along and across the axes.
-inline std::vector<HalfSpace> planes_at(const std::shared_ptr<const Mesh>& mesh, Activation& rule,
-                                        const Vec3& tip, double radius, double margin = 0.0) {
+inline std::vector<HalfSpace> planes_at(const std::shared_ptr<const Mesh>& mesh,
+                                        ActivationRule& rule, const Vec3& tip, double radius,
+                                        double margin = 0.0) {
   Budget budget;
   Neighborhood near(mesh, std::make_shared<BruteForce>(mesh), mesh->triangle_count(), budget);
   HalfSpaceBuffer planes(mesh->triangle_count());
-  const Surroundings around = surroundings_of({.tip = tip, .desired = Vec3::Zero()},
-                                              {.radius = radius, .margin = margin}, Reach::sphere);
+  const CycleProblem problem =
+      cycle_problem_of({.tip = tip, .desired = Vec3::Zero()}, {.radius = radius, .margin = margin},
+                       EndRegion::motion_sphere);
   rule.prepare(near);
-  if (!rule.look_around(around) || rule.start(around, planes).status != Status::free) return {};
+  if (!rule.gather(problem) || rule.open(problem, planes).status != Status::free) return {};
   for (int i = 0; i < 27; ++i) {
     const Vec3 towards(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
-    if (!towards.isZero()) rule.judge(around, radius * towards.normalized(), planes);
+    if (!towards.isZero()) rule.judge(problem, radius * towards.normalized(), planes);
   }
   return {planes.begin(), planes.end()};
 }

@@ -20,7 +20,7 @@ namespace {
 
 std::shared_ptr<const Mesh> cube() { return std::make_shared<const Mesh>(make_shape("cube")); }
 
-MotionConstraint with(std::unique_ptr<Activation> rule, std::unique_ptr<Solver> solver,
+MotionConstraint with(std::unique_ptr<ActivationRule> rule, std::unique_ptr<Solver> solver,
                       const std::shared_ptr<const Mesh>& mesh) {
   return {
       mesh, std::make_unique<PdTree>(mesh), std::move(rule), std::move(solver), {.radius = 5.0}};
@@ -96,10 +96,10 @@ TEST(StepSafety, AnAbsurdCapacityIsRefusedBeforeMemoryIsAskedFor) {
 }
 
 TEST(StepSafety, ARuleThatObjectsForEverEndsInAStatus) {
-  class Grumbler final : public Activation {
+  class Grumbler final : public ActivationRule {
    public:
-    Opening start(const Surroundings&, HalfSpaceBuffer&) noexcept override { return {}; }
-    Judgement judge(const Surroundings&, const Vec3&, HalfSpaceBuffer& planes) noexcept override {
+    Opening open(const CycleProblem&, HalfSpaceBuffer&) noexcept override { return {}; }
+    Judgement judge(const CycleProblem&, const Vec3&, HalfSpaceBuffer& planes) noexcept override {
       planes.push({Vec3::UnitX(), -1.0, 0});  // which no trial here violates
       return {Judgement::Verdict::objected, 0.0};
     }

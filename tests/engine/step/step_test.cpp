@@ -187,22 +187,20 @@ TEST(Step, DoesNotDependOnTheIndex) {
 
 /// The planes of AllFaces, one at a time: each trial motion is answered with the face that it goes
 /// against the most. Must come to what the eager rule comes to.
-class LazyFaces final : public Activation {
+class LazyFaces final : public ActivationRule {
  public:
   LazyFaces() : planes_(100'000) {}
 
   void prepare(Neighborhood& near) override { eager_.prepare(near); }
 
-  bool look_around(const Surroundings& around) noexcept override {
-    return eager_.look_around(around);
-  }
+  bool gather(const CycleProblem& problem) noexcept override { return eager_.gather(problem); }
 
-  Opening start(const Surroundings& around, HalfSpaceBuffer&) noexcept override {
+  Opening open(const CycleProblem& problem, HalfSpaceBuffer&) noexcept override {
     planes_.clear();
-    return eager_.start(around, planes_);
+    return eager_.start(problem, planes_);
   }
 
-  Judgement judge(const Surroundings&, const Vec3& trial,
+  Judgement judge(const CycleProblem&, const Vec3& trial,
                   HalfSpaceBuffer& planes) noexcept override {
     const HalfSpace* worst = nullptr;
     double shortfall = 1e-12;
@@ -260,7 +258,7 @@ TEST(MotionConstraint, TellsToolRadiusAndMarginApartAndKeepsBoth) {
   for (MotionConstraint* constraint : {&by_hand, &by_name}) {
     EXPECT_EQ(constraint->options().tool_radius, 0.3);
     EXPECT_EQ(constraint->options().margin, 0.2);
-    EXPECT_EQ(distance_kept(constraint->options()), 0.5);
+    EXPECT_EQ(required_clearance(constraint->options()), 0.5);
     const Step step = constraint->step({.tip = {3, 4, 51}, .desired = {0, 0, -2}});
     EXPECT_LT((step.motion - Vec3(0, 0, -0.5)).norm(), 1e-12);
   }

@@ -96,8 +96,8 @@ TEST(TipGuides, MakeTheNearestStepThatARoundRegionAllows) {
     const Vec3 side = axis.cross(random.direction()).normalized();
     const Vec3 tip = on_axis + radius * std::sqrt(random.uniform()) * side;
     const Vec3 desired = random.uniform(0.0, 3.0) * random.direction();
-    const Vec3 aim = tip + desired - on_axis;
-    const Vec3 across = aim - axis.dot(aim) * axis;
+    const Vec3 target = tip + desired - on_axis;
+    const Vec3 across = target - axis.dot(target) * axis;
     const double beyond = std::max(across.norm() - radius, 0.0);
     const Step step = loop.guard.step({.tip = tip, .desired = desired});
     ASSERT_TRUE(step.ok());

@@ -13,10 +13,10 @@ namespace keepout {
 namespace {
 
 /// Rejects every motion, and yet reports that the whole of it is free.
-class Boaster final : public Activation {
+class Boaster final : public ActivationRule {
  public:
-  Opening start(const Surroundings&, HalfSpaceBuffer&) noexcept override { return {}; }
-  Judgement judge(const Surroundings&, const Vec3& trial, HalfSpaceBuffer&) noexcept override {
+  Opening open(const CycleProblem&, HalfSpaceBuffer&) noexcept override { return {}; }
+  Judgement judge(const CycleProblem&, const Vec3& trial, HalfSpaceBuffer&) noexcept override {
     if (trial.isZero(0.0)) return {Judgement::Verdict::accepted};
     return {Judgement::Verdict::blocked, 1.0};
   }

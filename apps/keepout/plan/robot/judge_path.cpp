@@ -30,7 +30,7 @@ Positions increment(const Positions& from, const Positions& to) {
 /// No point of a body goes farther. [mm]
 double longest_way(const Instrument& instrument, const Positions& from, const Positions& to) {
   ChainState state;
-  instrument.chain().place(from, state);
+  instrument.chain().forward_kinematics(from, state);
   double longest = 0.0;
   for (const LinkPoint& point : instrument.points()) {
     const Vec3 at = state.at(point.link, point.position);

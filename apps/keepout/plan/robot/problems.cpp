@@ -37,7 +37,7 @@ std::optional<RobotProblem> led_by_hand(Scene& scene,
   oracle::InstrumentOracle judge(tree, robot.judged(), start.base);
   RobotHand hand(scene, random, speed_of_the_hand);
   ChainState state;
-  instrument.chain().place(start.positions, state);
+  instrument.chain().forward_kinematics(start.positions, state);
   const Pose first = state.flange();
   const Vec3 along = first.rotation.col(2);
 
@@ -46,7 +46,7 @@ std::optional<RobotProblem> led_by_hand(Scene& scene,
   for (int cycle = 1; cycle <= cycles_of_the_hand; ++cycle) {
     const InstrumentStep step = guard.step(q, hand.next(state.flange().position));
     for (std::size_t k = 0; k < step.increment.size(); ++k) q[k] += step.increment[k];
-    instrument.chain().place(q, state);
+    instrument.chain().forward_kinematics(q, state);
     const double advance = along.dot(state.flange().position - first.position);
     if (cycle % looked_at_each != 0 || advance <= problem.advance + finer_than) continue;
     const std::array<std::vector<double>, 2> way{start.positions, q};

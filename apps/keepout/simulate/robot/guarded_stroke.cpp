@@ -64,7 +64,7 @@ std::vector<GuardedCycle> follow(const RobotStroke& stroke, Scene& scene,
   std::vector<GuardedCycle> cycles;
   for (const Pose& goal : stroke.hand) {
     ChainState state;
-    chain.place(q, state);
+    chain.forward_kinematics(q, state);
     Twist asked = way_to(goal, state.flange(), tally.speed);
     if (tip)
       asked.linear = tip->step({.tip = state.flange().position, .desired = asked.linear}).motion;

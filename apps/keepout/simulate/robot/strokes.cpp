@@ -86,7 +86,7 @@ std::optional<RobotStroke> make_robot_stroke(
 
   const Instrument instrument = robot.make(start->base);
   ChainState state;
-  instrument.chain().place(start->positions, state);
+  instrument.chain().forward_kinematics(start->positions, state);
   const Pose home = state.flange();
   const Vec3& port = start->base.position;
   const double lever =

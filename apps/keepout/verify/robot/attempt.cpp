@@ -171,7 +171,7 @@ class RobotAttempt {
   bool make_cycle() {
     RobotTally& tally = row_.tally;
     ChainState state;
-    chain_.place(positions_, state);
+    chain_.forward_kinematics(positions_, state);
     const Twist desired = wanted(state.flange().position);
     const BenchClock::time_point start = BenchClock::now();
     const InstrumentStep step = subject_->step(positions_, desired);

@@ -20,7 +20,7 @@ RobotTask::RobotTask(const Chain& chain, std::span<const double> positions, cons
   const double weight = options.orientation_weight;
   const double of_slides = weight > 0.0 ? weight : 1.0;  // what a slide's damping is relative to
   ChainState state;
-  chain.place(positions, state);
+  chain.forward_kinematics(positions, state);
   for (int k = 1; k <= chain.size(); ++k) {
     jacobian_.col(k - 1) << state.linear(k, chain.size(), state.flange().position),
         weight * state.angular(k, chain.size());

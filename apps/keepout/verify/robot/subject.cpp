@@ -85,7 +85,7 @@ class TipSubject final : public RobotSubject {
         is_hull_(setup.scenario->attacked == Attacked::convex_tool),
         longest_edge_(setup.meshes[0].mesh.scene->longest_edge()),
         increment_(static_cast<std::size_t>(chain_.size())) {
-    chain_.place(setup.start.positions, state_);
+    chain_.forward_kinematics(setup.start.positions, state_);
     options_ = {.radius = 2.0 * setup.speed,
                 .tool_radius = is_hull_ ? 0.0 : bodies_.back().radius,
                 .margin = setup.options.margin};
@@ -105,7 +105,7 @@ class TipSubject final : public RobotSubject {
   }
   void place(std::size_t, const Pose&, const Twist&) override {}
   InstrumentStep step(std::span<const double> positions, const Twist& desired) override {
-    chain_.place(positions, state_);
+    chain_.forward_kinematics(positions, state_);
     const Motion motion{.tip = state_.flange().position, .desired = desired.linear};
     const Step made = constraint_->step(motion);
     InstrumentStep step{.status = made.status};
@@ -117,7 +117,7 @@ class TipSubject final : public RobotSubject {
     return step;
   }
   double tolerance() const override {
-    const double lengths = longest_edge_ + options_.radius + distance_kept(options_);
+    const double lengths = longest_edge_ + options_.radius + required_clearance(options_);
     const Vec3 tip = state_.flange().position;
     if (!is_hull_) return 2e-10 * lengths + 4e-16 * tip.lpNorm<1>();
     double size = 0.0;
@@ -129,7 +129,7 @@ class TipSubject final : public RobotSubject {
   }
 
  private:
-  std::unique_ptr<Activation> rule() const {
+  std::unique_ptr<ActivationRule> rule() const {
     if (!is_hull_) return std::make_unique<CertifiedRule>();
     std::vector<Vec3> points;
     for (const oracle::JudgedPoint& point : bodies_.back().points) {

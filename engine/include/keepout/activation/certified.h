@@ -6,7 +6,7 @@
 #include <optional>
 #include <span>
 
-#include "keepout/activation/activation.h"
+#include "keepout/activation/activation_rule.h"
 #include "keepout/activation/facet.h"
 #include "keepout/index/motion_walk.h"
 #include "keepout/mesh/mesh.h"
@@ -31,21 +31,21 @@ struct CertifiedTerms;
 /// Guarantee, for every motion dx that judge() accepts, under the assumptions of
 /// docs/certified-step.md: dist(x + s dx, mesh) >= min(margin, dist(x, mesh)) - 3 tolerance for all
 /// s in [0, 1].
-class CertifiedRule final : public Activation {
+class CertifiedRule final : public ActivationRule {
  public:
   CertifiedRule();
   ~CertifiedRule() override;
 
   void prepare(Neighborhood& near) override;
-  Reach reach() const noexcept override { return Reach::thales; }
-  Ball region(const Surroundings& around) const noexcept override;
-  bool look_around(const Surroundings& around) noexcept override;
-  Opening start(const Surroundings& around, HalfSpaceBuffer& planes) noexcept override;
-  Judgement judge(const Surroundings& around, const Vec3& trial,
+  EndRegion end_region() const noexcept override { return EndRegion::target_ball; }
+  Ball region(const CycleProblem& problem) const noexcept override;
+  bool gather(const CycleProblem& problem) noexcept override;
+  Opening open(const CycleProblem& problem, HalfSpaceBuffer& planes) noexcept override;
+  Judgement judge(const CycleProblem& problem, const Vec3& trial,
                   HalfSpaceBuffer& planes) noexcept override;
   bool relax(HalfSpaceBuffer& planes) noexcept override;
-  bool turn(const Surroundings& around, std::span<const HalfSpace> planes,
-            HalfSpaceBuffer& turned) noexcept override;
+  bool relinearize(const CycleProblem& problem, std::span<const HalfSpace> planes,
+                   HalfSpaceBuffer& turned) noexcept override;
   void ways_around(TriangleId source, HalfSpaceBuffer& ways) const noexcept override;
   std::size_t triangles() const noexcept override { return facets_.size(); }
 
@@ -53,7 +53,7 @@ class CertifiedRule final : public Activation {
   /// plus 4e-16 of the 1-norm of the tip. It depends on the whole mesh and not on the triangles
   /// found, so no index can change it.
   /// Precondition: prepare. [length]
-  double tolerance(const Surroundings& around) const noexcept;
+  double tolerance(const CycleProblem& problem) const noexcept;
 
  private:
   /// The first triangle that speaks against a trial.
@@ -75,9 +75,9 @@ class CertifiedRule final : public Activation {
 
   // Of this cycle.
   std::unique_ptr<CertifiedTerms> terms_;
-  bool aim_is_free_ = false;       // nothing comes near the motion asked for
-  std::optional<Meeting> at_aim_;  // what it meets, planes apart, where that is known
-  Buffer<Facet> facets_;           // that were asked about
+  bool target_is_free_ = false;       // nothing comes near the motion asked for
+  std::optional<Meeting> at_target_;  // what it meets, planes apart, where that is known
+  Buffer<Facet> facets_;              // that were asked about
   static constexpr std::size_t most_walls = 12;
   Buffer<Facet> walls_{most_walls};  // near a tip that is too close: one for each direction
 };

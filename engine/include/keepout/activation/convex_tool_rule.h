@@ -5,7 +5,7 @@
 #include <optional>
 #include <span>
 
-#include "keepout/activation/activation.h"
+#include "keepout/activation/activation_rule.h"
 #include "keepout/geometry/convex_tool.h"
 #include "keepout/geometry/separation.h"
 #include "keepout/mesh/mesh.h"
@@ -31,23 +31,23 @@ namespace keepout {
 ///
 /// Guarantee: dist(tool + t d, mesh) >= min(margin, dist(tool, mesh)) - 3 tolerance, t in [0, 1]. A
 /// tool that is too close is led off; one that touches the surface stands still.
-class ConvexToolRule final : public Activation {
+class ConvexToolRule final : public ActivationRule {
  public:
   /// Precondition: a narrow phase that is given is one of this tool; the exact one by default.
   explicit ConvexToolRule(ConvexTool tool, std::unique_ptr<NarrowPhase> narrow_phase = nullptr);
 
   void prepare(Neighborhood& near) override;
   bool guards_a_tool() const noexcept override { return true; }
-  Reach reach() const noexcept override { return Reach::thales; }
-  Ball region(const Surroundings& around) const noexcept override;
-  Opening start(const Surroundings& around, HalfSpaceBuffer& planes) noexcept override;
-  Judgement judge(const Surroundings& around, const Vec3& trial,
+  EndRegion end_region() const noexcept override { return EndRegion::target_ball; }
+  Ball region(const CycleProblem& problem) const noexcept override;
+  Opening open(const CycleProblem& problem, HalfSpaceBuffer& planes) noexcept override;
+  Judgement judge(const CycleProblem& problem, const Vec3& trial,
                   HalfSpaceBuffer& planes) noexcept override;
   bool relax(HalfSpaceBuffer& planes) noexcept override;
 
   /// Distances are told apart down to this: some 1e-12 of the lengths at hand, and the rounding of
   /// a position. Precondition: prepare. [length]
-  double tolerance(const Surroundings& around) const noexcept;
+  double tolerance(const CycleProblem& problem) const noexcept;
 
   /// What is kept out.
   const ConvexTool& tool() const noexcept { return tool_; }
@@ -63,9 +63,9 @@ class ConvexToolRule final : public Activation {
   struct Near {
     TriangleId triangle;
     Proof at_start;
-    double target;  // planes are placed this far off
-    double demand;  // a trial that comes closer is objected to
-    double floor;   // what a trial that its plane allows may come down to
+    double clearance;  // planes are placed this far off
+    double demand;     // a trial that comes closer is objected to
+    double floor;      // what a trial that its plane allows may come down to
   };
 
   struct Contact {
@@ -75,9 +75,9 @@ class ConvexToolRule final : public Activation {
 
   Proof proof_along(const Vec3& normal, const Vec3& position, TriangleId triangle) const noexcept;
   Proof proof_of(double enough, const Vec3& position, TriangleId triangle) noexcept;
-  bool keeps_clear(const Near& near, const Surroundings& around, const Vec3& trial, double level,
+  bool keeps_clear(const Near& near, const CycleProblem& problem, const Vec3& trial, double level,
                    std::span<const HalfSpace> planes) const noexcept;
-  std::optional<Contact> first_contact(const Near& near, const Surroundings& around,
+  std::optional<Contact> first_contact(const Near& near, const CycleProblem& problem,
                                        const Vec3& trial, double level) noexcept;
 
   ConvexTool tool_;

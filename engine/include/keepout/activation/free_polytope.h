@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "keepout/activation/activation.h"
+#include "keepout/activation/activation_rule.h"
 #include "keepout/index/query.h"
 #include "keepout/mesh/mesh.h"
 #include "keepout/status.h"

@@ -4,7 +4,7 @@
 #include <memory>
 #include <optional>
 
-#include "keepout/activation/activation.h"
+#include "keepout/activation/activation_rule.h"
 #include "keepout/mesh/adjacency.h"
 #include "keepout/mesh/mesh.h"
 
@@ -26,7 +26,7 @@ class PaperBlocks;
 /// - Boundary edges have no adjacent triangle, so neither condition can hold. Non-manifold edges,
 ///   and edges whose two windings contradict each other, are treated likewise.
 /// - The sign of N_i^T (x - CP_i) is read to within rounding.
-class PaperRule final : public Activation {
+class PaperRule final : public ActivationRule {
  public:
   PaperRule();
   ~PaperRule() override;
@@ -34,19 +34,19 @@ class PaperRule final : public Activation {
   /// Builds the adjacency of the mesh. Looks at the leaves by itself where the index has its
   /// triangles in blocks.
   void prepare(Neighborhood& near) override;
-  bool look_around(const Surroundings& around) noexcept override;
+  bool gather(const CycleProblem& problem) noexcept override;
   std::size_t triangles() const noexcept override;
-  Opening start(const Surroundings& around, HalfSpaceBuffer& planes) noexcept override;
-  Judgement judge(const Surroundings& around, const Vec3& trial,
+  Opening open(const CycleProblem& problem, HalfSpaceBuffer& planes) noexcept override;
+  Judgement judge(const CycleProblem& problem, const Vec3& trial,
                   HalfSpaceBuffer& planes) noexcept override;
 
   /// The plane that one triangle calls for, if it does. Asks no hits. Precondition: prepare.
-  std::optional<HalfSpace> plane_of(const Surroundings& around, const Hit& hit) const noexcept;
+  std::optional<HalfSpace> plane_of(const CycleProblem& problem, const Hit& hit) const noexcept;
 
  private:
   enum class Role { none, speaks, leaves_it_to_a_neighbor };
 
-  Role role_in_condition_2(const Surroundings& around, const Hit& hit) const noexcept;
+  Role role_in_condition_2(const CycleProblem& problem, const Hit& hit) const noexcept;
   bool touches_a_valley(const Hit& hit) const noexcept;
 
   std::unique_ptr<const Adjacency> adjacency_;

@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "keepout/activation/activation.h"
+#include "keepout/activation/activation_rule.h"
 
 namespace keepout {
 
@@ -25,14 +25,14 @@ inline Vec3 away_from(const Hit& hit) noexcept {
 /// Whether the tip is on the side of the hit's face to which `normal` points: N^T (x - CP) >= 0,
 /// to within rounding. A tool that slides along a face sits on it to the last bit, now above and
 /// now below; read without tolerance, the face would vanish under it every other cycle.
-bool on_positive_side(const Surroundings& around, const Hit& hit, const Vec3& normal) noexcept;
+bool on_positive_side(const CycleProblem& problem, const Hit& hit, const Vec3& normal) noexcept;
 
 /// Whether the tip lies on the surface, to within rounding: x - CP has no direction there.
-bool touches(const Surroundings& around, const Hit& hit) noexcept;
+bool touches(const CycleProblem& problem, const Hit& hit) noexcept;
 
 /// The increment asked for without what leads closer to the surface, and some way straight off it:
 /// `lift` along the unit vector `off`. No longer than the motion sphere's radius. [length]
-Vec3 way_out(const Surroundings& around, const Vec3& off, double lift) noexcept;
+Vec3 way_out(const CycleProblem& problem, const Vec3& off, double lift) noexcept;
 
 /// Sets back the planes that ask for motion, so that standing still is allowed. Whether any did.
 bool let_stand_still(HalfSpaceBuffer& planes) noexcept;

@@ -5,7 +5,7 @@
 #include <span>
 #include <string_view>
 
-#include "keepout/activation/activation.h"
+#include "keepout/activation/activation_rule.h"
 
 namespace keepout {
 
@@ -14,13 +14,13 @@ struct ActivationEntry {
   std::string_view name;         // to ask for it by
   std::string_view description;  // one line, for lists
   /// A new rule.
-  std::unique_ptr<Activation> (*make)();
+  std::unique_ptr<ActivationRule> (*make)();
 };
 
 /// All rules, in the order in which they should be listed.
 std::span<const ActivationEntry> activation_rules() noexcept;
 
 /// Throws Error, listing the known names, for an unknown one.
-std::unique_ptr<Activation> make_activation(std::string_view name);
+std::unique_ptr<ActivationRule> make_activation(std::string_view name);
 
 }  // namespace keepout

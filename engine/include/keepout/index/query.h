@@ -36,15 +36,15 @@ void refine(const Mesh& mesh, const Ball& ball, std::span<const TriangleId> cand
 /// them. All memory is made at construction. One for each thread; mesh and index are shared.
 class Neighborhood {
  public:
-  /// With a capacity of `room` candidates in a query, or of all triangles if they are fewer. Queries
-  /// take their work from `budget`, which must outlive this. Throws Error without a mesh or an index,
-  /// or if the index is of another mesh.
+  /// With a capacity of `room` candidates in a query, or of all triangles if they are fewer.
+  /// Queries take their work from `budget`, which must outlive this. Throws Error without a mesh or
+  /// an index, or if the index is of another mesh.
   Neighborhood(std::shared_ptr<const Mesh> mesh, std::shared_ptr<const SpatialIndex> index,
                std::size_t room, Budget& budget);
 
   /// Finds all triangles that touch the ball. False, and no hits, if the index proposes more than
   /// there is room for, or than the budget allows to look at, or the ball is none.
-  [[nodiscard]] bool look(const Ball& ball) noexcept;
+  [[nodiscard]] bool gather(const Ball& ball) noexcept;
 
   /// What the last look found, sorted by number; closest points are relative to the ball's centre.
   std::span<const Hit> hits() const noexcept { return hits_.view(); }

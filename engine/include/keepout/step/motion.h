@@ -57,7 +57,7 @@ struct Step {
   std::span<const double> increment = {};  // u: the tip's, or the joints' (n); empty unless ok()
   /// All that were posed to the solver: those of the mesh, then those of guides, whose source is
   /// no_triangle. A rule may leave out those on which the answer cannot depend: see
-  /// Surroundings::is_projected.
+  /// CycleProblem::is_projected.
   std::span<const HalfSpace> planes = {};
   /// The planes that limit the motion; empty unless ok(). From planes.size() on, extra rows.
   std::span<const std::uint32_t> active = {};
@@ -66,7 +66,7 @@ struct Step {
   Limits limits = {};
   std::span<const GuideState> guides = {};   // one for each guide, in the order of set_guides
   Relaxation relaxation = Relaxation::none;  // what was relaxed
-  std::size_t triangles = 0;                 // that it rests on: see Activation::triangles
+  std::size_t triangles = 0;                 // that it rests on: see ActivationRule::triangles
   /// From the tip, where it was as the step began, to the nearest triangle, on whichever side. Told
   /// where it is known anyway, which is under the certified rule, of a tip no farther off than the
   /// distance kept, or one that is led out from inside; and of every other tip if

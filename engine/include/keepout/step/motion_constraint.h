@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "keepout/activation/activation.h"
+#include "keepout/activation/activation_rule.h"
 #include "keepout/activation/free_polytope.h"
 #include "keepout/index/spatial_index.h"
 #include "keepout/mesh/mesh.h"
@@ -56,7 +56,7 @@ class MotionConstraint {
   /// index is of another mesh, when the mesh, an option or a capacity is out of range, and when
   /// tips are to be led out under a rule that guards a whole tool. Makes all memory here.
   MotionConstraint(std::shared_ptr<const Mesh> mesh, std::shared_ptr<const SpatialIndex> index,
-                   std::unique_ptr<Activation> activation, std::unique_ptr<Solver> solver,
+                   std::unique_ptr<ActivationRule> activation, std::unique_ptr<Solver> solver,
                    const StepOptions& options, const Capacity& capacity = {},
                    Inside inside = Inside::taken_as_is);
   /// Takes over all that another one has, which is of no use any more.
@@ -143,9 +143,9 @@ class MotionConstraint {
   void reserve_solver(std::size_t guides);
   void require_usable(const StepOptions& options);
 
-  std::unique_ptr<Budget> budget_;  // of a cycle
+  std::unique_ptr<Budget> budget_;      // of a cycle
   std::unique_ptr<Neighborhood> near_;  // the rule holds on to it, wherever this is moved
-  std::unique_ptr<Activation> activation_;
+  std::unique_ptr<ActivationRule> activation_;
   std::unique_ptr<Solver> solver_;
   StepOptions options_;
   Capacity capacity_;

@@ -43,7 +43,7 @@ struct StepOptions {
 };
 
 /// From the tip to the surface: tool radius and margin. [length]
-constexpr double distance_kept(const StepOptions& options) noexcept {
+constexpr double required_clearance(const StepOptions& options) noexcept {
   return options.tool_radius + options.margin;
 }
 

@@ -37,7 +37,7 @@ class SideWatch {
     memory_.note(mesh, 0, motion.tip + step.motion, -step.motion);
     // A step that maintains the margin leaves more than half of it free, whatever the tolerance.
     const bool maintains_margin = step.ok() && step.status != Status::recovering;
-    free_around_ = maintains_margin ? 0.5 * distance_kept(options) : 0.0;
+    free_around_ = maintains_margin ? 0.5 * required_clearance(options) : 0.0;
   }
 
   /// Forgets the last step: the next tip is classified again.

@@ -101,62 +101,63 @@ CertifiedRule::CertifiedRule() : terms_(std::make_unique<CertifiedTerms>()), fac
 CertifiedRule::~CertifiedRule() = default;
 
 void CertifiedRule::prepare(Neighborhood& near) {
-  Activation::prepare(near);
+  ActivationRule::prepare(near);
   walk_ = make_motion_walk(near);
   facets_ = Buffer<Facet>(walk_->room());
 }
 
-double CertifiedRule::tolerance(const Surroundings& around) const noexcept {
-  return 2e-10 * (mesh().longest_edge() + around.radius + around.margin) +
-         4e-16 * around.tip.lpNorm<1>();
+double CertifiedRule::tolerance(const CycleProblem& problem) const noexcept {
+  return 2e-10 * (mesh().longest_edge() + problem.radius + problem.margin) +
+         4e-16 * problem.tip.lpNorm<1>();
 }
 
-Ball CertifiedRule::region(const Surroundings& around) const noexcept {
-  Ball ball = ends_of_motions(around);
-  ball.radius += around.margin + region_beyond * tolerance(around);
+Ball CertifiedRule::region(const CycleProblem& problem) const noexcept {
+  Ball ball = ends_of_motions(problem);
+  ball.radius += problem.margin + region_beyond * tolerance(problem);
   return ball;
 }
 
-bool CertifiedRule::look_around(const Surroundings& around) noexcept {
+bool CertifiedRule::gather(const CycleProblem& problem) noexcept {
   facets_.clear();
-  *terms_ = CertifiedTerms::keeping(around.margin, tolerance(around));
-  const Ball ends = ends_of_motions(around);
-  const double longest = std::min(around.longest, 2.0 * ends.radius * (1.0 + 1e-9));
-  const double beyond = around.margin + region_beyond * terms_->tolerance;
-  return walk_->begin({around.tip, {ends.center, ends.radius + beyond}, terms_->target, longest});
+  *terms_ = CertifiedTerms::keeping(problem.margin, tolerance(problem));
+  const Ball ends = ends_of_motions(problem);
+  const double longest = std::min(problem.longest, 2.0 * ends.radius * (1.0 + 1e-9));
+  const double beyond = problem.margin + region_beyond * terms_->tolerance;
+  return walk_->begin(
+      {problem.tip, {ends.center, ends.radius + beyond}, terms_->clearance, longest});
 }
 
-Opening CertifiedRule::start(const Surroundings& around, HalfSpaceBuffer&) noexcept {
-  aim_is_free_ = false;
-  at_aim_.reset();
+Opening CertifiedRule::open(const CycleProblem& problem, HalfSpaceBuffer&) noexcept {
+  target_is_free_ = false;
+  at_target_.reset();
   walls_.clear();
   const double tau = terms_->tolerance;
-  if (!(around.margin > needed_margin * tau)) return {Status::margin_too_small};
+  if (!(problem.margin > needed_margin * tau)) return {Status::margin_too_small};
   if (walk_->is_free()) return {};
 
   // What is in reach of the tip itself, which comes first; and by the way, what speaks against the
   // motion asked for, should the tip keep the margin: it is the first trial.
-  const double least = around.margin - lost_below * tau;
-  aim_is_free_ = meet(around.aim, {}, least, at_aim_.emplace());
+  const double least = problem.margin - lost_below * tau;
+  target_is_free_ = meet(problem.target, {}, least, at_target_.emplace());
   if (budget().is_spent()) return {budget().status_at_end()};
   const Facet* near = nearest([](const Facet&) { return true; });
-  const std::optional<double> distance = known_distance(near, around.margin, tau);
+  const std::optional<double> distance = known_distance(near, problem.margin, tau);
   if (near == nullptr || near->distance() >= least) return {.distance = distance};
-  aim_is_free_ = false;
-  at_aim_.reset();
+  target_is_free_ = false;
+  at_target_.reset();
   if (near->distance() <= touching_within * tau) {
     return {.status = Status::touching, .distance = distance};
   }
   // Too close already: the mesh shall not come closer, and what comes as close is led off as well.
   // By a tolerance at least, so that what was lost to rounding comes back and nothing adds up.
-  const double missing = around.margin - near->distance();
-  const double lift = std::max(std::min(around.recovery, missing), tau);
-  const Vec3 aim = way_out(around, near->normal(), lift);
+  const double missing = problem.margin - near->distance();
+  const double lift = std::max(std::min(problem.recovery, missing), tau);
+  const Vec3 target = way_out(problem, near->normal(), lift);
   *terms_ = CertifiedTerms::leading_off(near->distance(), lift, tau);
   choose_walls(*near, least);
-  walk_->begin_again(terms_->target);
+  walk_->begin_again(terms_->clearance);
   facets_.clear();
-  return {Status::recovering, aim, distance};
+  return {Status::recovering, target, distance};
 }
 
 /// Walks along a trial to what it meets first. Whether nothing came near it, so that others like it
@@ -205,22 +206,23 @@ void CertifiedRule::answer_walls(HalfSpaceBuffer& planes) noexcept {
       return plane.source == wall.source() || plane.normal.dot(wall.normal()) > almost_parallel;
     });
     if (is_led || facets_.size() == facets_.capacity()) continue;
-    planes.push({wall.normal(), wall.support(wall.normal()) + terms_->target, wall.source()});
+    planes.push({wall.normal(), wall.support(wall.normal()) + terms_->clearance, wall.source()});
     facets_.push(wall);
   }
   walls_.clear();
 }
 
-Judgement CertifiedRule::judge(const Surroundings& around, const Vec3& trial,
+Judgement CertifiedRule::judge(const CycleProblem& problem, const Vec3& trial,
                                HalfSpaceBuffer& planes) noexcept {
   using Verdict = Judgement::Verdict;
   if (walk_->is_free()) return {Verdict::accepted};
-  if (aim_is_free_ && (trial - around.aim).norm() <= MotionWalk::alike * around.aim.norm()) {
+  if (target_is_free_ &&
+      (trial - problem.target).norm() <= MotionWalk::alike * problem.target.norm()) {
     return {Verdict::accepted};
   }
   Meeting meeting;
-  if (at_aim_ && planes.empty() && trial == around.aim) {
-    meeting = *at_aim_;
+  if (at_target_ && planes.empty() && trial == problem.target) {
+    meeting = *at_target_;
   } else {
     meet(trial, planes.view(), 0.0, meeting);
   }
@@ -228,13 +230,13 @@ Judgement CertifiedRule::judge(const Surroundings& around, const Vec3& trial,
   if (budget().is_spent()) return {Verdict::blocked, 0.0};
   if (meeting.facet == Encounter::no_note) return {Verdict::accepted};
   const HalfSpace& plane = meeting.contact.plane;
-  const double free_share = std::clamp(meeting.contact.time, 0.0, 1.0);
+  const double free_fraction = std::clamp(meeting.contact.time, 0.0, 1.0);
   if (has_plane(plane.source, planes.view()) || planes.size() >= most_cutting_planes) {
-    return {Verdict::blocked, free_share};
+    return {Verdict::blocked, free_fraction};
   }
-  planes.push(terms_->answer(facets_[meeting.facet], around, trial, plane));
+  planes.push(terms_->answer(facets_[meeting.facet], problem, trial, plane));
   if (walls_.size() > 1) answer_walls(planes);
-  return {Verdict::objected, free_share};
+  return {Verdict::objected, free_fraction};
 }
 
 bool CertifiedRule::relax(HalfSpaceBuffer& planes) noexcept {
@@ -242,16 +244,16 @@ bool CertifiedRule::relax(HalfSpaceBuffer& planes) noexcept {
   return terms_->relax(planes);
 }
 
-bool CertifiedRule::turn(const Surroundings& around, std::span<const HalfSpace> planes,
-                         HalfSpaceBuffer& turned) noexcept {
+bool CertifiedRule::relinearize(const CycleProblem& problem, std::span<const HalfSpace> planes,
+                                HalfSpaceBuffer& turned) noexcept {
   bool changed = false;
   budget().spend(planes.size() * (4 + facets_.size() / 64));
   for (const HalfSpace& plane : planes) {
-    if (is_idle(plane, around)) continue;
+    if (is_idle(plane, problem)) continue;
     // One that is not a triangle's but the motion sphere's stays.
     HalfSpace next = plane;
     if (plane.source != no_triangle) {
-      next = terms_->turned(plane, facet(plane.source), around.kept, around.kept);
+      next = terms_->turned(plane, facet(plane.source), problem.accepted, problem.accepted);
     }
     turned.push(next);
     changed = changed || (next.normal - plane.normal).squaredNorm() > least_turn * least_turn;

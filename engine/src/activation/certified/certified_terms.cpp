@@ -20,13 +20,13 @@ constexpr double idle_slack = 1e-6;
 /// normals that allow a motion are a convex cone, so those that do are an interval from theta 0.
 class Turn {
  public:
-  Turn(const HalfSpace& plane, const Vec3& change, const Triangle& corners, double target,
+  Turn(const HalfSpace& plane, const Vec3& change, const Triangle& corners, double clearance,
        const Vec3& kept, double slack) noexcept
       : old_(plane.normal), change_(change), slack_(slack) {
     const double along_kept = old_.dot(kept);
-    ends_[0] = {0.0, 0.0, target + std::min(-plane.offset, 0.0) - slack};
+    ends_[0] = {0.0, 0.0, clearance + std::min(-plane.offset, 0.0) - slack};
     ends_[1] = {along_kept, change_.dot(kept),
-                target + std::min(along_kept - plane.offset, 0.0) - slack};
+                clearance + std::min(along_kept - plane.offset, 0.0) - slack};
     for (std::size_t c = 0; c < 3; ++c) {
       depth_[c] = old_.dot(corners[c]);
       deepens_[c] = change_.dot(corners[c]);
@@ -118,7 +118,7 @@ bool CertifiedTerms::relax(HalfSpaceBuffer& planes) noexcept {
     changed = changed || plane.offset > 0.0;
     plane.offset -= lift - less;
   }
-  target -= lift - less;
+  clearance -= lift - less;
   lift = less;
   return changed;
 }
@@ -138,7 +138,7 @@ bool CertifiedTerms::keeps_clear(const Facet& facet, const Vec3& trial,
 
 Contact CertifiedTerms::contact(const Facet& facet, const Vec3& trial,
                                 double latest) const noexcept {
-  return first_contact(facet, trial, target, contact_slack * tolerance, latest);
+  return first_contact(facet, trial, clearance, contact_slack * tolerance, latest);
 }
 
 bool CertifiedTerms::is_beyond_doubt(const Contact& contact, const Facet& facet,
@@ -152,27 +152,27 @@ bool CertifiedTerms::is_beyond_doubt(const Contact& contact, const Facet& facet,
   return nearest.norm() < clearly * floor(facet) - 2.0 * proof_slack * tolerance;
 }
 
-HalfSpace CertifiedTerms::answer(const Facet& facet, const Surroundings& around, const Vec3& trial,
+HalfSpace CertifiedTerms::answer(const Facet& facet, const CycleProblem& problem, const Vec3& trial,
                                  const HalfSpace& contact) const noexcept {
-  if (around.kept.isZero(0.0)) return contact;
+  if (problem.accepted.isZero(0.0)) return contact;
   const std::optional<Vec3> proof =
-      proof_of_clearance(facet, around.kept, floor(facet), proof_slack * tolerance);
+      proof_of_clearance(facet, problem.accepted, floor(facet), proof_slack * tolerance);
   if (!proof) return contact;
-  const HalfSpace plane{*proof, facet.support(*proof) + target, facet.source()};
-  return turned(plane, facet, around.kept, trial);
+  const HalfSpace plane{*proof, facet.support(*proof) + clearance, facet.source()};
+  return turned(plane, facet, problem.accepted, trial);
 }
 
 HalfSpace CertifiedTerms::turned(const HalfSpace& plane, const Facet& facet, const Vec3& kept,
                                  const Vec3& towards) const noexcept {
   const Vec3 change = facet.nearest_to(towards).normal - plane.normal;
   if (!(change.squaredNorm() > least_turn * least_turn)) return plane;
-  Turn turn(plane, change, facet.corners(), target, kept, proof_slack * tolerance);
+  Turn turn(plane, change, facet.corners(), clearance, kept, proof_slack * tolerance);
   constexpr int most_evaluations = 16;  // five were seen
   double theta = 1.0;
   for (int i = 0; i < most_evaluations; ++i) {
     if (turn.is_allowed_at(theta)) {
       const Vec3 n = turn.normal();
-      return {n, facet.support(n) + target, plane.source};
+      return {n, facet.support(n) + clearance, plane.source};
     }
     theta = std::min(turn.next(theta), theta);
     if (!(theta > 1e-6)) break;  // not worth it
@@ -182,17 +182,17 @@ HalfSpace CertifiedTerms::turned(const HalfSpace& plane, const Facet& facet, con
 
 void CertifiedTerms::ways_around(const Facet& facet, HalfSpaceBuffer& ways) const noexcept {
   const auto add = [&](const Vec3& n) {
-    const double offset = facet.support(n) + target;
+    const double offset = facet.support(n) + clearance;
     if (!n.isZero(0.0) && offset <= proof_slack * tolerance) {
       ways.push({n, offset, facet.source()});
     }
   };
   add(facet.face_normal());
-  for (int edge = 0; edge < 3; ++edge) add(facet.normal_around(edge, target));
+  for (int edge = 0; edge < 3; ++edge) add(facet.normal_around(edge, clearance));
 }
 
-bool is_idle(const HalfSpace& plane, const Surroundings& around) noexcept {
-  return plane.normal.dot(around.kept) - plane.offset > idle_slack * around.aim.norm();
+bool is_idle(const HalfSpace& plane, const CycleProblem& problem) noexcept {
+  return plane.normal.dot(problem.accepted) - plane.offset > idle_slack * problem.target.norm();
 }
 
 std::optional<double> known_distance(const Facet* nearest, double margin,

@@ -5,7 +5,7 @@
 #include <optional>
 #include <span>
 
-#include "keepout/activation/activation.h"
+#include "keepout/activation/activation_rule.h"
 #include "keepout/activation/facet.h"
 
 namespace keepout {
@@ -21,7 +21,7 @@ inline constexpr double proof_slack = 1.0 / 64.0;
 /// same, bit for bit, in whatever order the triangles come.
 struct CertifiedTerms {
   double tolerance;    // tau: see CertifiedRule::tolerance [length]
-  double target;       // planes are placed this far off [length]
+  double clearance;    // planes are placed this far off [length]
   double most_demand;  // a trial that comes closer than this is objected to, [length]
   double most_floor;   // ... and one that a triangle's plane allows may come down to this; [length]
                        // neither is asked of a triangle that is closer already
@@ -71,7 +71,7 @@ struct CertifiedTerms {
 
   /// The plane for a facet in the way: that of the contact, which allows standing still. Where a
   /// motion is to be kept, the plane that proves it clear, turned to where the trial ends.
-  HalfSpace answer(const Facet& facet, const Surroundings& around, const Vec3& trial,
+  HalfSpace answer(const Facet& facet, const CycleProblem& problem, const Vec3& trial,
                    const HalfSpace& contact) const noexcept;
 
   /// Turns a facet's plane towards the normal at the end of a motion, as far as it goes on allowing
@@ -79,12 +79,12 @@ struct CertifiedTerms {
   HalfSpace turned(const HalfSpace& plane, const Facet& facet, const Vec3& kept,
                    const Vec3& towards) const noexcept;
 
-  /// See Activation::ways_around.
+  /// See ActivationRule::ways_around.
   void ways_around(const Facet& facet, HalfSpaceBuffer& ways) const noexcept;
 };
 
 /// Whether an accepted motion is so far from a plane that the plane has not shaped it.
-bool is_idle(const HalfSpace& plane, const Surroundings& around) noexcept;
+bool is_idle(const HalfSpace& plane, const CycleProblem& problem) noexcept;
 
 /// What an opening tells of the distance: that of the nearest facet at hand, unless the tip is
 /// farther off than the margin, or than what a motion along a plane leaves of rounding. So near all

@@ -28,21 +28,21 @@ ConvexToolRule::ConvexToolRule(ConvexTool tool, std::unique_ptr<NarrowPhase> nar
     : tool_(std::move(tool)), narrow_phase_(or_exact(std::move(narrow_phase), tool_)), near_(0) {}
 
 void ConvexToolRule::prepare(Neighborhood& near) {
-  Activation::prepare(near);
+  ActivationRule::prepare(near);
   near_ = Buffer<Near>(near.room());
 }
 
-double ConvexToolRule::tolerance(const Surroundings& around) const noexcept {
+double ConvexToolRule::tolerance(const CycleProblem& problem) const noexcept {
   const Ball& bounds = tool_.bounding_ball();
-  return around.rounding +
-         1e-12 * (mesh().longest_edge() + bounds.center.norm() + bounds.radius + around.margin);
+  return problem.rounding +
+         1e-12 * (mesh().longest_edge() + bounds.center.norm() + bounds.radius + problem.margin);
 }
 
-Ball ConvexToolRule::region(const Surroundings& around) const noexcept {
+Ball ConvexToolRule::region(const CycleProblem& problem) const noexcept {
   const Ball& bounds = tool_.bounding_ball();
-  const Ball ends = ends_of_motions(around);
+  const Ball ends = ends_of_motions(problem);
   return {ends.center + bounds.center,
-          ends.radius + bounds.radius + around.margin + region_beyond * tolerance(around)};
+          ends.radius + bounds.radius + problem.margin + region_beyond * tolerance(problem)};
 }
 
 ConvexToolRule::Proof ConvexToolRule::proof_along(const Vec3& normal, const Vec3& position,
@@ -64,14 +64,14 @@ ConvexToolRule::Proof ConvexToolRule::proof_of(double enough, const Vec3& positi
   return proof_along(separation(tool_, position, corners).normal, position, triangle);
 }
 
-Opening ConvexToolRule::start(const Surroundings& around, HalfSpaceBuffer&) noexcept {
-  const double tau = tolerance(around);
-  if (!(around.margin > needed_margin * tau)) return {Status::margin_too_small};
+Opening ConvexToolRule::open(const CycleProblem& problem, HalfSpaceBuffer&) noexcept {
+  const double tau = tolerance(problem);
+  if (!(problem.margin > needed_margin * tau)) return {Status::margin_too_small};
 
   near_.clear();
   const Near* nearest = nullptr;
   for (const Hit& hit : hits()) {
-    near_.push({hit.triangle, proof_of(around.margin, around.tip, hit.triangle), 0.0, 0.0, 0.0});
+    near_.push({hit.triangle, proof_of(problem.margin, problem.tip, hit.triangle), 0.0, 0.0, 0.0});
     if (near_.overflowed()) return {Status::over_capacity};
     const Near& last = near_[near_.size() - 1];
     if (nearest == nullptr || last.at_start.distance < nearest->at_start.distance) nearest = &last;
@@ -79,28 +79,28 @@ Opening ConvexToolRule::start(const Surroundings& around, HalfSpaceBuffer&) noex
   if (nearest == nullptr) return {};
 
   const Proof closest = nearest->at_start;
-  if (closest.distance >= around.margin - lost_below * tau) {
+  if (closest.distance >= problem.margin - lost_below * tau) {
     for (Near& near : near_) {
-      near.target = around.margin;
-      near.demand = std::min(around.margin - demand_below * tau, near.at_start.distance);
-      near.floor = std::min(around.margin - floor_below * tau, near.at_start.distance);
+      near.clearance = problem.margin;
+      near.demand = std::min(problem.margin - demand_below * tau, near.at_start.distance);
+      near.floor = std::min(problem.margin - floor_below * tau, near.at_start.distance);
     }
     return {};
   }
   // Not above for NaN.
   if (!(closest.distance > touching_within * tau)) return {Status::touching};
   // Too close already: the mesh shall not come closer, and what comes as close is led off as well.
-  const double lift = std::min(around.recovery, around.margin - closest.distance);
+  const double lift = std::min(problem.recovery, problem.margin - closest.distance);
   for (Near& near : near_) {
-    near.target = closest.distance + lift;
+    near.clearance = closest.distance + lift;
     near.demand = closest.distance;
     near.floor = closest.distance;
   }
-  return {Status::recovering, way_out(around, closest.normal, lift)};
+  return {Status::recovering, way_out(problem, closest.normal, lift)};
 }
 
 /// Whether a plane that there is already proves that a trial keeps the level.
-bool ConvexToolRule::keeps_clear(const Near& near, const Surroundings& around, const Vec3& trial,
+bool ConvexToolRule::keeps_clear(const Near& near, const CycleProblem& problem, const Vec3& trial,
                                  double level, std::span<const HalfSpace> planes) const noexcept {
   const auto proves = [&](const Proof& proof) {
     return proof.distance >= level && proof.distance + proof.normal.dot(trial) >= level;
@@ -108,17 +108,17 @@ bool ConvexToolRule::keeps_clear(const Near& near, const Surroundings& around, c
   if (proves(near.at_start)) return true;
   return std::any_of(planes.begin(), planes.end(), [&](const HalfSpace& plane) {
     return plane.source == near.triangle &&
-           proves(proof_along(plane.normal, around.tip, near.triangle));
+           proves(proof_along(plane.normal, problem.tip, near.triangle));
   });
 }
 
 /// Where a trial first comes down to the level; nothing if it does not. Newton's method from the
 /// left on the distance, which is convex in time: each plane proves the way up to the next stride.
 std::optional<ConvexToolRule::Contact> ConvexToolRule::first_contact(const Near& near,
-                                                                     const Surroundings& around,
+                                                                     const CycleProblem& problem,
                                                                      const Vec3& trial,
                                                                      double level) noexcept {
-  const double slack = contact_slack * tolerance(around);
+  const double slack = contact_slack * tolerance(problem);
   double time = 0.0;
   Proof proof = near.at_start;
   for (int stride = 0; stride < most_strides; ++stride) {
@@ -128,19 +128,19 @@ std::optional<ConvexToolRule::Contact> ConvexToolRule::first_contact(const Near&
     time = std::min(time + (proof.distance - level) / -slope, 1.0);
     const double enough =
         stride < most_proposed_strides ? level + slack : std::numeric_limits<double>::infinity();
-    proof = proof_of(enough, around.tip + time * trial, near.triangle);
+    proof = proof_of(enough, problem.tip + time * trial, near.triangle);
   }
-  const Proof from_start = proof_along(proof.normal, around.tip, near.triangle);
-  return Contact{time, {proof.normal, near.target - from_start.distance, near.triangle}};
+  const Proof from_start = proof_along(proof.normal, problem.tip, near.triangle);
+  return Contact{time, {proof.normal, near.clearance - from_start.distance, near.triangle}};
 }
 
-Judgement ConvexToolRule::judge(const Surroundings& around, const Vec3& trial,
+Judgement ConvexToolRule::judge(const CycleProblem& problem, const Vec3& trial,
                                 HalfSpaceBuffer& planes) noexcept {
   using Verdict = Judgement::Verdict;
   // Where nothing was looked at, nothing is known.
   const Ball& bounds = tool_.bounding_ball();
-  const double from_center = (around.tip + bounds.center + trial - looked_at().center).norm();
-  if (!(from_center + bounds.radius + around.margin <= looked_at().radius)) {
+  const double from_center = (problem.tip + bounds.center + trial - gathered_ball().center).norm();
+  if (!(from_center + bounds.radius + problem.margin <= gathered_ball().radius)) {
     return {Verdict::blocked, 0.0};
   }
   std::optional<Contact> first;
@@ -150,8 +150,8 @@ Judgement ConvexToolRule::judge(const Surroundings& around, const Vec3& trial,
     if (near.at_start.distance - length >= near.demand) continue;
     const bool answered = has_plane(near.triangle, planes.view());
     const double level = answered ? near.floor : near.demand;
-    if (keeps_clear(near, around, trial, level, planes.view())) continue;
-    const std::optional<Contact> contact = first_contact(near, around, trial, level);
+    if (keeps_clear(near, problem, trial, level, planes.view())) continue;
+    const std::optional<Contact> contact = first_contact(near, problem, trial, level);
     if (!contact || (first && contact->time >= first->time)) continue;
     first = contact;
     is_answered = answered;

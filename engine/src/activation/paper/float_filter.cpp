@@ -333,12 +333,12 @@ static std::size_t filter(std::span<const LeafBlock> leaves, std::span<const Lea
 
 namespace keepout {
 
-Ball idle_ball(const Vec3& aim) noexcept { return {0.5 * aim, 0.51 * aim.norm()}; }
+Ball idle_ball(const Vec3& target) noexcept { return {0.5 * target, 0.51 * target.norm()}; }
 
-FilterQuery filter_query(const Surroundings& around, const Ball& ball, const LeafFrame& frame,
+FilterQuery filter_query(const CycleProblem& problem, const Ball& ball, const LeafFrame& frame,
                          IdlePlanes idle_planes) noexcept {
   const Vec3 tip = ball.center - frame.origin;
-  const Ball idle = idle_ball(around.aim);
+  const Ball idle = idle_ball(problem.target);
   FilterQuery query;
   for (int axis = 0; axis < 3; ++axis) {
     query.high[axis] = static_cast<float>(tip[axis]);
@@ -347,15 +347,15 @@ FilterQuery filter_query(const Surroundings& around, const Ball& ball, const Lea
   }
   query.radius = at_least(ball.radius);
   query.inside = at_most(ball.radius);
-  query.rounding = at_least(around.rounding);
+  query.rounding = at_least(problem.rounding);
   // What two floats leave of the tip, and the rounding of a difference as small as `low`.
   const double split = 0x1p-46 * tip.cwiseAbs().maxCoeff();
   query.error = at_least(std::sqrt(3.0) * (frame.error + split));
   query.idle_height = query.idle = std::numeric_limits<float>::infinity();
   if (idle_planes == IdlePlanes::left_out) {
     // A share of the height makes up for the rounding of the middle's.
-    query.idle_height = at_least((idle.radius + around.margin) * (1.0 + 0x1p-19));
-    query.idle = at_least(idle.radius + idle.center.norm() + around.margin);
+    query.idle_height = at_least((idle.radius + problem.margin) * (1.0 + 0x1p-19));
+    query.idle = at_least(idle.radius + idle.center.norm() + problem.margin);
   }
   return query;
 }

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-#include "keepout/activation/activation.h"
+#include "keepout/activation/activation_rule.h"
 #include "leaf_edges.h"
 
 namespace keepout {
@@ -28,13 +28,13 @@ struct FilterQuery {
 
 /// The motions that are nearer to half the aim than half its length, and a little more: every
 /// projection of the aim on planes that allow standing still is one (Thales).
-Ball idle_ball(const Vec3& aim) noexcept;
+Ball idle_ball(const Vec3& target) noexcept;
 
 /// What becomes of planes that no motion in idle_ball violates.
 enum class IdlePlanes : std::uint8_t { found, left_out };
 
 /// Of the triangles in the ball. `frame`: of the leaves.
-FilterQuery filter_query(const Surroundings& around, const Ball& ball, const LeafFrame& frame,
+FilterQuery filter_query(const CycleProblem& problem, const Ball& ball, const LeafFrame& frame,
                          IdlePlanes idle_planes) noexcept;
 
 /// The triangles that floats are not done with. There is room for a whole vector beyond the last.

@@ -30,7 +30,7 @@ PaperRule::PaperRule() = default;
 PaperRule::~PaperRule() = default;
 
 void PaperRule::prepare(Neighborhood& near) {
-  Activation::prepare(near);
+  ActivationRule::prepare(near);
   adjacency_ = std::make_unique<const Adjacency>(mesh());
   blocks_ = nullptr;
   if (const TriangleBlocks* const blocks = near.index().blocks()) {
@@ -38,44 +38,44 @@ void PaperRule::prepare(Neighborhood& near) {
   }
 }
 
-bool PaperRule::look_around(const Surroundings& around) noexcept {
-  return blocks_ != nullptr || Activation::look_around(around);
+bool PaperRule::gather(const CycleProblem& problem) noexcept {
+  return blocks_ != nullptr || ActivationRule::gather(problem);
 }
 
 std::size_t PaperRule::triangles() const noexcept {
-  return blocks_ ? blocks_->triangles() : Activation::triangles();
+  return blocks_ ? blocks_->triangles() : ActivationRule::triangles();
 }
 
-Opening PaperRule::start(const Surroundings& around, HalfSpaceBuffer& planes) noexcept {
-  if (blocks_) return {blocks_->find(around, planes) ? Status::free : Status::over_capacity};
+Opening PaperRule::open(const CycleProblem& problem, HalfSpaceBuffer& planes) noexcept {
+  if (blocks_) return {blocks_->find(problem, planes) ? Status::free : Status::over_capacity};
   for (const Hit& hit : hits()) {
-    if (const std::optional<HalfSpace> plane = plane_of(around, hit)) planes.push(*plane);
+    if (const std::optional<HalfSpace> plane = plane_of(problem, hit)) planes.push(*plane);
   }
   return {};
 }
 
-Judgement PaperRule::judge(const Surroundings& around, const Vec3& trial,
+Judgement PaperRule::judge(const CycleProblem& problem, const Vec3& trial,
                            HalfSpaceBuffer& planes) noexcept {
-  if (blocks_ && !blocks_->covers(around, trial)) return {Judgement::Verdict::blocked, 0.0};
-  return Activation::judge(around, trial, planes);
+  if (blocks_ && !blocks_->covers(problem, trial)) return {Judgement::Verdict::blocked, 0.0};
+  return ActivationRule::judge(problem, trial, planes);
 }
 
-std::optional<HalfSpace> PaperRule::plane_of(const Surroundings& around,
+std::optional<HalfSpace> PaperRule::plane_of(const CycleProblem& problem,
                                              const Hit& hit) const noexcept {
   const Vec3 normal = mesh().normal(hit.triangle);
-  const bool positive = on_positive_side(around, hit, normal);
+  const bool positive = on_positive_side(problem, hit, normal);
 
   // Condition 1: the closest point is in the triangle.
   if (is_face(hit.closest.feature)) {
     if (!positive) return std::nullopt;
-    return plane_through(hit, normal, around.margin);
+    return plane_through(hit, normal, problem.margin);
   }
   // Condition 2: on a ridge, and nearest for the neighbour as well.
-  switch (role_in_condition_2(around, hit)) {
+  switch (role_in_condition_2(problem, hit)) {
     case Role::speaks: {
-      if (!touches(around, hit)) return plane_through(hit, away_from(hit), around.margin);
+      if (!touches(problem, hit)) return plane_through(hit, away_from(hit), problem.margin);
       if (normal.isZero(0.0)) return std::nullopt;
-      return plane_through(hit, normal, around.margin);
+      return plane_through(hit, normal, problem.margin);
     }
     case Role::leaves_it_to_a_neighbor:
       return std::nullopt;
@@ -84,22 +84,22 @@ std::optional<HalfSpace> PaperRule::plane_of(const Surroundings& around,
   }
   // Condition 3: on a valley.
   if (positive && !normal.isZero(0.0) && touches_a_valley(hit)) {
-    return plane_through(hit, normal, around.margin);
+    return plane_through(hit, normal, problem.margin);
   }
   return std::nullopt;
 }
 
-PaperRule::Role PaperRule::role_in_condition_2(const Surroundings& around,
+PaperRule::Role PaperRule::role_in_condition_2(const CycleProblem& problem,
                                                const Hit& hit) const noexcept {
   Role role = Role::none;
   for (const int edge : EdgesAt(hit.closest.feature)) {
     const EdgeKind kind = adjacency_->kind(hit.triangle, edge);
     if (kind != EdgeKind::convex && kind != EdgeKind::coplanar) continue;
     const TriangleId neighbor = adjacency_->neighbor(hit.triangle, edge);
-    const ClosestPoint theirs = closest_point(mesh().triangle(neighbor), around.tip);
+    const ClosestPoint theirs = closest_point(mesh().triangle(neighbor), problem.tip);
     if (is_face(theirs.feature) || theirs.offset != hit.closest.offset) continue;
     // On the surface each face speaks for itself, as there is no shared plane.
-    if (neighbor < hit.triangle && !touches(around, hit)) return Role::leaves_it_to_a_neighbor;
+    if (neighbor < hit.triangle && !touches(problem, hit)) return Role::leaves_it_to_a_neighbor;
     role = Role::speaks;
   }
   return role;

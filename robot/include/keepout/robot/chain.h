@@ -72,7 +72,7 @@ class Chain {
 
   /// Forward kinematics: where all is at positions q (n) [rad or length]. Allocates nothing.
   /// Precondition: q has size() finite numbers.
-  void place(std::span<const double> q, ChainState& state) const noexcept;
+  void forward_kinematics(std::span<const double> q, ChainState& state) const noexcept;
 
  private:
   std::vector<Joint> joints_;
@@ -93,7 +93,7 @@ class Chain {
 /// Where the links of a chain are at one configuration, in the frame of the mesh.
 class ChainState {
  public:
-  /// Of no chain yet: see Chain::place.
+  /// Of no chain yet: see Chain::forward_kinematics.
   ChainState() = default;
 
   /// How many joints there are, n.

@@ -70,7 +70,7 @@ std::size_t Frontier::gather(const WideBvh& tree, const Ball& ball) noexcept {
   std::array<Unopened, most_boxes + NodeBlock::lanes> waiting;  // inner nodes, the largest first
   std::size_t first = 0, last = 0;
 
-  around_ = ball;
+  problem_ = ball;
   size_ = 0;
   is_opened_ = true;
   has_cylinders_.fill(false);

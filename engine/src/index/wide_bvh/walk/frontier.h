@@ -18,17 +18,17 @@ class Frontier {
  public:
   /// Whether all that is in the ball is under the boxes.
   bool covers(const Ball& ball) const noexcept {
-    return (ball.center - around_.center).norm() + ball.radius <= around_.radius;
+    return (ball.center - problem_.center).norm() + ball.radius <= problem_.radius;
   }
 
   /// Whether nothing at all is in the ball.
   bool is_free(const Ball& ball) const noexcept {
-    return (ball.center - around_.center).norm() + ball.radius <= free_radius_;
+    return (ball.center - problem_.center).norm() + ball.radius <= free_radius_;
   }
 
   /// Whether the ball is next to what is covered: where a tip that moves on leaves.
   bool is_near(const Ball& ball) const noexcept {
-    return (ball.center - around_.center).norm() <= around_.radius + ball.radius;
+    return (ball.center - problem_.center).norm() <= problem_.radius + ball.radius;
   }
 
   /// Makes it cover the ball. The work is bounded: what is left over stays unopened, as large
@@ -59,7 +59,7 @@ class Frontier {
 
   void add(const WideBvh& tree, std::uint32_t node, std::size_t lane) noexcept;
 
-  Ball around_{Vec3::Zero(), -1.0};
+  Ball problem_{Vec3::Zero(), -1.0};
   double free_radius_ = -1.0;  // around the same centre there are no boxes [length]
   bool is_opened_ = true;
   std::size_t size_ = 0;  // boxes

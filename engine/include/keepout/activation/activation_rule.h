@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "keepout/buffer.h"
+#include "keepout/geometry/shapes.h"
+#include "keepout/index/query.h"
+#include "keepout/status.h"
+
+namespace keepout {
+
+/// Planes, with a declared capacity.
+using HalfSpaceBuffer = Buffer<HalfSpace>;
+
+/// The region in which the solved motions of a cycle may end.
+enum class EndRegion : std::uint8_t {
+  target_ball,   // the ball whose diameter is the target: all projections of the target (Thales)
+  motion_sphere  // the motion sphere: with joints, or with rows of the caller's own
+};
+
+/// The problem of a cycle: the input of a rule.
+struct CycleProblem {
+  Vec3 tip;                   // [length]
+  Vec3 target;                // the wanted increment: the commanded one, or the retreat [length]
+  Vec3 accepted;              // a motion that planes must go on allowing; zero at first [length]
+  double radius;              // of the motion sphere [length]
+  double longest;             // no motion is longer: at most the radius [length]
+  double margin;              // required clearance from the mesh [length], >= 0
+  double recovery;            // the longest retreat of a tip that is too close, in a cycle [length]
+  double rounding;            // bound of the tip's error after earlier steps [length]
+  EndRegion end_region;       // where motions may end
+  EndRegion searched_region;  // what the gathered triangles must cover: the same, or more
+  bool is_projected;  // the motion is the projection of the target on the planes, by a solver for
+                      // which idle planes make no difference: a rule may leave them out
+};
+
+/// Returns a ball that contains the ends of all motions.
+Ball ends_of_motions(const CycleProblem& problem) noexcept;
+
+/// The start of a cycle.
+struct Opening {
+  /// free: solve for the target. recovering: the tip is closer than the margin, and `target` is its
+  /// retreat. Any other status ends the step.
+  Status status = Status::free;
+  Vec3 target = Vec3::Zero();  // the retreat, when recovering [length]
+  /// From the tip to the nearest triangle, if the rule knows it at no cost. [length]
+  std::optional<double> distance = std::nullopt;
+};
+
+/// The judgement of a rule on a trial motion.
+struct Judgement {
+  /// The outcome.
+  enum class Verdict : std::uint8_t {
+    accepted,
+    objected,  // a plane that excludes the trial was added
+    blocked    // the trial is not accepted, and no plane would help
+  };
+  Verdict verdict = Verdict::accepted;  // on the trial as a whole
+  double free_fraction = 1.0;           // of the trial that is free, unless it is accepted
+};
+
+/// Chooses the planes that limit a motion.
+///
+/// An eager rule adds all of its planes in `open`. A lazy one is a separation oracle, as in a
+/// cutting-plane method: `judge` receives each trial motion, and adds a plane that the trial
+/// violates until it accepts one. The same loop in `step` serves both. State that a rule keeps
+/// between cycles never changes a result.
+class ActivationRule {
+ public:
+  virtual ~ActivationRule() = default;
+
+  /// Sets the neighborhood in which to gather triangles, before any other call, and again when its
+  /// mesh has changed. The neighborhood must outlive the rule. Allocates; all other functions do
+  /// not.
+  virtual void prepare(Neighborhood& near) { near_ = &near; }
+
+  /// Returns true if the rule guards a whole tool, not only the tip. The tip's side, and the free
+  /// space around the tip, then do not hold for the tool.
+  virtual bool guards_a_tool() const noexcept { return false; }
+
+  /// Returns the region in which motions end that are projections of the target: without joints and
+  /// without rows of the caller's own.
+  virtual EndRegion end_region() const noexcept { return EndRegion::motion_sphere; }
+
+  /// Returns the ball that contains all triangles that matter: by default the ends of motions,
+  /// grown by the margin. Precondition: prepare.
+  virtual Ball region(const CycleProblem& problem) const noexcept;
+
+  /// Gathers the triangles of the region from the index. Returns false if they exceed the capacity
+  /// or the work budget.
+  [[nodiscard]] virtual bool gather(const CycleProblem& problem) noexcept;
+
+  /// Opens a cycle: appends the planes that hold for every trial. Precondition: gather.
+  virtual Opening open(const CycleProblem& problem, HalfSpaceBuffer& planes) noexcept = 0;
+
+  /// Judges a trial motion: by default it is accepted if it satisfies the planes, which no solver
+  /// is trusted to ensure. A lazy rule appends a plane that the trial violates, if there is one.
+  virtual Judgement judge(const CycleProblem& problem, const Vec3& trial,
+                          HalfSpaceBuffer& planes) noexcept;
+
+  /// Relaxes planes that pull the tip back, when the planes contradict each other. Returns true if
+  /// any plane changed.
+  virtual bool relax(HalfSpaceBuffer& /*planes*/) noexcept { return false; }
+
+  /// Fills `next` with `planes`, linearized again at problem.accepted, a motion that the rule has
+  /// accepted: they allow it too, and may allow a better one. Returns true if any plane changed.
+  virtual bool relinearize(const CycleProblem& /*problem*/, std::span<const HalfSpace> /*planes*/,
+                           HalfSpaceBuffer& /*next*/) noexcept {
+    return false;
+  }
+
+  /// Adds planes that each have one triangle behind them and allow zero motion: alternatives to the
+  /// plane that `judge` has added for the triangle.
+  virtual void ways_around(TriangleId /*source*/, HalfSpaceBuffer& /*ways*/) const noexcept {}
+
+  /// Returns the number of triangles that the last result depends on: all hits, or those that the
+  /// rule has examined.
+  virtual std::size_t triangles() const noexcept { return hits().size(); }
+
+ protected:
+  /// Returns the mesh. Precondition: prepare.
+  const Mesh& mesh() const noexcept { return near_->mesh(); }
+  /// Returns the work budget. Precondition: prepare.
+  Budget& budget() const noexcept { return near_->budget(); }
+  /// Returns the hits of the last gather; empty before it.
+  std::span<const Hit> hits() const noexcept {
+    return near_ != nullptr ? near_->hits() : std::span<const Hit>();
+  }
+  /// Returns the ball of the last gather. Precondition: gather.
+  const Ball& gathered_ball() const noexcept { return near_->ball(); }
+
+ private:
+  Neighborhood* near_ = nullptr;
+};
+
+}  // namespace keepout
