@@ -12,8 +12,8 @@ namespace {
 
 using Verdict = Judgement::Verdict;
 
-// A sound rule needs a handful of rounds, in the tip of a cone some hundred; the limit bounds an
-// unsound one.
+// A sound rule needs few rounds, and some hundred at the tip of a cone. The limit bounds an unsound
+// one.
 constexpr int most_rounds = 256;
 
 constexpr int most_halvings = 8;
@@ -23,8 +23,8 @@ HalfSpace bound_of(const Vec3& motion, double longest) noexcept {
   return {-motion / motion.norm(), -longest * (1.0 - 1e-9), no_triangle};
 }
 
-/// Whether any part of a motion that satisfies the caller's rows satisfies them too: none asks for
-/// motion.
+/// Returns true if every part of a motion that satisfies the caller's rows satisfies them too: no
+/// row demands a motion.
 bool allow_parts(const std::optional<ExtraRows>& rows) noexcept {
   return !rows || std::all_of(rows->bounds(), rows->bounds() + rows->count(),
                               [](double bound) { return bound <= 0.0; });
@@ -42,10 +42,10 @@ Cycle::Cycle(ActivationRule& rule, Solver& solver, Workspace& work, Budget& budg
       motion_(motion),
       problem_(cycle_problem_of(motion, options, rule.end_region())),
       times_(times) {
-  // Guides that lead back may ask for more than the projection of the aim can give.
+  // Guides that pull back may demand more than the projection of the target.
   const bool leads_back = !work.guides.empty() && work.guides.leads_back();
   if (leads_back) problem_.end_region = problem_.searched_region = EndRegion::motion_sphere;
-  // With joints, rows or damping the answer is no projection.
+  // With joints, rows or damping the motion is no projection.
   problem_.is_projected = !motion.jacobian && !motion.rows && options.damping == 0.0 &&
                           solver.reads_planes() && !leads_back;
   if (times_ != nullptr) last_ = std::chrono::steady_clock::now();
@@ -57,13 +57,13 @@ void Cycle::run(Step& result) noexcept {
     result.status = Status::over_capacity;
     return;
   }
-  // Halving the aim helps only where the region shrinks with it.
+  // Halving the target helps only if the region shrinks with it.
   Opening opening = problem_.end_region == EndRegion::target_ball ? open_as_far_as_fits() : open();
   result.distance = opening.distance;
   const bool recovering = opening.status == Status::recovering;
   if (recovering) {
-    // The way out is the aim now, and the rule begins once more with what is around that. The
-    // motion that leads out is no projection of the aim, but need not be much longer than it.
+    // The retreat is the target now, so the rule opens again. The motion that retreats is no
+    // projection of the target, and need not be much longer.
     problem_.target = opening.target;
     problem_.end_region = problem_.searched_region = EndRegion::motion_sphere;
     problem_.longest = std::min(problem_.longest, 2.0 * problem_.target.norm());
@@ -118,7 +118,7 @@ Limits Cycle::unsatisfied() noexcept {
   return constraints;
 }
 
-/// Reports what limits the answer.
+/// Reports the constraints that limit the motion.
 void Cycle::report(Step& result) noexcept {
   result.planes = work_.posed_for_result();
   result.active = work_.active();
@@ -143,7 +143,7 @@ void Cycle::report(Step& result) noexcept {
   }
 }
 
-/// Has the rule look at the triangles that matter for the aim, and begin with them.
+/// Has the rule gather the triangles that matter for the target, and open.
 Opening Cycle::open() noexcept {
   work_.planes.clear();
   const bool fits = rule_.gather(problem_);
@@ -156,8 +156,8 @@ Opening Cycle::open() noexcept {
 
 /// Opens the cycle. Halves the target until its triangles fit the capacity and the budget.
 Opening Cycle::open_as_far_as_fits() noexcept {
-  const auto attempt = [&] { return budget_.halved([&] { return open(); }); };
-  Opening opening = attempt();
+  const auto open_with_half = [&] { return budget_.halved([&] { return open(); }); };
+  Opening opening = open_with_half();
   const auto is_too_much = [&] {
     return opening.status == Status::over_capacity || opening.status == Status::out_of_budget;
   };
@@ -167,7 +167,7 @@ Opening Cycle::open_as_far_as_fits() noexcept {
     problem_.target *= 0.5;
     if (problem_.end_region == EndRegion::motion_sphere) problem_.longest *= 0.5;
     ++halvings_;
-    opening = attempt();
+    opening = open_with_half();
   }
   return opening;
 }
@@ -182,8 +182,7 @@ Cycle::Trial Cycle::search_and_refine() noexcept {
   return other.motion == best.motion ? best : refine(other);
 }
 
-/// Solves, and as long as the rule objects to the trial motion, solves again with its plane. What
-/// that leaves of the budget is for a part of the last trial.
+/// Searches with half of the work budget. The rest is for a part of the last trial.
 Cycle::Trial Cycle::search() noexcept {
   limits_ = {};
   Trial last{Status::unsolved, Vec3::Zero()};
@@ -193,12 +192,13 @@ Cycle::Trial Cycle::search() noexcept {
   return found ? *found : cut(last, free_fraction);
 }
 
-/// Nothing if it comes to no end; then `last` is the last trial that was judged, and `free_share`
-/// how much of it nothing speaks against.
+/// Solves again with the plane of each objection, until the rule accepts a trial. Otherwise returns
+/// nothing; then `last` is the last trial that was judged, and `free_fraction` the part of it that
+/// is free.
 std::optional<Cycle::Trial> Cycle::solve_and_judge(Trial& last, double& free_fraction) noexcept {
   for (int round = 0; round < most_rounds; ++round) {
     const Trial trial = solve();
-    // Part of the last trial may be made all the same. With joints its increment is gone.
+    // A part of the last trial may be executed. With joints its increment is lost.
     const bool has_part = free_fraction > 0.0 && !motion_.jacobian;
     if (!is_ok(trial.status)) {
       if (!has_part) return trial;
@@ -206,7 +206,7 @@ std::optional<Cycle::Trial> Cycle::solve_and_judge(Trial& last, double& free_fra
       work_.solution = {};
       break;
     }
-    // Beyond the sphere nothing was looked at.
+    // No triangle was gathered beyond the sphere.
     if (trial.motion.norm() > problem_.longest) {
       work_.planes.push(bound_of(trial.motion, problem_.longest));
       free_fraction = 0.0;
@@ -224,7 +224,7 @@ std::optional<Cycle::Trial> Cycle::solve_and_judge(Trial& last, double& free_fra
       return Trial{work_.solution.active.empty() ? trial.status : Status::limited, trial.motion};
     }
     if (budget_.is_spent()) note(budget_.status_at_end());
-    if (budget_.is_spent() && has_part) {  // nothing is known of this one
+    if (budget_.is_spent() && has_part) {  // this trial was not judged
       work_.solution = {};
       break;
     }
@@ -235,8 +235,8 @@ std::optional<Cycle::Trial> Cycle::solve_and_judge(Trial& last, double& free_fra
   return std::nullopt;
 }
 
-/// The part of the last trial up to the first contact, within the guides' regions, provided that it
-/// stands the same test.
+/// Returns the part of the last trial up to the first contact and within the guides' regions, if
+/// the rule accepts it.
 Cycle::Trial Cycle::cut(const Trial& trial, double free_fraction) noexcept {
   const double allowed = work_.guides.allowed_fraction(trial.motion);
   const double share = std::min(free_fraction * (1.0 - 1e-9), allowed);
@@ -254,7 +254,7 @@ Cycle::Trial Cycle::cut(const Trial& trial, double free_fraction) noexcept {
   return {Status::fallback, part};
 }
 
-/// Notes that the search was cut short.
+/// Notes that capacity or budget ended the search.
 void Cycle::note(Status ended) noexcept {
   if (ended == Status::out_of_budget) limits_.add(Limit::budget);
   if (ended == Status::over_capacity) limits_.add(Limit::capacity);

@@ -13,28 +13,25 @@
 
 namespace keepout {
 
-/// One control cycle: the motion nearest to the one desired which the rule allows. The rule looks
-/// around and opens with planes; then, in turn, the solver proposes a trial motion within the
-/// planes, and the guides and the rule judge it and may add a plane, until none has an objection. A
-/// better motion is then looked for while the options allow. On any trouble the motion is zero and
-/// the status says why; no solver is taken at its word.
+/// One control cycle of a tip: open, then solve and judge until a motion is accepted, or cut the
+/// last trial to the part that is; then refine. The rule opens with planes. The solver proposes a
+/// trial motion within the planes; the guides and the rule judge it and may add a plane. On failure
+/// the motion is zero and the status gives the cause.
 ///
-/// What it proposes trials with is not trusted: only the rule's judgement stands between a trial
-/// and the robot.
+/// Only the judgement of rule and guides is trusted. Planes and solver merely propose.
 class Cycle {
  public:
   /// Preconditions: rule and solver are prepared for the workspace's capacity; the motion is
-  /// checked; the workspace's guides are open. Work is taken from the budget. What each stage takes
-  /// is added to `times`, unless null.
+  /// checked; the workspace's guides are open. Takes its work from the budget. Adds the time of
+  /// each stage to `times`, unless null.
   Cycle(ActivationRule& rule, Solver& solver, Workspace& work, Budget& budget,
         const StepOptions& options, const Motion& motion, StageTimes* times) noexcept;
 
-  /// Fills a step that is empty so far. Its views are of the workspace. Allocates nothing, throws
-  /// nothing.
+  /// Fills an empty step. Its views are of the workspace. Allocates nothing, throws nothing.
   void run(Step& result) noexcept;
 
  private:
-  /// A motion on trial, or why there is none: then it is zero.
+  /// A motion on trial. If there is none, it is zero and the status gives the cause.
   struct Trial {
     Status status;
     Vec3 motion;
@@ -66,17 +63,17 @@ class Cycle {
   const StepOptions& options_;
   const Motion& motion_;
   CycleProblem problem_;
-  int halvings_ = 0;   // of the aim, until its region was small enough
+  int halvings_ = 0;   // of the target, until its triangles fit
   Status halved_for_;  // over_capacity or out_of_budget, if there are any
   Relaxation relaxation_ = Relaxation::none;
-  Limits limits_;  // of the search at hand: those that are no active row
+  Limits limits_;  // of the search at hand, apart from active rows
 
   StageTimes* times_;
   std::chrono::steady_clock::time_point last_;
 };
 
-/// What a solved increment does to the tip: dx = J u. Nothing when the joints would move so far,
-/// one against the other, that more than `rounding` of it is lost in their digits.
+/// Returns the motion of the tip by a solved increment, dx = J u; nothing if joints move so far
+/// against each other that the rounding error exceeds `rounding`. [length]
 std::optional<Vec3> tip_motion(const StepProblem& problem, const Solution& solution,
                                double rounding) noexcept;
 

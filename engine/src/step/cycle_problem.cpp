@@ -41,12 +41,12 @@ Vec3 sharpened(const Vec3& motion, const Vec3& target, std::span<const HalfSpace
 /// Returns the work units of a solve: each iteration visits all rows, and the first one the square
 /// of the Jacobian.
 std::size_t work_of(const StepProblem& problem, const Solution& solution) noexcept {
-  constexpr std::size_t numbers_in_a_look = 48;  // as of sixteen planes
+  constexpr std::size_t numbers_in_a_unit = 48;  // as of sixteen planes
   const auto numbers = static_cast<std::size_t>(problem.rows.rows() * problem.rows.cols());
   const auto variables = static_cast<std::size_t>(problem.rows.cols());
   const auto iterations = static_cast<std::size_t>(std::max(solution.iterations, 0));
   return variables * variables * variables / 512 +
-         (1 + iterations) * (4 + numbers / numbers_in_a_look);
+         (1 + iterations) * (4 + numbers / numbers_in_a_unit);
 }
 
 }  // namespace
@@ -55,7 +55,7 @@ std::size_t work_of(const StepProblem& problem, const Solution& solution) noexce
 /// status free, or a failure. If no half-space of a guide is left to add, the motion may leave the
 /// region of the guide.
 Cycle::Trial Cycle::solve() noexcept {
-  // The projection of the aim on no plane: it needs no solver.
+  // Without planes the projection of the target is the target.
   const bool is_bare = work_.planes.empty() && !work_.planes.overflowed();
   if (is_bare && problem_.is_projected && work_.guides.empty()) {
     work_.solution = {};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Better motions than the first that is accepted: planes turned about it, and branch and bound.
+// Better motions than the first that is accepted: planes linearized again there, and branch and
+// bound.
 #include "cycle.h"
 
 namespace keepout {
@@ -10,18 +11,18 @@ using Verdict = Judgement::Verdict;
 
 }  // namespace
 
-/// Turns the planes of an accepted motion to where they allow a better one, as long as there is
-/// one and options.refinements lasts. All planes go on allowing the motion there is, those of
-/// triangles that are met on the way as well, so nothing is lost.
+/// Linearizes the planes of an accepted motion again, at that motion, while they allow a better
+/// one, at most options.refinements times. All planes go on allowing the accepted motion, so
+/// nothing is lost.
 Cycle::Trial Cycle::refine(Trial best) noexcept {
-  const Vec3 kept = problem_.accepted;
+  const Vec3 accepted = problem_.accepted;
   for (int refinement = 0; refinement < options_.refinements; ++refinement) {
     work_.save();
     problem_.accepted = best.motion;
     if (rule_.relinearize(problem_, work_.earlier_planes.view(), work_.planes)) {
       const Trial next = search();
-      const bool accepted = next.status == Status::limited || next.status == Status::free;
-      if (accepted && is_worthwhile(next.motion, best.motion)) {
+      const bool is_accepted = next.status == Status::limited || next.status == Status::free;
+      if (is_accepted && is_worthwhile(next.motion, best.motion)) {
         best = next;
         continue;
       }
@@ -29,7 +30,7 @@ Cycle::Trial Cycle::refine(Trial best) noexcept {
     work_.restore();
     break;
   }
-  problem_.accepted = kept;
+  problem_.accepted = accepted;
   return best;
 }
 

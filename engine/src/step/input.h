@@ -23,7 +23,7 @@ inline double position_rounding(const Vec3& tip, const StepOptions& options) noe
 }
 
 /// What the rule is to be asked about a motion. `projections`: how far the rule's motions can lead
-/// when they are projections of the aim.
+/// when they are projections of the target.
 CycleProblem cycle_problem_of(const Motion& motion, const StepOptions& options,
                               EndRegion projections) noexcept;
 

@@ -6,11 +6,11 @@
 #include <utility>
 
 #include "cycle.h"
+#include "escape.h"
 #include "input.h"
 #include "keepout/error.h"
 #include "keepout/index/query.h"
 #include "keepout/mesh/doctor.h"
-#include "leading_out.h"
 
 namespace keepout {
 namespace {
@@ -215,12 +215,12 @@ void MotionConstraint::step_as_checked(const Motion& motion, SideWatch& sides, S
                                        Step& result) noexcept {
   if (!work_->guides.empty()) work_->guides.open(motion.tip, options_.recovery);
   if (watch_ && sides.must_classify(motion.tip, mesh()) &&
-      lead_out_from_inside(*near_, motion, options_, *work_, result)) {
+      escape_from_inside(*near_, motion, options_, *work_, result)) {
     return;
   }
   Cycle(*activation_, *solver_, *work_, *budget_, options_, motion, times).run(result);
   if (result.status == Status::touching && watch_ && sides.is_on() &&
-      lead_off_surface(*near_, motion, options_, *work_, result)) {
+      escape_from_surface(*near_, motion, options_, *work_, result)) {
     return;
   }
   sides.after(motion, result, options_, mesh());

@@ -20,7 +20,7 @@ struct Branch {
   /// A choice of more planes than that is not looked into.
   static constexpr std::size_t most_planes = 24;
 
-  double cost;  // distance from the aim [length]
+  double cost;  // distance from the target [length]
   Vec3 motion;  // [length]
 
   /// Those that the node was opened with.
@@ -55,7 +55,8 @@ class Branches {
   std::size_t size_ = 0;
 };
 
-/// The memory in which a cycle's planes become a problem, and its solution an answer. Made once.
+/// The memory in which the planes of a cycle become a problem, and its solution a result. Made
+/// once.
 class Workspace {
  public:
   /// Makes all memory here. The rows of planes are written unless the solver reads planes.
@@ -65,18 +66,17 @@ class Workspace {
   bool has_room_for(const Motion& motion) const noexcept;
 
   /// The problem whose rows are the planes, those of guides, then those of the caller: on the tip's
-  /// own increment without a Jacobian, on the joints' with one, n^T J. `aim`: where the tip shall
-  /// go. [length]
-  /// Precondition: has_room_for(motion).
+  /// own increment without a Jacobian, on the joints' with one, n^T J. `target`: where the tip
+  /// shall go. [length] Precondition: has_room_for(motion).
   StepProblem pose(const Motion& motion, const Vec3& target, double damping) noexcept;
 
-  /// Takes down the last solution as the answer, which outlives the solver's next one: `share` of
+  /// Stores the last solution as the result, which outlives the solver's next one: `share` of
   /// it, or where the tip itself is what moves, `tip_motion`. `relaxation`, `limits`: what was
   /// relaxed for it, and what limits it that is no active row.
   void store_result(const Motion& motion, const Vec3& tip_motion, double share,
                     Relaxation relaxation, Limits limits) noexcept;
 
-  /// Stores zero motion as the answer, whatever the solver returned last.
+  /// Stores zero motion as the result, whatever the solver returned last.
   void store_zero_result(const Motion& motion, Relaxation relaxation, Limits limits) noexcept;
 
   /// Returns the planes and those of guides, as the solver gets them.
@@ -89,13 +89,13 @@ class Workspace {
   Branches branches;               // of the branch and bound
   Solution solution;               // the solver's last one
 
-  /// Puts planes and answer aside, for a search that may find better ones.
+  /// Saves planes and result, for a search that may find better ones.
   void save() noexcept;
 
-  /// It found none.
+  /// Restores them.
   void restore() noexcept;
 
-  /// What was taken down.
+  /// Returns the increment of the result.
   std::span<const double> increment() const noexcept { return result_.increment.view(); }
   /// The rows that limit it: planes, those of guides, then those of the caller.
   std::span<const std::uint32_t> active() const noexcept { return result_.active.view(); }

@@ -17,7 +17,7 @@
 #include "keepout/oracle/safety_oracle.h"
 #include "random_places.h"
 #include "small_surfaces.h"
-#include "step/leading_out.h"
+#include "step/escape.h"
 #include "trials.h"
 
 namespace keepout {
@@ -35,7 +35,7 @@ class Classifier {
   double distance(const Vec3& tip) const { return oracle_.distance(tip); }
   std::optional<SideOfSurface> operator()(const Vec3& tip) { return find_side(near_, tip); }
   Vec3 way_out(const Vec3& tip, double longest, double off) {
-    return lead_out(near_, tip, (*this)(tip).value(), longest, off);
+    return escape_motion(near_, tip, (*this)(tip).value(), longest, off);
   }
 
  private:

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "leading_out.h"
+#include "escape.h"
 
 #include <algorithm>
 
 namespace keepout {
 
-Vec3 lead_out(Neighborhood& near, const Vec3& tip, const SideOfSurface& side, double longest,
-              double off) noexcept {
+Vec3 escape_motion(Neighborhood& near, const Vec3& tip, const SideOfSurface& side, double longest,
+                   double off) noexcept {
   // What cannot get through in one go stops short of the surface.
   if (side.distance + off > longest) {
     const double rest = std::max(side.distance - off, 0.5 * side.distance);
@@ -41,19 +41,19 @@ double well_off(const Mesh& mesh, const StepOptions& options) noexcept {
   return std::max(1e-4 * options.recovery, 1e-8 * size);
 }
 
-double longest_way(const StepOptions& options) noexcept {
+double longest_escape(const StepOptions& options) noexcept {
   return std::min(options.recovery, options.radius);
 }
 
-bool may_be_led(const Motion& motion, const StepOptions& options, const Mesh& mesh) noexcept {
-  return !motion.jacobian && !motion.rows && longest_way(options) >= well_off(mesh, options);
+bool may_escape(const Motion& motion, const StepOptions& options, const Mesh& mesh) noexcept {
+  return !motion.jacobian && !motion.rows && longest_escape(options) >= well_off(mesh, options);
 }
 
-Step led_out(const SideOfSurface& side, Neighborhood& near, const Motion& motion,
-             const StepOptions& options, Workspace& work) noexcept {
+Step escape_step(const SideOfSurface& side, Neighborhood& near, const Motion& motion,
+                 const StepOptions& options, Workspace& work) noexcept {
   Step result{.status = Status::recovering, .distance = side.distance};
-  result.motion =
-      lead_out(near, motion.tip, side, longest_way(options), well_off(near.mesh(), options));
+  result.motion = escape_motion(near, motion.tip, side, longest_escape(options),
+                                well_off(near.mesh(), options));
   work.solution = {};
   result.motion.array() += 0.0;  // no zero has a sign
   work.store_result(motion, result.motion, 1.0, Relaxation::none, {});
@@ -63,28 +63,28 @@ Step led_out(const SideOfSurface& side, Neighborhood& near, const Motion& motion
 
 }  // namespace
 
-bool lead_out_from_inside(Neighborhood& near, const Motion& motion, const StepOptions& options,
-                          Workspace& work, Step& step) noexcept {
+bool escape_from_inside(Neighborhood& near, const Motion& motion, const StepOptions& options,
+                        Workspace& work, Step& step) noexcept {
   const auto side = find_side(near, motion.tip);
   if (!side) {
     step.status = near.budget().status_at_end();
     return true;
   }
   if (side->is_outside) return false;
-  const bool may_be = may_be_led(motion, options, near.mesh()) && side->distance <= options.deepest;
-  if (may_be) step = led_out(*side, near, motion, options, work);
+  const bool may_be = may_escape(motion, options, near.mesh()) && side->distance <= options.deepest;
+  if (may_be) step = escape_step(*side, near, motion, options, work);
   if (!may_be || !work.guides.allow(step.motion)) {
     step = {.status = Status::inside, .distance = side->distance};
   }
   return true;
 }
 
-bool lead_off_surface(Neighborhood& near, const Motion& motion, const StepOptions& options,
-                      Workspace& work, Step& step) noexcept {
-  if (!may_be_led(motion, options, near.mesh())) return false;
+bool escape_from_surface(Neighborhood& near, const Motion& motion, const StepOptions& options,
+                         Workspace& work, Step& step) noexcept {
+  if (!may_escape(motion, options, near.mesh())) return false;
   const auto side = find_side(near, motion.tip);
   if (!side) return false;
-  const Step off = led_out(*side, near, motion, options, work);
+  const Step off = escape_step(*side, near, motion, options, work);
   if (off.motion.isZero(0.0) || !work.guides.allow(off.motion)) return false;
   step = off;
   return true;
