@@ -3,9 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
 
 #include "certified_clearance.h"
 #include "guide_kinematics.h"
+#include "keepout/error.h"
 
 namespace keepout {
 namespace {
@@ -13,6 +17,31 @@ namespace {
 constexpr std::size_t work_of_guide = 2;  // in work units
 
 }  // namespace
+
+void GuideMemories::set(std::vector<Guide> all, int links, double tolerance) {
+  if (all.size() > Guide::most) {
+    throw Error("an instrument has at most " + std::to_string(Guide::most) + " guides, not " +
+                std::to_string(all.size()));
+  }
+  for (const Guide& guide : all) {
+    if (!(guide.band() > needed_band * tolerance_of(guide, tolerance))) {
+      throw Error("the band of guide '" + guide.name() +
+                  "' is lost in the rounding of an instrument and a mesh of this size");
+    }
+    if (guide.link() == 0) {
+      throw Error("guide '" + guide.name() +
+                  "' is on link 0, the base, which no joint moves: give it a link of the chain");
+    }
+    if (guide.link() <= links) continue;
+    throw Error("guide '" + guide.name() + "' is on link " + std::to_string(guide.link()) +
+                "; there are links 0 to " + std::to_string(links));
+  }
+  guides.clear();
+  for (Guide& guide : all) {
+    guides.push_back({std::move(guide), -std::numeric_limits<double>::infinity()});
+  }
+  states.assign(guides.size(), {});
+}
 
 void GuideWatch::open() noexcept {
   const ChainState& chain = context_.motion.chain_at_start();

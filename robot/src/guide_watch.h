@@ -20,6 +20,10 @@ struct GuideMemory {
 
 /// The guides of an instrument. Made once for all cycles.
 struct GuideMemories {
+  /// Replaces the guides of a chain with `links` links. Throws Error, and changes nothing, as
+  /// InstrumentConstraint::set_guides does. `tolerance`: of distances. [length]
+  void set(std::vector<Guide> all, int links, double tolerance);
+
   std::vector<GuideMemory> guides;
   std::vector<GuideState> states;  // of the last cycle
 };

@@ -3,27 +3,17 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <string>
 #include <utility>
 
 #include "joint_cycle.h"
-#include "keepout/activation/tolerances.h"
+#include "joint_input.h"
 #include "keepout/error.h"
 #include "keepout/mesh/doctor.h"
 #include "keepout/step/options.h"
 
 namespace keepout {
 namespace {
-
-constexpr double rotation_digits = 1e-6;  // that a rotation is to have
-constexpr double fastest_turn = 1.0;      // of a mesh in a cycle [rad]
-
-bool are_numbers(std::span<const double> values) noexcept {
-  return std::all_of(values.begin(), values.end(),
-                     [](double x) { return std::abs(x) <= largest_number; });  // false for NaN
-}
 
 std::unique_ptr<Neighborhood> neighborhood_of(std::shared_ptr<const Mesh> mesh,
                                               std::shared_ptr<const SpatialIndex> index,
@@ -48,15 +38,17 @@ Instrument& required(Instrument& instrument, const Solver* solver,
 }  // namespace
 
 struct InstrumentConstraint::State {
-  State(Instrument its, std::unique_ptr<Solver> its_solver, const InstrumentCapacity& its_capacity)
-      : instrument(std::move(required(its, its_solver.get(), its_capacity))),
-        solver(std::move(its_solver)),
-        memory(instrument, *solver, its_capacity),
-        capacity(its_capacity) {}
+  State(Instrument of, std::unique_ptr<Solver> solved_by, const InstrumentOptions& with,
+        const InstrumentCapacity& room)
+      : instrument(std::move(required(of, solved_by.get(), room))),
+        solver(std::move(solved_by)),
+        memory(instrument, *solver, room),
+        capacity(room),
+        options(with) {}
 
-  /// Puts a mesh where there is one of that number, or to the others; and takes that back where
-  /// it cannot be used.
-  void put(MeshMemory mesh, std::size_t number, const InstrumentOptions& its_options) {
+  /// Replaces the mesh of a number, or adds one. Throws Error, and restores the meshes, if the
+  /// options cannot be used with it.
+  void put(MeshMemory mesh, std::size_t number) {
     const std::vector<MeshMemory>::iterator at =
         memory.bodies.meshes.begin() + static_cast<std::ptrdiff_t>(number);
     const bool is_new = at == memory.bodies.meshes.end();
@@ -67,7 +59,7 @@ struct InstrumentConstraint::State {
     }
     try {
       memory.prepare();
-      memory.require_usable(its_options);
+      memory.require_usable(options);
     } catch (...) {
       if (is_new) {
         memory.bodies.meshes.pop_back();
@@ -91,33 +83,14 @@ struct InstrumentConstraint::State {
     return result;
   }
 
-  /// Before anything else: why there can be no step.
-  Status check(std::span<const double> q) noexcept {
+  /// Starts a new work budget. Returns free, or why no cycle may start.
+  Status start(std::span<const double> q) noexcept {
     memory.budget.renew();
-    for (const MeshMemory& mesh : memory.bodies.meshes) {
-      const bool is_too_fast =
-          !(options.period * mesh.velocity.angular.norm() <= fastest_turn) ||
-          !(options.period * mesh.velocity.linear.norm() <= memory.largest_position);
-      if (mesh.is_misplaced || is_too_fast) return Status::invalid_input;
-      if (!mesh.near->is_current()) return Status::mesh_changed;
-    }
-    // Meshes move, so rounding may have outgrown the margin since it was set.
-    if (memory.is_lost_in_rounding(options)) return Status::margin_too_small;
-    const auto n = static_cast<std::size_t>(instrument.chain().size());
-    return q.size() == n && are_positions(q) ? Status::free : Status::invalid_input;
+    return check_start(memory, options, q);
   }
 
-  /// Whether the joints can be there, moved by that (n) or by nothing.
-  bool are_positions(std::span<const double> q, std::span<const double> moved = {}) const noexcept {
-    for (std::size_t k = 0; k < q.size(); ++k) {
-      const double there = moved.empty() ? q[k] : q[k] + moved[k];
-      if (!(std::abs(there) <= memory.farthest(static_cast<int>(k) + 1))) return false;  // or NaN
-    }
-    return true;
-  }
-
-  /// A cycle has passed, whatever came of it: what moves is where it leads, and where nothing was
-  /// proven nothing is kept.
+  /// Moves the meshes by their velocities, whatever the result of the cycle. Without a proved
+  /// motion beside them no clearance is certified.
   void pass_time(InstrumentStep& result) noexcept {
     if (!memory.is_moving()) return;
     if (!result.ok()) result.level = 0.0;
@@ -143,8 +116,7 @@ InstrumentConstraint::InstrumentConstraint(std::shared_ptr<const Mesh> mesh,
                                            Instrument instrument, std::unique_ptr<Solver> solver,
                                            const InstrumentOptions& options,
                                            const InstrumentCapacity& capacity)
-    : state_(std::make_unique<State>(std::move(instrument), std::move(solver), capacity)) {
-  state_->options = options;
+    : state_(std::make_unique<State>(std::move(instrument), std::move(solver), options, capacity)) {
   add_mesh(std::move(mesh), std::move(index));
 }
 
@@ -154,10 +126,8 @@ InstrumentConstraint::~InstrumentConstraint() = default;
 
 InstrumentStep InstrumentConstraint::step(std::span<const double> q,
                                           const Twist& desired) noexcept {
-  Status status = state_->check(q);
-  const bool is_number =
-      are_numbers({desired.linear.data(), 3}) && are_numbers({desired.angular.data(), 3});
-  if (is_ok(status) && !is_number) status = Status::invalid_input;
+  Status status = state_->start(q);
+  if (is_ok(status) && !is_task(desired)) status = Status::invalid_input;
   InstrumentStep result{.status = status};
   if (is_ok(status)) {
     ChainState chain;
@@ -171,13 +141,8 @@ InstrumentStep InstrumentConstraint::step(std::span<const double> q,
 InstrumentStep InstrumentConstraint::step(std::span<const double> q,
                                           std::span<const double> desired,
                                           std::span<const double> weights) noexcept {
-  Status status = state_->check(q);
-  const bool is_weighed =
-      weights.empty() || (weights.size() == q.size() && are_numbers(weights) &&
-                          *std::min_element(weights.begin(), weights.end()) > 0);
-  if (is_ok(status) && !(desired.size() == q.size() && are_numbers(desired) && is_weighed)) {
-    status = Status::invalid_input;
-  }
+  Status status = state_->start(q);
+  if (is_ok(status) && !is_task(desired, weights, q.size())) status = Status::invalid_input;
   InstrumentStep result{.status = status};
   if (is_ok(status)) result = state_->step(joint_task(desired, weights), q);
   state_->pass_time(result);
@@ -186,10 +151,10 @@ InstrumentStep InstrumentConstraint::step(std::span<const double> q,
 
 MotionProof InstrumentConstraint::prove(std::span<const double> q,
                                         std::span<const double> increment) noexcept {
-  Status status = state_->check(q);
-  if (is_ok(status) && !(increment.size() == q.size() && state_->are_positions(q, increment))) {
-    status = Status::invalid_input;
-  }
+  Status status = state_->start(q);
+  const bool is_motion =
+      increment.size() == q.size() && are_positions(state_->memory, q, increment);
+  if (is_ok(status) && !is_motion) status = Status::invalid_input;
   if (!is_ok(status)) return {.status = status};
   return prove_in_parts(state_->memory, state_->options, q, increment);
 }
@@ -229,7 +194,7 @@ std::size_t InstrumentConstraint::add_mesh(std::shared_ptr<const Mesh> mesh,
              .own_margin = margin,
              .is_watertight = is_closed,
              .motion = RelativeMotion(state.instrument, state.memory.motion)},
-            number, state.options);
+            number);
   return number;
 }
 
@@ -252,22 +217,15 @@ void InstrumentConstraint::follow(std::shared_ptr<const Mesh> moved,
              .pose = old.pose,
              .velocity = old.velocity,
              .is_misplaced = old.is_misplaced},
-            number, state.options);
+            number);
 }
 
 Status InstrumentConstraint::place(std::size_t mesh, const Pose& pose,
                                    const Twist& velocity) noexcept {
   CycleMemory& memory = state_->memory;
   if (mesh >= memory.bodies.meshes.size()) return Status::invalid_input;
-  const auto is_within = [](const auto& numbers, double most) {
-    return (numbers.array().abs() <= most).all();  // false for NaN
-  };
-  const Mat3 off = pose.rotation.transpose() * pose.rotation - Mat3::Identity();
   MeshMemory& placed = memory.bodies.meshes[mesh];
-  placed.is_misplaced = !is_within(pose.position, memory.largest_position) ||
-                        !is_within(off, rotation_digits) || !(pose.rotation.determinant() > 0.0) ||
-                        !is_within(velocity.linear, largest_number) ||
-                        !is_within(velocity.angular, largest_number);
+  placed.is_misplaced = !is_placement(pose, velocity, memory.largest_position);
   if (placed.is_misplaced) return Status::invalid_input;
   placed.pose = {pose.position, Eigen::Quaterniond(pose.rotation).normalized().matrix()};
   placed.velocity = velocity;
@@ -276,30 +234,9 @@ Status InstrumentConstraint::place(std::size_t mesh, const Pose& pose,
 }
 
 void InstrumentConstraint::set_guides(std::vector<Guide> guides) {
-  if (guides.size() > Guide::most) {
-    throw Error("an instrument has at most " + std::to_string(Guide::most) + " guides, not " +
-                std::to_string(guides.size()));
-  }
-  for (const Guide& guide : guides) {
-    if (!(guide.band() > needed_band * tolerance_of(guide, state_->memory.tolerance))) {
-      throw Error("the band of guide '" + guide.name() +
-                  "' is lost in the rounding of an instrument and a mesh of this size");
-    }
-    if (guide.link() == 0) {
-      throw Error("guide '" + guide.name() +
-                  "' is on link 0, the base, which no joint moves: give it a link of the chain");
-    }
-    if (guide.link() <= state_->instrument.chain().size()) continue;
-    throw Error("guide '" + guide.name() + "' is on link " + std::to_string(guide.link()) +
-                "; there are links 0 to " + std::to_string(state_->instrument.chain().size()));
-  }
-  GuideMemories& memory = state_->memory.guides;
-  memory.guides.clear();
-  for (Guide& guide : guides) {
-    memory.guides.push_back({std::move(guide), -std::numeric_limits<double>::infinity()});
-  }
-  memory.states.assign(memory.guides.size(), {});
-  state_->memory.forget_motion();
+  CycleMemory& memory = state_->memory;
+  memory.guides.set(std::move(guides), state_->instrument.chain().size(), memory.tolerance);
+  memory.forget_motion();
 }
 
 double InstrumentConstraint::tolerance() const noexcept { return state_->memory.tolerance; }
