@@ -60,7 +60,7 @@ void InstrumentOracle::move_to(std::span<const double> positions, const Pose& ba
   move_to(positions);
 }
 
-void InstrumentOracle::gather(CycleProblem& problem, const Hull& core, double reach) {
+void InstrumentOracle::look_around(Surroundings& around, const Hull& core, double reach) {
   around.travelled = 0.0;
   around.known = reach + around.slack;
   found_.clear();
@@ -93,12 +93,12 @@ double InstrumentOracle::clearance(std::size_t body, double reach) {
   const double radius = robot_.bodies[body].radius;
   double nearest = reach + radius;
   bool found = false;
-  CycleProblem& problem = surroundings_[body];
+  Surroundings& around = surroundings_[body];
   // No point of the core has moved farther than a corner, nor has any distance changed more.
   if (around.last.empty()) around.last.assign(core.points().begin(), core.points().end());
   around.travelled += moved(around.last, core.points()) + rounding_of(core, around.last.front());
   around.last.assign(core.points().begin(), core.points().end());
-  if (!(nearest + around.travelled < around.known)) gather(problem, core, nearest);
+  if (!(nearest + around.travelled < around.known)) look_around(around, core, nearest);
   std::vector<Entry>& heap = around.heap;
   auto end = heap.end();  // of the heap; behind it is what was looked at by now
   // A distance that is smaller by less than a billionth makes no difference.

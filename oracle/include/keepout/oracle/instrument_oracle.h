@@ -58,7 +58,7 @@ class InstrumentOracle {
     std::uint32_t neighbor;
   };
   /// What was around a body, and how far it has travelled since.
-  struct CycleProblem {
+  struct Surroundings {
     double known = -1.0;  // all triangles that were nearer than that are here
     double slack = 1.0;   // beyond what was asked for
     double travelled = 0.0;
@@ -67,14 +67,14 @@ class InstrumentOracle {
     std::vector<Entry> heap = {};  // those that may be nearest first
   };
 
-  void gather(CycleProblem& problem, const Hull& core, double reach);
+  void look_around(Surroundings& around, const Hull& core, double reach);
 
   std::shared_ptr<const TriangleTree> tree_;
   JudgedRobot robot_;
   Pose base_;
   std::vector<LinkFrame> links_;
   std::vector<Hull> cores_;
-  std::vector<CycleProblem> surroundings_;
+  std::vector<Surroundings> surroundings_;
   std::vector<TriangleId> found_;
 };
 
