@@ -12,6 +12,8 @@
 #include <ostream>
 #include <string>
 
+#include "activation/certified/straight_clearance.h"
+#include "keepout/activation/first_contact.h"
 #include "keepout/fixtures/random.h"
 #include "keepout/geometry/closest_point.h"
 #include "keepout/oracle/distance.h"

@@ -8,6 +8,7 @@
 
 #include "keepout/activation/activation_rule.h"
 #include "keepout/activation/facet.h"
+#include "keepout/activation/first_contact.h"
 #include "keepout/index/motion_walk.h"
 #include "keepout/mesh/mesh.h"
 

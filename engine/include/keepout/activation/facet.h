@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <optional>
 
 #include "keepout/geometry/closest_point.h"
 #include "keepout/geometry/shapes.h"
@@ -116,50 +115,5 @@ class Facet {
   Nearest at_tip_;
   TriangleId source_ = no_triangle;
 };
-
-/// The normal of a plane that proves that the whole motion from 0 to z keeps `level` from the
-/// facet: dist(t z, T) >= level - slack for all t in [0, 1]. Nothing when the motion comes closer,
-/// or when rounding hides the answer. Precondition: level <= facet.distance(), and far above the
-/// rounding of lengths. [length]
-std::optional<Vec3> proof_of_clearance(const Facet& facet, const Vec3& z, double level,
-                                       double slack) noexcept;
-
-/// Whether the plane across the way from the tip to the facet is such a proof, which is told
-/// soonest.
-inline bool clears_at_once(const Facet& facet, const Vec3& z, double level, double slack) noexcept {
-  const double at_0 = -facet.at_tip().support - level;
-  return at_0 >= -slack && at_0 + facet.normal().dot(z) >= -slack;
-}
-
-/// Whether there is such a proof: see proof_of_clearance.
-inline bool keeps_clear(const Facet& facet, const Vec3& z, double level, double slack) noexcept {
-  return proof_of_clearance(facet, z, level, slack).has_value();
-}
-
-/// Whether a plane with normal n is such a proof: it has the triangle, relative to the tip and
-/// grown by `level`, on one side and both ends of the motion on the other.
-inline bool separates(const Vec3& n, const Triangle& corners, const Vec3& z, double level,
-                      double slack) noexcept {
-  const double at_0 = -support(corners, n) - level;
-  return at_0 >= -slack && at_0 + n.dot(z) >= -slack;
-}
-
-/// Where a motion first comes within `level` of a facet.
-struct Contact {
-  /// When: a share t of the motion, below 0 when the facet is closer already. Sharper than the
-  /// normal, so that of facets that are all but equally early the earliest is told.
-  double time;
-  HalfSpace plane;  // that the facet, grown by `level`, is behind; allows 0 unless already closer
-  bool is_reached = false;      // or given up, or never
-  Vec3 touched = Vec3::Zero();  // of the facet, to within the root of a rounding; if it is reached
-};
-
-/// The first contact of a motion that is not clear, by Newton's method from the left on the
-/// convex distance, which never goes past it; where the nearest corner or side stays the nearest
-/// one, its own contact is the facet's, and found in one leap. Gives up, with a time after
-/// `latest`, as soon as the contact is known to be later than that. `slack`: how close is close
-/// enough. [length]
-Contact first_contact(const Facet& facet, const Vec3& z, double level, double slack,
-                      double latest) noexcept;
 
 }  // namespace keepout

@@ -7,6 +7,8 @@
 
 #include "keepout/activation/activation_rule.h"
 #include "keepout/activation/facet.h"
+#include "keepout/activation/first_contact.h"
+#include "straight_clearance.h"
 
 namespace keepout {
 
