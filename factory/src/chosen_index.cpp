@@ -7,7 +7,6 @@
 
 #include "keepout/adapters/index_registry.h"
 #include "keepout/index/index_cache.h"
-#include "keepout/index/triangle_blocks.h"
 
 namespace keepout {
 
@@ -20,7 +19,7 @@ std::shared_ptr<const SpatialIndex> make_or_load_index(std::shared_ptr<const Mes
 }
 
 void warn_of_coarse_index(const SpatialIndex& index, double kept, const Warn& warn) {
-  const double rounding = index.blocks() != nullptr ? index.blocks()->frame().error : 0.0;
+  const double rounding = index.rounding();
   if (!warn || !(32.0 * rounding > kept)) return;
   const auto length = [](double value) {
     std::array<char, 32> digits;

@@ -31,6 +31,7 @@ class CountedTree final : public SpatialIndex {
     return tree_.nearest(point, budget);
   }
   std::size_t memory() const noexcept override { return tree_.memory(); }
+  bool walks() const noexcept override { return true; }
   std::unique_ptr<MotionWalk> walk_along_motions(Budget& budget) const override {
     return std::make_unique<Walk>(tree_.walk_along_motions(budget), *this);
   }

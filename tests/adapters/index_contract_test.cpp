@@ -219,6 +219,12 @@ TEST_P(IndexContract, SaysWhatItHoldsAtMostAndWhatLibraryIsBehindIt) {
   EXPECT_NE(library.find_first_of("0123456789"), std::string::npos) << library;
 }
 
+TEST_P(IndexContract, SaysWhetherItWalksAlongMotions) {
+  const auto index = GetParam().make(std::make_shared<const Mesh>(make_cube(50)));
+  Budget budget;
+  EXPECT_EQ(index->walks(), index->walk_along_motions(budget) != nullptr);
+}
+
 TEST_P(IndexContract, NeverGivesATriangleTwice) {
   const auto mesh = std::make_shared<const Mesh>(make_shape("star_bumps"));
   const auto index = GetParam().make(mesh);

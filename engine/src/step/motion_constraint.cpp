@@ -70,8 +70,7 @@ void name_cause(Status status, Limits& limits) noexcept {
 
 std::size_t Capacity::looks_or_default(std::size_t looks, const SpatialIndex& index) {
   if (looks > 0) return looks;
-  Budget unused;
-  return index.walk_along_motions(unused) ? looks_of_a_walk : looks_of_queries;
+  return index.walks() ? looks_of_a_walk : looks_of_queries;
 }
 
 MotionConstraint::MotionConstraint(std::shared_ptr<const Mesh> mesh,

@@ -154,7 +154,7 @@ TEST(TreeWalkMemory, IsOfLeavesHoweverManyStrokesThereWere) {
   const StepOptions options{.radius = 2e-3 * size, .margin = 2e-3 * size};
   const auto constraint = guard(mesh, tree, options);
   Budget unlimited;
-  TreeWalk walk(*tree, unlimited);
+  TreeWalk walk(tree->tree(), unlimited);
   Random random(3);
   int limited = 0, unopened = 0;
   for (Vec3 tip : surface_points(*mesh, 300, 1.2 * options.margin, random)) {
@@ -248,7 +248,7 @@ TEST(SourcesFarOff, AgreeBitForBitFarFromTheOrigin) {
   Surface surface = make_shape("cortex");
   for (Vec3& v : surface.vertices) v = 1.1 * v + Vec3(1234.5678, -987.654321, 3456.789);
   Sources sources(std::move(surface));
-  ASSERT_FALSE(sources.tree->frame().is_exact());
+  ASSERT_FALSE(sources.tree->tree().frame().is_exact());
   std::size_t limited = 0;
   drag(sources, scales[0], 10, [&](const Motion& motion, double margin, double length) {
     const StepOptions options{.radius = 1.1 * length, .margin = margin};

@@ -11,11 +11,11 @@
 #include <vector>
 
 #include "each_simd_target.h"
+#include "index/pd_tree/tree.h"
+#include "index/wide_bvh/tree.h"
 #include "keepout/activation/paper.h"
 #include "keepout/fixtures/poses.h"
 #include "keepout/fixtures/shapes.h"
-#include "keepout/index/pd_tree.h"
-#include "keepout/index/wide_bvh.h"
 #include "keepout/solvers/active_set.h"
 #include "keepout/step/motion_constraint.h"
 #include "queries_only.h"
@@ -210,7 +210,7 @@ Surface as_floats(Surface surface) {
 
 TEST(PaperBlocks, ThePlanesAreThoseOfThePlainRuleWhereTheFloatsAreExact) {
   PaperForms forms(as_floats(make_gear(1.0)));
-  ASSERT_TRUE(forms.tree->frame().is_exact());
+  ASSERT_TRUE(forms.tree->tree().frame().is_exact());
   std::size_t planes = 0;
   expect_same_planes(forms, 12, planes);
   EXPECT_GT(planes, 1000u);

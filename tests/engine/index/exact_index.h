@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "adapters/index_contract.h"
+#include "index/wide_bvh/tree.h"
 #include "keepout/fixtures/shapes.h"
-#include "keepout/index/wide_bvh.h"
 
 namespace keepout {
 
@@ -100,7 +100,7 @@ inline void expect_leaves_hold(const Mesh& mesh, const TriangleBlocks& blocks) {
 }
 
 /// Fails unless each cylinder holds what is in the leaves below it. Appends these.
-inline void expect_cylinders_hold(const WideBvh& index, std::size_t self,
+inline void expect_cylinders_hold(const WideBvh::Tree& index, std::size_t self,
                                   std::vector<std::size_t>& leaves) {
   const NodeBlock& node = index.nodes()[self];
   const CylinderBlock& cylinders = index.cylinders()[self];
@@ -131,7 +131,7 @@ inline void expect_cylinders_hold(const WideBvh& index, std::size_t self,
   }
 }
 
-inline void expect_cylinders_hold(const WideBvh& index) {
+inline void expect_cylinders_hold(const WideBvh::Tree& index) {
   std::vector<std::size_t> leaves;
   expect_cylinders_hold(index, 0, leaves);
   EXPECT_EQ(leaves.size(), index.leaves().size());

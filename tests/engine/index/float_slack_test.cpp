@@ -54,9 +54,9 @@ TEST(FloatSlack, NoProofOfALeafClaimsMoreThanItsPlaneDoes) {
       const auto mesh = one_leaf(size, random);
       const WideBvh index(mesh);
       const Vec3 tip = random.uniform(0.0, 2.0) * size * random.direction();
-      const FloatReach reach = float_reach(margin, longest, tip, index.frame().error);
+      const FloatReach reach = float_reach(margin, longest, tip, index.tree().frame().error);
       LeafFilter filter;
-      look(index.leaves()[0], float_tip(tip), reach, filter);
+      look(index.tree().leaves()[0], float_tip(tip), reach, filter);
       for (int i = 0; i < 10; ++i) {
         // The motion ends slightly beyond the last point that the plane of one triangle allows.
         const std::size_t chosen = random.below(LeafBlock::lanes);
@@ -72,7 +72,7 @@ TEST(FloatSlack, NoProofOfALeafClaimsMoreThanItsPlaneDoes) {
         Suspects suspects;
         find_suspects(filter, in_float, suspects);
         for (std::size_t lane = 0; lane < LeafBlock::lanes; ++lane) {
-          const Triangle triangle = mesh->triangle(index.leaves()[0].triangle(lane));
+          const Triangle triangle = mesh->triangle(index.tree().leaves()[0].triangle(lane));
           const Vec3 its = normal_of(filter.at_tip, lane);
           const double clear = clear_in_double(its, triangle, tip, margin);
           ASSERT_LE(filter.at_tip.clear[lane], clear);
@@ -126,13 +126,13 @@ TEST(FloatSlack, NoBoxIsPassedOverThatAMotionComesWithinTheMarginOf) {
 TEST(FloatSlack, AFrontierHasEveryBoxThatItsBallTouches) {
   const auto mesh = beginning_of("cortex", LeafBlock::lanes * NodeBlock::lanes);
   const WideBvh index(mesh);
-  ASSERT_EQ(index.nodes().size(), 1u);
-  const NodeBlock& root = index.nodes()[0];
+  ASSERT_EQ(index.tree().nodes().size(), 1u);
+  const NodeBlock& root = index.tree().nodes()[0];
   Random random(2);
   for (int trial = 0; trial < test::trials(2000); ++trial) {
     const Vec3 center = mesh->bounds().center() + mesh->bounds().size().norm() *
                                                       random.uniform(0.5, 2.0) * random.direction();
-    const Vec3 from_origin = center - index.frame().origin;
+    const Vec3 from_origin = center - index.tree().frame().origin;
     std::vector<double> distances;
     for (std::size_t lane = 0; lane < NodeBlock::lanes; ++lane) {
       Vec3 off = Vec3::Zero();
@@ -145,7 +145,7 @@ TEST(FloatSlack, AFrontierHasEveryBoxThatItsBallTouches) {
     const std::size_t touched = random.below(NodeBlock::lanes);
     const double radius = distances[touched] * (1.0 + 1e-10);
     Frontier frontier;
-    frontier.gather(index, {center, radius});
+    frontier.gather(index.tree(), {center, radius});
     std::set<std::uint32_t> found;
     for (const NodeBlock& block : frontier.blocks()) {
       found.insert(std::begin(block.child), std::end(block.child));
@@ -165,14 +165,15 @@ TEST(FloatSlack, CylindersOfNodesHoldTheCylindersBelow) {
     const auto vector_of = [](const float(&from)[3][NodeBlock::lanes], std::size_t lane) {
       return Vec3(from[0][lane], from[1][lane], from[2][lane]);
     };
-    for (std::size_t node = 0; node < index.nodes().size(); ++node) {
-      const CylinderBlock& above = index.cylinders()[node];
+    for (std::size_t node = 0; node < index.tree().nodes().size(); ++node) {
+      const CylinderBlock& above = index.tree().cylinders()[node];
       for (std::size_t lane = 0; lane < NodeBlock::lanes; ++lane) {
-        const std::uint32_t child = index.nodes()[node].child[lane];
-        if (!index.nodes()[node].is_used(lane) || (child & NodeBlock::leaf) != 0) continue;
-        const CylinderBlock& below = index.cylinders()[child];
+        const std::uint32_t child = index.tree().nodes()[node].child[lane];
+        if (!index.tree().nodes()[node].is_used(lane) || (child & NodeBlock::leaf) != 0) continue;
+        const CylinderBlock& below = index.tree().cylinders()[child];
         const Vec3 axis = vector_of(above.axis, lane).normalized();
-        for (std::size_t i = 0; i < NodeBlock::lanes && index.nodes()[child].is_used(i); ++i) {
+        for (std::size_t i = 0; i < NodeBlock::lanes && index.tree().nodes()[child].is_used(i);
+             ++i) {
           const Vec3 way = vector_of(below.middle, i) - vector_of(above.middle, lane);
           const Vec3 its_axis = vector_of(below.axis, i).normalized();
           const double cosine = std::abs(its_axis.dot(axis));
@@ -195,9 +196,10 @@ TEST(FloatSlack, AMeshIsNotExactIfOneCoordinateOfItsLastVertexIsNoFloat) {
     for (const VertexId last : {3u, 4u, 7u, 8u, 9u}) {
       Surface surface{{}, {{0, 1, last}}};
       for (VertexId v = 0; v <= last; ++v) surface.vertices.emplace_back(v, 0.5 * v * v, 1.0);
-      EXPECT_TRUE(WideBvh(std::make_shared<const Mesh>(surface)).frame().is_exact());
+      EXPECT_TRUE(WideBvh(std::make_shared<const Mesh>(surface)).tree().frame().is_exact());
       surface.vertices[last][axis] += 1e-9;
-      EXPECT_FALSE(WideBvh(std::make_shared<const Mesh>(surface)).frame().is_exact()) << axis;
+      EXPECT_FALSE(WideBvh(std::make_shared<const Mesh>(surface)).tree().frame().is_exact())
+          << axis;
     }
   }
 }

@@ -11,10 +11,10 @@
 
 #include "each_simd_target.h"
 #include "engine/index/exact_index.h"
+#include "index/pd_tree/tree.h"
+#include "index/wide_bvh/tree.h"
 #include "keepout/fixtures/poses.h"
 #include "keepout/fixtures/shapes.h"
-#include "keepout/index/pd_tree.h"
-#include "keepout/index/wide_bvh.h"
 
 namespace keepout {
 namespace {
@@ -43,7 +43,7 @@ struct Answers {
 template <class Index>
 Answers answers(const Index& index, const std::vector<Ball>& balls) {
   TriangleBuffer found(index.mesh().triangle_count());
-  LeafBuffer leaves(index.leaves().size());
+  LeafBuffer leaves(index.tree().leaves().size());
   Answers all;
   for (const Ball& ball : balls) {
     found.clear();
@@ -55,7 +55,7 @@ Answers answers(const Index& index, const std::vector<Ball>& balls) {
         std::equal(found.begin(), found.end(), all.found.back().begin(), all.found.back().end()))
         << "counting changes the answer";
     leaves.clear();
-    index.collect_leaves(ball, leaves);
+    index.tree().collect_leaves(ball, leaves);
     all.leaves.emplace_back(leaves.begin(), leaves.end());
   }
   return all;
@@ -70,8 +70,8 @@ TYPED_TEST_SUITE(IndexLanes, Indices);
 TYPED_TEST(IndexLanes, TheLeavesOfABallHoldAllTrianglesThatTouchIt) {
   const TypeParam index(std::make_shared<const Mesh>(make_shape("cortex")));
   std::vector<std::uint32_t> leaf_of(index.mesh().triangle_count());
-  for (std::uint32_t leaf = 0; leaf < index.leaves().size(); ++leaf) {
-    const LeafBlock& block = index.leaves()[leaf];
+  for (std::uint32_t leaf = 0; leaf < index.tree().leaves().size(); ++leaf) {
+    const LeafBlock& block = index.tree().leaves()[leaf];
     for (std::size_t lane = 0; lane < LeafBlock::lanes && block.is_used(lane); ++lane) {
       leaf_of[block.triangle(lane)] = leaf;
     }
@@ -86,14 +86,14 @@ TYPED_TEST(IndexLanes, TheLeavesOfABallHoldAllTrianglesThatTouchIt) {
     listed += leaves.size();
   }
   EXPECT_GT(listed, asked.size());
-  EXPECT_LT(listed, asked.size() * index.leaves().size() / 2) << "most are out of reach";
+  EXPECT_LT(listed, asked.size() * index.tree().leaves().size() / 2) << "most are out of reach";
 }
 
 TYPED_TEST(IndexLanes, ABallBeyondWhatFloatsCanTellHasAllLeaves) {
   const TypeParam index(std::make_shared<const Mesh>(make_shape("cortex")));
-  LeafBuffer leaves(index.leaves().size());
-  index.collect_leaves({Vec3::Zero(), 1e20}, leaves);
-  EXPECT_EQ(leaves.size(), index.leaves().size());
+  LeafBuffer leaves(index.tree().leaves().size());
+  index.tree().collect_leaves({Vec3::Zero(), 1e20}, leaves);
+  EXPECT_EQ(leaves.size(), index.tree().leaves().size());
   EXPECT_FALSE(leaves.overflowed());
 }
 
@@ -128,8 +128,8 @@ TYPED_TEST(IndexLanes, EveryProcessorBuildsTheSameTree) {
   const TypeParam expected(mesh);
   on_each_simd_target([&] {
     const TypeParam index(mesh);
-    expect_same_blocks(index.nodes(), expected.nodes());
-    expect_same_blocks(index.leaves(), expected.leaves());
+    expect_same_blocks(index.tree().nodes(), expected.tree().nodes());
+    expect_same_blocks(index.tree().leaves(), expected.tree().leaves());
   });
 }
 
@@ -143,15 +143,15 @@ TEST(WideBvhLanes, EveryProcessorRefitsToTheSameTree) {
     const auto after = std::make_shared<const Mesh>(surface);
     WideBvh expected(before);
     expected.refit(after);
-    EXPECT_EQ(expected.frame().is_exact(), stretch == 2.0);
+    EXPECT_EQ(expected.tree().frame().is_exact(), stretch == 2.0);
     on_each_simd_target([&] {
       WideBvh index(before);
       index.refit(after);
-      expect_same_blocks(index.nodes(), expected.nodes());
-      expect_same_blocks(index.leaves(), expected.leaves());
-      EXPECT_EQ(index.frame().error, expected.frame().error);
-      EXPECT_EQ(index.frame().origin, expected.frame().origin);
-      expect_cylinders_hold(index);
+      expect_same_blocks(index.tree().nodes(), expected.tree().nodes());
+      expect_same_blocks(index.tree().leaves(), expected.tree().leaves());
+      EXPECT_EQ(index.tree().frame().error, expected.tree().frame().error);
+      EXPECT_EQ(index.tree().frame().origin, expected.tree().frame().origin);
+      expect_cylinders_hold(index.tree());
     });
   }
 }
@@ -160,7 +160,7 @@ TEST(WideBvhLanes, CylindersHoldWhateverProcessorBuildsThem) {
   for (const char* name : {"cortex", "needles", "far_cube"}) {
     SCOPED_TRACE(name);
     const auto mesh = shared_shape(name);
-    on_each_simd_target([&] { expect_cylinders_hold(WideBvh(mesh)); });
+    on_each_simd_target([&] { expect_cylinders_hold(WideBvh(mesh).tree()); });
   }
 }
 

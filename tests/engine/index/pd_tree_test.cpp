@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "engine/index/exact_index.h"
+#include "index/pd_tree/tree.h"
 #include "shapes_to_try.h"
 
 namespace keepout {
@@ -39,7 +40,7 @@ TEST(PdTree, IsExactForEveryNumberOfTrianglesAboutFullLeaves) {
     SCOPED_TRACE(count);
     const auto mesh = beginning_of("cortex", count);
     const PdTree index(mesh);
-    expect_leaves_hold(*mesh, index);
+    expect_leaves_hold(*mesh, index.tree());
     expect_exact(*mesh, index, 2);
     if (HasFatalFailure()) return;
   }
@@ -47,7 +48,7 @@ TEST(PdTree, IsExactForEveryNumberOfTrianglesAboutFullLeaves) {
 
 /// Fails unless the boxes of the subtree hold their triangles, and have directions that are
 /// orthonormal to the rounding of floats.
-void expect_boxes_hold(const PdTree& tree, std::size_t self, std::size_t first_leaf) {
+void expect_boxes_hold(const PdTree::Tree& tree, std::size_t self, std::size_t first_leaf) {
   const PdNode& node = tree.nodes()[self];
   Eigen::Matrix3d axes;
   Vec3 center, half;
@@ -76,7 +77,8 @@ void expect_boxes_hold(const PdTree& tree, std::size_t self, std::size_t first_l
 TEST(PdTree, BoxesHoldTheirTriangles) {
   for (const char* name : {"cortex", "needles", "far_cube", "fan", "flat_plate"}) {
     SCOPED_TRACE(name);
-    const PdTree tree(shared_shape(name));
+    const PdTree index(shared_shape(name));
+    const PdTree::Tree& tree = index.tree();
     ASSERT_EQ(tree.nodes().size(), 2 * tree.leaves().size() - 1);
     ASSERT_EQ(tree.nodes()[0].leaves, tree.leaves().size());
     expect_boxes_hold(tree, 0, 0);
@@ -86,9 +88,11 @@ TEST(PdTree, BoxesHoldTheirTriangles) {
 
 TEST(PdTree, IsTheSameTreeWhateverTheNumberOfThreads) {
   const auto mesh = std::make_shared<const Mesh>(make_cortex(0.7, 1));
-  const PdTree alone(mesh, 1);
+  const PdTree built_alone(mesh, 1);
+  const PdTree::Tree& alone = built_alone.tree();
   for (const unsigned threads : {2u, 3u, 8u}) {
-    const PdTree tree(mesh, threads);
+    const PdTree index(mesh, threads);
+    const PdTree::Tree& tree = index.tree();
     ASSERT_EQ(tree.nodes().size(), alone.nodes().size());
     EXPECT_EQ(std::memcmp(tree.nodes().data(), alone.nodes().data(), alone.nodes().size_bytes()),
               0);

@@ -5,26 +5,10 @@
 #include <memory>
 #include <span>
 
-#include "keepout/index/block_memory.h"
 #include "keepout/index/spatial_index.h"
-#include "keepout/index/triangle_blocks.h"
 #include "keepout/mesh/mesh.h"
 
 namespace keepout {
-
-/// An oriented box around consecutive leaves, in one cache line.
-struct alignas(64) PdNode {
-  /// The principal directions of what is in the box, largest spread first: orthonormal to the
-  /// rounding of floats. across[axis][direction], so that the three directions are together.
-  float across[3][3];
-
-  float center[3];  // of the box, from the origin of the tree's frame [length]
-  float half[3];    // half of the box's size along each direction, rounded outward [length]
-
-  /// How many leaves are in the box. Where more than one, the first half of them, rounded down, is
-  /// in the next node, and the others in the one behind that node's subtree.
-  std::uint32_t leaves;
-};
 
 /// The principal direction tree: a binary tree of oriented boxes, the frame of each being the
 /// principal axes of its triangles, split along the first of them. Its leaves are those of WideBvh,
@@ -34,14 +18,16 @@ struct alignas(64) PdNode {
 /// distance measurement of surfaces", 1997. Split at the median of the triangle centroids instead
 /// of at their mean, so that the depth is bounded by the logarithm of the size, whatever the mesh,
 /// and all leaves but the last are full.
-class PdTree final : public SpatialIndex, public TriangleBlocks {
+class PdTree final : public SpatialIndex {
  public:
   /// That it can hold.
-  static constexpr std::size_t most_triangles = LeafBlock::most_triangles;
+  static constexpr std::size_t most_triangles = (std::size_t{1} << 31) - 1;
 
   /// Builds with so many threads, 0 being all there are: the tree is the same. Throws Error for a
   /// mesh of more than most_triangles.
   explicit PdTree(std::shared_ptr<const Mesh> mesh, unsigned threads = 0);
+
+  ~PdTree() override;
 
   void collect(const Ball& ball, TriangleBuffer& candidates) const noexcept override {
     collect(ball, candidates, nullptr);
@@ -50,24 +36,19 @@ class PdTree final : public SpatialIndex, public TriangleBlocks {
   /// The same, and adds to `counts` what it had to look at, unless it is null.
   void collect(const Ball& ball, TriangleBuffer& candidates, QueryCounts* counts) const noexcept;
 
-  void collect_leaves(const Ball& ball, LeafBuffer& found) const noexcept override;
-  const TriangleBlocks* blocks() const noexcept override { return this; }
+  const TriangleBlocks* blocks() const noexcept override;
 
   bool is_exact() const noexcept override { return true; }
+  double rounding() const noexcept override;
   std::size_t memory() const noexcept override;
 
-  /// A parent stands before its children; the first is the root.
-  std::span<const PdNode> nodes() const noexcept { return nodes_; }
-
-  /// In the order in which the nodes hold them.
-  std::span<const LeafBlock> leaves() const noexcept override { return leaves_; }
-
-  const LeafFrame& frame() const noexcept override { return frame_; }
+  /// Nodes and leaves, which only the engine's own sources can look into.
+  class Tree;
+  /// Lives as long as the index.
+  const Tree& tree() const noexcept { return *tree_; }
 
  private:
-  BlockVector<PdNode> nodes_;
-  BlockVector<LeafBlock> leaves_;
-  LeafFrame frame_;
+  std::unique_ptr<Tree> tree_;
 };
 
 }  // namespace keepout

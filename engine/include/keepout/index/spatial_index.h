@@ -60,6 +60,9 @@ class SpatialIndex {
     return nullptr;
   }
 
+  /// True if walk_along_motions() returns a walk.
+  virtual bool walks() const noexcept { return false; }
+
   /// An index of a mesh whose triangles are the same, of as many vertices that are elsewhere, made
   /// from this one in a fraction of the time of a build, while this one is asked; null of an index
   /// that has no faster way than a build. Throws Error if the corners of a triangle differ.
@@ -67,8 +70,12 @@ class SpatialIndex {
     return nullptr;
   }
 
-  /// Its triangles in leaf blocks; null of an index that has none. They live as long as the index.
+  /// Its triangles in blocks of our own format; null if the index has none. They live as long as
+  /// the index.
   virtual const TriangleBlocks* blocks() const noexcept { return nullptr; }
+
+  /// How far its coordinates may be from the mesh's; 0 if it has the mesh's own. [length]
+  virtual double rounding() const noexcept { return 0.0; }
 
   /// Memory that the index holds beside the mesh. [bytes]
   virtual std::size_t memory() const noexcept = 0;

@@ -2,52 +2,14 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
 
-#include "keepout/index/block_memory.h"
 #include "keepout/index/spatial_index.h"
-#include "keepout/index/triangle_blocks.h"
 #include "keepout/mesh/mesh.h"
 
 namespace keepout {
-
-/// Sixteen cylinders, coordinate by coordinate: around the triangles of a tree where they make up a
-/// sheet, which a box that is not along it holds badly.
-struct alignas(64) CylinderBlock {
-  /// In a block.
-  static constexpr std::size_t lanes = 16;
-
-  float middle[3][lanes];    // [axis][lane] [length]
-  float axis[3][lanes];      // of unit length, but for its rounding
-  float half_height[lanes];  // along the axis, to either side of the middle [length]
-  float radius[lanes];       // [length]
-};
-
-class LeafFill;
-
-/// Sixteen boxes, coordinate by coordinate, and what is in them.
-struct alignas(64) NodeBlock {
-  /// In a block.
-  static constexpr std::size_t lanes = 16;
-  /// The bit of `child` that tells a leaf from a node.
-  static constexpr std::uint32_t leaf = std::uint32_t{1} << 31;
-
-  /// Hold their triangles, as the mesh has them, rounded outward; from the origin of the tree's
-  /// frame. Unused lanes, which are the last ones, hold a box at infinity that nothing reaches.
-  /// [length]
-  float low[3][lanes];   // [axis][lane]
-  float high[3][lanes];  // [axis][lane]
-
-  /// The number of a node; or of a leaf block, with bit `leaf` set. Of an unused lane: 0, which is
-  /// the root and nobody's child.
-  std::uint32_t child[lanes];
-
-  /// Whether there is a box in a lane.
-  bool is_used(std::size_t lane) const noexcept { return child[lane] != 0; }
-};
 
 /// Our fastest index: a tree of axis-aligned boxes, sixteen to a node and sixteen triangles to a
 /// leaf, both laid out for wide instructions. Floats decide where they are sure, within a band of
@@ -55,10 +17,10 @@ struct alignas(64) NodeBlock {
 /// and no others.
 ///
 /// The order of a traversal, and of the triangles, is the tree's own; nothing may depend on it.
-class WideBvh final : public SpatialIndex, public TriangleBlocks {
+class WideBvh final : public SpatialIndex {
  public:
   /// That it can hold.
-  static constexpr std::size_t most_triangles = LeafBlock::most_triangles;
+  static constexpr std::size_t most_triangles = (std::size_t{1} << 31) - 1;
 
   /// Of nodes, one below the other: as many as most_triangles need.
   static constexpr std::size_t most_levels = 8;
@@ -80,6 +42,8 @@ class WideBvh final : public SpatialIndex, public TriangleBlocks {
   WideBvh(std::shared_ptr<const Mesh> mesh, std::span<const TriangleId> order,
           unsigned threads = 0);
 
+  ~WideBvh() override;
+
   void collect(const Ball& ball, TriangleBuffer& candidates) const noexcept override {
     collect(ball, candidates, nullptr);
   }
@@ -95,41 +59,28 @@ class WideBvh final : public SpatialIndex, public TriangleBlocks {
 
   /// Through the boxes along the motion, to the first triangle in its way.
   std::unique_ptr<MotionWalk> walk_along_motions(Budget& budget) const override;
+  bool walks() const noexcept override { return true; }
 
   std::unique_ptr<SpatialIndex> refitted(std::shared_ptr<const Mesh> moved) const override;
 
-  void collect_leaves(const Ball& ball, LeafBuffer& found) const noexcept override;
-  const TriangleBlocks* blocks() const noexcept override { return this; }
-
+  const TriangleBlocks* blocks() const noexcept override;
   bool is_exact() const noexcept override { return true; }
+  double rounding() const noexcept override;
   std::size_t memory() const noexcept override;
-
-  /// A parent stands before its children; the first is the root.
-  std::span<const NodeBlock> nodes() const noexcept { return nodes_; }
-
-  /// As the nodes number them.
-  std::span<const LeafBlock> leaves() const noexcept override { return leaves_; }
-
-  /// Of each node: around what its boxes are around, as its leaves have it.
-  std::span<const CylinderBlock> cylinders() const noexcept { return cylinders_; }
 
   /// The triangles in the order of the leaves: what is left of a build when all that can be made of
   /// the mesh anew is taken away. Allocates.
   std::vector<TriangleId> order() const;
 
-  const LeafFrame& frame() const noexcept override { return frame_; }
+  /// Nodes and leaves, which only the engine's own sources can look into.
+  class Tree;
+  /// Lives as long as the index.
+  const Tree& tree() const noexcept { return *tree_; }
 
  private:
   void require_same_triangles(const Mesh* moved, unsigned threads) const;
-  void make_room();
-  void fit(const LeafFill& fill, unsigned threads);
-  void enclose_leaves(std::size_t self, std::size_t first, std::size_t last) noexcept;
-  void enclose_nodes(std::size_t self, std::size_t first, std::size_t last) noexcept;
 
-  BlockVector<NodeBlock> nodes_;          // level by level, the root first
-  BlockVector<LeafBlock> leaves_;         // neighbours near each other
-  BlockVector<CylinderBlock> cylinders_;  // as nodes_
-  LeafFrame frame_;
+  std::unique_ptr<Tree> tree_;
 };
 
 }  // namespace keepout

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "keepout/index/triangle_blocks.h"
+#include "../../index/tree_parts/triangle_blocks.h"
 #include "keepout/mesh/adjacency.h"
 #include "keepout/mesh/mesh.h"
 

@@ -5,9 +5,9 @@
 #include <memory>
 #include <vector>
 
+#include "../../index/tree_parts/triangle_blocks.h"
 #include "float_filter.h"
 #include "keepout/activation/paper.h"
-#include "keepout/index/triangle_blocks.h"
 #include "leaf_edges.h"
 
 namespace keepout {

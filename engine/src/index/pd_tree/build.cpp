@@ -6,7 +6,7 @@
 #include "../tree_parts/leaf_fill.h"
 #include "../tree_parts/median_split.h"
 #include "keepout/error.h"
-#include "keepout/index/pd_tree.h"
+#include "tree.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "index/pd_tree/build.cpp"
@@ -179,20 +179,32 @@ class Builder {
 
 }  // namespace
 
-PdTree::PdTree(std::shared_ptr<const Mesh> mesh, unsigned threads) : SpatialIndex(std::move(mesh)) {
-  const std::size_t count = this->mesh().triangle_count();
+static_assert(PdTree::most_triangles == LeafBlock::most_triangles);
+
+PdTree::Tree::Tree(const PdTree& index, unsigned threads) : index_(index) {
+  const std::size_t count = index.mesh().triangle_count();
   if (count > most_triangles) {
     throw Error("a pd_tree holds at most 2^31 - 1 triangles: split or decimate the mesh");
   }
-  threads = thread_count(threads);
   leaves_.resize((count + LeafBlock::lanes - 1) / LeafBlock::lanes);
   nodes_.resize(2 * leaves_.size() - 1);
-  frame_ = Builder(this->mesh(), nodes_, leaves_).build(threads);
+  frame_ = Builder(index.mesh(), nodes_, leaves_).build(thread_count(threads));
 }
 
-std::size_t PdTree::memory() const noexcept {
+std::size_t PdTree::Tree::memory() const noexcept {
   return nodes_.capacity() * sizeof(PdNode) + leaves_.capacity() * sizeof(LeafBlock);
 }
+
+PdTree::PdTree(std::shared_ptr<const Mesh> mesh, unsigned threads)
+    : SpatialIndex(std::move(mesh)), tree_(std::make_unique<Tree>(*this, threads)) {}
+
+PdTree::~PdTree() = default;
+
+const TriangleBlocks* PdTree::blocks() const noexcept { return tree_.get(); }
+
+double PdTree::rounding() const noexcept { return tree_->frame().error; }
+
+std::size_t PdTree::memory() const noexcept { return tree_->memory(); }
 
 }  // namespace keepout
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "keepout/index/brute_force.h"
-#include "keepout/index/pd_tree.h"
+#include "tree.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "index/pd_tree/query.cpp"
@@ -152,17 +152,17 @@ HWY_EXPORT(walk_pd_tree_to_leaves);
 
 void PdTree::collect(const Ball& ball, TriangleBuffer& candidates,
                      QueryCounts* counts) const noexcept {
-  const BallScreen screen(ball, mesh().bounds(), frame_);
+  const BallScreen screen(ball, mesh().bounds(), tree_->frame());
   if (!screen.fits) {
     if (counts != nullptr) counts->triangles += mesh().triangle_count();
     return BruteForce(shared_mesh()).collect(ball, candidates);
   }
   HWY_DYNAMIC_DISPATCH(walk_pd_tree)
-  (nodes_.data(), leaves_.data(), mesh(), screen, candidates, counts);
+  (tree_->nodes().data(), tree_->leaves().data(), mesh(), screen, candidates, counts);
 }
 
-void PdTree::collect_leaves(const Ball& ball, LeafBuffer& found) const noexcept {
-  const BallScreen screen(ball, mesh().bounds(), frame_);
+void PdTree::Tree::collect_leaves(const Ball& ball, LeafBuffer& found) const noexcept {
+  const BallScreen screen(ball, index_.mesh().bounds(), frame_);
   if (!screen.fits) return collect_all_leaves(found);
   HWY_DYNAMIC_DISPATCH(walk_pd_tree_to_leaves)(nodes_.data(), screen, found);
 }

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "keepout/geometry/shapes.h"
-#include "keepout/index/triangle_blocks.h"
+#include "triangle_blocks.h"
 
 namespace keepout {
 

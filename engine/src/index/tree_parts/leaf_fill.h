@@ -4,10 +4,10 @@
 #include <cstddef>
 #include <span>
 
-#include "keepout/index/block_memory.h"
-#include "keepout/index/triangle_blocks.h"
+#include "block_memory.h"
 #include "keepout/mesh/mesh.h"
 #include "median_split.h"
+#include "triangle_blocks.h"
 
 namespace keepout {
 

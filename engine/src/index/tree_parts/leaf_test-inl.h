@@ -24,8 +24,8 @@
 #include "keepout/buffer.h"
 #include "keepout/geometry/closest_point.h"
 #include "keepout/index/spatial_index.h"
-#include "keepout/index/triangle_blocks.h"
 #include "keepout/mesh/mesh.h"
+#include "triangle_blocks.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace keepout::HWY_NAMESPACE {

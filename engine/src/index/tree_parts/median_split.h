@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <span>
 
-#include "keepout/index/block_memory.h"
+#include "block_memory.h"
 #include "keepout/mesh/mesh.h"
 
 namespace keepout {

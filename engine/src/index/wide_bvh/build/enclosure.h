@@ -4,8 +4,7 @@
 #include <array>
 #include <cstddef>
 
-#include "keepout/index/triangle_blocks.h"
-#include "keepout/index/wide_bvh.h"
+#include "../tree.h"
 
 namespace keepout {
 

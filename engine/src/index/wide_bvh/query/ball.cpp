@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "../tree.h"
 #include "keepout/index/brute_force.h"
-#include "keepout/index/wide_bvh.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "index/wide_bvh/query/ball.cpp"
@@ -121,20 +121,21 @@ HWY_EXPORT(walk_to_leaves);
 
 void WideBvh::collect(const Ball& ball, TriangleBuffer& candidates,
                       QueryCounts* counts) const noexcept {
-  const BallScreen screen(ball, mesh().bounds(), frame_);
+  const BallScreen screen(ball, mesh().bounds(), tree_->frame());
   if (!screen.fits) {
     if (counts != nullptr) counts->triangles += mesh().triangle_count();
     return BruteForce(shared_mesh()).collect(ball, candidates);
   }
   if (counts != nullptr) {
     HWY_DYNAMIC_DISPATCH(walk_and_count)
-    (nodes_.data(), leaves_.data(), mesh(), screen, candidates, *counts);
+    (tree_->nodes().data(), tree_->leaves().data(), mesh(), screen, candidates, *counts);
   } else {
-    HWY_DYNAMIC_DISPATCH(walk_wide_bvh)(nodes_.data(), leaves_.data(), mesh(), screen, candidates);
+    HWY_DYNAMIC_DISPATCH(walk_wide_bvh)
+    (tree_->nodes().data(), tree_->leaves().data(), mesh(), screen, candidates);
   }
 }
 
-void WideBvh::collect_leaves(const Ball& ball, LeafBuffer& found) const noexcept {
+void WideBvh::Tree::collect_leaves(const Ball& ball, LeafBuffer& found) const noexcept {
   const BallScreen screen(ball, mesh().bounds(), frame_);
   if (!screen.fits) return collect_all_leaves(found);
   HWY_DYNAMIC_DISPATCH(walk_to_leaves)(nodes_.data(), screen, found);

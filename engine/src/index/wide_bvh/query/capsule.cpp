@@ -9,7 +9,7 @@
 #include <bit>
 #include <cmath>
 
-#include "keepout/index/wide_bvh.h"
+#include "../tree.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "index/wide_bvh/query/capsule.cpp"
@@ -170,9 +170,10 @@ namespace keepout {
 HWY_EXPORT(walk_near_capsule);
 
 void WideBvh::collect_near(const Capsule& capsule, TriangleBuffer& candidates) const noexcept {
-  const CapsuleScreen screen(capsule, mesh().bounds(), frame_);
+  const CapsuleScreen screen(capsule, mesh().bounds(), tree_->frame());
   if (!screen.fits) return SpatialIndex::collect_near(capsule, candidates);
-  HWY_DYNAMIC_DISPATCH(walk_near_capsule)(nodes_.data(), leaves_.data(), screen, candidates);
+  HWY_DYNAMIC_DISPATCH(walk_near_capsule)
+  (tree_->nodes().data(), tree_->leaves().data(), screen, candidates);
 }
 
 }  // namespace keepout

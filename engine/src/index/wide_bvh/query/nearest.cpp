@@ -7,7 +7,7 @@
 #include <array>
 #include <limits>
 
-#include "keepout/index/wide_bvh.h"
+#include "../tree.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "index/wide_bvh/query/nearest.cpp"
@@ -75,7 +75,8 @@ HWY_INLINE std::uint32_t no_farther(const LeafBlock& leaf, const BallScreen& bal
 
 /// Asks the exact kernel about a triangle. Its corners are at hand, in the order that the kernel
 /// puts them in, where the mesh's coordinates are floats.
-HWY_INLINE void ask(const LeafBlock& leaf, std::size_t lane, const WideBvh& tree, Best& best) {
+HWY_INLINE void ask(const LeafBlock& leaf, std::size_t lane, const WideBvh::Tree& tree,
+                    Best& best) {
   if (!leaf.is_used(lane)) return;
   const TriangleId t = leaf.triangle(lane);
   const Ball& ball = best.reach.ball;
@@ -99,7 +100,7 @@ constexpr std::size_t work_of_looking = 3;
 constexpr std::size_t work_of_asking = 3;
 
 /// Looks at a leaf: first at its likely nearest, which leaves few others to ask about.
-HWY_INLINE void look(const LeafBlock& leaf, const WideBvh& tree, Budget& budget, Best& best) {
+HWY_INLINE void look(const LeafBlock& leaf, const WideBvh::Tree& tree, Budget& budget, Best& best) {
   std::size_t likely = 0;
   std::uint32_t left = no_farther(leaf, best.reach, likely);
   if (left == 0) return;
@@ -115,7 +116,7 @@ HWY_INLINE void look(const LeafBlock& leaf, const WideBvh& tree, Budget& budget,
 }
 
 /// Has the memory brought nearer of what comes soon.
-HWY_INLINE void fetch(const WideBvh& tree, std::uint32_t what) {
+HWY_INLINE void fetch(const WideBvh::Tree& tree, std::uint32_t what) {
   const bool is_leaf = (what & NodeBlock::leaf) != 0;
   const char* lines = is_leaf
                           ? reinterpret_cast<const char*>(&tree.leaves()[what & ~NodeBlock::leaf])
@@ -127,7 +128,7 @@ HWY_INLINE void fetch(const WideBvh& tree, std::uint32_t what) {
 /// Looks into boxes, the nearest first, but not into what `is_beyond`. `measure` tells how far the
 /// boxes of a node are at least, and `look` looks at a leaf. Whether the budget was enough.
 template <class Distance, class IsBeyond, class Measure, class Look>
-HWY_INLINE bool walk(const WideBvh& tree, Budget& budget, const IsBeyond& is_beyond,
+HWY_INLINE bool walk(const WideBvh::Tree& tree, Budget& budget, const IsBeyond& is_beyond,
                      const Measure& measure, const Look& look) {
   struct Waiting {
     Distance distance;
@@ -167,7 +168,8 @@ HWY_INLINE bool walk(const WideBvh& tree, Budget& budget, const IsBeyond& is_bey
   return true;
 }
 
-TriangleId nearest_in_floats(const WideBvh& tree, const BallScreen& around_all, Budget& budget) {
+TriangleId nearest_in_floats(const WideBvh::Tree& tree, const BallScreen& around_all,
+                             Budget& budget) {
   Best best{no_triangle, around_all};
   const bool is_found = walk<float>(
       tree, budget, [&](float distance2) HWY_ATTR { return distance2 > best.reach.box_reach2; },
@@ -179,7 +181,7 @@ TriangleId nearest_in_floats(const WideBvh& tree, const BallScreen& around_all, 
 
 /// The same for a point so far off that floats cannot tell one box from the next: in double, a box
 /// and a triangle at a time.
-TriangleId nearest_from_afar(const WideBvh& tree, const Vec3& point, Budget& budget) {
+TriangleId nearest_from_afar(const WideBvh::Tree& tree, const Vec3& point, Budget& budget) {
   TriangleId best = no_triangle;
   double least = std::numeric_limits<double>::infinity();
   const Vec3 from_origin = point - tree.frame().origin;
@@ -222,12 +224,12 @@ TriangleId WideBvh::nearest(const Vec3& point, Budget& budget) const noexcept {
   const Box& bounds = mesh().bounds();
   const double farthest =
       (point - bounds.low).cwiseAbs().cwiseMax((bounds.high - point).cwiseAbs()).norm();
-  const BallScreen around_all({point, farthest * (1.0 + 1e-12)}, bounds, frame_);
+  const BallScreen around_all({point, farthest * (1.0 + 1e-12)}, bounds, tree_->frame());
   constexpr double afar = 32.0;  // times the mesh: from there on it is the faster one
   if (!around_all.fits || farthest > afar * bounds.size().norm()) {
-    return HWY_DYNAMIC_DISPATCH(nearest_from_afar)(*this, point, budget);
+    return HWY_DYNAMIC_DISPATCH(nearest_from_afar)(*tree_, point, budget);
   }
-  return HWY_DYNAMIC_DISPATCH(nearest_in_floats)(*this, around_all, budget);
+  return HWY_DYNAMIC_DISPATCH(nearest_in_floats)(*tree_, around_all, budget);
 }
 
 }  // namespace keepout

@@ -4,9 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "../tree.h"
 #include "keepout/geometry/shapes.h"
-#include "keepout/index/triangle_blocks.h"
-#include "keepout/index/wide_bvh.h"
 
 namespace keepout {
 

@@ -21,7 +21,7 @@ void fetch(const NodeBlock& node) noexcept {
 
 }  // namespace
 
-void Frontier::add(const WideBvh& tree, std::uint32_t node, std::size_t lane) noexcept {
+void Frontier::add(const WideBvh::Tree& tree, std::uint32_t node, std::size_t lane) noexcept {
   const NodeBlock& from = tree.nodes()[node];
   NodeBlock& block = blocks_[size_ / NodeBlock::lanes];
   const std::size_t to = size_ % NodeBlock::lanes;
@@ -41,7 +41,7 @@ void Frontier::add(const WideBvh& tree, std::uint32_t node, std::size_t lane) no
   ++size_;
 }
 
-const CylinderBlock& Frontier::cylinders(const WideBvh& tree, std::size_t block) noexcept {
+const CylinderBlock& Frontier::cylinders(const WideBvh::Tree& tree, std::size_t block) noexcept {
   CylinderBlock& its = cylinders_[block];
   if (has_cylinders_[block]) return its;
   has_cylinders_[block] = true;
@@ -61,7 +61,7 @@ const CylinderBlock& Frontier::cylinders(const WideBvh& tree, std::size_t block)
   return its;
 }
 
-std::size_t Frontier::gather(const WideBvh& tree, const Ball& ball) noexcept {
+std::size_t Frontier::gather(const WideBvh::Tree& tree, const Ball& ball) noexcept {
   struct Unopened {
     std::uint32_t node;
     std::size_t lane;

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <span>
 
+#include "../tree.h"
 #include "keepout/geometry/shapes.h"
-#include "keepout/index/wide_bvh.h"
 
 namespace keepout {
 
@@ -33,14 +33,14 @@ class Frontier {
 
   /// Makes it cover the ball. The work is bounded: what is left over stays unopened, as large
   /// boxes. Returns the number of nodes that were looked at.
-  std::size_t gather(const WideBvh& tree, const Ball& ball) noexcept;
+  std::size_t gather(const WideBvh::Tree& tree, const Ball& ball) noexcept;
 
   std::span<const NodeBlock> blocks() const noexcept {
     return {blocks_.data(), (size_ + NodeBlock::lanes - 1) / NodeBlock::lanes};
   }
 
   /// Beside the boxes of a block. Taken from the tree when first asked for, which few cycles do.
-  const CylinderBlock& cylinders(const WideBvh& tree, std::size_t block) noexcept;
+  const CylinderBlock& cylinders(const WideBvh::Tree& tree, std::size_t block) noexcept;
 
   std::size_t size() const noexcept { return size_; }
 
@@ -57,7 +57,7 @@ class Frontier {
     std::uint32_t lane;
   };
 
-  void add(const WideBvh& tree, std::uint32_t node, std::size_t lane) noexcept;
+  void add(const WideBvh::Tree& tree, std::uint32_t node, std::size_t lane) noexcept;
 
   Ball problem_{Vec3::Zero(), -1.0};
   double free_radius_ = -1.0;  // around the same centre there are no boxes [length]

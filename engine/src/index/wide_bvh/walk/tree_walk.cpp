@@ -35,11 +35,7 @@ std::uint32_t lanes_used(const LeafBlock& leaf) noexcept {
 
 }  // namespace
 
-std::unique_ptr<MotionWalk> WideBvh::walk_along_motions(Budget& budget) const {
-  return std::make_unique<TreeWalk>(*this, budget);
-}
-
-TreeWalk::TreeWalk(const WideBvh& tree, Budget& budget)
+TreeWalk::TreeWalk(const WideBvh::Tree& tree, Budget& budget)
     : tree_(tree),
       budget_(budget),
       leaves_(most_leaves),

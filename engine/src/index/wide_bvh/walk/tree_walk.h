@@ -6,10 +6,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "../tree.h"
 #include "filters.h"
 #include "frontier.h"
 #include "keepout/index/motion_walk.h"
-#include "keepout/index/wide_bvh.h"
 
 namespace keepout {
 
@@ -20,7 +20,7 @@ namespace keepout {
 class TreeWalk final : public MotionWalk {
  public:
   /// Both must outlive this. Precondition: the tree is not refit.
-  TreeWalk(const WideBvh& tree, Budget& budget);
+  TreeWalk(const WideBvh::Tree& tree, Budget& budget);
 
   bool begin(const Start& start) noexcept override;
   void begin_again(double level) noexcept override;
@@ -79,7 +79,7 @@ class TreeWalk final : public MotionWalk {
   Triangle corners(std::uint32_t leaf, std::size_t lane) const noexcept;
   bool comes_too_late(float time) const noexcept { return static_cast<double>(time) > latest_; }
 
-  const WideBvh& tree_;
+  const WideBvh::Tree& tree_;
   Budget& budget_;
   Frontier frontier_;
   double padding_ = 0.0;  // gathered beyond what is needed, for cycles to come [length]

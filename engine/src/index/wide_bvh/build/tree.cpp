@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "keepout/index/wide_bvh.h"
+#include "../tree.h"
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <bit>
-#include <cstring>
 #include <limits>
-#include <utility>
+#include <vector>
 
 #include "../../../parallel.h"
 #include "../../tree_parts/leaf_fill.h"
@@ -16,6 +14,9 @@
 #include "keepout/error.h"
 
 namespace keepout {
+
+static_assert(WideBvh::most_triangles == LeafBlock::most_triangles);
+
 namespace {
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
@@ -123,44 +124,7 @@ void close_lanes(NodeBlock& node, CylinderBlock& cylinders, std::size_t first) n
 
 }  // namespace
 
-WideBvh::WideBvh(std::shared_ptr<const Mesh> mesh, unsigned threads)
-    : SpatialIndex(std::move(mesh)) {
-  make_room();
-  threads = thread_count(threads);
-  Division(this->mesh(), threads, leaves_);
-  fit(LeafFill(this->mesh(), threads), threads);
-}
-
-WideBvh::WideBvh(std::shared_ptr<const Mesh> mesh, std::span<const TriangleId> order,
-                 unsigned threads)
-    : SpatialIndex(std::move(mesh)) {
-  const std::size_t count = this->mesh().triangle_count();
-  threads = thread_count(threads);
-  std::vector<std::uint8_t> named(count);
-  std::atomic<bool> known = order.size() == count;
-  share_ranges(known ? count : 0, threads, [&](std::size_t begin, std::size_t end) {
-    for (const TriangleId t : order.subspan(begin, end - begin)) {
-      if (t >= count) {
-        known = false;
-      } else {
-        std::atomic_ref(named[t]).store(1, std::memory_order_relaxed);
-      }
-    }
-  });
-  // As many as there are, and none that is missing: so none is there twice.
-  if (!known || std::ranges::find(named, 0) != named.end()) {
-    throw Error(
-        "the order of a wide_bvh names each triangle of the mesh once, and this one does not");
-  }
-  make_room();
-  for (std::size_t i = 0; i < leaves_.size() * LeafBlock::lanes; ++i) {
-    leaves_[i / LeafBlock::lanes].source[i % LeafBlock::lanes] = i < count ? order[i] : no_triangle;
-  }
-  fit(LeafFill(this->mesh(), threads), threads);
-}
-
-/// For the blocks of the mesh, whose places follow from the number of its triangles.
-void WideBvh::make_room() {
+WideBvh::Tree::Tree(const WideBvh& index) : index_(index) {
   const std::size_t count = mesh().triangle_count();
   if (count > most_triangles) {
     throw Error("a wide_bvh holds at most 2^31 - 1 triangles: split or decimate the mesh");
@@ -174,44 +138,16 @@ void WideBvh::make_room() {
   cylinders_.resize(nodes);
 }
 
-std::vector<TriangleId> WideBvh::order() const {
-  std::vector<TriangleId> order;
-  order.reserve(mesh().triangle_count());
-  for (const LeafBlock& leaf : leaves_) {
-    for (std::size_t lane = 0; lane < LeafBlock::lanes && leaf.is_used(lane); ++lane) {
-      order.push_back(leaf.triangle(lane));
-    }
+void WideBvh::Tree::divide(unsigned threads) { Division(mesh(), threads, leaves_); }
+
+void WideBvh::Tree::divide(std::span<const TriangleId> order) noexcept {
+  for (std::size_t i = 0; i < leaves_.size() * LeafBlock::lanes; ++i) {
+    leaves_[i / LeafBlock::lanes].source[i % LeafBlock::lanes] =
+        i < order.size() ? order[i] : no_triangle;
   }
-  return order;
 }
 
-std::unique_ptr<SpatialIndex> WideBvh::refitted(std::shared_ptr<const Mesh> moved) const {
-  require_same_triangles(moved.get(), thread_count(0));
-  return std::make_unique<WideBvh>(std::move(moved), order());
-}
-
-void WideBvh::require_same_triangles(const Mesh* moved, unsigned threads) const {
-  if (moved == nullptr) throw Error("a refit is to a mesh: none was given");
-  const auto corners = mesh().triangles();
-  const auto others = moved->triangles();
-  std::atomic<bool> same =
-      corners.size() == others.size() && mesh().vertex_count() == moved->vertex_count();
-  share_ranges(same ? corners.size() : 0, threads, [&](std::size_t begin, std::size_t end) {
-    const std::size_t bytes = (end - begin) * sizeof(Corners);
-    if (std::memcmp(&corners[begin], &others[begin], bytes) != 0) same = false;
-  });
-  if (!same) throw Error("a refit is for moved vertices: the triangles are to be the same");
-}
-
-void WideBvh::refit(std::shared_ptr<const Mesh> moved, unsigned threads) {
-  threads = thread_count(threads);
-  require_same_triangles(moved.get(), threads);
-  const LeafFill fill(*moved, threads);
-  set_mesh(std::move(moved));
-  fit(fill, threads);
-}
-
-void WideBvh::fit(const LeafFill& fill, unsigned threads) {
+void WideBvh::Tree::fit(const LeafFill& fill, unsigned threads) {
   frame_ = fill.frame();
 
   // Each level stands behind the one above it: the lowest is the last.
@@ -245,7 +181,7 @@ void WideBvh::fit(const LeafFill& fill, unsigned threads) {
 }
 
 /// Makes a node of the leaves first .. last - 1.
-void WideBvh::enclose_leaves(std::size_t self, std::size_t first, std::size_t last) noexcept {
+void WideBvh::Tree::enclose_leaves(std::size_t self, std::size_t first, std::size_t last) noexcept {
   NodeBlock& node = nodes_[self];
   SixteenLeaves leaves;
   for (std::size_t lane = 0; lane < NodeBlock::lanes; ++lane) {
@@ -259,7 +195,7 @@ void WideBvh::enclose_leaves(std::size_t self, std::size_t first, std::size_t la
 }
 
 /// Makes a node of the nodes first .. last - 1.
-void WideBvh::enclose_nodes(std::size_t self, std::size_t first, std::size_t last) noexcept {
+void WideBvh::Tree::enclose_nodes(std::size_t self, std::size_t first, std::size_t last) noexcept {
   for (std::size_t child = first; child < last; ++child) {
     enclose(nodes_[child], cylinders_[child], nodes_[self], cylinders_[self], child - first);
     nodes_[self].child[child - first] = static_cast<std::uint32_t>(child);
@@ -267,7 +203,7 @@ void WideBvh::enclose_nodes(std::size_t self, std::size_t first, std::size_t las
   close_lanes(nodes_[self], cylinders_[self], last - first);
 }
 
-std::size_t WideBvh::memory() const noexcept {
+std::size_t WideBvh::Tree::memory() const noexcept {
   return nodes_.capacity() * sizeof(NodeBlock) + cylinders_.capacity() * sizeof(CylinderBlock) +
          leaves_.capacity() * sizeof(LeafBlock);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "keepout/index/block_memory.h"
+#include "block_memory.h"
 
 #include <cstdlib>
 #include <new>

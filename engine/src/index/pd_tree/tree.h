@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "../tree_parts/block_memory.h"
+#include "../tree_parts/triangle_blocks.h"
+#include "keepout/index/pd_tree.h"
+
+namespace keepout {
+
+/// An oriented box around consecutive leaves, in one cache line.
+struct alignas(64) PdNode {
+  /// The principal directions of what is in the box, largest spread first: orthonormal to the
+  /// rounding of floats. across[axis][direction], so that the three directions are together.
+  float across[3][3];
+
+  float center[3];  // of the box, from the origin of the tree's frame [length]
+  float half[3];    // half of the box's size along each direction, rounded outward [length]
+
+  /// How many leaves are in the box. Where more than one, the first half of them, rounded down, is
+  /// in the next node, and the others in the one behind that node's subtree.
+  std::uint32_t leaves;
+};
+
+/// The nodes and leaves of a PdTree.
+class PdTree::Tree final : public TriangleBlocks {
+ public:
+  /// Builds it. Throws Error for a mesh of more than most_triangles.
+  Tree(const PdTree& index, unsigned threads);
+
+  /// A parent stands before its children; the first is the root.
+  std::span<const PdNode> nodes() const noexcept { return nodes_; }
+  /// In the order in which the nodes hold them.
+  std::span<const LeafBlock> leaves() const noexcept override { return leaves_; }
+  const LeafFrame& frame() const noexcept override { return frame_; }
+  void collect_leaves(const Ball& ball, LeafBuffer& found) const noexcept override;
+
+  /// Memory of the nodes and leaves. [bytes]
+  std::size_t memory() const noexcept;
+
+ private:
+  const PdTree& index_;
+  BlockVector<PdNode> nodes_;
+  BlockVector<LeafBlock> leaves_;
+  LeafFrame frame_;
+};
+
+}  // namespace keepout
