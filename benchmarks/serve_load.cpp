@@ -22,10 +22,10 @@
 #include <thread>
 #include <vector>
 
-#include "bench/timing.h"
 #include "keepout/fixtures/poses.h"
 #include "keepout/mesh/load_mesh.h"
-#include "machine.h"
+#include "shared/machine.h"
+#include "shared/timing.h"
 
 namespace {
 

@@ -2,9 +2,11 @@
 #
 # Dependencies point one way, and public headers show nobody else's but Eigen's.
 # Run as: cmake -D SOURCE=... -P layering_test.cmake
+cmake_minimum_required(VERSION 3.25)
 
 # Fails for each file of a folder in which a line matches the expression.
 function(forbid folder expression why)
+  set_property(GLOBAL APPEND PROPERTY folders_with_rules ${folder})
   file(GLOB_RECURSE files "${SOURCE}/${folder}/*.h" "${SOURCE}/${folder}/*.cpp")
   list(LENGTH files count)
   if(count EQUAL 0)
@@ -85,16 +87,59 @@ foreach(part engine adapters adapters/ompl adapters/urdf solvers control robot f
 endforeach()
 
 # Within the engine: geometry below mesh, mesh below index, index below activation, all below step.
+set(below "${include}(keepout/|(\\.\\./)+)")
 foreach(kind include/keepout src)
-  forbid(engine/${kind}/geometry "${include}keepout/(mesh|index|activation|step)/" "geometry is the ground")
-  forbid(engine/${kind}/mesh "${include}keepout/(index|activation|step)/" "a mesh knows no index")
-  forbid(engine/${kind}/index "${include}keepout/(activation|step)/" "an index knows no rule")
-  forbid(engine/${kind}/activation "${include}keepout/step/" "a rule knows no step")
+  forbid(engine/${kind}/geometry "${below}(mesh|index|activation|step)/" "geometry is the ground")
+  forbid(engine/${kind}/mesh "${below}(index|activation|step)/" "a mesh knows no index")
+  forbid(engine/${kind}/index "${below}(activation|step)/" "an index knows no rule")
+  forbid(engine/${kind}/activation "${below}step/" "a rule knows no step")
+endforeach()
+
+# Within the index: the two trees stand on their common parts, and do not know each other.
+forbid(engine/src/index/tree_parts "${include}(\\.\\./(pd_tree|wide_bvh)/|keepout/index/(pd_tree|wide_bvh))" "common parts know no tree")
+forbid(engine/src/index/pd_tree "${include}(\\.\\./wide_bvh/|keepout/index/wide_bvh)" "one tree knows no other")
+forbid(engine/src/index/wide_bvh "${include}(\\.\\./)+pd_tree/|${include}keepout/index/pd_tree" "one tree knows no other")
+
+# Within the command: main and its smaller commands know every folder; a folder knows those that are
+# named here.
+set(folders bench compare live page plan record serve shared simulate verify)
+set(known_to_shared)
+set(known_to_page shared)
+set(known_to_record shared page)
+set(known_to_serve shared)
+set(known_to_compare shared record)
+set(known_to_bench shared record compare)
+set(known_to_verify shared record)
+set(known_to_live shared page verify)
+set(known_to_plan shared record verify)
+set(known_to_simulate shared record compare bench verify)
+foreach(folder IN LISTS folders)
+  set(others ${folders})
+  list(REMOVE_ITEM others ${folder} ${known_to_${folder}})
+  list(JOIN others "|" others)
+  forbid(apps/keepout/${folder} "${include}\"(commands\\.h|\\.\\./|(${others})/)" "of the command, ${folder} knows only: ${known_to_${folder}}")
 endforeach()
 
 # What a page calls is the library, what is found wrong with a mesh, and no study.
-forbid(apps/web "${include}\"(bench|compare|plan|report|serve|verify)/" "a page knows no study")
+forbid(apps/web "${include}\"(bench|compare|live|plan|record|serve|simulate|verify)/" "a page knows no study")
 forbid(apps/web "${include}keepout/oracle/" "the oracle is for tests and the command")
 
-# What serves other programs needs none of the command's studies.
-forbid(apps/keepout/serve "${include}\"(bench|compare|report|verify)/" "serve knows no study")
+# What tests, shows and compares is above everything, and nothing may need it.
+forbid(examples "${include}(keepout/(fixtures|oracle)/|\"\\.\\./)" "an example is a program of a user")
+forbid(experiments "${include}\"(\\.\\./|shared/|bench/|verify/)" "experiments know the libraries, and not the command")
+forbid(benchmarks "${include}\"(bench|compare|live|plan|record|serve|simulate|verify)/" "the load on serve knows no study")
+
+# Every folder with sources has a rule, but for those that may include everything: tests and docs.
+get_property(ruled GLOBAL PROPERTY folders_with_rules)
+foreach(parent "" apps/ apps/keepout/ adapters/)
+  file(GLOB entries RELATIVE "${SOURCE}" "${SOURCE}/${parent}*")
+  foreach(entry IN LISTS entries)
+    if(NOT IS_DIRECTORY "${SOURCE}/${entry}" OR entry MATCHES "^(build|docs|tests|adapters|apps|apps/keepout)$" OR entry IN_LIST ruled)
+      continue()
+    endif()
+    file(GLOB_RECURSE sources "${SOURCE}/${entry}/*.h" "${SOURCE}/${entry}/*.cpp")
+    if(sources)
+      message(SEND_ERROR "${entry} has sources, and no rule here says what it may include")
+    endif()
+  endforeach()
+endforeach()

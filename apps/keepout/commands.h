@@ -12,12 +12,10 @@
 #include "keepout/factory/make_motion_constraint.h"
 #include "keepout/mesh/load_mesh.h"
 #include "keepout/step/guide.h"
-#include "record/record.h"
-#include "simulate/hand.h"
 
 namespace keepout::app {
 
-// What the smaller commands do, and what each is told. The larger ones have folders of their own.
+// The smaller commands and their options. Each larger one has a folder.
 
 struct InspectOptions {
   std::filesystem::path mesh;
@@ -64,44 +62,5 @@ struct ReplayOptions {
 /// Runs one step for each line of a pose file and writes what came out. A summary goes to `out`.
 /// Throws Error, also when one file would overwrite another; then neither is written.
 void replay(const ReplayOptions& options, std::ostream& out);
-
-enum class Timings {
-  of_the_run,    // what its own steps took
-  of_every_part  // and a quick benchmark of everything that could take its parts' place
-};
-
-/// Whether the tables of the report are printed too.
-enum class Tables { in_the_report, printed };
-
-struct SimulateOptions {
-  std::filesystem::path mesh;
-  LoadOptions load = {};
-  RecordFiles files = {.json = {}, .page = "keepout-report.html"};
-  std::vector<std::string> rules;       // run beside the tool without a fixture
-  MotionConstraintSettings constraint;  // its activation is each of the rules in turn
-  HandSettings hand;
-  double max_step = 0.5;  // longest increment asked for in a cycle [mm]
-  Timings timings = Timings::of_the_run;
-  Tables tables = Tables::in_the_report;
-  std::string robot;                          // whose instrument is driven instead; empty: none
-  std::vector<std::filesystem::path> meshes;  // for it; without one, the largest real ones
-  std::vector<double> speeds{1.0, 5.0};       // of it, in multiples of 0.5 mm and 0.02 rad a cycle
-  std::string called_as = "keepout";          // what the user is told to type next
-  std::string command;                        // that does it again
-};
-
-/// Pushes the tool over and into the anatomy in closed loop, without a fixture and with each rule;
-/// writes a record and its report, and prints to `out` in a dozen lines what came out and what to
-/// try next. A rule that is named twice runs once. Throws Error, also when the report would
-/// overwrite the mesh; then there is no report. Gives the exit status: exit_interrupted where a
-/// signal stopped the benchmark, of which the report has what was finished.
-int simulate(const SimulateOptions& options, std::ostream& out);
-
-/// What `simulate` does where a robot is named: drives its instrument over the meshes in each mode,
-/// and judges each cycle; writes a record of the kind simulate_robot (docs/records.md) and its
-/// report, and prints a table. A StopSignal ends it early, and what is done is kept. The exit
-/// status: failure when a certified cycle broke what docs/joint-space-step.md promises. Throws
-/// Error.
-int simulate_robot(const SimulateOptions& options, std::ostream& out);
 
 }  // namespace keepout::app

@@ -7,14 +7,14 @@
 #include <string_view>
 #include <vector>
 
-#include "columns.h"
 #include "commands.h"
-#include "findings.h"
 #include "keepout/index/pd_tree.h"
 #include "keepout/index/self_intersection.h"
 #include "keepout/mesh/doctor.h"
-#include "named_mesh.h"
-#include "number_text.h"
+#include "shared/columns.h"
+#include "shared/findings.h"
+#include "shared/named_mesh.h"
+#include "shared/number_text.h"
 
 namespace keepout::app {
 namespace {

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "bench/bench.h"
-#include "command_line.h"
 #include "commands.h"
 #include "compare/compare.h"
 #include "keepout/activation/registry.h"
@@ -21,11 +20,13 @@
 #include "keepout/solvers/registry.h"
 #include "keepout/version.h"
 #include "live/live.h"
-#include "named_mesh.h"
-#include "names.h"
 #include "plan/plan.h"
 #include "record/report.h"
 #include "serve/serve.h"
+#include "shared/command_line.h"
+#include "shared/named_mesh.h"
+#include "shared/names.h"
+#include "simulate/simulate.h"
 #include "verify/verify.h"
 
 namespace keepout::app {

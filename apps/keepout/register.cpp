@@ -5,14 +5,14 @@
 #include <string>
 #include <vector>
 
-#include "columns.h"
 #include "commands.h"
 #include "keepout/control/rigid_fit.h"
 #include "keepout/control/target_error.h"
 #include "keepout/error.h"
-#include "number_text.h"
-#include "output_file.h"
-#include "pose_file.h"
+#include "shared/columns.h"
+#include "shared/number_text.h"
+#include "shared/output_file.h"
+#include "shared/pose_file.h"
 
 namespace keepout::app {
 namespace {

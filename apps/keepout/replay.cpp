@@ -6,13 +6,13 @@
 #include <ostream>
 #include <vector>
 
-#include "clip.h"
 #include "commands.h"
-#include "named_mesh.h"
-#include "number_text.h"
-#include "output_file.h"
-#include "pose_file.h"
-#include "progress.h"
+#include "shared/clip.h"
+#include "shared/named_mesh.h"
+#include "shared/number_text.h"
+#include "shared/output_file.h"
+#include "shared/pose_file.h"
+#include "shared/progress.h"
 
 namespace keepout::app {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "apps/command_process.h"
-#include "names.h"
+#include "shared/names.h"
 
 namespace keepout::app {
 namespace {

@@ -9,18 +9,18 @@
 
 #include "bench/benchmark.h"
 #include "bench/benchmark_verdict.h"
-#include "bench/parts.h"
-#include "command_line.h"
 #include "compare/compare.h"
 #include "compare/comparison.h"
 #include "keepout/activation/registry.h"
 #include "keepout/error.h"
 #include "keepout/fixtures/real_mesh.h"
-#include "named_mesh.h"
-#include "names.h"
-#include "number_text.h"
-#include "output_file.h"
 #include "record/record.h"
+#include "shared/command_line.h"
+#include "shared/named_mesh.h"
+#include "shared/names.h"
+#include "shared/number_text.h"
+#include "shared/output_file.h"
+#include "shared/parts.h"
 
 namespace keepout::app {
 namespace {

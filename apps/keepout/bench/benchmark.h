@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "bench/timing.h"
-#include "columns.h"
-#include "machine.h"
+#include "shared/columns.h"
+#include "shared/machine.h"
+#include "shared/timing.h"
 
 namespace keepout::app {
 

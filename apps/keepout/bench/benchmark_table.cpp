@@ -6,9 +6,9 @@
 #include "bench/benchmark.h"
 #include "bench/benchmark_verdict.h"
 #include "bench/published_rate.h"
-#include "number_text.h"
 #include "record/flat_rows.h"
 #include "record/json_parts.h"
+#include "shared/number_text.h"
 
 namespace keepout::app {
 namespace {

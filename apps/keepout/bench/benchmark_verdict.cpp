@@ -11,8 +11,8 @@
 #include <tuple>
 #include <vector>
 
-#include "bench/used_cores.h"
-#include "number_text.h"
+#include "shared/number_text.h"
+#include "shared/used_cores.h"
 
 namespace keepout::app {
 namespace {

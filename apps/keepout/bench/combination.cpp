@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
-#include "bench/parts.h"
 #include "keepout/activation/registry.h"
-#include "names.h"
+#include "shared/names.h"
+#include "shared/parts.h"
 
 namespace keepout::app {
 namespace {

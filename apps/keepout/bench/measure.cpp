@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "number_text.h"
+#include "shared/number_text.h"
 
 namespace keepout::app {
 namespace {

@@ -4,8 +4,8 @@
 #include <span>
 
 #include "bench/benchmark.h"
-#include "bench/reference.h"
-#include "stop_signal.h"
+#include "compare/reference.h"
+#include "shared/stop_signal.h"
 
 namespace keepout::app {
 

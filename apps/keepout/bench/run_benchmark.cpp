@@ -10,15 +10,15 @@
 #include <utility>
 
 #include "bench/measure.h"
-#include "bench/parts.h"
-#include "bench/used_cores.h"
 #include "keepout/activation/registry.h"
 #include "keepout/error.h"
 #include "keepout/fixtures/motions.h"
 #include "keepout/index/pd_tree.h"
-#include "machine.h"
-#include "number_text.h"
-#include "progress.h"
+#include "shared/machine.h"
+#include "shared/number_text.h"
+#include "shared/parts.h"
+#include "shared/progress.h"
+#include "shared/used_cores.h"
 
 namespace keepout::app {
 namespace {

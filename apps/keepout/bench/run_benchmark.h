@@ -8,8 +8,8 @@
 
 #include "bench/benchmark.h"
 #include "bench/combination.h"
-#include "bench/subject.h"
-#include "stop_signal.h"
+#include "compare/subject.h"
+#include "shared/stop_signal.h"
 
 namespace keepout::app {
 

@@ -5,19 +5,19 @@
 #include <cstdlib>
 #include <iostream>
 
-#include "bench/parts.h"
-#include "bench/subject.h"
-#include "command_line.h"
 #include "compare/agreement.h"
 #include "compare/comparison.h"
+#include "compare/subject.h"
 #include "keepout/activation/registry.h"
-#include "machine.h"
-#include "named_mesh.h"
-#include "names.h"
-#include "number_text.h"
-#include "output_file.h"
 #include "record/record.h"
-#include "stop_signal.h"
+#include "shared/command_line.h"
+#include "shared/machine.h"
+#include "shared/named_mesh.h"
+#include "shared/names.h"
+#include "shared/number_text.h"
+#include "shared/output_file.h"
+#include "shared/parts.h"
+#include "shared/stop_signal.h"
 
 namespace keepout::app {
 namespace {

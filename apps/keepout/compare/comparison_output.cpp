@@ -2,10 +2,10 @@
 #include <ostream>
 #include <string>
 
-#include "columns.h"
 #include "compare/comparison.h"
-#include "number_text.h"
 #include "record/json_parts.h"
+#include "shared/columns.h"
+#include "shared/number_text.h"
 
 namespace keepout::app {
 namespace {

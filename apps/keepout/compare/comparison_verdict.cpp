@@ -3,8 +3,8 @@
 #include <set>
 
 #include "compare/comparison.h"
-#include "names.h"
-#include "number_text.h"
+#include "shared/names.h"
+#include "shared/number_text.h"
 
 namespace keepout::app {
 namespace {

@@ -7,9 +7,8 @@
 #include <optional>
 #include <utility>
 
-#include "bench/parts.h"
-#include "bench/reference.h"
 #include "compare/agreement.h"
+#include "compare/reference.h"
 #include "keepout/activation/registry.h"
 #include "keepout/fixtures/motions.h"
 #include "keepout/fixtures/poses.h"
@@ -17,7 +16,8 @@
 #include "keepout/index/pd_tree.h"
 #include "keepout/oracle/distance.h"
 #include "keepout/registry.h"
-#include "progress.h"
+#include "shared/parts.h"
+#include "shared/progress.h"
 
 namespace keepout::app {
 namespace {

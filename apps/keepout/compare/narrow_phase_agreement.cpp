@@ -6,11 +6,11 @@
 #include <memory>
 #include <string_view>
 
-#include "bench/benchmark.h"
 #include "compare/agreement.h"
 #include "keepout/adapters/narrow_phase_registry.h"
 #include "keepout/fixtures/random.h"
-#include "progress.h"
+#include "shared/progress.h"
+#include "shared/timing.h"
 
 namespace keepout::app {
 namespace {

@@ -2,12 +2,12 @@
 #include <algorithm>
 #include <string_view>
 
-#include "bench/benchmark.h"
 #include "compare/agreement.h"
 #include "keepout/solvers/active_set.h"
 #include "keepout/solvers/kkt.h"
 #include "keepout/solvers/registry.h"
-#include "progress.h"
+#include "shared/progress.h"
+#include "shared/timing.h"
 #if KEEPOUT_HAS_NLOPT
 #include "keepout/solvers/nlopt_solver.h"
 #endif

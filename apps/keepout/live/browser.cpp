@@ -9,7 +9,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "number_text.h"
+#include "shared/number_text.h"
 
 namespace keepout::app {
 

@@ -6,24 +6,24 @@
 #include <string_view>
 #include <utility>
 
-#include "clip.h"
-#include "columns.h"
-#include "command_line.h"
 #include "keepout/activation/registry.h"
 #include "keepout/factory/make_instrument_constraint.h"
 #include "keepout/index/index_cache.h"
 #include "keepout/version.h"
 #include "live/browser.h"
 #include "live/instrument_start.h"
-#include "named_mesh.h"
-#include "names.h"
-#include "number_text.h"
-#include "output_file.h"
 #include "page/base64.h"
 #include "page/gzip.h"
 #include "page/packed_mesh.h"
 #include "page/page_template.h"
-#include "progress.h"
+#include "shared/clip.h"
+#include "shared/columns.h"
+#include "shared/command_line.h"
+#include "shared/named_mesh.h"
+#include "shared/names.h"
+#include "shared/number_text.h"
+#include "shared/output_file.h"
+#include "shared/progress.h"
 
 namespace keepout::app {
 namespace {

@@ -11,14 +11,14 @@
 #include "keepout/error.h"
 #include "keepout/factory/make_motion_constraint.h"
 #include "keepout/ompl/straight_way.h"
-#include "named_mesh.h"
-#include "output_file.h"
 #include "plan/planning_run.h"
 #include "plan/robot/plan_robot.h"
-#include "progress.h"
 #include "record/flat_rows.h"
-#include "stop_signal.h"
-#include "wrapped_text.h"
+#include "shared/named_mesh.h"
+#include "shared/output_file.h"
+#include "shared/progress.h"
+#include "shared/stop_signal.h"
+#include "shared/wrapped_text.h"
 
 namespace keepout::app {
 namespace {

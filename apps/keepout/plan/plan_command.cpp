@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <limits>
 
-#include "command_line.h"
 #include "keepout/error.h"
-#include "names.h"
 #include "plan/plan.h"
+#include "shared/command_line.h"
+#include "shared/names.h"
 #include "verify/robot/start.h"
 
 namespace keepout::app {

@@ -7,11 +7,11 @@
 #include <ostream>
 #include <utility>
 
-#include "machine.h"
-#include "number_text.h"
 #include "plan/planning_run.h"
 #include "record/drawn_mesh.h"
 #include "record/record.h"
+#include "shared/machine.h"
+#include "shared/number_text.h"
 #include "verify/judge.h"
 
 namespace keepout::app {

@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "columns.h"
 #include "keepout/ompl/guard_pool.h"
 #include "plan/plan.h"
 #include "plan/problems.h"
+#include "shared/columns.h"
 
 namespace keepout::app {
 

@@ -10,7 +10,7 @@
 
 #include "keepout/error.h"
 #include "keepout/fixtures/random.h"
-#include "named_mesh.h"
+#include "shared/named_mesh.h"
 
 namespace keepout::app {
 namespace {

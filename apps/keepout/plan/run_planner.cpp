@@ -5,9 +5,9 @@
 
 #include "keepout/index/query.h"
 #include "keepout/ompl/planning.h"
-#include "number_text.h"
 #include "plan/ompl_run.h"
 #include "plan/planning_run.h"
+#include "shared/number_text.h"
 
 namespace keepout::app {
 namespace {

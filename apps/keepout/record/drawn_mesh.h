@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "columns.h"
 #include "keepout/mesh/mesh.h"
+#include "shared/columns.h"
 
 namespace keepout::app {
 

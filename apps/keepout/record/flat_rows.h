@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "columns.h"
+#include "shared/columns.h"
 
 namespace keepout::app {
 

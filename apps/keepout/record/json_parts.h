@@ -3,9 +3,9 @@
 
 #include <optional>
 
-#include "bench/timing.h"
-#include "columns.h"
-#include "machine.h"
+#include "shared/columns.h"
+#include "shared/machine.h"
+#include "shared/timing.h"
 
 // What the JSON of several records is made of.
 

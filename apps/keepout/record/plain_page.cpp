@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "number_text.h"
 #include "page/base64.h"
 #include "record/flat_rows.h"
+#include "shared/number_text.h"
 
 namespace keepout::app {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <iosfwd>
 
-#include "columns.h"
+#include "shared/columns.h"
 
 namespace keepout::app {
 

@@ -8,9 +8,9 @@
 #include <string_view>
 #include <vector>
 
-#include "columns.h"
-#include "machine.h"
-#include "output_file.h"
+#include "shared/columns.h"
+#include "shared/machine.h"
+#include "shared/output_file.h"
 
 namespace CLI {
 class App;

@@ -7,10 +7,10 @@
 #include <ostream>
 
 #include "keepout/error.h"
-#include "output_file.h"
 #include "record/plain_page.h"
 #include "record/record.h"
 #include "record/report_page.h"
+#include "shared/output_file.h"
 
 namespace keepout::app {
 namespace {

@@ -4,7 +4,7 @@
 #include <iosfwd>
 #include <string>
 
-#include "columns.h"
+#include "shared/columns.h"
 
 namespace keepout::app {
 

@@ -11,7 +11,7 @@
 #include "keepout/factory/convex_tool_text.h"
 #include "keepout/factory/guide_text.h"
 #include "keepout/mesh/load_mesh.h"
-#include "names.h"
+#include "shared/names.h"
 #if KEEPOUT_HAS_URDF
 #include "keepout/urdf/read_chain.h"
 #endif

@@ -8,8 +8,8 @@
 
 #include "keepout/robot/instrument.h"
 #include "keepout/step/guide.h"
-#include "names.h"
 #include "serve/answer.h"
+#include "shared/names.h"
 
 namespace keepout::app {
 namespace {

@@ -19,13 +19,13 @@
 #include <vector>
 
 #include "keepout/error.h"
-#include "named_mesh.h"
-#include "number_text.h"
-#include "progress.h"
 #include "serve/answer.h"
 #include "serve/service.h"
 #include "serve/unix_socket.h"
-#include "stop_signal.h"
+#include "shared/named_mesh.h"
+#include "shared/number_text.h"
+#include "shared/progress.h"
+#include "shared/stop_signal.h"
 
 namespace keepout::app {
 namespace {

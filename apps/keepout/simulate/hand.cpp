@@ -9,7 +9,7 @@
 #include "keepout/error.h"
 #include "keepout/fixtures/poses.h"
 #include "keepout/fixtures/random.h"
-#include "number_text.h"
+#include "shared/number_text.h"
 #include "simulate/tremor.h"
 
 namespace keepout::app {

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "simulate/simulate.h"
+
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -10,22 +12,21 @@
 
 #include "bench/bench.h"
 #include "bench/benchmark.h"
-#include "clip.h"
-#include "commands.h"
 #include "compare/compare.h"
 #include "compare/comparison.h"
 #include "keepout/activation/registry.h"
 #include "keepout/error.h"
-#include "named_mesh.h"
-#include "names.h"
-#include "number_text.h"
-#include "output_file.h"
-#include "progress.h"
 #include "record/record.h"
+#include "shared/clip.h"
+#include "shared/named_mesh.h"
+#include "shared/names.h"
+#include "shared/number_text.h"
+#include "shared/output_file.h"
+#include "shared/progress.h"
+#include "shared/wrapped_text.h"
 #include "simulate/audit.h"
 #include "simulate/simulation.h"
 #include "simulate/simulation_json.h"
-#include "wrapped_text.h"
 
 namespace keepout::app {
 namespace {

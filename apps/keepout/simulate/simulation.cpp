@@ -5,8 +5,8 @@
 #include <limits>
 #include <ostream>
 
-#include "bench/timing.h"
-#include "number_text.h"
+#include "shared/number_text.h"
+#include "shared/timing.h"
 
 namespace keepout::app {
 namespace {

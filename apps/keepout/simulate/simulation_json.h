@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "columns.h"
+#include "shared/columns.h"
 #include "simulate/simulation.h"
 
 namespace keepout::app {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "names.h"
-#include "number_text.h"
+#include "shared/names.h"
+#include "shared/number_text.h"
 #include "simulate/audit.h"
 
 namespace keepout::app {

@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "../columns.h"
 #include "judge.h"
 #include "keepout/step/motion_constraint.h"
 #include "scene.h"
+#include "shared/columns.h"
 
 namespace keepout::app {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../clip.h"
+#include "shared/clip.h"
 
 namespace keepout::app {
 

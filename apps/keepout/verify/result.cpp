@@ -6,11 +6,11 @@
 #include <cmath>
 #include <fstream>
 
-#include "../machine.h"
-#include "../number_text.h"
 #include "keepout/error.h"
 #include "keepout/simd_target.h"
 #include "record/record.h"
+#include "shared/machine.h"
+#include "shared/number_text.h"
 
 namespace keepout::app {
 namespace {

@@ -4,8 +4,8 @@
 #include <numeric>
 #include <ostream>
 
-#include "../number_text.h"
 #include "result.h"
+#include "shared/number_text.h"
 
 namespace keepout::app {
 namespace {

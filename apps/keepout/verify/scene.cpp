@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <utility>
 
-#include "../named_mesh.h"
 #include "keepout/adapters/index_registry.h"
 #include "keepout/error.h"
 #include "keepout/fixtures/real_mesh.h"
 #include "keepout/fixtures/shapes.h"
 #include "keepout/mesh/doctor.h"
+#include "shared/named_mesh.h"
 
 namespace keepout::app {
 

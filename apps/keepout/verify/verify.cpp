@@ -7,17 +7,17 @@
 #include <iostream>
 #include <sstream>
 
-#include "../command_line.h"
-#include "../machine.h"
-#include "../named_mesh.h"
-#include "../names.h"
-#include "../output_file.h"
-#include "../progress.h"
-#include "../stop_signal.h"
 #include "campaign.h"
 #include "keepout/adapters/index_registry.h"
 #include "keepout/error.h"
 #include "result.h"
+#include "shared/command_line.h"
+#include "shared/machine.h"
+#include "shared/named_mesh.h"
+#include "shared/names.h"
+#include "shared/output_file.h"
+#include "shared/progress.h"
+#include "shared/stop_signal.h"
 #include "verify/robot/hostile_mesh.h"
 #include "verify/robot/result.h"
 

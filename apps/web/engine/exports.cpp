@@ -18,8 +18,6 @@
 #include <vector>
 
 #include "anatomy.h"
-#include "clip.h"
-#include "findings.h"
 #include "json_text.h"
 #include "keepout/control/haptic_force.h"
 #include "keepout/error.h"
@@ -29,6 +27,8 @@
 #include "keepout/index/wide_bvh.h"
 #include "keepout/mesh/doctor.h"
 #include "keepout/mesh/load_mesh.h"
+#include "shared/clip.h"
+#include "shared/findings.h"
 
 namespace {
 

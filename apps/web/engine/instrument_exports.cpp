@@ -15,13 +15,13 @@
 #include <vector>
 
 #include "anatomy.h"
-#include "clip.h"
 #include "json_text.h"
 #include "keepout/error.h"
 #include "keepout/factory/make_instrument_constraint.h"
 #include "keepout/fixtures/robots.h"
 #include "keepout/index/query.h"
 #include "keepout/robot/instrument_constraint.h"
+#include "shared/clip.h"
 
 namespace {
 

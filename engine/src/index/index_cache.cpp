@@ -15,6 +15,7 @@
 #include "../read_only_file.h"
 #include "keepout/error.h"
 #include "keepout/file_replacement.h"
+#include "tree_parts/block_memory.h"
 
 namespace keepout {
 namespace {

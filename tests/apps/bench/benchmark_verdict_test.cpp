@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "number_text.h"
+#include "shared/number_text.h"
 
 namespace keepout::app {
 namespace {

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <set>
 
-#include "bench/parts.h"
 #include "keepout/activation/registry.h"
+#include "shared/parts.h"
 
 namespace keepout::app {
 namespace {

@@ -13,11 +13,11 @@
 #include <sstream>
 
 #include "apps/command_process.h"
-#include "bench/parts.h"
 #include "keepout/fixtures/shapes.h"
 #include "keepout/mesh/binary_stl.h"
 #include "keepout/solvers/registry.h"
-#include "number_text.h"
+#include "shared/number_text.h"
+#include "shared/parts.h"
 
 namespace keepout::test {
 namespace {

@@ -6,7 +6,7 @@
 #include "compare/agreement.h"
 #include "compare/compare.h"
 #include "keepout/fixtures/shapes.h"
-#include "stop_signal.h"
+#include "shared/stop_signal.h"
 
 namespace keepout::app {
 namespace {

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "apps/command_process.h"
-#include "columns.h"
+#include "shared/columns.h"
 
 namespace keepout::app {
 namespace {

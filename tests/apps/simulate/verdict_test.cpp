@@ -13,9 +13,9 @@
 #include <vector>
 
 #include "keepout/error.h"
-#include "names.h"
-#include "number_text.h"
 #include "record/record.h"
+#include "shared/names.h"
+#include "shared/number_text.h"
 #include "simulate/moments.h"
 #include "simulate/simulation_json.h"
 #include "simulation_scene.h"

@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "bench/reference.h"
-#include "bench/subject.h"
+#include "compare/reference.h"
+#include "compare/subject.h"
 #include "keepout/error.h"
 #include "keepout/factory/make_motion_constraint.h"
 #include "keepout/fixtures/poses.h"
@@ -14,7 +14,7 @@
 #include "keepout/fixtures/resample_mesh.h"
 #include "keepout/index/query.h"
 #include "keepout/index/wide_bvh.h"
-#include "number_text.h"
+#include "shared/number_text.h"
 
 namespace keepout::app {
 namespace {

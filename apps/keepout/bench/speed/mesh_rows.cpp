@@ -8,17 +8,17 @@
 #include <system_error>
 #include <utility>
 
-#include "bench/parts.h"
 #include "bench/speed/process.h"
 #include "bench/speed/speed_run.h"
-#include "bench/subject.h"
+#include "compare/subject.h"
 #include "keepout/factory/make_motion_constraint.h"
 #include "keepout/fixtures/real_mesh.h"
 #include "keepout/index/index_cache.h"
 #include "keepout/index/wide_bvh.h"
 #include "keepout/mesh/load_mesh.h"
-#include "machine.h"
-#include "number_text.h"
+#include "shared/machine.h"
+#include "shared/number_text.h"
+#include "shared/parts.h"
 
 #if KEEPOUT_WITH_ASSIMP
 #include <assimp/postprocess.h>

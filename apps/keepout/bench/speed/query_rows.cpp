@@ -5,12 +5,12 @@
 #include <cmath>
 #include <utility>
 
-#include "bench/parts.h"
 #include "bench/speed/speed_run.h"
 #include "keepout/fixtures/poses.h"
 #include "keepout/geometry/closest_point.h"
 #include "keepout/index/brute_force.h"
-#include "number_text.h"
+#include "shared/number_text.h"
+#include "shared/parts.h"
 
 namespace keepout::app {
 namespace {

@@ -11,11 +11,11 @@
 #include "bench/speed/speed_record.h"
 #include "bench/speed/speed_run.h"
 #include "keepout/fixtures/real_mesh.h"
-#include "machine.h"
-#include "number_text.h"
-#include "output_file.h"
 #include "record/record.h"
-#include "stop_signal.h"
+#include "shared/machine.h"
+#include "shared/number_text.h"
+#include "shared/output_file.h"
+#include "shared/stop_signal.h"
 
 namespace keepout::app {
 namespace {

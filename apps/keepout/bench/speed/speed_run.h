@@ -14,7 +14,7 @@
 #include "bench/speed/speed_record.h"
 #include "keepout/error.h"
 #include "keepout/fixtures/motions.h"
-#include "progress.h"
+#include "shared/progress.h"
 
 namespace keepout::app {
 

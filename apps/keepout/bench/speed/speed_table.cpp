@@ -4,9 +4,9 @@
 #include <utility>
 
 #include "bench/speed/speed_record.h"
-#include "number_text.h"
 #include "record/json_parts.h"
 #include "record/record.h"
+#include "shared/number_text.h"
 
 namespace keepout::app {
 namespace {

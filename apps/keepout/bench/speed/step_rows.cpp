@@ -7,12 +7,12 @@
 #include <memory>
 #include <utility>
 
-#include "bench/parts.h"
 #include "bench/speed/process.h"
 #include "bench/speed/speed_run.h"
 #include "keepout/fixtures/shapes.h"
 #include "keepout/solvers/registry.h"
-#include "number_text.h"
+#include "shared/number_text.h"
+#include "shared/parts.h"
 
 namespace keepout::app {
 namespace {

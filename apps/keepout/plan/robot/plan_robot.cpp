@@ -10,13 +10,13 @@
 
 #include "keepout/factory/make_instrument_constraint.h"
 #include "keepout/ompl/joint_planning.h"
-#include "named_mesh.h"
-#include "output_file.h"
 #include "plan/ompl_run.h"
-#include "progress.h"
 #include "record/flat_rows.h"
-#include "stop_signal.h"
-#include "wrapped_text.h"
+#include "shared/named_mesh.h"
+#include "shared/output_file.h"
+#include "shared/progress.h"
+#include "shared/stop_signal.h"
+#include "shared/wrapped_text.h"
 
 namespace keepout::app {
 namespace {

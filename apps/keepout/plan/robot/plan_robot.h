@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "columns.h"
 #include "plan/planning_run.h"
 #include "plan/robot/judge_path.h"
 #include "plan/robot/problems.h"
+#include "shared/columns.h"
 
 namespace keepout::app {
 

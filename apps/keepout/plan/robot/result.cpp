@@ -2,10 +2,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "machine.h"
-#include "number_text.h"
 #include "plan/robot/plan_robot.h"
 #include "record/record.h"
+#include "shared/machine.h"
+#include "shared/number_text.h"
 
 namespace keepout::app {
 namespace {

@@ -4,9 +4,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
-#include "clip.h"
 #include "keepout/factory/make_instrument_constraint.h"
 #include "keepout/factory/make_motion_constraint.h"
+#include "shared/clip.h"
 #include "verify/robot/hand.h"
 #include "verify/robot/judge.h"
 

@@ -5,16 +5,16 @@
 #include <iostream>
 #include <ostream>
 
-#include "commands.h"
 #include "keepout/error.h"
-#include "named_mesh.h"
-#include "number_text.h"
-#include "progress.h"
 #include "record/drawn_mesh.h"
 #include "record/json_parts.h"
+#include "shared/named_mesh.h"
+#include "shared/number_text.h"
+#include "shared/progress.h"
+#include "shared/stop_signal.h"
+#include "shared/wrapped_text.h"
 #include "simulate/robot/guarded_stroke.h"
-#include "stop_signal.h"
-#include "wrapped_text.h"
+#include "simulate/simulate.h"
 
 namespace keepout::app {
 namespace {

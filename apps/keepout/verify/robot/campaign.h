@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "bench/timing.h"
 #include "keepout/robot/instrument_constraint.h"
+#include "shared/timing.h"
 #include "verify/campaign.h"
 #include "verify/robot/robot_setup.h"
 #include "verify/robot/subject.h"

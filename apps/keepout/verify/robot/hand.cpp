@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "verify/robot/hand.h"
 
-#include "clip.h"
+#include "shared/clip.h"
 
 namespace keepout::app {
 namespace {

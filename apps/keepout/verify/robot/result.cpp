@@ -4,8 +4,8 @@
 #include <cmath>
 #include <ostream>
 
-#include "number_text.h"
 #include "record/json_parts.h"
+#include "shared/number_text.h"
 
 namespace keepout::app {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/reference.h"
+#include "compare/reference.h"
 
 #include <algorithm>
 #include <utility>

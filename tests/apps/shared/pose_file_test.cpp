@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pose_file.h"
+#include "shared/pose_file.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/used_cores.h"
+#include "shared/used_cores.h"
 
 #include <unistd.h>
 
@@ -7,7 +7,7 @@
 #include <ctime>
 #include <fstream>
 
-#include "number_text.h"
+#include "shared/number_text.h"
 
 namespace keepout::app {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "named_mesh.h"
+#include "shared/named_mesh.h"
 
 #include <algorithm>
 #include <array>
@@ -12,8 +12,8 @@
 #include "keepout/fixtures/real_mesh.h"
 #include "keepout/fixtures/shapes.h"
 #include "keepout/mesh/doctor.h"
-#include "names.h"
-#include "progress.h"
+#include "shared/names.h"
+#include "shared/progress.h"
 
 namespace keepout::app {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "names.h"
+#include "shared/names.h"
 
 #include "keepout/registry.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pose_file.h"
+#include "shared/pose_file.h"
 
 #include <algorithm>
 #include <charconv>
@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "keepout/error.h"
-#include "names.h"
+#include "shared/names.h"
 
 namespace keepout::app {
 namespace {

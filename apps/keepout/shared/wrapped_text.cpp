@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "wrapped_text.h"
+#include "shared/wrapped_text.h"
 
 #include <cstddef>
 #include <ostream>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "number_text.h"
+#include "shared/number_text.h"
 
 #include <algorithm>
 #include <array>

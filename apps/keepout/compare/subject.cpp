@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/subject.h"
+#include "compare/subject.h"
 
 #include <filesystem>
 
-#include "bench/used_cores.h"
 #include "keepout/fixtures/resample_mesh.h"
-#include "named_mesh.h"
-#include "number_text.h"
+#include "shared/named_mesh.h"
+#include "shared/number_text.h"
+#include "shared/used_cores.h"
 
 namespace keepout::app {
 

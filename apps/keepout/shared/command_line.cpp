@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "command_line.h"
+#include "shared/command_line.h"
 
 #include <algorithm>
 #include <charconv>
@@ -15,8 +15,8 @@
 #include "keepout/factory/convex_tool_text.h"
 #include "keepout/factory/guide_text.h"
 #include "keepout/solvers/registry.h"
-#include "named_mesh.h"
-#include "names.h"
+#include "shared/named_mesh.h"
+#include "shared/names.h"
 
 namespace keepout::app {
 namespace {

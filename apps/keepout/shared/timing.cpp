@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/timing.h"
+#include "shared/timing.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "machine.h"
+#include "shared/machine.h"
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -11,9 +11,9 @@
 #include <string_view>
 #include <thread>
 
-#include "bench/parts.h"
 #include "keepout/simd_target.h"
 #include "keepout/version.h"
+#include "shared/parts.h"
 
 namespace keepout::app {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "output_file.h"
+#include "shared/output_file.h"
 
 #include <gtest/gtest.h>
 #include <signal.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "findings.h"
+#include "shared/findings.h"
 
-#include "number_text.h"
+#include "shared/number_text.h"
 
 namespace keepout::app {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "stop_signal.h"
+#include "shared/stop_signal.h"
 
 #include <signal.h>
 #include <sys/eventfd.h>
