@@ -5,22 +5,22 @@
 
 namespace keepout {
 
-std::vector<IndexBackend> all_index_backends() {
-  return joined<IndexBackend>({
+Registry<IndexBackend> all_index_backends() {
+  static const std::vector<IndexBackend> all = joined<IndexBackend>({
     index_backends(),
 #if KEEPOUT_HAS_CGAL
         cgal_indices(),
 #endif
   });
-}
-
-std::vector<AbsentPart> all_absent_index_backends() {
-  std::vector<AbsentPart> all = joined<AbsentPart>({absent_index_backends()});
+  static const std::vector<AbsentPart> absent = [] {
+    std::vector<AbsentPart> parts = joined<AbsentPart>({index_backends().absent()});
 #if !KEEPOUT_HAS_CGAL
-  all.push_back(
-      {"cgal", "CGAL (install libcgal-dev, configure with KEEPOUT_WITH_CGAL=ON; under the GPL)"});
+    parts.push_back(
+        {"cgal", "CGAL (install libcgal-dev, configure with KEEPOUT_WITH_CGAL=ON; under the GPL)"});
 #endif
-  return all;
+    return parts;
+  }();
+  return {"index", all, absent};
 }
 
 }  // namespace keepout

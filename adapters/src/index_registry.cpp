@@ -27,7 +27,7 @@ constexpr IndexBackend ours[] = {
 
 }  // namespace
 
-std::span<const IndexBackend> index_backends() noexcept {
+Registry<IndexBackend> index_backends() noexcept {
   static const std::vector<IndexBackend> all = joined<IndexBackend>({
     ours,
 #if KEEPOUT_HAS_FCL
@@ -40,10 +40,6 @@ std::span<const IndexBackend> index_backends() noexcept {
         embree_indices(),
 #endif
   });
-  return all;
-}
-
-std::span<const AbsentPart> absent_index_backends() noexcept {
   static const std::vector<AbsentPart> absent {
 #if !KEEPOUT_HAS_FCL
     {"fcl_obbrss", needs_fcl}, {"fcl_aabb", needs_fcl}, {"fcl_collide", needs_fcl},
@@ -56,12 +52,11 @@ std::span<const AbsentPart> absent_index_backends() noexcept {
         {"embree", "Embree 3 (install libembree-dev, configure with KEEPOUT_WITH_EMBREE=ON)"},
 #endif
   };
-  return absent;
+  return {"index", all, absent};
 }
 
 std::unique_ptr<SpatialIndex> make_index(std::string_view name, std::shared_ptr<const Mesh> mesh) {
-  return entry_named(name, index_backends(), "index", absent_index_backends())
-      .make(std::move(mesh));
+  return index_backends().named(name).make(std::move(mesh));
 }
 
 void require_at_most(std::size_t most, std::size_t count, std::string_view items,

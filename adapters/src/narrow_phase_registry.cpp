@@ -12,7 +12,7 @@ constexpr NarrowPhaseBackend exact{
 
 }  // namespace
 
-std::span<const NarrowPhaseBackend> narrow_phase_backends() noexcept {
+Registry<NarrowPhaseBackend> narrow_phase_backends() noexcept {
   static const std::vector<NarrowPhaseBackend> all = joined<NarrowPhaseBackend>({
     {&exact, 1},
 #if KEEPOUT_HAS_CCD
@@ -22,10 +22,6 @@ std::span<const NarrowPhaseBackend> narrow_phase_backends() noexcept {
         fcl_narrow_phases(),
 #endif
   });
-  return all;
-}
-
-std::span<const AbsentPart> absent_narrow_phase_backends() noexcept {
   static const std::vector<AbsentPart> absent {
 #if !KEEPOUT_HAS_CCD
     {"ccd_gjk", needs_ccd}, {"ccd_mpr", needs_ccd},
@@ -34,12 +30,11 @@ std::span<const AbsentPart> absent_narrow_phase_backends() noexcept {
         {"fcl_gjk_libccd", needs_fcl}, {"fcl_gjk_indep", needs_fcl},
 #endif
   };
-  return absent;
+  return {"narrow phase", all, absent};
 }
 
 std::unique_ptr<NarrowPhase> make_narrow_phase(std::string_view name, const ConvexTool& tool) {
-  return entry_named(name, narrow_phase_backends(), "narrow phase", absent_narrow_phase_backends())
-      .make(tool);
+  return narrow_phase_backends().named(name).make(tool);
 }
 
 }  // namespace keepout

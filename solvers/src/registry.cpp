@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "keepout/solvers/registry.h"
 
-#include "keepout/registry.h"
 #include "keepout/solvers/active_set.h"
 #if KEEPOUT_HAS_NLOPT
 #include "keepout/solvers/nlopt_solver.h"
@@ -48,12 +47,10 @@ constexpr AbsentPart absent[] = {
 
 }  // namespace
 
-std::span<const SolverBackend> solver_backends() noexcept { return backends; }
-
-std::span<const AbsentPart> absent_solver_backends() noexcept { return absent; }
+Registry<SolverBackend> solver_backends() noexcept { return {"solver", backends, absent}; }
 
 std::unique_ptr<Solver> make_solver(std::string_view name) {
-  return entry_named(name, backends, "solver", absent_solver_backends()).make();
+  return solver_backends().named(name).make();
 }
 
 }  // namespace keepout

@@ -305,7 +305,7 @@ TEST(IndexRegistry, AnAbsentIndexSaysWhatItNeeds) {
   const Part known[] = {{"brute_force"}};
   const AbsentPart absent[] = {{"bullet", "Bullet (install libbullet-dev)"}};
   try {
-    entry_named("bullet", known, "index", absent);
+    Registry<Part>("index", known, absent).named("bullet");
     FAIL() << "no error";
   } catch (const Error& error) {
     const std::string text = error.what();
@@ -318,7 +318,7 @@ TEST(IndexRegistry, AnAbsentIndexSaysWhatItNeeds) {
 TEST(IndexRegistry, EveryIndexOfThisBuildIsEitherThereOrAbsent) {
   std::set<std::string_view> names;
   for (const IndexBackend& backend : all_index_backends()) names.insert(backend.name);
-  for (const AbsentPart& part : all_absent_index_backends()) {
+  for (const AbsentPart& part : all_index_backends().absent()) {
     EXPECT_NE(part.needs.find("install lib"), std::string_view::npos) << part.name;
     EXPECT_TRUE(names.insert(part.name).second) << part.name << " is both";
   }

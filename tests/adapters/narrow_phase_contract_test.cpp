@@ -116,7 +116,7 @@ TEST(NarrowPhaseRegistry, NamesWhatThereIsAndWhatIsMissing) {
   EXPECT_EQ(narrow_phase_backends().front().allocation, Allocation::never);
   std::set<std::string_view> names;
   for (const NarrowPhaseBackend& backend : narrow_phase_backends()) names.insert(backend.name);
-  for (const AbsentPart& part : absent_narrow_phase_backends()) {
+  for (const AbsentPart& part : narrow_phase_backends().absent()) {
     EXPECT_TRUE(names.insert(part.name).second) << part.name << " is both";
   }
   // And whatever else has a row.
@@ -131,7 +131,7 @@ TEST(NarrowPhaseRegistry, NamesWhatThereIsAndWhatIsMissing) {
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("exact"), std::string::npos);
   }
-  for (const AbsentPart& part : absent_narrow_phase_backends()) {
+  for (const AbsentPart& part : narrow_phase_backends().absent()) {
     EXPECT_THROW(make_narrow_phase(part.name, tool), Error);
   }
 }

@@ -48,7 +48,7 @@ TEST(Registry, AsksWhetherTheNearestNameWasMeant) {
   constexpr std::array<AbsentPart, 1> absent = {AbsentPart{"embree", "Embree"}};
   const auto refusal = [&](std::string_view name) {
     try {
-      entry_named(name, parts, "rule", absent);
+      Registry<Part>("rule", parts, absent).named(name);
     } catch (const Error& error) {
       return std::string(error.what());
     }

@@ -116,7 +116,7 @@ TEST(SolverRegistry, AnUnknownNameListsTheKnownOnes) {
 }
 
 TEST(SolverRegistry, AnAbsentSolverSaysWhatItNeeds) {
-  for (const AbsentPart& part : absent_solver_backends()) {
+  for (const AbsentPart& part : solver_backends().absent()) {
     try {
       make_solver(part.name);
       FAIL() << "made " << part.name << ", which is absent";

@@ -12,15 +12,16 @@
 #include "compare/compare.h"
 #include "compare/comparison.h"
 #include "keepout/activation/registry.h"
+#include "keepout/adapters/all_indices.h"
 #include "keepout/error.h"
 #include "keepout/fixtures/real_mesh.h"
+#include "keepout/solvers/registry.h"
 #include "record/record.h"
 #include "shared/command_line.h"
 #include "shared/named_mesh.h"
 #include "shared/names.h"
 #include "shared/number_text.h"
 #include "shared/output_file.h"
-#include "shared/parts.h"
 
 namespace keepout::app {
 namespace {
@@ -109,11 +110,11 @@ void list_parts(std::ostream& out) {
       out << "  " << part.name << " is not in this build: needs " << part.needs << '\n';
     }
   };
-  out << listing("Indices (--index)", indices());
-  list_absent(absent_indices());
+  out << listing("Indices (--index)", all_index_backends());
+  list_absent(all_index_backends().absent());
   out << listing("Rules (--activation)", activation_rules());
   out << listing("Solvers (--solver)", solver_backends());
-  list_absent(absent_solver_backends());
+  list_absent(solver_backends().absent());
   out << "Meshes (--mesh; a file will do as well):\n ";
   for (const std::string_view mesh : real_meshes()) out << ' ' << mesh;
   out << "\n  --triangles resamples " << resampled_mesh << " to any number of triangles\n";
@@ -165,7 +166,7 @@ void add_bench(CLI::App& app, BenchOptions& options) {
         ->type_name("NAMES")
         ->check(one_of(names(table)));
   };
-  add_list("--index", options.selection.indices, indices(), "Indices to measure");
+  add_list("--index", options.selection.indices, all_index_backends(), "Indices to measure");
   add_list("--activation", options.selection.activations, activation_rules(), "Rules to measure");
   add_list("--solver", options.selection.solvers, solver_backends(), "Solvers to measure");
   command.add_option("--mesh", options.meshes, "Fixtures, or mesh files")

@@ -4,8 +4,9 @@
 #include <algorithm>
 
 #include "keepout/activation/registry.h"
+#include "keepout/adapters/all_indices.h"
+#include "keepout/solvers/registry.h"
 #include "shared/names.h"
-#include "shared/parts.h"
 
 namespace keepout::app {
 namespace {
@@ -26,8 +27,8 @@ void add(std::vector<Combination>& all, const Names& index_names, const Names& r
   for (const std::string& index : index_names) {
     for (const std::string& rule : rules) {
       for (const std::string& solver : solvers) {
-        if (!has(indices(), index) || !has(activation_rules(), rule) ||
-            !has(solver_backends(), solver)) {
+        if (!all_index_backends().has(index) || !activation_rules().has(rule) ||
+            !solver_backends().has(solver)) {
           continue;
         }
         for (const std::optional<double>& radius : rule == certified ? none : any) {
@@ -42,7 +43,7 @@ void add(std::vector<Combination>& all, const Names& index_names, const Names& r
 /// By index, as the table has them.
 std::vector<Combination> sorted(std::vector<Combination> all) {
   std::ranges::stable_sort(all, {}, [](const Combination& combination) {
-    const auto& table = indices();
+    const auto& table = all_index_backends();
     return std::ranges::find(table, combination.index, &IndexBackend::name) - table.begin();
   });
   return all;
@@ -53,7 +54,7 @@ Names or_else(const Names& asked, const Names& otherwise) {
 }
 
 std::vector<Combination> default_matrix(const Radii& radii) {
-  Names fast_indices = names(indices());
+  Names fast_indices = names(all_index_backends());
   std::erase(fast_indices, "brute_force");  // takes a thousand times as long
   std::vector<Combination> all;
   add(all, fast_indices, {"paper", certified}, {reference_solver}, radii);

@@ -11,12 +11,13 @@
 
 #include "bench/measure.h"
 #include "keepout/activation/registry.h"
+#include "keepout/adapters/all_indices.h"
 #include "keepout/error.h"
 #include "keepout/fixtures/motions.h"
 #include "keepout/index/pd_tree.h"
+#include "keepout/solvers/registry.h"
 #include "shared/machine.h"
 #include "shared/number_text.h"
-#include "shared/parts.h"
 #include "shared/progress.h"
 #include "shared/used_cores.h"
 
@@ -101,7 +102,7 @@ void Trial::build(const std::string& index) {
           .load_s = loaded_.seconds,
           .load_cores = loaded_.cores,
           .index = index};
-  const IndexBackend& backend = index_named(index);
+  const IndexBackend& backend = all_index_backends().named(index);
   const auto count = static_cast<double>(row_.triangles);
   constexpr double while_building = 1.5;  // some hold more then
   if (const auto taken = memory_.find(index); taken != memory_.end()) {
@@ -146,10 +147,9 @@ BenchmarkRow Trial::measure(const Combination& combination) {
                  " triangles are in reach; ask for a smaller radius";
     return row;
   }
-  const double accuracy =
-      combination.solver == settings.solver
-          ? 0.0
-          : entry_named(combination.solver, solver_backends(), "solver").accuracy;
+  const double accuracy = combination.solver == settings.solver
+                              ? 0.0
+                              : solver_backends().named(combination.solver).accuracy;
   settings.solver = combination.solver;
   MotionConstraint constraint = make_motion_constraint(loaded_.mesh, index_, settings);
   app::measure(constraint, accuracy, motions_, expected, plan_.seconds, stop_, row);
@@ -197,7 +197,7 @@ Benchmark new_benchmark(const BenchmarkPlan& plan) {
       }
     }
   };
-  describe(indices(), &Combination::index);
+  describe(all_index_backends(), &Combination::index);
   describe(activation_rules(), &Combination::activation);
   describe(solver_backends(), &Combination::solver);
   return benchmark;

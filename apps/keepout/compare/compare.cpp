@@ -9,6 +9,8 @@
 #include "compare/comparison.h"
 #include "compare/subject.h"
 #include "keepout/activation/registry.h"
+#include "keepout/adapters/all_indices.h"
+#include "keepout/solvers/registry.h"
 #include "record/record.h"
 #include "shared/command_line.h"
 #include "shared/machine.h"
@@ -16,7 +18,6 @@
 #include "shared/names.h"
 #include "shared/number_text.h"
 #include "shared/output_file.h"
-#include "shared/parts.h"
 #include "shared/stop_signal.h"
 
 namespace keepout::app {
@@ -24,7 +25,7 @@ namespace {
 
 /// All but brute force, which they are held to.
 std::vector<std::string> indices_to_compare() {
-  std::vector<std::string> all = names(indices());
+  std::vector<std::string> all = names(all_index_backends());
   std::erase(all, "brute_force");
   return all;
 }

@@ -114,8 +114,7 @@ std::vector<SolverAgreement> compare_solvers(const std::shared_ptr<const Mesh>& 
     const std::vector<RecordedProblem> problems = problems_of(mesh, rule, comparison);
     const std::vector<Expected> references = references_of(problems);
     for (const std::string& name : comparison.solvers) {
-      const SolverBackend& backend =
-          entry_named(name, solver_backends(), "solver", absent_solver_backends());
+      const SolverBackend& backend = solver_backends().named(name);
       const auto solver = backend.make();
       reserve(*solver, problems);
       const auto limit = comparison.most.find(name);

@@ -11,9 +11,10 @@
 #include <string_view>
 #include <thread>
 
+#include "keepout/adapters/all_indices.h"
 #include "keepout/simd_target.h"
+#include "keepout/solvers/registry.h"
 #include "keepout/version.h"
-#include "shared/parts.h"
 
 namespace keepout::app {
 namespace {
@@ -64,7 +65,7 @@ std::vector<std::string> libraries() {
       if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
     }
   };
-  add(indices());
+  add(all_index_backends());
   add(solver_backends());
   return names;
 }

@@ -36,17 +36,40 @@ struct AbsentPart {
 [[noreturn]] void refuse_name(std::string_view name, std::span<const std::string_view> known,
                               std::string_view what, std::span<const AbsentPart> absent);
 
-/// The entry of a table of parts with that name. Throws Error, as refuse_name does, when there is
-/// none.
-template <class Table>
-const auto& entry_named(std::string_view name, const Table& table, std::string_view what,
-                        std::span<const AbsentPart> absent = {}) {
-  std::vector<std::string_view> known;
-  for (const auto& entry : table) {
-    if (entry.name == name) return entry;
-    known.push_back(entry.name);
+/// All parts of one kind that this build has, to choose from by name: a view of tables that last as
+/// long as the program.
+template <class Part>
+class Registry : public std::span<const Part> {
+ public:
+  /// `kind`: as messages name it.
+  Registry(std::string_view kind, std::span<const Part> parts,
+           std::span<const AbsentPart> absent = {}) noexcept
+      : std::span<const Part>(parts), kind_(kind), absent_(absent) {}
+
+  /// The parts that this build was made without.
+  std::span<const AbsentPart> absent() const noexcept { return absent_; }
+
+  /// Returns true if there is a part of that name.
+  bool has(std::string_view name) const noexcept { return find(name) != nullptr; }
+
+  /// Returns the part of that name. Throws Error, as refuse_name does, if there is none.
+  const Part& named(std::string_view name) const {
+    if (const Part* const part = find(name)) return *part;
+    std::vector<std::string_view> known;
+    for (const Part& part : *this) known.push_back(part.name);
+    refuse_name(name, known, kind_, absent_);
   }
-  refuse_name(name, known, what, absent);
-}
+
+ private:
+  const Part* find(std::string_view name) const noexcept {
+    for (const Part& part : *this) {
+      if (part.name == name) return &part;
+    }
+    return nullptr;
+  }
+
+  std::string_view kind_;
+  std::span<const AbsentPart> absent_;
+};
 
 }  // namespace keepout

@@ -6,7 +6,6 @@
 #include "keepout/activation/all_faces.h"
 #include "keepout/activation/certified.h"
 #include "keepout/activation/paper.h"
-#include "keepout/registry.h"
 
 namespace keepout {
 namespace {
@@ -27,10 +26,10 @@ constexpr std::array rules{
 
 }  // namespace
 
-std::span<const ActivationEntry> activation_rules() noexcept { return rules; }
+Registry<ActivationEntry> activation_rules() noexcept { return {"activation rule", rules}; }
 
 std::unique_ptr<ActivationRule> make_activation(std::string_view name) {
-  return entry_named(name, rules, "activation rule").make();
+  return activation_rules().named(name).make();
 }
 
 }  // namespace keepout

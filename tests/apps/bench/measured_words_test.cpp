@@ -13,11 +13,11 @@
 #include <sstream>
 
 #include "apps/command_process.h"
+#include "keepout/adapters/all_indices.h"
 #include "keepout/fixtures/shapes.h"
 #include "keepout/mesh/binary_stl.h"
 #include "keepout/solvers/registry.h"
 #include "shared/number_text.h"
-#include "shared/parts.h"
 
 namespace keepout::test {
 namespace {
@@ -38,7 +38,7 @@ class MeasuredWords : public testing::Test {
     folder = std::make_unique<CommandFolder>();
     write_binary_stl(folder->file("cube.stl"), make_cube(20.0));
     std::string indices = "wide_bvh,pd_tree", solvers = "active_set";
-    for (const IndexBackend& index : app::indices()) {
+    for (const IndexBackend& index : all_index_backends()) {
       if (index.name == "fcl_obbrss") indices += ",fcl_obbrss";
     }
     for (const SolverBackend& solver : solver_backends()) {
@@ -187,7 +187,7 @@ TEST_F(MeasuredWords, SetsOurPairAgainstThePeersUnderTheSameConditions) {
   EXPECT_EQ(record["headline"], expected);
   EXPECT_NE(outcome.output.find(expected), std::string::npos);
   EXPECT_NE(outcome.output.find(record["account"].get<std::string>()), std::string::npos);
-  for (const IndexBackend& index : app::indices()) {
+  for (const IndexBackend& index : all_index_backends()) {
     if (index.name != "wide_bvh") continue;
     EXPECT_NE(record["account"].get<std::string>().find("wide_bvh stands for \u201c" +
                                                         std::string(index.description) + "\u201d"),

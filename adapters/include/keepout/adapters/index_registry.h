@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <memory>
-#include <span>
 #include <string>
 #include <string_view>
 
@@ -29,10 +28,7 @@ struct IndexBackend {
 };
 
 /// All that this build has, the oracle first.
-std::span<const IndexBackend> index_backends() noexcept;
-
-/// Those that this build was made without.
-std::span<const AbsentPart> absent_index_backends() noexcept;
+Registry<IndexBackend> index_backends() noexcept;
 
 /// Builds the index of that name. Throws Error, listing the names there are, if there is none, and
 /// when it cannot hold the mesh.

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <memory>
-#include <span>
 #include <string>
 #include <string_view>
 
@@ -23,10 +22,7 @@ struct NarrowPhaseBackend {
 
 /// All that this build has, the exact kernel first. Those of libraries are for comparison: see
 /// docs/convex_tools.md.
-std::span<const NarrowPhaseBackend> narrow_phase_backends() noexcept;
-
-/// Those that this build was made without.
-std::span<const AbsentPart> absent_narrow_phase_backends() noexcept;
+Registry<NarrowPhaseBackend> narrow_phase_backends() noexcept;
 
 /// The narrow phase of that name for a tool. Throws Error, listing the names there are, if there is
 /// none.

@@ -11,6 +11,7 @@
 #include "bench/speed/process.h"
 #include "bench/speed/speed_run.h"
 #include "compare/subject.h"
+#include "keepout/adapters/all_indices.h"
 #include "keepout/factory/make_motion_constraint.h"
 #include "keepout/fixtures/real_mesh.h"
 #include "keepout/index/index_cache.h"
@@ -18,7 +19,6 @@
 #include "keepout/mesh/load_mesh.h"
 #include "shared/machine.h"
 #include "shared/number_text.h"
-#include "shared/parts.h"
 
 #if KEEPOUT_WITH_ASSIMP
 #include <assimp/postprocess.h>
@@ -43,7 +43,7 @@ void measure_builds(SpeedRun& run, const IndexedMesh& on) {
   for (const Rival& rival : rivals) {
     const std::string name(rival.name);
     const Attempt theirs = attempted([&] {
-      const IndexBackend& backend = index_named(rival.index);
+      const IndexBackend& backend = all_index_backends().named(rival.index);
       return timed_whole(name, 1, [&] { backend.make(on.mesh); });
     });
     SpeedRow row =
@@ -233,7 +233,7 @@ void measure_first_step(SpeedRun& run) {
   const Attempt theirs = attempted([&] {
     return timed_whole("assimp + FCL OBBRSS", 1, [&] {
       const auto mesh = std::make_shared<const Mesh>(assimp_surface(file));
-      const auto fcl = index_named("fcl_obbrss").make(mesh);
+      const auto fcl = all_index_backends().named("fcl_obbrss").make(mesh);
     });
   });
   const MeasuredSide mine = timed_whole("ours", run.effort.builds, [&] { first_step(file); });

@@ -9,10 +9,10 @@
 
 #include "bench/speed/process.h"
 #include "bench/speed/speed_run.h"
+#include "keepout/adapters/all_indices.h"
 #include "keepout/fixtures/shapes.h"
 #include "keepout/solvers/registry.h"
 #include "shared/number_text.h"
-#include "shared/parts.h"
 
 namespace keepout::app {
 namespace {
@@ -47,8 +47,8 @@ void measure_paper_steps(SpeedRun& run, const IndexedMesh& on) {
   run.show("building FCL's tree");
   IndexedMesh fcl{on.mesh, nullptr};
   Attempt theirs;
-  if (!has(indices(), their_index)) theirs.refusal = "this build has no FCL";
-  if (!has(solver_backends(), their_solver)) theirs.refusal = "this build has no NLopt";
+  if (!all_index_backends().has(their_index)) theirs.refusal = "this build has no FCL";
+  if (!solver_backends().has(their_solver)) theirs.refusal = "this build has no NLopt";
   if (theirs.refusal.empty()) fcl.index = make_index(their_index, on.mesh);
 
   constexpr std::array demands{std::pair{5.0, 60.0}, std::pair{1.0, 25.0}};
@@ -60,7 +60,7 @@ void measure_paper_steps(SpeedRun& run, const IndexedMesh& on) {
         time_steps("wide_bvh + active_set", ours, plain, motions, run.effort.passes);
     if (fcl.index) {
       MotionConstraint libraries = paper(fcl, radius, std::string(their_solver));
-      const double accuracy = entry_named(their_solver, solver_backends(), "solver").accuracy;
+      const double accuracy = solver_backends().named(their_solver).accuracy;
       theirs = time_steps("FCL's tree + SLSQP", libraries, plain, few, 1, accuracy);
     }
     if (radius == 5.0) run.baselines.libraries = theirs;
@@ -98,7 +98,7 @@ void measure_unrelated_states(SpeedRun& run, const IndexedMesh& on) {
   };
   const Attempt ours = time_certified(run, on, "ours", kind.clearance, motions);
   Attempt theirs{.refusal = "this build has no FCL"};
-  if (has(indices(), their_index)) {  // which has no wide instructions anywhere
+  if (all_index_backends().has(their_index)) {  // which has no wide instructions anywhere
     theirs = {time_plain(std::string(their_index), {on.mesh, make_index(their_index, on.mesh)})};
   }
   SpeedRow row = ratio("certified, unrelated states that are held back, margin .2 mm",

@@ -2,10 +2,10 @@
 #pragma once
 
 #include <memory>
-#include <span>
 #include <string_view>
 
 #include "keepout/activation/activation_rule.h"
+#include "keepout/registry.h"
 
 namespace keepout {
 
@@ -18,7 +18,7 @@ struct ActivationEntry {
 };
 
 /// All rules, in the order in which they should be listed.
-std::span<const ActivationEntry> activation_rules() noexcept;
+Registry<ActivationEntry> activation_rules() noexcept;
 
 /// Throws Error, listing the known names, for an unknown one.
 std::unique_ptr<ActivationRule> make_activation(std::string_view name);

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <memory>
-#include <span>
 #include <string>
 #include <string_view>
 
@@ -25,10 +24,7 @@ struct SolverBackend {
 };
 
 /// All solvers of this build, our own first.
-std::span<const SolverBackend> solver_backends() noexcept;
-
-/// Those that this build was made without.
-std::span<const AbsentPart> absent_solver_backends() noexcept;
+Registry<SolverBackend> solver_backends() noexcept;
 
 /// A new solver, without room yet: see Solver::reserve. Throws Error for a name that is not in the
 /// table, listing those that are.

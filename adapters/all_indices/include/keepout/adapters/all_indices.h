@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <vector>
-
 #include "keepout/adapters/index_registry.h"
 
 namespace keepout {
@@ -12,9 +10,6 @@ namespace keepout {
 // passed on under the GPL only. keepout itself never is.
 
 /// index_backends(), then those that stand on libraries under the GPL, if KEEPOUT_WITH_CGAL is ON.
-std::vector<IndexBackend> all_index_backends();
-
-/// Those of either kind that this build was made without.
-std::vector<AbsentPart> all_absent_index_backends();
+Registry<IndexBackend> all_index_backends();
 
 }  // namespace keepout
