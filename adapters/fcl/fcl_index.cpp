@@ -177,7 +177,7 @@ class FclIndex final : public FclModel<Volume> {
 // half of rounding, by which spheres are grown; thinner triangles are for us to test. And it takes
 // the distance to a closest point that it has rounded as the coordinates are, wherever the mesh is.
 constexpr double thin = 1e-5;
-constexpr double rounding = 1e-10;
+constexpr double length_rounding = 1e-10;
 constexpr double coordinate_rounding = 1e-15;
 
 // Beyond, FCL's squares of lengths may overflow.
@@ -224,7 +224,7 @@ class FclCollideIndex final : public FclModel<fcl::OBBd> {
     const double lengths =
         ball.radius + (ball.center - bounds.center()).cwiseAbs().sum() + bounds.size().sum();
     if (!(ball.radius >= 0.0 && lengths < farthest)) return false;
-    const fcl::Sphered sphere(padded_radius(ball, bounds) + rounding * lengths +
+    const fcl::Sphered sphere(padded_radius(ball, bounds) + length_rounding * lengths +
                               coordinate_rounding * (ball.center.cwiseAbs().sum() + ball.radius));
     fcl::Transform3d pose = fcl::Transform3d::Identity();
     pose.translation() = ball.center;
