@@ -9,7 +9,10 @@ int main(int argc, char** argv) try {
   const auto mesh = keepout::load_mesh(argv[1]).mesh;
   const std::vector<keepout::Joint> joints{
       {.name = "tilt", .axis = Vec3::UnitY(), .limits = {-1.0, 1.0, 1.0}},
-      {.name = "slide", .kind = keepout::JointKind::prismatic, .axis = -Vec3::UnitZ(), .limits = {0.0, 100.0, 100.0}}};
+      {.name = "slide",
+       .kind = keepout::JointKind::prismatic,
+       .axis = -Vec3::UnitZ(),
+       .limits = {0.0, 100.0, 100.0}}};
   const Vec3 tip(0, 0, -10);
   const keepout::Pose port{.position = {0, 0, mesh->bounds().high.z() + 40.0}};
   const keepout::Instrument instrument(
