@@ -107,9 +107,9 @@ def entry_points_in_headers(root):
         public = public_part(keyword, body)
         functions = list(functions_in(public))
         # A rule is one entry point: a constraint calls its functions.
-        if "public Activation" in bases:
+        if "public ActivationRule" in bases:
             yield name
-        elif name != "Activation" and any(
+        elif name != "ActivationRule" and any(
                 answers & set(result) and "noexcept" in after and "const" not in after
                 for result, _, after in functions):
             yield from (f"{name}::{function}" for result, function, after in functions
