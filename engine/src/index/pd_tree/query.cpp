@@ -162,7 +162,7 @@ void PdTree::collect(const Ball& ball, TriangleBuffer& candidates,
 }
 
 void PdTree::Tree::collect_leaves(const Ball& ball, LeafBuffer& found) const noexcept {
-  const BallScreen screen(ball, index_.mesh().bounds(), frame_);
+  const BallScreen screen(ball, mesh().bounds(), frame_);
   if (!screen.fits) return collect_all_leaves(found);
   HWY_DYNAMIC_DISPATCH(walk_pd_tree_to_leaves)(nodes_.data(), screen, found);
 }

@@ -31,6 +31,9 @@ class PdTree::Tree final : public TriangleBlocks {
   /// Builds it. Throws Error for a mesh of more than most_triangles.
   Tree(const PdTree& index, unsigned threads);
 
+  /// The mesh of the index.
+  const Mesh& mesh() const noexcept { return index_.mesh(); }
+
   /// A parent stands before its children; the first is the root.
   std::span<const PdNode> nodes() const noexcept { return nodes_; }
   /// In the order in which the nodes hold them.
