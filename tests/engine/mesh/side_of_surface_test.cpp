@@ -264,7 +264,8 @@ TEST(SideOfSurface, FarOffIsTheSideThatIsOutsideWhicheverThatIs) {
 
 TEST(SideOfSurface, MoreTrianglesThanThereIsRoomForHaveNoResult) {
   const auto mesh = std::make_shared<const Mesh>(make_cube(50));
-  Neighborhood none(mesh, std::make_shared<PdTree>(mesh), 0);
+  Budget budget;
+  Neighborhood none(mesh, std::make_shared<PdTree>(mesh), 0, budget);
   EXPECT_FALSE(find_side(none, Vec3(0, 0, 51)).has_value());
 }
 
