@@ -87,7 +87,7 @@ TEST(Chain, StoresRotationsToOneRounding) {
     chain.forward_kinematics(std::vector<double>{0.0}, state);
     const Chain without_base({joint});
     ChainState of_joint;
-    without_base.place(std::vector<double>{0.0}, of_joint);
+    without_base.forward_kinematics(std::vector<double>{0.0}, of_joint);
     for (const Mat3& r : {state.link(0).rotation, of_joint.link(1).rotation}) {
       using Wide = Eigen::Matrix<long double, 3, 3>;
       const Wide wide = r.cast<long double>();

@@ -121,7 +121,7 @@ Instrument draw_instrument(Random& random, const Vec3& flange_at, std::vector<do
   const Chain at_origin = chain_at(Vec3::Zero());
   q = test::configuration(at_origin, random);
   ChainState state;
-  at_origin.place(q, state);
+  at_origin.forward_kinematics(q, state);
   const Chain chain = chain_at(flange_at - state.flange().position);
   std::vector<Body> bodies;
   for (std::size_t b = 0, count = 1 + random.below(3); b < count; ++b) {

@@ -128,12 +128,12 @@ TEST(MotionBounds, OfOneJointTheyAreExact) {
   const double q[] = {0.3};
   const double increment[] = {-0.2};
   ChainState state;
-  turning.place(q, state);
+  turning.forward_kinematics(q, state);
   const MotionBounds arc = motion_bounds(state, increment, 1, Vec3(30, 40, 7));
   EXPECT_DOUBLE_EQ(arc.path, 50 * 0.2);
   EXPECT_DOUBLE_EQ(arc.bend, 50 * 0.2 * 0.2);
   EXPECT_EQ(motion_bounds(state, increment, 0, Vec3(30, 40, 7)).path, 0.0) << "the base";
-  sliding.place(q, state);
+  sliding.forward_kinematics(q, state);
   EXPECT_DOUBLE_EQ(motion_bounds(state, increment, 1, Vec3(30, 40, 7)).path, 0.2);
   EXPECT_EQ(motion_bounds(state, increment, 1, Vec3(30, 40, 7)).bend, 0.0);
 }

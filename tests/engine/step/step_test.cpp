@@ -185,7 +185,7 @@ class LazyFaces final : public ActivationRule {
 
   Opening open(const CycleProblem& problem, HalfSpaceBuffer&) noexcept override {
     planes_.clear();
-    return eager_.start(problem, planes_);
+    return eager_.open(problem, planes_);
   }
 
   Judgement judge(const CycleProblem&, const Vec3& trial,
