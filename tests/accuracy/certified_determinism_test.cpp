@@ -2,15 +2,10 @@
 // The same motions, bit for bit, whatever finds, numbers or winds the triangles.
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <sstream>
-#include <string>
-#include <vector>
-
 #include "accuracy/certified_loop.h"
+#include "by_name.h"
 #include "each_simd_target.h"
 #include "keepout/adapters/index_registry.h"
-#include "keepout/fixtures/shapes.h"
 #include "keepout/index/query.h"
 
 namespace keepout::test {
@@ -69,13 +64,13 @@ std::vector<Cycle> loops(MotionConstraint& guard, const std::vector<Start>& star
 std::vector<Cycle> loops(const Surface& surface, MotionConstraintSettings with,
                          const std::vector<Start>& starts, int count,
                          GuidesOf guides_of = no_guides) {
-  auto guard = make_motion_constraint(std::make_shared<const Mesh>(surface), with);
+  auto guard = make_motion_constraint(mesh_of(surface), with);
   return loops(guard, starts, count, guides_of);
 }
 
 std::vector<Start> starts_on(const Surface& surface, std::size_t count) {
   Random random(3);
-  const auto mesh = std::make_shared<const Mesh>(surface);
+  const auto mesh = mesh_of(surface);
   const PdTree tree(mesh);
   NearestTriangle nearest(*mesh, tree);
   std::vector<Start> out;
@@ -171,44 +166,42 @@ TEST_P(CertifiedDeterminism, HoldsWithGuides) {
 TEST_P(CertifiedDeterminism, OneCycleDoesNotDependOnThoseBefore) {
   const Surface surface = GetParam().make();
   const std::vector<Start> starts = starts_on(surface, 10);
-  auto guard = make_motion_constraint(std::make_shared<const Mesh>(surface), settings());
+  auto guard = make_motion_constraint(mesh_of(surface), settings());
   const std::vector<Cycle> expected = loops(guard, starts, 100);
   ASSERT_EQ(loops(guard, starts, 100), expected);
 }
 
+/// Counts the cycles of two guards that differ, by more than rounding or in the status.
+struct Differences {
+  void add(const Step& one, const Step& two, double most) {
+    ++cycles;
+    if (one.status != two.status) ++other_status;
+    EXPECT_LE((one.motion - two.motion).norm(), most) << name(one.status) << name(two.status);
+  }
+
+  std::size_t cycles = 0;
+  std::size_t other_status = 0;
+};
+
 TEST_P(CertifiedDeterminism, HowFarIsLookedHardlyMatters) {
   const Surface surface = GetParam().make();
-  const auto mesh = std::make_shared<const Mesh>(surface);
+  const auto mesh = mesh_of(surface);
   MotionConstraintSettings wide = settings();
   wide.query = Query::sphere;
   auto guard = make_motion_constraint(mesh, settings());
   auto wide_guard = make_motion_constraint(mesh, wide);
   Random random(4);
-  double largest = 0.0;
-  std::size_t equal = 0, count = 0, other_status = 0;
+  Differences differences;
   for (const Start& start : starts_on(surface, 10)) {
     Vec3 tip = start.tip;
     for (int i = 0; i < 60; ++i) {
       const Vec3 desired = random.uniform(0.1, 0.5) * (start.press + random.direction());
       const Step one = guard.step({.tip = tip, .desired = desired});
-      const Step two = wide_guard.step({.tip = tip, .desired = desired});
-      ++count;
-      if (one.motion == two.motion && one.status == two.status) ++equal;
-      if (one.status != two.status) ++other_status;
-      const double difference = (one.motion - two.motion).norm();
-      largest = std::max(largest, difference);
-      EXPECT_LE(difference, 1e-9 * radius)
-          << "cycle " << i << ": " << name(one.status) << ", " << name(two.status);
+      differences.add(one, wide_guard.step({.tip = tip, .desired = desired}), 1e-9 * radius);
       tip += one.motion;
     }
   }
-  RecordProperty("cycles", std::to_string(count));
-  RecordProperty("equal_to_the_bit", std::to_string(equal));
-  RecordProperty("other_status", std::to_string(other_status));
-  std::ostringstream text;
-  text << largest;
-  RecordProperty("largest_difference", text.str());
-  EXPECT_EQ(other_status, 0u);
+  EXPECT_EQ(differences.other_status, 0u);
 }
 
 double on_grid(double x) { return std::ldexp(std::round(std::ldexp(x, 20)), -20); }
@@ -223,39 +216,24 @@ TEST_P(CertifiedDeterminism, TheOriginHardlyMatters) {
   Surface moved = surface;
   const Vec3 by(8192.0, -16384.0, 4096.0);
   for (Vec3& v : moved.vertices) v += by;
-  auto guard = make_motion_constraint(std::make_shared<const Mesh>(surface), settings());
-  auto far_guard = make_motion_constraint(std::make_shared<const Mesh>(moved), settings());
+  auto guard = make_motion_constraint(mesh_of(surface), settings());
+  auto far_guard = make_motion_constraint(mesh_of(moved), settings());
   Random random(6);
-  double largest = 0.0;
-  std::size_t equal = 0, count = 0, other_status = 0;
+  Differences differences;
   for (const Start& start : starts_on(surface, 20)) {
     Vec3 tip = on_grid(start.tip);
     for (int i = 0; i < 30; ++i) {
       const Vec3 desired = random.uniform(0.1, 0.5) * (start.press + random.direction());
       const Step one = guard.step({.tip = tip, .desired = desired});
-      const Step two = far_guard.step({.tip = tip + by, .desired = desired});
-      ++count;
-      if (one.motion == two.motion && one.status == two.status) ++equal;
-      if (one.status != two.status) ++other_status;
-      const double difference = (one.motion - two.motion).norm();
-      largest = std::max(largest, difference);
-      EXPECT_LE(difference, 1e-6 * radius) << name(one.status) << ", " << name(two.status);
+      differences.add(one, far_guard.step({.tip = tip + by, .desired = desired}), 1e-6 * radius);
       tip = on_grid(tip + one.motion);
     }
   }
-  RecordProperty("cycles", std::to_string(count));
-  RecordProperty("equal_to_the_bit", std::to_string(equal));
-  RecordProperty("other_status", std::to_string(other_status));
-  std::ostringstream text;
-  text << largest;
-  RecordProperty("largest_difference", text.str());
   // To snap a tip at its margin to the grid is to put it too close, now and then by a tolerance.
-  EXPECT_LE(other_status, is_far ? count : count / 100);
+  EXPECT_LE(differences.other_status, is_far ? differences.cycles : differences.cycles / 100);
 }
 
-INSTANTIATE_TEST_SUITE_P(Shapes, CertifiedDeterminism,
-                         testing::ValuesIn(shapes().begin(), shapes().end()),
-                         [](const auto& p) { return std::string(p.param.name); });
+INSTANTIATE_TEST_SUITE_P(Shapes, CertifiedDeterminism, testing::ValuesIn(shapes()), by_name);
 
 }  // namespace
 }  // namespace keepout::test

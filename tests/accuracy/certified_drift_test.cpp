@@ -2,11 +2,8 @@
 // A million cycles in contact: what a cycle may lose never adds up.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <ostream>
-#include <string>
-
 #include "accuracy/certified_loop.h"
+#include "by_name.h"
 #include "small_surfaces.h"
 
 namespace keepout::test {
@@ -31,12 +28,10 @@ TEST_P(CertifiedDrift, TheMarginIsKeptInEveryCycleOfManyUnderPressure) {
   Random random(2);
   const std::vector<Vec3> starts = places(loop, 10, 1.1 * margin, random);
   ASSERT_EQ(starts.size(), 10u);
-  double worst = 0.0, worst_in_a_cycle = 0.0;
   std::size_t limited = 0, recovering = 0, other = 0;
   for (Vec3 tip : starts) {
     Vec3 drift = random.direction();
     Vec3 press = Vec3::Zero();
-    double distance = loop.distance(tip);
     for (std::size_t cycle = 0; cycle < scene.cycles / starts.size(); ++cycle) {
       if (cycle % 64 == 0) drift = random.direction();
       if (cycle % 8 == 0) {  // towards the nearest place of the surface
@@ -56,20 +51,13 @@ TEST_P(CertifiedDrift, TheMarginIsKeptInEveryCycleOfManyUnderPressure) {
       const double tau = loop.tolerance(tip);
       const oracle::Finding way = loop.oracle().check(tip, next, margin - 3.0 * tau, 1.5 * margin);
       ASSERT_FALSE(way.crosses);
-      worst = std::max(worst, (margin - way.distance) / tau);
-      ASSERT_FALSE(way.below) << "cycle " << cycle << ": " << worst;
-      worst_in_a_cycle =
-          std::max(worst_in_a_cycle, (std::min(margin, distance) - way.distance) / tau);
+      ASSERT_FALSE(way.below) << "cycle " << cycle;
       tip = next;
-      distance = std::min(1.5 * margin, loop.oracle().check(tip, tip, 0.0, 1.5 * margin).distance);
     }
   }
   EXPECT_GT(limited, scene.cycles / 2) << "hardly in contact";
   EXPECT_EQ(recovering, 0u) << "closer than where recovery begins";
   EXPECT_EQ(other, 0u) << "fallbacks";
-  RecordProperty("limited", std::to_string(limited));
-  RecordProperty("worst_loss_in_tau", std::to_string(worst));
-  RecordProperty("worst_loss_of_a_cycle_in_tau", std::to_string(worst_in_a_cycle));
 }
 
 const Vec3 far(6e3, -7e3, 5e3);  // about 1e4 from the origin
@@ -82,7 +70,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, CertifiedDrift,
                                          Scene{"sphere_far", "sphere", far, 150'000},
                                          Scene{"valley_far", "cortex", far, 150'000},
                                          Scene{"cube_very_far", "far_cube", {0, 0, 0}, 150'000}),
-                         [](const auto& p) { return std::string(p.param.name); });
+                         by_name);
 
 }  // namespace
 }  // namespace keepout::test

@@ -6,17 +6,17 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <string>
 #include <vector>
 
+#include "by_name.h"
 #include "keepout/factory/make_motion_constraint.h"
 #include "keepout/fixtures/poses.h"
 #include "keepout/fixtures/real_mesh.h"
-#include "keepout/fixtures/shapes.h"
 #include "keepout/index/pd_tree.h"
 #include "keepout/index/query.h"
 #include "keepout/mesh/load_mesh.h"
 #include "keepout/oracle/best_step.h"
+#include "meshes.h"
 
 namespace keepout::test {
 namespace {
@@ -123,9 +123,8 @@ class CertifiedExcess : public testing::TestWithParam<std::string> {};
 
 TEST_P(CertifiedExcess, IsSmallAndNoUsefulMotionIsMissed) {
   const std::string name = GetParam();
-  const std::shared_ptr<const Mesh> mesh = name == "skull"
-                                               ? load_mesh(fixture_path("skull")).mesh
-                                               : std::make_shared<const Mesh>(make_shape(name));
+  const std::shared_ptr<const Mesh> mesh =
+      name == "skull" ? load_mesh(fixture_path("skull")).mesh : mesh_of(name);
   const Scene scene = make_scene(mesh, 600);
   const Excess plain = excess_of(scene, 0, 0);
   const Excess refined = excess_of(scene, 3, 0);
@@ -157,8 +156,7 @@ TEST_P(CertifiedExcess, IsSmallAndNoUsefulMotionIsMissed) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Meshes, CertifiedExcess,
-                         testing::Values("cube", "sphere", "gear", "skull", "cortex"),
-                         [](const auto& p) { return p.param; });
+                         testing::Values("cube", "sphere", "gear", "skull", "cortex"), by_name);
 
 }  // namespace
 }  // namespace keepout::test

@@ -2,13 +2,10 @@
 // Joints, rows of the caller's own, and too little room: as safe, and honest about it.
 #include <gtest/gtest.h>
 
-#include <Eigen/Geometry>
-#include <algorithm>
 #include <span>
-#include <string>
-#include <vector>
 
 #include "accuracy/certified_loop.h"
+#include "by_name.h"
 
 namespace keepout::test {
 namespace {
@@ -108,12 +105,6 @@ class CertifiedJoints : public testing::TestWithParam<const char*> {
     EXPECT_LE(count.joints_off, 1e-10) << "the joints do something else than what is said";
     EXPECT_LE(count.fallback, count.cycles / 50);
     EXPECT_LE(count.not_ok, count.cycles / 50);
-    RecordProperty("cycles", std::to_string(count.cycles));
-    RecordProperty("limited", std::to_string(count.limited));
-    RecordProperty("fallback", std::to_string(count.fallback));
-    RecordProperty("not_ok", std::to_string(count.not_ok));
-    RecordProperty("worst_loss_in_tau", std::to_string(count.worst));
-    RecordProperty("worst_row_violation", std::to_string(count.violation));
   }
 
   Loop loop;
@@ -126,7 +117,7 @@ TEST_P(CertifiedJoints, KeepTheirLimitsToo) { expect(run(0.15)); }
 INSTANTIATE_TEST_SUITE_P(Shapes, CertifiedJoints,
                          testing::Values("cube", "gear", "cortex", "thin_plates", "saddle_terrain",
                                          "star_bumps"),
-                         [](const auto& p) { return std::string(p.param); });
+                         by_name);
 
 TEST(CertifiedRows, OnTheTipItselfHoldAsWell) {
   Loop loop(make_shape("cube"), settings());  // its faces are at +-50
@@ -204,7 +195,6 @@ TEST(CertifiedCapacity, WithoutRoomForAllTrianglesAShorterWayIsGone) {
   EXPECT_GT(fallbacks, 50u);
   EXPECT_GT(others, 50u);
   EXPECT_EQ(refused, 0u);
-  RecordProperty("fallbacks", std::to_string(fallbacks));
 }
 
 TEST(CertifiedCapacity, WithoutRoomForAnyTriangleNothingMoves) {

@@ -1,22 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <memory>
 #include <numeric>
 #include <ostream>
-#include <utility>
 #include <vector>
 
 #include "keepout/factory/make_motion_constraint.h"
 #include "keepout/fixtures/poses.h"
 #include "keepout/fixtures/random.h"
-#include "keepout/fixtures/shapes.h"
-#include "keepout/geometry/closest_point.h"
 #include "keepout/index/pd_tree.h"
 #include "keepout/oracle/safety_oracle.h"
+#include "meshes.h"
 
 namespace keepout {
 
@@ -53,7 +52,7 @@ class Tolerance {
 class Loop {
  public:
   Loop(Surface surface, const MotionConstraintSettings& settings)
-      : mesh_(std::make_shared<const Mesh>(std::move(surface))),
+      : mesh_(mesh_of(std::move(surface))),
         guard_(make_motion_constraint(mesh_, settings)),
         tolerance_(*mesh_, settings),
         oracle_(mesh_),
@@ -89,6 +88,18 @@ class Loop {
   oracle::SafetyOracle oracle_;
   double margin_;
 };
+
+/// Fails unless the step is safe, or moves nothing. Counts the steps that move.
+inline void expect_safe(Loop& loop, const Vec3& tip, const Step& step, int& moved) {
+  if (!step.ok()) {
+    ASSERT_TRUE(step.motion.isZero(0.0)) << name(step.status);
+    ASSERT_TRUE(step.increment.empty()) << name(step.status);
+    return;
+  }
+  ASSERT_LE(loop.loss(tip, tip + step.motion, loop.distance(tip)), 3.0)
+      << name(step.status) << " from " << tip.transpose() << " by " << step.motion.transpose();
+  moved += step.motion.isZero(0.0) ? 0 : 1;
+}
 
 template <class T>
 void shuffle(std::vector<T>& items, Random& random) {

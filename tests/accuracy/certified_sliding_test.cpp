@@ -3,14 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-#include <algorithm>
-#include <cmath>
-#include <sstream>
-#include <string>
-#include <vector>
 
 #include "accuracy/certified_loop.h"
-#include "keepout/fixtures/shapes.h"
+#include "by_name.h"
 
 namespace keepout::test {
 namespace {
@@ -23,12 +18,6 @@ struct Plate {
 };
 
 void PrintTo(const Plate& plate, std::ostream* out) { *out << plate.name; }
-
-std::string text_of(double number) {
-  std::ostringstream text;
-  text << number;
-  return text.str();
-}
 
 class CertifiedSliding : public testing::TestWithParam<Plate> {};
 
@@ -84,9 +73,6 @@ TEST_P(CertifiedSliding, OverAFlatPlateIsSmoothAndUnhindered) {
   EXPECT_NEAR(lowest, plate.margin, 1e-9 * size);
   EXPECT_LE(slowest, 1e-9) << "share of the way along that was lost";
   EXPECT_LE(sideways, 1e-9) << "share of the way along that was turned";
-  RecordProperty("ripple", text_of(highest - lowest));
-  RecordProperty("slowed", text_of(slowest));
-  RecordProperty("turned", text_of(sideways));
 }
 
 INSTANTIATE_TEST_SUITE_P(Plates, CertifiedSliding,
@@ -98,7 +84,7 @@ INSTANTIATE_TEST_SUITE_P(Plates, CertifiedSliding,
                                          Plate{"rotated_large_margin", 5.0, 0.7, 3},
                                          Plate{"straight_unrefined", 0.2, 0.0, 0},
                                          Plate{"rotated_unrefined", 0.2, 0.7, 0}),
-                         [](const auto& p) { return std::string(p.param.name); });
+                         by_name);
 
 class CertifiedRetreat : public testing::TestWithParam<Shape> {};
 
@@ -158,13 +144,9 @@ TEST_P(CertifiedRetreat, IsNeverSlowed) {
     EXPECT_GT(retreats, 100u);
   }
   EXPECT_EQ(within_tolerance, 0u) << "closer than where recovery begins";
-  RecordProperty("contacts", std::to_string(contacts));
-  RecordProperty("retreats", std::to_string(retreats));
 }
 
-INSTANTIATE_TEST_SUITE_P(Shapes, CertifiedRetreat,
-                         testing::ValuesIn(shapes().begin(), shapes().end()),
-                         [](const auto& p) { return std::string(p.param.name); });
+INSTANTIATE_TEST_SUITE_P(Shapes, CertifiedRetreat, testing::ValuesIn(shapes()), by_name);
 
 }  // namespace
 }  // namespace keepout::test

@@ -4,23 +4,16 @@
 // Corridor and skull are judged by kinematics and distances that are not the library's.
 #include <gtest/gtest.h>
 
-#include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <limits>
-#include <memory>
-#include <vector>
 
-#include "keepout/adapters/index_registry.h"
+#include "guards.h"
 #include "keepout/fixtures/random.h"
 #include "keepout/fixtures/real_mesh.h"
-#include "keepout/fixtures/robots.h"
 #include "keepout/mesh/load_mesh.h"
 #include "keepout/oracle/instrument_oracle.h"
-#include "keepout/robot/instrument_constraint.h"
-#include "keepout/solvers/registry.h"
 #include "trials.h"
 
 namespace keepout {
@@ -28,22 +21,10 @@ namespace {
 
 constexpr double half_width = 1.0;  // [mm]
 
-/// The base from which a psm points straight down to a place, its port so far above it.
-Pose port_above(const Vec3& place, double height) {
-  ChainState state;
-  psm().chain().forward_kinematics(std::vector<double>{0, 0, 100, 0, 0, 0}, state);
-  const Vec3 way = state.flange().position.normalized();
-  return {place + Vec3(0, 0, height),
-          Eigen::Quaterniond::FromTwoVectors(way, -Vec3::UnitZ()).toRotationMatrix()};
-}
-
 TEST(CuttingSetUp, KeepsCorridorSkullAndJointsWhateverTheHandDoes) {
   const auto mesh = load_mesh(fixture_path("skull")).mesh;
-  Vec3 top = mesh->vertex(0);
-  for (VertexId v = 1; v < mesh->vertex_count(); ++v) {
-    if (mesh->vertex(v).z() > top.z()) top = mesh->vertex(v);
-  }
-  const Instrument robot = psm(port_above(top, 120.0));
+  const Vec3 top = highest_vertex(*mesh);
+  const Instrument robot = psm(port_over(top, 120.0));
   const Chain& chain = robot.chain();
   std::vector<double> q{0, 0, 0, 0, 0, 0};
   ChainState state;
@@ -51,8 +32,7 @@ TEST(CuttingSetUp, KeepsCorridorSkullAndJointsWhateverTheHandDoes) {
   q[2] = state.flange().position.z() - top.z() - 3.0;  // 3 mm above the bone
   chain.forward_kinematics(q, state);
   const LinkPoint tip{6, chain.flange().position};
-  InstrumentConstraint guard(mesh, make_index("wide_bvh", mesh), robot, make_solver("active_set"),
-                             {.period = 5e-3});
+  auto guard = guard_of(mesh, robot, {.period = 5e-3});
   const Guide corridor = Guide::point(
       "corridor", tip, Region::slab(state.flange().position, Vec3::UnitX(), half_width));
   guard.set_guides({corridor});
@@ -76,9 +56,7 @@ TEST(CuttingSetUp, KeepsCorridorSkullAndJointsWhateverTheHandDoes) {
     const InstrumentStep step = guard.step(q, hand);
     ASSERT_TRUE(step.ok()) << step.reason() << " in cycle " << cycle;
     for (const double share : {0.5, 1.0}) {
-      std::vector<double> there = q;
-      for (std::size_t k = 0; k < q.size(); ++k) there[k] += share * step.increment[k];
-      judge.move_to(there);
+      judge.move_to(moved(q, step, share));
       farthest = std::max(farthest, std::abs(judge.axis(2).to.x() - middle));
       for (std::size_t body = 0; body < judge.bodies(); ++body) {
         nearest = std::min(nearest, judge.clearance(body, 1.0));
@@ -97,7 +75,6 @@ TEST(CuttingSetUp, KeepsCorridorSkullAndJointsWhateverTheHandDoes) {
       "outside of the corridor by %.6f mm at most; %.6f mm from the bone at least; held by "
       "the corridor in %d cycles, near the bone in %d\n",
       farthest - half_width, nearest, held, blocked);
-  RecordProperty("outside", std::to_string(farthest - half_width));
   EXPECT_LE(farthest, half_width + corridor.band() + 1e-8);
   EXPECT_GE(nearest, kept);
   EXPECT_GT(held, test::trials(1000));

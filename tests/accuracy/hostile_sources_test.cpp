@@ -7,14 +7,11 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
-#include <string>
-#include <string_view>
-#include <vector>
 
+#include "by_name.h"
 #include "engine/activation/sources.h"
 #include "keepout/fixtures/poses.h"
 #include "keepout/fixtures/random.h"
-#include "keepout/fixtures/shapes.h"
 #include "keepout/index/query.h"
 #include "keepout/simd_target.h"
 #include "shapes_to_try.h"
@@ -167,8 +164,7 @@ TEST_P(HostileSources, AgreeBitForBitOverTenMillionStepsOnAllTargets) {
   std::printf("%zu steps, %zu of them held back or led off\n", tally.steps, tally.held);
 }
 
-INSTANTIATE_TEST_SUITE_P(EachTarget, HostileSources, testing::ValuesIn(simd_targets()),
-                         [](const auto& target) { return std::string(target.param); });
+INSTANTIATE_TEST_SUITE_P(EachTarget, HostileSources, testing::ValuesIn(simd_targets()), by_name);
 
 }  // namespace
 }  // namespace keepout

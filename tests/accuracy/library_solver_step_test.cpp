@@ -3,12 +3,8 @@
 // says so.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <memory>
-#include <string>
-
 #include "accuracy/certified_loop.h"
-#include "keepout/activation/registry.h"
+#include "by_name.h"
 #include "keepout/solvers/registry.h"
 
 namespace keepout::test {
@@ -31,7 +27,7 @@ class LibrarySolverStep : public testing::TestWithParam<std::string> {
 
   /// Closed loops in contact, led by active_set; each step taken by the other solver as well.
   Counts run(const Shape& shape, bool joints) {
-    const auto mesh = std::make_shared<const Mesh>(shape.make());
+    const auto mesh = mesh_of(shape.make());
     MotionConstraintSettings settings{
         .activation = GetParam(), .radius = 2.0, .margin = margin, .damping = joints ? 1e-6 : 0.0};
     MotionConstraint exact = make_motion_constraint(mesh, settings);
@@ -79,16 +75,11 @@ TEST_P(LibrarySolverStep, AgreesWithOurOwnOrStandsStill) {
     }
     EXPECT_LE(all.not_ok, all.steps / 200) << "of " << all.steps << ", joints: " << joints;
     EXPECT_GT(all.held_back, all.steps / 10) << "of " << all.steps << ", joints: " << joints;
-    const std::string with = joints ? "_with_joints" : "_of_the_tip";
-    RecordProperty("steps" + with, std::to_string(all.steps));
-    RecordProperty("held_back" + with, std::to_string(all.held_back));
-    RecordProperty("not_ok" + with, std::to_string(all.not_ok));
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(Rules, LibrarySolverStep,
-                         testing::Values("all_faces", "paper", "certified"),
-                         [](const auto& rule) { return rule.param; });
+                         testing::Values("all_faces", "paper", "certified"), by_name);
 
 }  // namespace
 }  // namespace keepout::test

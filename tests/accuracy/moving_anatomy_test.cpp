@@ -4,13 +4,8 @@
 
 #include <atomic>
 #include <chrono>
-#include <cmath>
-#include <memory>
 #include <mutex>
-#include <numbers>
 #include <thread>
-#include <utility>
-#include <vector>
 
 #include "accuracy/certified_loop.h"
 #include "keepout/error.h"
@@ -30,7 +25,7 @@ std::shared_ptr<const Mesh> at(const Surface& still, double time) {
   Surface surface = still;
   const double swing = beat * std::sin(2.0 * std::numbers::pi * time);
   for (Vec3& v : surface.vertices) v += swing * v.normalized();
-  return std::make_shared<const Mesh>(std::move(surface));
+  return mesh_of(std::move(surface));
 }
 
 MotionConstraint guard_of(const std::shared_ptr<const Mesh>& mesh,
@@ -163,13 +158,13 @@ TEST(MovingAnatomy, IsFollowedTenTimesASecondUnderARunningLoop) {
 TEST(MovingAnatomy, WatchesOfTheCallersOwnAreOfTheMeshTheyWereMadeOn) {
   // The wall of a cube comes over a tip that a step has left on the free side, close by.
   const Surface cube = make_cube(5.0);
-  const auto mesh = std::make_shared<const Mesh>(cube);
+  const auto mesh = mesh_of(cube);
   const auto tree = std::make_shared<WideBvh>(mesh);
   MotionConstraint guard = guard_of(mesh, tree);
   SideWatch sides;
   const Vec3 tip(0.3, 0.2, mesh->bounds().high.z() + 2.0 * margin);
   ASSERT_EQ(guard.step({.tip = tip, .desired = Vec3::Zero()}, sides).status, Status::free);
-  const auto risen = std::make_shared<const Mesh>(moved(cube, Vec3(0.0, 0.0, 3.0)));
+  const auto risen = mesh_of(moved(cube, Vec3(0.0, 0.0, 3.0)));
   guard.follow(risen, tree->refitted(risen));
   const Step out = guard.step({.tip = tip, .desired = Vec3(0.0, 0.0, -0.1)}, sides);
   EXPECT_EQ(out.status, Status::recovering);
@@ -180,8 +175,8 @@ TEST(MovingAnatomy, WatchesAskWhatTheGuardAsks) {
   const Surface cube = make_cube(5.0);
   Surface lidless = cube;
   lidless.triangles.pop_back();
-  const auto closed = std::make_shared<const Mesh>(cube);
-  const auto open = std::make_shared<const Mesh>(std::move(lidless));
+  const auto closed = mesh_of(cube);
+  const auto open = mesh_of(std::move(lidless));
   const Vec3 inside(0.3, 0.2, closed->bounds().high.z() - 2.0);
   for (const bool is_first_open : {true, false}) {
     const auto& first = is_first_open ? open : closed;
@@ -197,7 +192,7 @@ TEST(MovingAnatomy, WatchesAskWhatTheGuardAsks) {
 }
 
 TEST(MovingAnatomy, TheBudgetIsThatOfTheIndexThatIsFollowed) {
-  const auto mesh = std::make_shared<const Mesh>(make_shape("cortex"));
+  const auto mesh = mesh_of("cortex");
   const auto tree = std::make_shared<WideBvh>(mesh);
   const auto slow = std::make_shared<PdTree>(mesh);
   const Vec3 far = mesh->bounds().center() + Vec3(1.0, 2.0, 3.0);
@@ -216,27 +211,26 @@ TEST(MovingAnatomy, TheBudgetIsThatOfTheIndexThatIsFollowed) {
 }
 
 TEST(MovingAnatomy, WhatCannotBeFollowedIsRefusedAndTheGuardGoesOn) {
-  const auto mesh = std::make_shared<const Mesh>(make_cube(5.0));
+  const auto mesh = mesh_of(make_cube(5.0));
   const auto tree = std::make_shared<WideBvh>(mesh);
   MotionConstraint guard = guard_of(mesh, tree);
-  const auto risen = std::make_shared<const Mesh>(moved(make_cube(5.0), Vec3(0.0, 0.0, 3.0)));
-  const auto huge = std::make_shared<const Mesh>(moved(make_cube(5.0), Vec3(0.0, 0.0, 1e20)));
+  const auto risen = mesh_of(moved(make_cube(5.0), Vec3(0.0, 0.0, 3.0)));
+  const auto huge = mesh_of(moved(make_cube(5.0), Vec3(0.0, 0.0, 1e20)));
   EXPECT_THROW(guard.follow(risen, tree), Error);
   EXPECT_THROW(guard.follow(nullptr, tree), Error);
   EXPECT_THROW(guard.follow(risen, nullptr), Error);
   EXPECT_THROW(guard.follow(huge, std::make_shared<WideBvh>(huge)), Error);
   EXPECT_THROW(tree->refitted(nullptr), Error);
-  EXPECT_THROW(tree->refitted(std::make_shared<const Mesh>(make_cube(3.0))), Error);
+  EXPECT_THROW(tree->refitted(mesh_of(make_cube(3.0))), Error);
   EXPECT_TRUE(guard.is_current());
   const Vec3 tip(0.3, 0.2, mesh->bounds().high.z() + 2.0);
   EXPECT_TRUE(guard.step({.tip = tip, .desired = Vec3(0.0, 0.0, -5.0)}).status != Status::free);
 }
 
 TEST(MovingAnatomy, AnotherMeshAltogetherMayBeFollowed) {
-  const auto open =
-      std::make_shared<const Mesh>(Surface{{{-50, -50, 0}, {50, -50, 0}, {0, 50, 0}}, {{0, 1, 2}}});
+  const auto open = mesh_of(Surface{{{-50, -50, 0}, {50, -50, 0}, {0, 50, 0}}, {{0, 1, 2}}});
   MotionConstraint guard = guard_of(open, std::make_shared<WideBvh>(open));
-  const auto closed = std::make_shared<const Mesh>(make_cube(5.0));
+  const auto closed = mesh_of(make_cube(5.0));
   guard.follow(closed, std::make_shared<WideBvh>(closed));
   const double top = closed->bounds().high.z();
   EXPECT_EQ(guard.step({.tip = Vec3(0.3, 0.2, top - 1.0), .desired = Vec3::Zero()}).status,

@@ -4,24 +4,18 @@
 // library's.
 #include <gtest/gtest.h>
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
-#include <memory>
 #include <numbers>
-#include <string>
-#include <vector>
 
+#include "guards.h"
 #include "keepout/adapters/index_registry.h"
 #include "keepout/fixtures/random.h"
 #include "keepout/fixtures/real_mesh.h"
-#include "keepout/fixtures/robots.h"
-#include "keepout/index/wide_bvh.h"
 #include "keepout/mesh/load_mesh.h"
 #include "keepout/oracle/instrument_oracle.h"
-#include "keepout/robot/instrument_constraint.h"
 #include "keepout/solvers/registry.h"
 #include "trials.h"
 
@@ -68,25 +62,13 @@ Pose base_seen(const Pose& mesh, const Twist& velocity, double share, const Pose
           then.rotation.transpose() * base.rotation};
 }
 
-/// The base from which a psm points straight down to a place, its port so far above it.
-Pose port_over(const Vec3& place, double height) {
-  ChainState state;
-  psm().chain().forward_kinematics(std::vector<double>{0, 0, 100, 0, 0, 0}, state);
-  const Vec3 way = state.flange().position.normalized();
-  return {place + Vec3(0, 0, height),
-          Eigen::Quaterniond::FromTwoVectors(way, -Vec3::UnitZ()).toRotationMatrix()};
-}
-
 class MovingMeshes : public testing::TestWithParam<const char*> {};
 
 TEST_P(MovingMeshes, AreKeptOffWhateverTheHandDoes) {
   const auto mesh = load_mesh(fixture_path(GetParam())).mesh;
   const std::shared_ptr<const SpatialIndex> index = make_index("wide_bvh", mesh);
   const auto tree = std::make_shared<const oracle::TriangleTree>(mesh);
-  Vec3 top = mesh->vertex(0);
-  for (VertexId v = 1; v < mesh->vertex_count(); ++v) {
-    if (mesh->vertex(v).z() > top.z()) top = mesh->vertex(v);
-  }
+  const Vec3 top = highest_vertex(*mesh);
   const Instrument robot = psm(port_over(top, 120.0));
   const Chain& chain = robot.chain();
   Random random(1);
@@ -141,7 +123,7 @@ TEST_P(MovingMeshes, AreKeptOffWhateverTheHandDoes) {
         ASSERT_GE(clear, due - tolerance) << step.reason() << " in cycle " << cycle;
         if (had_it && step.level == 1.0) nearest = std::min(nearest, clear);
       }
-      for (std::size_t k = 0; k < q.size(); ++k) q[k] += step.increment[k];
+      q = moved(q, step);
       blocked += step.distance ? 1 : 0;
     }
   }
@@ -150,9 +132,6 @@ TEST_P(MovingMeshes, AreKeptOffWhateverTheHandDoes) {
       "| cycles that could keep less, and said so | without a motion |\n"
       "|---|--:|--:|--:|--:|--:|\n| %s | %d | %d | %.6f | %d | %d |\n",
       GetParam(), cycles, blocked, nearest, named, stopped);
-  RecordProperty("nearest", std::to_string(nearest));
-  RecordProperty("named", named);
-  RecordProperty("stopped", stopped);
   EXPECT_GE(nearest, 0.198 - 1e-8);
   EXPECT_GT(blocked, cycles / 4);
   EXPECT_LE(named + stopped, cycles / 100);
@@ -176,7 +155,7 @@ TEST(DeformingLiver, IsKeptOffBetweenRefitsAndLookedAtAnewAfterEach) {
     for (Vec3& v : now.vertices) {
       v.z() += swell * std::exp(-(v - top).squaredNorm() / (2.0 * 40.0 * 40.0));
     }
-    return std::make_shared<const Mesh>(std::move(now));
+    return mesh_of(std::move(now));
   };
   auto mesh = still;
   const auto tree = std::make_shared<WideBvh>(mesh);
@@ -222,15 +201,11 @@ TEST(DeformingLiver, IsKeptOffBetweenRefitsAndLookedAtAnewAfterEach) {
       ASSERT_EQ(step.status == Status::recovering || !step.ok(), !has_it) << step.reason();
       const double due = has_it ? options.margin - options.band : before - options.band;
       for (const double share : {0.5, 1.0}) {
-        std::vector<double> there = q;
-        for (std::size_t k = 0; k < step.increment.size(); ++k) {
-          there[k] += share * step.increment[k];
-        }
-        const double clear = clearance(there);
+        const double clear = clearance(moved(q, step, share));
         ASSERT_GE(clear, due - tolerance) << step.reason() << " in cycle " << cycle;
         if (has_it) nearest = std::min(nearest, clear);
       }
-      for (std::size_t k = 0; k < step.increment.size(); ++k) q[k] += step.increment[k];
+      q = moved(q, step);
       certified += has_it ? 1 : 0;
     }
   }

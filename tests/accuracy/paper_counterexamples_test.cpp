@@ -4,11 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <map>
-#include <string>
 
 #include "accuracy/segment_crossing.h"
+#include "by_name.h"
 #include "keepout/factory/make_motion_constraint.h"
 #include "keepout/fixtures/counterexamples.h"
+#include "meshes.h"
 
 namespace keepout {
 namespace {
@@ -45,7 +46,7 @@ class PaperCounterexample : public testing::TestWithParam<Counterexample> {};
 TEST_P(PaperCounterexample, DoesWhatIsOnRecord) {
   const Counterexample& example = GetParam();
   const Record& record = records.at(example.name);
-  const auto mesh = std::make_shared<const Mesh>(example.surface);
+  const auto mesh = mesh_of(example.surface);
   MotionConstraint constraint = make_motion_constraint(
       mesh, {.activation = "paper", .radius = example.radius, .margin = 0.0});
   const Step step = constraint.step({.tip = example.tip, .desired = example.desired});
@@ -55,8 +56,7 @@ TEST_P(PaperCounterexample, DoesWhatIsOnRecord) {
   EXPECT_EQ(passes_through(*mesh, example.tip, example.tip + step.motion), record.passes_through);
 }
 
-INSTANTIATE_TEST_SUITE_P(CE, PaperCounterexample, testing::ValuesIn(counterexamples()),
-                         [](const auto& p) { return std::string(p.param.name); });
+INSTANTIATE_TEST_SUITE_P(CE, PaperCounterexample, testing::ValuesIn(counterexamples()), by_name);
 
 TEST(Counterexamples, TheMotionsThatAreSaidToBeFreeAre) {
   for (const Counterexample& example : counterexamples()) {

@@ -7,31 +7,17 @@
 #endif
 
 #include <Eigen/Geometry>
-#include <algorithm>
-#include <cmath>
-#include <memory>
-#include <numbers>
-#include <string>
-#include <string_view>
 #include <type_traits>
-#include <utility>
-#include <vector>
 
 #include "accuracy/certified_loop.h"
-#include "keepout/error.h"
 #include "keepout/index/brute_force.h"
 #include "keepout/index/pd_tree_1997.h"
 #include "keepout/index/wide_bvh.h"
-#include "random_places.h"
+#include "messages.h"
 #include "small_surfaces.h"
-#include "trials.h"
 
 namespace keepout::test {
 namespace {
-
-std::shared_ptr<const Mesh> mesh_of(Surface surface) {
-  return std::make_shared<const Mesh>(std::move(surface));
-}
 
 /// The same surface in another unit.
 Surface scaled(Surface surface, double factor) {
@@ -239,7 +225,7 @@ TEST(CoordinatesOf, AMeshTooLargeForItsMarginIsWarnedOf) {
   EXPECT_TRUE(warnings.empty());
   make_motion_constraint(mesh, {.warn = warn, .radius = 10.0, .margin = 1e-2});
   ASSERT_EQ(warnings.size(), 1u);
-  EXPECT_NE(warnings[0].find("keep more than"), std::string::npos) << warnings[0];
+  EXPECT_CONTAINS(warnings[0], "keep more than");
 }
 
 // However little a tip is led off that is too close, it comes no closer.

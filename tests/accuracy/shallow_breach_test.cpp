@@ -3,10 +3,7 @@
 // acceptance or a search region that is slightly wrong lets such motions pass.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <cstddef>
-#include <utility>
 
 #include "accuracy/certified_loop.h"
 #include "keepout/index/query.h"
@@ -14,14 +11,6 @@
 
 namespace keepout::test {
 namespace {
-
-/// Fails unless the step comes no closer than the margin or the distance at its start.
-void expect_safe(Loop& loop, const Vec3& tip, const Step& step, int& moved) {
-  if (!step.ok()) return;
-  ASSERT_LE(loop.loss(tip, tip + step.motion, loop.distance(tip)), 3.0)
-      << name(step.status) << " from " << tip.transpose() << " by " << step.motion.transpose();
-  moved += step.motion.isZero(0.0) ? 0 : 1;
-}
 
 Vec3 towards_surface(Loop& loop, const Vec3& tip) {
   NearestTriangle nearest(loop.mesh(), loop.guard().index());

@@ -3,7 +3,6 @@
 // nothing moves.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <cstddef>
 
 #include "accuracy/certified_loop.h"
@@ -11,18 +10,6 @@
 
 namespace keepout::test {
 namespace {
-
-/// Fails unless the step is safe, or moves nothing. Counts the steps that move.
-void expect_safe(Loop& loop, const Vec3& tip, const Step& step, int& moved) {
-  if (!step.ok()) {
-    ASSERT_TRUE(step.motion.isZero(0.0)) << name(step.status);
-    ASSERT_TRUE(step.increment.empty()) << name(step.status);
-    return;
-  }
-  ASSERT_LE(loop.loss(tip, tip + step.motion, loop.distance(tip)), 3.0)
-      << name(step.status) << " from " << tip.transpose() << " by " << step.motion.transpose();
-  moved += step.motion.isZero(0.0) ? 0 : 1;
-}
 
 TEST(SpentBudget, NoStepIsUnsafeWhereverTheWorkEnds) {
   Random random(3);

@@ -3,12 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <memory>
 #include <optional>
-#include <vector>
 
 #include "accuracy/certified_loop.h"
-#include "random_places.h"
 #include "trials.h"
 
 namespace keepout::test {
@@ -60,13 +57,12 @@ double missed(const Question& q, const Step& step) { return (step.motion - q.des
 
 class StepLimits : public testing::Test {
  protected:
-  std::shared_ptr<const Mesh> mesh_ = std::make_shared<const Mesh>(make_shape("gear"));
+  std::shared_ptr<const Mesh> mesh_ = mesh_of("gear");
   MotionConstraintSettings settings_{.radius = 2.0, .tool_radius = 0.5, .margin = 0.2};
   MotionConstraint guard_ = make_motion_constraint(mesh_, settings_);
   // Far away in all directions, for steps without the mesh.
   MotionConstraint bare_ = make_motion_constraint(
-      std::make_shared<const Mesh>(Surface{{{1e6, 0, 0}, {1e6, 1, 0}, {1e6, 0, 1}}, {{0, 1, 2}}}),
-      settings_);
+      mesh_of(Surface{{{1e6, 0, 0}, {1e6, 1, 0}, {1e6, 0, 1}}, {{0, 1, 2}}}), settings_);
 };
 
 TEST_F(StepLimits, NameACauseThatChangesTheMotionWhenItIsTakenAway) {

@@ -2,15 +2,10 @@
 // One work budget for a cycle, whatever happens in it: with guides and in a haptic proxy too.
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <memory>
 #include <numbers>
-#include <utility>
-#include <vector>
 
 #include "accuracy/certified_loop.h"
 #include "keepout/control/haptic_proxy.h"
-#include "keepout/fixtures/shapes.h"
 #include "keepout/index/wide_bvh.h"
 #include "keepout/robot/instrument_constraint.h"
 #include "keepout/solvers/active_set.h"
@@ -72,8 +67,7 @@ constexpr std::size_t stated = Capacity::looks_of_a_walk;
 /// A tip near the tip of a cone, where many triangles are equally near.
 struct Scene {
   explicit Scene(VertexId faces, double slope)
-      : mesh(std::make_shared<const Mesh>(make_cone(faces, slope))),
-        tree(std::make_shared<CountedTree>(mesh)) {}
+      : mesh(mesh_of(make_cone(faces, slope))), tree(std::make_shared<CountedTree>(mesh)) {}
 
   MotionConstraint guard() const {
     return make_motion_constraint(mesh, tree, {.radius = 5.0, .margin = 1.0});
@@ -210,7 +204,7 @@ TEST(BudgetOfACycle, HoldsForAnInstrumentBesideMovingMeshes) {
 // The ball far away retreats from a plate all the same.
 TEST(BudgetOfACycle, IsNotSpentByABodyThatCannotGiveWay) {
   const Scene cone(400, 0.3);
-  const auto plate = std::make_shared<const Mesh>(make_flat_plate(20.0, 1));
+  const auto plate = mesh_of(make_flat_plate(20.0, 1));
   const Instrument ball = free_ball(0.5);
   Instrument instrument(ball.chain(), {{"post", {{0, Vec3(0, 0, 0)}}, 0.1}, ball.bodies()[0]});
   InstrumentConstraint guard(cone.mesh, cone.tree, std::move(instrument),

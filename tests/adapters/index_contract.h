@@ -3,31 +3,17 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <memory>
 #include <ostream>
 #include <utility>
-#include <vector>
 
+#include "brute_force.h"
 #include "keepout/adapters/index_registry.h"
 #include "keepout/fixtures/poses.h"
-#include "keepout/geometry/closest_point.h"
 #include "keepout/index/spatial_index.h"
-#include "keepout/mesh/mesh.h"
 #include "random_places.h"
 #include "trials.h"
 
 namespace keepout {
-
-/// The distance from a point to every triangle: brute force, once for all radii.
-inline std::vector<double> distances(const Mesh& mesh, const Vec3& point) {
-  std::vector<double> all(mesh.triangle_count());
-  for (TriangleId t = 0; t < mesh.triangle_count(); ++t) {
-    all[t] = closest_point(mesh.triangle(t), point).distance;
-  }
-  return all;
-}
 
 /// Places of every kind that an index might get wrong; fewer under sanitizers.
 inline std::vector<Vec3> probing_points(const Mesh& mesh, std::size_t of_each_kind) {

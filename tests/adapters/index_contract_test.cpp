@@ -4,19 +4,13 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <future>
 #include <set>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "keepout/adapters/all_indices.h"
-#include "keepout/error.h"
-#include "keepout/fixtures/shapes.h"
-#include "keepout/geometry/separation.h"
 #include "library_backends.h"
+#include "meshes.h"
+#include "messages.h"
 #include "shapes_to_try.h"
 
 namespace keepout {
@@ -35,7 +29,7 @@ TEST_P(IndexContract, FindsWhatBruteForceFindsOnEveryGeneratedShape) {
   if (GetParam().name == "brute_force") return;  // is what the others are held to
   for (const Shape& shape : shapes_to_try()) {
     SCOPED_TRACE(shape.name);
-    const auto mesh = std::make_shared<const Mesh>(shape.make());
+    const auto mesh = mesh_of(shape.make());
     expect_brute_force_sets(*mesh, *GetParam().make(mesh), probes(*mesh, 20));
     if (HasFatalFailure()) return;
   }
@@ -52,7 +46,7 @@ TEST_P(IndexContract, FindsWhatBruteForceFindsWhereverTheMeshIsAndHoweverLarge) 
       for (Vec3& vertex : surface.vertices) {
         vertex = scale * vertex + offset * Vec3(1.0, -0.7, 0.3);
       }
-      const auto mesh = std::make_shared<const Mesh>(std::move(surface));
+      const auto mesh = mesh_of(std::move(surface));
       expect_brute_force_sets(*mesh, *GetParam().make(mesh), probes(*mesh, 5));
       if (HasFatalFailure()) return;
     }
@@ -71,7 +65,7 @@ TEST_P(IndexContract, FindsWhatBruteForceFindsOnAMeshOfEverySize) {
     }
     surface.triangles.push_back({first, first + 1, first + 2});
   }
-  const auto mesh = std::make_shared<const Mesh>(std::move(surface));
+  const auto mesh = mesh_of(std::move(surface));
   expect_brute_force_sets(*mesh, *GetParam().make(mesh), probes(*mesh, 20));
 }
 
@@ -90,7 +84,7 @@ TEST_P(IndexContract, FindsWhatBruteForceFindsOnNeedles) {
       surface.triangles.push_back({first, first + 1, first + 2});
     }
   }
-  const auto mesh = std::make_shared<const Mesh>(std::move(surface));
+  const auto mesh = mesh_of(std::move(surface));
   expect_brute_force_sets(*mesh, *GetParam().make(mesh), probes(*mesh, 50));
 }
 
@@ -99,7 +93,7 @@ TEST_P(IndexContract, FindsWhatBruteForceFindsOnOneTriangleAndOnManyInOnePlace) 
   Surface many = one;
   many.triangles.assign(5000, {0, 1, 2});
   for (const Surface& surface : {one, many}) {
-    const auto mesh = std::make_shared<const Mesh>(surface);
+    const auto mesh = mesh_of(surface);
     expect_brute_force_sets(*mesh, *GetParam().make(mesh), probes(*mesh, 10));
   }
 }
@@ -109,7 +103,7 @@ TEST_P(IndexContract, FindsTrianglesThatAreAllOnePoint) {
   for (const std::size_t count : {1u, 2u, 1000u}) {
     Surface points{{place}, {}};
     points.triangles.assign(count, {0, 0, 0});
-    const auto mesh = std::make_shared<const Mesh>(points);
+    const auto mesh = mesh_of(points);
     const auto index = GetParam().make(mesh);
     TriangleBuffer candidates(count);
     for (const Ball& ball : {Ball{place, 0.0}, Ball{place, 1.0}, Ball{place + Vec3(0, 0, 5), 5.0},
@@ -127,7 +121,7 @@ TEST_P(IndexContract, FindsTrianglesThatAreAllOnePoint) {
 TEST_P(IndexContract, FindsAllThatIsNearACapsuleOnceEach) {
   for (const Shape& shape : shapes_to_try()) {
     SCOPED_TRACE(shape.name);
-    const auto mesh = std::make_shared<const Mesh>(shape.make());
+    const auto mesh = mesh_of(shape.make());
     const auto index = GetParam().make(mesh);
     Random random(11);
     const double size = mesh->bounds().size().norm();
@@ -155,7 +149,7 @@ TEST_P(IndexContract, FindsAllThatIsNearACapsuleOnceEach) {
 
 // What is left out without a word would be moved into.
 TEST_P(IndexContract, SaysThatThereIsMoreNearACapsuleThanThereIsRoomFor) {
-  const auto mesh = std::make_shared<const Mesh>(make_cube(25.0));
+  const auto mesh = mesh_of(make_cube(25.0));
   const auto index = GetParam().make(mesh);
   const std::size_t count = mesh->triangle_count();
   for (const double radius : {1.0, 30.0, 200.0}) {
@@ -171,7 +165,7 @@ TEST_P(IndexContract, SaysThatThereIsMoreNearACapsuleThanThereIsRoomFor) {
 }
 
 TEST_P(IndexContract, ABallThatHoldsTheMeshFindsAllOfIt) {
-  const auto mesh = std::make_shared<const Mesh>(make_shape("cube"));
+  const auto mesh = mesh_of("cube");
   const auto index = GetParam().make(mesh);
   const double size = mesh->bounds().size().norm();
   TriangleBuffer candidates(mesh->triangle_count());
@@ -187,7 +181,7 @@ TEST_P(IndexContract, ABallThatHoldsTheMeshFindsAllOfIt) {
 
 TEST_P(IndexContract, ProposesLittleWhereThereIsLittle) {
   if (GetParam().name == "brute_force") return;  // proposes what is there, and nothing else
-  const auto mesh = std::make_shared<const Mesh>(make_shape("star_bumps"));
+  const auto mesh = mesh_of("star_bumps");
   const auto index = GetParam().make(mesh);
   TriangleBuffer candidates(mesh->triangle_count());
   Random random(3);
@@ -200,7 +194,7 @@ TEST_P(IndexContract, ProposesLittleWhereThereIsLittle) {
 }
 
 TEST_P(IndexContract, SaysHowMuchMemoryItHolds) {
-  const auto mesh = std::make_shared<const Mesh>(make_shape("star_bumps"));
+  const auto mesh = mesh_of("star_bumps");
   const double of_each = static_cast<double>(GetParam().make(mesh)->memory()) /
                          static_cast<double>(mesh->triangle_count());
   if (GetParam().name == "brute_force") {
@@ -226,7 +220,7 @@ TEST_P(IndexContract, SaysWhetherItWalksAlongMotions) {
 }
 
 TEST_P(IndexContract, NeverGivesATriangleTwice) {
-  const auto mesh = std::make_shared<const Mesh>(make_shape("star_bumps"));
+  const auto mesh = mesh_of("star_bumps");
   const auto index = GetParam().make(mesh);
   TriangleBuffer candidates(mesh->triangle_count());
   index->collect({mesh->bounds().center(), mesh->bounds().size().norm()}, candidates);
@@ -236,7 +230,7 @@ TEST_P(IndexContract, NeverGivesATriangleTwice) {
 }
 
 TEST_P(IndexContract, ManyThreadsMayAskAtOnce) {
-  const auto mesh = std::make_shared<const Mesh>(make_shape("star_bumps"));
+  const auto mesh = mesh_of("star_bumps");
   const auto index = GetParam().make(mesh);
   const auto found = [&](std::uint64_t seed) {
     TriangleBuffer candidates(mesh->triangle_count());
@@ -257,7 +251,7 @@ TEST_P(IndexContract, ManyThreadsMayAskAtOnce) {
 }
 
 TEST_P(IndexContract, ManyThreadsMayBuildAtOnce) {
-  const auto mesh = std::make_shared<const Mesh>(make_shape("cube"));
+  const auto mesh = mesh_of("cube");
   const auto found = [&] {
     TriangleBuffer candidates(mesh->triangle_count());
     GetParam().make(mesh)->collect({mesh->bounds().high, 10.0}, candidates);
@@ -271,7 +265,7 @@ TEST_P(IndexContract, ManyThreadsMayBuildAtOnce) {
 }
 
 TEST_P(IndexContract, SaysWhenTheBufferIsTooSmall) {
-  const auto mesh = std::make_shared<const Mesh>(make_shape("cube"));
+  const auto mesh = mesh_of("cube");
   TriangleBuffer candidates(3);
   GetParam().make(mesh)->collect({mesh->bounds().center(), 1e3}, candidates);
   EXPECT_TRUE(candidates.overflowed());
@@ -285,17 +279,9 @@ INSTANTIATE_TEST_SUITE_P(Backends, IndexContract, testing::ValuesIn(all_index_ba
                          backend_name);
 
 TEST(IndexRegistry, AnUnknownNameListsTheKnownOnes) {
-  const auto mesh = std::make_shared<const Mesh>(make_shape("cube"));
-  try {
-    make_index("pd-tree", mesh);
-    FAIL() << "no error";
-  } catch (const Error& error) {
-    const std::string text = error.what();
-    EXPECT_NE(text.find("pd-tree"), std::string::npos);
-    for (const IndexBackend& backend : index_backends()) {
-      EXPECT_NE(text.find(backend.name), std::string::npos);
-    }
-  }
+  const std::string text = error_of([] { make_index("pd-tree", mesh_of("cube")); });
+  EXPECT_CONTAINS(text, "pd-tree");
+  for (const IndexBackend& backend : index_backends()) EXPECT_CONTAINS(text, backend.name);
 }
 
 TEST(IndexRegistry, AnAbsentIndexSaysWhatItNeeds) {
@@ -304,14 +290,10 @@ TEST(IndexRegistry, AnAbsentIndexSaysWhatItNeeds) {
   };
   const Part known[] = {{"brute_force"}};
   const AbsentPart absent[] = {{"bullet", "Bullet (install libbullet-dev)"}};
-  try {
-    Registry<Part>("index", known, absent).named("bullet");
-    FAIL() << "no error";
-  } catch (const Error& error) {
-    const std::string text = error.what();
-    for (const std::string_view part : {"bullet", "install libbullet-dev", "brute_force"}) {
-      EXPECT_NE(text.find(part), std::string::npos) << text;
-    }
+  const std::string text =
+      error_of([&] { Registry<Part>("index", known, absent).named("bullet"); });
+  for (const std::string_view part : {"bullet", "install libbullet-dev", "brute_force"}) {
+    EXPECT_CONTAINS(text, part);
   }
 }
 
@@ -319,7 +301,7 @@ TEST(IndexRegistry, EveryIndexOfThisBuildIsEitherThereOrAbsent) {
   std::set<std::string_view> names;
   for (const IndexBackend& backend : all_index_backends()) names.insert(backend.name);
   for (const AbsentPart& part : all_index_backends().absent()) {
-    EXPECT_NE(part.needs.find("install lib"), std::string_view::npos) << part.name;
+    EXPECT_CONTAINS(part.needs, "install lib") << part.name;
     EXPECT_TRUE(names.insert(part.name).second) << part.name << " is both";
   }
   // And whatever else has a row.
@@ -336,14 +318,9 @@ TEST(IndexRegistry, WhatIsUnderTheGplIsNoPartOfTheLibrary) {
 
 TEST(IndexCapacity, AMeshThatIsTooLargeIsRefusedByTheLimitAndTheWayOut) {
   EXPECT_NO_THROW(require_at_most(1000, 1000, "triangles", "bullet"));
-  try {
-    require_at_most(1000, 1001, "triangles", "bullet");
-    FAIL() << "no error";
-  } catch (const Error& error) {
-    const std::string text = error.what();
-    for (const std::string_view part : {"'bullet'", "1000 triangles", "1001", "'wide_bvh'"}) {
-      EXPECT_NE(text.find(part), std::string::npos) << text;
-    }
+  const std::string text = error_of([] { require_at_most(1000, 1001, "triangles", "bullet"); });
+  for (const std::string_view part : {"'bullet'", "1000 triangles", "1001", "'wide_bvh'"}) {
+    EXPECT_CONTAINS(text, part);
   }
 }
 

@@ -2,12 +2,10 @@
 // More triangles than 21 bits can number: where Bullet by itself takes some for others, silently.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <string>
-
 #include "adapters/index_contract.h"
+#include "by_name.h"
 #include "keepout/adapters/all_indices.h"
-#include "keepout/fixtures/shapes.h"
+#include "meshes.h"
 
 namespace keepout {
 namespace {
@@ -18,7 +16,7 @@ class LargeIndex : public testing::TestWithParam<IndexBackend> {};
 
 TEST_P(LargeIndex, LosesNothingOfMoreThan2To21Triangles) {
   if (GetParam().name == "brute_force") return;  // is what the others are held to
-  const auto mesh = std::make_shared<const Mesh>(make_cube(0.236));
+  const auto mesh = mesh_of(make_cube(0.236));
   ASSERT_GT(mesh->triangle_count(), number_of_21_bits + 10'000);
   const auto index = GetParam().make(mesh);
 
@@ -42,8 +40,7 @@ TEST_P(LargeIndex, LosesNothingOfMoreThan2To21Triangles) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Backends, LargeIndex, testing::ValuesIn(all_index_backends()),
-                         [](const auto& p) { return std::string(p.param.name); });
+INSTANTIATE_TEST_SUITE_P(Backends, LargeIndex, testing::ValuesIn(all_index_backends()), by_name);
 
 }  // namespace
 }  // namespace keepout

@@ -3,11 +3,9 @@
 // measured by `keepout compare`, and docs/convex_tools.md tells.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <set>
-#include <vector>
 
 #include "engine/geometry/tools.h"
 #include "keepout/adapters/narrow_phase_registry.h"

@@ -2,12 +2,10 @@
 // The contract of every index on real anatomy, scans and parts.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <string>
 #include <string_view>
-#include <vector>
 
 #include "adapters/index_contract.h"
+#include "by_name.h"
 #include "keepout/adapters/all_indices.h"
 #include "keepout/fixtures/real_mesh.h"
 #include "keepout/mesh/load_mesh.h"
@@ -30,8 +28,7 @@ TEST_P(RealIndexContract, EveryIndexFindsWhatBruteForceFinds) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Meshes, RealIndexContract, testing::ValuesIn(real_meshes()),
-                         [](const auto& p) { return std::string(p.param); });
+INSTANTIATE_TEST_SUITE_P(Meshes, RealIndexContract, testing::ValuesIn(real_meshes()), by_name);
 
 }  // namespace
 }  // namespace keepout

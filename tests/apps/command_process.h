@@ -7,8 +7,6 @@
 
 #include <array>
 #include <cstdio>
-#include <filesystem>
-#include <string>
 #include <vector>
 
 #include "temporary_folder.h"
@@ -37,6 +35,13 @@ class CommandFolder : public TemporaryFolder {
     const int status = ::pclose(pipe);
     outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
     return outcome;
+  }
+
+  /// Fails unless the command refuses the arguments and says so in these words.
+  void expect_refused(const std::string& arguments, const std::string& words) const {
+    const ProcessOutcome outcome = run(arguments);
+    EXPECT_NE(outcome.status, 0) << arguments;
+    EXPECT_CONTAINS(outcome.output, words) << arguments;
   }
 
   /// Runs a program with its arguments until its output holds the words, interrupts it then as by

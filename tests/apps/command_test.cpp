@@ -3,21 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <iomanip>
-#include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <sstream>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "apps/command_process.h"
 #include "factory/tools_by_name.h"
-#include "keepout/fixtures/shapes.h"
 #include "keepout/mesh/binary_stl.h"
 #include "keepout/simd_target.h"
 
@@ -75,10 +68,8 @@ TEST_F(Command, SaysThatNothingOfABenchmarkWasFinishedWhenItIsInterruptedAtOnce)
                            "--strokes", "1", "--cycles", "10", "--out", "r.html"},
                           "SIMD target");
   EXPECT_EQ(outcome.status, 130) << outcome.output;
-  EXPECT_NE(outcome.output.find("stopped before any row of the benchmark was finished"),
-            std::string::npos)
-      << outcome.output;
-  EXPECT_EQ(outcome.output.find("Timed as well"), std::string::npos) << outcome.output;
+  EXPECT_CONTAINS(outcome.output, "stopped before any row of the benchmark was finished");
+  EXPECT_LACKS(outcome.output, "Timed as well");
   EXPECT_TRUE(std::filesystem::exists(file("r.html")));
 }
 
@@ -86,13 +77,13 @@ TEST_F(Command, HelpNamesEveryCommandAndChoice) {
   const Outcome help = run("--help");
   EXPECT_EQ(help.status, 0);
   for (const char* word : {"inspect", "register", "replay", "simulate"}) {
-    EXPECT_NE(help.output.find(word), std::string::npos) << word;
+    EXPECT_CONTAINS(help.output, word) << word;
   }
   const Outcome replay = run("replay --help");
   EXPECT_EQ(replay.status, 0);
   for (const char* word : {"brute_force", "pd_tree", "all_faces", "paper", "active_set",
                            "--closed-loop", "--radius", "--margin", "--planes", "--max-step"}) {
-    EXPECT_NE(replay.output.find(word), std::string::npos) << word;
+    EXPECT_CONTAINS(replay.output, word) << word;
   }
 }
 
@@ -147,12 +138,11 @@ TEST_F(Command, TheAnatomicalSpaceIsAskedForAndGiven) {
   const std::string replay = "replay cube.stl --poses poses.txt --out s.csv --space RAS";
   const Outcome refused = run(replay);
   EXPECT_NE(refused.status, 0);
-  EXPECT_NE(refused.output.find("--untagged"), std::string::npos) << refused.output;
+  EXPECT_CONTAINS(refused.output, "--untagged");
   EXPECT_EQ(run(replay + " --untagged lps").status, 0);
   EXPECT_NE(run(replay + " --untagged xyz").status, 0);
   const Outcome inspected = run("inspect cube.stl --untagged lps");
-  EXPECT_NE(inspected.output.find("LPS, not stated in the file"), std::string::npos)
-      << inspected.output;
+  EXPECT_CONTAINS(inspected.output, "LPS, not stated in the file");
 }
 
 TEST_F(Command, EveryNumberReadsBackExactly) {
@@ -228,7 +218,7 @@ TEST_F(Command, TheCertifiedRuleWithoutAMarginIsRefused) {
   folder_.write("poses.txt", "3 4 51 1 -2 -3\n");
   const Outcome outcome = run("replay cube.stl --poses poses.txt --out s.csv --margin 0");
   EXPECT_EQ(outcome.status, EXIT_FAILURE);
-  EXPECT_NE(outcome.output.find("margin is too small"), std::string::npos) << outcome.output;
+  EXPECT_CONTAINS(outcome.output, "margin is too small");
   EXPECT_FALSE(std::filesystem::exists(file("s.csv")));
 }
 
@@ -269,8 +259,8 @@ TEST_F(Command, MistakesAreToldOfAndLeaveNothingBehind) {
   for (const auto& [arguments, told] : mistakes) {
     const Outcome outcome = run(arguments);
     EXPECT_NE(outcome.status, 0) << arguments;
-    EXPECT_NE(outcome.output.find(told), std::string::npos) << arguments << "\n" << outcome.output;
-    EXPECT_EQ(outcome.output.find("terminate"), std::string::npos) << outcome.output;
+    EXPECT_CONTAINS(outcome.output, told) << arguments;
+    EXPECT_LACKS(outcome.output, "terminate");
     std::size_t files = 0;
     for (const auto& entry : std::filesystem::directory_iterator(folder_.path())) {
       files += entry.is_regular_file();
@@ -315,8 +305,7 @@ TEST_F(Command, NumbersOutOfRangeAreToldOfBriefly) {
     const Outcome outcome = run(command + option);
     EXPECT_NE(outcome.status, 0) << option;
     const std::string name = option.substr(0, option.find(' '));
-    EXPECT_NE(outcome.output.find(name + ": " + told), std::string::npos) << option << "\n"
-                                                                          << outcome.output;
+    EXPECT_CONTAINS(outcome.output, name + ": " + told) << option;
     EXPECT_LT(outcome.output.size(), 200u) << outcome.output;
   }
 }
@@ -327,7 +316,7 @@ TEST_F(Command, OutputThatDoesNotArriveIsAFailure) {
     const Outcome outcome =
         run(std::string(arguments) + " >/dev/full 2>told.txt; s=$?; cat told.txt; (exit $s)");
     EXPECT_EQ(outcome.status, EXIT_FAILURE) << arguments;
-    EXPECT_NE(outcome.output.find("stdout"), std::string::npos) << arguments << outcome.output;
+    EXPECT_CONTAINS(outcome.output, "stdout") << arguments;
   }
 }
 
@@ -345,9 +334,9 @@ TEST_F(Command, NoOutputOverwritesAnInputOrAnotherOutput) {
   for (const auto& [arguments, one, other] : mistakes) {
     const Outcome outcome = run(arguments);
     EXPECT_NE(outcome.status, 0) << arguments;
-    EXPECT_NE(outcome.output.find("same file"), std::string::npos) << outcome.output;
-    EXPECT_NE(outcome.output.find(one), std::string::npos) << outcome.output;
-    EXPECT_NE(outcome.output.find(other), std::string::npos) << outcome.output;
+    EXPECT_CONTAINS(outcome.output, "same file");
+    EXPECT_CONTAINS(outcome.output, one);
+    EXPECT_CONTAINS(outcome.output, other);
   }
   EXPECT_EQ(std::filesystem::file_size(file("cube.stl")), size);
   EXPECT_FALSE(std::filesystem::exists(file("s.csv")));
@@ -361,7 +350,7 @@ TEST_F(Command, WhenOneOfTwoFilesCannotBeWrittenNeitherAppears) {
   const Outcome outcome = run("--version; trap '' XFSZ; ulimit -f 8; '" KEEPOUT_COMMAND
                               "' replay cube.stl --poses poses.txt --out s.csv --planes p.csv");
   EXPECT_EQ(outcome.status, EXIT_FAILURE);
-  EXPECT_NE(outcome.output.find("s.csv"), std::string::npos) << outcome.output;
+  EXPECT_CONTAINS(outcome.output, "s.csv");
   EXPECT_FALSE(std::filesystem::exists(file("s.csv")));
   EXPECT_FALSE(std::filesystem::exists(file("p.csv")));
 }
@@ -373,10 +362,10 @@ TEST_F(Command, ASignalLeavesNoPartialFile) {
           "' replay cube.stl --poses poses --out s.csv --planes p.csv & "
           "for i in $(seq 1000); do ls p.csv.partial-* >/dev/null 2>&1 && break; sleep 0.01; done; "
           "ls; kill -TERM $!; wait $!; echo \"ended with $?\"");
-  EXPECT_NE(outcome.output.find("p.csv.partial-"), std::string::npos) << outcome.output;
-  EXPECT_NE(outcome.output.find("ended with 143"), std::string::npos) << outcome.output;
+  EXPECT_CONTAINS(outcome.output, "p.csv.partial-");
+  EXPECT_CONTAINS(outcome.output, "ended with 143");
   for (const auto& entry : std::filesystem::directory_iterator(folder_.path())) {
-    EXPECT_EQ(entry.path().string().find("partial"), std::string::npos) << entry.path();
+    EXPECT_LACKS(entry.path().string(), "partial") << entry.path();
   }
 }
 
@@ -387,8 +376,8 @@ TEST_F(Command, AReportThatCannotBeWrittenIsToldOfBeforeAnyWork) {
     // Work would begin with the mesh, which is none.
     const Outcome outcome = run(std::string("simulate none.stl --out ") + out);
     EXPECT_EQ(outcome.status, EXIT_FAILURE);
-    EXPECT_NE(outcome.output.find(out), std::string::npos) << outcome.output;
-    EXPECT_EQ(outcome.output.find("none.stl"), std::string::npos) << outcome.output;
+    EXPECT_CONTAINS(outcome.output, out);
+    EXPECT_LACKS(outcome.output, "none.stl");
   }
 }
 
@@ -398,7 +387,7 @@ TEST_F(Command, AnUnfitMeshIsNamed) {
   write_binary_stl(file("plates.stl"), plates);
   const Outcome outcome = run("simulate plates.stl --out r.html --strokes 1 --cycles 10");
   EXPECT_EQ(outcome.status, EXIT_FAILURE);
-  EXPECT_NE(outcome.output.find("plates.stl: no free place"), std::string::npos) << outcome.output;
+  EXPECT_CONTAINS(outcome.output, "plates.stl: no free place");
 }
 
 TEST_F(Command, ARuleThatIsNamedTwiceRunsOnce) {
@@ -438,9 +427,9 @@ TEST_F(Command, TheRecordTellsTheDateAndTheCommandThatMakesItAgain) {
   const std::string command = record["command"];
   ASSERT_TRUE(command.starts_with("keepout simulate ")) << command;
   for (const char* given : {"--seed 12 ", "--untagged lps "}) {
-    EXPECT_NE(command.find(given), std::string::npos) << command;
+    EXPECT_CONTAINS(command, given);
   }
-  EXPECT_NE(table.find("\nnone "), std::string::npos) << table;
+  EXPECT_CONTAINS(table, "\nnone ");
   EXPECT_EQ(untimed(command.substr(8)), table);
 }
 
@@ -449,11 +438,9 @@ TEST_F(Command, SimulatePrintsATableAndWritesAReport) {
       run("simulate cube.stl --out r.html --strokes 3 --cycles 200 --radius 1 --verbose");
   ASSERT_EQ(outcome.status, 0) << outcome.output;
   for (const char* word : {"none", "all_faces", "paper", "certified", "r.html"}) {
-    EXPECT_NE(outcome.output.find(word), std::string::npos) << word;
+    EXPECT_CONTAINS(outcome.output, word) << word;
   }
-  std::ifstream stream(file("r.html"));
-  const std::string page{std::istreambuf_iterator<char>(stream), {}};
-  EXPECT_NE(page.find("</html>"), std::string::npos);
+  EXPECT_CONTAINS(folder_.contents("r.html"), "</html>");
 }
 
 TEST_F(Command, TheSameSeedMovesTheSameHand) {

@@ -3,12 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <sstream>
-#include <string>
-#include <vector>
 
 #include "apps/command_process.h"
 #include "keepout/fixtures/shapes.h"
@@ -49,11 +44,6 @@ class IndexCacheOption : public testing::Test {
     return {begin(files), end(files)};
   }
 
-  static std::string bytes_of(const std::filesystem::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-  }
-
   static constexpr int untimed_columns = 13;  // the rest are t_..._ns
 
   CommandFolder folder;
@@ -79,14 +69,14 @@ TEST_F(IndexCacheOption, ADamagedFileIsReplaced) {
   answer("--index-cache cache");
   ASSERT_EQ(cached().size(), 1u);
   const std::filesystem::path file = cached()[0];
-  const std::string good = bytes_of(file);
+  const std::string good = contents_of(file);
   ASSERT_GT(good.size(), 1000u);
   std::string changed = good;
   changed[good.size() / 2] = static_cast<char>(changed[good.size() / 2] ^ 4);
   for (const std::string& bad : {changed, good.substr(0, good.size() / 2), std::string()}) {
     std::ofstream(file, std::ios::binary) << bad;
     EXPECT_EQ(answer("--index-cache cache"), plain_answer) << bad.size();
-    EXPECT_EQ(bytes_of(file), good) << bad.size();
+    EXPECT_EQ(contents_of(file), good) << bad.size();
     EXPECT_EQ(cached().size(), 1u);
   }
 }
@@ -95,7 +85,7 @@ TEST_F(IndexCacheOption, AFolderThatCannotBeUsedDoesNotStopTheRun) {
   folder.write("occupied", "a file where the folder should be");
   EXPECT_EQ(answer("--index-cache occupied"), plain_answer);
   EXPECT_EQ(answer("--index-cache occupied/below"), plain_answer);
-  EXPECT_EQ(bytes_of(folder.file("occupied")), "a file where the folder should be");
+  EXPECT_EQ(contents_of(folder.file("occupied")), "a file where the folder should be");
 }
 
 TEST_F(IndexCacheOption, WhatCannotBeKeptIsToldOfOnceAndWhy) {
@@ -103,13 +93,12 @@ TEST_F(IndexCacheOption, WhatCannotBeKeptIsToldOfOnceAndWhy) {
   const std::string replay = "replay gear.stl --poses poses.txt --out steps.csv --index-cache ";
   const ProcessOutcome no_folder = folder.run(replay + "occupied/below");
   EXPECT_EQ(no_folder.status, 0);
-  EXPECT_NE(no_folder.output.find("keepout: the index is not kept"), std::string::npos);
-  EXPECT_NE(no_folder.output.find("Not a directory"), std::string::npos) << no_folder.output;
+  EXPECT_CONTAINS(no_folder.output, "keepout: the index is not kept");
+  EXPECT_CONTAINS(no_folder.output, "Not a directory");
   // As when the disk is full: no file may become larger than this.
   const ProcessOutcome full = folder.run(replay + "cache", "trap '' XFSZ; ulimit -f 8; ");
   EXPECT_EQ(full.status, 0) << full.output;
-  EXPECT_NE(full.output.find("cannot be written (File too large)"), std::string::npos)
-      << full.output;
+  EXPECT_CONTAINS(full.output, "cannot be written (File too large)");
   EXPECT_TRUE(cached().empty());
   // Every rule has an index of its own, but the news is the same.
   const std::string all =
@@ -118,7 +107,7 @@ TEST_F(IndexCacheOption, WhatCannotBeKeptIsToldOfOnceAndWhy) {
   const std::size_t first = all.find("the index is not kept");
   ASSERT_NE(first, std::string::npos) << all;
   EXPECT_EQ(all.find("the index is not kept", first + 1), std::string::npos) << all;
-  EXPECT_EQ(folder.run(replay + "kept").output.find("keepout:"), std::string::npos);
+  EXPECT_LACKS(folder.run(replay + "kept").output, "keepout:");
 }
 
 TEST_F(IndexCacheOption, OtherIndicesKeepNothing) {

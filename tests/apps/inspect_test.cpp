@@ -2,13 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
 
 #include "commands.h"
-#include "keepout/error.h"
 #include "keepout/mesh/binary_stl.h"
 #include "small_surfaces.h"
 #include "temporary_folder.h"
@@ -43,14 +41,10 @@ class Inspect : public testing::Test {
   std::filesystem::path file = folder.path() / "mesh.stl";
 };
 
-bool contains(const std::string& text, std::string_view part) {
-  return text.find(part) != std::string::npos;
-}
-
 TEST_F(Inspect, ASoundMeshHasNoFindings) {
   write(tetrahedron());
-  EXPECT_TRUE(contains(text(), "Findings\n  none\n")) << text();
-  EXPECT_TRUE(contains(text(), "watertight")) << text();
+  EXPECT_CONTAINS(text(), "Findings\n  none\n");
+  EXPECT_CONTAINS(text(), "watertight");
   EXPECT_TRUE(json().at("findings").empty());
 }
 
@@ -72,15 +66,15 @@ TEST_F(Inspect, TheNumbersAreThoseOfTheMesh) {
 
 TEST_F(Inspect, LargeNumbersAreGrouped) {
   write(torus(32));
-  EXPECT_TRUE(contains(text(), "2,048")) << text();
+  EXPECT_CONTAINS(text(), "2,048");
 }
 
 TEST_F(Inspect, EachFindingSaysHowManyWhatItMeansAndWhatToDo) {
   Surface open = tetrahedron();
   open.triangles.pop_back();
   write(open);
-  EXPECT_TRUE(contains(text(), "3 boundary edges: the surface is open")) << text();
-  EXPECT_TRUE(contains(text(), "What to do: close the holes")) << text();
+  EXPECT_CONTAINS(text(), "3 boundary edges: the surface is open");
+  EXPECT_CONTAINS(text(), "What to do: close the holes");
   const nlohmann::json finding = json().at("findings").at(0);
   EXPECT_EQ(finding.at("key"), "boundary_edges");
   EXPECT_EQ(finding.at("count"), 3);
@@ -97,7 +91,7 @@ TEST_F(Inspect, TheUnitAndTheOrientationAreQuestioned) {
 TEST_F(Inspect, WhatIsFarTooLargeIsQuestionedToo) {
   write(tetrahedron(), 150'000.0);
   EXPECT_EQ(finding_keys(), std::set<std::string>{"looks_like_micrometres"});
-  EXPECT_TRUE(contains(text(), "um (150 mm)")) << text();
+  EXPECT_CONTAINS(text(), "um (150 mm)");
   EXPECT_EQ(json().at("other_units").at(0).at("unit"), "um");
   EXPECT_EQ(json().at("looks_like_micrometres"), true);
 }
@@ -118,23 +112,23 @@ TEST_F(Inspect, PlausibleUnitsAreNamedWithTheSizeThatTheyMake) {
   EXPECT_EQ(units_at(150.0), Units{});
   EXPECT_EQ(units_at(1e6), Units{});
   write(tetrahedron(), 0.18);
-  EXPECT_TRUE(contains(text(), "mm, which is assumed; as plausible: m (180 mm)")) << text();
+  EXPECT_CONTAINS(text(), "mm, which is assumed; as plausible: m (180 mm)");
 }
 
 TEST_F(Inspect, TheAnatomicalSpaceIsPrintedAndHowItIsKnown) {
   write(tetrahedron());
-  EXPECT_TRUE(contains(text(), "unstated: RAS, LPS or any other")) << text();
+  EXPECT_CONTAINS(text(), "unstated: RAS, LPS or any other");
   EXPECT_EQ(json().at("space"), nullptr);
   std::fstream out(file, std::ios::in | std::ios::out | std::ios::binary);
   out << std::string("3D Slicer output. SPACE=LPS").append(53, '\0');
   out.close();
-  EXPECT_TRUE(contains(text(), "LPS, as stated in the file")) << text();
-  EXPECT_TRUE(contains(text(), "in the file: states SPACE=LPS: taken as it stands")) << text();
+  EXPECT_CONTAINS(text(), "LPS, as stated in the file");
+  EXPECT_CONTAINS(text(), "in the file: states SPACE=LPS: taken as it stands");
   EXPECT_EQ(json().at("space"), "LPS");
   std::ostringstream turned;
   inspect({.mesh = file, .load = {.space = AnatomicalSpace::ras}}, turned);
-  EXPECT_TRUE(contains(turned.str(), "RAS, turned from LPS")) << turned.str();
-  EXPECT_TRUE(contains(turned.str(), "Findings\n  none\n")) << turned.str();
+  EXPECT_CONTAINS(turned.str(), "RAS, turned from LPS");
+  EXPECT_CONTAINS(turned.str(), "Findings\n  none\n");
 }
 
 TEST_F(Inspect, EveryKindOfFindingIsReported) {
@@ -150,19 +144,19 @@ TEST_F(Inspect, EveryKindOfFindingIsReported) {
   EXPECT_EQ(finding_keys(), (std::set<std::string>{"inconsistent_edges", "boundary_edges",
                                                    "non_manifold_edges", "duplicate_triangles",
                                                    "degenerate_triangles", "pinched_vertices"}));
-  EXPECT_TRUE(contains(text(), "1 duplicate triangle:")) << text();
+  EXPECT_CONTAINS(text(), "1 duplicate triangle:");
 }
 
 TEST_F(Inspect, SelfIntersectionsAreCountedOnRequest) {
   write(together(tetrahedron(), moved(tetrahedron(), {0.25, 0.25, -0.25})));
-  EXPECT_FALSE(contains(text(), "intersecting")) << text();
-  EXPECT_TRUE(contains(text(true), "self-intersecting pairs")) << text(true);
+  EXPECT_LACKS(text(), "intersecting");
+  EXPECT_CONTAINS(text(true), "self-intersecting pairs");
   EXPECT_GT(json(true).at("self_intersections"), 0);
 }
 
 TEST_F(Inspect, WarningsOfTheReaderAreAmongTheFindings) {
   file = folder.write("mesh.obj", "v 0 0 0\nv 9 0 0\nv 0 9 0\nf 1 2 3\nl 1 2\n");
-  EXPECT_TRUE(contains(text(), "in the file: left out 1 lines or points")) << text();
+  EXPECT_CONTAINS(text(), "in the file: left out 1 lines or points");
   EXPECT_EQ(json().at("warnings").size(), 1u);
 }
 

@@ -2,10 +2,6 @@
 // What the command says to a mistyped command line, and what it ends with.
 #include <gtest/gtest.h>
 
-#include <array>
-#include <string>
-#include <vector>
-
 #include "apps/command_process.h"
 #include "shared/names.h"
 
@@ -35,7 +31,7 @@ void expect_told(const std::vector<Mistake>& mistakes) {
     EXPECT_EQ(outcome.status, 2) << arguments << '\n' << outcome.output;
     EXPECT_TRUE(outcome.output.starts_with("keepout: " + told)) << arguments << '\n'
                                                                 << outcome.output;
-    EXPECT_NE(outcome.output.find("--help'.\n"), std::string::npos) << outcome.output;
+    EXPECT_CONTAINS(outcome.output, "--help'.\n");
     EXPECT_EQ(folder.run(arguments + " 2>/dev/null | cat").output, "") << arguments;
   }
 }
@@ -130,22 +126,22 @@ TEST(Usage, TheExitStatusSaysWhatKindOfEndItWas) {
   EXPECT_EQ(folder.run("inspect").status, 2);  // 130: verify_command_test.cpp
   for (const char* status : {"0 if all went well", "1 if something failed",
                              "2 if the command line is wrong", "130 if it was interrupted"}) {
-    EXPECT_NE(folder.run("--help").output.find(status), std::string::npos) << status;
+    EXPECT_CONTAINS(folder.run("--help").output, status) << status;
   }
 }
 
 TEST(Usage, HelpCallsTheCommandWhatTheUserHasCalledIt) {
   const test::CommandFolder folder;
   const Outcome direct = folder.run("inspec");
-  EXPECT_NE(direct.output.find("See 'keepout --help'."), std::string::npos) << direct.output;
+  EXPECT_CONTAINS(direct.output, "See 'keepout --help'.");
   const Outcome by_run =
       folder.run("simulate cub --raduis 1", R"(bash -c 'exec -a ./run "$0" "$@"' )");
-  EXPECT_NE(by_run.output.find("See './run simulate --help'."), std::string::npos) << by_run.output;
+  EXPECT_CONTAINS(by_run.output, "See './run simulate --help'.");
   // What only ./run does is told by it alone.
   const std::string help_of_run =
       folder.run("--help", R"(bash -c 'exec -a ./run "$0" "$@"' )").output;
-  EXPECT_NE(help_of_run.find("./run experiments"), std::string::npos) << help_of_run;
-  EXPECT_EQ(folder.run("--help").output.find("experiments"), std::string::npos);
+  EXPECT_CONTAINS(help_of_run, "./run experiments");
+  EXPECT_LACKS(folder.run("--help").output, "experiments");
 }
 
 }  // namespace

@@ -6,7 +6,6 @@
 #include <Eigen/Geometry>
 #include <limits>
 #include <set>
-#include <string>
 
 #include "control/guarded_shapes.h"
 #include "keepout/error.h"
@@ -206,7 +205,7 @@ TEST_F(Crtk, ARobotStandsOnceTheMeshHasMoved) {
   const Vec3 before = guard.setpoint_cp()->position;
   Surface moved = make_cube(10.0);
   for (Vec3& v : moved.vertices) v.z() += 1.0;
-  tree->refit(shared(moved));
+  tree->refit(mesh_of(moved));
   EXPECT_EQ(guard.servo_cp(pose_at(above + Vec3(0.1, 0, 0))), CycleStatus::stopped);
   EXPECT_EQ(guard.cycle().step, Status::mesh_changed);
   EXPECT_EQ(guard.setpoint_cp()->position, before);

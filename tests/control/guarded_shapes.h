@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <memory>
-
 #include "keepout/factory/make_motion_constraint.h"
-#include "keepout/fixtures/shapes.h"
+#include "meshes.h"
 
 namespace keepout {
 
@@ -13,17 +11,13 @@ namespace keepout {
 inline constexpr double top = 50.0;
 inline constexpr double kept = 0.5;  // margin, of a tool that is a point
 
-inline std::shared_ptr<const Mesh> shared(Surface surface) {
-  return std::make_shared<const Mesh>(std::move(surface));
-}
-
 inline MotionConstraint guard_of(std::shared_ptr<const Mesh> mesh,
                                  MotionConstraintSettings settings = {.margin = kept}) {
   return make_motion_constraint(std::move(mesh), settings);
 }
 
 inline std::shared_ptr<const Mesh> cube() {
-  static const auto mesh = shared(make_cube(10.0));
+  static const auto mesh = mesh_of(make_cube(10.0));
   return mesh;
 }
 

@@ -88,7 +88,7 @@ TEST(HapticProxy, OnAPlaneTheStaticForceIsTheStiffnessTimesTheDepthBehindTheMarg
 }
 
 TEST(HapticProxy, OnASphereTheForceIsRadialAndTheStiffnessTimesTheDepth) {
-  HapticProxy proxy(guard_of(shared(make_sphere(2.0))), {});
+  HapticProxy proxy(guard_of(mesh_of(make_sphere(2.0))), {});
   const Vec3 outwards = Vec3(1, 2, 3).normalized();
   proxy.engage(56.0 * outwards);
   const Vec3 hand = 48.0 * outwards;
@@ -230,7 +230,7 @@ TEST(HapticProxy, StandsOnceItsMeshHasMoved) {
   const Vec3 before = proxy.proxy();
   Surface moved = make_cube(10.0);
   for (Vec3& v : moved.vertices) v.z() += 1.0;
-  tree->refit(shared(moved));
+  tree->refit(mesh_of(moved));
   const HapticCycle cycle = proxy.cycle(above);
   EXPECT_EQ(cycle.status, CycleStatus::stopped);
   EXPECT_EQ(cycle.step, Status::mesh_changed);

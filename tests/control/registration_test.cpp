@@ -5,10 +5,8 @@
 
 #include <Eigen/Geometry>
 #include <limits>
-#include <string>
 
-#include "keepout/error.h"
-#include "keepout/fixtures/random.h"
+#include "messages.h"
 #include "random_places.h"
 
 namespace keepout {
@@ -31,19 +29,13 @@ Eigen::Matrix4d matrix_of(const Mat3& rotation, const Vec3& translation) {
 
 std::string complaint(const Eigen::Matrix4d& matrix,
                       const RegistrationUnits& units = metres_to_millimetres) {
+  std::string message;
   for (const auto make : {&Registration::mesh_from_robot, &Registration::robot_from_mesh}) {
-    try {
-      make(matrix, units);
-    } catch (const Error& error) {
-      if (make == &Registration::robot_from_mesh) return error.what();
-      continue;
-    }
-    ADD_FAILURE() << "no error";
+    message = error_of([&] { make(matrix, units); });
+    EXPECT_NE(message, "no error");
   }
-  return {};
+  return message;
 }
-
-#define EXPECT_SAYS(text, part) EXPECT_NE((text).find(part), std::string::npos) << (text)
 
 TEST(Registration, BringsPointsOfTheRobotIntoTheFrameAndUnitOfTheMesh) {
   const Mat3 quarter = turned(std::acos(0.0), Vec3::UnitZ());
@@ -95,51 +87,52 @@ TEST(Registration, WhatIsARotationToFourDigitsIsTakenForTheNearestOne) {
 TEST(Registration, AReflectionIsRefused) {
   Mat3 mirrored = turned(0.4, {1, 1, 0});
   mirrored.col(1) *= -1.0;
-  EXPECT_SAYS(complaint(matrix_of(mirrored, Vec3::Zero())), "a reflection");
-  EXPECT_SAYS(complaint(matrix_of(-Mat3::Identity(), Vec3::Zero())), "a reflection");
+  EXPECT_CONTAINS(complaint(matrix_of(mirrored, Vec3::Zero())), "a reflection");
+  EXPECT_CONTAINS(complaint(matrix_of(-Mat3::Identity(), Vec3::Zero())), "a reflection");
 }
 
 TEST(Registration, AScaleIsRefusedAndMetresForMillimetresSuspected) {
   const Mat3 rotation = turned(0.4, {1, 1, 0});
-  EXPECT_SAYS(complaint(matrix_of(1000.0 * rotation, Vec3::Zero())), "it scales by 1000;");
-  EXPECT_SAYS(complaint(matrix_of(0.001 * rotation, Vec3::Zero())), "it scales by 0.001;");
-  EXPECT_SAYS(complaint(matrix_of(1.001 * rotation, Vec3::Zero())), "it scales by 1.001;");
+  EXPECT_CONTAINS(complaint(matrix_of(1000.0 * rotation, Vec3::Zero())), "it scales by 1000;");
+  EXPECT_CONTAINS(complaint(matrix_of(0.001 * rotation, Vec3::Zero())), "it scales by 0.001;");
+  EXPECT_CONTAINS(complaint(matrix_of(1.001 * rotation, Vec3::Zero())), "it scales by 1.001;");
 }
 
 TEST(Registration, WhatJustMissesARotationIsNotCalledAReflection) {
-  EXPECT_SAYS(complaint(matrix_of(1.00007 * Mat3::Identity(), Vec3::Zero())),
-              "it scales by 1.00007;");
-  EXPECT_SAYS(complaint(matrix_of(Vec3(1.00007, 1, 1).asDiagonal(), Vec3::Zero())),
-              "it stretches by 1.00007");
+  EXPECT_CONTAINS(complaint(matrix_of(1.00007 * Mat3::Identity(), Vec3::Zero())),
+                  "it scales by 1.00007;");
+  EXPECT_CONTAINS(complaint(matrix_of(Vec3(1.00007, 1, 1).asDiagonal(), Vec3::Zero())),
+                  "it stretches by 1.00007");
 }
 
 TEST(Registration, OtherMatricesAreRefusedForWhatTheyAre) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_SAYS(complaint(matrix_of(Vec3(1, 1, 2).asDiagonal(), Vec3::Zero())), "it stretches by 2");
-  EXPECT_SAYS(complaint(matrix_of(Vec3(1, 1, 0).asDiagonal(), Vec3::Zero())), "it flattens");
-  EXPECT_SAYS(complaint(matrix_of(Mat3::Zero(), Vec3::Zero())), "all zeros");
-  EXPECT_SAYS(complaint(matrix_of(Mat3::Identity(), {0, nan, 0})), "not finite");
+  EXPECT_CONTAINS(complaint(matrix_of(Vec3(1, 1, 2).asDiagonal(), Vec3::Zero())),
+                  "it stretches by 2");
+  EXPECT_CONTAINS(complaint(matrix_of(Vec3(1, 1, 0).asDiagonal(), Vec3::Zero())), "it flattens");
+  EXPECT_CONTAINS(complaint(matrix_of(Mat3::Zero(), Vec3::Zero())), "all zeros");
+  EXPECT_CONTAINS(complaint(matrix_of(Mat3::Identity(), {0, nan, 0})), "not finite");
   Mat3 huge = Mat3::Identity();
   huge(0, 0) = 1e200;
-  EXPECT_SAYS(complaint(matrix_of(huge, Vec3::Zero())), "no rotation");
+  EXPECT_CONTAINS(complaint(matrix_of(huge, Vec3::Zero())), "no rotation");
   Eigen::Matrix4d transposed = matrix_of(Mat3::Identity(), {10, 20, 30}).transpose();
-  EXPECT_SAYS(complaint(transposed), "transposed");
+  EXPECT_CONTAINS(complaint(transposed), "transposed");
 }
 
 TEST(Registration, ATranslationInTheWrongUnitIsRefused) {
   const Eigen::Matrix4d matrix = matrix_of(Mat3::Identity(), {100, 200, 50});
-  EXPECT_SAYS(complaint(matrix, {.transform = LengthUnit::metre,
-                                 .robot = LengthUnit::metre,
-                                 .mesh = LengthUnit::millimetre}),
-              "is its unit millimetres?");
+  EXPECT_CONTAINS(complaint(matrix, {.transform = LengthUnit::metre,
+                                     .robot = LengthUnit::metre,
+                                     .mesh = LengthUnit::millimetre}),
+                  "is its unit millimetres?");
 }
 
 TEST(Registration, AForgottenUnitIsAskedFor) {
   const Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
-  EXPECT_SAYS(complaint(matrix, {}), "say the unit of the matrix's translation");
-  EXPECT_SAYS(complaint(matrix, {.transform = LengthUnit::metre}), "of the robot's poses");
-  EXPECT_SAYS(complaint(matrix, {.transform = LengthUnit::metre, .robot = LengthUnit::metre}),
-              "of the mesh");
+  EXPECT_CONTAINS(complaint(matrix, {}), "say the unit of the matrix's translation");
+  EXPECT_CONTAINS(complaint(matrix, {.transform = LengthUnit::metre}), "of the robot's poses");
+  EXPECT_CONTAINS(complaint(matrix, {.transform = LengthUnit::metre, .robot = LengthUnit::metre}),
+                  "of the mesh");
 }
 
 TEST(Pose, QuaternionsAndRotationsAgree) {

@@ -2,9 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <string>
 
 #include "keepout/registry.h"
+#include "messages.h"
 
 namespace keepout {
 namespace {
@@ -47,14 +47,9 @@ TEST(Registry, AsksWhetherTheNearestNameWasMeant) {
   constexpr std::array<Part, 2> parts = {Part{"certified"}, Part{"paper"}};
   constexpr std::array<AbsentPart, 1> absent = {AbsentPart{"embree", "Embree"}};
   const auto refusal = [&](std::string_view name) {
-    try {
-      Registry<Part>("rule", parts, absent).named(name);
-    } catch (const Error& error) {
-      return std::string(error.what());
-    }
-    return std::string("none");
+    return error_of([&] { Registry<Part>("rule", parts, absent).named(name); });
   };
-  EXPECT_EQ(refusal("paper"), "none");
+  EXPECT_EQ(refusal("paper"), "no error");
   EXPECT_EQ(refusal("certifed"),
             "there is no rule 'certifed'; did you mean 'certified'? known: certified, paper");
   EXPECT_EQ(refusal("embre"),

@@ -4,7 +4,6 @@
 #include <sys/wait.h>
 
 #include <cstdio>
-#include <string>
 
 #include "keepout/fixtures/shapes.h"
 #include "keepout/mesh/binary_stl.h"
@@ -13,18 +12,23 @@
 namespace keepout {
 namespace {
 
-/// What an example prints of the sphere, in one line.
+/// Runs an example with these arguments; returns what it prints.
+std::string said(const std::string& example, const std::string& arguments, int status) {
+  FILE* pipe = ::popen(("'" KEEPOUT_EXAMPLES + example + "' " + arguments + " 2>&1").c_str(), "r");
+  EXPECT_NE(pipe, nullptr);
+  char line[256] = "";
+  std::string text;
+  while (std::fgets(line, sizeof line, pipe) != nullptr) text += line;
+  EXPECT_EQ(WEXITSTATUS(::pclose(pipe)), status) << example << ": " << text;
+  return text;
+}
+
+/// What an example prints of the sphere.
 std::string output_of(const std::string& example) {
   const TemporaryFolder folder;
   const auto mesh = folder.path() / "sphere.stl";
   write_binary_stl(mesh, make_sphere(3.0));
-  FILE* pipe = ::popen(("'" + example + "' '" + mesh.string() + "'").c_str(), "r");
-  if (pipe == nullptr) return {};
-  char line[256] = "";
-  std::string text;
-  while (std::fgets(line, sizeof line, pipe) != nullptr) text += line;
-  EXPECT_EQ(::pclose(pipe), 0);
-  return text;
+  return said(example, "'" + mesh.string() + "'", 0);
 }
 
 /// How often the tip was held back, and where it ended.
@@ -47,14 +51,14 @@ Ending ending_of(const std::string& example) {
 constexpr double radius = 50.0 - 0.1;
 
 TEST(Example01, EndsOutsideOfTheMeshByTheMargin) {
-  const Ending ending = ending_of(KEEPOUT_EXAMPLE);
+  const Ending ending = ending_of("01_keep_out");
   EXPECT_GT(ending.held, 100);
   EXPECT_GT(ending.tip.norm(), radius + 0.5);
 }
 
 TEST(Example03, AnOwnIndexKeepsTheTipOutAsBruteForceDoes) {
   int held = 0, cycles = 0, different = 0;
-  const std::string text = output_of(KEEPOUT_EXAMPLE_OWN_INDEX);
+  const std::string text = output_of("03_own_index");
   ASSERT_EQ(std::sscanf(text.c_str(), "held back in %d of %d cycles, %d unlike", &held, &cycles,
                         &different),
             3)
@@ -65,7 +69,7 @@ TEST(Example03, AnOwnIndexKeepsTheTipOutAsBruteForceDoes) {
 }
 
 TEST(Example04, TheWholeShaftEndsOutsideOfTheMeshByTheMargin) {
-  const Ending ending = ending_of(KEEPOUT_EXAMPLE_CONVEX_TOOL);
+  const Ending ending = ending_of("04_convex_tool");
   EXPECT_GT(ending.held, 100);
   for (int i = 0; i <= 100; ++i) {
     const Vec3 on_the_axis = ending.tip + 0.01 * i * Vec3(8.5, 0, 8.5);
@@ -76,7 +80,7 @@ TEST(Example04, TheWholeShaftEndsOutsideOfTheMeshByTheMargin) {
 TEST(Example05, AnOwnSolverIsOptimalAndMovesAsActiveSetDoes) {
   int held = 0, cycles = 0, failed = -1, problems = 0;
   double apart = 1.0, residual = 1.0;
-  const std::string text = output_of(KEEPOUT_EXAMPLE_OWN_SOLVER);
+  const std::string text = output_of("05_own_solver");
   ASSERT_EQ(std::sscanf(text.c_str(),
                         "held back in %d of %d cycles, %d failed; %lf from active_set; "
                         "KKT residual %lf in %d problems",
@@ -93,7 +97,7 @@ TEST(Example05, AnOwnSolverIsOptimalAndMovesAsActiveSetDoes) {
 TEST(Example06, AnOwnProgramInTheFreePolytopeKeepsTheMargin) {
   double closest = 0.0, margin = 0.0, change = 1.0;
   Vec3 tip = Vec3::Zero();
-  const std::string text = output_of(KEEPOUT_EXAMPLE_OWN_QP);
+  const std::string text = output_of("06_own_qp");
   ASSERT_EQ(std::sscanf(text.c_str(),
                         "closest %lf of %lf, largest change of a move %lf, ends at %lf %lf %lf",
                         &closest, &margin, &change, &tip.x(), &tip.y(), &tip.z()),
@@ -106,7 +110,7 @@ TEST(Example06, AnOwnProgramInTheFreePolytopeKeepsTheMargin) {
 }
 
 TEST(Example08, TheProxyKeepsTheMarginTheForceSaturatesAndTheEnergiesAddUp) {
-  const std::string text = output_of(KEEPOUT_EXAMPLE_CRTK_LOOP);
+  const std::string text = output_of("08_crtk_loop");
   int held = 0, stopped = -1;
   double nearest = 0, tool = 0, hand = 0, to_hand = 0, stored = -1, dissipated = 0, from_proxy = 0,
          active = -1;
@@ -135,7 +139,7 @@ TEST(Example02, TheJointsKeepTheTipOut) {
   int held = 0;
   double nearest = 0.0;
   Vec3 tip = Vec3::Zero();
-  const std::string text = output_of(KEEPOUT_EXAMPLE_JOINTS);
+  const std::string text = output_of("02_joints");
   ASSERT_EQ(std::sscanf(text.c_str(),
                         "held back in %d of 2000 cycles, nearest %lf mm, ends at %lf %lf %lf",
                         &held, &nearest, &tip.x(), &tip.y(), &tip.z()),
@@ -149,7 +153,7 @@ TEST(Example02, TheJointsKeepTheTipOut) {
 }
 
 TEST(Example09, TheWholeInstrumentKeepsTheMarginAndAPlannerIsToldHowFarItMayGo) {
-  const std::string text = output_of(KEEPOUT_EXAMPLE_INSTRUMENT);
+  const std::string text = output_of("09_whole_instrument");
   double clear = 0, nearest = 0;
   int held = 0, stopped = -1;
   char body[16] = "";
@@ -174,28 +178,18 @@ TEST(Example09, TheWholeInstrumentKeepsTheMarginAndAPlannerIsToldHowFarItMayGo) 
 
 TEST(Examples, SayWhatIsWrongWhenTheMeshIsMissing) {
   for (const std::string example :
-       {KEEPOUT_EXAMPLE, KEEPOUT_EXAMPLE_OWN_INDEX, KEEPOUT_EXAMPLE_CONVEX_TOOL,
-        KEEPOUT_EXAMPLE_OWN_SOLVER, KEEPOUT_EXAMPLE_OWN_QP, KEEPOUT_EXAMPLE_CRTK_LOOP,
-        KEEPOUT_EXAMPLE_JOINTS, KEEPOUT_EXAMPLE_INSTRUMENT}) {
-    const auto said = [&](const std::string& arguments, int status) {
-      FILE* pipe = ::popen(("'" + example + "' " + arguments + " 2>&1").c_str(), "r");
-      EXPECT_NE(pipe, nullptr);
-      char line[256] = "";
-      std::string text;
-      while (std::fgets(line, sizeof line, pipe) != nullptr) text += line;
-      EXPECT_EQ(WEXITSTATUS(::pclose(pipe)), status) << example << ": " << text;
-      return text;
-    };
-    EXPECT_NE(said("", 2).find("usage:"), std::string::npos);
-    EXPECT_NE(said("/no/such/mesh.stl", 1).find("/no/such/mesh.stl"), std::string::npos);
+       {"01_keep_out", "03_own_index", "04_convex_tool", "05_own_solver", "06_own_qp",
+        "08_crtk_loop", "02_joints", "09_whole_instrument"}) {
+    EXPECT_CONTAINS(said(example, "", 2), "usage:");
+    EXPECT_CONTAINS(said(example, "/no/such/mesh.stl", 1), "/no/such/mesh.stl");
   }
 }
 
-#ifdef KEEPOUT_EXAMPLE_OMPL
+#ifdef KEEPOUT_HAS_OMPL
 TEST(Example07, PlansAroundTheSphere) {
   int motions = 0;
   double length = 0.0;
-  const std::string text = output_of(KEEPOUT_EXAMPLE_OMPL);
+  const std::string text = output_of("07_plan_with_ompl");
   ASSERT_EQ(std::sscanf(text.c_str(), "a path of %d proven motions, %lf long", &motions, &length),
             2)
       << text;
@@ -206,7 +200,7 @@ TEST(Example07, PlansAroundTheSphere) {
 TEST(Example10, PlansForAShaftAroundTheSphere) {
   int motions = 0;
   double length = 0.0;
-  const std::string text = output_of(KEEPOUT_EXAMPLE_OMPL_JOINTS);
+  const std::string text = output_of("10_plan_joints_with_ompl");
   ASSERT_EQ(
       std::sscanf(text.c_str(), "a path of %d proven joint motions, %lf long", &motions, &length),
       2)

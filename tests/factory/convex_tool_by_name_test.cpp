@@ -2,10 +2,6 @@
 // A convex tool by name is the one that is put together by hand.
 #include <gtest/gtest.h>
 
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "factory/tools_by_name.h"
 #include "keepout/keepout.h"
 #include "temporary_folder.h"

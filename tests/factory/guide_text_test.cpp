@@ -4,12 +4,11 @@
 
 #include <gtest/gtest.h>
 
-#include <string>
 #include <utility>
 #include <vector>
 
-#include "keepout/error.h"
 #include "keepout/fixtures/random.h"
+#include "messages.h"
 
 namespace keepout {
 namespace {
@@ -53,14 +52,6 @@ TEST(GuideText, OfAnInstrumentIsTheGuideMadeByHand) {
 }
 
 TEST(GuideText, WhatIsNoneIsToldWithTheForms) {
-  const auto objection = [](const auto& make) {
-    try {
-      make();
-    } catch (const Error& error) {
-      return std::string(error.what());
-    }
-    return std::string();
-  };
   for (const auto& [text, why] : std::vector<std::pair<std::string, std::string>>{
            {"", "its name is empty"},
            {"=ball:0,0,0:1", "its name is empty"},
@@ -68,17 +59,17 @@ TEST(GuideText, WhatIsNoneIsToldWithTheForms) {
            {"ball:0,0:1", "'0,0' is not a point"},
            {"ball:0,0,0:x", "'x' is not a number"},
            {"slab:0,0,0:0,0,0:1", "direction"}}) {
-    const std::string told = objection([&] { guide_of_text(text); });
-    EXPECT_NE(told.find(why), std::string::npos) << told;
-    EXPECT_NE(told.find("half_space:X"), std::string::npos) << told;
+    const std::string told = error_of([&] { guide_of_text(text); });
+    EXPECT_CONTAINS(told, why);
+    EXPECT_CONTAINS(told, "half_space:X");
   }
   for (const auto& [text, why] : std::vector<std::pair<std::string, std::string>>{
            {"point:1.5:0,0,0:ball:0,0,0:1", "'1.5' is not the number of a link"},
            {"point:1:0,0,0:ball:0,0,0", "there is no such guide or region"},
            {"axle:1:0,0,1:0,0,1:0.1", "there is no such guide or region"}}) {
-    const std::string told = objection([&] { guide_of_text(text); });
-    EXPECT_NE(told.find(why), std::string::npos) << told;
-    EXPECT_NE(told.find("point:LINK"), std::string::npos) << told;
+    const std::string told = error_of([&] { guide_of_text(text); });
+    EXPECT_CONTAINS(told, why);
+    EXPECT_CONTAINS(told, "point:LINK");
   }
 }
 

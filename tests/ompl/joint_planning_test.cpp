@@ -16,17 +16,17 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <string>
 #include <thread>
 #include <vector>
 
-#include "keepout/error.h"
+#include "by_name.h"
 #include "keepout/factory/make_instrument_constraint.h"
 #include "keepout/fixtures/random.h"
 #include "keepout/fixtures/robots.h"
-#include "keepout/fixtures/shapes.h"
 #include "keepout/index/wide_bvh.h"
 #include "keepout/oracle/instrument_oracle.h"
+#include "meshes.h"
+#include "messages.h"
 #include "trials.h"
 
 namespace keepout {
@@ -56,9 +56,7 @@ Workplace workplace(const std::shared_ptr<const Mesh>& mesh) {
           std::make_shared<base::SpaceInformation>(make_joint_space(instrument))};
 }
 
-Workplace workplace(std::string_view shape) {
-  return workplace(std::make_shared<const Mesh>(make_shape(shape)));
-}
+Workplace workplace(std::string_view shape) { return workplace(mesh_of(shape)); }
 
 /// A state that goes away with this object.
 class JointState {
@@ -156,11 +154,11 @@ TEST_P(JointPlanningOn, NothingIsCalledValidThatTheJudgeFindsTooClose) {
 
 INSTANTIATE_TEST_SUITE_P(Shapes, JointPlanningOn,
                          testing::Values("cube", "gear", "thin_plates", "cortex", "triangle_soup"),
-                         [](const auto& shape) { return std::string(shape.param); });
+                         by_name);
 
 TEST(JointPlanning, ATipThatDipsBetweenTwoSamplesIsSeen) {
   // It swings about the port, over a plate of no thickness: lowest halfway, by some micrometres.
-  const Workplace at = workplace(std::make_shared<const Mesh>(make_flat_plate(10.0, 1)));
+  const Workplace at = workplace(mesh_of(make_flat_plate(10.0, 1)));
   set_certified_checkers(at.space, at.guards);
   at.space->setup();
   const base::DiscreteMotionValidator sampled(at.space);
@@ -217,7 +215,7 @@ TEST(JointPlanning, NothingIsValidOnceTheMeshHasMoved) {
   const JointState from(at.space, {0, 0, 20, 0, 0, 0}), to(at.space, {0, 0, 24, 0, 0, 0});
   const auto validator = make_motion_validator(at.space, guards);
   EXPECT_TRUE(validator->checkMotion(from.get(), to.get()));
-  tree->refit(std::make_shared<const Mesh>(make_shape("cube")));
+  tree->refit(mesh_of("cube"));
   EXPECT_FALSE(validator->checkMotion(from.get(), to.get()));
 }
 
@@ -275,39 +273,27 @@ TEST(JointPlanning, TheSpaceMeasuresHowFarAJointMovesTheInstrument) {
   EXPECT_GT(space->getMaximumExtent(), 2.0 * 1.588 * 243.7);
 }
 
-/// The message of the error, or none.
-template <class Call>
-std::string error_of(const Call& call) {
-  try {
-    call();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return {};
-}
-
 TEST(JointPlanning, AWrongSpaceIsRefusedWithAWordOnWhatToDo) {
   const Workplace at = workplace("cube");
   const auto told = [&](const base::StateSpacePtr& space) {
     return error_of(
         [&] { make_motion_validator(std::make_shared<base::SpaceInformation>(space), at.guards); });
   };
-  const auto says = [](const std::string& text, const std::string& words) {
-    EXPECT_NE(text.find(words), std::string::npos) << text;
-  };
-  says(told(std::make_shared<base::RealVectorStateSpace>(3)), "make_joint_space");
-  says(told(std::make_shared<base::SE3StateSpace>()), "6 dimensions");
+  EXPECT_CONTAINS(told(std::make_shared<base::RealVectorStateSpace>(3)), "make_joint_space");
+  EXPECT_CONTAINS(told(std::make_shared<base::SE3StateSpace>()), "6 dimensions");
   const auto wide = std::make_shared<base::RealVectorStateSpace>(6);
-  says(told(wide), "setBounds");
+  EXPECT_CONTAINS(told(wide), "setBounds");
   wide->setBounds(-2.0, 2.0);
-  says(told(wide), "joint 'yaw'");
+  EXPECT_CONTAINS(told(wide), "joint 'yaw'");
   wide->setBounds(0.0, 0.5);
-  EXPECT_EQ(told(wide), "") << "any space within the limits will do";
-  says(error_of([&] { make_motion_validator(at.space, std::shared_ptr<InstrumentPool>()); }),
-       "InstrumentPool");
-  says(error_of([&] { make_state_validity_checker(nullptr, at.guards); }), "SpaceInformation");
+  EXPECT_EQ(told(wide), "no error") << "any space within the limits will do";
+  EXPECT_CONTAINS(
+      error_of([&] { make_motion_validator(at.space, std::shared_ptr<InstrumentPool>()); }),
+      "InstrumentPool");
+  EXPECT_CONTAINS(error_of([&] { make_state_validity_checker(nullptr, at.guards); }),
+                  "SpaceInformation");
   const Instrument free(Chain({{.name = "hinge"}}), {{"ball", {{1, Vec3::Zero()}}, 1.0}});
-  says(error_of([&] { make_joint_space(free); }), "joint 'hinge' has no limits");
+  EXPECT_CONTAINS(error_of([&] { make_joint_space(free); }), "joint 'hinge' has no limits");
 }
 
 TEST(JointPlanning, APlannerFindsAPathThatTheJudgePasses) {

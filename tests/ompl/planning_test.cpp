@@ -16,12 +16,13 @@
 #include <thread>
 #include <vector>
 
-#include "keepout/error.h"
+#include "by_name.h"
 #include "keepout/factory/make_motion_constraint.h"
 #include "keepout/fixtures/random.h"
-#include "keepout/fixtures/shapes.h"
 #include "keepout/index/wide_bvh.h"
 #include "keepout/oracle/safety_oracle.h"
+#include "meshes.h"
+#include "messages.h"
 
 namespace keepout {
 namespace {
@@ -32,10 +33,6 @@ constexpr double margin = 0.5;
 constexpr double tolerance = 1e-6;  // far above 3 tau of shapes of this size
 
 using SharedMesh = std::shared_ptr<const Mesh>;
-
-SharedMesh mesh_of(std::string_view shape) {
-  return std::make_shared<const Mesh>(make_shape(shape));
-}
 
 std::shared_ptr<GuardPool> guards_of(const SharedMesh& mesh, std::size_t most = 2) {
   return std::make_shared<GuardPool>(
@@ -128,10 +125,10 @@ TEST_P(PlanningOn, TheValidatorAgreesWithTheOracleOnRandomMotions) {
 INSTANTIATE_TEST_SUITE_P(Shapes, PlanningOn,
                          testing::Values("cube", "sphere", "gear", "thin_plates", "cortex",
                                          "star_bumps", "tunnel", "triangle_soup"),
-                         [](const auto& shape) { return std::string(shape.param); });
+                         by_name);
 
 /// One plate of no thickness at z = 0, 100 wide.
-SharedMesh sheet() { return std::make_shared<const Mesh>(make_flat_plate(10.0, 1)); }
+SharedMesh sheet() { return mesh_of(make_flat_plate(10.0, 1)); }
 
 TEST(Planning, SampledCheckingJumpsOverAPlateThatTheValidatorSees) {
   const SharedMesh mesh = sheet();
@@ -240,17 +237,6 @@ TEST(Planning, ValidatorsCountAndMayBeCalledFromManyThreads) {
   EXPECT_LE(guards->made(), 2u);
 }
 
-/// The message of the error, or none.
-template <class Call>
-std::string error_of(const Call& call) {
-  try {
-    call();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return {};
-}
-
 TEST(Planning, AWrongSpaceIsRefusedWithAWordOnWhatToDo) {
   const SharedMesh mesh = mesh_of("cube");
   const auto guards = guards_of(mesh);
@@ -260,18 +246,15 @@ TEST(Planning, AWrongSpaceIsRefusedWithAWordOnWhatToDo) {
   };
   const auto plane = std::make_shared<base::RealVectorStateSpace>(2);
   plane->setBounds(-1, 1);
-  EXPECT_NE(make(plane).find("RealVectorStateSpace>(3)"), std::string::npos) << make(plane);
+  EXPECT_CONTAINS(make(plane), "RealVectorStateSpace>(3)");
   const auto poses = std::make_shared<base::SE3StateSpace>();
-  EXPECT_NE(make(poses).find("6 dimensions"), std::string::npos) << make(poses);
+  EXPECT_CONTAINS(make(poses), "6 dimensions");
   const auto unbounded = std::make_shared<base::RealVectorStateSpace>(3);
-  EXPECT_NE(make(unbounded).find("setBounds"), std::string::npos) << make(unbounded);
-  EXPECT_NE(
-      error_of([&] { make_motion_validator(space_around(*mesh), nullptr); }).find("GuardPool"),
-      std::string::npos);
-  EXPECT_NE(error_of([&] { set_certified_checkers(nullptr, guards); }), "");
-  EXPECT_NE(
-      error_of([&] { make_sliding_connect(space_around(*mesh), guards, {.sliding_step = 6.0}); }),
-      "");
+  EXPECT_CONTAINS(make(unbounded), "setBounds");
+  EXPECT_CONTAINS(error_of([&] { make_motion_validator(space_around(*mesh), nullptr); }),
+                  "GuardPool");
+  EXPECT_THROW(set_certified_checkers(nullptr, guards), Error);
+  EXPECT_THROW(make_sliding_connect(space_around(*mesh), guards, {.sliding_step = 6.0}), Error);
 }
 
 /// From one side of the cortex to the other.

@@ -5,19 +5,17 @@
 
 #include <Eigen/Geometry>
 #include <limits>
-#include <memory>
 #include <stdexcept>
-#include <string>
 
+#include "by_name.h"
 #include "keepout/activation/certified.h"
 #include "keepout/adapters/index_registry.h"
 #include "keepout/error.h"
 #include "keepout/factory/make_motion_constraint.h"
-#include "keepout/fixtures/poses.h"
-#include "keepout/fixtures/shapes.h"
 #include "keepout/ompl/guard_pool.h"
 #include "keepout/ompl/straight_way.h"
 #include "keepout/oracle/safety_oracle.h"
+#include "meshes.h"
 #include "random_places.h"
 
 namespace keepout {
@@ -27,10 +25,6 @@ constexpr double margin = 0.5;
 constexpr double tolerance = 1e-6;
 
 using Ending = ProjectingSteer::Ending;
-
-std::shared_ptr<const Mesh> mesh_of(std::string_view shape) {
-  return std::make_shared<const Mesh>(make_shape(shape));
-}
 
 MotionConstraint guard_of(const std::shared_ptr<const Mesh>& mesh) {
   return make_motion_constraint(mesh, {.margin = margin});
@@ -77,7 +71,7 @@ TEST_P(SteerOn, EachPieceIsProvenAndComesNearer) {
 INSTANTIATE_TEST_SUITE_P(Shapes, SteerOn,
                          testing::Values("cube", "sphere", "gear", "thin_plates", "cortex",
                                          "tunnel"),
-                         [](const auto& shape) { return std::string(shape.param); });
+                         by_name);
 
 TEST(ProjectingSteer, SlidesAroundWhereAStraightMotionIsRefused) {
   const auto mesh = mesh_of("sphere");

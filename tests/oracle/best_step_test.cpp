@@ -4,14 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-#include <algorithm>
-#include <cmath>
 #include <limits>
-#include <numbers>
 #include <span>
-#include <string>
 #include <vector>
 
+#include "by_name.h"
 #include "keepout/fixtures/poses.h"
 #include "keepout/fixtures/shapes.h"
 #include "keepout/geometry/closest_point.h"
@@ -259,7 +256,7 @@ TEST_P(BestStepOnShapes, IsSafeAndNoDirectionOfManyIsBetter) {
 
 INSTANTIATE_TEST_SUITE_P(Shapes, BestStepOnShapes,
                          testing::Values("cube", "sphere", "gear", "cortex", "thin_plates"),
-                         [](const auto& name) { return std::string(name.param); });
+                         by_name);
 
 }  // namespace
 }  // namespace keepout::test

@@ -2,12 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <memory>
-
-#include "keepout/oracle/distance.h"
 #include "keepout/oracle/safety_oracle.h"
+#include "meshes.h"
 #include "oracle/hostile_pairs.h"
 #include "oracle/infinity.h"
 #include "trials.h"
@@ -98,7 +94,7 @@ TEST(BracketDistance, AndTheExactOneNeverDisagreeOneStepAroundTheTruth) {
   for (int i = 0; i < test::trials(8'000); ++i) {
     const HostilePair pair = hostile_pair(random);
     const auto& [a, b, c] = pair.triangle;
-    SafetyOracle oracle(std::make_shared<const Mesh>(Surface{{a, b, c}, {{0, 1, 2}}}));
+    SafetyOracle oracle(mesh_of(Surface{{a, b, c}, {{0, 1, 2}}}));
     const double truth = exact_distance(pair.segment, pair.triangle, 0.0).distance;
     const Bracket bracket = bracket_distance(pair.segment, pair.triangle);
     for (const double threshold :

@@ -3,9 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <cmath>
 
-#include "keepout/oracle/distance.h"
 #include "oracle/hostile_pairs.h"
 #include "oracle/infinity.h"
 

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 
 #include "keepout/fixtures/random.h"
 #include "keepout/geometry/shapes.h"
-#include "keepout/oracle/distance.h"
 
 namespace keepout::oracle {
 

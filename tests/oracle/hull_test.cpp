@@ -8,16 +8,12 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
-#include <memory>
 #include <stdexcept>
-#include <string>
-#include <vector>
 
-#include "keepout/fixtures/random.h"
-#include "keepout/fixtures/shapes.h"
+#include "by_name.h"
 #include "keepout/oracle/instrument_oracle.h"
+#include "meshes.h"
 #include "random_places.h"
 #include "trials.h"
 
@@ -135,7 +131,7 @@ JudgedRobot blade(double size, double radius, Random& random) {
 class BladeOnEveryShape : public testing::TestWithParam<Shape> {};
 
 TEST_P(BladeOnEveryShape, ClearanceIsThatOfAPlainLoopHoweverItGotThere) {
-  const auto mesh = std::make_shared<const Mesh>(GetParam().make());
+  const auto mesh = mesh_of(GetParam().make());
   const auto tree = std::make_shared<const TriangleTree>(mesh);
   const double size = mesh->bounds().size().norm();
   Random random(20261124);
@@ -177,9 +173,7 @@ TEST_P(BladeOnEveryShape, ClearanceIsThatOfAPlainLoopHoweverItGotThere) {
   EXPECT_GT(near, 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Hull, BladeOnEveryShape,
-                         testing::ValuesIn(shapes().begin(), shapes().end()),
-                         [](const auto& row) { return std::string(row.param.name); });
+INSTANTIATE_TEST_SUITE_P(Hull, BladeOnEveryShape, testing::ValuesIn(shapes()), by_name);
 
 }  // namespace
 }  // namespace keepout::oracle

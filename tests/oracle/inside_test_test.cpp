@@ -5,12 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-#include <cmath>
-#include <numbers>
 
 #include "keepout/fixtures/poses.h"
 #include "keepout/fixtures/resample_mesh.h"
-#include "keepout/fixtures/shapes.h"
+#include "meshes.h"
 #include "random_places.h"
 #include "small_surfaces.h"
 
@@ -18,7 +16,7 @@ namespace keepout::oracle {
 namespace {
 
 InsideTest test_of(const Surface& surface) {
-  return InsideTest(std::make_shared<const TriangleTree>(std::make_shared<const Mesh>(surface)));
+  return InsideTest(std::make_shared<const TriangleTree>(mesh_of(surface)));
 }
 
 /// How often the surface goes around the point: the sum of the triangles' solid angles. (van

@@ -7,11 +7,11 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
+#include "by_name.h"
 #include "keepout/fixtures/robots.h"
-#include "keepout/fixtures/shapes.h"
+#include "meshes.h"
 #include "random_places.h"
 #include "trials.h"
 
@@ -37,7 +37,7 @@ double brute_force(const Mesh& mesh, const Segment& axis) {
 class InstrumentOracleOnEveryShape : public testing::TestWithParam<Shape> {};
 
 TEST_P(InstrumentOracleOnEveryShape, ClearanceIsThatOfAPlainLoopHoweverItGotThere) {
-  const auto mesh = std::make_shared<const Mesh>(GetParam().make());
+  const auto mesh = mesh_of(GetParam().make());
   const auto tree = std::make_shared<const TriangleTree>(mesh);
   const double size = mesh->bounds().size().norm();
   Random random(20261123);
@@ -90,8 +90,7 @@ TEST_P(InstrumentOracleOnEveryShape, CollectsAllThatIsWithinOfASegment) {
 }
 
 INSTANTIATE_TEST_SUITE_P(InstrumentOracle, InstrumentOracleOnEveryShape,
-                         testing::ValuesIn(shapes().begin(), shapes().end()),
-                         [](const auto& row) { return std::string(row.param.name); });
+                         testing::ValuesIn(shapes()), by_name);
 
 void expect_same_places(const JudgedRobot& judged, Instrument (*make)(const Pose&)) {
   Random random(3);

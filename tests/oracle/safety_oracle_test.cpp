@@ -5,13 +5,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <stdexcept>
 
+#include "by_name.h"
 #include "keepout/fixtures/poses.h"
-#include "keepout/fixtures/shapes.h"
 #include "keepout/oracle/distance.h"
+#include "meshes.h"
 #include "oracle/infinity.h"
 #include "random_places.h"
 #include "trials.h"
@@ -47,7 +46,7 @@ Judgement plain_judgement(const Mesh& mesh, const Segment& segment, double thres
 class WaysPastEveryShape : public testing::TestWithParam<Shape> {};
 
 TEST_P(WaysPastEveryShape, IsJudgedAsByAPlainLoopOverAllTriangles) {
-  const auto mesh = std::make_shared<const Mesh>(GetParam().make());
+  const auto mesh = mesh_of(GetParam().make());
   SafetyOracle oracle(mesh);
   Random random(20261120);
   const double size = mesh->bounds().size().norm();
@@ -80,7 +79,7 @@ TEST_P(WaysPastEveryShape, IsJudgedAsByAPlainLoopOverAllTriangles) {
 }
 
 TEST_P(WaysPastEveryShape, IsJudgedAlikeWhateverWasAskedBefore) {
-  const auto mesh = std::make_shared<const Mesh>(GetParam().make());
+  const auto mesh = mesh_of(GetParam().make());
   const SafetyOracle fresh(mesh);
   SafetyOracle used = fresh;
   Random random(7);
@@ -98,16 +97,14 @@ TEST_P(WaysPastEveryShape, IsJudgedAlikeWhateverWasAskedBefore) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(SafetyOracle, WaysPastEveryShape,
-                         testing::ValuesIn(shapes().begin(), shapes().end()),
-                         [](const auto& row) { return std::string(row.param.name); });
+INSTANTIATE_TEST_SUITE_P(SafetyOracle, WaysPastEveryShape, testing::ValuesIn(shapes()), by_name);
 
 /// Two squares side by side in the plane z = 0, each cut along its diagonal.
 SafetyOracle flat_oracle(const Vec3& offset = Vec3::Zero()) {
   Surface surface{{{0, 0, 0}, {2, 0, 0}, {4, 0, 0}, {0, 2, 0}, {2, 2, 0}, {4, 2, 0}},
                   {{0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}}};
   for (Vec3& v : surface.vertices) v += offset;
-  return SafetyOracle(std::make_shared<const Mesh>(surface));
+  return SafetyOracle(mesh_of(surface));
 }
 
 TEST(SafetyOracle, SeesACrossingThroughAFaceAnEdgeAndAVertexAlike) {
@@ -159,7 +156,7 @@ TEST(SafetyOracle, ComparesWithTheThresholdToTheLastPlace) {
 }
 
 TEST(SafetyOracle, NeverLosesSightOfTheSurfaceOnAWayFromFreeSpaceToIt) {
-  const auto mesh = std::make_shared<const Mesh>(make_shape("sphere"));
+  const auto mesh = mesh_of("sphere");
   SafetyOracle oracle(mesh);
   Random random(8);
   for (int way = 0; way < 20; ++way) {
@@ -178,7 +175,7 @@ TEST(SafetyOracle, NeverLosesSightOfTheSurfaceOnAWayFromFreeSpaceToIt) {
 }
 
 TEST(SafetyOracle, DistanceOfAPointIsTheAnalyticOne) {
-  const SafetyOracle oracle(std::make_shared<const Mesh>(make_shape("cube")));
+  const SafetyOracle oracle(mesh_of("cube"));
   EXPECT_DOUBLE_EQ(oracle.distance({0, 0, 53}), 3.0);
   EXPECT_DOUBLE_EQ(oracle.distance({1, 2, 3}), 47.0);
   EXPECT_DOUBLE_EQ(oracle.distance({53, 54, 0}), 5.0);

@@ -7,9 +7,10 @@
 #include <algorithm>
 #include <limits>
 
+#include "by_name.h"
 #include "keepout/fixtures/poses.h"
-#include "keepout/fixtures/shapes.h"
 #include "keepout/oracle/distance.h"
+#include "meshes.h"
 #include "random_places.h"
 #include "trials.h"
 
@@ -31,7 +32,7 @@ std::vector<Vec3> places(const Mesh& mesh, Random& random) {
 
 class TreeOfEveryShape : public testing::TestWithParam<Shape> {
  protected:
-  std::shared_ptr<const Mesh> mesh = std::make_shared<const Mesh>(GetParam().make());
+  std::shared_ptr<const Mesh> mesh = mesh_of(GetParam().make());
   TriangleTree tree{mesh};
   Random random{20261120};
   double size = mesh->bounds().size().norm();
@@ -81,9 +82,7 @@ TEST_P(TreeOfEveryShape, NearestIsWhatAPlainLoopFinds) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(TriangleTree, TreeOfEveryShape,
-                         testing::ValuesIn(shapes().begin(), shapes().end()),
-                         [](const auto& row) { return std::string(row.param.name); });
+INSTANTIATE_TEST_SUITE_P(TriangleTree, TreeOfEveryShape, testing::ValuesIn(shapes()), by_name);
 
 TEST(TriangleTree, TakesTrianglesInOnePlaceAndAFewHugeOnesAmongTinyOnes) {
   Surface surface;
@@ -95,7 +94,7 @@ TEST(TriangleTree, TakesTrianglesInOnePlaceAndAFewHugeOnesAmongTinyOnes) {
     for (int k = 0; k < 3; ++k) surface.vertices.emplace_back(1e-3 * i, 1e-4 * k, 1e-4 * k * k);
     surface.triangles.push_back({first, first + 1, first + 2});
   }
-  const auto mesh = std::make_shared<const Mesh>(surface);
+  const auto mesh = mesh_of(surface);
   const TriangleTree tree(mesh);
   for (const Vec3& place : {Vec3(1, 2, 3), Vec3(0.5, 0, 0), Vec3(-10, 3, 0.5), Vec3(1e6, 0, 0)}) {
     const Bounds box{place, place};

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <memory>
-#include <vector>
 
 #include "engine/geometry/tools.h"
 #include "keepout/activation/convex_tool_rule.h"

@@ -2,13 +2,10 @@
 // That an index takes nothing from the heap while it answers, unless its row says that it does.
 #include <gtest/gtest.h>
 
-#include <memory>
-#include <string_view>
-#include <vector>
-
 #include "keepout/adapters/all_indices.h"
 #include "keepout/fixtures/poses.h"
-#include "keepout/fixtures/shapes.h"
+#include "meshes.h"
+#include "messages.h"
 #include "random_places.h"
 #include "realtime/counted_allocations.h"
 
@@ -16,7 +13,7 @@ namespace keepout {
 namespace {
 
 TEST(Index, AllocatesNothingWhileItAnswersUnlessItSaysSo) {
-  const auto mesh = std::make_shared<const Mesh>(make_shape("cortex"));
+  const auto mesh = mesh_of("cortex");
   const double size = mesh->bounds().size().norm();
   Random random(6);
   std::vector<Vec3> points = surface_points(*mesh, 100, 0.5, random);
@@ -39,7 +36,7 @@ TEST(Index, AllocatesNothingWhileItAnswersUnlessItSaysSo) {
       EXPECT_EQ(allocations(), before);
     } else {
       EXPECT_GT(allocations(), before) << "is fit for real time: its row may say so";
-      EXPECT_NE(backend.description.find("not for real time"), std::string_view::npos);
+      EXPECT_CONTAINS(backend.description, "not for real time");
     }
     EXPECT_GT(found, points.size() * mesh->triangle_count());
   }

@@ -6,17 +6,17 @@
 
 #include "keepout/fixtures/random.h"
 #include "keepout/fixtures/robots.h"
-#include "keepout/fixtures/shapes.h"
 #include "keepout/index/wide_bvh.h"
 #include "keepout/robot/instrument_constraint.h"
 #include "keepout/solvers/active_set.h"
+#include "meshes.h"
 #include "realtime/counted_allocations.h"
 
 namespace keepout {
 namespace {
 
 TEST(InstrumentConstraint, AllocatesNothingWhateverTheOutcome) {
-  const auto mesh = std::make_shared<const Mesh>(make_shape("gear"));
+  const auto mesh = mesh_of("gear");
   const auto index = std::make_shared<WideBvh>(mesh);
   const std::vector<double> start{0, 0, 60, 0, 0, 0};
   std::vector<InstrumentConstraint> guards;
@@ -25,7 +25,7 @@ TEST(InstrumentConstraint, AllocatesNothingWhateverTheOutcome) {
                         InstrumentOptions{.period = 0.05});
   }
   // A mesh that is all near, one cycle's work that does not last, and a ball that is inside.
-  const auto cube = std::make_shared<const Mesh>(make_cube(20.0));
+  const auto cube = mesh_of(make_cube(20.0));
   const auto cube_index = std::make_shared<WideBvh>(cube);
   for (const std::size_t looks : {std::size_t{0}, std::size_t{60}}) {
     guards.emplace_back(cube, cube_index, psm({Vec3(0, 0, 100), Mat3::Identity()}),

@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
-#include <memory>
 #include <set>
-#include <vector>
 
 #include "keepout/activation/registry.h"
 #include "keepout/adapters/index_registry.h"
 #include "keepout/factory/make_motion_constraint.h"
 #include "keepout/fixtures/poses.h"
-#include "keepout/fixtures/shapes.h"
 #include "keepout/solvers/registry.h"
+#include "meshes.h"
 #include "random_places.h"
 #include "realtime/counted_allocations.h"
 
@@ -43,9 +41,9 @@ std::set<Status> outcomes_of(std::string_view rule, std::string_view index) {
 }
 
 TEST(Step, AllocatesNothingWhateverItsPartsAndItsOutcome) {
-  const auto mesh = std::make_shared<const Mesh>(make_shape("cortex"));
-  const auto plates = std::make_shared<const Mesh>(make_shape("thin_plates"));
-  const auto tunnel = std::make_shared<const Mesh>(make_shape("tunnel"));
+  const auto mesh = mesh_of("cortex");
+  const auto plates = mesh_of("thin_plates");
+  const auto tunnel = mesh_of("tunnel");
   const Vec3 in_the_gap(0, 0, plates->bounds().low.z() + 1.5);
   Random random(1);
   const std::vector<Vec3> tips = surface_points(*mesh, 60, 0.5, random);
@@ -131,7 +129,7 @@ TEST(Step, AllocatesNothingWhateverItsPartsAndItsOutcome) {
 }
 
 TEST(Step, AllocatesNothingWithGuides) {
-  const auto mesh = std::make_shared<const Mesh>(make_shape("cortex"));
+  const auto mesh = mesh_of("cortex");
   Random random(2);
   const std::vector<Vec3> tips = surface_points(*mesh, 60, 0.5, random);
   Eigen::Matrix<double, 3, 7> jacobian;

@@ -5,30 +5,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
-#include <utility>
-#include <vector>
 
-#include "keepout/index/wide_bvh.h"
-#include "keepout/robot/instrument_constraint.h"
-#include "keepout/solvers/active_set.h"
-#include "robot/wall.h"
+#include "guards.h"
 
 namespace keepout {
 namespace {
-
-/// Returns a constraint that keeps an instrument off a mesh.
-InstrumentConstraint beside(const std::shared_ptr<const Mesh>& mesh, Instrument instrument,
-                            const InstrumentOptions& options) {
-  return {mesh, std::make_shared<WideBvh>(mesh), std::move(instrument),
-          std::make_unique<ActiveSet>(), options};
-}
 
 // A cycle may end up to two tolerances below the certified clearance. If the next cycle certified
 // from there, the body would come nearer by as much in each cycle.
 TEST(CertifiedFloor, IsNotUsedUpByATolerancePerCycle) {
   const InstrumentOptions options{.damping = 0.0};
-  InstrumentConstraint guard = beside(test::wall(0.0), free_ball(0.0), options);
+  InstrumentConstraint guard = guard_of(wall(0.0), free_ball(0.0), options);
   const double kept = options.margin - options.band;
   for (const double share : {0.3, 0.9, 1.4, 1.9}) {
     SCOPED_TRACE(share);
@@ -38,7 +25,7 @@ TEST(CertifiedFloor, IsNotUsedUpByATolerancePerCycle) {
     for (int cycle = 0; cycle < 100; ++cycle) {
       const InstrumentStep step =
           guard.step(q, std::vector<double>{-share * guard.tolerance(), 0.0, 0.0});
-      for (std::size_t k = 0; k < step.increment.size(); ++k) q[k] += step.increment[k];
+      q = keepout::moved(q, step);
       ASSERT_GE(q[0], kept - 3.0 * guard.tolerance()) << "cycle " << cycle;
       moved += !step.increment.empty() && step.increment[0] < 0.0 ? 1 : 0;
     }
@@ -53,7 +40,7 @@ TEST(CertifiedFloor, LosesThreeTolerancesAtMostInAll) {
     for (const double below : {2.0, 2.2, 2.6, 2.95}) {
       SCOPED_TRACE(testing::Message() << recovery << ' ' << below);
       const InstrumentOptions options{.recovery = recovery, .damping = 0.0};
-      InstrumentConstraint guard = beside(test::wall(0.0), free_ball(0.0), options);
+      InstrumentConstraint guard = guard_of(wall(0.0), free_ball(0.0), options);
       const double kept = options.margin - options.band;
       const double tau = guard.tolerance();
       std::vector<double> q{kept, 0.0, 0.0};
@@ -66,7 +53,7 @@ TEST(CertifiedFloor, LosesThreeTolerancesAtMostInAll) {
         const InstrumentStep step = guard.step(
             q, std::vector<double>{-0.01 * tau * (cycle % 7), 1e-4 * (cycle % 3 - 1), 0.0});
         const double before = q[0];
-        for (std::size_t k = 0; k < step.increment.size(); ++k) q[k] += step.increment[k];
+        q = keepout::moved(q, step);
         moved += step.ok() && q[0] != before ? 1 : 0;
         least = std::min(least, q[0]);
       }
@@ -79,7 +66,7 @@ TEST(CertifiedFloor, LosesThreeTolerancesAtMostInAll) {
 // Rounding adds up over motions along a wall, unless each regains what rounding took.
 TEST(CertifiedFloor, IsRegainedByAMotionThatStartsBelowIt) {
   const InstrumentOptions options;
-  InstrumentConstraint guard = beside(test::wall(0.0), free_ball(0.0), options);
+  InstrumentConstraint guard = guard_of(wall(0.0), free_ball(0.0), options);
   const double kept = options.margin - options.band;
   const double tau = guard.tolerance();
   const auto share = [&](double below, double along, double up) {
@@ -103,7 +90,7 @@ TEST(CertifiedFloor, OfACycleThatYieldedIsKeptWhenTheMeshRests) {
                        {{"point", {{1, Vec3(lever, 0, 0)}}, 1.0}});
   InstrumentOptions options{.recovery = 0.0};
   const double kept = options.margin - options.band;
-  InstrumentConstraint guard = beside(test::wall(0.0), arm, options);
+  InstrumentConstraint guard = guard_of(wall(0.0), arm, options);
   const double level = 0.75;
   const double at = lever - 1.0 - level * kept - spare;  // where the wall comes to rest
   const double way = options.margin - level * kept - spare;

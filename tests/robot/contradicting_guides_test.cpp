@@ -3,21 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
-#include <Eigen/Geometry>
-#include <algorithm>
 #include <array>
 #include <cmath>
-#include <memory>
-#include <utility>
-#include <vector>
 
+#include "guards.h"
 #include "guide_kinematics.h"
-#include "keepout/fixtures/random.h"
-#include "keepout/fixtures/shapes.h"
-#include "keepout/index/wide_bvh.h"
-#include "keepout/robot/instrument_constraint.h"
-#include "keepout/solvers/active_set.h"
-#include "robot/configurations.h"
 #include "trials.h"
 
 namespace keepout {
@@ -34,17 +24,10 @@ Instrument arm(int joints) {
   return {Chain(all, {}, {Vec3(30, 0, 0)}), {{"tip", {{joints, Vec3(30, 0, 0)}}, 1.0}}};
 }
 
-InstrumentConstraint guard_of(Surface surface, Instrument instrument,
-                              const InstrumentOptions& options) {
-  const auto mesh = std::make_shared<const Mesh>(std::move(surface));
-  return {mesh, std::make_shared<WideBvh>(mesh), std::move(instrument),
-          std::make_unique<ActiveSet>(), options};
-}
-
-Surface far_cube() {
+std::shared_ptr<const Mesh> far_cube() {
   Surface surface = make_cube(20.0);
   for (Vec3& v : surface.vertices) v += Vec3(0, 0, -5000);
-  return surface;
+  return mesh_of(std::move(surface));
 }
 
 double excess(const Guide& guide, const ChainState& state) {
@@ -145,8 +128,6 @@ TEST_P(ContradictingGuides, LeaveWhatBothAllow) {
   }
   EXPECT_LT(blocked, cycles / 5);
   EXPECT_LE(movable, blocked / 10) << "of " << blocked << " blocked cycles of " << cycles;
-  RecordProperty("blocked", blocked);
-  RecordProperty("movable", movable);
 }
 
 INSTANTIATE_TEST_SUITE_P(Arms, ContradictingGuides, testing::Values(4, 6));
@@ -218,7 +199,7 @@ TEST(ContradictingGuides, AreNotDroppedBesideADistantMeshThatMoves) {
   int pulled = 0;
   for (int scene = 0; scene < test::trials(500); ++scene) {
     InstrumentConstraint guard =
-        guard_of(far, {Chain(joints, {}, {Vec3(100, 0, 0)}), {{"tip", {tip}, 1.0}}}, {});
+        guard_of(mesh_of(far), {Chain(joints, {}, {Vec3(100, 0, 0)}), {{"tip", {tip}, 1.0}}}, {});
     std::vector<double> q{random.uniform(-1, 1), random.uniform(-2, 2), random.uniform(-2, 2)};
     ChainState state;
     guard.instrument().chain().forward_kinematics(q, state);
@@ -238,7 +219,7 @@ TEST(ContradictingGuides, AreNotDroppedBesideADistantMeshThatMoves) {
       for (const GuideState& guide : step.guides)
         ASSERT_FALSE(guide.relaxed && guide.excess <= 0.0);
       pulled += step.guides[1].excess > 0.0 ? 1 : 0;
-      for (std::size_t k = 0; k < q.size(); ++k) q[k] += step.increment[k];
+      q = moved(q, step);
       guard.instrument().chain().forward_kinematics(q, state);
       ASSERT_LE(excess(guides[0], state), guides[0].band() + 1e-9) << "scene " << scene;
     }
@@ -263,7 +244,7 @@ TEST(ContradictingGuides, CostNoClearanceFromAMeshThatComesOn) {
   const std::vector<std::vector<Guide>> sets{{above, beside}, {low}, {above, beside, low}};
   for (const std::vector<Guide>& guides : sets) {
     SCOPED_TRACE(guides.size());
-    InstrumentConstraint guard = guard_of(sheet, {Chain(slides), {{"ball", {tip}, 1.0}}},
+    InstrumentConstraint guard = guard_of(mesh_of(sheet), {Chain(slides), {{"ball", {tip}, 1.0}}},
                                           {.damping = 1e-9, .orientation_weight = 0.0});
     guard.set_guides(guides);
     std::vector<double> q{0.0, 0.0, 0.0};
@@ -276,7 +257,7 @@ TEST(ContradictingGuides, CostNoClearanceFromAMeshThatComesOn) {
       ASSERT_TRUE(step.ok()) << name(step.status) << " in cycle " << cycle;
       ASSERT_TRUE(step.degraded.empty()) << cycle;
       ASSERT_EQ(step.level, 1.0);
-      for (std::size_t k = 0; k < q.size(); ++k) q[k] += step.increment[k];
+      q = moved(q, step);
       ASSERT_GE(q[2] - (z + 0.02) - 1.0, 0.198 - 1e-8) << cycle;
       if (step.relaxation != Relaxation::guides) continue;
       ++relaxed;

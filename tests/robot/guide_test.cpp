@@ -1,22 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
-#include <Eigen/Geometry>
-#include <algorithm>
 #include <cmath>
-#include <memory>
-#include <utility>
-#include <vector>
 
+#include "guards.h"
 #include "guide_kinematics.h"
-#include "keepout/adapters/index_registry.h"
 #include "keepout/error.h"
-#include "keepout/fixtures/random.h"
-#include "keepout/fixtures/robots.h"
-#include "keepout/fixtures/shapes.h"
-#include "keepout/index/wide_bvh.h"
-#include "keepout/robot/instrument_constraint.h"
-#include "keepout/solvers/registry.h"
 #include "robot/configurations.h"
 #include "trials.h"
 
@@ -29,10 +18,9 @@ const LinkPoint tip{6, Vec3(0, 10.2, 0)};  // of the psm
 /// A psm 120 above the gear, and a guard of it.
 struct Bench {
   explicit Bench(const char* shape = "gear")
-      : mesh(std::make_shared<const Mesh>(make_shape(shape))),
+      : mesh(mesh_of(shape)),
         instrument(psm({Vec3(30, 10, 120), Mat3::Identity()})),
-        guard(mesh, make_index("wide_bvh", mesh), instrument, make_solver("active_set"),
-              {.period = 0.02, .check_sides = false}) {}
+        guard(guard_of(mesh, instrument, {.period = 0.02, .check_sides = false})) {}
 
   ChainState at(const std::vector<double>& q) const {
     ChainState state;
@@ -50,11 +38,8 @@ double farthest_out(const Bench& bench, const Guide& guide, const std::vector<do
                     const InstrumentStep& step) {
   double most = -1e30;
   for (int s = 0; s <= 16; ++s) {
-    std::vector<double> there = q;
-    for (std::size_t k = 0; k < step.increment.size(); ++k) {
-      there[k] += s / 16.0 * step.increment[k];
-    }
-    most = std::max(most, guide.region().excess(guided_point(guide, bench.at(there))));
+    const ChainState there = bench.at(keepout::moved(q, step, s / 16.0));
+    most = std::max(most, guide.region().excess(guided_point(guide, there)));
   }
   return most;
 }
@@ -197,7 +182,7 @@ TEST(Guide, LeadsBackWhatIsOut) {
     ASSERT_EQ(step.status, Status::recovering) << step.reason();
     ASSERT_NEAR(step.guides[0].excess, last, 1e-9);
     EXPECT_FALSE(step.guides[0].relaxed);
-    for (std::size_t k = 0; k < q.size(); ++k) q[k] += step.increment[k];
+    q = keepout::moved(q, step);
     const double now = guide.region().excess(guided_point(guide, bench.at(q)));
     ASSERT_LE(now, last + guide.band());
     last = now;
@@ -218,7 +203,7 @@ TEST(Guide, GivesWayWithAWordOnItWhereOthersContradict) {
     ASSERT_EQ(step.status, Status::recovering) << step.reason();
     EXPECT_EQ(step.relaxation, Relaxation::guides);
     EXPECT_TRUE(step.guides[0].relaxed && step.guides[1].relaxed);
-    for (std::size_t k = 0; k < q.size(); ++k) q[k] += step.increment[k];
+    q = keepout::moved(q, step);
   }
   const Vec3 moved = bench.at(q).at(tip.link, tip.position) - at;
   EXPECT_LE(std::abs(moved.x()), 0.01) << "neither gets worse";
@@ -246,7 +231,7 @@ TEST(Guide, KeepsWhatIsWithinItsBandAgain) {
         ASSERT_LE(farthest_out(bench, guide, q, step), guide.band() + 3e-9);
         back += step.guides[0].excess > 0.0 ? 1 : 0;
       }
-      for (std::size_t k = 0; k < q.size(); ++k) q[k] += step.increment[k];
+      q = keepout::moved(q, step);
     }
   }
   EXPECT_GT(back, test::trials(100));
@@ -265,7 +250,7 @@ TEST(Guide, NeverLeadsIntoTheMesh) {
     step = bench.guard.step(q, {.linear = 0.5 * (center - at).normalized()});
     ASSERT_TRUE(step.ok()) << step.reason() << " in cycle " << i;
     ASSERT_TRUE(!step.distance || *step.distance >= 0.198 - 1e-8) << i;
-    for (std::size_t k = 0; k < q.size(); ++k) q[k] += step.increment[k];
+    q = keepout::moved(q, step);
   }
   EXPECT_NEAR(step.distance.value_or(1.0), 0.2, 0.003) << "it came as near as it may";
   EXPECT_EQ(step.relaxation, Relaxation::guides);
@@ -281,7 +266,7 @@ TEST(Guide, IsKeptWhenTheMeshIsFollowed) {
   const Twist aside{.linear = Vec3(1.0, 0.0, 0.0)};
   const auto tree = std::make_shared<WideBvh>(bench.mesh);
   bench.guard.follow(bench.mesh, tree);
-  const auto other = std::make_shared<const Mesh>(make_shape("gear"));
+  const auto other = mesh_of("gear");
   tree->refit(other);
   const InstrumentStep none = bench.guard.step(q, aside);
   EXPECT_EQ(none.status, Status::mesh_changed);
@@ -292,7 +277,7 @@ TEST(Guide, IsKeptWhenTheMeshIsFollowed) {
     ASSERT_TRUE(step.ok()) << step.reason();
     EXPECT_LE(farthest_out(bench, guide, q, step), guide.band() + 3e-9);
     EXPECT_TRUE(step.limits.has(Limit::guide));
-    for (std::size_t k = 0; k < q.size(); ++k) q[k] += step.increment[k];
+    q = keepout::moved(q, step);
   }
 }
 

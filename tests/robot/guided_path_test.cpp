@@ -4,16 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <span>
-#include <utility>
-#include <vector>
 
+#include "guards.h"
 #include "guide_kinematics.h"
-#include "keepout/index/wide_bvh.h"
-#include "keepout/robot/instrument_constraint.h"
-#include "keepout/solvers/active_set.h"
-#include "robot/wall.h"
 
 namespace keepout {
 namespace {
@@ -22,9 +16,8 @@ namespace {
 struct Guided {
   Guided(Instrument instrument, const Guide& its_guide)
       : guide(its_guide),
-        mesh(test::wall(1e3)),
-        guard(mesh, std::make_shared<WideBvh>(mesh), std::move(instrument),
-              std::make_unique<ActiveSet>(), {.damping = 0.0, .check_sides = false}) {
+        mesh(wall(1e3)),
+        guard(guard_of(mesh, std::move(instrument), {.damping = 0.0, .check_sides = false})) {
     guard.set_guides({guide});
   }
 

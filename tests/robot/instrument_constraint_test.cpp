@@ -3,83 +3,27 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
-#include <functional>
-#include <memory>
 #include <numbers>
-#include <string>
-#include <utility>
-#include <vector>
 
+#include "brute_force.h"
+#include "guards.h"
 #include "keepout/adapters/index_registry.h"
-#include "keepout/error.h"
-#include "keepout/fixtures/random.h"
-#include "keepout/fixtures/robots.h"
-#include "keepout/fixtures/shapes.h"
-#include "keepout/geometry/separation.h"
-#include "keepout/index/wide_bvh.h"
 #include "keepout/robot/motion_bounds.h"
 #include "keepout/solvers/registry.h"
+#include "messages.h"
 #include "robot/configurations.h"
+#include "stub_solver.h"
 #include "trials.h"
 
 namespace keepout {
 namespace {
 
-/// An instrument that hangs down from its port, 120 above the origin: at insertion d its tip is at
-/// height 120 - d - 9.1 - 10.2 + 15.6.
-Pose port_above() {
-  Pose base{Vec3(0, 0, 120), Mat3::Identity()};
-  return base;
-}
-
 std::vector<double> straight_down(double insertion) { return {0, 0, insertion, 0, 0, 0}; }
 
-/// The distance of each body to the mesh, less its radius: by the narrow phase, triangle by
-/// triangle.
-double clearance(const Instrument& instrument, const Mesh& mesh, const std::vector<double>& q) {
-  ChainState chain;
-  instrument.chain().forward_kinematics(q, chain);
-  double least = test::infinity;
-  for (const Body& body : instrument.bodies()) {
-    std::vector<Vec3> points;
-    for (const LinkPoint& point : body.points)
-      points.push_back(chain.at(point.link, point.position));
-    const ConvexTool tool = ConvexTool::hull(points, body.radius);
-    for (TriangleId t = 0; t < mesh.triangle_count(); ++t) {
-      least = std::min(least, separation(tool, Vec3::Zero(), mesh.triangle(t)).distance);
-    }
-  }
-  return least;
-}
-
-std::vector<double> moved(std::vector<double> q, const InstrumentStep& step, double share = 1.0) {
-  for (std::size_t k = 0; k < step.increment.size(); ++k) q[k] += share * step.increment[k];
-  return q;
-}
-
-InstrumentConstraint guard_of(std::shared_ptr<const Mesh> mesh, Instrument instrument,
-                              const InstrumentOptions& options = {.period = 0.05},
-                              std::string_view index = "wide_bvh",
-                              std::string_view solver = "active_set") {
-  return {mesh, make_index(index, mesh), std::move(instrument), make_solver(solver), options};
-}
-
-/// The port's frame turned so that the instrument points along -z, whatever its zero pose.
-Instrument psm_above() {
-  ChainState chain;
-  const Instrument at_origin = psm();
-  at_origin.chain().forward_kinematics(straight_down(100.0), chain);
-  const Vec3 way = chain.flange().position.normalized();
-  Pose base = port_above();
-  base.rotation = Eigen::Quaterniond::FromTwoVectors(way, -Vec3::UnitZ()).toRotationMatrix();
-  return psm(base);
-}
-
-std::shared_ptr<const Mesh> mesh_of(std::string_view shape) {
-  return std::make_shared<const Mesh>(make_shape(shape));
-}
+/// Returns a psm that hangs down from its port, 120 above the origin: at insertion d its tip is at
+/// height 120 - d - 9.1 - 10.2 + 15.6.
+Instrument psm_above() { return psm(port_over(Vec3::Zero(), 120.0)); }
 
 /// The insertion at which nothing is nearer than that to a cube whose top is at 50.
 double insertion_above_cube(const Instrument& instrument, const Mesh& mesh, double distance) {
@@ -87,15 +31,15 @@ double insertion_above_cube(const Instrument& instrument, const Mesh& mesh, doub
   double high = 200.0;
   for (int i = 0; i < 60; ++i) {
     const double middle = 0.5 * (low + high);
-    (clearance(instrument, mesh, straight_down(middle)) > distance ? low : high) = middle;
+    (clearance_of(instrument, mesh, straight_down(middle)) > distance ? low : high) = middle;
   }
   return low;
 }
 
 TEST(InstrumentConstraint, StopsAtASurfaceAtTheMarginAndSlidesAlongIt) {
-  const auto mesh = std::make_shared<const Mesh>(make_cube(20.0));
+  const auto mesh = mesh_of(make_cube(20.0));
   const Instrument instrument = psm_above();
-  auto guard = guard_of(mesh, instrument);
+  auto guard = guard_of(mesh, instrument, {.period = 0.05});
   std::vector<double> q = straight_down(insertion_above_cube(instrument, *mesh, 3.0));
   Vec3 before = Vec3::Zero();
   for (int i = 0; i < 30; ++i) {
@@ -110,8 +54,8 @@ TEST(InstrumentConstraint, StopsAtASurfaceAtTheMarginAndSlidesAlongIt) {
   instrument.chain().forward_kinematics(q, chain);
   EXPECT_NEAR(chain.flange().position.x() - before.x(), 0.1, 0.02) << "it slides";
   const double kept = guard.options().margin - guard.options().band;
-  EXPECT_NEAR(clearance(instrument, *mesh, q), guard.options().margin, 2e-3);
-  EXPECT_GE(clearance(instrument, *mesh, q), kept - 3.0 * guard.tolerance());
+  EXPECT_NEAR(clearance_of(instrument, *mesh, q), guard.options().margin, 2e-3);
+  EXPECT_GE(clearance_of(instrument, *mesh, q), kept - 3.0 * guard.tolerance());
 }
 
 // On generated shapes, with each index and each solver: nothing below what is certified, on the way
@@ -129,7 +73,8 @@ TEST(InstrumentConstraint, KeepsEveryBodyClearOnEveryIndexAndEverySolver) {
     for (const Part& part : parts) {
       SCOPED_TRACE(testing::Message() << shape << " " << part.index << " " << part.solver);
       const Instrument instrument = psm_above();
-      auto guard = guard_of(mesh, instrument, {.period = 0.05}, part.index, part.solver);
+      InstrumentConstraint guard(mesh, make_index(part.index, mesh), instrument,
+                                 make_solver(part.solver), {.period = 0.05});
       std::vector<double> q = straight_down(insertion_above_cube(instrument, *mesh, 5.0));
       Random random(3);
       std::vector<double> way;
@@ -143,7 +88,7 @@ TEST(InstrumentConstraint, KeepsEveryBodyClearOnEveryIndexAndEverySolver) {
         if (!step.ok()) continue;  // a solver may give up
         held += step.status == Status::limited ? 1 : 0;
         for (const double share : {0.37, 1.0}) {
-          ASSERT_GE(clearance(instrument, *mesh, moved(q, step, share)),
+          ASSERT_GE(clearance_of(instrument, *mesh, moved(q, step, share)),
                     kept - 3.0 * guard.tolerance());
         }
         q = moved(q, step);
@@ -158,24 +103,18 @@ TEST(InstrumentConstraint, KeepsEveryBodyClearOnEveryIndexAndEverySolver) {
 }
 
 TEST(InstrumentConstraint, KeepsEveryBodyClearWhateverASolverAnswers) {
-  class Liar final : public Solver {
-   public:
-    void reserve(int variables, int) override { u_.resize(static_cast<std::size_t>(variables)); }
-    SolveStatus solve(const StepProblem&, Solution& solution) noexcept override {
-      for (double& u : u_) u = random_.uniform(-0.02, 0.02);
-      u_[2] = random_.uniform(-0.5, 3.0);  // the insertion, down into the cube
-      solution.u = u_;
-      return SolveStatus::optimal;
-    }
-
-   private:
-    Random random_{1};
-    std::vector<double> u_;
+  Random lies(1);
+  std::vector<double> u(6);
+  const auto answer = [&](const StepProblem&, Solution& solution) {
+    for (double& x : u) x = lies.uniform(-0.02, 0.02);
+    u[2] = lies.uniform(-0.5, 3.0);  // the insertion, down into the cube
+    solution.u = u;
+    return SolveStatus::optimal;
   };
-  const auto mesh = std::make_shared<const Mesh>(make_cube(20.0));
+  const auto mesh = mesh_of(make_cube(20.0));
   const Instrument instrument = psm_above();
-  InstrumentConstraint guard(mesh, std::make_shared<WideBvh>(mesh), instrument,
-                             std::make_unique<Liar>(), {.period = 0.05});
+  InstrumentConstraint guard(mesh, std::make_shared<WideBvh>(mesh), instrument, solver_that(answer),
+                             {.period = 0.05});
   const double kept = guard.options().margin - guard.options().band - 3.0 * guard.tolerance();
   const std::vector<double> start = straight_down(insertion_above_cube(instrument, *mesh, 1.0));
   std::vector<double> q = start;
@@ -188,7 +127,7 @@ TEST(InstrumentConstraint, KeepsEveryBodyClearWhateverASolverAnswers) {
     const InstrumentStep step = guard.step(q, {.linear = Vec3(0, 0, -0.5)});
     ASSERT_TRUE(step.ok() || step.increment.empty());
     for (const double share : {0.5, 1.0}) {
-      ASSERT_GE(clearance(instrument, *mesh, moved(q, step, share)), kept) << name(step.status);
+      ASSERT_GE(clearance_of(instrument, *mesh, moved(q, step, share)), kept) << name(step.status);
     }
     moves += step.ok() && moved(q, step) != q ? 1 : 0;
     q = moved(q, step);
@@ -199,9 +138,9 @@ TEST(InstrumentConstraint, KeepsEveryBodyClearWhateverASolverAnswers) {
 // Shares of random motions, also large ones, that are said to be proven are free, densely sampled;
 // and motions that are free are nearly all proven.
 TEST(InstrumentConstraint, ProvesWhatIsFreeAndNothingElse) {
-  const auto mesh = std::make_shared<const Mesh>(make_sphere(12.0));
+  const auto mesh = mesh_of(make_sphere(12.0));
   const Instrument instrument = psm_above();
-  auto guard = guard_of(mesh, instrument);
+  auto guard = guard_of(mesh, instrument, {.period = 0.05});
   const double kept = guard.options().margin - guard.options().band;
   Random random(5);
   int free = 0;
@@ -211,7 +150,7 @@ TEST(InstrumentConstraint, ProvesWhatIsFreeAndNothingElse) {
     std::vector<double> q = straight_down(random.uniform(40.0, 80.0));
     for (const std::size_t k : {0u, 1u}) q[k] = random.uniform(-0.3, 0.3);
     for (const std::size_t k : {3u, 4u, 5u}) q[k] = random.uniform(-0.8, 0.8);
-    if (clearance(instrument, *mesh, q) < kept) continue;
+    if (clearance_of(instrument, *mesh, q) < kept) continue;
     std::vector<double> dq(6);
     for (double& number : dq) number = random.uniform(-0.4, 0.4);
     dq[2] *= 25.0;
@@ -221,7 +160,7 @@ TEST(InstrumentConstraint, ProvesWhatIsFreeAndNothingElse) {
     for (int s = 0; s <= 20; ++s) {
       std::vector<double> there = q;
       for (std::size_t k = 0; k < 6; ++k) there[k] += s / 20.0 * dq[k];
-      const double clear = clearance(instrument, *mesh, there);
+      const double clear = clearance_of(instrument, *mesh, there);
       least = std::min(least, clear);
       if (s <= 20.0 * proof.share) {
         ASSERT_GE(clear, kept - 3.0 * guard.tolerance());
@@ -237,10 +176,9 @@ TEST(InstrumentConstraint, ProvesWhatIsFreeAndNothingElse) {
 }
 
 TEST(InstrumentConstraint, ProvesLongMotionsInPartsWhereThereIsNoRoomForThemAtOnce) {
-  const auto mesh = std::make_shared<const Mesh>(make_cube(2.0));
+  const auto mesh = mesh_of(make_cube(2.0));
   const Instrument instrument = psm_above();
-  InstrumentConstraint guard(mesh, make_index("wide_bvh", mesh), instrument,
-                             make_solver("active_set"), {}, {.triangles = 1000});
+  auto guard = guard_of(mesh, instrument, {}, {.triangles = 1000});
   const std::vector<double> q = straight_down(20.0);
   const double free = insertion_above_cube(instrument, *mesh, 0.2) - 20.0;
   const MotionProof clear = guard.prove(q, std::vector<double>{0, 0, free - 0.01, 0, 0, 0});
@@ -259,8 +197,7 @@ TEST(InstrumentConstraint, ProvesLongMotionsInPartsWhereThereIsNoWorkForThemAtOn
   std::vector<double> all(6, 0.0);
   all[0] = -0.3;
   const auto prove = [&](std::size_t looks) {
-    InstrumentConstraint guard(mesh, make_index("wide_bvh", mesh), instrument,
-                               make_solver("active_set"), {}, {.looks = looks});
+    auto guard = guard_of(mesh, instrument, {}, {.looks = looks});
     std::vector<double> q = straight_down(20.0);
     q[0] = 0.1;
     const MotionProof proof = guard.prove(q, all);
@@ -276,7 +213,7 @@ TEST(InstrumentConstraint, ProvesLongMotionsInPartsWhereThereIsNoWorkForThemAtOn
 }
 
 TEST(InstrumentConstraint, ChecksTheSideOnceItIsToldTo) {
-  const auto mesh = std::make_shared<const Mesh>(make_cube(10.0));
+  const auto mesh = mesh_of(make_cube(10.0));
   const Chain chain({{.kind = JointKind::prismatic}});
   const Instrument ball(chain, {{.points = {{1, Vec3::Zero()}}, .radius = 1.0}});
   auto guard = guard_of(mesh, ball, {.check_sides = false});
@@ -289,9 +226,9 @@ TEST(InstrumentConstraint, ChecksTheSideOnceItIsToldTo) {
 }
 
 TEST(InstrumentConstraint, KeepsWhatWasGainedWhateverIsProvenInBetween) {
-  const auto mesh = std::make_shared<const Mesh>(make_cube(10.0));
+  const auto mesh = mesh_of(make_cube(10.0));
   const Instrument instrument = psm_above();
-  auto guard = guard_of(mesh, instrument);
+  auto guard = guard_of(mesh, instrument, {.period = 0.05});
   InstrumentOptions options = guard.options();
   options.margin = 1.0;
   options.band = 0.1;
@@ -299,19 +236,19 @@ TEST(InstrumentConstraint, KeepsWhatWasGainedWhateverIsProvenInBetween) {
   guard.set_options(options);
   std::vector<double> q = straight_down(insertion_above_cube(instrument, *mesh, 0.5));
   q = moved(q, guard.step(q, Twist{}));
-  const double floor = clearance(instrument, *mesh, q) - options.band;
+  const double floor = clearance_of(instrument, *mesh, q) - options.band;
   for (int i = 0; i < 20; ++i) {
     EXPECT_EQ(guard.prove(q, std::vector<double>(6, 0.0)).status, Status::recovering);
     const InstrumentStep step = guard.step(q, {.linear = Vec3(0, 0, -0.05)});
     ASSERT_TRUE(step.ok()) << step.reason();
     q = moved(q, step);
-    ASSERT_GE(clearance(instrument, *mesh, q), floor - 3.0 * guard.tolerance());
+    ASSERT_GE(clearance_of(instrument, *mesh, q), floor - 3.0 * guard.tolerance());
   }
 }
 
 TEST(InstrumentConstraint, RefusesPositionsThatLoseTheDigitsOfAWay) {
   const auto mesh = mesh_of("cube");
-  auto guard = guard_of(mesh, psm_above());
+  auto guard = guard_of(mesh, psm_above(), {.period = 0.05});
   std::vector<double> q = straight_down(20.0);
   EXPECT_TRUE(guard.step(q, Twist{}).ok());
   q[3] = 101.0;  // revolute
@@ -322,7 +259,7 @@ TEST(InstrumentConstraint, RefusesPositionsThatLoseTheDigitsOfAWay) {
   // Without limits of its own, a joint is not sent beyond what the next cycle would refuse.
   const Chain chain({{.kind = JointKind::prismatic}}, {Vec3(0, 0, 500)});
   const Instrument ball(chain, {{.points = {{1, Vec3::Zero()}}, .radius = 1.0}});
-  auto free = guard_of(mesh, ball);
+  auto free = guard_of(mesh, ball, {.period = 0.05});
   std::vector<double> at{0.0};
   for (int i = 0; i < 3; ++i) {
     const InstrumentStep step = free.step(at, std::vector<double>{1e9});
@@ -340,7 +277,7 @@ TEST(InstrumentConstraint, FollowsAnatomyThatDeforms) {
     Surface surface = still;
     const double swing = 0.3 * std::sin(2.0 * std::numbers::pi * beats);
     for (Vec3& v : surface.vertices) v += swing * v.normalized();
-    return std::make_shared<const Mesh>(std::move(surface));
+    return mesh_of(std::move(surface));
   };
   auto mesh = at(0.0);
   const auto tree = std::make_shared<WideBvh>(mesh);
@@ -358,7 +295,7 @@ TEST(InstrumentConstraint, FollowsAnatomyThatDeforms) {
     EXPECT_EQ(guard.prove(q, std::vector<double>(6, 0.0)).status, Status::mesh_changed);
     guard.follow(mesh, tree);
     EXPECT_EQ(&guard.mesh(), mesh.get());
-    double before = clearance(instrument, *mesh, q);
+    double before = clearance_of(instrument, *mesh, q);
     ASSERT_GT(before, 0.0);
     for (int cycle = 0; cycle < 10; ++cycle) {
       const InstrumentStep step =
@@ -367,7 +304,7 @@ TEST(InstrumentConstraint, FollowsAnatomyThatDeforms) {
       recovering += step.status == Status::recovering ? 1 : 0;
       held += step.status == Status::limited ? 1 : 0;
       q = moved(q, step);
-      const double now = clearance(instrument, *mesh, q);
+      const double now = clearance_of(instrument, *mesh, q);
       ASSERT_GE(now, std::min(options.margin, before) - options.band - 3.0 * guard.tolerance());
       before = now;
     }
@@ -406,7 +343,7 @@ TEST(InstrumentConstraint, NeverLeavesTheLimitsOfItsJoints) {
 
 // To the last bit of q + dq as the caller adds it up.
 TEST(InstrumentConstraint, EndsWithinLimitsWhateverTheRounding) {
-  const auto mesh = std::make_shared<const Mesh>(make_cube(50.0));
+  const auto mesh = mesh_of(make_cube(50.0));
   Random random(12);
   int at_limit = 0;
   for (int i = 0; i < test::trials(2000); ++i) {
@@ -414,7 +351,8 @@ TEST(InstrumentConstraint, EndsWithinLimitsWhateverTheRounding) {
     const double upper = random.uniform(0.0, 1.0) * std::pow(10.0, random.uniform(-3.0, 1.0));
     const Chain chain({{.limits = {.lower = lower, .upper = upper}}}, {Vec3(200, 0, 0)});
     auto guard =
-        guard_of(mesh, Instrument(chain, {{.points = {{1, Vec3(1, 0, 0)}}, .radius = 1.0}}));
+        guard_of(mesh, Instrument(chain, {{.points = {{1, Vec3(1, 0, 0)}}, .radius = 1.0}}),
+                 {.period = 0.05});
     std::vector<double> q{random.uniform(lower, upper)};
     for (const double way : {100.0, -100.0, random.uniform(-2.0, 2.0), 100.0}) {
       const InstrumentStep step = guard.step(q, std::vector<double>{way});
@@ -429,21 +367,21 @@ TEST(InstrumentConstraint, EndsWithinLimitsWhateverTheRounding) {
 }
 
 TEST(InstrumentConstraint, ComesBackToARaisedMarginWithoutEverComingCloser) {
-  const auto mesh = std::make_shared<const Mesh>(make_cube(10.0));
+  const auto mesh = mesh_of(make_cube(10.0));
   const Instrument instrument = psm_above();
-  auto guard = guard_of(mesh, instrument);
+  auto guard = guard_of(mesh, instrument, {.period = 0.05});
   std::vector<double> q = straight_down(insertion_above_cube(instrument, *mesh, 0.3));
   for (int i = 0; i < 5; ++i) q = moved(q, guard.step(q, {.linear = Vec3(0, 0, -0.5)}));
   InstrumentOptions options = guard.options();
   options.margin = 0.7;
   guard.set_options(options);
-  double last = clearance(instrument, *mesh, q);
+  double last = clearance_of(instrument, *mesh, q);
   int cycles = 0;
   for (; last < options.margin - options.band && cycles < 100; ++cycles) {
     const InstrumentStep step = guard.step(q, {.linear = Vec3(0, 0, -0.5)});
     ASSERT_EQ(step.status, Status::recovering) << step.reason();
     q = moved(q, step);
-    const double now = clearance(instrument, *mesh, q);
+    const double now = clearance_of(instrument, *mesh, q);
     ASSERT_GE(now, last - options.band - 3.0 * guard.tolerance());
     last = now;
   }
@@ -451,11 +389,11 @@ TEST(InstrumentConstraint, ComesBackToARaisedMarginWithoutEverComingCloser) {
 }
 
 TEST(InstrumentConstraint, LeadsOutABodyThatReachesThroughTheSurface) {
-  const auto mesh = std::make_shared<const Mesh>(make_cube(10.0));
+  const auto mesh = mesh_of(make_cube(10.0));
   const Instrument instrument = psm_above();
-  auto guard = guard_of(mesh, instrument);
+  auto guard = guard_of(mesh, instrument, {.period = 0.05});
   std::vector<double> q = straight_down(insertion_above_cube(instrument, *mesh, -0.5));
-  ASSERT_NEAR(clearance(instrument, *mesh, q), -0.5, 1e-6) << "the cutter's round end is in";
+  ASSERT_NEAR(clearance_of(instrument, *mesh, q), -0.5, 1e-6) << "the cutter's round end is in";
   InstrumentStep step = guard.step(q, Twist{});
   EXPECT_EQ(step.status, Status::recovering);
   ASSERT_TRUE(step.distance.has_value());
@@ -466,12 +404,12 @@ TEST(InstrumentConstraint, LeadsOutABodyThatReachesThroughTheSurface) {
     step = guard.step(q, Twist{});
   }
   EXPECT_TRUE(step.status == Status::free || step.status == Status::limited) << step.reason();
-  EXPECT_GE(clearance(instrument, *mesh, q), 0.198 - 3.0 * guard.tolerance());
+  EXPECT_GE(clearance_of(instrument, *mesh, q), 0.198 - 3.0 * guard.tolerance());
 }
 
 TEST(InstrumentConstraint, MovesNothingThatIsThroughTheSurfaceOrBehindIt) {
-  const auto mesh = std::make_shared<const Mesh>(make_cube(10.0));
-  auto guard = guard_of(mesh, psm_above());
+  const auto mesh = mesh_of(make_cube(10.0));
+  auto guard = guard_of(mesh, psm_above(), {.period = 0.05});
   const std::vector<double> through =
       straight_down(insertion_above_cube(psm_above(), *mesh, 0.0) + 5.0);
   EXPECT_EQ(guard.step(through, Twist{.linear = Vec3(0, 0, 1)}).status, Status::touching);
@@ -479,7 +417,7 @@ TEST(InstrumentConstraint, MovesNothingThatIsThroughTheSurfaceOrBehindIt) {
   // A ball alone, all of it inside.
   const Chain chain({{.kind = JointKind::prismatic}});
   const Instrument ball(chain, {{.points = {{1, Vec3::Zero()}}, .radius = 1.0}});
-  auto inside = guard_of(mesh, ball);
+  auto inside = guard_of(mesh, ball, {.period = 0.05});
   const std::vector<double> q{0.0};
   EXPECT_EQ(inside.step(q, Twist{}).status, Status::inside);
   EXPECT_TRUE(inside.step(q, Twist{}).increment.empty());
@@ -491,7 +429,7 @@ TEST(InstrumentConstraint, MovesNothingThatIsThroughTheSurfaceOrBehindIt) {
 }
 
 TEST(InstrumentConstraint, ABladeThatTurnsIsKeptOffByItsEdges) {
-  const auto mesh = std::make_shared<const Mesh>(make_cube(10.0));
+  const auto mesh = mesh_of(make_cube(10.0));
   const Pose above{Vec3(0, 0, 53), Mat3::Identity()};
   // 4 wide, turning about y: flat it is 3 above, upright 1 above.
   const Chain chain({{.axis = Vec3::UnitY()}}, above);
@@ -505,13 +443,13 @@ TEST(InstrumentConstraint, ABladeThatTurnsIsKeptOffByItsEdges) {
     const InstrumentStep step = guard.step(q, std::vector<double>{0.01});
     ASSERT_TRUE(step.ok()) << step.reason();
     q = moved(q, step);
-    ASSERT_GE(clearance(blade, *mesh, q), 1.498 - 3.0 * guard.tolerance());
+    ASSERT_GE(clearance_of(blade, *mesh, q), 1.498 - 3.0 * guard.tolerance());
   }
   EXPECT_NEAR(2.0 * std::sin(q[0]), 1.5, 1e-3) << "it turned until its edge was at the margin";
 }
 
 TEST(InstrumentConstraint, RefusesWhatIsNoInput) {
-  auto guard = guard_of(mesh_of("cube"), psm_above());
+  auto guard = guard_of(mesh_of("cube"), psm_above(), {.period = 0.05});
   const std::vector<double> q = straight_down(20.0);
   std::vector<double> bad = q;
   bad[3] = test::nan;
@@ -528,32 +466,24 @@ TEST(InstrumentConstraint, RefusesWhatIsNoInput) {
 
 TEST(InstrumentConstraint, SaysWhatIsWrongWithItsParts) {
   const auto mesh = mesh_of("cube");
-  const auto message = [](const std::function<void()>& make) -> std::string {
-    try {
-      make();
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "";
-  };
   const auto with = [&](const InstrumentOptions& options) {
-    return message([&] { guard_of(mesh, psm_above(), options); });
+    return error_of([&] { guard_of(mesh, psm_above(), options); });
   };
-  EXPECT_NE(with({.margin = 0.0}).find("margin"), std::string::npos);
-  EXPECT_NE(with({.margin = 0.2, .band = 0.2}).find("band"), std::string::npos);
-  EXPECT_NE(with({.margin = 1e-12, .band = 1e-13}).find("rounding"), std::string::npos);
-  EXPECT_NE(with({.period = 0.0}).find("period"), std::string::npos);
-  EXPECT_NE(with({.damping = test::nan}).find("damping"), std::string::npos);
+  EXPECT_CONTAINS(with({.margin = 0.0}), "margin");
+  EXPECT_CONTAINS(with({.margin = 0.2, .band = 0.2}), "band");
+  EXPECT_CONTAINS(with({.margin = 1e-12, .band = 1e-13}), "rounding");
+  EXPECT_CONTAINS(with({.period = 0.0}), "period");
+  EXPECT_CONTAINS(with({.damping = test::nan}), "damping");
   const auto other = mesh_of("gear");
   const auto of_other = [&] {
     InstrumentConstraint(mesh, std::make_shared<WideBvh>(other), psm_above(),
                          make_solver("active_set"), {});
   };
-  EXPECT_NE(message(of_other).find("another mesh"), std::string::npos);
+  EXPECT_CONTAINS(error_of(of_other), "another mesh");
   const auto no_solver = [&] {
     InstrumentConstraint(mesh, std::make_shared<WideBvh>(mesh), psm_above(), nullptr, {});
   };
-  EXPECT_NE(message(no_solver).find("solver"), std::string::npos);
+  EXPECT_CONTAINS(error_of(no_solver), "solver");
 }
 
 TEST(InstrumentConstraint, ABandForTheLimitsOfItsJointsHoldsEveryBendAtFullSpeed) {

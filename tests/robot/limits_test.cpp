@@ -2,19 +2,10 @@
 // InstrumentStep::limits: every limited step names its causes, and each cause is one.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
-#include <memory>
-#include <utility>
-#include <vector>
 
-#include "keepout/adapters/index_registry.h"
-#include "keepout/fixtures/random.h"
-#include "keepout/fixtures/robots.h"
-#include "keepout/fixtures/shapes.h"
-#include "keepout/robot/instrument_constraint.h"
-#include "keepout/solvers/registry.h"
+#include "guards.h"
 #include "robot/configurations.h"
 #include "trials.h"
 
@@ -48,9 +39,8 @@ InstrumentConstraint guard_without(const Removed& removed, const std::vector<Gui
   if (removed.mesh) {
     for (Vec3& v : surface.vertices) v += Vec3(0, 0, -2000);
   }
-  const auto mesh = std::make_shared<const Mesh>(std::move(surface));
-  InstrumentConstraint guard(mesh, make_index("wide_bvh", mesh), robot_without(removed),
-                             make_solver("active_set"), {.period = 0.02, .check_sides = false});
+  const auto mesh = mesh_of(std::move(surface));
+  auto guard = guard_of(mesh, robot_without(removed), {.period = 0.02, .check_sides = false});
   if (!removed.guides) guard.set_guides(guides);
   return guard;
 }
@@ -126,7 +116,7 @@ TEST(Limits, NameEveryCauseAndOnlyCauses) {
       ASSERT_GT(difference(step, causes[c].without.step(q, desired)), 0.0)
           << name(causes[c].limit) << " does not limit step " << i;
     }
-    for (std::size_t k = 0; k < step.increment.size(); ++k) q[k] += step.increment[k];
+    q = moved(q, step);
   }
   EXPECT_GT(free, test::trials(3000));
   for (std::size_t c = 0; c < causes.size(); ++c) {
@@ -147,7 +137,7 @@ TEST(Limits, OfAnArmFarFromEveryMeshAreThoseOfItsJoints) {
     ASSERT_FALSE(step.limits.has(Limit::mesh)) << i;
     ASSERT_FALSE(step.limits.has(Limit::guide)) << i;
     limited += step.status == Status::limited ? 1 : 0;
-    for (std::size_t k = 0; k < q.size(); ++k) q[k] += step.increment[k];
+    q = moved(q, step);
   }
   EXPECT_GT(limited, test::trials(2000));
 }
@@ -155,13 +145,12 @@ TEST(Limits, OfAnArmFarFromEveryMeshAreThoseOfItsJoints) {
 // A stretched arm cannot move its flange inwards.
 TEST(Limits, NameASingularPose) {
   const Surface far{{Vec3(0, 0, 2000), Vec3(100, 0, 2000), Vec3(0, 100, 2000)}, {{0, 1, 2}}};
-  const auto mesh = std::make_shared<const Mesh>(far);
+  const auto mesh = mesh_of(far);
   std::vector<Joint> joints(3);
   for (int k : {1, 2}) joints[static_cast<std::size_t>(k)].origin.position = Vec3(100, 0, 0);
-  InstrumentConstraint guard(
-      mesh, make_index("wide_bvh", mesh),
-      {Chain(joints, {}, {Vec3(100, 0, 0)}), {{"tip", {{3, Vec3(100, 0, 0)}}, 1.0}}},
-      make_solver("active_set"), {.orientation_weight = 0.0});
+  auto guard =
+      guard_of(mesh, {Chain(joints, {}, {Vec3(100, 0, 0)}), {{"tip", {{3, Vec3(100, 0, 0)}}, 1.0}}},
+               {.orientation_weight = 0.0});
   const std::vector<double> q{0.0, 0.0, 0.0};
   const InstrumentStep inwards = guard.step(q, {.linear = Vec3(-1, 0, 0)});
   EXPECT_EQ(inwards.status, Status::limited);
@@ -174,10 +163,9 @@ TEST(Limits, NameASingularPose) {
 }
 
 TEST(Limits, OfAnIllPosedTaskNameNoGuide) {
-  const auto mesh = std::make_shared<const Mesh>(make_cube(2.0));
-  InstrumentConstraint guard(mesh, make_index("wide_bvh", mesh),
-                             seven_joint_arm({Vec3(0, 0, 2000), Mat3::Identity()}),
-                             make_solver("active_set"), {.damping = 0.0});
+  const auto mesh = mesh_of(make_cube(2.0));
+  auto guard =
+      guard_of(mesh, seven_joint_arm({Vec3(0, 0, 2000), Mat3::Identity()}), {.damping = 0.0});
   for (const double speed : {0.0, 1e-9}) {
     guard.place(0, {}, {.linear = Vec3(speed, 0, 0)});
     const InstrumentStep step = guard.step(std::vector<double>(7, 0.3), {.linear = Vec3(1, 0, 0)});
@@ -199,10 +187,9 @@ TEST(Limits, NameAJointThatStartsOutside) {
 
 // A budget that ends, a store that is too small, and what they are called.
 TEST(Limits, TellASpentBudgetFromASmallStore) {
-  const auto mesh = std::make_shared<const Mesh>(make_cube(2.0));
+  const auto mesh = mesh_of(make_cube(2.0));
   const auto status = [&](const InstrumentCapacity& capacity, double speed = 0.0) {
-    InstrumentConstraint guard(mesh, make_index("wide_bvh", mesh), free_ball(1.0),
-                               make_solver("active_set"), {.check_sides = false}, capacity);
+    auto guard = guard_of(mesh, free_ball(1.0), {.check_sides = false}, capacity);
     guard.place(0, {}, {.linear = Vec3(0, 0, speed)});
     return guard.step(std::vector<double>{0.0, 0.0, 51.3}, {.linear = Vec3(0, 0, -5)});
   };

@@ -3,14 +3,12 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <memory>
 #include <set>
 #include <vector>
 
 #include "keepout/fixtures/random.h"
-#include "keepout/fixtures/shapes.h"
 #include "keepout/index/wide_bvh.h"
+#include "meshes.h"
 #include "realtime/counted_allocations.h"
 #include "trials.h"
 
@@ -23,7 +21,7 @@ TEST(NearSet, TellsAllThatIsNearOnceAndAllocatesNothing) {
   Random random(1);
   std::size_t told_of = 0;
   for (const char* shape : {"cube", "gear"}) {
-    const auto mesh = std::make_shared<const Mesh>(make_shape(shape));
+    const auto mesh = mesh_of(shape);
     Budget budget;
     Neighborhood near(mesh, std::make_shared<WideBvh>(mesh), mesh->triangle_count(), budget);
     for (const std::size_t points : {1u, 2u, 4u}) {

@@ -4,13 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <memory>
-#include <vector>
 
-#include "keepout/index/wide_bvh.h"
-#include "keepout/robot/instrument_constraint.h"
-#include "keepout/solvers/active_set.h"
-#include "robot/wall.h"
+#include "guards.h"
 
 namespace keepout {
 namespace {
@@ -28,14 +23,14 @@ struct TurnPastAWall {
     const double due = radius + options.margin - options.band;
     const double sagitta = lever * (1.0 - std::cos(0.5 * turn));
     const double at = lever + due + spare * sagitta;
-    const auto mesh = test::wall(at);
+    const auto mesh = wall(at);
     const Joint base{.kind = JointKind::prismatic,
                      .axis = Vec3::UnitY(),
                      .limits = {.lower = -10.0, .upper = 10.0}};
-    InstrumentConstraint guard(mesh, std::make_shared<WideBvh>(mesh),
-                               {Chain({base, {.kind = JointKind::revolute}}),
-                                {{"point", {{2, Vec3(lever, 0, 0)}}, radius}}},
-                               std::make_unique<ActiveSet>(), options);
+    auto guard = guard_of(mesh,
+                          {Chain({base, {.kind = JointKind::revolute}}),
+                           {{"point", {{2, Vec3(lever, 0, 0)}}, radius}}},
+                          options);
     const double chord = 2.0 * lever * std::sin(0.5 * turn);
     proof = guard.prove(std::vector<double>{0.0, -0.5 * turn},
                         std::vector<double>{-slide * chord, turn});

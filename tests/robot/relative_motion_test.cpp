@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-#include <algorithm>
 
 #include "keepout/fixtures/robots.h"
 #include "robot/configurations.h"

@@ -2,20 +2,11 @@
 // An instrument beside several meshes, each placed, moved and kept off by a margin of its own.
 #include <gtest/gtest.h>
 
-#include <Eigen/Geometry>
-#include <algorithm>
 #include <cmath>
-#include <memory>
-#include <utility>
-#include <vector>
 
+#include "brute_force.h"
+#include "guards.h"
 #include "keepout/error.h"
-#include "keepout/fixtures/random.h"
-#include "keepout/fixtures/shapes.h"
-#include "keepout/geometry/closest_point.h"
-#include "keepout/index/wide_bvh.h"
-#include "keepout/robot/instrument_constraint.h"
-#include "keepout/solvers/active_set.h"
 #include "robot/configurations.h"
 #include "trials.h"
 
@@ -33,27 +24,17 @@ Instrument ball(double radius) {
   return {Chain(axes), {{"ball", {{3, Vec3::Zero()}}, radius}}};
 }
 
-InstrumentConstraint guard_of(const std::shared_ptr<const Mesh>& mesh, Instrument instrument,
-                              const InstrumentOptions& options = {.damping = 1e-9,
-                                                                  .orientation_weight = 0.0}) {
-  return {mesh, std::make_shared<WideBvh>(mesh), std::move(instrument),
-          std::make_unique<ActiveSet>(), options};
-}
+constexpr InstrumentOptions undamped{.damping = 1e-9, .orientation_weight = 0.0};
 
 std::shared_ptr<const Mesh> cube_of(double side) {
   Surface surface = make_cube(20.0);  // of a side of 100
   for (Vec3& v : surface.vertices) v *= side / 100.0;
-  return std::make_shared<const Mesh>(std::move(surface));
+  return mesh_of(std::move(surface));
 }
 
-/// From a ball to a mesh that is placed, by every triangle.
+/// Returns the clearance of a ball from a mesh at a pose.
 double clearance(const Vec3& center, double radius, const Mesh& mesh, const Pose& pose) {
-  const Vec3 seen = pose.rotation.transpose() * (center - pose.position);
-  double least = test::infinity;
-  for (TriangleId t = 0; t < mesh.triangle_count(); ++t) {
-    least = std::min(least, closest_point(mesh.triangle(t), seen).distance);
-  }
-  return least - radius;
+  return distance_to(mesh, pose.rotation.transpose() * (center - pose.position)) - radius;
 }
 
 Vec3 moved(const Vec3& at, const InstrumentStep& step) {
@@ -72,7 +53,7 @@ TEST(SeveralMeshes, EachIsKeptOffByItsOwnMarginWhereItIsPlaced) {
   const auto left = cube_of(10.0);
   const auto right = cube_of(8.0);
   const double size = 8.0 * std::sqrt(3.0);  // however it is turned
-  InstrumentConstraint guard = guard_of(left, ball(1.0));
+  InstrumentConstraint guard = guard_of(left, ball(1.0), undamped);
   ASSERT_EQ(guard.add_mesh(right, std::make_shared<WideBvh>(right), 0.7), 1u);
   const Pose aside{Vec3(10.0 + 0.5 * size, 1.0, -2.0),
                    Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix()};
@@ -105,16 +86,17 @@ TEST(SeveralMeshes, EachIsKeptOffByItsOwnMarginWhereItIsPlaced) {
 
 // It is all the same whether the mesh is moved to the robot or the robot to the mesh.
 TEST(SeveralMeshes, APlacedMeshIsTheSameAsARobotThatIsPlacedTheOtherWay) {
-  const auto mesh = std::make_shared<const Mesh>(make_shape("gear"));
+  const auto mesh = mesh_of("gear");
   const Pose pose{Vec3(300, -200, 100),
                   Eigen::AngleAxisd(1.1, Vec3(3, 1, -2).normalized()).toRotationMatrix()};
   const Instrument instrument = free_ball(0.5);
   const Chain& chain = instrument.chain();
   const std::vector<Joint> joints{chain.joint(1), chain.joint(2), chain.joint(3)};
-  InstrumentConstraint home = guard_of(mesh, instrument);
+  InstrumentConstraint home = guard_of(mesh, instrument, undamped);
   InstrumentConstraint away = guard_of(
       mesh,
-      Instrument(Chain(joints, pose), {instrument.bodies().begin(), instrument.bodies().end()}));
+      Instrument(Chain(joints, pose), {instrument.bodies().begin(), instrument.bodies().end()}),
+      undamped);
   away.place(0, pose);
   Random random(2);
   int held = 0;
@@ -141,7 +123,7 @@ TEST(SeveralMeshes, APlacedMeshIsTheSameAsARobotThatIsPlacedTheOtherWay) {
 // The hand does nothing: the cube comes on, and the ball goes before it, at the margin.
 TEST(SeveralMeshes, AMeshThatComesOnIsGivenWayTo) {
   const auto cube = cube_of(10.0);
-  InstrumentConstraint guard = guard_of(cube, ball(1.0));
+  InstrumentConstraint guard = guard_of(cube, ball(1.0), undamped);
   const Twist coming{.linear = Vec3(50, 0, 0), .angular = Vec3(0, 0, 0.5)};
   guard.place(0, {}, coming);
   Vec3 at(7.0, 0.3, 0.2);
@@ -168,7 +150,7 @@ TEST(SeveralMeshes, AMeshThatComesOnIsGivenWayToWithinTheGuides) {
   const Vec3 start(7.0, 0.3, 0.2);
   const Guide corridor =
       Guide::point("corridor", {3, Vec3::Zero()}, Region::slab(start, Vec3(0.1, 1.0, 0.0), 0.5));
-  InstrumentConstraint guard = guard_of(cube, ball(1.0));
+  InstrumentConstraint guard = guard_of(cube, ball(1.0), undamped);
   guard.set_guides({corridor});
   guard.place(0, {}, {.linear = Vec3(50, 0, 0), .angular = Vec3(0, 0, 0.5)});
   Vec3 at = start;
@@ -191,7 +173,7 @@ TEST(SeveralMeshes, WhatOutrunsTheJointsIsNamed) {
   int yielding = 0;
   int stopped = 0;
   Vec3 at = Vec3::Zero();
-  InstrumentConstraint guard = guard_of(cube, ball(1.0));
+  InstrumentConstraint guard = guard_of(cube, ball(1.0), undamped);
   for (int trial = 0; trial < 20; ++trial) {
     guard.forget();
     at = Vec3(6.9, 0.01 * trial, 0.0);
@@ -224,7 +206,7 @@ TEST(SeveralMeshes, WhatOutrunsTheJointsIsNamed) {
 
 TEST(SeveralMeshes, APlaceThatIsNoneStopsUntilThereIsOne) {
   const auto cube = cube_of(10.0);
-  InstrumentConstraint guard = guard_of(cube, ball(1.0));
+  InstrumentConstraint guard = guard_of(cube, ball(1.0), undamped);
   guard.add_mesh(cube, std::make_shared<WideBvh>(cube));
   const Vec3 at(30, 0, 0);
   Mat3 stretched = Mat3::Identity();
@@ -251,17 +233,15 @@ TEST(SeveralMeshes, APlaceThatIsNoneStopsUntilThereIsOne) {
 
 /// A square sheet in the plane z = 0.
 std::shared_ptr<const Mesh> sheet_of(double half) {
-  Surface surface;
-  surface.vertices = {{-half, -half, 0}, {half, -half, 0}, {half, half, 0}, {-half, half, 0}};
-  surface.triangles = {{0, 1, 2}, {0, 2, 3}};
-  return std::make_shared<const Mesh>(std::move(surface));
+  return mesh_of(Surface{{{-half, -half, 0}, {half, -half, 0}, {half, half, 0}, {-half, half, 0}},
+                         {{0, 1, 2}, {0, 2, 3}}});
 }
 
 // Each place is at most as far off as the lengths at hand allow, however far the last one was: 100
 // times farther again and again, rounding would outgrow the margin, and all would be certified.
 TEST(SeveralMeshes, PlacesDoNotRatchet) {
   const auto sheet = sheet_of(500.0);
-  InstrumentConstraint guard = guard_of(sheet, free_ball(1.0));
+  InstrumentConstraint guard = guard_of(sheet, free_ball(1.0), undamped);
   double x = 5e3;
   int accepted = 0;
   for (; x < 1e12; x *= 50.0) {
@@ -299,7 +279,7 @@ struct ComingSheet {
         EXPECT_EQ(each.mesh, 0);
       }
       EXPECT_EQ(!step.degraded.empty(), step.status == Status::yielding || !step.ok()) << i;
-      for (std::size_t k = 0; k < step.increment.size(); ++k) q[k] += step.increment[k];
+      q = keepout::moved(q, step);
       least = std::min(least, q[2] - (z + 0.02) - 1.0);
     }
   }
@@ -352,7 +332,7 @@ TEST(MovingSheet, TakesNothingFromABodyBesideOneThatIsBlocked) {
     const double z = -8.0 + 0.02 * i;
     blocked.guard.place(0, {Vec3(0, 0, z)}, {.linear = Vec3(0, 0, 20)});
     const InstrumentStep step = blocked.guard.step(blocked.q, Twist{});
-    for (std::size_t k = 0; k < step.increment.size(); ++k) blocked.q[k] += step.increment[k];
+    blocked.q = keepout::moved(blocked.q, step);
     const double clear = blocked.q[0] + blocked.q[2] - (z + 0.02) - 1.0;
     ASSERT_GE(clear, 0.198 - 1e-8) << i << ' ' << name(step.status) << ' ' << step.level;
     for (const DegradedClearance& each : step.degraded) {
@@ -366,7 +346,7 @@ TEST(MovingSheet, TakesNothingFromABodyBesideOneThatIsBlocked) {
 // A mesh that its velocity carries away, until rounding hides the margin.
 TEST(SeveralMeshes, AMeshThatGoesTooFarIsNamed) {
   const auto sheet = sheet_of(500.0);
-  InstrumentConstraint guard = guard_of(sheet, free_ball(1.0));
+  InstrumentConstraint guard = guard_of(sheet, free_ball(1.0), undamped);
   ASSERT_EQ(guard.place(0, {}, {.linear = Vec3(9e8, 0, 0)}), Status::free);
   EXPECT_EQ(step_of(guard, Vec3(0, 0, 1.25), Vec3::Zero()).status, Status::invalid_input)
       << "9e5 in a cycle is beyond 100 times the sheet";
@@ -430,7 +410,7 @@ TEST(SeveralMeshes, ABodyThatIsTooCloseNeverUsesUpItsDistance) {
 TEST(SeveralMeshes, SaysWhatIsWrongWithOneAndStaysAsItWas) {
   const auto cube = cube_of(10.0);
   const auto index = std::make_shared<WideBvh>(cube);
-  InstrumentConstraint guard = guard_of(cube, ball(1.0));
+  InstrumentConstraint guard = guard_of(cube, ball(1.0), undamped);
   EXPECT_THROW(guard.add_mesh(nullptr, index), Error);
   EXPECT_THROW(guard.add_mesh(cube_of(10.0), index), Error) << "of another mesh";
   EXPECT_THROW(guard.add_mesh(cube, index, 0.001), Error) << "below the band";
@@ -452,7 +432,7 @@ TEST(SeveralMeshes, SaysWhatIsWrongWithOneAndStaysAsItWas) {
 // A mesh deforms while it moves: followed, it stays where it is.
 TEST(SeveralMeshes, IsFollowedWhereItIs) {
   const auto cube = cube_of(10.0);
-  InstrumentConstraint guard = guard_of(cube, ball(1.0));
+  InstrumentConstraint guard = guard_of(cube, ball(1.0), undamped);
   guard.add_mesh(cube, std::make_shared<WideBvh>(cube), 0.4);
   guard.place(1, {Vec3(20, 0, 0)});
   const auto larger = cube_of(12.0);

@@ -2,18 +2,11 @@
 // The work budget or the memory of an instrument's cycle runs out at an arbitrary point.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <memory>
 #include <span>
-#include <vector>
 
-#include "keepout/fixtures/shapes.h"
-#include "keepout/geometry/separation.h"
-#include "keepout/index/wide_bvh.h"
-#include "keepout/robot/instrument_constraint.h"
-#include "keepout/solvers/active_set.h"
+#include "brute_force.h"
+#include "guards.h"
 #include "near_set.h"
-#include "robot/configurations.h"
 #include "trials.h"
 
 namespace keepout {
@@ -23,30 +16,14 @@ namespace {
 /// the cube's top, and would come down on it.
 struct Swing {
   explicit Swing(const InstrumentCapacity& capacity)
-      : mesh(std::make_shared<const Mesh>(make_cube(50.0))),
-        guard(mesh, std::make_shared<WideBvh>(mesh),
-              {Chain({{.axis = Vec3::UnitZ()}, {.origin = {Vec3(60, 0, 0)}, .axis = Vec3::UnitY()}},
-                     {Vec3(-120, 0, 70)}),
-               {{"shaft", {{1, Vec3::Zero()}, {2, Vec3::Zero()}}, 2.0},
-                {"ball", {{2, Vec3(40, 0, 0)}}, 3.0}}},
-              std::make_unique<ActiveSet>(), {.check_sides = false}, capacity) {}
-
-  double clearance(const std::vector<double>& q) const {
-    ChainState chain;
-    const Instrument& instrument = guard.instrument();
-    instrument.chain().forward_kinematics(q, chain);
-    double least = test::infinity;
-    for (const Body& body : instrument.bodies()) {
-      std::vector<Vec3> core;
-      for (const LinkPoint& point : body.points)
-        core.push_back(chain.at(point.link, point.position));
-      const ConvexTool tool = ConvexTool::hull(core, body.radius);
-      for (TriangleId t = 0; t < mesh->triangle_count(); ++t) {
-        least = std::min(least, separation(tool, Vec3::Zero(), mesh->triangle(t)).distance);
-      }
-    }
-    return least;
-  }
+      : mesh(mesh_of(make_cube(50.0))),
+        guard(guard_of(
+            mesh,
+            {Chain({{.axis = Vec3::UnitZ()}, {.origin = {Vec3(60, 0, 0)}, .axis = Vec3::UnitY()}},
+                   {Vec3(-120, 0, 70)}),
+             {{"shaft", {{1, Vec3::Zero()}, {2, Vec3::Zero()}}, 2.0},
+              {"ball", {{2, Vec3(40, 0, 0)}}, 3.0}}},
+            {.check_sides = false}, capacity)) {}
 
   /// Fails unless start + s dq is clear for s in [0, 1].
   void expect_clear(std::span<const double> dq, double share) const {
@@ -55,7 +32,8 @@ struct Swing {
     for (int s = 1; s <= poses; ++s) {
       std::vector<double> there = start;
       for (std::size_t k = 0; k < there.size(); ++k) there[k] += s * share / poses * dq[k];
-      ASSERT_GE(clearance(there), kept) << "at " << s << " of " << poses;
+      ASSERT_GE(clearance_of(guard.instrument(), *mesh, there), kept)
+          << "at " << s << " of " << poses;
     }
   }
 
@@ -106,7 +84,7 @@ TEST(SpentCapacity, NothingIsCertifiedThatIsNotClearHoweverFewTrianglesFit) {
 
 // The index has room for all triangles, the set for fewer.
 TEST(SpentCapacity, ANearSetThatCannotHoldAllTrianglesKnowsNothing) {
-  const auto mesh = std::make_shared<const Mesh>(make_cube(50.0));
+  const auto mesh = mesh_of(make_cube(50.0));
   Budget budget;
   Neighborhood near(mesh, std::make_shared<WideBvh>(mesh), mesh->triangle_count(), budget);
   const std::vector<Vec3> core{Vec3::Zero()};

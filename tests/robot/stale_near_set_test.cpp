@@ -3,13 +3,7 @@
 // where the set was made that the set still has all triangles that the cycle needs.
 #include <gtest/gtest.h>
 
-#include <memory>
-#include <vector>
-
-#include "keepout/index/wide_bvh.h"
-#include "keepout/robot/instrument_constraint.h"
-#include "keepout/solvers/active_set.h"
-#include "robot/wall.h"
+#include "guards.h"
 
 namespace keepout {
 namespace {
@@ -18,12 +12,11 @@ namespace {
 // enough to forbid the motion after that. For some displacements the set does not have the wall.
 TEST(StaleNearSet, IsNotUsedWhereTheBodyHasMovedTooFar) {
   constexpr double radius = 1.0;
-  const auto mesh = test::wall(0.0);
+  const auto mesh = wall(0.0);
   const InstrumentOptions options{.damping = 0.0};
   const double kept = options.margin - options.band;
   for (const double motion : {0.01, 0.05, 0.1, 0.15}) {
-    InstrumentConstraint guard(mesh, std::make_shared<WideBvh>(mesh), free_ball(radius),
-                               std::make_unique<ActiveSet>(), options);
+    auto guard = guard_of(mesh, free_ball(radius), options);
     for (double way = 0.01; way < 20.0; way *= 1.01) {
       const double missing = 0.02 * way;
       const double start = way + radius + kept + motion - missing;  // from the wall

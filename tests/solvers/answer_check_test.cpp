@@ -4,7 +4,6 @@
 
 #include "keepout/solvers/active_set.h"
 #include "solvers/solver_contract.h"
-#include "trials.h"
 
 namespace keepout::test {
 namespace {

@@ -3,7 +3,6 @@
 
 #include <Eigen/QR>
 #include <algorithm>
-#include <cmath>
 
 namespace keepout::test {
 namespace {

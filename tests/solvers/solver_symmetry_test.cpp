@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What must not change the answer: units, lengths and order of rows, what was solved before.
-#include <numeric>
 
 #include "solvers/solver_contract.h"
 

@@ -1,14 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // keepout bench as a user meets it.
 #include <gtest/gtest.h>
-#include <signal.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <array>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -31,14 +25,7 @@ class BenchCommand : public testing::Test {
   void SetUp() override { write_binary_stl(folder.file("cube.stl"), make_cube(5.0)); }
 
   json read(const std::string& name) const {
-    std::ifstream file(folder.file(name));
-    return json::parse(file).at("benchmark");
-  }
-
-  void expect_refused(const std::string& arguments, const std::string& why) const {
-    const ProcessOutcome outcome = folder.run(arguments);
-    EXPECT_NE(outcome.status, 0) << arguments;
-    EXPECT_NE(outcome.output.find(why), std::string::npos) << arguments << '\n' << outcome.output;
+    return json::parse(folder.contents(name)).at("benchmark");
   }
 
   CommandFolder folder;
@@ -48,12 +35,12 @@ TEST_F(BenchCommand, ListsEveryPart) {
   const ProcessOutcome outcome = folder.run("bench --list");
   EXPECT_EQ(outcome.status, 0);
   for (const IndexBackend& index : all_index_backends()) {
-    EXPECT_NE(outcome.output.find(index.name), std::string::npos) << index.name;
+    EXPECT_CONTAINS(outcome.output, index.name) << index.name;
   }
   for (const SolverBackend& solver : solver_backends()) {
-    EXPECT_NE(outcome.output.find(solver.name), std::string::npos) << solver.name;
+    EXPECT_CONTAINS(outcome.output, solver.name) << solver.name;
   }
-  EXPECT_NE(outcome.output.find("skull_1m"), std::string::npos);
+  EXPECT_CONTAINS(outcome.output, "skull_1m");
 }
 
 TEST_F(BenchCommand, WritesOneRowForEachCombinationWithAllThatIsAskedOfIt) {
@@ -86,19 +73,35 @@ TEST_F(BenchCommand, WritesOneRowForEachCombinationWithAllThatIsAskedOfIt) {
   EXPECT_TRUE(benchmark["complete"]);
   EXPECT_EQ(benchmark["machine"]["simd"], std::string(simd_target()));
   EXPECT_GE(benchmark["others_cores"], 0.0);
-  EXPECT_NE(outcome.output.find("SIMD target " + std::string(simd_target())), std::string::npos);
+  EXPECT_CONTAINS(outcome.output, "SIMD target " + std::string(simd_target()));
   EXPECT_EQ(hashes.size(), 3u);
   for (const auto& [combination, hash] : hashes) EXPECT_EQ(hash.size(), 1u) << combination;
 
-  std::ifstream csv(folder.file("b.csv"));
-  std::string head, line;
-  std::getline(csv, head);
-  const auto columns = std::count(head.begin(), head.end(), ',');
-  std::size_t lines = 0;
-  for (; std::getline(csv, line); ++lines) {
-    EXPECT_EQ(std::count(line.begin(), line.end(), ','), columns) << line;
+  // The CSV file has the same numbers.
+  std::istringstream csv(folder.contents("b.csv"));
+  const auto cells = [&] {
+    std::vector<std::string> all;
+    std::string line;
+    std::getline(csv, line);
+    std::istringstream text(line + ',');
+    for (std::string cell; std::getline(text, cell, ',');) all.push_back(cell);
+    return all;
+  };
+  const std::vector<std::string> columns = cells();
+  for (const json& row : benchmark["rows"]) {
+    const std::vector<std::string> values = cells();
+    ASSERT_EQ(values.size(), columns.size());
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      const std::size_t at = columns[c].find("_us_");
+      const json timing = at == std::string::npos ? row.value(columns[c], json())
+                                                  : row[columns[c].substr(0, at + 3)];
+      const json told = timing.is_object() ? timing[columns[c].substr(at + 4)] : timing;
+      if (told.is_number()) {
+        EXPECT_EQ(std::stod(values[c]), told.get<double>()) << columns[c];
+      }
+    }
   }
-  EXPECT_EQ(lines, 6u);
+  EXPECT_EQ(csv.peek(), EOF) << "one line for each row";
 }
 
 TEST_F(BenchCommand, ResamplesTheBunny) {
@@ -112,21 +115,21 @@ TEST_F(BenchCommand, ResamplesTheBunny) {
 }
 
 TEST_F(BenchCommand, SaysWhatIsWrongWithTheArguments) {
-  expect_refused("bench --index pd-tree", "pd_tree");
-  expect_refused("bench --solver nlopt", "active_set");
-  expect_refused("bench --radius -1 --mesh cube.stl", "--radius");
-  expect_refused("bench --radius some --mesh cube.stl", "--radius");
-  expect_refused("bench --triangles 12", "--triangles");
-  expect_refused("bench --triangles 2000 --mesh cube.stl", "bunny");
-  expect_refused("bench --mesh nowhere.stl", "nowhere.stl");
-  expect_refused("bench --mesh cube.stl --json no/such/folder.json", "no/such");
-  expect_refused("bench --mesh cube.stl --json a.json --csv a.json", "--csv");
-  expect_refused("bench --mesh cube.stl --csv cube.stl", "cube.stl");
-  expect_refused("bench --poses somewhere", "contact");
+  folder.expect_refused("bench --index pd-tree", "pd_tree");
+  folder.expect_refused("bench --solver nlopt", "active_set");
+  folder.expect_refused("bench --radius -1 --mesh cube.stl", "--radius");
+  folder.expect_refused("bench --radius some --mesh cube.stl", "--radius");
+  folder.expect_refused("bench --triangles 12", "--triangles");
+  folder.expect_refused("bench --triangles 2000 --mesh cube.stl", "bunny");
+  folder.expect_refused("bench --mesh nowhere.stl", "nowhere.stl");
+  folder.expect_refused("bench --mesh cube.stl --json no/such/folder.json", "no/such");
+  folder.expect_refused("bench --mesh cube.stl --json a.json --csv a.json", "--csv");
+  folder.expect_refused("bench --mesh cube.stl --csv cube.stl", "cube.stl");
+  folder.expect_refused("bench --poses somewhere", "contact");
   EXPECT_FALSE(std::filesystem::exists(folder.file("a.json")));
   std::filesystem::create_directory(folder.file("other"));
   std::filesystem::copy(folder.file("cube.stl"), folder.file("other/cube.stl"));
-  expect_refused("bench --mesh cube.stl,other/cube.stl", "told apart");
+  folder.expect_refused("bench --mesh cube.stl,other/cube.stl", "told apart");
 }
 
 TEST_F(BenchCommand, RanksNoRowWhoseMotionsReachNoTriangle) {
@@ -143,8 +146,7 @@ TEST_F(BenchCommand, RanksNoRowWhoseMotionsReachNoTriangle) {
   }
   EXPECT_EQ(benchmark["headline"],
             "No combination had triangles in reach and answered 99 % of its steps.");
-  EXPECT_NE(benchmark["account"].get<std::string>().find("2 of 2 rows were not ranked"),
-            std::string::npos);
+  EXPECT_CONTAINS(benchmark["account"].get<std::string>(), "2 of 2 rows were not ranked");
 }
 
 TEST_F(BenchCommand, KeepsTheRowsThatAreFinishedWhenItIsInterrupted) {
@@ -156,9 +158,7 @@ TEST_F(BenchCommand, KeepsTheRowsThatAreFinishedWhenItIsInterrupted) {
                           "b.json",           "--csv",        "b.csv",     "--out",    "b.html"},
                          "\n5      wide_bvh");
   EXPECT_EQ(outcome.status, 130) << outcome.output;
-  EXPECT_NE(outcome.output.find("were finished, and are kept in b.html, b.json and b.csv"),
-            std::string::npos)
-      << outcome.output;
+  EXPECT_CONTAINS(outcome.output, "were finished, and are kept in b.html, b.json and b.csv");
   const json benchmark = read("b.json");
   EXPECT_EQ(benchmark["complete"], false);
   EXPECT_EQ(benchmark["planned_rows"], 4);
@@ -166,13 +166,9 @@ TEST_F(BenchCommand, KeepsTheRowsThatAreFinishedWhenItIsInterrupted) {
   EXPECT_GE(rows, 1u);
   EXPECT_LT(rows, 4u);
   for (const json& row : benchmark["rows"]) EXPECT_TRUE(row["verified"]) << "whole rows only";
-  std::ifstream csv(folder.file("b.csv"));
-  EXPECT_EQ(static_cast<std::size_t>(std::count(std::istreambuf_iterator<char>(csv), {}, '\n')),
-            rows + 1);
-  std::ifstream page(folder.file("b.html"));
-  const std::string text(std::istreambuf_iterator<char>(page), {});
-  EXPECT_NE(text.find("Incomplete: it was stopped after " + std::to_string(rows) + " of 4 rows."),
-            std::string::npos);
+  EXPECT_EQ(static_cast<std::size_t>(std::ranges::count(folder.contents("b.csv"), '\n')), rows + 1);
+  EXPECT_CONTAINS(folder.contents("b.html"),
+                  "Incomplete: it was stopped after " + std::to_string(rows) + " of 4 rows.");
 }
 
 TEST_F(BenchCommand, WritesNothingWhenItIsInterruptedBeforeAnyRow) {
@@ -181,7 +177,7 @@ TEST_F(BenchCommand, WritesNothingWhenItIsInterruptedBeforeAnyRow) {
                           "--seconds", "5", "--json", "b.json", "--out", "b.html"},
                          "SIMD target");
   EXPECT_EQ(outcome.status, 130) << outcome.output;
-  EXPECT_NE(outcome.output.find("nothing was written"), std::string::npos) << outcome.output;
+  EXPECT_CONTAINS(outcome.output, "nothing was written");
   EXPECT_FALSE(std::filesystem::exists(folder.file("b.json")));
   EXPECT_FALSE(std::filesystem::exists(folder.file("b.html")));
 }
@@ -189,8 +185,8 @@ TEST_F(BenchCommand, WritesNothingWhenItIsInterruptedBeforeAnyRow) {
 TEST_F(BenchCommand, TellsOfAMistypedMeshBeforeItMeasuresAnother) {
   const ProcessOutcome outcome = folder.run("bench --mesh cube.stl,cubes.stl --json b.json");
   EXPECT_EQ(outcome.status, 1) << outcome.output;
-  EXPECT_NE(outcome.output.find("cubes.stl: there is no such file"), std::string::npos);
-  EXPECT_EQ(outcome.output.find("SIMD target"), std::string::npos) << "nothing was begun";
+  EXPECT_CONTAINS(outcome.output, "cubes.stl: there is no such file");
+  EXPECT_LACKS(outcome.output, "SIMD target") << "nothing was begun";
   EXPECT_FALSE(std::filesystem::exists(folder.file("b.json")));
 }
 
@@ -200,18 +196,17 @@ TEST_F(BenchCommand, KeepsTheRowsBeforeAMeshThatIsBroken) {
       "bench --mesh cube.stl,broken.stl --index pd_tree --activation paper --radius 5 "
       "--queries 50 --json b.json --csv b.csv --out b.html");
   EXPECT_EQ(outcome.status, 1) << outcome.output;
-  EXPECT_NE(outcome.output.find("1 of 2 rows were finished, and are kept in b.html, b.json and "
-                                "b.csv"),
-            std::string::npos)
-      << outcome.output;
-  EXPECT_NE(outcome.output.find("keepout: broken.stl: "), std::string::npos) << outcome.output;
+  EXPECT_CONTAINS(outcome.output,
+                  "1 of 2 rows were finished, and are kept in b.html, b.json and "
+                  "b.csv");
+  EXPECT_CONTAINS(outcome.output, "keepout: broken.stl: ");
   const json benchmark = read("b.json");
   EXPECT_EQ(benchmark["complete"], false);
   ASSERT_EQ(benchmark["rows"].size(), 1u);
   EXPECT_EQ(benchmark["rows"][0]["mesh"], "cube.stl");
   EXPECT_TRUE(std::filesystem::exists(folder.file("b.html")));
   EXPECT_TRUE(std::filesystem::exists(folder.file("b.csv")));
-  expect_refused("bench --mesh broken.stl --json none.json", "broken.stl");
+  folder.expect_refused("bench --mesh broken.stl --json none.json", "broken.stl");
   EXPECT_FALSE(std::filesystem::exists(folder.file("none.json"))) << "there is nothing to keep";
 }
 
@@ -226,12 +221,12 @@ TEST_F(BenchCommand, SaysWhenMoreTrianglesAreInReachThanItHasRoomFor) {
   const json benchmark = read("b.json");
   ASSERT_EQ(benchmark["rows"].size(), 2u);
   EXPECT_FALSE(benchmark["rows"][0]["verified"]);
-  EXPECT_NE(benchmark["rows"][0]["remark"].get<std::string>().find("in reach"), std::string::npos);
+  EXPECT_CONTAINS(benchmark["rows"][0]["remark"].get<std::string>(), "in reach");
   EXPECT_TRUE(benchmark["rows"][1]["verified"]) << "the others are measured all the same";
 }
 
 TEST_F(BenchCommand, LeavesNoFileBehindWhenItFails) {
-  expect_refused("bench --mesh nowhere.stl --json b.json", "nowhere.stl");
+  folder.expect_refused("bench --mesh nowhere.stl --json b.json", "nowhere.stl");
   EXPECT_FALSE(std::filesystem::exists(folder.file("b.json")));
 }
 

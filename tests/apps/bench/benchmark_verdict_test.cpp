@@ -1,21 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The verdict of a benchmark: which rows it compares, by which factor, and which it leaves out.
 #include "bench/benchmark_verdict.h"
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <map>
-#include <string>
 #include <utility>
 
+#include "messages.h"
 #include "shared/number_text.h"
 
 namespace keepout::app {
 namespace {
-
-bool has(const std::string& page, const std::string& words) {
-  return page.find(words) != std::string::npos;
-}
 
 Timing made_up_timing(double median, std::size_t samples) {
   Timing timing{.p50 = median, .max = 40.0 * median, .samples = samples};
@@ -48,125 +43,59 @@ Benchmark duel() {
   return benchmark;
 }
 
-TEST(BenchmarkVerdict, SetsOurPairAgainstItsPeersOnTheLargestMesh) {
+TEST(BenchmarkVerdict, ComparesTheLargestMeshUnderTheSameConditions) {
   Benchmark benchmark = duel();
-  EXPECT_EQ(
-      headline(benchmark),
-      "wide_bvh with active_set answers a step in 4.00\u00a0µs, where fcl_obbrss with nlopt_slsqp "
-      "takes 200\u00a0µs: 50 times as long.");
-  EXPECT_EQ(
-      account(benchmark),
-      "Those are medians of 2,500 and 120 steps on ball with 64,000 triangles, rule paper, with a "
-      "motion sphere of 5\u00a0mm. With a sphere of 1\u00a0mm it is 1.00\u00a0µs against "
-      "12.0\u00a0µs, 12 times as long.");
-}
-
-TEST(BenchmarkVerdict, SaysSoWhereThePeerIsFaster) {
-  Benchmark benchmark = duel();
+  EXPECT_CONTAINS(headline(benchmark), ": 50 times as long");
+  for (const char* figure : {"2,500 and 120 steps", "64,000 triangles", "12 times"}) {
+    EXPECT_CONTAINS(account(benchmark), figure);
+  }
   for (BenchmarkRow& row : benchmark.rows) {
     if (row.index == "wide_bvh") row.step->p50 *= 1000.0;
   }
-  EXPECT_EQ(headline(benchmark),
-            "fcl_obbrss with nlopt_slsqp answers a step in 200\u00a0µs, where wide_bvh with "
-            "active_set takes 4000\u00a0µs: 20 times as long.");
-  EXPECT_TRUE(has(account(benchmark), "Those are medians of 120 and 2,500 steps on ball with"));
-}
-
-TEST(BenchmarkVerdict, ComparesOnlyWhatMetTheSameConditions) {
-  Benchmark benchmark = duel();
-  for (BenchmarkRow& row : benchmark.rows) {
-    if (row.index == "wide_bvh") row.activation = "all_faces";
-  }
-  EXPECT_EQ(headline(benchmark),
-            "A step takes 4.00\u00a0µs with wide_bvh, all_faces, active_set, and 200\u00a0µs with "
-            "fcl_obbrss, paper, nlopt_slsqp: 50 times as long.");
-  benchmark.rows.resize(1);
-  EXPECT_EQ(headline(benchmark),
-            "A step takes 0.500\u00a0µs with wide_bvh, all_faces, active_set.");
-  benchmark.rows[0].step.reset();
+  EXPECT_TRUE(headline(benchmark).starts_with("fcl_obbrss")) << "the faster one";
+  EXPECT_CONTAINS(headline(benchmark), ": 20 times as long");
+  for (BenchmarkRow& row : benchmark.rows) row.step.reset();
   EXPECT_EQ(headline(benchmark), "No step was timed.");
-  EXPECT_EQ(account(benchmark), "1 of 1 row was not timed; the table of all rows says why.");
 }
 
-TEST(BenchmarkVerdict, TakesTooFewStepsForNoDuel) {
-  Benchmark benchmark = duel();
-  benchmark.rows.back().queries = 99;  // with the largest sphere on the largest mesh
-  EXPECT_EQ(
-      headline(benchmark),
-      "wide_bvh with active_set answers a step in 1.00\u00a0µs, where fcl_obbrss with nlopt_slsqp "
-      "takes 12.0\u00a0µs: 12 times as long.");
-  for (BenchmarkRow& row : benchmark.rows) {
-    if (row.index == "fcl_obbrss") row.queries = 99;
-  }
-  EXPECT_EQ(headline(benchmark),
-            "A step takes 4.00\u00a0µs with wide_bvh, paper, active_set, and 200\u00a0µs with "
-            "fcl_obbrss, paper, nlopt_slsqp: 50 times as long.");
-  EXPECT_EQ(account(benchmark),
-            "Those are medians of 2,500 and 99 steps on ball with 64,000 triangles, with a motion "
-            "sphere of 5\u00a0mm.");
-}
-
-TEST(BenchmarkVerdict, RanksNothingThatGivesUpOrTakesNoTime) {
-  Benchmark benchmark = duel();
-  benchmark.rows.back().unsolved_share = 0.4;
-  benchmark.rows[4].step->p50 = 0.0;  // ours with the other sphere
-  EXPECT_EQ(
-      headline(benchmark),
-      "wide_bvh with active_set answers a step in 2.00\u00a0µs, where fcl_obbrss with nlopt_slsqp "
-      "takes 100\u00a0µs: 50 times as long.");
-  EXPECT_TRUE(has(account(benchmark),
-                  "1 of 8 rows was not ranked: more than 1 % of the steps are without an answer."));
-  for (BenchmarkRow& row : benchmark.rows) row.unsolved_share = 0.4;
-  EXPECT_EQ(headline(benchmark),
-            "No combination had triangles in reach and answered 99 % of its steps.");
-  EXPECT_EQ(account(benchmark),
-            "8 of 8 rows were not ranked: more than 1 % of the steps are without an answer.");
-}
-
-TEST(BenchmarkVerdict, RanksNothingThatReachesNoTriangle) {
-  Benchmark benchmark = duel();
-  for (BenchmarkRow& row : benchmark.rows) {
+TEST(BenchmarkVerdict, RanksNoRowThatIsShortOrUnsolvedOrReachesNothing) {
+  Benchmark few = duel();
+  few.rows.back().queries = 99;  // with the largest sphere on the largest mesh
+  EXPECT_CONTAINS(headline(few), ": 12 times as long");
+  Benchmark unsolved = duel();
+  unsolved.rows.back().unsolved_share = 0.4;
+  unsolved.rows[4].step->p50 = 0.0;  // ours with the other sphere
+  EXPECT_CONTAINS(headline(unsolved), "2.00\u00a0µs");
+  EXPECT_CONTAINS(account(unsolved), "1 of 8 rows was not ranked");
+  for (BenchmarkRow& row : unsolved.rows) row.unsolved_share = 0.4;
+  EXPECT_CONTAINS(account(unsolved), "8 of 8 rows were not ranked");
+  Benchmark unreached = duel();
+  for (BenchmarkRow& row : unreached.rows) {
     if (row.radius == 5.0) row.reaching_share = 0.4;
   }
-  EXPECT_EQ(
-      headline(benchmark),
-      "wide_bvh with active_set answers a step in 1.00\u00a0µs, where fcl_obbrss with nlopt_slsqp "
-      "takes 12.0\u00a0µs: 12 times as long.");
-  EXPECT_TRUE(
-      has(account(benchmark),
-          "4 of 8 rows were not ranked: for more than half of the motions no triangle is in "
-          "reach."));
+  EXPECT_CONTAINS(headline(unreached), ": 12 times as long");
+  EXPECT_CONTAINS(account(unreached), "4 of 8 rows were not ranked");
 }
 
-TEST(BenchmarkVerdict, SaysWhetherTheMachineWasBusyAndTheRunComplete) {
+TEST(BenchmarkVerdict, SaysIfTheMachineWasBusyOrTheRunIsIncomplete) {
   Benchmark benchmark = duel();
-  benchmark.machine.cores = 2;
-  EXPECT_FALSE(has(account(benchmark), "busy"));
   benchmark.others_cores = 0.02;
-  EXPECT_TRUE(has(account(benchmark), "Other processes kept 0.020 of its 2 cores at work"));
+  EXPECT_LACKS(account(benchmark), "busy");
   benchmark.others_cores = 0.8;
-  EXPECT_TRUE(has(account(benchmark), "The machine was busy: other processes kept 0.80 of its 2"));
   benchmark.planned = 12;
-  EXPECT_TRUE(has(account(benchmark), "Incomplete: it was stopped after 8 of 12 rows."));
+  EXPECT_CONTAINS(account(benchmark), "busy");
+  EXPECT_CONTAINS(account(benchmark), "8 of 12 rows");
 }
 
-TEST(BenchmarkVerdict, CallsPartsWhatTheyCallThemselves) {
-  Benchmark benchmark = duel();
-  benchmark.parts = {{"wide_bvh", "sixteen boxes"}, {"fcl_obbrss", "boxes of FCL"}};
-  EXPECT_TRUE(has(account(benchmark),
-                  "Of the names, wide_bvh stands for \u201csixteen boxes\u201d; fcl_obbrss stands "
-                  "for \u201cboxes of FCL\u201d."));
-}
-
-TEST(BenchmarkVerdict, TellsWhereAllIndicesMadeTheSameSteps) {
+TEST(BenchmarkVerdict, CountsTheGroupsInWhichAllIndicesMadeTheSameSteps) {
   Benchmark benchmark;
-  for (const auto& [rule, radius] : {std::pair("paper", 5.0), std::pair("paper", 1.0)}) {
+  for (const double radius : {5.0, 1.0}) {
     for (const auto& [index, steps] : {std::pair("brute_force", 200), std::pair("pd_tree", 10000),
                                        std::pair("wide_bvh", 10000)}) {
       BenchmarkRow row;
       row.radius = radius;
       row.index = index;
-      row.activation = rule;
+      row.activation = "paper";
       row.queries = static_cast<std::size_t>(steps);
       row.hash = row.queries;
       for (std::size_t n = 1; n <= row.queries; n *= 2) row.first_hashes.push_back(n);
@@ -177,16 +106,13 @@ TEST(BenchmarkVerdict, TellsWhereAllIndicesMadeTheSameSteps) {
   benchmark.rows.push_back(benchmark.rows.back());
   benchmark.rows.back().activation = "certified";
   // Brute force was asked the first 200 motions only: of these 128 have a hash in common.
-  EXPECT_TRUE(
-      has(same_steps(benchmark),
-          "6 in 2 groups, made the same steps in 2 of them, as far as they were asked for the "
-          "same, the first 128 to 10,000 motions. Left out: 1 row without such another."));
+  for (const char* figure : {"2 groups", "in 2 of them", "first 128 to 10,000", "1 row without"}) {
+    EXPECT_CONTAINS(same_steps(benchmark), figure);
+  }
   benchmark.rows[2].hash ^= 1U;
-  EXPECT_TRUE(has(same_steps(benchmark), "in 2 groups, made the same steps in 1 of them"));
-  benchmark.rows[0].first_hashes[7] ^= 1U;
-  EXPECT_TRUE(has(same_steps(benchmark), "in 2 groups, made the same steps in 1 of them"));
+  EXPECT_CONTAINS(same_steps(benchmark), "in 1 of them");
   benchmark.rows[0].verified = false;
-  EXPECT_TRUE(has(same_steps(benchmark), "Left out: 1 row not verified."));
+  EXPECT_CONTAINS(same_steps(benchmark), "1 row not verified");
 }
 
 TEST(BenchmarkJson, HasEveryRowAndEveryVerdict) {
@@ -197,13 +123,9 @@ TEST(BenchmarkJson, HasEveryRowAndEveryVerdict) {
   EXPECT_EQ(json["account"], account(benchmark));
   EXPECT_EQ(json["same_steps"], same_steps(benchmark));
   EXPECT_EQ(json["published"][1]["khz"], 0.18);
-  EXPECT_EQ(json["pairs"][0]["index"], "wide_bvh");
   for (std::size_t i = 0; i < benchmark.rows.size(); ++i) {
-    const BenchmarkRow& row = benchmark.rows[i];
-    EXPECT_EQ(json["rows"][i]["index"], row.index);
-    if (row.step) {
-      EXPECT_EQ(json["rows"][i]["rate_khz"], 1e3 / row.step->p50);
-    }
+    EXPECT_EQ(json["rows"][i]["index"], benchmark.rows[i].index);
+    EXPECT_EQ(json["rows"][i]["rate_khz"], 1e3 / benchmark.rows[i].step->p50);
   }
 }
 

@@ -6,12 +6,14 @@
 
 #include <bit>
 
+#include "by_name.h"
 #include "keepout/activation/registry.h"
 #include "keepout/fixtures/motions.h"
-#include "keepout/fixtures/shapes.h"
 #include "keepout/index/pd_tree.h"
 #include "keepout/index/wide_bvh.h"
 #include "keepout/solvers/active_set.h"
+#include "meshes.h"
+#include "messages.h"
 #include "queries_only.h"
 
 namespace keepout::app {
@@ -98,7 +100,7 @@ class Measure : public testing::TestWithParam<const char*> {
   }
 
   StopSignal stop;
-  std::shared_ptr<const Mesh> mesh = std::make_shared<const Mesh>(make_shape("cortex"));
+  std::shared_ptr<const Mesh> mesh = mesh_of("cortex");
   std::shared_ptr<const SpatialIndex> tree =
       std::make_shared<QueriesOnly>(std::make_shared<PdTree>(mesh));
   MotionConstraintSettings settings{
@@ -141,7 +143,7 @@ TEST_P(Measure, DoesNotTimeAnIndexThatForgetsATriangle) {
                                     std::make_unique<ActiveSet>(), 0.0);
   EXPECT_FALSE(row.verified);
   EXPECT_FALSE(row.step || row.collect);
-  EXPECT_NE(row.remark.find("not timed"), std::string::npos);
+  EXPECT_CONTAINS(row.remark, "not timed");
 }
 
 TEST_P(Measure, DoesNotTimeASolverThatErrsNowAndThen) {
@@ -151,7 +153,7 @@ TEST_P(Measure, DoesNotTimeASolverThatErrsNowAndThen) {
   EXPECT_EQ(row.verified, reference->proves_motions());
   if (row.verified) return;
   EXPECT_FALSE(row.step);
-  EXPECT_NE(row.remark.find("not those of the reference"), std::string::npos) << row.remark;
+  EXPECT_CONTAINS(row.remark, "not those of the reference");
 }
 
 TEST_P(Measure, CountsWhatASolverLeavesUnanswered) {
@@ -231,11 +233,10 @@ TEST_P(Measure, HoldsEveryQueryThatItTimesToTheReference) {
   const BenchmarkRow row = measured(tired, std::make_unique<ActiveSet>(), 0.0);
   EXPECT_FALSE(row.verified);
   EXPECT_FALSE(row.query || row.step);
-  EXPECT_NE(row.remark.find("queries do not find"), std::string::npos) << row.remark;
+  EXPECT_CONTAINS(row.remark, "queries do not find");
 }
 
-INSTANTIATE_TEST_SUITE_P(Rules, Measure, testing::Values("paper", "certified"),
-                         [](const auto& p) { return std::string(p.param); });
+INSTANTIATE_TEST_SUITE_P(Rules, Measure, testing::Values("paper", "certified"), by_name);
 
 }  // namespace
 }  // namespace keepout::app

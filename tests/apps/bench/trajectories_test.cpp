@@ -2,18 +2,17 @@
 // The motions on which bench --speed is measured are what they claim to be.
 #include <gtest/gtest.h>
 
-#include <memory>
 #include <vector>
 
 #include "bench/speed/guarded_mesh.h"
-#include "keepout/error.h"
-#include "keepout/fixtures/shapes.h"
 #include "keepout/index/query.h"
+#include "meshes.h"
+#include "messages.h"
 
 namespace keepout::app {
 namespace {
 
-IndexedMesh star() { return with_index(std::make_shared<const Mesh>(make_star_bumps(2.0))); }
+IndexedMesh star() { return with_index(mesh_of(make_star_bumps(2.0))); }
 
 TEST(Trajectories, APressedToolIsHeldBackInEveryCycle) {
   const IndexedMesh on = star();
@@ -61,13 +60,13 @@ TEST(Disagreement, IsToldOfAnyBitOfAStepAndOfNothingElse) {
   MotionConstraint ours = certified(on, 0.5), plain = certified(queried(on), 0.5);
   EXPECT_EQ(disagreement(ours, plain, motions), "");
   MotionConstraint other = certified(on, 0.5 * (1.0 + 1e-15));
-  EXPECT_NE(disagreement(ours, other, motions).find("not timed: "), std::string::npos);
+  EXPECT_CONTAINS(disagreement(ours, other, motions), "not timed: ");
   EXPECT_EQ(disagreement(ours, other, motions, 1e-9), "");
 }
 
 TEST(Trajectories, SayWhereThereIsNoSuchSpace) {
   // Nowhere within a sphere of radius 50 is as far from it.
-  const IndexedMesh on = with_index(std::make_shared<const Mesh>(make_concave_sphere(10.0)));
+  const IndexedMesh on = with_index(mesh_of(make_concave_sphere(10.0)));
   EXPECT_THROW(free_motions(on, 10, {.nearest = 60.0, .farthest = 70.0}, {}, Random(3)), Error);
 }
 

@@ -2,7 +2,6 @@
 // keepout compare as a user meets it.
 #include <gtest/gtest.h>
 
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -21,10 +20,7 @@ class CompareCommand : public testing::Test {
  protected:
   void SetUp() override { write_binary_stl(folder.file("cube.stl"), make_cube(5.0)); }
 
-  json read(const std::string& name) const {
-    std::ifstream file(folder.file(name));
-    return json::parse(file);
-  }
+  json read(const std::string& name) const { return json::parse(folder.contents(name)); }
 
   CommandFolder folder;
 };
@@ -49,10 +45,9 @@ TEST_F(CompareCommand, HoldsEveryIndexToBruteForceAndSaysWhatItCameTo) {
       << "that is the form that users run";
   EXPECT_EQ(comparison["agree"], true);
   for (const json& paragraph : comparison["verdict"]) {
-    EXPECT_NE(outcome.output.find(paragraph.get<std::string>()), std::string::npos) << paragraph;
+    EXPECT_CONTAINS(outcome.output, paragraph.get<std::string>()) << paragraph;
   }
-  EXPECT_NE(outcome.output.find("indices give brute force's steps, bit for bit"), std::string::npos)
-      << outcome.output;
+  EXPECT_CONTAINS(outcome.output, "indices give brute force's steps, bit for bit");
 }
 
 TEST_F(CompareCommand, WritesWhereItRanAndHowToDoItAgain) {
@@ -75,8 +70,8 @@ TEST_F(CompareCommand, KeepsWhatIsFinishedWhenItIsInterrupted) {
       folder.run("compare cube.stl --poses 6 --problems 200000 --pairs 10 --json c.json",
                  "timeout --foreground --preserve-status --signal=INT 6");
   EXPECT_EQ(outcome.status, 130) << outcome.output;
-  EXPECT_NE(outcome.output.find("Interrupted: "), std::string::npos) << outcome.output;
-  EXPECT_NE(outcome.output.find("So far all parts agree that must."), std::string::npos);
+  EXPECT_CONTAINS(outcome.output, "Interrupted: ");
+  EXPECT_CONTAINS(outcome.output, "So far all parts agree that must.");
   const json comparison = read("c.json")["comparison"];
   EXPECT_EQ(comparison["complete"], false);
   EXPECT_FALSE(comparison["indices"].empty()) << "they were finished";

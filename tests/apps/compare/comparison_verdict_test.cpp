@@ -1,16 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The verdict of a comparison: whether the parts agree, and the figures of those that do not.
 #include <gtest/gtest.h>
 
-#include <string>
-
 #include "compare/comparison.h"
+#include "messages.h"
 
 namespace keepout::app {
 namespace {
-
-bool has(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
 
 Comparison two_indices() {
   Comparison comparison;
@@ -26,32 +22,20 @@ Comparison two_indices() {
   return comparison;
 }
 
-TEST(ComparisonVerdict, SaysThatAllAgreeAndWhatCouldNotBeOtherwise) {
-  const Comparison comparison = two_indices();
-  EXPECT_TRUE(agree(comparison));
-  const std::string text = verdict(comparison).front();
-  EXPECT_TRUE(has(text, "Of 200 queries")) << text;
-  EXPECT_TRUE(has(text, "all 2 indices give brute force's steps, bit for bit")) << text;
-  EXPECT_TRUE(has(text, "By construction the exact kernel decides")) << text;
-  EXPECT_TRUE(has(text, "which is what paper and certified do on wide_bvh")) << text;
-  EXPECT_EQ(verdict(comparison).back(), "All parts agree that must.");
-}
-
 TEST(ComparisonVerdict, NamesWhatIsWrong) {
   Comparison comparison = two_indices();
+  EXPECT_TRUE(agree(comparison));
+  EXPECT_CONTAINS(verdict(comparison).front(), "Of 200 queries");
   comparison.indices[2].missed = 4;
   comparison.indices[2].steps_that_differ = 1;
   EXPECT_FALSE(agree(comparison));
-  const std::string text = index_verdict(comparison.indices);
-  EXPECT_TRUE(has(text, "pd_tree missed 4 triangles; 1 step differs from brute force's")) << text;
-  EXPECT_TRUE(has(verdict(comparison).back(), "please report it"));
-
+  EXPECT_CONTAINS(index_verdict(comparison.indices), "pd_tree missed 4 triangles; 1 step differs");
   comparison = two_indices();
   comparison.solvers.push_back({.solver = "active_set", .activation = "paper", .wrong = 1});
   EXPECT_FALSE(agree(comparison));
 }
 
-TEST(ComparisonVerdict, SaysWhyASolverGotFewerProblems) {
+TEST(ComparisonVerdict, CountsTheProblemsOfASlowSolver) {
   const auto row = [](const char* solver, const char* rule, std::size_t problems, double us) {
     return SolverAgreement{.solver = solver,
                            .activation = rule,
@@ -63,14 +47,8 @@ TEST(ComparisonVerdict, SaysWhyASolverGotFewerProblems) {
   const std::string text = solver_verdict(
       {row("active_set", "paper", 1000, 0.5), row("nlopt_cobyla", "paper", 100, 50.0),
        row("active_set", "certified", 1000, 0.1), row("nlopt_cobyla", "certified", 100, 40.0)});
-  EXPECT_TRUE(
-      has(text,
-          "nlopt_cobyla got 100 of 1,000 under each rule, evenly spread, as it takes 100 to "
-          "400 times as long as active_set."))
-      << text;
-  EXPECT_FALSE(has(text, "Each solver got the same")) << "it did not: " << text;
-  EXPECT_TRUE(has(solver_verdict({row("active_set", "paper", 1000, 0.5)}),
-                  "Each solver got the same recorded problems"));
+  EXPECT_CONTAINS(text, "nlopt_cobyla got 100 of 1,000");
+  EXPECT_CONTAINS(text, "100 to 400 times as long");
 }
 
 TEST(ComparisonVerdict, CountsPairsThatTouchApartFromThoseThatDoNot) {
@@ -82,32 +60,21 @@ TEST(ComparisonVerdict, CountsPairsThatTouchApartFromThoseThatDoNot) {
                                 .pairs = 2000,
                                 .contradicted = contradicted};
   };
-  const std::vector<NarrowPhaseAgreement> both = {row("fcl_gjk", "apart", 20),
-                                                  row("fcl_gjk", "touching", 1005),
-                                                  row("fcl_gjk", "overlapping", 8)};
-  EXPECT_TRUE(has(narrow_phase_verdict(both),
-                  "fcl_gjk took apart for overlapping, or the reverse, 28 times, and 1,005 times "
-                  "more where the two touch to within 1e-6 mm, and all gave an answer."))
-      << narrow_phase_verdict(both);
-  std::vector<NarrowPhaseAgreement> others = both;
-  others.push_back(row("libccd_gjk", "touching", 3));
-  EXPECT_TRUE(has(narrow_phase_verdict(others),
-                  "28 times, and fcl_gjk and libccd_gjk 1,008 times more where the two touch"))
-      << narrow_phase_verdict(others);
-  EXPECT_TRUE(has(narrow_phase_verdict({row("fcl_gjk", "apart", 0), row("fcl_gjk", "touching", 2)}),
-                  "none called apart what overlaps, or the reverse; fcl_gjk did so twice where the "
-                  "two touch to within 1e-6 mm, and all gave an answer."));
-  EXPECT_FALSE(has(narrow_phase_verdict({row("exact", "touching", 0)}), "touch to within"));
+  const std::string text =
+      narrow_phase_verdict({row("fcl_gjk", "apart", 20), row("fcl_gjk", "touching", 1005),
+                            row("fcl_gjk", "overlapping", 8), row("libccd_gjk", "touching", 3)});
+  EXPECT_CONTAINS(text, "28 times, and fcl_gjk and libccd_gjk 1,008 times more");
+  EXPECT_LACKS(narrow_phase_verdict({row("exact", "touching", 0)}), "touch to within");
 }
 
 TEST(ComparisonVerdict, OfAnInterruptedComparisonClaimsNoMoreThanWasFinished) {
   Comparison comparison = two_indices();
   comparison.complete = false;
   const std::vector<std::string> text = verdict(comparison);
-  EXPECT_TRUE(has(text[text.size() - 2], "Interrupted: 4 rows were finished"));
-  EXPECT_EQ(text.back(), "So far all parts agree that must.");
+  EXPECT_CONTAINS(text[text.size() - 2], "4 rows were finished");
+  EXPECT_TRUE(text.back().starts_with("So far"));
   comparison.indices.clear();
-  EXPECT_TRUE(has(verdict(comparison).back(), "0 rows were finished")) << "nothing agreed";
+  EXPECT_CONTAINS(verdict(comparison).back(), "0 rows were finished") << "nothing agreed";
 }
 
 }  // namespace

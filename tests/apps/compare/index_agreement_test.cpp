@@ -6,6 +6,7 @@
 #include "compare/agreement.h"
 #include "compare/compare.h"
 #include "keepout/fixtures/shapes.h"
+#include "meshes.h"
 #include "shared/stop_signal.h"
 
 namespace keepout::app {
@@ -13,7 +14,7 @@ namespace {
 
 IndexComparison on_a_cube() {
   return {.mesh_name = "cube",
-          .mesh = std::make_shared<const Mesh>(make_cube(5.0)),
+          .mesh = mesh_of(make_cube(5.0)),
           .indices = {"wide_bvh", "pd_tree"},
           .activations = {"all_faces", "paper", "certified"},
           .poses = 30};

@@ -1,20 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
-#include <memory>
 #include <numeric>
 
 #include "compare/agreement.h"
 #include "keepout/error.h"
-#include "keepout/fixtures/shapes.h"
 #include "keepout/solvers/active_set.h"
 #include "keepout/solvers/registry.h"
+#include "meshes.h"
 
 namespace keepout::app {
 namespace {
 
 std::shared_ptr<const Mesh> cortex() {
-  static const auto mesh = std::make_shared<const Mesh>(make_shape("cortex"));
+  static const auto mesh = mesh_of("cortex");
   return mesh;
 }
 

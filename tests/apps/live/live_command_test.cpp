@@ -3,20 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
-#include <array>
 #include <chrono>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <memory>
 #include <nlohmann/json.hpp>
-#include <string>
 #include <thread>
-#include <vector>
 
 #include "apps/command_process.h"
 #include "apps/page/unpacked_page.h"
-#include "keepout/fixtures/shapes.h"
 #include "keepout/geometry/pose.h"
 #include "keepout/index/index_cache.h"
 #include "keepout/mesh/binary_stl.h"
@@ -24,6 +16,7 @@
 #include "keepout/oracle/instrument_oracle.h"
 #include "keepout/version.h"
 #include "live/browser.h"
+#include "meshes.h"
 
 namespace keepout::app {
 namespace {
@@ -46,13 +39,9 @@ class Live : public testing::Test {
     return folder_.run("live " + arguments,
                        "env -u DISPLAY -u WAYLAND_DISPLAY KEEPOUT_WEB=web " + environment);
   }
-  std::string contents(const std::string& name) const {
-    std::ifstream stream(folder_.file(name), std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-  }
   /// What stands in the element with this id, up to the first that a browser takes for its end.
   std::string element(const std::string& id, const std::string& page = "keepout-live.html") const {
-    const std::string text = contents(page);
+    const std::string text = folder_.contents(page);
     const std::string start = "id=\"" + id + "\">";
     const std::size_t at = text.find(start);
     if (at == std::string::npos) return {};
@@ -64,7 +53,7 @@ class Live : public testing::Test {
                       const std::string& environment = {}) const {
     const Outcome outcome = run(arguments, environment);
     EXPECT_EQ(outcome.status, status) << arguments << '\n' << outcome.output;
-    EXPECT_NE(outcome.output.find(told), std::string::npos) << arguments << '\n' << outcome.output;
+    EXPECT_CONTAINS(outcome.output, told) << arguments;
     EXPECT_FALSE(fs::exists(folder_.file("keepout-live.html"))) << arguments;
   }
 
@@ -102,7 +91,7 @@ TEST_F(Live, ThePageHasTheSettingsAndEveryBitOfTheMeshes) {
                                 mesh))
         << facts;
   }
-  const std::string page = contents("keepout-live.html");
+  const std::string page = folder_.contents("keepout-live.html");
   EXPECT_TRUE(page.starts_with("<p>before</p>\n<script")) << page.substr(0, 100);
   EXPECT_TRUE(page.ends_with("</script>\n<p>after</p>\n"));
 }
@@ -120,12 +109,12 @@ TEST_F(Live, BeginsWithTheCertifiedRule) {
 TEST_F(Live, AnInstrumentBeginsWithAllBodiesClearAndItsPortBesideTheMesh) {
   const Outcome outcome = run("cortex --robot psm --margin 0.5");
   ASSERT_EQ(outcome.status, 0) << outcome.output;
-  EXPECT_NE(outcome.output.find("Drag the jaw"), std::string::npos) << outcome.output;
+  EXPECT_CONTAINS(outcome.output, "Drag the jaw");
   const Json told = settings();
   EXPECT_EQ(told.at("robot"), "psm");
   EXPECT_EQ(told.at("margin"), 0.5);
   const Json& facts = told.at("meshes").at(0);
-  const auto mesh = std::make_shared<const Mesh>(make_shape("cortex"));
+  const auto mesh = mesh_of("cortex");
   EXPECT_EQ(facts.at("digest"), index_cache_file(*mesh, {}).stem().string());
   const auto numbers = facts.at("start").at("base").get<std::array<double, 12>>();
   Pose base{Vec3(numbers.data()), Mat3(Eigen::Map<const Mat3>(numbers.data() + 3).transpose())};
@@ -163,7 +152,7 @@ TEST_F(Live, WarningsOfAMeshAreInThePageToo) {
   const Json warnings = settings().at("meshes").at(0).at("warnings");
   ASSERT_FALSE(warnings.empty());
   for (const Json& warning : warnings) {
-    EXPECT_NE(outcome.output.find(warning.get<std::string>()), std::string::npos) << outcome.output;
+    EXPECT_CONTAINS(outcome.output, warning.get<std::string>());
   }
 }
 
@@ -181,7 +170,7 @@ TEST_F(Live, NoNameOfAFileEndsAScriptOrIsLost) {
     ASSERT_EQ(run(quoted).status, 0) << path;
     EXPECT_EQ(settings().at("meshes").at(0).at("name"), "script><b>.stl");
     EXPECT_EQ(settings().at("meshes").at(0).at("command_name"), quoted);
-    EXPECT_EQ(element("settings").find('<'), std::string::npos);
+    EXPECT_LACKS(element("settings"), '<');
   }
 }
 
@@ -196,10 +185,8 @@ TEST_F(Live, SaysWhereThePageIsAndWhatToDoInIt) {
   ASSERT_EQ(outcome.status, 0) << outcome.output;
   EXPECT_TRUE(outcome.output.starts_with("my page.html, 0.0 MB; open it in a browser:\n"))
       << outcome.output;
-  EXPECT_NE(outcome.output.find("\n  " + file_url(folder_.file("my page.html")) + '\n'),
-            std::string::npos)
-      << outcome.output;
-  EXPECT_NE(outcome.output.find("Drag the red ball"), std::string::npos) << outcome.output;
+  EXPECT_CONTAINS(outcome.output, "\n  " + file_url(folder_.file("my page.html")) + '\n');
+  EXPECT_CONTAINS(outcome.output, "Drag the red ball");
 }
 
 TEST_F(Live, WhatIsWrongIsToldAndNoPageIsWritten) {
@@ -217,9 +204,9 @@ TEST_F(Live, WhatIsWrongIsToldAndNoPageIsWritten) {
 TEST_F(Live, NeitherAMeshNorThePagesOwnPartsAreOverwritten) {
   write_binary_stl(folder_.file("mesh.stl"), make_shape("cube"));
   for (const std::string name : {"mesh.stl", "web/live.html"}) {
-    const std::string before = contents(name);
+    const std::string before = folder_.contents(name);
     expect_refused("cube ./mesh.stl --out " + name, "would overwrite it");
-    EXPECT_EQ(contents(name), before) << name;
+    EXPECT_EQ(folder_.contents(name), before) << name;
   }
 }
 
@@ -243,18 +230,17 @@ TEST_F(Live, TheDesktopIsAskedToOpenThePageWhereThereIsOne) {
   EXPECT_EQ(run("cube", "PATH=\"$PWD/bin:$PATH\" ").status, 0);
   const Outcome outcome = run("cube --out 'that one.html'", desktop);
   EXPECT_EQ(outcome.status, 0);
-  EXPECT_NE(outcome.output.find("is being opened in a browser"), std::string::npos)
-      << outcome.output;
+  EXPECT_CONTAINS(outcome.output, "is being opened in a browser");
   for (int i = 0; i < 1000 && !fs::exists(folder_.file("asked")); ++i) {
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
-  EXPECT_EQ(contents("asked"), file_url(folder_.file("that one.html")) + '\n');
+  EXPECT_EQ(folder_.contents("asked"), file_url(folder_.file("that one.html")) + '\n');
 }
 
 TEST_F(Live, WithoutAnOpenerThePageIsToBeOpenedByHand) {
   const Outcome outcome = run("cube", "DISPLAY=:7 PATH=/nowhere ");
   EXPECT_EQ(outcome.status, 0) << outcome.output;
-  EXPECT_NE(outcome.output.find("; open it in a browser:"), std::string::npos) << outcome.output;
+  EXPECT_CONTAINS(outcome.output, "; open it in a browser:");
 }
 
 TEST(FileUrl, IsAnAddressWhateverThePath) {

@@ -6,12 +6,9 @@
 
 #include <limits>
 #include <random>
-#include <string>
-#include <vector>
 
 #include "apps/page/unpacked_page.h"
 #include "keepout/fixtures/real_mesh.h"
-#include "keepout/fixtures/shapes.h"
 #include "keepout/mesh/load_mesh.h"
 #include "page/gzip.h"
 #include "shapes_to_try.h"

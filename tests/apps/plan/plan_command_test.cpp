@@ -2,9 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <string>
 
 #include "apps/command_process.h"
 #include "keepout/fixtures/shapes.h"
@@ -30,15 +28,14 @@ TEST_F(PlanCommandTest, EveryPathOfKeepoutIsValidByTheOracle) {
   const ProcessOutcome outcome =
       folder_.run(quick + "--problems 2 --json runs.json --csv runs.csv --out page.html");
   EXPECT_EQ(outcome.status, 0) << outcome.output;
-  EXPECT_NE(outcome.output.find("certified"), std::string::npos) << outcome.output;
+  EXPECT_CONTAINS(outcome.output, "certified");
   const Json record = Json::parse(std::ifstream(folder_.file("runs.json")));
   const Json& runs = record.at("runs");
   ASSERT_EQ(runs.size(), 8u);  // 2 problems, 4 checkers
   EXPECT_EQ(record.at("summaries").size(), 4u);
   EXPECT_EQ(record.at("settings").at("problems of each mesh"), "2");
   EXPECT_EQ(record.at("meshes").at(0).at("name"), "cortex.stl");
-  EXPECT_NE(record.at("headline").get<std::string>().find("and 0 of 4 under keepout's"),
-            std::string::npos)
+  EXPECT_CONTAINS(record.at("headline").get<std::string>(), "and 0 of 4 under keepout's")
       << record.at("headline");
   for (const Json& run : runs) {
     EXPECT_EQ(run["solved"] && !run["valid"], run.contains("too_near") && !run["too_near"].empty());
@@ -48,8 +45,7 @@ TEST_F(PlanCommandTest, EveryPathOfKeepoutIsValidByTheOracle) {
     EXPECT_EQ(run["path"].front(), run["start"]);
     EXPECT_EQ(run["path"].back(), run["goal"]);
   }
-  std::ifstream csv(folder_.file("runs.csv"));
-  EXPECT_EQ(std::count(std::istreambuf_iterator<char>(csv), {}, '\n'), 9);
+  EXPECT_EQ(std::ranges::count(folder_.contents("runs.csv"), '\n'), 9);
   EXPECT_GT(std::filesystem::file_size(folder_.file("page.html")), 1000u);
 }
 
@@ -82,7 +78,7 @@ TEST_F(PlanCommandTest, NoPathOfAWholeInstrumentUnderCertifiedCheckingComesTooCl
       "plan gear --robot psm --problems 1 --seeds 2 --seconds 20 --resolution 0.02,0.01 "
       "--json runs.json --csv runs.csv --out page.html");
   EXPECT_EQ(outcome.status, 0) << outcome.output;
-  EXPECT_NE(outcome.output.find("and 0 of 2 under keepout's"), std::string::npos) << outcome.output;
+  EXPECT_CONTAINS(outcome.output, "and 0 of 2 under keepout's");
   const Json record = Json::parse(std::ifstream(folder_.file("runs.json")));
   EXPECT_EQ(record.at("keepout_record"), "plan_robot");
   EXPECT_EQ(record.at("robot"), "psm");
@@ -105,28 +101,22 @@ TEST_F(PlanCommandTest, NoPathOfAWholeInstrumentUnderCertifiedCheckingComesTooCl
     EXPECT_LE(run.at("too_close"), run.at("unproven"));
   }
   EXPECT_NE(runs[4].at("path"), runs[5].at("path")) << "another seed, another path";
-  std::ifstream csv(folder_.file("runs.csv"));
-  EXPECT_EQ(std::count(std::istreambuf_iterator<char>(csv), {}, '\n'), 7);
+  EXPECT_EQ(std::ranges::count(folder_.contents("runs.csv"), '\n'), 7);
   EXPECT_GT(std::filesystem::file_size(folder_.file("page.html")), 1000u);
 }
 
 TEST_F(PlanCommandTest, SaysWhatIsWrong) {
-  const auto fails = [&](const std::string& arguments, const std::string& words) {
-    const ProcessOutcome outcome = folder_.run("plan " + arguments);
-    EXPECT_NE(outcome.status, 0) << arguments;
-    EXPECT_NE(outcome.output.find(words), std::string::npos) << outcome.output;
-  };
-  fails("cortex.stl --planner XYZ", "RRTConnect");
-  fails("cortex.stl --resolution nan", "share of the extent");
-  fails("cortex.stl --seconds 0", "seconds above 0");
-  fails("cortex.stl --tool-radius 80", "problems were found");
-  fails("cortex.stl --json cortex.stl", "same file");
-  fails("--inside", "MESH");
-  fails("none.stl", "none.stl");
-  fails("cube --robot pms", "psm");
-  fails("cube --robot psm --tool-radius 1", "--tool-radius");
-  fails("cube --robot psm --inside", "--inside");
-  fails("cube --seeds 3", "--robot");
+  folder_.expect_refused("plan cortex.stl --planner XYZ", "RRTConnect");
+  folder_.expect_refused("plan cortex.stl --resolution nan", "share of the extent");
+  folder_.expect_refused("plan cortex.stl --seconds 0", "seconds above 0");
+  folder_.expect_refused("plan cortex.stl --tool-radius 80", "problems were found");
+  folder_.expect_refused("plan cortex.stl --json cortex.stl", "same file");
+  folder_.expect_refused("plan --inside", "MESH");
+  folder_.expect_refused("plan none.stl", "none.stl");
+  folder_.expect_refused("plan cube --robot pms", "psm");
+  folder_.expect_refused("plan cube --robot psm --tool-radius 1", "--tool-radius");
+  folder_.expect_refused("plan cube --robot psm --inside", "--inside");
+  folder_.expect_refused("plan cube --seeds 3", "--robot");
 }
 
 #else
@@ -134,7 +124,7 @@ TEST_F(PlanCommandTest, SaysWhatIsWrong) {
 TEST_F(PlanCommandTest, WithoutOmplItSaysWhatToInstall) {
   const ProcessOutcome outcome = folder_.run("plan cortex.stl");
   EXPECT_EQ(outcome.status, 1);
-  EXPECT_NE(outcome.output.find("libompl-dev"), std::string::npos) << outcome.output;
+  EXPECT_CONTAINS(outcome.output, "libompl-dev");
 }
 
 #endif

@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
 #include "apps/page/unpacked_page.h"
 #include "keepout/fixtures/shapes.h"
 

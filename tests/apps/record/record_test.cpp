@@ -5,8 +5,8 @@
 
 #include <limits>
 #include <sstream>
-#include <string>
 
+#include "messages.h"
 #include "record/flat_rows.h"
 #include "record/plain_page.h"
 
@@ -34,8 +34,8 @@ TEST(Record, IsReadBackAsItWasWritten) {
   EXPECT_EQ(Json::parse(text.str()), record);
   EXPECT_EQ(fault_of(record), "");
   // A line for each row, so that two records can be compared with diff.
-  EXPECT_NE(text.str().find("\n{\"mesh\":\"b\""), std::string::npos) << text.str();
-  EXPECT_NE(text.str().find("\n\"series\": [1.0,2.0,3.0]"), std::string::npos) << text.str();
+  EXPECT_CONTAINS(text.str(), "\n{\"mesh\":\"b\"");
+  EXPECT_CONTAINS(text.str(), "\n\"series\": [1.0,2.0,3.0]");
 }
 
 TEST(Record, BytesThatAreNoTextAndNumbersThatAreNoneLeaveItWhole) {
@@ -58,7 +58,7 @@ TEST(Record, WhatLacksAPartOfTheHeadIsNone) {
   }
   Json later = some_record();
   later["format"] = 99;
-  EXPECT_NE(fault_of(later).find("format 99"), std::string::npos);
+  EXPECT_CONTAINS(fault_of(later), "format 99");
   Json other = some_record();
   other["keepout_record"] = "lunch";
   EXPECT_NE(fault_of(other), "");
@@ -80,11 +80,11 @@ TEST(PlainPage, ShowsWordsAndRowsAsText) {
         "<th>mesh</th><th>triangles</th><th>remark</th><th>us_p50</th>",
         "<td>&lt;lost&gt; &quot;them&quot;</td><td>51,978</td><td>-</td><td>1.25</td>",
         "<td>b</td><td>-</td><td>slow</td><td>-</td>"}) {
-    EXPECT_NE(page.find(words), std::string::npos) << words << " in " << page;
+    EXPECT_CONTAINS(page, words) << words;
   }
-  EXPECT_EQ(page.find("<lost>"), std::string::npos);
+  EXPECT_LACKS(page, "<lost>");
   for (const char* reference : {"http", "src=", "<script", "<link"}) {
-    EXPECT_EQ(page.find(reference), std::string::npos) << reference;
+    EXPECT_LACKS(page, reference) << reference;
   }
 }
 
@@ -114,11 +114,11 @@ TEST(PlainPage, ShowsExperimentsInTablesAndInPicturesThatDoNothing) {
         "src=\"data:image/svg+xml;base64,PHN2Zz48c2NyaXB0Pmhhcm0oKTwvc2"
         "NyaXB0Pjwvc3ZnPg==\">",
         "</b> Each point.</figcaption>"}) {
-    EXPECT_NE(page.find(words), std::string::npos) << words << " in " << page;
+    EXPECT_CONTAINS(page, words) << words;
   }
-  EXPECT_EQ(page.find("<script"), std::string::npos);
+  EXPECT_LACKS(page, "<script");
   EXPECT_EQ(page.find("<h2>"), page.find("<h2>Beside the paper"));
-  EXPECT_EQ(page.find("<h2>experiments"), std::string::npos);
+  EXPECT_LACKS(page, "<h2>experiments");
 }
 
 TEST(FlatRows, AsCsvKeepEveryDigitAndQuoteWhatMustBe) {

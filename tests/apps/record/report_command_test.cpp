@@ -3,11 +3,7 @@
 // front end is played by two files.
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
-#include <string>
 
 #include "apps/command_process.h"
 #include "apps/page/unpacked_page.h"
@@ -35,13 +31,9 @@ class Report : public testing::Test {
   Outcome run(const std::string& arguments, const std::string& environment = "KEEPOUT_WEB=web ") {
     return folder_.run(arguments, "env " + environment);
   }
-  std::string contents(const std::string& name) const {
-    std::ifstream file(folder_.file(name), std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-  }
   /// The record in a page.
   Json record_in(const std::string& page) const {
-    const std::string text = contents(page);
+    const std::string text = folder_.contents(page);
     const std::string opening = "<script type=\"application/octet-stream\" id=\"record\">";
     const std::size_t begin = text.find(opening) + opening.size();
     const std::string base64 = text.substr(begin, text.find("</script>", begin) - begin);
@@ -52,7 +44,7 @@ class Report : public testing::Test {
                       const std::string& environment = "KEEPOUT_WEB=web ") {
     const Outcome outcome = run(arguments, environment);
     EXPECT_EQ(outcome.status, 1) << outcome.output;
-    EXPECT_NE(outcome.output.find(told), std::string::npos) << outcome.output;
+    EXPECT_CONTAINS(outcome.output, told);
   }
 
   test::CommandFolder folder_;
@@ -64,17 +56,17 @@ constexpr const char* without = "KEEPOUT_WEB=nowhere ";
 
 TEST_F(Report, OfACommandIsThatOfTheRecordItKept) {
   ASSERT_EQ(run(std::string(simulate) + "--json r.json").status, 0);
-  const Json record = Json::parse(contents("r.json"));
+  const Json record = Json::parse(folder_.contents("r.json"));
   EXPECT_EQ(record_in("r.html"), record);
-  const std::string page = contents("r.html");
+  const std::string page = folder_.contents("r.html");
   EXPECT_TRUE(page.starts_with("<p>report_with_anatomy</p>\n")) << page.substr(0, 60);
   EXPECT_TRUE(page.ends_with("<p>after</p>\n"));
   EXPECT_FALSE(std::filesystem::exists(folder_.file("r.html.json")));
 
   const Outcome outcome = run("report r.json --out again.html");
   ASSERT_EQ(outcome.status, 0) << outcome.output;
-  EXPECT_NE(outcome.output.find(record["headline"].get<std::string>()), std::string::npos);
-  EXPECT_EQ(contents("again.html"), page);
+  EXPECT_CONTAINS(outcome.output, record["headline"].get<std::string>());
+  EXPECT_EQ(folder_.contents("again.html"), page);
 }
 
 TEST_F(Report, WithoutItsFrontEndIsPlainAndMadeWholeLater) {
@@ -82,13 +74,13 @@ TEST_F(Report, WithoutItsFrontEndIsPlainAndMadeWholeLater) {
   ASSERT_EQ(outcome.status, 0) << outcome.output;
   for (const char* told : {"plain page", "there is no nowhere/report_with_anatomy.html",
                            "'report r.html.json' makes the whole page"}) {
-    EXPECT_NE(outcome.output.find(told), std::string::npos) << outcome.output;
+    EXPECT_CONTAINS(outcome.output, told);
   }
-  EXPECT_NE(contents("r.html").find("<td>certified</td>"), std::string::npos);
+  EXPECT_CONTAINS(folder_.contents("r.html"), "<td>certified</td>");
   expect_refused("report r.html.json", "front end is missing", without);
-  EXPECT_NE(contents("r.html").find("<td>certified</td>"), std::string::npos) << "nothing is lost";
+  EXPECT_CONTAINS(folder_.contents("r.html"), "<td>certified</td>") << "nothing is lost";
   ASSERT_EQ(run("report r.html.json").status, 0);
-  EXPECT_EQ(record_in("r.html"), Json::parse(contents("r.html.json")));
+  EXPECT_EQ(record_in("r.html"), Json::parse(folder_.contents("r.html.json")));
 }
 
 TEST_F(Report, WhereHalfOfItsFrontEndIsMissingNothingIsLost) {
@@ -98,10 +90,9 @@ TEST_F(Report, WhereHalfOfItsFrontEndIsMissingNothingIsLost) {
     for (const char* kept : {"", "--json r.html.json "}) {
       const Outcome outcome = run(std::string(simulate) + kept);
       EXPECT_EQ(outcome.status, 0) << outcome.output;
-      EXPECT_NE(outcome.output.find("'report r.html.json' makes"), std::string::npos)
-          << outcome.output;
-      EXPECT_NE(contents("r.html").find("<td>certified</td>"), std::string::npos);
-      EXPECT_FALSE(contents("r.html.json").empty());
+      EXPECT_CONTAINS(outcome.output, "'report r.html.json' makes");
+      EXPECT_CONTAINS(folder_.contents("r.html"), "<td>certified</td>");
+      EXPECT_FALSE(folder_.contents("r.html.json").empty());
       std::filesystem::remove(folder_.file("r.html.json"));
     }
   }
@@ -131,11 +122,11 @@ TEST_F(Report, OfExperimentsIsPlainAsLongAsItsFrontEndIsMissing) {
   folder_.write("e.json", head.dump());
   const Outcome plain = run("report e.json", without);
   EXPECT_EQ(plain.status, 0) << plain.output;
-  EXPECT_NE(plain.output.find("a plain page"), std::string::npos) << plain.output;
-  EXPECT_NE(contents("e.html").find("<h1>so</h1>"), std::string::npos);
+  EXPECT_CONTAINS(plain.output, "a plain page");
+  EXPECT_CONTAINS(folder_.contents("e.html"), "<h1>so</h1>");
   ASSERT_EQ(run("report e.json").status, 0);
   EXPECT_EQ(record_in("e.html"), head);
-  EXPECT_TRUE(contents("e.html").starts_with("<p>report</p>"));
+  EXPECT_TRUE(folder_.contents("e.html").starts_with("<p>report</p>"));
 }
 
 TEST_F(Report, EveryCommandWritesOne) {
@@ -145,16 +136,16 @@ TEST_F(Report, EveryCommandWritesOne) {
         "--seconds 0.1"}) {
     const Outcome outcome = run(command + " --json c.json --out c.html");
     ASSERT_EQ(outcome.status, 0) << outcome.output;
-    const Json record = Json::parse(contents("c.json"));
+    const Json record = Json::parse(folder_.contents("c.json"));
     EXPECT_EQ(record_in("c.html"), record) << command;
-    EXPECT_TRUE(contents("c.html").starts_with("<p>report</p>"));
+    EXPECT_TRUE(folder_.contents("c.html").starts_with("<p>report</p>"));
     EXPECT_EQ(record["command"], "keepout " + command + " --json c.json --out c.html");
     // In lines of the terminal or as it is: the same words.
     std::string printed = outcome.output, headline = record["headline"];
     for (std::string* text : {&printed, &headline}) {
       std::erase_if(*text, [](char c) { return c == ' ' || c == '\n'; });
     }
-    EXPECT_NE(printed.find(headline), std::string::npos) << headline << "\n" << outcome.output;
+    EXPECT_CONTAINS(printed, headline) << headline << outcome.output;
   }
 }
 

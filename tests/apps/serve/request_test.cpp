@@ -6,10 +6,10 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <string>
 #include <utility>
 #include <vector>
 
+#include "messages.h"
 #include "serve/answer.h"
 
 namespace keepout::app {
@@ -145,7 +145,7 @@ TEST_F(RequestLine, AMessageNamesWhatIsWrong) {
   for (const auto& [line, message] : table) {
     const std::string told = outcome(line);
     EXPECT_TRUE(told.starts_with("1 not_a_request: ")) << line << '\n' << told;
-    EXPECT_NE(told.find(message), std::string::npos) << line << '\n' << told;
+    EXPECT_CONTAINS(told, message) << line;
   }
 }
 
@@ -177,7 +177,7 @@ TEST_F(RequestLine, WhatIsNotJsonIsTold) {
                            "{\"do\":\"a\tb\"}",
                            "\xff\xfe{\"do\":\"ping\"}"}) {
     const std::string told = outcome(line);
-    EXPECT_NE(told.find("not_json: the line is not JSON: "), std::string::npos) << line << told;
+    EXPECT_CONTAINS(told, "not_json: the line is not JSON: ") << line;
     for (const char c : told) EXPECT_TRUE(c >= ' ' && c <= '~') << line;
   }
   for (const std::string_view nul :

@@ -3,23 +3,15 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <poll.h>
-#include <signal.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
-#include <unistd.h>
 
 #include <chrono>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <optional>
 #include <sstream>
-#include <string>
-#include <string_view>
 #include <thread>
 #include <utility>
-#include <vector>
 
 #include "apps/command_process.h"
 #include "keepout/fixtures/poses.h"
@@ -158,10 +150,7 @@ class ServeCommand : public testing::Test {
     return WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status);
   }
 
-  std::string log() const {
-    std::ifstream file(folder_.file("log"));
-    return {std::istreambuf_iterator<char>(file), {}};
-  }
+  std::string log() const { return folder_.contents("log"); }
 
   /// [KiB]
   long resident() const {
@@ -185,21 +174,20 @@ TEST_F(ServeCommand, APipeIsServedUntilItEnds) {
   EXPECT_EQ(talk.ask(R"({"id":2,"do":"step","tip":[0,0,60],"desired":[0,0,-0.5]})"),
             R"({"id":2,"ok":true,"status":"free","motion":[0,0,-0.5],"triangles":0,"planes":0,)"
             R"("distance":10})");
-  EXPECT_NE(talk.ask("nonsense").find("not_json"), std::string::npos);
+  EXPECT_CONTAINS(talk.ask("nonsense"), "not_json");
   EXPECT_TRUE(talk.send("\r\n\n  \n" + std::string(ping) + "\r\n" + std::string(ping)));
   EXPECT_EQ(talk.line(), pong);
   talk.close_out();
   EXPECT_EQ(talk.line(), pong);  // the last line, which has no end
   EXPECT_EQ(talk.line(), "");
   EXPECT_EQ(end(), 0);
-  EXPECT_NE(log().find("keepout: serving cube.stl (12 triangles) on stdin and stdout"),
-            std::string::npos);
+  EXPECT_CONTAINS(log(), "keepout: serving cube.stl (12 triangles) on stdin and stdout");
 }
 
 TEST_F(ServeCommand, ALineTooLongIsSkippedToItsEnd) {
   Talk talk = start({"--max-line", "256"});
   ASSERT_TRUE(talk.send(std::string(1'000'000, '[') + "\n" + std::string(ping) + "\n"));
-  EXPECT_NE(talk.line().find("line_too_long"), std::string::npos);
+  EXPECT_CONTAINS(talk.line(), "line_too_long");
   EXPECT_EQ(talk.line(), pong);
 }
 
@@ -257,7 +245,7 @@ TEST_F(ServeCommand, ClientsComeAndGoAsTheyLike) {
     Talk third = connect();
     for (Talk* talk : {&first, &second, &third}) EXPECT_EQ(talk->ask(ping), pong);
     Talk fourth = connect();
-    EXPECT_NE(fourth.line().find("too_many_clients"), std::string::npos);
+    EXPECT_CONTAINS(fourth.line(), "too_many_clients");
     EXPECT_EQ(fourth.line(), "");
     EXPECT_TRUE(second.send("{\"id\":5"));  // and leaves
   }
@@ -285,7 +273,7 @@ TEST_F(ServeCommand, ASocketThatIsLeftBehindIsReplacedAndALiveOneIsNot) {
   EXPECT_EQ(connect().ask(ping), pong);
   const auto second = folder_.run("serve cube.stl --socket s < /dev/null");
   EXPECT_EQ(second.status, 1);
-  EXPECT_NE(second.output.find("another server answers there"), std::string::npos);
+  EXPECT_CONTAINS(second.output, "another server answers there");
   EXPECT_EQ(connect().ask(ping), pong);
   EXPECT_EQ(end(SIGKILL), 1000 + SIGKILL);
   EXPECT_TRUE(std::filesystem::exists(folder_.file("s")));
@@ -309,17 +297,16 @@ TEST_F(ServeCommand, WhereNoSocketCanBeItSaysSo) {
   for (const auto& [path, message] : table) {
     const auto outcome = folder_.run("serve cube.stl --socket " + path);
     EXPECT_EQ(outcome.status, 1) << path;
-    EXPECT_NE(outcome.output.find(message), std::string::npos) << outcome.output;
+    EXPECT_CONTAINS(outcome.output, message);
   }
   EXPECT_TRUE(std::filesystem::exists(folder_.file("file")));
 }
 
 TEST_F(ServeCommand, WithoutStdinOrStdoutItSaysSo) {
-  EXPECT_NE(folder_.run("serve cube.stl <&-").output.find("stdin or stdout is closed"),
-            std::string::npos);
+  EXPECT_CONTAINS(folder_.run("serve cube.stl <&-").output, "stdin or stdout is closed");
   const auto folder = folder_.run("serve cube.stl < .");
   EXPECT_EQ(folder.status, 1);
-  EXPECT_NE(folder.output.find("stdin: Is a directory"), std::string::npos) << folder.output;
+  EXPECT_CONTAINS(folder.output, "stdin: Is a directory");
   folder_.write("in", std::string(ping) + "\n");
   const auto file = folder_.run("serve cube.stl < in");
   EXPECT_EQ(file.status, 0);
@@ -427,7 +414,7 @@ TEST_F(ServeCommand, TheClientInShellIsAnswered) {
   const std::string text =
       printed("'" KEEPOUT_EXAMPLES "/serve_client.sh' '" KEEPOUT_COMMAND "' '" + mesh + "'");
   EXPECT_TRUE(text.starts_with(std::string(pong) + "\n{\"id\":2,\"ok\":true")) << text;
-  EXPECT_NE(text.find("'desired' is missing"), std::string::npos) << text;
+  EXPECT_CONTAINS(text, "'desired' is missing");
 }
 
 }  // namespace

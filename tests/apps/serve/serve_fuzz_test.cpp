@@ -5,9 +5,6 @@
 
 #include <array>
 #include <cstdio>
-#include <random>
-#include <string>
-#include <string_view>
 
 #include "apps/serve/judged_service.h"
 

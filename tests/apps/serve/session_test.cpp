@@ -5,20 +5,17 @@
 #include <bit>
 #include <charconv>
 #include <nlohmann/json.hpp>
-#include <random>
-#include <string>
-#include <vector>
 
 #include "factory/tools_by_name.h"
 #include "keepout/fixtures/poses.h"
 #include "keepout/fixtures/robots.h"
-#include "keepout/fixtures/shapes.h"
 #include "keepout/version.h"
 #include "serve/answer.h"
 #include "serve/service.h"
 #include "temporary_folder.h"
 #if KEEPOUT_HAS_URDF
 #include "keepout/urdf/read_chain.h"
+#include "meshes.h"
 #endif
 
 namespace keepout::app {
@@ -37,7 +34,7 @@ class SessionTest : public testing::Test {
     return settings;
   }
 
-  std::shared_ptr<const Mesh> mesh_ = std::make_shared<const Mesh>(make_shape("cortex"));
+  std::shared_ptr<const Mesh> mesh_ = mesh_of("cortex");
   Service service_{mesh_, settings()};
 };
 
@@ -311,8 +308,7 @@ TEST_F(SessionTest, WhatIsNoInstrumentIsToldAndLeavesTheOneThereIs) {
     EXPECT_EQ(Json::parse(ask(session, line))["ok"], true) << "the one before";
   }
   const Json few = Json::parse(ask(session, R"({"do":"joint_step","q":[0],"increment":[0]})"));
-  EXPECT_NE(std::string(few["error"]["message"]).find("'q' must have 6 numbers"),
-            std::string::npos);
+  EXPECT_CONTAINS(std::string(few["error"]["message"]), "'q' must have 6 numbers");
   const Json failing = Json::parse(
       ask(session, R"({"do":"joint_step","q":[0,0,1e300,0,0,0],"increment":[0,0,1,0,0,0]})"));
   EXPECT_EQ(failing["status"], "invalid_input");

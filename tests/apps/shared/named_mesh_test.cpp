@@ -2,10 +2,7 @@
 // Meshes as a user names them: files, and fixtures that are prepared or generated.
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include "apps/command_process.h"
 #include "keepout/fixtures/shapes.h"
@@ -37,10 +34,6 @@ class NamedMesh : public testing::Test {
   test::CommandFolder folder;
 };
 
-bool contains(const std::string& text, std::string_view part) {
-  return text.find(part) != std::string::npos;
-}
-
 /// Every command that takes a mesh, on MESH, with as little to do as there can be.
 const std::vector<std::string> commands{
     "replay MESH --poses poses.txt --out s.csv",
@@ -60,7 +53,7 @@ TEST_F(NamedMesh, EveryCommandTakesGeneratedShapesByName) {
     const Outcome outcome = run(with_mesh(command, "gear"));
     EXPECT_EQ(outcome.status, 0) << command << '\n' << outcome.output;
   }
-  EXPECT_TRUE(contains(run("inspect gear").output, "watertight"));
+  EXPECT_CONTAINS(run("inspect gear").output, "watertight");
 }
 
 TEST_F(NamedMesh, EveryCommandTakesPreparedMeshesByName) {
@@ -69,14 +62,14 @@ TEST_F(NamedMesh, EveryCommandTakesPreparedMeshesByName) {
     const Outcome outcome = run(with_mesh(command, "femur"));
     EXPECT_EQ(outcome.status, 0) << command << '\n' << outcome.output;
   }
-  EXPECT_TRUE(contains(run("inspect femur").output, "size          100 x 100 x 100 mm"));
+  EXPECT_CONTAINS(run("inspect femur").output, "size          100 x 100 x 100 mm");
 }
 
 TEST_F(NamedMesh, AFileOfThatNameWinsAndAFolderDoesNot) {
   folder.write("sphere", "no mesh");
-  EXPECT_TRUE(contains(run("inspect sphere").output, "its extension is none of"));
+  EXPECT_CONTAINS(run("inspect sphere").output, "its extension is none of");
   std::filesystem::create_directory(folder.file("cube"));
-  EXPECT_TRUE(contains(run("inspect cube").output, "size          100 x 100 x 100 mm"));
+  EXPECT_CONTAINS(run("inspect cube").output, "size          100 x 100 x 100 mm");
 }
 
 TEST_F(NamedMesh, ANameThatIsNeitherListsThoseThatAreNear) {
@@ -94,7 +87,7 @@ TEST_F(NamedMesh, ANameThatIsNeitherListsThoseThatAreNear) {
     EXPECT_EQ(outcome.status, 1);
     EXPECT_TRUE(outcome.output.starts_with("keepout: " + name + ": there is no such file"))
         << outcome.output;
-    EXPECT_TRUE(contains(outcome.output, told)) << outcome.output;
+    EXPECT_CONTAINS(outcome.output, told);
   }
 }
 
@@ -104,14 +97,14 @@ TEST_F(NamedMesh, WhatIsMissingIsPreparedByTheProgramThatRunNames) {
   std::filesystem::permissions(folder.file("prepare"), std::filesystem::perms::owner_all);
   const Outcome missing = run("inspect liver");
   EXPECT_EQ(missing.status, 1);
-  EXPECT_TRUE(contains(missing.output, "`fixtures/prepare liver`")) << missing.output;
+  EXPECT_CONTAINS(missing.output, "`fixtures/prepare liver`");
   const Outcome prepared = run("inspect liver", "KEEPOUT_PREPARE=./prepare");
   EXPECT_EQ(prepared.status, 0) << prepared.output;
-  EXPECT_TRUE(contains(prepared.output, "making liver"));
-  EXPECT_FALSE(contains(run("inspect liver", "KEEPOUT_PREPARE=./prepare").output, "making"));
+  EXPECT_CONTAINS(prepared.output, "making liver");
+  EXPECT_LACKS(run("inspect liver", "KEEPOUT_PREPARE=./prepare").output, "making");
   const Outcome failed = run("inspect brain", "KEEPOUT_PREPARE=false");
   EXPECT_EQ(failed.status, 1);
-  EXPECT_TRUE(contains(failed.output, "the fixture 'brain' is not prepared")) << failed.output;
+  EXPECT_CONTAINS(failed.output, "the fixture 'brain' is not prepared");
 }
 
 std::size_t occurrences(const std::string& text, std::string_view part) {
@@ -142,8 +135,8 @@ TEST_F(NamedMesh, EveryCommandTellsOfMetresHolesAndWindingOnceOnStderr) {
   }
   // Whose findings they are.
   const std::string findings = run("inspect bad.stl").output;
-  EXPECT_TRUE(contains(findings, "3 inconsistently wound edges")) << findings;
-  EXPECT_FALSE(contains(findings, "keepout:")) << findings;
+  EXPECT_CONTAINS(findings, "3 inconsistently wound edges");
+  EXPECT_LACKS(findings, "keepout:");
 }
 
 }  // namespace

@@ -9,10 +9,7 @@
 #include <unistd.h>
 
 #include <array>
-#include <iterator>
-#include <string>
 
-#include "keepout/error.h"
 #include "temporary_folder.h"
 
 namespace keepout::app {
@@ -24,29 +21,15 @@ class OutputFileTest : public testing::Test {
  protected:
   fs::path file(const std::string& name) const { return folder_.path() / name; }
 
-  static std::string contents(const fs::path& path) {
-    std::ifstream stream(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-  }
-
   std::size_t entries() const {
     const fs::directory_iterator all(folder_.path());
     return static_cast<std::size_t>(std::distance(begin(all), end(all)));
   }
 
-  static std::string error_of(auto&& act) {
-    try {
-      act();
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "no error";
-  }
-
   void expect_refused(const fs::path& path, const std::string& kind) const {
     const std::string message = error_of([&] { OutputFile output(path); });
-    EXPECT_NE(message.find(path.string()), std::string::npos) << message;
-    EXPECT_NE(message.find(kind), std::string::npos) << message;
+    EXPECT_CONTAINS(message, path.string());
+    EXPECT_CONTAINS(message, kind);
   }
 
   TemporaryFolder folder_;
@@ -56,16 +39,16 @@ TEST_F(OutputFileTest, AppearsWholeWhenItIsCommitted) {
   folder_.write("a.csv", "old");
   OutputFile output(file("a.csv"));
   output.stream() << "new";
-  EXPECT_EQ(contents(file("a.csv")), "old");
+  EXPECT_EQ(contents_of(file("a.csv")), "old");
   output.commit();
-  EXPECT_EQ(contents(file("a.csv")), "new");
+  EXPECT_EQ(contents_of(file("a.csv")), "new");
   EXPECT_EQ(entries(), 1u);
 }
 
 TEST_F(OutputFileTest, WithoutACommitNothingRemains) {
   folder_.write("a.csv", "old");
   { OutputFile(file("a.csv")).stream() << "new"; }
-  EXPECT_EQ(contents(file("a.csv")), "old");
+  EXPECT_EQ(contents_of(file("a.csv")), "old");
   EXPECT_EQ(entries(), 1u);
 }
 
@@ -97,7 +80,7 @@ TEST_F(OutputFileTest, ALinkIsFollowedAndStays) {
     EXPECT_TRUE(fs::is_symlink(file("one")));
     EXPECT_TRUE(fs::is_symlink(file("two")));
     EXPECT_FALSE(fs::is_symlink(file("results/a.csv")));
-    EXPECT_EQ(contents(file("results/a.csv")), text);
+    EXPECT_EQ(contents_of(file("results/a.csv")), text);
   }
 }
 
@@ -116,8 +99,8 @@ TEST_F(OutputFileTest, AnOutputThatIsAnInputIsRefusedByWhateverName) {
     const std::string message = error_of([&] {
       OutputFiles outputs(inputs, {{"--out", file(name)}});
     });
-    EXPECT_NE(message.find("MESH"), std::string::npos) << name << ": " << message;
-    EXPECT_NE(message.find("--out"), std::string::npos) << name << ": " << message;
+    EXPECT_CONTAINS(message, "MESH") << name;
+    EXPECT_CONTAINS(message, "--out") << name;
   }
   EXPECT_EQ(error_of([&] {
               OutputFiles outputs(inputs, {{"--out", file("report")}});
@@ -132,8 +115,8 @@ TEST_F(OutputFileTest, TwoOutputsAreRefusedWhenTheyWouldBeTheSameFile) {
     const std::string message = error_of([&] {
       OutputFiles outputs({}, {{"--out", file("new.csv")}, {"--planes", file(name)}});
     });
-    EXPECT_NE(message.find("--out"), std::string::npos) << name << ": " << message;
-    EXPECT_NE(message.find("--planes"), std::string::npos) << name << ": " << message;
+    EXPECT_CONTAINS(message, "--out") << name;
+    EXPECT_CONTAINS(message, "--planes") << name;
   }
   const auto make_two = [&] {
     OutputFiles outputs({}, {{"--out", file("a.csv")}, {"--planes", file("b.csv")}});
@@ -167,7 +150,7 @@ TEST_F(OutputFileTest, ASignalEndsTheProcessAndLeavesNoPartialFile) {
     EXPECT_TRUE(WIFSIGNALED(status)) << status;
     EXPECT_EQ(WTERMSIG(status), signal);
     EXPECT_EQ(entries(), 1u);
-    EXPECT_EQ(contents(file("a.csv")), "old");
+    EXPECT_EQ(contents_of(file("a.csv")), "old");
   }
 }
 
@@ -191,7 +174,7 @@ TEST_F(OutputFileTest, ASignalAfterTheCommitLeavesTheResult) {
     ::raise(SIGTERM);
   });
   EXPECT_TRUE(WIFSIGNALED(status)) << status;
-  EXPECT_EQ(contents(file("a.csv")), "whole");
+  EXPECT_EQ(contents_of(file("a.csv")), "whole");
 }
 
 TEST_F(OutputFileTest, WhatCannotBeWrittenToTheEndIsToldByFinish) {

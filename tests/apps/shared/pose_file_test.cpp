@@ -3,11 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include <string>
 #include <utility>
 #include <vector>
 
-#include "keepout/error.h"
 #include "temporary_folder.h"
 
 namespace keepout::app {
@@ -18,14 +16,9 @@ class PoseFile : public testing::Test {
   std::filesystem::path write(const std::string& text) { return folder_.write("poses.txt", text); }
 
   void expect_error(const std::string& text, const std::string& place, const std::string& what) {
-    try {
-      read_poses(write(text));
-      ADD_FAILURE() << "no error for: " << text;
-    } catch (const Error& error) {
-      const std::string message = error.what();
-      EXPECT_NE(message.find("poses.txt" + place), std::string::npos) << message;
-      EXPECT_NE(message.find(what), std::string::npos) << message;
-    }
+    const std::string message = error_of([&] { read_poses(write(text)); });
+    EXPECT_CONTAINS(message, "poses.txt" + place);
+    EXPECT_CONTAINS(message, what);
   }
 
   TemporaryFolder folder_;
@@ -95,13 +88,7 @@ TEST_F(PoseFile, WhatAFileSaysIsQuotedShortAndWithoutControlCharacters) {
 TEST_F(PoseFile, ALineThatDoesNotEndIsReadNoFurtherThanLinesGo) {
   const std::filesystem::path file = write("1 2 3 4 5 6\n#");
   std::filesystem::resize_file(file, std::uintmax_t{1} << 28);  // a hole, which takes no room
-  try {
-    read_poses(file);
-    ADD_FAILURE() << "no error";
-  } catch (const Error& error) {
-    EXPECT_NE(std::string(error.what()).find("poses.txt:2: is longer"), std::string::npos)
-        << error.what();
-  }
+  EXPECT_CONTAINS(error_of([&] { read_poses(file); }), "poses.txt:2: is longer");
 }
 
 TEST_F(PoseFile, ALineMayBeAsLongAsItsCommentIs) {
@@ -131,13 +118,7 @@ TEST_F(PoseFile, WhatIsWrongWithFiducialsIsToldByLine) {
            {"1,2,3,4,5,6\n1,2,3,4,5,6,1\n", ":2: has a weight, and lines before it have none"},
            {"1,2,3,4,5,6,1\n1,2,3,4,5,6\n", ":2: has no weight, and lines before it have one"},
            {"x,y,z\n", ": holds no fiducials"}}) {
-    try {
-      read_fiducials(write(text));
-      ADD_FAILURE() << text;
-    } catch (const Error& error) {
-      EXPECT_NE(std::string(error.what()).find("poses.txt" + told), std::string::npos)
-          << error.what();
-    }
+    EXPECT_CONTAINS(error_of([&] { read_fiducials(write(text)); }), "poses.txt" + told);
   }
 }
 

@@ -5,23 +5,15 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-#include <algorithm>
-#include <cmath>
-#include <vector>
 
-#include "keepout/fixtures/poses.h"
-#include "keepout/fixtures/shapes.h"
 #include "keepout/index/pd_tree.h"
 #include "keepout/index/query.h"
+#include "meshes.h"
 #include "random_places.h"
 #include "trials.h"
 
 namespace keepout::app {
 namespace {
-
-std::shared_ptr<const Mesh> mesh_of(Surface surface) {
-  return std::make_shared<const Mesh>(std::move(surface));
-}
 
 bool is_inside(Audit& audit, const Vec3& point) { return audit.side(point) == Side::behind; }
 

@@ -4,9 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <fstream>
 #include <initializer_list>
-#include <string>
 #include <utility>
 
 #include "apps/command_process.h"
@@ -20,9 +18,7 @@ Json record_of_robot(const test::CommandFolder& folder, const std::string& argum
   const test::ProcessOutcome outcome =
       folder.run("simulate gear --robot psm --json r.json --out r.html " + arguments);
   EXPECT_EQ(outcome.status, 0) << outcome.output;
-  EXPECT_NE(outcome.output.find("The certified step kept shaft, wrist and jaw off"),
-            std::string::npos)
-      << outcome.output;
+  EXPECT_CONTAINS(outcome.output, "The certified step kept shaft, wrist and jaw off");
   std::ifstream file(folder.file("r.json"));
   Json record = Json::parse(file);
   EXPECT_EQ(record["keepout_record"], "simulate_robot");
@@ -114,9 +110,7 @@ TEST(SimulateRobot, TellsOfMistakes) {
            {"cube --robot psm --radius 1", "cannot be given together"},
            {"cube sphere", "MESH: is one, not several, but with --robot"},
            {"cub --robot psm", "did you mean 'cube'"}}) {
-    const test::ProcessOutcome refused = folder.run(std::string("simulate ") + arguments);
-    EXPECT_NE(refused.status, 0) << arguments;
-    EXPECT_NE(refused.output.find(told), std::string::npos) << arguments << refused.output;
+    folder.expect_refused(std::string("simulate ") + arguments, told);
   }
 }
 

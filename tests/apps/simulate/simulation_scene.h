@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <limits>
-#include <string>
-#include <vector>
-
 #include "simulate/simulation.h"
 #include "small_surfaces.h"
 

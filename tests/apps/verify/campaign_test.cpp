@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "by_name.h"
 #include "keepout/factory/make_motion_constraint.h"
 #include "small_campaign.h"
 #include "verify/path.h"
@@ -13,8 +14,7 @@ namespace {
 /// On the index that users get, which searches along the motion, and on one that is asked for
 /// balls.
 class CampaignOnIndex : public testing::TestWithParam<const char*> {};
-INSTANTIATE_TEST_SUITE_P(Indices, CampaignOnIndex, testing::Values("wide_bvh", "pd_tree"),
-                         [](const auto& parameter) { return std::string(parameter.param); });
+INSTANTIATE_TEST_SUITE_P(Indices, CampaignOnIndex, testing::Values("wide_bvh", "pd_tree"), by_name);
 
 TEST_P(CampaignOnIndex, NoStepBreaksTheTheoremOnAnyGeneratedShape) {
   std::uint64_t told = 0;

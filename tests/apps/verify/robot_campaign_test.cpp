@@ -3,21 +3,15 @@
 // would see it if it did not.
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
-#include <fstream>
 #include <initializer_list>
-#include <limits>
-#include <memory>
 #include <numeric>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "apps/command_process.h"
-#include "keepout/error.h"
+#include "by_name.h"
 #include "keepout/fixtures/real_mesh.h"
 #include "keepout/fixtures/robots.h"
+#include "meshes.h"
 #include "small_campaign.h"
 #include "verify/robot/campaign.h"
 #include "verify/robot/judge.h"
@@ -40,7 +34,7 @@ std::uint64_t sum(const std::vector<RobotTally>& rows, Count RobotTally::*count)
 
 class RobotCampaignWith : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Robots, RobotCampaignWith, testing::Values("psm", "seven_joint_arm"),
-                         [](const auto& parameter) { return std::string(parameter.param); });
+                         by_name);
 
 TEST_P(RobotCampaignWith, NoCycleComesTooCloseOrBreaksAJointsLimit) {
   std::vector<Arena> arenas{arena_of("cortex"), arena_of("thin_plates"), arena_of("crown")};
@@ -102,7 +96,7 @@ class RobotJudgeOverAPlate : public testing::Test {
   }
 
   Instrument arm_ = psm({Vec3(0.3, 0.2, 120.0)});
-  std::shared_ptr<const Mesh> mesh_ = std::make_shared<const Mesh>(make_shape("flat_plate"));
+  std::shared_ptr<const Mesh> mesh_ = mesh_of("flat_plate");
   std::shared_ptr<const oracle::TriangleTree> tree_ =
       std::make_shared<const oracle::TriangleTree>(mesh_);
   Random random_{1};
@@ -157,7 +151,7 @@ TEST(VerifyRobot, WritesARecordAndTellsOfMistakes) {
   const test::ProcessOutcome outcome = folder.run(
       "verify cortex --robot psm --cycles 500 --speed 1,2 --seed 7 --json r.json --out r.html");
   ASSERT_EQ(outcome.status, 0) << outcome.output;
-  EXPECT_NE(outcome.output.find("No breach in 2,500 cycles."), std::string::npos) << outcome.output;
+  EXPECT_CONTAINS(outcome.output, "No breach in 2,500 cycles.");
   std::ifstream file(folder.file("r.json"));
   const Json record = Json::parse(file);
   EXPECT_EQ(record["keepout_record"], "verify_robot");
@@ -174,9 +168,7 @@ TEST(VerifyRobot, WritesARecordAndTellsOfMistakes) {
            {"--robot psm --motion real", "--motion"},
            {"--robot psm --steps 10", "--steps"},
            {"--robot psm --merge r.json", "--merge"}}) {
-    const test::ProcessOutcome refused = folder.run(std::string("verify sphere ") + arguments);
-    EXPECT_NE(refused.status, 0) << arguments;
-    EXPECT_NE(refused.output.find(told), std::string::npos) << arguments << refused.output;
+    folder.expect_refused(std::string("verify sphere ") + arguments, told);
   }
 }
 

@@ -3,13 +3,9 @@
 // a way of its own is found out.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cstdio>
 #include <memory>
 #include <span>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include "apps/command_process.h"
 #include "trials.h"
@@ -74,30 +70,6 @@ std::unique_ptr<RobotSubject> with_wide_guides(const RobotSetup& setup) {
   });
 }
 
-std::unique_ptr<RobotSubject> without_the_last_mesh(const RobotSetup& setup) {
-  class LessPlaced final : public RobotSubject {
-   public:
-    explicit LessPlaced(const RobotSetup& setup) : meshes_(setup.meshes.size() - 1) {
-      RobotSetup other = setup;
-      other.meshes.pop_back();
-      subject_ = make_subject(other);
-    }
-    void set_options(const InstrumentOptions& o) override { subject_->set_options(o); }
-    void place(std::size_t mesh, const Pose& pose, const Twist& velocity) override {
-      if (mesh < meshes_) subject_->place(mesh, pose, velocity);
-    }
-    InstrumentStep step(std::span<const double> q, const Twist& desired) override {
-      return subject_->step(q, desired);
-    }
-    double tolerance() const override { return subject_->tolerance(); }
-
-   private:
-    std::size_t meshes_;
-    std::unique_ptr<RobotSubject> subject_;
-  };
-  return std::make_unique<LessPlaced>(setup);
-}
-
 /// Without the first of three points or more of the last body.
 std::unique_ptr<RobotSubject> with_a_corner_cut_off(const RobotSetup& setup) {
   return changed(setup, [](RobotSetup& other) {
@@ -131,6 +103,24 @@ class Broken : public RobotSubject {
 
  private:
   std::unique_ptr<RobotSubject> subject_;
+};
+
+/// Does not know of the last mesh.
+class Forgetful final : public Broken {
+ public:
+  explicit Forgetful(const RobotSetup& setup)
+      : Broken(without_the_last_mesh(setup)), meshes_(setup.meshes.size() - 1) {}
+  void place(std::size_t mesh, const Pose& pose, const Twist& velocity) override {
+    if (mesh < meshes_) Broken::place(mesh, pose, velocity);
+  }
+
+ private:
+  static RobotSetup without_the_last_mesh(RobotSetup setup) {
+    setup.meshes.pop_back();
+    return setup;
+  }
+
+  std::size_t meshes_;
 };
 
 /// Knows where meshes are, and not how they move.
@@ -188,51 +178,45 @@ std::unique_ptr<RobotSubject> make(const RobotSetup& setup) {
 
 constexpr std::uint64_t enough = 10'000;  // cycles
 
-void expect_caught(const RobotTally& row, std::uint64_t count) {
-  EXPECT_GT(count, 0u);
+void expect_caught(const std::string& scenario, const std::string& mesh, Make make,
+                   auto RobotTally::*count) {
+  const RobotTally row = run(scenario, mesh, enough, make);
+  EXPECT_GT(row.*count, 0u);
   EXPECT_GT(row.first_breach, 0u);
   std::printf("%s: first breach in cycle %llu\n", row.scenario.c_str(),
               static_cast<unsigned long long>(row.first_breach));
 }
 
 TEST(SabotagedScenario, GuidesThatAreTooWideAreCaught) {
-  const RobotTally row = run("guides", "saddle", enough, with_wide_guides);
-  expect_caught(row, row.guides_left);
+  expect_caught("guides", "saddle", with_wide_guides, &RobotTally::guides_left);
 }
 
 TEST(SabotagedScenario, GuidesOfATipThatAreTooWideAreCaught) {
-  const RobotTally row = run("tip_guides", "saddle", enough, with_wide_guides);
-  expect_caught(row, row.guides_left);
+  expect_caught("tip_guides", "saddle", with_wide_guides, &RobotTally::guides_left);
 }
 
 TEST(SabotagedScenario, AMeshWhoseVelocityIsNotKnownIsCaught) {
-  const RobotTally row = run("moving", "bowl", enough, make<Velocityless>);
-  expect_caught(row, row.below);
+  expect_caught("moving", "bowl", make<Velocityless>, &RobotTally::below);
 }
 
 TEST(SabotagedScenario, AMeshThatIsForgottenIsCaught) {
-  const RobotTally row = run("meshes", "bowl", enough, without_the_last_mesh);
-  expect_caught(row, row.below);
+  expect_caught("meshes", "bowl", make<Forgetful>, &RobotTally::below);
 }
 
 TEST(SabotagedScenario, ACornerOfABladeThatIsForgottenIsCaught) {
-  const RobotTally row = run("blade", "saddle", enough, with_a_corner_cut_off);
-  expect_caught(row, row.below);
+  expect_caught("blade", "saddle", with_a_corner_cut_off, &RobotTally::below);
 }
 
 TEST(SabotagedScenario, ACornerOfAConvexToolThatIsForgottenIsCaught) {
-  const RobotTally row = run("convex_tool", "saddle", enough, with_a_corner_cut_off);
-  expect_caught(row, row.below);
+  expect_caught("convex_tool", "saddle", with_a_corner_cut_off, &RobotTally::below);
 }
 
 TEST(SabotagedScenario, AToolThatDoesNotGiveWayIsCaught) {
-  const RobotTally row = run("stuck", "saddle", enough, make<Frozen>);
-  expect_caught(row, row.below);
+  expect_caught("stuck", "saddle", make<Frozen>, &RobotTally::below);
 }
 
 TEST(SabotagedScenario, AMarginThatIsTenTolerancesTooSmallIsCaught) {
-  const RobotTally row = run("convex_tool", "saddle", enough, make<Careless>);
-  expect_caught(row, row.below);
+  expect_caught("convex_tool", "saddle", make<Careless>, &RobotTally::below);
 }
 
 TEST(SabotagedScenario, MotionsThatOvershootAreCounted) {
@@ -251,10 +235,8 @@ TEST(VerifyScenario, IsChosenByNameAndUnknownNamesSuggest) {
   const test::ProcessOutcome outcome =
       folder.run("verify cortex --scenario tip_guides,convex_tool --cycles 200 --speed 1");
   EXPECT_EQ(outcome.status, 0) << outcome.output;
-  EXPECT_NE(outcome.output.find("No breach in 400 cycles."), std::string::npos) << outcome.output;
-  const test::ProcessOutcome refused = folder.run("verify --scenario guide");
-  EXPECT_NE(refused.status, 0);
-  EXPECT_NE(refused.output.find("did you mean 'guides'"), std::string::npos) << refused.output;
+  EXPECT_CONTAINS(outcome.output, "No breach in 400 cycles.");
+  folder.expect_refused("verify --scenario guide", "did you mean 'guides'");
 }
 
 }  // namespace

@@ -2,11 +2,8 @@
 // keepout verify as a user meets it: options, shards, files.
 #include <gtest/gtest.h>
 
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include "apps/command_process.h"
 #include "keepout/fixtures/shapes.h"
@@ -30,8 +27,7 @@ class Verify : public testing::Test {
   }
 
   nlohmann::json read(const std::string& name) const {
-    std::ifstream file(folder_.path() / name);
-    return nlohmann::json::parse(file);
+    return nlohmann::json::parse(folder_.contents(name));
   }
 
   /// What may differ between runs of the same.
@@ -50,22 +46,22 @@ TEST_F(Verify, ShardsAddUpToTheWhole) {
   const std::string both = "cube.stl terrain.stl --steps 5250 --seed 3 ";
   const Outcome whole = run(both + "--json whole.json");
   ASSERT_EQ(whole.status, 0) << whole.output;
-  EXPECT_NE(whole.output.find("No breach in 5,250 steps"), std::string::npos) << whole.output;
+  EXPECT_CONTAINS(whole.output, "No breach in 5,250 steps");
   const std::string machine = read("whole.json")["shards"].dump();
-  EXPECT_NE(machine.find(", " + std::string(simd_target()) + ", "), std::string::npos) << machine;
+  EXPECT_CONTAINS(machine, ", " + std::string(simd_target()) + ", ");
   for (const char* shard : {"1", "2", "3"}) {
     const std::string options = std::string("--shard ") + shard + "/3 --json " + shard + ".json";
     ASSERT_EQ(run(both + options).status, 0);
   }
   const Outcome merged = run("--merge 3.json 1.json 2.json --json merged.json");
   ASSERT_EQ(merged.status, 0) << merged.output;
-  EXPECT_EQ(merged.output.find("Missing"), std::string::npos) << merged.output;
+  EXPECT_LACKS(merged.output, "Missing");
   EXPECT_EQ(without_times(read("merged.json")), without_times(read("whole.json")));
   EXPECT_EQ(read("merged.json")["shards"].size(), 3u);
   EXPECT_EQ(read("merged.json")["command"],
             "keepout verify --merge 3.json 1.json 2.json --json merged.json");
   EXPECT_EQ(read("merged.json")["complete"], true);
-  EXPECT_EQ(whole.output.find("Incomplete"), std::string::npos) << whole.output;
+  EXPECT_LACKS(whole.output, "Incomplete");
 }
 
 TEST_F(Verify, WhatIsInterruptedKeepsWhatIsFinishedAndIsNotTakenForWhole) {
@@ -83,16 +79,14 @@ TEST_F(Verify, WhatIsInterruptedKeepsWhatIsFinishedAndIsNotTakenForWhole) {
     EXPECT_EQ(part["steps_done"], done);
     EXPECT_EQ(part["complete"], false);
     EXPECT_EQ(part["shards"][0]["complete"], false);
-    EXPECT_NE(outcome.output.find(" s on "), std::string::npos) << outcome.output;
-    EXPECT_NE(outcome.output.find(", interrupted\n"), std::string::npos) << outcome.output;
-    EXPECT_NE(outcome.output.find("of the campaign's 1,000,000,000 steps are done"),
-              std::string::npos)
-        << outcome.output;
+    EXPECT_CONTAINS(outcome.output, " s on ");
+    EXPECT_CONTAINS(outcome.output, ", interrupted\n");
+    EXPECT_CONTAINS(outcome.output, "of the campaign's 1,000,000,000 steps are done");
   }
   const Outcome merged = run("--merge part.json --json merged.json");
   EXPECT_EQ(merged.status, 0);
-  EXPECT_NE(merged.output.find("Incomplete: "), std::string::npos) << merged.output;
-  EXPECT_NE(merged.output.find("Missing: shard 2/2"), std::string::npos) << merged.output;
+  EXPECT_CONTAINS(merged.output, "Incomplete: ");
+  EXPECT_CONTAINS(merged.output, "Missing: shard 2/2");
   EXPECT_EQ(read("merged.json")["complete"], false);
 }
 
@@ -102,7 +96,7 @@ TEST_F(Verify, AMissingShardIsToldOf) {
   ASSERT_EQ(run(both + "3/3 --json 3.json").status, 0);
   const Outcome merged = run("--merge 1.json 3.json");
   EXPECT_EQ(merged.status, 0);
-  EXPECT_NE(merged.output.find("Missing: shard 2/3"), std::string::npos) << merged.output;
+  EXPECT_CONTAINS(merged.output, "Missing: shard 2/3");
 }
 
 TEST_F(Verify, WhatDoesNotBelongTogetherIsNotMerged) {
@@ -127,8 +121,8 @@ TEST_F(Verify, WhatDoesNotBelongTogetherIsNotMerged) {
   for (const auto& [file, told] : mistakes) {
     const Outcome outcome = run("--merge 1.json " + file);
     EXPECT_EQ(outcome.status, 1) << file;
-    EXPECT_NE(outcome.output.find(told), std::string::npos) << file << "\n" << outcome.output;
-    EXPECT_NE(outcome.output.find(file), std::string::npos) << outcome.output;
+    EXPECT_CONTAINS(outcome.output, told) << file;
+    EXPECT_CONTAINS(outcome.output, file);
   }
 }
 
@@ -153,9 +147,7 @@ TEST_F(Verify, AResultWhoseNumbersCannotBeIsNotMerged) {
     folder_.write("damaged.json", damaged.dump());
     const Outcome outcome = run("--merge damaged.json");
     EXPECT_EQ(outcome.status, 1) << place << value;
-    EXPECT_NE(outcome.output.find("damaged.json: is not a whole"), std::string::npos)
-        << place << value << "\n"
-        << outcome.output;
+    EXPECT_CONTAINS(outcome.output, "damaged.json: is not a whole") << place << value;
   }
 }
 
@@ -184,22 +176,22 @@ TEST_F(Verify, MistakesAreToldOf) {
   for (const auto& [arguments, told] : mistakes) {
     const Outcome outcome = run(arguments);
     EXPECT_NE(outcome.status, 0) << arguments;
-    EXPECT_NE(outcome.output.find(told), std::string::npos) << arguments << "\n" << outcome.output;
-    EXPECT_EQ(outcome.output.find("least/tau"), std::string::npos) << "did it all the same";
+    EXPECT_CONTAINS(outcome.output, told) << arguments;
+    EXPECT_LACKS(outcome.output, "least/tau") << "did it all the same";
   }
 }
 
 TEST_F(Verify, StepsMayBeWrittenWithAnExponent) {
   const Outcome outcome = run("cube.stl --steps 1e3");
   EXPECT_EQ(outcome.status, 0) << outcome.output;
-  EXPECT_NE(outcome.output.find("No breach in 1,000 steps"), std::string::npos) << outcome.output;
+  EXPECT_CONTAINS(outcome.output, "No breach in 1,000 steps");
 }
 
 TEST_F(Verify, FixturesThatAreNotThereAreNamed) {
   const Outcome outcome = run("--steps 500", "KEEPOUT_CACHE=.");
   EXPECT_EQ(outcome.status, 0) << outcome.output;
-  EXPECT_NE(outcome.output.find("Missing: "), std::string::npos) << outcome.output;
-  EXPECT_NE(outcome.output.find("skull.stl"), std::string::npos) << outcome.output;
+  EXPECT_CONTAINS(outcome.output, "Missing: ");
+  EXPECT_CONTAINS(outcome.output, "skull.stl");
 }
 
 }  // namespace

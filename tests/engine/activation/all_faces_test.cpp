@@ -4,13 +4,13 @@
 #include <gtest/gtest.h>
 
 #include "engine/activation/rule_fixture.h"
-#include "keepout/fixtures/shapes.h"
+#include "meshes.h"
 
 namespace keepout {
 namespace {
 
 TEST(AllFaces, EveryFaceInReachWhosePositiveSideTheTipIsOnIsActive) {
-  const auto mesh = std::make_shared<const Mesh>(make_shape("star_bumps"));
+  const auto mesh = mesh_of("star_bumps");
   AllFaces rule;
   const Vec3 tip = mesh->vertex(17) * 1.02;
   const double radius = 15.0;
@@ -32,9 +32,8 @@ TEST(AllFaces, EveryFaceInReachWhosePositiveSideTheTipIsOnIsActive) {
 }
 
 TEST(AllFaces, TrianglesWithoutAnAreaArePassedOver) {
-  const auto mesh = std::make_shared<const Mesh>(
-      Surface{{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(2, 0, 0), Vec3(0, 1, 0)},
-              {{0, 1, 2}, {0, 0, 1}, {0, 1, 3}}});
+  const auto mesh = mesh_of(Surface{{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(2, 0, 0), Vec3(0, 1, 0)},
+                                    {{0, 1, 2}, {0, 0, 1}, {0, 1, 3}}});
   AllFaces rule;
   const auto planes = planes_at(mesh, rule, {0.2, 0.2, 0.5}, 5.0);
   ASSERT_EQ(planes.size(), 1u);

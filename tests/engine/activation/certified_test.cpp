@@ -3,17 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <memory>
-#include <utility>
-
 #include "keepout/activation/facet.h"
 #include "keepout/fixtures/poses.h"
-#include "keepout/fixtures/shapes.h"
 #include "keepout/index/brute_force.h"
 #include "keepout/index/query.h"
-#include "small_surfaces.h"
+#include "meshes.h"
 #include "step/input.h"
 
 namespace keepout {
@@ -25,7 +19,7 @@ using Verdict = Judgement::Verdict;
 class Scene {
  public:
   Scene(Surface surface, const StepOptions& options, std::size_t room = 100'000)
-      : mesh(std::make_shared<const Mesh>(std::move(surface))),
+      : mesh(mesh_of(std::move(surface))),
         planes(100),
         turned(100),
         options_(options),

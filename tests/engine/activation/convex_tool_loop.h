@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <algorithm>
 #include <array>
-#include <limits>
 #include <memory>
 #include <string_view>
 #include <utility>
-#include <vector>
 
 #include "engine/activation/swept_tool.h"
 #include "keepout/activation/convex_tool_rule.h"

@@ -4,13 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <string>
-
 #include "engine/geometry/tools.h"
 #include "keepout/adapters/narrow_phase_registry.h"
-#include "keepout/fixtures/random.h"
 #include "random_places.h"
 
 namespace keepout {

@@ -10,9 +10,9 @@
 #include <cmath>
 #include <limits>
 #include <ostream>
-#include <string>
 
 #include "activation/certified/straight_clearance.h"
+#include "by_name.h"
 #include "keepout/activation/first_contact.h"
 #include "keepout/fixtures/random.h"
 #include "keepout/geometry/closest_point.h"
@@ -120,117 +120,104 @@ Case random_case(Random& random, double height) {
   return c;
 }
 
-TEST_P(FacetOfKind, WhatIsSaidToKeepClearDoes) {
-  Random random(1);
-  double worst = 0.0;
-  std::size_t clear = 0;
-  for (int i = 0; i < test::trials(30'000); ++i) {
-    const Case c = random_case(random, GetParam().height);
-    const Facet facet(c.triangle, Vec3::Zero(), 7);
-    if (!keeps_clear(facet, c.z, c.level, c.slack)) continue;
-    ++clear;
-    worst = std::max(worst, (c.level - c.slack - c.distance) / c.size);
-    ASSERT_GE(c.distance, c.level - c.slack - GetParam().rounding * c.size) << "case " << i;
+/// Calls with random cases, the facets of their triangles, and what names them in messages.
+template <class Check>
+void for_each_case(std::uint64_t seed, int cases, double height, const Check& check) {
+  Random random(seed);
+  for (int i = 0; i < test::trials(cases); ++i) {
+    const Case c = random_case(random, height);
+    SCOPED_TRACE(i);
+    check(c, Facet(c.triangle, Vec3::Zero(), 7), random);
+    if (testing::Test::HasFatalFailure()) return;
   }
+}
+
+TEST_P(FacetOfKind, WhatIsSaidToKeepClearDoes) {
+  std::size_t clear = 0;
+  for_each_case(1, 30'000, GetParam().height, [&](const Case& c, const Facet& facet, Random&) {
+    if (!keeps_clear(facet, c.z, c.level, c.slack)) return;
+    ++clear;
+    ASSERT_GE(c.distance, c.level - c.slack - GetParam().rounding * c.size);
+  });
   EXPECT_GT(clear, test::trials(5'000u));
-  RecordProperty("worst_in_sizes", std::to_string(worst));
 }
 
 TEST_P(FacetOfKind, WhatKeepsClearIsSaidTo) {
-  Random random(2);
   std::size_t kept = 0;
-  for (int i = 0; i < test::trials(30'000); ++i) {
-    const Case c = random_case(random, GetParam().height);
-    const Facet facet(c.triangle, Vec3::Zero(), 7);
-    if (c.distance < c.level - c.slack + GetParam().hidden * c.size) continue;
+  for_each_case(2, 30'000, GetParam().height, [&](const Case& c, const Facet& facet, Random&) {
+    if (c.distance < c.level - c.slack + GetParam().hidden * c.size) return;
     ++kept;
-    ASSERT_TRUE(keeps_clear(facet, c.z, c.level, c.slack)) << "case " << i;
-  }
+    ASSERT_TRUE(keeps_clear(facet, c.z, c.level, c.slack));
+  });
   EXPECT_GT(kept, test::trials(5'000u));
 }
 
 TEST_P(FacetOfKind, NoSampleOfAClearMotionIsTooNear) {
-  Random random(3);
   std::size_t clear = 0;
-  for (int i = 0; i < test::trials(2'000); ++i) {
-    const Case c = random_case(random, GetParam().height);
-    const Facet facet(c.triangle, Vec3::Zero(), 7);
-    if (!keeps_clear(facet, c.z, c.level, c.slack)) continue;
+  for_each_case(3, 2'000, GetParam().height, [&](const Case& c, const Facet& facet, Random&) {
+    if (!keeps_clear(facet, c.z, c.level, c.slack)) return;
     ++clear;
     ASSERT_GE(sampled_distance(c.triangle, Vec3::Zero(), c.z),
-              c.level - c.slack - GetParam().rounding * c.size)
-        << "case " << i;
-  }
+              c.level - c.slack - GetParam().rounding * c.size);
+  });
   EXPECT_GT(clear, test::trials(300u));
 }
 
 TEST_P(FacetOfKind, TheFirstContactIsNeitherLateNorEarly) {
-  Random random(4);
   std::size_t contacts = 0;
-  for (int i = 0; i < test::trials(30'000); ++i) {
-    const Case c = random_case(random, GetParam().height);
+  for_each_case(4, 30'000, GetParam().height, [&](const Case& c, const Facet& facet, Random&) {
     const double rounding = GetParam().rounding * c.size;
-    const Facet facet(c.triangle, Vec3::Zero(), 7);
-    if (keeps_clear(facet, c.z, c.level, c.slack)) continue;
+    if (keeps_clear(facet, c.z, c.level, c.slack)) return;
     ++contacts;
     const Contact contact = first_contact(facet, c.z, c.level, c.slack, 1.0);
     const double share = share_of(contact);
-    ASSERT_GE(distance_between(c.triangle, share * c.z), c.level - rounding)
-        << "case " << i << ": goes past it";
+    ASSERT_GE(distance_between(c.triangle, share * c.z), c.level - rounding) << "goes past it";
     const double there = closest_point(c.triangle, share * c.z).distance;
-    ASSERT_LE(there, c.level + c.slack + rounding) << "case " << i << ": stops before it";
+    ASSERT_LE(there, c.level + c.slack + rounding) << "stops before it";
 
     const HalfSpace& plane = contact.plane;
     ASSERT_EQ(plane.source, 7u);
     ASSERT_NEAR(plane.normal.norm(), 1.0, 1e-15);
-    ASSERT_LE(plane.offset, rounding) << "case " << i << ": the tip may not stay";
+    ASSERT_LE(plane.offset, rounding) << "the tip may not stay";
     for (const Vec3& corner : c.triangle) {
       ASSERT_LE(plane.normal.dot(corner) + c.level, plane.offset + 1e-15 * c.size);
     }
-  }
+  });
   EXPECT_GT(contacts, test::trials(2'000u));
 }
 
 TEST_P(FacetOfKind, ThePlaneOfAContactExcludesTheMotion) {
-  Random random(5);
   std::size_t contacts = 0;
-  for (int i = 0; i < test::trials(30'000); ++i) {
-    const Case c = random_case(random, GetParam().height);
-    const Facet facet(c.triangle, Vec3::Zero(), 7);
+  for_each_case(5, 30'000, GetParam().height, [&](const Case& c, const Facet& facet, Random&) {
     // What the rule does: it objects an eighth of a tolerance later than the slack of a contact.
     const double demand = c.level - 8.0 * c.slack;
-    if (demand <= 0.0 || keeps_clear(facet, c.z, demand, 0.125 * c.slack)) continue;
+    if (demand <= 0.0 || keeps_clear(facet, c.z, demand, 0.125 * c.slack)) return;
     ++contacts;
     const HalfSpace plane = first_contact(facet, c.z, c.level, c.slack, 1.0).plane;
-    ASSERT_LT(plane.normal.dot(c.z), plane.offset) << "case " << i;
-  }
+    ASSERT_LT(plane.normal.dot(c.z), plane.offset);
+  });
   EXPECT_GT(contacts, test::trials(2'000u));
 }
 
 TEST_P(FacetOfKind, TheSearchForALateContactIsGivenUpOnlyBeyondTheLatest) {
-  Random random(6);
-  for (int i = 0; i < test::trials(20'000); ++i) {
-    const Case c = random_case(random, GetParam().height);
-    const Facet facet(c.triangle, Vec3::Zero(), 7);
-    if (keeps_clear(facet, c.z, c.level, c.slack)) continue;
+  for_each_case(6, 20'000, GetParam().height, [&](const Case& c, const Facet& facet, Random& r) {
+    if (keeps_clear(facet, c.z, c.level, c.slack)) return;
     const Contact whole = first_contact(facet, c.z, c.level, c.slack, 1.0);
-    // Now and then at the very contact: of two that tie, either may have been found first.
-    const double latest = random.below(2) == 0 ? random.uniform() : whole.time;
+    // Now and then at the very contact: of two that tie, either may have been found
+    // first.
+    const double latest = r.below(2) == 0 ? r.uniform() : whole.time;
     const Contact some = first_contact(facet, c.z, c.level, c.slack, latest);
     if (whole.time <= latest) {
-      ASSERT_EQ(some.time, whole.time) << "case " << i << ": given up too soon";
+      ASSERT_EQ(some.time, whole.time) << "given up too soon";
       ASSERT_EQ(some.plane.normal, whole.plane.normal);
     } else {
-      ASSERT_GT(some.time, latest) << "case " << i;
+      ASSERT_GT(some.time, latest);
     }
-  }
+  });
 }
 
 TEST_P(FacetOfKind, TheOrderOfTheCornersDoesNotMatter) {
-  Random random(7);
-  for (int i = 0; i < test::trials(5'000); ++i) {
-    const Case c = random_case(random, GetParam().height);
-    const Facet facet(c.triangle, Vec3::Zero(), 7);
+  for_each_case(7, 5'000, GetParam().height, [&](const Case& c, const Facet& facet, Random&) {
     std::array<int, 3> order{0, 1, 2};
     while (std::next_permutation(order.begin(), order.end())) {
       const Triangle other{c.triangle[order[0]], c.triangle[order[1]], c.triangle[order[2]]};
@@ -244,23 +231,19 @@ TEST_P(FacetOfKind, TheOrderOfTheCornersDoesNotMatter) {
       ASSERT_FALSE(same.before(facet));
       ASSERT_FALSE(facet.before(same));
     }
-  }
+  });
 }
 
 TEST_P(FacetOfKind, TheNormalPointsFromTheClosestPoint) {
-  Random random(8);
-  for (int i = 0; i < test::trials(20'000); ++i) {
-    const Case c = random_case(random, GetParam().height);
-    const Facet facet(c.triangle, Vec3::Zero(), 7);
+  for_each_case(8, 20'000, GetParam().height, [&](const Case& c, const Facet& facet, Random&) {
     const auto nearest = facet.nearest_to(c.z);
     const double distance = nearest.distance;
     const Vec3& n = nearest.normal;
-    if (distance < 1e-3 * c.size) continue;
+    if (distance < 1e-3 * c.size) return;
     ASSERT_NEAR(distance, closest_point(c.triangle, c.z).distance, 1e-14 * c.size);
     // All of the facet is behind: that is what makes the point the closest one.
-    ASSERT_LE(facet.support(n) + distance, n.dot(c.z) + GetParam().rounding * c.size)
-        << "case " << i;
-  }
+    ASSERT_LE(facet.support(n) + distance, n.dot(c.z) + GetParam().rounding * c.size);
+  });
 }
 
 INSTANTIATE_TEST_SUITE_P(Triangles, FacetOfKind,
@@ -269,7 +252,7 @@ INSTANTIATE_TEST_SUITE_P(Triangles, FacetOfKind,
                                          Kind{"needle", 1e-6, 1e-12, 2e-11},
                                          Kind{"hair", 1e-9, 1e-12, 4e-11},
                                          Kind{"segment", 0.0, 1e-12, 4e-11}),
-                         [](const auto& kind) { return std::string(kind.param.name); });
+                         by_name);
 
 const Triangle flat{Vec3(0, 0, 0), Vec3(4, 0, 0), Vec3(0, 4, 0)};
 
@@ -320,16 +303,13 @@ TEST(Facet, StandingStillAndLeavingAreAlwaysClear) {
 }
 
 TEST(Facet, WhatSeparatesKeepsClear) {
-  Random random(10);
   std::size_t separated = 0;
-  for (int i = 0; i < test::trials(100'000); ++i) {
-    const Case c = random_case(random, 1.0);
-    const Facet facet(c.triangle, Vec3::Zero(), 0);
-    if (!separates(random.direction(), facet.corners(), c.z, c.level, c.slack)) continue;
+  for_each_case(10, 100'000, 1.0, [&](const Case& c, const Facet& facet, Random& random) {
+    if (!separates(random.direction(), facet.corners(), c.z, c.level, c.slack)) return;
     ++separated;
     ASSERT_GE(c.distance, c.level - c.slack - 1e-13 * c.size);
     ASSERT_TRUE(keeps_clear(facet, c.z, c.level, 2.0 * c.slack));
-  }
+  });
   EXPECT_GT(separated, test::trials(1'000u));
 }
 

@@ -4,20 +4,16 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
-#include <algorithm>
-#include <cmath>
 #include <limits>
 #include <numeric>
-#include <vector>
 
 #include "keepout/error.h"
 #include "keepout/fixtures/counterexamples.h"
 #include "keepout/fixtures/poses.h"
-#include "keepout/fixtures/shapes.h"
 #include "keepout/index/brute_force.h"
+#include "meshes.h"
 #include "shapes_to_try.h"
 #include "small_surfaces.h"
-#include "trials.h"
 
 namespace keepout {
 namespace {
@@ -229,7 +225,7 @@ TEST(FreePolytope, EveryMotionWithinItKeepsItsDistance) {
   std::size_t found = 0, asked = 0;
   for (const Shape& shape : shapes_to_try()) {
     SCOPED_TRACE(shape.name);
-    const auto mesh = std::make_shared<const Mesh>(shape.make());
+    const auto mesh = mesh_of(shape.make());
     Random random(1);
     for (const Vec3& tip : tips_near(*mesh, test::trials(4u), random)) {
       for (const auto& [radius, margin] : {std::pair{3.0, 0.25}, {1.0, 0.0}, {2.0, 1.5}}) {
@@ -255,7 +251,7 @@ TEST(FreePolytope, CounterexamplesToThePapersRuleAreKeptClear) {
   Random random(2);
   for (const Counterexample& example : counterexamples()) {
     SCOPED_TRACE(example.name);
-    const auto mesh = std::make_shared<const Mesh>(example.surface);
+    const auto mesh = mesh_of(example.surface);
     for (const double margin : {0.0, 0.01, 0.5}) {
       const Question question{example.tip, example.radius, margin};
       const Answer answer = polytope(mesh, question);
@@ -281,7 +277,7 @@ TEST(FreePolytope, CrowdsOfTrianglesOfAnySizeAreKeptClear) {
       }
       surface.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
     }
-    const auto mesh = std::make_shared<const Mesh>(surface);
+    const auto mesh = mesh_of(surface);
     const Question question{Vec3::Zero(), 1.0, random.uniform(0.0, 0.1)};
     const Answer answer = polytope(mesh, question);
     ASSERT_EQ(answer.status, Status::free);
@@ -290,7 +286,7 @@ TEST(FreePolytope, CrowdsOfTrianglesOfAnySizeAreKeptClear) {
 }
 
 TEST(FreePolytope, InAThinGapItIsTheGap) {
-  const auto mesh = std::make_shared<const Mesh>(make_shape("thin_plates"));
+  const auto mesh = mesh_of("thin_plates");
   const Question question{{0.2, 0.1, mesh->bounds().low.z() + 1.4}, 2.0, 0.1};
   const Answer answer = polytope(mesh, question);
   ASSERT_EQ(answer.planes.size(), 2u);
@@ -303,7 +299,7 @@ TEST(FreePolytope, InAThinGapItIsTheGap) {
 }
 
 TEST(FreePolytope, BothSidesOfAPlateAreSolid) {
-  const auto mesh = std::make_shared<const Mesh>(single_triangle());
+  const auto mesh = mesh_of(single_triangle());
   for (const double side : {1.0, -1.0}) {
     const Answer answer = polytope(mesh, {{0.2, 0.2, 0.1 * side}, 1.0, 0.01});
     ASSERT_EQ(answer.planes.size(), 1u);
@@ -312,7 +308,7 @@ TEST(FreePolytope, BothSidesOfAPlateAreSolid) {
 }
 
 TEST(FreePolytope, CloserThanTheMarginThePlateCanStillBeFollowed) {
-  const auto mesh = std::make_shared<const Mesh>(make_shape("flat_plate"));
+  const auto mesh = mesh_of("flat_plate");
   const Answer answer = polytope(mesh, {{1, 2, 0.2}, 3.0, 0.5});
   ASSERT_EQ(answer.planes.size(), 1u);
   EXPECT_EQ(answer.planes[0].offset, 0.0);
@@ -323,7 +319,7 @@ TEST(FreePolytope, WhatTheBallCannotReachOfATriangleDoesNotCount) {
   // A ramp that rises out of the plate, beyond the ball.
   const Surface surface{{{-50, -50, 0}, {50, -50, 0}, {0, 50, 0}, {-50, 0, 30}, {-50, 1, 30}},
                         {{0, 1, 2}, {1, 3, 4}}};
-  const auto mesh = std::make_shared<const Mesh>(surface);
+  const auto mesh = mesh_of(surface);
   const Answer answer = polytope(mesh, {{40, -48, 1.0}, 1.5, 0.1});
   ASSERT_EQ(answer.planes.size(), 1u);
   EXPECT_NEAR(answer.planes[0].offset, -0.9, 0.02);
@@ -340,7 +336,7 @@ TEST(FreePolytope, VeryNearToAnEdgeThereIsStillASide) {
       const Vec3 outwards = ((a - c) - edge * edge.dot(a - c)).normalized();
       const double angle = random.uniform(-1.5, 1.5);
       const Vec3 away = std::cos(angle) * outwards + std::sin(angle) * edge.cross(outwards);
-      const auto mesh = std::make_shared<const Mesh>(Surface{{a, b, c}, {{0, 1, 2}}});
+      const auto mesh = mesh_of(Surface{{a, b, c}, {{0, 1, 2}}});
       const Question question{a + random.uniform() * (b - a) + distance * away, 1.0, 0.25};
       const Answer answer = polytope(mesh, question);
       ASSERT_EQ(answer.status, Status::free) << distance << " at " << angle;
@@ -352,7 +348,7 @@ TEST(FreePolytope, VeryNearToAnEdgeThereIsStillASide) {
 TEST(FreePolytope, OnTheMeshNoSideIsGuessed) {
   for (const Shape& shape : shapes_to_try()) {
     SCOPED_TRACE(shape.name);
-    const auto mesh = std::make_shared<const Mesh>(shape.make());
+    const auto mesh = mesh_of(shape.make());
     Random random(5);
     for (const Vec3& tip : vertex_points(*mesh, 5, random)) {
       const Answer answer = polytope(mesh, {tip, 1.0, 0.25});
@@ -387,11 +383,11 @@ TEST(FreePolytope, NumberingAndWindingChangeNoBit) {
   for (const Shape& shape : shapes_to_try()) {
     SCOPED_TRACE(shape.name);
     const Surface surface = shape.make();
-    const auto mesh = std::make_shared<const Mesh>(surface);
+    const auto mesh = mesh_of(surface);
     Random random(6);
     const std::vector<Vec3> tips = tips_near(*mesh, 2, random);
     std::vector<TriangleId> new_ids;
-    const auto other = std::make_shared<const Mesh>(disguised(surface, 7, new_ids));
+    const auto other = mesh_of(disguised(surface, 7, new_ids));
     for (const Vec3& tip : tips) {
       const Answer one = polytope(mesh, {tip, 3.0, 0.25});
       const Answer two = polytope(other, {tip, 3.0, 0.25});
@@ -415,9 +411,8 @@ TEST(FreePolytope, FarFromTheOriginNothingIsLost) {
   Surface near = far;
   for (Vec3& v : near.vertices) v.array() -= offset;
   const Vec3 tip(3.5, 0.5, 1.25);
-  const Answer there =
-      polytope(std::make_shared<const Mesh>(far), {tip.array() + offset, 2.0, 0.0625});
-  const Answer here = polytope(std::make_shared<const Mesh>(near), {tip, 2.0, 0.0625});
+  const Answer there = polytope(mesh_of(far), {tip.array() + offset, 2.0, 0.0625});
+  const Answer here = polytope(mesh_of(near), {tip, 2.0, 0.0625});
   ASSERT_EQ(there.planes.size(), here.planes.size());
   ASSERT_FALSE(here.planes.empty());
   for (std::size_t i = 0; i < here.planes.size(); ++i) {
@@ -430,7 +425,7 @@ TEST(FreePolytope, ItLeavesMoreThanAPlaneForEachHitAndWithFewerPlanes) {
   double share = 0.0, naive_share = 0.0;
   double planes = 0.0, naive_count = 0.0;
   for (const Shape& shape : shapes_to_try()) {
-    const auto mesh = std::make_shared<const Mesh>(shape.make());
+    const auto mesh = mesh_of(shape.make());
     Random random(8);
     double of_shape = 0.0, naive_of_shape = 0.0;
     constexpr int tips = 20;
@@ -454,7 +449,7 @@ TEST(FreePolytope, ItLeavesMoreThanAPlaneForEachHitAndWithFewerPlanes) {
 }
 
 TEST(FreePolytope, WhatDoesNotFitIsAStatusAndHoldsStill) {
-  const auto mesh = std::make_shared<const Mesh>(make_shape("concave_sphere"));
+  const auto mesh = mesh_of("concave_sphere");
   const Question question{{0, 0, 47}, 5.0, 0.5};
   const std::size_t needed = polytope(mesh, question).planes.size();
   ASSERT_GT(needed, 7u);
@@ -484,7 +479,7 @@ TEST(FreePolytope, WhatDoesNotFitIsAStatusAndHoldsStill) {
 }
 
 TEST(FreePolytope, WhatIsNoNumberIsRefused) {
-  const auto mesh = std::make_shared<const Mesh>(tetrahedron());
+  const auto mesh = mesh_of(tetrahedron());
   FreePolytope free(mesh, 4);
   HalfSpaceBuffer planes(10);
   Budget unlimited;

@@ -3,23 +3,17 @@
 // bit: the walk of a WideBvh, and all hits around.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
-#include <memory>
-#include <string>
-#include <vector>
 
+#include "by_name.h"
 #include "each_simd_target.h"
 #include "engine/activation/sources.h"
 #include "index/wide_bvh/walk/tree_walk.h"
 #include "keepout/fixtures/poses.h"
 #include "keepout/fixtures/random.h"
-#include "keepout/fixtures/shapes.h"
 #include "keepout/index/motion_walk.h"
-#include "keepout/index/pd_tree.h"
 #include "keepout/index/query.h"
 #include "shapes_to_try.h"
-#include "trials.h"
 
 namespace keepout {
 namespace {
@@ -88,8 +82,7 @@ TEST_P(SourcesOn, AgreeBitForBitOnEachTarget) {
   EXPECT_GT(count(Status::recovering), 20);
 }
 
-INSTANTIATE_TEST_SUITE_P(Shapes, SourcesOn, ::testing::ValuesIn(names_of_shapes()),
-                         [](const auto& shape) { return shape.param; });
+INSTANTIATE_TEST_SUITE_P(Shapes, SourcesOn, ::testing::ValuesIn(names_of_shapes()), by_name);
 
 TEST(SourcesWithOptions, AgreeBitForBitWithJointsAndRowsOnEachTarget) {
   Sources sources(make_shape("cortex"));
@@ -146,7 +139,7 @@ TEST(TreeWalkMemory, DoesNotChangeAnswers) {
 /// A reach that grew with every stroke until large boxes were left over would have each cycle look
 /// into them, and would cover all that is asked about, so that nothing would ever mend it.
 TEST(TreeWalkMemory, IsOfLeavesHoweverManyStrokesThereWere) {
-  const auto mesh = std::make_shared<const Mesh>(make_shape("cortex"));
+  const auto mesh = mesh_of("cortex");
   const auto tree = std::make_shared<WideBvh>(mesh);
   const PdTree nearby(mesh);
   NearestTriangle nearest(*mesh, nearby);
@@ -175,7 +168,7 @@ TEST(TreeWalkMemory, IsOfLeavesHoweverManyStrokesThereWere) {
 }
 
 TEST(MotionWalk, IsOfferedByWideBvhAndMadeOfHitsForOthers) {
-  const auto mesh = std::make_shared<const Mesh>(make_cube(0.5));
+  const auto mesh = mesh_of(make_cube(0.5));
   Budget budget;
   EXPECT_NE(WideBvh(mesh).walk_along_motions(budget), nullptr);
   EXPECT_EQ(PdTree(mesh).walk_along_motions(budget), nullptr);
@@ -192,7 +185,7 @@ TEST(TreeWalk, StopsOnceItsTreeIsRefit) {
   Surface raised{{sources.mesh->vertices().begin(), sources.mesh->vertices().end()},
                  {sources.mesh->triangles().begin(), sources.mesh->triangles().end()}};
   for (Vec3& v : raised.vertices) v.z() += 5.0;
-  const auto mesh = std::make_shared<const Mesh>(std::move(raised));
+  const auto mesh = mesh_of(std::move(raised));
   sources.tree->refit(mesh);
   const Outcome stopped = sources.walking(motion, options);
   EXPECT_EQ(stopped.status, Status::mesh_changed);

@@ -5,11 +5,8 @@
 
 #include <algorithm>
 #include <array>
-#include <memory>
-#include <string>
-#include <utility>
-#include <vector>
 
+#include "by_name.h"
 #include "each_simd_target.h"
 #include "index/pd_tree/tree.h"
 #include "index/wide_bvh/tree.h"
@@ -18,6 +15,7 @@
 #include "keepout/fixtures/shapes.h"
 #include "keepout/solvers/active_set.h"
 #include "keepout/step/motion_constraint.h"
+#include "meshes.h"
 #include "queries_only.h"
 #include "random_places.h"
 #include "shapes_to_try.h"
@@ -40,7 +38,7 @@ template <class Tree = WideBvh>
 class PaperForms {
  public:
   explicit PaperForms(const Surface& surface, const Capacity& capacity = {})
-      : mesh(std::make_shared<const Mesh>(surface)),
+      : mesh(mesh_of(surface)),
         tree(std::make_shared<Tree>(mesh)),
         planes(capacity.planes),
         plain_planes(capacity.planes),
@@ -199,8 +197,7 @@ TEST_P(PaperBlocksOn, TheStepsAreThoseOfThePlainRuleAndAlikeOnEachTarget) {
   });
 }
 
-INSTANTIATE_TEST_SUITE_P(Shapes, PaperBlocksOn, testing::ValuesIn(names_of_shapes()),
-                         [](const auto& p) { return p.param; });
+INSTANTIATE_TEST_SUITE_P(Shapes, PaperBlocksOn, testing::ValuesIn(names_of_shapes()), by_name);
 
 /// The shape with coordinates that are floats, as those of STL files are.
 Surface as_floats(Surface surface) {
@@ -314,7 +311,7 @@ TEST(PaperBlocks, StopsOnceItsTreeIsRefit) {
   Surface raised{{forms.mesh->vertices().begin(), forms.mesh->vertices().end()},
                  {forms.mesh->triangles().begin(), forms.mesh->triangles().end()}};
   for (Vec3& v : raised.vertices) v.z() += 5.0;
-  forms.tree->refit(std::make_shared<const Mesh>(std::move(raised)));
+  forms.tree->refit(mesh_of(std::move(raised)));
   const Step stopped = forms.step(motion, {.radius = 5.0});
   EXPECT_EQ(stopped.status, Status::mesh_changed);
   EXPECT_EQ(stopped.motion, Vec3::Zero());

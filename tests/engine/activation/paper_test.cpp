@@ -6,6 +6,7 @@
 
 #include "engine/activation/rule_fixture.h"
 #include "keepout/fixtures/random.h"
+#include "meshes.h"
 
 namespace keepout {
 namespace {
@@ -13,8 +14,7 @@ namespace {
 /// Two triangles that share the edge from (0, -2, 0) to (0, 2, 0): T1 to the left, T2 to the right,
 /// with their apexes at the given heights and the free side above.
 std::shared_ptr<const Mesh> two_triangles(const Vec3& left, const Vec3& right) {
-  return std::make_shared<const Mesh>(
-      Surface{{Vec3(0, -2, 0), Vec3(0, 2, 0), left, right}, {{0, 1, 2}, {1, 0, 3}}});
+  return mesh_of(Surface{{Vec3(0, -2, 0), Vec3(0, 2, 0), left, right}, {{0, 1, 2}, {1, 0, 3}}});
 }
 
 std::shared_ptr<const Mesh> ridge(double height) {
@@ -121,13 +121,12 @@ TEST(PaperRule, OnTheRidgeItselfBothFacesSpeakSinceThereIsNoDirectionToTheTip) {
 }
 
 TEST(PaperRule, ABoundaryEdgeActivatesNothing) {
-  const auto mesh = std::make_shared<const Mesh>(
-      Surface{{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)}, {{0, 1, 2}}});
+  const auto mesh = mesh_of(Surface{{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)}, {{0, 1, 2}}});
   expect_planes(mesh, {0.3, -0.01, 0.05}, {});
 }
 
 TEST(PaperRule, ANonManifoldEdgeIsReadAsABoundary) {
-  const auto mesh = std::make_shared<const Mesh>(
+  const auto mesh = mesh_of(
       Surface{{Vec3(0, -2, 0), Vec3(0, 2, 0), Vec3(-2, 0, -1), Vec3(2, 0, -1), Vec3(0, 0, -2)},
               {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}}});
   expect_planes(mesh, {0, 0, 1}, {});
@@ -151,7 +150,7 @@ TEST(PaperRule, AToolThatSlidesOnAFaceIsHeldAlthoughRoundingPutsItAHairBelow) {
 /// Four triangles around the origin, as a closed fan: apexes at the given heights on the x and y
 /// axes in turn.
 std::shared_ptr<const Mesh> fan(double at_x, double at_y) {
-  return std::make_shared<const Mesh>(Surface{
+  return mesh_of(Surface{
       {Vec3(0, 0, 0), Vec3(2, 0, at_x), Vec3(0, 2, at_y), Vec3(-2, 0, at_x), Vec3(0, -2, at_y)},
       {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 1}}});
 }
@@ -217,7 +216,7 @@ TEST(PaperRule, DoesNotDependOnHowTrianglesAreRotated) {
   const auto mesh = fan(0.5, -1);
   Surface rotated{{mesh->vertices().begin(), mesh->vertices().end()}, {}};
   for (const Corners& c : mesh->triangles()) rotated.triangles.push_back({c[1], c[2], c[0]});
-  const auto other = std::make_shared<const Mesh>(rotated);
+  const auto other = mesh_of(rotated);
   PaperRule rule, other_rule;
   for (int i = 0; i < 1000; ++i) {
     const Vec3 tip = 2.0 * random.direction() * random.uniform();

@@ -5,15 +5,14 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <ostream>
-#include <string>
 
+#include "by_name.h"
 #include "engine/activation/rule_fixture.h"
 #include "keepout/activation/registry.h"
-#include "keepout/error.h"
 #include "keepout/fixtures/poses.h"
-#include "keepout/fixtures/shapes.h"
+#include "meshes.h"
+#include "messages.h"
 #include "shapes_to_try.h"
-#include "trials.h"
 
 namespace keepout {
 
@@ -29,7 +28,7 @@ class RuleContract : public testing::TestWithParam<ActivationEntry> {
   void for_each_situation(double margin, Check&& check) const {
     for (const Shape& shape : shapes_to_try()) {
       SCOPED_TRACE(shape.name);
-      const auto mesh = std::make_shared<const Mesh>(shape.make());
+      const auto mesh = mesh_of(shape.make());
       const auto rule = GetParam().make();
       Random random(1);
       for (const Vec3& tip : surface_points(*mesh, 20, 0.5, random)) {
@@ -82,7 +81,7 @@ TEST_P(RuleContract, EachPlaneHasItsOwnTriangleBehindIt) {
 }
 
 TEST_P(RuleContract, TheSameQuestionGetsTheSameAnswer) {
-  const auto mesh = std::make_shared<const Mesh>(make_shape("cortex"));
+  const auto mesh = mesh_of("cortex");
   const auto rule = GetParam().make();
   Random random(2);
   for (const Vec3& tip : surface_points(*mesh, 50, 0.5, random)) {
@@ -97,19 +96,11 @@ TEST_P(RuleContract, TheSameQuestionGetsTheSameAnswer) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Rules, RuleContract, testing::ValuesIn(activation_rules()),
-                         [](const auto& p) { return std::string(p.param.name); });
+INSTANTIATE_TEST_SUITE_P(Rules, RuleContract, testing::ValuesIn(activation_rules()), by_name);
 
 TEST(RuleRegistry, AnUnknownNameListsTheKnownOnes) {
-  const auto mesh = std::make_shared<const Mesh>(make_shape("cube"));
-  try {
-    make_activation("papr");
-    FAIL() << "no error";
-  } catch (const Error& error) {
-    for (const ActivationEntry& rule : activation_rules()) {
-      EXPECT_NE(std::string(error.what()).find(rule.name), std::string::npos);
-    }
-  }
+  const std::string message = error_of([] { make_activation("papr"); });
+  for (const ActivationEntry& rule : activation_rules()) EXPECT_CONTAINS(message, rule.name);
 }
 
 }  // namespace

@@ -2,9 +2,7 @@
 #pragma once
 
 #include <algorithm>
-#include <memory>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "keepout/activation/certified.h"
@@ -12,6 +10,7 @@
 #include "keepout/index/wide_bvh.h"
 #include "keepout/solvers/active_set.h"
 #include "keepout/step/motion_constraint.h"
+#include "meshes.h"
 
 namespace keepout {
 
@@ -53,7 +52,7 @@ inline std::unique_ptr<MotionConstraint> guard(const std::shared_ptr<const Mesh>
 class Sources {
  public:
   explicit Sources(Surface surface)
-      : mesh(std::make_shared<const Mesh>(std::move(surface))),
+      : mesh(mesh_of(std::move(surface))),
         tree(std::make_shared<WideBvh>(mesh)),
         walking_(guard(mesh, tree, harmless())),
         asking_(guard(mesh, std::make_shared<PdTree>(mesh), harmless())) {}

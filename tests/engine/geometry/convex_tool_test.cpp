@@ -5,7 +5,6 @@
 
 #include <cmath>
 #include <limits>
-#include <vector>
 
 #include "engine/geometry/tools.h"
 #include "keepout/error.h"

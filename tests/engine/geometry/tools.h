@@ -3,7 +3,6 @@
 
 #include <Eigen/Geometry>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "keepout/fixtures/random.h"

@@ -3,15 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <memory>
-#include <utility>
-#include <vector>
-
 #include "adapters/index_contract.h"
 #include "index/wide_bvh/tree.h"
 #include "keepout/fixtures/shapes.h"
+#include "meshes.h"
 
 namespace keepout {
 
@@ -35,16 +30,12 @@ inline void expect_exact(const Mesh& mesh, const SpatialIndex& index, std::size_
   }
 }
 
-inline std::shared_ptr<const Mesh> shared_shape(std::string_view name) {
-  return std::make_shared<const Mesh>(make_shape(name));
-}
-
 /// The first triangles of a shape.
 inline std::shared_ptr<const Mesh> beginning_of(std::string_view name, std::size_t triangles) {
   Surface surface = make_shape(name);
   EXPECT_LE(triangles, surface.triangles.size());
   surface.triangles.resize(triangles);
-  return std::make_shared<const Mesh>(std::move(surface));
+  return mesh_of(std::move(surface));
 }
 
 /// The same triangles elsewhere, and bent: `vertex` gives each its new place.
@@ -52,7 +43,7 @@ template <class Move>
 std::shared_ptr<const Mesh> moved(const Mesh& mesh, const Move& vertex) {
   Surface surface{{}, {mesh.triangles().begin(), mesh.triangles().end()}};
   for (const Vec3& v : mesh.vertices()) surface.vertices.push_back(vertex(v));
-  return std::make_shared<const Mesh>(std::move(surface));
+  return mesh_of(std::move(surface));
 }
 
 /// Fails unless each triangle of the mesh is in one lane of one leaf, with its corners in

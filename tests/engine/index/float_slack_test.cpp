@@ -4,17 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-#include <algorithm>
-#include <cmath>
-#include <memory>
 #include <set>
-#include <vector>
 
 #include "engine/index/exact_index.h"
 #include "index/wide_bvh/walk/filters.h"
 #include "index/wide_bvh/walk/frontier.h"
-#include "keepout/fixtures/random.h"
-#include "trials.h"
 
 namespace keepout {
 namespace {
@@ -28,7 +22,7 @@ std::shared_ptr<const Mesh> one_leaf(double size, Random& random) {
     }
     surface.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
   }
-  return std::make_shared<const Mesh>(std::move(surface));
+  return mesh_of(std::move(surface));
 }
 
 /// Returns by how much more than the margin a plane of that normal separates triangle and tip.
@@ -161,7 +155,7 @@ TEST(FloatSlack, AFrontierHasEveryBoxThatItsBallTouches) {
 TEST(FloatSlack, CylindersOfNodesHoldTheCylindersBelow) {
   int held = 0;
   for (const char* name : {"cortex", "gear", "needles", "sphere"}) {
-    const WideBvh index(shared_shape(name));
+    const WideBvh index(mesh_of(name));
     const auto vector_of = [](const float(&from)[3][NodeBlock::lanes], std::size_t lane) {
       return Vec3(from[0][lane], from[1][lane], from[2][lane]);
     };
@@ -196,10 +190,9 @@ TEST(FloatSlack, AMeshIsNotExactIfOneCoordinateOfItsLastVertexIsNoFloat) {
     for (const VertexId last : {3u, 4u, 7u, 8u, 9u}) {
       Surface surface{{}, {{0, 1, last}}};
       for (VertexId v = 0; v <= last; ++v) surface.vertices.emplace_back(v, 0.5 * v * v, 1.0);
-      EXPECT_TRUE(WideBvh(std::make_shared<const Mesh>(surface)).tree().frame().is_exact());
+      EXPECT_TRUE(WideBvh(mesh_of(surface)).tree().frame().is_exact());
       surface.vertices[last][axis] += 1e-9;
-      EXPECT_FALSE(WideBvh(std::make_shared<const Mesh>(surface)).tree().frame().is_exact())
-          << axis;
+      EXPECT_FALSE(WideBvh(mesh_of(surface)).tree().frame().is_exact()) << axis;
     }
   }
 }

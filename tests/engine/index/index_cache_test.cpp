@@ -3,13 +3,12 @@
 
 #include <gtest/gtest.h>
 
-#include <cstring>
-#include <random>
 #include <thread>
 
 #include "adapters/index_contract.h"
 #include "index/wide_bvh/tree.h"
 #include "keepout/error.h"
+#include "meshes.h"
 #include "small_surfaces.h"
 #include "temporary_folder.h"
 
@@ -17,11 +16,6 @@ namespace keepout {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string bytes_of(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
 
 template <class T>
 std::string bytes_of(std::span<const T> items) {
@@ -38,7 +32,7 @@ bool have_equal_blocks(const WideBvh::Tree& one, const WideBvh::Tree& other) {
 class IndexCache : public testing::Test {
  protected:
   TemporaryFolder folder;
-  std::shared_ptr<const Mesh> mesh = std::make_shared<const Mesh>(torus(24));
+  std::shared_ptr<const Mesh> mesh = mesh_of(torus(24));
   WideBvh built{mesh};
   fs::path file = index_cache_file(*mesh, folder.path());
 };
@@ -62,15 +56,15 @@ TEST_F(IndexCache, BuildsOnceAndLoadsAfterwards) {
 
 TEST_F(IndexCache, WhatIsDamagedIsBuiltAnewAndReplaced) {
   ASSERT_TRUE(save_index(built, file));
-  const std::string good = bytes_of(file);
+  const std::string good = contents_of(file);
   std::ofstream(file, std::ios::binary) << good.substr(0, good.size() / 2);
   EXPECT_TRUE(have_equal_blocks(load_or_build(mesh, folder.path())->tree(), built.tree()));
-  EXPECT_EQ(bytes_of(file), good);
+  EXPECT_EQ(contents_of(file), good);
 }
 
 TEST_F(IndexCache, AFileCutShortOrGrownIsNotLoaded) {
   ASSERT_TRUE(save_index(built, file));
-  const std::string good = bytes_of(file);
+  const std::string good = contents_of(file);
   for (std::size_t length = 0; length < good.size(); length += length < 120 ? 1 : 2977) {
     std::ofstream(file, std::ios::binary) << good.substr(0, length);
     ASSERT_EQ(load_index(mesh, file), nullptr) << length;
@@ -81,7 +75,7 @@ TEST_F(IndexCache, AFileCutShortOrGrownIsNotLoaded) {
 
 TEST_F(IndexCache, AFileWithAnyBitChangedIsNotLoaded) {
   ASSERT_TRUE(save_index(built, file));
-  const std::string good = bytes_of(file);
+  const std::string good = contents_of(file);
   std::mt19937 random(1);
   for (int i = 0; i < 400; ++i) {
     // Bits all over the header, and some of the rest.
@@ -99,7 +93,7 @@ TEST_F(IndexCache, AnotherMeshHasAnotherFileAndIsNotServedByThisOne) {
   surface.vertices[7].x() = std::nextafter(surface.vertices[7].x(), 0.0);
   std::vector<Surface> others{surface, flipped(torus(24)), shuffled(torus(24), 1), torus(25)};
   for (Surface& other : others) {
-    const auto moved = std::make_shared<const Mesh>(std::move(other));
+    const auto moved = mesh_of(std::move(other));
     EXPECT_NE(index_cache_file(*moved, folder.path()), file);
     EXPECT_EQ(load_index(moved, file), nullptr);
   }
@@ -139,12 +133,7 @@ class MadeUpOrder : public IndexCache {
   std::vector<TriangleId> order = built.order();
 
   bool is_accepted() const {
-    try {
-      WideBvh(mesh, order);
-      return true;
-    } catch (const Error&) {
-      return false;
-    }
+    return error_of([&] { WideBvh(mesh, order); }) == "no error";
   }
 };
 

@@ -7,7 +7,6 @@
 #include <optional>
 #include <set>
 #include <span>
-#include <vector>
 
 #include "each_simd_target.h"
 #include "engine/index/exact_index.h"
@@ -68,7 +67,7 @@ using Indices = testing::Types<WideBvh, PdTree>;
 TYPED_TEST_SUITE(IndexLanes, Indices);
 
 TYPED_TEST(IndexLanes, TheLeavesOfABallHoldAllTrianglesThatTouchIt) {
-  const TypeParam index(std::make_shared<const Mesh>(make_shape("cortex")));
+  const TypeParam index(mesh_of("cortex"));
   std::vector<std::uint32_t> leaf_of(index.mesh().triangle_count());
   for (std::uint32_t leaf = 0; leaf < index.tree().leaves().size(); ++leaf) {
     const LeafBlock& block = index.tree().leaves()[leaf];
@@ -90,7 +89,7 @@ TYPED_TEST(IndexLanes, TheLeavesOfABallHoldAllTrianglesThatTouchIt) {
 }
 
 TYPED_TEST(IndexLanes, ABallBeyondWhatFloatsCanTellHasAllLeaves) {
-  const TypeParam index(std::make_shared<const Mesh>(make_shape("cortex")));
+  const TypeParam index(mesh_of("cortex"));
   LeafBuffer leaves(index.tree().leaves().size());
   index.tree().collect_leaves({Vec3::Zero(), 1e20}, leaves);
   EXPECT_EQ(leaves.size(), index.tree().leaves().size());
@@ -101,7 +100,7 @@ TYPED_TEST(IndexLanes, EveryProcessorGivesTheSameTrianglesInTheSameOrder) {
   ASSERT_GE(simd_targets().size(), 2u);
   for (const char* name : {"cortex", "gear", "needles", "triangle_soup"}) {
     SCOPED_TRACE(name);
-    const TypeParam index(std::make_shared<const Mesh>(make_shape(name)));
+    const TypeParam index(mesh_of(name));
     const std::vector<Ball> asked = balls(index.mesh());
     std::optional<Answers> expected;
     on_each_simd_target([&] {
@@ -124,7 +123,7 @@ void expect_same_blocks(std::span<const Block> got, std::span<const Block> expec
 }
 
 TYPED_TEST(IndexLanes, EveryProcessorBuildsTheSameTree) {
-  const auto mesh = std::make_shared<const Mesh>(make_shape("cortex"));
+  const auto mesh = mesh_of("cortex");
   const TypeParam expected(mesh);
   on_each_simd_target([&] {
     const TypeParam index(mesh);
@@ -138,9 +137,9 @@ TEST(WideBvhLanes, EveryProcessorRefitsToTheSameTree) {
   for (const double stretch : {2.0, 1.1}) {
     Surface surface = make_shape("cortex");
     for (Vec3& v : surface.vertices) v = v.cast<float>().cast<double>();
-    const auto before = std::make_shared<const Mesh>(surface);
+    const auto before = mesh_of(surface);
     for (Vec3& v : surface.vertices) v.z() *= stretch;
-    const auto after = std::make_shared<const Mesh>(surface);
+    const auto after = mesh_of(surface);
     WideBvh expected(before);
     expected.refit(after);
     EXPECT_EQ(expected.tree().frame().is_exact(), stretch == 2.0);
@@ -159,7 +158,7 @@ TEST(WideBvhLanes, EveryProcessorRefitsToTheSameTree) {
 TEST(WideBvhLanes, CylindersHoldWhateverProcessorBuildsThem) {
   for (const char* name : {"cortex", "needles", "far_cube"}) {
     SCOPED_TRACE(name);
-    const auto mesh = shared_shape(name);
+    const auto mesh = mesh_of(name);
     on_each_simd_target([&] { expect_cylinders_hold(WideBvh(mesh).tree()); });
   }
 }

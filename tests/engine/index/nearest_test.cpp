@@ -1,25 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
 #include "adapters/index_contract.h"
-#include "keepout/fixtures/shapes.h"
 #include "keepout/index/brute_force.h"
 #include "keepout/index/pd_tree.h"
 #include "keepout/index/query.h"
 #include "keepout/index/wide_bvh.h"
 #include "keepout/simd_target.h"
+#include "meshes.h"
 #include "shapes_to_try.h"
 
 namespace keepout {
 namespace {
 
 /// A mesh whose coordinates are not floats, so that leaves have them rounded.
-Mesh in_odd_numbers(const Surface& surface) {
-  Surface odd = surface;
-  for (Vec3& vertex : odd.vertices) vertex = vertex / 3.0 + Vec3(0.1, -200.0 / 7.0, 1e3 / 3.0);
-  return Mesh(std::move(odd));
+Surface in_odd_numbers(Surface surface) {
+  for (Vec3& vertex : surface.vertices) vertex = vertex / 3.0 + Vec3(0.1, -200.0 / 7.0, 1e3 / 3.0);
+  return surface;
 }
 
 template <class Index>
@@ -46,13 +43,13 @@ TYPED_TEST_SUITE(NearestTriangleOf, AnyIndex);
 TYPED_TEST(NearestTriangleOf, IsTheOneThatBruteForceFindsAndTheLowestAmongEquals) {
   for (const Shape& shape : shapes_to_try()) {
     SCOPED_TRACE(shape.name);
-    expect_nearest_of<TypeParam>(std::make_shared<const Mesh>(shape.make()), 10);
-    expect_nearest_of<TypeParam>(std::make_shared<const Mesh>(in_odd_numbers(shape.make())), 3);
+    expect_nearest_of<TypeParam>(mesh_of(shape.make()), 10);
+    expect_nearest_of<TypeParam>(mesh_of(in_odd_numbers(shape.make())), 3);
   }
 }
 
 TEST(NearestTriangle, IsTheSameOnEveryProcessor) {
-  const auto mesh = std::make_shared<const Mesh>(make_shape("cortex"));
+  const auto mesh = mesh_of("cortex");
   for (const std::string_view target : simd_targets()) {
     SCOPED_TRACE(target);
     use_simd_target(target);
@@ -63,7 +60,7 @@ TEST(NearestTriangle, IsTheSameOnEveryProcessor) {
 
 TEST(NearestTriangle, IsFoundHoweverFarOffThePointIs) {
   for (const char* shape : {"cube", "cortex", "crown"}) {
-    const auto mesh = std::make_shared<const Mesh>(in_odd_numbers(make_shape(shape)));
+    const auto mesh = mesh_of(in_odd_numbers(make_shape(shape)));
     const WideBvh tree(mesh);
     const BruteForce brute(mesh);
     Budget unlimited;
@@ -81,7 +78,7 @@ TEST(NearestTriangle, IsFoundHoweverFarOffThePointIs) {
 }
 
 TEST(NearestTriangle, IsNotLookedForOnceTheBudgetIsSpent) {
-  const auto mesh = std::make_shared<const Mesh>(make_shape("sphere"));
+  const auto mesh = mesh_of("sphere");
   const WideBvh tree(mesh);
   for (const Vec3& point : {Vec3(0, 0, 0), Vec3(0, 0, 60), Vec3(1e9, 0, 0)}) {
     Budget unlimited;
@@ -99,7 +96,7 @@ TEST(NearestTriangle, IsFoundWhereFloatsOverflow) {
   for (const double scale : {1e-25, 1e17, 1e25}) {
     Surface surface = make_shape("cube");
     for (Vec3& vertex : surface.vertices) vertex *= scale;
-    const auto mesh = std::make_shared<const Mesh>(std::move(surface));
+    const auto mesh = mesh_of(std::move(surface));
     const WideBvh tree(mesh);
     const BruteForce brute(mesh);
     Budget unlimited;
@@ -112,7 +109,7 @@ TEST(NearestTriangle, IsFoundWhereFloatsOverflow) {
 }
 
 TEST(NearestTriangle, GrowsItsMemoryWhenABallHoldsTheWholeMesh) {
-  const auto mesh = std::make_shared<const Mesh>(make_sphere(2.0));
+  const auto mesh = mesh_of(make_sphere(2.0));
   ASSERT_GT(mesh->triangle_count(), 5000u);
   const PdTree tree(mesh);
   NearestTriangle nearest(*mesh, tree);

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "keepout/fixtures/poses.h"
-#include "keepout/fixtures/shapes.h"
 #include "keepout/index/brute_force.h"
+#include "meshes.h"
 
 namespace keepout {
 namespace {
@@ -37,11 +37,11 @@ std::shared_ptr<const Mesh> lopsided(int of_each_side) {
       surface.triangles.push_back({first, first + 1, first + 2});
     }
   }
-  return std::make_shared<const Mesh>(std::move(surface));
+  return mesh_of(std::move(surface));
 }
 
 TEST(PdTree1997, AnswersWithTheTrianglesThatTouchTheBallAndNoOthers) {
-  const auto mesh = std::make_shared<const Mesh>(make_shape("star_bumps"));
+  const auto mesh = mesh_of("star_bumps");
   const PdTree1997 tree(mesh);
   const BruteForce brute_force(mesh);
   EXPECT_TRUE(tree.is_exact());
@@ -56,7 +56,7 @@ TEST(PdTree1997, AnswersWithTheTrianglesThatTouchTheBallAndNoOthers) {
 }
 
 TEST(PdTree1997, IsAsDeepAsABalancedTreeAndALittleMoreOnAnEvenMesh) {
-  const auto mesh = std::make_shared<const Mesh>(make_shape("cortex"));
+  const auto mesh = mesh_of("cortex");
   const auto balanced =
       static_cast<std::size_t>(std::bit_width(mesh->triangle_count() / PdTree1997::leaf_triangles));
   const PdTree1997 tree(mesh);

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <cstring>
 
 #include "engine/index/exact_index.h"
@@ -16,7 +15,7 @@ namespace {
 TEST(PdTree, GivesTheTrianglesThatTouchTheBallAndNoOthers) {
   for (const Shape& shape : shapes_to_try()) {
     SCOPED_TRACE(shape.name);
-    const auto mesh = std::make_shared<const Mesh>(shape.make());
+    const auto mesh = mesh_of(shape.make());
     expect_exact(*mesh, PdTree(mesh), 10);
     if (HasFatalFailure()) return;
   }
@@ -26,7 +25,7 @@ TEST(PdTree, IsExactWhereverTheMeshIsAndHoweverLarge) {
   for (const double scale : {1e-30, 1e-12, 1e-6, 1.0, 1e6, 1e16, 1e22}) {
     for (const double offset : {0.0, 10.0, 1e6}) {
       SCOPED_TRACE(testing::Message() << "scale " << scale << " offset " << offset);
-      const auto mesh = moved(*shared_shape("gear"), [&](const Vec3& v) -> Vec3 {
+      const auto mesh = moved(*mesh_of("gear"), [&](const Vec3& v) -> Vec3 {
         return scale * (v + offset * Vec3(1.0, -0.7, 0.3));
       });
       expect_exact(*mesh, PdTree(mesh), 3);
@@ -77,7 +76,7 @@ void expect_boxes_hold(const PdTree::Tree& tree, std::size_t self, std::size_t f
 TEST(PdTree, BoxesHoldTheirTriangles) {
   for (const char* name : {"cortex", "needles", "far_cube", "fan", "flat_plate"}) {
     SCOPED_TRACE(name);
-    const PdTree index(shared_shape(name));
+    const PdTree index(mesh_of(name));
     const PdTree::Tree& tree = index.tree();
     ASSERT_EQ(tree.nodes().size(), 2 * tree.leaves().size() - 1);
     ASSERT_EQ(tree.nodes()[0].leaves, tree.leaves().size());
@@ -87,7 +86,7 @@ TEST(PdTree, BoxesHoldTheirTriangles) {
 }
 
 TEST(PdTree, IsTheSameTreeWhateverTheNumberOfThreads) {
-  const auto mesh = std::make_shared<const Mesh>(make_cortex(0.7, 1));
+  const auto mesh = mesh_of(make_cortex(0.7, 1));
   const PdTree built_alone(mesh, 1);
   const PdTree::Tree& alone = built_alone.tree();
   for (const unsigned threads : {2u, 3u, 8u}) {
@@ -102,14 +101,14 @@ TEST(PdTree, IsTheSameTreeWhateverTheNumberOfThreads) {
 }
 
 TEST(PdTree, HoldsFewBytesATriangle) {
-  const auto mesh = std::make_shared<const Mesh>(make_cortex(0.7, 1));
+  const auto mesh = mesh_of(make_cortex(0.7, 1));
   const auto count = static_cast<double>(mesh->triangle_count());
   EXPECT_LT(static_cast<double>(PdTree(mesh).memory()) / count, 52.0);
 }
 
 // Limits a little above what was found: a worse tree, or a test less sharp, shows here.
 TEST(PdTree, LooksAtNoMoreThanItDid) {
-  const auto mesh = std::make_shared<const Mesh>(make_cortex(0.7, 1));
+  const auto mesh = mesh_of(make_cortex(0.7, 1));
   const PdTree index(mesh);
   TriangleBuffer found(mesh->triangle_count());
   Random random(4);

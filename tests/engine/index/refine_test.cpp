@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <numeric>
 #include <string_view>
-#include <vector>
 
-#include "keepout/fixtures/poses.h"
 #include "keepout/fixtures/shapes.h"
 #include "keepout/geometry/closest_point.h"
 #include "keepout/index/query.h"

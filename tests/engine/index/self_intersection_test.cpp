@@ -4,14 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Geometry>
-#include <memory>
-#include <string>
-
-#include "keepout/fixtures/shapes.h"
 #include "keepout/index/brute_force.h"
 #include "keepout/index/pd_tree.h"
-#include "keepout/mesh/mesh.h"
+#include "meshes.h"
 #include "shapes_to_try.h"
 #include "small_surfaces.h"
 
@@ -115,7 +110,7 @@ TEST(MeetImproperly, ATriangleWithoutAnAreaDoesNot) {
 }
 
 std::size_t count(const Surface& surface) {
-  const auto mesh = std::make_shared<const Mesh>(surface);
+  const auto mesh = mesh_of(surface);
   const std::size_t pairs = count_self_intersections(*mesh, PdTree(mesh));
   std::size_t all_pairs = 0;
   for (TriangleId a = 0; a < mesh->triangle_count(); ++a) {
@@ -148,7 +143,7 @@ TEST(SelfIntersections, OfLongTrianglesAmongShortOnesAreFound) {
 TEST(SelfIntersections, OfTheGeneratedSolidsThereAreNone) {
   for (const Shape& shape : shapes_to_try()) {
     if (shape.kind != ShapeKind::solid) continue;
-    const auto mesh = std::make_shared<const Mesh>(shape.make());
+    const auto mesh = mesh_of(shape.make());
     EXPECT_EQ(count_self_intersections(*mesh, PdTree(mesh)), 0u) << shape.name;
   }
 }

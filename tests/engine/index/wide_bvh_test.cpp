@@ -3,9 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <cstring>
-#include <vector>
 
 #include "engine/index/exact_index.h"
 #include "keepout/error.h"
@@ -17,7 +15,7 @@ namespace {
 TEST(WideBvh, GivesTheTrianglesThatTouchTheBallAndNoOthers) {
   for (const Shape& shape : shapes_to_try()) {
     SCOPED_TRACE(shape.name);
-    const auto mesh = std::make_shared<const Mesh>(shape.make());
+    const auto mesh = mesh_of(shape.make());
     expect_exact(*mesh, WideBvh(mesh), 10);
     if (HasFatalFailure()) return;
   }
@@ -27,7 +25,7 @@ TEST(WideBvh, IsExactWhereverTheMeshIsAndHoweverLarge) {
   for (const double scale : {1e-30, 1e-12, 1e-6, 1.0, 1e6, 1e16, 1e22}) {
     for (const double offset : {0.0, 10.0, 1e6}) {
       SCOPED_TRACE(testing::Message() << "scale " << scale << " offset " << offset);
-      const auto mesh = moved(*shared_shape("gear"), [&](const Vec3& v) -> Vec3 {
+      const auto mesh = moved(*mesh_of("gear"), [&](const Vec3& v) -> Vec3 {
         return scale * (v + offset * Vec3(1.0, -0.7, 0.3));
       });
       expect_exact(*mesh, WideBvh(mesh), 3);
@@ -48,18 +46,18 @@ TEST(WideBvh, IsExactForEveryNumberOfTrianglesAboutAFullTree) {
 }
 
 TEST(WideBvh, IsExactWhereTrianglesAreInOnePlaneOrAllAlike) {
-  const auto flat = moved(*shared_shape("cortex"), [](const Vec3& v) -> Vec3 {
+  const auto flat = moved(*mesh_of("cortex"), [](const Vec3& v) -> Vec3 {
     return {v.x(), v.y(), 3.0};
   });
   expect_exact(*flat, WideBvh(flat), 5);
   Surface alike{{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)}, {}};
   alike.triangles.assign(3000, {0, 1, 2});
-  const auto mesh = std::make_shared<const Mesh>(alike);
+  const auto mesh = mesh_of(alike);
   expect_exact(*mesh, WideBvh(mesh), 5);
 }
 
 TEST(WideBvh, HoldsNothingInABallThatIsNoNumber) {
-  const auto mesh = shared_shape("cube");
+  const auto mesh = mesh_of("cube");
   const WideBvh index(mesh);
   TriangleBuffer found(mesh->triangle_count());
   index.collect({Vec3::Constant(std::nan("")), 1.0}, found);
@@ -114,7 +112,7 @@ void expect_sound(const WideBvh::Tree& index) {
 TEST(WideBvh, BoxesHoldTheirTrianglesAndEveryTriangleIsThereOnce) {
   for (const char* name : {"cortex", "needles", "far_cube", "fan"}) {
     SCOPED_TRACE(name);
-    expect_sound(WideBvh(shared_shape(name)).tree());
+    expect_sound(WideBvh(mesh_of(name)).tree());
     if (HasFatalFailure()) return;
   }
 }
@@ -122,13 +120,13 @@ TEST(WideBvh, BoxesHoldTheirTrianglesAndEveryTriangleIsThereOnce) {
 TEST(WideBvh, CylindersHoldTheirTriangles) {
   for (const Shape& shape : shapes_to_try()) {
     SCOPED_TRACE(shape.name);
-    expect_cylinders_hold(WideBvh(shared_shape(shape.name)).tree());
+    expect_cylinders_hold(WideBvh(mesh_of(shape.name)).tree());
     if (HasFatalFailure()) return;
   }
   for (const double scale : {1e-30, 1e-12, 1e-6, 1e6, 1e16, 1e22}) {
     for (const double offset : {0.0, 1e6}) {
       SCOPED_TRACE(testing::Message() << "scale " << scale << " offset " << offset);
-      const auto mesh = moved(*shared_shape("gear"), [&](const Vec3& v) -> Vec3 {
+      const auto mesh = moved(*mesh_of("gear"), [&](const Vec3& v) -> Vec3 {
         return scale * (v + offset * Vec3(1.0, -0.7, 0.3));
       });
       expect_cylinders_hold(WideBvh(mesh).tree());
@@ -147,7 +145,7 @@ bool are_equal(const WideBvh::Tree& one, const WideBvh::Tree& other) {
 }
 
 TEST(WideBvh, IsTheSameTreeWhateverTheNumberOfThreads) {
-  const auto mesh = std::make_shared<const Mesh>(make_cortex(0.7, 1));
+  const auto mesh = mesh_of(make_cortex(0.7, 1));
   ASSERT_GT(mesh->triangle_count(), 30'000u);
   const WideBvh alone(mesh, 1);
   for (const unsigned threads : {2u, 3u, 8u}) {
@@ -164,7 +162,7 @@ Vec3 twisted(const Vec3& v) {
 TEST(WideBvh, IsExactAfterARefitToMovedVertices) {
   for (const char* name : {"cortex", "gear", "triangle_soup"}) {
     SCOPED_TRACE(name);
-    const auto before = shared_shape(name);
+    const auto before = mesh_of(name);
     const auto after = moved(*before, twisted);
     for (const unsigned threads : {1u, 3u}) {
       WideBvh index(before);
@@ -179,7 +177,7 @@ TEST(WideBvh, IsExactAfterARefitToMovedVertices) {
 }
 
 TEST(WideBvh, ARefitAndBackIsTheTreeThatWas) {
-  const auto mesh = shared_shape("cortex");
+  const auto mesh = mesh_of("cortex");
   const WideBvh was(mesh);
   WideBvh index(mesh);
   index.refit(moved(*mesh, twisted));
@@ -189,7 +187,7 @@ TEST(WideBvh, ARefitAndBackIsTheTreeThatWas) {
 }
 
 TEST(WideBvh, ARefitIsTheSameWhateverTheNumberOfThreads) {
-  const auto mesh = std::make_shared<const Mesh>(make_cortex(0.7, 1));
+  const auto mesh = mesh_of(make_cortex(0.7, 1));
   const auto after = moved(*mesh, twisted);
   WideBvh alone(mesh, 1);
   alone.refit(after, 1);
@@ -201,32 +199,32 @@ TEST(WideBvh, ARefitIsTheSameWhateverTheNumberOfThreads) {
 }
 
 TEST(WideBvh, RefusesToBeRefitToOtherTriangles) {
-  const auto mesh = shared_shape("gear");
+  const auto mesh = mesh_of("gear");
   const WideBvh was(mesh);
   WideBvh index(mesh);
   Surface other{{mesh->vertices().begin(), mesh->vertices().end()},
                 {mesh->triangles().begin(), mesh->triangles().end()}};
   std::swap(other.triangles.back()[0], other.triangles.back()[1]);
-  EXPECT_THROW(index.refit(std::make_shared<const Mesh>(other)), Error);
+  EXPECT_THROW(index.refit(mesh_of(other)), Error);
   other.triangles.pop_back();
-  EXPECT_THROW(index.refit(std::make_shared<const Mesh>(other)), Error);
+  EXPECT_THROW(index.refit(mesh_of(other)), Error);
   Surface more{{mesh->vertices().begin(), mesh->vertices().end()},
                {mesh->triangles().begin(), mesh->triangles().end()}};
   more.vertices.push_back(Vec3::Zero());
-  EXPECT_THROW(index.refit(std::make_shared<const Mesh>(more)), Error);
+  EXPECT_THROW(index.refit(mesh_of(more)), Error);
   EXPECT_TRUE(are_equal(index.tree(), was.tree()));
   EXPECT_EQ(&index.mesh(), mesh.get());
 }
 
 TEST(WideBvh, HoldsFewBytesATriangle) {
-  const auto mesh = std::make_shared<const Mesh>(make_cortex(0.7, 1));
+  const auto mesh = mesh_of(make_cortex(0.7, 1));
   const auto count = static_cast<double>(mesh->triangle_count());
   EXPECT_LT(static_cast<double>(WideBvh(mesh).memory()) / count, 45.0);
 }
 
 // Limits a little above what was found: a worse tree, or a test less sharp, shows here.
 TEST(WideBvh, LooksAtNoMoreThanItDid) {
-  const auto mesh = std::make_shared<const Mesh>(make_cortex(0.7, 1));
+  const auto mesh = mesh_of(make_cortex(0.7, 1));
   const WideBvh index(mesh);
   TriangleBuffer found(mesh->triangle_count());
   Random random(4);

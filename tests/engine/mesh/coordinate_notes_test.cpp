@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // RAS and LPS: what files say, and what becomes of it.
-#include <algorithm>
 
+#include "by_name.h"
 #include "engine/mesh/mesh_files.h"
 
 namespace keepout {
@@ -45,13 +45,7 @@ class TaggedMesh : public LoadMesh, public testing::WithParamInterface<Tagged> {
     return load_mesh(write(tag), options);
   }
   std::string complaint_about(const std::string& tag, const LoadOptions& options = {}) const {
-    try {
-      load_mesh(write(tag), options);
-    } catch (const Error& error) {
-      return error.what();
-    }
-    ADD_FAILURE() << "no error";
-    return {};
+    return error_of([&] { load_mesh(write(tag), options); });
   }
   fs::path write(const std::string& tag) const {
     return folder.write(GetParam().file, GetParam().write(round_torus(), tag));
@@ -75,8 +69,7 @@ const std::vector<Tagged>& tagged_formats() {
   return all;
 }
 
-INSTANTIATE_TEST_SUITE_P(Formats, TaggedMesh, testing::ValuesIn(tagged_formats()),
-                         [](const auto& format) { return format.param.name; });
+INSTANTIATE_TEST_SUITE_P(Formats, TaggedMesh, testing::ValuesIn(tagged_formats()), by_name);
 
 TEST_P(TaggedMesh, WhatTheFileStatesIsFound) {
   EXPECT_EQ(load_tagged("3D Slicer output. SPACE=LPS").stated, lps);

@@ -4,9 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <numbers>
-
-#include "keepout/mesh/mesh.h"
 #include "small_surfaces.h"
 
 namespace keepout {

@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 
 #include "engine/mesh/mesh_files.h"
-#include "keepout/mesh/mesh.h"
 
 namespace keepout {
 namespace {

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What holds for every format.
-#include <random>
 
 #include "engine/mesh/mesh_files.h"
-#include "keepout/mesh/mesh.h"
 
 namespace keepout {
 namespace {

@@ -3,17 +3,13 @@
 
 #include <gtest/gtest.h>
 
-#include <bit>
-#include <cmath>
 #include <cstring>
 #include <functional>
 #include <iomanip>
 #include <ostream>
 #include <sstream>
-#include <string>
 #include <vector>
 
-#include "keepout/error.h"
 #include "keepout/mesh/binary_stl.h"
 #include "keepout/mesh/load_mesh.h"
 #include "small_surfaces.h"
@@ -123,8 +119,7 @@ std::string as_binary_ply(const Surface& surface, bool big_endian) {
 inline std::string as_binary_stl(const Surface& surface) {
   const TemporaryFolder folder;
   write_binary_stl(folder.path() / "mesh.stl", surface);
-  std::ifstream file(folder.path() / "mesh.stl", std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
+  return folder.contents("mesh.stl");
 }
 
 struct Format {
@@ -185,19 +180,12 @@ class LoadMesh : public testing::Test {
     return complaint(folder.write(name, contents));
   }
   static std::string complaint(const fs::path& path) {
-    try {
-      load_mesh(path);
-    } catch (const Error& error) {
-      EXPECT_TRUE(std::string_view(error.what()).starts_with(path.string())) << error.what();
-      return std::string(error.what()).substr(path.string().size());
-    }
-    ADD_FAILURE() << "no error";
-    return {};
+    const std::string message = error_of([&] { load_mesh(path); });
+    EXPECT_TRUE(message.starts_with(path.string())) << message;
+    return message.substr(std::min(message.size(), path.string().size()));
   }
 
   TemporaryFolder folder;
 };
-
-#define EXPECT_CONTAINS(text, part) EXPECT_NE((text).find(part), std::string::npos) << (text)
 
 }  // namespace keepout

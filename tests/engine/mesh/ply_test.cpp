@@ -4,7 +4,6 @@
 #include <Eigen/Geometry>
 
 #include "engine/mesh/mesh_files.h"
-#include "keepout/error.h"
 #include "mesh_file.h"
 
 namespace keepout {
@@ -17,12 +16,7 @@ class BinaryPly : public testing::Test {
   }
 
   std::string complaint(std::string_view contents) {
-    try {
-      read(contents);
-      return "no error";
-    } catch (const Error& error) {
-      return error.what();
-    }
+    return error_of([&] { read(contents); });
   }
 
   TemporaryFolder folder;

@@ -6,6 +6,7 @@
 #include "keepout/fixtures/random.h"
 #include "keepout/fixtures/shapes.h"
 #include "keepout/mesh/doctor.h"
+#include "messages.h"
 
 namespace keepout {
 namespace {
@@ -60,15 +61,13 @@ Mesh cube_times(double factor) {
 TEST(QuickCheck, ASizeThatNoAnatomyHasIsSaidToBeInAnotherUnit) {
   const auto metres = quick_check(cube_times(0.001));
   ASSERT_EQ(metres.size(), 1u);
-  EXPECT_NE(metres[0].find("is 0.1 mm large if its numbers are mm; as plausible are m, of which it "
-                           "would be 100 mm"),
-            std::string::npos)
-      << metres[0];
+  EXPECT_CONTAINS(metres[0],
+                  "is 0.1 mm large if its numbers are mm; as plausible are m, of which it "
+                  "would be 100 mm");
   const auto micrometres = quick_check(cube_times(1000.0));
   ASSERT_EQ(micrometres.size(), 1u);
-  EXPECT_NE(micrometres[0].find("is 100000 mm large"), std::string::npos) << micrometres[0];
-  EXPECT_NE(micrometres[0].find("um, of which it would be 100 mm"), std::string::npos)
-      << micrometres[0];
+  EXPECT_CONTAINS(micrometres[0], "is 100000 mm large");
+  EXPECT_CONTAINS(micrometres[0], "um, of which it would be 100 mm");
   EXPECT_TRUE(quick_check(cube_times(0.25)).empty());  // an aneurysm
 }
 
@@ -77,11 +76,11 @@ TEST(QuickCheck, AnOpenAndAnInconsistentSurfaceAreSaidToBeSo) {
   surface.triangles.pop_back();
   const auto open = quick_check(Mesh(surface));
   ASSERT_EQ(open.size(), 1u);
-  EXPECT_NE(open[0].find("open surface"), std::string::npos) << open[0];
+  EXPECT_CONTAINS(open[0], "open surface");
   std::swap(surface.triangles[3][0], surface.triangles[3][1]);
   const auto both = quick_check(Mesh(surface));
   ASSERT_EQ(both.size(), 2u);
-  EXPECT_NE(both[1].find("wound inconsistently"), std::string::npos) << both[1];
+  EXPECT_CONTAINS(both[1], "wound inconsistently");
 }
 
 TEST(QuickCheck, TrianglesThatNameAVertexTwiceHaveNoEdges) {

@@ -2,19 +2,14 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-#include <algorithm>
-#include <cmath>
-#include <memory>
-#include <numbers>
 #include <ostream>
 #include <string>
-#include <vector>
 
 #include "keepout/fixtures/poses.h"
-#include "keepout/fixtures/shapes.h"
 #include "keepout/index/pd_tree.h"
 #include "keepout/mesh/doctor.h"
 #include "keepout/oracle/safety_oracle.h"
+#include "meshes.h"
 #include "random_places.h"
 #include "small_surfaces.h"
 #include "step/escape.h"
@@ -26,7 +21,7 @@ namespace {
 class Classifier {
  public:
   explicit Classifier(Surface surface)
-      : mesh_(std::make_shared<const Mesh>(std::move(surface))),
+      : mesh_(mesh_of(std::move(surface))),
         near_(mesh_, std::make_shared<PdTree>(mesh_), mesh_->triangle_count(), budget_),
         oracle_(mesh_) {}
 
@@ -263,7 +258,7 @@ TEST(SideOfSurface, FarOffIsTheSideThatIsOutsideWhicheverThatIs) {
 }
 
 TEST(SideOfSurface, MoreTrianglesThanThereIsRoomForHaveNoResult) {
-  const auto mesh = std::make_shared<const Mesh>(make_cube(50));
+  const auto mesh = mesh_of(make_cube(50));
   Budget budget;
   Neighborhood none(mesh, std::make_shared<PdTree>(mesh), 0, budget);
   EXPECT_FALSE(find_side(none, Vec3(0, 0, 51)).has_value());

@@ -2,13 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <limits>
 #include <map>
-#include <random>
 
 #include "keepout/error.h"
-#include "keepout/mesh/mesh.h"
 #include "small_surfaces.h"
 
 namespace keepout {

@@ -4,10 +4,11 @@
 #include <algorithm>
 #include <vector>
 
+#include "by_name.h"
 #include "keepout/factory/make_motion_constraint.h"
 #include "keepout/fixtures/poses.h"
-#include "keepout/fixtures/shapes.h"
 #include "keepout/oracle/safety_oracle.h"
+#include "meshes.h"
 #include "step/workspace.h"
 
 namespace keepout {
@@ -31,7 +32,7 @@ std::vector<Motion> motions_near(const Mesh& mesh, std::size_t count) {
 
 class BranchAndBound : public testing::TestWithParam<const char*> {
  protected:
-  std::shared_ptr<const Mesh> mesh_ = std::make_shared<const Mesh>(make_shape(GetParam()));
+  std::shared_ptr<const Mesh> mesh_ = mesh_of(GetParam());
 };
 
 TEST_P(BranchAndBound, IsSafeAndNeverWorseThanTheStepWithoutIt) {
@@ -59,7 +60,7 @@ TEST_P(BranchAndBound, DoesNotDependOnTheNumbering) {
   std::reverse(reversed.triangles.begin(), reversed.triangles.end());
   for (Corners& corners : reversed.triangles) std::swap(corners[0], corners[1]);
   auto one = guard(mesh_, 16);
-  auto other = guard(std::make_shared<const Mesh>(reversed), 16);
+  auto other = guard(mesh_of(reversed), 16);
   for (const Motion& motion : motions_near(*mesh_, 200)) {
     const Step a = one.step(motion);
     const Step b = other.step(motion);
@@ -70,7 +71,7 @@ TEST_P(BranchAndBound, DoesNotDependOnTheNumbering) {
 
 INSTANTIATE_TEST_SUITE_P(Shapes, BranchAndBound,
                          testing::Values("cube", "gear", "cortex", "triangle_soup", "crown"),
-                         [](const auto& p) { return std::string(p.param); });
+                         by_name);
 
 TEST(Branches, TheNearestOpenOneComesFirstAndOnce) {
   Branches branches(3);

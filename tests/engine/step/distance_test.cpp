@@ -3,20 +3,17 @@
 // rule searches or not, and whatever the processor.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <limits>
-#include <vector>
-
+#include "brute_force.h"
+#include "by_name.h"
 #include "keepout/activation/registry.h"
 #include "keepout/fixtures/poses.h"
-#include "keepout/fixtures/shapes.h"
-#include "keepout/geometry/closest_point.h"
 #include "keepout/index/brute_force.h"
 #include "keepout/index/pd_tree.h"
 #include "keepout/index/wide_bvh.h"
 #include "keepout/simd_target.h"
 #include "keepout/solvers/active_set.h"
 #include "keepout/step/motion_constraint.h"
+#include "meshes.h"
 #include "trials.h"
 
 namespace keepout {
@@ -25,14 +22,6 @@ namespace {
 constexpr double margin = 0.4;
 constexpr double tool_radius = 0.6;
 constexpr double kept = tool_radius + margin;
-
-double distance_by_force(const Mesh& mesh, const Vec3& tip) {
-  double least = std::numeric_limits<double>::infinity();
-  for (TriangleId t = 0; t < mesh.triangle_count(); ++t) {
-    least = std::min(least, closest_point(mesh.triangle(t), tip).distance);
-  }
-  return least;
-}
 
 /// The same rule on indices that offer different sources of triangles.
 std::vector<MotionConstraint> forms_of(std::string_view rule,
@@ -65,7 +54,7 @@ std::vector<Motion> motions_about(const Mesh& mesh) {
 
 class StepDistance : public ::testing::TestWithParam<std::string> {
  protected:
-  std::shared_ptr<const Mesh> mesh_ = std::make_shared<const Mesh>(make_shape(GetParam()));
+  std::shared_ptr<const Mesh> mesh_ = mesh_of(GetParam());
   double rounding_ = 1e-13 * (mesh_->bounds().size().norm() + mesh_->bounds().high.norm());
 };
 
@@ -73,7 +62,7 @@ TEST_P(StepDistance, IsThatOfBruteForceWhereItIsKnownAndTheSameInEveryForm) {
   std::size_t known = 0, unknown = 0;
   auto forms = forms_of("certified", mesh_, Distances::where_known);
   for (const Motion& motion : motions_about(*mesh_)) {
-    const double distance = distance_by_force(*mesh_, motion.tip);
+    const double distance = distance_to(*mesh_, motion.tip);
     forms[0].forget();
     const Step first = forms[0].step(motion);
     for (std::size_t form = 1; form < forms.size(); ++form) {
@@ -114,7 +103,7 @@ TEST_P(StepDistance, OfATipThatIsPressedAgainstTheSurfaceIsKnown) {
         tips[form] += step.motion;
       }
       if (first) {
-        const double distance = distance_by_force(*mesh_, tips[0]);
+        const double distance = distance_to(*mesh_, tips[0]);
         EXPECT_GE(distance, std::min(*first, kept) - 1e-7);
       }
     }
@@ -127,7 +116,7 @@ TEST_P(StepDistance, IsToldOfEveryTipUnderEveryRuleIfAskedFor) {
     SCOPED_TRACE(rule.name);
     auto forms = forms_of(rule.name, mesh_, Distances::always);
     for (const Motion& motion : motions_about(*mesh_)) {
-      const double distance = distance_by_force(*mesh_, motion.tip);
+      const double distance = distance_to(*mesh_, motion.tip);
       forms[0].forget();
       const Step first = forms[0].step(motion);
       ASSERT_TRUE(first.distance);
@@ -155,11 +144,10 @@ TEST_P(StepDistance, AskedForChangesNothingElse) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Shapes, StepDistance,
-                         ::testing::Values("cortex", "cube", "needles", "tunnel"),
-                         [](const auto& shape) { return shape.param; });
+                         ::testing::Values("cortex", "cube", "needles", "tunnel"), by_name);
 
 TEST(StepDistances, AreTheSameOnEveryProcessor) {
-  const auto mesh = std::make_shared<const Mesh>(make_shape("cortex"));
+  const auto mesh = mesh_of("cortex");
   const std::vector<Motion> motions = motions_about(*mesh);
   for (const Distances distances : {Distances::where_known, Distances::always}) {
     std::vector<std::optional<double>> expected;
@@ -177,7 +165,7 @@ TEST(StepDistances, AreTheSameOnEveryProcessor) {
 }
 
 TEST(StepDistances, AreNotToldForInputThatIsInvalid) {
-  const auto mesh = std::make_shared<const Mesh>(make_shape("cube"));
+  const auto mesh = mesh_of("cube");
   auto forms = forms_of("certified", mesh, Distances::always);
   EXPECT_FALSE(forms[0].step({.tip = {0, 0, std::nan("")}, .desired = {0, 0, 0}}).distance);
   EXPECT_FALSE(forms[0].step({.tip = {0, 0, 1e31}, .desired = {0, 0, 0}}).distance);

@@ -2,14 +2,9 @@
 // Guidance constraints together with the caller's own rows, some of which require motion.
 #include <gtest/gtest.h>
 
-#include <memory>
-
-#include "keepout/activation/certified.h"
+#include "guards.h"
 #include "keepout/fixtures/random.h"
-#include "keepout/fixtures/shapes.h"
-#include "keepout/index/wide_bvh.h"
-#include "keepout/solvers/active_set.h"
-#include "keepout/step/motion_constraint.h"
+#include "stub_solver.h"
 #include "trials.h"
 
 namespace keepout {
@@ -18,9 +13,7 @@ namespace {
 // With so narrow a band, the planes of the rounds do not keep the tip in its region. A part of the
 // motion would, but it would not satisfy a row that requires motion.
 TEST(GuidesAndRows, AStepThatIsOkSatisfiesTheRows) {
-  const auto mesh = std::make_shared<const Mesh>(make_shape("cube"));
-  MotionConstraint guard(mesh, std::make_shared<WideBvh>(mesh), std::make_unique<CertifiedRule>(),
-                         std::make_unique<ActiveSet>(), {.radius = 5.0, .margin = 0.2});
+  auto guard = guard_of(mesh_of("cube"), {.radius = 5.0, .margin = 0.2});
   Random random(8);
   int ok = 0;
   for (int i = 0; i < test::trials(300); ++i) {
@@ -45,17 +38,7 @@ TEST(GuidesAndRows, AStepThatIsOkSatisfiesTheRows) {
 // The solver ignores all rows. Its motion satisfies the caller's row but leaves the guide; the part
 // that stays in the guide breaks the row.
 TEST(GuidesAndRows, NoPartOfATrialIsExecutedThatBreaksARow) {
-  class Deaf final : public Solver {
-   public:
-    void reserve(int, int) override {}
-    SolveStatus solve(const StepProblem& problem, Solution& solution) noexcept override {
-      solution.u = {problem.desired.data(), 3};
-      return SolveStatus::optimal;
-    }
-  };
-  const auto mesh = std::make_shared<const Mesh>(make_shape("cube"));
-  MotionConstraint guard(mesh, std::make_shared<WideBvh>(mesh), std::make_unique<CertifiedRule>(),
-                         std::make_unique<Deaf>(), {.radius = 5.0, .margin = 0.2});
+  auto guard = guard_of(mesh_of("cube"), {.radius = 5.0, .margin = 0.2}, liar());
   const Vec3 tip(0, 0, 150);
   const Mat3 identity = Mat3::Identity();
   guard.set_guides({Guide::point("ball", Region::ball(tip, 1.0))});

@@ -10,8 +10,8 @@
 #include "each_simd_target.h"
 #include "keepout/factory/make_motion_constraint.h"
 #include "keepout/fixtures/poses.h"
-#include "keepout/fixtures/shapes.h"
 #include "keepout/oracle/safety_oracle.h"
+#include "meshes.h"
 
 namespace keepout {
 namespace {
@@ -24,7 +24,7 @@ bool allows(const Polytope& polytope, const Vec3& motion) {
 }
 
 TEST(MotionConstraintPolytope, EveryMotionWithinItKeepsTheMargin) {
-  const auto mesh = std::make_shared<const Mesh>(make_shape("cortex"));
+  const auto mesh = mesh_of("cortex");
   auto guard = make_motion_constraint(mesh, {.tool_radius = 0.2, .margin = 0.1});
   oracle::SafetyOracle oracle(mesh);
   Random random(2);
@@ -45,7 +45,7 @@ TEST(MotionConstraintPolytope, EveryMotionWithinItKeepsTheMargin) {
 }
 
 TEST(MotionConstraintPolytope, IsTheSameOnEachTarget) {
-  const auto mesh = std::make_shared<const Mesh>(make_shape("cortex"));
+  const auto mesh = mesh_of("cortex");
   Random random(4);
   const std::vector<Vec3> tips = surface_points(*mesh, 50, 0.5, random);
   std::vector<HalfSpace> expected;
@@ -65,7 +65,7 @@ TEST(MotionConstraintPolytope, IsTheSameOnEachTarget) {
 }
 
 TEST(MotionConstraintPolytope, FarFromTheMeshIsTheWholeBall) {
-  const auto mesh = std::make_shared<const Mesh>(make_shape("cube"));
+  const auto mesh = mesh_of("cube");
   auto guard = make_motion_constraint(mesh, {});
   const Polytope polytope = guard.free_polytope(Vec3(0, 0, 70), 2.0);
   EXPECT_TRUE(polytope.ok());
@@ -73,7 +73,7 @@ TEST(MotionConstraintPolytope, FarFromTheMeshIsTheWholeBall) {
 }
 
 TEST(MotionConstraintPolytope, FailuresAllowStandingStillOnly) {
-  const auto mesh = std::make_shared<const Mesh>(make_shape("sphere"));
+  const auto mesh = mesh_of("sphere");
   auto guard = make_motion_constraint(mesh, {});
   auto small = make_motion_constraint(mesh, {.capacity = {.triangles = 10}});
   const double nan = std::numeric_limits<double>::quiet_NaN();

@@ -8,15 +8,15 @@
 #include <limits>
 
 #include "keepout/factory/make_motion_constraint.h"
-#include "keepout/fixtures/shapes.h"
 #include "keepout/oracle/safety_oracle.h"
+#include "meshes.h"
 
 namespace keepout {
 namespace {
 
 // The cube's faces are at +-50.
 MotionConstraint guard(const MotionConstraintSettings& settings = {}) {
-  return make_motion_constraint(std::make_shared<const Mesh>(make_shape("cube")), settings);
+  return make_motion_constraint(mesh_of("cube"), settings);
 }
 
 constexpr double recovery = 0.05;
@@ -56,7 +56,7 @@ TEST(SideWatch, AfterForgettingATipIsPlacedAnewHoweverNear) {
   for (const Corners& c : cube.triangles) {
     nested.triangles.push_back({c[0] + first, c[1] + first, c[2] + first});
   }
-  auto constraint = make_motion_constraint(std::make_shared<const Mesh>(nested), {});
+  auto constraint = make_motion_constraint(mesh_of(nested), {});
   ASSERT_EQ(constraint.step({.tip = {3, 4, 26}, .desired = {0, 0, 4}}).status, Status::free);
   const Motion on{.tip = {3, 4, 30}, .desired = {0, 0, 0.1}};
   EXPECT_EQ(constraint.step(on).status, Status::free);
@@ -88,7 +88,7 @@ TEST(SideWatch, OnTheSurfaceALargeMeshDoesNotTrapTheTip) {
   // Where the tolerance is larger than a ten-thousandth of the recovery.
   Surface huge = make_shape("cube");
   for (Vec3& v : huge.vertices) v *= 100.0;
-  auto constraint = make_motion_constraint(std::make_shared<const Mesh>(huge), {});
+  auto constraint = make_motion_constraint(mesh_of(huge), {});
   Vec3 tip(3, 4, 5000);
   Status last = Status::unsolved;
   for (int cycle = 0; cycle < 20; ++cycle) {
@@ -103,7 +103,7 @@ TEST(SideWatch, OnTheSurfaceALargeMeshDoesNotTrapTheTip) {
 /// Tips a hair off the surface on the free side, as a campaign met them: too near for a margin, far
 /// enough for a side. What leads them off is the certified recovery, and it comes no nearer.
 TEST(SideWatch, ATipAHairOffTheSurfaceComesNoNearer) {
-  const auto mesh = std::make_shared<const Mesh>(make_shape("cortex"));
+  const auto mesh = mesh_of("cortex");
   oracle::SafetyOracle oracle(mesh);
   struct Case {
     Vec3 tip, desired;

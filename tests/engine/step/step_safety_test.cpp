@@ -4,45 +4,31 @@
 
 #include <array>
 #include <cmath>
-#include <limits>
 
+#include "guards.h"
 #include "keepout/activation/paper.h"
 #include "keepout/error.h"
-#include "keepout/factory/make_motion_constraint.h"
 #include "keepout/fixtures/random.h"
-#include "keepout/fixtures/shapes.h"
 #include "keepout/index/pd_tree.h"
-#include "keepout/solvers/active_set.h"
-#include "keepout/step/motion_constraint.h"
+#include "stub_solver.h"
 
 namespace keepout {
 namespace {
 
-std::shared_ptr<const Mesh> cube() { return std::make_shared<const Mesh>(make_shape("cube")); }
-
-MotionConstraint with(std::unique_ptr<ActivationRule> rule, std::unique_ptr<Solver> solver,
-                      const std::shared_ptr<const Mesh>& mesh) {
-  return {
-      mesh, std::make_unique<PdTree>(mesh), std::move(rule), std::move(solver), {.radius = 5.0}};
+MotionConstraint paper_guard(const std::shared_ptr<const Mesh>& mesh,
+                             const StepOptions& options = {.radius = 5.0},
+                             std::unique_ptr<Solver> solver = std::make_unique<ActiveSet>()) {
+  return guard_of<PdTree>(mesh, options, std::move(solver), std::make_unique<PaperRule>());
 }
 
-MotionConstraint guard(const std::shared_ptr<const Mesh>& mesh) {
-  return with(std::make_unique<PaperRule>(), std::make_unique<ActiveSet>(), mesh);
+MotionConstraint guard_with(std::unique_ptr<Solver> solver) {
+  return paper_guard(mesh_of("cube"), {.radius = 5.0}, std::move(solver));
 }
 
 const Vec3 above_the_cube(3, 4, 50.5);  // its faces are at +-50
 
 TEST(StepSafety, ASolverThatClaimsOptimalityForAMotionIntoTheMeshIsNotBelieved) {
-  class Liar final : public Solver {
-   public:
-    void reserve(int, int) override {}
-    SolveStatus solve(const StepProblem& problem, Solution& solution) noexcept override {
-      solution.u = {problem.desired.data(), 3};
-      return SolveStatus::optimal;
-    }
-  };
-  const auto mesh = cube();
-  auto constraint = with(std::make_unique<PaperRule>(), std::make_unique<Liar>(), mesh);
+  auto constraint = guard_with(liar());
   const Step step = constraint.step({.tip = above_the_cube, .desired = {0, 0, -1}});
   EXPECT_EQ(step.status, Status::unsolved);
   EXPECT_EQ(step.motion, Vec3::Zero());
@@ -52,19 +38,11 @@ TEST(StepSafety, ASolverThatClaimsOptimalityForAMotionIntoTheMeshIsNotBelieved) 
 }
 
 TEST(StepSafety, ASolverThatReturnsNoNumberIsNotBelieved) {
-  class Broken final : public Solver {
-   public:
-    void reserve(int, int) override {}
-    SolveStatus solve(const StepProblem&, Solution& solution) noexcept override {
-      solution.u = u_;
-      return SolveStatus::optimal;
-    }
-
-   private:
-    std::array<double, 3> u_{0.0, std::nan(""), 0.0};
-  };
-  const auto mesh = cube();
-  auto constraint = with(std::make_unique<PaperRule>(), std::make_unique<Broken>(), mesh);
+  const std::array<double, 3> broken{0.0, std::nan(""), 0.0};
+  auto constraint = guard_with(solver_that([&](const StepProblem&, Solution& solution) {
+    solution.u = broken;
+    return SolveStatus::optimal;
+  }));
   for (const Vec3& tip : {above_the_cube, Vec3(0, 0, 90)}) {
     const Step step = constraint.step({.tip = tip, .desired = {0, 0, -1}});
     EXPECT_FALSE(step.ok());
@@ -73,22 +51,15 @@ TEST(StepSafety, ASolverThatReturnsNoNumberIsNotBelieved) {
 }
 
 TEST(StepSafety, ASolverThatClaimsOptimalityAndGivesNothingIsNotBelieved) {
-  class Silent final : public Solver {
-   public:
-    void reserve(int, int) override {}
-    SolveStatus solve(const StepProblem&, Solution&) noexcept override {
-      return SolveStatus::optimal;
-    }
-  };
-  const auto mesh = cube();
-  auto constraint = with(std::make_unique<PaperRule>(), std::make_unique<Silent>(), mesh);
+  auto constraint =
+      guard_with(solver_that([](const StepProblem&, Solution&) { return SolveStatus::optimal; }));
   const Step step = constraint.step({.tip = above_the_cube, .desired = {0, 0, -1}});
   EXPECT_EQ(step.status, Status::unsolved);
   EXPECT_EQ(step.motion, Vec3::Zero());
 }
 
 TEST(StepSafety, AnAbsurdCapacityIsRefusedBeforeMemoryIsAskedFor) {
-  const auto mesh = cube();
+  const auto mesh = mesh_of("cube");
   for (const Capacity& capacity :
        {Capacity{.planes = ~std::size_t{0}}, Capacity{.variables = ~std::size_t{0}}}) {
     EXPECT_THROW(make_motion_constraint(mesh, {.capacity = capacity}), Error);
@@ -104,15 +75,15 @@ TEST(StepSafety, ARuleThatObjectsForEverEndsInAStatus) {
       return {Judgement::Verdict::objected, 0.0};
     }
   };
-  const auto mesh = cube();
-  auto constraint = with(std::make_unique<Grumbler>(), std::make_unique<ActiveSet>(), mesh);
+  auto constraint = guard_of(mesh_of("cube"), {.radius = 5.0}, std::make_unique<ActiveSet>(),
+                             std::make_unique<Grumbler>());
   const Step step = constraint.step({.tip = above_the_cube, .desired = {0, 0, -1}});
   EXPECT_EQ(step.status, Status::unsolved);
   EXPECT_EQ(step.motion, Vec3::Zero());
 }
 
 TEST(StepSafety, AlmostSingularJacobiansNeverTakeTheTipIn) {
-  auto constraint = guard(cube());
+  auto constraint = paper_guard(mesh_of("cube"));
   Random random(1);
   std::size_t moved = 0, refused = 0;
   for (int i = 0; i < 20'000; ++i) {
@@ -146,19 +117,16 @@ TEST(StepSafety, AlmostSingularJacobiansNeverTakeTheTipIn) {
 }
 
 TEST(StepSafety, WhatIsForgottenIsRefused) {
-  auto constraint = guard(cube());
+  auto constraint = paper_guard(mesh_of("cube"));
   EXPECT_EQ(constraint.step({.tip = Vec3(0, 0, 60)}).status, Status::invalid_input);
   EXPECT_EQ(constraint.step({.desired = Vec3(0, 0, 1)}).status, Status::invalid_input);
   EXPECT_EQ(constraint.step({}).status, Status::invalid_input);
-  const auto mesh = cube();
-  EXPECT_THROW(MotionConstraint(mesh, std::make_unique<PdTree>(mesh), std::make_unique<PaperRule>(),
-                                std::make_unique<ActiveSet>(), {.margin = 0.5}),
-               Error);
+  EXPECT_THROW(paper_guard(mesh_of("cube"), {.margin = 0.5}), Error);
   EXPECT_THROW(make_motion_constraint(nullptr, {}), Error);
 }
 
 TEST(StepSafety, AJacobianWithoutJointsIsNoFreeTip) {
-  auto constraint = guard(cube());
+  auto constraint = paper_guard(mesh_of("cube"));
   const TipJacobian::Matrix none(3, 0);
   const Motion motion{.tip = above_the_cube, .desired = {0, 0, 1}, .jacobian = none};
   EXPECT_EQ(constraint.step(motion).status, Status::invalid_input);
@@ -171,9 +139,7 @@ TEST(StepSafety, AJacobianWithoutJointsIsNoFreeTip) {
 }
 
 TEST(StepSafety, AStepClippedToTheRadiusIsNotRefusedForItsRounding) {
-  const auto mesh = cube();
-  MotionConstraint constraint(mesh, std::make_unique<PdTree>(mesh), std::make_unique<PaperRule>(),
-                              std::make_unique<ActiveSet>(), {.radius = 0.3});
+  auto constraint = paper_guard(mesh_of("cube"), {.radius = 0.3});
   Random random(2);
   for (int i = 0; i < 10'000; ++i) {
     const Vec3 way = 7.0 * random.direction();
@@ -183,16 +149,15 @@ TEST(StepSafety, AStepClippedToTheRadiusIsNotRefusedForItsRounding) {
 }
 
 TEST(StepSafety, ATipSoFarAwayThatAStepIsLostInItsDigitsIsRefused) {
-  auto constraint = guard(cube());
+  auto constraint = paper_guard(mesh_of("cube"));
   EXPECT_EQ(constraint.step({.tip = {1e6, 0, 0}, .desired = {0, 0, 1}}).status, Status::free);
   EXPECT_EQ(constraint.step({.tip = {1e12, 0, 0}, .desired = {0, 0, 1}}).status,
             Status::invalid_input);
 }
 
 TEST(StepSafety, AFailedSolveIsTimedAsWell) {
-  const auto mesh = std::make_shared<const Mesh>(make_shape("thin_plates"));
-  MotionConstraint constraint(mesh, std::make_unique<PdTree>(mesh), std::make_unique<PaperRule>(),
-                              std::make_unique<ActiveSet>(), {.radius = 2.0, .margin = 0.75});
+  const auto mesh = mesh_of("thin_plates");
+  auto constraint = paper_guard(mesh, {.radius = 2.0, .margin = 0.75});
   StageTimes times;
   const Vec3 in_the_gap(0, 0, mesh->bounds().low.z() + 1.5);
   ASSERT_EQ(constraint.step({.tip = in_the_gap, .desired = {0.1, 0, 0}}, times).status,

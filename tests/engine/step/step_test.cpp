@@ -4,39 +4,28 @@
 #include <cmath>
 #include <limits>
 
+#include "guards.h"
 #include "keepout/activation/all_faces.h"
 #include "keepout/activation/paper.h"
 #include "keepout/error.h"
-#include "keepout/factory/make_motion_constraint.h"
 #include "keepout/fixtures/poses.h"
-#include "keepout/fixtures/shapes.h"
 #include "keepout/index/brute_force.h"
 #include "keepout/index/pd_tree.h"
-#include "keepout/solvers/active_set.h"
-#include "keepout/step/motion_constraint.h"
 
 namespace keepout {
 namespace {
 
-std::shared_ptr<const Mesh> make_mesh(std::string_view shape) {
-  return std::make_shared<const Mesh>(make_shape(shape));
-}
-
 template <class Rule>
 MotionConstraint guard(const std::shared_ptr<const Mesh>& mesh, const StepOptions& options,
                        const Capacity& capacity = {}) {
-  return {mesh,
-          std::make_unique<PdTree>(mesh),
-          std::make_unique<Rule>(),
-          std::make_unique<ActiveSet>(),
-          options,
-          capacity};
+  return guard_of<PdTree>(mesh, options, std::make_unique<ActiveSet>(), std::make_unique<Rule>(),
+                          capacity);
 }
 
 // The cube's faces are at +-50.
 
 TEST(Step, AMotionInFreeSpaceComesBackUnchanged) {
-  auto constraint = guard<PaperRule>(make_mesh("cube"), {.radius = 5.0});
+  auto constraint = guard<PaperRule>(mesh_of("cube"), {.radius = 5.0});
   const Step step = constraint.step({.tip = {0, 0, 70}, .desired = {1.1, -2.3, 0.7}});
   EXPECT_EQ(step.status, Status::free);
   EXPECT_EQ(step.motion, Vec3(1.1, -2.3, 0.7));
@@ -44,7 +33,7 @@ TEST(Step, AMotionInFreeSpaceComesBackUnchanged) {
 }
 
 TEST(Step, AMotionIntoAFaceSlidesAlongIt) {
-  auto constraint = guard<PaperRule>(make_mesh("cube"), {.radius = 5.0});
+  auto constraint = guard<PaperRule>(mesh_of("cube"), {.radius = 5.0});
   const Step step = constraint.step({.tip = {3, 4, 51}, .desired = {1, -2, -3}});
   EXPECT_EQ(step.status, Status::limited);
   EXPECT_LT((step.motion - Vec3(1, -2, -1)).norm(), 1e-12);
@@ -55,21 +44,21 @@ TEST(Step, AMotionIntoAFaceSlidesAlongIt) {
 }
 
 TEST(Step, RetreatingFromContactIsNotSlowed) {
-  auto constraint = guard<PaperRule>(make_mesh("cube"), {.radius = 5.0});
+  auto constraint = guard<PaperRule>(mesh_of("cube"), {.radius = 5.0});
   const Step step = constraint.step({.tip = {3, 4, 50}, .desired = {1, -2, 3}});
   EXPECT_EQ(step.status, Status::free);
   EXPECT_LT((step.motion - Vec3(1, -2, 3)).norm(), 1e-15);
 }
 
 TEST(Step, TheMarginIsKept) {
-  auto constraint = guard<PaperRule>(make_mesh("cube"), {.radius = 2.0, .margin = 0.5});
+  auto constraint = guard<PaperRule>(mesh_of("cube"), {.radius = 2.0, .margin = 0.5});
   const Step step = constraint.step({.tip = {3, 4, 51}, .desired = {0, 0, -2}});
   EXPECT_EQ(step.status, Status::limited);
   EXPECT_LT((step.motion - Vec3(0, 0, -0.5)).norm(), 1e-12);
 }
 
 TEST(Step, ATipWithinTheMarginIsPushedOut) {
-  auto constraint = guard<PaperRule>(make_mesh("cube"), {.radius = 2.0, .margin = 0.5});
+  auto constraint = guard<PaperRule>(mesh_of("cube"), {.radius = 2.0, .margin = 0.5});
   const Step step = constraint.step({.tip = {3, 4, 50.2}, .desired = {0, 0, 0}});
   EXPECT_EQ(step.status, Status::limited);
   EXPECT_LT((step.motion - Vec3(0, 0, 0.3)).norm(), 1e-12);
@@ -77,7 +66,7 @@ TEST(Step, ATipWithinTheMarginIsPushedOut) {
 
 TEST(Step, AMarginThatNoMotionCanKeepMeansNoMotion) {
   // Between two plates with a gap of 1, half a millimetre too narrow for the margin.
-  auto constraint = guard<PaperRule>(make_mesh("thin_plates"), {.radius = 2.0, .margin = 0.75});
+  auto constraint = guard<PaperRule>(mesh_of("thin_plates"), {.radius = 2.0, .margin = 0.75});
   const Box& bounds = constraint.mesh().bounds();
   const Vec3 in_the_gap(0, 0, bounds.low.z() + 1.5);
   const Step step = constraint.step({.tip = in_the_gap, .desired = {0.1, 0, 0}});
@@ -87,7 +76,7 @@ TEST(Step, AMarginThatNoMotionCanKeepMeansNoMotion) {
 }
 
 TEST(Step, BadInputIsAStatusAndNoMotion) {
-  auto constraint = guard<PaperRule>(make_mesh("cube"), {.radius = 5.0});
+  auto constraint = guard<PaperRule>(mesh_of("cube"), {.radius = 5.0});
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double inf = std::numeric_limits<double>::infinity();
   for (const double bad : {nan, inf, -inf, 1e31}) {
@@ -107,14 +96,14 @@ TEST(Step, BadInputIsAStatusAndNoMotion) {
 }
 
 TEST(Step, MoreThanTheMotionSphereIsRefused) {
-  auto constraint = guard<PaperRule>(make_mesh("cube"), {.radius = 1.0});
+  auto constraint = guard<PaperRule>(mesh_of("cube"), {.radius = 1.0});
   const Step step = constraint.step({.tip = {0, 0, 60}, .desired = {0, 0, -1.01}});
   EXPECT_EQ(step.status, Status::beyond_reach);
   EXPECT_EQ(step.motion, Vec3::Zero());
 }
 
 TEST(Step, TooManyTrianglesOrPlanesIsAStatusAndNoMotion) {
-  const auto mesh = make_mesh("sphere");
+  const auto mesh = mesh_of("sphere");
   for (const Capacity& capacity : {Capacity{.triangles = 10}, Capacity{.planes = 2}}) {
     auto constraint = guard<AllFaces>(mesh, {.radius = 20.0}, capacity);
     const Step step = constraint.step({.tip = {0, 0, 55}, .desired = {0, 0, -1}});
@@ -124,7 +113,7 @@ TEST(Step, TooManyTrianglesOrPlanesIsAStatusAndNoMotion) {
 }
 
 TEST(Step, JointsMoveTheTipAsTheJacobianSays) {
-  auto constraint = guard<PaperRule>(make_mesh("cube"), {.radius = 5.0, .damping = 1e-9});
+  auto constraint = guard<PaperRule>(mesh_of("cube"), {.radius = 5.0, .damping = 1e-9});
   // Four joints: one of them moves the tip straight down, two slant, one does nothing.
   Eigen::Matrix<double, 3, Eigen::Dynamic> jacobian(3, 4);
   jacobian << 1, 0, 0.5, 0,  //
@@ -141,7 +130,7 @@ TEST(Step, JointsMoveTheTipAsTheJacobianSays) {
 }
 
 TEST(Step, AJacobianThatLosesADirectionNeedsDamping) {
-  auto constraint = guard<PaperRule>(make_mesh("cube"), {.radius = 5.0});
+  auto constraint = guard<PaperRule>(mesh_of("cube"), {.radius = 5.0});
   Eigen::Matrix<double, 3, Eigen::Dynamic> jacobian(3, 2);
   jacobian << 1, 2, 0, 0, 0, 0;  // both joints move the tip along x
   const Step step =
@@ -151,7 +140,7 @@ TEST(Step, AJacobianThatLosesADirectionNeedsDamping) {
 }
 
 TEST(Step, MoreJointsThanRoomWasMadeForIsAStatus) {
-  auto constraint = guard<PaperRule>(make_mesh("cube"), {.radius = 5.0}, {.variables = 3});
+  auto constraint = guard<PaperRule>(mesh_of("cube"), {.radius = 5.0}, {.variables = 3});
   const Eigen::Matrix<double, 3, Eigen::Dynamic> jacobian =
       Eigen::Matrix<double, 3, Eigen::Dynamic>::Ones(3, 9);
   const Step step =
@@ -160,12 +149,11 @@ TEST(Step, MoreJointsThanRoomWasMadeForIsAStatus) {
 }
 
 TEST(Step, DoesNotDependOnTheIndex) {
-  const auto mesh = make_mesh("cortex");
+  const auto mesh = mesh_of("cortex");
   const StepOptions options{.radius = 5.0, .margin = 0.1};
   auto with_tree = guard<PaperRule>(mesh, options);
-  MotionConstraint with_brute(mesh, std::make_unique<BruteForce>(mesh),
-                              std::make_unique<PaperRule>(), std::make_unique<ActiveSet>(),
-                              options);
+  auto with_brute = guard_of<BruteForce>(mesh, options, std::make_unique<ActiveSet>(),
+                                         std::make_unique<PaperRule>());
   Random random(8);
   for (const Vec3& tip : surface_points(*mesh, 300, 1.0, random)) {
     const Vec3 desired = random.direction() * 2.0;
@@ -197,7 +185,7 @@ class LazyFaces final : public ActivationRule {
 
   Opening open(const CycleProblem& problem, HalfSpaceBuffer&) noexcept override {
     planes_.clear();
-    return eager_.start(problem, planes_);
+    return eager_.open(problem, planes_);
   }
 
   Judgement judge(const CycleProblem&, const Vec3& trial,
@@ -222,7 +210,7 @@ class LazyFaces final : public ActivationRule {
 };
 
 TEST(Step, ARuleThatHandsOverPlanesOneAtATimeComesToTheSameMotion) {
-  const auto mesh = make_mesh("saddle_terrain");
+  const auto mesh = mesh_of("saddle_terrain");
   const StepOptions options{.radius = 8.0};
   auto eager = guard<AllFaces>(mesh, options);
   auto lazy = guard<LazyFaces>(mesh, options);
@@ -242,7 +230,7 @@ TEST(Step, ARuleThatHandsOverPlanesOneAtATimeComesToTheSameMotion) {
 }
 
 TEST(Step, TellsWhatEachStageTook) {
-  auto constraint = guard<PaperRule>(make_mesh("sphere"), {.radius = 10.0});
+  auto constraint = guard<PaperRule>(mesh_of("sphere"), {.radius = 10.0});
   StageTimes times;
   constraint.step({.tip = {0, 0, 51}, .desired = {0, 0, -2}}, times);
   EXPECT_GT(times.query, 0);
@@ -252,7 +240,7 @@ TEST(Step, TellsWhatEachStageTook) {
 }
 
 TEST(MotionConstraint, TellsToolRadiusAndMarginApartAndKeepsBoth) {
-  const auto mesh = make_mesh("cube");
+  const auto mesh = mesh_of("cube");
   auto by_hand = guard<PaperRule>(mesh, {.radius = 2.0, .tool_radius = 0.3, .margin = 0.2});
   auto by_name = make_motion_constraint(mesh, {.radius = 2.0, .tool_radius = 0.3, .margin = 0.2});
   for (MotionConstraint* constraint : {&by_hand, &by_name}) {
@@ -266,7 +254,7 @@ TEST(MotionConstraint, TellsToolRadiusAndMarginApartAndKeepsBoth) {
 }
 
 TEST(MotionConstraint, RefusesOptionsOutOfRange) {
-  const auto mesh = make_mesh("cube");
+  const auto mesh = mesh_of("cube");
   EXPECT_THROW(guard<PaperRule>(mesh, {.radius = 0.0}), Error);
   EXPECT_THROW(guard<PaperRule>(mesh, {.radius = -1.0}), Error);
   EXPECT_THROW(guard<PaperRule>(mesh, {.radius = std::nan("")}), Error);

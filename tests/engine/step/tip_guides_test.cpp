@@ -1,20 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
-#include <Eigen/Geometry>
-#include <algorithm>
 #include <cmath>
-#include <memory>
-#include <vector>
 
-#include "keepout/activation/certified.h"
-#include "keepout/error.h"
+#include "brute_force.h"
+#include "guards.h"
 #include "keepout/fixtures/random.h"
-#include "keepout/fixtures/shapes.h"
-#include "keepout/geometry/closest_point.h"
-#include "keepout/index/wide_bvh.h"
-#include "keepout/solvers/active_set.h"
-#include "keepout/step/motion_constraint.h"
+#include "messages.h"
+#include "stub_solver.h"
 #include "trials.h"
 
 namespace keepout {
@@ -25,18 +18,9 @@ constexpr double kept_off = 0.2;
 /// A ball of radius 1 beside a shape.
 struct Loop {
   explicit Loop(const char* shape)
-      : mesh(std::make_shared<const Mesh>(make_shape(shape))),
-        guard(mesh, std::make_shared<WideBvh>(mesh), std::make_unique<CertifiedRule>(),
-              std::make_unique<ActiveSet>(),
-              {.radius = 5.0, .tool_radius = 1.0, .margin = kept_off, .damping = 0.0}) {}
-
-  double distance(const Vec3& tip) const {
-    double least = 1e30;
-    for (TriangleId t = 0; t < mesh->triangle_count(); ++t) {
-      least = std::min(least, closest_point(mesh->triangle(t), tip).distance);
-    }
-    return least;
-  }
+      : mesh(mesh_of(shape)),
+        guard(guard_of(mesh,
+                       {.radius = 5.0, .tool_radius = 1.0, .margin = kept_off, .damping = 0.0})) {}
 
   std::shared_ptr<const Mesh> mesh;
   MotionConstraint guard;
@@ -44,11 +28,7 @@ struct Loop {
 
 TEST(TipGuides, KeepCorridorLineAndMeshAtOnce) {
   Loop loop("gear");
-  Vec3 top = loop.mesh->vertex(0);
-  for (VertexId v = 1; v < loop.mesh->vertex_count(); ++v) {
-    if (loop.mesh->vertex(v).z() > top.z()) top = loop.mesh->vertex(v);
-  }
-  const Vec3 start = top + Vec3(0, 0, 4);
+  const Vec3 start = highest_vertex(*loop.mesh) + Vec3(0, 0, 4);
   loop.guard.set_guides({Guide::point("corridor", Region::slab(start, Vec3(1, 0, 0), 1.0)),
                          Guide::point("line", Region::tube(start, Vec3(0, 1, 0.1), 6.0)),
                          Guide::point("reach", Region::ball(start, 8.0))});
@@ -73,7 +53,7 @@ TEST(TipGuides, KeepCorridorLineAndMeshAtOnce) {
     way += step.motion.norm();
     for (std::size_t g = 0; g < 3; ++g) held[g] += step.guides[g].limits ? 1 : 0;
     if (i % 20 != 0) continue;
-    const double distance = loop.distance(tip);
+    const double distance = distance_to(*loop.mesh, tip);
     ASSERT_GE(distance, 1.0 + kept_off - 1e-9);
     met += distance < 1.0 + kept_off + 0.01 ? 1 : 0;
   }
@@ -210,10 +190,8 @@ TEST(TipGuides, ThatContradictEachOtherLeaveAMotionAlongThem) {
 
 // A motion that leads out of the mesh is not proved, so it has no priority over guides.
 TEST(TipGuides, MayForbidTheWayOutOfTheMesh) {
-  const auto mesh = std::make_shared<const Mesh>(make_shape("cube"));
-  MotionConstraint guard(mesh, std::make_shared<WideBvh>(mesh), std::make_unique<CertifiedRule>(),
-                         std::make_unique<ActiveSet>(), {.radius = 5.0, .margin = kept_off}, {},
-                         Inside::led_out);
+  const auto mesh = mesh_of("cube");
+  auto guard = make_motion_constraint(mesh, {.radius = 5.0, .margin = kept_off});
   const Motion motion{.tip = Vec3(0, 0, mesh->bounds().high.z() - 1.0), .desired = Vec3::Zero()};
   const Step out = guard.step(motion);
   ASSERT_EQ(out.status, Status::recovering);
@@ -222,22 +200,12 @@ TEST(TipGuides, MayForbidTheWayOutOfTheMesh) {
   const Step guided = guard.step(motion);
   EXPECT_EQ(guided.status, Status::inside);
   EXPECT_TRUE(guided.motion.isZero(0.0));
-  EXPECT_NE(guided.reason().find("a guide"), std::string_view::npos);
+  EXPECT_CONTAINS(guided.reason(), "a guide");
 }
 
 TEST(TipGuides, HoldWhateverASolverAnswers) {
-  class Liar final : public Solver {
-   public:
-    void reserve(int, int) override {}
-    SolveStatus solve(const StepProblem& problem, Solution& solution) noexcept override {
-      solution.u = {problem.desired.data(), 3};
-      return SolveStatus::optimal;
-    }
-  };
   Loop loop("cube");
-  MotionConstraint guard(loop.mesh, std::make_shared<WideBvh>(loop.mesh),
-                         std::make_unique<CertifiedRule>(), std::make_unique<Liar>(),
-                         loop.guard.options());
+  MotionConstraint guard = guard_of(loop.mesh, loop.guard.options(), liar());
   Random random(5);
   int left = 0;
   int truncated = 0;
@@ -265,17 +233,10 @@ TEST(TipGuides, HoldWhateverASolverAnswers) {
 
 // Zero motion has an increment for each joint, whatever the solver left in its solution.
 TEST(TipGuides, ThatNoSolverSatisfiesStopTheJoints) {
-  class Hopeless final : public Solver {
-   public:
-    void reserve(int, int) override {}
-    SolveStatus solve(const StepProblem&, Solution&) noexcept override {
-      return SolveStatus::infeasible;
-    }
-  };
   Loop loop("cube");
-  MotionConstraint guard(loop.mesh, std::make_shared<WideBvh>(loop.mesh),
-                         std::make_unique<CertifiedRule>(), std::make_unique<Hopeless>(),
-                         loop.guard.options());
+  MotionConstraint guard =
+      guard_of(loop.mesh, loop.guard.options(),
+               solver_that([](const StepProblem&, Solution&) { return SolveStatus::infeasible; }));
   const Vec3 tip = loop.mesh->bounds().high + Vec3::Constant(50.0);
   const Eigen::Matrix<double, 3, 5> jacobian = Eigen::Matrix<double, 3, 5>::Ones();
   Motion motion{.tip = tip, .desired = Vec3(1, 0, 0), .jacobian = jacobian};

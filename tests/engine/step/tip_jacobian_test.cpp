@@ -5,13 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
-#include "keepout/activation/certified.h"
-#include "keepout/fixtures/shapes.h"
-#include "keepout/index/wide_bvh.h"
-#include "keepout/solvers/active_set.h"
-#include "keepout/step/motion_constraint.h"
+#include "guards.h"
+#include "messages.h"
 
 namespace keepout {
 namespace {
@@ -19,12 +15,7 @@ namespace {
 using Packed = Eigen::Matrix<double, 3, 7>;
 
 MotionConstraint guard_with(double damping) {
-  const auto mesh = std::make_shared<const Mesh>(make_shape("cube"));
-  return {mesh,
-          std::make_shared<WideBvh>(mesh),
-          std::make_unique<CertifiedRule>(),
-          std::make_unique<ActiveSet>(),
-          {.radius = 5.0, .margin = 0.5, .damping = damping}};
+  return guard_of(mesh_of("cube"), {.radius = 5.0, .margin = 0.5, .damping = damping});
 }
 
 /// Of an arm of seven joints; no two of its numbers are alike.
@@ -118,7 +109,7 @@ TEST_F(TipJacobianTypes, OfOtherThanThreeRowsAreRefused) {
     const Step step = guard_.step(motion);
     EXPECT_EQ(step.status, Status::invalid_input);
     EXPECT_EQ(step.motion, Vec3::Zero());
-    EXPECT_NE(step.reason().find("3 rows"), std::string_view::npos) << step.reason();
+    EXPECT_CONTAINS(step.reason(), "3 rows");
   }
 }
 
@@ -143,8 +134,8 @@ TEST(TipJacobian, OfMoreThanThreeJointsTellsThatItNeedsDamping) {
   MotionConstraint undamped = guard_with(0.0);
   const Step step = undamped.step(motion);
   EXPECT_EQ(step.status, Status::ill_posed);
-  EXPECT_NE(step.reason().find("more than three joints"), std::string_view::npos);
-  EXPECT_NE(step.reason().find("set `damping` above 0"), std::string_view::npos);
+  EXPECT_CONTAINS(step.reason(), "more than three joints");
+  EXPECT_CONTAINS(step.reason(), "set `damping` above 0");
   MotionConstraint damped = guard_with(1e-6);
   EXPECT_TRUE(damped.step(motion).ok());
 }

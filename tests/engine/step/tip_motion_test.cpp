@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
 #include <vector>
 
@@ -14,7 +13,8 @@ namespace {
 constexpr double rounding = 1e-12;  // that is to be kept to [length]
 
 /// What the tip's motion is off by, where it is told; nothing where it is not.
-std::optional<double> error_of(const std::vector<Vec3>& columns, const std::vector<double>& u) {
+std::optional<double> rounding_error(const std::vector<Vec3>& columns,
+                                     const std::vector<double>& u) {
   const auto n = static_cast<Eigen::Index>(columns.size());
   const Vec3 desired = Vec3::Zero();
   const StepProblem problem{.jacobian = {columns.front().data(), 3, n},
@@ -42,7 +42,7 @@ TEST(TipMotion, OfManyJointsIsRoundedByNoMoreThanIsAllowed) {
       columns.front() = Vec3(size, size, -size);
       columns.back() = -columns.front();
       const std::vector<double> u(columns.size(), 1.0);
-      const std::optional<double> error = error_of(columns, u);
+      const std::optional<double> error = rounding_error(columns, u);
       if (!error) continue;
       ++told;
       ASSERT_LE(*error, rounding) << joints << " joints, columns of " << size;
@@ -63,7 +63,7 @@ TEST(TipMotion, OfJointsThatAllButCancelIsRoundedByNoMoreThanIsAllowed) {
       columns.insert(columns.end(), {column, column + 1e-9 * random.direction()});
       u.insert(u.end(), {angle, -angle});
     }
-    const std::optional<double> error = error_of(columns, u);
+    const std::optional<double> error = rounding_error(columns, u);
     if (!error) continue;
     ++told;
     ASSERT_LE(*error, rounding);

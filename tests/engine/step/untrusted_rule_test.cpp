@@ -2,12 +2,7 @@
 // The step checks the answers of a rule that contradicts itself.
 #include <gtest/gtest.h>
 
-#include <memory>
-
-#include "keepout/fixtures/shapes.h"
-#include "keepout/index/wide_bvh.h"
-#include "keepout/solvers/active_set.h"
-#include "keepout/step/motion_constraint.h"
+#include "guards.h"
 
 namespace keepout {
 namespace {
@@ -23,9 +18,8 @@ class Boaster final : public ActivationRule {
 };
 
 TEST(UntrustedRule, NoPartOfATrialIsMadeThatTheRuleRejects) {
-  const auto mesh = std::make_shared<const Mesh>(make_shape("cube"));
-  MotionConstraint guard(mesh, std::make_unique<WideBvh>(mesh), std::make_unique<Boaster>(),
-                         std::make_unique<ActiveSet>(), {.radius = 5.0});
+  auto guard = guard_of(mesh_of("cube"), {.radius = 5.0}, std::make_unique<ActiveSet>(),
+                        std::make_unique<Boaster>());
   const Step step = guard.step({.tip = Vec3(0, 0, 60), .desired = Vec3(0, 0, -1)});
   EXPECT_FALSE(step.ok());
   EXPECT_EQ(step.motion, Vec3::Zero());

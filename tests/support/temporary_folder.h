@@ -10,6 +10,8 @@
 #include <string>
 #include <string_view>
 
+#include "messages.h"
+
 namespace keepout {
 
 /// A folder that nobody else uses, and that goes away with this object.
@@ -32,6 +34,8 @@ class TemporaryFolder {
     std::ofstream(file, std::ios::binary).write(contents.data(), std::ssize(contents));
     return file;
   }
+
+  std::string contents(std::string_view name) const { return contents_of(path_ / name); }
 
  private:
   std::filesystem::path path_;

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+#include "keepout/geometry/closest_point.h"
+#include "keepout/geometry/separation.h"
+#include "keepout/mesh/mesh.h"
+#include "keepout/robot/instrument.h"
+
+namespace keepout {
+
+// Distances found triangle by triangle, without an index.
+
+/// Returns the distances from a point to all triangles.
+inline std::vector<double> distances(const Mesh& mesh, const Vec3& point) {
+  std::vector<double> all(mesh.triangle_count());
+  for (TriangleId t = 0; t < mesh.triangle_count(); ++t) {
+    all[t] = closest_point(mesh.triangle(t), point).distance;
+  }
+  return all;
+}
+
+/// Returns the distance from a point to the mesh.
+inline double distance_to(const Mesh& mesh, const Vec3& point) {
+  return std::ranges::min(distances(mesh, point));
+}
+
+/// Returns the clearance of an instrument: the least distance of a body, less its radius.
+inline double clearance_of(const Instrument& instrument, const Mesh& mesh,
+                           const std::vector<double>& q) {
+  ChainState chain;
+  instrument.chain().forward_kinematics(q, chain);
+  double least = std::numeric_limits<double>::infinity();
+  for (const Body& body : instrument.bodies()) {
+    std::vector<Vec3> core;
+    for (const LinkPoint& point : body.points) core.push_back(chain.at(point.link, point.position));
+    const ConvexTool tool = ConvexTool::hull(core, body.radius);
+    for (TriangleId t = 0; t < mesh.triangle_count(); ++t) {
+      least = std::min(least, separation(tool, Vec3::Zero(), mesh.triangle(t)).distance);
+    }
+  }
+  return least;
+}
+
+}  // namespace keepout
