@@ -27,7 +27,7 @@ constexpr double margin = 0.3;
 constexpr double radius = 1.0;
 
 MotionConstraintSettings settings() {
-  return {.radius = radius, .margin = margin, .capacity = {.planes = 200}};
+  return {.options = {.radius = radius, .margin = margin}, .capacity = {.planes = 200}};
 }
 
 struct Start {
@@ -113,7 +113,7 @@ TEST_P(CertifiedDeterminism, TheProcessorDoesNotMatter) {
   const Surface surface = GetParam().make();
   const std::vector<Start> starts = starts_on(surface, 4);
   MotionConstraintSettings branching = settings();
-  branching.nodes = 8;
+  branching.options.nodes = 8;
   MotionConstraintSettings paper = settings();
   paper.activation = "paper";
   for (const MotionConstraintSettings& with : {settings(), branching, paper}) {
@@ -180,7 +180,7 @@ TEST_P(CertifiedDeterminism, HowFarIsLookedHardlyMatters) {
   const Surface surface = GetParam().make();
   const auto mesh = std::make_shared<const Mesh>(surface);
   MotionConstraintSettings wide = settings();
-  wide.query = Query::sphere;
+  wide.options.query = Query::sphere;
   auto guard = make_motion_constraint(mesh, settings());
   auto wide_guard = make_motion_constraint(mesh, wide);
   Random random(4);

@@ -107,7 +107,7 @@ void open_instrument(Client& client, const std::shared_ptr<const Mesh>& mesh,
 void open_tool(Client& client, const std::shared_ptr<const Mesh>& mesh,
                const std::shared_ptr<const SpatialIndex>& index, MotionConstraintSettings settings,
                const Request& request) {
-  settings.tool_radius = 0.0;
+  settings.options.tool_radius = 0.0;
   settings.activation = "certified";
   settings.narrow_phase = request.narrow_phase.is_given ? request.narrow_phase.text : "exact";
   try {

@@ -135,9 +135,7 @@ void run_trajectory(Scene& scene, Guard& guard, std::uint64_t number, std::uint6
 /// Options follow with each tip: at first any will do that are not refused.
 MotionConstraintSettings any_settings(const Scene& scene) {
   const double radius = scene.mean_edge();
-  return {.radius = radius,
-          .margin = scene.longest_edge() + least_distance_kept(scene, radius),
-          .capacity = {.nodes = most_nodes}};
+  return {.options = {.radius = radius, .margin = scene.longest_edge() + least_distance_kept(scene, radius)}, .capacity = {.nodes = most_nodes}};
 }
 
 }  // namespace

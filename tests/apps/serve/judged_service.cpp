@@ -22,9 +22,9 @@ std::shared_ptr<const Mesh> mesh() {
 app::ServiceSettings settings(std::size_t longest_line) {
   app::ServiceSettings settings;
   settings.mesh = "cube";
-  settings.constraint.radius = 2.0;
-  settings.constraint.damping = 1e-3;
-  settings.constraint.distances = Distances::always;
+  settings.constraint.options.radius = 2.0;
+  settings.constraint.options.damping = 1e-3;
+  settings.constraint.options.distances = Distances::always;
   settings.limits = {.joints = 7, .rows = 4, .motions = 8};
   settings.longest_line = longest_line;
   return settings;

@@ -23,7 +23,7 @@ std::shared_ptr<const Mesh> cube() { return std::make_shared<const Mesh>(make_sh
 MotionConstraint with(std::unique_ptr<ActivationRule> rule, std::unique_ptr<Solver> solver,
                       const std::shared_ptr<const Mesh>& mesh) {
   return {
-      mesh, std::make_unique<PdTree>(mesh), std::move(rule), std::move(solver), {.radius = 5.0}};
+      mesh, std::make_unique<PdTree>(mesh), std::move(rule), std::move(solver), {.radius = 5.0, .margin = 0.0}};
 }
 
 MotionConstraint guard(const std::shared_ptr<const Mesh>& mesh) {
@@ -152,7 +152,7 @@ TEST(StepSafety, WhatIsForgottenIsRefused) {
   EXPECT_EQ(constraint.step({}).status, Status::invalid_input);
   const auto mesh = cube();
   EXPECT_THROW(MotionConstraint(mesh, std::make_unique<PdTree>(mesh), std::make_unique<PaperRule>(),
-                                std::make_unique<ActiveSet>(), {.margin = 0.5}),
+                                std::make_unique<ActiveSet>(), {.radius = 0.0, .margin = 0.5}),
                Error);
   EXPECT_THROW(make_motion_constraint(nullptr, {}), Error);
 }
@@ -173,7 +173,7 @@ TEST(StepSafety, AJacobianWithoutJointsIsNoFreeTip) {
 TEST(StepSafety, AStepClippedToTheRadiusIsNotRefusedForItsRounding) {
   const auto mesh = cube();
   MotionConstraint constraint(mesh, std::make_unique<PdTree>(mesh), std::make_unique<PaperRule>(),
-                              std::make_unique<ActiveSet>(), {.radius = 0.3});
+                              std::make_unique<ActiveSet>(), {.radius = 0.3, .margin = 0.0});
   Random random(2);
   for (int i = 0; i < 10'000; ++i) {
     const Vec3 way = 7.0 * random.direction();

@@ -25,7 +25,7 @@ class Boaster final : public ActivationRule {
 TEST(UntrustedRule, NoPartOfATrialIsMadeThatTheRuleRejects) {
   const auto mesh = std::make_shared<const Mesh>(make_shape("cube"));
   MotionConstraint guard(mesh, std::make_unique<WideBvh>(mesh), std::make_unique<Boaster>(),
-                         std::make_unique<ActiveSet>(), {.radius = 5.0});
+                         std::make_unique<ActiveSet>(), {.radius = 5.0, .margin = 0.0});
   const Step step = guard.step({.tip = Vec3(0, 0, 60), .desired = Vec3(0, 0, -1)});
   EXPECT_FALSE(step.ok());
   EXPECT_EQ(step.motion, Vec3::Zero());
