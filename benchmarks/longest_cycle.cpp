@@ -92,8 +92,11 @@ std::vector<Scene> scenes() {
     for (const double slope : {0.1, 1.0, 5.0}) {
       char name[64];
       std::snprintf(name, sizeof name, "tip of a cone, %u faces, slope %g", unsigned{faces}, slope);
-      all.push_back(
-          {name, make_cone(faces, slope), {.options = {.radius = 5.0, .margin = 1.0}}, 1.5, {0, 0, 1}});
+      all.push_back({name,
+                     make_cone(faces, slope),
+                     {.options = {.radius = 5.0, .margin = 1.0}},
+                     1.5,
+                     {0, 0, 1}});
     }
   }
   all.push_back({"the same, 7 joints",
@@ -123,13 +126,18 @@ std::vector<Scene> scenes() {
                  sphere(700, 50.0),
                  {.options = {.radius = 5.0, .margin = 49.0}},
                  3.0});
-  all.push_back(
-      {"the same, distances always", sphere(700, 50.0), {.options = {.distances = Distances::always}}, 1e-3});
+  all.push_back({"the same, distances always",
+                 sphere(700, 50.0),
+                 {.options = {.distances = Distances::always}},
+                 1e-3});
   all.push_back({"200,000 triangles crossing each other",
                  soup(200'000, 3.0),
                  {.options = {.radius = 5.0, .margin = 0.01}},
                  10.0});
-  all.push_back({"2 M small ones", soup(2'000'000, 0.02), {.options = {.radius = 5.0, .margin = 0.01}}, 10.0});
+  all.push_back({"2 M small ones",
+                 soup(2'000'000, 0.02),
+                 {.options = {.radius = 5.0, .margin = 0.01}},
+                 10.0});
   all.push_back({"100,000 times the same triangle", copies(100'000), {}, 3.0});
   for (const Shape& shape : shapes()) {
     const Mesh mesh(shape.make());

@@ -56,7 +56,6 @@ void replay(const ReplayOptions& options, std::ostream& out) {
   const LoadedMesh loaded = load_named_mesh(options.mesh, options.load);
   MotionConstraintSettings settings = options.constraint;
   settings.warn = warn_on_stderr;
-  settings.distances = Distances::always;
   MotionConstraint constraint = make_motion_constraint(loaded.mesh, settings);
   constraint.set_guides(options.guides);
   std::size_t limited_by_guides = 0;

@@ -51,6 +51,12 @@ std::string text_of(const OptionValue& value) {
   return std::get<std::string>(value);
 }
 
+std::string OptionText::flag() const {
+  std::string flag(command.empty() ? name : command);
+  std::ranges::replace(flag, '_', '-');
+  return flag;
+}
+
 std::string OptionText::expected() const {
   switch (kind) {
     case OptionKind::number:
@@ -92,12 +98,14 @@ OptionValue OptionText::accepted(OptionValue value) const {
   const auto* const number = std::get_if<double>(&value);
   const auto* const whole = std::get_if<std::int64_t>(&value);
   const auto* const text = std::get_if<std::string>(&value);
-  const bool is_accepted =
-      kind == OptionKind::number         ? number != nullptr && contains(range, *number)
-      : kind == OptionKind::whole_number ? whole != nullptr && contains(range, static_cast<double>(*whole))
-      : kind == OptionKind::flag         ? std::holds_alternative<bool>(value)
-      : kind == OptionKind::part         ? text != nullptr
-                                         : text != nullptr && std::ranges::find(names, *text) != names.end();
+  const bool is_accepted = kind == OptionKind::number
+                               ? number != nullptr && contains(range, *number)
+                           : kind == OptionKind::whole_number
+                               ? whole != nullptr && contains(range, static_cast<double>(*whole))
+                           : kind == OptionKind::flag ? std::holds_alternative<bool>(value)
+                           : kind == OptionKind::part
+                               ? text != nullptr
+                               : text != nullptr && std::ranges::find(names, *text) != names.end();
   if (!is_accepted) refuse(text != nullptr ? "'" + *text + "'" : text_of(value));
   return value;
 }

@@ -26,9 +26,10 @@ class Option(NamedTuple):
     default: float | int | bool | str
     unit: str  # empty if it has none
     range: str  # the values that it may have, in words
+    choices: tuple[str, ...]  # the names that it may have; empty unless it has some
     description: str
     is_changeable: bool  # by set_options
-    command: str  # its name for the keepout command, without "--"
+    command: str  # its name for the keepout command, without "--"; empty if it has none
 
 
 class Status(IntEnum):

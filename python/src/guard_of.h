@@ -111,7 +111,8 @@ template <class Settings>
 std::string documented(const char* summary) {
   std::string text = summary;
   const Settings usual;
-  for_each_option(usual, [&](const auto& option, const auto&) { text += '\n' + described(option); });
+  for_each_option(usual,
+                  [&](const auto& option, const auto&) { text += '\n' + described(option); });
   return text;
 }
 
@@ -125,7 +126,8 @@ void bind_guard(py::class_<Guard>& type, const std::string& name) {
            "Replaces the guides: a list of at most 16 Guide, which hold in steps and batches from "
            "now on.")
       .def_property_readonly(
-          "mesh", [](const Guard& self) { return self.index()->mesh_object; }, "The mesh; of several, the first.")
+          "mesh", [](const Guard& self) { return self.index()->mesh_object; },
+          "The mesh; of several, the first.")
       .def_property_readonly(
           "index", [](const Guard& self) { return self.index(); },
           "The Index of the first mesh, which others may share.");
@@ -136,11 +138,12 @@ void bind_guard(py::class_<Guard>& type, const std::string& name) {
   }
   py::options texts;
   texts.disable_function_signatures();  // which do not know the options
-  type.def("set_options", [](Guard& self, const py::kwargs& given) { self.set_options(given); },
-           ("set_options(self: keepout." + name + ", *" + keywords +
-            ") -> None\n\nChanges these options from the next step on; None leaves an option as it "
-            "is. Changes nothing\nwhen it raises Error. A raised margin is reached by recovery.")
-               .c_str());
+  type.def(
+      "set_options", [](Guard& self, const py::kwargs& given) { self.set_options(given); },
+      ("set_options(self: keepout." + name + ", *" + keywords +
+       ") -> None\n\nChanges these options from the next step on; None leaves an option as it "
+       "is. Changes nothing\nwhen it raises Error. A raised margin is reached by recovery.")
+          .c_str());
   for_each_option(usual, [&]<class Options>(const Option<Options>& option, const Options&) {
     const auto get = option.get;
     type.def_property_readonly(

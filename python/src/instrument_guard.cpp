@@ -96,13 +96,13 @@ void InstrumentGuard::prove_each(const Doubles& q, const Doubles& increments, st
     const InUse no_step(constraint_in_use_);
     for (std::size_t m = 0; m < meshes_.size(); ++m) places.push_back(constraint_.place_of(m));
   }
-  do_each(
-      count, 16, threads, [&](InstrumentConstraint& constraint, std::size_t i, const std::stop_token&) {
-        // Or the answer might depend on what this worker proved before.
-        constraint.forget();
-        for (std::size_t m = 0; m < places.size(); ++m) constraint.place(m, places[m]);
-        take(i, constraint.prove(row_of(q, i, width), row_of(increments, i, width)));
-      });
+  do_each(count, 16, threads,
+          [&](InstrumentConstraint& constraint, std::size_t i, const std::stop_token&) {
+            // Or the answer might depend on what this worker proved before.
+            constraint.forget();
+            for (std::size_t m = 0; m < places.size(); ++m) constraint.place(m, places[m]);
+            take(i, constraint.prove(row_of(q, i, width), row_of(increments, i, width)));
+          });
 }
 
 MotionProof InstrumentGuard::prove(const py::object& q, const py::object& increment) {
@@ -196,7 +196,8 @@ index, index_cache: as in MotionConstraint. A max_... is a capacity: a cycle tha
 with Status.over_capacity.)";
 
 constexpr const char* guard_signature =
-    "__init__(self: keepout.InstrumentGuard, mesh: keepout.Mesh, instrument: keepout.Instrument, *, "
+    "__init__(self: keepout.InstrumentGuard, mesh: keepout.Mesh, instrument: keepout.Instrument, "
+    "*, "
     "index: str | keepout.Index = 'wide_bvh', index_cache: str | os.PathLike[str] | None = None";
 
 constexpr const char* joint_step_doc =
@@ -222,10 +223,9 @@ number of threads. Runs without Python's lock.
 q: (m, n). increments: (m, n); None for zeros. A single one of either, (n,), serves all of the
 other. threads: 1 to 1024; None for one a processor.)";
 
-std::unique_ptr<InstrumentGuard> make_instrument_guard(const py::object& mesh, const Instrument& instrument,
-                                      const py::object& index,
-                                      const std::optional<std::filesystem::path>& index_cache,
-                                      const py::kwargs& given) {
+std::unique_ptr<InstrumentGuard> make_instrument_guard(
+    const py::object& mesh, const Instrument& instrument, const py::object& index,
+    const std::optional<std::filesystem::path>& index_cache, const py::kwargs& given) {
   auto settings = settings_from<InstrumentConstraintSettings>(
       "InstrumentGuard", given, {"mesh", "instrument", "index", "index_cache"});
   return std::make_unique<InstrumentGuard>(index_from(mesh, index, index_cache), instrument,
@@ -233,10 +233,12 @@ std::unique_ptr<InstrumentGuard> make_instrument_guard(const py::object& mesh, c
 }
 
 void bind_meshes(py::class_<InstrumentGuard>& type) {
-  type.def("follow", &InstrumentGuard::follow, py::arg("index"), py::kw_only(), py::arg("mesh") = 0,
-           "Replaces a mesh by one that has deformed: an Index of it, such as index.refitted(mesh).\n"
-           "All bodies are placed anew; one that the surface came too close to recovers. mesh: the\n"
-           "number of the mesh, which keeps its pose.")
+  type.def(
+          "follow", &InstrumentGuard::follow, py::arg("index"), py::kw_only(), py::arg("mesh") = 0,
+          "Replaces a mesh by one that has deformed: an Index of it, such as "
+          "index.refitted(mesh).\n"
+          "All bodies are placed anew; one that the surface came too close to recovers. mesh: the\n"
+          "number of the mesh, which keeps its pose.")
       .def(
           "add_mesh", &InstrumentGuard::add_mesh, py::arg("index"), py::kw_only(),
           py::arg("margin") = 0.0,
@@ -245,10 +247,13 @@ void bind_meshes(py::class_<InstrumentGuard>& type) {
       .def(
           "place", &InstrumentGuard::place, py::arg("mesh"), py::arg("pose"),
           py::arg("linear") = py::none(), py::arg("angular") = py::none(),
-          "Sets the pose of a mesh as the next cycle begins, and its velocity: of its frame's origin\n"
-          "[length/s], and its turn about that [rad/s]. Nothing is built anew. The mesh keeps that\n"
+          "Sets the pose of a mesh as the next cycle begins, and its velocity: of its frame's "
+          "origin\n"
+          "[length/s], and its turn about that [rad/s]. Nothing is built anew. The mesh keeps "
+          "that\n"
           "velocity until it is placed again. An invalid pose or velocity raises Error; steps are\n"
-          "Status.invalid_input until a valid one is set. pose: (4, 4), its frame in the world; None\n"
+          "Status.invalid_input until a valid one is set. pose: (4, 4), its frame in the world; "
+          "None\n"
           "is the identity. linear, angular: (3,), in the axes of the world; None is zero.")
       .def("place_of", &InstrumentGuard::place_of, py::arg("mesh"),
            "(4, 4) float64: the pose of a mesh as the next cycle begins.")
@@ -264,9 +269,11 @@ void bind_instrument_guard(py::module_& module) {
   {
     py::options texts;
     texts.disable_function_signatures();
-    const std::string text = guard_signature + keywords_of(InstrumentConstraintSettings()) + ") -> None";
-    type.def(py::init(&make_instrument_guard), py::arg("mesh"), py::arg("instrument"), py::kw_only(),
-             py::arg("index") = "wide_bvh", py::arg("index_cache") = py::none(), text.c_str());
+    const std::string text =
+        guard_signature + keywords_of(InstrumentConstraintSettings()) + ") -> None";
+    type.def(py::init(&make_instrument_guard), py::arg("mesh"), py::arg("instrument"),
+             py::kw_only(), py::arg("index") = "wide_bvh", py::arg("index_cache") = py::none(),
+             text.c_str());
   }
   bind_guard<InstrumentConstraintSettings>(type, "InstrumentGuard");
   bind_meshes(type);

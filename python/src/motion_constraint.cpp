@@ -38,8 +38,8 @@ constexpr const char* constraint_signature =
     "tool: keepout.ConvexTool | None = None";
 
 std::unique_ptr<Guard> make_guard(const py::object& mesh, const py::object& index,
-                            const std::optional<std::filesystem::path>& index_cache,
-                            std::optional<ConvexTool> tool, const py::kwargs& given) {
+                                  const std::optional<std::filesystem::path>& index_cache,
+                                  std::optional<ConvexTool> tool, const py::kwargs& given) {
   auto settings = settings_from<MotionConstraintSettings>("MotionConstraint", given,
                                                           {"mesh", "index", "index_cache", "tool"});
   settings.tool = std::move(tool);
@@ -108,7 +108,8 @@ void bind_motion_constraint(py::module_& module) {
   {
     py::options texts;
     texts.disable_function_signatures();
-    const std::string text = constraint_signature + keywords_of(MotionConstraintSettings()) + ") -> None";
+    const std::string text =
+        constraint_signature + keywords_of(MotionConstraintSettings()) + ") -> None";
     type.def(py::init(&make_guard), py::arg("mesh"), py::kw_only(), py::arg("index") = "wide_bvh",
              py::arg("index_cache") = py::none(), py::arg("tool") = py::none(), text.c_str());
   }
@@ -116,17 +117,18 @@ void bind_motion_constraint(py::module_& module) {
   bind_batches(type);
   type.def("step", &Guard::step, py::arg("tip"), py::arg("desired"),
            py::arg("jacobian") = py::none(), py::arg("rows") = py::none(), step_doc)
-      .def("follow", &Guard::follow, py::arg("index"),
-           "Replaces the mesh by one that has moved: an Index of it, such as index.refitted(mesh).\n"
-           "All tips are placed anew. Nothing tells if a surface has moved over a tip whose side is\n"
-           "not checked: of an open mesh or with inside='taken_as_is'.")
+      .def(
+          "follow", &Guard::follow, py::arg("index"),
+          "Replaces the mesh by one that has moved: an Index of it, such as index.refitted(mesh).\n"
+          "All tips are placed anew. Nothing tells if a surface has moved over a tip whose side "
+          "is\n"
+          "not checked: of an open mesh or with inside='taken_as_is'.")
       .def("free_polytope", &Guard::free_polytope, py::arg("tip"), py::arg("radius"), polytope_doc)
       .def_property_readonly(
           "tool", [](const Guard& self) { return self.settings().tool; },
           "The ConvexTool that must not touch the mesh; None for the ball.")
       .def_property_readonly(
-          "distance_kept",
-          [](const Guard& self) { return distance_kept(self.settings().options); },
+          "distance_kept", [](const Guard& self) { return distance_kept(self.settings().options); },
           "Clearance of the tip, or of all of the tool: tool radius and margin [length].")
       .def("__repr__", &repr);
 }

@@ -19,8 +19,11 @@ py::list rows_of(const Settings& settings) {
   py::list rows;
   for_each_option(settings, [&](const auto& option, const auto& of) {
     const bool can_change = &of == static_cast<const void*>(&settings.options);
+    const bool is_of_command = std::same_as<Settings, MotionConstraintSettings> &&
+                               &of != static_cast<const void*>(&settings.capacity);
     rows.append(type(option.name, type_of(option), option.get(of), option.unit, option.expected(),
-                     option.meaning, can_change, option.flag.empty() ? option.name : option.flag));
+                     py::tuple(py::cast(std::vector(option.names.begin(), option.names.end()))),
+                     option.meaning, can_change, is_of_command ? option.flag() : ""));
   });
   return rows;
 }
@@ -38,14 +41,14 @@ bool load(py::handle given, bool convert, OptionValue& value) {
 
 OptionValue value_from(const OptionText& option, py::handle given) {
   OptionValue value;
-  const bool is_loaded =
-      option.kind == OptionKind::number         ? load<double>(given, true, value)
-      : option.kind == OptionKind::whole_number ? load<std::int64_t>(given, true, value)
-      : option.kind == OptionKind::flag         ? load<bool>(given, false, value)
-                                                : load<std::string>(given, false, value);
+  const bool is_loaded = option.kind == OptionKind::number ? load<double>(given, true, value)
+                         : option.kind == OptionKind::whole_number
+                             ? load<std::int64_t>(given, true, value)
+                         : option.kind == OptionKind::flag ? load<bool>(given, false, value)
+                                                           : load<std::string>(given, false, value);
   if (is_loaded) return option.accepted(std::move(value));
-  const bool is_short = PyLong_Check(given.ptr()) || PyFloat_Check(given.ptr()) ||
-                        PyUnicode_Check(given.ptr());
+  const bool is_short =
+      PyLong_Check(given.ptr()) || PyFloat_Check(given.ptr()) || PyUnicode_Check(given.ptr());
   option.refuse(is_short ? py::repr(given).cast<std::string>() : Py_TYPE(given.ptr())->tp_name);
 }
 

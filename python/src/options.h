@@ -54,7 +54,8 @@ template <class Settings>
 Settings settings_from(std::string_view type, const py::kwargs& given,
                        std::vector<std::string_view> others) {
   Settings settings;
-  for_each_option(settings, [&](const auto& option, const auto&) { others.push_back(option.name); });
+  for_each_option(settings,
+                  [&](const auto& option, const auto&) { others.push_back(option.name); });
   require_known(type, given, others);
   take_given(table_of(settings), given, settings);
   take_given(table_of(settings.options), given, settings.options);

@@ -50,7 +50,11 @@ double mean_edge(const Mesh& mesh) {
 }
 
 MotionConstraint guard(const Scene& scene, int refinements, int nodes) {
-  return make_motion_constraint(scene.mesh, {.options = {.radius = scene.radius, .margin = scene.margin, .refinements = refinements, .nodes = nodes}, .inside = Inside::taken_as_is});
+  return make_motion_constraint(scene.mesh, {.options = {.radius = scene.radius,
+                                                         .margin = scene.margin,
+                                                         .refinements = refinements,
+                                                         .nodes = nodes},
+                                             .inside = Inside::taken_as_is});
 }
 
 /// Steps in all directions, from a tenth of an edge to ten edges long, from where a hand has pushed

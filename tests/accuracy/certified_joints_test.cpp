@@ -16,7 +16,8 @@ namespace {
 constexpr double radius = 1.0, margin = 0.25;
 
 MotionConstraintSettings settings() {
-  return {.options = {.radius = radius, .margin = margin, .damping = 1e-8}, .capacity = {.planes = 200}};
+  return {.options = {.radius = radius, .margin = margin, .damping = 1e-8},
+          .capacity = {.planes = 200}};
 }
 
 TipJacobian::Matrix random_jacobian(Eigen::Index joints, Random& random) {

@@ -32,7 +32,8 @@ namespace keepout::test {
 class Tolerance {
  public:
   Tolerance(const Mesh& mesh, const MotionConstraintSettings& settings)
-      : lengths_(settings.options.radius * (1.0 + 1e-9) + settings.options.tool_radius + settings.options.margin) {
+      : lengths_(settings.options.radius * (1.0 + 1e-9) + settings.options.tool_radius +
+                 settings.options.margin) {
     double longest2 = 0.0;
     for (TriangleId t = 0; t < mesh.triangle_count(); ++t) {
       const Triangle corner = mesh.triangle(t);

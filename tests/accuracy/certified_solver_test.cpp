@@ -95,8 +95,8 @@ MotionConstraint guard_of(const std::shared_ptr<const Mesh>& mesh, std::unique_p
 class CertifiedSolver : public testing::TestWithParam<Shape> {
  protected:
   CertifiedSolver()
-      : loop(GetParam().make(), {.options = {.radius = radius, .margin = margin}, .capacity = {.planes = 200}}) {
-  }
+      : loop(GetParam().make(),
+             {.options = {.radius = radius, .margin = margin}, .capacity = {.planes = 200}}) {}
 
   /// Presses into the surface, whatever `guard` does; the worst loss in tolerances.
   template <class Judge>

@@ -32,7 +32,9 @@ class LibrarySolverStep : public testing::TestWithParam<std::string> {
   /// Closed loops in contact, led by active_set; each step taken by the other solver as well.
   Counts run(const Shape& shape, bool joints) {
     const auto mesh = std::make_shared<const Mesh>(shape.make());
-    MotionConstraintSettings settings{.activation = GetParam(), .options = {.radius = 2.0, .margin = margin, .damping = joints ? 1e-6 : 0.0}};
+    MotionConstraintSettings settings{
+        .activation = GetParam(),
+        .options = {.radius = 2.0, .margin = margin, .damping = joints ? 1e-6 : 0.0}};
     MotionConstraint exact = make_motion_constraint(mesh, settings);
     settings.solver = "nlopt_slsqp";
     MotionConstraint other = make_motion_constraint(mesh, settings);

@@ -206,7 +206,8 @@ TEST(MovingAnatomy, TheBudgetIsThatOfTheIndexThatIsFollowed) {
     return guard.looks();
   };
   MotionConstraint guard = make_motion_constraint(
-      mesh, slow, {.options = {.radius = radius, .margin = margin}, .capacity = {.triangles = 1 << 20}});
+      mesh, slow,
+      {.options = {.radius = radius, .margin = margin}, .capacity = {.triangles = 1 << 20}});
   const std::size_t of_queries = looks(guard);
   EXPECT_GT(of_queries, Capacity::looks_of_a_walk);
   guard.follow(mesh, tree);

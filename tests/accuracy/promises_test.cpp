@@ -45,13 +45,16 @@ TEST(Range, LengthsOutsideAreRefusedWithAWordOnThem) {
   for (const double unit : {1e-80, 1e-29, 1e-17, 1e17, 1e19, 1e25}) {
     SCOPED_TRACE(unit);
     const auto mesh = mesh_of(scaled(make_cube(5.0), unit));
-    EXPECT_THROW(make_motion_constraint(mesh, {.options = {.radius = 5.0 * unit, .margin = 0.2 * unit}}), Error);
+    EXPECT_THROW(
+        make_motion_constraint(mesh, {.options = {.radius = 5.0 * unit, .margin = 0.2 * unit}}),
+        Error);
   }
   const auto mesh = mesh_of(make_cube(5.0));
   EXPECT_THROW(make_motion_constraint(mesh, {.options = {.radius = 1e16}}), Error);
   EXPECT_THROW(make_motion_constraint(mesh, {.options = {.radius = 1e-16, .margin = 1e-6}}), Error);
   EXPECT_THROW(make_motion_constraint(mesh, {.options = {.tool_radius = 1e16}}), Error);
-  EXPECT_THROW(make_motion_constraint(mesh, {.activation = "paper", .options = {.margin = 1e-16}}), Error);
+  EXPECT_THROW(make_motion_constraint(mesh, {.activation = "paper", .options = {.margin = 1e-16}}),
+               Error);
   auto guard = make_motion_constraint(mesh, {.options = {.radius = 5.0, .margin = 0.2}});
   const Step far = guard.step({.tip = Vec3(2e15, 0.0, 0.0), .desired = Vec3(1.0, 0.0, 0.0)});
   EXPECT_EQ(far.status, Status::invalid_input);
@@ -64,7 +67,8 @@ TEST_P(RangeWithin, StepsAreCertifiedInWhateverUnit) {
   Random random(7);
   for (const char* shape : {"gear", "sphere", "needles"}) {
     SCOPED_TRACE(shape);
-    Loop loop(scaled(make_shape(shape), unit), {.options = {.radius = 2.0 * unit, .margin = 0.2 * unit}});
+    Loop loop(scaled(make_shape(shape), unit),
+              {.options = {.radius = 2.0 * unit, .margin = 0.2 * unit}});
     std::size_t held = 0;
     for (const Vec3& place : places(loop, 40, 0.5 * unit, random)) {
       Vec3 tip = place;
@@ -87,7 +91,8 @@ INSTANTIATE_TEST_SUITE_P(Units, RangeWithin, testing::Values(1e-13, 1e-9, 1e-3, 
 /// Where the processor takes denormal numbers for 0, as loops of audio and control often have it.
 TEST(RangeWithin, StepsAreTheSameWithoutDenormals) {
   for (const double unit : {1e-13, 1.0}) {
-    const MotionConstraintSettings settings{.options = {.radius = 2.0 * unit, .margin = 0.2 * unit}};
+    const MotionConstraintSettings settings{
+        .options = {.radius = 2.0 * unit, .margin = 0.2 * unit}};
     Loop loop(scaled(make_shape("gear"), unit), settings);
     Random random(8);
     std::size_t held = 0;
@@ -118,7 +123,8 @@ TEST_P(AfterRefit, NoStepMovesAndNoPolytopeIsFound) {
   auto tree = std::make_shared<WideBvh>(mesh);
   const bool is_certified = std::string_view(GetParam()) == "certified";
   auto guard = make_motion_constraint(
-      mesh, tree, {.activation = GetParam(), .options = {.radius = 5.0, .margin = is_certified ? 0.2 : 0.0}});
+      mesh, tree,
+      {.activation = GetParam(), .options = {.radius = 5.0, .margin = is_certified ? 0.2 : 0.0}});
   const double top = mesh->bounds().high.z();
   const Vec3 down(0.0, 0.0, -1.0);
   for (const double off : {2.0, 0.5, 0.1, -0.5}) {
@@ -163,9 +169,9 @@ TEST(AfterRefit, NoStepMovesWithGuides) {
 }
 
 TEST(AfterRefit, NoStepMovesAConvexTool) {
-  expect_standstill_after_refit(
-      {.options = {.radius = 5.0, .margin = 0.2}, .tool = ConvexTool::box({Vec3(-1, -1, -1), Vec3(1, 1, 1)})},
-      {});
+  expect_standstill_after_refit({.options = {.radius = 5.0, .margin = 0.2},
+                                 .tool = ConvexTool::box({Vec3(-1, -1, -1), Vec3(1, 1, 1)})},
+                                {});
 }
 
 // What a running guard holds on to cannot be replaced behind its back.
@@ -261,7 +267,8 @@ class LittleRecovery : public testing::TestWithParam<double> {};
 
 TEST_P(LittleRecovery, NothingAddsUp) {
   Random random(11);
-  const MotionConstraintSettings settings{.options = {.radius = 1.0, .margin = 0.5, .recovery = GetParam()}};
+  const MotionConstraintSettings settings{
+      .options = {.radius = 1.0, .margin = 0.5, .recovery = GetParam()}};
   for (const char* shape : {"cube", "sphere", "gear"}) {
     SCOPED_TRACE(shape);
     Loop loop(make_shape(shape), settings);
@@ -281,7 +288,8 @@ Surface groove(double angle) {
 /// Where a way off one wall is a way to the other.
 TEST_P(LittleRecovery, NothingAddsUpBetweenWalls) {
   Random random(12);
-  const MotionConstraintSettings settings{.options = {.radius = 1.0, .margin = 0.5, .recovery = GetParam()}};
+  const MotionConstraintSettings settings{
+      .options = {.radius = 1.0, .margin = 0.5, .recovery = GetParam()}};
   for (const double angle : {0.001, 0.02, 0.3, 1.0, 1.5, 2.5}) {
     SCOPED_TRACE(angle);
     Loop loop(groove(angle), settings);
@@ -295,7 +303,8 @@ TEST_P(LittleRecovery, NothingAddsUpBetweenWalls) {
 
 /// A joint that cannot lift the tip within its reach takes a little away each cycle.
 TEST_P(LittleRecovery, NothingAddsUpWhereAJointCannotLeadOff) {
-  const MotionConstraintSettings settings{.options = {.radius = 1.0, .margin = 1.0, .recovery = GetParam()}};
+  const MotionConstraintSettings settings{
+      .options = {.radius = 1.0, .margin = 1.0, .recovery = GetParam()}};
   Loop loop({{{-50, 0, -50}, {50, 0, -50}, {0, 0, 80}}, {{0, 1, 2}}}, settings);
   for (const double share : {0.003, 0.012, 0.0155, 0.03}) {
     SCOPED_TRACE(share);
@@ -312,7 +321,8 @@ TEST_P(LittleRecovery, NothingAddsUpWhereAJointCannotLeadOff) {
 
 /// Two walls, each nearer to the middle than the margin.
 TEST_P(LittleRecovery, LeadsToTheMiddleOfASlotAndKeepsItThere) {
-  const MotionConstraintSettings settings{.options = {.radius = 1.0, .margin = 1.0, .recovery = GetParam()}};
+  const MotionConstraintSettings settings{
+      .options = {.radius = 1.0, .margin = 1.0, .recovery = GetParam()}};
   const Eigen::AngleAxisd turn(0.7, Vec3(1, 2, 3).normalized());
   for (const double off : {0.0, 1e3, 1e6}) {
     SCOPED_TRACE(off);

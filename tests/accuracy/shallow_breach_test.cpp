@@ -58,7 +58,8 @@ TEST(ShallowBreach, OfAMotionThatGlancesIsSeen) {
   constexpr const char* names[] = {"gear", "cortex", "sphere", "cube", "needles", "fan"};
   for (int trial = 0; trial < trials(12); ++trial) {
     SCOPED_TRACE(names[trial % 6]);
-    Loop loop(make_shape(names[trial % 6]), {.options = {.radius = 1.0, .margin = trial % 2 == 0 ? 0.2 : 1.0}});
+    Loop loop(make_shape(names[trial % 6]),
+              {.options = {.radius = 1.0, .margin = trial % 2 == 0 ? 0.2 : 1.0}});
     ASSERT_NO_FATAL_FAILURE(glance(loop, 1.0, 12, random, moved));
   }
   EXPECT_GT(moved, trials(400));

@@ -18,7 +18,8 @@ inline std::shared_ptr<const Mesh> shared(Surface surface) {
 }
 
 inline MotionConstraint guard_of(std::shared_ptr<const Mesh> mesh,
-                                 MotionConstraintSettings settings = {.options = {.margin = kept}}) {
+                                 MotionConstraintSettings settings = {
+                                     .options = {.margin = kept}}) {
   return make_motion_constraint(std::move(mesh), settings);
 }
 

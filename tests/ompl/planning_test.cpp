@@ -169,7 +169,8 @@ TEST(Planning, WithSidesTheInsideIsInvalidAndWithoutItIsAnotherRoom) {
   const TipState centre(space, Vec3::Zero());
   EXPECT_FALSE(make_state_validity_checker(space, guards_of(mesh))->isValid(centre.get()));
   const auto no_sides = std::make_shared<GuardPool>([mesh] {
-    return make_motion_constraint(mesh, {.options = {.margin = margin}, .inside = Inside::taken_as_is});
+    return make_motion_constraint(mesh,
+                                  {.options = {.margin = margin}, .inside = Inside::taken_as_is});
   });
   EXPECT_TRUE(make_state_validity_checker(space, no_sides)->isValid(centre.get()));
   const TipState outside(space, {0, 0, 55});
@@ -208,7 +209,8 @@ TEST(Planning, NothingIsValidOnceTheMeshHasMoved) {
   const auto tree = std::make_shared<WideBvh>(mesh);
   const base::SpaceInformationPtr space = space_around(*mesh);
   const auto guards = std::make_shared<GuardPool>(
-      [mesh, tree] { return make_motion_constraint(mesh, tree, {.options = {.margin = margin}}); }, 1);
+      [mesh, tree] { return make_motion_constraint(mesh, tree, {.options = {.margin = margin}}); },
+      1);
   const TipState from(space, {0, 0, 55}), to(space, {0, 3, 55});
   const auto validator = make_motion_validator(space, guards);
   EXPECT_TRUE(validator->checkMotion(from.get(), to.get()));

@@ -44,7 +44,10 @@ constexpr Inside sides = Inside::taken_as_is;
 std::shared_ptr<GuardPool> steering_guards(const PlanOptions& options, const Scene& scene) {
   return std::make_shared<GuardPool>([&options, &scene] {
     return make_motion_constraint(scene.mesh(), scene.shared_index(),
-                                  {.options = {.radius = options.radius, .tool_radius = options.tool_radius, .margin = options.margin}, .inside = sides});
+                                  {.options = {.radius = options.radius,
+                                               .tool_radius = options.tool_radius,
+                                               .margin = options.margin},
+                                   .inside = sides});
   });
 }
 

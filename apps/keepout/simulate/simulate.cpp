@@ -192,13 +192,14 @@ int simulate(const SimulateOptions& options, std::ostream& out) {
   }
 
   Audit audit(loaded.mesh);
-  Simulation simulation{.mesh_name = options.mesh.stem().string(),
-                        .mesh = loaded.mesh.get(),
-                        .surface = audit.surface(),
-                        .margin = options.constraint.options.tool_radius + options.constraint.options.margin,
-                        .cycle_seconds = cycle_seconds,
-                        .command = options.command,
-                        .settings = settings_of(options)};
+  Simulation simulation{
+      .mesh_name = options.mesh.stem().string(),
+      .mesh = loaded.mesh.get(),
+      .surface = audit.surface(),
+      .margin = options.constraint.options.tool_radius + options.constraint.options.margin,
+      .cycle_seconds = cycle_seconds,
+      .command = options.command,
+      .settings = settings_of(options)};
   const std::vector<std::vector<Vec3>> hand = hand_over(audit, options);
   for (auto& [rule, constraint] : fixtures) {
     simulation.runs.push_back(

@@ -10,6 +10,7 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 #include <variant>
 
 #include "keepout/geometry/shapes.h"
@@ -32,7 +33,7 @@ constexpr Range above_zero(double most) {
   return {std::numeric_limits<double>::denorm_min(), most};
 }
 
-inline constexpr Range positive_length{shortest_length, longest_length};    // a length above 0
+inline constexpr Range positive_length{shortest_length, longest_length};       // a length above 0
 inline constexpr Range zero_or_length{shortest_length, longest_length, true};  // or none
 inline constexpr Range not_negative{0.0, longest_length};  // of any size, however small
 
@@ -50,22 +51,27 @@ using OptionValue = std::variant<double, std::int64_t, bool, std::string>;
 
 /// Describes an option to people and to programs.
 struct OptionText {
-  std::string_view name;     // in Python and serve; of the commands with '-' for '_'
+  std::string_view name;     // in Python and in serve
   std::string_view meaning;  // one sentence
   OptionKind kind = OptionKind::number;
-  std::string_view unit = {};  // of a number; empty if it has none
-  Range range = {};            // of a number or a whole number
+  std::string_view unit = {};                    // of a number; empty if it has none
+  Range range = {};                              // of a number or a whole number
   std::span<const std::string_view> names = {};  // of a choice
-  std::string_view flag = {};                    // of the commands, if it differs from `name`
+  std::string_view command = {};                 // its name for the commands, if another
+
+  /// Returns its name for the commands, without "--": `command`, or `name` with '-' for '_'.
+  std::string flag() const;
 
   /// Returns the values that the option may have, in words. Allocates.
   std::string expected() const;
 
-  /// Returns the value that a text stands for. Throws Error for a value that the option may not have.
+  /// Returns the value that a text stands for. Throws Error for a value that the option may not
+  /// have.
   OptionValue parsed(const std::string& text) const;
 
-  /// Returns a value as the option stores it: a whole number for a number becomes one. Throws Error,
-  /// naming the option, what was expected and what was given, for a value that it may not have.
+  /// Returns a value as the option stores it: a whole number for a number becomes one. Throws
+  /// Error, naming the option, what was expected and what was given, for a value that it may not
+  /// have.
   OptionValue accepted(OptionValue value) const;
 
   /// Throws Error for a value that the option may not have.
@@ -75,7 +81,7 @@ struct OptionText {
 /// An option that is a member of `Options`.
 template <class Options>
 struct Option : OptionText {
-  OptionValue (*get)(const Options&) = nullptr;       // reads the member
+  OptionValue (*get)(const Options&) = nullptr;         // reads the member
   void (*put)(Options&, const OptionValue&) = nullptr;  // writes it; precondition: accepted()
 
   /// Sets the member. Throws Error for a value that the option may not have.
@@ -92,56 +98,59 @@ Options options_of(Value Options::*);
 template <class Options, class Value>
 Value value_of(Value Options::*);
 
-template <auto Member>
-constexpr auto option_of(OptionText text) {
-  using Options = decltype(options_of(Member));
-  using Value = decltype(value_of(Member));
-  using Stored =
-      std::conditional_t<std::same_as<Value, bool> || std::same_as<Value, double>, Value,
-                         std::conditional_t<std::integral<Value>, std::int64_t, std::string>>;
-  Option<Options> option{text};
-  option.get = [](const Options& o) { return OptionValue(static_cast<Stored>(o.*Member)); };
-  option.put = [](Options& o, const OptionValue& v) {
-    o.*Member = static_cast<Value>(std::get<Stored>(v));
-  };
-  return option;
-}
+inline constexpr std::array<std::string_view, 0> no_names{};
 
 }  // namespace detail
 
-/// An option that is a number or a whole number. `flag`: see OptionText.
-template <auto Member>
+/// Describes a member of a struct of options. Its kind is that of the member; an enumeration is a
+/// choice of `Names`, which its values have from 0 on. Unit, range and command: see OptionText.
+template <auto Member, const auto& Names = detail::no_names>
 constexpr auto option(std::string_view name, std::string_view unit, Range range,
-                      std::string_view meaning, std::string_view flag = {}) {
-  const bool is_real = std::same_as<decltype(detail::value_of(Member)), double>;
-  return detail::option_of<Member>(
-      {name, meaning, is_real ? OptionKind::number : OptionKind::whole_number, unit, range, {}, flag});
-}
-
-/// An option that is true or false, or the name of a part.
-template <auto Member>
-constexpr auto option(std::string_view name, std::string_view meaning) {
-  const bool is_flag = std::same_as<decltype(detail::value_of(Member)), bool>;
-  return detail::option_of<Member>(
-      {.name = name, .meaning = meaning, .kind = is_flag ? OptionKind::flag : OptionKind::part});
-}
-
-/// An option that is an enumeration, whose values from 0 on have these `Names`.
-template <auto Member, const auto& Names>
-constexpr auto option(std::string_view name, std::string_view meaning) {
+                      std::string_view meaning, std::string_view command = {}) {
   using Options = decltype(detail::options_of(Member));
-  using Enum = decltype(detail::value_of(Member));
-  Option<Options> option{{.name = name, .meaning = meaning, .kind = OptionKind::choice, .names = Names}};
-  option.get = [](const Options& o) {
-    const auto value = static_cast<std::size_t>(o.*Member);
-    return OptionValue(std::string(value < Names.size() ? Names[value] : "no value"));
+  using Value = decltype(detail::value_of(Member));
+  constexpr bool is_stored = std::same_as<Value, bool> || std::same_as<Value, double>;
+  using Stored =
+      std::conditional_t<is_stored, Value,
+                         std::conditional_t<std::integral<Value>, std::int64_t, std::string>>;
+  constexpr OptionKind kind = std::same_as<Value, double> ? OptionKind::number
+                              : std::same_as<Value, bool> ? OptionKind::flag
+                              : std::integral<Value>      ? OptionKind::whole_number
+                              : std::is_enum_v<Value>     ? OptionKind::choice
+                                                          : OptionKind::part;
+  Option<Options> option{{name, meaning, kind, unit, range, Names, command}};
+  option.get = [](const Options& o) -> OptionValue {
+    if constexpr (std::is_enum_v<Value>) {
+      const auto value = static_cast<std::size_t>(o.*Member);
+      return std::string(value < Names.size() ? Names[value] : "no value");
+    } else {
+      return static_cast<Stored>(o.*Member);
+    }
   };
   option.put = [](Options& o, const OptionValue& v) {
-    std::size_t value = 0;
-    while (Names[value] != std::get<std::string>(v)) ++value;
-    o.*Member = static_cast<Enum>(value);
+    if constexpr (std::is_enum_v<Value>) {
+      std::size_t value = 0;
+      while (Names[value] != std::get<std::string>(v)) ++value;
+      o.*Member = static_cast<Value>(value);
+    } else {
+      o.*Member = static_cast<Value>(std::get<Stored>(v));
+    }
   };
   return option;
+}
+
+/// The same of an option without unit and range.
+template <auto Member, const auto& Names = detail::no_names>
+constexpr auto option(std::string_view name, std::string_view meaning) {
+  return option<Member, Names>(name, {}, {}, meaning);
+}
+
+/// Returns the option of that name. Precondition: the table has it.
+template <class Table>
+constexpr const auto& option_named(const Table& table, std::string_view name) {
+  const auto* option = table.data();
+  while (option->name != name) ++option;
+  return *option;
 }
 
 /// Throws Error, naming the option, unless each of the options has a value that it may have.

@@ -101,7 +101,10 @@ class Measure : public testing::TestWithParam<const char*> {
   std::shared_ptr<const Mesh> mesh = std::make_shared<const Mesh>(make_shape("cortex"));
   std::shared_ptr<const SpatialIndex> tree =
       std::make_shared<QueriesOnly>(std::make_shared<PdTree>(mesh));
-  MotionConstraintSettings settings{.activation = GetParam(), .options = {.radius = 1.0, .margin = std::string_view(GetParam()) == "certified" ? 0.2 : 0.0}, .inside = Inside::taken_as_is};
+  MotionConstraintSettings settings{
+      .activation = GetParam(),
+      .options = {.radius = 1.0, .margin = std::string_view(GetParam()) == "certified" ? 0.2 : 0.0},
+      .inside = Inside::taken_as_is};
   MotionConstraint guard = make_motion_constraint(mesh, tree, settings);
   std::vector<Motion> motions;
   std::unique_ptr<Reference> reference;

@@ -257,8 +257,9 @@ TEST(PaperBlocks, WithJointsOrRowsAllPlanesArePosed) {
     Motion motion{.tip = tip, .desired = 0.1 * random.direction()};
     motion.jacobian.emplace(jacobian);
     Step got = forms.step(motion, {.radius = 5.0, .margin = 0.0, .damping = 1e-6});
-    EXPECT_TRUE(
-        are_equal(got.planes, forms.plain_step(motion, {.radius = 5.0, .margin = 0.0, .damping = 1e-6}).planes));
+    EXPECT_TRUE(are_equal(
+        got.planes,
+        forms.plain_step(motion, {.radius = 5.0, .margin = 0.0, .damping = 1e-6}).planes));
     EXPECT_FALSE(got.planes.empty());
     motion.jacobian.reset();
     motion.rows.emplace(row.data(), &bound, 1);

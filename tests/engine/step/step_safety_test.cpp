@@ -22,8 +22,11 @@ std::shared_ptr<const Mesh> cube() { return std::make_shared<const Mesh>(make_sh
 
 MotionConstraint with(std::unique_ptr<ActivationRule> rule, std::unique_ptr<Solver> solver,
                       const std::shared_ptr<const Mesh>& mesh) {
-  return {
-      mesh, std::make_unique<PdTree>(mesh), std::move(rule), std::move(solver), {.radius = 5.0, .margin = 0.0}};
+  return {mesh,
+          std::make_unique<PdTree>(mesh),
+          std::move(rule),
+          std::move(solver),
+          {.radius = 5.0, .margin = 0.0}};
 }
 
 MotionConstraint guard(const std::shared_ptr<const Mesh>& mesh) {

@@ -124,7 +124,8 @@ TEST(Step, TooManyTrianglesOrPlanesIsAStatusAndNoMotion) {
 }
 
 TEST(Step, JointsMoveTheTipAsTheJacobianSays) {
-  auto constraint = guard<PaperRule>(make_mesh("cube"), {.radius = 5.0, .margin = 0.0, .damping = 1e-9});
+  auto constraint =
+      guard<PaperRule>(make_mesh("cube"), {.radius = 5.0, .margin = 0.0, .damping = 1e-9});
   // Four joints: one of them moves the tip straight down, two slant, one does nothing.
   Eigen::Matrix<double, 3, Eigen::Dynamic> jacobian(3, 4);
   jacobian << 1, 0, 0.5, 0,  //
@@ -151,7 +152,8 @@ TEST(Step, AJacobianThatLosesADirectionNeedsDamping) {
 }
 
 TEST(Step, MoreJointsThanRoomWasMadeForIsAStatus) {
-  auto constraint = guard<PaperRule>(make_mesh("cube"), {.radius = 5.0, .margin = 0.0}, {.variables = 3});
+  auto constraint =
+      guard<PaperRule>(make_mesh("cube"), {.radius = 5.0, .margin = 0.0}, {.variables = 3});
   const Eigen::Matrix<double, 3, Eigen::Dynamic> jacobian =
       Eigen::Matrix<double, 3, Eigen::Dynamic>::Ones(3, 9);
   const Step step =
@@ -254,7 +256,8 @@ TEST(Step, TellsWhatEachStageTook) {
 TEST(MotionConstraint, TellsToolRadiusAndMarginApartAndKeepsBoth) {
   const auto mesh = make_mesh("cube");
   auto by_hand = guard<PaperRule>(mesh, {.radius = 2.0, .tool_radius = 0.3, .margin = 0.2});
-  auto by_name = make_motion_constraint(mesh, {.options = {.radius = 2.0, .tool_radius = 0.3, .margin = 0.2}});
+  auto by_name =
+      make_motion_constraint(mesh, {.options = {.radius = 2.0, .tool_radius = 0.3, .margin = 0.2}});
   for (MotionConstraint* constraint : {&by_hand, &by_name}) {
     EXPECT_EQ(constraint->options().tool_radius, 0.3);
     EXPECT_EQ(constraint->options().margin, 0.2);
@@ -272,7 +275,8 @@ TEST(MotionConstraint, RefusesOptionsOutOfRange) {
   EXPECT_THROW(guard<PaperRule>(mesh, {.radius = std::nan(""), .margin = 0.0}), Error);
   EXPECT_THROW(guard<PaperRule>(mesh, {.radius = 1.0, .margin = -0.1}), Error);
   EXPECT_THROW(guard<PaperRule>(mesh, {.radius = 1.0, .margin = 0.0, .damping = -0.1}), Error);
-  EXPECT_THROW(MotionConstraint(mesh, nullptr, nullptr, nullptr, {.radius = 1.0, .margin = 0.0}), Error);
+  EXPECT_THROW(MotionConstraint(mesh, nullptr, nullptr, nullptr, {.radius = 1.0, .margin = 0.0}),
+               Error);
 }
 
 }  // namespace

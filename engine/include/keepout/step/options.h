@@ -35,18 +35,18 @@ inline constexpr std::array<std::string_view, 2> distances_names{"where_known", 
 struct StepOptions {
   double radius = 5.0;       // of the motion sphere: the longest motion in a cycle [length]
   double tool_radius = 0.0;  // of the ball around the tip that must not touch [length]
-  double margin = 0.2;       // required clearance beyond that; the certified rule needs one [length]
-  /// Weight of |u|^2 beside the task. With more than three joints, or joints that move the tip alike,
-  /// there is no best increment without it, and the step is ill_posed: use about 1e-6 of a column's
-  /// squared length.
+  double margin = 0.2;  // required clearance beyond that; the certified rule needs one [length]
+  /// Weight of |u|^2 beside the task. With more than three joints, or joints that move the tip
+  /// alike, there is no best increment without it, and the step is ill_posed: use about 1e-6 of a
+  /// column's squared length.
   double damping = 0.0;
   /// Longest retreat per cycle of a tip that is too close or inside; it retreats by a tolerance of
   /// the rule at least, where it can, so that nothing adds up. [length]
   double recovery = 0.05;
-  double deepest = 10.0;  // a tip deeper inside is not led out; the step is `inside` [length]
-  int refinements = 3;    // how often cuts are rotated towards a better motion
-  int nodes = 0;          // of a branch and bound for a better motion still; 0: none
-  Query query = Query::motion;                   // how far around the tip triangles are looked for
+  double deepest = 10.0;        // a tip deeper inside is not led out; the step is `inside` [length]
+  int refinements = 3;          // how often cuts are rotated towards a better motion
+  int nodes = 0;                // of a branch and bound for a better motion still; 0: none
+  Query query = Query::motion;  // how far around the tip triangles are looked for
   Distances distances = Distances::where_known;  // see Step::distance
 };
 
@@ -54,34 +54,31 @@ struct StepOptions {
 inline constexpr std::array step_options{
     option<&StepOptions::radius>("radius", "length", positive_length,
                                  "Radius of the motion sphere: the longest motion in a cycle."),
-    option<&StepOptions::tool_radius>(
-        "tool_radius", "length", zero_or_length,
-        "Radius of the ball around the tip that must not touch the mesh."),
+    option<&StepOptions::tool_radius>("tool_radius", "length", zero_or_length,
+                                      "Radius of the ball around the tip that must not touch."),
     option<&StepOptions::margin>("margin", "length", zero_or_length,
-                                 "Clearance to keep beyond the tool; the certified rule needs one."),
+                                 "Clearance beyond the tool; the certified rule needs one."),
     option<&StepOptions::damping>(
         "damping", "", {0.0, 1e30},
-        "Weight of |u|^2 beside the task: above 0 for a Jacobian with more than three columns, or "
-        "near a singularity, about 1e-6 of a squared column."),
-    option<&StepOptions::recovery>(
-        "recovery", "length", not_negative,
-        "Longest retreat in a cycle of a tip that is too close or inside."),
+        "Weight of |u|^2 beside the task; a Jacobian with more than three "
+        "columns needs one, about 1e-6 of a squared column."),
+    option<&StepOptions::recovery>("recovery", "length", not_negative,
+                                   "Longest retreat in a cycle of a tip too close or inside."),
     option<&StepOptions::deepest>("deepest", "length", zero_or_length,
                                   "A tip that is deeper inside than this is not led out."),
-    option<&StepOptions::refinements>(
-        "refinements", "", {0, 1000},
-        "How often the certified rule improves upon a motion that it has found.", "refine"),
-    option<&StepOptions::nodes>(
-        "nodes", "", {0, 1 << 16},
-        "Nodes of a search for a better motion still; 0: none, 16 find nearly the best.",
-        "branches"),
+    option<&StepOptions::refinements>("refinements", "", {0, 1000},
+                                      "How often the certified rule improves upon a motion.",
+                                      "refine"),
+    option<&StepOptions::nodes>("nodes", "", {0, 1 << 16},
+                                "Nodes of a search for a better motion still; 0: none, 16 find "
+                                "nearly the best.",
+                                "branches"),
     option<&StepOptions::query, query_names>(
         "query",
-        "How far around the tip the certified rule looks for triangles: as far as the commanded "
-        "motion can lead, or always in the motion sphere."),
+        "Region that the certified rule searches: as far as the motion can lead, or the "
+        "whole motion sphere."),
     option<&StepOptions::distances, distances_names>(
-        "distances",
-        "Tips of which a step reports the distance: where the rule knows it at no cost, or always.")};
+        "distances", "Tips whose distance a step reports: where it costs nothing, or always.")};
 
 /// Returns the table of the options of a struct.
 constexpr const auto& table_of(const StepOptions&) { return step_options; }
@@ -121,8 +118,7 @@ struct Capacity {
 inline constexpr std::array capacity_options{
     option<&Capacity::triangles>("max_triangles", "", {0, 4294967296.0},
                                  "Capacity for the triangles of one query."),
-    option<&Capacity::planes>("max_planes", "", {0, 1 << 30},
-                              "Capacity for the planes of a step."),
+    option<&Capacity::planes>("max_planes", "", {0, 1 << 30}, "Capacity for the planes of a step."),
     option<&Capacity::variables>("max_joints", "", {0, 2147483647.0},
                                  "Capacity for the columns of a Jacobian."),
     option<&Capacity::extra_rows>("max_rows", "", {0, 1 << 30},

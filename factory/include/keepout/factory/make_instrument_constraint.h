@@ -18,7 +18,7 @@ struct InstrumentConstraintSettings {
   std::filesystem::path index_cache = {};
   std::string solver = "active_set";  // see solver_backends()
   InstrumentOptions options = {};
-  InstrumentCapacity capacity = {};   // for the largest cycle
+  InstrumentCapacity capacity = {};  // for the largest cycle
   /// As MotionConstraintSettings::warn. Empty: nobody is told.
   std::function<void(const std::string&)> warn = {};
 };

@@ -56,12 +56,13 @@ inline constexpr std::array instrument_options{
     option<&InstrumentOptions::margin>(
         "margin", "length", positive_length,
         "Clearance to keep beyond each body's radius, from meshes without a margin of their own."),
-    option<&InstrumentOptions::band>(
-        "band", "length", above_zero(longest_length),
-        "Curvature allowance: part of the margin that curved motions may use, so that the certified "
-        "clearance is margin - band; see recommended_band."),
+    option<&InstrumentOptions::band>("band", "length", above_zero(longest_length),
+                                     "Curvature allowance: part of the margin that curved motions "
+                                     "may use, so that the certified "
+                                     "clearance is margin - band; see recommended_band."),
     option<&InstrumentOptions::period>(
-        "period", "s", above_zero(1e9), "Duration of a cycle, by which velocity limits are multiplied."),
+        "period", "s", above_zero(1e9),
+        "Duration of a cycle, by which velocity limits are multiplied."),
     option<&InstrumentOptions::recovery>("recovery", "length", not_negative,
                                          "Longest retreat in a cycle of a body that is too close."),
     option<&InstrumentOptions::slowing_within>(
