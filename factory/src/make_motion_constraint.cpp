@@ -55,7 +55,7 @@ MotionConstraint make_motion_constraint(std::shared_ptr<const Mesh> mesh,
                                         const MotionConstraintSettings& settings) {
   if (!mesh) throw Error("a motion constraint needs a mesh: none was given");
   if (index) {
-    warn_of_coarse_index(*index, distance_kept(settings.options), settings.warn);
+    warn_of_coarse_index(*index, required_clearance(settings.options), settings.warn);
   }
   auto activation = make_rule(settings);
   auto solver = make_solver(settings.solver);
