@@ -67,7 +67,7 @@ Surface copies(std::size_t triangles) {
 struct Scene {
   std::string name;
   Surface surface;
-  MotionConstraintSettings settings = {.radius = 5.0, .margin = 1.0};
+  MotionConstraintSettings settings = {.options = {.radius = 5.0, .margin = 1.0}};
   double near = 1.0;  // tips are so far from the middle at most [length]
   Vec3 middle = Vec3::Zero();
   bool with_joints = false;
@@ -92,19 +92,22 @@ std::vector<Scene> scenes() {
     for (const double slope : {0.1, 1.0, 5.0}) {
       char name[64];
       std::snprintf(name, sizeof name, "tip of a cone, %u faces, slope %g", unsigned{faces}, slope);
-      all.push_back(
-          {name, make_cone(faces, slope), {.radius = 5.0, .margin = 1.0}, 1.5, {0, 0, 1}});
+      all.push_back({name,
+                     make_cone(faces, slope),
+                     {.options = {.radius = 5.0, .margin = 1.0}},
+                     1.5,
+                     {0, 0, 1}});
     }
   }
   all.push_back({"the same, 7 joints",
                  make_cone(4'000, 1.0),
-                 {.radius = 5.0, .margin = 1.0, .damping = 1e-6},
+                 {.options = {.radius = 5.0, .margin = 1.0, .damping = 1e-6}},
                  1.5,
                  {0, 0, 1},
                  true});
   all.push_back({"the same, 65,536 nodes, 1,000 refinements",
                  make_cone(4'000, 1.0),
-                 {.radius = 5.0, .margin = 1.0, .refinements = 1'000, .nodes = 65'536},
+                 {.options = {.radius = 5.0, .margin = 1.0, .refinements = 1'000, .nodes = 65'536}},
                  1.5,
                  {0, 0, 1}});
   for (const VertexId faces : {400u, 4'000u}) {
@@ -113,7 +116,7 @@ std::vector<Scene> scenes() {
     guided.with_guides = true;
     all.push_back(guided);
     guided.name = "the same, 7 joints";
-    guided.settings.damping = 1e-6;
+    guided.settings.options.damping = 1e-6;
     guided.with_joints = true;
     all.push_back(guided);
   }
@@ -121,22 +124,27 @@ std::vector<Scene> scenes() {
   all.push_back({"the same of 2 M, about the centre", sphere(1'000, 60.0), {}, 0.5});
   all.push_back({"the same, margin as far as the wall",
                  sphere(700, 50.0),
-                 {.radius = 5.0, .margin = 49.0},
+                 {.options = {.radius = 5.0, .margin = 49.0}},
                  3.0});
-  all.push_back(
-      {"the same, distances always", sphere(700, 50.0), {.distances = Distances::always}, 1e-3});
+  all.push_back({"the same, distances always",
+                 sphere(700, 50.0),
+                 {.options = {.distances = Distances::always}},
+                 1e-3});
   all.push_back({"200,000 triangles crossing each other",
                  soup(200'000, 3.0),
-                 {.radius = 5.0, .margin = 0.01},
+                 {.options = {.radius = 5.0, .margin = 0.01}},
                  10.0});
-  all.push_back({"2 M small ones", soup(2'000'000, 0.02), {.radius = 5.0, .margin = 0.01}, 10.0});
+  all.push_back({"2 M small ones",
+                 soup(2'000'000, 0.02),
+                 {.options = {.radius = 5.0, .margin = 0.01}},
+                 10.0});
   all.push_back({"100,000 times the same triangle", copies(100'000), {}, 3.0});
   for (const Shape& shape : shapes()) {
     const Mesh mesh(shape.make());
     const double size = mesh.bounds().size().norm();
     all.push_back({std::string(shape.name),
                    shape.make(),
-                   {.radius = 0.2 * size, .margin = 0.02 * size},
+                   {.options = {.radius = 0.2 * size, .margin = 0.02 * size}},
                    0.5 * size,
                    mesh.bounds().center()});
   }
@@ -184,7 +192,7 @@ void measure(const Scene& scene, Longest& of_steps, Longest& of_polytopes) {
     // Both close to the middle and far from it.
     const double off = scene.near * std::pow(10.0, random.uniform(-6.0, 0.0));
     const Vec3 tip = scene.middle + off * random.direction();
-    const Vec3 desired = scene.settings.radius * random.uniform() *
+    const Vec3 desired = scene.settings.options.radius * random.uniform() *
                          (trial % 2 == 0 ? random.direction() : Vec3(0.0, 0.0, -1.0));
     Motion motion{.tip = tip, .desired = desired};
     if (scene.with_joints) {

@@ -10,8 +10,10 @@ int main(int argc, char** argv) try {
     return 2;
   }
   const auto mesh = keepout::load_mesh(argv[1]).mesh;
-  auto guard = keepout::make_motion_constraint(
-      mesh, {.index = "wide_bvh", .activation = "certified", .tool_radius = 0.3, .margin = 0.2});
+  auto guard =
+      keepout::make_motion_constraint(mesh, {.index = "wide_bvh",
+                                             .activation = "certified",
+                                             .options = {.tool_radius = 0.3, .margin = 0.2}});
 
   // A hand that comes from above and wants to go straight through to below.
   const keepout::Box& box = mesh->bounds();

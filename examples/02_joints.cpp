@@ -42,10 +42,11 @@ int main(int argc, char** argv) try {
     return 2;
   }
   const auto mesh = keepout::load_mesh(argv[1]).mesh;
-  auto guard = keepout::make_motion_constraint(mesh, {.tool_radius = 0.3,
-                                                      .margin = 0.2,
-                                                      .damping = 1e-2,  // of 60 mm/rad and more
-                                                      .distances = keepout::Distances::always});
+  auto guard =
+      keepout::make_motion_constraint(mesh, {.options = {.tool_radius = 0.3,
+                                                         .margin = 0.2,
+                                                         .damping = 1e-2,  // of 60 mm/rad and more
+                                                         .distances = keepout::Distances::always}});
 
   const Arm arm;
   Joints q(0.5, 0.3, -0.8, 0.4, 0.9, -0.3, 0.2);

@@ -13,7 +13,7 @@ int main(int argc, char** argv) try {
 
   // 12 mm of a shaft 3 mm thick, leaning by 45 degrees; the tip is the centre of its lower end.
   const auto shaft = keepout::ConvexTool::capsule({0, 0, 0}, {8.5, 0, 8.5}, 1.5);
-  auto guard = keepout::make_motion_constraint(mesh, {.tool = shaft, .margin = 0.2});
+  auto guard = keepout::make_motion_constraint(mesh, {.options = {.margin = 0.2}, .tool = shaft});
 
   // A hand that comes from above and wants to go straight through to below.
   const keepout::Box& box = mesh->bounds();

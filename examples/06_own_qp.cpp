@@ -86,7 +86,8 @@ int main(int argc, char** argv) try {
   }
   const auto mesh = keepout::load_mesh(argv[1]).mesh;
   constexpr double margin = 0.5, radius = 2.0;  // [length]
-  auto guard = keepout::make_motion_constraint(mesh, {.radius = radius, .margin = margin});
+  auto guard =
+      keepout::make_motion_constraint(mesh, {.options = {.radius = radius, .margin = margin}});
   Planner planner(4.0);
 
   // A hand that comes from above and wants to go straight through to below; how close it comes is

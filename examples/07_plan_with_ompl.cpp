@@ -33,7 +33,8 @@ int main(int argc, char** argv) try {
   // A guard for each thread that asks, made as they are needed, all on one index.
   const std::shared_ptr<const keepout::SpatialIndex> index = keepout::make_index("wide_bvh", mesh);
   const auto guards = std::make_shared<keepout::GuardPool>([mesh, index] {
-    return keepout::make_motion_constraint(mesh, index, {.tool_radius = 0.3, .margin = 0.2});
+    return keepout::make_motion_constraint(mesh, index,
+                                           {.options = {.tool_radius = 0.3, .margin = 0.2}});
   });
   keepout::set_certified_checkers(setup.getSpaceInformation(), guards);
 

@@ -53,7 +53,8 @@ int main(int argc, char** argv) try {
                         .mesh = keepout::LengthUnit::millimetre});
 
   keepout::CrtkGuard guard(
-      keepout::make_motion_constraint(mesh, {.tool_radius = tool_radius, .margin = margin}),
+      keepout::make_motion_constraint(mesh,
+                                      {.options = {.tool_radius = tool_radius, .margin = margin}}),
       registration,
       {.haptic = {.period = 0.001,
                   .spring = {.stiffness = 1.0, .damping = 0.002, .largest_force = 4.0},

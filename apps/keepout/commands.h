@@ -53,7 +53,7 @@ struct ReplayOptions {
   std::filesystem::path poses;
   std::filesystem::path steps;                  // STEPS.csv, to be written
   std::optional<std::filesystem::path> planes;  // PLANES.csv, to be written: all that were posed
-  MotionConstraintSettings constraint;
+  MotionConstraintSettings constraint{.options = {.distances = Distances::always}};
   std::vector<Guide> guides = {};  // that the tip keeps as well
   Loop loop = Loop::open;
   double max_step = 1.0;  // longest increment asked for in a closed loop [mm]

@@ -177,9 +177,12 @@ void add_simulate(CLI::App& app, SimulateOptions& options) {
       ->capture_default_str()
       ->needs(robot);
   for (const char* other : {"--space", "--untagged", "--activation", "--bench", "--verbose",
-                            "--index-cache", "--solver", "--radius", "--tool-radius", "--refine",
-                            "--branches", "--query", "--max-step"}) {
+                            "--index-cache", "--solver", "--max-step"}) {
     command.get_option(other)->excludes(robot);
+  }
+  command.get_option("--inside")->excludes(robot);
+  for (const auto& option : step_options) {
+    if (option.name != "margin") command.get_option("--" + option.flag())->excludes(robot);
   }
   command.final_callback([&options] {
     if (!options.robot.empty()) return;
@@ -210,14 +213,10 @@ void add_serve(CLI::App& app, ServeOptions& options) {
       ->type_name("BYTES");
   add_number(command, "--joints", service.limits.joints, 1, 64, "Columns of a Jacobian, at most");
   add_number(command, "--rows", service.limits.rows, 0, 1024, "Rows of a request's own, at most");
-  add_length(command, "--damping", service.constraint.damping, Zero::allowed,
-             "Weight of the increment's square beside the task: above 0 for a Jacobian with "
-             "more than three joints, or near a singularity")
-      ->type_name("NUMBER");
   add_activation(command, service.constraint.activation);
   add_constraint_options(command, service.constraint);
   add_convex_tool(command, service.constraint);
-  command.footer(std::string(protocol_help));
+  command.footer(protocol_help());
 }
 
 /// What was printed has to arrive: a full disk shall not look like success.

@@ -43,7 +43,7 @@ void write_planes(std::ostream& out, std::size_t number, const Step& step) {
 
 void replay(const ReplayOptions& options, std::ostream& out) {
   const bool closed_loop = options.loop == Loop::closed;
-  if (closed_loop) require_within_reach(options.max_step, options.constraint.radius);
+  if (closed_loop) require_within_reach(options.max_step, options.constraint.options.radius);
   OutputFiles outputs(std::array{NamedPath{"MESH", file_of_mesh(options.mesh)},
                                  NamedPath{"--poses", options.poses}},
                       {{"--out", options.steps}, {"--planes", options.planes}});
@@ -56,7 +56,6 @@ void replay(const ReplayOptions& options, std::ostream& out) {
   const LoadedMesh loaded = load_named_mesh(options.mesh, options.load);
   MotionConstraintSettings settings = options.constraint;
   settings.warn = warn_on_stderr;
-  settings.distances = Distances::always;
   MotionConstraint constraint = make_motion_constraint(loaded.mesh, settings);
   constraint.set_guides(options.guides);
   std::size_t limited_by_guides = 0;

@@ -12,8 +12,9 @@ int main(int argc, char** argv) try {
     return 2;
   }
   const auto number = [&](int i) { return std::strtod(argv[i], nullptr); };
-  auto guard = keepout::make_motion_constraint(keepout::load_mesh(argv[1]).mesh,
-                                               {.tool_radius = number(2), .margin = number(3)});
+  auto guard =
+      keepout::make_motion_constraint(keepout::load_mesh(argv[1]).mesh,
+                                      {.options = {.tool_radius = number(2), .margin = number(3)}});
   const keepout::Polytope free = guard.free_polytope({number(5), number(6), number(7)}, number(4));
   if (!free.ok()) {
     std::fprintf(stderr, "%s\n", free.reason().data());

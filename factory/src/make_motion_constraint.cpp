@@ -24,7 +24,7 @@ std::unique_ptr<ActivationRule> make_rule(const MotionConstraintSettings& settin
     if (settings.narrow_phase == "exact") return make_activation(settings.activation);
     throw Error("the narrow phase '" + settings.narrow_phase + "' is for a convex tool: give one");
   }
-  if (settings.tool_radius != 0.0) {
+  if (settings.options.tool_radius != 0.0) {
     throw Error("a convex tool takes the place of the ball: leave tool_radius at 0");
   }
   if (settings.activation != "certified") {
@@ -55,7 +55,7 @@ MotionConstraint make_motion_constraint(std::shared_ptr<const Mesh> mesh,
                                         const MotionConstraintSettings& settings) {
   if (!mesh) throw Error("a motion constraint needs a mesh: none was given");
   if (index) {
-    warn_of_coarse_index(*index, settings.tool_radius + settings.margin, settings.warn);
+    warn_of_coarse_index(*index, required_clearance(settings.options), settings.warn);
   }
   auto activation = make_rule(settings);
   auto solver = make_solver(settings.solver);
@@ -64,16 +64,7 @@ MotionConstraint make_motion_constraint(std::shared_ptr<const Mesh> mesh,
           std::move(index),
           std::move(activation),
           std::move(solver),
-          {.radius = settings.radius,
-           .tool_radius = settings.tool_radius,
-           .margin = settings.margin,
-           .damping = settings.damping,
-           .recovery = settings.recovery,
-           .deepest = settings.deepest,
-           .refinements = settings.refinements,
-           .nodes = settings.nodes,
-           .query = settings.query,
-           .distances = settings.distances},
+          settings.options,
           settings.capacity,
           has_sides ? settings.inside : Inside::taken_as_is};
 }

@@ -47,8 +47,7 @@ int main(int argc, char** argv) try {
   const bool anew = memory == "anew";
   auto constraint = keepout::make_motion_constraint(
       mesh,
-      {.tool_radius = 0.3,
-       .margin = 0.2,
+      {.options = {.tool_radius = 0.3, .margin = 0.2},
        .inside = memory == "as_is" ? keepout::Inside::taken_as_is : keepout::Inside::led_out});
   const std::vector<Pose> poses = read(argv[2]);
   std::vector<Answer> answers(poses.size());

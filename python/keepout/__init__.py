@@ -45,12 +45,13 @@ from ._core import (
     indices,
     load_mesh,
     narrow_phases,
+    options,
     read_chain,
     registration_margin,
     solvers,
     target_error,
 )
-from ._results import Part, Proofs, Simulation, Status, Steps
+from ._results import Option, Part, Proofs, Simulation, Status, Steps
 
 __all__ = ["__version__", *(name for name in dir() if not name.startswith("_"))]
 

@@ -7,6 +7,7 @@ from typing import Literal, overload
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ._results import Option as Option
 from ._results import Part as Part
 from ._results import Proofs as Proofs
 from ._results import Simulation as Simulation
@@ -30,6 +31,7 @@ __all__ = [
     "Mesh",
     "MotionConstraint",
     "MotionProof",
+    "Option",
     "Part",
     "Planes",
     "Polytope",
@@ -49,6 +51,7 @@ __all__ = [
     "indices",
     "load_mesh",
     "narrow_phases",
+    "options",
     "read_chain",
     "registration_margin",
     "solvers",
@@ -138,6 +141,7 @@ def indices() -> list[Part]: ...
 def activations() -> list[Part]: ...
 def solvers() -> list[Part]: ...
 def narrow_phases() -> list[Part]: ...
+def options() -> dict[str, list[Option]]: ...
 
 class Hits:
     @property
@@ -286,26 +290,8 @@ class MotionConstraint:
         *,
         index: str | Index = "wide_bvh",
         index_cache: str | PathLike[str] | None = None,
-        activation: str = "certified",
-        solver: str = "active_set",
-        radius: float = 5.0,
-        tool_radius: float = 0.0,
         tool: ConvexTool | None = None,
-        narrow_phase: str = "exact",
-        margin: float = 0.2,
-        damping: float = 0.0,
-        recovery: float = 0.05,
-        deepest: float = 10.0,
-        refinements: int = 3,
-        nodes: int = 0,
-        query: Literal["motion", "sphere"] = "motion",
-        distances: Literal["where_known", "always"] = "where_known",
-        inside: Literal["led_out", "taken_as_is"] = "led_out",
-        max_triangles: int = 65536,
-        max_planes: int = 16384,
-        max_joints: int = 7,
-        max_rows: int = 64,
-        max_looks: int = 0,
+        # keywords of MotionConstraint
     ) -> None: ...
     def step(
         self,
@@ -348,15 +334,10 @@ class MotionConstraint:
     @property
     def index(self) -> Index: ...
     @property
-    def radius(self) -> float: ...
-    @property
-    def tool_radius(self) -> float: ...
-    @property
     def tool(self) -> ConvexTool | None: ...
     @property
-    def margin(self) -> float: ...
-    @property
     def distance_kept(self) -> float: ...
+    # set_options and properties of MotionConstraint
 
 class Joint:
     def __init__(
@@ -505,21 +486,7 @@ class InstrumentGuard:
         *,
         index: str | Index = "wide_bvh",
         index_cache: str | PathLike[str] | None = None,
-        solver: str = "active_set",
-        margin: float = 0.2,
-        band: float = 0.002,
-        period: float = 0.001,
-        recovery: float = 0.05,
-        slowing_within: float = 0.0,
-        slowing_time: float = 0.05,
-        damping: float = 0.1,
-        orientation_weight: float = 20.0,
-        refinements: int = 1,
-        check_sides: bool = True,
-        certified: Literal["actual", "linearised"] = "actual",
-        max_triangles: int = 16384,
-        max_planes: int = 128,
-        max_looks: int = 0,
+        # keywords of InstrumentGuard
     ) -> None: ...
     def step(
         self,
@@ -550,21 +517,6 @@ class InstrumentGuard:
     ) -> None: ...
     def place_of(self, mesh: int) -> NDArray[np.float64]: ...
     def set_guides(self, guides: Sequence[Guide]) -> None: ...
-    def set_options(
-        self,
-        *,
-        margin: float | None = None,
-        band: float | None = None,
-        period: float | None = None,
-        recovery: float | None = None,
-        slowing_within: float | None = None,
-        slowing_time: float | None = None,
-        damping: float | None = None,
-        orientation_weight: float | None = None,
-        refinements: int | None = None,
-        check_sides: bool | None = None,
-        certified: Literal["actual", "linearised"] | None = None,
-    ) -> None: ...
     @property
     def mesh(self) -> Mesh: ...
     @property
@@ -573,10 +525,7 @@ class InstrumentGuard:
     def index(self) -> Index: ...
     @property
     def instrument(self) -> Instrument: ...
-    @property
-    def margin(self) -> float: ...
-    @property
-    def band(self) -> float: ...
+    # set_options and properties of InstrumentGuard
 
 class RigidFit:
     @property

@@ -18,6 +18,20 @@ class Part(NamedTuple):
     description: str
 
 
+class Option(NamedTuple):
+    """An option of MotionConstraint or InstrumentGuard."""
+
+    name: str
+    type: str  # as in a stub
+    default: float | int | bool | str
+    unit: str  # empty if it has none
+    range: str  # the values that it may have, in words
+    choices: tuple[str, ...]  # the names that it may have; empty unless it has some
+    description: str
+    is_changeable: bool  # by set_options
+    command: str  # its name for the keepout command, without "--"; empty if it has none
+
+
 class Status(IntEnum):
     """How a step ended. The first five come with a motion, which may be carried out and may be
     zero; the others with zero motion."""

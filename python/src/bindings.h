@@ -87,6 +87,7 @@ void bind_inspection(py::module_& module);
 void bind_mesh(py::module_& module);
 void bind_index(py::module_& module);
 void bind_guides(py::module_& module);
+void bind_options(py::module_& module);
 void bind_planes(py::module_& module);
 void bind_step(py::module_& module);
 void bind_convex_tool(py::module_& module);

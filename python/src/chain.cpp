@@ -15,7 +15,6 @@
 #include "bindings.h"
 #include "keepout/error.h"
 #include "keepout/robot/denavit_hartenberg.h"
-#include "keywords.h"
 #include "poses.h"
 #if KEEPOUT_HAS_URDF
 #include "keepout/urdf/read_chain.h"
@@ -23,6 +22,16 @@
 
 namespace keepout::python {
 namespace {
+
+/// One of two values, by name. Throws Error, naming the argument, for another name.
+template <class Enum>
+Enum named(std::string_view argument, const std::string& given,
+           const std::array<std::pair<std::string, Enum>, 2>& names) {
+  for (const auto& [name, value] : names) {
+    if (given == name) return value;
+  }
+  refuse(argument, "'" + names[0].first + "' or '" + names[1].first + "'", "'" + given + "'");
+}
 
 using Optional = std::optional<double>;
 

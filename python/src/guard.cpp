@@ -89,24 +89,12 @@ void run_loop(MotionConstraint& constraint, Vec3 tip, const double* hand, std::s
 }  // namespace
 
 Guard::Guard(std::shared_ptr<IndexHandle> index, MotionConstraintSettings settings)
-    : index_(std::move(index)), settings_(std::move(settings)), constraint_(make()) {}
+    : GuardOf(std::move(index), std::move(settings), [](const auto& on, const auto& made_as) {
+        return make_motion_constraint(on->mesh, on->index, made_as);
+      }) {}
 
-MotionConstraint Guard::make() const {
-  const py::gil_scoped_release release;
-  return make_motion_constraint(index_->mesh, index_->index, settings_);
-}
-
-/// Makes one for a worker, with the guides that there are. Without Python's lock.
-MotionConstraint Guard::make_guided() const {
-  MotionConstraint made = make_motion_constraint(index_->mesh, index_->index, settings_);
-  made.set_guides({constraint_.guides().begin(), constraint_.guides().end()});
-  return made;
-}
-
-template <class Item>
-void Guard::do_each(std::size_t items, std::size_t chunk, unsigned threads, const Item& item) {
-  workers_.do_each(
-      items, chunk, threads, [this] { return make_guided(); }, item);
+MotionConstraint Guard::made_anew() const {
+  return make_motion_constraint(index()->mesh, index()->index, settings_);
 }
 
 StepResult Guard::step(const py::object& tip, const py::object& desired, const py::object& jacobian,
@@ -150,13 +138,6 @@ StepResult Guard::step(const py::object& tip, const py::object& desired, const p
           .limits = step.limits};
 }
 
-void Guard::set_guides(std::vector<Guide> guides) {
-  const InUse no_batch(workers_.in_use());
-  const InUse in_use(constraint_in_use_);
-  constraint_.set_guides(guides);
-  for (MotionConstraint& worker : workers_.constraints()) worker.set_guides(guides);
-}
-
 FreeSpace Guard::free_polytope(const py::object& tip, double radius) {
   const Vec3 at = point(tip, "tip");
   const InUse in_use(constraint_in_use_);
@@ -164,21 +145,8 @@ FreeSpace Guard::free_polytope(const py::object& tip, double radius) {
   return {{{polytope.planes.begin(), polytope.planes.end()}}, polytope.status};
 }
 
-void Guard::forget() {
-  const InUse in_use(constraint_in_use_);
-  constraint_.forget();
-}
-
 void Guard::follow(std::shared_ptr<IndexHandle> index) {
-  if (!index) refuse("index", "a keepout.Index", "None");
-  const InUse no_batch(workers_.in_use());
-  const InUse no_step(constraint_in_use_);
-  {
-    const py::gil_scoped_release release;
-    constraint_.follow(index->mesh, index->index);
-    workers_.constraints().clear();
-  }
-  index_ = std::move(index);
+  replace_mesh(0, index, [&] { constraint_.follow(index->mesh, index->index); });
 }
 
 py::object Guard::steps(const py::object& tips, const py::object& desired,
@@ -211,7 +179,7 @@ py::object Guard::replay(const py::object& poses, bool closed_loop, double max_s
                          const py::object& out) {
   const Doubles lines = doubles(poses, {"poses", {any, 6}, "(n, 6)"});
   const auto count = static_cast<std::size_t>(lines.shape(0));
-  if (closed_loop) require_max_step(max_step, settings_.radius);
+  if (closed_loop) require_max_step(max_step, settings_.options.radius);
   const StepColumns to =
       columns("Steps", py::make_tuple(lines.shape(0)), out, py::make_tuple(lines));
   const double* const data = lines.data();
@@ -238,7 +206,7 @@ py::object Guard::simulate(const py::object& starts, const py::object& hands, do
   const Doubles from = doubles(starts, {"starts", {any, 3}, "(m, 3)"});
   const std::string shape = "(" + std::to_string(from.shape(0)) + ", cycles, 3), as many as starts";
   const Doubles paths = doubles(hands, {"hands", {from.shape(0), any, 3}, shape});
-  require_max_step(max_step, settings_.radius);
+  require_max_step(max_step, settings_.options.radius);
   const auto loops = static_cast<std::size_t>(paths.shape(0));
   const auto cycles = static_cast<std::size_t>(paths.shape(1));
   const StepColumns to = columns("Simulation", py::make_tuple(paths.shape(0), paths.shape(1)), out,

@@ -4,15 +4,10 @@
 #include <pybind11/pybind11.h>
 
 #include <memory>
-#include <mutex>
 #include <optional>
-#include <string>
 #include <vector>
 
-#include "arrays.h"
-#include "bindings.h"
-#include "keepout/factory/make_instrument_constraint.h"
-#include "workers.h"
+#include "guard_of.h"
 
 namespace keepout::python {
 
@@ -24,9 +19,8 @@ struct InstrumentStepResult {
   std::vector<DegradedClearance> degraded;
 };
 
-/// An instrument constraint as Python holds it: one for its own steps, and one for each worker that
-/// proves motions. All share mesh and index. Proofs change nothing for the steps.
-class InstrumentGuard {
+/// An instrument constraint as Python holds it.
+class InstrumentGuard : public GuardOf<InstrumentConstraint, InstrumentConstraintSettings> {
  public:
   InstrumentGuard(std::shared_ptr<IndexHandle> index, Instrument instrument,
                   InstrumentConstraintSettings settings);
@@ -38,23 +32,17 @@ class InstrumentGuard {
   MotionProof prove(const py::object& q, const py::object& increment);
   py::object proofs(const py::object& q, const py::object& increments,
                     std::optional<py::ssize_t> threads);
-  void forget();
   void follow(std::shared_ptr<IndexHandle> index, std::size_t mesh);
   std::size_t add_mesh(std::shared_ptr<IndexHandle> index, double margin);
   void place(std::size_t mesh, const py::object& pose, const py::object& linear,
              const py::object& angular);
   py::array_t<double> place_of(std::size_t mesh);
-  void set_guides(const std::vector<Guide>& guides);
-  void set_options(const InstrumentOptions& options);
 
-  const InstrumentConstraintSettings& settings() const noexcept { return settings_; }
   const Instrument& instrument() const noexcept { return instrument_; }
-  /// Of the first mesh.
-  const std::shared_ptr<IndexHandle>& index() const noexcept { return meshes_.front().index; }
   std::size_t mesh_count() const noexcept { return meshes_.size(); }
 
  private:
-  InstrumentConstraint make() const;
+  InstrumentConstraint made_anew() const override;
   py::ssize_t joints() const noexcept { return instrument_.chain().size(); }
   /// One number for each joint.
   Doubles of_joints(const py::object& argument, std::string_view name) const;
@@ -66,17 +54,7 @@ class InstrumentGuard {
 
   void require_mesh(std::size_t mesh) const;
 
-  struct Kept {
-    std::shared_ptr<IndexHandle> index;
-    double margin;
-  };
-  std::vector<Kept> meshes_;
   Instrument instrument_;
-  InstrumentConstraintSettings settings_;
-  std::vector<Guide> guides_;
-  InstrumentConstraint constraint_;
-  std::mutex constraint_in_use_;
-  Workers<InstrumentConstraint> workers_;
 };
 
 }  // namespace keepout::python

@@ -68,6 +68,7 @@ PYBIND11_MODULE(_core, module) {
   bind_inspection(module);
   bind_mesh(module);
   bind_parts(module);
+  bind_options(module);
   bind_index(module);
   bind_planes(module);
   bind_guides(module);

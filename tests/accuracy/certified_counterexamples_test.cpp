@@ -14,7 +14,7 @@ namespace {
 constexpr std::string_view on_the_mesh = "CE4_on_a_ridge";
 
 MotionConstraintSettings settings_of(const Counterexample& example, double margin) {
-  return {.radius = example.radius, .margin = margin, .capacity = {.planes = 100}};
+  return {.options = {.radius = example.radius, .margin = margin}, .capacity = {.planes = 100}};
 }
 
 struct Cycle {

@@ -22,7 +22,7 @@ constexpr double margin = 0.3;
 constexpr double radius = 1.0;
 
 MotionConstraintSettings settings() {
-  return {.radius = radius, .margin = margin, .capacity = {.planes = 200}};
+  return {.options = {.radius = radius, .margin = margin}, .capacity = {.planes = 200}};
 }
 
 struct Start {
@@ -108,7 +108,7 @@ TEST_P(CertifiedDeterminism, TheProcessorDoesNotMatter) {
   const Surface surface = GetParam().make();
   const std::vector<Start> starts = starts_on(surface, 4);
   MotionConstraintSettings branching = settings();
-  branching.nodes = 8;
+  branching.options.nodes = 8;
   MotionConstraintSettings paper = settings();
   paper.activation = "paper";
   for (const MotionConstraintSettings& with : {settings(), branching, paper}) {
@@ -187,7 +187,7 @@ TEST_P(CertifiedDeterminism, HowFarIsLookedHardlyMatters) {
   const Surface surface = GetParam().make();
   const auto mesh = mesh_of(surface);
   MotionConstraintSettings wide = settings();
-  wide.query = Query::sphere;
+  wide.options.query = Query::sphere;
   auto guard = make_motion_constraint(mesh, settings());
   auto wide_guard = make_motion_constraint(mesh, wide);
   Random random(4);

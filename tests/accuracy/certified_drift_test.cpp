@@ -24,7 +24,7 @@ TEST_P(CertifiedDrift, TheMarginIsKeptInEveryCycleOfManyUnderPressure) {
   const Scene& scene = GetParam();
   constexpr double margin = 0.2;
   Loop loop(moved(make_shape(scene.shape), scene.offset),
-            {.radius = 0.5, .margin = margin, .capacity = {.planes = 200}});
+            {.options = {.radius = 0.5, .margin = margin}, .capacity = {.planes = 200}});
   Random random(2);
   const std::vector<Vec3> starts = places(loop, 10, 1.1 * margin, random);
   ASSERT_EQ(starts.size(), 10u);

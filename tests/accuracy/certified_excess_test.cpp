@@ -50,10 +50,10 @@ double mean_edge(const Mesh& mesh) {
 }
 
 MotionConstraint guard(const Scene& scene, int refinements, int nodes) {
-  return make_motion_constraint(scene.mesh, {.radius = scene.radius,
-                                             .margin = scene.margin,
-                                             .refinements = refinements,
-                                             .nodes = nodes,
+  return make_motion_constraint(scene.mesh, {.options = {.radius = scene.radius,
+                                                         .margin = scene.margin,
+                                                         .refinements = refinements,
+                                                         .nodes = nodes},
                                              .inside = Inside::taken_as_is});
 }
 

@@ -13,7 +13,8 @@ namespace {
 constexpr double radius = 1.0, margin = 0.25;
 
 MotionConstraintSettings settings() {
-  return {.radius = radius, .margin = margin, .damping = 1e-8, .capacity = {.planes = 200}};
+  return {.options = {.radius = radius, .margin = margin, .damping = 1e-8},
+          .capacity = {.planes = 200}};
 }
 
 TipJacobian::Matrix random_jacobian(Eigen::Index joints, Random& random) {
@@ -170,7 +171,7 @@ TEST(CertifiedCapacity, WithoutRoomForAllTrianglesAShorterWayIsGone) {
   MotionConstraintSettings few = settings();
   few.index = "pd_tree";       // on a wide_bvh the rule searches by itself, and lists no triangles
   few.capacity.triangles = 8;  // a motion of 6 has up to some 60 in reach: the edges are 2.2 long
-  few.radius = 6.0;
+  few.options.radius = 6.0;
   Loop loop(make_shape("sphere"), few);
   Random random(5);
   std::size_t fallbacks = 0, refused = 0, others = 0;

@@ -31,7 +31,8 @@ namespace keepout::test {
 class Tolerance {
  public:
   Tolerance(const Mesh& mesh, const MotionConstraintSettings& settings)
-      : lengths_(settings.radius * (1.0 + 1e-9) + settings.tool_radius + settings.margin) {
+      : lengths_(settings.options.radius * (1.0 + 1e-9) + settings.options.tool_radius +
+                 settings.options.margin) {
     double longest2 = 0.0;
     for (TriangleId t = 0; t < mesh.triangle_count(); ++t) {
       const Triangle corner = mesh.triangle(t);
@@ -56,7 +57,7 @@ class Loop {
         guard_(make_motion_constraint(mesh_, settings)),
         tolerance_(*mesh_, settings),
         oracle_(mesh_),
-        margin_(settings.tool_radius + settings.margin) {}
+        margin_(settings.options.tool_radius + settings.options.margin) {}
 
   const Mesh& mesh() const { return *mesh_; }
   const std::shared_ptr<const Mesh>& shared_mesh() const { return mesh_; }

@@ -78,10 +78,10 @@ class Side {
 class CertifiedRecovery : public testing::TestWithParam<Scene> {
  protected:
   static MotionConstraintSettings settings() {
-    return {.radius = 1.0,
-            .margin = GetParam().margin,
-            .recovery = GetParam().recovery,
-            .deepest = 1e3,
+    return {.options = {.radius = 1.0,
+                        .margin = GetParam().margin,
+                        .recovery = GetParam().recovery,
+                        .deepest = 1e3},
             .capacity = {.planes = 200}};
   }
 
@@ -208,7 +208,8 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(CertifiedRecoveryInAGap, NarrowerThanTwoMarginsIsHonest) {
   // Gaps of 1 between plates of 1: with a margin of 0.7 there is no way out but through the sides.
-  Loop loop(make_shape("thin_plates"), {.radius = 1.0, .margin = 0.7, .recovery = 0.1});
+  Loop loop(make_shape("thin_plates"),
+            {.options = {.radius = 1.0, .margin = 0.7, .recovery = 0.1}});
   const Box& bounds = loop.mesh().bounds();
   Vec3 tip(3.0, 4.0, bounds.low.z() + 1.4);
   double before = loop.distance(tip);
@@ -225,7 +226,8 @@ TEST(CertifiedRecoveryInAGap, NarrowerThanTwoMarginsIsHonest) {
 }
 
 TEST(CertifiedRecoveryInAGap, OfMoreThanTwoMarginsItsMiddleIsFound) {
-  Loop loop(make_shape("thin_plates"), {.radius = 1.0, .margin = 0.49, .recovery = 0.1});
+  Loop loop(make_shape("thin_plates"),
+            {.options = {.radius = 1.0, .margin = 0.49, .recovery = 0.1}});
   const Box& bounds = loop.mesh().bounds();
   for (const double height : {1.05, 1.3, 1.5, 1.95}) {
     Vec3 tip(3.0, 4.0, bounds.low.z() + height);
@@ -237,7 +239,7 @@ TEST(CertifiedRecoveryInAGap, OfMoreThanTwoMarginsItsMiddleIsFound) {
 TEST(CertifiedRecoverySide, AnInsideOutMeshIsLedOutOfOnItsOwnFreeSide) {
   // Free within, forbidden without.
   Loop loop(make_shape("concave_sphere"),
-            {.radius = 1.0, .margin = 0.3, .recovery = 0.5, .deepest = 1e3});
+            {.options = {.radius = 1.0, .margin = 0.3, .recovery = 0.5, .deepest = 1e3}});
   Vec3 tip(0.0, 0.0, 53.0);
   for (int cycle = 0; cycle < 12; ++cycle) {
     const Step step = loop.step(tip, Vec3(0.0, 0.0, 0.5));
@@ -252,8 +254,8 @@ TEST(CertifiedRecoverySide, AnInsideOutMeshIsLedOutOfOnItsOwnFreeSide) {
 }
 
 TEST(CertifiedRecoverySide, ATipThatIsTakenAsItIsStaysOnItsSide) {
-  Loop loop(make_shape("sphere"),
-            {.radius = 1.0, .margin = 0.3, .recovery = 0.5, .inside = Inside::taken_as_is});
+  Loop loop(make_shape("sphere"), {.options = {.radius = 1.0, .margin = 0.3, .recovery = 0.5},
+                                   .inside = Inside::taken_as_is});
   Vec3 tip(0.0, 0.0, 45.0);
   Random random(4);
   for (int cycle = 0; cycle < 500; ++cycle) {

@@ -28,10 +28,9 @@ TEST_P(CertifiedSliding, OverAFlatPlateIsSmoothAndUnhindered) {
   Surface surface = make_flat_plate(1.25, 7);
   for (Vec3& v : surface.vertices) v = frame * v;
   constexpr double size = 100.0;
-  Loop loop(std::move(surface), {.radius = 1.0,
-                                 .margin = plate.margin,
-                                 .refinements = plate.refinements,
-                                 .capacity = {.planes = 200}});
+  Loop loop(std::move(surface),
+            {.options = {.radius = 1.0, .margin = plate.margin, .refinements = plate.refinements},
+             .capacity = {.planes = 200}});
   const Vec3 up = frame.col(2);
 
   Vec3 tip = frame * Vec3(1.0, 2.0, plate.margin + 0.5);
@@ -97,8 +96,7 @@ bool leads_away(const std::vector<Vec3>& away, const Vec3& motion) {
 
 TEST_P(CertifiedRetreat, IsNeverSlowed) {
   constexpr double radius = 1.0, margin = 0.25;
-  Loop loop(GetParam().make(), {.radius = radius,
-                                .margin = margin,
+  Loop loop(GetParam().make(), {.options = {.radius = radius, .margin = margin},
                                 .inside = Inside::taken_as_is,
                                 .capacity = {.planes = 200}});
   const PdTree tree(loop.shared_mesh());

@@ -85,8 +85,8 @@ MotionConstraint guard_with(const std::shared_ptr<const Mesh>& mesh, std::unique
 class CertifiedSolver : public testing::TestWithParam<Shape> {
  protected:
   CertifiedSolver()
-      : loop(GetParam().make(), {.radius = radius, .margin = margin, .capacity = {.planes = 200}}) {
-  }
+      : loop(GetParam().make(),
+             {.options = {.radius = radius, .margin = margin}, .capacity = {.planes = 200}}) {}
 
   /// Presses into the surface, whatever `guard` does; the worst loss in tolerances.
   template <class Judge>

@@ -13,7 +13,8 @@ TEST(LeastRetreat, IsATolerance) {
   for (const double recovery : {0.0, 1e-15, 1e-12}) {
     for (const char* shape : {"cube", "sphere", "gear"}) {
       SCOPED_TRACE(testing::Message() << shape << ", recovery " << recovery);
-      Loop loop(make_shape(shape), {.radius = 1.0, .margin = 0.5, .recovery = recovery});
+      Loop loop(make_shape(shape),
+                {.options = {.radius = 1.0, .margin = 0.5, .recovery = recovery}});
       for (const Vec3& tip : places(loop, 5, 0.3, random)) {
         const Step step = loop.step(tip, Vec3::Zero());
         ASSERT_EQ(step.status, Status::recovering);

@@ -29,7 +29,8 @@ class LibrarySolverStep : public testing::TestWithParam<std::string> {
   Counts run(const Shape& shape, bool joints) {
     const auto mesh = mesh_of(shape.make());
     MotionConstraintSettings settings{
-        .activation = GetParam(), .radius = 2.0, .margin = margin, .damping = joints ? 1e-6 : 0.0};
+        .activation = GetParam(),
+        .options = {.radius = 2.0, .margin = margin, .damping = joints ? 1e-6 : 0.0}};
     MotionConstraint exact = make_motion_constraint(mesh, settings);
     settings.solver = "nlopt_slsqp";
     MotionConstraint other = make_motion_constraint(mesh, settings);

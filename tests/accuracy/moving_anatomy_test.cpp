@@ -30,7 +30,7 @@ std::shared_ptr<const Mesh> at(const Surface& still, double time) {
 
 MotionConstraint guard_of(const std::shared_ptr<const Mesh>& mesh,
                           const std::shared_ptr<const SpatialIndex>& index) {
-  return make_motion_constraint(mesh, index, {.radius = radius, .margin = margin});
+  return make_motion_constraint(mesh, index, {.options = {.radius = radius, .margin = margin}});
 }
 
 /// Fails if a step does what it must not, by an oracle of the mesh as it is now. Returns where it
@@ -201,7 +201,8 @@ TEST(MovingAnatomy, TheBudgetIsThatOfTheIndexThatIsFollowed) {
     return guard.looks();
   };
   MotionConstraint guard = make_motion_constraint(
-      mesh, slow, {.radius = radius, .margin = margin, .capacity = {.triangles = 1 << 20}});
+      mesh, slow,
+      {.options = {.radius = radius, .margin = margin}, .capacity = {.triangles = 1 << 20}});
   const std::size_t of_queries = looks(guard);
   EXPECT_GT(of_queries, Capacity::looks_of_a_walk);
   guard.follow(mesh, tree);

@@ -48,7 +48,7 @@ TEST_P(PaperCounterexample, DoesWhatIsOnRecord) {
   const Record& record = records.at(example.name);
   const auto mesh = mesh_of(example.surface);
   MotionConstraint constraint = make_motion_constraint(
-      mesh, {.activation = "paper", .radius = example.radius, .margin = 0.0});
+      mesh, {.activation = "paper", .options = {.radius = example.radius, .margin = 0.0}});
   const Step step = constraint.step({.tip = example.tip, .desired = example.desired});
   ASSERT_TRUE(step.ok()) << step.reason();
   EXPECT_EQ(step.planes.size(), record.planes);

@@ -31,14 +31,17 @@ TEST(Range, LengthsOutsideAreRefusedWithAWordOnThem) {
   for (const double unit : {1e-80, 1e-29, 1e-17, 1e17, 1e19, 1e25}) {
     SCOPED_TRACE(unit);
     const auto mesh = mesh_of(scaled(make_cube(5.0), unit));
-    EXPECT_THROW(make_motion_constraint(mesh, {.radius = 5.0 * unit, .margin = 0.2 * unit}), Error);
+    EXPECT_THROW(
+        make_motion_constraint(mesh, {.options = {.radius = 5.0 * unit, .margin = 0.2 * unit}}),
+        Error);
   }
   const auto mesh = mesh_of(make_cube(5.0));
-  EXPECT_THROW(make_motion_constraint(mesh, {.radius = 1e16}), Error);
-  EXPECT_THROW(make_motion_constraint(mesh, {.radius = 1e-16, .margin = 1e-6}), Error);
-  EXPECT_THROW(make_motion_constraint(mesh, {.tool_radius = 1e16}), Error);
-  EXPECT_THROW(make_motion_constraint(mesh, {.activation = "paper", .margin = 1e-16}), Error);
-  auto guard = make_motion_constraint(mesh, {.radius = 5.0, .margin = 0.2});
+  EXPECT_THROW(make_motion_constraint(mesh, {.options = {.radius = 1e16}}), Error);
+  EXPECT_THROW(make_motion_constraint(mesh, {.options = {.radius = 1e-16, .margin = 1e-6}}), Error);
+  EXPECT_THROW(make_motion_constraint(mesh, {.options = {.tool_radius = 1e16}}), Error);
+  EXPECT_THROW(make_motion_constraint(mesh, {.activation = "paper", .options = {.margin = 1e-16}}),
+               Error);
+  auto guard = make_motion_constraint(mesh, {.options = {.radius = 5.0, .margin = 0.2}});
   const Step far = guard.step({.tip = Vec3(2e15, 0.0, 0.0), .desired = Vec3(1.0, 0.0, 0.0)});
   EXPECT_EQ(far.status, Status::invalid_input);
 }
@@ -50,7 +53,8 @@ TEST_P(RangeWithin, StepsAreCertifiedInWhateverUnit) {
   Random random(7);
   for (const char* shape : {"gear", "sphere", "needles"}) {
     SCOPED_TRACE(shape);
-    Loop loop(scaled(make_shape(shape), unit), {.radius = 2.0 * unit, .margin = 0.2 * unit});
+    Loop loop(scaled(make_shape(shape), unit),
+              {.options = {.radius = 2.0 * unit, .margin = 0.2 * unit}});
     std::size_t held = 0;
     for (const Vec3& place : places(loop, 40, 0.5 * unit, random)) {
       Vec3 tip = place;
@@ -73,7 +77,8 @@ INSTANTIATE_TEST_SUITE_P(Units, RangeWithin, testing::Values(1e-13, 1e-9, 1e-3, 
 /// Where the processor takes denormal numbers for 0, as loops of audio and control often have it.
 TEST(RangeWithin, StepsAreTheSameWithoutDenormals) {
   for (const double unit : {1e-13, 1.0}) {
-    const MotionConstraintSettings settings{.radius = 2.0 * unit, .margin = 0.2 * unit};
+    const MotionConstraintSettings settings{
+        .options = {.radius = 2.0 * unit, .margin = 0.2 * unit}};
     Loop loop(scaled(make_shape("gear"), unit), settings);
     Random random(8);
     std::size_t held = 0;
@@ -104,7 +109,8 @@ TEST_P(AfterRefit, NoStepMovesAndNoPolytopeIsFound) {
   auto tree = std::make_shared<WideBvh>(mesh);
   const bool is_certified = std::string_view(GetParam()) == "certified";
   auto guard = make_motion_constraint(
-      mesh, tree, {.activation = GetParam(), .radius = 5.0, .margin = is_certified ? 0.2 : 0.0});
+      mesh, tree,
+      {.activation = GetParam(), .options = {.radius = 5.0, .margin = is_certified ? 0.2 : 0.0}});
   const double top = mesh->bounds().high.z();
   const Vec3 down(0.0, 0.0, -1.0);
   for (const double off : {2.0, 0.5, 0.1, -0.5}) {
@@ -144,14 +150,14 @@ void expect_standstill_after_refit(const MotionConstraintSettings& settings,
 
 TEST(AfterRefit, NoStepMovesWithGuides) {
   const Vec3 out(-1.0, 0.0, 0.0);  // the guide leads the tip back
-  expect_standstill_after_refit({.radius = 5.0, .margin = 0.2},
+  expect_standstill_after_refit({.options = {.radius = 5.0, .margin = 0.2}},
                                 {Guide::point("side", Region::half_space(out, out))});
 }
 
 TEST(AfterRefit, NoStepMovesAConvexTool) {
-  expect_standstill_after_refit(
-      {.radius = 5.0, .tool = ConvexTool::box({Vec3(-1, -1, -1), Vec3(1, 1, 1)}), .margin = 0.2},
-      {});
+  expect_standstill_after_refit({.options = {.radius = 5.0, .margin = 0.2},
+                                 .tool = ConvexTool::box({Vec3(-1, -1, -1), Vec3(1, 1, 1)})},
+                                {});
 }
 
 // What a running guard holds on to cannot be replaced behind its back.
@@ -172,8 +178,8 @@ TEST(IndexOfAnotherMesh, IsRefused) {
       std::make_shared<WideBvh>(other), std::make_shared<PdTree>(other),
       std::make_shared<PdTree1997>(other), std::make_shared<BruteForce>(other)};
   for (const auto& index : indices) {
-    EXPECT_THROW(make_motion_constraint(mesh, index, {.radius = 5.0}), Error);
-    EXPECT_NO_THROW(make_motion_constraint(other, index, {.radius = 5.0}));
+    EXPECT_THROW(make_motion_constraint(mesh, index, {.options = {.radius = 5.0}}), Error);
+    EXPECT_NO_THROW(make_motion_constraint(other, index, {.options = {.radius = 5.0}}));
   }
 }
 
@@ -183,7 +189,7 @@ TEST(CoordinatesOf, VerticesThatNoTriangleUsesChangeNothing) {
   Surface surface = scaled(make_shape("gear"), 1.0 / 3.0);  // in no floats
   Surface with_one_more = surface;
   with_one_more.vertices.emplace_back(3e7 / 7.0, -3e7, 3e7);
-  const MotionConstraintSettings settings{.radius = 1.0, .margin = 0.01};
+  const MotionConstraintSettings settings{.options = {.radius = 1.0, .margin = 0.01}};
   Loop loop(surface, settings);
   Loop other(with_one_more, settings);
   Random random(3);
@@ -200,7 +206,7 @@ TEST(CoordinatesOf, VerticesThatNoTriangleUsesChangeNothing) {
 TEST(CoordinatesOf, AMeshFarFromTheOriginLimitNoMore) {
   const Surface surface = scaled(make_shape("gear"), 1.0 / 3.0);
   const Vec3 offset(1e7 / 3.0, -1e7, 1e7 / 7.0);
-  const MotionConstraintSettings settings{.radius = 1.0, .margin = 0.01};
+  const MotionConstraintSettings settings{.options = {.radius = 1.0, .margin = 0.01}};
   Loop loop(surface, settings);
   Loop far(moved(surface, offset), settings);
   Random random(3);
@@ -221,9 +227,9 @@ TEST(CoordinatesOf, AMeshTooLargeForItsMarginIsWarnedOf) {
   const auto mesh = mesh_of(scaled(make_shape("gear"), 1e4 / 3.0));
   std::vector<std::string> warnings;
   const auto warn = [&](const std::string& text) { warnings.push_back(text); };
-  make_motion_constraint(mesh, {.warn = warn, .radius = 10.0, .margin = 1.0});
+  make_motion_constraint(mesh, {.warn = warn, .options = {.radius = 10.0, .margin = 1.0}});
   EXPECT_TRUE(warnings.empty());
-  make_motion_constraint(mesh, {.warn = warn, .radius = 10.0, .margin = 1e-2});
+  make_motion_constraint(mesh, {.warn = warn, .options = {.radius = 10.0, .margin = 1e-2}});
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_CONTAINS(warnings[0], "keep more than");
 }
@@ -247,7 +253,8 @@ class LittleRecovery : public testing::TestWithParam<double> {};
 
 TEST_P(LittleRecovery, NothingAddsUp) {
   Random random(11);
-  const MotionConstraintSettings settings{.radius = 1.0, .margin = 0.5, .recovery = GetParam()};
+  const MotionConstraintSettings settings{
+      .options = {.radius = 1.0, .margin = 0.5, .recovery = GetParam()}};
   for (const char* shape : {"cube", "sphere", "gear"}) {
     SCOPED_TRACE(shape);
     Loop loop(make_shape(shape), settings);
@@ -267,7 +274,8 @@ Surface groove(double angle) {
 /// Where a way off one wall is a way to the other.
 TEST_P(LittleRecovery, NothingAddsUpBetweenWalls) {
   Random random(12);
-  const MotionConstraintSettings settings{.radius = 1.0, .margin = 0.5, .recovery = GetParam()};
+  const MotionConstraintSettings settings{
+      .options = {.radius = 1.0, .margin = 0.5, .recovery = GetParam()}};
   for (const double angle : {0.001, 0.02, 0.3, 1.0, 1.5, 2.5}) {
     SCOPED_TRACE(angle);
     Loop loop(groove(angle), settings);
@@ -281,7 +289,8 @@ TEST_P(LittleRecovery, NothingAddsUpBetweenWalls) {
 
 /// A joint that cannot lift the tip within its reach takes a little away each cycle.
 TEST_P(LittleRecovery, NothingAddsUpWhereAJointCannotLeadOff) {
-  const MotionConstraintSettings settings{.radius = 1.0, .margin = 1.0, .recovery = GetParam()};
+  const MotionConstraintSettings settings{
+      .options = {.radius = 1.0, .margin = 1.0, .recovery = GetParam()}};
   Loop loop({{{-50, 0, -50}, {50, 0, -50}, {0, 0, 80}}, {{0, 1, 2}}}, settings);
   for (const double share : {0.003, 0.012, 0.0155, 0.03}) {
     SCOPED_TRACE(share);
@@ -298,7 +307,8 @@ TEST_P(LittleRecovery, NothingAddsUpWhereAJointCannotLeadOff) {
 
 /// Two walls, each nearer to the middle than the margin.
 TEST_P(LittleRecovery, LeadsToTheMiddleOfASlotAndKeepsItThere) {
-  const MotionConstraintSettings settings{.radius = 1.0, .margin = 1.0, .recovery = GetParam()};
+  const MotionConstraintSettings settings{
+      .options = {.radius = 1.0, .margin = 1.0, .recovery = GetParam()}};
   const Eigen::AngleAxisd turn(0.7, Vec3(1, 2, 3).normalized());
   for (const double off : {0.0, 1e3, 1e6}) {
     SCOPED_TRACE(off);
@@ -334,7 +344,7 @@ INSTANTIATE_TEST_SUITE_P(Recoveries, LittleRecovery,
 // Zero has one sign in what comes out.
 
 TEST(SignOfZero, IsPlusWhateverItWasInWhatGoesIn) {
-  auto guard = make_motion_constraint(mesh_of(make_cube(5.0)), {.radius = 5.0});
+  auto guard = make_motion_constraint(mesh_of(make_cube(5.0)), {.options = {.radius = 5.0}});
   const auto expect_plus = [&](const Motion& motion) {
     const Step step = guard.step(motion);
     for (int axis = 0; axis < 3; ++axis) {

@@ -47,7 +47,8 @@ TEST(ShallowBreach, OfAMotionThatGlancesIsSeen) {
   constexpr const char* names[] = {"gear", "cortex", "sphere", "cube", "needles", "fan"};
   for (int trial = 0; trial < trials(12); ++trial) {
     SCOPED_TRACE(names[trial % 6]);
-    Loop loop(make_shape(names[trial % 6]), {.radius = 1.0, .margin = trial % 2 == 0 ? 0.2 : 1.0});
+    Loop loop(make_shape(names[trial % 6]),
+              {.options = {.radius = 1.0, .margin = trial % 2 == 0 ? 0.2 : 1.0}});
     ASSERT_NO_FATAL_FAILURE(glance(loop, 1.0, 12, random, moved));
   }
   EXPECT_GT(moved, trials(400));
@@ -71,7 +72,7 @@ TEST(ShallowBreach, BesideSmallTrianglesOfALargeMeshIsSeen) {
         surface.triangles.push_back({last - 2, last - 1, last});
       }
     }
-    Loop loop(std::move(surface), {.radius = size, .margin = size});
+    Loop loop(std::move(surface), {.options = {.radius = size, .margin = size}});
     ASSERT_NO_FATAL_FAILURE(glance(loop, size, 10, random, moved));
   }
   EXPECT_GT(moved, trials(300));
@@ -83,7 +84,7 @@ TEST(ShallowBreach, OfAMotionStraightAtAFaceIsSeen) {
   Random random(7);
   int moved = 0;
   for (const double margin : {0.005, 0.2, 1.0, 4.0}) {
-    Loop loop(make_cube(5.0), {.radius = 10.0, .margin = margin});
+    Loop loop(make_cube(5.0), {.options = {.radius = 10.0, .margin = margin}});
     const double face = loop.mesh().bounds().high.x();
     for (int i = 0; i < trials(2000); ++i) {
       const auto axis = static_cast<Eigen::Index>(random.below(3));
@@ -107,7 +108,7 @@ TEST(ShallowBreach, OfAMotionStraightAtAFaceIsSeen) {
 TEST(ShallowBreach, OfAMotionWithoutPlanesIsOneToleranceAtTheMost) {
   Random random(10);
   int free = 0;
-  Loop loop(make_shape("cube"), {.radius = 1.0, .margin = 0.2});
+  Loop loop(make_shape("cube"), {.options = {.radius = 1.0, .margin = 0.2}});
   for (const Vec3& tip : places(loop, trials(300), 0.5, random)) {
     const double missing = random.uniform(0.5, 2.0) * loop.tolerance(tip);
     const Vec3 desired = (0.3 + missing) * towards_surface(loop, tip);
@@ -124,9 +125,9 @@ TEST(ShallowBreach, OfAMotionWithoutPlanesIsOneToleranceAtTheMost) {
 TEST(ShallowBreach, BesideADesiredMotionThatIsFreeIsSeen) {
   Random random(5);
   int moved = 0;
-  MotionConstraintSettings settings{.radius = 1.0, .margin = 0.2};
+  MotionConstraintSettings settings{.options = {.radius = 1.0, .margin = 0.2}};
   for (const double damping : {1e-5, 1e-4, 5e-4}) {
-    settings.damping = damping;
+    settings.options.damping = damping;
     Loop loop(make_shape("cube"), settings);
     for (const Vec3& tip : places(loop, 30, 0.2001, random)) {
       const Vec3 in = towards_surface(loop, tip);

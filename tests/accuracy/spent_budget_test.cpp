@@ -16,7 +16,7 @@ TEST(SpentBudget, NoStepIsUnsafeWhereverTheWorkEnds) {
   int moved = 0;
   int stopped = 0;
   for (int trial = 0; trial < trials(50); ++trial) {
-    MotionConstraintSettings settings{.radius = 3.0, .margin = 0.5};
+    MotionConstraintSettings settings{.options = {.radius = 3.0, .margin = 0.5}};
     settings.capacity.looks = static_cast<std::size_t>(std::exp2(random.uniform(2.0, 16.0)));
     constexpr const char* names[] = {"gear", "cortex", "sphere", "fan"};
     Loop loop(
@@ -42,7 +42,7 @@ TEST(SpentBudget, NoStepIsUnsafeWhereMoreTrianglesAreNearThanFitInMemory) {
   int moved = 0;
   for (const VertexId faces : {3000u, 30000u}) {
     for (const double slope : {0.05, 0.3, 1.0}) {
-      MotionConstraintSettings settings{.radius = 5.0, .margin = 1.0};
+      MotionConstraintSettings settings{.options = {.radius = 5.0, .margin = 1.0}};
       settings.capacity.looks = std::size_t{1} << 30;
       Loop loop(make_cone(faces, slope), settings);
       SCOPED_TRACE(testing::Message() << faces << " faces, slope " << slope);

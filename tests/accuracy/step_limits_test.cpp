@@ -58,7 +58,7 @@ double missed(const Question& q, const Step& step) { return (step.motion - q.des
 class StepLimits : public testing::Test {
  protected:
   std::shared_ptr<const Mesh> mesh_ = mesh_of("gear");
-  MotionConstraintSettings settings_{.radius = 2.0, .tool_radius = 0.5, .margin = 0.2};
+  MotionConstraintSettings settings_{.options = {.radius = 2.0, .tool_radius = 0.5, .margin = 0.2}};
   MotionConstraint guard_ = make_motion_constraint(mesh_, settings_);
   // Far away in all directions, for steps without the mesh.
   MotionConstraint bare_ = make_motion_constraint(

@@ -70,7 +70,7 @@ struct Scene {
       : mesh(mesh_of(make_cone(faces, slope))), tree(std::make_shared<CountedTree>(mesh)) {}
 
   MotionConstraint guard() const {
-    return make_motion_constraint(mesh, tree, {.radius = 5.0, .margin = 1.0});
+    return make_motion_constraint(mesh, tree, {.options = {.radius = 5.0, .margin = 1.0}});
   }
 
   std::shared_ptr<const Mesh> mesh;
@@ -249,11 +249,11 @@ TEST(BudgetOfACycle, SufficesInsideConesOfUpTo400Faces) {
 TEST(BudgetOfACycle, EndsInAStatusOfItsOwn) {
   const Scene scene(4'000, 1.0);
   const auto status = [&](const char* index, const Capacity& capacity) {
-    MotionConstraint guard = make_motion_constraint(scene.mesh, {.index = index,
-                                                                 .radius = 5.0,
-                                                                 .margin = 1.0,
-                                                                 .inside = Inside::taken_as_is,
-                                                                 .capacity = capacity});
+    MotionConstraint guard =
+        make_motion_constraint(scene.mesh, {.index = index,
+                                            .options = {.radius = 5.0, .margin = 1.0},
+                                            .inside = Inside::taken_as_is,
+                                            .capacity = capacity});
     return guard.step({.tip = above(0.99), .desired = Vec3(0.01, 0.02, -4.0)}).status;
   };
   EXPECT_EQ(status("wide_bvh", {.looks = 300}), Status::out_of_budget);

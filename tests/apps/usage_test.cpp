@@ -101,7 +101,7 @@ TEST(Usage, NamesAndValuesAreToldWithTheirOption) {
       {"verify cube --shard 3", "--shard: expected I/N, part I of N"},
       {"--simd AVX22 inspect cube", "--simd: there is no 'AVX22'; "},
       {"bench --simd SCALAR", "--simd goes before the command: 'keepout --simd ... bench'"},
-      {"simulate cube --radius abc", "--radius: expected a number above 0 and at most 1e30, not"},
+      {"simulate cube --radius abc", "--radius: expected a number from 1e-15 to 1e15, not 'abc'"},
       {"simulate cube --radius", "--radius: a value is missing"},
       {"inspect cube --json=many", "--json: "},
   });

@@ -199,7 +199,8 @@ TEST_F(Crtk, ARobotIsKeptInTheGuides) {
 
 TEST_F(Crtk, ARobotStandsOnceTheMeshHasMoved) {
   const auto tree = std::make_shared<WideBvh>(cube());
-  CrtkGuard guard(make_motion_constraint(cube(), tree, {.margin = kept}), registration(), {});
+  CrtkGuard guard(make_motion_constraint(cube(), tree, {.options = {.margin = kept}}),
+                  registration(), {});
   guard.engage(pose_at(above));
   EXPECT_EQ(guard.servo_cp(pose_at(above)), CycleStatus::guarded);
   const Vec3 before = guard.setpoint_cp()->position;

@@ -12,7 +12,8 @@ inline constexpr double top = 50.0;
 inline constexpr double kept = 0.5;  // margin, of a tool that is a point
 
 inline MotionConstraint guard_of(std::shared_ptr<const Mesh> mesh,
-                                 MotionConstraintSettings settings = {.margin = kept}) {
+                                 MotionConstraintSettings settings = {
+                                     .options = {.margin = kept}}) {
   return make_motion_constraint(std::move(mesh), settings);
 }
 

@@ -224,7 +224,7 @@ TEST(HapticProxy, WhenTheEngineRefusesTheProxyStandsAndTheForceFadesWithTheHand)
 
 TEST(HapticProxy, StandsOnceItsMeshHasMoved) {
   const auto tree = std::make_shared<WideBvh>(cube());
-  HapticProxy proxy(make_motion_constraint(cube(), tree, {.margin = kept}), {});
+  HapticProxy proxy(make_motion_constraint(cube(), tree, {.options = {.margin = kept}}), {});
   proxy.engage(above);
   EXPECT_EQ(proxy.cycle(above + Vec3(0.1, 0, 0)).status, CycleStatus::guarded);
   const Vec3 before = proxy.proxy();
@@ -260,7 +260,7 @@ TEST(HapticProxy, AProxyThatMayNotGoFasterPullsTheHandBack) {
 TEST(HapticProxy, ATipThatIsLedOffGoesNoFasterThanTheTopSpeed) {
   for (const double recovery : {0.05, 2.0}) {
     for (const double start : {top + 0.1, top, top - 3.0}) {
-      HapticProxy proxy(guard_of(cube(), {.margin = kept, .recovery = recovery}),
+      HapticProxy proxy(guard_of(cube(), {.options = {.margin = kept, .recovery = recovery}}),
                         {.top_speed = 50.0});
       proxy.engage(Vec3(3, 4, start));
       for (int i = 0; i < 200; ++i) {

@@ -94,7 +94,7 @@ TEST(ConvexToolByName, IsTakenAsItIsInsideAndRefusedWhereSettingsContradictEachO
   MotionConstraint guard = make_motion_constraint(test::cube(), {.tool = tool});
   EXPECT_EQ(guard.step({.tip = {0, 0, 0}, .desired = {0, 0, 1}}).motion, Vec3(0, 0, 1));
   for (const auto& [settings, why] : std::vector<std::pair<MotionConstraintSettings, std::string>>{
-           {{.tool_radius = 0.5, .tool = tool}, "leave tool_radius at 0"},
+           {{.options = {.tool_radius = 0.5}, .tool = tool}, "leave tool_radius at 0"},
            {{.activation = "paper", .tool = tool}, "leave activation at 'certified', not 'paper'"},
            {{.narrow_phase = "ccd_mpr"}, "'ccd_mpr' is for a convex tool"},
            {{.tool = tool, .narrow_phase = "exakt"}, "did you mean 'exact'"}}) {

@@ -36,7 +36,7 @@ using SharedMesh = std::shared_ptr<const Mesh>;
 
 std::shared_ptr<GuardPool> guards_of(const SharedMesh& mesh, std::size_t most = 2) {
   return std::make_shared<GuardPool>(
-      [mesh] { return make_motion_constraint(mesh, {.margin = margin}); }, most);
+      [mesh] { return make_motion_constraint(mesh, {.options = {.margin = margin}}); }, most);
 }
 
 base::SpaceInformationPtr space_around(const Mesh& mesh) {
@@ -166,7 +166,8 @@ TEST(Planning, WithSidesTheInsideIsInvalidAndWithoutItIsAnotherRoom) {
   const TipState centre(space, Vec3::Zero());
   EXPECT_FALSE(make_state_validity_checker(space, guards_of(mesh))->isValid(centre.get()));
   const auto no_sides = std::make_shared<GuardPool>([mesh] {
-    return make_motion_constraint(mesh, {.margin = margin, .inside = Inside::taken_as_is});
+    return make_motion_constraint(mesh,
+                                  {.options = {.margin = margin}, .inside = Inside::taken_as_is});
   });
   EXPECT_TRUE(make_state_validity_checker(space, no_sides)->isValid(centre.get()));
   const TipState outside(space, {0, 0, 55});
@@ -189,7 +190,7 @@ TEST(Planning, AMotionOutOfAGuideIsInvalid) {
   const base::SpaceInformationPtr space = space_around(*mesh);
   const Vec3 start(0, 0, 55);
   const auto guards = std::make_shared<GuardPool>([mesh, start] {
-    MotionConstraint guard = make_motion_constraint(mesh, {.margin = margin});
+    MotionConstraint guard = make_motion_constraint(mesh, {.options = {.margin = margin}});
     guard.set_guides({Guide::point("corridor", Region::slab(start, Vec3::UnitX(), 1.0))});
     return guard;
   });
@@ -205,7 +206,8 @@ TEST(Planning, NothingIsValidOnceTheMeshHasMoved) {
   const auto tree = std::make_shared<WideBvh>(mesh);
   const base::SpaceInformationPtr space = space_around(*mesh);
   const auto guards = std::make_shared<GuardPool>(
-      [mesh, tree] { return make_motion_constraint(mesh, tree, {.margin = margin}); }, 1);
+      [mesh, tree] { return make_motion_constraint(mesh, tree, {.options = {.margin = margin}}); },
+      1);
   const TipState from(space, {0, 0, 55}), to(space, {0, 3, 55});
   const auto validator = make_motion_validator(space, guards);
   EXPECT_TRUE(validator->checkMotion(from.get(), to.get()));

@@ -27,7 +27,7 @@ constexpr double tolerance = 1e-6;
 using Ending = ProjectingSteer::Ending;
 
 MotionConstraint guard_of(const std::shared_ptr<const Mesh>& mesh) {
-  return make_motion_constraint(mesh, {.margin = margin});
+  return make_motion_constraint(mesh, {.options = {.margin = margin}});
 }
 
 class SteerOn : public testing::TestWithParam<const char*> {};
@@ -116,8 +116,8 @@ TEST(ProjectingSteer, RefusesOptionsOutOfRange) {
 TEST(StraightWay, ASolverThatGivesUpProvesTheSame) {
   for (const char* shape : {"gear", "cortex", "thin_plates"}) {
     const auto mesh = mesh_of(shape);
-    MotionConstraint guard =
-        make_motion_constraint(mesh, {.margin = margin, .inside = Inside::taken_as_is});
+    MotionConstraint guard = make_motion_constraint(
+        mesh, {.options = {.margin = margin}, .inside = Inside::taken_as_is});
     MotionConstraint quick(mesh, make_index("wide_bvh", mesh), std::make_unique<CertifiedRule>(),
                            std::make_unique<StraightOnly>(), {.radius = 5.0, .margin = margin});
     Random random(4);
@@ -156,7 +156,9 @@ TEST(GuardPool, MakesOneAtOnceAndNoMoreThanItMay) {
   EXPECT_EQ(unbounded.made(), 2u);
   EXPECT_THROW(GuardPool({}, 1), Error);
   EXPECT_THROW(GuardPool([&] { return guard_of(mesh); }, 0), Error);
-  EXPECT_THROW(GuardPool([&] { return make_motion_constraint(mesh, {.margin = -1.0}); }), Error);
+  EXPECT_THROW(
+      GuardPool([&] { return make_motion_constraint(mesh, {.options = {.margin = -1.0}}); }),
+      Error);
 }
 
 }  // namespace

@@ -197,9 +197,12 @@ def test_jacobians_and_rows_that_are_refused(guard, arguments, says):
         ({"radius": np.nan}, "radius"),
         ({"margin": -1.0}, "margin"),
         ({"margin": 0.0}, "margin"),
-        ({"max_planes": -1}, "max_planes: expected a number not below zero, got -1"),
+        ({"max_planes": -1}, "max_planes: expected a whole number from 0 to 1073741824, got -1"),
         ({"max_triangles": -1}, "max_triangles"),
-        ({"max_planes": 2**40}, "capacity"),
+        ({"max_planes": 2**40}, "max_planes: .* got 1099511627776"),
+        ({"refinements": 1.5}, "refinements: expected a whole number from 0 to 1000, got 1.5"),
+        ({"damping": "much"}, "damping: expected a number from 0 to 1e30, got 'much'"),
+        ({"nodes": 2**70}, "nodes: expected a whole number from 0 to 65536, got"),
     ],
 )
 def test_settings_that_are_refused(mesh, settings, says):

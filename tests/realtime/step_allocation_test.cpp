@@ -61,13 +61,11 @@ TEST(Step, AllocatesNothingWhateverItsPartsAndItsOutcome) {
         if (solver.allocation != Allocation::never) continue;
         SCOPED_TRACE(std::string(index.name) + " " + std::string(rule.name) + " " +
                      std::string(solver.name));
-        const MotionConstraintSettings settings{.index = std::string(index.name),
-                                                .activation = std::string(rule.name),
-                                                .solver = std::string(solver.name),
-                                                .radius = 4.0,
-                                                .margin = 0.1,
-                                                .damping = 1e-6,
-                                                .nodes = 8};
+        const MotionConstraintSettings settings{
+            .index = std::string(index.name),
+            .activation = std::string(rule.name),
+            .solver = std::string(solver.name),
+            .options = {.radius = 4.0, .margin = 0.1, .damping = 1e-6, .nodes = 8}};
         MotionConstraint constraint = make_motion_constraint(mesh, settings);
         MotionConstraintSettings with_distances = settings;
         with_distances.distances = Distances::always;
@@ -138,8 +136,9 @@ TEST(Step, AllocatesNothingWithGuides) {
   for (const IndexBackend& index : index_backends()) {
     if (index.allocation != Allocation::never) continue;
     SCOPED_TRACE(std::string(index.name));
-    MotionConstraint guard = make_motion_constraint(
-        mesh, {.index = std::string(index.name), .radius = 4.0, .margin = 0.1, .damping = 1e-6});
+    MotionConstraint guard =
+        make_motion_constraint(mesh, {.index = std::string(index.name),
+                                      .options = {.radius = 4.0, .margin = 0.1, .damping = 1e-6}});
     std::set<Status> seen;
     int limited = 0;
     int relaxed = 0;

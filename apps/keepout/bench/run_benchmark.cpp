@@ -88,8 +88,8 @@ Reference& Trial::reference(const MotionConstraintSettings& settings) {
                 .first;
   }
   return references_
-      .try_emplace({settings.activation, settings.radius}, guard->second, loaded_.mesh, settings,
-                   motions_)
+      .try_emplace({settings.activation, settings.options.radius}, guard->second, loaded_.mesh,
+                   settings, motions_)
       .first->second;
 }
 
@@ -136,11 +136,12 @@ BenchmarkRow Trial::measure(const Combination& combination) {
   if (!index_) return row;
 
   // The certified rule looks only where the motion leads, and the paper's take the tip as it is.
-  MotionConstraintSettings settings{.activation = combination.activation,
-                                    .radius = combination.radius.value_or(5.0),
-                                    .margin = combination.activation == "certified" ? margin : 0.0,
-                                    .inside = Inside::taken_as_is,
-                                    .capacity = room};
+  MotionConstraintSettings settings{
+      .activation = combination.activation,
+      .options = {.radius = combination.radius.value_or(5.0),
+                  .margin = combination.activation == "certified" ? margin : 0.0},
+      .inside = Inside::taken_as_is,
+      .capacity = room};
   Reference& expected = reference(settings);
   if (!expected.fits()) {
     row.remark = "not timed: more than " + grouped(expected.candidates.capacity()) +

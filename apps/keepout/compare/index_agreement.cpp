@@ -149,7 +149,7 @@ std::vector<IndexAgreement> compare_indices(const IndexComparison& comparison,
                        const std::string& rule) -> std::optional<Findings> {
     constexpr double radius = 1.0;  // of the motion sphere [mm]
     MotionConstraint guard =
-        make_motion_constraint(mesh, index, {.activation = rule, .radius = radius});
+        make_motion_constraint(mesh, index, {.activation = rule, .options = {.radius = radius}});
     const double reach = guard.options().radius + guard.options().margin;
     Budget budget;
     Neighborhood around(mesh, index, mesh->triangle_count(), budget);

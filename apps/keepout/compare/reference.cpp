@@ -37,7 +37,7 @@ Reference::Reference(MotionConstraint& guard, std::shared_ptr<const Mesh> mesh,
     : candidates(std::min(settings.capacity.triangles, mesh->triangle_count())),
       hits(candidates.capacity()),
       guard_(guard),
-      options_({.radius = settings.radius, .margin = settings.margin}),
+      options_({.radius = settings.options.radius, .margin = settings.options.margin}),
       proves_motions_(settings.activation == "certified"),
       motions_(motions) {
   const auto brute_force = std::make_shared<const BruteForce>(mesh);

@@ -46,8 +46,9 @@ std::vector<std::string> warnings_of(const LoadedMesh& loaded, const LiveOptions
     warnings.push_back(text);
   };
   if (start) {
-    make_instrument_constraint(loaded.mesh, robot_named(options.robot).make(start->base),
-                               {.options = {.margin = options.constraint.margin}, .warn = warn});
+    make_instrument_constraint(
+        loaded.mesh, robot_named(options.robot).make(start->base),
+        {.options = {.margin = options.constraint.options.margin}, .warn = warn});
     return warnings;
   }
   MotionConstraintSettings settings = options.constraint;
@@ -85,7 +86,7 @@ Anatomy anatomy_of(const std::filesystem::path& name, const LiveOptions& options
   std::optional<RobotStart> start;
   if (!options.robot.empty()) {
     start = instrument_start(name.string(), loaded.mesh, robot_named(options.robot),
-                             options.constraint.margin);
+                             options.constraint.options.margin);
   }
   Anatomy anatomy{.facts = {{"name", name.filename().string()},
                             {"command_name", command_name(name, options.load)},
@@ -114,10 +115,14 @@ std::string in_script(const Json& json) {
 void write_anatomy(std::ostream& page, const LiveOptions& options,
                    const std::vector<Anatomy>& anatomy) {
   const MotionConstraintSettings& constraint = options.constraint;
-  Json settings{{"format", "keepout live"},    {"version", 1},
-                {"keepout", KEEPOUT_VERSION},  {"activation", constraint.activation},
-                {"radius", constraint.radius}, {"tool_radius", constraint.tool_radius},
-                {"margin", constraint.margin}, {"max_step", options.max_step},
+  Json settings{{"format", "keepout live"},
+                {"version", 1},
+                {"keepout", KEEPOUT_VERSION},
+                {"activation", constraint.activation},
+                {"radius", constraint.options.radius},
+                {"tool_radius", constraint.options.tool_radius},
+                {"margin", constraint.options.margin},
+                {"max_step", options.max_step},
                 {"meshes", Json::array()}};
   if (!options.robot.empty()) settings["robot"] = options.robot;
   for (const Anatomy& one : anatomy) settings["meshes"].push_back(one.facts);
@@ -169,14 +174,10 @@ void add_live(CLI::App& app, LiveOptions& options) {
   add_name(command, "--activation", options.constraint.activation, std::move(rules),
            "Rule that chooses the planes; none: no fixture")
       ->excludes(robot);
-  add_length(command, "--tool-radius", options.constraint.tool_radius, Zero::allowed,
-             "Radius of the ball around the tip that shall not touch the surface")
-      ->excludes(robot);
-  add_length(command, "--margin", options.constraint.margin, Zero::allowed,
-             "Distance to keep between tool and surface; the certified rule needs one");
-  add_length(command, "--radius", options.constraint.radius, Zero::refused,
-             "Radius of the motion sphere")
-      ->excludes(robot);
+  StepOptions& step = options.constraint.options;
+  add_option_of(command, "tool_radius", step)->excludes(robot);
+  add_option_of(command, "margin", step);
+  add_option_of(command, "radius", step)->excludes(robot);
   add_length(command, "--max-step", options.max_step, Zero::refused,
              "Longest way of the tool in a cycle of 1 ms");
   command.footer(
@@ -186,7 +187,8 @@ void add_live(CLI::App& app, LiveOptions& options) {
 }
 
 void live(const LiveOptions& options, std::ostream& out) {
-  if (options.robot.empty()) require_within_reach(options.max_step, options.constraint.radius);
+  if (options.robot.empty())
+    require_within_reach(options.max_step, options.constraint.options.radius);
   const std::filesystem::path template_file =
       page_template_file(options.robot.empty() ? "live.html" : "live_robot.html");
   const PageTemplate parts =

@@ -23,9 +23,10 @@ struct LiveOptions {
   std::string robot = {};  // whose instrument is dragged; empty: a ball
   std::vector<std::filesystem::path> meshes{"skull"};
   LoadOptions load = {};
-  std::filesystem::path page = "keepout-live.html";            // to be written
-  MotionConstraintSettings constraint = {.tool_radius = 3.0};  // that the page begins with
-  double max_step = 0.5;  // longest way of the tool in a cycle [mm]
+  std::filesystem::path page = "keepout-live.html";  // to be written
+  MotionConstraintSettings constraint = {
+      .options = {.tool_radius = 3.0}};  // that the page begins with
+  double max_step = 0.5;                 // longest way of the tool in a cycle [mm]
   Opening opening = Opening::by_the_desktop;
 };
 

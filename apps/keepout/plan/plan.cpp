@@ -44,9 +44,9 @@ constexpr Inside sides = Inside::taken_as_is;
 std::shared_ptr<GuardPool> steering_guards(const PlanOptions& options, const Scene& scene) {
   return std::make_shared<GuardPool>([&options, &scene] {
     return make_motion_constraint(scene.mesh(), scene.shared_index(),
-                                  {.radius = options.radius,
-                                   .tool_radius = options.tool_radius,
-                                   .margin = options.margin,
+                                  {.options = {.radius = options.radius,
+                                               .tool_radius = options.tool_radius,
+                                               .margin = options.margin},
                                    .inside = sides});
   });
 }

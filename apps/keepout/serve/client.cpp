@@ -42,15 +42,17 @@ LinkPoint link_point(std::span<const double> numbers) {
 
 Chain read_chain_of([[maybe_unused]] const Request& request) {
 #if KEEPOUT_HAS_URDF
-  const std::filesystem::path file(request.urdf.text);
+  const std::filesystem::path file(request.text("urdf").text);
   std::error_code trouble;
   // A pipe would hold up all clients.
   if (!std::filesystem::is_regular_file(file, trouble)) {
-    throw Error("'urdf' must name a file, which " + in_quotes(request.urdf.text) + " does not");
+    throw Error("'urdf' must name a file, which " + in_quotes(request.text("urdf").text) +
+                " does not");
   }
-  const double scale = request.scale.is_given ? request.scale.numbers[0] : 1000.0;
-  UrdfChain chain = read_chain(file, request.base_link.text, request.tip_link.text, scale);
-  return Chain(std::move(chain.joints), pose_of(request.frame), chain.flange);
+  const double scale = request.table("scale").is_given ? request.table("scale").numbers[0] : 1000.0;
+  UrdfChain chain =
+      read_chain(file, request.text("base_link").text, request.text("tip_link").text, scale);
+  return Chain(std::move(chain.joints), pose_of(request.table("frame")), chain.flange);
 #else
   throw Error(
       "this build reads no URDF: install liburdfdom-dev and liburdfdom-headers-dev, and build it "
@@ -60,7 +62,7 @@ Chain read_chain_of([[maybe_unused]] const Request& request) {
 
 Instrument instrument_of(const Request& request) {
   std::vector<Body> bodies;
-  const std::span<const double> numbers = request.capsules.numbers;
+  const std::span<const double> numbers = request.table("capsules").numbers;
   for (std::size_t i = 0; i < numbers.size(); i += 9) {
     const std::span<const double> row = numbers.subspan(i, 9);
     bodies.push_back({.points = {link_point(row), link_point(row.subspan(4))}, .radius = row[8]});
@@ -75,13 +77,9 @@ InstrumentConstraint& instrument_of(Client& client) {
 
 Twist twist_of(const Request& request) {
   Twist twist;
-  if (request.linear.is_given) twist.linear = vector(request.linear.numbers);
-  if (request.angular.is_given) twist.angular = vector(request.angular.numbers);
+  if (request.table("linear").is_given) twist.linear = vector(request.table("linear").numbers);
+  if (request.table("angular").is_given) twist.angular = vector(request.table("angular").numbers);
   return twist;
-}
-
-void take(double& option, const NumberTable& given) {
-  if (given.is_given) option = given.numbers[0];
 }
 
 }  // namespace
@@ -89,14 +87,11 @@ void take(double& option, const NumberTable& given) {
 void open_instrument(Client& client, const std::shared_ptr<const Mesh>& mesh,
                      const std::shared_ptr<const SpatialIndex>& index,
                      InstrumentConstraintSettings settings, const Request& request) {
-  take(settings.options.margin, request.margin);
-  take(settings.options.band, request.band);
-  take(settings.options.period, request.period);
-  take(settings.options.recovery, request.recovery);
-  take(settings.options.orientation_weight, request.orientation_weight);
-  take(settings.options.slowing_within, request.slowing_within);
-  take(settings.options.slowing_time, request.slowing_time);
   try {
+    for (std::size_t i = 0; i < instrument_options.size(); ++i) {
+      const OptionOfRequest& given = request.options[i];
+      if (given.is_given) instrument_options[i].set(settings.options, given.value);
+    }
     client.instrument = make_instrument_constraint(mesh, index, instrument_of(request), settings);
     client.guide_names.clear();
   } catch (const Error& error) {
@@ -107,11 +102,12 @@ void open_instrument(Client& client, const std::shared_ptr<const Mesh>& mesh,
 void open_tool(Client& client, const std::shared_ptr<const Mesh>& mesh,
                const std::shared_ptr<const SpatialIndex>& index, MotionConstraintSettings settings,
                const Request& request) {
-  settings.tool_radius = 0.0;
+  settings.options.tool_radius = 0.0;
   settings.activation = "certified";
-  settings.narrow_phase = request.narrow_phase.is_given ? request.narrow_phase.text : "exact";
+  settings.narrow_phase =
+      request.text("narrow_phase").is_given ? request.text("narrow_phase").text : "exact";
   try {
-    settings.tool = tool_of_text(request.tool.text);
+    settings.tool = tool_of_text(request.text("tool").text);
     MotionConstraint made = make_motion_constraint(mesh, index, settings);
     if (client.own) made.set_guides({client.own->guides().begin(), client.own->guides().end()});
     client.own = std::move(made);
@@ -130,7 +126,7 @@ void set_guides(Client& client, const std::shared_ptr<const Mesh>& mesh,
       guides.push_back(guide_of_text(text));
       names.push_back(guides.back().name());
     }
-    if (request.of.text == "instrument") {
+    if (request.text("of").text == "instrument") {
       const auto of_base = std::ranges::find(guides, 0, &Guide::link);
       if (of_base != guides.end()) {
         throw Error("guide '" + of_base->name() +
@@ -153,14 +149,16 @@ void set_guides(Client& client, const std::shared_ptr<const Mesh>& mesh,
 std::size_t add_anatomy(Client& client, const MotionConstraintSettings& settings,
                         const Request& request) {
   InstrumentConstraint& instrument = instrument_of(client);
-  const std::filesystem::path file(request.file.text);
+  const std::filesystem::path file(request.text("file").text);
   try {
     std::error_code trouble;
     if (!std::filesystem::is_regular_file(file, trouble)) {
-      throw Error("'file' must name a file, which " + in_quotes(request.file.text) + " does not");
+      throw Error("'file' must name a file, which " + in_quotes(request.text("file").text) +
+                  " does not");
     }
     const std::shared_ptr<const Mesh> mesh = load_mesh(file).mesh;
-    const double margin = request.margin.is_given ? request.margin.numbers[0] : 0.0;
+    const OptionOfRequest& given = request.option("margin");
+    const double margin = given.is_given ? std::get<double>(given.value) : 0.0;
     return instrument.add_mesh(mesh, make_or_load_index(mesh, settings), margin);
   } catch (const Error& error) {
     throw Refusal{"no_anatomy", printable(error.what())};
@@ -169,15 +167,15 @@ std::size_t add_anatomy(Client& client, const MotionConstraintSettings& settings
 
 void place_anatomy(Client& client, const Request& request) {
   InstrumentConstraint& instrument = instrument_of(client);
-  const double number = request.mesh.numbers[0];
+  const double number = request.table("mesh").numbers[0];
   const std::size_t count = instrument.mesh_count();
   if (!(number >= 0.0 && number < static_cast<double>(count) && number == std::floor(number))) {
     throw Refusal{"no_anatomy",
                   "'mesh' must be the number of a mesh, 0 to " + std::to_string(count - 1)};
   }
   try {
-    const Status placed = instrument.place(static_cast<std::size_t>(number), pose_of(request.frame),
-                                           twist_of(request));
+    const Status placed = instrument.place(static_cast<std::size_t>(number),
+                                           pose_of(request.table("frame")), twist_of(request));
     if (is_ok(placed)) return;
   } catch (const Error& error) {
     throw Refusal{"no_anatomy", error.what()};
@@ -190,16 +188,18 @@ void place_anatomy(Client& client, const Request& request) {
 InstrumentStep joint_step(Client& client, const Request& request) {
   InstrumentConstraint& instrument = instrument_of(client);
   const auto n = static_cast<std::size_t>(instrument.instrument().chain().size());
-  for (const NumberTable* table : {&request.q, &request.increment, &request.weights}) {
+  for (const NumberTable* table :
+       {&request.table("q"), &request.table("increment"), &request.table("weights")}) {
     if (table->is_given && table->columns != n) {
       throw Refusal{"not_a_request", in_quotes(table->name) + " must have " + std::to_string(n) +
                                          " numbers, one for each joint of the instrument"};
     }
   }
-  if (request.increment.is_given) {
-    return instrument.step(request.q.numbers, request.increment.numbers, request.weights.numbers);
+  if (request.table("increment").is_given) {
+    return instrument.step(request.table("q").numbers, request.table("increment").numbers,
+                           request.table("weights").numbers);
   }
-  return instrument.step(request.q.numbers, twist_of(request));
+  return instrument.step(request.table("q").numbers, twist_of(request));
 }
 
 }  // namespace keepout::app

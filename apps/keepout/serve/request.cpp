@@ -2,11 +2,12 @@
 #include "serve/request.h"
 
 #include <algorithm>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <utility>
 
-#include "keepout/robot/instrument.h"
+#include "keepout/robot/instrument_options.h"
 #include "keepout/step/guide.h"
 #include "serve/answer.h"
 #include "shared/names.h"
@@ -28,14 +29,6 @@ constexpr int deepest = 8;               // more than any request needs
   throw Refusal{"not_json", "the line is not JSON: " + why};
 }
 
-/// What a request to do something has beside it; unused places are empty.
-struct VerbKeys {
-  std::string_view name;
-  Verb verb;
-  std::array<std::string_view, 2> needed;
-  std::array<std::string_view, 11> optional;
-};
-
 constexpr std::array<VerbKeys, 12> verbs{
     {{"step", Verb::step, {"tip", "desired"}, {"jacobian", "rows", "bounds"}},
      {"steps", Verb::steps, {"motions"}, {}},
@@ -43,8 +36,8 @@ constexpr std::array<VerbKeys, 12> verbs{
      {"instrument",
       Verb::instrument,
       {"urdf", "capsules"},
-      {"base_link", "tip_link", "scale", "frame", "margin", "band", "period", "recovery",
-       "orientation_weight", "slowing_within", "slowing_time"}},
+      {"base_link", "tip_link", "scale", "frame"},
+      true},
      {"joint_step", Verb::joint_step, {"q"}, {"linear", "angular", "increment", "weights"}},
      {"tool", Verb::tool, {"tool"}, {"narrow_phase"}},
      {"guides", Verb::guides, {"guides"}, {"of"}},
@@ -64,9 +57,16 @@ std::string verb_list() {
   return list;
 }
 
-template <class Names>
-bool contains(const Names& names, std::string_view name) {
-  return std::ranges::find(names, name) != names.end();
+template <class Names, class Project = std::identity>
+bool contains(const Names& names, std::string_view name, Project project = {}) {
+  return std::ranges::find(names, name, project) != names.end();
+}
+
+/// Returns the value of that name, or null.
+template <class Values>
+auto* named(Values& values, std::string_view name) noexcept {
+  const auto found = std::ranges::find_if(values, [&](const auto& v) { return v.name == name; });
+  return found == values.end() ? nullptr : &*found;
 }
 
 bool is_id(const Json& value) {
@@ -110,6 +110,23 @@ bool fill(NumberTable& table, const Json& value) {
   return add(value);
 }
 
+/// Takes the value of an option; false if it is of another kind.
+bool fill(OptionOfRequest& option, const Json& value) {
+  const OptionKind kind = option.option->kind;
+  if (kind == OptionKind::number && value.is_number()) {
+    option.value = value.get<double>();
+  } else if (kind == OptionKind::whole_number && value.is_number_integer()) {
+    option.value = value.get<std::int64_t>();
+  } else if (kind == OptionKind::flag && value.is_boolean()) {
+    option.value = value.get<bool>();
+  } else if (kind == OptionKind::choice && value.is_string()) {
+    option.value = value.get<std::string>();
+  } else {
+    return false;
+  }
+  return true;
+}
+
 /// Fills the request with a line; what a request must have beside is checked by check(). Throws
 /// Refusal.
 void take(const Json& line, Request& request) {
@@ -126,11 +143,15 @@ void take(const Json& line, Request& request) {
       if (!value.is_string()) refuse("'do' must be one of " + verb_list());
       continue;
     }
-    const auto texts = request.texts();
-    if (const auto text = std::ranges::find(texts, key, &TextValue::name); text != texts.end()) {
+    if (TextValue* const text = named(request.texts, key)) {
       if (!value.is_string()) refuse(in_quotes(key) + " must be a string");
-      (*text)->is_given = true;
-      (*text)->text = value.get_ref<const std::string&>();
+      text->is_given = true;
+      text->text = value.get_ref<const std::string&>();
+      continue;
+    }
+    if (OptionOfRequest* const option = named(request.options, key)) {
+      option->is_given = fill(*option, value);
+      if (!option->is_given) refuse(in_quotes(key) + " must be " + option->option->expected());
       continue;
     }
     if (key == request.guides.name) {
@@ -144,27 +165,28 @@ void take(const Json& line, Request& request) {
       for (const Json& text : value) list.texts.push_back(text.get<std::string>());
       continue;
     }
-    const auto tables = request.tables();
-    const auto table = std::ranges::find(tables, key, [](const NumberTable* t) { return t->name; });
-    if (table == tables.end()) {
+    NumberTable* const table = named(request.tables, key);
+    if (table == nullptr) {
       refuse("there is no key " + in_quotes(key) + " in a request; see 'keepout serve --help'");
     }
-    (*table)->is_given = fill(**table, value);
-    if (!(*table)->is_given) refuse(in_quotes(key) + " must be " + (*table)->description);
+    table->is_given = fill(*table, value);
+    if (!table->is_given) refuse(in_quotes(key) + " must be " + table->description);
   }
 }
 
-/// Whether a value is there just where the verb wants it. Throws Refusal.
+/// Throws Refusal unless a value is given just where the verb takes it.
 void check(std::string_view value, bool is_given, const std::string& description,
            const VerbKeys& verb) {
-  const bool is_needed = contains(verb.needed, value);
-  if (is_needed && !is_given) {
+  if (verb.needs(value) && !is_given) {
     refuse(in_quotes(value) + " is missing: " + in_quotes(verb.name) + " needs it, " + description);
   }
-  if (is_needed || !is_given || contains(verb.optional, value)) return;
+  if (!is_given || verb.takes(value)) return;
   std::string takes = "'id', 'do'";
   for (const std::string_view name : verb.needed) add_to_list(takes, name);
   for (const std::string_view name : verb.optional) add_to_list(takes, name);
+  if (verb.takes_options) {
+    for (const auto& option : instrument_options) add_to_list(takes, option.name);
+  }
   refuse(in_quotes(value) + " is nothing that " + in_quotes(verb.name) + " takes; it takes " +
          takes);
 }
@@ -179,25 +201,30 @@ void check(Request& request, const std::string& asked) {
                                "; 'do' must be one of " + verb_list());
   }
   request.verb = known->verb;
-  for (const NumberTable* table : request.tables()) {
-    check(table->name, table->is_given, table->description, *known);
+  for (const NumberTable& table : request.tables) {
+    check(table.name, table.is_given, table.description, *known);
   }
-  for (const TextValue* text : request.texts()) {
-    check(text->name, text->is_given, "a string", *known);
+  for (const TextValue& text : request.texts) check(text.name, text.is_given, "a string", *known);
+  for (const OptionOfRequest& option : request.options) {
+    check(option.name, option.is_given, option.option->expected(), *known);
   }
   check(request.guides.name, request.guides.is_given, "an array of strings", *known);
-  const std::string& of = request.of.text;
-  if (request.of.is_given && of != "tip" && of != "instrument") {
+  const TextValue& of = request.text("of");
+  if (of.is_given && of.text != "tip" && of.text != "instrument") {
     refuse("'of' must be 'tip' or 'instrument'");
   }
   if (request.verb == Verb::joint_step) {
-    const bool has_twist = request.linear.is_given || request.angular.is_given;
-    if (has_twist == request.increment.is_given) {
+    const bool has_twist = request.table("linear").is_given || request.table("angular").is_given;
+    if (has_twist == request.table("increment").is_given) {
       refuse("a 'joint_step' takes either 'linear' or 'angular' of the flange, or an 'increment'");
     }
-    if (has_twist && request.weights.is_given) refuse("'weights' belong to an 'increment'");
+    if (has_twist && request.table("weights").is_given) {
+      refuse("'weights' belong to an 'increment'");
+    }
   }
-  const auto& [rows, bounds, jacobian] = std::tie(request.rows, request.bounds, request.jacobian);
+  const NumberTable& rows = request.table("rows");
+  const NumberTable& bounds = request.table("bounds");
+  const NumberTable& jacobian = request.table("jacobian");
   if (rows.is_given != bounds.is_given) {
     refuse("'rows' and 'bounds' belong together: rows . u >= bounds");
   }
@@ -240,7 +267,7 @@ std::string cause(std::string_view text) {
   return printable(text);
 }
 
-NumberTable table(std::string_view name, const TableShape& shape, std::string description) {
+NumberTable empty_table(std::string_view name, const TableShape& shape, std::string description) {
   NumberTable empty{.name = name, .shape = shape, .description = std::move(description)};
   empty.numbers.reserve(shape.most_rows * shape.most_columns);
   return empty;
@@ -248,62 +275,84 @@ NumberTable table(std::string_view name, const TableShape& shape, std::string de
 
 std::string up_to(std::size_t count) { return "at most " + std::to_string(count); }
 
-NumberTable number(std::string_view name) { return table(name, {0, 1, 1, 1, 1}, "a number"); }
+NumberTable number(std::string_view name) { return empty_table(name, {0, 1, 1, 1, 1}, "a number"); }
+
+NumberTable three_numbers(std::string_view name) {
+  return empty_table(name, {1, 1, 1, 3, 3}, "an array of three numbers");
+}
 
 NumberTable joints(std::string_view name) {
-  return table(name, {1, 1, 1, 1, Chain::most_joints},
-               "an array of one number for each joint of the instrument");
+  return empty_table(name, {1, 1, 1, 1, Chain::most_joints},
+                     "an array of one number for each joint of the instrument");
 }
 
 }  // namespace
 
 Request::Request(const RequestLimits& limits)
     : guides{.name = "guides", .most = Guide::most},
-      tip(table("tip", {1, 1, 1, 3, 3}, "an array of three numbers")),
-      desired(table("desired", {1, 1, 1, 3, 3}, "an array of three numbers")),
-      jacobian(table("jacobian", {2, 3, 3, 1, limits.joints},
-                     "three arrays, the rows of the Jacobian, of one number for each joint, " +
-                         up_to(limits.joints) + " (--joints)")),
-      rows(table("rows", {2, 0, limits.rows, 1, std::max<std::size_t>(limits.joints, 3)},
+      tables{three_numbers("tip"),
+             three_numbers("desired"),
+             empty_table("jacobian", {2, 3, 3, 1, limits.joints},
+                         "three arrays, the rows of the Jacobian, of one number for each joint, " +
+                             up_to(limits.joints) + " (--joints)"),
+             empty_table(
+                 "rows", {2, 0, limits.rows, 1, std::max<std::size_t>(limits.joints, 3)},
                  "an array of arrays of one number for each joint, or three without a Jacobian, " +
-                     up_to(limits.rows) + " of them (--rows)")),
-      bounds(table(
-          "bounds", {1, 0, 1, 0, limits.rows},
-          "an array of one number for each of the rows, " + up_to(limits.rows) + " (--rows)")),
-      radius(number("radius")),
-      motions(table("motions", {2, 0, limits.motions, 6, 6},
-                    "an array of arrays of six numbers, tip and desired increment, " +
-                        up_to(limits.motions) + " of them")),
-      scale(number("scale")),
-      frame(table("frame", {2, 4, 4, 4, 4}, "four arrays of four numbers, a homogeneous matrix")),
-      capsules(table("capsules", {2, 1, Instrument::most_bodies, 9, 9},
-                     "an array of arrays of nine numbers, a link and a point of it, another, and a "
-                     "radius, " +
-                         up_to(Instrument::most_bodies) + " of them")),
-      margin(number("margin")),
-      band(number("band")),
-      period(number("period")),
-      recovery(number("recovery")),
-      orientation_weight(number("orientation_weight")),
-      slowing_within(number("slowing_within")),
-      slowing_time(number("slowing_time")),
-      q(joints("q")),
-      linear(table("linear", {1, 1, 1, 3, 3}, "an array of three numbers")),
-      angular(table("angular", {1, 1, 1, 3, 3}, "an array of three numbers")),
-      increment(joints("increment")),
-      weights(joints("weights")),
-      mesh(number("mesh")) {
+                     up_to(limits.rows) + " of them (--rows)"),
+             empty_table("bounds", {1, 0, 1, 0, limits.rows},
+                         "an array of one number for each of the rows, " + up_to(limits.rows) +
+                             " (--rows)"),
+             number("radius"),
+             empty_table("motions", {2, 0, limits.motions, 6, 6},
+                         "an array of arrays of six numbers, tip and desired increment, " +
+                             up_to(limits.motions) + " of them"),
+             number("scale"),
+             empty_table("frame", {2, 4, 4, 4, 4},
+                         "four arrays of four numbers, a homogeneous matrix"),
+             empty_table(
+                 "capsules", {2, 1, Instrument::most_bodies, 9, 9},
+                 "an array of arrays of nine numbers, a link and a point of it, another, and a "
+                 "radius, " +
+                     up_to(Instrument::most_bodies) + " of them"),
+             joints("q"),
+             three_numbers("linear"),
+             three_numbers("angular"),
+             joints("increment"),
+             joints("weights"),
+             number("mesh")},
+      texts{{"urdf"}, {"base_link"}, {"tip_link"}, {"tool"}, {"narrow_phase"}, {"of"}, {"file"}} {
+  for (const auto& option : instrument_options) options.push_back({option.name, &option});
   id.reserve(6 * longest_id + 2);
 }
 
+const NumberTable& Request::table(std::string_view key) const noexcept {
+  return *named(tables, key);
+}
+
+const TextValue& Request::text(std::string_view key) const noexcept { return *named(texts, key); }
+
+const OptionOfRequest& Request::option(std::string_view key) const noexcept {
+  return *named(options, key);
+}
+
+bool VerbKeys::needs(std::string_view key) const noexcept { return contains(needed, key); }
+
+bool VerbKeys::takes(std::string_view key) const noexcept {
+  return needs(key) || contains(optional, key) ||
+         (takes_options && contains(instrument_options, key, &OptionText::name));
+}
+
+std::span<const VerbKeys> verb_keys() noexcept { return verbs; }
+
 void read_request(std::string_view line, Request& request) {
   request.id = "null";
-  for (NumberTable* table : request.tables()) {
-    table->is_given = false;
-    table->rows = table->columns = 0;
-    table->numbers.clear();
+  for (NumberTable& table : request.tables) {
+    table.is_given = false;
+    table.rows = table.columns = 0;
+    table.numbers.clear();
   }
-  for (TextValue* text : request.texts()) text->is_given = false, text->text.clear();
+  for (TextValue& text : request.texts) text.is_given = false, text.text.clear();
+  for (OptionOfRequest& option : request.options) option.is_given = false;
   request.guides.is_given = false;
   request.guides.texts.clear();
   // The library would take it for the end of the line.

@@ -4,9 +4,12 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "keepout/option_table.h"
 
 namespace keepout::app {
 
@@ -67,54 +70,46 @@ struct TextList {
   std::vector<std::string> texts = {};
 };
 
+/// An option of an instrument in a request.
+struct OptionOfRequest {
+  std::string_view name;
+  const OptionText* option;
+  bool is_given = false;
+  OptionValue value = {};  // of the option's kind; its range is checked where it is used
+};
+
+/// What a request to do something has besides "id" and "do"; unused places are empty.
+struct VerbKeys {
+  std::string_view name;
+  Verb verb;
+  std::array<std::string_view, 2> needed;
+  std::array<std::string_view, 4> optional;
+  bool takes_options = false;  // all instrument_options too
+
+  bool needs(std::string_view key) const noexcept;
+  bool takes(std::string_view key) const noexcept;  // needed or optional
+};
+
+/// Returns the keys of each verb.
+std::span<const VerbKeys> verb_keys() noexcept;
+
 /// One request as it was read.
 struct Request {
   explicit Request(const RequestLimits& limits);
 
   std::string id;  // as JSON, to be echoed; null if there is none, or none that can be read
   Verb verb = Verb::ping;
-  TextList guides;  // as guide_of_text reads each
-  NumberTable tip;
-  NumberTable desired;
-  NumberTable jacobian;  // (3, n)
-  NumberTable rows;      // A (m, n)
-  NumberTable bounds;    // b (m)
-  NumberTable radius;
-  NumberTable motions;  // (count, 6): tip and desired increment
-  TextValue urdf{"urdf"};
-  TextValue base_link{"base_link"};
-  TextValue tip_link{"tip_link"};
-  TextValue tool{"tool"};  // as tool_of_text reads it
-  TextValue narrow_phase{"narrow_phase"};
-  TextValue of{"of"};      // what guides are of
-  TextValue file{"file"};  // of a mesh
-  NumberTable scale;       // of the lengths in the URDF
-  NumberTable frame;       // (4, 4): of link 0, in that of the mesh
-  NumberTable capsules;    // (count, 9): link and point, link and point, radius
-  NumberTable margin;
-  NumberTable band;
-  NumberTable period;
-  NumberTable recovery;
-  NumberTable orientation_weight;
-  NumberTable slowing_within;
-  NumberTable slowing_time;
-  NumberTable q;
-  NumberTable linear;
-  NumberTable angular;
-  NumberTable increment;
-  NumberTable weights;
-  NumberTable mesh;  // its number
+  TextList guides;                       // as guide_of_text reads each
+  std::vector<NumberTable> tables;       // see table()
+  std::vector<TextValue> texts;          // see text()
+  std::vector<OptionOfRequest> options;  // of an instrument, in the order of instrument_options
 
-  std::array<NumberTable*, 23> tables() noexcept {
-    return {&tip,    &desired,        &jacobian,    &rows,      &bounds,
-            &radius, &motions,        &scale,       &frame,     &capsules,
-            &margin, &band,           &period,      &recovery,  &orientation_weight,
-            &q,      &linear,         &angular,     &increment, &weights,
-            &mesh,   &slowing_within, &slowing_time};
-  }
-  std::array<TextValue*, 7> texts() noexcept {
-    return {&urdf, &base_link, &tip_link, &tool, &narrow_phase, &of, &file};
-  }
+  /// Returns the value of a key. Precondition: the constructor knows the key.
+  const NumberTable& table(std::string_view key) const noexcept;
+  /// See table().
+  const TextValue& text(std::string_view key) const noexcept;
+  /// See table().
+  const OptionOfRequest& option(std::string_view key) const noexcept;
 };
 
 /// Thrown for a line that is not carried out: what the client is told.

@@ -207,8 +207,12 @@ int serve(const ServeOptions& options, std::ostream& log) {
   return EXIT_FAILURE;
 }
 
-const std::string_view protocol_help =
-    R"(One JSON object a line, answered in order by one line with the same id. Lengths in mm, in the
+std::string protocol_help() {
+  std::string options;
+  for (const auto& option : instrument_options) {
+    options += (options.empty() ? "" : ", ") + std::string(option.name);
+  }
+  return R"(One JSON object a line, answered in order by one line with the same id. Lengths in mm, in the
 frame of the mesh. Lines for people go to stderr.
 
   {"id":1,"do":"step","tip":[0,0,60],"desired":[0,0,-0.5]}
@@ -221,7 +225,8 @@ step      tip, desired: the motion that the tip may make instead of the desired 
 steps     motions, an array of [px,py,pz,dx,dy,dz]: as many steps, answered as "steps".
 polytope  tip, radius: normals and offsets of the free space around it, normal . d >= offset.
 instrument  urdf, a file, and capsules, arrays of [link,x,y,z,link,x,y,z,radius]: opens an
-          instrument of this client's.
+          instrument of this client's. Its options: )" +
+         options + R"(.
 joint_step  q, and linear and angular of its flange, or an increment: the increment of the joints.
 tool      tool, as --tool takes it, and narrow_phase: from now on this client's steps guard it.
 guides    guides, texts as --guide of 'keepout replay' takes them, of this client's tip; or with of,
@@ -240,5 +245,6 @@ kinds: line_too_long, not_json, not_a_request, no_instrument, no_tool, no_guide,
        no_anatomy, too_many_clients.
 All of it: docs/serve.md
 )";
+}
 
 }  // namespace keepout::app

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <iosfwd>
 #include <optional>
-#include <string_view>
+#include <string>
 
 #include "keepout/mesh/load_mesh.h"
 #include "serve/service.h"
@@ -24,6 +24,6 @@ struct ServeOptions {
 int serve(const ServeOptions& options, std::ostream& log);
 
 /// The protocol on a page, for --help.
-extern const std::string_view protocol_help;
+std::string protocol_help();
 
 }  // namespace keepout::app

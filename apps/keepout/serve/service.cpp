@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "keepout/factory/for_each_option.h"
 #include "keepout/mesh/doctor.h"
 #include "keepout/version.h"
 #include "serve/answer.h"
@@ -20,10 +21,9 @@ constexpr std::size_t longest_end = 2;  // of a line: "\r\n" [bytes]
 constexpr std::size_t most_work = 16;   // of a turn, in steps
 constexpr std::size_t enough_output = std::size_t{1} << 16;  // for a turn [bytes]
 
-/// With room for the largest request. A client has no other way to a distance than a step.
+/// With capacity for the largest request.
 MotionConstraintSettings with_room_for(MotionConstraintSettings settings,
                                        const RequestLimits& limits) {
-  settings.distances = Distances::always;
   settings.capacity.variables = std::max<std::size_t>(limits.joints, 3);
   settings.capacity.extra_rows = limits.rows;
   return settings;
@@ -57,8 +57,13 @@ OrderedJson limits() {
   return list;
 }
 
-OrderedJson info(const Mesh& mesh, const ServiceSettings& settings) {
-  const MotionConstraintSettings& c = settings.constraint;
+OrderedJson info(const Mesh& mesh, const ServiceSettings& settings,
+                 const MotionConstraintSettings& c) {
+  OrderedJson options{{"index", c.index}, {"convex_tool", c.tool.has_value()}};
+  for_each_option(c, [&](const auto& option, const auto& of) {
+    std::visit([&](const auto& value) { options[std::string(option.name)] = value; },
+               option.get(of));
+  });
   const auto array = [](const Vec3& v) { return OrderedJson{v.x(), v.y(), v.z()}; };
   const std::string space(name(settings.space));
   return {{"version", KEEPOUT_VERSION},
@@ -73,21 +78,7 @@ OrderedJson info(const Mesh& mesh, const ServiceSettings& settings) {
             {"low", array(mesh.bounds().low)},
             {"high", array(mesh.bounds().high)},
             {"watertight", is_watertight(mesh)}}},
-          {"settings",
-           {{"index", c.index},
-            {"activation", c.activation},
-            {"solver", c.solver},
-            {"radius", c.radius},
-            {"tool_radius", c.tool_radius},
-            {"convex_tool", c.tool.has_value()},
-            {"narrow_phase", c.narrow_phase},
-            {"margin", c.margin},
-            {"damping", c.damping},
-            {"recovery", c.recovery},
-            {"deepest", c.deepest},
-            {"refinements", c.refinements},
-            {"branches", c.nodes},
-            {"query", c.query == Query::motion ? "motion" : "sphere"}}},
+          {"settings", options},
           {"limits",
            {{"line", settings.longest_line},
             {"joints", settings.limits.joints},
@@ -147,15 +138,15 @@ Service::Service(std::shared_ptr<const Mesh> mesh, const ServiceSettings& settin
     : mesh_(mesh),
       index_(make_or_load_index(mesh, settings.constraint)),
       instrument_{.solver = settings.constraint.solver,
-                  .options = {.margin = settings.constraint.margin,
-                              .recovery = settings.constraint.recovery}},
+                  .options = {.margin = settings.constraint.options.margin,
+                              .recovery = settings.constraint.options.recovery}},
       settings_(with_room_for(settings.constraint, settings.limits)),
       constraint_(make_motion_constraint(mesh, index_, settings_)),
       longest_line_(settings.longest_line),
       limits_(settings.limits),
       request_(settings.limits),
       jacobian_(3, static_cast<Eigen::Index>(settings.limits.joints)),
-      info_(members_of(info(*mesh, settings))),
+      info_(members_of(info(*mesh, settings, settings_))),
       statuses_(members_of({{"statuses", statuses()}, {"limits", limits()}})) {}
 
 std::size_t Service::answer(const Line& line, Client& client, std::string& out) {
@@ -188,10 +179,11 @@ std::size_t Service::carry_out(Client& client, std::string& out) {
       break;
     case Verb::steps:
       append_batch(client, out);
-      return std::max<std::size_t>(request_.motions.rows, 1);
+      return std::max<std::size_t>(request_.table("motions").rows, 1);
     case Verb::polytope:
-      append_polytope(out, constraint_of(client).free_polytope(vector(request_.tip.numbers),
-                                                               request_.radius.numbers[0]));
+      append_polytope(out,
+                      constraint_of(client).free_polytope(vector(request_.table("tip").numbers),
+                                                          request_.table("radius").numbers[0]));
       break;
     case Verb::info:
       out += info_;
@@ -209,7 +201,7 @@ std::size_t Service::carry_out(Client& client, std::string& out) {
       return most_work;
     case Verb::joint_step: {
       const InstrumentStep step = joint_step(client, request_);
-      append_joint_step(out, step, request_.q.columns);
+      append_joint_step(out, step, request_.table("q").columns);
       if (client.instrument->mesh_count() > 1 && step.distance) {
         out += ",\"nearest_mesh\":" + std::to_string(step.nearest_mesh);
       }
@@ -244,25 +236,27 @@ Step Service::step(Client& client, const Motion& motion) noexcept {
 }
 
 void Service::append_single_step(Client& client, std::string& out) {
-  Motion motion{.tip = vector(request_.tip.numbers), .desired = vector(request_.desired.numbers)};
-  const auto joints = static_cast<Eigen::Index>(request_.jacobian.columns);
+  Motion motion{.tip = vector(request_.table("tip").numbers),
+                .desired = vector(request_.table("desired").numbers)};
+  const auto joints = static_cast<Eigen::Index>(request_.table("jacobian").columns);
   if (joints > 0) {
     using RowByRow = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor>;
     jacobian_.leftCols(joints) =
-        Eigen::Map<const RowByRow>(request_.jacobian.numbers.data(), 3, joints);
+        Eigen::Map<const RowByRow>(request_.table("jacobian").numbers.data(), 3, joints);
     motion.jacobian = TipJacobian(jacobian_.data(), joints);
   }
-  if (request_.rows.is_given) {
-    motion.rows = ExtraRows(request_.rows.numbers.data(), request_.bounds.numbers.data(),
-                            static_cast<Eigen::Index>(request_.rows.rows));
+  if (request_.table("rows").is_given) {
+    motion.rows =
+        ExtraRows(request_.table("rows").numbers.data(), request_.table("bounds").numbers.data(),
+                  static_cast<Eigen::Index>(request_.table("rows").rows));
   }
   const Step step = this->step(client, motion);
-  append_step(out, step, request_.jacobian.columns);
+  append_step(out, step, request_.table("jacobian").columns);
   append_guides(out, client.tip_guide_names, step.guides, step.relaxation);
 }
 
 void Service::append_batch(Client& client, std::string& out) {
-  const std::span<const double> numbers = request_.motions.numbers;
+  const std::span<const double> numbers = request_.table("motions").numbers;
   out += "\"steps\":[";
   for (std::size_t i = 0; i < numbers.size(); i += 6) {
     const Motion motion{.tip = vector(numbers.subspan(i)),

@@ -62,7 +62,7 @@ class LineReader {
 struct ServiceSettings {
   std::filesystem::path mesh;                         // what it was read from, to be told
   AnatomicalSpace space = AnatomicalSpace::unstated;  // that its coordinates are in, to be told
-  MotionConstraintSettings constraint;
+  MotionConstraintSettings constraint{.options = {.distances = Distances::always}};
   RequestLimits limits;
   std::size_t longest_line = default_longest_line;  // [bytes]
 };

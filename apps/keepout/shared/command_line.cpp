@@ -209,23 +209,10 @@ void add_constraint_options(CLI::App& command, MotionConstraintSettings& setting
       ->type_name("FOLDER");
   add_name(command, "--solver", settings.solver, names(solver_backends()),
            "Solver of the step problem");
-  add_length(command, "--radius", settings.radius, Zero::refused,
-             "Radius of the motion sphere: the farthest that the tip may go in one cycle. "
-             "The other rules consider all triangles in it; the paper cut a skull with 5");
-  add_length(command, "--tool-radius", settings.tool_radius, Zero::allowed,
-             "Radius of a ball around the tip that shall not touch the surface");
-  add_length(command, "--margin", settings.margin, Zero::allowed,
-             "Distance to keep between tool and surface; the certified rule needs one");
-  add_number(command, "--refine", settings.refinements, 0, 1000,
-             "How often the certified rule improves upon a motion that it has found");
-  add_number(command, "--branches", settings.nodes, 0, 4096,
-             "Nodes of a search for a better motion still; 0: none, 16 find nearly the best");
-  command
-      .add_option("--query", settings.query,
-                  "How far around the tip the certified rule looks: as far as the motion asked for "
-                  "can lead, or always the motion sphere")
-      ->transform(one_of<Query>({{"motion", Query::motion}, {"sphere", Query::sphere}}))
-      ->default_str("motion");
+  for (const auto& option : step_options) add_option_of(command, option, settings.options);
+  for (const auto& option : motion_settings) {
+    if (option.kind != OptionKind::part) add_option_of(command, option, settings);
+  }
 }
 
 void add_activation(CLI::App& command, std::string& activation) {

@@ -4,11 +4,14 @@
 #include <CLI/CLI.hpp>
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "keepout/error.h"
 #include "keepout/factory/make_motion_constraint.h"
 #include "keepout/mesh/load_mesh.h"
 #include "keepout/step/guide.h"
@@ -37,6 +40,16 @@ CLI::Validator one_of(const std::vector<std::pair<std::string, Enum>>& values) {
     return problem;
   };
   return {replace, check.get_description()};
+}
+
+/// The same of an enumeration whose values from 0 on have these names.
+template <class Enum>
+CLI::Validator one_of(std::span<const std::string_view> names) {
+  std::vector<std::pair<std::string, Enum>> values;
+  for (const std::string_view name : names) {
+    values.emplace_back(name, static_cast<Enum>(values.size()));
+  }
+  return one_of(values);
 }
 
 /// Above it, whole numbers are not read back as they were written.
@@ -71,6 +84,34 @@ CLI::Option* add_number(CLI::App& command, const std::string& name, Number& valu
       ->transform(whole_number(low, high))
       ->capture_default_str();
 }
+/// Adds an option of a table; `options` must live as long as the command line is parsed.
+template <class Options>
+CLI::Option* add_option_of(CLI::App& command, const Option<Options>& option, Options& options) {
+  const auto take = [&](const std::string& text) {
+    try {
+      option.set(options, option.parsed(text));
+    } catch (const Error&) {
+      throw CLI::ValidationError("--" + option.flag(),
+                                 "expected " + option.expected() + ", not '" + text + "'");
+    }
+  };
+  CLI::Option* added =
+      command
+          .add_option_function<std::string>("--" + option.flag(), take, std::string(option.meaning))
+          ->type_name(option.unit == "length" ? "MM"
+                      : option.names.empty()  ? "NUMBER"
+                                              : "")
+          ->default_str(text_of(option.get(options)));
+  if (!option.names.empty()) added->check(one_of({option.names.begin(), option.names.end()}));
+  return added;
+}
+
+/// The same for the option of that name.
+template <class Options>
+CLI::Option* add_option_of(CLI::App& command, std::string_view name, Options& options) {
+  return add_option_of(command, option_named(table_of(options), name), options);
+}
+
 CLI::Option* add_name(CLI::App& command, const std::string& name, std::string& value,
                       std::vector<std::string> names, const std::string& description);
 

@@ -83,11 +83,11 @@ std::vector<std::pair<std::string, std::string>> settings_of(const SimulateOptio
   return {{"mesh", options.mesh.string()},
           {"index", options.constraint.index},
           {"solver", options.constraint.solver},
-          {"motion sphere radius", number(options.constraint.radius) + " mm"},
-          {"tool radius", number(options.constraint.tool_radius) + " mm"},
-          {"margin", number(options.constraint.margin) + " mm"},
-          {"refinements", std::to_string(options.constraint.refinements)},
-          {"branches", std::to_string(options.constraint.nodes)},
+          {"motion sphere radius", number(options.constraint.options.radius) + " mm"},
+          {"tool radius", number(options.constraint.options.tool_radius) + " mm"},
+          {"margin", number(options.constraint.options.margin) + " mm"},
+          {"refinements", std::to_string(options.constraint.options.refinements)},
+          {"branches", std::to_string(options.constraint.options.nodes)},
           {"longest step asked for", number(options.max_step) + " mm"},
           {"seed", std::to_string(options.hand.seed)},
           {"strokes", std::to_string(options.hand.strokes)},
@@ -177,7 +177,7 @@ void print_next(const SimulateOptions& options, std::ostream& out) {
 
 int simulate(const SimulateOptions& options, std::ostream& out) {
   if (!options.robot.empty()) return simulate_robot(options, out);
-  require_within_reach(options.max_step, options.constraint.radius);
+  require_within_reach(options.max_step, options.constraint.options.radius);
   OutputFiles outputs(std::array{NamedPath{"MESH", file_of_mesh(options.mesh)}},
                       {{"--json", options.files.kept_json()}, {"--out", options.files.page}});
   const LoadedMesh loaded = load_named_mesh(options.mesh, options.load);
@@ -193,13 +193,14 @@ int simulate(const SimulateOptions& options, std::ostream& out) {
   }
 
   Audit audit(loaded.mesh);
-  Simulation simulation{.mesh_name = options.mesh.stem().string(),
-                        .mesh = loaded.mesh.get(),
-                        .surface = audit.surface(),
-                        .margin = options.constraint.tool_radius + options.constraint.margin,
-                        .cycle_seconds = cycle_seconds,
-                        .command = options.command,
-                        .settings = settings_of(options)};
+  Simulation simulation{
+      .mesh_name = options.mesh.stem().string(),
+      .mesh = loaded.mesh.get(),
+      .surface = audit.surface(),
+      .margin = options.constraint.options.tool_radius + options.constraint.options.margin,
+      .cycle_seconds = cycle_seconds,
+      .command = options.command,
+      .settings = settings_of(options)};
   const std::vector<std::vector<Vec3>> hand = hand_over(audit, options);
   for (auto& [rule, constraint] : fixtures) {
     simulation.runs.push_back(

@@ -66,37 +66,33 @@ Json incident(std::string_view what, const Scene& scene, std::uint64_t trajector
     row_matrix.assign(motion.rows->matrix(), motion.rows->matrix() + rows * columns);
     row_bounds.assign(motion.rows->bounds(), motion.rows->bounds() + rows);
   }
-  const StepOptions& options = setup.options;
-  return {{"what", what},
-          {"scene", scene.name()},
-          {"trajectory", trajectory},
-          {"cycle", cycle},
-          {"start", setup.start},
-          {"route", name(setup.route)},
-          {"longest_step", setup.longest_step},
-          {"joints", setup.joints},
-          {"has_limits", setup.has_limits},
-          {"start_tip", json_of(setup.tip)},
-          {"radius", options.radius},
-          {"tool_radius", options.tool_radius},
-          {"margin", options.margin},
-          {"damping", options.damping},
-          {"recovery", options.recovery},
-          {"refinements", options.refinements},
-          {"nodes", options.nodes},
-          {"query", options.query == Query::sphere ? "sphere" : "motion"},
-          {"inside", setup.inside == Inside::led_out ? "led_out" : "taken_as_is"},
-          {"tip", json_of(motion.tip)},
-          {"desired", json_of(motion.desired)},
-          {"motion", json_of(step.motion)},
-          {"status", name(step.status)},
-          {"jacobian", jacobian},      // 3 x n, column by column; empty without one
-          {"row_matrix", row_matrix},  // of the extra rows, row by row
-          {"row_bounds", row_bounds},
-          {"distance", verdict.distance},
-          {"allowed", verdict.threshold},
-          {"tau", verdict.tolerance},
-          {"triangle", verdict.triangle}};
+  Json finding{{"what", what},
+               {"scene", scene.name()},
+               {"trajectory", trajectory},
+               {"cycle", cycle},
+               {"start", setup.start},
+               {"route", name(setup.route)},
+               {"longest_step", setup.longest_step},
+               {"joints", setup.joints},
+               {"has_limits", setup.has_limits},
+               {"start_tip", json_of(setup.tip)},
+               {"inside", inside_names[static_cast<std::size_t>(setup.inside)]},
+               {"tip", json_of(motion.tip)},
+               {"desired", json_of(motion.desired)},
+               {"motion", json_of(step.motion)},
+               {"status", name(step.status)},
+               {"jacobian", jacobian},      // 3 x n, column by column; empty without one
+               {"row_matrix", row_matrix},  // of the extra rows, row by row
+               {"row_bounds", row_bounds},
+               {"distance", verdict.distance},
+               {"allowed", verdict.threshold},
+               {"tau", verdict.tolerance},
+               {"triangle", verdict.triangle}};
+  for (const auto& option : step_options) {
+    std::visit([&](const auto& value) { finding[std::string(option.name)] = value; },
+               option.get(setup.options));
+  }
+  return finding;
 }
 
 void run_trajectory(Scene& scene, Guard& guard, std::uint64_t number, std::uint64_t steps,
@@ -135,8 +131,8 @@ void run_trajectory(Scene& scene, Guard& guard, std::uint64_t number, std::uint6
 /// Options follow with each tip: at first any will do that are not refused.
 MotionConstraintSettings any_settings(const Scene& scene) {
   const double radius = scene.mean_edge();
-  return {.radius = radius,
-          .margin = scene.longest_edge() + least_distance_kept(scene, radius),
+  return {.options = {.radius = radius,
+                      .margin = scene.longest_edge() + least_distance_kept(scene, radius)},
           .capacity = {.nodes = most_nodes}};
 }
 

@@ -138,8 +138,7 @@ void add_robot(CLI::App& command, RobotCampaign& robot, std::vector<CLI::Option*
           ->delimiter(',')
           ->capture_default_str());
   add(command.add_option("--motion", robot.motion, "Which motion is certified")
-          ->transform(one_of<CertifiedMotion>(
-              {{"actual", CertifiedMotion::actual}, {"linearised", CertifiedMotion::linearised}}))
+          ->transform(one_of<CertifiedMotion>(certified_motion_names))
           ->default_str("actual"));
   add(add_length(command, "--margin", robot.margin, Zero::refused,
                  "Distance that bodies keep beyond their radius"));

@@ -198,10 +198,10 @@ double keepout_clearance(Anatomy* anatomy, double x, double y, double z) {
     const double size = anatomy->mesh->bounds().size().norm();
     anatomy->probe.reset(made([&] {
       return std::make_unique<keepout::MotionConstraint>(
-          anatomy->guard({.radius = 1e-3 * size,
-                          .margin = 1e-6 * size,
-                          .deepest = 0.0,
-                          .distances = keepout::Distances::always}));
+          anatomy->guard({.options = {.radius = 1e-3 * size,
+                                      .margin = 1e-6 * size,
+                                      .deepest = 0.0,
+                                      .distances = keepout::Distances::always}}));
     }));
     if (!anatomy->probe) return unknown;
   }
@@ -224,10 +224,10 @@ Guard* keepout_make_guard(Anatomy* anatomy, const char* rule, double radius, dou
     if (std::string_view(rule) == "none") return guard;
     keepout::app::require_within_reach(max_step, radius);
     guard->constraint = anatomy->guard({.activation = rule,
-                                        .radius = radius,
-                                        .tool_radius = tool_radius,
-                                        .margin = margin,
-                                        .distances = keepout::Distances::always});
+                                        .options = {.radius = radius,
+                                                    .tool_radius = tool_radius,
+                                                    .margin = margin,
+                                                    .distances = keepout::Distances::always}});
     return guard;
   });
 }

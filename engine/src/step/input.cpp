@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "input.h"
 
+#include "keepout/error.h"
 #include "keepout/step/solver.h"
 
 namespace keepout {
@@ -9,17 +10,9 @@ namespace {
 // Of what is no length: products of it and of lengths must stay finite.
 constexpr double largest_number = 1e30;
 
-// So that the work of a step stays bounded.
-constexpr int most_refinements = 1000;
-constexpr int most_nodes = 1 << 16;
-
 template <class Numbers>
 bool are_within(double largest, const Numbers& numbers) noexcept {
   return (numbers.array().abs() <= largest).all();  // false for NaN
-}
-
-bool is_length(double x) noexcept {
-  return x == 0.0 || (x >= shortest_length && x <= longest_length);
 }
 
 bool are_usable(const ExtraRows& rows, Eigen::Index variables) noexcept {
@@ -33,14 +26,14 @@ bool are_usable(const ExtraRows& rows, Eigen::Index variables) noexcept {
 
 }  // namespace
 
-bool are_in_range(const StepOptions& options) noexcept {
-  return options.radius > 0.0 && is_length(options.radius) && is_length(options.tool_radius) &&
-         is_length(options.margin) && is_length(required_clearance(options)) &&
-         options.damping >= 0.0 && options.damping <= largest_number && options.recovery >= 0.0 &&
-         options.recovery <= longest_length && is_length(options.deepest) &&
-         options.refinements >= 0 && options.refinements <= most_refinements &&
-         options.nodes >= 0 && options.nodes <= most_nodes &&
-         position_rounding(Vec3::Zero(), options) <= 1e-3 * options.radius;
+void require_in_range(const StepOptions& options) {
+  require_in_range(step_options, options);
+  if (required_clearance(options) > longest_length ||
+      position_rounding(Vec3::Zero(), options) > 1e-3 * options.radius) {
+    throw Error(
+        "tool_radius and margin together must be at most 1e15, and not so large that the radius is "
+        "lost in their rounding");
+  }
 }
 
 Status check(const Motion& motion, const StepOptions& options) noexcept {

@@ -8,8 +8,8 @@
 
 namespace keepout {
 
-/// Whether the lengths are such as are computed with, and the work is bounded.
-bool are_in_range(const StepOptions& options) noexcept;
+/// Throws Error for options out of range, and for a radius that is lost in rounding.
+void require_in_range(const StepOptions& options);
 
 /// invalid_input or beyond_reach for a motion that must not be attempted; free otherwise.
 /// Precondition: the options are in range.

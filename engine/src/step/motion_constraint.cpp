@@ -2,7 +2,6 @@
 #include "keepout/step/motion_constraint.h"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 #include "cycle.h"
@@ -14,15 +13,6 @@
 
 namespace keepout {
 namespace {
-
-void require_in_range(const StepOptions& options) {
-  if (!are_in_range(options)) {
-    throw Error(
-        "the radius must be above zero and not lost beside the margin; tool radius, margin, "
-        "damping, recovery, depth, refinements and nodes not below zero; each length 0 or from "
-        "1e-15 to 1e15, whatever the unit");
-  }
-}
 
 void require_in_range(const Mesh& mesh) {
   const double farthest =
@@ -51,10 +41,7 @@ std::unique_ptr<Neighborhood> neighborhood_of(std::shared_ptr<const Mesh> mesh,
 /// Throws for what cannot be held.
 Capacity checked(Capacity capacity, const StepOptions& options) {
   require_in_range(options);
-  constexpr std::size_t most = std::numeric_limits<int>::max();
-  if (capacity.planes > most / 2 || capacity.variables > most || capacity.extra_rows > most / 2) {
-    throw Error("a capacity of more than 2^30 planes or rows cannot be held");
-  }
+  require_in_range(capacity_options, capacity);
   capacity.nodes = std::max(capacity.nodes, static_cast<std::size_t>(std::max(options.nodes, 0)));
   return capacity;
 }

@@ -105,8 +105,7 @@ class Measure : public testing::TestWithParam<const char*> {
       std::make_shared<QueriesOnly>(std::make_shared<PdTree>(mesh));
   MotionConstraintSettings settings{
       .activation = GetParam(),
-      .radius = 1.0,
-      .margin = std::string_view(GetParam()) == "certified" ? 0.2 : 0.0,
+      .options = {.radius = 1.0, .margin = std::string_view(GetParam()) == "certified" ? 0.2 : 0.0},
       .inside = Inside::taken_as_is};
   MotionConstraint guard = make_motion_constraint(mesh, tree, settings);
   std::vector<Motion> motions;

@@ -22,9 +22,9 @@ std::shared_ptr<const Mesh> mesh() {
 app::ServiceSettings settings(std::size_t longest_line) {
   app::ServiceSettings settings;
   settings.mesh = "cube";
-  settings.constraint.radius = 2.0;
-  settings.constraint.damping = 1e-3;
-  settings.constraint.distances = Distances::always;
+  settings.constraint.options.radius = 2.0;
+  settings.constraint.options.damping = 1e-3;
+  settings.constraint.options.distances = Distances::always;
   settings.limits = {.joints = 7, .rows = 4, .motions = 8};
   settings.longest_line = longest_line;
   return settings;
@@ -45,16 +45,20 @@ Json parsed(std::string_view line) {
   return is_twice ? Json(Json::value_t::discarded) : json;
 }
 
-bool is_array_of_numbers(const Json& value, std::size_t fewest, std::size_t most) {
-  return value.is_array() && value.size() >= fewest && value.size() <= most &&
-         std::all_of(value.begin(), value.end(), [](const Json& n) { return n.is_number(); });
+bool is_row(const Json& value, const app::TableShape& shape) {
+  return value.is_array() && value.size() >= shape.fewest_columns &&
+         value.size() <= shape.most_columns &&
+         std::ranges::all_of(value, [](const Json& n) { return n.is_number(); });
 }
 
-bool is_matrix(const Json& value, std::size_t fewest_rows, std::size_t most_rows,
-               std::size_t columns) {
-  return value.is_array() && value.size() >= fewest_rows && value.size() <= most_rows &&
-         std::all_of(value.begin(), value.end(),
-                     [&](const Json& row) { return is_array_of_numbers(row, columns, columns); });
+/// True if a value has the shape of the service's documentation.
+bool has_shape(const Json& value, const app::TableShape& shape) {
+  if (shape.rank == 0) return value.is_number();
+  if (shape.rank == 1) return is_row(value, shape);
+  return value.is_array() && value.size() >= shape.fewest_rows && value.size() <= shape.most_rows &&
+         std::ranges::all_of(value, [&](const Json& row) {
+           return is_row(row, shape) && row.size() == value[0].size();
+         });
 }
 
 bool is_id(const Json& id) {
@@ -62,56 +66,34 @@ bool is_id(const Json& id) {
          (id.is_string() && id.get_ref<const std::string&>().size() <= 128);
 }
 
-/// Whether a line is a request, by the documentation.
-bool is_request(const Json& line) {
+/// True if a line is a request of the keys that the service lists.
+bool is_request(const Json& line, const app::Request& schema) {
   if (!line.is_object() || !line.contains("do") || !line["do"].is_string()) return false;
   if (line.contains("id") && !is_id(line["id"])) return false;
-  const std::string verb = line["do"];
-  std::set<std::string> allowed{"id", "do"};
-  if (verb == "step") {
-    if (!line.contains("tip") || !line.contains("desired")) return false;
-    allowed.insert({"tip", "desired", "jacobian", "rows", "bounds"});
-  } else if (verb == "steps") {
-    if (!line.contains("motions")) return false;
-    allowed.insert("motions");
-  } else if (verb == "polytope") {
-    if (!line.contains("tip") || !line.contains("radius")) return false;
-    allowed.insert({"tip", "radius"});
-  } else if (verb == "instrument") {
-    if (!line.contains("urdf") || !line["urdf"].is_string() || !line.contains("capsules") ||
-        !is_matrix(line["capsules"], 1, 16, 9)) {
-      return false;
-    }
-    allowed.insert({"urdf", "capsules"});
-  } else if (verb == "joint_step") {
-    const bool has_twist = line.contains("linear");
-    const char* const asked = has_twist ? "linear" : "increment";
-    if (!line.contains("q") || !is_array_of_numbers(line["q"], 1, 8)) return false;
-    if (!line.contains(asked)) return false;
-    const std::size_t fewest = has_twist ? 3 : 1;
-    if (!is_array_of_numbers(line[asked], fewest, has_twist ? 3 : 8)) return false;
-    allowed.insert({"q", asked});
-  } else if (verb != "info" && verb != "statuses" && verb != "ping") {
-    return false;
+  const auto verb = std::ranges::find(app::verb_keys(), line["do"].get<std::string>(),
+                                      [](const app::VerbKeys& v) { return std::string(v.name); });
+  if (verb == app::verb_keys().end()) return false;
+  for (const std::string_view key : verb->needed) {
+    if (!key.empty() && !line.contains(key)) return false;
   }
   for (const auto& [key, value] : line.items()) {
-    if (!allowed.contains(key)) return false;
+    if (key != "id" && key != "do" && !verb->takes(key)) return false;
   }
-  if (line.contains("tip") && !is_array_of_numbers(line["tip"], 3, 3)) return false;
-  if (line.contains("desired") && !is_array_of_numbers(line["desired"], 3, 3)) return false;
-  if (line.contains("radius") && !line["radius"].is_number()) return false;
-  if (line.contains("motions") && !is_matrix(line["motions"], 0, 8, 6)) return false;
-  std::size_t joints = 3;
-  if (line.contains("jacobian")) {
-    const Json& jacobian = line["jacobian"];
-    if (!jacobian.is_array() || jacobian.empty()) return false;
-    joints = jacobian[0].size();
-    if (joints < 1 || joints > 7 || !is_matrix(jacobian, 3, 3, joints)) return false;
+  for (const app::NumberTable& table : schema.tables) {
+    if (line.contains(table.name) && !has_shape(line[table.name], table.shape)) return false;
+  }
+  for (const app::TextValue& text : schema.texts) {
+    if (line.contains(text.name) && !line[text.name].is_string()) return false;
+  }
+  if (verb->verb == app::Verb::joint_step) {
+    const bool has_twist = line.contains("linear") || line.contains("angular");
+    return has_twist != line.contains("increment") && !(has_twist && line.contains("weights"));
   }
   if (line.contains("rows") != line.contains("bounds")) return false;
   if (!line.contains("rows")) return true;
-  return is_matrix(line["rows"], 0, 4, joints) && is_array_of_numbers(line["bounds"], 0, 4) &&
-         line["rows"].size() == line["bounds"].size();
+  const std::size_t columns = line.contains("jacobian") ? line["jacobian"][0].size() : 3;
+  return line["rows"].size() == line["bounds"].size() &&
+         (line["rows"].empty() || line["rows"][0].size() == columns);
 }
 
 Vec3 vector(const Json& array, std::size_t from = 0) {
@@ -257,14 +239,14 @@ std::string JudgedService::judge(std::string_view line, std::string_view answer,
       line.size() > settings_.longest_line ? Json(Json::value_t::discarded) : parsed(line);
   const bool is_refused = told.contains("error");
   // Whether there is an instrument depends on files, and on what was opened before.
-  if (is_refused && is_request(request) &&
+  if (is_refused && is_request(request, schema_) &&
       (request["do"] == "instrument" || request["do"] == "joint_step")) {
     const std::string kind = told["error"]["kind"];
     const bool is_joint_step = request["do"] == "joint_step";
     return kind == "no_instrument" || (is_joint_step && kind == "not_a_request") ? ""
                                                                                  : "another kind";
   }
-  if (is_refused == is_request(request)) return is_refused ? "refused" : "not refused";
+  if (is_refused == is_request(request, schema_)) return is_refused ? "refused" : "not refused";
   if (request.is_object() && request.contains("id") && is_id(request["id"]) &&
       told["id"] != request["id"]) {
     return "another id";

@@ -30,6 +30,7 @@ class JudgedService {
 
   app::ServiceSettings settings_;
   app::Service service_;
+  app::Request schema_{settings_.limits};
   MotionConstraint reference_;
   std::size_t lines_ = 0;
   std::size_t refusals_ = 0;

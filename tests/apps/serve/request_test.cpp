@@ -36,19 +36,19 @@ TEST_F(RequestLine, AStepHasATipAndADesiredIncrement) {
   ASSERT_TRUE(is_read(R"( { "desired" : [4,5.5,-6e0] , "do":"step", "tip":[1,2,3], "id":9 } )"));
   EXPECT_EQ(request().verb, Verb::step);
   EXPECT_EQ(request().id, "9");
-  EXPECT_EQ(request().tip.numbers, (std::vector<double>{1, 2, 3}));
-  EXPECT_EQ(request().desired.numbers, (std::vector<double>{4, 5.5, -6}));
-  EXPECT_FALSE(request().jacobian.is_given);
-  EXPECT_FALSE(request().rows.is_given);
+  EXPECT_EQ(request().table("tip").numbers, (std::vector<double>{1, 2, 3}));
+  EXPECT_EQ(request().table("desired").numbers, (std::vector<double>{4, 5.5, -6}));
+  EXPECT_FALSE(request().table("jacobian").is_given);
+  EXPECT_FALSE(request().table("rows").is_given);
 }
 
 TEST_F(RequestLine, NothingIsLeftOfTheRequestBefore) {
   ASSERT_TRUE(
       is_read(R"({"id":1,"do":"step","tip":[1,2,3],"desired":[0,0,0],"jacobian":[[1],[2],[3]]})"));
-  EXPECT_TRUE(request().jacobian.is_given);
+  EXPECT_TRUE(request().table("jacobian").is_given);
   ASSERT_TRUE(is_read(R"({"do":"step","tip":[1,2,3],"desired":[0,0,0]})"));
-  EXPECT_FALSE(request().jacobian.is_given);
-  EXPECT_EQ(request().jacobian.columns, 0u);
+  EXPECT_FALSE(request().table("jacobian").is_given);
+  EXPECT_EQ(request().table("jacobian").columns, 0u);
   EXPECT_EQ(request().id, "null");
   EXPECT_FALSE(is_read(R"({"do":"step","desired":[0,0,0]})"));
   EXPECT_FALSE(is_read(R"({"tip":[1,2,3],"desired":[0,0,0]})"));
@@ -58,9 +58,9 @@ TEST_F(RequestLine, RowsAndBoundsFitTheJacobianOrTheTip) {
   const std::string step = R"({"do":"step","tip":[1,2,3],"desired":[0,0,0],)";
   const std::string joints = R"("jacobian":[[1,2,3,4],[5,6,7,8],[9,10,11,12]])";
   ASSERT_TRUE(is_read(step + joints + R"(,"rows":[[1,2,3,4],[5,6,7,8]],"bounds":[-1,-2]})"));
-  EXPECT_EQ(request().jacobian.columns, 4u);
-  EXPECT_EQ(request().rows.rows, 2u);
-  EXPECT_EQ(request().bounds.numbers, (std::vector<double>{-1, -2}));
+  EXPECT_EQ(request().table("jacobian").columns, 4u);
+  EXPECT_EQ(request().table("rows").rows, 2u);
+  EXPECT_EQ(request().table("bounds").numbers, (std::vector<double>{-1, -2}));
   EXPECT_TRUE(is_read(step + R"("rows":[[1,2,3]],"bounds":[0]})"));
   EXPECT_TRUE(is_read(step + R"("rows":[],"bounds":[]})"));
   for (const char* wrong : {R"("rows":[[1,2,3]]})",
@@ -91,12 +91,12 @@ TEST_F(RequestLine, RowsAndBoundsFitTheJacobianOrTheTip) {
 TEST_F(RequestLine, AnInstrumentHasAFileAndCapsulesAndItsStepOneKindOfMotion) {
   const std::string file = R"({"do":"instrument","urdf":"a.urdf","capsules":)";
   ASSERT_TRUE(is_read(file + R"([[0,1,2,3,4,5,6,7,8]],"tip_link":"t","margin":0.5})"));
-  EXPECT_EQ(request().urdf.text, "a.urdf");
-  EXPECT_EQ(request().tip_link.text, "t");
-  EXPECT_FALSE(request().base_link.is_given);
-  EXPECT_EQ(request().capsules.columns, 9u);
+  EXPECT_EQ(request().text("urdf").text, "a.urdf");
+  EXPECT_EQ(request().text("tip_link").text, "t");
+  EXPECT_FALSE(request().text("base_link").is_given);
+  EXPECT_EQ(request().table("capsules").columns, 9u);
   EXPECT_TRUE(is_read(R"({"do":"joint_step","q":[1,2],"linear":[0,0,1],"angular":[0,0,1]})"));
-  EXPECT_EQ(request().urdf.text, "") << "of the request before";
+  EXPECT_EQ(request().text("urdf").text, "") << "of the request before";
   EXPECT_TRUE(is_read(R"({"do":"joint_step","q":[1],"increment":[1],"weights":[1]})"));
   for (const std::string& wrong :
        {file + "[]}", file + "[[0,1,2,3,4,5,6,7]]}", file + "[[0,1,2,3,4,5,6,7,8]],\"tip\":\"t\"}",
@@ -240,7 +240,7 @@ TEST_F(RequestLine, NumbersAreTheNearestDoubles) {
       {"2.2250738585072011e-308", 2.2250738585072011e-308}};
   for (const auto& [text, value] : table) {
     ASSERT_TRUE(is_read("{\"do\":\"polytope\",\"tip\":[0,0,0],\"radius\":" + text + "}")) << text;
-    EXPECT_EQ(std::bit_cast<std::uint64_t>(request().radius.numbers[0]),
+    EXPECT_EQ(std::bit_cast<std::uint64_t>(request().table("radius").numbers[0]),
               std::bit_cast<std::uint64_t>(value))
         << text;
   }
@@ -255,7 +255,7 @@ TEST_F(RequestLine, NumbersWrittenReadBackBitForBit) {
     std::string line = "{\"do\":\"polytope\",\"tip\":[0,0,0],\"radius\":";
     append_number(line, value);
     ASSERT_TRUE(is_read(line + "}")) << line;
-    ASSERT_EQ(std::bit_cast<std::uint64_t>(request().radius.numbers[0]),
+    ASSERT_EQ(std::bit_cast<std::uint64_t>(request().table("radius").numbers[0]),
               std::bit_cast<std::uint64_t>(value));
   }
 }

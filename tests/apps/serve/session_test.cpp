@@ -29,7 +29,7 @@ class SessionTest : public testing::Test {
   static ServiceSettings settings() {
     ServiceSettings settings;
     settings.mesh = "bunny";
-    settings.constraint.radius = 1.0;
+    settings.constraint.options.radius = 1.0;
     settings.longest_line = 4096;
     return settings;
   }

@@ -69,15 +69,15 @@ TEST(Campaign, EachTipIsGuardedAsByAMotionConstraintOfItsOwn) {
     Joints joints(setup, random);
     guard.begin(setup.options, setup.inside);
     MotionConstraint constraint =
-        make_motion_constraint(scene.mesh(), {.radius = setup.options.radius,
-                                              .tool_radius = setup.options.tool_radius,
-                                              .margin = setup.options.margin,
-                                              .damping = setup.options.damping,
-                                              .recovery = setup.options.recovery,
-                                              .deepest = setup.options.deepest,
-                                              .refinements = setup.options.refinements,
-                                              .nodes = setup.options.nodes,
-                                              .query = setup.options.query,
+        make_motion_constraint(scene.mesh(), {.options = {.radius = setup.options.radius,
+                                                          .tool_radius = setup.options.tool_radius,
+                                                          .margin = setup.options.margin,
+                                                          .damping = setup.options.damping,
+                                                          .recovery = setup.options.recovery,
+                                                          .deepest = setup.options.deepest,
+                                                          .refinements = setup.options.refinements,
+                                                          .nodes = setup.options.nodes,
+                                                          .query = setup.options.query},
                                               .inside = setup.inside});
     Vec3 tip = setup.tip;
     for (int cycle = 0; cycle < 60; ++cycle) {

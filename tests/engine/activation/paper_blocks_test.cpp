@@ -87,7 +87,7 @@ class PaperForms {
             std::move(index),
             std::make_unique<PaperRule>(),
             std::make_unique<ActiveSet>(),
-            {.radius = 1e-3 * mesh->bounds().size().norm()},
+            {.radius = 1e-3 * mesh->bounds().size().norm(), .margin = 0.0},
             capacity};
   }
 
@@ -236,8 +236,8 @@ TEST(PaperBlocks, MostPlanesOfAShortMotionAreIdleAndLeftOut) {
   std::size_t got = 0, expected = 0;
   for (const Vec3& tip : surface_points(*forms.mesh, 50, 0.2, random)) {
     const Motion motion{.tip = tip, .desired = 0.1 * random.direction()};
-    got += forms.step(motion, {.radius = 10.0}).planes.size();
-    expected += forms.plain_step(motion, {.radius = 10.0}).planes.size();
+    got += forms.step(motion, {.radius = 10.0, .margin = 0.0}).planes.size();
+    expected += forms.plain_step(motion, {.radius = 10.0, .margin = 0.0}).planes.size();
   }
   EXPECT_GT(got, 0u);
   EXPECT_LT(2 * got, expected);
@@ -253,14 +253,15 @@ TEST(PaperBlocks, WithJointsOrRowsAllPlanesArePosed) {
   for (const Vec3& tip : surface_points(*forms.mesh, 20, 0.2, random)) {
     Motion motion{.tip = tip, .desired = 0.1 * random.direction()};
     motion.jacobian.emplace(jacobian);
-    Step got = forms.step(motion, {.radius = 5.0, .damping = 1e-6});
-    EXPECT_TRUE(
-        are_equal(got.planes, forms.plain_step(motion, {.radius = 5.0, .damping = 1e-6}).planes));
+    Step got = forms.step(motion, {.radius = 5.0, .margin = 0.0, .damping = 1e-6});
+    EXPECT_TRUE(are_equal(
+        got.planes,
+        forms.plain_step(motion, {.radius = 5.0, .margin = 0.0, .damping = 1e-6}).planes));
     EXPECT_FALSE(got.planes.empty());
     motion.jacobian.reset();
     motion.rows.emplace(row.data(), &bound, 1);
-    got = forms.step(motion, {.radius = 5.0});
-    const Step expected = forms.plain_step(motion, {.radius = 5.0});
+    got = forms.step(motion, {.radius = 5.0, .margin = 0.0});
+    const Step expected = forms.plain_step(motion, {.radius = 5.0, .margin = 0.0});
     EXPECT_TRUE(are_equal(got.planes, expected.planes));
     EXPECT_EQ(got.motion, expected.motion);
   }
@@ -276,8 +277,8 @@ TEST(PaperBlocks, WhatIsBeyondTheCapacityEndsAsWithThePlainRule) {
     for (const Vec3& tip : tips) {
       for (const double radius : {1.0, 3.0, 9.0}) {
         const Motion motion{.tip = tip, .desired = Vec3(0.05, 0, 0)};
-        const Step got = forms.step(motion, {.radius = radius});
-        const Step expected = forms.plain_step(motion, {.radius = radius});
+        const Step got = forms.step(motion, {.radius = radius, .margin = 0.0});
+        const Step expected = forms.plain_step(motion, {.radius = radius, .margin = 0.0});
         ASSERT_EQ(got.status, expected.status);
         ASSERT_EQ(got.motion, expected.motion);
         ASSERT_EQ(got.triangles, expected.triangles);
@@ -307,12 +308,12 @@ TEST(PaperBlocks, ThePlanesAreThoseOfThePlainRuleWhateverTheIndexThatHasTheBlock
 TEST(PaperBlocks, StopsOnceItsTreeIsRefit) {
   PaperForms forms(make_cube(5.0));
   const Motion motion{.tip = Vec3(0.0, 0.0, 58.0), .desired = Vec3(0.0, 0.0, -4.0)};
-  ASSERT_EQ(forms.step(motion, {.radius = 5.0}).status, Status::free);
+  ASSERT_EQ(forms.step(motion, {.radius = 5.0, .margin = 0.0}).status, Status::free);
   Surface raised{{forms.mesh->vertices().begin(), forms.mesh->vertices().end()},
                  {forms.mesh->triangles().begin(), forms.mesh->triangles().end()}};
   for (Vec3& v : raised.vertices) v.z() += 5.0;
   forms.tree->refit(mesh_of(std::move(raised)));
-  const Step stopped = forms.step(motion, {.radius = 5.0});
+  const Step stopped = forms.step(motion, {.radius = 5.0, .margin = 0.0});
   EXPECT_EQ(stopped.status, Status::mesh_changed);
   EXPECT_EQ(stopped.motion, Vec3::Zero());
 }

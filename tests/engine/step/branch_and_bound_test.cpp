@@ -17,8 +17,8 @@ namespace {
 constexpr double margin = 0.1;
 
 MotionConstraint guard(const std::shared_ptr<const Mesh>& mesh, int nodes) {
-  return make_motion_constraint(
-      mesh, {.radius = 6.0, .margin = margin, .nodes = nodes, .inside = Inside::taken_as_is});
+  return make_motion_constraint(mesh, {.options = {.radius = 6.0, .margin = margin, .nodes = nodes},
+                                       .inside = Inside::taken_as_is});
 }
 
 std::vector<Motion> motions_near(const Mesh& mesh, std::size_t count) {

@@ -25,7 +25,7 @@ bool allows(const Polytope& polytope, const Vec3& motion) {
 
 TEST(MotionConstraintPolytope, EveryMotionWithinItKeepsTheMargin) {
   const auto mesh = mesh_of("cortex");
-  auto guard = make_motion_constraint(mesh, {.tool_radius = 0.2, .margin = 0.1});
+  auto guard = make_motion_constraint(mesh, {.options = {.tool_radius = 0.2, .margin = 0.1}});
   oracle::SafetyOracle oracle(mesh);
   Random random(2);
   std::size_t free = 0;

@@ -65,7 +65,7 @@ TEST(SideWatch, AfterForgettingATipIsPlacedAnewHoweverNear) {
 }
 
 TEST(SideWatch, TooDeepInsideNothingMovesByItself) {
-  auto constraint = guard({.deepest = 2.0});
+  auto constraint = guard({.options = {.deepest = 2.0}});
   const Step deep = constraint.step({.tip = {3, 4, 47}, .desired = {0, 0, 0.1}});
   EXPECT_EQ(deep.status, Status::inside);
   EXPECT_EQ(deep.motion, Vec3::Zero());
@@ -80,7 +80,7 @@ TEST(SideWatch, WithJointsOrRowsOrWithoutRecoveryThereIsNoWayOut) {
   const Step joints = constraint.step({.tip = tip, .desired = {0, 0, 0.1}, .jacobian = jacobian});
   EXPECT_EQ(joints.status, Status::inside);
   EXPECT_EQ(joints.motion, Vec3::Zero());
-  auto resting = guard({.recovery = 0.0});
+  auto resting = guard({.options = {.recovery = 0.0}});
   EXPECT_EQ(resting.step({.tip = tip, .desired = {0, 0, 0.1}}).status, Status::inside);
 }
 
@@ -120,7 +120,7 @@ TEST(SideWatch, ATipAHairOffTheSurfaceComesNoNearer) {
                              0.2,
                              2.5}}) {
     auto constraint = make_motion_constraint(
-        mesh, {.radius = c.radius, .margin = c.margin, .recovery = c.recovery});
+        mesh, {.options = {.radius = c.radius, .margin = c.margin, .recovery = c.recovery}});
     Vec3 tip = c.tip;
     for (int cycle = 0; cycle < 50; ++cycle) {
       const double before = oracle.distance(tip);

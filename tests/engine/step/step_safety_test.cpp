@@ -16,13 +16,13 @@ namespace keepout {
 namespace {
 
 MotionConstraint paper_guard(const std::shared_ptr<const Mesh>& mesh,
-                             const StepOptions& options = {.radius = 5.0},
+                             const StepOptions& options = {.radius = 5.0, .margin = 0.0},
                              std::unique_ptr<Solver> solver = std::make_unique<ActiveSet>()) {
   return guard_of<PdTree>(mesh, options, std::move(solver), std::make_unique<PaperRule>());
 }
 
 MotionConstraint guard_with(std::unique_ptr<Solver> solver) {
-  return paper_guard(mesh_of("cube"), {.radius = 5.0}, std::move(solver));
+  return paper_guard(mesh_of("cube"), {.radius = 5.0, .margin = 0.0}, std::move(solver));
 }
 
 const Vec3 above_the_cube(3, 4, 50.5);  // its faces are at +-50
@@ -75,8 +75,8 @@ TEST(StepSafety, ARuleThatObjectsForEverEndsInAStatus) {
       return {Judgement::Verdict::objected, 0.0};
     }
   };
-  auto constraint = guard_of(mesh_of("cube"), {.radius = 5.0}, std::make_unique<ActiveSet>(),
-                             std::make_unique<Grumbler>());
+  auto constraint = guard_of(mesh_of("cube"), {.radius = 5.0, .margin = 0.0},
+                             std::make_unique<ActiveSet>(), std::make_unique<Grumbler>());
   const Step step = constraint.step({.tip = above_the_cube, .desired = {0, 0, -1}});
   EXPECT_EQ(step.status, Status::unsolved);
   EXPECT_EQ(step.motion, Vec3::Zero());
@@ -121,7 +121,7 @@ TEST(StepSafety, WhatIsForgottenIsRefused) {
   EXPECT_EQ(constraint.step({.tip = Vec3(0, 0, 60)}).status, Status::invalid_input);
   EXPECT_EQ(constraint.step({.desired = Vec3(0, 0, 1)}).status, Status::invalid_input);
   EXPECT_EQ(constraint.step({}).status, Status::invalid_input);
-  EXPECT_THROW(paper_guard(mesh_of("cube"), {.margin = 0.5}), Error);
+  EXPECT_THROW(paper_guard(mesh_of("cube"), {.radius = 0.0, .margin = 0.5}), Error);
   EXPECT_THROW(make_motion_constraint(nullptr, {}), Error);
 }
 
@@ -139,7 +139,7 @@ TEST(StepSafety, AJacobianWithoutJointsIsNoFreeTip) {
 }
 
 TEST(StepSafety, AStepClippedToTheRadiusIsNotRefusedForItsRounding) {
-  auto constraint = paper_guard(mesh_of("cube"), {.radius = 0.3});
+  auto constraint = paper_guard(mesh_of("cube"), {.radius = 0.3, .margin = 0.0});
   Random random(2);
   for (int i = 0; i < 10'000; ++i) {
     const Vec3 way = 7.0 * random.direction();

@@ -25,7 +25,7 @@ MotionConstraint guard(const std::shared_ptr<const Mesh>& mesh, const StepOption
 // The cube's faces are at +-50.
 
 TEST(Step, AMotionInFreeSpaceComesBackUnchanged) {
-  auto constraint = guard<PaperRule>(mesh_of("cube"), {.radius = 5.0});
+  auto constraint = guard<PaperRule>(mesh_of("cube"), {.radius = 5.0, .margin = 0.0});
   const Step step = constraint.step({.tip = {0, 0, 70}, .desired = {1.1, -2.3, 0.7}});
   EXPECT_EQ(step.status, Status::free);
   EXPECT_EQ(step.motion, Vec3(1.1, -2.3, 0.7));
@@ -33,7 +33,7 @@ TEST(Step, AMotionInFreeSpaceComesBackUnchanged) {
 }
 
 TEST(Step, AMotionIntoAFaceSlidesAlongIt) {
-  auto constraint = guard<PaperRule>(mesh_of("cube"), {.radius = 5.0});
+  auto constraint = guard<PaperRule>(mesh_of("cube"), {.radius = 5.0, .margin = 0.0});
   const Step step = constraint.step({.tip = {3, 4, 51}, .desired = {1, -2, -3}});
   EXPECT_EQ(step.status, Status::limited);
   EXPECT_LT((step.motion - Vec3(1, -2, -1)).norm(), 1e-12);
@@ -44,7 +44,7 @@ TEST(Step, AMotionIntoAFaceSlidesAlongIt) {
 }
 
 TEST(Step, RetreatingFromContactIsNotSlowed) {
-  auto constraint = guard<PaperRule>(mesh_of("cube"), {.radius = 5.0});
+  auto constraint = guard<PaperRule>(mesh_of("cube"), {.radius = 5.0, .margin = 0.0});
   const Step step = constraint.step({.tip = {3, 4, 50}, .desired = {1, -2, 3}});
   EXPECT_EQ(step.status, Status::free);
   EXPECT_LT((step.motion - Vec3(1, -2, 3)).norm(), 1e-15);
@@ -76,7 +76,7 @@ TEST(Step, AMarginThatNoMotionCanKeepMeansNoMotion) {
 }
 
 TEST(Step, BadInputIsAStatusAndNoMotion) {
-  auto constraint = guard<PaperRule>(mesh_of("cube"), {.radius = 5.0});
+  auto constraint = guard<PaperRule>(mesh_of("cube"), {.radius = 5.0, .margin = 0.0});
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double inf = std::numeric_limits<double>::infinity();
   for (const double bad : {nan, inf, -inf, 1e31}) {
@@ -96,7 +96,7 @@ TEST(Step, BadInputIsAStatusAndNoMotion) {
 }
 
 TEST(Step, MoreThanTheMotionSphereIsRefused) {
-  auto constraint = guard<PaperRule>(mesh_of("cube"), {.radius = 1.0});
+  auto constraint = guard<PaperRule>(mesh_of("cube"), {.radius = 1.0, .margin = 0.0});
   const Step step = constraint.step({.tip = {0, 0, 60}, .desired = {0, 0, -1.01}});
   EXPECT_EQ(step.status, Status::beyond_reach);
   EXPECT_EQ(step.motion, Vec3::Zero());
@@ -105,7 +105,7 @@ TEST(Step, MoreThanTheMotionSphereIsRefused) {
 TEST(Step, TooManyTrianglesOrPlanesIsAStatusAndNoMotion) {
   const auto mesh = mesh_of("sphere");
   for (const Capacity& capacity : {Capacity{.triangles = 10}, Capacity{.planes = 2}}) {
-    auto constraint = guard<AllFaces>(mesh, {.radius = 20.0}, capacity);
+    auto constraint = guard<AllFaces>(mesh, {.radius = 20.0, .margin = 0.0}, capacity);
     const Step step = constraint.step({.tip = {0, 0, 55}, .desired = {0, 0, -1}});
     EXPECT_EQ(step.status, Status::over_capacity);
     EXPECT_EQ(step.motion, Vec3::Zero());
@@ -113,7 +113,8 @@ TEST(Step, TooManyTrianglesOrPlanesIsAStatusAndNoMotion) {
 }
 
 TEST(Step, JointsMoveTheTipAsTheJacobianSays) {
-  auto constraint = guard<PaperRule>(mesh_of("cube"), {.radius = 5.0, .damping = 1e-9});
+  auto constraint =
+      guard<PaperRule>(mesh_of("cube"), {.radius = 5.0, .margin = 0.0, .damping = 1e-9});
   // Four joints: one of them moves the tip straight down, two slant, one does nothing.
   Eigen::Matrix<double, 3, Eigen::Dynamic> jacobian(3, 4);
   jacobian << 1, 0, 0.5, 0,  //
@@ -130,7 +131,7 @@ TEST(Step, JointsMoveTheTipAsTheJacobianSays) {
 }
 
 TEST(Step, AJacobianThatLosesADirectionNeedsDamping) {
-  auto constraint = guard<PaperRule>(mesh_of("cube"), {.radius = 5.0});
+  auto constraint = guard<PaperRule>(mesh_of("cube"), {.radius = 5.0, .margin = 0.0});
   Eigen::Matrix<double, 3, Eigen::Dynamic> jacobian(3, 2);
   jacobian << 1, 2, 0, 0, 0, 0;  // both joints move the tip along x
   const Step step =
@@ -140,7 +141,8 @@ TEST(Step, AJacobianThatLosesADirectionNeedsDamping) {
 }
 
 TEST(Step, MoreJointsThanRoomWasMadeForIsAStatus) {
-  auto constraint = guard<PaperRule>(mesh_of("cube"), {.radius = 5.0}, {.variables = 3});
+  auto constraint =
+      guard<PaperRule>(mesh_of("cube"), {.radius = 5.0, .margin = 0.0}, {.variables = 3});
   const Eigen::Matrix<double, 3, Eigen::Dynamic> jacobian =
       Eigen::Matrix<double, 3, Eigen::Dynamic>::Ones(3, 9);
   const Step step =
@@ -211,7 +213,7 @@ class LazyFaces final : public ActivationRule {
 
 TEST(Step, ARuleThatHandsOverPlanesOneAtATimeComesToTheSameMotion) {
   const auto mesh = mesh_of("saddle_terrain");
-  const StepOptions options{.radius = 8.0};
+  const StepOptions options{.radius = 8.0, .margin = 0.0};
   auto eager = guard<AllFaces>(mesh, options);
   auto lazy = guard<LazyFaces>(mesh, options);
   Random random(9);
@@ -230,7 +232,7 @@ TEST(Step, ARuleThatHandsOverPlanesOneAtATimeComesToTheSameMotion) {
 }
 
 TEST(Step, TellsWhatEachStageTook) {
-  auto constraint = guard<PaperRule>(mesh_of("sphere"), {.radius = 10.0});
+  auto constraint = guard<PaperRule>(mesh_of("sphere"), {.radius = 10.0, .margin = 0.0});
   StageTimes times;
   constraint.step({.tip = {0, 0, 51}, .desired = {0, 0, -2}}, times);
   EXPECT_GT(times.query, 0);
@@ -242,7 +244,8 @@ TEST(Step, TellsWhatEachStageTook) {
 TEST(MotionConstraint, TellsToolRadiusAndMarginApartAndKeepsBoth) {
   const auto mesh = mesh_of("cube");
   auto by_hand = guard<PaperRule>(mesh, {.radius = 2.0, .tool_radius = 0.3, .margin = 0.2});
-  auto by_name = make_motion_constraint(mesh, {.radius = 2.0, .tool_radius = 0.3, .margin = 0.2});
+  auto by_name =
+      make_motion_constraint(mesh, {.options = {.radius = 2.0, .tool_radius = 0.3, .margin = 0.2}});
   for (MotionConstraint* constraint : {&by_hand, &by_name}) {
     EXPECT_EQ(constraint->options().tool_radius, 0.3);
     EXPECT_EQ(constraint->options().margin, 0.2);
@@ -250,17 +253,18 @@ TEST(MotionConstraint, TellsToolRadiusAndMarginApartAndKeepsBoth) {
     const Step step = constraint->step({.tip = {3, 4, 51}, .desired = {0, 0, -2}});
     EXPECT_LT((step.motion - Vec3(0, 0, -0.5)).norm(), 1e-12);
   }
-  EXPECT_THROW(guard<PaperRule>(mesh, {.radius = 1.0, .tool_radius = -0.1}), Error);
+  EXPECT_THROW(guard<PaperRule>(mesh, {.radius = 1.0, .tool_radius = -0.1, .margin = 0.0}), Error);
 }
 
 TEST(MotionConstraint, RefusesOptionsOutOfRange) {
   const auto mesh = mesh_of("cube");
-  EXPECT_THROW(guard<PaperRule>(mesh, {.radius = 0.0}), Error);
-  EXPECT_THROW(guard<PaperRule>(mesh, {.radius = -1.0}), Error);
+  EXPECT_THROW(guard<PaperRule>(mesh, {.radius = 0.0, .margin = 0.0}), Error);
+  EXPECT_THROW(guard<PaperRule>(mesh, {.radius = -1.0, .margin = 0.0}), Error);
   EXPECT_THROW(guard<PaperRule>(mesh, {.radius = std::nan("")}), Error);
   EXPECT_THROW(guard<PaperRule>(mesh, {.radius = 1.0, .margin = -0.1}), Error);
-  EXPECT_THROW(guard<PaperRule>(mesh, {.radius = 1.0, .damping = -0.1}), Error);
-  EXPECT_THROW(MotionConstraint(mesh, nullptr, nullptr, nullptr, {.radius = 1.0}), Error);
+  EXPECT_THROW(guard<PaperRule>(mesh, {.radius = 1.0, .margin = 0.0, .damping = -0.1}), Error);
+  EXPECT_THROW(MotionConstraint(mesh, nullptr, nullptr, nullptr, {.radius = 1.0, .margin = 0.0}),
+               Error);
 }
 
 }  // namespace

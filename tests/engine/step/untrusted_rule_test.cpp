@@ -18,8 +18,8 @@ class Boaster final : public ActivationRule {
 };
 
 TEST(UntrustedRule, NoPartOfATrialIsMadeThatTheRuleRejects) {
-  auto guard = guard_of(mesh_of("cube"), {.radius = 5.0}, std::make_unique<ActiveSet>(),
-                        std::make_unique<Boaster>());
+  auto guard = guard_of(mesh_of("cube"), {.radius = 5.0, .margin = 0.0},
+                        std::make_unique<ActiveSet>(), std::make_unique<Boaster>());
   const Step step = guard.step({.tip = Vec3(0, 0, 60), .desired = Vec3(0, 0, -1)});
   EXPECT_FALSE(step.ok());
   EXPECT_EQ(step.motion, Vec3::Zero());

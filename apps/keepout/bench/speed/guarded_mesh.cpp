@@ -134,16 +134,17 @@ std::filesystem::path large_bunny(std::size_t triangles) {
 MotionConstraint certified(const IndexedMesh& on, double margin) {
   return make_motion_constraint(on.mesh, on.index,
                                 {.activation = "certified",
-                                 .radius = 5.0,
-                                 .margin = margin,
+                                 .options = {.radius = 5.0, .margin = margin},
                                  .inside = Inside::taken_as_is,
                                  .capacity = room});
 }
 
 MotionConstraint paper(const IndexedMesh& on, double radius, const std::string& solver) {
-  return make_motion_constraint(
-      on.mesh, on.index,
-      {.activation = "paper", .solver = solver, .radius = radius, .margin = 0.0, .capacity = room});
+  return make_motion_constraint(on.mesh, on.index,
+                                {.activation = "paper",
+                                 .solver = solver,
+                                 .options = {.radius = radius, .margin = 0.0},
+                                 .capacity = room});
 }
 
 std::string disagreement(MotionConstraint& one, MotionConstraint& other,

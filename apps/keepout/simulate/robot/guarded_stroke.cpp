@@ -53,9 +53,9 @@ std::vector<GuardedCycle> follow(const RobotStroke& stroke, Scene& scene,
   std::optional<MotionConstraint> tip;  // a ball at the end of the jaw
   if (tally.mode == Mode::tip_only) {
     tip = make_motion_constraint(scene.mesh(), scene.shared_index(),
-                                 {.radius = 10.0 * tally.speed,
-                                  .tool_radius = instrument.bodies().back().radius,
-                                  .margin = margin});
+                                 {.options = {.radius = 10.0 * tally.speed,
+                                              .tool_radius = instrument.bodies().back().radius,
+                                              .margin = margin}});
   }
   std::vector<double> q = stroke.start.positions;
   RobotJudge judge({robot.judged(), stroke.start.base, {{tree}}}, chain, random, q, options,

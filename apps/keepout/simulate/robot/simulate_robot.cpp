@@ -83,7 +83,7 @@ void run_stroke(const SimulateOptions& options, Scene& scene,
                 const std::shared_ptr<const oracle::TriangleTree>& tree, std::uint64_t number,
                 std::span<ModeTally> rows, std::span<KeptStroke> kept) {
   const RobotUnderTest& robot = robots_under_test().front();
-  const double margin = options.constraint.margin;
+  const double margin = options.constraint.options.margin;
   Random of_seed(options.hand.seed);
   Random random(of_seed.bits() ^ number);
   const std::size_t manner = number % manners.size();
@@ -134,7 +134,7 @@ Json record_of(const SimulateOptions& options, const std::vector<ModeTally>& row
   }
   const ModeTally certified = sum_of(rows, Mode::certified);
   const bool is_kept = certified.any.below + certified.limits_broken == 0;
-  const double margin = options.constraint.margin;
+  const double margin = options.constraint.options.margin;
   Json record =
       new_record({.kind = "simulate_robot",
                   .command = options.command,

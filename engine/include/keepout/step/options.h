@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string_view>
 
-#include "keepout/geometry/shapes.h"
+#include "keepout/option_table.h"
 
 namespace keepout {
 
@@ -16,31 +18,70 @@ enum class Query : std::uint8_t {
   sphere   // always the whole motion sphere
 };
 
+/// The names of Query.
+inline constexpr std::array<std::string_view, 2> query_names{"motion", "sphere"};
+
 /// Of which tips a step tells how far the surface is: Step::distance.
 enum class Distances : std::uint8_t {
   where_known,  // of those whose distance the rule comes by anyway: costs nothing
   always        // of all; the nearest triangle is looked for after the step, where it is not known
 };
 
-/// What stays the same from cycle to cycle. Lengths are 0 or from shortest_length to
-/// longest_length, but for recovery, which may be as little as you like.
+/// The names of Distances.
+inline constexpr std::array<std::string_view, 2> distances_names{"where_known", "always"};
+
+/// Options of a motion constraint that stay the same from cycle to cycle. The table below has their
+/// ranges.
 struct StepOptions {
-  double radius = 0.0;  // of the motion sphere: how far the tip may go in a cycle [length], > 0
-  double tool_radius = 0.0;  // of the ball around the tip that shall not touch [length], >= 0
-  double margin = 0.0;       // distance to keep beyond that [length], >= 0
-  /// Weight of |u|^2 beside the task, >= 0. With more than three joints, or such as move the tip
-  /// alike, no increment is the best one without it, and the step is ill_posed: take some 1e-6 of a
+  double radius = 5.0;       // of the motion sphere: the longest motion in a cycle [length]
+  double tool_radius = 0.0;  // of the ball around the tip that must not touch [length]
+  double margin = 0.2;  // required clearance beyond that; the certified rule needs one [length]
+  /// Weight of |u|^2 beside the task. With more than three joints, or joints that move the tip
+  /// alike, there is no best increment without it, and the step is ill_posed: use about 1e-6 of a
   /// column's squared length.
   double damping = 0.0;
-  /// How far a tip that is too close is led away in a cycle, >= 0; by a tolerance of the rule's at
-  /// least, where it can be, so that nothing adds up. [length]
+  /// Longest retreat per cycle of a tip that is too close or inside; it retreats by a tolerance of
+  /// the rule at least, where it can, so that nothing adds up. [length]
   double recovery = 0.05;
-  double deepest = 10.0;  // no tip is led out from deeper inside; it is told of instead [length]
-  int refinements = 3;    // how often planes are turned towards a better motion, >= 0
-  int nodes = 0;          // of a branch and bound for a better motion still; 0: none, >= 0
-  Query query = Query::motion;                   // how far around the tip triangles are looked for
+  double deepest = 10.0;        // a tip deeper inside is not led out; the step is `inside` [length]
+  int refinements = 3;          // how often cuts are rotated towards a better motion
+  int nodes = 0;                // of a branch and bound for a better motion still; 0: none
+  Query query = Query::motion;  // how far around the tip triangles are looked for
   Distances distances = Distances::where_known;  // see Step::distance
 };
+
+/// The table of these options.
+inline constexpr std::array step_options{
+    option<&StepOptions::radius>("radius", "length", positive_length,
+                                 "Radius of the motion sphere: the longest motion in a cycle."),
+    option<&StepOptions::tool_radius>("tool_radius", "length", zero_or_length,
+                                      "Radius of the ball around the tip that must not touch."),
+    option<&StepOptions::margin>("margin", "length", zero_or_length,
+                                 "Clearance beyond the tool; the certified rule needs one."),
+    option<&StepOptions::damping>(
+        "damping", "", {0.0, 1e30},
+        "Weight of |u|^2 beside the task; a Jacobian with more than three "
+        "columns needs one, about 1e-6 of a squared column."),
+    option<&StepOptions::recovery>("recovery", "length", not_negative,
+                                   "Longest retreat in a cycle of a tip too close or inside."),
+    option<&StepOptions::deepest>("deepest", "length", zero_or_length,
+                                  "A tip that is deeper inside than this is not led out."),
+    option<&StepOptions::refinements>("refinements", "", {0, 1000},
+                                      "How often the certified rule improves upon a motion.",
+                                      "refine"),
+    option<&StepOptions::nodes>("nodes", "", {0, 1 << 16},
+                                "Nodes of a search for a better motion still; 0: none, 16 find "
+                                "nearly the best.",
+                                "branches"),
+    option<&StepOptions::query, query_names>(
+        "query",
+        "Region that the certified rule searches: as far as the motion can lead, or the "
+        "whole motion sphere."),
+    option<&StepOptions::distances, distances_names>(
+        "distances", "Tips whose distance a step reports: where it costs nothing, or always.")};
+
+/// Returns the table of the options of a struct.
+constexpr const auto& table_of(const StepOptions&) { return step_options; }
 
 /// From the tip to the surface: tool radius and margin. [length]
 constexpr double required_clearance(const StepOptions& options) noexcept {
@@ -72,5 +113,22 @@ struct Capacity {
   /// Returns `looks`, or if that is 0, the default for an index. Allocates.
   static std::size_t looks_or_default(std::size_t looks, const SpatialIndex& index);
 };
+
+/// The table of these options.
+inline constexpr std::array capacity_options{
+    option<&Capacity::triangles>("max_triangles", "", {0, 4294967296.0},
+                                 "Capacity for the triangles of one query."),
+    option<&Capacity::planes>("max_planes", "", {0, 1 << 30}, "Capacity for the planes of a step."),
+    option<&Capacity::variables>("max_joints", "", {0, 2147483647.0},
+                                 "Capacity for the columns of a Jacobian."),
+    option<&Capacity::extra_rows>("max_rows", "", {0, 1 << 30},
+                                  "Capacity for the caller's own rows."),
+    option<&Capacity::looks>(
+        "max_looks", "", {0, longest_length},
+        "Work budget of a cycle, in looks; 0: 65,536 on wide_bvh, 4,194,304 on other "
+        "indices.")};
+
+/// See table_of(const StepOptions&).
+constexpr const auto& table_of(const Capacity&) { return capacity_options; }
 
 }  // namespace keepout

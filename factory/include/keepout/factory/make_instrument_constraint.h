@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -10,17 +11,24 @@
 
 namespace keepout {
 
-/// Which parts to build an instrument constraint from, by name, and how it shall behave.
+/// Parts of an instrument constraint, by name, and its options.
 struct InstrumentConstraintSettings {
   std::string index = "wide_bvh";  // see index_backends(); fcl_collide is not for real time
   /// The folder where built indices are kept; only wide_bvh is. Empty: none is kept.
   std::filesystem::path index_cache = {};
   std::string solver = "active_set";  // see solver_backends()
-  InstrumentOptions options = {};     // how it shall behave
-  InstrumentCapacity capacity = {};   // the largest cycle there is room for
+  InstrumentOptions options = {};
+  InstrumentCapacity capacity = {};  // for the largest cycle
   /// As MotionConstraintSettings::warn. Empty: nobody is told.
   std::function<void(const std::string&)> warn = {};
 };
+
+/// The table of the settings that are neither in InstrumentOptions nor in InstrumentCapacity.
+inline constexpr std::array instrument_settings{option<&InstrumentConstraintSettings::solver>(
+    "solver", "Solver of the step problem: see solver_backends().")};
+
+/// See table_of(const StepOptions&).
+constexpr const auto& table_of(const InstrumentConstraintSettings&) { return instrument_settings; }
 
 /// Builds the parts and puts them together. Throws Error, listing what exists, for a name that does
 /// not, and for settings out of range.

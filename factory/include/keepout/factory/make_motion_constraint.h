@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "keepout/geometry/convex_tool.h"
 #include "keepout/step/motion_constraint.h"
 
 namespace keepout {
 
-/// Which parts to build a motion constraint from, by name, and how it shall behave.
+/// Parts of a motion constraint, by name, and its options.
 struct MotionConstraintSettings {
   std::string index = "wide_bvh";  // see index_backends(); fcl_collide is not for real time
   /// The folder where built indices are kept; only wide_bvh is. Empty: none is kept.
@@ -23,24 +25,34 @@ struct MotionConstraintSettings {
   std::function<void(const std::string&)> warn = {};
   std::string activation = "certified";  // see activation_rules()
   std::string solver = "active_set";     // see solver_backends()
-  double radius = 5.0;       // of the motion sphere: the farthest that the tip may go [length]
-  double tool_radius = 0.0;  // of the ball around the tip that shall not touch the mesh [length]
-  /// What shall not touch the mesh instead of that ball; tool_of_text() makes one of a text. It is
-  /// kept out by a rule of its own, ConvexToolRule: activation stays "certified" and tool_radius 0,
-  /// inside, refinements and nodes have no effect. Empty: the ball.
+  StepOptions options = {};
+  /// Tool that must not touch the mesh, in place of the ball of options.tool_radius; tool_of_text()
+  /// reads one from a text. ConvexToolRule guards it: activation stays "certified" and tool_radius
+  /// 0; inside, refinements and nodes have no effect. Empty: the ball.
   std::optional<ConvexTool> tool = {};
   std::string narrow_phase = "exact";  // of a tool; see narrow_phase_backends()
-  double margin = 0.2;                 // distance to keep beyond that; certified needs one [length]
-  double damping = 0.0;         // weight of |u|^2 beside the task: above 0 with more than 3 joints
-  double recovery = 0.05;       // how far a tip that is too close is led away in a cycle [length]
-  double deepest = 10.0;        // no tip is led out from deeper inside [length]
-  int refinements = 3;          // how often a certified motion is improved upon
-  int nodes = 0;                // of a branch and bound for a better motion still; 0: none
-  Query query = Query::motion;  // how far around the tip triangles are looked for
-  Distances distances = Distances::where_known;  // of which tips Step::distance is told
   Inside inside = Inside::led_out;  // what becomes of a tip that starts inside; a ball's, certified
-  Capacity capacity = {};           // the largest step there is room for
+  Capacity capacity = {};           // for the largest step
 };
+
+/// The names of Inside.
+inline constexpr std::array<std::string_view, 2> inside_names{"led_out", "taken_as_is"};
+
+/// The table of the settings that are neither in StepOptions nor in Capacity.
+inline constexpr std::array motion_settings{
+    option<&MotionConstraintSettings::activation>(
+        "activation", "Rule that turns triangles into planes: see activation_rules()."),
+    option<&MotionConstraintSettings::solver>("solver",
+                                              "Solver of the step problem: see solver_backends()."),
+    option<&MotionConstraintSettings::narrow_phase>(
+        "narrow_phase", "Proposer of the planes of a convex tool: see narrow_phase_backends()."),
+    option<&MotionConstraintSettings::inside, inside_names>(
+        "inside",
+        "Treatment of a tip that starts on the forbidden side: it is led out, or its side is not "
+        "checked.")};
+
+/// See table_of(const StepOptions&).
+constexpr const auto& table_of(const MotionConstraintSettings&) { return motion_settings; }
 
 /// The index that the settings name, from index_cache where it is kept there: for constraints that
 /// share it. Throws Error for a name that does not exist.

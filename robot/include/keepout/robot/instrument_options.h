@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string_view>
 
+#include "keepout/option_table.h"
 #include "keepout/robot/instrument.h"
 
 namespace keepout {
@@ -15,7 +18,11 @@ enum class CertifiedMotion : std::uint8_t {
               // only
 };
 
-/// What stays the same from cycle to cycle.
+/// The names of CertifiedMotion.
+inline constexpr std::array<std::string_view, 2> certified_motion_names{"actual", "linearised"};
+
+/// Options of an instrument constraint that stay the same from cycle to cycle. The table below has
+/// their ranges.
 struct InstrumentOptions {
   /// Distance to keep beyond each body's radius, from all meshes that have no margin of their own,
   /// > band [length]
@@ -44,6 +51,46 @@ struct InstrumentOptions {
   CertifiedMotion certified = CertifiedMotion::actual;  // nothing else is safe
 };
 
+/// The table of these options. The band must also be below each mesh's margin.
+inline constexpr std::array instrument_options{
+    option<&InstrumentOptions::margin>(
+        "margin", "length", positive_length,
+        "Clearance to keep beyond each body's radius, from meshes without a margin of their own."),
+    option<&InstrumentOptions::band>("band", "length", above_zero(longest_length),
+                                     "Curvature allowance: part of the margin that curved motions "
+                                     "may use, so that the certified "
+                                     "clearance is margin - band; see recommended_band."),
+    option<&InstrumentOptions::period>(
+        "period", "s", above_zero(1e9),
+        "Duration of a cycle, by which velocity limits are multiplied."),
+    option<&InstrumentOptions::recovery>("recovery", "length", not_negative,
+                                         "Longest retreat in a cycle of a body that is too close."),
+    option<&InstrumentOptions::slowing_within>(
+        "slowing_within", "length", not_negative,
+        "Distance beyond the margin within which bodies approach more slowly; 0: nowhere."),
+    option<&InstrumentOptions::slowing_time>(
+        "slowing_time", "s", above_zero(1e9),
+        "Duration of that approach: a cycle uses up at most period / slowing_time of the distance "
+        "left to the margin."),
+    option<&InstrumentOptions::damping>("damping", "length^2", not_negative,
+                                        "Weight of |dq|^2 beside the task of the flange."),
+    option<&InstrumentOptions::orientation_weight>(
+        "orientation_weight", "length/rad", not_negative,
+        "Weight of a turn of the flange beside its displacement; 0: only its origin is steered."),
+    option<&InstrumentOptions::refinements>("refinements", "", {0, 2147483647.0},
+                                            "How often cuts are rotated towards a better motion."),
+    option<&InstrumentOptions::check_sides>(
+        "check_sides",
+        "True if bodies that no step has led to where they are must be on the free side of a "
+        "watertight mesh."),
+    option<&InstrumentOptions::certified, certified_motion_names>(
+        "certified",
+        "Motion that is certified: the one that the joints make, or a linearized one, which is "
+        "unsafe and for comparison only.")};
+
+/// See table_of(const StepOptions&).
+constexpr const auto& table_of(const InstrumentOptions&) { return instrument_options; }
+
 /// Room for the largest cycle.
 struct InstrumentCapacity {
   static constexpr std::size_t most_meshes = 8;  // to be kept out of
@@ -55,6 +102,19 @@ struct InstrumentCapacity {
   /// Capacity::looks_of_queries on others, of which more is asked.
   std::size_t looks = 0;
 };
+
+/// The table of these options.
+inline constexpr std::array instrument_capacity_options{
+    option<&InstrumentCapacity::triangles>("max_triangles", "", {0, 4294967296.0},
+                                           "Capacity for the triangles of one mesh near one body."),
+    option<&InstrumentCapacity::planes>("max_planes", "", {0, 1 << 30},
+                                        "Capacity for the planes of a cycle."),
+    option<&InstrumentCapacity::looks>(
+        "max_looks", "", {0, longest_length},
+        "Work budget of a cycle, in looks; 0: 65,536 on wide_bvh, 4,194,304 on other indices.")};
+
+/// See table_of(const StepOptions&).
+constexpr const auto& table_of(const InstrumentCapacity&) { return instrument_capacity_options; }
 
 /// A band that absorbs the curvature of every motion that the joints' limits admit in a cycle of
 /// `period` > 0 seconds: an eighth of the largest bend of any body's point, at least `least`.

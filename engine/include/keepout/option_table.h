@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <variant>
+
+#include "keepout/geometry/shapes.h"
+
+namespace keepout {
+
+// A table of options names each member of a struct of options once, with its unit, its range and a
+// sentence. The range checks, the Python module and its stubs, `keepout serve`, the commands and
+// docs/options.md read it.
+
+/// Numbers that an option may have: those from `least` to `most`, and 0 if `has_zero`.
+struct Range {
+  double least = 0.0;
+  double most = 0.0;
+  bool has_zero = false;
+};
+
+/// Above 0, and at most `most`.
+constexpr Range above_zero(double most) {
+  return {std::numeric_limits<double>::denorm_min(), most};
+}
+
+inline constexpr Range positive_length{shortest_length, longest_length};       // a length above 0
+inline constexpr Range zero_or_length{shortest_length, longest_length, true};  // or none
+inline constexpr Range not_negative{0.0, longest_length};  // of any size, however small
+
+/// What kind of value an option has.
+enum class OptionKind : std::uint8_t {
+  number,
+  whole_number,
+  flag,    // true or false
+  choice,  // one of the names in OptionText::names
+  part     // the name of a part, which the part's registry checks
+};
+
+/// A value of an option. A choice and a part are strings.
+using OptionValue = std::variant<double, std::int64_t, bool, std::string>;
+
+/// Describes an option to people and to programs.
+struct OptionText {
+  std::string_view name;     // in Python and in serve
+  std::string_view meaning;  // one sentence
+  OptionKind kind = OptionKind::number;
+  std::string_view unit = {};                    // of a number; empty if it has none
+  Range range = {};                              // of a number or a whole number
+  std::span<const std::string_view> names = {};  // of a choice
+  std::string_view command = {};                 // its name for the commands, if another
+
+  /// Returns its name for the commands, without "--": `command`, or `name` with '-' for '_'.
+  std::string flag() const;
+
+  /// Returns the values that the option may have, in words. Allocates.
+  std::string expected() const;
+
+  /// Returns the value that a text stands for. Throws Error for a value that the option may not
+  /// have.
+  OptionValue parsed(const std::string& text) const;
+
+  /// Returns a value as the option stores it: a whole number for a number becomes one. Throws
+  /// Error, naming the option, what was expected and what was given, for a value that it may not
+  /// have.
+  OptionValue accepted(OptionValue value) const;
+
+  /// Throws Error for a value that the option may not have.
+  [[noreturn]] void refuse(std::string_view given) const;
+};
+
+/// An option that is a member of `Options`.
+template <class Options>
+struct Option : OptionText {
+  OptionValue (*get)(const Options&) = nullptr;         // reads the member
+  void (*put)(Options&, const OptionValue&) = nullptr;  // writes it; precondition: accepted()
+
+  /// Sets the member. Throws Error for a value that the option may not have.
+  void set(Options& options, OptionValue value) const { put(options, accepted(std::move(value))); }
+};
+
+/// Returns a value as text interfaces write it: 0.2, 3, true, motion.
+std::string text_of(const OptionValue& value);
+
+namespace detail {
+
+template <class Options, class Value>
+Options options_of(Value Options::*);
+template <class Options, class Value>
+Value value_of(Value Options::*);
+
+inline constexpr std::array<std::string_view, 0> no_names{};
+
+}  // namespace detail
+
+/// Describes a member of a struct of options. Its kind is that of the member; an enumeration is a
+/// choice of `Names`, which its values have from 0 on. Unit, range and command: see OptionText.
+template <auto Member, const auto& Names = detail::no_names>
+constexpr auto option(std::string_view name, std::string_view unit, Range range,
+                      std::string_view meaning, std::string_view command = {}) {
+  using Options = decltype(detail::options_of(Member));
+  using Value = decltype(detail::value_of(Member));
+  constexpr bool is_stored = std::same_as<Value, bool> || std::same_as<Value, double>;
+  using Stored =
+      std::conditional_t<is_stored, Value,
+                         std::conditional_t<std::integral<Value>, std::int64_t, std::string>>;
+  constexpr OptionKind kind = std::same_as<Value, double> ? OptionKind::number
+                              : std::same_as<Value, bool> ? OptionKind::flag
+                              : std::integral<Value>      ? OptionKind::whole_number
+                              : std::is_enum_v<Value>     ? OptionKind::choice
+                                                          : OptionKind::part;
+  Option<Options> option{{name, meaning, kind, unit, range, Names, command}};
+  option.get = [](const Options& o) -> OptionValue {
+    if constexpr (std::is_enum_v<Value>) {
+      const auto value = static_cast<std::size_t>(o.*Member);
+      return std::string(value < Names.size() ? Names[value] : "no value");
+    } else {
+      return static_cast<Stored>(o.*Member);
+    }
+  };
+  option.put = [](Options& o, const OptionValue& v) {
+    if constexpr (std::is_enum_v<Value>) {
+      std::size_t value = 0;
+      while (Names[value] != std::get<std::string>(v)) ++value;
+      o.*Member = static_cast<Value>(value);
+    } else {
+      o.*Member = static_cast<Value>(std::get<Stored>(v));
+    }
+  };
+  return option;
+}
+
+/// The same of an option without unit and range.
+template <auto Member, const auto& Names = detail::no_names>
+constexpr auto option(std::string_view name, std::string_view meaning) {
+  return option<Member, Names>(name, {}, {}, meaning);
+}
+
+/// Returns the option of that name. Precondition: the table has it.
+template <class Table>
+constexpr const auto& option_named(const Table& table, std::string_view name) {
+  const auto* option = table.data();
+  while (option->name != name) ++option;
+  return *option;
+}
+
+/// Throws Error, naming the option, unless each of the options has a value that it may have.
+template <class Table, class Options>
+void require_in_range(const Table& table, const Options& options) {
+  for (const auto& option : table) option.accepted(option.get(options));
+}
+
+}  // namespace keepout

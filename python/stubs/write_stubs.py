@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Writes the stubs of the module that was built: write_stubs.py TEMPLATE OUT, with PYTHONPATH at the module.
+
+What the template says of the options of a class becomes its keywords, set_options and properties."""
+
+import sys
+from pathlib import Path
+
+import keepout
+
+
+def keyword(option):
+    return f"        {option.name}: {option.type} = {option.default!r},\n"
+
+
+def change(option):
+    return f"        {option.name}: {option.type} | None = None,\n"
+
+
+def prop(option):
+    return f"    @property\n    def {option.name}(self) -> {option.type}: ...\n"
+
+
+def main(template, out):
+    text = Path(template).read_text(encoding="utf-8")
+    for name, options in keepout.options().items():
+        changes = "".join(change(option) for option in options if option.is_changeable)
+        members = f"    def set_options(\n        self,\n        *,\n{changes}    ) -> None: ...\n"
+        members += "".join(map(prop, options))
+        text = text.replace(f"        # keywords of {name}\n", "".join(map(keyword, options)))
+        text = text.replace(f"    # set_options and properties of {name}\n", members)
+    Path(out).write_text(text, encoding="utf-8")
+
+
+main(*sys.argv[1:])
