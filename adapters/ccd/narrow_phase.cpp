@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// libccd tells the depth of an overlap, and of bodies apart only that they are: their distance is
-// asked for as the depth of a tool that is grown by more than it.
+// libccd computes the depth of an overlap, but no distance of bodies that are apart. Their distance
+// comes from the depth of a tool that is grown by more than it.
 #include <algorithm>
 #include <cmath>
 
@@ -11,9 +11,9 @@
 namespace keepout {
 namespace {
 
-constexpr int budget_of_a_pair = 800;  // support points; tens are usual
+constexpr int budget_of_a_pair = 800;  // support queries; tens are usual
 constexpr unsigned long most_iterations = 200;
-// EPA holds squares of lengths against it as well. With less it may never end.
+// EPA compares squares of lengths with it as well. With less it may never end.
 constexpr double tolerance = 1e-16;
 
 using Penetration = int (*)(const void*, const void*, const ccd_t*, ccd_real_t*, ccd_vec3_t*,
@@ -29,7 +29,7 @@ class CcdNarrowPhase final : public NarrowPhase {
     const Triangle local = relative(triangle, position);
     const NarrowPhaseAnswer overlap = depth(local, 0.0);
     if (overlap.answered() || overlap.failure != apart) return moved(overlap, position);
-    // No more than from any one point of the tool.
+    // No more than the distance of any point of the tool.
     const double at_most = closest_point(local, tool_.points().front()).distance - tool_.radius();
     const double growth = std::max(at_most, 0.0) + 0.1 * tool_.bounding_ball().radius;
     return moved(depth(local, growth), position);
@@ -38,7 +38,7 @@ class CcdNarrowPhase final : public NarrowPhase {
  private:
   static constexpr std::string_view apart = "libccd found no overlap";
 
-  /// Of the tool grown by more than its radius.
+  /// Returns the separation from an overlap with the tool grown beyond its radius.
   NarrowPhaseAnswer depth(const Triangle& local, double growth) const noexcept {
     CcdBudget budget{budget_of_a_pair};
     const CcdTriangle first{&local, &budget};
@@ -79,7 +79,7 @@ std::unique_ptr<NarrowPhase> make(const ConvexTool& tool) {
   return std::make_unique<CcdNarrowPhase>(tool, penetration);
 }
 
-// Its header tells no version; its package says 2.0 for 2.1.
+// The header has no version, and the package says 2.0 for 2.1.
 std::string library() { return "libccd " KEEPOUT_CCD_VERSION; }
 
 constexpr NarrowPhaseBackend backends[] = {

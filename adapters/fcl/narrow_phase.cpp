@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// FCL's GJK after libccd is full of assertions that fail near a touch, and Debian's library was
-// built with them: they end the process. Its functions are static ones of a header, so that they
-// are compiled here, without. GJK, EPA and GJKSolver_indep<double> are extern templates: their code
-// is the library's, and only what calls them for a shape and a triangle is compiled here.
+// FCL's GJK after libccd has assertions that fail near a touch. Debian builds the library with
+// them, and they end the process. The functions are static ones of a header, so this file compiles
+// them without assertions. GJK, EPA and GJKSolver_indep<double> are extern templates: their code is
+// the library's, and this file compiles only their callers for a shape and a triangle.
 #ifndef NDEBUG
 #define NDEBUG
 #endif
@@ -22,14 +22,14 @@
 namespace keepout {
 namespace {
 
-constexpr int budget_of_a_pair = 400;  // support points; tens are usual
+constexpr int budget_of_a_pair = 400;  // support queries; tens are usual
 constexpr unsigned int most_iterations = 200;
 constexpr double tolerance = 1e-12;
-// Between the bounds of a depth. At corners EPA is exact as soon as it ends, and with less it may
-// never end.
+// Between the bounds of a depth. EPA is exact at corners as soon as it ends. With less it may never
+// end.
 constexpr double tolerance_of_depth = 1e-6;
 
-/// From what both solvers give: the signed distance of the cores, and the way from the triangle's
+/// Makes an answer from the signed distance of the cores and the direction from the triangle's
 /// point to the core's, or the reverse where they overlap.
 NarrowPhaseAnswer answer(double distance, const Vec3& direction, const Vec3& on_triangle,
                          const ConvexTool& tool, const Vec3& position) noexcept {
@@ -40,8 +40,7 @@ NarrowPhaseAnswer answer(double distance, const Vec3& direction, const Vec3& on_
   return {{distance - tool.radius(), direction / length, position + on_triangle}, {}};
 }
 
-// Both are asked about the tool's core, whose radius is taken off afterwards: GJK is at its best on
-// corners.
+// Both get the tool's core, as GJK is most exact on corners. The radius is subtracted afterwards.
 
 /// libccd's GJK and EPA as FCL has rewritten them.
 class FclGjkLibccd final : public NarrowPhase {
@@ -65,7 +64,7 @@ class FclGjkLibccd final : public NarrowPhase {
     ccd_vec3_t first{};
     ccd_vec3_t second{};
     try {
-      // What GJKSignedDistance calls, which itself is the library's.
+      // GJKSignedDistance, which calls this, is the library's.
       distance =
           fcl::detail::libccd_extension::ccdGJKSignedDist(&core, &other, &ccd, &first, &second);
     } catch (const std::exception&) {
@@ -76,7 +75,7 @@ class FclGjkLibccd final : public NarrowPhase {
     if (budget.spent()) return NarrowPhaseAnswer::failed("FCL did not converge");
     const Vec3 on_core = from_ccd(first);
     const Vec3 on_triangle = from_ccd(second);
-    // Its failure is a distance of -1, which may be a depth as well: the points tell.
+    // FCL's failure is a distance of -1, which can also be a depth. The points distinguish them.
     const Vec3 between = distance < 0.0 ? on_triangle - on_core : on_core - on_triangle;
     if (distance == -1.0 && between.isZero(0.0)) {
       return NarrowPhaseAnswer::failed("FCL did not converge");
@@ -103,7 +102,7 @@ class FclGjkIndep final : public NarrowPhase {
 
   NarrowPhaseAnswer separation(const Vec3& position, const Triangle& triangle) noexcept override {
     if (!is_in_range(position, triangle)) return NarrowPhaseAnswer::failed("out of range");
-    // Points are given in the frame of the shape, whatever is said: so that frame is the only one.
+    // FCL returns points in the frame of the shape, whatever its documentation says.
     const Triangle local = relative(triangle, position);
     const fcl::Transform3d here = fcl::Transform3d::Identity();
     double distance = 0.0;
@@ -119,7 +118,7 @@ class FclGjkIndep final : public NarrowPhase {
                                           &distance, &normal)) {
         return NarrowPhaseAnswer::failed("FCL found neither a distance nor an overlap");
       }
-      // The depth comes with either sign.
+      // The depth has either sign.
       return answer(-std::abs(distance), normal, on_triangle, tool_, position);
     } catch (...) {
       return NarrowPhaseAnswer::failed("FCL threw");
@@ -128,7 +127,7 @@ class FclGjkIndep final : public NarrowPhase {
 
  private:
   ConvexTool tool_;
-  fcl::Convexd core_;  // without faces, which only volumes need
+  fcl::Convexd core_;  // without faces: only volumes need them
   fcl::detail::GJKSolver_indep<double> solver_;
 };
 

@@ -8,10 +8,10 @@
 
 namespace keepout {
 
-/// How many more questions a pair of bodies answers. EPA has no bound of its own, in libccd and in
-/// FCL: it ends when a support point is no better than the last, and near a touch that may be
-/// never. So when the budget is spent both bodies answer with the origin, which is no better than
-/// anything.
+/// The number of support queries that a pair of bodies still answers. EPA has no bound of its own,
+/// in libccd or in FCL: it ends when a support point is no better than the last, which near a touch
+/// may never happen. Once the budget is spent both bodies answer with the origin, which is no
+/// better.
 struct CcdBudget {
   int left;
 
@@ -19,7 +19,7 @@ struct CcdBudget {
   bool spent() const noexcept { return left < 0; }
 };
 
-/// A tool's core grown by a radius, where the tool is: its frame is the one that is calculated in.
+/// A tool's core grown by a radius, in the tool's frame.
 struct CcdTool {
   const ConvexTool* tool;
   double radius;  // [length]
@@ -32,7 +32,7 @@ struct CcdTriangle {
   CcdBudget* budget;
 };
 
-/// In the frame of a tool at that position.
+/// Returns the triangle in the frame of a tool at that position.
 inline Triangle relative(const Triangle& triangle, const Vec3& position) {
   return {triangle[0] - position, triangle[1] - position, triangle[2] - position};
 }
@@ -43,7 +43,7 @@ inline void to_ccd(const Vec3& v, ccd_vec3_t* out) noexcept {
   ccdVec3Set(out, v.x(), v.y(), v.z());
 }
 
-// As C calls them.
+// Callbacks for C.
 
 inline void ccd_tool_support(const void* body, const ccd_vec3_t* direction, ccd_vec3_t* out) {
   const auto& tool = *static_cast<const CcdTool*>(body);

@@ -277,12 +277,18 @@ def compare(record):
             for key in ("problems", "infeasible", "converged", "gave_up", "wrong"):
                 yield f"{name}.{key}", f"{its[key]:,}"
     if phases:
+        groups = {}
+        for row in phases["rows"]:
+            groups.setdefault((row["tool"], row["backend"]), []).append(row)
+        relations = [row["relation"] for row in next(iter(groups.values()))]
         yield "narrow_phases", table(
-            ["tool", "relation", "narrow phase", "pairs", "failed", "contradicted", "error, median", "worst",
-             "unproven", "p50, µs", "p99, µs"],
-            [[row["tool"], row["relation"], f"`{row['backend']}`", row["pairs"], row["failed"], row["contradicted"],
-              short(row["median_error_mm"]), short(row["worst_error_mm"]), short(row["worst_unproven_mm"]),
-              number(row["p50_us"], 2), number(row["p99_us"], 2)] for row in phases["rows"]], left=3)
+            ["tool", "narrow phase", "pairs", "failed", "contradicted", "worst error, mm", "unproven, mm",
+             *(f"p50 {relation}, µs" for relation in relations), "p99, the worst, µs"],
+            [[tool, f"`{backend}`", *(number(sum(row[key] for row in rows), 5)
+                                      for key in ("pairs", "failed", "contradicted")),
+              *(short(max(row[key] for row in rows)) for key in ("worst_error_mm", "worst_unproven_mm")),
+              *(number(row["p50_us"], 2) for row in rows), number(max(row["p99_us"] for row in rows), 2)]
+             for (tool, backend), rows in groups.items()], left=2)
 
 
 def short(value):

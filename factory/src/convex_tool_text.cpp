@@ -50,7 +50,7 @@ ConvexTool read(std::string_view kind, std::string_view rest) {
   if (kind != "hull") throw Error("there is no such form");
   std::error_code trouble;
   const std::filesystem::path file(rest);
-  // Neither a pipe, which would be waited for.
+  // Not a pipe, which would block.
   if (std::filesystem::is_regular_file(file, trouble)) {
     return ConvexTool::hull(load_mesh(file, {.check = MeshCheck::none}).mesh->vertices());
   }

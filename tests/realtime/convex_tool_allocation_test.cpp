@@ -5,7 +5,6 @@
 
 #include "engine/geometry/tools.h"
 #include "keepout/activation/convex_tool_rule.h"
-#include "keepout/adapters/narrow_phase_registry.h"
 #include "keepout/fixtures/poses.h"
 #include "keepout/fixtures/shapes.h"
 #include "keepout/index/pd_tree.h"
@@ -39,12 +38,6 @@ TEST(ConvexToolAllocation, AStepAllocatesNothingWhateverItsOutcome) {
          {Status::free, Status::limited, Status::recovering, Status::touching}) {
       EXPECT_GT(of_each[static_cast<std::size_t>(status)], 0u) << named.name << name(status);
     }
-  }
-}
-
-TEST(ConvexToolAllocation, OnlyTheExactNarrowPhaseSaysThatItNeverAllocates) {
-  for (const NarrowPhaseBackend& backend : narrow_phase_backends()) {
-    EXPECT_EQ(backend.allocation == Allocation::never, backend.name == "exact");
   }
 }
 

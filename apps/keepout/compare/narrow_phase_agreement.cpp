@@ -5,6 +5,8 @@
 #include <iterator>
 #include <memory>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "compare/agreement.h"
 #include "keepout/adapters/narrow_phase_registry.h"
@@ -14,15 +16,6 @@
 
 namespace keepout::app {
 namespace {
-
-struct Kind {
-  std::string_view name;
-  ConvexTool (*make)();
-};
-
-ConvexTool burr() { return ConvexTool::sphere(2.0); }
-ConvexTool shaft() { return ConvexTool::capsule({0, 0, 0}, {0, 0, 5}, 1.0); }
-ConvexTool blade() { return ConvexTool::box({Vec3(-1.5, -0.25, 0), Vec3(1.5, 0.25, 4)}); }
 
 /// The tip of a drill: a cone of twelve sides on a prism of twelve.
 ConvexTool drill() {
@@ -36,14 +29,19 @@ ConvexTool drill() {
   return ConvexTool::hull(points);
 }
 
-constexpr Kind kinds[] = {{"sphere", burr}, {"capsule", shaft}, {"box", blade}, {"hull", drill}};
+std::vector<std::pair<std::string_view, ConvexTool>> tools_to_compare() {
+  return {{"sphere", ConvexTool::sphere(2.0)},
+          {"capsule", ConvexTool::capsule({0, 0, 0}, {0, 0, 5}, 1.0)},
+          {"box", ConvexTool::box({Vec3(-1.5, -0.25, 0), Vec3(1.5, 0.25, 4)})},
+          {"hull", drill()}};
+}
 
 constexpr double overlapping = 1e-3;    // at least [mm]
 constexpr double farthest = 5.0;        // [mm]
 constexpr double deepest_wanted = 1.5;  // what is asked for; what comes of it may be less [mm]
 constexpr std::size_t orientations = 16;
 
-/// The signed distance to look for, of each relation.
+/// How a pair relates, and the signed distance to aim at.
 struct Relation {
   std::string_view name;
   double (*wanted)(Random&);
@@ -70,11 +68,11 @@ struct Pair {
   Separation exact;
 };
 
-std::vector<ConvexTool> turned(const Kind& kind, Random& random) {
+std::vector<ConvexTool> turned(const ConvexTool& tool, Random& random) {
   std::vector<ConvexTool> tools;
   for (std::size_t i = 0; i < orientations; ++i) {
     const Eigen::AngleAxisd turn(random.uniform(0.0, 6.28), random.direction());
-    tools.push_back(kind.make().rotated(turn.toRotationMatrix()));
+    tools.push_back(tool.rotated(turn.toRotationMatrix()));
   }
   return tools;
 }
@@ -137,19 +135,20 @@ NarrowPhaseAgreement agreement_of(const NarrowPhaseBackend& backend,
 std::vector<NarrowPhaseAgreement> compare_narrow_phases(const Mesh& mesh, std::size_t pairs,
                                                         std::uint64_t seed,
                                                         const Stopped& stopped) {
+  const auto kinds = tools_to_compare();
   Progress progress("compare narrow phases",
-                    std::size(kinds) * std::size(relations) * narrow_phase_backends().size());
+                    kinds.size() * std::size(relations) * narrow_phase_backends().size());
   std::vector<NarrowPhaseAgreement> rows;
   Random random(seed);
-  for (const Kind& kind : kinds) {
-    const std::vector<ConvexTool> tools = turned(kind, random);
+  for (const auto& [name, tool] : kinds) {
+    const std::vector<ConvexTool> tools = turned(tool, random);
     for (const Relation& relation : relations) {
       const std::vector<Pair> same = make_pairs(mesh, tools, relation, pairs, random);
       for (const NarrowPhaseBackend& backend : narrow_phase_backends()) {
         if (stopped()) return rows;
         NarrowPhaseAgreement row = agreement_of(backend, tools, same);
         row.backend = backend.name;
-        row.tool = kind.name;
+        row.tool = name;
         row.relation = relation.name;
         rows.push_back(std::move(row));
         progress.advance();

@@ -13,14 +13,14 @@
 namespace keepout {
 namespace {
 
-// Squares and cubes of lengths must stay finite; a step keeps to the same limit.
+// Squares and cubes of lengths must stay finite. A step has the same limit.
 constexpr double largest_length = 1e30;
 
-// And must not be lost: cubes of what lies between two points neither.
+// Cubes of the lengths between two points must not underflow.
 constexpr double least_gap = 1e-30;
 
-/// Each place once: two points in the same place span no edge. Ends where there are too many, for
-/// its time grows with the square of what it keeps.
+/// Returns each place once: two equal points span no edge. Stops at too many points, as its time
+/// grows with their square.
 std::vector<Vec3> distinct(std::vector<Vec3> points) {
   std::vector<Vec3> kept;
   for (const Vec3& p : points) {
@@ -65,11 +65,11 @@ Ball ball_around(const std::vector<Vec3>& points, double radius) {
   return {box.center(), (farthest + radius) * (1.0 + 1e-15)};
 }
 
-// Corners whose height is below this share of their longest side are on a line to within rounding:
-// no normal can be told from them.
+// Corners whose height is below this fraction of their longest side are on a line to within
+// rounding and have no normal.
 constexpr double needle = 1e-14;
 
-// Some roundings of a unit vector: such directions are the same.
+// Some roundings of a unit vector.
 constexpr double same_direction = 1e-15;
 
 void add_once(std::vector<Vec3>& directions, const Vec3& n) {
@@ -79,8 +79,8 @@ void add_once(std::vector<Vec3>& directions, const Vec3& n) {
   if (!known) directions.push_back(n);
 }
 
-/// Whether points lie on both sides of a plane, clearly: what is within rounding of the plane, and
-/// of the normal's own error, counts for neither.
+/// Returns true if points are clearly on both sides of a plane: beyond rounding and the normal's
+/// own error.
 bool cuts(std::span<const Vec3> points, const Vec3& on_plane, const Vec3& n, double error) {
   bool above = false, below = false;
   for (const Vec3& p : points) {
@@ -99,13 +99,13 @@ struct HullDirections {
   std::vector<Vec3> edges;  // at least the directions of its edges
 };
 
-/// Of the convex hull of the points, which may be flat, straight or a point. Tries every triple, so
-/// that no degeneracy needs care: O(n^4), 10 ms for 64 points.
+/// Returns those of the points' convex hull, which may be flat, straight or a point. Tries every
+/// triple, so that no degenerate case needs care: O(n^4), 10 ms for 64 points.
 HullDirections hull_directions(std::span<const Vec3> points) {
   const std::size_t count = points.size();
   HullDirections directions;
-  // Each edge of a hull with faces is one of a triple of corners of a face. Only what is proven to
-  // be no face is left out.
+  // Each edge of a hull with faces belongs to a triple of corners of a face. Only triples that are
+  // proved to be no face are left out.
   std::vector<bool> is_edge(count * count, count == 2);
   for (std::size_t i = 0; i < count; ++i) {
     for (std::size_t j = i + 1; j < count; ++j) {

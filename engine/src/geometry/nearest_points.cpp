@@ -13,8 +13,8 @@
 namespace keepout {
 namespace {
 
-/// A corner of the Minkowski difference core - triangle, whose point nearest to the origin is
-/// looked for.
+/// A corner of the Minkowski difference core - triangle. The search is for the difference's point
+/// nearest to the origin.
 struct Vertex {
   Vec3 at;
   const Vec3* point;
@@ -23,7 +23,7 @@ struct Vertex {
   bool operator==(const Vertex& o) const noexcept { return point == o.point && corner == o.corner; }
 };
 
-/// Up to four of them.
+/// Up to four vertices.
 struct Simplex {
   std::array<Vertex, 4> vertices;
   int size = 0;
@@ -34,7 +34,7 @@ struct Simplex {
   }
 };
 
-/// A simplex with the origin's nearest point inside of it.
+/// A simplex that has the origin's nearest point in its interior.
 struct Nearest {
   Simplex simplex;
   Vec3 at;
@@ -50,15 +50,15 @@ class Difference {
     return {point - corner, &point, &corner};
   }
 
-  /// The vertex that is least far along n.
+  /// Returns the vertex that is least far along n.
   Vertex lowest(const Vec3& n) const noexcept {
     const auto less = [&](const Vec3& a, const Vec3& b) { return n.dot(a) < n.dot(b); };
     return vertex(*std::min_element(points_.begin(), points_.end(), less),
                   *std::max_element(triangle_.begin(), triangle_.end(), less));
   }
 
-  /// To begin with: the nearest point of the triangle to the first point. Of a core of one point it
-  /// is the answer, to the bit that of closest_point.
+  /// Returns the start of the search: the triangle's point nearest to the first point. For a core
+  /// of one point it is the result, bitwise that of closest_point.
   Nearest first() const noexcept {
     const Vec3& point = points_.front();
     const ClosestPoint closest = closest_point(triangle_, point);
@@ -69,7 +69,7 @@ class Difference {
     return nearest;
   }
 
-  /// Of the simplex of three vertices, of which some may be the same.
+  /// Returns the nearest point of three vertices, some of which may be equal.
   static Nearest of(const Vertex& a, const Vertex& b, const Vertex& c) noexcept {
     const ClosestPoint closest = closest_point({a.at, b.at, c.at}, Vec3::Zero());
     Nearest nearest{{}, closest.offset, closest.distance};
@@ -92,7 +92,7 @@ class Difference {
   const Triangle& triangle_;
 };
 
-/// Whether a tetrahedron has the origin inside of it, decided exactly.
+/// Returns true if the origin is inside a tetrahedron, decided exactly.
 bool holds_origin(const Simplex& s) noexcept {
   const auto& v = s.vertices;
   const Vec3 origin = Vec3::Zero();
@@ -105,8 +105,8 @@ bool holds_origin(const Simplex& s) noexcept {
   return true;
 }
 
-/// The nearest point after a vertex has joined. Only the sides that have the new vertex can have
-/// come nearer.
+/// Returns the nearest point after a vertex has joined. Only the sides with the new vertex can be
+/// nearer.
 Nearest joined(const Simplex& old, const Vertex& added) noexcept {
   const auto& v = old.vertices;
   if (old.size == 1) return Difference::of(v[0], added, added);
@@ -119,8 +119,8 @@ Nearest joined(const Simplex& old, const Vertex& added) noexcept {
   return best;
 }
 
-/// The nearest point as a convex combination of the simplex's vertices, whose corners are combined
-/// alike.
+/// Returns the triangle's nearest point: the corners have the same convex weights as the simplex's
+/// vertices.
 Vec3 on_triangle(const Nearest& nearest) noexcept {
   const auto& v = nearest.simplex.vertices;
   if (nearest.simplex.size == 1) return *v[0].corner;
@@ -138,7 +138,7 @@ Vec3 on_triangle(const Nearest& nearest) noexcept {
   return *v[0].corner + of_a * (*v[1].corner - *v[0].corner) + of_b * (*v[2].corner - *v[0].corner);
 }
 
-/// Close to the origin the nearest point is mostly rounding; its simplex knows its normal better.
+/// Returns the normal from the simplex: close to the origin, the nearest point is mostly rounding.
 Vec3 sharpened(const Nearest& nearest) noexcept {
   const auto& v = nearest.simplex.vertices;
   if (nearest.simplex.size == 3) {
@@ -159,9 +159,9 @@ NearestPoints nearest_points(std::span<const Vec3> points, const Triangle& trian
   const Difference difference(points, triangle);
   Nearest nearest = difference.first();
   bool overlap = !(nearest.distance > 0.0);
-  // Some ten rounds are usual. The distance hardly tells of a point that is off sideways, by the
-  // root of a rounding; the plane that proves it does. So a few rounds that come no nearer are
-  // made.
+  // Some ten rounds are usual. A point that is off sideways by the root of a rounding hardly
+  // changes the distance, but does change the plane that proves it. So a few rounds may come no
+  // nearer.
   constexpr int most_rounds = 256;
   constexpr double rounding = 1e-15;
   int rounds_to_settle = 8;

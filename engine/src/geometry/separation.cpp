@@ -31,8 +31,7 @@ class BestDirection {
   BestDirection(const ConvexTool& tool, const Triangle& triangle) noexcept
       : points_(tool.points()), triangle_(triangle) {}
 
-  /// Tries n and -n. Whatever is tried is sound: no direction parts two bodies further than they
-  /// are apart.
+  /// Tries n and -n. Any direction is sound: none parts two bodies by more than their distance.
   void consider(const Vec3& n) noexcept {
     const Extent core(points_, n);
     const Extent other(triangle_, n);
@@ -57,8 +56,8 @@ class BestDirection {
   double separation_ = -std::numeric_limits<double>::infinity();
 };
 
-/// All directions that can part two overlapping cores with the least motion: the normals of the
-/// faces of their difference.
+/// Tries all directions that can part two overlapping cores with the least motion: the face normals
+/// of their difference.
 void consider_all(const ConvexTool& tool, const Triangle& triangle, BestDirection& best) noexcept {
   const Vec3 n = unit_normal(triangle);
   if (!n.isZero(0.0)) best.consider(n);
@@ -74,7 +73,7 @@ void consider_all(const ConvexTool& tool, const Triangle& triangle, BestDirectio
       if (!across.isZero(0.0)) best.consider(across);
     }
   }
-  // Where all is on a line, any direction across will do; where all is a point, any at all.
+  // On a line, any direction across it will do; at a point, any direction.
   if (!best.found())
     best.consider(some_edge.isZero(0.0) ? Vec3::UnitX() : some_edge.unitOrthogonal());
 }
@@ -99,7 +98,7 @@ Separation separation(const ConvexTool& tool, const Vec3& position,
   for (const Vec3& point : tool.points()) size = std::max(size, point.norm());
 
   const NearestPoints nearest = nearest_points(tool.points(), local);
-  // Proven by a plane to all but some roundings; else all directions are asked.
+  // A plane proves the distance to some roundings; otherwise all directions are tried.
   constexpr double roundings = 4e-15;
   if (!nearest.overlap && nearest.distance - nearest.proven <= roundings * size) {
     return {nearest.distance - tool.radius(), nearest.normal, position + nearest.on_triangle};
@@ -107,16 +106,17 @@ Separation separation(const ConvexTool& tool, const Vec3& position,
   BestDirection best(tool, local);
   consider_all(tool, local, best);
   if (!nearest.overlap) best.take(nearest.normal, nearest.proven);
-  // Of a point the kernel's distance holds, however badly its normal is known.
+  // A point's distance is exact even if its normal is not.
   const bool is_point = tool.points().size() == 1;
   if (is_point && !nearest.overlap && best.separation() > 0.0) {
     return {nearest.distance - tool.radius(), best.normal(), position + nearest.on_triangle};
   }
-  // Of others, where lengths are mixed, the search may have ended too far off: told is what the
-  // best plane proves, or the depth.
+  // For other cores with lengths of different orders, the search may have ended too far off. The
+  // result is then the distance that the best plane proves, or the depth.
   const double apart = nearest.overlap ? std::min(best.separation(), 0.0) : best.separation();
 
-  // Taken apart along the normal by more than the depth, the deepest points are the nearest ones.
+  // If the two are moved apart along the normal by more than the depth, the deepest points become
+  // the nearest ones.
   const Vec3 way = (size - best.separation()) * best.normal();
   const NearestPoints parted = nearest_points(tool.points(), moved(local, -way));
   return {apart - tool.radius(), best.normal(), position + (parted.on_triangle + way)};

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <array>
+#include <cmath>
 #include <memory>
+#include <span>
 #include <string_view>
 #include <utility>
 
-#include "engine/activation/swept_tool.h"
+#include "engine/geometry/reference_separation.h"
 #include "keepout/activation/convex_tool_rule.h"
 #include "keepout/fixtures/shapes.h"
 #include "keepout/index/pd_tree.h"
@@ -31,26 +32,44 @@ inline MotionConstraint guard(const std::shared_ptr<const Mesh>& mesh, const Con
           std::make_unique<ActiveSet>(), options};
 }
 
-/// Holds each motion of a tool to all triangles that it could reach.
+/// Returns the distance that a plane proves, in 64-bit arithmetic: at most the true one, for any
+/// normal. [length]
+inline double proven_by(const Vec3& normal, std::span<const Vec3> core, const Triangle& triangle) {
+  using Real = long double;
+  const auto along = [&](const Vec3& p) {
+    return Real{normal.x()} * p.x() + Real{normal.y()} * p.y() + Real{normal.z()} * p.z();
+  };
+  Real low = std::numeric_limits<Real>::infinity();
+  Real high = -low;
+  for (const Vec3& p : core) low = std::min(low, along(p));
+  for (const Vec3& v : triangle) high = std::max(high, along(v));
+  return static_cast<double>((low - high) / std::sqrt(along(normal)));
+}
+
+/// Judges each motion of a tool against all triangles that it can reach. Only the index and the
+/// proposed normals are the engine's.
 class ToolJudge {
  public:
   ToolJudge(std::shared_ptr<const Mesh> mesh, const ConvexTool& tool)
       : mesh_(mesh), tool_(tool), index_(mesh), candidates_(mesh->triangle_count()) {}
 
-  /// The least clearance on the way, or what is enough. [length]
+  /// Returns the least clearance on the motion, or a lower bound that is at least `enough`.
+  /// [length]
   double clearance(const Vec3& from, const Vec3& to, double enough) {
     const Ball& bounds = tool_.bounding_ball();
     candidates_.clear();
     index_.collect({0.5 * (from + to) + bounds.center,
                     0.5 * (to - from).norm() + bounds.radius + enough + 1e-6},
                    candidates_);
-    const std::vector<Vec3> core = swept_core(tool_, from, to);
-    double least = std::numeric_limits<double>::infinity();
+    std::vector<Vec3> core;  // of the swept tool
+    for (const Vec3& p : tool_.points()) core.insert(core.end(), {from + p, to + p});
     const ConvexTool swept = ConvexTool::hull(core);
+    double least = std::numeric_limits<double>::infinity();
     for (const TriangleId t : candidates_) {
       const Triangle triangle = mesh_->triangle(t);
-      const std::array proposals{separation(swept, Vec3::Zero(), triangle).normal};
-      least = std::min(least, swept_clearance(tool_, core, triangle, proposals, enough));
+      double apart = proven_by(separation(swept, Vec3::Zero(), triangle).normal, core, triangle);
+      if (!(apart - tool_.radius() >= enough)) apart = reference_separation(core, triangle);
+      least = std::min(least, apart - tool_.radius());
     }
     return least;
   }

@@ -200,21 +200,6 @@ TEST(Separation, NoPrecisionIsLostFarFromTheOrigin) {
   }
 }
 
-TEST(Separation, NoDirectionPartsFurtherThanTheDistance) {
-  Random random(7);
-  for (int i = 0; i < 500; ++i) {
-    for (const NamedTool& named : tools_of_each_kind(1.0, random)) {
-      const Triangle triangle = random_triangle(random, 1.5);
-      const Vec3 position = 1.5 * random.uniform() * random.direction();
-      const Separation s = separation(named.tool, position, triangle);
-      for (int k = 0; k < 10; ++k) {
-        const Vec3 n = random.direction();
-        EXPECT_LE(separation_along(n, named.tool, position, triangle), s.distance + 1e-14);
-      }
-    }
-  }
-}
-
 TEST(Separation, AHullOfManyPointsIsHandled) {
   Random random(8);
   std::vector<Vec3> points;

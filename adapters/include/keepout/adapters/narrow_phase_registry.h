@@ -10,22 +10,22 @@
 
 namespace keepout {
 
-/// One way to tell the distance between a convex tool and a triangle.
+/// A narrow phase that this build has.
 struct NarrowPhaseBackend {
-  std::string_view name;         // to ask for it by
+  std::string_view name;         // for make_narrow_phase
   std::string_view description;  // one line, for lists
-  /// A new one for a tool; as make_narrow_phase.
+  /// Makes one for a tool, like make_narrow_phase.
   std::unique_ptr<NarrowPhase> (*make)(const ConvexTool& tool);
-  Allocation allocation;     // whether it takes memory while it answers
-  std::string (*library)();  // name and version of the library behind it; null for our own
+  Allocation allocation;     // while it answers
+  std::string (*library)();  // name and version of the library behind it; null for keepout's own
 };
 
-/// All that this build has, the exact kernel first. Those of libraries are for comparison: see
-/// docs/convex_tools.md.
+/// Returns all narrow phases of this build, the exact kernel first. Those of libraries are for
+/// comparison: see docs/convex_tools.md.
 Registry<NarrowPhaseBackend> narrow_phase_backends() noexcept;
 
-/// The narrow phase of that name for a tool. Throws Error, listing the names there are, if there is
-/// none.
+/// Makes the narrow phase of that name for a tool. Throws Error, which lists the names, for an
+/// unknown one.
 std::unique_ptr<NarrowPhase> make_narrow_phase(std::string_view name, const ConvexTool& tool);
 
 }  // namespace keepout

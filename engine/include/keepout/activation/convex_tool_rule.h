@@ -12,25 +12,23 @@
 
 namespace keepout {
 
-/// Keeps a convex tool out of a mesh: a tool that stands as it does and moves with the tip, its
-/// origin. No motion is accepted unless planes prove that all of it keeps its distance. Needs no
-/// winding: every surface is kept from on the side where the tool is.
+/// Keeps a convex tool out of a mesh. The tool moves with the tip, its origin, and does not turn.
+/// The rule accepts a motion only if planes prove that the whole tool keeps its distance. It does
+/// not use the winding: the tool stays on the side of each surface where it is.
 ///
-/// Why a plane is proof of a whole straight motion d: let n . p - n . v >= s for all points p of
-/// the tool and v of the triangle. At a share t of d their distance is at least s + t n . d, which
-/// is linear in t and so nowhere less than at both ends: s, and s + n . d.
+/// Proof for a straight motion d: let n . p - n . v >= s for all points p of the tool and v of the
+/// triangle. At a fraction t of d their distance is at least s + t n . d. That is linear in t, so
+/// its least value is at an end: s, or s + n . d. The proof holds for any n, and the rule computes
+/// s from the tool and the triangle. A narrow phase therefore only proposes normals. The rule asks
+/// the exact kernel where a proposal proves too little, and at contacts.
 ///
-/// It starts without planes. To a trial that comes too close it answers with the plane of the first
-/// contact: it has the triangle behind it, grown by tool and margin, and allows the motion up to
-/// there. A plane for each triangle from where the tool stands would be sound as well, but a tool
-/// that slides over a flat mesh would stumble over its inner edges.
-///
-/// That holds for any n, and s is computed from the tool and the triangle themselves. So the narrow
-/// phase only proposes normals; where a proposal proves too little, or there is none, and at
-/// contacts, the exact kernel is asked.
+/// The rule starts without planes and answers a trial that comes too close with the plane of the
+/// first contact, which has the triangle behind it, grown by tool and margin. One plane for each
+/// triangle from the tool's start would be sound too, but a tool that slides over a flat mesh would
+/// stop at inner edges.
 ///
 /// Guarantee: dist(tool + t d, mesh) >= min(margin, dist(tool, mesh)) - 3 tolerance, t in [0, 1]. A
-/// tool that is too close is led off; one that touches the surface stands still.
+/// tool that is too close retreats. A tool that touches the surface does not move.
 class ConvexToolRule final : public ActivationRule {
  public:
   /// Precondition: a narrow phase that is given is one of this tool; the exact one by default.
@@ -45,44 +43,54 @@ class ConvexToolRule final : public ActivationRule {
                   HalfSpaceBuffer& planes) noexcept override;
   bool relax(HalfSpaceBuffer& planes) noexcept override;
 
-  /// Distances are told apart down to this: some 1e-12 of the lengths at hand, and the rounding of
-  /// a position. Precondition: prepare. [length]
+  /// Returns the resolution of distances: some 1e-12 of the lengths at hand, and the rounding of a
+  /// position. Precondition: prepare. [length]
   double tolerance(const CycleProblem& problem) const noexcept;
 
-  /// What is kept out.
+  /// Returns the tool.
   const ConvexTool& tool() const noexcept { return tool_; }
 
  private:
-  /// A plane that keeps a triangle from the tool at some place.
+  /// A plane between a triangle and the tool at some place.
   struct Proof {
     Vec3 normal;      // unit
     double distance;  // that it proves [length]
   };
 
-  /// A triangle in reach, and the distances that it is due. [length]
+  /// A triangle in reach, and the distances that the tool must keep from it. [length]
   struct Near {
     TriangleId triangle;
     Proof at_start;
-    double clearance;  // planes are placed this far off
-    double demand;     // a trial that comes closer is objected to
-    double floor;      // what a trial that its plane allows may come down to
+    bool is_refined;         // at_start is the narrow phase's: other proofs may be much weaker
+    double clearance = 0.0;  // of planes
+    double demand = 0.0;     // a trial that comes closer is rejected
+    double floor = 0.0;      // the least distance of a trial that satisfies the triangle's plane
+  };
+
+  /// A triangle that a trial may come too close to.
+  struct Suspect {
+    Near* near;
+    double earliest;  // no contact comes before this fraction of the motion
   };
 
   struct Contact {
-    double time;  // a share of the motion
+    double time;  // a fraction of the motion
     HalfSpace plane;
   };
 
   Proof proof_along(const Vec3& normal, const Vec3& position, TriangleId triangle) const noexcept;
+  Proof quick_proof(const Hit& hit, const Vec3& position) const noexcept;
   Proof proof_of(double enough, const Vec3& position, TriangleId triangle) noexcept;
-  bool keeps_clear(const Near& near, const CycleProblem& problem, const Vec3& trial, double level,
-                   std::span<const HalfSpace> planes) const noexcept;
+  void find_suspects(const CycleProblem& problem, const Vec3& trial) noexcept;
+  bool keeps_clear(Near& near, const CycleProblem& problem, const Vec3& trial, double level,
+                   std::span<const HalfSpace> planes) noexcept;
   std::optional<Contact> first_contact(const Near& near, const CycleProblem& problem,
-                                       const Vec3& trial, double level) noexcept;
+                                       const Vec3& trial, double level, double latest) noexcept;
 
   ConvexTool tool_;
   std::unique_ptr<NarrowPhase> narrow_phase_;
-  Buffer<Near> near_;  // sorted by triangle
+  Buffer<Near> near_;         // sorted by triangle
+  Buffer<Suspect> suspects_;  // of one trial, the earliest first
 };
 
 }  // namespace keepout

@@ -12,42 +12,41 @@ namespace keepout {
 /// A rigid convex tool: the convex hull of some points, its core, grown by a radius. One point is a
 /// sphere, two are a capsule, eight a box, any others a hull with edges as round as the radius.
 ///
-/// The frame is the tool's: its origin goes where the tip is, its axes are the mesh's. A tool that
-/// stands otherwise is turned once, when it is made.
+/// Its origin is the tip, its axes are the mesh's. A tool in another orientation is turned once,
+/// when it is made.
 class ConvexTool {
  public:
-  /// Of a core.
-  static constexpr std::size_t most_points = 64;
+  static constexpr std::size_t most_points = 64;  // of a core
 
-  /// A ball around the origin. Like the others below it throws Error when a length is not finite or
-  /// above 1e30, a radius is below 0, two points are nearer than 1e-30 to each other but not in the
-  /// same place, or there is no point or more than most_points. [length]
+  /// Makes a ball around the origin. Like the others below it throws Error if a length is not
+  /// finite or above 1e30, a radius is below 0, two different points are nearer than 1e-30 to each
+  /// other, or there is no point or more than most_points. [length]
   static ConvexTool sphere(double radius);
-  /// A cylinder with round ends: all within `radius` of a segment. [length]
+  /// Makes a cylinder with round ends: all within `radius` of a segment. [length]
   static ConvexTool capsule(const Vec3& from, const Vec3& to, double radius);
-  /// A box along the axes. [length]
+  /// Makes a box along the axes. [length]
   static ConvexTool box(const Box& box);
-  /// All within `radius` of the convex hull of points, in any order. [length]
+  /// Makes all within `radius` of the convex hull of points, in any order. [length]
   static ConvexTool hull(std::span<const Vec3> points, double radius = 0.0);
 
-  /// The same tool, turned about its origin. Throws Error unless the matrix is a rotation.
+  /// Returns the tool turned about its origin. Throws Error unless the matrix is a rotation.
   ConvexTool rotated(const Eigen::Matrix3d& rotation) const;
 
-  /// The core's, as they were given. [length]
+  /// Returns the core's points, as they were given. [length]
   std::span<const Vec3> points() const noexcept { return points_; }
   double radius() const noexcept { return radius_; }  // [length]
 
-  /// Holds the whole tool, radius and all.
+  /// Returns a ball that contains the whole tool, with its radius.
   const Ball& bounding_ball() const noexcept { return bounding_ball_; }
 
-  /// The point of the core farthest along n; of equally far ones the first given.
+  /// Returns the point of the core farthest along n; of equally far points the first given.
   const Vec3& support(const Vec3& n) const noexcept;
 
-  /// Unit vectors, one of each opposite pair: at least the normals of the core's faces, and at
-  /// least the directions of its edges. What separates a core from another convex body with the
-  /// least motion is among them and the cross products of edges.
+  /// Returns unit vectors, one of each opposite pair: at least the normals of the core's faces. The
+  /// least motion that separates the core from another convex body is along a face normal of
+  /// either, or a cross product of their edges.
   std::span<const Vec3> face_normals() const noexcept { return face_normals_; }
-  /// As face_normals, of the core's edges.
+  /// Like face_normals, for the directions of the core's edges.
   std::span<const Vec3> edge_directions() const noexcept { return edge_directions_; }
 
  private:

@@ -6,14 +6,15 @@
 #include <limits>
 #include <utility>
 
+#include "../../geometry/direction_of.h"
 #include "keepout/activation/planes.h"
 #include "keepout/activation/tolerances.h"
 
 namespace keepout {
 namespace {
 
-// An approach to a contact takes a few strides with true normals. With proposed ones it may take
-// more, so that they are asked for only so often.
+// A search for a contact takes a few strides with exact normals. Proposed normals may take more, so
+// their number is limited.
 constexpr int most_strides = 64;
 constexpr int most_proposed_strides = 8;
 
@@ -25,11 +26,15 @@ std::unique_ptr<NarrowPhase> or_exact(std::unique_ptr<NarrowPhase> given, const 
 }  // namespace
 
 ConvexToolRule::ConvexToolRule(ConvexTool tool, std::unique_ptr<NarrowPhase> narrow_phase)
-    : tool_(std::move(tool)), narrow_phase_(or_exact(std::move(narrow_phase), tool_)), near_(0) {}
+    : tool_(std::move(tool)),
+      narrow_phase_(or_exact(std::move(narrow_phase), tool_)),
+      near_(0),
+      suspects_(0) {}
 
 void ConvexToolRule::prepare(Neighborhood& near) {
   ActivationRule::prepare(near);
   near_ = Buffer<Near>(near.room());
+  suspects_ = Buffer<Suspect>(near.room());
 }
 
 double ConvexToolRule::tolerance(const CycleProblem& problem) const noexcept {
@@ -50,7 +55,23 @@ ConvexToolRule::Proof ConvexToolRule::proof_along(const Vec3& normal, const Vec3
   return {normal, separation_along(normal, tool_, position, mesh().triangle(triangle))};
 }
 
-/// By the normal that is proposed, if it proves more than `enough`; else by the exact one.
+/// Returns the proof along the direction from the triangle to the middle of the tool: cheap, and
+/// enough for most triangles.
+ConvexToolRule::Proof ConvexToolRule::quick_proof(const Hit& hit,
+                                                  const Vec3& position) const noexcept {
+  const Vec3 on_triangle = gathered_ball().center + hit.closest.offset - position;
+  Vec3 middle = tool_.bounding_ball().center;
+  if (tool_.points().size() == 2) {
+    const Vec3& from = tool_.points().front();
+    const Vec3 along = tool_.points().back() - from;
+    const double share = along.dot(on_triangle - from) / along.squaredNorm();
+    middle = from + std::clamp(share, 0.0, 1.0) * along;
+  }
+  return proof_along(direction_of(middle - on_triangle), position, hit.triangle);
+}
+
+/// Returns the proof by the proposed normal if it proves more than `enough`, otherwise by the exact
+/// one.
 ConvexToolRule::Proof ConvexToolRule::proof_of(double enough, const Vec3& position,
                                                TriangleId triangle) noexcept {
   const Triangle corners = mesh().triangle(triangle);
@@ -61,7 +82,9 @@ ConvexToolRule::Proof ConvexToolRule::proof_of(double enough, const Vec3& positi
     const bool is_direction = std::abs(n.squaredNorm() - 1.0) < 1e-12;  // false for NaN
     if (is_direction && proof.distance > enough) return proof;
   }
-  return proof_along(separation(tool_, position, corners).normal, position, triangle);
+  const Separation exact =
+      narrow_phase_->is_exact() ? proposed.separation : separation(tool_, position, corners);
+  return proof_along(exact.normal, position, triangle);
 }
 
 Opening ConvexToolRule::open(const CycleProblem& problem, HalfSpaceBuffer&) noexcept {
@@ -70,8 +93,16 @@ Opening ConvexToolRule::open(const CycleProblem& problem, HalfSpaceBuffer&) noex
 
   near_.clear();
   const Near* nearest = nullptr;
+  const Ball ends = ends_of_motions(problem);
+  const double longest = (ends.center - problem.tip).norm() + ends.radius + region_beyond * tau;
   for (const Hit& hit : hits()) {
-    near_.push({hit.triangle, proof_of(problem.margin, problem.tip, hit.triangle), 0.0, 0.0, 0.0});
+    Near near{hit.triangle, quick_proof(hit, problem.tip), false};
+    if (near.at_start.distance > problem.margin + longest) continue;  // out of any motion's reach
+    if (!(near.at_start.distance > problem.margin)) {
+      near.at_start = proof_of(problem.margin, problem.tip, hit.triangle);
+      near.is_refined = true;
+    }
+    near_.push(near);
     if (near_.overflowed()) return {Status::over_capacity};
     const Near& last = near_[near_.size() - 1];
     if (nearest == nullptr || last.at_start.distance < nearest->at_start.distance) nearest = &last;
@@ -89,7 +120,7 @@ Opening ConvexToolRule::open(const CycleProblem& problem, HalfSpaceBuffer&) noex
   }
   // Not above for NaN.
   if (!(closest.distance > touching_within * tau)) return {Status::touching};
-  // Too close already: the mesh shall not come closer, and what comes as close is led off as well.
+  // Too close already: no triangle may come closer than the nearest one, and all of them retreat.
   const double lift = std::min(problem.recovery, problem.margin - closest.distance);
   for (Near& near : near_) {
     near.clearance = closest.distance + lift;
@@ -99,25 +130,48 @@ Opening ConvexToolRule::open(const CycleProblem& problem, HalfSpaceBuffer&) noex
   return {Status::recovering, way_out(problem, closest.normal, lift)};
 }
 
-/// Whether a plane that there is already proves that a trial keeps the level.
-bool ConvexToolRule::keeps_clear(const Near& near, const CycleProblem& problem, const Vec3& trial,
-                                 double level, std::span<const HalfSpace> planes) const noexcept {
+/// Fills the list with all triangles that the trial may come too close to.
+void ConvexToolRule::find_suspects(const CycleProblem& problem, const Vec3& trial) noexcept {
+  const double length = trial.norm();
+  const double slack = contact_slack * tolerance(problem);
+  suspects_.clear();
+  for (Near& near : near_) {
+    if (near.at_start.distance - length >= near.demand) continue;
+    const double left = near.at_start.distance - near.demand - slack;
+    const double slope = near.at_start.normal.dot(trial);
+    suspects_.push({&near, left > 0.0 && slope < 0.0 ? left / -slope : 0.0});
+  }
+  std::sort(suspects_.begin(), suspects_.end(), [](const Suspect& x, const Suspect& y) {
+    return x.earliest < y.earliest || (x.earliest == y.earliest && x.near < y.near);
+  });
+}
+
+/// Returns true if one of the planes, or the proof at the start, shows that the trial keeps the
+/// level.
+bool ConvexToolRule::keeps_clear(Near& near, const CycleProblem& problem, const Vec3& trial,
+                                 double level, std::span<const HalfSpace> planes) noexcept {
   const auto proves = [&](const Proof& proof) {
     return proof.distance >= level && proof.distance + proof.normal.dot(trial) >= level;
   };
   if (proves(near.at_start)) return true;
-  return std::any_of(planes.begin(), planes.end(), [&](const HalfSpace& plane) {
+  const bool is_proven = std::any_of(planes.begin(), planes.end(), [&](const HalfSpace& plane) {
     return plane.source == near.triangle &&
            proves(proof_along(plane.normal, problem.tip, near.triangle));
   });
+  if (is_proven || near.is_refined) return is_proven;
+  near.at_start = proof_of(problem.margin, problem.tip, near.triangle);
+  near.is_refined = true;
+  return proves(near.at_start);
 }
 
-/// Where a trial first comes down to the level; nothing if it does not. Newton's method from the
-/// left on the distance, which is convex in time: each plane proves the way up to the next stride.
+/// Returns where a trial first comes down to the level, if it does before `latest`. Newton's method
+/// from the left on the distance, which is convex in time: each plane proves the motion up to the
+/// next stride.
 std::optional<ConvexToolRule::Contact> ConvexToolRule::first_contact(const Near& near,
                                                                      const CycleProblem& problem,
                                                                      const Vec3& trial,
-                                                                     double level) noexcept {
+                                                                     double level,
+                                                                     double latest) noexcept {
   const double slack = contact_slack * tolerance(problem);
   double time = 0.0;
   Proof proof = near.at_start;
@@ -125,6 +179,7 @@ std::optional<ConvexToolRule::Contact> ConvexToolRule::first_contact(const Near&
     const double slope = proof.normal.dot(trial);
     if (proof.distance >= level && proof.distance + (1.0 - time) * slope >= level) return {};
     if (!(proof.distance - level > slack)) break;
+    if (time > latest || proof.distance + (latest - time) * slope >= level + slack) return {};
     time = std::min(time + (proof.distance - level) / -slope, 1.0);
     const double enough =
         stride < most_proposed_strides ? level + slack : std::numeric_limits<double>::infinity();
@@ -137,22 +192,27 @@ std::optional<ConvexToolRule::Contact> ConvexToolRule::first_contact(const Near&
 Judgement ConvexToolRule::judge(const CycleProblem& problem, const Vec3& trial,
                                 HalfSpaceBuffer& planes) noexcept {
   using Verdict = Judgement::Verdict;
-  // Where nothing was looked at, nothing is known.
+  // Nothing is known of triangles outside the query.
   const Ball& bounds = tool_.bounding_ball();
   const double from_center = (problem.tip + bounds.center + trial - gathered_ball().center).norm();
   if (!(from_center + bounds.radius + problem.margin <= gathered_ball().radius)) {
     return {Verdict::blocked, 0.0};
   }
+  find_suspects(problem, trial);
   std::optional<Contact> first;
   bool is_answered = false;
-  const double length = trial.norm();
-  for (const Near& near : near_) {
-    if (near.at_start.distance - length >= near.demand) continue;
-    const bool answered = has_plane(near.triangle, planes.view());
-    const double level = answered ? near.floor : near.demand;
-    if (keeps_clear(near, problem, trial, level, planes.view())) continue;
-    const std::optional<Contact> contact = first_contact(near, problem, trial, level);
-    if (!contact || (first && contact->time >= first->time)) continue;
+  for (const auto& [near, earliest] : suspects_) {
+    if (first && earliest > first->time) break;
+    const bool answered = has_plane(near->triangle, planes.view());
+    const double level = answered ? near->floor : near->demand;
+    if (keeps_clear(*near, problem, trial, level, planes.view())) continue;
+    const std::optional<Contact> contact =
+        first_contact(*near, problem, trial, level, first ? first->time : 1.0);
+    if (!contact) continue;
+    const auto is_before = [](const Contact& x, const Contact& y) {
+      return x.time < y.time || (x.time == y.time && x.plane.source < y.plane.source);
+    };
+    if (first && !is_before(*contact, *first)) continue;
     first = contact;
     is_answered = answered;
   }
