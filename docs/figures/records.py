@@ -109,6 +109,18 @@ def is_in_history(commit):
         return False
 
 
+def changed_code(diff):
+    """Returns how many lines of C++ code a diff adds and removes, without comments and includes."""
+    lines, is_code = 0, False
+    for line in diff.splitlines():
+        if line.startswith(("--- ", "+++ ")):
+            is_code = line.endswith((".cpp", ".h"))
+        elif is_code and line.startswith(("+", "-")):
+            text = line[1:].strip()
+            lines += bool(text) and not text.startswith(("//", "#include"))
+    return lines
+
+
 def staleness(kept):
     """Returns why a record is stale, or an empty text. Precondition: is_in_history(its commit)."""
     commit, sources = kept["commit"], kept["sources"]
@@ -117,11 +129,7 @@ def staleness(kept):
     days = (int(changed or measured) - measured) / 86400.0
     if days > MOST_DAYS:
         return f"its sources changed {days:.0f} days later, more than {MOST_DAYS}: measure it again"
-    lines = 0
-    for row in git("diff", "--numstat", commit, "HEAD", "--", *sources).splitlines():
-        added, removed, path = row.split("\t")
-        if path.endswith((".cpp", ".h")):
-            lines += int(added) + int(removed)
+    lines = changed_code(git("diff", "-w", "--unified=0", commit, "HEAD", "--", *sources))
     if lines > MOST_LINES:
-        return f"{lines} lines of its sources changed since, more than {MOST_LINES}: measure it again"
+        return f"{lines} lines of its code changed since, more than {MOST_LINES}: measure it again"
     return ""

@@ -49,7 +49,7 @@ JointLimits limits_of(Optional lower, Optional upper, Optional velocity, Optiona
 }
 
 /// Where the flange is at each row of q; of what is not finite, nowhere.
-py::array_t<double> place(const Chain& chain, const py::object& positions) {
+py::array_t<double> forward_kinematics(const Chain& chain, const py::object& positions) {
   const auto n = static_cast<py::ssize_t>(chain.size());
   const std::string width = std::to_string(n);
   const std::string text = "(m, " + width + ") or (" + width + ",)";
@@ -178,7 +178,7 @@ void bind_chain(py::module_& module) {
           }),
           py::arg("joints"), py::kw_only(), py::arg("base") = py::none(),
           py::arg("flange") = py::none())
-      .def("place", &place, py::arg("q"),
+      .def("forward_kinematics", &forward_kinematics, py::arg("q"),
            "Where the flange is, in the frame of the mesh: (4, 4) for joint positions (n,), or\n"
            "(m, 4, 4) for (m, n) [rad or length]; NaN for numbers that are not finite.")
       .def_property_readonly(

@@ -95,7 +95,7 @@ def test_tip_axis_and_trocar_are_kept_on_the_way():
     guard = keepout.InstrumentGuard(box(20), instrument(), period=0.02, check_sides=False)
     chain = guard.instrument.chain
     q = np.array([0.1, -0.1, 60.0, 0.2, 0.1, -0.2])
-    pose = chain.place(q)
+    pose = chain.forward_kinematics(q)
     tip = pose[:3, 3]
     axis = pose[:3, 1]
     guides = [
@@ -112,7 +112,7 @@ def test_tip_axis_and_trocar_are_kept_on_the_way():
         )
         assert step.ok, step.reason
         for share in (0.5, 1.0):
-            at = chain.place(q + share * step.increment)
+            at = chain.forward_kinematics(q + share * step.increment)
             assert guides[0].region.excess(at[:3, 3]) <= 0.002 + 1e-8
             angle = math.acos(min(1.0, at[:3, 1] @ axis))
             assert angle <= 0.2 + 0.0003
@@ -126,7 +126,7 @@ def test_a_proof_ends_where_a_guide_is_left():
     q = np.array([0.0, 0.0, 60.0, 0.0, 0.0, 0.0])
     by = np.array([0.0, 0.0, 4.0, 0.0, 0.0, 0.0])
     assert guard.prove(q, by).is_clear
-    tip = guard.instrument.chain.place(q)[:3, 3]
+    tip = guard.instrument.chain.forward_kinematics(q)[:3, 3]
     guard.set_guides([keepout.Guide.point("near", 6, TIP, keepout.Region.ball(tip, 1.0))])
     assert guard.prove(q, by).share == pytest.approx(0.25, abs=1 / 64 + 1e-9)
     assert guard.proofs(q, by).share[0] == pytest.approx(0.25, abs=1 / 64 + 1e-9)
@@ -136,7 +136,7 @@ def test_orientation_and_remote_center():
     guard = keepout.InstrumentGuard(box(20), instrument(), period=0.02, check_sides=False)
     chain = guard.instrument.chain
     q = np.array([0.1, 0.1, 80.0, 0.0, 0.2, 0.1])
-    start = chain.place(q)[:3, :3]
+    start = chain.forward_kinematics(q)[:3, :3]
     guides = keepout.Guide.orientation("hand", 6, start, 0.1)
     assert [guide.name for guide in guides] == ["hand x", "hand y", "hand z"]
     guides.append(
@@ -147,7 +147,7 @@ def test_orientation_and_remote_center():
         step = guard.step(q, angular=(0.02, 0.03, 0.01))
         assert step.ok, step.reason
         q = q + step.increment
-    turn = start.T @ chain.place(q)[:3, :3]
+    turn = start.T @ chain.forward_kinematics(q)[:3, :3]
     angle = math.acos(min(1.0, (np.trace(turn) - 1) / 2))
     assert angle < 0.1 + 0.001
     assert angle > 0.05

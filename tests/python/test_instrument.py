@@ -171,20 +171,20 @@ def test_proofs_change_nothing_for_the_steps_and_options_something():
 def test_chains_of_tables_and_files_are_the_same():
     q = motions(50)[0]
     chain = psm()
-    poses = chain.place(q)
+    poses = chain.forward_kinematics(q)
     assert poses.shape == (50, 4, 4) and len(chain) == 6
-    np.testing.assert_array_equal(poses[7], chain.place(q[7]))
-    np.testing.assert_allclose(psm(moved(1, 2, 3)).place(q), moved(1, 2, 3) @ poses, atol=1e-9)
+    np.testing.assert_array_equal(poses[7], chain.forward_kinematics(q[7]))
+    np.testing.assert_allclose(psm(moved(1, 2, 3)).forward_kinematics(q), moved(1, 2, 3) @ poses, atol=1e-9)
     again = Chain(chain.joints, base=chain.base, flange=chain.flange)
-    np.testing.assert_allclose(again.place(q), poses, atol=1e-9)
-    assert np.isnan(chain.place([np.nan, 0, 0, 0, 0, 0])).all()
+    np.testing.assert_allclose(again.forward_kinematics(q), poses, atol=1e-9)
+    assert np.isnan(chain.forward_kinematics([np.nan, 0, 0, 0, 0, 0])).all()
     assert (chain.joints[2].kind, chain.joints[2].upper) == ("prismatic", 240)
     try:
         read = keepout.read_chain(robots / "psm.urdf")
     except keepout.Error as error:
         assert "install liburdfdom-dev" in str(error)
         pytest.skip("this build reads no URDF")
-    np.testing.assert_allclose(read.place(q), poses, atol=1e-9)
+    np.testing.assert_allclose(read.forward_kinematics(q), poses, atol=1e-9)
     assert [joint.name for joint in read.joints] == [joint.name for joint in chain.joints]
     metres = keepout.read_chain(robots / "psm.urdf", base="base", tip="tip", scale=1.0)
     assert metres.joints[2].upper == 0.24
@@ -200,7 +200,7 @@ def test_chains_of_tables_and_files_are_the_same():
         (lambda: Joint(origin=2 * np.eye(4)), "origin: .* last row"),
         (lambda: Chain([Joint("a", axis=(1, 1, 0))]), r"axis of joint 1 \('a'\)"),
         (lambda: Chain([Joint()], base=np.diag([1, 1, -1, 1])), "base .* rotation"),
-        (lambda: psm().place(np.zeros((2, 5))), r"q: .* \(m, 6\) or \(6,\), got shape \(2, 5\)"),
+        (lambda: psm().forward_kinematics(np.zeros((2, 5))), r"q: .* \(m, 6\) or \(6,\), got shape \(2, 5\)"),
         (lambda: keepout.chain_of_table([TableRow()], convention="craig"), "convention: .*'craig'"),
         (lambda: Body("b", [(1, (0, 0))], 1.0), r"points\[0\]\[1\]: .* \(3,\)"),
         (lambda: Body("b", [((0, 0, 0), 1)], 1.0), r"points\[0\]\[0\]: .* number of a link"),

@@ -191,7 +191,7 @@ TEST(TipGuides, ThatContradictEachOtherLeaveAMotionAlongThem) {
 // A motion that leads out of the mesh is not proved, so it has no priority over guides.
 TEST(TipGuides, MayForbidTheWayOutOfTheMesh) {
   const auto mesh = mesh_of("cube");
-  auto guard = make_motion_constraint(mesh, {.radius = 5.0, .margin = kept_off});
+  auto guard = make_motion_constraint(mesh, {.options = {.radius = 5.0, .margin = kept_off}});
   const Motion motion{.tip = Vec3(0, 0, mesh->bounds().high.z() - 1.0), .desired = Vec3::Zero()};
   const Step out = guard.step(motion);
   ASSERT_EQ(out.status, Status::recovering);
