@@ -237,7 +237,7 @@ TEST(CertifiedRule, TurnedPlanesAllowTheTipAndTheMotionAsBefore) {
       const Vec3 accepted = trial + (old.offset - old.normal.dot(trial)) * old.normal;
       scene.turned.clear();
       scene.problem.accepted = accepted;
-      if (!scene.rule.turn(scene.problem, scene.planes.view(), scene.turned)) continue;
+      if (!scene.rule.relinearize(scene.problem, scene.planes.view(), scene.turned)) continue;
       ++changed;
       ASSERT_EQ(scene.turned.size(), 1u);
       const HalfSpace plane = scene.turned[0];
@@ -260,7 +260,7 @@ TEST(CertifiedRule, IdlePlanesAreDroppedByATurn) {
   scene.planes.push({Vec3::UnitZ(), -0.5, 0});
   scene.turned.clear();
   scene.problem.accepted = Vec3(0.5, 0.0, 0.2);
-  EXPECT_FALSE(scene.rule.turn(scene.problem, scene.planes.view(), scene.turned));
+  EXPECT_FALSE(scene.rule.relinearize(scene.problem, scene.planes.view(), scene.turned));
   EXPECT_TRUE(scene.turned.empty());
 }
 
