@@ -68,10 +68,10 @@ TEST(Step, AllocatesNothingWhateverItsPartsAndItsOutcome) {
             .options = {.radius = 4.0, .margin = 0.1, .damping = 1e-6, .nodes = 8}};
         MotionConstraint constraint = make_motion_constraint(mesh, settings);
         MotionConstraintSettings with_distances = settings;
-        with_distances.distances = Distances::always;
+        with_distances.options.distances = Distances::always;
         MotionConstraint telling = make_motion_constraint(mesh, with_distances);
         MotionConstraintSettings ill_posed = settings;
-        ill_posed.damping = 0.0;
+        ill_posed.options.damping = 0.0;
         ill_posed.capacity.triangles = 1;
         ill_posed.inside = Inside::taken_as_is;  // there is no room to look
         MotionConstraint small = make_motion_constraint(mesh, ill_posed);
@@ -82,8 +82,8 @@ TEST(Step, AllocatesNothingWhateverItsPartsAndItsOutcome) {
         MotionConstraint halving = make_motion_constraint(mesh, narrow);
         // Between two plates, closer to both than the margin allows.
         MotionConstraintSettings thick = settings;
-        thick.radius = 2.0;
-        thick.margin = 0.75;
+        thick.options.radius = 2.0;
+        thick.options.margin = 0.75;
         MotionConstraint wide = make_motion_constraint(plates, thick);
         MotionConstraint open = make_motion_constraint(tunnel, settings);
         const Vec3 on_the_tunnel = tunnel->vertex(0);
