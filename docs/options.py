@@ -11,6 +11,7 @@ from pathlib import Path
 
 import keepout
 
+bar = r"\|"  # that ends no cell
 PAGE = Path(__file__).with_name("options.md")
 
 
@@ -20,7 +21,7 @@ def table(options):
     for option in options:
         default = f"`{option.default}`" if option.type == "str" or option.choices else option.default
         rows.append(f"| `{option.name}` | {option.command and f'`--{option.command}`'} | {default} | {option.range} "
-                    f"| {option.unit} | {option.description} | {'yes' if option.is_changeable else ''} |")
+                    f"| {option.unit} | {option.description.replace('|', bar)} | {'yes' if option.is_changeable else ''} |")
     return "\n".join(rows)
 
 

@@ -15,7 +15,8 @@ std::string digits_of(Number number) {
   std::array<char, 32> digits;  // the longest double has 24
   const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr;
   std::string text(digits.data(), end);
-  std::erase(text, '+');  // 1e15
+  std::erase(text, '+');  // 1e15, and below 1e9
+  if (const std::size_t zero = text.find("e0"); zero != std::string::npos) text.erase(zero + 1, 1);
   return text;
 }
 
