@@ -337,7 +337,12 @@ class MotionConstraint:
     def tool(self) -> ConvexTool | None: ...
     @property
     def distance_kept(self) -> float: ...
-    # set_options and properties of MotionConstraint
+    def set_options(
+        self,
+        *,
+        # changes of MotionConstraint
+    ) -> None: ...
+    # properties of MotionConstraint
 
 class Joint:
     def __init__(
@@ -525,7 +530,12 @@ class InstrumentGuard:
     def index(self) -> Index: ...
     @property
     def instrument(self) -> Instrument: ...
-    # set_options and properties of InstrumentGuard
+    def set_options(
+        self,
+        *,
+        # changes of InstrumentGuard
+    ) -> None: ...
+    # properties of InstrumentGuard
 
 class RigidFit:
     @property

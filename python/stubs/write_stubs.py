@@ -25,10 +25,9 @@ def main(template, out):
     text = Path(template).read_text(encoding="utf-8")
     for name, options in keepout.options().items():
         changes = "".join(change(option) for option in options if option.is_changeable)
-        members = f"    def set_options(\n        self,\n        *,\n{changes}    ) -> None: ...\n"
-        members += "".join(map(prop, options))
         text = text.replace(f"        # keywords of {name}\n", "".join(map(keyword, options)))
-        text = text.replace(f"    # set_options and properties of {name}\n", members)
+        text = text.replace(f"        # changes of {name}\n", changes)
+        text = text.replace(f"    # properties of {name}\n", "".join(map(prop, options)))
     Path(out).write_text(text, encoding="utf-8")
 
 
