@@ -23,9 +23,9 @@ namespace keepout {
 
 /// Numbers that an option may have: those from `least` to `most`, and 0 if `has_zero`.
 struct Range {
-  double least = 0.0;
-  double most = 0.0;
-  bool has_zero = false;
+  double least = 0.0;     // end of the range, included
+  double most = 0.0;      // end of the range, included
+  bool has_zero = false;  // 0 is allowed too
 };
 
 /// Above 0, and at most `most`.
@@ -51,9 +51,9 @@ using OptionValue = std::variant<double, std::int64_t, bool, std::string>;
 
 /// Describes an option to people and to programs.
 struct OptionText {
-  std::string_view name;     // in Python and in serve
-  std::string_view meaning;  // one sentence
-  OptionKind kind = OptionKind::number;
+  std::string_view name;                         // in Python and in serve
+  std::string_view meaning;                      // one sentence
+  OptionKind kind = OptionKind::number;          // of its value
   std::string_view unit = {};                    // of a number; empty if it has none
   Range range = {};                              // of a number or a whole number
   std::span<const std::string_view> names = {};  // of a choice

@@ -17,8 +17,8 @@ struct InstrumentConstraintSettings {
   /// The folder where built indices are kept; only wide_bvh is. Empty: none is kept.
   std::filesystem::path index_cache = {};
   std::string solver = "active_set";  // see solver_backends()
-  InstrumentOptions options = {};
-  InstrumentCapacity capacity = {};  // for the largest cycle
+  InstrumentOptions options = {};     // that stay the same from cycle to cycle
+  InstrumentCapacity capacity = {};   // for the largest cycle
   /// As MotionConstraintSettings::warn. Empty: nobody is told.
   std::function<void(const std::string&)> warn = {};
 };

@@ -25,7 +25,7 @@ struct MotionConstraintSettings {
   std::function<void(const std::string&)> warn = {};
   std::string activation = "certified";  // see activation_rules()
   std::string solver = "active_set";     // see solver_backends()
-  StepOptions options = {};
+  StepOptions options = {};              // that stay the same from step to step
   /// Tool that must not touch the mesh, in place of the ball of options.tool_radius; tool_of_text()
   /// reads one from a text. ConvexToolRule guards it: activation stays "certified" and tool_radius
   /// 0; inside, refinements and nodes have no effect. Empty: the ball.
