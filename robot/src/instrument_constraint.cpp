@@ -183,8 +183,9 @@ std::size_t InstrumentConstraint::add_mesh(std::shared_ptr<const Mesh> mesh,
                                            double margin) {
   State& state = *state_;
   const std::size_t number = state.memory.bodies.meshes.size();
-  if (number == most_meshes) {
-    throw Error("an instrument is kept out of at most " + std::to_string(most_meshes) + " meshes");
+  if (number == InstrumentCapacity::most_meshes) {
+    throw Error("an instrument is kept out of at most " +
+                std::to_string(InstrumentCapacity::most_meshes) + " meshes");
   }
   if (!(margin >= 0.0)) throw Error("the margin of a mesh must not be below zero");
   auto near =

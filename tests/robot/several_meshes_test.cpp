@@ -419,7 +419,7 @@ TEST(SeveralMeshes, SaysWhatIsWrongWithOneAndStaysAsItWas) {
   EXPECT_THROW(guard.follow(cube, index, 1), Error);
   EXPECT_EQ(guard.mesh_count(), 1u);
   EXPECT_TRUE(step_of(guard, Vec3(30, 0, 0), Vec3::UnitX()).ok());
-  for (std::size_t m = 1; m < InstrumentConstraint::most_meshes; ++m) {
+  for (std::size_t m = 1; m < InstrumentCapacity::most_meshes; ++m) {
     EXPECT_EQ(guard.add_mesh(cube, index, 0.5), m);
   }
   EXPECT_THROW(guard.add_mesh(cube, index), Error);

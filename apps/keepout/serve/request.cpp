@@ -338,6 +338,7 @@ const OptionOfRequest& Request::option(std::string_view key) const noexcept {
 bool VerbKeys::needs(std::string_view key) const noexcept { return contains(needed, key); }
 
 bool VerbKeys::takes(std::string_view key) const noexcept {
+  if (key.empty()) return false;  // as the unused ends of the lists are
   return needs(key) || contains(optional, key) ||
          (takes_options && contains(instrument_options, key, &OptionText::name));
 }

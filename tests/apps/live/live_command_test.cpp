@@ -196,8 +196,8 @@ TEST_F(Live, WhatIsWrongIsToldAndNoPageIsWritten) {
   expect_refused("skul", "did you mean 'skull'?");
   expect_refused("cube no_such.stl", "no_such.stl: there is no such file");
   expect_refused("cube --max-step 5.5", "--max-step is longer than --radius");
-  expect_refused("cube --radius 1e-200 --max-step 1e-200", "radius");
-  expect_refused("cube --radius 1e-200 --max-step 1e-200 --activation none", "radius");
+  expect_refused("cube --radius 1e-200 --max-step 1e-200", "radius", 2);
+  expect_refused("cube --radius 1e-200 --max-step 1e-200 --activation none", "radius", 2);
   expect_refused("cube --out no/such/folder.html", "cannot write here");
 }
 

@@ -8,19 +8,18 @@ namespace keepout {
 // free motion may lose, the clearance that a motion along a plane may lose in addition, and the
 // loss at which the margin counts as violated. Planes aim at the full margin, so that later cycles
 // regain the loss.
-inline constexpr double demand_below = 1.0;
-inline constexpr double floor_below = 2.0;
-inline constexpr double lost_below = 2.75;
-inline constexpr double touching_within = 4.0;
-inline constexpr double needed_margin = 8.0;
-inline constexpr double region_beyond = 8.0;
-
-inline constexpr double contact_slack = 1.0 / 8.0;  // of a contact: small beside demand_below
+inline constexpr double demand_below = 1.0;         ///< loss of a free motion
+inline constexpr double floor_below = 2.0;          ///< loss of a motion along a plane
+inline constexpr double lost_below = 2.75;          ///< the margin is violated
+inline constexpr double touching_within = 4.0;      ///< the tip touches the surface
+inline constexpr double needed_margin = 8.0;        ///< the least margin
+inline constexpr double region_beyond = 8.0;        ///< the searched region beyond the margin
+inline constexpr double contact_slack = 1.0 / 8.0;  ///< of a contact: small beside demand_below
 
 // Of the core of an instrument's body.
-inline constexpr double moved_beyond = 4.0;          // a larger loss is not rounding: it was moved
-inline constexpr double crossing_within = 3.0;       // it may have crossed the surface
-inline constexpr double core_touching_within = 7.0;  // its side is certain beyond six
-inline constexpr double needed_band = 4.0;           // the least band, and margin beyond the band
+inline constexpr double moved_beyond = 4.0;     ///< a larger loss is not rounding: it was moved
+inline constexpr double crossing_within = 3.0;  ///< it may have crossed the surface
+inline constexpr double core_touching_within = 7.0;  ///< its side is certain beyond six
+inline constexpr double needed_band = 4.0;           ///< the least band, and margin beyond the band
 
 }  // namespace keepout

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <string_view>
 
+#include "keepout/index/budget.h"
 #include "keepout/option_table.h"
 
 namespace keepout {
@@ -124,7 +125,7 @@ inline constexpr std::array capacity_options{
     option<&Capacity::extra_rows>("max_rows", "", {0, 1 << 30},
                                   "Capacity for the caller's own rows."),
     option<&Capacity::looks>(
-        "max_looks", "", {0, longest_length},
+        "max_looks", "", {0, static_cast<double>(Budget::unlimited)},
         "Work budget of a cycle, in looks; 0: 65,536 on wide_bvh, 4,194,304 on other "
         "indices.")};
 

@@ -35,8 +35,6 @@ namespace keepout {
 /// Not thread-safe: one for each control loop; mesh and index may be shared.
 class InstrumentConstraint {
  public:
-  static constexpr std::size_t most_meshes = InstrumentCapacity::most_meshes;
-
   /// The index must be built on `mesh`. Throws Error when a part is missing, the index is of
   /// another mesh, or an option or a capacity is out of range. Makes all memory here.
   InstrumentConstraint(std::shared_ptr<const Mesh> mesh, std::shared_ptr<const SpatialIndex> index,
@@ -62,7 +60,7 @@ class InstrumentConstraint {
   /// Keeps out of one more mesh from the next step on, and returns its number; the constructor's
   /// has 0. `margin`: of its own, > band; 0 for that of the options. [length] All begins anew, as
   /// after `forget`. The work of a cycle does not grow with it. Throws Error, and changes nothing,
-  /// beyond most_meshes and as the constructor does. Allocates, and is not for the control path.
+  /// beyond most_meshes of the capacity and as the constructor does. Allocates: not for control.
   std::size_t add_mesh(std::shared_ptr<const Mesh> mesh, std::shared_ptr<const SpatialIndex> index,
                        double margin = 0.0);
 

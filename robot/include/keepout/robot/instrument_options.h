@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <string_view>
 
+#include "keepout/index/budget.h"
 #include "keepout/option_table.h"
 #include "keepout/robot/instrument.h"
 
@@ -110,7 +111,7 @@ inline constexpr std::array instrument_capacity_options{
     option<&InstrumentCapacity::planes>("max_planes", "", {0, 1 << 30},
                                         "Capacity for the planes of a cycle."),
     option<&InstrumentCapacity::looks>(
-        "max_looks", "", {0, longest_length},
+        "max_looks", "", {0, static_cast<double>(Budget::unlimited)},
         "Work budget of a cycle, in looks; 0: 65,536 on wide_bvh, 4,194,304 on other indices.")};
 
 /// See table_of(const StepOptions&).
