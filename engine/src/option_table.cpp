@@ -54,7 +54,7 @@ std::string text_of(const OptionValue& value) {
 
 std::string OptionText::flag() const {
   std::string flag(command.empty() ? name : command);
-  std::ranges::replace(flag, '_', '-');
+  std::replace(flag.begin(), flag.end(), '_', '-');
   return flag;
 }
 
