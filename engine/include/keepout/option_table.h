@@ -100,6 +100,15 @@ Value value_of(Value Options::*);
 
 inline constexpr std::array<std::string_view, 0> no_names{};
 
+/// Drops the sentences of options in programs that show none, such as the pages' module.
+constexpr std::string_view kept_meaning([[maybe_unused]] std::string_view meaning) {
+#ifdef KEEPOUT_NO_MEANINGS
+  return {};
+#else
+  return meaning;
+#endif
+}
+
 }  // namespace detail
 
 /// Describes a member of a struct of options. Its kind is that of the member; an enumeration is a
@@ -118,7 +127,7 @@ constexpr auto option(std::string_view name, std::string_view unit, Range range,
                               : std::integral<Value>      ? OptionKind::whole_number
                               : std::is_enum_v<Value>     ? OptionKind::choice
                                                           : OptionKind::part;
-  Option<Options> option{{name, meaning, kind, unit, range, Names, command}};
+  Option<Options> option{{name, detail::kept_meaning(meaning), kind, unit, range, Names, command}};
   option.get = [](const Options& o) -> OptionValue {
     if constexpr (std::is_enum_v<Value>) {
       const auto value = static_cast<std::size_t>(o.*Member);
