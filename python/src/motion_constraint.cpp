@@ -128,7 +128,8 @@ void bind_motion_constraint(py::module_& module) {
           "tool", [](const Guard& self) { return self.settings().tool; },
           "The ConvexTool that must not touch the mesh; None for the ball.")
       .def_property_readonly(
-          "distance_kept", [](const Guard& self) { return required_clearance(self.settings().options); },
+          "distance_kept",
+          [](const Guard& self) { return required_clearance(self.settings().options); },
           "Clearance of the tip, or of all of the tool: tool radius and margin [length].")
       .def("__repr__", &repr);
 }

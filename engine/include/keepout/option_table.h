@@ -37,7 +37,7 @@ inline constexpr Range positive_length{shortest_length, longest_length};       /
 inline constexpr Range zero_or_length{shortest_length, longest_length, true};  // or none
 inline constexpr Range not_negative{0.0, longest_length};  // of any size, however small
 
-/// What kind of value an option has.
+/// The kind of value of an option.
 enum class OptionKind : std::uint8_t {
   number,
   whole_number,

@@ -9,10 +9,10 @@
 
 namespace keepout {
 
-/// Returns the straight motion of a tip from the forbidden side out through the nearest point of the
-/// surface: at most `longest`, and to at most `off` beyond the surface. The depth falls by as much.
-/// From the surface itself, or closer to it than `off`, the motion ends at a nearby place that is
-/// classified as free; it is zero if there is none. [length]
+/// Returns the straight motion of a tip from the forbidden side out through the nearest point of
+/// the surface: at most `longest`, and to at most `off` beyond the surface. The depth falls by as
+/// much. From the surface itself, or closer to it than `off`, the motion ends at a nearby place
+/// that is classified as free; it is zero if there is none. [length]
 Vec3 escape_motion(Neighborhood& near, const Vec3& tip, const SideOfSurface& side, double longest,
                    double off) noexcept;
 
@@ -23,9 +23,9 @@ Vec3 escape_motion(Neighborhood& near, const Vec3& tip, const SideOfSurface& sid
 bool escape_from_inside(Neighborhood& near, const Motion& motion, const StepOptions& options,
                         Workspace& work, Step& step) noexcept;
 
-/// Returns true if a tip that touches the surface, so that the rule cannot classify it, can move to a
-/// nearby place that is classified as free. Then `step` becomes that motion. Preconditions: those of
-/// escape_from_inside.
+/// Returns true if a tip that touches the surface, so that the rule cannot classify it, can move to
+/// a nearby place that is classified as free. Then `step` becomes that motion. Preconditions: those
+/// of escape_from_inside.
 bool escape_from_surface(Neighborhood& near, const Motion& motion, const StepOptions& options,
                          Workspace& work, Step& step) noexcept;
 

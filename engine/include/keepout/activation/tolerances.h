@@ -16,7 +16,7 @@ inline constexpr double needed_margin = 8.0;        ///< the least margin
 inline constexpr double region_beyond = 8.0;        ///< the searched region beyond the margin
 inline constexpr double contact_slack = 1.0 / 8.0;  ///< of a contact: small beside demand_below
 
-// Of the core of an instrument's body.
+// For the core of an instrument's body.
 inline constexpr double moved_beyond = 4.0;     ///< a larger loss is not rounding: it was moved
 inline constexpr double crossing_within = 3.0;  ///< it may have crossed the surface
 inline constexpr double core_touching_within = 7.0;  ///< its side is certain beyond six

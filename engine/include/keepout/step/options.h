@@ -13,7 +13,7 @@ namespace keepout {
 
 class SpatialIndex;
 
-/// How far around the tip triangles are looked for.
+/// The region around the tip that is searched for triangles.
 enum class Query : std::uint8_t {
   motion,  // as far as the motion asked for can lead, where the rule allows that
   sphere   // always the whole motion sphere
@@ -46,8 +46,8 @@ struct StepOptions {
   double recovery = 0.05;
   double deepest = 10.0;        // a tip deeper inside is not led out; the step is `inside` [length]
   int refinements = 3;          // how often cuts are rotated towards a better motion
-  int nodes = 0;                // of a branch and bound for a better motion still; 0: none
-  Query query = Query::motion;  // how far around the tip triangles are looked for
+  int nodes = 0;                // of a branch and bound search; 0: none
+  Query query = Query::motion;  // the region that is searched
   Distances distances = Distances::where_known;  // see Step::distance
 };
 
