@@ -2,7 +2,8 @@
 """The committed records: docs/records/NAME.json.gz, the source of every measured figure of the pages.
 
 A record is what a command wrote with --json, without its traces, or the text that a program printed
-(kind "output"). Around it stand its commit and its sources: the directories whose change makes it stale.
+(kind "output"). Around it stand its commit, its sources (the directories whose change makes it stale), and
+the fingerprint of the steps that it was measured with (docs/records/steps.txt).
 """
 
 import datetime
@@ -15,9 +16,13 @@ import subprocess
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 RECORDS = ROOT / "docs" / "records"
 
-# A record is stale if its sources changed more than so much after its commit.
+# A record is stale if its sources changed by more than this after its commit.
 MOST_DAYS = 30
 MOST_LINES = 5000
+
+# No page prints a time of these records. They hold as long as all steps are bitwise the same.
+RESULTS = {"certified_excess", "moving_meshes", "simulate_psm", "simulate_psm_20", "verify_guides",
+           "verify_linearized", "verify_psm", "verify_scenarios", "verify_tip"}
 
 TIP = ["engine", "solvers", "factory"]
 INSTRUMENT = TIP + ["robot"]
@@ -87,7 +92,7 @@ def keep(name, paths, commit, output_of=None):
         record = without_traces(merged(found))
         if record["keepout_record"] in ("plan", "plan_robot"):
             del record["runs"]  # the summaries have them all
-    kept = {"commit": git("rev-parse", "--short=10", commit).strip(),
+    kept = {"steps": steps(), "commit": git("rev-parse", "--short=10", commit).strip(),
             "sources": SOURCES[record["keepout_record"]], "record": record}
     RECORDS.mkdir(exist_ok=True)
     packed = gzip.compress(json.dumps(kept, indent=1, ensure_ascii=False).encode(), mtime=0)
@@ -98,6 +103,11 @@ def read_all():
     """Returns the kept records by name."""
     return {path.name.removesuffix(".json.gz"): json.loads(gzip.decompress(path.read_bytes()))
             for path in sorted(RECORDS.glob("*.json.gz"))}
+
+
+def steps():
+    """Returns the fingerprint of the tree's steps, which tests/accuracy/same_steps_test.cpp checks."""
+    return (RECORDS / "steps.txt").read_text(encoding="utf-8")
 
 
 def is_in_history(commit):
@@ -121,8 +131,10 @@ def changed_code(diff):
     return lines
 
 
-def staleness(kept):
+def staleness(name, kept):
     """Returns why a record is stale, or an empty text. Precondition: is_in_history(its commit)."""
+    if name in RESULTS and kept.get("steps") == steps():
+        return ""
     commit, sources = kept["commit"], kept["sources"]
     measured = int(git("show", "-s", "--format=%ct", commit))
     changed = git("log", "-1", "--format=%ct", "--", *sources).strip()

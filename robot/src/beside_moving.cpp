@@ -3,7 +3,6 @@
 // The search beside meshes that move. To stop is not safe there, so all of a motion is proved or
 // nothing; and what cannot be proved for one body must not keep the others from retreating.
 #include <algorithm>
-#include <array>
 #include <bitset>
 
 #include "joint_cycle.h"
@@ -29,19 +28,20 @@ void JointCycle::search_beside_moving(const JointTask& task, Trial& best,
     return best.is_proved();
   };
   // Beside a body that touches or is inside, or that is not known, nothing but a retreat is made.
-  const bool is_whole = bodies_.dropped_for() == Status::free;
-  bool found = is_whole && context_.budget.halved([&] { return is_found(1.0) || is_found(0.25); });
+  const bool are_all_certified = bodies_.dropped_for() == Status::free;
+  bool found =
+      are_all_certified && context_.budget.halved([&] { return is_found(1.0) || is_found(0.25); });
   found = found || is_found(0.0);
   for (int i = 0; i < most_degradations && !found && degrade(task, best); ++i) {
     found = best.is_proved() || is_found(0.0);
   }
-  result.level = found ? bodies_.list_degraded() : 0.0;
+  const double least_fraction = bodies_.list_degraded();
+  result.level = found ? least_fraction : 0.0;
   const bool stands_still =
       std::all_of(best.increment.begin(), best.increment.end(), [](double x) { return x == 0.0; });
   if (!found) {
-    bodies_.list_degraded();
-    result.status = trouble_ != Status::free ? trouble_ : Status::unsolved;
-    rows_.note_all();
+    result.status = search_status_ != Status::free ? search_status_ : Status::unsolved;
+    rows_.remember_all();
   } else if (bodies_.dropped_for() != Status::free && stands_still) {
     // No body retreats, and a body that could not be certified allows no other motion.
     result.level = 0.0;
@@ -51,25 +51,24 @@ void JointCycle::search_beside_moving(const JointTask& task, Trial& best,
   } else if (asked < 1.0) {
     result.status = Status::fallback;
   } else {
-    result.status = best.held.empty() ? Status::free : Status::limited;
+    result.status = best.limits.empty() ? Status::free : Status::limited;
   }
 }
 
-/// Judges the bodies that no joint moves on the motion of the meshes alone, lowers or drops those
-/// that cannot keep their distance, and takes all of them out of what trials are judged for.
+/// Judges the bodies that no joint moves on the motion of the meshes alone. Lowers or drops those
+/// that cannot maintain their clearance. Trials do not judge these bodies again.
 void JointCycle::settle_immovable() noexcept {
   bool is_ready = false;
   for (std::size_t p = 0; p < bodies_.size(); ++p) {
     if (!bodies_.is_watched(p) || !bodies_.is_immovable(p)) continue;
     if (!is_ready) {
-      context_.motion.move({}, context_.options.certified);
-      bodies_.move();
+      try_motion({});
       is_ready = true;
     }
     while (bodies_.is_watched(p)) {
-      Certificate::Failure& failure = memory_.failures[p];
-      const Status status = bodies_.judge(p, rows_.view(), failure);
-      if (is_ok(status) && failure.cell == PointMotion::cells) {
+      Certificate::Obstacle& obstacle = memory_.obstacles[p];
+      const Status status = bodies_.judge(p, rows_.view(), obstacle);
+      if (is_ok(status) && obstacle.knot == PointMotion::last_knot) {
         bodies_.settle(p);
       } else {
         lower(p, 1.0, is_ok(status) ? Status::unsolved : status);
@@ -83,7 +82,7 @@ bool JointCycle::stand_still(const JointTask& task, Trial& best) noexcept {
   Trial trial{.fraction = 1.0, .cost = task.standing * task.standing};
   judge(trial);
   if (!trial.is_proved()) return false;
-  trouble_ = Status::free;
+  search_status_ = Status::free;
   best = trial;
   return true;
 }
@@ -92,22 +91,23 @@ bool JointCycle::stand_still(const JointTask& task, Trial& best) noexcept {
 /// then a guide is dropped, and last the clearance of pairs is lowered. Returns false if nothing is
 /// left to try. If `best` is proved, it stands still.
 bool JointCycle::degrade(const JointTask& task, Trial& best) noexcept {
-  const Status trouble = trouble_;
-  const std::size_t guide = by_guides_.guide;
-  const bool guide_failed = by_guides_.cell < PointMotion::cells && !guides_.is_dropped(guide);
+  const Status trouble = search_status_;
+  const std::size_t guide = guide_obstacle_.guide;
+  const bool guide_failed =
+      guide_obstacle_.knot < PointMotion::last_knot && !guides_.is_dropped(guide);
   std::bitset<most_pairs> failed;
   for (std::size_t p = 0; p < bodies_.size(); ++p) {
-    failed[p] = bodies_.is_watched(p) && memory_.failures[p].cell != PointMotion::cells;
+    failed[p] = bodies_.is_watched(p) && memory_.obstacles[p].knot != PointMotion::last_knot;
   }
   if (trouble == Status::ill_posed) return false;
   if (trouble != Status::infeasible && guide_failed && problem_.relax_guides(rows_.view()))
     return true;
   if (stand_still(task, best)) return true;
-  trouble_ = trouble;
+  search_status_ = trouble;
   if (trouble == Status::infeasible) return degrade_conflict(task.scaled(0.0));
   if (guide_failed) {
     guides_.drop(guide);
-    rows_.remove(most_pairs + guide);
+    rows_.remove(owner_of_guide(guide));
     return true;
   }
   prefer_degraded(failed);
@@ -129,15 +129,15 @@ void JointCycle::prefer_degraded(std::bitset<most_pairs>& pairs) const noexcept 
   if (lowered.any()) pairs = lowered;
 }
 
-/// Degrades a least set of pairs and guides whose rows contradict each other: its guides are
+/// Degrades a minimal set of pairs and guides whose rows contradict each other: its guides are
 /// dropped, or if it has none, the clearance of its pairs is lowered. Returns true if any changed.
 bool JointCycle::degrade_conflict(const JointTask& task) noexcept {
   const OwnerSet conflict = problem_.conflict(task, rows_.view());
   bool changed = false;
   for (std::size_t g = 0; g < guides_.size(); ++g) {
-    if (!conflict[most_pairs + g]) continue;
+    if (!conflict[owner_of_guide(g)]) continue;
     guides_.drop(g);
-    rows_.remove(most_pairs + g);
+    rows_.remove(owner_of_guide(g));
     changed = true;
   }
   if (changed) return true;
@@ -155,15 +155,15 @@ bool JointCycle::degrade_conflict(const JointTask& task) noexcept {
 /// Lowers the clearance of a pair, or drops the pair. A dropped pair has no obstacle.
 void JointCycle::lower(std::size_t p, double most, Status reason) noexcept {
   bodies_.lower(p, most, reason);
-  if (!bodies_.is_watched(p)) memory_.failures[p] = {};
+  if (!bodies_.is_watched(p)) memory_.obstacles[p] = {};
 }
 
-/// Returns the clearance fraction of a pair that the joints' limits allow each of its rows by
-/// itself.
+/// Returns the largest clearance fraction of a pair at which each of its rows, taken alone, can be
+/// satisfied within the joint limits.
 double JointCycle::reachable_fraction(std::size_t p) const noexcept {
   const double clearance = bodies_.full_clearance(p);
   double missing = 0.0;
-  for (const ContactRow& row : rows_.view()) {
+  for (const Row& row : rows_.view()) {
     if (row.owner != p) continue;
     double most = row.drift - std::min(row.bound, 0.0);
     for (std::size_t k = 0; k < row.gradient.size(); ++k) {

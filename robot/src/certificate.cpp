@@ -27,20 +27,20 @@ Certificate::Certificate(const Instrument& instrument, std::size_t body, Relativ
 
 void Certificate::try_first(const Vec3& normal) noexcept {
   if (plane_count_ == most_planes) return;
-  planes_[plane_count_++] = {normal, least_height(normal, 0, PointMotion::cells)};
+  planes_[plane_count_++] = {normal, least_height(normal, 0, PointMotion::last_knot)};
 }
 
-Certificate::Failure Certificate::judge(std::span<NearTriangle> triangles,
-                                        double displacement) noexcept {
-  Failure first;
-  latest_ = PointMotion::cells;
+Certificate::Obstacle Certificate::judge(std::span<NearTriangle> triangles,
+                                         double displacement) noexcept {
+  Obstacle first;
+  latest_ = PointMotion::last_knot;
   for (NearTriangle& triangle : triangles) {
     const double out_of_reach = radius_ + clearance_ + displacement;
-    if (triangle.is_known && triangle.at_start.distance >= out_of_reach) continue;
+    if (triangle.is_measured && triangle.at_start.distance >= out_of_reach) continue;
     budget_.spend(1);
     if (budget_.is_spent()) return {0, nullptr};
     if (is_covered(triangle)) continue;
-    near_.know(triangle, budget_);
+    near_.measure(triangle, budget_);
     if (triangle.at_start.distance >= out_of_reach) continue;
     // The certified distance, or the present distance if rounding has left less. Then the motion
     // must end a little farther away, and a body that does not move passes, so that rounding does
@@ -50,32 +50,32 @@ Certificate::Failure Certificate::judge(std::span<NearTriangle> triangles,
     const bool owes = required_ < clearance_;
     if (owes && displacement == 0.0) continue;
     owes_ = owes_ || owes;
-    const Gap at_end = gap_at(PointMotion::cells, *triangle.corners);
+    const Gap at_end = gap_at(PointMotion::last_knot, *triangle.corners);
     const bool gains_too_little =
         owes && at_end.distance < triangle.at_start.distance + tolerance_ / 8.0;
-    const int cell = gains_too_little
-                         ? 0
-                         : proven_until(triangle, 0, triangle.at_start, PointMotion::cells, at_end);
+    const int knot = gains_too_little ? 0
+                                      : proven_until(triangle, 0, triangle.at_start,
+                                                     PointMotion::last_knot, at_end);
     if (budget_.is_spent()) return {0, nullptr};
-    if (cell > latest_ || cell == PointMotion::cells) continue;
-    if (cell == latest_ && first.triangle != nullptr && first.triangle->id < triangle.id) continue;
-    latest_ = cell;
-    first = {cell, &triangle};
+    if (knot > latest_ || knot == PointMotion::last_knot) continue;
+    if (knot == latest_ && first.triangle != nullptr && first.triangle->id < triangle.id) continue;
+    latest_ = knot;
+    first = {knot, &triangle};
   }
   return first;
 }
 
-Gap Certificate::gap_at(int cell, const Triangle& corners) noexcept {
+Gap Certificate::gap_at(int knot, const Triangle& corners) noexcept {
   budget_.spend(work_of_gap(points_.size()));
   Core core;
-  return gap(motion_.core(body_, cell, core), corners);
+  return gap(motion_.core(body_, knot, core), corners);
 }
 
 /// Returns the least height of the body's core along a normal on a sub-interval of the motion.
 double Certificate::least_height(const Vec3& normal, int lo, int hi) noexcept {
-  const Vec3* at_lo = motion_.at(lo);
-  const Vec3* at_hi = motion_.at(hi);
-  const double share = static_cast<double>(hi - lo) / PointMotion::cells;
+  const Vec3* at_lo = motion_.points_in_mesh(lo);
+  const Vec3* at_hi = motion_.points_in_mesh(hi);
+  const double share = static_cast<double>(hi - lo) / PointMotion::last_knot;
   double least = std::numeric_limits<double>::infinity();
   for (const std::uint8_t p : points_) {
     const double first = normal.dot(at_lo[p]);
@@ -95,7 +95,7 @@ bool Certificate::separates(const Vec3& normal, const NearTriangle& triangle, in
   const double least = least_height(normal, lo, hi);
   const double behind = support(*triangle.corners, normal);
   if (!(least - behind >= radius_ + required_ - 2.0 * tolerance_)) return false;
-  const bool is_whole = lo == 0 && hi == PointMotion::cells;
+  const bool is_whole = lo == 0 && hi == PointMotion::last_knot;
   if (is_whole && plane_count_ < most_planes) planes_[plane_count_++] = {normal, least};
   return true;
 }
@@ -107,18 +107,18 @@ bool Certificate::is_covered(const NearTriangle& triangle) const noexcept {
   });
 }
 
-/// Returns the last cell up to which the sub-interval from lo to hi is proved.
+/// Returns the last knot up to which the sub-interval from lo to hi is proved.
 int Certificate::proven_until(const NearTriangle& triangle, int lo, const Gap& at_lo, int hi,
                               const Gap& at_hi) noexcept {
   if (lo > latest_ || budget_.is_spent()) return lo;
-  const Vec3* from = motion_.at(lo);
-  const Vec3* to = motion_.at(hi);
-  const double share = static_cast<double>(hi - lo) / PointMotion::cells;
-  double way = 0.0;
+  const Vec3* from = motion_.points_in_mesh(lo);
+  const Vec3* to = motion_.points_in_mesh(hi);
+  const double share = static_cast<double>(hi - lo) / PointMotion::last_knot;
+  double reach = 0.0;
   for (const std::uint8_t p : points_) {
-    way = std::max(way, (to[p] - from[p]).norm() + motion_.bend(p) * share * share / 8.0);
+    reach = std::max(reach, (to[p] - from[p]).norm() + motion_.bend(p) * share * share / 8.0);
   }
-  if (at_lo.distance - way >= radius_ + required_) return hi;
+  if (at_lo.distance - reach >= radius_ + required_) return hi;
   const bool has_normals = at_lo.distance > 0.0 && at_hi.distance > 0.0;
   if (at_lo.distance > 0.0 && separates(at_lo.normal, triangle, lo, hi)) return hi;
   if (has_normals) {

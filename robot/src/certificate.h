@@ -17,13 +17,15 @@ namespace keepout {
 /// least that of a parabola through both ends, whose curvature is the bound of the point's second
 /// derivative. A plane proves the body clear on a sub-interval if the triangle, grown by the
 /// required clearance, is behind it and the parabolas of all points of the body are before it.
-/// Sub-intervals without such a plane are halved, down to a cell of the grid.
+/// Sub-intervals without such a plane are halved, down to the grid of PointMotion.
 class Certificate {
  public:
-  /// The obstacle to a proof: the triangle that limits it, and how far it reaches.
-  struct Failure {
-    int cell = PointMotion::cells;     // proved up to here; all of it: there is no obstacle
-    NearTriangle* triangle = nullptr;  // null if there is none, or the budget is spent
+  /// The obstacle to a proof; by default, there is none.
+  struct Obstacle {
+    int knot = PointMotion::last_knot;  // the motion is proved up to here
+    /// The triangle that limits the proof. Null if there is none, or if the budget is spent. Valid
+    /// until the pair's triangles are gathered again.
+    NearTriangle* triangle = nullptr;
   };
 
   /// For the motion of a body beside a mesh, and the triangles near it. `clearance`: from the
@@ -34,9 +36,9 @@ class Certificate {
   /// Tries planes with this normal, of a row on the body, before others.
   void try_first(const Vec3& normal) noexcept;
 
-  /// Returns the triangle that is first in the way of the motion, of equals the first by number.
-  /// `displacement`: of the body at the most (RelativeMotion::farthest). [length]
-  Failure judge(std::span<NearTriangle> triangles, double displacement) noexcept;
+  /// Returns the first obstacle to the motion, of equals the first triangle by number.
+  /// `displacement`: RelativeMotion::largest_displacement. [length]
+  Obstacle judge(std::span<NearTriangle> triangles, double displacement) noexcept;
   /// Returns true if rounding has left less than the clearance from a triangle that was judged, so
   /// that the end of the motion must be farther off than its start.
   bool owes() const noexcept { return owes_; }
@@ -49,7 +51,7 @@ class Certificate {
   };
   static constexpr std::size_t most_planes = 12;
 
-  Gap gap_at(int cell, const Triangle& corners) noexcept;
+  Gap gap_at(int knot, const Triangle& corners) noexcept;
   double least_height(const Vec3& normal, int lo, int hi) noexcept;
   bool separates(const Vec3& normal, const NearTriangle& triangle, int lo, int hi) noexcept;
   bool is_covered(const NearTriangle& triangle) const noexcept;
@@ -65,8 +67,8 @@ class Certificate {
   double tolerance_;
   Budget& budget_;
   bool owes_ = false;
-  double required_ = 0.0;            // the clearance from the triangle at hand [length]
-  int latest_ = PointMotion::cells;  // a proof beyond this cell makes no difference
+  double required_ = 0.0;                // the clearance from the triangle at hand [length]
+  int latest_ = PointMotion::last_knot;  // a proof beyond this knot makes no difference
   std::array<Plane, most_planes> planes_;
   std::size_t plane_count_ = 0;
 };

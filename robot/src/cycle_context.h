@@ -9,8 +9,8 @@
 
 namespace keepout {
 
-/// The constants of one cycle, and the two things that its parts share: the motion of the joints on
-/// trial, and the work budget.
+/// The constants of one cycle, and the two things that its parts share and change: the motion of
+/// the joints on trial, and the work budget.
 struct CycleContext {
   const Instrument& instrument;
   const InstrumentOptions& options;

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "keepout/activation/tolerances.h"
+#include "keepout/error.h"
 
 namespace keepout {
 namespace {
@@ -53,12 +54,13 @@ void CycleMemory::prepare() {
   bodies.pairs.clear();
   for (std::size_t m = 0; m < bodies.meshes.size(); ++m) {
     for (std::size_t b = 0; b < instrument.bodies().size(); ++b) {
-      const std::size_t room = bodies.meshes[m].near->room();
-      bodies.pairs.push_back(
-          {.body = b, .mesh = m, .near = NearSet(room, distance_beyond_axis(instrument, b))});
+      const std::size_t capacity = bodies.meshes[m].neighborhood->room();
+      bodies.pairs.push_back({.body = b,
+                              .mesh = m,
+                              .triangles = NearSet(capacity, distance_beyond_axis(instrument, b))});
     }
   }
-  failures.resize(bodies.pairs.size());
+  obstacles.resize(bodies.pairs.size());
   measure();
   forget();
 }
@@ -67,7 +69,7 @@ void CycleMemory::measure() noexcept {
   double size = 0.0;
   double size_with_poses = 0.0;
   for (const MeshMemory& mesh : bodies.meshes) {
-    const double own = size_of(instrument, mesh.near->mesh());
+    const double own = size_of(instrument, mesh.neighborhood->mesh());
     size = std::max(size, own);
     size_with_poses = std::max(size_with_poses, own + mesh.pose.position.norm());
   }
@@ -75,20 +77,39 @@ void CycleMemory::measure() noexcept {
   tolerance = 1e-12 * (size_with_poses + std::min(instrument.chain().reach(), largest_position));
 }
 
-bool CycleMemory::is_lost_in_rounding(const InstrumentOptions& options) const noexcept {
+double CycleMemory::least_margin(const InstrumentOptions& options) const noexcept {
   double margin = options.margin;
   for (const MeshMemory& mesh : bodies.meshes) margin = std::min(margin, mesh.margin(options));
+  return margin;
+}
+
+bool CycleMemory::is_lost_in_rounding(const InstrumentOptions& options) const noexcept {
   const double least = needed_band * tolerance;
-  return !(margin - options.band > least) || !(options.band > least) ||
+  return !(least_margin(options) - options.band > least) || !(options.band > least) ||
          std::any_of(guides.guides.begin(), guides.guides.end(), [&](const GuideMemory& each) {
            return !(each.guide.band() > needed_band * tolerance_of(each.guide, tolerance));
          });
 }
 
+void CycleMemory::require_usable(const InstrumentOptions& o) const {
+  require_in_range(instrument_options, o);
+  for (const MeshMemory& mesh : bodies.meshes) {
+    InstrumentOptions beside = o;
+    beside.margin = mesh.margin(o);
+    require_in_range(instrument_options, beside);
+  }
+  if (!(o.band < least_margin(o))) throw Error("the band must be below the margin of each mesh");
+  if (is_lost_in_rounding(o)) {
+    throw Error(
+        "the margin, its band or a guide's band is lost in the rounding of an instrument and a "
+        "mesh of this size: each must be well above 1e-11 of both");
+  }
+}
+
 void CycleMemory::forget() noexcept {
   forget_motion();
   for (PairMemory& pair : bodies.pairs) {
-    pair.near.forget();
+    pair.triangles.forget();
     pair.padding = 0.0;
   }
   forget_certified();
@@ -98,7 +119,7 @@ CycleMemory::Certified CycleMemory::certified() const noexcept {
   Certified all{};
   for (std::size_t p = 0; p < bodies.pairs.size(); ++p) all[p] = bodies.pairs[p].certified;
   for (std::size_t g = 0; g < guides.guides.size(); ++g) {
-    all[most_pairs + g] = guides.guides[g].certified;
+    all[owner_of_guide(g)] = guides.guides[g].certified;
   }
   return all;
 }
@@ -106,7 +127,7 @@ CycleMemory::Certified CycleMemory::certified() const noexcept {
 void CycleMemory::set_certified(const Certified& all) noexcept {
   for (std::size_t p = 0; p < bodies.pairs.size(); ++p) bodies.pairs[p].certified = all[p];
   for (std::size_t g = 0; g < guides.guides.size(); ++g) {
-    guides.guides[g].certified = all[most_pairs + g];
+    guides.guides[g].certified = all[owner_of_guide(g)];
   }
 }
 
@@ -121,7 +142,7 @@ void CycleMemory::forget_motion() noexcept {
   for (MeshMemory& mesh : bodies.meshes) mesh.sides.forget();
   for (PairMemory& pair : bodies.pairs) {
     pair.displacement = 0.0;
-    pair.is_side_unknown = false;  // all sides are unknown, by MeshMemory::sides
+    pair.may_have_crossed = false;  // sides.forget() has made all sides unknown
   }
 }
 

@@ -12,9 +12,6 @@
 
 namespace keepout {
 
-/// The largest number that is accepted in a task, a speed or a duration.
-constexpr double largest_number = 1e9;
-
 /// The memory of the cycles of one instrument: one member for each part of a cycle. Made once.
 struct CycleMemory {
   /// Makes all memory; there is no mesh yet.
@@ -29,18 +26,20 @@ struct CycleMemory {
   GuideMemories guides;
   RowMemory rows;
   ProblemMemory problem;
-  std::vector<Certificate::Failure> failures;  // of each pair on the last trial
-  JointVector increment;                       // the result
+  std::vector<Certificate::Obstacle> obstacles;  // of each pair on the last trial
+  JointVector increment;                         // the result
 
   /// Returns the largest distance of joint k (1..n) from 0 that a cycle accepts. [rad or length]
-  double farthest(int k) const noexcept {
-    return IncrementBox::farthest(instrument.chain(), k, largest_position);
+  double largest_position_of(int k) const noexcept {
+    return IncrementBox::largest_position(instrument.chain(), k, largest_position);
   }
   /// Makes the parts that depend on the meshes, and forgets all. Allocates.
   void prepare();
   /// Computes the tolerance and the largest position. The latter does not depend on the poses of
   /// the meshes, so repeated placing cannot raise it.
   void measure() noexcept;
+  /// Returns the least margin beside any mesh. [length]
+  double least_margin(const InstrumentOptions& options) const noexcept;
   /// Returns true if rounding hides the least margin, the band, or a guide's band.
   bool is_lost_in_rounding(const InstrumentOptions& options) const noexcept;
   /// Throws Error unless all options are in range and rounding leaves something of the margins.

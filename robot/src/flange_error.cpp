@@ -22,13 +22,11 @@ double most_deviation(const Chain& chain, const JointTask& task,
   for (int k = chain.size(); k >= 1; --k) {
     const double moved = std::abs(increment[static_cast<std::size_t>(k - 1)]);
     if (chain.joint(k).kind != JointKind::revolute) {
-      bounds.path += moved;
+      bounds.slide(moved);
       continue;
     }
     const Eigen::Map<const Vec3> column(task.jacobian.data() + (k - 1) * task.rows);
-    const double way = (column.lpNorm<1>() + bounds.path) * moved;
-    bounds.bend += moved * (way + 2.0 * bounds.path);
-    bounds.path += way;
+    bounds.turn(column.lpNorm<1>(), moved);
     turns += moved;
   }
   if (!(turns <= 1.0)) return std::numeric_limits<double>::infinity();
@@ -54,7 +52,7 @@ Trial cut_for_flange(const JointTask& task, Trial trial, PointMotion& motion) no
   constexpr int most_halvings = 12;
   const Pose start = motion.chain_at_start().flange();
   double fraction = trial.fraction;
-  trial.held.add(Limit::linearization);
+  trial.limits.add(Limit::linearization);
   trial.fraction = 0.0;
   trial.cost = task.standing * task.standing;
   for (int i = 0; i <= most_halvings; ++i, fraction *= 0.5) {

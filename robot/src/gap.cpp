@@ -14,11 +14,11 @@ namespace keepout {
 namespace {
 
 constexpr double far = std::numeric_limits<double>::infinity();
-// Shorter ones tell no direction: their squares are rounded to few digits.
+// The squares of shorter vectors are rounded to few digits, so that they have no direction.
 constexpr double least_length2 = 1e-280;
 
 /// The best pair of points found so far, and the directions that may prove its distance.
-struct Pair {
+struct Candidate {
   double distance2 = far;
   Vec3 on_core = Vec3::Zero();
   Vec3 away = Vec3::Zero();     // from the triangle to the core
@@ -26,7 +26,7 @@ struct Pair {
 };
 
 void consider_end(const Vec3& end, const Triangle& triangle, const Vec3& face,
-                  Pair& best) noexcept {
+                  Candidate& best) noexcept {
   const ClosestPoint closest = closest_point(triangle, end);
   const double distance2 = closest.distance * closest.distance;
   if (!(distance2 < best.distance2)) return;
@@ -34,11 +34,11 @@ void consider_end(const Vec3& end, const Triangle& triangle, const Vec3& face,
   if (is_face(closest.feature)) best.sharper = face;
 }
 
-/// The nearest points of the core's segment and an edge, where both are inside of them (Ericson,
-/// "Real-Time Collision Detection", 2005, 5.1.9); what ends there belongs to `consider_end`, or to
-/// the edge's own corners.
+/// Considers the nearest points of the core's segment and an edge, if both are inside of them
+/// (Ericson, "Real-Time Collision Detection", 2005, 5.1.9). The ends of the segment are left to
+/// `consider_end`, and those of the edge to the other edges.
 void consider_edge(const Vec3& a, const Vec3& along, double length2, const Vec3& from,
-                   const Vec3& to, Pair& best) noexcept {
+                   const Vec3& to, Candidate& best) noexcept {
   const Vec3 edge = to - from;
   const Vec3 between = a - from;
   const double edge2 = edge.squaredNorm();
@@ -60,14 +60,14 @@ void consider_edge(const Vec3& a, const Vec3& along, double length2, const Vec3&
   if (u > 0.0 && u < 1.0 && t > 0.0 && t < 1.0) best.sharper = along.cross(edge);
 }
 
-/// Whether a segment goes through a triangle's inside.
+/// Returns true if a segment goes through a triangle's inside.
 bool goes_through(const Vec3& a, const Vec3& b, const Triangle& triangle,
                   const Vec3& face) noexcept {
   const double at_a = face.dot(a - triangle[0]);
   const double at_b = face.dot(b - triangle[0]);
   if (!((at_a > 0.0 && at_b < 0.0) || (at_a < 0.0 && at_b > 0.0))) return false;
   const Vec3 along = b - a;
-  // The turn from each side to the way has one sign all around.
+  // The volumes over the three edges have one sign if the segment passes between them.
   const Vec3 v0 = triangle[0] - a;
   const Vec3 v1 = triangle[1] - a;
   const Vec3 v2 = triangle[2] - a;
@@ -77,8 +77,9 @@ bool goes_through(const Vec3& a, const Vec3& b, const Triangle& triangle,
   return (s0 >= 0.0 && s1 >= 0.0 && s2 >= 0.0) || (s0 <= 0.0 && s1 <= 0.0 && s2 <= 0.0);
 }
 
-/// Takes of two directions the one that proves more.
-Gap proven(const Pair& nearest, std::span<const Vec3> core, const Triangle& triangle) noexcept {
+/// Returns the gap by the direction of the two that proves more.
+Gap proven(const Candidate& nearest, std::span<const Vec3> core,
+           const Triangle& triangle) noexcept {
   Gap best;
   best.contact = nearest.on_core;
   for (const Vec3& towards : {nearest.away, nearest.sharper}) {
@@ -86,18 +87,22 @@ Gap proven(const Pair& nearest, std::span<const Vec3> core, const Triangle& tria
     if (!(length2 > least_length2)) continue;
     Vec3 n = towards / std::sqrt(length2);
     if (n.dot(nearest.away) < 0.0) n = -n;
-    double least = far;
-    for (const Vec3& point : core) least = std::min(least, n.dot(point));
-    const double behind = support(triangle, n);
-    if (!(least - behind > best.distance)) continue;
-    best.distance = least - behind;
+    const double height = height_along(n, core, triangle);
+    if (!(height > best.distance)) continue;
+    best.distance = height;
     best.normal = n;
-    best.support = behind;
   }
   return best;
 }
 
 }  // namespace
+
+double height_along(const Vec3& normal, std::span<const Vec3> core,
+                    const Triangle& triangle) noexcept {
+  double least = far;
+  for (const Vec3& point : core) least = std::min(least, normal.dot(point));
+  return least - support(triangle, normal);
+}
 
 Gap gap(std::span<const Vec3> core, const Triangle& triangle) noexcept {
   if (core.size() > 2) {
@@ -105,13 +110,12 @@ Gap gap(std::span<const Vec3> core, const Triangle& triangle) noexcept {
     if (nearest.overlap || !(nearest.proven > 0.0)) {
       return {.contact = nearest.on_triangle};
     }
-    return {nearest.proven, nearest.normal, support(triangle, nearest.normal),
-            nearest.on_triangle + nearest.to_core};
+    return {nearest.proven, nearest.normal, nearest.on_triangle + nearest.to_core};
   }
   const Vec3& a = core.front();
   const Vec3& b = core.back();
   const Vec3 face = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
-  Pair nearest;
+  Candidate nearest;
   consider_end(a, triangle, face, nearest);
   if (core.size() == 2) {
     if (goes_through(a, b, triangle, face)) {
@@ -133,7 +137,6 @@ Gap gap(std::span<const Vec3> core, const Triangle& triangle) noexcept {
     if (!searched.overlap && searched.proven > best.distance) {
       best.distance = searched.proven;
       best.normal = searched.normal;
-      best.support = support(triangle, searched.normal);
     }
   }
   return best;

@@ -44,16 +44,13 @@ double guided_bend(const Guide& guide, const ChainState& state, std::span<const 
   if (guide.kind() == Guide::Kind::axis) {
     // Like motion_bounds, but only rotations matter.
     const Vec3 direction = guided_point(guide, state);
-    double path = 0.0;
-    double bend = 0.0;
+    MotionBounds bounds;
     for (int k = guide.first().link; k >= 1; --k) {
       if (!state.turns(k)) continue;
-      const double turn = std::abs(increment[static_cast<std::size_t>(k - 1)]);
-      const double way = turn * (state.axis(k).cross(direction).norm() + path);
-      bend += turn * (way + 2.0 * path);
-      path += way;
+      bounds.turn(state.axis(k).cross(direction).norm(),
+                  std::abs(increment[static_cast<std::size_t>(k - 1)]));
     }
-    return bend;
+    return bounds.bend;
   }
   const auto of = [&](const LinkPoint& point) {
     return motion_bounds(state, increment, point.link, state.at(point.link, point.position));

@@ -71,45 +71,44 @@ double GuideWatch::allowance(std::size_t g, double unused) const noexcept {
   return std::max(at_end_[g] - unused * memory_.guides[g].guide.band(), 0.0);
 }
 
-bool GuideWatch::bends_by_more(const ContactRow& row,
-                               std::span<const double> increment) const noexcept {
-  const Guide& guide = memory_.guides[row.owner - most_pairs].guide;
+bool GuideWatch::bends_by_more(const Row& row, std::span<const double> increment) const noexcept {
+  const Guide& guide = memory_.guides[guide_of(row.owner)].guide;
   const double bend = guided_bend(guide, context_.motion.chain_at_start(), increment, 0.0);
   return bend / 2.0 > row.bound + row.correction + guide.band();
 }
 
-GuideWatch::Verdict GuideWatch::judge() noexcept {
-  cell_of_chain_ = 0;
-  Verdict verdict;
+GuideWatch::Obstacle GuideWatch::judge() noexcept {
+  knot_of_chain_ = 0;
+  Obstacle obstacle;
   const JointVector& increment = context_.motion.increment();
   if (std::all_of(increment.begin(), increment.end(), [](double x) { return x == 0.0; })) {
-    return verdict;  // guides do not move
+    return obstacle;  // guides do not move
   }
-  for (std::size_t g = 0; g < size() && verdict.cell > 0; ++g) {
+  for (std::size_t g = 0; g < size() && obstacle.knot > 0; ++g) {
     if (is_dropped_[g]) continue;
-    const Sample at_end = sample(g, PointMotion::cells);
+    const Sample at_end = sample(g, PointMotion::last_knot);
     const bool gains_too_little = at_end_[g] < allowed_[g] && at_end.excess > at_end_[g];
     const int until =
-        gains_too_little ? 0 : proven_until(g, 0, sample(g, 0), PointMotion::cells, at_end);
-    if (until < verdict.cell) verdict = {until, g};
+        gains_too_little ? 0 : proven_until(g, 0, sample(g, 0), PointMotion::last_knot, at_end);
+    if (until < obstacle.knot) obstacle = {until, g};
   }
-  return verdict;
+  return obstacle;
 }
 
-GuideWatch::Sample GuideWatch::sample(std::size_t g, int cell) noexcept {
+GuideWatch::Sample GuideWatch::sample(std::size_t g, int knot) noexcept {
   const Guide& guide = memory_.guides[g].guide;
-  const ChainState& chain = chain_at(cell);
+  const ChainState& chain = chain_at(knot);
   return {guide.region().excess(guided_point(guide, chain)), guided_fraction(guide, chain)};
 }
 
-/// Returns the last cell up to which the sub-interval from lo to hi is proved.
+/// Returns the last knot up to which the sub-interval from lo to hi is proved.
 int GuideWatch::proven_until(std::size_t g, int lo, const Sample& at_lo, int hi,
                              const Sample& at_hi) noexcept {
   Budget& budget = context_.budget;
   budget.spend(work_of_guide);
   if (budget.is_spent()) return lo;
   const Guide& guide = memory_.guides[g].guide;
-  const double part = static_cast<double>(hi - lo) / PointMotion::cells;
+  const double part = static_cast<double>(hi - lo) / PointMotion::last_knot;
   const double slide = std::abs(at_hi.fraction - at_lo.fraction) / part;
   const auto n = static_cast<std::size_t>(context_.instrument.chain().size());
   const double bend = guided_bend(guide, context_.motion.chain_at_start(),
@@ -122,13 +121,13 @@ int GuideWatch::proven_until(std::size_t g, int lo, const Sample& at_lo, int hi,
   return first < middle ? first : proven_until(g, middle, at_middle, hi, at_hi);
 }
 
-std::optional<ContactRow> GuideWatch::row(std::size_t g, int cell) noexcept {
+std::optional<Row> GuideWatch::row(std::size_t g, int knot) noexcept {
   const Guide& guide = memory_.guides[g].guide;
   const Region& region = guide.region();
-  const Vec3 outward = region.outward(guided_point(guide, chain_at(cell)));
+  const Vec3 outward = region.outward(guided_point(guide, chain_at(knot)));
   if (outward.isZero(0.0)) return std::nullopt;
   const ChainState& chain = context_.motion.chain_at_start();
-  ContactRow row{.owner = most_pairs + g, .triangle = no_triangle};
+  Row row{.owner = owner_of_guide(g), .triangle = no_triangle};
   row.normal = -outward;
   row.offset = row.normal.dot(region.origin()) - region.radius();
   row.start_height = row.normal.dot(guided_point(guide, chain)) - row.offset;
@@ -143,17 +142,17 @@ std::optional<ContactRow> GuideWatch::row(std::size_t g, int cell) noexcept {
   return row;
 }
 
-double GuideWatch::height_at_end(const ContactRow& row) noexcept {
-  const Guide& guide = memory_.guides[row.owner - most_pairs].guide;
-  return row.normal.dot(guided_point(guide, chain_at(PointMotion::cells))) - row.offset;
+double GuideWatch::height_at_end(const Row& row) noexcept {
+  const Guide& guide = memory_.guides[guide_of(row.owner)].guide;
+  return row.normal.dot(guided_point(guide, chain_at(PointMotion::last_knot))) - row.offset;
 }
 
-const ChainState& GuideWatch::chain_at(int cell) noexcept {
-  if (cell == 0) return context_.motion.chain_at_start();
-  if (cell != cell_of_chain_) {
+const ChainState& GuideWatch::chain_at(int knot) noexcept {
+  if (knot == 0) return context_.motion.chain_at_start();
+  if (knot != knot_of_chain_) {
     context_.budget.spend(work_of_guide);
-    context_.motion.place(cell, chain_);
-    cell_of_chain_ = cell;
+    context_.motion.chain_at(knot, chain_);
+    knot_of_chain_ = knot;
   }
   return chain_;
 }

@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "contact_row.h"
 #include "cycle_context.h"
+#include "row.h"
 
 namespace keepout {
 
@@ -34,9 +34,9 @@ struct GuideMemories {
 class GuideWatch {
  public:
   /// How far all guides allow a motion.
-  struct Verdict {
-    int cell = PointMotion::cells;  // proved up to here
-    std::size_t guide = 0;          // which is violated beyond, if that is not the end
+  struct Obstacle {
+    int knot = PointMotion::last_knot;  // proved up to here
+    std::size_t guide = 0;              // which is violated beyond, if that is not the end
   };
 
   /// The motion must start at the positions of the joints. Both must outlive it.
@@ -64,7 +64,7 @@ class GuideWatch {
 
   /// Returns true if the second-derivative bound of a motion allows its guide to end farther out
   /// than it started, by more than its band, although the row pulls the guide back.
-  bool bends_by_more(const ContactRow& row, std::span<const double> increment) const noexcept;
+  bool bends_by_more(const Row& row, std::span<const double> increment) const noexcept;
 
   /// Takes a guide out of what is proved in this cycle: it contradicts the clearance from a mesh
   /// that moves.
@@ -73,13 +73,13 @@ class GuideWatch {
   bool is_dropped(std::size_t guide) const noexcept { return is_dropped_[guide]; }
 
   /// Proves the motion at hand for all guides, as far as possible.
-  Verdict judge() noexcept;
+  Obstacle judge() noexcept;
 
   /// Returns a row that limits a guide by the plane that touches its region at the guided point at
-  /// a cell of the motion; nothing at the region's center, which has no such plane.
-  std::optional<ContactRow> row(std::size_t guide, int cell) noexcept;
+  /// a knot of the motion; nothing at the region's center, which has no such plane.
+  std::optional<Row> row(std::size_t guide, int knot) noexcept;
   /// Returns the height of the row's guided point over its plane at the end of the motion.
-  double height_at_end(const ContactRow& row) noexcept;
+  double height_at_end(const Row& row) noexcept;
 
  private:
   /// A guide at one point of the motion.
@@ -88,15 +88,15 @@ class GuideWatch {
     double fraction;  // see guided_fraction
   };
 
-  Sample sample(std::size_t guide, int cell) noexcept;
+  Sample sample(std::size_t guide, int knot) noexcept;
   int proven_until(std::size_t guide, int lo, const Sample& at_lo, int hi,
                    const Sample& at_hi) noexcept;
-  const ChainState& chain_at(int cell) noexcept;
+  const ChainState& chain_at(int knot) noexcept;
 
   GuideMemories& memory_;
   const CycleContext& context_;
   ChainState chain_;
-  int cell_of_chain_ = 0;  // the cell that it was computed for; 0: unknown
+  int knot_of_chain_ = 0;  // the knot that it was computed for; 0: unknown
   bool is_recovering_ = false;
   bool owes_ = false;
   std::array<double, Guide::most> allowed_{};  // excess of each in this cycle

@@ -25,7 +25,7 @@ bool IncrementBox::clip(JointVector& increment) const noexcept {
   bool is_too_far = false;
   for (int k = 1; k <= chain_.size(); ++k) {
     const auto i = static_cast<std::size_t>(k - 1);
-    const double far = farthest(chain_, k, largest_position_);
+    const double far = largest_position(chain_, k, largest_position_);
     const double lower = std::max(chain_.joint(k).limits.lower, -far);
     const double upper = std::min(chain_.joint(k).limits.upper, far);
     double& step = increment[i];

@@ -17,7 +17,7 @@ class IncrementBox {
  public:
   /// Returns the largest distance of joint k (1..n) from 0 that a cycle accepts, so that rounding
   /// stays small: sixteen turns, or `largest_position` of a prismatic joint. [rad or length]
-  static double farthest(const Chain& chain, int k, double largest_position) noexcept {
+  static double largest_position(const Chain& chain, int k, double largest_position) noexcept {
     return chain.joint(k).kind == JointKind::prismatic ? largest_position : 100.0;
   }
 
@@ -39,7 +39,7 @@ class IncrementBox {
   bool starts_outside() const noexcept { return starts_outside_; }
 
   /// Clips an increment to the box. Returns true if a joint without limits would have moved beyond
-  /// farthest(), which is a position limit too.
+  /// largest_position_of(), which is a position limit too.
   bool clip(JointVector& increment) const noexcept;
 
  private:

@@ -26,25 +26,28 @@ std::unique_ptr<Neighborhood> neighborhood_of(std::shared_ptr<const Mesh> mesh,
                                         budget);
 }
 
-Instrument& required(Instrument& instrument, const Solver* solver,
-                     const InstrumentCapacity& capacity) {
+Solver& required(const std::unique_ptr<Solver>& solver) {
   if (solver == nullptr) throw Error("an instrument constraint needs a solver");
+  return *solver;
+}
+
+const InstrumentCapacity& required(const InstrumentCapacity& capacity) {
   if (capacity.planes == 0 || capacity.planes > (1u << 16)) {
     throw Error("the capacity must be of at least one plane, and at most 65536");
   }
-  return instrument;
+  return capacity;
 }
 
 }  // namespace
 
 struct InstrumentConstraint::State {
-  State(Instrument of, std::unique_ptr<Solver> solved_by, const InstrumentOptions& with,
-        const InstrumentCapacity& room)
-      : instrument(std::move(required(of, solved_by.get(), room))),
-        solver(std::move(solved_by)),
-        memory(instrument, *solver, room),
-        capacity(room),
-        options(with) {}
+  State(Instrument instrument_, std::unique_ptr<Solver> solver_, const InstrumentOptions& options_,
+        const InstrumentCapacity& capacity_)
+      : instrument(std::move(instrument_)),
+        solver(std::move(solver_)),
+        capacity(required(capacity_)),
+        memory(instrument, required(solver), capacity),
+        options(options_) {}
 
   /// Replaces the mesh of a number, or adds one. Throws Error, and restores the meshes, if the
   /// options cannot be used with it.
@@ -71,29 +74,35 @@ struct InstrumentConstraint::State {
     }
     std::size_t looks = 0;
     for (const MeshMemory& each : memory.bodies.meshes) {
-      const SpatialIndex& index = each.near->index();
+      const SpatialIndex& index = each.neighborhood->index();
       looks = std::max(looks, Capacity::looks_or_default(capacity.looks, index));
     }
     memory.budget = Budget(looks);
   }
 
-  InstrumentStep step(const JointTask& task, std::span<const double> q) noexcept {
-    InstrumentStep result;
-    JointCycle(memory, options, q, JointCycle::Meshes::moving).run(task, result);
+  /// Starts a new work budget. Returns free, or why no cycle may start.
+  Status start(std::span<const double> q, bool is_input_valid) noexcept {
+    memory.budget.renew();
+    const Status status = check_start(memory, options, q);
+    return is_ok(status) && !is_input_valid ? Status::invalid_input : status;
+  }
+
+  /// Runs a cycle unless its start failed. Time passes in any case.
+  template <class MakeTask>
+  InstrumentStep step(Status start, std::span<const double> q, MakeTask make_task) noexcept {
+    InstrumentStep result{.status = start};
+    if (is_ok(start)) {
+      JointCycle(memory, options, q, JointCycle::Meshes::moving).run(make_task(), result);
+    }
+    // Without a proved motion beside meshes that move, no clearance is certified.
+    if (!result.ok() && memory.is_moving()) result.level = 0.0;
+    move_meshes();
     return result;
   }
 
-  /// Starts a new work budget. Returns free, or why no cycle may start.
-  Status start(std::span<const double> q) noexcept {
-    memory.budget.renew();
-    return check_start(memory, options, q);
-  }
-
-  /// Moves the meshes by their velocities, whatever the result of the cycle. Without a proved
-  /// motion beside them no clearance is certified.
-  void pass_time(InstrumentStep& result) noexcept {
+  /// Moves the meshes by their velocities.
+  void move_meshes() noexcept {
     if (!memory.is_moving()) return;
-    if (!result.ok()) result.level = 0.0;
     for (MeshMemory& mesh : memory.bodies.meshes) {
       mesh.pose.position += options.period * mesh.velocity.linear;
       const double turn = options.period * mesh.velocity.angular.norm();
@@ -106,8 +115,8 @@ struct InstrumentConstraint::State {
 
   Instrument instrument;
   std::unique_ptr<Solver> solver;
-  CycleMemory memory;
   InstrumentCapacity capacity;
+  CycleMemory memory;
   InstrumentOptions options;
 };
 
@@ -126,35 +135,23 @@ InstrumentConstraint::~InstrumentConstraint() = default;
 
 InstrumentStep InstrumentConstraint::step(std::span<const double> q,
                                           const Twist& desired) noexcept {
-  Status status = state_->start(q);
-  if (is_ok(status) && !is_task(desired)) status = Status::invalid_input;
-  InstrumentStep result{.status = status};
-  if (is_ok(status)) {
+  return state_->step(state_->start(q, is_task(desired)), q, [&] {
     ChainState chain;
     state_->instrument.chain().forward_kinematics(q, chain);
-    result = state_->step(flange_task(chain, desired, state_->options), q);
-  }
-  state_->pass_time(result);
-  return result;
+    return flange_task(chain, desired, state_->options);
+  });
 }
 
 InstrumentStep InstrumentConstraint::step(std::span<const double> q,
                                           std::span<const double> desired,
                                           std::span<const double> weights) noexcept {
-  Status status = state_->start(q);
-  if (is_ok(status) && !is_task(desired, weights, q.size())) status = Status::invalid_input;
-  InstrumentStep result{.status = status};
-  if (is_ok(status)) result = state_->step(joint_task(desired, weights), q);
-  state_->pass_time(result);
-  return result;
+  return state_->step(state_->start(q, is_task(desired, weights, q.size())), q,
+                      [&] { return joint_task(desired, weights); });
 }
 
 MotionProof InstrumentConstraint::prove(std::span<const double> q,
                                         std::span<const double> increment) noexcept {
-  Status status = state_->start(q);
-  const bool is_motion =
-      increment.size() == q.size() && are_positions(state_->memory, q, increment);
-  if (is_ok(status) && !is_motion) status = Status::invalid_input;
+  const Status status = state_->start(q, are_positions(state_->memory, q, increment));
   if (!is_ok(status)) return {.status = status};
   return prove_in_parts(state_->memory, state_->options, q, increment);
 }
@@ -166,7 +163,7 @@ std::size_t InstrumentConstraint::mesh_count() const noexcept {
   return state_->memory.bodies.meshes.size();
 }
 const Mesh& InstrumentConstraint::mesh(std::size_t number) const noexcept {
-  return state_->memory.bodies.meshes[number].near->mesh();
+  return state_->memory.bodies.meshes[number].neighborhood->mesh();
 }
 const Pose& InstrumentConstraint::place_of(std::size_t mesh) const noexcept {
   return state_->memory.bodies.meshes[mesh].pose;
@@ -188,10 +185,10 @@ std::size_t InstrumentConstraint::add_mesh(std::shared_ptr<const Mesh> mesh,
                 std::to_string(InstrumentCapacity::most_meshes) + " meshes");
   }
   if (!(margin >= 0.0)) throw Error("the margin of a mesh must not be below zero");
-  auto near =
+  auto neighborhood =
       neighborhood_of(std::move(mesh), std::move(index), state.capacity, state.memory.budget);
-  const bool is_closed = is_watertight(near->mesh());
-  state.put({.near = std::move(near),
+  const bool is_closed = is_watertight(neighborhood->mesh());
+  state.put({.neighborhood = std::move(neighborhood),
              .own_margin = margin,
              .is_watertight = is_closed,
              .motion = RelativeMotion(state.instrument, state.memory.motion)},
@@ -206,12 +203,13 @@ void InstrumentConstraint::follow(std::shared_ptr<const Mesh> moved,
     throw Error("there is no mesh of number " + std::to_string(number));
   }
   const MeshMemory& old = state.memory.bodies.meshes[number];
-  auto near =
+  auto neighborhood =
       neighborhood_of(std::move(moved), std::move(index), state.capacity, state.memory.budget);
   const bool has_same_triangles =
-      std::ranges::equal(near->mesh().triangles(), old.near->mesh().triangles());
-  const bool is_closed = has_same_triangles ? old.is_watertight : is_watertight(near->mesh());
-  state.put({.near = std::move(near),
+      std::ranges::equal(neighborhood->mesh().triangles(), old.neighborhood->mesh().triangles());
+  const bool is_closed =
+      has_same_triangles ? old.is_watertight : is_watertight(neighborhood->mesh());
+  state.put({.neighborhood = std::move(neighborhood),
              .own_margin = old.own_margin,
              .is_watertight = is_closed,
              .motion = RelativeMotion(state.instrument, state.memory.motion),

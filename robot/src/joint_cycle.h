@@ -11,10 +11,14 @@
 namespace keepout {
 
 /// One cycle of an instrument: open, then solve, judge and add rows until a motion is proved, or
-/// cut it to the part that is. Allocates nothing, throws nothing.
+/// cut it to the part that is proved; and refine it. Allocates nothing, throws nothing.
+///
+///     run -> open -> search -> search_fraction -> solve_and_judge -> solve, judge, add_rows
+///                                              -> refine
+///         -> judge_cut -> report -> carry_out
 class JointCycle {
  public:
-  /// The meshes in the cycle: at rest, or with their velocities.
+  /// Whether the velocities of the meshes count in the cycle, or the meshes stand still.
   enum class Meshes : bool { still, moving };
 
   /// From q (n). The indices must be current. All must outlive it.
@@ -36,10 +40,11 @@ class JointCycle {
   bool solve_and_judge(const JointTask& task, const JointTask& part, Trial& best) noexcept;
   SolveStatus solve(const JointTask& task, Trial& trial) noexcept;
   void judge(Trial& trial) noexcept;
+  void try_motion(const JointVector& increment) noexcept;
   bool strays(const JointTask& task, Trial& trial) noexcept;
   bool add_rows() noexcept;
   void refine(const JointTask& task, const JointTask& part, Trial& best) noexcept;
-  void cut(Trial& best) noexcept;
+  void judge_cut(Trial& best) noexcept;
   void carry_out(const Trial& best, InstrumentStep& result) noexcept;
   // Beside meshes that move (beside_moving.cpp).
   void search_beside_moving(const JointTask& task, Trial& best, InstrumentStep& result) noexcept;
@@ -66,12 +71,13 @@ class JointCycle {
   GuideWatch guides_;
   WorkingRows rows_;
   JointProblem problem_;
-  GuideWatch::Verdict by_guides_ = {};  // of the last trial
-  Status trouble_ = Status::free;       // why the search ended without a proof
-  bool is_shortened_ = false;           // less than all of the task was solved for last
-  bool has_strayed_ = false;            // a trial of the search at hand: see strays
-  Limits stopped_ = {};                 // the causes that ended searches
-  GuideSet stopping_guides_ = {};       // of these, the guides
+  // The obstacles to the last trial: of guides here, of pairs in CycleMemory::obstacles.
+  GuideWatch::Obstacle guide_obstacle_ = {};
+  Status search_status_ = Status::free;  // why the last search ended without a proof; or free
+  bool is_shortened_ = false;            // the last search was for a fraction of the task
+  bool has_strayed_ = false;             // a trial of the last search did: see strays
+  Limits stopping_limits_ = {};          // the limits that ended searches
+  GuideSet stopping_guides_ = {};        // the guides that ended searches
   int rounds_ = 0;
 };
 

@@ -8,6 +8,7 @@
 namespace keepout {
 namespace {
 
+constexpr double largest_number = 1e9;    // in a task or a velocity
 constexpr double rotation_digits = 1e-6;  // of each element of R^T R
 constexpr double fastest_turn = 1.0;      // of a mesh in a cycle [rad]
 
@@ -30,21 +31,23 @@ Status check_start(const CycleMemory& memory, const InstrumentOptions& options,
         !(options.period * mesh.velocity.angular.norm() <= fastest_turn) ||
         !(options.period * mesh.velocity.linear.norm() <= memory.largest_position);
     if (mesh.is_misplaced || is_too_fast) return Status::invalid_input;
-    if (!mesh.near->is_current()) return Status::mesh_changed;
+    if (!mesh.neighborhood->is_current()) return Status::mesh_changed;
   }
   // Meshes move, so rounding may have outgrown the margin since it was set.
   if (memory.is_lost_in_rounding(options)) return Status::margin_too_small;
   const JointVector at_rest{};
   const auto n = static_cast<std::size_t>(memory.instrument.chain().size());
-  return q.size() == n && are_positions(memory, q, {at_rest.data(), n}) ? Status::free
-                                                                        : Status::invalid_input;
+  return are_positions(memory, q, {at_rest.data(), n}) ? Status::free : Status::invalid_input;
 }
 
 bool are_positions(const CycleMemory& memory, std::span<const double> q,
                    std::span<const double> increment) noexcept {
-  for (std::size_t k = 0; k < q.size(); ++k) {
+  const auto n = static_cast<std::size_t>(memory.instrument.chain().size());
+  if (q.size() != n || increment.size() != n) return false;
+  for (std::size_t k = 0; k < n; ++k) {
     const double there = q[k] + increment[k];
-    if (!(std::abs(there) <= memory.farthest(static_cast<int>(k) + 1))) return false;  // or NaN
+    if (!(std::abs(there) <= memory.largest_position_of(static_cast<int>(k) + 1)))
+      return false;  // or NaN
   }
   return true;
 }

@@ -8,11 +8,12 @@
 namespace keepout {
 
 /// Returns free if a cycle may start: poses and speeds of all meshes are valid, indices are
-/// current, and q (n) is within CycleMemory::farthest. Otherwise returns the cause.
+/// current, and q (n) is within CycleMemory::largest_position_of. Otherwise returns the cause.
 Status check_start(const CycleMemory& memory, const InstrumentOptions& options,
                    std::span<const double> q) noexcept;
 
-/// Returns true if all joints stay within CycleMemory::farthest at q (n), moved by `increment` (n).
+/// Returns true if q and `increment` are of n joints, and all joints stay within
+/// CycleMemory::largest_position_of at q (n), moved by `increment` (n).
 bool are_positions(const CycleMemory& memory, std::span<const double> q,
                    std::span<const double> increment) noexcept;
 

@@ -13,14 +13,15 @@ struct JointProblem::Stage {
   Relaxation relaxation;
   double unused;      // the fraction of a guide's band that is left to curvature; 1: all rows hold
   bool pulls_guides;  // towards their regions; false: their rows only hold them
-  double bodies;      // the fraction of a body's recovery that is demanded
+  double recovery;    // the fraction of a body's retreat that is demanded; 0: none, nor corrections
 
   static const Stage all[7];
+  static const Stage& softest() { return all[6]; }
   static constexpr std::size_t holding = 2;
   static constexpr std::size_t all_of_the_band = 3;
 };
 
-// Guides are relaxed first. The last stage allows zero motion.
+// Guides are relaxed first. The last stage allows zero motion beside meshes that stand still.
 constexpr JointProblem::Stage JointProblem::Stage::all[7] = {
     {Relaxation::none, 1.0, true, 1.0},      {Relaxation::guides, 0.5, true, 1.0},
     {Relaxation::guides, 0.5, false, 1.0},   {Relaxation::guides, 0.0, false, 1.0},
@@ -35,13 +36,13 @@ ProblemMemory::ProblemMemory(Solver& its_solver, int joints, std::size_t rows)
   solver.reserve(joints, static_cast<int>(bounds.size()));
 }
 
-Proposal JointProblem::solve(const JointTask& task, std::span<const ContactRow> rows) noexcept {
+Proposal JointProblem::solve(const JointTask& task, std::span<const Row> rows) noexcept {
   Solution solution;
   Proposal proposal;
   bool guides_pull = false;
   bool bodies_pull = false;
-  for (const ContactRow& row : rows) {
-    bool& pull = row.owner < most_pairs ? bodies_pull : guides_pull;
+  for (const Row& row : rows) {
+    bool& pull = is_guide(row.owner) ? guides_pull : bodies_pull;
     pull = pull || row.bound > 0.0;
   }
   for (std::size_t i = 0; i < std::size(Stage::all); ++i) {
@@ -70,29 +71,28 @@ Proposal JointProblem::solve(const JointTask& task, std::span<const ContactRow> 
     proposal.increment[k] = task.unit[k] * solution.u[k];
   }
   proposal.active = solution.active;
-  note_active(rows, proposal);
-  if (box_.clip(proposal.increment)) proposal.held.add(Limit::joint_position);
+  describe_active(rows, proposal);
+  if (box_.clip(proposal.increment)) proposal.limits.add(Limit::joint_position);
   return proposal;
 }
 
-bool JointProblem::relax_guides(std::span<const ContactRow> rows) noexcept {
-  const bool is_any_pulled = std::any_of(rows.begin(), rows.end(), [](const ContactRow& row) {
-    return row.owner >= most_pairs && row.bound > 0.0;
+bool JointProblem::relax_guides(std::span<const Row> rows) noexcept {
+  const bool is_any_pulled = std::any_of(rows.begin(), rows.end(), [](const Row& row) {
+    return is_guide(row.owner) && row.bound > 0.0;
   });
   if (!is_any_pulled || relaxed_ >= Stage::holding) return false;
   ++relaxed_;
   return true;
 }
 
-OwnerSet JointProblem::conflict(const JointTask& task, std::span<const ContactRow> rows) noexcept {
-  constexpr Stage softest{Relaxation::recovery, 0.0, false, 0.0};
+OwnerSet JointProblem::conflict(const JointTask& task, std::span<const Row> rows) noexcept {
   OwnerSet owners;
-  for (const ContactRow& row : rows) owners.set(row.owner);
+  for (const Row& row : rows) owners.set(row.owner);
   Solution solution;
   for (std::size_t owner = 0; owner < owners.size() && !context_.budget.is_spent(); ++owner) {
     if (!owners[owner]) continue;
     left_out_.set(owner);
-    const SolveStatus solved = solve_once(task, rows, softest, solution);
+    const SolveStatus solved = solve_once(task, rows, Stage::softest(), solution);
     if (solved == SolveStatus::optimal) left_out_.reset(owner);
   }
   owners &= ~left_out_;
@@ -101,16 +101,15 @@ OwnerSet JointProblem::conflict(const JointTask& task, std::span<const ContactRo
 }
 
 /// Notes the kinds of the rows that limit a solution, and their guides.
-void JointProblem::note_active(std::span<const ContactRow> rows,
-                               Proposal& proposal) const noexcept {
+void JointProblem::describe_active(std::span<const Row> rows, Proposal& proposal) const noexcept {
   for (const std::uint32_t number : proposal.active) {
     if (number < rows.size()) {
       const std::size_t owner = rows[number].owner;
-      proposal.held.add(owner < most_pairs ? Limit::mesh : Limit::guide);
-      if (owner >= most_pairs) proposal.guides.set(owner - most_pairs);
+      proposal.limits.add(is_guide(owner) ? Limit::guide : Limit::mesh);
+      if (is_guide(owner)) proposal.guides.set(guide_of(owner));
     } else {
       const std::size_t side = box_rows_[number - rows.size()];
-      proposal.held.add(box_.limit(side / 2, side % 2 == 1));
+      proposal.limits.add(box_.limit(side / 2, side % 2 == 1));
     }
   }
 }
@@ -118,8 +117,8 @@ void JointProblem::note_active(std::span<const ContactRow> rows,
 /// Returns true if pulling all guides back takes a motion that leaves one of them again, and that
 /// is much longer than to pull them back one by one, and than to relax them. The rows of guides
 /// that miss each other by little are nearly opposite: only a very long motion satisfies all of
-/// them. `solution` is the motion; the relaxed one if true is returned.
-bool JointProblem::is_far_fetched(const JointTask& task, std::span<const ContactRow> rows,
+/// them. `solution` is the motion; it is lost if true is returned.
+bool JointProblem::is_far_fetched(const JointTask& task, std::span<const Row> rows,
                                   const Stage& tried, const Stage& relaxed,
                                   Solution& solution) noexcept {
   constexpr double most = 4.0;
@@ -131,8 +130,8 @@ bool JointProblem::is_far_fetched(const JointTask& task, std::span<const Contact
   for (std::size_t k = 0; k < n; ++k) increment[k] = task.unit[k] * solution.u[k];
   double one_by_one = 0.0;
   bool bends_too_much = false;
-  for (const ContactRow& row : rows) {
-    if (row.owner < most_pairs || !(row.bound > 0.0)) continue;
+  for (const Row& row : rows) {
+    if (!is_guide(row.owner) || !(row.bound > 0.0)) continue;
     double steepest2 = 0.0;
     for (std::size_t k = 0; k < n; ++k) steepest2 += std::pow(task.unit[k] * row.gradient[k], 2);
     if (steepest2 > 0.0) one_by_one += (row.bound + row.correction) / std::sqrt(steepest2);
@@ -147,46 +146,46 @@ bool JointProblem::is_far_fetched(const JointTask& task, std::span<const Contact
 }
 
 /// Returns the least change of a body's height over its plane that a motion must make. [length]
-double JointProblem::body_bound(const ContactRow& row, const Stage& stage) const noexcept {
-  const double bound = (row.bound > 0.0 ? stage.bodies * row.bound : row.bound) + row.correction;
-  return (stage.bodies > 0.0 ? bound : std::min(bound, 0.0)) - row.drift -
-         watch_.degradation(row.owner);
+double JointProblem::body_bound(const Row& row, const Stage& stage) const noexcept {
+  const double bound = (row.bound > 0.0 ? stage.recovery * row.bound : row.bound) + row.correction;
+  return (stage.recovery > 0.0 ? bound : std::min(bound, 0.0)) - row.drift -
+         bodies_.degradation(row.owner);
 }
 
 /// Like body_bound(), but for a guide's row. A relaxed guide outside its region is limited by the
 /// region grown by the excess that this cycle allows, less a fraction of its band. [length or rad]
-double JointProblem::guide_bound(const ContactRow& row, const Stage& stage) const noexcept {
+double JointProblem::guide_bound(const Row& row, const Stage& stage) const noexcept {
   double bound = row.bound;
   if (stage.unused < 1.0) {
-    const double out = guides_.allowance(row.owner - most_pairs, stage.unused);
+    const double out = guides_.allowance(guide_of(row.owner), stage.unused);
     bound = std::min(bound, -row.start_height - out);
   }
   if (!stage.pulls_guides) bound = std::min(bound, 0.0);
   bound += row.correction;
-  return stage.bodies > 0.0 ? bound : std::min(bound, 0.0);
+  return stage.recovery > 0.0 ? bound : std::min(bound, 0.0);
 }
 
 /// Solves the problem of one stage. The rows of owners that are left out become empty rows.
-SolveStatus JointProblem::solve_once(const JointTask& task, std::span<const ContactRow> rows,
+SolveStatus JointProblem::solve_once(const JointTask& task, std::span<const Row> rows,
                                      const Stage& stage, Solution& solution) noexcept {
   const auto n = static_cast<std::size_t>(task.joints);
-  double* number = memory_.matrix.data();
+  double* entry = memory_.matrix.data();
   std::size_t count = 0;
-  for (const ContactRow& row : rows) {
-    double steepest = 0.0;
+  for (const Row& row : rows) {
+    double largest_entry = 0.0;
     if (left_out_[row.owner]) {
-      number = std::fill_n(number, n, 0.0);
+      entry = std::fill_n(entry, n, 0.0);
       memory_.bounds[count++] = 0.0;
       continue;
     }
     for (std::size_t k = 0; k < n; ++k) {
-      *number++ = task.unit[k] * row.gradient[k];
-      steepest = std::max(steepest, std::abs(number[-1]));
+      *entry++ = task.unit[k] * row.gradient[k];
+      largest_entry = std::max(largest_entry, std::abs(entry[-1]));
     }
-    double least = row.owner < most_pairs ? body_bound(row, stage) : guide_bound(row, stage);
+    double least = is_guide(row.owner) ? guide_bound(row, stage) : body_bound(row, stage);
     // A row that no joint can change must not demand a motion; the certificate decides if it is
     // safe.
-    if (steepest <= context_.tolerance) least = std::min(least, 0.0);
+    if (largest_entry <= context_.tolerance) least = std::min(least, 0.0);
     memory_.bounds[count++] = least;
   }
   std::size_t box_rows = 0;
@@ -194,9 +193,9 @@ SolveStatus JointProblem::solve_once(const JointTask& task, std::span<const Cont
     for (const double sign : {1.0, -1.0}) {
       const double bound = sign > 0.0 ? box_.low()[k] : -box_.high()[k];
       if (!std::isfinite(bound)) continue;
-      std::fill_n(number, n, 0.0);
-      number[k] = sign;
-      number += n;
+      std::fill_n(entry, n, 0.0);
+      entry[k] = sign;
+      entry += n;
       memory_.bounds[count++] = bound / task.unit[k];
       box_rows_[box_rows++] = static_cast<std::uint8_t>(2 * k + (sign > 0.0 ? 0 : 1));
     }

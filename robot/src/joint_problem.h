@@ -18,14 +18,14 @@ namespace keepout {
 
 /// A set of guides, by number.
 using GuideSet = std::bitset<Guide::most>;
-/// A set of owners of rows: see ContactRow::owner.
+/// A set of owners of rows: see Row::owner.
 using OwnerSet = std::bitset<most_pairs + Guide::most>;
 
 /// A motion that the solver proposes, and what limits it.
 struct Proposal {
   SolveStatus status = SolveStatus::infeasible;
   JointVector increment{};
-  Limits held = {};                            // the kinds of active rows and joint limits
+  Limits limits = {};                          // the kinds of active rows and joint limits
   GuideSet guides = {};                        // whose rows are active
   Relaxation relaxation = Relaxation::none;    // what was relaxed
   std::span<const std::uint32_t> active = {};  // rows, by number; valid until the next solve
@@ -45,34 +45,35 @@ struct ProblemMemory {
 class JointProblem {
  public:
   /// All must outlive it.
-  JointProblem(ProblemMemory& memory, const IncrementBox& box, const BodyWatch& watch,
+  JointProblem(ProblemMemory& memory, const IncrementBox& box, const BodyWatch& bodies,
                const GuideWatch& guides, const CycleContext& context) noexcept
-      : memory_(memory), box_(box), watch_(watch), guides_(guides), context_(context) {}
+      : memory_(memory), box_(box), bodies_(bodies), guides_(guides), context_(context) {}
 
   /// Returns the motion that serves a task best within the rows and the limits of the joints.
-  /// Relaxes rows that pull back if they contradict each other, or if the solver does not converge.
-  Proposal solve(const JointTask& task, std::span<const ContactRow> rows) noexcept;
+  /// Relaxes rows that pull back if they contradict each other, if the solver does not converge, or
+  /// if guides pull unreasonably far.
+  Proposal solve(const JointTask& task, std::span<const Row> rows) noexcept;
   /// Stops pulling guides back into their regions from now on, by the least relaxation that is
   /// left. Returns false if no row pulls a guide back, or if no relaxation is left.
-  bool relax_guides(std::span<const ContactRow> rows) noexcept;
-  /// Returns a least set of owners whose rows contradict each other: each is left out in turn, and
-  /// stays out if the others still do.
-  OwnerSet conflict(const JointTask& task, std::span<const ContactRow> rows) noexcept;
+  bool relax_guides(std::span<const Row> rows) noexcept;
+  /// Returns a minimal set of owners whose rows contradict each other: each is left out in turn,
+  /// and stays out if the others still do.
+  OwnerSet conflict(const JointTask& task, std::span<const Row> rows) noexcept;
 
  private:
   struct Stage;
 
-  SolveStatus solve_once(const JointTask& task, std::span<const ContactRow> rows,
-                         const Stage& stage, Solution& solution) noexcept;
-  bool is_far_fetched(const JointTask& task, std::span<const ContactRow> rows, const Stage& tried,
+  SolveStatus solve_once(const JointTask& task, std::span<const Row> rows, const Stage& stage,
+                         Solution& solution) noexcept;
+  bool is_far_fetched(const JointTask& task, std::span<const Row> rows, const Stage& tried,
                       const Stage& relaxed, Solution& solution) noexcept;
-  double body_bound(const ContactRow& row, const Stage& stage) const noexcept;
-  double guide_bound(const ContactRow& row, const Stage& stage) const noexcept;
-  void note_active(std::span<const ContactRow> rows, Proposal& proposal) const noexcept;
+  double body_bound(const Row& row, const Stage& stage) const noexcept;
+  double guide_bound(const Row& row, const Stage& stage) const noexcept;
+  void describe_active(std::span<const Row> rows, Proposal& proposal) const noexcept;
 
   ProblemMemory& memory_;
   const IncrementBox& box_;
-  const BodyWatch& watch_;
+  const BodyWatch& bodies_;
   const GuideWatch& guides_;
   const CycleContext& context_;
   OwnerSet left_out_ = {};

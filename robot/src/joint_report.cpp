@@ -8,28 +8,29 @@ namespace keepout {
 
 /// Notes that a guide ended a search.
 void JointCycle::note_guide(std::size_t guide) noexcept {
-  stopped_.add(Limit::guide);
+  stopping_limits_.add(Limit::guide);
   stopping_guides_.set(guide);
 }
 
 /// Notes the kinds of constraints that the last trial of a search could not be proved for. If the
 /// rows contradict each other, notes the kinds of the rows.
 void JointCycle::note_failure() noexcept {
-  if (trouble_ == Status::ill_posed) return;
-  if (trouble_ == Status::infeasible) {
-    for (const ContactRow& row : rows_.view()) {
-      if (row.owner < most_pairs) {
-        stopped_.add(Limit::mesh);
+  if (search_status_ == Status::ill_posed) return;
+  if (search_status_ == Status::infeasible) {
+    for (const Row& row : rows_.view()) {
+      if (is_guide(row.owner)) {
+        note_guide(guide_of(row.owner));
       } else {
-        note_guide(row.owner - most_pairs);
+        stopping_limits_.add(Limit::mesh);
       }
     }
     return;
   }
   // A proof that the budget ended says nothing about its subject.
-  if (by_guides_.cell < PointMotion::cells && !is_spent()) note_guide(by_guides_.guide);
-  for (const Certificate::Failure& failure : memory_.failures) {
-    if (failure.triangle != nullptr) stopped_.add(Limit::mesh);
+  if (guide_obstacle_.knot < PointMotion::last_knot && !is_spent())
+    note_guide(guide_obstacle_.guide);
+  for (const Certificate::Obstacle& obstacle : memory_.obstacles) {
+    if (obstacle.triangle != nullptr) stopping_limits_.add(Limit::mesh);
   }
 }
 
@@ -37,14 +38,16 @@ void JointCycle::note_failure() noexcept {
 void JointCycle::report_limits(const Trial& best, InstrumentStep& result) noexcept {
   if (result.status == Status::free) return;
   Limits& limits = result.limits;
-  const auto ended = [&](Status status) { return trouble_ == status || result.status == status; };
+  const auto ended = [&](Status status) {
+    return search_status_ == status || result.status == status;
+  };
   if (result.status == Status::touching || result.status == Status::inside) limits.add(Limit::mesh);
   if (ended(Status::over_capacity)) limits.add(Limit::capacity);
   if (ended(Status::out_of_budget)) limits.add(Limit::budget);
-  limits.add(best.held);
+  limits.add(best.limits);
   const bool is_cut = !is_ok(result.status) || is_shortened_ || best.fraction < 1.0;
   if (!is_cut) return;
-  limits.add(stopped_);
+  limits.add(stopping_limits_);
   if (is_ok(result.status)) limits.add(Limit::truncated);
 }
 

@@ -17,7 +17,7 @@ double length_of(const std::array<double, JointTask::most_rows>& v) noexcept {
 double JointTask::cost(const JointVector& increment) const noexcept {
   const auto n = static_cast<std::size_t>(joints);
   JointVector u;
-  for (std::size_t k = 0; k < n; ++k) u[k] = increment[k] / unit[k];
+  for (int k = 0; k < joints; ++k) u[static_cast<std::size_t>(k)] = in_units(increment, k);
   double sum = 0.0;
   for (std::size_t row = 0; row < static_cast<std::size_t>(rows); ++row) {
     double off = -desired[row];
@@ -41,12 +41,12 @@ double JointTask::best_share(const JointVector& increment, double most) const no
   double square = 0.0;
   double gain = 0.0;
   for (int row = 0; row < rows; ++row) {
-    double way = 0.0;
+    double made = 0.0;
     for (int k = 0; k < joints; ++k) {
-      way += jacobian[static_cast<std::size_t>(k * rows + row)] * in_units(increment, k);
+      made += jacobian[static_cast<std::size_t>(k * rows + row)] * in_units(increment, k);
     }
-    square += way * way;
-    gain += way * desired[static_cast<std::size_t>(row)];
+    square += made * made;
+    gain += made * desired[static_cast<std::size_t>(row)];
   }
   for (int k = 0; k < joints; ++k) {
     const double u = in_units(increment, k);
@@ -77,7 +77,7 @@ double JointTask::linear_miss(const JointVector& increment, double share) const 
 }
 
 double JointTask::true_miss(const Pose& from, const Pose& to) const noexcept {
-  const Vec3 way = to.position - from.position;
+  const Vec3 displacement = to.position - from.position;
   Vec3 turn = Vec3::Zero();
   if (*turn_weight > 0.0) {
     const Eigen::AngleAxisd turned(Mat3(to.rotation * from.rotation.transpose()));
@@ -85,7 +85,7 @@ double JointTask::true_miss(const Pose& from, const Pose& to) const noexcept {
   }
   double sum = 0.0;
   for (int row = 0; row < rows; ++row) {
-    const double made = row < 3 ? way[row] : turn[row - 3];
+    const double made = row < 3 ? displacement[row] : turn[row - 3];
     const double off = made - desired[static_cast<std::size_t>(row)];
     sum += off * off;
   }
@@ -111,7 +111,7 @@ JointTask JointTask::scaled(double share) const noexcept {
 JointTask flange_task(const ChainState& chain, const Twist& desired,
                       const InstrumentOptions& options) noexcept {
   const bool turns = options.orientation_weight > 0.0;
-  // What a prismatic joint moves by is as much as a radian that moves the flange as far.
+  // A prismatic joint's unit moves the flange as far as a radian of a turn is worth.
   const double length = turns ? options.orientation_weight : 1.0;
   JointTask task{.rows = turns ? 6 : 3,
                  .joints = chain.size(),

@@ -24,22 +24,24 @@ struct JointTask {
   int joints = 0;
   double damping = 0.0;
   JointVector unit{};     // [rad or length]
-  double standing = 0.0;  // |v|: what standing still misses
+  double standing = 0.0;  // |v|: what zero motion misses
   /// The weight of a turn of the flange [length/rad]; empty if the task is not one of the flange.
   std::optional<double> turn_weight = std::nullopt;
 
-  /// What an increment dq costs.
+  /// Returns true if it is a task of the flange, and not of the joints.
+  bool is_of_flange() const noexcept { return turn_weight.has_value(); }
+  /// Returns the cost of an increment dq. [length^2]
   double cost(const JointVector& increment) const noexcept;
-  /// What a share of an increment costs.
+  /// Returns the cost of a fraction of an increment.
   double cost_of_share(const JointVector& increment, double share) const noexcept;
-  /// The share of an increment, at most `most`, that costs least: 0 where every share costs more
-  /// than standing still.
+  /// Returns the fraction of an increment, at most `most`, that costs least: 0 if every fraction
+  /// costs more than zero motion.
   double best_share(const JointVector& increment, double most) const noexcept;
-  /// A joint's increment in its unit.
+  /// Returns a joint's increment in its unit.
   double in_units(const JointVector& increment, int k) const noexcept {
     return increment[static_cast<std::size_t>(k)] / unit[static_cast<std::size_t>(k)];
   }
-  /// The same task, but for a share of what is desired.
+  /// Returns the task for a fraction of what is desired.
   JointTask scaled(double share) const noexcept;
   /// Returns the task with 16 times the damping, or with some damping if it has none.
   JointTask damped() const noexcept;
@@ -52,11 +54,11 @@ struct JointTask {
   double damping_cost(const JointVector& increment, double share) const noexcept;
 };
 
-/// Moves the flange by a twist: its way, and its turn times options.orientation_weight.
+/// Returns the task of moving the flange by a twist. Turns weigh options.orientation_weight.
 JointTask flange_task(const ChainState& chain, const Twist& desired,
                       const InstrumentOptions& options) noexcept;
 
-/// Moves the joints: dq (n) with weights (n), or none.
+/// Returns the task of moving the joints by dq (n), with weights (n), or with none.
 JointTask joint_task(std::span<const double> desired, std::span<const double> weights) noexcept;
 
 }  // namespace keepout

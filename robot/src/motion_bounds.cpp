@@ -14,16 +14,12 @@ MotionBounds motion_bounds(const ChainState& state, std::span<const double> incr
                            const Vec3& at) noexcept {
   MotionBounds bounds;
   for (int k = link; k >= 1; --k) {
-    const double turn = std::abs(increment[static_cast<std::size_t>(k - 1)]);
-    if (!state.turns(k)) {
-      bounds.path += turn;
-      continue;
+    const double step = std::abs(increment[static_cast<std::size_t>(k - 1)]);
+    if (state.turns(k)) {
+      bounds.turn(state.axis(k).cross(at - state.origin(k)).norm(), step);
+    } else {
+      bounds.slide(step);
     }
-    // What joints beyond k can move the point to against link k, over the whole motion.
-    const double lever = state.axis(k).cross(at - state.origin(k)).norm() + bounds.path;
-    const double way = lever * turn;
-    bounds.bend += turn * (way + 2.0 * bounds.path);
-    bounds.path += way;
   }
   return bounds;
 }
@@ -33,22 +29,21 @@ double recommended_band(const Instrument& instrument, double period, double leas
   double most = 0.0;
   for (const LinkPoint& point : instrument.points()) {
     double lever = point.position.norm();  // from joint k to the point, at the most
-    double path = 0.0;
-    double bend = 0.0;
+    MotionBounds bounds;
     for (int k = point.link; k >= 1; --k) {
       const Joint& joint = chain.joint(k);
       const double step = std::min(joint.limits.velocity * period, joint.limits.increment);
       if (joint.kind == JointKind::prismatic) {
-        path += step;
+        bounds.slide(step);
         lever += std::max(std::abs(joint.limits.lower), std::abs(joint.limits.upper));
       } else {
-        bend += step * ((lever + path) * step + 2.0 * path);
-        path += (lever + path) * step;
+        bounds.turn(lever, step);
       }
       lever += joint.origin.position.norm();
     }
     // Without a limit the bend is infinite, or 0 times infinity.
-    most = std::isnan(bend) ? std::numeric_limits<double>::infinity() : std::max(most, bend);
+    most = std::isnan(bounds.bend) ? std::numeric_limits<double>::infinity()
+                                   : std::max(most, bounds.bend);
     if (std::isinf(most)) break;
   }
   return std::max(least, most / 8.0);

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <limits>
 
 #include "keepout/activation/facet.h"
@@ -13,8 +12,8 @@ namespace {
 
 constexpr double far = std::numeric_limits<double>::infinity();
 
-/// A lower bound of the distance from a segment to a triangle, by the plane across the shortest way
-/// to the triangle's middle.
+/// Returns a lower bound of the distance from a segment to a triangle, by the plane across the
+/// shortest line to the triangle's middle: may_be_near (near_blocks.h) in double precision.
 double least_distance(const Vec3& from, const Vec3& to, const Triangle& corners) noexcept {
   const Vec3 along = to - from;
   const double length2 = along.squaredNorm();
@@ -29,14 +28,7 @@ double least_distance(const Vec3& from, const Vec3& to, const Triangle& corners)
   return apart > 0.0 ? apart / length : 0.0;
 }
 
-/// How far a plane with that normal parts a core from a triangle; not at all for none.
-double distance_along(const Vec3& n, std::span<const Vec3> core, const Triangle& corners) noexcept {
-  double least = far;
-  for (const Vec3& point : core) least = std::min(least, n.dot(point));
-  return least - support(corners, n);
-}
-
-/// Has the memory of triangles on its way whose turn comes soon.
+/// Prefetches triangles that come soon.
 void fetch_ahead(const Mesh& mesh, std::span<const TriangleId> ids, std::size_t i) noexcept {
   constexpr std::size_t corners_ahead = 16;
   constexpr std::size_t vertices_ahead = 8;
@@ -50,15 +42,15 @@ void fetch_ahead(const Mesh& mesh, std::span<const TriangleId> ids, std::size_t 
 
 }  // namespace
 
-NearSet::NearSet(std::size_t room, double beyond) : room_(room), beyond_(beyond) {
-  ids_.reserve(room);
-  corners_.reserve(room);
-  blocks_.resize(room / NearBlock::lanes + 1);
-  told_.reserve(room);
-  told_in_.reserve(room);
+NearSet::NearSet(std::size_t capacity, double beyond) : capacity_(capacity), beyond_(beyond) {
+  ids_.reserve(capacity);
+  corners_.reserve(capacity);
+  blocks_.resize(capacity / NearBlock::lanes + 1);
+  listed_.reserve(capacity);
+  listed_in_.reserve(capacity);
   core_.reserve(8);
   now_.reserve(8);
-  normals_.reserve(room);
+  normals_.reserve(capacity);
 }
 
 bool NearSet::gather(Neighborhood& near, std::span<const Vec3> core, double radius,
@@ -68,8 +60,8 @@ bool NearSet::gather(Neighborhood& near, std::span<const Vec3> core, double radi
   ids_.clear();
   corners_.clear();
   normals_.clear();
-  told_in_.clear();
-  start_cycle(core);
+  listed_in_.clear();
+  start_listing(core);
   TriangleBuffer& candidates = near.candidates();
   candidates.clear();
   near.index().collect_near({from_, to_, radius + beyond_}, candidates);
@@ -93,7 +85,7 @@ bool NearSet::gather(Neighborhood& near, std::span<const Vec3> core, double radi
     for (std::uint32_t lanes = may_be_near(block, screen); lanes != 0; lanes &= lanes - 1) {
       const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
       if (lane >= count) break;
-      if (ids_.size() == room_) {
+      if (ids_.size() == capacity_) {
         budget.mark_overflow();
         return false;
       }
@@ -102,30 +94,30 @@ bool NearSet::gather(Neighborhood& near, std::span<const Vec3> core, double radi
       ids_.push_back(found[first + lane]);
       corners_.push_back(corners[lane]);
       normals_.push_back(Vec3::Zero());
-      told_in_.push_back(0);
+      listed_in_.push_back(0);
     }
   }
   radius_ = radius;
   return true;
 }
 
-/// For the core as it is in this cycle.
+/// Returns the query for the triangles near the core of this listing.
 NearScreen NearSet::screen(double distance) const noexcept {
   return {from_ - core_.front(), to_ - core_.front(), distance + beyond_, size_};
 }
 
-void NearSet::start_cycle(std::span<const Vec3> core) noexcept {
+void NearSet::start_listing(std::span<const Vec3> core) noexcept {
   now_.assign(core.begin(), core.end());
   from_ = core.front();
   to_ = core.size() > 1 ? core[1] : core.front();
-  told_.clear();
-  ++cycle_;
-  told_below_ = -far;
+  listed_.clear();
+  ++listing_;
+  listed_below_ = -far;
 }
 
 std::span<NearTriangle> NearSet::nearer_than(double distance, Budget& budget) noexcept {
-  if (distance > told_below_ && !ids_.empty()) {
-    const auto known = static_cast<std::ptrdiff_t>(told_.size());
+  if (distance > listed_below_ && !ids_.empty()) {
+    const auto old_count = static_cast<std::ptrdiff_t>(listed_.size());
     const NearScreen screen = this->screen(distance);
     budget.spend(1 + ids_.size() / (4 * NearBlock::lanes));
     for (std::size_t first = 0; first < ids_.size(); first += NearBlock::lanes) {
@@ -133,32 +125,35 @@ std::span<NearTriangle> NearSet::nearer_than(double distance, Budget& budget) no
       for (; lanes != 0; lanes &= lanes - 1) {
         const std::size_t i = first + static_cast<std::size_t>(std::countr_zero(lanes));
         if (i >= ids_.size()) break;
-        if (told_in_[i] == cycle_) continue;
+        if (listed_in_[i] == listing_) continue;
         const double least = std::max(least_distance(from_, to_, corners_[i]) - beyond_,
-                                      distance_along(normals_[i], now_, corners_[i]));
+                                      height_along(normals_[i], now_, corners_[i]));
         if (!(least < distance)) continue;
-        told_in_[i] = cycle_;
-        told_.push_back(
+        listed_in_[i] = listing_;
+        listed_.push_back(
             {.id = ids_[i], .least = least, .corners = &corners_[i], .normal = &normals_[i]});
       }
     }
-    budget.spend(told_.size() - static_cast<std::size_t>(known));
-    std::sort(told_.begin() + known, told_.end(), [](const NearTriangle& x, const NearTriangle& y) {
-      return x.least < y.least || (x.least == y.least && x.id < y.id);
-    });
-    told_below_ = distance;
+    budget.spend(listed_.size() - static_cast<std::size_t>(old_count));
+    // What was listed before is nearer than all of these.
+    std::sort(listed_.begin() + old_count, listed_.end(),
+              [](const NearTriangle& x, const NearTriangle& y) {
+                return x.least < y.least || (x.least == y.least && x.id < y.id);
+              });
+    listed_below_ = distance;
   }
-  const auto end = std::partition_point(
-      told_.begin(), told_.end(), [&](const NearTriangle& one) { return one.least < distance; });
-  return {told_.data(), static_cast<std::size_t>(end - told_.begin())};
+  const auto end =
+      std::partition_point(listed_.begin(), listed_.end(),
+                           [&](const NearTriangle& one) { return one.least < distance; });
+  return {listed_.data(), static_cast<std::size_t>(end - listed_.begin())};
 }
 
-void NearSet::know(NearTriangle& triangle, Budget& budget) noexcept {
-  if (triangle.is_known) return;
+void NearSet::measure(NearTriangle& triangle, Budget& budget) noexcept {
+  if (triangle.is_measured) return;
   budget.spend(work_of_gap(now_.size()));
   triangle.at_start = gap(now_, *triangle.corners);
   *triangle.normal = triangle.at_start.normal;
-  triangle.is_known = true;
+  triangle.is_measured = true;
 }
 
 }  // namespace keepout

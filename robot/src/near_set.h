@@ -12,71 +12,71 @@
 
 namespace keepout {
 
-/// A triangle that may matter in a cycle, and how a body stands to it.
+/// A triangle near a body in a cycle, and the gap between them.
 struct NearTriangle {
   TriangleId id;
-  double least;             // its distance from the core, as the cycle begins, is no less [length]
-  const Triangle* corners;  // valid until triangles are looked for again
-  Vec3* normal;  // the last one that parted it from the core, which may do so again: see `know`
-  bool is_known = false;  // whether the gap is
-  Gap at_start = {};      // as the cycle begins
+  double least;              // a lower bound of its distance at the start of the cycle [length]
+  const Triangle* corners;   // valid until triangles are gathered again
+  Vec3* normal;              // of the last plane between it and the core; zero if there is none
+  bool is_measured = false;  // at_start is known
+  Gap at_start = {};         // at the start of the cycle
 };
 
-/// The triangles around one body, kept from cycle to cycle: while no point of the body has moved
-/// farther than they were looked for, nothing else can be in reach. What is told of them is decided
-/// by the engine and not by the index, so it is the same on each.
+/// The triangles around one body, which stay from cycle to cycle: while no point of the body has
+/// moved farther than the padding of the search, no other triangle is in reach. The engine, not the
+/// index, decides which triangles are listed, so every index gives the same list.
 class NearSet {
  public:
-  /// With room for so many triangles, for a body whose core is all within `beyond` of the segment
-  /// of its first two points. Allocates; nothing else does. [length]
-  NearSet(std::size_t room, double beyond);
+  /// For a body whose core is within `beyond` of the segment of its first two points. Allocates
+  /// memory for `capacity` triangles; nothing else does. [length]
+  NearSet(std::size_t capacity, double beyond);
 
-  /// Looks for all triangles within `radius` of a core, in the places of its points. False if there
-  /// are too many, or the budget is spent: then nothing is known. [length]
+  /// Finds all triangles within `radius` of a core, and starts a listing. Returns false if there
+  /// are too many, or if the budget is spent: then no triangle is known. [length]
   [[nodiscard]] bool gather(Neighborhood& near, std::span<const Vec3> core, double radius,
                             Budget& budget) noexcept;
 
-  /// Forgets all: nothing is known.
+  /// Forgets all triangles.
   void forget() noexcept { radius_ = -1.0; }
 
-  /// How far around the core all is known, from where it was then. Below 0: nothing is. [length]
+  /// Returns the distance from core() within which all triangles are known; below 0 if none are.
+  /// [length]
   double radius() const noexcept { return radius_; }
-  /// Where the points of the core were then. [length]
+  /// Returns the positions of the core's points when triangles were gathered. [length]
   std::span<const Vec3> core() const noexcept { return core_; }
-  /// How many triangles there are.
+  /// Returns the number of triangles.
   std::size_t size() const noexcept { return ids_.size(); }
   /// Returns true if no more triangles fit.
-  bool is_full() const noexcept { return ids_.size() == room_; }
+  bool is_full() const noexcept { return ids_.size() == capacity_; }
 
-  /// A new cycle, with the core elsewhere.
-  void start_cycle(std::span<const Vec3> core) noexcept;
-  /// Those that may be nearer than that to the core as the cycle begins, the nearest first; of
-  /// equals the first by number. Valid until triangles are looked for again, or the next cycle.
-  /// Work is taken from the budget. [length]
+  /// Starts a new listing, with the core at other positions. All listed triangles become invalid.
+  void start_listing(std::span<const Vec3> core) noexcept;
+  /// Lists the triangles that may be nearer than `distance` to the core at the start of the cycle,
+  /// the nearest first; of equals the first by number. Valid until the next listing. [length]
   std::span<NearTriangle> nearer_than(double distance, Budget& budget) noexcept;
-  /// Finds the gap of one of them as the cycle begins, unless it is known.
-  void know(NearTriangle& triangle, Budget& budget) noexcept;
+  /// Measures the gap of a listed triangle, unless it is known.
+  void measure(NearTriangle& triangle, Budget& budget) noexcept;
 
  private:
   NearScreen screen(double distance) const noexcept;
 
-  std::size_t room_;
+  std::size_t capacity_;
   double beyond_;
   double radius_ = -1.0;
   std::vector<Vec3> core_;
   double size_ = 0.0;  // the largest coordinate, from the core's first point [length]
   std::vector<TriangleId> ids_;
   std::vector<Triangle> corners_;
-  std::vector<NearBlock> blocks_;  // the same in floats
-  std::vector<Vec3> normals_;  // that parted them from the core when their gap was found; or zero
-  // Of this cycle.
+  std::vector<NearBlock> blocks_;  // the corners in single precision
+  std::vector<Vec3> normals_;      // see NearTriangle::normal
+  // Of the listing.
   std::vector<Vec3> now_;     // the core's points
   Vec3 from_ = Vec3::Zero();  // the segment of the first two
   Vec3 to_ = Vec3::Zero();
-  std::vector<NearTriangle> told_;
-  std::vector<std::uint64_t> told_in_;  // the cycle in which each was
-  std::uint64_t cycle_ = 0;
-  double told_below_ = 0.0;  // all that may be nearer than that are among them
+  std::vector<NearTriangle> listed_;
+  std::vector<std::uint64_t> listed_in_;  // of each triangle, the last listing that it is in
+  std::uint64_t listing_ = 0;
+  double listed_below_ = 0.0;  // all triangles that may be nearer are listed [length]
 };
 
 }  // namespace keepout

@@ -5,7 +5,6 @@
 #include <memory>
 #include <vector>
 
-#include "contact_row.h"
 #include "keepout/buffer.h"
 #include "keepout/geometry/pose.h"
 #include "keepout/geometry/twist.h"
@@ -15,13 +14,14 @@
 #include "keepout/step/side_memory.h"
 #include "near_set.h"
 #include "relative_motion.h"
+#include "row.h"
 
 namespace keepout {
 
 /// A mesh, its pose, and what the cycles remember of it.
 struct MeshMemory {
-  std::unique_ptr<Neighborhood> near;
-  double own_margin;  // 0: that of the options [length]
+  std::unique_ptr<Neighborhood> neighborhood;
+  double own_margin;  // 0: the mesh has the margin of the options [length]
   bool is_watertight;
   RelativeMotion motion;                           // of the instrument, in the mesh's frame
   Pose pose = {};                                  // at the start of the next cycle
@@ -38,17 +38,19 @@ struct MeshMemory {
 struct PairMemory {
   std::size_t body;
   std::size_t mesh;
-  NearSet near;
-  double displacement = 0.0;     // the largest of its points on the last motion [length]
-  double padding = 0.0;          // of the search for triangles, beyond what is needed [length]
-  double certified = 0.0;        // the clearance that the last cycle certified [length]
-  bool is_side_unknown = false;  // it was dropped, so the body may have crossed the surface
+  NearSet triangles;
+  double displacement = 0.0;  // the largest of its points on the last trial; predicts the next
+  double padding = 0.0;       // of the search for triangles, beyond what is needed [length]
+  /// The clearance that the last cycle certified. In a cycle, from BodyWatch::open on, the one that
+  /// this cycle certifies unless close() lowers it. [length]
+  double certified = 0.0;
+  bool may_have_crossed = false;  // no clearance was certified: the body's side must be found
   // Of this cycle.
-  double clearance = 0.0;   // to be certified while it is not degraded [length]
-  double row_margin = 0.0;  // the margin that rows demand, beyond the radius [length]
-  double fraction = 1.0;    // of the clearance that is to be certified
-  bool is_dropped = false;  // nothing is certified: no motion could be proved for the pair
-  bool is_settled = false;  // no joint moves the body, and its proof is complete
+  double full_clearance = 0.0;      // to be certified while it is not degraded [length]
+  double row_margin = 0.0;          // the margin that rows demand, beyond the radius [length]
+  double clearance_fraction = 1.0;  // of the clearance that is to be certified
+  bool is_dropped = false;          // nothing is certified: no motion could be proved for the pair
+  bool is_settled = false;          // no joint moves the body, and its proof is complete
 };
 
 /// The pairs of bodies and meshes. Made once for all cycles of an instrument.

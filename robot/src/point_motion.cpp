@@ -2,38 +2,36 @@
 #include "point_motion.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace keepout {
 namespace {
 
-// In looks: a chain is placed in a third of a microsecond.
-constexpr std::size_t work_of_place = 4;
+constexpr std::size_t work_of_kinematics = 4;  // in work units: a third of a microsecond
 
 }  // namespace
 
 PointMotion::PointMotion(const Instrument& instrument, Budget& budget)
-    : instrument_(&instrument), budget_(&budget), places_(cells + 1) {
+    : instrument_(&instrument), budget_(&budget), positions_(last_knot + 1) {
   straight_.fill(Vec3::Zero());
 }
 
 void PointMotion::start(std::span<const double> q) noexcept {
-  ++motion_;
+  ++number_;
   std::copy(q.begin(), q.end(), q_.begin());
-  budget_->spend(work_of_place);
+  budget_->spend(work_of_kinematics);
   instrument_->chain().forward_kinematics(q, start_);
-  fill(start_, places_[0]);
+  fill(start_, positions_[0]);
 }
 
 void PointMotion::move(const JointVector& increment, CertifiedMotion which) noexcept {
-  ++motion_;
+  ++number_;
   increment_ = increment;
   which_ = which;
   const std::span<const LinkPoint> points = instrument_->points();
   const auto n = static_cast<std::size_t>(instrument_->chain().size());
   budget_->spend(1 + points.size() / 4);
   for (std::size_t p = 0; p < points.size(); ++p) {
-    const Vec3& here = at_start()[p];
+    const Vec3& here = points_at_start()[p];
     if (which == CertifiedMotion::actual) {
       bounds_[p] = motion_bounds(start_, {increment_.data(), n}, points[p].link, here);
       continue;
@@ -47,50 +45,49 @@ void PointMotion::move(const JointVector& increment, CertifiedMotion which) noex
   }
 }
 
-const Vec3* PointMotion::at(int cell) noexcept {
-  Place& place = places_[static_cast<std::size_t>(cell)];
-  if (cell == 0 || place.motion == motion_) return place.points.data();
-  place.motion = motion_;
-  const double share = static_cast<double>(cell) / cells;
+const Vec3* PointMotion::points_at(int knot) noexcept {
+  Positions& there = positions_[static_cast<std::size_t>(knot)];
+  if (knot == 0 || there.motion == number_) return there.points.data();
+  there.motion = number_;
+  const double fraction = static_cast<double>(knot) / last_knot;
   if (which_ == CertifiedMotion::linearised) {
     for (std::size_t p = 0; p < instrument_->points().size(); ++p) {
-      place.points[p] = at_start()[p] + share * straight_[p];
+      there.points[p] = points_at_start()[p] + fraction * straight_[p];
     }
-    return place.points.data();
+    return there.points.data();
   }
-  budget_->spend(work_of_place);
-  place_at(share, state_);
-  placed_motion_ = motion_;
-  placed_share_ = share;
-  fill(state_, place);
-  return place.points.data();
+  fill(chain_at(fraction), there);
+  return there.points.data();
 }
 
-Pose PointMotion::flange_at(double share) noexcept {
-  if (placed_motion_ != motion_ || placed_share_ != share) {
-    budget_->spend(work_of_place);
-    place_at(share, state_);
-    placed_motion_ = motion_;
-    placed_share_ = share;
+Pose PointMotion::flange_at(double fraction) noexcept { return chain_at(fraction).flange(); }
+
+/// Returns the chain at a fraction of the motion; computes it unless it is the last one computed.
+const ChainState& PointMotion::chain_at(double fraction) noexcept {
+  if (number_of_state_ != number_ || fraction_of_state_ != fraction) {
+    budget_->spend(work_of_kinematics);
+    forward_kinematics(fraction, state_);
+    number_of_state_ = number_;
+    fraction_of_state_ = fraction;
   }
-  return state_.flange();
+  return state_;
 }
 
-void PointMotion::place(int cell, ChainState& state) const noexcept {
-  place_at(static_cast<double>(cell) / cells, state);
+void PointMotion::chain_at(int knot, ChainState& state) const noexcept {
+  forward_kinematics(static_cast<double>(knot) / last_knot, state);
 }
 
-void PointMotion::place_at(double share, ChainState& state) const noexcept {
+void PointMotion::forward_kinematics(double fraction, ChainState& state) const noexcept {
   const auto n = static_cast<std::size_t>(instrument_->chain().size());
   JointVector q;
-  for (std::size_t k = 0; k < n; ++k) q[k] = q_[k] + share * increment_[k];
+  for (std::size_t k = 0; k < n; ++k) q[k] = q_[k] + fraction * increment_[k];
   instrument_->chain().forward_kinematics({q.data(), n}, state);
 }
 
-void PointMotion::fill(const ChainState& state, Place& place) const noexcept {
+void PointMotion::fill(const ChainState& state, Positions& positions) const noexcept {
   const std::span<const LinkPoint> points = instrument_->points();
   for (std::size_t p = 0; p < points.size(); ++p) {
-    place.points[p] = state.at(points[p].link, points[p].position);
+    positions.points[p] = state.at(points[p].link, points[p].position);
   }
 }
 

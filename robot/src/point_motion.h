@@ -14,56 +14,58 @@
 
 namespace keepout {
 
-/// Positions of joints, or what is added to them.
+/// Positions or increments of the joints. [rad or length]
 using JointVector = std::array<double, Chain::most_joints>;
 
-/// Where the points of a body's core are. [length]
+/// The positions of the points of a body's core. [length]
 using Core = std::array<Vec3, Instrument::most_points_of_a_body>;
 
-/// The points of an instrument on their way while the joints move by an increment: where they are,
-/// on a grid of shares of the motion, and what bounds them in between. Positions are computed when
-/// they are first asked for.
+/// The motion of an instrument's points while the joints move by an increment: their positions at
+/// the knots of a grid, fractions 0, 1/64, ..., 1 of the motion, and bounds of the motion between
+/// knots. Positions are computed when they are first needed.
 class PointMotion {
  public:
-  /// The grid's cells; shares are c / cells.
-  static constexpr int cells = 64;
+  /// The knot at the end of the motion; a knot k is at the fraction k / last_knot.
+  static constexpr int last_knot = 64;
 
-  /// Takes its work from the budget. Both must stay where they are.
-  PointMotion(const Instrument& instrument, Budget& budget);
-
-  /// A new cycle, with the joints at q (n).
-  void start(std::span<const double> q) noexcept;
-
-  /// Another motion from there: dq.
-  void move(const JointVector& increment, CertifiedMotion which) noexcept;
-
-  /// The motion: dq.
-  const JointVector& increment() const noexcept { return increment_; }
-
-  /// Where all points are at a share of the motion, by their number. [length]
-  const Vec3* at(int cell) noexcept;
-  /// Where they are as the cycle begins. [length]
-  const Vec3* at_start() const noexcept { return places_[0].points.data(); }
-  /// The chain as the cycle begins.
-  const ChainState& chain_at_start() const noexcept { return start_; }
-  /// Where the chain is at a share of the motion.
-  void place(int cell, ChainState& state) const noexcept;
-  /// Returns the pose of the flange at a share of the motion, in [0, 1].
-  Pose flange_at(double share) noexcept;
-
-  /// What bounds the way of a point.
-  const MotionBounds& bounds(std::size_t point) const noexcept { return bounds_[point]; }
-  /// Which motion it is, of all that there were.
-  std::uint64_t number() const noexcept { return motion_; }
-
- private:
-  struct Place {
+  /// The positions of all points at a knot.
+  struct Positions {
     std::array<Vec3, Instrument::most_points> points;
-    std::uint64_t motion = 0;  // of which motion; 0: none
+    std::uint64_t motion = 0;  // the number of the motion; 0: not computed yet
   };
 
-  void place_at(double share, ChainState& state) const noexcept;
-  void fill(const ChainState& state, Place& place) const noexcept;
+  /// Both must outlive it.
+  PointMotion(const Instrument& instrument, Budget& budget);
+
+  /// Starts a cycle, with the joints at q (n).
+  void start(std::span<const double> q) noexcept;
+
+  /// Tries another motion from there: dq.
+  void move(const JointVector& increment, CertifiedMotion which) noexcept;
+
+  /// Returns the motion: dq.
+  const JointVector& increment() const noexcept { return increment_; }
+
+  /// Returns the positions of all points at a knot, by their number. [length]
+  const Vec3* points_at(int knot) noexcept;
+  /// Returns the positions of all points at the start of the cycle. [length]
+  const Vec3* points_at_start() const noexcept { return positions_[0].points.data(); }
+  /// Returns the chain at the start of the cycle.
+  const ChainState& chain_at_start() const noexcept { return start_; }
+  /// Computes the chain at a knot.
+  void chain_at(int knot, ChainState& state) const noexcept;
+  /// Returns the pose of the flange at a fraction of the motion, in [0, 1].
+  Pose flange_at(double fraction) noexcept;
+
+  /// Returns the bounds of a point's motion.
+  const MotionBounds& bounds(std::size_t point) const noexcept { return bounds_[point]; }
+  /// Returns the number of the motion, which no other motion has.
+  std::uint64_t number() const noexcept { return number_; }
+
+ private:
+  void forward_kinematics(double fraction, ChainState& state) const noexcept;
+  const ChainState& chain_at(double fraction) noexcept;
+  void fill(const ChainState& state, Positions& positions) const noexcept;
 
   const Instrument* instrument_;
   Budget* budget_;
@@ -74,10 +76,10 @@ class PointMotion {
   ChainState state_;
   std::array<MotionBounds, Instrument::most_points> bounds_{};
   std::array<Vec3, Instrument::most_points> straight_;  // J dq, of the linearised motion
-  std::vector<Place> places_;                           // (cells + 1)
-  std::uint64_t motion_ = 0;
-  std::uint64_t placed_motion_ = 0;  // of state_: the motion and the share of it; 0: none
-  double placed_share_ = 0.0;
+  std::vector<Positions> positions_;                    // (last_knot + 1)
+  std::uint64_t number_ = 0;
+  std::uint64_t number_of_state_ = 0;  // the motion that state_ is of; 0: none
+  double fraction_of_state_ = 0.0;     // of that motion
 };
 
 }  // namespace keepout

@@ -7,80 +7,78 @@
 namespace keepout {
 
 RelativeMotion::RelativeMotion(const Instrument& instrument, PointMotion& motion)
-    : instrument_(&instrument), motion_(&motion), places_(PointMotion::cells + 1) {}
+    : instrument_(&instrument), joint_motion_(&motion), positions_(PointMotion::last_knot + 1) {}
 
-void RelativeMotion::start(const Pose& mesh, const Twist& way) noexcept {
+void RelativeMotion::start(const Pose& mesh, const Twist& displacement) noexcept {
   mesh_ = mesh;
-  way_ = way;
-  turn_ = way.angular.norm();
-  axis_ = turn_ > 0.0 ? Vec3(way.angular / turn_) : Vec3::Zero();
+  displacement_ = displacement;
+  turn_ = displacement.angular.norm();
+  axis_ = turn_ > 0.0 ? Vec3(displacement.angular / turn_) : Vec3::Zero();
   is_at_home_ = mesh.position.isZero(0.0) && mesh.rotation == Mat3::Identity() &&
-                way.linear.isZero(0.0) && turn_ == 0.0;
+                displacement.linear.isZero(0.0) && turn_ == 0.0;
   if (is_at_home_) return;
   const std::size_t count = instrument_->points().size();
   for (std::size_t p = 0; p < count; ++p) {
-    places_[0].points[p] = seen(motion_->at_start()[p], 0);
+    positions_[0].points[p] = in_mesh(joint_motion_->points_at_start()[p], 0);
   }
 }
 
 void RelativeMotion::move() noexcept {
   for (std::size_t p = 0; p < instrument_->points().size(); ++p) {
-    bounds_[p] =
-        is_at_home_ ? motion_->bounds(p) : with_mesh(motion_->bounds(p), motion_->at_start()[p]);
+    bounds_[p] = is_at_home_
+                     ? joint_motion_->bounds(p)
+                     : with_mesh(joint_motion_->bounds(p), joint_motion_->points_at_start()[p]);
   }
 }
 
-/// As motion_bounds, with two joints more: a prismatic one, and farther in a revolute one.
 MotionBounds RelativeMotion::with_mesh(const MotionBounds& own, const Vec3& at) const noexcept {
   MotionBounds bounds = own;
-  bounds.path += way_.linear.norm();
-  const double lever = axis_.cross(at - mesh_.position).norm() + bounds.path;
-  bounds.bend += turn_ * (lever * turn_ + 2.0 * bounds.path);
-  bounds.path += lever * turn_;
+  bounds.slide(displacement_.linear.norm());
+  bounds.turn(axis_.cross(at - mesh_.position).norm(), turn_);
   return bounds;
 }
 
-Pose RelativeMotion::mesh_at(int cell) const noexcept {
-  const double share = static_cast<double>(cell) / PointMotion::cells;
+Pose RelativeMotion::mesh_at(int knot) const noexcept {
+  const double share = static_cast<double>(knot) / PointMotion::last_knot;
   Pose pose = mesh_;
-  pose.position += share * way_.linear;
-  if (turn_ > 0.0 && cell > 0) {
+  pose.position += share * displacement_.linear;
+  if (turn_ > 0.0 && knot > 0) {
     pose.rotation = Eigen::AngleAxisd(share * turn_, axis_).toRotationMatrix() * mesh_.rotation;
   }
   return pose;
 }
 
-Vec3 RelativeMotion::seen(const Vec3& place, int cell) const noexcept {
-  if (is_at_home_) return place;
-  const Pose mesh = mesh_at(cell);
-  return mesh.rotation.transpose() * (place - mesh.position);
+Vec3 RelativeMotion::in_mesh(const Vec3& position, int knot) const noexcept {
+  if (is_at_home_) return position;
+  const Pose mesh = mesh_at(knot);
+  return mesh.rotation.transpose() * (position - mesh.position);
 }
 
-const Vec3* RelativeMotion::at(int cell) noexcept {
-  if (is_at_home_) return motion_->at(cell);
-  Place& there = places_[static_cast<std::size_t>(cell)];
-  if (cell == 0 || there.motion == motion_->number()) return there.points.data();
-  there.motion = motion_->number();
-  const Vec3* in_world = motion_->at(cell);
-  const Pose mesh = mesh_at(cell);
+const Vec3* RelativeMotion::points_in_mesh(int knot) noexcept {
+  if (is_at_home_) return joint_motion_->points_at(knot);
+  PointMotion::Positions& there = positions_[static_cast<std::size_t>(knot)];
+  if (knot == 0 || there.motion == joint_motion_->number()) return there.points.data();
+  there.motion = joint_motion_->number();
+  const Vec3* in_world = joint_motion_->points_at(knot);
+  const Pose mesh = mesh_at(knot);
   for (std::size_t p = 0; p < instrument_->points().size(); ++p) {
     there.points[p] = mesh.rotation.transpose() * (in_world[p] - mesh.position);
   }
   return there.points.data();
 }
 
-std::span<const Vec3> RelativeMotion::core(std::size_t body, int cell, Core& core) noexcept {
-  const Vec3* places = at(cell);
+std::span<const Vec3> RelativeMotion::core(std::size_t body, int knot, Core& core) noexcept {
+  const Vec3* positions = points_in_mesh(knot);
   const std::span<const std::uint8_t> points = instrument_->points_of(body);
-  for (std::size_t i = 0; i < points.size(); ++i) core[i] = places[points[i]];
+  for (std::size_t i = 0; i < points.size(); ++i) core[i] = positions[points[i]];
   return {core.data(), points.size()};
 }
 
-double RelativeMotion::farthest(std::size_t body) noexcept {
-  const Vec3* end = at(PointMotion::cells);
+double RelativeMotion::largest_displacement(std::size_t body) noexcept {
+  const Vec3* end = points_in_mesh(PointMotion::last_knot);
   double most = 0.0;
   for (const std::uint8_t p : instrument_->points_of(body)) {
-    const double chord = (end[p] - at_start()[p]).norm();
+    const double chord = (end[p] - start_in_mesh()[p]).norm();
     most = std::max(most, std::min(bounds_[p].path, chord + bounds_[p].bend / 8.0));
   }
   return most;
@@ -90,7 +88,7 @@ double RelativeMotion::drift(std::size_t body) noexcept {
   if (!is_moving()) return 0.0;
   double most = 0.0;
   for (const std::uint8_t p : instrument_->points_of(body)) {
-    most = std::max(most, with_mesh({}, motion_->at_start()[p]).path);
+    most = std::max(most, with_mesh({}, joint_motion_->points_at_start()[p]).path);
   }
   return most;
 }

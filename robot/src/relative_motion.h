@@ -13,70 +13,65 @@
 
 namespace keepout {
 
-/// The points of an instrument on their way as a mesh sees them, which may be elsewhere than it was
-/// made, and may move in the cycle: its frame's origin on a straight line, and it turns about that,
-/// both steadily. So it is as if two more joints were between the mesh and the instrument's base:
-/// one that turns, and beyond it one that slides (docs/joint-space-step.md). All places are in the
-/// frame of the mesh.
+/// The motion of an instrument's points in the frame of a mesh. The mesh may have any pose, and may
+/// move in the cycle: its frame's origin on a straight line, while it turns about that origin, both
+/// steadily. That is as if two more joints were between the mesh and the instrument's base: one
+/// that turns, and beyond it one that slides (docs/joint-space-step.md, Lemma 3). Positions are in
+/// the frame of the mesh unless the name says otherwise.
 class RelativeMotion {
  public:
-  /// Of the points of that motion, which must stay where it is.
+  /// `motion`: of the points in the world; it must outlive this one.
   RelativeMotion(const Instrument& instrument, PointMotion& motion);
 
-  /// A new cycle, after the points' own: where the mesh is, and how it moves in all of the cycle.
-  /// [length], [rad]
-  void start(const Pose& mesh, const Twist& way) noexcept;
-  /// After the points were given another motion.
+  /// Starts a cycle, after `motion` has started, with the pose of the mesh and its displacement in
+  /// all of the cycle. [length], [rad]
+  void start(const Pose& mesh, const Twist& displacement) noexcept;
+  /// Follows another motion of the points; without it, their bounds are those of the last one.
   void move() noexcept;
 
-  /// The points' own motion, in the world.
-  PointMotion& joints() const noexcept { return *motion_; }
-  /// Where the mesh is at a share of the motion.
-  Pose mesh_at(int cell) const noexcept;
-  /// A place of the world, as the mesh sees it at a share of the motion. [length]
-  Vec3 seen(const Vec3& place, int cell) const noexcept;
-  /// A direction, as the mesh sees it when the cycle begins, in the world; and a place.
+  /// Returns the pose of the mesh at a knot.
+  Pose mesh_at(int knot) const noexcept;
+  /// Returns a position of the world in the frame of the mesh at a knot. [length]
+  Vec3 in_mesh(const Vec3& position, int knot) const noexcept;
+  /// Returns a direction of the mesh's frame at the start of the cycle, in the world.
   Vec3 direction_in_world(const Vec3& direction) const noexcept {
     return is_at_home_ ? direction : Vec3(mesh_.rotation * direction);
   }
-  /// The same of a place. [length]
-  Vec3 place_in_world(const Vec3& place) const noexcept {
-    return is_at_home_ ? place : mesh_ * place;
+  /// Like direction_in_world(), but for a position. [length]
+  Vec3 in_world(const Vec3& position) const noexcept {
+    return is_at_home_ ? position : mesh_ * position;
   }
 
-  /// Where all points are at a share of the motion, by their number. [length]
-  const Vec3* at(int cell) noexcept;
-  /// The same of the points of one body, put into `core`. [length]
-  std::span<const Vec3> core(std::size_t body, int cell, Core& core) noexcept;
-  /// Where they are as the cycle begins. [length]
-  const Vec3* at_start() noexcept { return at(0); }
-  /// Bounds of a point's second derivative by the share. [length]
+  /// Returns the positions of all points at a knot, by their number. [length]
+  const Vec3* points_in_mesh(int knot) noexcept;
+  /// Copies the positions of one body's points at a knot into `core`, and returns them. [length]
+  std::span<const Vec3> core(std::size_t body, int knot, Core& core) noexcept;
+  /// Returns the positions of all points at the start of the cycle. [length]
+  const Vec3* start_in_mesh() noexcept { return points_in_mesh(0); }
+  /// Returns a bound of a point's second derivative by the fraction of the motion. [length]
   double bend(std::size_t point) const noexcept { return bounds_[point].bend; }
-  /// How far any point of a body is from its start at the most, on the way. [length]
-  double farthest(std::size_t body) noexcept;
-  /// Whether the mesh moves in the cycle.
-  bool is_moving() const noexcept { return turn_ > 0.0 || !way_.linear.isZero(0.0); }
-  /// How far the mesh alone moves a body at the most. [length]
+  /// Returns a bound of the distance from its start of any point of a body, on all of the motion.
+  /// [length]
+  double largest_displacement(std::size_t body) noexcept;
+  /// Returns true if the mesh moves in the cycle.
+  bool is_moving() const noexcept { return turn_ > 0.0 || !displacement_.linear.isZero(0.0); }
+  /// Returns a bound of the displacement of a body by the motion of the mesh alone. [length]
   double drift(std::size_t body) noexcept;
 
  private:
-  struct Place {
-    std::array<Vec3, Instrument::most_points> points;
-    std::uint64_t motion = 0;  // of which motion; 0: none
-  };
-
-  /// A point's bounds, once the mesh's motion has come to its own.
+  /// Returns the bounds of a point's own motion plus that of the mesh. `at`: the point at the
+  /// start.
   MotionBounds with_mesh(const MotionBounds& own, const Vec3& at) const noexcept;
 
   const Instrument* instrument_;
-  PointMotion* motion_;
+  PointMotion* joint_motion_;
   Pose mesh_ = {};
-  Twist way_ = {};
-  double turn_ = 0.0;         // |way_.angular| [rad]
-  Vec3 axis_ = Vec3::Zero();  // of it, a unit vector
-  bool is_at_home_ = true;  // the mesh is where it was made, and still: the world's places are its
+  Twist displacement_ = {};   // of the mesh in the cycle
+  double turn_ = 0.0;         // |displacement_.angular| [rad]
+  Vec3 axis_ = Vec3::Zero();  // of the turn: unit
+  bool is_at_home_ = true;    // the mesh stands still, and its frame is that of the world
   std::array<MotionBounds, Instrument::most_points> bounds_{};
-  std::vector<Place> places_;  // (cells + 1)
+  std::vector<PointMotion::Positions> positions_;  // (last_knot + 1)
 };
 
 }  // namespace keepout

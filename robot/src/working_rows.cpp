@@ -8,9 +8,9 @@
 namespace keepout {
 namespace {
 
-constexpr int most_recovery_rows = 4;  // of a body
-constexpr double alike = 0.9;          // normals with more than this cosine recover alike
-constexpr int most_corrections = 3;    // of a row
+constexpr int most_recovery_rows = 4;   // of a body
+constexpr double same_direction = 0.9;  // a larger cosine of two normals
+constexpr int most_corrections = 3;     // of a row
 
 }  // namespace
 
@@ -18,78 +18,78 @@ void WorkingRows::start() noexcept {
   memory_.rows.clear();
   std::array<bool, Guide::most> has_row{};  // a guide has one plane where the cycle begins
   for (const WarmRow& warm : memory_.warm) {
-    if (warm.owner >= most_pairs && std::exchange(has_row[warm.owner - most_pairs], true)) continue;
+    if (is_guide(warm.owner) && std::exchange(has_row[guide_of(warm.owner)], true)) continue;
     if (const auto row = row_of(warm, 0)) memory_.rows.push(*row);
   }
   for (std::size_t g = 0; g < guides_.size(); ++g) {
     if (!guides_.is_recovering(g) || has_row[g]) continue;
     if (const auto row = guides_.row(g, 0)) memory_.rows.push(*row);
   }
-  for (std::size_t p = 0; p < watch_.size(); ++p) {
-    if (watch_.is_watched(p) && watch_.is_recovering(p)) start_recovery(p);
+  for (std::size_t p = 0; p < bodies_.size(); ++p) {
+    if (bodies_.is_watched(p) && bodies_.is_recovering(p)) start_recovery(p);
   }
 }
 
-/// The row of a body's witness or a guide, where they are at a share of the motion at hand.
-std::optional<ContactRow> WorkingRows::row_of(const WarmRow& warm, int cell) noexcept {
-  if (warm.owner >= most_pairs) {
-    const std::size_t guide = warm.owner - most_pairs;
+/// Returns the row of a body's contact point or a guide, with the plane at a knot of the motion.
+std::optional<Row> WorkingRows::row_of(const WarmRow& warm, int knot) noexcept {
+  if (is_guide(warm.owner)) {
+    const std::size_t guide = guide_of(warm.owner);
     const bool is_present = guide < guides_.size() && !guides_.is_dropped(guide);
-    return is_present ? guides_.row(guide, cell) : std::nullopt;
+    return is_present ? guides_.row(guide, knot) : std::nullopt;
   }
-  if (!watch_.is_watched(warm.owner)) return std::nullopt;
-  const NearTriangle* triangle = watch_.find(warm.owner, warm.triangle);
-  return triangle == nullptr ? std::nullopt : make_.at_contact(warm.owner, *triangle, cell);
+  if (!bodies_.is_watched(warm.owner)) return std::nullopt;
+  const NearTriangle* triangle = bodies_.find(warm.owner, warm.triangle);
+  return triangle == nullptr ? std::nullopt : maker_.at_contact(warm.owner, *triangle, knot);
 }
 
 void WorkingRows::start_recovery(std::size_t p) noexcept {
   Budget& budget = context_.budget;
-  const double distance = watch_.radius(p) + watch_.row_margin(p);
-  const auto nearby = watch_.nearer_than(p, distance);
+  const double distance = bodies_.radius(p) + bodies_.row_margin(p);
+  const auto nearby = bodies_.nearer_than(p, distance);
   for (int count = 0; count < most_recovery_rows && !budget.is_spent(); ++count) {
     budget.spend(1 + nearby.size() * (1 + memory_.rows.size()) / 32);
     // The nearest one without a row that pulls the body away from it.
     const NearTriangle* nearest = nullptr;
     for (const NearTriangle& triangle : nearby) {
-      if (!triangle.is_known || triangle.at_start.distance >= distance) continue;
+      if (!triangle.is_measured || triangle.at_start.distance >= distance) continue;
       if (nearest != nullptr && triangle.at_start.distance >= nearest->at_start.distance) continue;
       const bool is_pulled =
-          std::any_of(memory_.rows.begin(), memory_.rows.end(), [&](const ContactRow& row) {
+          std::any_of(memory_.rows.begin(), memory_.rows.end(), [&](const Row& row) {
             return row.owner == p && (row.triangle == triangle.id ||
-                                      row.normal.dot(triangle.at_start.normal) > alike);
+                                      row.normal.dot(triangle.at_start.normal) > same_direction);
           });
       if (!is_pulled) nearest = &triangle;
     }
     if (nearest == nullptr) return;
-    const auto row = make_.at_contact(p, *nearest, 0);
+    const auto row = maker_.at_contact(p, *nearest, 0);
     if (!row) return;
     memory_.rows.push(*row);
   }
 }
 
-bool WorkingRows::add(std::span<const Certificate::Failure> failures) noexcept {
+bool WorkingRows::add(std::span<const Certificate::Obstacle> obstacles) noexcept {
   bool changed = false;
-  for (std::size_t p = 0; p < failures.size(); ++p) {
-    const Certificate::Failure& failure = failures[p];
-    if (failure.triangle == nullptr) continue;
-    const NearTriangle& triangle = *failure.triangle;
+  for (std::size_t p = 0; p < obstacles.size(); ++p) {
+    const Certificate::Obstacle& obstacle = obstacles[p];
+    if (obstacle.triangle == nullptr) continue;
+    const NearTriangle& triangle = *obstacle.triangle;
     const std::size_t before = memory_.rows.size();
-    add(p, triangle, std::max(failure.cell, 1));
+    add(p, triangle, std::max(obstacle.knot, 1));
     const bool is_new = memory_.rows.size() > before;
     changed = changed || is_new || correct(p, triangle.id);
   }
   return changed && !memory_.rows.overflowed();
 }
 
-bool WorkingRows::add(std::size_t guide, int cell) noexcept {
+bool WorkingRows::add(const GuideWatch::Obstacle& obstacle) noexcept {
   // The planes touch the region where the motion leaves it, and then where it ends.
   constexpr int most_planes = 4;
-  const std::size_t owner = most_pairs + guide;
+  const std::size_t owner = owner_of_guide(obstacle.guide);
   const auto planes = std::count_if(memory_.rows.begin(), memory_.rows.end(),
-                                    [&](const ContactRow& row) { return row.owner == owner; });
+                                    [&](const Row& row) { return row.owner == owner; });
   if (planes < most_planes) {
-    const int where = planes == 0 ? std::max(cell, 1) : PointMotion::cells;
-    if (const auto row = guides_.row(guide, where)) {
+    const int where = planes == 0 ? std::max(obstacle.knot, 1) : PointMotion::last_knot;
+    if (const auto row = guides_.row(obstacle.guide, where)) {
       memory_.rows.push(*row);
       return !memory_.rows.overflowed();
     }
@@ -97,24 +97,24 @@ bool WorkingRows::add(std::size_t guide, int cell) noexcept {
   return correct(owner, no_triangle);
 }
 
-/// Adds rows for a triangle: first on its predicted contact points, then on all end points.
-void WorkingRows::add(std::size_t p, const NearTriangle& triangle, int cell) noexcept {
-  int witnesses = 0;
-  bool has_ends = false;
-  for (const ContactRow& row : memory_.rows) {
+/// Adds rows for a triangle: first on two predicted contact points, then on all points of the core.
+void WorkingRows::add(std::size_t p, const NearTriangle& triangle, int knot) noexcept {
+  int contacts = 0;
+  bool has_vertices = false;
+  for (const Row& row : memory_.rows) {
     if (row.owner != p || row.triangle != triangle.id) continue;
-    witnesses += row.point.has_value() ? 1 : 0;
-    has_ends = has_ends || !row.point.has_value();
+    contacts += row.point.has_value() ? 1 : 0;
+    has_vertices = has_vertices || !row.point.has_value();
   }
-  if (witnesses < 2) {
-    auto row = make_.at_contact(p, triangle, cell);
+  if (contacts < 2) {
+    auto row = maker_.at_contact(p, triangle, knot);
     // A core that touches there has no normal: use the one at the start of the cycle.
-    if (!row) row = make_.at_contact(p, triangle, 0);
+    if (!row) row = maker_.at_contact(p, triangle, 0);
     if (row) memory_.rows.push(*row);
-  } else if (!has_ends) {
-    for (const std::uint8_t end : watch_.points(p)) {
-      if (context_.instrument.points()[end].link == 0) continue;
-      if (const auto row = make_.at_end_point(p, end, triangle, cell)) memory_.rows.push(*row);
+  } else if (!has_vertices) {
+    for (const std::uint8_t vertex : bodies_.points(p)) {
+      if (context_.instrument.points()[vertex].link == 0) continue;
+      if (const auto row = maker_.at_vertex(p, vertex, triangle, knot)) memory_.rows.push(*row);
     }
   }
 }
@@ -123,15 +123,14 @@ void WorkingRows::add(std::size_t p, const NearTriangle& triangle, int cell) noe
 /// height of the true motion.
 bool WorkingRows::correct(std::size_t owner, TriangleId triangle) noexcept {
   bool changed = false;
-  for (ContactRow& row : memory_.rows) {
+  for (Row& row : memory_.rows) {
     if (row.owner != owner || row.triangle != triangle || row.corrections >= most_corrections)
       continue;
     double predicted = row.start_height + row.drift;
     for (std::size_t k = 0; k < row.gradient.size(); ++k) {
       predicted += row.gradient[k] * context_.motion.increment()[k];
     }
-    const bool is_guide = owner >= most_pairs;
-    const double actual = is_guide ? guides_.height_at_end(row) : make_.height_at_end(row);
+    const double actual = is_guide(owner) ? guides_.height_at_end(row) : maker_.height_at_end(row);
     const double missing = predicted - actual;
     if (!(missing > 0.0)) continue;
     row.correction += missing;
@@ -143,13 +142,13 @@ bool WorkingRows::correct(std::size_t owner, TriangleId triangle) noexcept {
 
 void WorkingRows::remove(std::size_t owner) noexcept {
   std::size_t left = 0;
-  for (const ContactRow& row : memory_.rows) {
+  for (const Row& row : memory_.rows) {
     if (row.owner != owner) memory_.rows[left++] = row;
   }
   memory_.rows.shrink(left);
 }
 
-std::size_t WorkingRows::note_active(std::span<const std::uint32_t> active) noexcept {
+std::size_t WorkingRows::remember(std::span<const std::uint32_t> active) noexcept {
   memory_.warm.clear();
   for (const std::uint32_t number : active) {
     if (number >= memory_.rows.size()) continue;
@@ -170,9 +169,9 @@ void WorkingRows::restore() noexcept {
 
 bool WorkingRows::relinearize() noexcept {
   bool changed = false;
-  for (ContactRow& row : memory_.rows) {
-    if (!is_active(row)) continue;
-    auto next = row_of({row.owner, row.triangle}, PointMotion::cells);
+  for (Row& row : memory_.rows) {
+    if (!is_remembered(row)) continue;
+    auto next = row_of({row.owner, row.triangle}, PointMotion::last_knot);
     if (!next) continue;
     next->correction = row.correction;
     changed = changed || (next->normal - row.normal).squaredNorm() > 1e-12;
@@ -182,21 +181,21 @@ bool WorkingRows::relinearize() noexcept {
 }
 
 void WorkingRows::forgive_curvature(double fraction) noexcept {
-  for (ContactRow& row : memory_.rows) {
+  for (Row& row : memory_.rows) {
     row.correction *= fraction;
     row.corrections = 0;
   }
 }
 
-void WorkingRows::note_all() noexcept {
+void WorkingRows::remember_all() noexcept {
   memory_.warm.clear();
-  for (const ContactRow& row : memory_.rows) {
-    if (!is_active(row)) memory_.warm.push({row.owner, row.triangle});
+  for (const Row& row : memory_.rows) {
+    if (!is_remembered(row)) memory_.warm.push({row.owner, row.triangle});
   }
 }
 
-/// Returns true if a row of the same triangle is noted.
-bool WorkingRows::is_active(const ContactRow& row) const noexcept {
+/// Returns true if a row of the same triangle is remembered.
+bool WorkingRows::is_remembered(const Row& row) const noexcept {
   return std::any_of(memory_.warm.begin(), memory_.warm.end(), [&](const WarmRow& warm) {
     return warm.owner == row.owner && warm.triangle == row.triangle;
   });

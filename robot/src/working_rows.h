@@ -10,9 +10,9 @@
 
 namespace keepout {
 
-/// The identity of a row that limited a motion: the next cycle starts with it.
+/// The identity of a row of the last problem that a cycle solved: the next cycle starts with it.
 struct WarmRow {
-  std::size_t owner;  // see ContactRow
+  std::size_t owner;  // see Row
   TriangleId triangle;
 };
 
@@ -22,8 +22,8 @@ struct RowMemory {
   explicit RowMemory(std::size_t capacity)
       : rows(capacity), earlier_rows(capacity), warm(capacity), earlier_warm(capacity) {}
 
-  Buffer<ContactRow> rows;
-  Buffer<ContactRow> earlier_rows;  // while better ones are tried
+  Buffer<Row> rows;
+  Buffer<Row> earlier_rows;  // while better ones are tried
   Buffer<WarmRow> warm;
   Buffer<WarmRow> earlier_warm;
 };
@@ -33,12 +33,16 @@ struct RowMemory {
 class WorkingRows {
  public:
   /// Starts empty. All must outlive it.
-  WorkingRows(RowMemory& memory, BodyWatch& watch, GuideWatch& guides,
+  WorkingRows(RowMemory& memory, BodyWatch& bodies, GuideWatch& guides,
               const CycleContext& context) noexcept
-      : memory_(memory), watch_(watch), guides_(guides), context_(context), make_(watch, context) {}
+      : memory_(memory),
+        bodies_(bodies),
+        guides_(guides),
+        context_(context),
+        maker_(bodies, context) {}
 
   /// Returns the rows.
-  std::span<const ContactRow> view() const noexcept { return memory_.rows.view(); }
+  std::span<const Row> view() const noexcept { return memory_.rows.view(); }
   /// Returns true if not all rows fit.
   bool overflowed() const noexcept { return memory_.rows.overflowed(); }
   /// Removes all rows.
@@ -47,41 +51,41 @@ class WorkingRows {
   /// Starts with the rows that limited the last cycle, and for bodies and guides that recover, with
   /// rows that pull them back.
   void start() noexcept;
-  /// Adds rows for the triangles that the last motion failed at, one of each pair, or corrects the
-  /// rows that these have. Returns true if any row changed.
-  bool add(std::span<const Certificate::Failure> failures) noexcept;
-  /// Like add(failures), but for a guide that the motion violates beyond a cell.
-  bool add(std::size_t guide, int cell) noexcept;
+  /// Adds rows for the obstacles to the last motion, one of each pair, or corrects the rows of
+  /// their triangles. Returns true if any row changed.
+  bool add(std::span<const Certificate::Obstacle> obstacles) noexcept;
+  /// Like add(obstacles), but for a guide that the motion violates beyond a knot.
+  bool add(const GuideWatch::Obstacle& obstacle) noexcept;
 
-  /// Removes the rows of a pair or a guide (ContactRow::owner).
+  /// Removes the rows of a pair or a guide.
   void remove(std::size_t owner) noexcept;
-  /// Notes the rows that limit a solution, by their numbers, for the next cycle; numbers beyond the
-  /// rows are ignored. Returns the number of rows that limit it.
-  std::size_t note_active(std::span<const std::uint32_t> active) noexcept;
-  /// Saves the rows and those that limit the solution.
+  /// Remembers the rows that limit a solution, by their numbers, for the next cycle; ignores
+  /// numbers beyond the rows. Returns the number of rows that limit it.
+  std::size_t remember(std::span<const std::uint32_t> active) noexcept;
+  /// Remembers all rows for the next cycle, after a cycle that found no motion.
+  void remember_all() noexcept;
+  /// Saves the rows and what is remembered.
   void save() noexcept;
-  /// Restores the saved rows.
+  /// Restores what was saved.
   void restore() noexcept;
-  /// Linearizes the rows that limit the solution again, at the end of the last motion. Returns true
-  /// if any row changed.
+  /// Replaces the planes of the remembered rows by those at the end of the last motion. Gradients
+  /// stay those at the start of the cycle. Returns true if any plane turned.
   bool relinearize() noexcept;
-  /// Scales the corrections for curvature, for a motion that is shorter.
+  /// Scales the corrections for curvature, for a shorter motion, and allows three more.
   void forgive_curvature(double fraction) noexcept;
-  /// Has the next cycle start with all rows, after one that found no motion.
-  void note_all() noexcept;
 
  private:
   void start_recovery(std::size_t pair) noexcept;
-  void add(std::size_t pair, const NearTriangle& triangle, int cell) noexcept;
+  void add(std::size_t pair, const NearTriangle& triangle, int knot) noexcept;
   bool correct(std::size_t owner, TriangleId triangle) noexcept;
-  std::optional<ContactRow> row_of(const WarmRow& warm, int cell) noexcept;
-  bool is_active(const ContactRow& row) const noexcept;
+  std::optional<Row> row_of(const WarmRow& warm, int knot) noexcept;
+  bool is_remembered(const Row& row) const noexcept;
 
   RowMemory& memory_;
-  BodyWatch& watch_;
+  BodyWatch& bodies_;
   GuideWatch& guides_;
   const CycleContext& context_;
-  ContactRows make_;
+  RowMaker maker_;
 };
 
 }  // namespace keepout

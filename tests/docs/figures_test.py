@@ -67,7 +67,7 @@ def main(root):
     for name, one in kept.items():
         if not records.is_in_history(one["commit"]):
             print(f"skipped: the age of {name}, as its commit {one['commit']} is not in git's history here")
-        elif why := records.staleness(one):
+        elif why := records.staleness(name, one):
             problems.append(f"docs/records/{name}: {why}")
     print("\n".join(problems) or f"{len(figures)} figures of {len(kept)} records")
     return 1 if problems else 0

@@ -15,11 +15,11 @@
 namespace keepout {
 namespace {
 
-// Cores of one, two and four points wander near a mesh; what is told of each cycle is held to the
+// Cores of one, two and four points wander near a mesh; what is listed of each cycle is held to the
 // gap of every triangle, while triangles become known and more and more are asked for.
 TEST(NearSet, TellsAllThatIsNearOnceAndAllocatesNothing) {
   Random random(1);
-  std::size_t told_of = 0;
+  std::size_t listed_of = 0;
   for (const char* shape : {"cube", "gear"}) {
     const auto mesh = mesh_of(shape);
     Budget budget;
@@ -42,26 +42,26 @@ TEST(NearSet, TellsAllThatIsNearOnceAndAllocatesNothing) {
         for (int cycle = 0; cycle < 3; ++cycle) {
           for (const double share : {0.1, 0.5, 0.9, 1.0}) {
             const std::size_t until = allocations();
-            const std::span<NearTriangle> told = set.nearer_than(share * radius, budget);
-            for (NearTriangle& triangle : told) set.know(triangle, budget);
+            const std::span<NearTriangle> listed = set.nearer_than(share * radius, budget);
+            for (NearTriangle& triangle : listed) set.measure(triangle, budget);
             ASSERT_EQ(allocations(), until) << shape;
             std::set<TriangleId> ids;
-            for (const NearTriangle& triangle : told) {
-              ASSERT_TRUE(ids.insert(triangle.id).second) << "told twice";
+            for (const NearTriangle& triangle : listed) {
+              ASSERT_TRUE(ids.insert(triangle.id).second) << "listed twice";
               ASSERT_LE(triangle.least, distances[triangle.id] + 1e-12);
               ASSERT_EQ(triangle.at_start.distance, distances[triangle.id]);
             }
             for (TriangleId t = 0; t < mesh->triangle_count(); ++t) {
               ASSERT_TRUE(distances[t] >= share * radius || ids.contains(t)) << shape << ' ' << t;
             }
-            told_of += ids.size();
+            listed_of += ids.size();
           }
-          set.start_cycle(core);
+          set.start_listing(core);
         }
       }
     }
   }
-  EXPECT_GT(told_of, test::trials(20'000u));
+  EXPECT_GT(listed_of, test::trials(20'000u));
 }
 
 }  // namespace

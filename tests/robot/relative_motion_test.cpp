@@ -53,21 +53,21 @@ TEST(RelativeMotion, NoPointIsElsewhereNorBendsMoreThanIsSaid) {
     const double rounding = 1e-14 * (chain.reach() + 1000.0);
     for (std::size_t p = 0; p < robot.points().size(); ++p) {
       double sharpest = 0.0;
-      for (int c = 0; c <= PointMotion::cells; c += 7) {
-        const Vec3 expected = seen_by(mesh, way, c / 64.0, motion.at(c)[p]);
-        ASSERT_LE((seen.at(c)[p] - expected).norm(), rounding);
+      for (int c = 0; c <= PointMotion::last_knot; c += 7) {
+        const Vec3 expected = seen_by(mesh, way, c / 64.0, motion.points_at(c)[p]);
+        ASSERT_LE((seen.points_in_mesh(c)[p] - expected).norm(), rounding);
       }
-      for (int c = 1; c < PointMotion::cells; ++c) {
-        const Vec3 turn = seen.at(c + 1)[p] - 2.0 * seen.at(c)[p] + seen.at(c - 1)[p];
+      for (int c = 1; c < PointMotion::last_knot; ++c) {
+        const Vec3 turn = seen.points_in_mesh(c + 1)[p] - 2.0 * seen.points_in_mesh(c)[p] + seen.points_in_mesh(c - 1)[p];
         sharpest = std::max(sharpest, 64.0 * 64.0 * turn.norm());
       }
       ASSERT_LE(sharpest, seen.bend(p) + 64.0 * 64.0 * 4.0 * rounding);
       if (seen.bend(p) > 0.1) tightest = std::max(tightest, sharpest / seen.bend(p));
     }
     for (std::size_t b = 0; b < robot.bodies().size(); ++b) {
-      for (int c = 0; c <= PointMotion::cells; ++c) {
+      for (int c = 0; c <= PointMotion::last_knot; ++c) {
         for (const std::uint8_t p : robot.points_of(b)) {
-          ASSERT_LE((seen.at(c)[p] - seen.at_start()[p]).norm(), seen.farthest(b) + rounding);
+          ASSERT_LE((seen.points_in_mesh(c)[p] - seen.start_in_mesh()[p]).norm(), seen.largest_displacement(b) + rounding);
         }
       }
     }
@@ -85,7 +85,7 @@ TEST(RelativeMotion, OfAMeshAtHomeIsThatOfTheWorldToTheBit) {
   seen.start({}, {});
   motion.move({0.1, 0.1, 3.0}, CertifiedMotion::actual);
   seen.move();
-  EXPECT_EQ(seen.at(17), motion.at(17));
+  EXPECT_EQ(seen.points_in_mesh(17), motion.points_at(17));
   EXPECT_EQ(seen.bend(2), motion.bounds(2).bend);
 }
 

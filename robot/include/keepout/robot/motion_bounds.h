@@ -7,14 +7,25 @@
 
 namespace keepout {
 
-/// What bounds the way of a point while the joints move on a straight line, q + s dq, s in [0, 1].
+/// Bounds of the motion of a point while the joints move on a straight line, q + s dq, s in [0, 1].
+/// They are built joint by joint, from the point to the base (docs/joint-space-step.md, Lemma 2).
 struct MotionBounds {
-  double path = 0.0;  // its length, and the largest |dp/ds|, are no more [length]
-  double bend = 0.0;  // |d^2 p / ds^2| is no more [length]
+  double path = 0.0;  // of the arc length, and of |dp/ds| [length]
+  double bend = 0.0;  // of |d^2 p / ds^2| [length]
+
+  /// Adds a prismatic joint that moves by a length. [length]
+  void slide(double length) noexcept { path += length; }
+  /// Adds a revolute joint that turns by an angle. `lever`: the distance of the point from its axis
+  /// at the start. [length], [rad]
+  void turn(double lever, double angle) noexcept {
+    const double arc = (lever + path) * angle;
+    bend += angle * (arc + 2.0 * path);
+    path += arc;
+  }
 };
 
-/// The bounds for a point that link `link` carries, which is at `at` when the chain is in `state`,
-/// s = 0. `increment`: dq (n). Derivation: docs/joint-space-step.md.
+/// Returns the bounds for a point of link `link` that is at `at` when the chain is in `state`,
+/// s = 0. `increment`: dq (n). [rad or length]
 MotionBounds motion_bounds(const ChainState& state, std::span<const double> increment, int link,
                            const Vec3& at) noexcept;
 
