@@ -343,6 +343,44 @@ TEST(MovingSheet, TakesNothingFromABodyBesideOneThatIsBlocked) {
   EXPECT_GT(blocked.named[1], 50);
 }
 
+// As above, but the other body is beside a second mesh that rushes by: more of its triangles are in
+// reach of the cycle than the capacity holds, which only the proof of a motion finds out.
+TEST(MovingSheet, TakesNothingFromABodyBesideOneWithTooManyTriangles) {
+  Surface strip;
+  for (int i = 0; i < 4000; ++i) {
+    const double x = 0.02 * i;
+    for (const Vec3& corner : {Vec3(x, -1, 0), Vec3(x + 0.02, -1, 0), Vec3(x, 1, 0)}) {
+      strip.vertices.push_back(corner);
+    }
+    const auto first = static_cast<VertexId>(3 * i);
+    strip.triangles.push_back({first, first + 1, first + 2});
+  }
+  const auto dense = mesh_of(strip);
+  const Instrument robot =
+      ComingSheet::instrument(free_ball(1.0).chain(), {{"post", {{0, Vec3(20, 0, 40)}}, 1.0}});
+  InstrumentConstraint guard =
+      guard_of(sheet_of(50.0), robot, {.orientation_weight = 0.0}, {.triangles = 100});
+  guard.add_mesh(dense, std::make_shared<const WideBvh>(dense));
+  std::vector<double> q{0.0, 0.0, -6.0};
+  int dropped = 0;
+  for (int i = 0; i < 400; ++i) {
+    const double z = -8.0 + 0.02 * i;
+    guard.place(0, {Vec3(0, 0, z)}, {.linear = Vec3(0, 0, 20)});
+    // Its end is 1.9 from the post's center, and 3 of its length pass by in the cycle.
+    guard.place(1, {Vec3(18.5, 0, 38.1)}, {.linear = Vec3(-3000, 0, 0)});
+    const InstrumentStep step = guard.step(q, Twist{});
+    ASSERT_TRUE(step.ok()) << i << ' ' << name(step.status);
+    for (const DegradedClearance& each : step.degraded) {
+      ASSERT_EQ(each.body, 1);
+      ASSERT_EQ(each.mesh, 1);
+      dropped += each.is_certified ? 0 : 1;
+    }
+    q = keepout::moved(q, step);
+    ASSERT_GE(q[2] - (z + 0.02) - 1.0, 0.198 - 1e-8) << i;
+  }
+  EXPECT_GT(dropped, 100);
+}
+
 // A mesh that its velocity carries away, until rounding hides the margin.
 TEST(SeveralMeshes, AMeshThatGoesTooFarIsNamed) {
   const auto sheet = sheet_of(500.0);
