@@ -79,7 +79,7 @@ void JointCycle::run(const JointTask& task, InstrumentStep& result) noexcept {
 
 /// Measures guides and bodies as the cycle starts.
 void JointCycle::open(InstrumentStep& result) noexcept {
-  std::fill(memory_.obstacles.begin(), memory_.obstacles.end(), Certificate::Obstacle{});
+  forget_obstacles();
   guides_.open();
   bodies_.open(result);
 }
@@ -241,10 +241,11 @@ SolveStatus JointCycle::solve(const JointTask& task, Trial& trial) noexcept {
   return proposal.status;
 }
 
-/// Proves as much of a trial motion as possible, and notes the obstacle of each pair.
+/// Proves as much of a trial motion as possible, and notes the obstacles. If the triangles near a
+/// pair are not known, nothing is proved, and this pair is the only obstacle.
 void JointCycle::judge(Trial& trial) noexcept {
   try_motion(trial.increment);
-  std::fill(memory_.obstacles.begin(), memory_.obstacles.end(), Certificate::Obstacle{});
+  forget_obstacles();
   guide_obstacle_ = guides_.judge();
   trial.knot = guide_obstacle_.knot;
   // A motion that guides reject at once may be long, so judging the bodies would cost much work.
@@ -252,13 +253,19 @@ void JointCycle::judge(Trial& trial) noexcept {
   for (std::size_t p = 0; p < bodies_.size(); ++p) {
     if (!bodies_.is_watched(p)) continue;
     Certificate::Obstacle& obstacle = memory_.obstacles[p];
-    if (const Status status = bodies_.judge(p, rows_.view(), obstacle); !is_ok(status)) {
-      trial.knot = 0;
-      search_status_ = status;
-      return;
-    }
+    const Status status = bodies_.judge(p, rows_.view(), obstacle);
     trial.knot = std::min(trial.knot, obstacle.knot);
+    if (is_ok(status)) continue;
+    search_status_ = status;
+    guide_obstacle_ = {};
+    forget_obstacles();
+    obstacle.knot = 0;
+    return;
   }
+}
+
+void JointCycle::forget_obstacles() noexcept {
+  std::fill(memory_.obstacles.begin(), memory_.obstacles.end(), Certificate::Obstacle{});
 }
 
 /// Starts the proof of a motion.

@@ -40,6 +40,7 @@ class JointCycle {
   bool solve_and_judge(const JointTask& task, const JointTask& part, Trial& best) noexcept;
   SolveStatus solve(const JointTask& task, Trial& trial) noexcept;
   void judge(Trial& trial) noexcept;
+  void forget_obstacles() noexcept;
   void try_motion(const JointVector& increment) noexcept;
   bool strays(const JointTask& task, Trial& trial) noexcept;
   bool add_rows() noexcept;
