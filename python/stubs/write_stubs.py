@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Writes the stubs of the module that was built: write_stubs.py TEMPLATE OUT, with PYTHONPATH at the module.
 
-What the template says of the options of a class becomes its keywords, set_options and properties."""
+What the template says of the options of a class becomes its keywords, set_options and properties. An attribute
+of a class, `name: type`, becomes a property that cannot be set."""
 
+import re
 import sys
 from pathlib import Path
 
@@ -18,7 +20,7 @@ def change(option):
 
 
 def prop(option):
-    return f"    @property\n    def {option.name}(self) -> {option.type}: ...\n"
+    return f"    {option.name}: {option.type}\n"
 
 
 def main(template, out):
@@ -28,6 +30,7 @@ def main(template, out):
         text = text.replace(f"        # keywords of {name}\n", "".join(map(keyword, options)))
         text = text.replace(f"        # changes of {name}\n", changes)
         text = text.replace(f"    # properties of {name}\n", "".join(map(prop, options)))
+    text = re.sub(r"^    (\w+): ([^=\n]*[^=,\n])$", r"    @property\n    def \1(self) -> \2: ...", text, flags=re.M)
     Path(out).write_text(text, encoding="utf-8")
 
 

@@ -131,12 +131,11 @@ def entry_points_in_headers(root):
 
 
 def entry_points_in_python(root):
-    for text in read(root / "python/keepout/__init__.pyi").split("\nclass ")[1:]:
+    for text in read(root / "python/stubs/__init__.pyi.in").split("\nclass ")[1:]:
         name = re.match(r"\w+", text)[0]
-        methods = re.findall(r"(@property\n)?    def (\w+)\(", text)
-        if "step" in [method for _, method in methods]:
-            yield from (f"{name}.{method}" for is_property, method in methods
-                        if not is_property and not method.startswith("_"))
+        methods = re.findall(r"    def (\w+)\(", text)
+        if "step" in methods:
+            yield from (f"{name}.{method}" for method in methods if not method.startswith("_"))
 
 
 def entry_points_of(root):
