@@ -58,9 +58,7 @@ TEST(CuttingSetUp, KeepsCorridorSkullAndJointsWhateverTheHandDoes) {
     for (const double share : {0.5, 1.0}) {
       judge.move_to(moved(q, step, share));
       farthest = std::max(farthest, std::abs(judge.axis(2).to.x() - middle));
-      for (std::size_t body = 0; body < judge.bodies(); ++body) {
-        nearest = std::min(nearest, judge.clearance(body, 1.0));
-      }
+      nearest = std::min(nearest, judge.clearance(1.0));
     }
     for (std::size_t k = 0; k < q.size(); ++k) {
       const JointLimits& limits = chain.joint(static_cast<int>(k) + 1).limits;

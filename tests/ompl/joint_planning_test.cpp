@@ -91,9 +91,7 @@ class Judge {
       Joints q = from;
       for (std::size_t k = 0; k < q.size(); ++k) q[k] += i * (to[k] - from[k]) / places;
       oracle_.move_to(q);
-      for (std::size_t b = 0; b < oracle_.bodies(); ++b) {
-        clearance = std::min(clearance, oracle_.clearance(b, 1.0));
-      }
+      clearance = std::min(clearance, oracle_.clearance(1.0));
     }
     return clearance;
   }

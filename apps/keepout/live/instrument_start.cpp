@@ -16,12 +16,11 @@ constexpr std::uint64_t starts_tried = 64;
 RobotStart instrument_start(const std::string& mesh_name, const std::shared_ptr<const Mesh>& mesh,
                             const RobotUnderTest& robot, double margin) {
   Scene scene(mesh_name, mesh, "wide_bvh");
-  const auto tree = std::make_shared<const oracle::TriangleTree>(mesh);
   const Box box = mesh->bounds();
   std::optional<RobotStart> first;
   for (std::uint64_t seed = 1; seed <= starts_tried; ++seed) {
     Random random(seed);
-    auto start = find_start(scene, tree, robot, Begin::apart, margin, random);
+    auto start = find_start(scene, robot, Begin::apart, margin, random);
     if (!start) break;  // thousands of places were tried: there is no room
     const Vec3& port = start->base.position;
     if ((port.array() < box.low.array()).any() || (port.array() > box.high.array()).any()) {

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <cstdlib>
 #include <functional>
 #include <iomanip>
@@ -11,6 +15,7 @@
 #include <vector>
 
 #include "keepout/geometry/shapes.h"
+#include "shared/number_text.h"
 
 namespace keepout::app {
 
@@ -22,6 +27,30 @@ inline Json json_of(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 /// As a table shows what has no form of its own: text as it is, numbers with all their digits.
 inline std::string plain(const Json& value) {
   return value.is_string() ? value.get<std::string>() : value.dump();
+}
+
+/// JSON has no infinity.
+inline Json or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+/// A count with its thousands set apart.
+inline std::string count_text(const Json& value) { return grouped(value.get<std::uint64_t>()); }
+
+/// So many significant digits; "-" for null.
+template <int digits = 3>
+std::string figure_text(const Json& value) {
+  return value.is_null() ? "-" : rounded(value.get<double>(), digits);
+}
+
+/// The format of a number, by the rules of printf, as the argument of a template.
+template <std::size_t size>
+struct NumberFormat {
+  constexpr NumberFormat(const char (&from)[size]) { std::copy_n(from, size, text); }
+  char text[size];
+};
+/// A number in that format; "-" for null.
+template <NumberFormat format>
+std::string number_text(const Json& value) {
+  return value.is_null() ? "-" : formatted(format.text, value.get<double>());
 }
 
 /// One figure of the rows of a table: what JSON calls it, where it comes from, and how a table for

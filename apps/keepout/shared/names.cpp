@@ -11,9 +11,9 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string>& 
   return nearest ? "; did you mean '" + std::string(*nearest) + "'?" : std::string();
 }
 
-std::string enumerated(const std::vector<std::string>& names) {
+std::string enumerated(const std::vector<std::string>& names, std::string_view between) {
   std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  for (const std::string& name : names) (text += text.empty() ? "" : between) += name;
   return text;
 }
 

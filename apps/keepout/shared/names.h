@@ -15,7 +15,7 @@ namespace keepout::app {
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& names);
 
 /// "a, b, c".
-std::string enumerated(const std::vector<std::string>& names);
+std::string enumerated(const std::vector<std::string>& names, std::string_view between = ", ");
 
 /// "a", "a and b", "a, b and c".
 std::string listed(const std::vector<std::string>& names);

@@ -2,13 +2,13 @@
 #include "campaign.h"
 
 #include <algorithm>
-#include <chrono>
 #include <optional>
 #include <string_view>
 #include <utility>
 
 #include "keepout/factory/make_motion_constraint.h"
 #include "path.h"
+#include "shared/timing.h"
 
 namespace keepout::app {
 namespace {
@@ -165,14 +165,13 @@ std::uint64_t trajectory_count(std::uint64_t steps) noexcept {
 }
 
 Findings run_campaign(const CampaignSettings& settings, std::span<const Arena> arenas,
-                      const std::function<Next(std::uint64_t)>& advanced) {
+                      const Advanced& advanced) {
   std::vector<std::vector<std::uint64_t>> trajectories(arenas.size());
   const std::uint64_t count = trajectory_count(settings.steps);
   for (std::uint64_t n = settings.shard.index - 1; n < count; n += settings.shard.count) {
     trajectories[random_of(settings.seed, n).below(arenas.size())].push_back(n);
   }
 
-  using Clock = std::chrono::steady_clock;
   Findings findings;
   Next next = Next::go_on;
   for (std::size_t a = 0; a < arenas.size(); ++a) {
@@ -182,7 +181,7 @@ Findings run_campaign(const CampaignSettings& settings, std::span<const Arena> a
       std::vector<std::unique_ptr<Guard>> guards;
       for (const Scene& scene : scenes) guards.push_back(settings.make_guard(scene));
       tally.triangles = scenes.front().mesh()->triangle_count();
-      const Clock::time_point start = Clock::now();
+      const BenchClock::time_point start = BenchClock::now();
       for (const std::uint64_t n : trajectories[a]) {
         Random random = random_of(settings.seed, n);
         random.bits();  // which chose the arena
@@ -192,10 +191,10 @@ Findings run_campaign(const CampaignSettings& settings, std::span<const Arena> a
         const std::uint64_t steps =
             std::min(steps_of_a_trajectory, settings.steps - n * steps_of_a_trajectory);
         run_trajectory(scenes[s], *guards[s], n, steps, random, tally, findings);
-        next = advanced(steps);
+        next = advanced(steps, tally.mesh);
         if (next == Next::stop) break;
       }
-      tally.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+      tally.seconds = microseconds_since(start) * 1e-6;
     }
     findings.meshes.push_back(std::move(tally));
   }

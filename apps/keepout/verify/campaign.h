@@ -92,13 +92,15 @@ struct Findings {
 inline constexpr std::size_t most_breaches = 1000;
 inline constexpr std::size_t most_anomalies = 200;
 
-/// Whether to go on after a trajectory of that many steps.
+/// What a campaign calls after each part of it, with the steps that were done and the row that they
+/// are of. Returns whether to go on.
 enum class Next : std::uint8_t { go_on, stop };
+using Advanced = std::function<Next(std::uint64_t steps, const std::string& row)>;
 
 /// Runs trajectories, in closed loop, and has each step judged: mesh by mesh, so that only one is
-/// in memory at a time; `advanced` is told the number of steps after each. Where it says stop, the
-/// findings are of those that were run.
+/// in memory at a time. `advanced` is called after each. If it stops the campaign, the findings are
+/// of those that were run.
 Findings run_campaign(const CampaignSettings& settings, std::span<const Arena> arenas,
-                      const std::function<Next(std::uint64_t)>& advanced);
+                      const Advanced& advanced);
 
 }  // namespace keepout::app

@@ -3,10 +3,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <fstream>
+#include <numeric>
+#include <sstream>
 
-#include "keepout/error.h"
 #include "keepout/simd_target.h"
 #include "record/record.h"
 #include "shared/machine.h"
@@ -15,44 +14,115 @@
 namespace keepout::app {
 namespace {
 
-constexpr int campaign_format =
-    3;  // raised whenever the trajectories of a seed, or tallies, change
-
-template <class Enum, std::size_t n>
-Json record_of(const std::array<std::uint64_t, n>& counts) {
-  Json json = Json::object();
-  for (std::size_t i = 0; i < n; ++i) json[std::string(name(static_cast<Enum>(i)))] = counts[i];
-  return json;
+std::uint64_t count(const Json& counts, const char* name) {
+  return counts.at(name).get<std::uint64_t>();
 }
 
-/// JSON has no infinity.
-Json or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
-Json record_of(const Tally& t) {
-  return {{"mesh", t.mesh},
-          {"triangles", t.triangles},
-          {"trajectories", t.trajectories},
-          {"steps", t.steps},
-          {"tips", t.tips},
-          {"led_out", t.led_out},
-          {"statuses", record_of<Status>(t.statuses)},
-          {"breaches", record_of<Breach>(t.breaches)},
-          {"least_beyond_margin", or_null(t.least)},
-          {"least_beyond_margin_in_tau", or_null(t.least_in_tau)},
-          {"seconds", t.seconds}};
+std::uint64_t sum(const Json& counts) {
+  std::uint64_t sum = 0;
+  for (const Json& part : counts) sum += part.get<std::uint64_t>();
+  return sum;
 }
 
-/// Adds the tally of a mesh to another of the same, number by number; of what is least the lesser
-/// counts.
-void add(Json& sum, const Json& part) {
-  for (const auto& [key, value] : part.items()) {
-    Json& so_far = sum.at(key);
+/// What is at some place of a row: a count, unless it is told otherwise.
+Column<Json> column(const char* place, const char* heading, int width,
+                    std::string (*text)(const Json&) = &count_text) {
+  return {"", [at = Json::json_pointer(place)](const Json& row) { return row.at(at); }, heading,
+          width, text};
+}
+
+Columns<Json> columns() {
+  const auto contact = [](const Json& row) {
+    const auto steps = std::max(row.at("steps").get<double>(), 1.0);
+    return Json(100.0 * row.at("statuses").at("limited").get<double>() / steps);
+  };
+  const auto other = [](const Json& row) {
+    std::uint64_t others = count(row, "steps");
+    for (const char* known : {"free", "limited", "recovering", "fallback", "unsolved"}) {
+      others -= count(row.at("statuses"), known);
+    }
+    return Json(others);
+  };
+  const auto broken = [](const Json& row) {
+    return Json(sum(row.at("breaches")) - count(row.at("breaches"), "penetration"));
+  };
+  const auto triangles = [](const Json& row) {
+    const auto known = row.value("triangles", std::uint64_t{0});
+    return Json(known == 0 ? "-" : grouped(known));
+  };
+  return {column("/mesh", "mesh", -16, &plain),
+          {"", triangles, "triangles", 9},
+          column("/trajectories", "traject.", 8),
+          column("/steps", "steps", 12),
+          {"", contact, "contact", 7, &number_text<"%.1f%%">},
+          column("/statuses/free", "free", 12),
+          column("/statuses/limited", "limited", 12),
+          column("/statuses/recovering", "recovering", 11),
+          column("/led_out", "led out", 9),
+          column("/statuses/fallback", "fallback", 9),
+          column("/statuses/unsolved", "unsolved", 9),
+          {"", other, "other", 9, &count_text},
+          column("/breaches/penetration", "crossed", 7),
+          {"", broken, "broken", 7, &count_text},
+          column("/least_beyond_margin_in_tau", "least/tau", 8, &number_text<"%.3f">),
+          column("/least_beyond_margin", "least", 10, &number_text<"%.2e">),
+          column("/seconds", "seconds", 8, &number_text<"%.1f">)};
+}
+
+constexpr const char* legend =
+    R"(contact: share of limited steps. led out: of the recovering ones, those from the
+forbidden side, which may cross. other: steps without a motion. crossed, broken: breaches
+of the theorem. least: smallest distance of any way, less tool radius and margin, in
+tau and as it is.
+)";
+
+/// An incident in a few lines, but without Jacobian and rows.
+std::string text(const Json& incident) {
+  constexpr std::array<std::string_view, 6> first_of_a_line{"start",   "radius", "tip",
+                                                            "desired", "motion", "distance"};
+  constexpr std::array<std::string_view, 3> left_out{"jacobian", "row_matrix", "row_bounds"};
+  std::string text;
+  for (const auto& [key, value] : incident.items()) {
+    if (std::ranges::find(left_out, key) != left_out.end()) continue;
+    const bool begins_line = std::ranges::find(first_of_a_line, key) != first_of_a_line.end();
+    text += begins_line ? "\n  " : text.empty() ? "" : " ";
+    text += key + ' ' + plain(value);
+  }
+  return text + '\n';
+}
+
+/// The rows and their total, the machines of the shards, and the first breaches.
+std::string table_of(const Json& record) {
+  std::ostringstream out;
+  auto rows = record.at("meshes").get<std::vector<Json>>();
+  rows.push_back(record.at("total"));
+  print_rows(out, columns(), rows);
+  out << legend;
+  for (const Json& shard : record.at("shards")) {
+    out << "shard " << shard.at("index") << '/' << record.at("shard_count") << ": "
+        << number_text<"%.1f">(shard.at("seconds")) << " s on "
+        << shard.at("machine").get<std::string>()
+        << (shard.value("complete", true) ? "" : ", interrupted") << '\n';
+  }
+  constexpr std::size_t shown = 5;
+  const Json& breaches = record.at("breaches");
+  for (std::size_t i = 0; i < std::min(shown, breaches.size()); ++i) out << text(breaches[i]);
+  return out.str();
+}
+
+}  // namespace
+
+void add(Json& sum, const Json& row) {
+  for (const auto& [key, value] : row.items()) {
+    Json& so_far = sum[key];
     if (value.is_object()) {
       add(so_far, value);
-    } else if (key == "triangles") {
-      so_far = std::max(so_far.get<std::uint64_t>(), value.get<std::uint64_t>());
+    } else if (so_far.is_null()) {
+      so_far = value;
+    } else if (key == "triangles" || key.starts_with("deepest")) {
+      so_far = std::max(so_far, value);
     } else if (key.starts_with("least")) {
-      if (so_far.is_null() || (!value.is_null() && value < so_far)) so_far = value;
+      if (!value.is_null()) so_far = std::min(so_far, value);
     } else if (value.is_number_float()) {
       so_far = so_far.get<double>() + value.get<double>();
     } else if (value.is_number()) {
@@ -61,153 +131,73 @@ void add(Json& sum, const Json& part) {
   }
 }
 
-/// Appends as many incidents as are kept of a kind.
-void append(Json& to, const Json& from, std::size_t most) {
-  for (const Json& incident : from) {
-    if (to.size() < most) to.push_back(incident);
+Json total_of(const Json& rows) {
+  Json total{{"mesh", "total"}};
+  for (const Json& row : rows) add(total, row);
+  total.erase("triangles");
+  return total;
+}
+
+CampaignResult finished(Json record) {
+  Json& total = record["total"] = total_of(record.at("meshes"));
+  const std::uint64_t steps = count(total, "steps");
+  const std::uint64_t breaches = sum(total.at("breaches"));
+  record["steps_done"] = steps;
+  const Json& shards = record.at("shards");
+  std::vector<std::uint64_t> missing(count(record, "shard_count"));
+  std::iota(missing.begin(), missing.end(), 1);
+  for (const Json& shard : shards) std::erase(missing, count(shard, "index"));
+  const auto is_whole = [](const Json& shard) { return shard.value("complete", true); };
+  const bool are_whole = std::all_of(shards.begin(), shards.end(), is_whole);
+  record["complete"] = missing.empty() && are_whole;
+  record["headline"] = (breaches == 0 ? "No breach" : counted(breaches, "breach")) + " in " +
+                       counted(steps, "step") + ".";
+  std::vector<std::string> account;
+  if (breaches > record.at("breaches").size()) {
+    account.push_back("Of the breaches " + grouped(record.at("breaches").size()) + " are kept.");
   }
-}
-
-/// What the two do not agree on though one campaign would; empty when they do.
-std::string difference(const Json& a, const Json& b) {
-  using Named = std::pair<const char*, const char*>;
-  for (const auto& [key, what] : {Named{"version", "versions of keepout"}, Named{"seed", "seeds"},
-                                  Named{"steps", "numbers of steps"}, Named{"index", "indices"},
-                                  Named{"shard_count", "numbers of shards"}}) {
-    if (a.at(key) != b.at(key)) return what;
+  if (!record["complete"].get<bool>()) {
+    account.push_back("Incomplete: " + grouped(steps) + " of the campaign's " +
+                      counted(count(record, "steps"), "step") + " are done.");
   }
-  const Json& some = a.at("meshes");
-  const Json& others = b.at("meshes");
-  const auto same_name = [](const Json& one, const Json& other) {
-    return one.at("mesh") == other.at("mesh");
-  };
-  if (!std::ranges::equal(some, others, same_name)) return "meshes";
-  for (std::size_t i = 0; i < some.size(); ++i) {
-    const auto one = some[i].at("triangles").get<std::uint64_t>();
-    const auto other = others[i].at("triangles").get<std::uint64_t>();
-    if (one != other && one != 0 && other != 0) {
-      return "numbers of triangles of " + some[i].at("mesh").get<std::string>();
-    }
+  for (const std::uint64_t shard : missing) {
+    account.push_back("Missing: shard " + std::to_string(shard) + "/" +
+                      record.at("shard_count").dump() + ".");
   }
-  return {};
-}
-
-/// The shard that both have; 0 for none.
-std::uint64_t common_shard(const Json& a, const Json& b) {
-  for (const Json& one : a.at("shards")) {
-    for (const Json& other : b.at("shards")) {
-      if (one.at("index") == other.at("index")) return one.at("index").get<std::uint64_t>();
-    }
+  for (const Json& mesh : record.at("missing")) {
+    account.push_back("Missing: " + mesh.get<std::string>() + ".");
   }
-  return 0;
+  record["account"] = account;
+  std::string table = table_of(record);
+  return {std::move(record), std::move(table), breaches > 0, !are_whole};
 }
 
-/// Says in words what has come out so far.
-void tell(Json& result) {
-  result.at("complete") = is_complete(result);
-  result.at("headline") = headline(result);
-  result.at("account") = account(result);
+void CampaignResult::print(std::ostream& out) const {
+  out << table << record.at("headline").get<std::string>() << '\n';
+  for (const Json& text : record.at("account")) out << text.get<std::string>() << '\n';
 }
 
-/// Precondition: the two are of one campaign.
-void add_result(Json& sum, const Json& part) {
-  for (std::size_t i = 0; i < part.at("meshes").size(); ++i) {
-    add(sum.at("meshes")[i], part.at("meshes")[i]);
-  }
-  add(sum.at("total"), part.at("total"));
-  append(sum.at("breaches"), part.at("breaches"), most_breaches);
-  append(sum.at("anomalies"), part.at("anomalies"), most_anomalies);
-  auto shards = sum.at("shards").get<std::vector<Json>>();
-  for (const Json& shard : part.at("shards")) shards.push_back(shard);
-  std::ranges::sort(shards, {}, [](const Json& s) { return s.at("index").get<std::uint64_t>(); });
-  sum.at("shards") = shards;
-  sum.at("steps_done") = sum.at("total").at("steps");
-  tell(sum);
-}
-
-/// JSON has negative numbers and fractions, which get() would turn into counts, and which could
-/// hide a breach in a sum.
-bool is_count(const Json& value) {
-  constexpr std::uint64_t most = std::uint64_t{1} << 53;
-  return value.is_number_unsigned() && value.get<std::uint64_t>() <= most;
-}
-
-/// Of the numbers in a tally; none is missing, or print() would miss it.
-bool are_possible(const Json& tally) {
-  const auto entries = tally.items();
-  return std::all_of(entries.begin(), entries.end(), [](const auto& entry) {
-    const Json& value = entry.value();
-    if (value.is_object()) return are_possible(value);
-    if (entry.key() == "mesh") return value.is_string();
-    if (entry.key() == "seconds") return value.is_number() && value.template get<double>() >= 0.0;
-    if (entry.key().starts_with("least")) return value.is_null() || value.is_number();
-    return is_count(value);
-  });
-}
-
-/// Whether what a file says agrees with itself.
-bool is_sound(const Json& result) {
-  Json total = record_of(Tally{.mesh = "total"});
-  for (const Json& mesh : result.at("meshes")) {
-    if (!are_possible(mesh)) return false;
-    add(total, mesh);
-  }
-  const auto agrees = [&](const char* key) {
-    using Unordered = nlohmann::json;  // whatever order another program may have put them in
-    return Unordered(total.at(key)) == Unordered(result.at("total").at(key));
-  };
-  const auto& shards = result.at("shards");
-  std::vector<std::uint64_t> indices;
-  for (const Json& shard : shards) {
-    if (!is_count(shard.at("index"))) return false;
-    indices.push_back(shard.at("index").get<std::uint64_t>());
-  }
-  std::ranges::sort(indices);
-  const Json& count = result.at("shard_count");
-  return are_possible(result.at("total")) && result.at("steps_done") == total.at("steps") &&
-         std::ranges::all_of(
-             std::array{"trajectories", "steps", "tips", "led_out", "statuses", "breaches"},
-             agrees) &&
-         is_count(count) && count <= Shard::most && !indices.empty() && indices.front() >= 1 &&
-         indices.back() <= count.get<std::uint64_t>() &&
-         std::ranges::adjacent_find(indices) == indices.end();
-}
-
-Json read(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  if (!file) throw Error(path.string() + ": cannot be read; is it there?");
-  const Error damaged(path.string() + ": is not a whole result of 'keepout verify --json'");
-  try {
-    Json result = Json::parse(file);
-    if (!fault_of(result).empty() || result["keepout_record"] != "verify") throw damaged;
-    const int written = result.at("campaign_format").get<int>();
-    if (written != campaign_format) {
-      throw Error(path.string() + ": written by another version of keepout verify (format " +
-                  std::to_string(written) + ", not " + std::to_string(campaign_format) + ")");
-    }
-    if (!is_sound(result)) throw damaged;
-    std::ostream nowhere(nullptr);
-    print(nowhere, result);  // which misses what is not there
-    return result;
-  } catch (const Json::exception&) {
-    throw damaged;
-  }
-}
-
-}  // namespace
-
-Json result_of(const CampaignRun& run, const Findings& findings) {
+CampaignResult result_of(const CampaignRun& run, const Findings& findings) {
   const auto& [index, count] = run.settings.shard;
   const std::uint64_t all = trajectory_count(run.settings.steps);
+  std::uint64_t trajectories = 0;
   Json meshes = Json::array();
-  Json total = record_of(Tally{.mesh = "total"});
-  for (const Tally& tally : findings.meshes) {
-    meshes.push_back(record_of(tally));
-    add(total, meshes.back());
+  for (const Tally& t : findings.meshes) {
+    trajectories += t.trajectories;
+    meshes.push_back({{"mesh", t.mesh},
+                      {"triangles", t.triangles},
+                      {"trajectories", t.trajectories},
+                      {"steps", t.steps},
+                      {"tips", t.tips},
+                      {"led_out", t.led_out},
+                      {"statuses", json_of<Status>(t.statuses)},
+                      {"breaches", json_of<Breach>(t.breaches)},
+                      {"least_beyond_margin", or_null(t.least)},
+                      {"least_beyond_margin_in_tau", or_null(t.least_in_tau)},
+                      {"seconds", t.seconds}});
   }
-  total.erase("triangles");
   // A signal that came after the last trajectory has interrupted nothing.
-  const bool is_whole = total.at("trajectories") == (all + count - index) / count;
+  const bool is_whole = trajectories == (all + count - index) / count;
   const Json shard{{"index", index},
                    {"seconds", run.seconds},
                    {"machine", processor() + ", " + std::string(simd_target()) + ", " +
@@ -224,38 +214,16 @@ Json result_of(const CampaignRun& run, const Findings& findings) {
   record.update({{"campaign_format", campaign_format},
                  {"seed", run.settings.seed},
                  {"steps", run.settings.steps},
-                 {"steps_done", total.at("steps")},
+                 {"steps_done", 0},
                  {"index", run.index},
                  {"shard_count", count},
                  {"shards", Json::array({shard})},
                  {"missing", run.missing},
                  {"meshes", meshes},
-                 {"total", total},
+                 {"total", nullptr},
                  {"breaches", findings.breaches},
                  {"anomalies", findings.anomalies}});
-  tell(record);
-  return record;
-}
-
-Json merged(const std::vector<std::filesystem::path>& files) {
-  std::vector<Json> parts;
-  for (const std::filesystem::path& file : files) {
-    const Json part = read(file);
-    for (std::size_t i = 0; i < parts.size(); ++i) {
-      const std::string both = files[i].string() + " and " + file.string();
-      if (const std::string what = difference(parts[i], part); !what.empty()) {
-        throw Error(both + " are not of one campaign: their " + what + " differ");
-      }
-      if (const std::uint64_t shard = common_shard(parts[i], part); shard != 0) {
-        throw Error(both + " both hold shard " + std::to_string(shard) + "/" +
-                    part.at("shard_count").dump() + ": it would count twice");
-      }
-    }
-    parts.push_back(part);
-  }
-  Json sum = parts.front();
-  for (std::size_t i = 1; i < parts.size(); ++i) add_result(sum, parts[i]);
-  return sum;
+  return finished(std::move(record));
 }
 
 }  // namespace keepout::app

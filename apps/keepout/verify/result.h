@@ -1,19 +1,31 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <filesystem>
 #include <iosfwd>
 #include <string>
 #include <vector>
 
 #include "campaign.h"
+#include "verify/robot/campaign.h"
 
 namespace keepout::app {
 
-// The result of a campaign, or of some of its shards, is a record (docs/records.md): it is written,
-// read, added up and printed as what it is.
+/// What a campaign ends with. Its record (docs/records.md) is of the kind verify, for a tip, or
+/// verify_robot.
+struct CampaignResult {
+  Json record;
+  std::string table;            // of the rows, with what its columns mean, for a terminal
+  bool is_broken = false;       // something that is promised did not hold
+  bool is_interrupted = false;  // before all of it was done
 
-/// What was run, beside what came out.
+  /// The table, and what the record says in words.
+  void print(std::ostream& out) const;
+};
+
+/// What was run with a tip, beside what came out.
 struct CampaignRun {
   CampaignSettings settings;
   std::string command;                    // that does it again
@@ -22,27 +34,36 @@ struct CampaignRun {
   double seconds = 0.0;                   // wall time, loading included
 };
 
+inline constexpr int campaign_format =
+    3;  // raised if the trajectories of a seed, or tallies, change
+
+/// Adds up rows, figure by figure: of "least" figures the smallest counts, of "deepest" ones and of
+/// triangles the largest. The first row may be null.
+void add(Json& sum, const Json& row);
+Json total_of(const Json& rows);
+
+/// The counts by the names of what they count.
+template <class Enum, std::size_t n>
+Json json_of(const std::array<std::uint64_t, n>& counts) {
+  Json json = Json::object();
+  for (std::size_t i = 0; i < n; ++i) json[std::string(name(static_cast<Enum>(i)))] = counts[i];
+  return json;
+}
+
+/// Writes into a record of some shards what its meshes have come to, in numbers and in words.
+CampaignResult finished(Json record);
+
 /// The result of one shard.
-Json result_of(const CampaignRun& run, const Findings& findings);
+CampaignResult result_of(const CampaignRun& run, const Findings& findings);
 
-/// Adds up results of one campaign. Throws Error, naming files, when one is not such a result, or
-/// its numbers do not agree with each other, when they are of different campaigns or versions, or
-/// share a shard.
-Json merged(const std::vector<std::filesystem::path>& files);
+/// Adds up records of one campaign, as a record that `command` makes. Throws Error, naming files,
+/// when one is not such a record, or its numbers do not agree with each other, when they are of
+/// different campaigns or versions, or share a shard.
+CampaignResult merged(const std::vector<std::filesystem::path>& files, const std::string& command);
 
-/// How many steps broke the theorem.
-std::uint64_t breach_count(const Json& result);
-
-/// Whether all shards are there, none of them interrupted.
-bool is_complete(const Json& result);
-
-/// How many steps broke the theorem, of how many, in a sentence.
-std::string headline(const Json& result);
-
-/// What is not there, and why: sentences.
-std::vector<std::string> account(const Json& result);
-
-/// The result as a table, the first breaches, and what machine it was.
-void print(std::ostream& out, const Json& result);
+/// The result of a campaign with an instrument, on so many meshes.
+CampaignResult result_of(const RobotCampaign& campaign, const std::string& command,
+                         const std::string& index, const std::vector<RobotTally>& tallies,
+                         std::size_t meshes);
 
 }  // namespace keepout::app

@@ -27,6 +27,9 @@ class Scene {
   const SpatialIndex& index() const noexcept { return *index_; }
   const std::shared_ptr<const SpatialIndex>& shared_index() const noexcept { return index_; }
   const oracle::SafetyOracle& oracle() const noexcept { return oracle_; }
+  const std::shared_ptr<const oracle::TriangleTree>& tree() const noexcept {
+    return oracle_.tree();
+  }
 
   double mean_edge() const noexcept { return mean_edge_; }        // [length], > 0
   double longest_edge() const noexcept { return longest_edge_; }  // [length]
@@ -71,5 +74,10 @@ std::vector<Arena> real_arenas(const std::string& index, std::vector<std::string
 
 /// A mesh that the user names (named_mesh.h). It is read when it is its turn.
 Arena named_arena(const std::string& mesh, const std::string& index);
+
+/// Meshes of at most 400 triangles, some 40 mm large, that are drawn anew for each start: `soup`
+/// (crossing triangles), `fan` (ridges and valleys around one vertex), `sheets` (1e-9 mm apart),
+/// `cone`, `bowl` and `saddle`.
+std::vector<Arena> hostile_arenas(const std::string& index);
 
 }  // namespace keepout::app

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "record/record.h"
+#include "verify/campaign.h"
 #include "verify/robot/campaign.h"
 
 namespace CLI {
@@ -21,7 +22,7 @@ struct VerifyOptions {
   std::vector<std::filesystem::path> meshes;  // none: all fixtures
   std::uint64_t steps = 1'000'000;
   std::uint64_t seed = 1;
-  std::string shard = "1/1";
+  Shard shard;
   std::string index = "wide_bvh";
   RecordFiles files;
   std::vector<std::filesystem::path> merge;  // records to add up, instead of a campaign

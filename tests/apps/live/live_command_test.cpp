@@ -124,9 +124,7 @@ TEST_F(Live, AnInstrumentBeginsWithAllBodiesClearAndItsPortBesideTheMesh) {
   oracle::InstrumentOracle judge(std::make_shared<const oracle::TriangleTree>(mesh),
                                  oracle::judged_psm(), base);
   judge.move_to(facts.at("start").at("positions").get<std::vector<double>>());
-  for (std::size_t body = 0; body < judge.bodies(); ++body) {
-    EXPECT_GE(judge.clearance(body, 0.5), 0.5) << body;
-  }
+  EXPECT_GE(judge.clearance(0.5), 0.5);
   EXPECT_LT(judge.clearance(judge.bodies() - 1, 30.0), 25.0) << "the jaw is before the surface";
 }
 

@@ -19,11 +19,6 @@
 namespace keepout::app {
 namespace {
 
-std::vector<RobotTally> run(const RobotCampaign& campaign, const std::vector<Arena>& arenas) {
-  return run_robot_campaign(campaign, arenas,
-                            [](const RobotTally&, std::uint64_t) { return Next::go_on; });
-}
-
 template <class Count>
 std::uint64_t sum(const std::vector<RobotTally>& rows, Count RobotTally::*count) {
   return std::accumulate(rows.begin(), rows.end(), std::uint64_t{0},
@@ -43,7 +38,8 @@ TEST_P(RobotCampaignWith, NoCycleComesTooCloseOrBreaksAJointsLimit) {
     arenas.push_back(named_arena("airway", "wide_bvh"));
   } catch (const Error&) {  // not there: what is generated has to do
   }
-  const auto rows = run({.robot = GetParam(), .cycles = 1000, .seed = 20261123}, arenas);
+  const auto rows =
+      run_campaign({.robot = GetParam(), .cycles = 1000, .seed = 20261123}, arenas, go_on);
   EXPECT_EQ(rows.size(), 5 * arenas.size());
   for (const RobotTally& row : rows) {
     const std::string where = row.mesh + ", " + row.scenario;
@@ -60,9 +56,9 @@ TEST_P(RobotCampaignWith, NoCycleComesTooCloseOrBreaksAJointsLimit) {
 }
 
 TEST(RobotCampaign, WhereTheLinearisedMotionIsCertifiedTheJudgeSeesItTooClose) {
-  const auto rows =
-      run({.robot = "psm", .cycles = 4000, .speeds = {20.0}, .motion = CertifiedMotion::linearised},
-          {arena_of("gear")});
+  const auto rows = run_campaign(
+      {.robot = "psm", .cycles = 4000, .speeds = {20.0}, .motion = CertifiedMotion::linearised},
+      std::array{arena_of("gear")}, go_on);
   EXPECT_GT(rows.front().below, 0u);
   EXPECT_LT(rows.front().least_beyond, -1e-3);
   EXPECT_EQ(rows.front().limits_broken, 0u);
@@ -70,7 +66,8 @@ TEST(RobotCampaign, WhereTheLinearisedMotionIsCertifiedTheJudgeSeesItTooClose) {
 
 TEST(RobotCampaign, TheSameSeedGivesTheSameAndAnotherSeedDoesNot) {
   const auto tally = [](std::uint64_t seed) {
-    return run({.robot = "psm", .cycles = 600, .speeds = {5.0}, .seed = seed}, {arena_of("gear")})
+    return run_campaign({.robot = "psm", .cycles = 600, .speeds = {5.0}, .seed = seed},
+                        std::array{arena_of("gear")}, go_on)
         .front();
   };
   const RobotTally one = tally(1);

@@ -12,6 +12,8 @@
 
 namespace keepout::app {
 
+inline const Advanced go_on = [](std::uint64_t, const std::string&) { return Next::go_on; };
+
 inline Arena arena_of(std::string_view shape) {
   return {std::string(shape), [shape] {
             return std::vector{Scene(std::string(shape), make_shape(shape), "wide_bvh")};
@@ -19,18 +21,14 @@ inline Arena arena_of(std::string_view shape) {
 }
 
 inline Findings campaign_on(std::string_view shape, const CampaignSettings& settings) {
-  return run_campaign(settings, std::array{arena_of(shape)},
-                      [](std::uint64_t) { return Next::go_on; });
+  return run_campaign(settings, std::array{arena_of(shape)}, go_on);
 }
 
 /// Over all meshes.
-inline Json total(const Findings& findings) { return result_of({}, findings).at("total"); }
+inline Json total(const Findings& findings) { return result_of({}, findings).record.at("total"); }
 
 inline std::uint64_t count(const Findings& findings, Breach breach) {
   return total(findings).at("breaches").at(std::string(name(breach))).get<std::uint64_t>();
-}
-inline std::uint64_t count(const Findings& findings, Status status) {
-  return total(findings).at("statuses").at(std::string(name(status))).get<std::uint64_t>();
 }
 
 }  // namespace keepout::app

@@ -57,9 +57,7 @@ JointPathVerdict judge_joint_path(oracle::InstrumentOracle& oracle, InstrumentCo
     const double places = in_steps_of(between_places);
     for (double k = 0.0; k <= places; k += 1.0) {
       oracle.move_to(between(from, to, k / places));
-      for (std::size_t b = 0; b < oracle.bodies(); ++b) {
-        clearance = std::min(clearance, oracle.clearance(b, margin));
-      }
+      clearance = std::min(clearance, oracle.clearance(margin));
     }
     bool is_proven = true;
     const double pieces = in_steps_of(piece_length);

@@ -85,16 +85,15 @@ std::vector<std::filesystem::path> meshes_of(const PlanOptions& options) {
 void run_scene(const PlanOptions& options, Scene& scene, Progress& progress, const StopSignal& stop,
                std::vector<RobotPlanningRun>& runs) {
   const RobotUnderTest& robot = robot_named(options.robot);
-  const auto tree = std::make_shared<const oracle::TriangleTree>(scene.mesh());
   progress.show(scene.name() + ", drawing problems");
   for (const RobotProblem& problem :
-       draw_robot_problems(scene, tree, robot, options.margin, options.problems, options.seed)) {
+       draw_robot_problems(scene, robot, options.margin, options.problems, options.seed)) {
     const auto guards = std::make_shared<InstrumentPool>([&] {
       return make_instrument_constraint(scene.mesh(), scene.shared_index(),
                                         robot.make(problem.base),
                                         {.options = {.margin = options.margin}});
     });
-    oracle::InstrumentOracle oracle(tree, robot.judged(), problem.base);
+    oracle::InstrumentOracle oracle(scene.tree(), robot.judged(), problem.base);
     for (const Checker& checker : robot_checkers(options)) {
       progress.show(scene.name() + " " + std::to_string(problem.number) + ", " + checker.name());
       for (std::size_t i = 0; i < options.seeds; ++i) {

@@ -23,10 +23,8 @@ constexpr std::size_t most_starts = 100;   // to each problem that is asked for
 
 /// Where the hand leads an instrument from a beginning, if that is far enough and in the way of the
 /// straight motion.
-std::optional<RobotProblem> led_by_hand(Scene& scene,
-                                        const std::shared_ptr<const oracle::TriangleTree>& tree,
-                                        const RobotUnderTest& robot, const RobotStart& start,
-                                        double margin, Random& random) {
+std::optional<RobotProblem> led_by_hand(Scene& scene, const RobotUnderTest& robot,
+                                        const RobotStart& start, double margin, Random& random) {
   const Instrument instrument = robot.make(start.base);
   // A period so long that a hand is not slowed down by the limits of velocity.
   InstrumentConstraint guard = make_instrument_constraint(
@@ -34,7 +32,7 @@ std::optional<RobotProblem> led_by_hand(Scene& scene,
       {.options = {.margin = 2.1 * margin, .band = 0.1 * margin, .period = 0.1}});
   InstrumentConstraint straight = make_instrument_constraint(
       scene.mesh(), scene.shared_index(), instrument, {.options = {.margin = margin}});
-  oracle::InstrumentOracle judge(tree, robot.judged(), start.base);
+  oracle::InstrumentOracle judge(scene.tree(), robot.judged(), start.base);
   RobotHand hand(scene, random, speed_of_the_hand);
   ChainState state;
   instrument.chain().forward_kinematics(start.positions, state);
@@ -60,16 +58,16 @@ std::optional<RobotProblem> led_by_hand(Scene& scene,
 
 }  // namespace
 
-std::vector<RobotProblem> draw_robot_problems(
-    Scene& scene, const std::shared_ptr<const oracle::TriangleTree>& tree,
-    const RobotUnderTest& robot, double margin, std::size_t count, std::uint64_t seed) {
+std::vector<RobotProblem> draw_robot_problems(Scene& scene, const RobotUnderTest& robot,
+                                              double margin, std::size_t count,
+                                              std::uint64_t seed) {
   Random random(seed);
   std::vector<RobotProblem> problems;
   for (std::size_t i = 0; i < most_starts * count && problems.size() < count; ++i) {
     // The hand begins with more than it is to keep.
-    const auto start = find_start(scene, tree, robot, Begin::apart, 2.1 * margin, random);
+    const auto start = find_start(scene, robot, Begin::apart, 2.1 * margin, random);
     if (!start) break;
-    std::optional<RobotProblem> problem = led_by_hand(scene, tree, robot, *start, margin, random);
+    std::optional<RobotProblem> problem = led_by_hand(scene, robot, *start, margin, random);
     if (!problem) continue;
     problem->number = problems.size() + 1;
     problems.push_back(std::move(*problem));

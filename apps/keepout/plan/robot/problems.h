@@ -28,8 +28,7 @@ struct RobotProblem {
 ///    within some 2 mm. Unless it is 30 mm ahead, another beginning is tried.
 ///
 /// Throws Error when it finds too few.
-std::vector<RobotProblem> draw_robot_problems(
-    Scene& scene, const std::shared_ptr<const oracle::TriangleTree>& tree,
-    const RobotUnderTest& robot, double margin, std::size_t count, std::uint64_t seed);
+std::vector<RobotProblem> draw_robot_problems(Scene& scene, const RobotUnderTest& robot,
+                                              double margin, std::size_t count, std::uint64_t seed);
 
 }  // namespace keepout::app

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <cmath>
 
 #include "plan/robot/plan_robot.h"
 #include "record/record.h"
@@ -37,10 +36,6 @@ double deepest_of(const Group& runs) {
   return deepest;
 }
 
-std::string shown_count(const Json& value) { return grouped(value.get<std::size_t>()); }
-std::string shown_figure(const Json& value) {
-  return value.is_null() ? "-" : rounded(value.get<double>());
-}
 std::string shown_whole(const Json& value) {
   return value.is_null() ? "-" : grouped(static_cast<std::size_t>(value.get<double>()));
 }
@@ -49,40 +44,40 @@ const Columns<Group>& summary_columns() {
   static const Columns<Group> all{
       {"mesh", [](const Group& g) { return Json(g.front()->mesh); }, "mesh", -12},
       {"checker", [](const Group& g) { return Json(g.front()->checker.name()); }, "checker", -15},
-      {"runs", [](const Group& g) { return Json(g.size()); }, "runs", 5, &shown_count},
+      {"runs", [](const Group& g) { return Json(g.size()); }, "runs", 5, &count_text},
       {"solved", [](const Group& g) { return Json(sum_of(g, [](auto& r) { return r.solved; })); },
-       "solved", 6, &shown_count},
+       "solved", 6, &count_text},
       {"valid",
        [](const Group& g) { return Json(sum_of(g, [](auto& r) { return r.is_valid(); })); },
-       "valid", 6, &shown_count},
+       "valid", 6, &count_text},
       {"motions",
        [](const Group& g) { return Json(sum_of(g, [](auto& r) { return r.verdict.motions; })); },
-       "motions", 8, &shown_count},
+       "motions", 8, &count_text},
       {"too_close",
        [](const Group& g) { return Json(sum_of(g, [](auto& r) { return r.verdict.too_close; })); },
-       "too close", 9, &shown_count},
+       "too close", 9, &count_text},
       {"entering",
        [](const Group& g) { return Json(sum_of(g, [](auto& r) { return r.verdict.entering; })); },
-       "in mesh", 7, &shown_count},
+       "in mesh", 7, &count_text},
       {"unproven",
        [](const Group& g) { return Json(sum_of(g, [](auto& r) { return r.verdict.unproven; })); },
-       "unproven", 8, &shown_count},
+       "unproven", 8, &count_text},
       {"deepest_mm", [](const Group& g) { return Json(deepest_of(g)); }, "deepest mm", 10,
-       &shown_figure},
+       &figure_text<>},
       {"median_seconds",
        [](const Group& g) { return median_of(g, false, [](auto& r) { return r.seconds; }); },
-       "median s", 9, &shown_figure},
+       "median s", 9, &figure_text<>},
       {"median_checking_seconds",
        [](const Group& g) {
          return median_of(g, false, [](auto& r) { return r.checking_seconds; });
        },
-       "checking s", 10, &shown_figure},
+       "checking s", 10, &figure_text<>},
       {"median_checks",
        [](const Group& g) { return median_of(g, false, [](auto& r) { return r.checks; }); },
        "asked", 8, &shown_whole},
       {"median_length_mm",
        [](const Group& g) { return median_of(g, true, [](auto& r) { return r.length; }); },
-       "length mm", 9, &shown_figure}};
+       "length mm", 9, &figure_text<>}};
   return all;
 }
 
@@ -112,8 +107,7 @@ Json entry_of(const Run& run) {
   entry["too_close"] = run.verdict.too_close;
   entry["entering"] = run.verdict.entering;
   entry["unproven"] = run.verdict.unproven;
-  entry["clearance_mm"] =
-      std::isfinite(run.verdict.clearance) ? Json(run.verdict.clearance) : Json(nullptr);
+  entry["clearance_mm"] = or_null(run.verdict.clearance);
   entry["length_mm"] = run.length;
   entry["path"] = run.path;
   return entry;

@@ -43,7 +43,6 @@ std::string_view name(Mode mode) noexcept {
 }
 
 std::vector<GuardedCycle> follow(const RobotStroke& stroke, Scene& scene,
-                                 const std::shared_ptr<const oracle::TriangleTree>& tree,
                                  const RobotUnderTest& robot, double margin, Random random,
                                  ModeTally& tally) {
   const Instrument instrument = robot.make(stroke.start.base);
@@ -58,7 +57,7 @@ std::vector<GuardedCycle> follow(const RobotStroke& stroke, Scene& scene,
                                               .margin = margin}});
   }
   std::vector<double> q = stroke.start.positions;
-  RobotJudge judge({robot.judged(), stroke.start.base, {{tree}}}, chain, random, q, options,
+  RobotJudge judge({robot.judged(), stroke.start.base, {{scene.tree()}}}, chain, random, q, options,
                    joints.tolerance());
   const double kept = margin - options.band - 3.0 * joints.tolerance();
   std::vector<GuardedCycle> cycles;

@@ -48,7 +48,6 @@ struct GuardedCycle {
 /// judges each cycle at five poses or six with the oracle's own kinematics and distances. `random`
 /// chooses the poses between.
 std::vector<GuardedCycle> follow(const RobotStroke& stroke, Scene& scene,
-                                 const std::shared_ptr<const oracle::TriangleTree>& tree,
                                  const RobotUnderTest& robot, double margin, Random random,
                                  ModeTally& tally);
 

@@ -68,7 +68,7 @@ Json run_json(Mode mode, const std::vector<GuardedCycle>& cycles) {
     }
     Json& least = clearances.emplace_back();
     for (const double mm : cycle.clearances) {
-      least.push_back(std::isfinite(mm) ? Json(std::round(1e6 * mm) / 1e6) : Json(nullptr));
+      least.push_back(or_null(std::round(1e6 * mm) / 1e6));
     }
   }
   const auto worst = std::ranges::min_element(cycles, {}, &GuardedCycle::least);
@@ -79,16 +79,15 @@ Json run_json(Mode mode, const std::vector<GuardedCycle>& cycles) {
 }
 
 /// Makes stroke `number` in the mode of each row, and keeps it if it says more than the one there.
-void run_stroke(const SimulateOptions& options, Scene& scene,
-                const std::shared_ptr<const oracle::TriangleTree>& tree, std::uint64_t number,
+void run_stroke(const SimulateOptions& options, Scene& scene, std::uint64_t number,
                 std::span<ModeTally> rows, std::span<KeptStroke> kept) {
   const RobotUnderTest& robot = robots_under_test().front();
   const double margin = options.constraint.options.margin;
   Random of_seed(options.hand.seed);
   Random random(of_seed.bits() ^ number);
   const std::size_t manner = number % manners.size();
-  const auto stroke = make_robot_stroke(scene, tree, robot, manners[manner], margin,
-                                        rows.front().speed, options.hand.cycles, random);
+  const auto stroke = make_robot_stroke(scene, robot, manners[manner], margin, rows.front().speed,
+                                        options.hand.cycles, random);
   if (!stroke) {
     throw Error(scene.name() +
                 ": no place was found where an instrument can begin, 5 to 20 mm before the surface "
@@ -101,7 +100,7 @@ void run_stroke(const SimulateOptions& options, Scene& scene,
                   {"port", json_of(stroke->start.base.position)},
                   {"runs", Json::array()}}};
   for (ModeTally& row : rows) {
-    const auto cycles = follow(*stroke, scene, tree, robot, margin, random, row);
+    const auto cycles = follow(*stroke, scene, robot, margin, random, row);
     one.json["runs"].push_back(run_json(row.mode, cycles));
     const double least = std::ranges::min(cycles, {}, &GuardedCycle::least).least();
     if (row.mode != Mode::none) one.told += std::max(0.0, margin - least);
@@ -180,12 +179,11 @@ int simulate_robot(const SimulateOptions& options, std::ostream& out) {
   Json meshes = Json::array();
   for (const auto& mesh : named) {
     Scene scene(mesh.stem().string(), load_named_mesh(mesh).mesh, options.constraint.index);
-    const auto tree = std::make_shared<const oracle::TriangleTree>(scene.mesh());
     std::array<KeptStroke, manners.size()> kept;
     for (const double speed : options.speeds) {
       for (const Mode mode : modes) rows.push_back({scene.name(), speed, mode});
       for (std::uint64_t n = 0; n < options.hand.strokes && !stop.has_come(); ++n) {
-        run_stroke(options, scene, tree, n, std::span(rows).last(modes.size()), kept);
+        run_stroke(options, scene, n, std::span(rows).last(modes.size()), kept);
         progress.advance();
       }
     }

@@ -64,15 +64,14 @@ std::string_view name(Manner manner) noexcept {
   return names[static_cast<std::size_t>(manner)];
 }
 
-std::optional<RobotStroke> make_robot_stroke(
-    Scene& scene, const std::shared_ptr<const oracle::TriangleTree>& tree,
-    const RobotUnderTest& robot, Manner manner, double margin, double speed, std::size_t cycles,
-    Random& random) {
+std::optional<RobotStroke> make_robot_stroke(Scene& scene, const RobotUnderTest& robot,
+                                             Manner manner, double margin, double speed,
+                                             std::size_t cycles, Random& random) {
   const bool is_leaning = manner == Manner::lean;
   std::optional<RobotStart> start;
   Facing facing_most;
   for (int i = 0; i < (is_leaning ? starts_to_lean : 1); ++i) {
-    const auto drawn = find_start(scene, tree, robot, Begin::apart, margin, random);
+    const auto drawn = find_start(scene, robot, Begin::apart, margin, random);
     if (!drawn) break;
     const oracle::JudgedRobot judged = robot.judged();
     const auto links = oracle::place(judged, drawn->base, drawn->positions);

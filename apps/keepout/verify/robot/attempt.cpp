@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "verify/robot/attempt.h"
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -10,6 +8,7 @@
 #include "keepout/activation/certified.h"
 #include "keepout/solvers/registry.h"
 #include "keepout/step/motion_constraint.h"
+#include "verify/robot/campaign.h"
 #include "verify/robot/excess.h"
 #include "verify/robot/hand.h"
 #include "verify/robot/judge.h"
@@ -61,7 +60,7 @@ JudgedScene judged_scene(const RobotSetup& setup) {
                     .guides = setup.guides,
                     .has_band = setup.scenario->attacked == Attacked::instrument};
   for (const SetupMesh& mesh : setup.meshes) {
-    scene.meshes.push_back({mesh.mesh.tree, mesh.margin, mesh.motion.first});
+    scene.meshes.push_back({mesh.scene->tree(), mesh.margin, mesh.motion.first});
   }
   return scene;
 }
@@ -69,23 +68,22 @@ JudgedScene judged_scene(const RobotSetup& setup) {
 /// The run of one instrument from its start.
 class RobotAttempt {
  public:
-  RobotAttempt(RobotRow& row, RobotSetup setup, Random& random)
-      : row_(row),
+  RobotAttempt(const RobotCampaign& campaign, RobotSetup setup, Random& random, RobotTally& tally,
+               RobotTimes& times)
+      : tally_(tally),
+        times_(times),
         random_(random),
         setup_(std::move(setup)),
         judged_(setup_.robot.judged()),
         chain_(setup_.robot.make(setup_.start.base).chain()),
-        subject_(row.campaign.make_subject(setup_)),
+        subject_(campaign.make_subject(setup_)),
         judge_(judged_scene(setup_), chain_, random, setup_.start.positions, setup_.options,
                subject_->tolerance()),
-        hand_(*setup_.meshes[0].mesh.scene, random, setup_.speed),
+        hand_(*setup_.meshes[0].scene, random, setup_.speed),
         positions_(setup_.start.positions),
-        poses_(setup_.meshes.size()),
-        velocities_(setup_.meshes.size()),
         levels_(setup_.meshes.size() * judged_.bodies.size()) {
-    for (std::size_t m = 0; m < poses_.size(); ++m) poses_[m] = setup_.meshes[m].motion.first;
-    if (row.is_drawn) return;
-    const Scene& scene = *setup_.meshes[0].mesh.scene;
+    if (setup_.is_drawn) return;
+    const Scene& scene = *setup_.meshes[0].scene;
     point_.emplace(scene.mesh(), scene.shared_index(), std::make_unique<CertifiedRule>(),
                    make_solver("active_set"),
                    StepOptions{.radius = 10.0 * setup_.speed,
@@ -102,8 +100,8 @@ class RobotAttempt {
       if (!waited_) continue;
       ++*waited_;
       if (judge_.is_recovered()) {
-        ++row_.tally.recovered;
-        row_.tally.recovery_cycles += *waited_;
+        ++tally_.recovered;
+        tally_.recovery_cycles += *waited_;
         waited_.reset();
       }
     }
@@ -112,16 +110,16 @@ class RobotAttempt {
  private:
   void set_margin(std::size_t cycle) {
     InstrumentOptions options = setup_.options;
-    if (is_raised(row_.scenario, cycle)) options.margin += raise;
+    if (is_raised(*setup_.scenario, cycle)) options.margin += raise;
     if (options.margin != margin_) {
       subject_->set_options(options);
       judge_.follow(options);
     }
     margin_ = options.margin;
     waited_.reset();  // what has not recovered within a block has not in time
-    const bool is_new = cycle == 0 || is_raised(row_.scenario, cycle);
+    const bool is_new = cycle == 0 || is_raised(*setup_.scenario, cycle);
     if (is_new && !judge_.is_recovered()) {
-      ++row_.tally.recoveries;
+      ++tally_.recoveries;
       waited_ = 0;
     }
   }
@@ -131,36 +129,24 @@ class RobotAttempt {
   /// at several times its speed. A mesh that comes on is always placed: the joints can keep up with
   /// its speed only.
   void place_meshes(std::uint64_t cycle) {
-    for (std::size_t m = 0; m < poses_.size(); ++m) {
+    for (std::size_t m = 0; m < setup_.meshes.size(); ++m) {
       const MeshMotion& motion = setup_.meshes[m].motion;
       const auto skips = [&] { return !motion.comes_on && random_.uniform() < skipped; };
       if (cycle > 0 && (motion.is_still() || skips())) continue;
+      const Pose now = judge_.pose(m);
       const Pose then = motion.at(static_cast<double>(cycle) + 1.0);
       const double period = setup_.options.period;
-      const Eigen::AngleAxisd turn(Mat3(then.rotation * poses_[m].rotation.transpose()));
-      velocities_[m] = {.linear = (then.position - poses_[m].position) / period,
-                        .angular = turn.angle() / period * turn.axis()};
-      subject_->place(m, poses_[m], velocities_[m]);
-      judge_.place(m, poses_[m], velocities_[m]);
-    }
-  }
-
-  /// Moves the meshes by one cycle.
-  void move_meshes() {
-    const double period = setup_.options.period;
-    for (std::size_t m = 0; m < poses_.size(); ++m) {
-      poses_[m].position += period * velocities_[m].linear;
-      const double turn = period * velocities_[m].angular.norm();
-      if (!(turn > 0.0)) continue;
-      const Eigen::AngleAxisd by(turn, velocities_[m].angular.normalized());
-      poses_[m].rotation =
-          (by * Eigen::Quaterniond(poses_[m].rotation)).normalized().toRotationMatrix();
+      const Eigen::AngleAxisd turn(Mat3(then.rotation * now.rotation.transpose()));
+      const Twist velocity{.linear = (then.position - now.position) / period,
+                           .angular = turn.angle() / period * turn.axis()};
+      subject_->place(m, now, velocity);
+      judge_.place(m, now, velocity);
     }
   }
 
   /// Returns the commanded motion of the flange, of an operator who looks at the first mesh.
   Twist wanted(const Vec3& flange) {
-    const Pose& mesh = poses_[0];
+    const Pose& mesh = judge_.pose(0);
     Twist twist = hand_.next(mesh.rotation.transpose() * (flange - mesh.position));
     twist.linear = mesh.rotation * twist.linear;
     twist.angular = mesh.rotation * twist.angular;
@@ -169,17 +155,16 @@ class RobotAttempt {
 
   /// Returns true if the step returned a motion that may be executed, which may be zero.
   bool make_cycle() {
-    RobotTally& tally = row_.tally;
     ChainState state;
     chain_.forward_kinematics(positions_, state);
     const Twist desired = wanted(state.flange().position);
     const BenchClock::time_point start = BenchClock::now();
     const InstrumentStep step = subject_->step(positions_, desired);
-    row_.times.push_back(microseconds_since(start));
+    times_.step.push_back(microseconds_since(start));
     if (point_) {
       const BenchClock::time_point after = BenchClock::now();
       point_->step({.tip = state.flange().position, .desired = desired.linear});
-      row_.point_times.push_back(microseconds_since(after));
+      times_.point.push_back(microseconds_since(after));
     }
     RobotTask::Increment made = RobotTask::Increment::Zero(chain_.size());
     std::vector<double> next = positions_;
@@ -197,33 +182,31 @@ class RobotAttempt {
     if (step.status == Status::free && setup_.scenario->attacked == Attacked::instrument) {
       const Missed off = missed(setup_, judged_, positions_, next, desired);
       const double allowed = strayed_above * off.standing + subject_->tolerance();
-      tally.strayed += off.moving > allowed ? 1 : 0;
+      tally_.strayed += off.moving > allowed ? 1 : 0;
     }
-    if (tally.first_breach == 0 && breaches(tally) > 0) tally.first_breach = tally.cycles;
-    move_meshes();
+    if (tally_.first_breach == 0 && breaches(tally_) > 0) tally_.first_breach = tally_.cycles;
     positions_ = next;
     return step.ok();
   }
 
   void note(const InstrumentStep& step, const RobotVerdict& verdict) {
-    RobotTally& tally = row_.tally;
-    ++tally.cycles;
-    ++tally.statuses[static_cast<std::size_t>(step.status)];
-    tally.below += verdict.is_below ? 1 : 0;
+    ++tally_.cycles;
+    ++tally_.statuses[static_cast<std::size_t>(step.status)];
+    tally_.below += verdict.is_below ? 1 : 0;
     if (verdict.is_below && verdict.least < 0.0) {
-      ++tally.in_mesh;
-      tally.deepest = std::max(tally.deepest, -verdict.least);
+      ++tally_.in_mesh;
+      tally_.deepest = std::max(tally_.deepest, -verdict.least);
     }
-    tally.limits_broken += verdict.limits_broken ? 1 : 0;
-    tally.guides_left += verdict.is_guide_left ? 1 : 0;
-    tally.least_beyond = std::min(tally.least_beyond, verdict.beyond);
-    tally.least_in_tau = std::min(tally.least_in_tau, verdict.beyond / subject_->tolerance());
-    tally.least_guide_in_tau = std::min(tally.least_guide_in_tau, verdict.guide_room);
+    tally_.limits_broken += verdict.limits_broken ? 1 : 0;
+    tally_.guides_left += verdict.is_guide_left ? 1 : 0;
+    tally_.least_beyond = std::min(tally_.least_beyond, verdict.beyond);
+    tally_.least_in_tau = std::min(tally_.least_in_tau, verdict.beyond / subject_->tolerance());
+    tally_.least_guide_in_tau = std::min(tally_.least_guide_in_tau, verdict.guide_room);
     const auto rounds = static_cast<std::uint64_t>(step.rounds);
-    tally.rounds += rounds;
-    tally.most_rounds = std::max(tally.most_rounds, rounds);
-    tally.rows += step.rows;
-    tally.most_looks = std::max<std::uint64_t>(tally.most_looks, subject_->looks());
+    tally_.rounds += rounds;
+    tally_.most_rounds = std::max(tally_.most_rounds, rounds);
+    tally_.rows += step.rows;
+    tally_.most_looks = std::max<std::uint64_t>(tally_.most_looks, subject_->looks());
   }
 
   /// Counts cycles that execute almost nothing of the commanded motion, and searches for a better
@@ -231,25 +214,25 @@ class RobotAttempt {
   /// beside a moving mesh, where standing still need not be allowed.
   void count_blocked(const InstrumentStep& step, const RobotTask::Increment& made,
                      const Twist& desired) {
-    RobotTally& tally = row_.tally;
     if (step.status == Status::recovering) return;
     InstrumentOptions options = setup_.options;
     options.margin = margin_;
     const RobotTask task(chain_, positions_, desired, options);
     const RobotTask::Increment none = RobotTask::Increment::Zero(made.size());
-    tally.worse += task.cost(made) > 1.05 * task.cost(none) ? 1 : 0;
+    tally_.worse += task.cost(made) > 1.05 * task.cost(none) ? 1 : 0;
     if (!(task.share(made) < blocked_below)) return;
-    const std::uint64_t every = row_.is_drawn ? sampled_where_drawn : sampled;
-    if (tally.blocked++ % every != 0 || setup_.scenario->moves) return;
+    const std::uint64_t every = setup_.is_drawn ? sampled_where_drawn : sampled;
+    if (tally_.blocked++ % every != 0 || setup_.scenario->moves) return;
     const Search found =
         search(task, positions_, {made.data(), positions_.size()}, judge_, random_);
-    ++tally.samples;
-    tally.excess += found.saved;
-    tally.useful += found.saved > useful_above ? 1 : 0;
-    tally.movable += found.share >= movable_above ? 1 : 0;
+    ++tally_.samples;
+    tally_.excess += found.saved;
+    tally_.useful += found.saved > useful_above ? 1 : 0;
+    tally_.movable += found.share >= movable_above ? 1 : 0;
   }
 
-  RobotRow& row_;
+  RobotTally& tally_;
+  RobotTimes& times_;
   Random& random_;
   RobotSetup setup_;
   oracle::JudgedRobot judged_;
@@ -259,8 +242,6 @@ class RobotAttempt {
   RobotJudge judge_;
   RobotHand hand_;
   std::vector<double> positions_;
-  std::vector<Pose> poses_;              // of the meshes
-  std::vector<Twist> velocities_;        // of the meshes
   std::vector<double> levels_;           // see RobotJudge::judge
   double margin_ = 0.0;                  // at present [mm]
   std::optional<std::uint64_t> waited_;  // for a margin that is not kept yet [cycles]
@@ -268,8 +249,9 @@ class RobotAttempt {
 
 }  // namespace
 
-void run_attempt(RobotRow& row, RobotSetup setup, Random& random, std::uint64_t cycles) {
-  RobotAttempt(row, std::move(setup), random).run(cycles);
+void run_attempt(const RobotCampaign& campaign, RobotSetup setup, Random& random,
+                 std::uint64_t cycles, RobotTally& tally, RobotTimes& times) {
+  RobotAttempt(campaign, std::move(setup), random, tally, times).run(cycles);
 }
 
 }  // namespace keepout::app

@@ -8,6 +8,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "keepout/robot/instrument_constraint.h"
@@ -31,21 +32,13 @@ struct RobotCampaign {
   std::function<std::unique_ptr<RobotSubject>(const RobotSetup&)> make_subject = &app::make_subject;
 };
 
-/// The plan of one row of a campaign.
-struct RobotRowPlan {
-  const Scenario* scenario;
-  double speed;
-};
 /// The rows for each mesh: scenarios that are named at each speed; of the usual ones the first at
 /// each speed, the others at the first speed only. Throws Error for a scenario that there is not.
-std::vector<RobotRowPlan> rows_of(const RobotCampaign& campaign);
+std::vector<std::pair<const Scenario*, double>> rows_of(const RobotCampaign& campaign);
 
 /// How a robot is guarded in a campaign. Velocity limits are those of a patient arm: the cycle is
 /// made so long that they admit a tenth of a radian and 2.5 mm at speed 1.
 InstrumentOptions options_of(const RobotCampaign& campaign, const Chain& chain, double speed);
-
-inline constexpr std::uint64_t cycles_of_a_start = 2000;
-inline constexpr std::uint64_t cycles_of_a_drawn_start = 400;  // where mesh or robot are drawn
 
 /// What came out on one mesh, in one scenario at one speed.
 struct RobotTally {
@@ -90,12 +83,20 @@ struct RobotTally {
   double seconds = 0.0;
 };
 
-/// Runs it, all rows on one mesh after the other.
-/// `advanced` is told the cycles after each start; where it says stop, the rows are of what was
-/// done. Throws Error when there is no such robot.
-std::vector<RobotTally> run_robot_campaign(
-    const RobotCampaign& campaign, std::span<const Arena> arenas,
-    const std::function<Next(const RobotTally&, std::uint64_t)>& advanced);
+/// How long the steps of a row took. [us]
+struct RobotTimes {
+  std::vector<double> step = {}, point = {};  // see RobotTally
+};
+
+/// Runs an instrument from a start for at most `cycles` cycles, judges each, and adds them to the
+/// row. Ends early if no motion can be proved for 50 cycles.
+void run_attempt(const RobotCampaign& campaign, RobotSetup setup, Random& random,
+                 std::uint64_t cycles, RobotTally& tally, RobotTimes& times);
+
+/// Runs it, all rows on one mesh after the other. `advanced` is called after each start. If it
+/// stops the campaign, the rows are of what was done. Throws Error when there is no such robot.
+std::vector<RobotTally> run_campaign(const RobotCampaign& campaign, std::span<const Arena> arenas,
+                                     const Advanced& advanced);
 
 /// How many cycles that is on so many meshes.
 std::uint64_t cycle_count(const RobotCampaign& campaign, std::size_t meshes);

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "verify/robot/hostile_mesh.h"
-
 #include <Eigen/Geometry>
 #include <array>
 #include <cmath>
@@ -9,6 +7,7 @@
 
 #include "keepout/fixtures/random.h"
 #include "keepout/geometry/pose.h"
+#include "verify/scene.h"
 
 namespace keepout::app {
 namespace {

@@ -14,14 +14,20 @@ constexpr int parts_of_a_cycle = 8;
 constexpr int refinements = 3;               // around the worst place
 constexpr double angular_tolerance = 1e-12;  // [chord]
 
-/// Returns true if a joint may go there, but for what sums are rounded: one that is outside of its
-/// limits may stay, or come back.
-bool is_allowed(const Joint& joint, double from, double to, double period) {
-  const JointLimits& limits = joint.limits;
-  const double rounding = 1e-14 * (std::abs(from) + std::abs(to));
-  return to >= std::min(limits.lower, from) - rounding &&
-         to <= std::max(limits.upper, from) + rounding &&
-         std::abs(to - from) <= std::min(limits.increment, limits.velocity * period) + rounding;
+/// Returns true if all joints may go there, but for what sums are rounded: one that is outside of
+/// its limits may stay, or come back.
+bool are_allowed(const Chain& chain, std::span<const double> from, std::span<const double> to,
+                 double period) {
+  for (std::size_t k = 0; k < from.size(); ++k) {
+    const JointLimits& limits = chain.joint(static_cast<int>(k) + 1).limits;
+    const double rounding = 1e-14 * (std::abs(from[k]) + std::abs(to[k]));
+    const double longest = std::min(limits.increment, limits.velocity * period);
+    const bool is_allowed = to[k] >= std::min(limits.lower, from[k]) - rounding &&
+                            to[k] <= std::max(limits.upper, from[k]) + rounding &&
+                            std::abs(to[k] - from[k]) <= longest + rounding;
+    if (!is_allowed) return false;
+  }
+  return true;
 }
 
 /// Returns the certified distance of a pair or a guide that should keep `target`, is at `distance`,
@@ -154,12 +160,7 @@ void RobotJudge::open(std::span<const double> levels) {
 }
 
 RobotVerdict RobotJudge::judge(std::span<const double> next, std::span<const double> levels) {
-  RobotVerdict verdict;
-  for (std::size_t k = 0; k < positions_.size(); ++k) {
-    verdict.limits_broken =
-        verdict.limits_broken || !is_allowed(limits_->joint(static_cast<int>(k) + 1), positions_[k],
-                                             next[k], options_.period);
-  }
+  RobotVerdict verdict{.limits_broken = !are_allowed(*limits_, positions_, next, options_.period)};
   open(levels);
   const bool is_still =
       std::ranges::equal(next, positions_) && std::ranges::all_of(meshes_, [](const Mesh& mesh) {
@@ -204,12 +205,7 @@ RobotVerdict RobotJudge::judge(std::span<const double> next, std::span<const dou
 bool RobotJudge::would_allow(std::span<const double> next) {
   constexpr int poses = 9;
   const std::size_t pairs = meshes_.size() * bodies_;
-  for (std::size_t k = 0; k < positions_.size(); ++k) {
-    if (!is_allowed(limits_->joint(static_cast<int>(k) + 1), positions_[k], next[k],
-                    options_.period)) {
-      return false;
-    }
-  }
+  if (!are_allowed(*limits_, positions_, next, options_.period)) return false;
   for (int i = poses - 1; i > 0; --i) {  // where it ends is most likely to be too close
     look(next, static_cast<double>(i) / (poses - 1), distances_);
     for (std::size_t k = 0; k < kept_.size(); ++k) {

@@ -1,25 +1,33 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "verify/robot/result.h"
+#include "verify/result.h"
 
-#include <cmath>
-#include <ostream>
+#include <algorithm>
+#include <sstream>
 
 #include "record/json_parts.h"
+#include "record/record.h"
+#include "shared/machine.h"
+#include "shared/names.h"
 #include "shared/number_text.h"
 
 namespace keepout::app {
 namespace {
 
 /// Null where there is nothing to divide by.
-Json ratio(double part, std::uint64_t of) {
-  return of == 0 ? Json(nullptr) : Json(part / static_cast<double>(of));
+template <class Part>
+Json ratio(Part part, std::uint64_t of) {
+  return of == 0 ? Json(nullptr) : Json(static_cast<double>(part) / static_cast<double>(of));
 }
-Json ratio(std::uint64_t part, std::uint64_t of) { return ratio(static_cast<double>(part), of); }
+auto finite(double RobotTally::*figure) {
+  return [figure](const RobotTally& t) { return or_null(t.*figure); };
+}
+template <class Part>
+auto per(std::uint64_t RobotTally::*of, Part RobotTally::*part) {
+  return [of, part](const RobotTally& t) { return ratio(t.*part, t.*of); };
+}
 
-Json or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
-Json share_of(const RobotTally& t, Status status) {
-  return ratio(t.statuses[static_cast<std::size_t>(status)], t.cycles);
+Json cut_share(const RobotTally& t) {
+  return ratio(t.statuses[static_cast<std::size_t>(Status::fallback)], t.cycles);
 }
 
 /// Of cycles that ended without a motion that may be carried out.
@@ -31,30 +39,14 @@ Json unmoved_share(const RobotTally& t) {
   return ratio(unmoved, t.cycles);
 }
 
-Json statuses(const RobotTally& t) {
-  Json json = Json::object();
-  for (std::size_t i = 0; i < status_count; ++i) {
-    json[std::string(name(static_cast<Status>(i)))] = t.statuses[i];
-  }
-  return json;
-}
-
-std::string count_text(const Json& value) { return grouped(value.get<std::uint64_t>()); }
-template <int digits>
-std::string figure(const Json& value) {
-  return value.is_null() ? "-" : rounded(value.get<double>(), digits);
-}
 std::string percent_text(const Json& value) {
   return value.is_null() ? "-" : formatted("%.2f%%", 100.0 * value.get<double>());
-}
-std::string tiny(const Json& value) {
-  return value.is_null() ? "-" : formatted("%.2e", value.get<double>());
 }
 /// Median, 99 %, 99.9 % and the longest.
 std::string times_text(const Json& us) {
   std::string text;
   for (const auto& [key, value] : us.items()) {
-    text += (text.empty() ? "" : "/") + (value.is_null() ? "-" : rounded(value.get<double>(), 2));
+    text += (text.empty() ? "" : "/") + figure_text<2>(value);
   }
   return text;
 }
@@ -65,52 +57,42 @@ const Columns<RobotTally>& robot_columns() {
       {"mesh", &Tally::mesh, "mesh", -12},
       {"triangles", &Tally::triangles, "triangles", 9, &count_text},
       {"scenario", &Tally::scenario, "scenario", -11},
-      {"speed", &Tally::speed, "speed", 5, &figure<2>},
-      {"cycle_s", [](const Tally& t) { return Json(t.period); }},
+      {"speed", &Tally::speed, "speed", 5, &figure_text<2>},
+      {"cycle_s", &Tally::period},
       {"starts", &Tally::starts, "starts", 6, &count_text},
       {"cycles", &Tally::cycles, "cycles", 11, &count_text},
       {"below", &Tally::below, "below", 7, &count_text},
       {"in_mesh", &Tally::in_mesh, "in mesh", 7, &count_text},
-      {"deepest_mm", &Tally::deepest, "deepest", 7, &figure<2>},
+      {"deepest_mm", &Tally::deepest, "deepest", 7, &figure_text<2>},
       {"limits_broken", &Tally::limits_broken, "limits", 6, &count_text},
       {"guides_left", &Tally::guides_left, "guides", 6, &count_text},
       {"strayed", &Tally::strayed, "strayed", 7, &count_text},
       {"first_breach",
        [](const Tally& t) { return t.first_breach > 0 ? Json(t.first_breach) : Json(nullptr); }},
-      {"least_beyond_mm", [](const Tally& t) { return or_null(t.least_beyond); }, "least", 9,
-       &tiny},
-      {"least_beyond_tau", [](const Tally& t) { return or_null(t.least_in_tau); }, "in tau", 9,
-       &tiny},
-      {"least_guide_tau", [](const Tally& t) { return or_null(t.least_guide_in_tau); }, "guide", 9,
-       &tiny},
-      {"blocked_share", [](const Tally& t) { return ratio(t.blocked, t.cycles); }, "blocked", 7,
-       &percent_text},
-      {"cut_share", [](const Tally& t) { return share_of(t, Status::fallback); }, "cut", 6,
-       &percent_text},
-      {"unmoved_share", [](const Tally& t) { return unmoved_share(t); }, "none", 6, &percent_text},
+      {"least_beyond_mm", finite(&Tally::least_beyond), "least", 9, &number_text<"%.2e">},
+      {"least_beyond_tau", finite(&Tally::least_in_tau), "in tau", 9, &number_text<"%.2e">},
+      {"least_guide_tau", finite(&Tally::least_guide_in_tau), "guide", 9, &number_text<"%.2e">},
+      {"blocked_share", per(&Tally::cycles, &Tally::blocked), "blocked", 7, &percent_text},
+      {"cut_share", &cut_share, "cut", 6, &percent_text},
+      {"unmoved_share", &unmoved_share, "none", 6, &percent_text},
       {"worse", &Tally::worse, "worse", 5, &count_text},
-      {"rounds_mean", [](const Tally& t) { return ratio(t.rounds, t.cycles); }, "rounds", 6,
-       &figure<3>},
+      {"rounds_mean", per(&Tally::cycles, &Tally::rounds), "rounds", 6, &figure_text<3>},
       {"rounds_max", &Tally::most_rounds, "max", 3, &count_text},
-      {"rows_mean", [](const Tally& t) { return ratio(t.rows, t.cycles); }, "rows", 5, &figure<2>},
-      {"step_us", [](const Tally& t) { return Json(t.step); }, "us p50/p99/p99.9/max", 22,
-       &times_text},
-      {"point_us", [](const Tally& t) { return Json(t.point); }, "point us p50/p99/p99.9/max", 26,
-       &times_text},
+      {"rows_mean", per(&Tally::cycles, &Tally::rows), "rows", 5, &figure_text<2>},
+      {"step_us", &Tally::step, "us p50/p99/p99.9/max", 22, &times_text},
+      {"point_us", &Tally::point, "point us p50/p99/p99.9/max", 26, &times_text},
       {"looks_max", &Tally::most_looks, "looks", 8, &count_text},
-      {"excess_mean", [](const Tally& t) { return ratio(t.excess, t.samples); }, "excess", 7,
-       &figure<2>},
+      {"excess_mean", per(&Tally::samples, &Tally::excess), "excess", 7, &figure_text<2>},
       {"excess_samples", &Tally::samples, "of", 5, &count_text},
       {"useful", &Tally::useful, "useful", 6, &count_text},
       {"movable", &Tally::movable, "movable", 7, &count_text},
-      {"movable_share", [](const Tally& t) { return ratio(t.movable, t.samples); }, "of bl.", 6,
-       &percent_text},
+      {"movable_share", per(&Tally::samples, &Tally::movable), "of bl.", 6, &percent_text},
       {"recoveries", &Tally::recoveries, "recov.", 6, &count_text},
       {"recovered", &Tally::recovered, "in 500", 6, &count_text},
-      {"recovery_cycles_mean", [](const Tally& t) { return ratio(t.recovery_cycles, t.recovered); },
-       "cycles", 6, &figure<3>},
-      {"statuses", &statuses},
-      {"seconds", &Tally::seconds, "seconds", 7, &figure<3>}};
+      {"recovery_cycles_mean", per(&Tally::recovered, &Tally::recovery_cycles), "cycles", 6,
+       &figure_text<3>},
+      {"statuses", [](const Tally& t) { return json_of<Status>(t.statuses); }},
+      {"seconds", &Tally::seconds, "seconds", 7, &figure_text<3>}};
   return all;
 }
 
@@ -129,101 +111,69 @@ cycles. point us: of the certified step of a ball at the tip, beside each. Lengt
 
 }  // namespace
 
-std::uint64_t robot_breaches(const Json& record) {
-  const Json& total = record.at("total");
-  std::uint64_t sum = 0;
-  for (const char* kind : {"below", "limits_broken", "guides_left", "strayed"}) {
-    sum += total.at(kind).get<std::uint64_t>();
+CampaignResult result_of(const RobotCampaign& campaign, const std::string& command,
+                         const std::string& index, const std::vector<RobotTally>& tallies,
+                         std::size_t meshes) {
+  Json rows = json_of(robot_columns(), tallies);
+  const Json sums = total_of(rows);
+  Json total{{"mesh", "total"}};
+  for (const char* key : {"cycles", "below", "in_mesh", "deepest_mm", "limits_broken",
+                          "guides_left", "strayed", "least_beyond_tau"}) {
+    total[key] = sums[key];
   }
-  return sum;
-}
-
-Json result_of(const RobotCampaign& campaign, const std::string& command, const std::string& index,
-               const std::vector<RobotTally>& tallies, std::size_t meshes) {
-  RobotTally total;
-  total.mesh = "total";
+  total.update(
+      {{"blocked", 0}, {"searched", sums["excess_samples"]}, {"movable", sums["movable"]}});
+  std::uint64_t broken = 0;
   std::vector<std::string> account;
   for (const RobotTally& t : tallies) {
-    total.cycles += t.cycles;
-    total.below += t.below;
-    total.in_mesh += t.in_mesh;
-    total.limits_broken += t.limits_broken;
-    total.guides_left += t.guides_left;
-    total.strayed += t.strayed;
-    total.blocked += t.blocked;
-    total.samples += t.samples;
-    total.movable += t.movable;
-    total.least_in_tau = std::min(total.least_in_tau, t.least_in_tau);
-    total.deepest = std::max(total.deepest, t.deepest);
-    if (t.is_out_of_starts) {
-      account.push_back("On " + t.mesh + ", " + t.scenario + ", only " +
-                        counted(t.cycles, "cycle") + ": no other place was found to begin.");
-    }
+    total["blocked"] = total["blocked"].get<std::uint64_t>() + t.blocked;
+    broken += breaches(t);
+    if (!t.is_out_of_starts) continue;
+    account.push_back("On " + t.mesh + ", " + t.scenario + ", only " + counted(t.cycles, "cycle") +
+                      ": no other place was found to begin.");
   }
   const bool is_actual = campaign.motion == CertifiedMotion::actual;
   if (!is_actual) account.emplace_back("The linearised motion was certified: unsafe, to compare.");
+  const auto count = [&](const char* key) { return total[key].get<std::uint64_t>(); };
   std::string headline = "No breach in ";
-  if (breaches(total) > 0) {
-    headline = counted(total.below, "cycle") + " too close, " + grouped(total.in_mesh) +
-               " of them in the mesh, " + counted(total.guides_left, "cycle") +
-               " outside of a guide, " + counted(total.strayed, "cycle") + " astray, and " +
-               counted(total.limits_broken, "joint limit") + " broken, in ";
+  if (broken > 0) {
+    headline = counted(count("below"), "cycle") + " too close, " + grouped(count("in_mesh")) +
+               " of them in the mesh, " + counted(count("guides_left"), "cycle") +
+               " outside of a guide, " + counted(count("strayed"), "cycle") + " astray, and " +
+               counted(count("limits_broken"), "joint limit") + " broken, in ";
   }
-  std::string speeds;
-  for (const double s : campaign.speeds) speeds += (speeds.empty() ? "" : ",") + trimmed(s);
-  std::string scenarios = campaign.scenarios.empty() ? "the usual ones" : "";
-  for (const std::string& one : campaign.scenarios) {
-    scenarios += (scenarios.empty() ? "" : ",") + one;
-  }
+  std::vector<std::string> speeds;
+  for (const double speed : campaign.speeds) speeds.push_back(trimmed(speed));
   const std::string robot = campaign.robot.empty() ? "drawn" : campaign.robot;
   const bool is_complete = tallies.size() == meshes * rows_of(campaign).size() &&
                            std::ranges::all_of(tallies, [&](const RobotTally& t) {
                              return t.is_out_of_starts || t.cycles >= campaign.cycles;
                            });
-  Json record = new_record({.kind = "verify_robot",
-                            .command = command,
-                            .complete = is_complete,
-                            .subject = "Closed-loop motion of a whole instrument, " + robot +
-                                       ", each cycle judged by an independent "
-                                       "oracle",
-                            .headline = headline + counted(total.cycles, "cycle") + ".",
-                            .account = account,
-                            .machine = this_machine(),
-                            .settings = {{"robot", robot},
-                                         {"scenario", scenarios},
-                                         {"cycles", grouped(campaign.cycles)},
-                                         {"speed", speeds},
-                                         {"motion", is_actual ? "actual" : "linearised"},
-                                         {"margin", trimmed(campaign.margin) + " mm"},
-                                         {"seed", std::to_string(campaign.seed)},
-                                         {"index", index}}});
+  Json record = new_record(
+      {.kind = "verify_robot",
+       .command = command,
+       .complete = is_complete,
+       .subject = "Closed-loop motion of a whole instrument, " + robot +
+                  ", each cycle judged by an independent oracle",
+       .headline = headline + counted(count("cycles"), "cycle") + ".",
+       .account = account,
+       .machine = this_machine(),
+       .settings = {{"robot", robot},
+                    {"scenario", campaign.scenarios.empty() ? "the usual ones"
+                                                            : enumerated(campaign.scenarios, ",")},
+                    {"cycles", grouped(campaign.cycles)},
+                    {"speed", enumerated(speeds, ",")},
+                    {"motion", is_actual ? "actual" : "linearised"},
+                    {"margin", trimmed(campaign.margin) + " mm"},
+                    {"seed", std::to_string(campaign.seed)},
+                    {"index", index}}});
   record["robot"] = robot;
-  record["rows"] = json_of(robot_columns(), tallies);
-  record["total"] = {{"mesh", total.mesh},
-                     {"cycles", total.cycles},
-                     {"below", total.below},
-                     {"in_mesh", total.in_mesh},
-                     {"deepest_mm", total.deepest},
-                     {"limits_broken", total.limits_broken},
-                     {"guides_left", total.guides_left},
-                     {"strayed", total.strayed},
-                     {"least_beyond_tau", or_null(total.least_in_tau)},
-                     {"blocked", total.blocked},
-                     {"searched", total.samples},
-                     {"movable", total.movable}};
-  return record;
-}
-
-void print_robot_result(std::ostream& out, const Json& record) {
-  print_headings(out, robot_columns());
-  out << '\n';
-  for (const Json& row : record.at("rows")) {
-    print_cells(out, robot_columns(),
-                [&](const auto& column) { return column.text(row.at(column.key)); });
-    out << '\n';
-  }
-  out << legend << record.at("headline").get<std::string>() << '\n';
-  for (const Json& text : record.at("account")) out << text.get<std::string>() << '\n';
+  record["rows"] = std::move(rows);
+  record["total"] = std::move(total);
+  std::ostringstream table;
+  print_rows(table, robot_columns(), tallies);
+  table << legend;
+  return {std::move(record), table.str(), is_actual && broken > 0, !is_complete};
 }
 
 }  // namespace keepout::app

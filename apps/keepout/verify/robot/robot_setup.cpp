@@ -4,7 +4,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -36,18 +35,6 @@ Pose inverse(const Pose& pose) {
   return {-(pose.rotation.transpose() * pose.position), pose.rotation.transpose()};
 }
 
-/// The least clearance of all bodies, where it is below the reach. [length]
-double clearance(const oracle::JudgedRobot& robot, const RobotStart& start, const SetupMesh& mesh,
-                 double reach) {
-  oracle::InstrumentOracle judge(mesh.mesh.tree, robot, inverse(mesh.motion.first) * start.base);
-  judge.move_to(start.positions);
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t b = 0; b < judge.bodies(); ++b) {
-    least = std::min(least, judge.clearance(b, reach));
-  }
-  return least;
-}
-
 /// Lets the mesh swing, or stand still in one of four cases where there are others that move.
 void set_swinging(MeshMotion& motion, double speed, const Vec3& center, Random& random) {
   motion.along = random.direction();
@@ -63,13 +50,14 @@ void set_swinging(MeshMotion& motion, double speed, const Vec3& center, Random& 
 /// Puts one more mesh beside the tool, clear of all bodies; false when many tries find no place.
 bool put_beside(SetupMesh& mesh, const oracle::JudgedRobot& robot, const RobotStart& start,
                 const Vec3& tool, double margin, Random& random) {
-  const Mesh& surface = *mesh.mesh.scene->mesh();
+  const Mesh& surface = *mesh.scene->mesh();
   for (int i = 0; i < 100; ++i) {
     mesh.motion.first.rotation = drawn_rotation(random);
     const Vec3 vertex = surface.vertex(static_cast<VertexId>(random.below(surface.vertex_count())));
     mesh.motion.first.position =
         tool + random.uniform(3.0, 20.0) * random.direction() - mesh.motion.first.rotation * vertex;
-    if (clearance(robot, start, mesh, margin) >= margin) return true;
+    const RobotStart seen{inverse(mesh.motion.first) * start.base, start.positions};
+    if (clearance(robot, seen, *mesh.scene, margin) >= margin) return true;
   }
   return false;
 }
@@ -151,7 +139,7 @@ Pose MeshMotion::at(double cycle) const {
 
 std::optional<RobotSetup> draw_setup(
     const Scenario& scenario, const RobotUnderTest* named, double speed, Random& random,
-    const std::function<JudgedMesh(Random&)>& draw_mesh,
+    const std::function<std::shared_ptr<Scene>(Random&)>& draw_mesh,
     const std::function<InstrumentOptions(const Chain&)>& options) {
   RobotSetup setup{.scenario = &scenario,
                    .robot = robot_of(scenario, named, random),
@@ -165,9 +153,8 @@ std::optional<RobotSetup> draw_setup(
     setup.options.orientation_weight = 0.0;
   }
   if (scenario.attacked != Attacked::instrument) setup.options.damping = 0.0;
-  const auto start =
-      find_start(*setup.meshes[0].mesh.scene, setup.meshes[0].mesh.tree, setup.robot,
-                 scenario.begin, setup.options.margin, random, is_of_slides ? 4.0 : 20.0);
+  const auto start = find_start(*setup.meshes[0].scene, setup.robot, scenario.begin,
+                                setup.options.margin, random, is_of_slides ? 4.0 : 20.0);
   if (!start) return std::nullopt;
   setup.start = *start;
   const oracle::JudgedRobot judged = setup.robot.judged();
@@ -182,7 +169,7 @@ std::optional<RobotSetup> draw_setup(
   const std::size_t meshes = scenario.meshes > 1 ? 2 + random.below(scenario.meshes - 1) : 1;
   for (std::size_t m = 1; m < meshes; ++m) {
     SetupMesh mesh{
-        .mesh = draw_mesh(random),
+        .scene = draw_mesh(random),
         .margin = random.uniform() < 0.5 ? 0.0 : random.uniform(0.5, 5.0) * setup.options.margin};
     if (!put_beside(mesh, judged, setup.start, tool, std::max(mesh.margin, setup.options.margin),
                     random)) {
@@ -193,7 +180,7 @@ std::optional<RobotSetup> draw_setup(
   if (scenario.has_stuck_bodies) {
     MeshMotion& motion = setup.meshes[0].motion;
     const Pose seen = inverse(motion.first);
-    const Hit hit = setup.meshes[0].mesh.scene->nearest(seen * tool);
+    const Hit hit = setup.meshes[0].scene->nearest(seen * tool);
     motion.along = motion.first.rotation * -hit.closest.offset.normalized();
     motion.way = 20.0;
     // Less than half of what the joints can do in a cycle.

@@ -14,12 +14,6 @@
 
 namespace keepout::app {
 
-/// A mesh to campaign on, and the judge's tree of it.
-struct JudgedMesh {
-  std::shared_ptr<Scene> scene;
-  std::shared_ptr<const oracle::TriangleTree> tree;
-};
-
 /// The motion of a mesh: it swings along one axis and about another, or approaches along one axis
 /// and returns.
 struct MeshMotion {
@@ -38,7 +32,7 @@ struct MeshMotion {
 
 /// A mesh of a setup.
 struct SetupMesh {
-  JudgedMesh mesh;
+  std::shared_ptr<Scene> scene;
   double margin = 0.0;  // of its own; 0: that of the options [length]
   MeshMotion motion = {};
 };
@@ -52,6 +46,7 @@ struct RobotSetup {
   std::vector<oracle::JudgedGuide> guides = {};
   InstrumentOptions options = {};
   double speed = 1.0;
+  bool is_drawn = true;  // mesh or robot are others in the next setup
   /// A body that keeps the whole certified distance in every cycle, with or without a motion: the
   /// setup leaves it room and time to give way.
   std::optional<std::size_t> must_keep = std::nullopt;
@@ -59,9 +54,9 @@ struct RobotSetup {
 
 /// Draws a setup of a scenario: empty when many tries find no place to begin. `draw_mesh` returns
 /// the mesh of the row, or one more of its kind. `options`: of the robot that was drawn.
-std::optional<RobotSetup> draw_setup(const Scenario& scenario, const RobotUnderTest* named,
-                                     double speed, Random& random,
-                                     const std::function<JudgedMesh(Random&)>& draw_mesh,
-                                     const std::function<InstrumentOptions(const Chain&)>& options);
+std::optional<RobotSetup> draw_setup(
+    const Scenario& scenario, const RobotUnderTest* named, double speed, Random& random,
+    const std::function<std::shared_ptr<Scene>(Random&)>& draw_mesh,
+    const std::function<InstrumentOptions(const Chain&)>& options);
 
 }  // namespace keepout::app

@@ -4,7 +4,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <numbers>
 
 #include "keepout/error.h"
@@ -42,18 +41,6 @@ std::optional<Target> between_walls(Scene& scene, const SurfacePoint& on, double
   return std::nullopt;
 }
 
-/// Of all bodies the least.
-double clearance(const oracle::JudgedRobot& robot, const RobotStart& start,
-                 const std::shared_ptr<const oracle::TriangleTree>& tree, double reach) {
-  oracle::InstrumentOracle judge(tree, robot, start.base);
-  judge.move_to(start.positions);
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t b = 0; b < judge.bodies(); ++b) {
-    least = std::min(least, judge.clearance(b, reach));
-  }
-  return least;
-}
-
 }  // namespace
 
 std::span<const RobotUnderTest> robots_under_test() {
@@ -78,10 +65,15 @@ const RobotUnderTest& robot_named(const std::string& name) {
   return *found;
 }
 
-std::optional<RobotStart> find_start(Scene& scene,
-                                     const std::shared_ptr<const oracle::TriangleTree>& tree,
-                                     const RobotUnderTest& robot, Begin begin, double margin,
-                                     Random& random, double ahead) {
+double clearance(const oracle::JudgedRobot& robot, const RobotStart& start, const Scene& scene,
+                 double reach) {
+  oracle::InstrumentOracle judge(scene.tree(), robot, start.base);
+  judge.move_to(start.positions);
+  return judge.clearance(reach);
+}
+
+std::optional<RobotStart> find_start(Scene& scene, const RobotUnderTest& robot, Begin begin,
+                                     double margin, Random& random, double ahead) {
   const oracle::JudgedRobot judged = robot.judged();
   const double tool = judged.bodies.back().radius;
   for (int i = 0; i < tries; ++i) {
@@ -106,14 +98,14 @@ std::optional<RobotStart> find_start(Scene& scene,
                            Eigen::Quaterniond::FromTwoVectors(along, target->way))
                               .toRotationMatrix();
     start.base.position = target->tip - start.base.rotation * axis.to;
-    if (clearance(judged, start, tree, margin) < margin) continue;
+    if (clearance(judged, start, scene, margin) < margin) continue;
     if (begin != Begin::overlapping) return start;
     // Pushed on until the tool, or a thicker body, overlaps as far.
     const double wanted = -random.uniform(0.05, 0.45) * tool;
     double overlap = 0.0;
     for (double gone = 0.0; gone < 40.0 && overlap > wanted; gone += 0.05) {
       start.base.position += 0.05 * target->way;
-      overlap = clearance(judged, start, tree, 0.0);
+      overlap = clearance(judged, start, scene, 0.0);
     }
     if (overlap < wanted && overlap > -0.5 * tool) return start;
   }

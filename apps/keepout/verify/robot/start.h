@@ -39,11 +39,13 @@ struct RobotStart {
   std::vector<double> positions;  // of the joints
 };
 
+/// The smallest clearance of all bodies from the mesh; infinite beyond `reach`. [length]
+double clearance(const oracle::JudgedRobot& robot, const RobotStart& start, const Scene& scene,
+                 double reach);
+
 /// Draws a start whose bodies keep the margin, unless they are to overlap; empty when many tries
 /// find none. `ahead`: how far the tool is from the surface, at most, along its way. [mm]
-std::optional<RobotStart> find_start(Scene& scene,
-                                     const std::shared_ptr<const oracle::TriangleTree>& tree,
-                                     const RobotUnderTest& robot, Begin begin, double margin,
-                                     Random& random, double ahead = 20.0);
+std::optional<RobotStart> find_start(Scene& scene, const RobotUnderTest& robot, Begin begin,
+                                     double margin, Random& random, double ahead = 20.0);
 
 }  // namespace keepout::app

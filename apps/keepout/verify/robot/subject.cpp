@@ -50,11 +50,11 @@ Guide guide_of(const JudgedGuide& guide) {
 class InstrumentSubject final : public RobotSubject {
  public:
   explicit InstrumentSubject(const RobotSetup& setup)
-      : constraint_(setup.meshes[0].mesh.scene->mesh(), setup.meshes[0].mesh.scene->shared_index(),
+      : constraint_(setup.meshes[0].scene->mesh(), setup.meshes[0].scene->shared_index(),
                     setup.robot.make(setup.start.base), make_solver("active_set"), setup.options) {
     for (std::size_t m = 1; m < setup.meshes.size(); ++m) {
       const SetupMesh& mesh = setup.meshes[m];
-      constraint_.add_mesh(mesh.mesh.scene->mesh(), mesh.mesh.scene->shared_index(), mesh.margin);
+      constraint_.add_mesh(mesh.scene->mesh(), mesh.scene->shared_index(), mesh.margin);
     }
     std::vector<Guide> guides;
     for (const JudgedGuide& guide : setup.guides) guides.push_back(guide_of(guide));
@@ -83,15 +83,14 @@ class TipSubject final : public RobotSubject {
       : chain_(setup.robot.make(setup.start.base).chain()),
         bodies_(setup.robot.judged().bodies),
         is_hull_(setup.scenario->attacked == Attacked::convex_tool),
-        longest_edge_(setup.meshes[0].mesh.scene->longest_edge()),
+        longest_edge_(setup.meshes[0].scene->longest_edge()),
         increment_(static_cast<std::size_t>(chain_.size())) {
     chain_.forward_kinematics(setup.start.positions, state_);
     options_ = {.radius = 2.0 * setup.speed,
                 .tool_radius = is_hull_ ? 0.0 : bodies_.back().radius,
                 .margin = setup.options.margin};
-    constraint_.emplace(setup.meshes[0].mesh.scene->mesh(),
-                        setup.meshes[0].mesh.scene->shared_index(), rule(),
-                        make_solver("active_set"), options_);
+    constraint_.emplace(setup.meshes[0].scene->mesh(), setup.meshes[0].scene->shared_index(),
+                        rule(), make_solver("active_set"), options_);
     std::vector<Guide> guides;
     for (const JudgedGuide& guide : setup.guides) {
       guides.push_back(Guide::point("guide", region_of(guide)).with_band(guide.band));

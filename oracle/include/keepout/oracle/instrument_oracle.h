@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -44,6 +46,12 @@ class InstrumentOracle {
   /// some 1e-12 of the coordinates; less than 0 when the mesh reaches into it, and minus its radius
   /// only where its core touches. Infinite when that is more than `reach`. [length]
   double clearance(std::size_t body, double reach);
+  /// The smallest clearance of all bodies.
+  double clearance(double reach) {
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t b = 0; b < bodies(); ++b) least = std::min(least, clearance(b, reach));
+    return least;
+  }
 
  private:
   struct Neighbor {

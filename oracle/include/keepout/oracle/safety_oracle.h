@@ -85,8 +85,8 @@ class SafetyOracle {
   /// finite coordinates.
   double distance(const Vec3& point) const;
 
-  /// Finds triangles, for who has questions of his own about the mesh.
-  const TriangleTree& tree() const noexcept { return *tree_; }
+  /// The tree of the mesh's triangles, for other judges of the same mesh.
+  const std::shared_ptr<const TriangleTree>& tree() const noexcept { return tree_; }
 
   /// Strictly inside a closed mesh, exactly, whatever the winding; nothing when an edge of the mesh
   /// has an odd number of triangles. Some 10 us to 100 us.
