@@ -152,8 +152,9 @@ void add_verify(CLI::App& app, VerifyOptions& options) {
       ->excludes(chosen);
   add_name(command, "--index", options.index, names(index_backends()),
            "Index that finds triangles");
-  const std::vector<CLI::Option*> of_a_run = command.get_options(
-      [&](const CLI::Option* option) { return option != command.get_help_ptr(); });
+  const std::vector<CLI::Option*> of_a_run = command.get_options([&](const CLI::Option* option) {
+    return option != command.get_help_ptr() && option != command.get_help_all_ptr();
+  });
   options.files.add_to(command);
   CLI::Option* merge =
       command.add_option("--merge", options.merge, "Add up the results of a campaign's shards")
