@@ -77,8 +77,8 @@ TEST(InstrumentConstraint, WithoutAMeshGoesWhereItIsAskedToUntilOneIsAdded) {
             guard.options().margin - guard.options().band - 3.0 * guard.tolerance());
   // A prismatic joint at its limit is held there, beside a mesh or not.
   InstrumentConstraint at_its_limit(instrument, std::make_unique<ActiveSet>(), {.period = 0.05});
-  q[2] = instrument.chain().joint(3).upper;
-  EXPECT_LE(moved(q, at_its_limit.step(q, down))[2], q[2]);
+  q[2] = instrument.chain().joint(3).limits.upper;
+  EXPECT_LE(moved(q, at_its_limit.step(q, down))[2], q[2] + 1e-12);
 }
 
 // On generated shapes, with each index and each solver: nothing below what is certified, on the way

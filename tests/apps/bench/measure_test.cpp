@@ -59,8 +59,8 @@ enum class Flaw { shorter, gives_up, none };
 /// Errs, or gives up, now and then: always at the same problems.
 std::unique_ptr<Solver> flawed(Flaw flaw) {
   return std::make_unique<Watched>([flaw, u = Vec3{0, 0, 0}](const StepProblem& problem,
-                                                      Solution& solution,
-                                                      SolveStatus status) mutable {
+                                                             Solution& solution,
+                                                             SolveStatus status) mutable {
     const auto bits = std::bit_cast<std::uint64_t>(problem.desired[0]);
     if (status != SolveStatus::optimal || bits % 50 != 0 || flaw == Flaw::none) return status;
     if (flaw == Flaw::gives_up) return SolveStatus::iteration_limit;
