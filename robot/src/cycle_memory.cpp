@@ -26,12 +26,16 @@ double distance_beyond_axis(const Instrument& instrument, std::size_t body) {
   return most * (1.0 + 1e-12);
 }
 
-/// Returns the sum of the lengths of the chain, the instrument and the mesh, without the pose of
-/// the mesh. [length]
-double size_of(const Instrument& instrument, const Mesh& mesh) {
+/// Returns the distance from the origin within which the mesh is. [length]
+double extent_of(const Mesh& mesh) {
   const Box bounds = mesh.bounds();
-  double size = instrument.chain().base().position.norm() +
-                bounds.low.cwiseAbs().cwiseMax(bounds.high.cwiseAbs()).norm();
+  return bounds.low.cwiseAbs().cwiseMax(bounds.high.cwiseAbs()).norm();
+}
+
+/// Returns the sum of the lengths of the chain, the instrument and a mesh, without the pose of the
+/// mesh. [length]
+double size_of(const Instrument& instrument, double extent_of_mesh) {
+  double size = instrument.chain().base().position.norm() + extent_of_mesh;
   for (int k = 1; k <= instrument.chain().size(); ++k) {
     size += instrument.chain().joint(k).origin.position.norm();
   }
@@ -66,10 +70,10 @@ void CycleMemory::prepare() {
 }
 
 void CycleMemory::measure() noexcept {
-  double size = 0.0;
-  double size_with_poses = 0.0;
+  double size = size_of(instrument, 0.0);
+  double size_with_poses = size;
   for (const MeshMemory& mesh : bodies.meshes) {
-    const double own = size_of(instrument, mesh.neighborhood->mesh());
+    const double own = size_of(instrument, extent_of(mesh.neighborhood->mesh()));
     size = std::max(size, own);
     size_with_poses = std::max(size_with_poses, own + mesh.pose.position.norm());
   }

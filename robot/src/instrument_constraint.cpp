@@ -61,8 +61,7 @@ struct InstrumentConstraint::State {
       std::swap(*at, mesh);
     }
     try {
-      memory.prepare();
-      memory.require_usable(options);
+      prepare();
     } catch (...) {
       if (is_new) {
         memory.bodies.meshes.pop_back();
@@ -72,7 +71,13 @@ struct InstrumentConstraint::State {
       memory.prepare();
       throw;
     }
-    std::size_t looks = 0;
+  }
+
+  /// Makes what depends on the meshes. Throws Error if the options cannot be used with them.
+  void prepare() {
+    memory.prepare();
+    memory.require_usable(options);
+    std::size_t looks = capacity.looks > 0 ? capacity.looks : Capacity::looks_of_a_walk;
     for (const MeshMemory& each : memory.bodies.meshes) {
       const SpatialIndex& index = each.neighborhood->index();
       looks = std::max(looks, Capacity::looks_or_default(capacity.looks, index));
@@ -120,12 +125,19 @@ struct InstrumentConstraint::State {
   InstrumentOptions options;
 };
 
+InstrumentConstraint::InstrumentConstraint(Instrument instrument, std::unique_ptr<Solver> solver,
+                                           const InstrumentOptions& options,
+                                           const InstrumentCapacity& capacity)
+    : state_(std::make_unique<State>(std::move(instrument), std::move(solver), options, capacity)) {
+  state_->prepare();
+}
+
 InstrumentConstraint::InstrumentConstraint(std::shared_ptr<const Mesh> mesh,
                                            std::shared_ptr<const SpatialIndex> index,
                                            Instrument instrument, std::unique_ptr<Solver> solver,
                                            const InstrumentOptions& options,
                                            const InstrumentCapacity& capacity)
-    : state_(std::make_unique<State>(std::move(instrument), std::move(solver), options, capacity)) {
+    : InstrumentConstraint(std::move(instrument), std::move(solver), options, capacity) {
   add_mesh(std::move(mesh), std::move(index));
 }
 

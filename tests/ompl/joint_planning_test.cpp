@@ -4,11 +4,7 @@
 
 #include <gtest/gtest.h>
 #include <ompl/base/DiscreteMotionValidator.h>
-#include <ompl/base/SpaceInformation.h>
-#include <ompl/base/StateValidityChecker.h>
-#include <ompl/base/spaces/RealVectorStateSpace.h>
 #include <ompl/base/spaces/SE3StateSpace.h>
-#include <ompl/geometric/PathGeometric.h>
 #include <ompl/geometric/planners/rrt/RRTConnect.h>
 #include <ompl/util/Console.h>
 #include <ompl/util/RandomNumbers.h>
@@ -16,7 +12,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <thread>
 #include <vector>
 
 #include "by_name.h"
@@ -27,16 +22,15 @@
 #include "keepout/oracle/instrument_oracle.h"
 #include "meshes.h"
 #include "messages.h"
+#include "states.h"
 #include "trials.h"
 
 namespace keepout {
 namespace {
 
-namespace base = ompl::base;
-
 constexpr double kept = 0.198;     // margin less band
 constexpr double rounding = 1e-8;  // far above 3 tau of an instrument of this size
-using Joints = std::vector<double>;
+using Joints = Coordinates;
 
 /// A manipulator over a shape, that hangs down from a port above it.
 struct Workplace {
@@ -57,26 +51,6 @@ Workplace workplace(const std::shared_ptr<const Mesh>& mesh) {
 }
 
 Workplace workplace(std::string_view shape) { return workplace(mesh_of(shape)); }
-
-/// A state that goes away with this object.
-class JointState {
- public:
-  JointState(const base::SpaceInformationPtr& space, const Joints& q)
-      : space_(space), state_(space->allocState()) {
-    std::ranges::copy(q, values());
-  }
-  ~JointState() { space_->freeState(state_); }
-  JointState(const JointState&) = delete;
-  JointState& operator=(const JointState&) = delete;
-
-  base::State* get() const { return state_; }
-  Joints q() const { return {values(), values() + space_->getStateDimension()}; }
-
- private:
-  double* values() const { return state_->as<base::RealVectorStateSpace::StateType>()->values; }
-  base::SpaceInformationPtr space_;
-  base::State* state_;
-};
 
 class Judge {
  public:
@@ -121,7 +95,7 @@ TEST_P(JointPlanningOn, NothingIsCalledValidThatTheJudgeFindsTooClose) {
     // Long ones, and short ones that end near where they begin.
     const double share = i % 2 == 0 ? 1.0 : random.uniform(0.0, 0.2);
     for (std::size_t k = 0; k < to.size(); ++k) to[k] = from[k] + share * (to[k] - from[k]);
-    const JointState a(at.space, from), b(at.space, to), last(at.space, Joints(6, 0.0));
+    const State a(at.space, from), b(at.space, to), last(at.space, Joints(6, 0.0));
     if (!at.space->isValid(a.get())) {
       EXPECT_FALSE(at.space->checkMotion(a.get(), b.get()));
       continue;
@@ -139,9 +113,9 @@ TEST_P(JointPlanningOn, NothingIsCalledValidThatTheJudgeFindsTooClose) {
     ASSERT_LT(last_valid.second, 1.0);
     partly += last_valid.second > 0.0 ? 1 : 0;
     for (std::size_t k = 0; k < to.size(); ++k) {
-      EXPECT_NEAR(last.q()[k], from[k] + last_valid.second * (to[k] - from[k]), 1e-12);
+      EXPECT_NEAR(last.values()[k], from[k] + last_valid.second * (to[k] - from[k]), 1e-12);
     }
-    EXPECT_GE(judge.least(from, last.q(), 60), kept - rounding);
+    EXPECT_GE(judge.least(from, last.values(), 60), kept - rounding);
     EXPECT_TRUE(at.space->isValid(last.get()));
     EXPECT_TRUE(at.space->checkMotion(a.get(), last.get()));
   }
@@ -164,7 +138,7 @@ TEST(JointPlanning, ATipThatDipsBetweenTwoSamplesIsSeen) {
     const double insertion = 60.0 + 15.6 - 9.1 - 10.2 - 1.0 - above;
     const Joints from{-0.018, 0, insertion, 0, 0, 0}, to{0.018, 0, insertion, 0, 0, 0};
     EXPECT_NEAR(Judge(at).least(from, to, 100), above, 1e-9);
-    const JointState a(at.space, from), b(at.space, to);
+    const State a(at.space, from), b(at.space, to);
     return std::pair{sampled.checkMotion(a.get(), b.get()),
                      at.space->checkMotion(a.get(), b.get())};
   };
@@ -177,24 +151,19 @@ TEST(JointPlanning, AMotionThatLeavesTheBoundsEndsAtItsStart) {
   const Workplace at = workplace("cube");
   set_certified_checkers(at.space, at.guards);
   at.space->setup();
-  const Joints from{0, 0, 20, 0, 0, 0};
-  const JointState a(at.space, from), b(at.space, {0, 0, -1, 0, 0, 0});
-  const JointState last(at.space, Joints(6, 9.0));
-  std::pair<base::State*, double> last_valid{last.get(), -1.0};
-  EXPECT_FALSE(at.space->getMotionValidator()->checkMotion(a.get(), b.get(), last_valid));
-  EXPECT_EQ(last_valid.second, 0.0);
-  EXPECT_EQ(last.q(), from);
+  const State a(at.space, {0, 0, 20, 0, 0, 0}), b(at.space, {0, 0, -1, 0, 0, 0});
+  expect_invalid_from_the_start(*at.space->getMotionValidator(), at.space, a, b);
   EXPECT_FALSE(at.space->isValid(b.get()));
-  const JointState nowhere(at.space, Joints(6, std::numeric_limits<double>::quiet_NaN()));
+  const State nowhere(at.space, Joints(6, std::numeric_limits<double>::quiet_NaN()));
   EXPECT_FALSE(at.space->isValid(nowhere.get()));
 }
 
 TEST(JointPlanning, AMotionOutOfAGuideIsInvalid) {
   const Workplace at = workplace("cube");
-  const JointState from(at.space, {0, 0, 20, 0, 0, 0}), to(at.space, {0, 0, 24, 0, 0, 0});
+  const State from(at.space, {0, 0, 20, 0, 0, 0}), to(at.space, {0, 0, 24, 0, 0, 0});
   EXPECT_TRUE(make_motion_validator(at.space, at.guards)->checkMotion(from.get(), to.get()));
   ChainState chain;
-  at.instrument.chain().forward_kinematics(from.q(), chain);
+  at.instrument.chain().forward_kinematics(from.values(), chain);
   const Guide near =
       Guide::point("near", {6, Vec3::Zero()}, Region::ball(chain.link(6).position, 1.0));
   const auto guided = std::make_shared<InstrumentPool>([&at, &near] {
@@ -210,7 +179,7 @@ TEST(JointPlanning, NothingIsValidOnceTheMeshHasMoved) {
   const auto tree = std::make_shared<WideBvh>(at.mesh);
   const auto guards = std::make_shared<InstrumentPool>(
       [&] { return make_instrument_constraint(at.mesh, tree, at.instrument, {}); }, 1);
-  const JointState from(at.space, {0, 0, 20, 0, 0, 0}), to(at.space, {0, 0, 24, 0, 0, 0});
+  const State from(at.space, {0, 0, 20, 0, 0, 0}), to(at.space, {0, 0, 24, 0, 0, 0});
   const auto validator = make_motion_validator(at.space, guards);
   EXPECT_TRUE(validator->checkMotion(from.get(), to.get()));
   tree->refit(mesh_of("cube"));
@@ -220,33 +189,19 @@ TEST(JointPlanning, NothingIsValidOnceTheMeshHasMoved) {
 TEST(JointPlanning, TheLastValidStateMayBeTheMotionsOwn) {
   const Workplace at = workplace("cube");
   const auto validator = make_motion_validator(at.space, at.guards);
-  const JointState from(at.space, {0, 0, 20, 0, 0, 0}), to(at.space, {0, 0, 130, 0, 0, 0});
+  const State from(at.space, {0, 0, 20, 0, 0, 0}), to(at.space, {0, 0, 130, 0, 0, 0});
   std::pair<base::State*, double> last_valid{to.get(), -1.0};
   EXPECT_FALSE(validator->checkMotion(from.get(), to.get(), last_valid));
   EXPECT_GT(last_valid.second, 0.0);
-  EXPECT_EQ(to.q()[2], 20.0 + last_valid.second * 110.0);
+  EXPECT_EQ(to.values()[2], 20.0 + last_valid.second * 110.0);
 }
 
 TEST(JointPlanning, ThreadsGetTheSameAnswers) {
   const Workplace at = workplace("gear");
   const auto validator = make_motion_validator(at.space, at.guards);
-  const auto answers = [&] {
-    std::vector<bool> result;
-    Random random(3);
-    for (int i = 0; i < 200; ++i) {
-      const JointState a(at.space, any_configuration(random));
-      const JointState b(at.space, any_configuration(random));
-      result.push_back(validator->checkMotion(a.get(), b.get()));
-    }
-    return result;
-  };
-  std::vector<std::vector<bool>> results(3);  // one more than guards: it waits
-  std::vector<std::thread> threads;
-  for (auto& result : results) threads.emplace_back([&] { result = answers(); });
-  for (std::thread& thread : threads) thread.join();
-  for (const auto& result : results) EXPECT_EQ(result, results.front());
-  EXPECT_NE(std::ranges::count(results.front(), true), 0);
-  EXPECT_EQ(validator->getCheckedMotionCount(), 600u);
+  // One thread more than guards: it waits.
+  const auto answers = answers_of_threads(*validator, at.space, 3, any_configuration);
+  EXPECT_NE(std::ranges::count(answers, true), 0);
   EXPECT_LE(at.guards->made(), 2u);
   EXPECT_EQ(at.guards->options().margin, 0.2);
 }
@@ -256,9 +211,9 @@ TEST(JointPlanning, TheSpaceMeasuresHowFarAJointMovesTheInstrument) {
   const auto& space = at.space->getStateSpace();
   const auto apart = [&](int joint, double by) {
     Joints q{0, 0, 120, 0, 0, 0};
-    const JointState a(at.space, q);
+    const State a(at.space, q);
     q[static_cast<std::size_t>(joint)] += by;
-    const JointState b(at.space, q);
+    const State b(at.space, q);
     return space->distance(a.get(), b.get());
   };
   EXPECT_DOUBLE_EQ(apart(2, 7.0), 7.0);
@@ -300,32 +255,18 @@ TEST(JointPlanning, APlannerFindsAPathThatTheJudgePasses) {
   set_certified_checkers(at.space, at.guards);
   at.space->setup();
   // From one side of the cube to the other; straight on the shaft would go through it.
-  base::ScopedState<base::RealVectorStateSpace> start(at.space), goal(at.space);
-  const double depth = 60.0 + 15.6 + 20.0;
-  for (unsigned int i = 0; i < 6; ++i) {
-    start[i] = i == 0 ? -0.95 : i == 2 ? depth / std::cos(0.95) : 0.0;
-    goal[i] = i == 0 ? 0.95 : i == 2 ? depth / std::cos(0.95) : 0.0;
-  }
+  const double depth = (60.0 + 15.6 + 20.0) / std::cos(0.95);
+  const State start(at.space, {-0.95, 0, depth, 0, 0, 0}),
+      goal(at.space, {0.95, 0, depth, 0, 0, 0});
   ASSERT_TRUE(at.space->isValid(start.get()));
   ASSERT_TRUE(at.space->isValid(goal.get()));
   ASSERT_FALSE(at.space->checkMotion(start.get(), goal.get()));
-  const auto definition = std::make_shared<base::ProblemDefinition>(at.space);
-  definition->setStartAndGoalStates(start, goal);
   ompl::geometric::RRTConnect planner(at.space);
-  planner.setProblemDefinition(definition);
-  planner.setup();
-  planner.ompl::base::Planner::solve(30.0);
-  ASSERT_TRUE(definition->hasExactSolution());
+  const std::vector<Joints> path = solved(planner, start, goal, 30.0);
+  ASSERT_GE(path.size(), 3u);
   Judge judge(at);
-  const auto& states =
-      definition->getSolutionPath()->as<ompl::geometric::PathGeometric>()->getStates();
-  const auto joints = [](const base::State* state) {
-    const double* q = state->as<base::RealVectorStateSpace::StateType>()->values;
-    return Joints(q, q + 6);
-  };
-  ASSERT_GE(states.size(), 3u);
-  for (std::size_t i = 1; i < states.size(); ++i) {
-    EXPECT_GE(judge.least(joints(states[i - 1]), joints(states[i]), 500), kept - rounding);
+  for (std::size_t i = 1; i < path.size(); ++i) {
+    EXPECT_GE(judge.least(path[i - 1], path[i], 500), kept - rounding);
   }
 }
 

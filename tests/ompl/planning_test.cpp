@@ -4,16 +4,12 @@
 
 #include <gtest/gtest.h>
 #include <ompl/base/DiscreteMotionValidator.h>
-#include <ompl/base/SpaceInformation.h>
-#include <ompl/base/spaces/RealVectorStateSpace.h>
 #include <ompl/base/spaces/SE3StateSpace.h>
-#include <ompl/geometric/PathGeometric.h>
 #include <ompl/geometric/planners/rrt/RRTConnect.h>
 #include <ompl/util/Console.h>
 #include <ompl/util/RandomNumbers.h>
 
 #include <limits>
-#include <thread>
 #include <vector>
 
 #include "by_name.h"
@@ -23,11 +19,10 @@
 #include "keepout/oracle/safety_oracle.h"
 #include "meshes.h"
 #include "messages.h"
+#include "states.h"
 
 namespace keepout {
 namespace {
-
-namespace base = ompl::base;
 
 constexpr double margin = 0.5;
 constexpr double tolerance = 1e-6;  // far above 3 tau of shapes of this size
@@ -50,26 +45,6 @@ base::SpaceInformationPtr space_around(const Mesh& mesh) {
   space->setBounds(bounds);
   return std::make_shared<base::SpaceInformation>(space);
 }
-
-/// A state that goes away with this object.
-class TipState {
- public:
-  TipState(const base::SpaceInformationPtr& space, const Vec3& tip) : space_(space) {
-    state_ = space->allocState();
-    for (int i = 0; i < 3; ++i) values()[i] = tip[i];
-  }
-  ~TipState() { space_->freeState(state_); }
-  TipState(const TipState&) = delete;
-  TipState& operator=(const TipState&) = delete;
-
-  base::State* get() const { return state_; }
-  Vec3 tip() const { return {values()[0], values()[1], values()[2]}; }
-
- private:
-  double* values() const { return state_->as<base::RealVectorStateSpace::StateType>()->values; }
-  base::SpaceInformationPtr space_;
-  base::State* state_;
-};
 
 Vec3 any_place(const Mesh& mesh, Random& random) {
   Vec3 place;
@@ -94,9 +69,9 @@ TEST_P(PlanningOn, TheValidatorAgreesWithTheOracleOnRandomMotions) {
     // Short ones and long ones, of many pieces.
     const Vec3 to = i % 2 == 0 ? any_place(*mesh, random)
                                : Vec3(from + random.uniform(0.0, 8.0) * random.direction());
-    const TipState a(space, from), b(space, to);
+    const State a(space, from), b(space, to);
     if (!space->isValid(a.get())) continue;
-    const TipState last(space, Vec3::Zero());
+    const State last(space, {0, 0, 0});
     std::pair<base::State*, double> last_valid{last.get(), -1.0};
     const oracle::Finding whole = oracle.check(from, to, margin - tolerance);
     if (space->checkMotion(a.get(), b.get(), last_valid)) {
@@ -108,13 +83,14 @@ TEST_P(PlanningOn, TheValidatorAgreesWithTheOracleOnRandomMotions) {
     ++invalid;
     ASSERT_GE(last_valid.second, 0.0);
     ASSERT_LT(last_valid.second, 1.0);
-    EXPECT_LT((last.tip() - (from + last_valid.second * (to - from))).norm(), 1e-9);
-    EXPECT_FALSE(oracle.check(from, last.tip(), margin - tolerance).below);
+    const Vec3 last_tip(last.values().data());
+    EXPECT_LT((last_tip - (from + last_valid.second * (to - from))).norm(), 1e-9);
+    EXPECT_FALSE(oracle.check(from, last_tip, margin - tolerance).below);
     EXPECT_TRUE(space->isValid(last.get()));
     if (space->satisfiesBounds(b.get())) {
       EXPECT_TRUE(oracle.check(from, to, margin + tolerance).below) << "refused without a reason";
       // To within a piece's 2^-8 the whole of what there is is proven.
-      const Vec3 beyond = last.tip() + (to - from).normalized() * 0.05;
+      const Vec3 beyond = last_tip + (to - from).normalized() * 0.05;
       EXPECT_TRUE(oracle.check(from, beyond, margin + tolerance).below);
     }
   }
@@ -137,7 +113,7 @@ TEST(Planning, SampledCheckingJumpsOverAPlateThatTheValidatorSees) {
   set_certified_checkers(space, guards);
   space->setup();
   const base::DiscreteMotionValidator sampled(space);
-  const TipState above(space, {1, 2, 0.6}), below(space, {1, 2, -0.6});
+  const State above(space, {1, 2, 0.6}), below(space, {1, 2, -0.6});
   EXPECT_TRUE(sampled.checkMotion(above.get(), below.get()));
   EXPECT_FALSE(space->checkMotion(above.get(), below.get()));
 }
@@ -148,7 +124,7 @@ TEST(Planning, AStateNearerThanTheMarginIsInvalid) {
   set_certified_checkers(space, guards_of(mesh));
   space->setup();
   const auto is_valid = [&](double height) {
-    const TipState state(space, {3, 4, height});
+    const State state(space, {3, 4, height});
     return space->isValid(state.get());
   };
   EXPECT_TRUE(is_valid(margin));
@@ -163,26 +139,22 @@ TEST(Planning, AStateNearerThanTheMarginIsInvalid) {
 TEST(Planning, WithSidesTheInsideIsInvalidAndWithoutItIsAnotherRoom) {
   const SharedMesh mesh = mesh_of("sphere");
   const base::SpaceInformationPtr space = space_around(*mesh);
-  const TipState centre(space, Vec3::Zero());
+  const State centre(space, {0, 0, 0});
   EXPECT_FALSE(make_state_validity_checker(space, guards_of(mesh))->isValid(centre.get()));
   const auto no_sides = std::make_shared<GuardPool>([mesh] {
     return make_motion_constraint(mesh,
                                   {.options = {.margin = margin}, .inside = Inside::taken_as_is});
   });
   EXPECT_TRUE(make_state_validity_checker(space, no_sides)->isValid(centre.get()));
-  const TipState outside(space, {0, 0, 55});
+  const State outside(space, {0, 0, 55});
   EXPECT_FALSE(make_motion_validator(space, no_sides)->checkMotion(centre.get(), outside.get()));
 }
 
 TEST(Planning, AMotionThatLeavesTheBoundsEndsAtItsStart) {
   const SharedMesh mesh = mesh_of("cube");
   const base::SpaceInformationPtr space = space_around(*mesh);
-  const TipState from(space, {0, 0, 55}), to(space, {0, 0, 65}), last(space, Vec3::Zero());
-  std::pair<base::State*, double> last_valid{last.get(), -1.0};
-  const auto validator = make_motion_validator(space, guards_of(mesh));
-  EXPECT_FALSE(validator->checkMotion(from.get(), to.get(), last_valid));
-  EXPECT_EQ(last_valid.second, 0.0);
-  EXPECT_EQ(last.tip(), from.tip());
+  const State from(space, {0, 0, 55}), to(space, {0, 0, 65});
+  expect_invalid_from_the_start(*make_motion_validator(space, guards_of(mesh)), space, from, to);
 }
 
 TEST(Planning, AMotionOutOfAGuideIsInvalid) {
@@ -194,7 +166,7 @@ TEST(Planning, AMotionOutOfAGuideIsInvalid) {
     guard.set_guides({Guide::point("corridor", Region::slab(start, Vec3::UnitX(), 1.0))});
     return guard;
   });
-  const TipState from(space, start), along(space, {0, 3, 55}), out(space, {3, 0, 55});
+  const State from(space, start), along(space, {0, 3, 55}), out(space, {3, 0, 55});
   const auto validator = make_motion_validator(space, guards);
   EXPECT_TRUE(validator->checkMotion(from.get(), along.get()));
   EXPECT_FALSE(validator->checkMotion(from.get(), out.get()));
@@ -208,7 +180,7 @@ TEST(Planning, NothingIsValidOnceTheMeshHasMoved) {
   const auto guards = std::make_shared<GuardPool>(
       [mesh, tree] { return make_motion_constraint(mesh, tree, {.options = {.margin = margin}}); },
       1);
-  const TipState from(space, {0, 0, 55}), to(space, {0, 3, 55});
+  const State from(space, {0, 0, 55}), to(space, {0, 3, 55});
   const auto validator = make_motion_validator(space, guards);
   EXPECT_TRUE(validator->checkMotion(from.get(), to.get()));
   tree->refit(mesh_of("cube"));
@@ -221,21 +193,8 @@ TEST(Planning, ValidatorsCountAndMayBeCalledFromManyThreads) {
   const base::SpaceInformationPtr space = space_around(*mesh);
   const auto guards = guards_of(mesh, 2);  // fewer than threads: some wait
   const auto validator = make_motion_validator(space, guards);
-  const auto answers = [&] {
-    std::vector<bool> result;
-    Random random(3);
-    for (int i = 0; i < 200; ++i) {
-      const TipState a(space, any_place(*mesh, random)), b(space, any_place(*mesh, random));
-      result.push_back(validator->checkMotion(a.get(), b.get()));
-    }
-    return result;
-  };
-  std::vector<std::vector<bool>> results(4);
-  std::vector<std::thread> threads;
-  for (auto& result : results) threads.emplace_back([&] { result = answers(); });
-  for (std::thread& thread : threads) thread.join();
-  for (const auto& result : results) EXPECT_EQ(result, results.front());
-  EXPECT_EQ(validator->getCheckedMotionCount(), 800u);
+  answers_of_threads(*validator, space, 4,
+                     [&](Random& random) { return any_place(*mesh, random); });
   EXPECT_LE(guards->made(), 2u);
 }
 
@@ -260,38 +219,24 @@ TEST(Planning, AWrongSpaceIsRefusedWithAWordOnWhatToDo) {
 }
 
 /// From one side of the cortex to the other.
-std::vector<Vec3> planned(std::uint64_t seed, bool slides, double range = 0.0) {
+std::vector<Coordinates> planned(std::uint64_t seed, bool slides, double range = 0.0) {
   const SharedMesh mesh = mesh_of("cortex");
   const base::SpaceInformationPtr space = space_around(*mesh);
   ompl::RNG::setSeed(static_cast<std::uint_fast32_t>(seed));
   const auto guards = guards_of(mesh);
   set_certified_checkers(space, guards);
   space->setup();
-  const auto definition = std::make_shared<base::ProblemDefinition>(space);
-  base::ScopedState<base::RealVectorStateSpace> start(space), goal(space);
-  for (unsigned int i = 0; i < 3; ++i) {
-    start[i] = i == 0 ? -56 : 0;
-    goal[i] = i == 0 ? 56 : 0;
-  }
-  definition->setStartAndGoalStates(start, goal);
   base::PlannerPtr planner = make_sliding_connect(space, guards);
   if (!slides) planner = std::make_shared<ompl::geometric::RRTConnect>(space);
   if (range > 0.0) planner->params().setParam("range", std::to_string(range));
-  planner->setProblemDefinition(definition);
-  planner->setup();
-  planner->solve(10.0);
-  std::vector<Vec3> tips;
-  if (!definition->hasExactSolution()) return tips;
+  const State start(space, {-56, 0, 0}), goal(space, {56, 0, 0});
+  const std::vector<Coordinates> path = solved(*planner, start, goal, 10.0);
+  if (path.empty()) return path;
   base::PlannerData data(space);
   planner->getPlannerData(data);
   EXPECT_GE(data.numVertices(), 2u);
   EXPECT_EQ(data.numStartVertices(), 1u);
-  for (const base::State* state :
-       definition->getSolutionPath()->as<ompl::geometric::PathGeometric>()->getStates()) {
-    const double* v = state->as<base::RealVectorStateSpace::StateType>()->values;
-    tips.emplace_back(v[0], v[1], v[2]);
-  }
-  return tips;
+  return path;
 }
 
 TEST(Planning, BothPlannersFindPathsThatTheOraclePasses) {
@@ -299,12 +244,13 @@ TEST(Planning, BothPlannersFindPathsThatTheOraclePasses) {
   oracle::SafetyOracle oracle(mesh);
   for (const bool slides : {false, true}) {
     for (const std::uint64_t seed : {1, 2, 3}) {
-      const std::vector<Vec3> tips = planned(seed, slides);
+      const std::vector<Coordinates> tips = planned(seed, slides);
       ASSERT_GE(tips.size(), 2u) << "not solved";
-      EXPECT_EQ(tips.front(), Vec3(-56, 0, 0));
-      EXPECT_EQ(tips.back(), Vec3(56, 0, 0));
+      EXPECT_EQ(tips.front(), (Coordinates{-56, 0, 0}));
+      EXPECT_EQ(tips.back(), (Coordinates{56, 0, 0}));
       for (std::size_t i = 1; i < tips.size(); ++i) {
-        EXPECT_FALSE(oracle.check(tips[i - 1], tips[i], margin - tolerance).below);
+        const Vec3 from(tips[i - 1].data()), to(tips[i].data());
+        EXPECT_FALSE(oracle.check(from, to, margin - tolerance).below);
       }
     }
   }

@@ -58,6 +58,29 @@ TEST(InstrumentConstraint, StopsAtASurfaceAtTheMarginAndSlidesAlongIt) {
   EXPECT_GE(clearance_of(instrument, *mesh, q), kept - 3.0 * guard.tolerance());
 }
 
+TEST(InstrumentConstraint, WithoutAMeshGoesWhereItIsAskedToUntilOneIsAdded) {
+  const auto mesh = mesh_of(make_cube(20.0));
+  const Instrument instrument = psm_above();
+  InstrumentConstraint guard(instrument, std::make_unique<ActiveSet>(), {.period = 0.05});
+  EXPECT_EQ(guard.mesh_count(), 0u);
+  EXPECT_GT(guard.tolerance(), 0.0);
+  std::vector<double> q = straight_down(insertion_above_cube(instrument, *mesh, 0.3));
+  const Twist down{.linear = Vec3(0.0, 0.0, -0.5)};
+  const InstrumentStep free = guard.step(q, down);
+  ASSERT_TRUE(free.ok()) << free.reason();
+  EXPECT_EQ(free.status, Status::free);
+  EXPECT_LT(clearance_of(instrument, *mesh, moved(q, free)), -0.1) << "into the cube";
+  EXPECT_EQ(guard.add_mesh(mesh, make_index("wide_bvh", mesh)), 0u);
+  const InstrumentStep limited = guard.step(q, down);
+  EXPECT_EQ(limited.status, Status::limited);
+  EXPECT_GE(clearance_of(instrument, *mesh, moved(q, limited)),
+            guard.options().margin - guard.options().band - 3.0 * guard.tolerance());
+  // A prismatic joint at its limit is held there, beside a mesh or not.
+  InstrumentConstraint at_its_limit(instrument, std::make_unique<ActiveSet>(), {.period = 0.05});
+  q[2] = instrument.chain().joint(3).limits.upper;
+  EXPECT_LE(moved(q, at_its_limit.step(q, down))[2], q[2] + 1e-12);
+}
+
 // On generated shapes, with each index and each solver: nothing below what is certified, on the way
 // as little as at its end, and the same answers to the bit on every index.
 TEST(InstrumentConstraint, KeepsEveryBodyClearOnEveryIndexAndEverySolver) {

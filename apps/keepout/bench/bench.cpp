@@ -59,15 +59,6 @@ std::vector<Subject> chosen_subjects(const BenchOptions& options) {
   return subjects;
 }
 
-/// Refuses a mesh of which there is none, too: a mistyped name is told of before the first row.
-std::vector<NamedPath> inputs_of(const std::vector<Subject>& subjects) {
-  std::vector<NamedPath> inputs;
-  for (const Subject& subject : subjects) {
-    inputs.push_back({"--mesh", file_of_mesh(subject.mesh)});
-  }
-  return inputs;
-}
-
 Json record_of(const Benchmark& benchmark, const Comparison& comparison) {
   Json record =
       new_record({.kind = "bench",
@@ -205,7 +196,8 @@ void add_bench(CLI::App& app, BenchOptions& options) {
       ->default_str("contact");
   add_number(command, "--seed", options.seed, 0, largest_seed, "Seed of the motions");
   options.files.add_to(command);
-  command.add_option("--csv", options.csv, "Where to write the rows as a table")->type_name("FILE");
+  command.add_option("--csv", options.files.csv, "Where to write the rows as a table")
+      ->type_name("FILE");
   add_speed_options(command, options);
   command.footer(
       "Each list is crossed with the others; what is not named is wide_bvh, paper and certified,\n"
@@ -230,11 +222,10 @@ int bench(const BenchOptions& options, std::ostream& out, std::ostream& notes) {
     throw Error("there is nothing to measure: see 'keepout bench --list'");
   }
   const RecordFiles& files = options.files;
-  const std::vector<NamedPath> inputs = inputs_of(plan.subjects);
-  using Asked = std::initializer_list<OutputFiles::Asked>;
-  std::optional<OutputFiles> outputs(
-      std::in_place, inputs,
-      Asked{{"--json", files.kept_json()}, {"--csv", options.csv}, {"--out", files.page}});
+  std::vector<std::string> meshes;
+  for (const Subject& subject : plan.subjects) meshes.push_back(subject.mesh);
+  // Refuses a mesh of which there is none, too: a mistyped name is told of before the first row.
+  std::optional outputs(files.open(meshes, "--mesh"));
 
   const StopSignal stop;
   Benchmark benchmark;
@@ -258,13 +249,14 @@ int bench(const BenchOptions& options, std::ostream& out, std::ostream& notes) {
   if (!failure && !stop.has_come()) {
     record = record_of(benchmark, comparison_for(options, plan.subjects.front(), stop, out));
   }
-  outputs.emplace(inputs, Asked{{"--json", files.kept_json()}, {"--out", files.page}});
+  outputs.reset();
+  outputs.emplace(RecordFiles{files.json, files.page}.open(meshes, "--mesh"));
   write_record(*outputs, record, files, notes);
   print_verdict(out, benchmark);
   out << "report: " << files.page->string() << '\n';
   if (!failure && !stop.has_come()) return EXIT_SUCCESS;
   std::vector<std::string> kept{files.page->string()};
-  for (const auto& path : {files.kept_json(), options.csv}) {
+  for (const auto& path : {files.kept_json(), files.csv}) {
     if (path) kept.push_back(path->string());
   }
   notes << "keepout: stopped; " << grouped(benchmark.rows.size()) << " of "

@@ -37,8 +37,7 @@ struct BenchOptions {
   Poses poses = Poses::contact;
   std::uint64_t seed = 1;
   RecordFiles files = {.json = {}, .page = "keepout-bench.html"};
-  std::optional<std::filesystem::path> csv;  // to be written
-  std::string command;                       // that does it again
+  std::string command;  // that does it again
 };
 
 /// Adds `keepout bench` and its options to the command line.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "compare/compare.h"
 
-#include <array>
 #include <cstdlib>
 #include <iostream>
 
@@ -84,8 +83,7 @@ void add_compare(CLI::App& app, CompareOptions& options) {
 }
 
 int compare(const CompareOptions& options, std::ostream& out) {
-  OutputFiles outputs(std::array{NamedPath{"MESH", file_of_mesh(options.mesh)}},
-                      {{"--json", options.files.kept_json()}, {"--out", options.files.page}});
+  OutputFiles outputs = options.files.open({options.mesh});
   const Subject subject{.mesh = options.mesh};
   const std::shared_ptr<const Mesh> mesh = make_mesh(subject);
   const StopSignal stop;

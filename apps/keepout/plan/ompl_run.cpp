@@ -49,14 +49,13 @@ class TimedMotions final : public base::MotionValidator {
 }  // namespace
 
 void set_timed_checkers(const base::SpaceInformationPtr& space,
-                        std::function<bool(const base::State*)> is_valid,
-                        base::MotionValidatorPtr validator, CheckTimer& timer) {
-  space->setStateValidityChecker(
-      [is_valid = std::move(is_valid), &timer](const base::State* state) {
-        return timer.time([&] { return is_valid(state); });
-      });
-  if (!validator) validator = std::make_shared<base::DiscreteMotionValidator>(space);
-  space->setMotionValidator(std::make_shared<TimedMotions>(space, std::move(validator), timer));
+                        const base::StateValidityCheckerPtr& states,
+                        base::MotionValidatorPtr motions, CheckTimer& timer) {
+  space->setStateValidityChecker([states, &timer](const base::State* state) {
+    return timer.time([&] { return states->isValid(state); });
+  });
+  if (!motions) motions = std::make_shared<base::DiscreteMotionValidator>(space);
+  space->setMotionValidator(std::make_shared<TimedMotions>(space, std::move(motions), timer));
   space->setup();
 }
 
@@ -79,13 +78,12 @@ base::PlannerPtr named_planner(const std::string& name, const base::SpaceInforma
   throw Error("plan: there is no planner '" + name + "'");
 }
 
-SolvedPath solve(const base::PlannerPtr& planner, std::span<const double> start,
-                 std::span<const double> goal, const SolveOptions& options,
-                 const std::function<bool()>& interrupted) {
+SolvedPath solve(const base::PlannerPtr& planner, const PlanningProblem& problem,
+                 const PlanOptions& options, const std::function<bool()>& interrupted) {
   const base::SpaceInformationPtr& space = planner->getSpaceInformation();
   base::ScopedState<base::RealVectorStateSpace> from(space), to(space);
-  std::ranges::copy(start, from->values);
-  std::ranges::copy(goal, to->values);
+  std::ranges::copy(problem.start, from->values);
+  std::ranges::copy(problem.goal, to->values);
   const auto definition = std::make_shared<base::ProblemDefinition>(space);
   definition->setStartAndGoalStates(from, to);
   // Planners that go on for a shorter path are to stop at the first.
@@ -103,13 +101,13 @@ SolvedPath solve(const base::PlannerPtr& planner, std::span<const double> start,
       [&] { return gone() > options.seconds || interrupted(); });
   planner->solve(stop);
 
-  SolvedPath result{.solved = definition->hasExactSolution()};
-  if (result.solved) {
+  SolvedPath result;
+  if (definition->hasExactSolution()) {
     auto& path = *definition->getSolutionPath()->as<geometric::PathGeometric>();
     if (options.simplify) geometric::PathSimplifier(space).simplify(path, stop);
     for (const base::State* state : path.getStates()) {
       const double* values = state->as<base::RealVectorStateSpace::StateType>()->values;
-      result.states.emplace_back(values, values + start.size());
+      result.states.emplace_back(values, values + problem.start.size());
     }
   }
   result.seconds = gone();

@@ -9,10 +9,10 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
-#include <memory>
-#include <span>
 #include <string>
-#include <vector>
+
+#include "plan/plan.h"
+#include "plan/problems.h"
 
 namespace keepout::app {
 
@@ -39,8 +39,8 @@ struct CheckTimer {
 /// Gives the space a checker and a validator, timed; no validator stands for OMPL's own, which
 /// samples. The timer must outlive the space.
 void set_timed_checkers(const ompl::base::SpaceInformationPtr& space,
-                        std::function<bool(const ompl::base::State*)> is_valid,
-                        ompl::base::MotionValidatorPtr validator, CheckTimer& timer);
+                        const ompl::base::StateValidityCheckerPtr& states,
+                        ompl::base::MotionValidatorPtr motions, CheckTimer& timer);
 
 /// All generators that OMPL makes from here on have their seeds from this one. It is the process's:
 /// not for two threads at once.
@@ -51,21 +51,13 @@ void set_planning_seed(std::uint64_t seed);
 ompl::base::PlannerPtr named_planner(const std::string& name,
                                      const ompl::base::SpaceInformationPtr& space, double range);
 
-/// How a planner shall be run.
-struct SolveOptions {
-  double seconds = 5.0;
-  bool simplify = false;  // shorten the path by OMPL's simplifier, under the same checker
-};
-
 struct SolvedPath {
-  bool solved = false;
-  double seconds = 0.0;                          // of the planner, and of the simplifier
-  std::vector<std::vector<double>> states = {};  // empty unless solved
+  Path states = {};      // empty unless solved
+  double seconds = 0.0;  // of the planner, and of the simplifier
 };
 
-/// Has a planner look for its first path from start to goal.
-SolvedPath solve(const ompl::base::PlannerPtr& planner, std::span<const double> start,
-                 std::span<const double> goal, const SolveOptions& options,
-                 const std::function<bool()>& interrupted);
+/// Has a planner look for its first path, and simplifies it if the options say so.
+SolvedPath solve(const ompl::base::PlannerPtr& planner, const PlanningProblem& problem,
+                 const PlanOptions& options, const std::function<bool()>& interrupted);
 
 }  // namespace keepout::app

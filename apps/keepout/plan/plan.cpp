@@ -1,21 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plan/plan.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <iostream>
-#include <memory>
 #include <ostream>
 #include <utility>
 
-#include "keepout/activation/certified.h"
-#include "keepout/error.h"
-#include "keepout/factory/make_motion_constraint.h"
-#include "keepout/ompl/straight_way.h"
-#include "plan/planning_run.h"
-#include "plan/robot/plan_robot.h"
+#include "plan/planning.h"
 #include "record/flat_rows.h"
-#include "shared/named_mesh.h"
-#include "shared/output_file.h"
 #include "shared/progress.h"
 #include "shared/stop_signal.h"
 #include "shared/wrapped_text.h"
@@ -23,118 +16,99 @@
 namespace keepout::app {
 namespace {
 
-std::vector<PlanningScene> scenes_of(const PlanOptions& options) {
-  using Space = PlanningScene::Space;
-  std::vector<PlanningScene> scenes;
-  if (options.mesh) {
-    scenes.push_back(
-        load_planning_scene(*options.mesh, options.inside ? Space::within : Space::around));
+/// What a planner that steers by itself says of that: of others nothing.
+void add_steering(const ompl::base::PlannerPtr& planner, CheckTimer& timer) {
+  const auto& properties = planner->getPlannerProgressProperties();
+  const auto seconds = properties.find("steering time REAL");
+  const auto ways = properties.find("ways INTEGER");
+  if (seconds != properties.end()) timer.seconds += std::stod(seconds->second());
+  if (ways != properties.end()) timer.motions += std::stoull(ways->second());
+}
+
+/// Runs the planner of the options, and has the path judged. The same seed yields the same path,
+/// unless time runs out. Not for two threads at once: OMPL's seed is the process's.
+Json run_planner(const PlanOptions& options, Planning& planning, const PlanningProblem& problem,
+                 const Checker& checker, std::size_t repetition, const StopSignal& stop) {
+  const bool is_tip = options.robot.empty();
+  const std::uint64_t seed = options.seed + (is_tip ? problem.number : repetition);
+  set_planning_seed(seed);
+  CheckTimer timer;
+  const ompl::base::PlannerPtr planner = planning.planner(checker, timer);
+  const SolvedPath path = solve(planner, problem, options, [&stop] { return stop.has_come(); });
+  add_steering(planner, timer);
+  Json run{{"mesh", planning.scene().name()}, {"problem", problem.number}};
+  if (is_tip) {
+    run.update(problem.members);
+    run["checker"] = checker.name();
+    run["planner"] = checker.slides() ? "SlidingConnect" : options.planner;
   } else {
-    // From the throat up into nose and sinuses.
-    scenes.push_back(load_planning_scene("airway", Space::within, PlanningScene::Starts::below));
-    scenes.push_back(load_planning_scene("skull", Space::around));
+    run["seed"] = seed;
+    run["checker"] = checker.name();
+    run.update(problem.members);
   }
-  return scenes;
+  run["solved"] = !path.states.empty();
+  run["seconds"] = path.seconds;
+  run["checking_seconds"] = timer.seconds;
+  run["checks"] = timer.motions;
+  run.update(planning.judge(path.states));
+  return run;
 }
 
-/// Sides are not asked about: a certified motion never changes them, whichever way the mesh is
-/// wound, so a tree that starts within stays within.
-constexpr Inside sides = Inside::taken_as_is;
-
-std::shared_ptr<GuardPool> steering_guards(const PlanOptions& options, const Scene& scene) {
-  return std::make_shared<GuardPool>([&options, &scene] {
-    return make_motion_constraint(scene.mesh(), scene.shared_index(),
-                                  {.options = {.radius = options.radius,
-                                               .tool_radius = options.tool_radius,
-                                               .margin = options.margin},
-                                   .inside = sides});
-  });
-}
-
-/// The same, but for a solver that does not search where a motion is held back.
-std::shared_ptr<GuardPool> validating_guards(const PlanOptions& options, const Scene& scene) {
-  return std::make_shared<GuardPool>([&options, &scene] {
-    return MotionConstraint(scene.mesh(), scene.shared_index(), std::make_unique<CertifiedRule>(),
-                            std::make_unique<StraightOnly>(),
-                            {.radius = options.radius, .margin = options.clearance()}, {}, sides);
-  });
-}
-
-OutputFiles outputs_of(const PlanOptions& options) {
-  std::vector<NamedPath> inputs;
-  if (options.mesh) inputs.push_back({"MESH", file_of_mesh(*options.mesh)});
-  return {inputs,
-          {{"--json", options.files.kept_json()},
-           {"--csv", options.csv},
-           {"--out", options.files.page}}};
-}
-
-void run_planning_scene(const PlanOptions& options, PlanningScene& where, Progress& progress,
-                        const StopSignal& stop, std::vector<PlanningRun>& runs) {
-  const Scene& scene = where.scene;
-  progress.show(scene.name() + ", drawing problems");
-  const std::vector<Problem> problems =
-      draw_problems(where, options.clearance(), options.problems, options.seed);
-  const std::shared_ptr<GuardPool> validating = validating_guards(options, scene);
-  const std::shared_ptr<GuardPool> steering = steering_guards(options, scene);
-  const double least = least_distance(scene, options);
-  for (const Problem& problem : problems) {
-    for (const Checker& checker : checkers(options.resolutions)) {
-      if (stop.has_come()) return;
-      progress.show(scene.name() + " " + std::to_string(problem.number) + ", " + checker.name());
-      const PlanningTask task{options, where, problem, checker,
-                              checker.slides() ? steering : validating};
-      PlannedPath path = run_planner(task, [&stop] { return stop.has_come(); });
-      // Cut short it tells nothing.
-      if (stop.has_come() && !path.solved) return;
-      const PathVerdict verdict =
-          path.solved ? judge_path(scene, path.points, least) : PathVerdict{};
-      std::vector<std::vector<Vec3>> too_near;
-      if (!verdict.is_valid()) too_near = lengths_too_near(scene, path.points, least);
-      runs.push_back({scene.name(), task.planner(), checker, problem, std::move(path), verdict,
-                      std::move(too_near)});
-      progress.advance();
+/// All runs on a mesh, up to a stop.
+void run_all(const PlanOptions& options, Planning& planning, Progress& progress,
+             const StopSignal& stop, Json& runs) {
+  const std::string& mesh = planning.scene().name();
+  progress.show(mesh + ", drawing problems");
+  for (const PlanningProblem& problem : planning.draw()) {
+    planning.open(problem);
+    for (const Checker& checker : checkers_of(options)) {
+      progress.show(mesh + " " + std::to_string(problem.number) + ", " + checker.name());
+      for (std::size_t i = 0; i < options.repetitions(); ++i) {
+        if (stop.has_come()) return;
+        Json run = run_planner(options, planning, problem, checker, i, stop);
+        // Cut short it tells nothing.
+        if (stop.has_come() && !run["solved"]) return;
+        runs.push_back(std::move(run));
+        progress.advance();
+      }
     }
   }
-}
-
-/// What keepout let pass and the oracle does not.
-std::size_t invalid_of_keepout(const std::vector<PlanningRun>& runs) {
-  std::size_t count = 0;
-  for (const PlanningRun& run : runs) {
-    count += run.checker.is_keepouts() && run.path.solved && !run.verdict.is_valid();
-  }
-  return count;
 }
 
 }  // namespace
 
 int plan(const PlanOptions& options, std::ostream& out) {
-  if (!options.robot.empty()) return plan_with_robot(options, out);
-  OutputFiles outputs = outputs_of(options);
+  OutputFiles outputs = options.files.open(options.meshes);
   const StopSignal stop;  // after the files, which a second signal removes
-  std::vector<PlanningScene> scenes = scenes_of(options);
-  std::vector<PlanningRun> runs;
-  const std::size_t total = scenes.size() * options.problems * checkers(options.resolutions).size();
+  const auto plannings =
+      options.robot.empty() ? plannings_of_a_tip(options) : plannings_of_an_instrument(options);
+  const std::size_t total =
+      plannings.size() * options.problems * checkers_of(options).size() * options.repetitions();
+  Json runs = Json::array();
   {
     Progress progress("plan", total);
-    for (PlanningScene& where : scenes) {
-      if (!stop.has_come()) run_planning_scene(options, where, progress, stop, runs);
+    for (const auto& planning : plannings) {
+      if (!stop.has_come()) run_all(options, *planning, progress, stop, runs);
     }
   }
-  const Json record = record_of(options, scenes, runs, runs.size() == total);
-  if (auto* const csv = outputs.stream("--csv")) print_csv(*csv, flat(record["runs"]));
+  const bool is_complete = runs.size() == total;
+  const Json record = record_of(options, plannings, std::move(runs), is_complete);
+  const Json& all = record["runs"];
+  if (auto* const csv = outputs.stream("--csv")) print_csv(*csv, flat(all));
   write_record(outputs, record, options.files, std::cerr);
   print_wrapped(out, record["subject"]);
-  for (const Json& text : record["account"]) print_wrapped(out, text);
+  print_wrapped(out, record["account"]);
   out << '\n';
-  print_table(out, summaries(runs));
+  print_summaries(out, all);
   if (stop.has_come()) {
-    out << "\ninterrupted: " << runs.size() << " of " << total << " runs are finished\n";
+    out << "\ninterrupted: " << all.size() << " of " << total << " runs are finished\n";
   }
   out << '\n';
   print_wrapped(out, record["headline"]);
-  if (invalid_of_keepout(runs) > 0) return EXIT_FAILURE;
+  const auto breaks_a_promise = [](const Json& run) {
+    return is_keepouts(run) && run["solved"] && !is_valid(run);
+  };
+  if (std::ranges::any_of(all, breaks_a_promise)) return EXIT_FAILURE;
   return stop.has_come() ? exit_interrupted : EXIT_SUCCESS;
 }
 

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <iosfwd>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,7 +20,7 @@ namespace keepout::app {
 inline const std::vector<std::string> ompl_planners{"RRTConnect", "RRT", "PRM", "BITstar"};
 
 struct PlanOptions {
-  std::optional<std::filesystem::path> mesh;  // none: airway and skull, of the real fixtures
+  std::vector<std::filesystem::path> meshes;  // one; empty: airway and skull, of the real fixtures
   bool inside = false;                        // plan within the mesh given, not around it
   std::string
       robot;  // of robots_under_test(): plan for all of it, in joint space; empty: for a tip
@@ -37,10 +36,11 @@ struct PlanOptions {
   double range = 0.0;     // of the planner [mm]; 0: a fifth of the extent, as OMPL has it
   bool simplify = false;  // shorten each path by OMPL's simplifier, under the same checker
   RecordFiles files;
-  std::optional<std::filesystem::path> csv;  // to be written
-  std::string command;                       // that does it again
+  std::string command;  // that does it again
 
   double clearance() const noexcept { return tool_radius + margin; }
+  /// Runs of each problem under each checker.
+  std::size_t repetitions() const noexcept { return robot.empty() ? 1 : seeds; }
 };
 
 /// Adds `keepout plan` and its options to the command line.

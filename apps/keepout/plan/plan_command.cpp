@@ -14,9 +14,12 @@ void add_plan(CLI::App& app, PlanOptions& options) {
       "plan",
       "Plan through real anatomy with OMPL, under sampled and under certified checking side by "
       "side, and have an independent, exact oracle judge every path");
-  CLI::Option* mesh = command.add_option(
-      "MESH", options.mesh,
-      "Mesh file in mm, or a fixture; without one, airway (within) and skull (around)");
+  CLI::Option* mesh =
+      command
+          .add_option(
+              "MESH", options.meshes,
+              "Mesh file in mm, or a fixture; without one, airway (within) and skull (around)")
+          ->expected(1);
   CLI::Option* robot =
       command
           .add_option("--robot", options.robot,
@@ -57,7 +60,7 @@ void add_plan(CLI::App& app, PlanOptions& options) {
   command.add_flag("--simplify", options.simplify,
                    "Shorten each path by OMPL's simplifier, under the same checker");
   options.files.add_to(command);
-  command.add_option("--csv", options.csv, "Where to write a line for every run")
+  command.add_option("--csv", options.files.csv, "Where to write a line for every run")
       ->type_name("FILE");
   command.footer(
       "Ctrl-C ends it early: what is finished is judged, printed and written.\n"

@@ -7,11 +7,24 @@
 #include <vector>
 
 #include "keepout/geometry/shapes.h"
-#include "verify/scene.h"
+#include "shared/columns.h"
+#include "verify/robot/robot_scene.h"
 
 namespace keepout::app {
 
-/// Where to plan: a mesh, and which side of it is free.
+/// States that straight motions join: of a tip its coordinates [mm], of an instrument the positions
+/// of its joints.
+using Path = std::vector<std::vector<double>>;
+
+/// From where to where a tip or an instrument is to be led.
+struct PlanningProblem {
+  std::size_t number = 0;  // from 1
+  std::vector<double> start = {}, goal = {};
+  Pose base = {};     // of the instrument
+  Json members = {};  // of its runs in the record: all of this, and how hard it is
+};
+
+/// Where to plan for a tip: a mesh, and which side of it is free.
 struct PlanningScene {
   enum class Space : std::uint8_t { within, around };
   enum class Starts : std::uint8_t {
@@ -30,14 +43,8 @@ struct PlanningScene {
 PlanningScene load_planning_scene(const std::filesystem::path& mesh, PlanningScene::Space space,
                                   PlanningScene::Starts starts = PlanningScene::Starts::anywhere);
 
-struct Problem {
-  std::size_t number = 0;  // from 1
-  Vec3 start, goal;        // [mm]
-  double straight = 0.0;   // from the one to the other [mm]
-  double detour = 1.0;     // a way there along the grid, as a multiple of the same in the open
-};
-
-/// Draws problems by a rule that knows no planner, each with a solution that keeps the clearance:
+/// Draws problems for a tip by a rule that knows no planner, each with a solution that keeps the
+/// clearance:
 ///
 /// 1. A grid of 1/200 of the mesh's diagonal is flooded (FreeCells): around the mesh from a corner
 ///    of the bounds, within it from the widest of 1000 places drawn in it, in its lowest tenth
@@ -49,7 +56,19 @@ struct Problem {
 ///    mesh.
 ///
 /// Throws Error when the rule finds too few.
-std::vector<Problem> draw_problems(PlanningScene& where, double clearance, std::size_t count,
-                                   std::uint64_t seed);
+std::vector<PlanningProblem> draw_problems(PlanningScene& where, double clearance,
+                                           std::size_t count, std::uint64_t seed);
+
+/// Draws problems for an instrument by a rule that knows no planner, each with a solution that
+/// keeps twice the margin:
+///
+/// 1. The instrument begins before a random place of the surface, 5 to 20 mm off it (find_start).
+/// 2. From there a hand pushes, slides and turns it about (RobotHand), for 3000 certified steps.
+/// 3. The goal is the place on its way that is farthest ahead, along the tool as it is at the
+///    start, among those to which the straight motion of the joints leads through the mesh; to
+///    within some 2 mm. Unless it is 30 mm ahead, another beginning is tried.
+///
+/// Throws Error when it finds too few.
+std::vector<PlanningProblem> draw_problems(RobotScene& on, std::size_t count, std::uint64_t seed);
 
 }  // namespace keepout::app

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <initializer_list>
 #include <iosfwd>
 #include <optional>
 #include <string>
@@ -10,6 +11,7 @@
 
 #include "shared/columns.h"
 #include "shared/machine.h"
+#include "shared/named_mesh.h"
 #include "shared/output_file.h"
 
 namespace CLI {
@@ -38,9 +40,9 @@ Json new_record(const RecordHead& head);
 /// Why this is no record of the format that is known, as far as its head goes; empty where it is.
 std::string fault_of(const Json& json);
 
-/// Where a command writes its record, and its report.
+/// Where a command writes its record, its report, and its rows as a table.
 struct RecordFiles {
-  std::optional<std::filesystem::path> json, page;
+  std::optional<std::filesystem::path> json, page, csv = {};
 
   /// Adds --json and --out to a command; a `page` that is set is the one by default.
   void add_to(CLI::App& command);
@@ -48,6 +50,15 @@ struct RecordFiles {
   /// The JSON that is to be written: where a report will be a plain one (see write_record), it is
   /// kept beside it if nobody asked for it, so that the report can be made later.
   std::optional<std::filesystem::path> kept_json() const;
+
+  /// Opens all of them: "--json", "--csv" and "--out". Throws Error as OutputFiles and file_of_mesh
+  /// do. `meshes`: files and fixtures that the command reads. `option`: what the user calls them.
+  template <class Meshes = std::initializer_list<std::filesystem::path>>
+  OutputFiles open(const Meshes& meshes, std::string_view option = "MESH") const {
+    std::vector<NamedPath> inputs;
+    for (const auto& mesh : meshes) inputs.push_back({option, file_of_mesh(mesh)});
+    return {inputs, {{"--json", kept_json()}, {"--csv", csv}, {"--out", page}}};
+  }
 };
 
 /// Writes a record to the stream "--json" and its report to "--out", as far as these are among the

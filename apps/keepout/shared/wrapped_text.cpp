@@ -17,9 +17,13 @@ std::size_t characters_in(const std::string& word) {
 
 }  // namespace
 
-void print_wrapped(std::ostream& out, const std::string& text) {
+void print_wrapped(std::ostream& out, const Json& text) {
   constexpr std::size_t longest = 88;
-  std::istringstream words(text);
+  if (text.is_array()) {
+    for (const Json& one : text) print_wrapped(out, one);
+    return;
+  }
+  std::istringstream words(text.get<std::string>());
   std::size_t width = 0;
   for (std::string word; words >> word;) {
     const std::size_t more = characters_in(word);

@@ -2,11 +2,12 @@
 #pragma once
 
 #include <iosfwd>
-#include <string>
+
+#include "shared/columns.h"
 
 namespace keepout::app {
 
-/// Prints a text in lines that fit a terminal.
-void print_wrapped(std::ostream& out, const std::string& text);
+/// Prints a text, or each of a list, in lines that fit a terminal.
+void print_wrapped(std::ostream& out, const Json& text);
 
 }  // namespace keepout::app

@@ -2,8 +2,6 @@
 #include "simulate/simulate.h"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cstdlib>
 #include <iostream>
 #include <optional>
@@ -26,7 +24,6 @@
 #include "shared/wrapped_text.h"
 #include "simulate/audit.h"
 #include "simulate/simulation.h"
-#include "simulate/simulation_json.h"
 
 namespace keepout::app {
 namespace {
@@ -51,10 +48,9 @@ Move run_cycle(std::optional<MotionConstraint>& constraint, const Vec3& tip, con
   return {step.motion, outcome, static_cast<float>(1e-3 * static_cast<double>(times.total()))};
 }
 
-Run run_strokes(std::string rule, std::string description,
-                std::optional<MotionConstraint>& constraint,
-                const std::vector<std::vector<Vec3>>& hand, double max_step, Audit& audit) {
-  Run run{.rule = std::move(rule), .description = std::move(description)};
+void run_strokes(std::optional<MotionConstraint>& constraint,
+                 const std::vector<std::vector<Vec3>>& hand, double max_step, Audit& audit,
+                 Run& run) {
   Progress progress("simulate " + run.rule, hand.size());
   for (const std::vector<Vec3>& goals : hand) {
     Vec3 tip = goals.front();
@@ -70,42 +66,28 @@ Run run_strokes(std::string rule, std::string description,
     }
     progress.advance();
   }
-  return run;
 }
 
-/// The fewest digits that read back exactly.
-std::string number(double value) {
-  std::array<char, 32> text;
-  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
-}
-
-std::vector<std::pair<std::string, std::string>> settings_of(const SimulateOptions& options) {
+Json settings_of(const SimulateOptions& options) {
   return {{"mesh", options.mesh.string()},
           {"index", options.constraint.index},
           {"solver", options.constraint.solver},
-          {"motion sphere radius", number(options.constraint.options.radius) + " mm"},
-          {"tool radius", number(options.constraint.options.tool_radius) + " mm"},
-          {"margin", number(options.constraint.options.margin) + " mm"},
+          {"motion sphere radius", keepout::text_of(options.constraint.options.radius) + " mm"},
+          {"tool radius", keepout::text_of(options.constraint.options.tool_radius) + " mm"},
+          {"margin", keepout::text_of(options.constraint.options.margin) + " mm"},
           {"refinements", std::to_string(options.constraint.options.refinements)},
           {"branches", std::to_string(options.constraint.options.nodes)},
-          {"longest step asked for", number(options.max_step) + " mm"},
+          {"longest step asked for", keepout::text_of(options.max_step) + " mm"},
           {"seed", std::to_string(options.hand.seed)},
           {"strokes", std::to_string(options.hand.strokes)},
           {"cycles per stroke", std::to_string(options.hand.cycles)}};
-}
-
-std::string description_of(std::string_view rule) {
-  for (const ActivationEntry& entry : activation_rules()) {
-    if (entry.name == rule) return std::string(entry.description);
-  }
-  return {};
 }
 
 /// Each once, in the order of their first mention.
 std::vector<std::string> without_repeats(const std::vector<std::string>& rules) {
   std::vector<std::string> once;
   for (const std::string& rule : rules) {
-    if (std::find(once.begin(), once.end(), rule) == once.end()) once.push_back(rule);
+    if (std::ranges::find(once, rule) == once.end()) once.push_back(rule);
   }
   return once;
 }
@@ -178,18 +160,17 @@ void print_next(const SimulateOptions& options, std::ostream& out) {
 int simulate(const SimulateOptions& options, std::ostream& out) {
   if (!options.robot.empty()) return simulate_robot(options, out);
   require_within_reach(options.max_step, options.constraint.options.radius);
-  OutputFiles outputs(std::array{NamedPath{"MESH", file_of_mesh(options.mesh)}},
-                      {{"--json", options.files.kept_json()}, {"--out", options.files.page}});
+  OutputFiles outputs = options.files.open({options.mesh});
   const LoadedMesh loaded = load_named_mesh(options.mesh, options.load);
   // Nor a mistyped name.
-  const std::vector<std::string> rules = without_repeats(options.rules);
-  std::vector<std::pair<std::string, std::optional<MotionConstraint>>> fixtures;
-  fixtures.emplace_back(no_rule, std::nullopt);
-  for (const std::string& rule : rules) {
+  std::vector<std::pair<Run, std::optional<MotionConstraint>>> fixtures(1);
+  fixtures.front().first.rule = no_rule;
+  for (const std::string& rule : without_repeats(options.rules)) {
     MotionConstraintSettings settings = options.constraint;
     settings.activation = rule;
     settings.warn = warn_on_stderr;
-    fixtures.emplace_back(rule, make_motion_constraint(loaded.mesh, settings));
+    fixtures.emplace_back(Run{rule, std::string(activation_rules().named(rule).description)},
+                          make_motion_constraint(loaded.mesh, settings));
   }
 
   Audit audit(loaded.mesh);
@@ -202,9 +183,9 @@ int simulate(const SimulateOptions& options, std::ostream& out) {
       .command = options.command,
       .settings = settings_of(options)};
   const std::vector<std::vector<Vec3>> hand = hand_over(audit, options);
-  for (auto& [rule, constraint] : fixtures) {
-    simulation.runs.push_back(
-        run_strokes(rule, description_of(rule), constraint, hand, options.max_step, audit));
+  for (auto& [run, constraint] : fixtures) {
+    run_strokes(constraint, hand, options.max_step, audit, run);
+    simulation.runs.push_back(std::move(run));
   }
   // Those of the benchmark are many, and tell who does not know it of nothing but numbers.
   std::ostream tables(options.tables == Tables::printed ? out.rdbuf() : nullptr);
@@ -226,7 +207,7 @@ int simulate(const SimulateOptions& options, std::ostream& out) {
   print_wrapped(out, record["subject"].get<std::string>() + ".");
   out << '\n';
   print_wrapped(out, record["headline"]);
-  for (const Json& text : record["account"]) print_wrapped(out, text);
+  print_wrapped(out, record["account"]);
   if (!benchmark.rows.empty()) {
     out << "Timed as well, in the report: " << counted(benchmark.rows.size(), "combination")
         << " of index, rule, solver and radius.\n";

@@ -2,11 +2,13 @@
 #include "simulate/simulation.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <ostream>
 
 #include "shared/number_text.h"
 #include "shared/timing.h"
+#include "simulate/audit.h"
 
 namespace keepout::app {
 namespace {
@@ -27,7 +29,69 @@ void add_step_times(const Run& run, RunSummary& summary) {
   if (summary.p50_us > 0.0) summary.rate_khz = 1000.0 / summary.p50_us;
 }
 
+/// A row of the table: one run.
+struct Row {
+  std::string rule;
+  RunSummary figures;
+  SurfaceKind surface;
+};
+
+template <class Member>
+auto if_timed(Member member) {
+  // Without a fixture there is no step to be timed.
+  return [=](const Row& row) {
+    return row.figures.max_us > 0.0 ? Json(row.figures.*member) : Json(nullptr);
+  };
+}
+
+template <class Member>
+auto if_closed(Member member) {
+  // An open surface has no inside.
+  return [=](const Row& row) {
+    return row.surface == SurfaceKind::closed ? Json(row.figures.*member) : Json(nullptr);
+  };
+}
+
+template <class Member>
+auto always(Member member) {
+  return [=](const Row& row) { return Json(row.figures.*member); };
+}
+
+Json closest(const Row& row) {
+  return touches(row.figures.closest_approach) ? 0.0 : row.figures.closest_approach;
+}
+
+template <int decimals>
+std::string shown(const Json& value) {
+  return value.is_null() ? "-" : formatted("%.*f", decimals, value.get<double>());
+}
+
+const Columns<Row>& figure_columns() {
+  using S = RunSummary;
+  static const Columns<Row> all{
+      {"", &Row::rule, "rule", -10},
+      {"strokes", always(&S::strokes)},
+      {"cycles", always(&S::cycles), "cycles", 8},
+      {"rate_khz", if_timed(&S::rate_khz), "kHz", 9, shown<1>},
+      {"p50_us", if_timed(&S::p50_us), "p50 us", 9, shown<2>},
+      {"p99_us", if_timed(&S::p99_us), "p99 us", 9, shown<2>},
+      {"p999_us", if_timed(&S::p999_us)},
+      {"max_us", if_timed(&S::max_us)},
+      {"closest_approach_mm", closest, "closest mm", 12, shown<4>},
+      {"deepest_mm", if_closed(&S::deepest_penetration), "deepest mm", 12, shown<4>},
+      {"cycles_inside", if_closed(&S::cycles_inside), "inside", 8, shown<0>},
+      {"strokes_inside", if_closed(&S::strokes_inside)},
+      {"crossings", always(&S::crossings), "crossings", 10},
+      {"strokes_breached", always(&S::strokes_breached)},
+      {"moved_freely", always(&S::moved_freely)},
+      {"limited", always(&S::limited)},
+      {"stopped", always(&S::stopped), "stopped", 9}};
+  return all;
+}
+
 }  // namespace
+
+bool touches(double clearance) { return std::abs(clearance) <= Audit::touching; }
 
 RunSummary summarize(const Run& run) {
   RunSummary summary;
@@ -35,7 +99,7 @@ RunSummary summarize(const Run& run) {
   summary.crossings = run.crossings.size();
 
   std::vector<bool> breached(run.strokes.size(), false);
-  for (const Crossing& crossing : run.crossings) breached.at(crossing.stroke) = true;
+  for (const Moment& crossing : run.crossings) breached.at(crossing.stroke) = true;
 
   double lowest = std::numeric_limits<double>::infinity();
   for (std::size_t s = 0; s < run.strokes.size(); ++s) {
@@ -66,23 +130,16 @@ RunSummary summarize(const Run& run) {
   return summary;
 }
 
+Json json_of(const RunSummary& summary, SurfaceKind surface) {
+  return json_of(figure_columns(), Row{{}, summary, surface});
+}
+
 void print_table(std::ostream& out, const Simulation& simulation) {
-  out << formatted("%-10s %8s %9s %9s %9s %12s %12s %8s %10s %9s\n", "rule", "cycles", "kHz",
-                   "p50 us", "p99 us", "closest mm", "deepest mm", "inside", "crossings",
-                   "stopped");
-  const bool closed = simulation.surface == SurfaceKind::closed;  // an open one has no inside
+  std::vector<Row> rows;
   for (const Run& run : simulation.runs) {
-    const RunSummary s = summarize(run);
-    // Without a fixture there is no step to be timed.
-    const auto time = [&](double value, int decimals) {
-      return s.max_us > 0.0 ? formatted("%.*f", decimals, value) : "-";
-    };
-    out << formatted(
-        "%-10s %8zu %9s %9s %9s %12.4f %12s %8s %10zu %9zu\n", run.rule.c_str(), s.cycles,
-        time(s.rate_khz, 1).c_str(), time(s.p50_us, 2).c_str(), time(s.p99_us, 2).c_str(),
-        s.closest_approach, closed ? formatted("%.4f", s.deepest_penetration).c_str() : "-",
-        closed ? std::to_string(s.cycles_inside).c_str() : "-", s.crossings, s.stopped);
+    rows.push_back({run.rule, summarize(run), simulation.surface});
   }
+  print_rows(out, figure_columns(), rows);
 }
 
 }  // namespace keepout::app

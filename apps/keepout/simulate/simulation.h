@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <iosfwd>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "keepout/mesh/mesh.h"
+#include "shared/columns.h"
 
 namespace keepout::app {
 
@@ -34,31 +34,32 @@ struct Stroke {
   std::vector<Cycle> cycles = {};
 };
 
-/// A move of the tip that passed through a triangle: the one that ended in this cycle.
-struct Crossing {
+/// One cycle of a run.
+struct Moment {
   std::size_t stroke = 0;
   std::size_t cycle = 0;
 };
 
 /// All strokes under one rule.
 struct Run {
-  std::string rule;         // "none", "all_faces", "paper", ...
-  std::string description;  // one line for a reader who does not know the rule; may be empty
+  std::string rule = {};         // "none", "all_faces", "paper", ...
+  std::string description = {};  // one line for a reader who does not know the rule; may be empty
   std::vector<Stroke> strokes = {};
-  std::vector<Crossing> crossings = {};  // in the order of time
+  /// The cycles in which a move of the tip ended that passed through a triangle, in their order.
+  std::vector<Moment> crossings = {};
 };
 
 /// The rule name of the run without a fixture.
 inline constexpr const char* no_rule = "none";
 
-/// The figures of a run. Percentiles are by nearest rank: a time that did occur.
+/// The figures of a run. Percentiles are by nearest rank: a time that did occur; 0: not timed.
 struct RunSummary {
   std::size_t strokes = 0;
   std::size_t cycles = 0;
   std::size_t moved_freely = 0, limited = 0, stopped = 0;  // cycles, by outcome
 
   double p50_us = 0.0, p99_us = 0.0, p999_us = 0.0, max_us = 0.0;  // of the step time [us]
-  double rate_khz = 0.0;  // how often the median step fits into a millisecond; 0: not timed [kHz]
+  double rate_khz = 0.0;  // how often the median step fits into a millisecond [kHz]
 
   double closest_approach = 0.0;     // 0 as soon as the tip has been inside, or crossed [mm]
   double deepest_penetration = 0.0;  // 0 when the tip never was inside [mm]
@@ -79,15 +80,30 @@ struct Simulation {
   std::string mesh_name;
   const Mesh* mesh = nullptr;  // [mm]; must outlive this
   SurfaceKind surface = SurfaceKind::closed;
-  double margin = 0.0;           // what the rules were asked to keep from the surface [mm]
-  double cycle_seconds = 0.001;  // length of a control cycle [s]
-  Vec3 up = Vec3::UnitZ();       // which way is up in the pictures; head-wards in CT data
-  std::string command = {};      // that does it again
-  std::vector<std::pair<std::string, std::string>> settings = {};  // seed, radius, solver, ...
-  std::vector<Run> runs = {};  // same strokes, same hand; the run without a fixture first
+  double margin = 0.0;             // what the rules were asked to keep from the surface [mm]
+  double cycle_seconds = 0.001;    // length of a control cycle [s]
+  Vec3 up = Vec3::UnitZ();         // which way is up in the pictures; head-wards in CT data
+  std::string command = {};        // that does it again
+  Json settings = Json::object();  // seed, radius, solver, ...
+  std::vector<Run> runs = {};      // same strokes, same hand; the run without a fixture first
 };
+
+/// True if a tip at this distance from the surface touches it: the check tells no less apart. [mm]
+bool touches(double clearance);
+
+/// The figures as a record has them: null for times of what was not timed, and for the inside of an
+/// open surface.
+Json json_of(const RunSummary& summary, SurfaceKind surface);
 
 /// The figures of each run, a line each.
 void print_table(std::ostream& out, const Simulation& simulation);
+
+/// One run in a few words: "went up to 1.2 mm deep, in 3 of 24 strokes".
+std::string outcome_of(const RunSummary& summary, SurfaceKind surface);
+
+/// The record of a simulation: see docs/records.md; benchmark and comparison are null. Throws Error
+/// when there is no mesh, no run, or a stroke without a cycle, or when runs differ in their
+/// strokes.
+Json record_of(const Simulation& simulation);
 
 }  // namespace keepout::app

@@ -5,82 +5,81 @@
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <functional>
 
 #include "by_name.h"
 #include "keepout/activation/registry.h"
 #include "keepout/fixtures/motions.h"
+#include "keepout/fixtures/queries_only.h"
 #include "keepout/index/pd_tree.h"
 #include "keepout/index/wide_bvh.h"
 #include "keepout/solvers/active_set.h"
 #include "meshes.h"
 #include "messages.h"
-#include "queries_only.h"
 
 namespace keepout::app {
 namespace {
 
-/// Does not know of one triangle.
-class Forgetful final : public SpatialIndex {
+/// An index that is right until its answers are spoiled.
+class Spoiled final : public SpatialIndex {
  public:
-  Forgetful(std::shared_ptr<const Mesh> mesh, TriangleId forgotten)
-      : SpatialIndex(mesh), tree_(std::move(mesh)), forgotten_(forgotten) {}
+  Spoiled(std::shared_ptr<const Mesh> mesh, std::function<void(TriangleBuffer&)> spoil)
+      : SpatialIndex(mesh), tree_(std::move(mesh)), spoil_(std::move(spoil)) {}
 
   void collect(const Ball& ball, TriangleBuffer& candidates) const noexcept override {
     tree_.collect(ball, candidates);
-    std::replace(candidates.begin(), candidates.end(), forgotten_, TriangleId{0});
+    spoil_(candidates);
   }
   std::size_t memory() const noexcept override { return tree_.memory(); }
 
  private:
   PdTree tree_;
-  TriangleId forgotten_;
+  std::function<void(TriangleBuffer&)> spoil_;
 };
 
-/// An exact solver that is made to err, or to give up, now and then: always at the same problems.
-class Flawed final : public Solver {
+/// An exact solver, of which each answer is looked at, and may be changed.
+class Watched final : public Solver {
  public:
-  enum class Flaw { shorter, gives_up, none };
-  explicit Flawed(Flaw flaw) : flaw_(flaw) {}
-
-  void reserve(int variables, int rows) override { exact_.reserve(variables, rows); }
-  SolveStatus solve(const StepProblem& problem, Solution& solution) noexcept override {
-    const SolveStatus status = exact_.solve(problem, solution);
-    const auto bits = std::bit_cast<std::uint64_t>(problem.desired[0]);
-    if (status != SolveStatus::optimal || bits % 50 != 0) return status;
-    if (flaw_ == Flaw::gives_up) return SolveStatus::iteration_limit;
-    if (flaw_ == Flaw::none) return status;
-    u_ = 0.9 * Vec3(solution.u[0], solution.u[1], solution.u[2]);
-    solution.u = {u_.data(), 3};
-    return status;
-  }
-
- private:
-  ActiveSet exact_;
-  Flaw flaw_;
-  Vec3 u_;
-};
-
-/// Exact, and takes down how many planes and rows it was given each time.
-class Watchful final : public Solver {
- public:
-  struct Given {
-    std::size_t planes;
-    Eigen::Index rows;
-    bool operator==(const Given&) const = default;
-  };
-  explicit Watchful(std::vector<Given>& given) : given_(given) {}
+  using Watch = std::function<SolveStatus(const StepProblem&, Solution&, SolveStatus)>;
+  explicit Watched(Watch watch) : watch_(std::move(watch)) {}
 
   void reserve(int variables, int rows) override { exact_.reserve(variables, rows); }
   bool reads_planes() const noexcept override { return exact_.reads_planes(); }
   SolveStatus solve(const StepProblem& problem, Solution& solution) noexcept override {
-    given_.push_back({problem.planes.size(), problem.rows.rows()});
-    return exact_.solve(problem, solution);
+    return watch_(problem, solution, exact_.solve(problem, solution));
   }
 
  private:
   ActiveSet exact_;
-  std::vector<Given>& given_;
+  Watch watch_;
 };
+
+enum class Flaw { shorter, gives_up, none };
+
+/// Errs, or gives up, now and then: always at the same problems.
+std::unique_ptr<Solver> flawed(Flaw flaw) {
+  return std::make_unique<Watched>([flaw, u = Vec3{0, 0, 0}](const StepProblem& problem,
+                                                             Solution& solution,
+                                                             SolveStatus status) mutable {
+    const auto bits = std::bit_cast<std::uint64_t>(problem.desired[0]);
+    if (status != SolveStatus::optimal || bits % 50 != 0 || flaw == Flaw::none) return status;
+    if (flaw == Flaw::gives_up) return SolveStatus::iteration_limit;
+    u = 0.9 * Vec3(solution.u[0], solution.u[1], solution.u[2]);
+    solution.u = {u.data(), 3};
+    return status;
+  });
+}
+
+/// How many planes and rows a solver was given each time.
+using Given = std::vector<std::pair<std::size_t, Eigen::Index>>;
+
+std::unique_ptr<Solver> taking_down(Given& given) {
+  return std::make_unique<Watched>(
+      [&given](const StepProblem& problem, Solution&, SolveStatus status) {
+        given.emplace_back(problem.planes.size(), problem.rows.rows());
+        return status;
+      });
+}
 
 class Measure : public testing::TestWithParam<const char*> {
  protected:
@@ -138,15 +137,18 @@ TEST_P(Measure, DoesNotTimeAnIndexThatForgetsATriangle) {
   tree->collect(reference->balls()[asked], candidates);
   refine(*mesh, reference->balls()[asked], candidates.view(), hits);
   ASSERT_FALSE(hits.empty());
-  const BenchmarkRow row = measured(std::make_shared<Forgetful>(mesh, hits[0].triangle),
-                                    std::make_unique<ActiveSet>(), 0.0);
+  const auto forget = [forgotten = hits[0].triangle](TriangleBuffer& found) {
+    std::replace(found.begin(), found.end(), forgotten, TriangleId{0});
+  };
+  const BenchmarkRow row =
+      measured(std::make_shared<Spoiled>(mesh, forget), std::make_unique<ActiveSet>(), 0.0);
   EXPECT_FALSE(row.verified);
   EXPECT_FALSE(row.step || row.collect);
   EXPECT_CONTAINS(row.remark, "not timed");
 }
 
 TEST_P(Measure, DoesNotTimeASolverThatErrsNowAndThen) {
-  const BenchmarkRow row = measured(tree, std::make_unique<Flawed>(Flawed::Flaw::shorter), 1e-6);
+  const BenchmarkRow row = measured(tree, flawed(Flaw::shorter), 1e-6);
   EXPECT_GT(row.worse_share, 0.005);
   // Under a rule that proves each motion they are right all the same.
   EXPECT_EQ(row.verified, reference->proves_motions());
@@ -156,7 +158,7 @@ TEST_P(Measure, DoesNotTimeASolverThatErrsNowAndThen) {
 }
 
 TEST_P(Measure, CountsWhatASolverLeavesUnanswered) {
-  const BenchmarkRow row = measured(tree, std::make_unique<Flawed>(Flawed::Flaw::gives_up), 1e-6);
+  const BenchmarkRow row = measured(tree, flawed(Flaw::gives_up), 1e-6);
   EXPECT_TRUE(row.verified);
   EXPECT_TRUE(row.step);
   EXPECT_GT(row.unsolved_share, 0.005);
@@ -164,29 +166,29 @@ TEST_P(Measure, CountsWhatASolverLeavesUnanswered) {
 }
 
 TEST_P(Measure, TakesAnyBitForADifferenceWhereNoneIsAllowed) {
-  EXPECT_FALSE(measured(tree, std::make_unique<Flawed>(Flawed::Flaw::gives_up), 0.0).verified);
+  EXPECT_FALSE(measured(tree, flawed(Flaw::gives_up), 0.0).verified);
 }
 
 TEST_P(Measure, GivesTheSameHashForTheSameStepsOnly) {
   const std::uint64_t hash = measured(tree, std::make_unique<ActiveSet>(), 0.0).hash;
-  EXPECT_EQ(measured(tree, std::make_unique<Flawed>(Flawed::Flaw::none), 0.0).hash, hash);
-  EXPECT_NE(measured(tree, std::make_unique<Flawed>(Flawed::Flaw::gives_up), 1e-6).hash, hash);
+  EXPECT_EQ(measured(tree, flawed(Flaw::none), 0.0).hash, hash);
+  EXPECT_NE(measured(tree, flawed(Flaw::gives_up), 1e-6).hash, hash);
 }
 
 TEST_P(Measure, VerifiesTheVeryStepsThatItTimes) {
   // Searched by the rule, which leaves planes out for a solver that says that it skips them.
   const auto index = std::make_shared<const WideBvh>(mesh);
-  std::vector<Watchful::Given> given;
-  const BenchmarkRow row = measured(index, std::make_unique<Watchful>(given), 0.0);
+  Given given;
+  const BenchmarkRow row = measured(index, taking_down(given), 0.0);
   ASSERT_TRUE(row.verified) << row.remark;
   // Stage by stage, and as a whole: in each round the solver is given the same.
   ASSERT_EQ(given.size() % 2, 0u);
   const auto half = given.begin() + static_cast<std::ptrdiff_t>(given.size() / 2);
   EXPECT_TRUE(std::equal(given.begin(), half, half, given.end()));
   // As the assembly that users have gives it.
-  std::vector<Watchful::Given> shipped;
-  MotionConstraint constraint(mesh, index, make_activation(GetParam()),
-                              std::make_unique<Watchful>(shipped), guard.options());
+  Given shipped;
+  MotionConstraint constraint(mesh, index, make_activation(GetParam()), taking_down(shipped),
+                              guard.options());
   for (const Motion& motion : motions) constraint.step(motion);
   EXPECT_TRUE(std::equal(given.begin(), half, shipped.begin(), shipped.end()));
 }
@@ -205,31 +207,16 @@ TEST_P(Measure, HasNoTimeOfAQueryThatTheRuleDoesNotMake) {
   EXPECT_EQ(row.hash, other.hash);
 }
 
-/// Finds one triangle less, but only after so many answers.
-class Tiring final : public SpatialIndex {
- public:
-  Tiring(std::shared_ptr<const Mesh> mesh, int strength)
-      : SpatialIndex(mesh), tree_(std::move(mesh)), left_(strength) {}
-
-  void collect(const Ball& ball, TriangleBuffer& candidates) const noexcept override {
-    tree_.collect(ball, candidates);
-    if (--left_ < 0 && !candidates.empty()) candidates.begin()[0] = TriangleId{0};
-  }
-  std::size_t memory() const noexcept override { return tree_.memory(); }
-  int left() const { return left_; }
-
- private:
-  PdTree tree_;
-  mutable int left_;
-};
-
 TEST_P(Measure, HoldsEveryQueryThatItTimesToTheReference) {
   constexpr int strength = 1 << 20;
-  const auto fresh = std::make_shared<const Tiring>(mesh, strength);
-  EXPECT_TRUE(measured(fresh, std::make_unique<ActiveSet>(), 0.0).verified);
+  int left = strength;  // right answers, before it finds one triangle less
+  const auto tiring = std::make_shared<const Spoiled>(mesh, [&left](TriangleBuffer& found) {
+    if (--left < 0 && !found.empty()) found.begin()[0] = TriangleId{0};
+  });
+  EXPECT_TRUE(measured(tiring, std::make_unique<ActiveSet>(), 0.0).verified);
   // Queries are the last that is asked of it: all but the last few are right.
-  const auto tired = std::make_shared<const Tiring>(mesh, strength - fresh->left() - 50);
-  const BenchmarkRow row = measured(tired, std::make_unique<ActiveSet>(), 0.0);
+  left = strength - left - 50;
+  const BenchmarkRow row = measured(tiring, std::make_unique<ActiveSet>(), 0.0);
   EXPECT_FALSE(row.verified);
   EXPECT_FALSE(row.query || row.step);
   EXPECT_CONTAINS(row.remark, "queries do not find");

@@ -10,6 +10,7 @@
 #include "keepout/error.h"
 #include "keepout/factory/make_motion_constraint.h"
 #include "keepout/fixtures/poses.h"
+#include "keepout/fixtures/queries_only.h"
 #include "keepout/fixtures/real_mesh.h"
 #include "keepout/fixtures/resample_mesh.h"
 #include "keepout/index/query.h"
@@ -24,20 +25,6 @@ constexpr Capacity room{.triangles = std::size_t{1} << 17,
                         .planes = std::size_t{1} << 16,
                         .variables = 3,
                         .extra_rows = 0};
-
-class QueriesOnly final : public SpatialIndex {
- public:
-  explicit QueriesOnly(const std::shared_ptr<const SpatialIndex>& index)
-      : SpatialIndex(index->shared_mesh()), index_(index) {}
-
-  void collect(const Ball& ball, TriangleBuffer& candidates) const noexcept override {
-    index_->collect(ball, candidates);
-  }
-  std::size_t memory() const noexcept override { return index_->memory(); }
-
- private:
-  std::shared_ptr<const SpatialIndex> index_;
-};
 
 Surface resampled_bunny(std::size_t triangles) {
   return surface_of(*make_mesh({std::string(resampled_mesh), triangles}));

@@ -99,7 +99,7 @@ int bench_speed(const BenchOptions& options, std::ostream& out) {
   if (options.triangles.size() > 1) throw Error("--speed: give --triangles one size");
   const std::size_t triangles = options.triangles.empty() ? 1'000'000 : options.triangles.front();
   const Effort& effort = options.speed.quick ? quick : thorough;
-  OutputFiles outputs({}, {{"--out", options.files.page}, {"--json", options.files.kept_json()}});
+  OutputFiles outputs = options.files.open({});
   for (const char* fixture : {"bunny", effort.file}) fixture_path(fixture);  // throws if missing
 
   Progress progress("bench --speed", std::size(on_the_bunny) + std::size(on_their_own));

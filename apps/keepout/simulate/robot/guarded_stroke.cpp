@@ -4,8 +4,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
-#include "keepout/factory/make_instrument_constraint.h"
 #include "keepout/factory/make_motion_constraint.h"
+#include "keepout/solvers/active_set.h"
 #include "shared/clip.h"
 #include "verify/robot/hand.h"
 #include "verify/robot/judge.h"
@@ -20,19 +20,16 @@ Twist way_to(const Pose& goal, const Pose& at, double speed) {
           .angular = clipped(turn.angle() * turn.axis(), speed * fastest_turn)};
 }
 
-/// The step of all modes, which differ in what is near. A triangle out of reach holds nothing
-/// back: what is left is the damped least squares within the joints' limits.
+/// The step of all modes, which differ in what it keeps out of: of nothing where only the tip is
+/// guarded, or nothing is. Then it is the damped least squares within the joints' limits.
 InstrumentConstraint joints_of(Mode mode, Scene& scene, const Instrument& instrument,
                                InstrumentOptions options) {
+  if (mode == Mode::linearised) options.certified = CertifiedMotion::linearised;
+  InstrumentConstraint joints(instrument, std::make_unique<ActiveSet>(), options);
   if (mode == Mode::certified || mode == Mode::linearised) {
-    if (mode == Mode::linearised) options.certified = CertifiedMotion::linearised;
-    return make_instrument_constraint(scene.mesh(), scene.shared_index(), instrument,
-                                      {.options = options});
+    joints.add_mesh(scene.mesh(), scene.shared_index());
   }
-  const Vec3 away = instrument.chain().base().position + Vec3(1e4, 0.0, 0.0);
-  const auto nothing = std::make_shared<const Mesh>(
-      Surface{{away, away + Vec3::UnitY(), away + Vec3::UnitZ()}, {{0, 1, 2}}});
-  return make_instrument_constraint(nothing, instrument, {.options = options});
+  return joints;
 }
 
 }  // namespace
@@ -42,24 +39,23 @@ std::string_view name(Mode mode) noexcept {
   return names[static_cast<std::size_t>(mode)];
 }
 
-std::vector<GuardedCycle> follow(const RobotStroke& stroke, Scene& scene,
-                                 const RobotUnderTest& robot, double margin, Random random,
+std::vector<GuardedCycle> follow(const RobotStroke& stroke, RobotScene& on, Random random,
                                  ModeTally& tally) {
-  const Instrument instrument = robot.make(stroke.start.base);
+  const Instrument instrument = on.robot.make(stroke.start.base);
   const Chain& chain = instrument.chain();
-  const InstrumentOptions options = options_of({.margin = margin}, chain, tally.speed);
-  InstrumentConstraint joints = joints_of(tally.mode, scene, instrument, options);
+  const InstrumentOptions options = options_of({.margin = on.margin}, chain, tally.speed);
+  InstrumentConstraint joints = joints_of(tally.mode, on.scene, instrument, options);
   std::optional<MotionConstraint> tip;  // a ball at the end of the jaw
   if (tally.mode == Mode::tip_only) {
-    tip = make_motion_constraint(scene.mesh(), scene.shared_index(),
+    tip = make_motion_constraint(on.scene.mesh(), on.scene.shared_index(),
                                  {.options = {.radius = 10.0 * tally.speed,
                                               .tool_radius = instrument.bodies().back().radius,
-                                              .margin = margin}});
+                                              .margin = on.margin}});
   }
   std::vector<double> q = stroke.start.positions;
-  RobotJudge judge({robot.judged(), stroke.start.base, {{scene.tree()}}}, chain, random, q, options,
-                   joints.tolerance());
-  const double kept = margin - options.band - 3.0 * joints.tolerance();
+  RobotJudge judge({on.robot.judged(), stroke.start.base, {{on.scene.tree()}}}, chain, random, q,
+                   options, joints.tolerance());
+  const double kept = on.margin - options.band - 3.0 * joints.tolerance();
   std::vector<GuardedCycle> cycles;
   for (const Pose& goal : stroke.hand) {
     ChainState state;

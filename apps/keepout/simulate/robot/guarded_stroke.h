@@ -47,8 +47,7 @@ struct GuardedCycle {
 /// Follows the hand of a stroke in closed loop, from its start, in the mode of the tally, and
 /// judges each cycle at five poses or six with the oracle's own kinematics and distances. `random`
 /// chooses the poses between.
-std::vector<GuardedCycle> follow(const RobotStroke& stroke, Scene& scene,
-                                 const RobotUnderTest& robot, double margin, Random random,
+std::vector<GuardedCycle> follow(const RobotStroke& stroke, RobotScene& on, Random random,
                                  ModeTally& tally);
 
 }  // namespace keepout::app

@@ -79,31 +79,29 @@ Json run_json(Mode mode, const std::vector<GuardedCycle>& cycles) {
 }
 
 /// Makes stroke `number` in the mode of each row, and keeps it if it says more than the one there.
-void run_stroke(const SimulateOptions& options, Scene& scene, std::uint64_t number,
+void run_stroke(const HandSettings& hand, RobotScene& on, std::uint64_t number,
                 std::span<ModeTally> rows, std::span<KeptStroke> kept) {
-  const RobotUnderTest& robot = robots_under_test().front();
-  const double margin = options.constraint.options.margin;
-  Random of_seed(options.hand.seed);
+  Random of_seed(hand.seed);
   Random random(of_seed.bits() ^ number);
   const std::size_t manner = number % manners.size();
-  const auto stroke = make_robot_stroke(scene, robot, manners[manner], margin, rows.front().speed,
-                                        options.hand.cycles, random);
+  const double speed = rows.front().speed;
+  const auto stroke = make_robot_stroke(on, manners[manner], speed, hand.cycles, random);
   if (!stroke) {
-    throw Error(scene.name() +
+    throw Error(on.scene.name() +
                 ": no place was found where an instrument can begin, 5 to 20 mm before the surface "
                 "with its shaft free; is the mesh in mm?");
   }
   KeptStroke one{0.0,
                  {{"manner", name(manners[manner])},
-                  {"speed", rows.front().speed},
+                  {"speed", speed},
                   {"number", number},
                   {"port", json_of(stroke->start.base.position)},
                   {"runs", Json::array()}}};
   for (ModeTally& row : rows) {
-    const auto cycles = follow(*stroke, scene, robot, margin, random, row);
+    const auto cycles = follow(*stroke, on, random, row);
     one.json["runs"].push_back(run_json(row.mode, cycles));
     const double least = std::ranges::min(cycles, {}, &GuardedCycle::least).least();
-    if (row.mode != Mode::none) one.told += std::max(0.0, margin - least);
+    if (row.mode != Mode::none) one.told += std::max(0.0, on.margin - least);
   }
   if (one.told > kept[manner].told) kept[manner] = std::move(one);
 }
@@ -169,21 +167,20 @@ Json record_of(const SimulateOptions& options, const std::vector<ModeTally>& row
 int simulate_robot(const SimulateOptions& options, std::ostream& out) {
   std::vector<std::filesystem::path> named = options.meshes;
   if (named.empty()) named = {"skull", "airway", "brain"};
-  std::vector<NamedPath> inputs;
-  for (const auto& mesh : named) inputs.push_back({"MESH", file_of_mesh(mesh)});
-  OutputFiles outputs(inputs,
-                      {{"--json", options.files.kept_json()}, {"--out", options.files.page}});
+  OutputFiles outputs = options.files.open(named);
   const StopSignal stop;
   Progress progress("simulate", named.size() * options.speeds.size() * options.hand.strokes);
   std::vector<ModeTally> rows;
   Json meshes = Json::array();
   for (const auto& mesh : named) {
-    Scene scene(mesh.stem().string(), load_named_mesh(mesh).mesh, options.constraint.index);
+    RobotScene on{{mesh.stem().string(), load_named_mesh(mesh).mesh, options.constraint.index},
+                  options.constraint.options.margin};
+    const Scene& scene = on.scene;
     std::array<KeptStroke, manners.size()> kept;
     for (const double speed : options.speeds) {
       for (const Mode mode : modes) rows.push_back({scene.name(), speed, mode});
       for (std::uint64_t n = 0; n < options.hand.strokes && !stop.has_come(); ++n) {
-        run_stroke(options, scene, n, std::span(rows).last(modes.size()), kept);
+        run_stroke(options.hand, on, n, std::span(rows).last(modes.size()), kept);
         progress.advance();
       }
     }
@@ -201,7 +198,7 @@ int simulate_robot(const SimulateOptions& options, std::ostream& out) {
   print_rows(out, mode_columns(), rows);
   out << columns_meaning;
   print_wrapped(out, record["headline"]);
-  for (const Json& text : record["account"]) print_wrapped(out, text);
+  print_wrapped(out, record["account"]);
   out << "\nReport, with pictures: " << options.files.page->string() << '\n';
   const ModeTally certified = sum_of(rows, Mode::certified);
   if (certified.any.below + certified.limits_broken > 0) return EXIT_FAILURE;

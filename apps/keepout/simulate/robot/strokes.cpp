@@ -64,26 +64,26 @@ std::string_view name(Manner manner) noexcept {
   return names[static_cast<std::size_t>(manner)];
 }
 
-std::optional<RobotStroke> make_robot_stroke(Scene& scene, const RobotUnderTest& robot,
-                                             Manner manner, double margin, double speed,
+std::optional<RobotStroke> make_robot_stroke(RobotScene& on, Manner manner, double speed,
                                              std::size_t cycles, Random& random) {
   const bool is_leaning = manner == Manner::lean;
   std::optional<RobotStart> start;
   Facing facing_most;
   for (int i = 0; i < (is_leaning ? starts_to_lean : 1); ++i) {
-    const auto drawn = find_start(scene, robot, Begin::apart, margin, random);
+    const auto drawn = on.start(random);
     if (!drawn) break;
-    const oracle::JudgedRobot judged = robot.judged();
+    const oracle::JudgedRobot judged = on.robot.judged();
     const auto links = oracle::place(judged, drawn->base, drawn->positions);
-    const Facing one = is_leaning ? facing(scene, axis_of(judged.bodies.front(), links), 0.5, 0.95)
-                                  : facing(scene, axis_of(judged.bodies.back(), links), 1.0, 1.0);
+    const auto& body = is_leaning ? judged.bodies.front() : judged.bodies.back();
+    const Facing one =
+        facing(on.scene, axis_of(body, links), is_leaning ? 0.5 : 1.0, is_leaning ? 0.95 : 1.0);
     if (start && one.distance >= facing_most.distance) continue;
     start = drawn;
     facing_most = one;
   }
   if (!start) return std::nullopt;
 
-  const Instrument instrument = robot.make(start->base);
+  const Instrument instrument = on.robot.make(start->base);
   ChainState state;
   instrument.chain().forward_kinematics(start->positions, state);
   const Pose home = state.flange();

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "verify/robot/start.h"
+#include "verify/robot/robot_scene.h"
 
 namespace keepout::app {
 
@@ -39,8 +39,7 @@ struct RobotStroke {
 /// The hand is off by a bias, up to 2 mm in a direction, drawn once for the stroke, and it trembles
 /// as that of `simulate` does, by 0.1 mm at 8 to 12 Hz. All of it is drawn from `random`, and from
 /// nothing else: the same seed gives the same strokes. None where no start is found.
-std::optional<RobotStroke> make_robot_stroke(Scene& scene, const RobotUnderTest& robot,
-                                             Manner manner, double margin, double speed,
+std::optional<RobotStroke> make_robot_stroke(RobotScene& on, Manner manner, double speed,
                                              std::size_t cycles, Random& random);
 
 }  // namespace keepout::app

@@ -41,6 +41,10 @@ class InstrumentConstraint {
   InstrumentConstraint(std::shared_ptr<const Mesh> mesh, std::shared_ptr<const SpatialIndex> index,
                        Instrument instrument, std::unique_ptr<Solver> solver,
                        const InstrumentOptions& options, const InstrumentCapacity& capacity = {});
+  /// Like the constructor above, but without a mesh: until one is added, only limits of joints and
+  /// guides hold.
+  InstrumentConstraint(Instrument instrument, std::unique_ptr<Solver> solver,
+                       const InstrumentOptions& options, const InstrumentCapacity& capacity = {});
   /// Moves. The source may only be destroyed or assigned to.
   InstrumentConstraint(InstrumentConstraint&&) noexcept;
   /// Like the constructor.
@@ -59,7 +63,7 @@ class InstrumentConstraint {
   InstrumentStep step(std::span<const double> q, std::span<const double> desired,
                       std::span<const double> weights = {}) noexcept;
 
-  /// Adds a mesh from the next step on, and returns its number; the constructor's mesh has 0.
+  /// Adds a mesh from the next step on, and returns its number; the first has 0.
   /// `margin`: beside this mesh, above the band; 0: that of the options [length]. Forgets the last
   /// cycle, like forget(). The work budget of a cycle stays the same. Throws Error, and changes
   /// nothing, for more meshes than InstrumentCapacity::most_meshes and like the constructor.

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "plan/problems.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,6 +8,7 @@
 
 #include "keepout/error.h"
 #include "keepout/fixtures/random.h"
+#include "plan/problems.h"
 #include "shared/named_mesh.h"
 
 namespace keepout::app {
@@ -181,8 +180,8 @@ PlanningScene load_planning_scene(const std::filesystem::path& mesh, PlanningSce
   return {std::move(scene), space, starts, bounds};
 }
 
-std::vector<Problem> draw_problems(PlanningScene& where, double clearance, std::size_t count,
-                                   std::uint64_t seed) {
+std::vector<PlanningProblem> draw_problems(PlanningScene& where, double clearance,
+                                           std::size_t count, std::uint64_t seed) {
   Random random(seed);
   Scene& scene = where.scene;
   const double diagonal = scene.mesh()->bounds().size().norm();
@@ -202,7 +201,7 @@ std::vector<Problem> draw_problems(PlanningScene& where, double clearance, std::
     if (cells.center(cell).z() <= start_box.high.z()) starts.push_back(cell);
   }
 
-  std::vector<Problem> problems;
+  std::vector<PlanningProblem> problems;
   oracle::SafetyOracle oracle = scene.oracle();
   for (std::size_t draws = 0; draws < most_draws * count && problems.size() < count; ++draws) {
     if (starts.empty()) break;
@@ -215,7 +214,13 @@ std::vector<Problem> draw_problems(PlanningScene& where, double clearance, std::
     const double detour =
         static_cast<double>(steps) / static_cast<double>(cells.steps_in_the_open(start, goal));
     if (steps * spacing < least_way * diagonal || detour < least_detour) continue;
-    problems.push_back({problems.size() + 1, a, b, (b - a).norm(), detour});
+    problems.push_back({.number = problems.size() + 1,
+                        .start = {a.begin(), a.end()},
+                        .goal = {b.begin(), b.end()},
+                        .members = {{"start", json_of(a)},
+                                    {"goal", json_of(b)},
+                                    {"straight_mm", (b - a).norm()},
+                                    {"detour", detour}}});
   }
   if (problems.size() < count) {
     throw Error(scene.name() + ": only " + std::to_string(problems.size()) + " of " +

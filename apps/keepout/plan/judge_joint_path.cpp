@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "plan/robot/judge_path.h"
+#include "plan/judge_joint_path.h"
 
 #include <algorithm>
 #include <cmath>
