@@ -68,25 +68,23 @@ async function licences(own, packages) {
 }
 
 /** Writes a page: its HTML with style, licences and scripts in their places. */
-async function writePage(name, source, { own, style, scripts, packages, without = "" }) {
+async function writePage(name, source, { own, style, scripts, packages }) {
   const all = [
     script("text/plain", "licences", await licences(own, [...packages, ...style.packages])),
     ...scripts,
   ];
   const html = (await readFile(join(here, "src", source), "utf8"))
-    .replaceAll(new RegExp(`<!-- ${without}: -->.*?<!-- :${without} -->`, "gs"), "")
-    .replaceAll(/ *<!-- :?(ball|instrument):? -->\n?/g, "")
     .replace("/* keepout: style */", () => style.text)
     .replace("<!-- keepout: scripts -->", () => all.join("\n"));
   await writeFile(join(pages, name), html);
 }
 
-/** A page with keepout in it: `engine`, and what is of a page with another tool, `without`. */
-async function writeLivePage(name, { engine, entries, without }) {
-  const modules = { [`${engine.replace("_", "-")}-module`]: resolve(wasm, `${engine}.mjs`) };
-  const binary = gzipSync(await readFile(resolve(wasm, `${engine}.wasm`)), { level: 9 });
-  const [worker, main] = [await bundle(entries[0], modules), await bundle(entries[1])];
-  await writePage(name, "live/page.html", {
+/** The page with keepout in it. */
+async function writeLivePage() {
+  const modules = { "keepout-module": resolve(wasm, "keepout.mjs") };
+  const binary = gzipSync(await readFile(resolve(wasm, "keepout.wasm")), { level: 9 });
+  const [worker, main] = [await bundle("live/worker.ts", modules), await bundle("live/main.ts")];
+  await writePage("live.html", "live/page.html", {
     own: [
       "keepout, compiled with Eigen (MPL-2.0), Highway (Apache-2.0), xxHash (BSD-2-Clause) and the libraries",
       "of emscripten (MIT; libc++: Apache-2.0 with LLVM exceptions):",
@@ -98,7 +96,6 @@ async function writeLivePage(name, { engine, entries, without }) {
       script("text/javascript", "", main.text),
     ],
     packages: [...worker.packages, ...main.packages],
-    without,
   });
 }
 
@@ -114,15 +111,4 @@ async function writeReportPage(name, entry) {
 
 await writeReportPage("report.html", "report/main.ts");
 await writeReportPage("report_with_anatomy.html", "report/main_with_anatomy.ts");
-if (wasm) {
-  await writeLivePage("live.html", {
-    engine: "keepout",
-    entries: ["live/worker.ts", "live/main.ts"],
-    without: "instrument",
-  });
-  await writeLivePage("live_robot.html", {
-    engine: "keepout_robot",
-    entries: ["live/instrument_worker.ts", "live/instrument_main.ts"],
-    without: "ball",
-  });
-}
+if (wasm) await writeLivePage();

@@ -61,10 +61,10 @@ let phone;
 
 test("the page is small, and needs nothing beside it", () => {
   const text = readFileSync(page, "utf8");
-  const wasm = statSync(join(root, "build/wasm/keepout_robot.wasm")).size;
+  const wasm = statSync(join(root, "build/wasm/keepout.wasm")).size;
   note(`page ${(text.length / 1e6).toFixed(2)} MB, wasm ${(wasm / 1e3).toFixed(0)} kB`);
   assert.ok(text.length <= 6e6, "the page is larger than 6 MB");
-  assert.ok(wasm <= 600e3, "keepout_robot.wasm is larger than 600 kB");
+  assert.ok(wasm <= 600e3, "keepout.wasm is larger than 600 kB");
   assert.doesNotMatch(text, /(src|href)="(?!data:)[^"]*"/, "it names another file");
 });
 

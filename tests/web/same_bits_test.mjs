@@ -199,39 +199,51 @@ function made(handle) {
   return handle;
 }
 
-function makeGuard(anatomy, rule, margin) {
+function makeTip(anatomy, rule, margin) {
   const { radius, toolRadius, maxStep } = settings;
   return withText(rule, (name) =>
-    made(wasm._keepout_make_guard(anatomy, name, radius, toolRadius, margin, maxStep, 1, 4)),
+    made(wasm._keepout_make_tip(anatomy, name, radius, toolRadius, margin, maxStep, 1, 4)),
   );
 }
 
-/** What a cycle told, in the order of native(). */
-function toldBy(rule, cycle, tip) {
+const input = wasm._malloc(6 * 8);
+
+/** What a call with these numbers told, in the order of native(), and where it led the tip. */
+function toldBy(call, tool, asked, rule, tip) {
+  wasm.HEAPF64.set(asked, input / 8);
+  const cycle = wasm[call](tool, input);
   const { HEAPF64, HEAPU32 } = wasm;
-  const d = cycle / 8;
-  const [status, triangles, count, , planes] = HEAPU32.subarray(cycle / 4 + 20, cycle / 4 + 25);
+  const d = cycle / 8; // as struct Cycle of apps/web/engine/tool.h lies in memory
+  const [status] = HEAPU32.subarray(cycle / 4 + 258);
+  const [triangles, count, planes] = HEAPU32.subarray(cycle / 4 + 262);
   const numbers = [
     ...tip,
-    ...HEAPF64.subarray(d + 3, d + 6),
+    ...HEAPF64.subarray(d + 8, d + 11),
     comparable(rule, triangles),
-    HEAPF64[d + 9],
+    HEAPF64[d + 32],
   ];
   for (let plane = planes; plane < planes + 40 * count; plane += 40) {
     numbers.push(HEAPU32[plane / 4 + 8], ...HEAPF64.subarray(plane / 8, plane / 8 + 4));
   }
-  return { status: wasm.UTF8ToString(wasm._keepout_status_name(status)), planes: count, numbers };
+  return {
+    status: wasm.UTF8ToString(wasm._keepout_status_name(status)),
+    planes: count,
+    numbers,
+    tip: [...HEAPF64.subarray(d, d + 3)],
+  };
 }
 
 /** What the module makes of the same poses. */
-function byModule(guard, rule, loop, poses) {
+function byModule(tool, rule, loop, poses) {
   let tip = poses[0].slice(3);
-  wasm._keepout_place(guard, ...tip);
+  wasm.HEAPF64.set(tip, input / 8);
+  wasm._keepout_place(tool, input);
   return poses.map((pose) => {
-    if (loop === "open") return toldBy(rule, wasm._keepout_step(guard, ...pose), pose.slice(0, 3));
-    const cycle = wasm._keepout_follow(guard, ...pose.slice(0, 3));
-    const told = toldBy(rule, cycle, tip);
-    tip = [...wasm.HEAPF64.subarray(cycle / 8, cycle / 8 + 3)];
+    const told =
+      loop === "open"
+        ? toldBy("_keepout_step", tool, pose, rule, pose.slice(0, 3))
+        : toldBy("_keepout_follow", tool, pose.slice(0, 3), rule, tip);
+    tip = told.tip;
     return told;
   });
 }
@@ -260,10 +272,10 @@ for (const name of ["skull", "aneurysm", "airway"]) {
   const random = seeded(triangles.length);
   const loops = { open: openPoses(triangles, random), closed: closedPoses(triangles, random) };
   for (const rule of ["all_faces", "paper", "certified"]) {
-    const guard = makeGuard(anatomy, rule, settings.margin);
+    const tip = makeTip(anatomy, rule, settings.margin);
     for (const [loop, poses] of Object.entries(loops)) {
       const expected = native(mesh, rule, loop, poses);
-      const different = differences(expected, byModule(guard, rule, loop, poses));
+      const different = differences(expected, byModule(tip, rule, loop, poses));
       const limited = expected.filter((told) => told.status === "limited").length;
       const planes = expected.reduce((sum, told) => sum + told.planes, 0);
       console.log(
@@ -274,12 +286,12 @@ for (const name of ["skull", "aneurysm", "airway"]) {
       total.planes += planes;
       total.different += different;
       if (!isAwake) {
-        const other = makeGuard(anatomy, rule, settings.margin * (1 + 1e-12));
+        const other = makeTip(anatomy, rule, settings.margin * (1 + 1e-12));
         isAwake = differences(expected, byModule(other, rule, loop, poses)) > 0;
-        wasm._keepout_discard_guard(other);
+        wasm._keepout_discard_tool(other);
       }
     }
-    wasm._keepout_discard_guard(guard);
+    wasm._keepout_discard_tool(tip);
   }
   wasm._keepout_discard_anatomy(anatomy);
 }

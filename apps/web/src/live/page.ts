@@ -9,6 +9,8 @@ export interface PageSettings {
   readonly tool_radius: number;
   readonly margin: number;
   readonly max_step: number;
+  /** Of an instrument; a tip has none. */
+  readonly robot?: string;
   readonly meshes: readonly EmbeddedMesh[];
 }
 
@@ -23,6 +25,11 @@ export function element<T extends HTMLElement>(id: string, type: new () => T): T
 export function embeddedText(id: string): string {
   return document.getElementById(id)?.textContent ?? "";
 }
+
+export const page: PageSettings = JSON.parse(embeddedText("settings"));
+
+/** Whether the tool is the ball of a tip, or else an instrument. */
+export const isTip = page.robot === undefined;
 
 /** For people: 1,234,567. */
 export const grouped = (count: number): string => Math.round(count).toLocaleString("en");
