@@ -68,6 +68,15 @@ const char* literal(std::string_view words) noexcept { return words.data(); }
 
 }  // namespace
 
+/// The vertices (vertex_count, 3) [mm] and the corners (triangle_count, 3) of a mesh, as they lie
+/// in memory.
+struct Surface {
+  const double* vertices;
+  std::size_t vertex_count;
+  const std::uint32_t* corners;
+  std::size_t triangle_count;
+};
+
 extern "C" {
 
 /// Why the last call that returned null failed, and what to do about it.
@@ -104,26 +113,14 @@ Anatomy* keepout_anatomy_of_shape(const char* name) {
 /// Frees anatomy. The caller must discard the tools on it first.
 void keepout_discard_anatomy(Anatomy* anatomy) { delete anatomy; }
 
-/// How many vertices there are.
-std::uint32_t keepout_vertex_count(const Anatomy* anatomy) {
-  return static_cast<std::uint32_t>(anatomy->mesh->vertex_count());
-}
-
-/// Where they are (keepout_vertex_count, 3). [mm]
-const double* keepout_vertices(const Anatomy* anatomy) {
-  static_assert(sizeof(Vec3) == 3 * sizeof(double));
-  return anatomy->mesh->vertices().data()->data();
-}
-
-/// How many triangles there are.
-std::uint32_t keepout_triangle_count(const Anatomy* anatomy) {
-  return static_cast<std::uint32_t>(anatomy->mesh->triangle_count());
-}
-
-/// The vertices of each (keepout_triangle_count, 3).
-const std::uint32_t* keepout_corners(const Anatomy* anatomy) {
-  static_assert(sizeof(keepout::Corners) == 3 * sizeof(std::uint32_t));
-  return anatomy->mesh->triangles().data()->data();
+/// Returns the surface of anatomy, which stays valid until the next call.
+const Surface* keepout_surface(const Anatomy* anatomy) {
+  static_assert(sizeof(Vec3) == 24 && sizeof(keepout::Corners) == 12);
+  static Surface surface;
+  const keepout::Mesh& mesh = *anatomy->mesh;
+  surface = {mesh.vertices().data()->data(), mesh.vertex_count(), mesh.triangles().data()->data(),
+             mesh.triangle_count()};
+  return &surface;
 }
 
 /// What is to be known of the mesh, as JSON: watertight, size, the warnings of its file, and the

@@ -32,10 +32,7 @@ export interface Module {
   _keepout_anatomy_of_file(path: number): number;
   _keepout_anatomy_of_shape(name: number): number;
   _keepout_discard_anatomy(anatomy: number): void;
-  _keepout_vertex_count(anatomy: number): number;
-  _keepout_vertices(anatomy: number): number;
-  _keepout_triangle_count(anatomy: number): number;
-  _keepout_corners(anatomy: number): number;
+  _keepout_surface(anatomy: number): number;
   _keepout_findings(anatomy: number): number;
   _keepout_clearance(anatomy: number, x: number, y: number, z: number): number;
   _keepout_make_tip(
@@ -229,18 +226,18 @@ export class Anatomy {
     readonly address: number,
   ) {}
 
-  /** (n, 3): a view that holds until the engine's memory grows. [mm] */
-  get vertices(): Float64Array {
-    const { module } = this.keepout;
-    const begin = module._keepout_vertices(this.address) / 8;
-    return module.HEAPF64.subarray(begin, begin + 3 * module._keepout_vertex_count(this.address));
-  }
-
-  /** (m, 3): numbers of vertices; a view, likewise. */
-  get corners(): Uint32Array {
-    const { module } = this.keepout;
-    const begin = module._keepout_corners(this.address) / 4;
-    return module.HEAPU32.subarray(begin, begin + 3 * module._keepout_triangle_count(this.address));
+  /** Coordinates (n, 3) [mm] and numbers of vertices (m, 3): views until the engine's memory grows. */
+  get surface(): { vertices: Float64Array; corners: Uint32Array } {
+    const { HEAPU32, HEAPF64, _keepout_surface } = this.keepout.module;
+    const at = _keepout_surface(this.address) / 4;
+    const [vertices, vertexCount, corners, triangleCount] = HEAPU32.subarray(
+      at,
+      at + 4,
+    ) as unknown as readonly [number, number, number, number];
+    return {
+      vertices: HEAPF64.subarray(vertices / 8, vertices / 8 + 3 * vertexCount),
+      corners: HEAPU32.subarray(corners / 4, corners / 4 + 3 * triangleCount),
+    };
   }
 
   findings(): Findings {

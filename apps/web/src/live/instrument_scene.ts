@@ -2,9 +2,8 @@
 import * as three from "three";
 import type { Vec3 } from "../engine/keepout.ts";
 import type { ToolFacts } from "../engine/tool.ts";
-import { Capsule } from "./capsule.ts";
 import type { DrawnSurface } from "./drawn_surface.ts";
-import { colors } from "./markers.ts";
+import { Capsule, colors } from "./markers.ts";
 import type { State } from "./protocol.ts";
 import { heldBody } from "./readings.ts";
 import { Scene } from "./scene.ts";

@@ -9,8 +9,10 @@ import {
   type ToolSettings,
   unturned,
 } from "../engine/tool.ts";
+import { saveFile } from "../page/save_file.ts";
 import { ClearanceChart } from "./clearance_chart.ts";
 import { CounterexampleView } from "./counterexample_view.ts";
+import { takeFiles } from "./file_input.ts";
 import { showFindings } from "./findings.ts";
 import { HandInput } from "./hand_input.ts";
 import { InstrumentScene } from "./instrument_scene.ts";
@@ -23,7 +25,6 @@ import {
   made,
   page,
   roomBetweenCards,
-  save,
   toast,
 } from "./page.ts";
 import {
@@ -36,6 +37,7 @@ import {
 import { tenMinutes } from "./path_record.ts";
 import type { FromWorker, State, ToWorker } from "./protocol.ts";
 import { Readings } from "./readings.ts";
+import { SettingsPanel } from "./settings_panel.ts";
 import { TipScene } from "./tip_scene.ts";
 
 // The page has the elements for both tools.
@@ -303,13 +305,13 @@ function takePath(use: "save" | "replay", lines: Float64Array, madeWith: ToolSet
   if (robot !== undefined && mesh !== undefined) {
     const { margin, maxStep } = madeWith;
     const text = instrumentPathText({ keepout, robot, margin, maxStep }, mesh, facts, lines);
-    save(`keepout-path-${robot}-${name}.txt`, text);
+    saveFile(`keepout-path-${robot}-${name}.txt`, text, "text/plain");
     toast(`${grouped(lines.length / (2 * facts.positions + 6))} cycles saved.`);
     return;
   }
   const header: PathHeader = { keepout, mesh: shown.command, settings: madeWith };
   const file = `keepout-path-${name}.txt`;
-  save(file, pathText(header, lines));
+  saveFile(file, pathText(header, lines), "text/plain");
   const isFull = lines.length / 6 >= tenMinutes;
   toast(
     `${grouped(lines.length / 6)} cycles saved${isFull ? ", the first ten minutes" : ""}. ` +
@@ -321,29 +323,10 @@ function takePath(use: "save" | "replay", lines: Float64Array, madeWith: ToolSet
 
 // Controls.
 
-const sliders = (
-  [
-    ["tool-radius", "toolRadius"],
-    ["margin", "margin"],
-    ["radius", "radius"],
-  ] as const
-)
-  .filter(([id]) => document.getElementById(id))
-  .map(([id, key]) => ({ slider: element(id, HTMLInputElement), key }));
+const panel = new SettingsPanel(change);
 
 function showSettings(): void {
-  for (const radio of document.querySelectorAll<HTMLInputElement>("#rules input")) {
-    radio.checked = radio.value === settings.rule;
-  }
-  for (const { slider, key } of sliders) {
-    // What the page was made with may be beyond what the slider has.
-    slider.min = String(Math.min(Number(slider.min), settings[key]));
-    slider.max = String(Math.max(Number(slider.max), settings[key]));
-    slider.value = String(settings[key]);
-    slider.ariaValueText = `${settings[key]} mm`;
-    const output = slider.parentElement?.querySelector("output");
-    if (output) output.textContent = `${settings[key]} mm`;
-  }
+  panel.show(settings);
   chart.setMargin(settings.margin);
 }
 
@@ -354,9 +337,6 @@ function change(part: Partial<ToolSettings>): void {
   tell({ kind: "settings", settings });
 }
 
-for (const { slider, key } of sliders) {
-  slider.addEventListener("input", () => change({ [key]: Number(slider.value) }));
-}
 element("again", HTMLButtonElement).onclick = () => {
   drop();
   begin();
@@ -376,18 +356,9 @@ if (!isTip) {
 const failures = tipScene === null ? null : addTipControls(tipScene);
 showSettings();
 
-/** Adds the rules, files and counterexamples, which a page of an instrument lacks. */
+/** Adds files, double-clicks and counterexamples, which a page of an instrument lacks. */
 function addTipControls(tip: TipScene): CounterexampleView {
-  element("rules", HTMLElement).addEventListener("change", (event) => {
-    change({ rule: (event.target as HTMLInputElement).value as Rule });
-  });
-  element("open", HTMLButtonElement).onclick = () => element("file", HTMLInputElement).click();
-  element("file", HTMLInputElement).onchange = ({ target }) => {
-    const field = target as HTMLInputElement;
-    const file = field.files?.[0];
-    if (file) void openFile(file);
-    field.value = "";
-  };
+  takeFiles((file) => void openFile(file));
   element("fail", HTMLButtonElement).onclick = () => tell({ kind: "ask for counterexamples" });
 
   // The tool is put where the anatomy is double-clicked.
@@ -399,20 +370,5 @@ function addTipControls(tip: TipScene): CounterexampleView {
     tell({ kind: "place", positions: place });
   });
 
-  // Files that are dropped.
-  const dropHint = element("drop", HTMLElement);
-  window.addEventListener("dragover", (event) => {
-    event.preventDefault();
-    dropHint.hidden = false;
-  });
-  window.addEventListener("dragleave", (event) => {
-    if (event.relatedTarget === null) dropHint.hidden = true;
-  });
-  window.addEventListener("drop", (event) => {
-    event.preventDefault();
-    dropHint.hidden = true;
-    const file = event.dataTransfer?.files[0];
-    if (file) void openFile(file);
-  });
   return new CounterexampleView();
 }

@@ -42,15 +42,6 @@ export function set(where: string | Element | null, text: string): void {
 
 export const millimetres = (length: number): string => `${length.toFixed(2)} mm`;
 
-/** Hands a file to whoever looks at the page. */
-export function save(name: string, text: string): void {
-  const link = document.createElement("a");
-  link.href = URL.createObjectURL(new Blob([text], { type: "text/plain" }));
-  link.download = name;
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
-}
-
 /** The share of the view's width between the columns of cards; on a phone they are below it. */
 export function roomBetweenCards(view: HTMLElement): number {
   const column = document.querySelector(".column")?.getBoundingClientRect().right ?? 0;

@@ -3,6 +3,7 @@ import * as three from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import type { Vec3 } from "../engine/keepout.ts";
 import type { ToolFacts } from "../engine/tool.ts";
+import { isSoftware } from "../page/graphics.ts";
 import { StillPicture } from "../page/still_picture.ts";
 import type { DrawnSurface } from "./drawn_surface.ts";
 import { colors, Spring, Trail } from "./markers.ts";
@@ -41,8 +42,7 @@ export abstract class Scene {
   ) {
     // The still picture has smooth edges of its own.
     this.renderer = new three.WebGLRenderer({ antialias: false, alpha: true });
-    // Without a graphics processor every pixel takes its time.
-    const isSlow = /swiftshader|llvmpipe|software/i.test(nameOfProcessor(this.renderer));
+    const isSlow = isSoftware(this.renderer.getContext());
     this.finest = isSlow ? 0.6 : 1;
     this.renderer.autoClear = false;
     this.renderer.setClearColor(0, 0);
@@ -213,11 +213,4 @@ export abstract class Scene {
   protected outside(point: three.Vector3): Vec3 {
     return point.clone().add(this.origin).toArray() as Vec3;
   }
-}
-
-/** What draws, as the browser names it. */
-function nameOfProcessor(renderer: three.WebGLRenderer): string {
-  const gl = renderer.getContext();
-  const names = gl.getExtension("WEBGL_debug_renderer_info");
-  return String(gl.getParameter(names ? names.UNMASKED_RENDERER_WEBGL : gl.RENDERER));
 }

@@ -79,7 +79,7 @@ async function load(source: Source, settings: ToolSettings, port: Port | null): 
       source.kind === "shape"
         ? keepout.anatomyOfShape(source.name)
         : keepout.anatomyOfFile(source.name, source.bytes);
-    tellSurface(name, made.vertices, made.corners);
+    tellSurface(name, made.surface.vertices, made.surface.corners);
   }
   letGo();
   anatomy = { of: made, settings, port };

@@ -8,9 +8,9 @@ import type { Layer } from "./painting.ts";
 import { entries, type ReportRecord } from "./record.ts";
 import { lead, section } from "./report_page.ts";
 import { pictureGrid, runColor } from "./runs.ts";
-import { type Format, grouped, make, millimetres, rounded, show, shown } from "./shown.ts";
+import { make, millimetres, rounded, show, shown } from "./shown.ts";
 import type { Place, RecordedMesh } from "./simulation_record.ts";
-import { type Column, scrolled, table } from "./table.ts";
+import { type Column, column, harm, named, scrolled, table } from "./table.ts";
 import { timeSlider } from "./time_slider.ts";
 
 interface Run {
@@ -39,18 +39,15 @@ export async function robotSimulationSections(
 }
 
 function figures({ bodies }: RobotSimulationRecord): HTMLElement {
-  const harm = (heading: string, from: string, format: Format = grouped): Column => ({
-    ...{ heading, from, format, look: "harm" },
-  });
   const columns: Column[] = [
     { heading: "mesh", from: "/mesh" },
     { heading: "speed", from: "/speed" },
-    { heading: "mode", from: "/mode", look: "name" },
-    { heading: "cycles", from: "/cycles", format: grouped },
+    named("mode", "/mode"),
+    column("cycles", "/cycles"),
     ...bodies.flatMap(({ name }) => [
       harm(`${name}: too close`, `/${name}_below`),
       harm("in the mesh", `/${name}_in_mesh`),
-      harm("deepest [mm]", `/${name}_deepest_mm`, (mm) => rounded(mm)),
+      harm("deepest [mm]", `/${name}_deepest_mm`, rounded),
     ]),
   ];
   return section(
@@ -89,8 +86,8 @@ async function meshSection(record: RobotSimulationRecord, number: number): Promi
   chooser.addEventListener("change", choose);
   moment.addEventListener("change", () => view?.go(Number(moment.value)));
   if (strokes.length > 0) choose();
-  const title = section(
-    "",
+  return section(
+    shown(`/meshes/${number}/name`),
     lead(
       "Stroke: ",
       chooser,
@@ -103,8 +100,6 @@ async function meshSection(record: RobotSimulationRecord, number: number): Promi
     content,
     hint(),
   );
-  (title.firstChild as HTMLElement).append(shown(`/meshes/${number}/name`));
-  return title;
 }
 
 /** Where the instrument's bodies end in a cycle: at the port, and each at the next. */
