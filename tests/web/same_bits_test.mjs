@@ -34,6 +34,8 @@ const { Keepout } = await import(pathToFileURL(engine));
 const { default: instantiate } = await import(pathToFileURL(join(buildFolder, "keepout.mjs")));
 const keepout = await Keepout.load(instantiate, readFileSync(join(buildFolder, "keepout.wasm")));
 
+const statuses = keepout.statuses("tip");
+
 const openSteps = 8000;
 const closedSteps = 4000;
 const settings = { radius: 1.2, toolRadius: 0.5, margin: 0.2, maxStep: 0.8 };
@@ -147,33 +149,17 @@ function rowsOf(file) {
 
 /** What native keepout makes of poses: for each step its numbers in a row, and its planes'. */
 function native(mesh, rule, loop, poses) {
-  const [posesFile, steps, planes] = ["poses.txt", "steps.csv", "planes.csv"].map((f) =>
-    join(scratch, f),
-  );
-  writeFileSync(posesFile, `${poses.map((pose) => pose.join(" ")).join("\n")}\n`);
-  execFileSync(
-    command,
-    [
-      "replay",
-      mesh,
-      "--poses",
-      posesFile,
-      "--out",
-      steps,
-      "--planes",
-      planes,
-      "--activation",
-      rule,
-      "--radius",
-      settings.radius,
-      "--tool-radius",
-      settings.toolRadius,
-      "--margin",
-      settings.margin,
-      ...(loop === "closed" ? ["--closed-loop", "--max-step", settings.maxStep] : []),
-    ],
-    { stdio: ["ignore", "ignore", "inherit"] },
-  );
+  const file = (name) => join(scratch, name);
+  const [steps, planes] = [file("steps.csv"), file("planes.csv")];
+  writeFileSync(file("poses.txt"), `${poses.map((pose) => pose.join(" ")).join("\n")}\n`);
+  const options = {
+    ...{ poses: file("poses.txt"), out: steps, planes, activation: rule },
+    ...{ radius: settings.radius, "tool-radius": settings.toolRadius, margin: settings.margin },
+    ...(loop === "closed" ? { "max-step": settings.maxStep } : {}),
+  };
+  const words = Object.entries(options).flatMap(([name, value]) => [`--${name}`, value]);
+  if (loop === "closed") words.push("--closed-loop");
+  execFileSync(command, ["replay", mesh, ...words], { stdio: ["ignore", "ignore", "inherit"] });
   const told = rowsOf(steps).map((row) => ({
     status: row[1],
     planes: Number(row[12]),
@@ -197,7 +183,7 @@ function toldBy(rule, tool, cycle, tip) {
   for (let plane = begin; plane < begin + 40 * planeCount; plane += 40) {
     numbers.push(HEAPU32[plane / 4 + 8], ...HEAPF64.subarray(plane / 8, plane / 8 + 4));
   }
-  return { status: keepout.statusName(cycle.status), planes: planeCount, numbers };
+  return { status: statuses[cycle.status].name, planes: planeCount, numbers };
 }
 
 /** What the module makes of the same poses. */

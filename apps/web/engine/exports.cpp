@@ -14,6 +14,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "anatomy.h"
 #include "json_text.h"
@@ -62,9 +63,6 @@ const char* made_text(const auto& make) noexcept {
       },
       static_cast<const char*>(nullptr));
 }
-
-/// A literal of the library's, which ends with a zero.
-const char* literal(std::string_view words) noexcept { return words.data(); }
 
 }  // namespace
 
@@ -150,18 +148,14 @@ double keepout_clearance(Anatomy* anatomy, double x, double y, double z) {
 }
 
 /// See make_tip().
-Tool* keepout_make_tip(Anatomy* anatomy, const char* rule, double radius, double tool_radius,
-                       double margin, double max_step, double stiffness, double largest_force) {
-  return made_tool([&] {
-    return make_tip(*anatomy,
-                    {rule, radius, tool_radius, margin, max_step, stiffness, largest_force});
-  });
+Tool* keepout_make_tip(Anatomy* anatomy, const char* rule, const TipSettings* settings) {
+  return made_tool([&] { return make_tip(*anatomy, rule, *settings); });
 }
 
 /// See make_instrument().
-Tool* keepout_make_instrument(const Anatomy* anatomy, const char* robot, const double* base,
-                              double margin, double max_step) {
-  return made_tool([&] { return make_instrument(*anatomy, robot, base, margin, max_step); });
+Tool* keepout_make_instrument(Anatomy* anatomy, const char* robot,
+                              const InstrumentSettings* settings) {
+  return made_tool([&] { return make_instrument(*anatomy, robot, *settings); });
 }
 
 /// Frees a tool.
@@ -195,16 +189,20 @@ double keepout_body_clearance(Tool* tool, std::uint32_t body) {
   return made([&] { return tool->clearance(body); }, std::numeric_limits<double>::quiet_NaN());
 }
 
-/// The name of a status: free, limited, ...
-const char* keepout_status_name(std::uint32_t status) {
-  return literal(name(static_cast<keepout::Status>(status)));
-}
-
-/// Returns one line on what a status means and what to do about it. `subject`: 0 a tip, 1 an
-/// instrument.
-const char* keepout_status_reason(std::uint32_t status, std::uint32_t subject) {
-  return literal(
-      reason(static_cast<keepout::Status>(status), static_cast<keepout::Subject>(subject)));
+/// Returns all statuses by number, as a JSON list of objects: name, and reason, one line on what it
+/// means and what to do about it. `subject`: 0 a tip, 1 an instrument.
+const char* keepout_statuses(std::uint32_t subject) {
+  return made_text([&] {
+    std::vector<keepout::Status> all;
+    for (keepout::Status next{}; name(next) != "unknown";) {
+      all.push_back(next);
+      next = static_cast<keepout::Status>(all.size());
+    }
+    return json_list(all, [&](keepout::Status status) {
+      return R"({"name":)" + json(name(status)) + R"(,"reason":)" +
+             json(reason(status, static_cast<keepout::Subject>(subject))) + '}';
+    });
+  });
 }
 
 /// The names of the generated shapes, as a JSON list.

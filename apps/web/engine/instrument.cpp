@@ -43,12 +43,13 @@ std::string json_of(const keepout::Body& body) {
 }
 
 struct Instrument final : Tool {
-  Instrument(const Anatomy& anatomy, const keepout::Instrument& made, double margin, double step)
+  Instrument(const Anatomy& anatomy, const keepout::Instrument& made,
+             const InstrumentSettings& settings)
       : constraint(make_instrument_constraint(anatomy.mesh, anatomy.index, made,
-                                              {.options = {.margin = margin}})),
+                                              {.options = {.margin = settings.margin}})),
         nearest(*anatomy.mesh, *anatomy.index),
         positions(cycle.positions, static_cast<std::size_t>(made.chain().size())),
-        max_step(step) {
+        max_step(settings.max_step) {
     const keepout::InstrumentOptions& options = constraint.options();
     facts = R"({"positions":)" + keepout::web::json(positions.size()) + R"(,"band":)" +
             keepout::web::json(options.band) + R"(,"period":)" +
@@ -126,6 +127,6 @@ struct Instrument final : Tool {
 }  // namespace
 
 std::unique_ptr<Tool> make_instrument(const Anatomy& anatomy, std::string_view robot,
-                                      const double* base, double margin, double max_step) {
-  return std::make_unique<Instrument>(anatomy, robot_named(robot, base), margin, max_step);
+                                      const InstrumentSettings& settings) {
+  return std::make_unique<Instrument>(anatomy, robot_named(robot, settings.base), settings);
 }

@@ -12,7 +12,7 @@ namespace {
 using keepout::Vec3;
 
 struct Tip final : Tool {
-  Tip(Anatomy& of, const TipSettings& settings)
+  Tip(Anatomy& of, std::string_view rule, const TipSettings& settings)
       : anatomy(of),
         spring{.stiffness = settings.stiffness, .largest_force = settings.largest_force},
         radius(settings.tool_radius),
@@ -20,9 +20,9 @@ struct Tip final : Tool {
     check(spring);
     facts = R"({"positions":3,"band":0,"period":0.001,"bodies":[{"name":"tool","radius":)" +
             keepout::web::json(radius) + "}]}";
-    if (settings.rule == "none") return;
+    if (rule == "none") return;
     keepout::app::require_within_reach(max_step, settings.radius);
-    constraint = anatomy.guard({.activation = std::string(settings.rule),
+    constraint = anatomy.guard({.activation = std::string(rule),
                                 .options = {.radius = settings.radius,
                                             .tool_radius = radius,
                                             .margin = settings.margin,
@@ -85,6 +85,7 @@ struct Tip final : Tool {
 
 }  // namespace
 
-std::unique_ptr<Tool> make_tip(Anatomy& anatomy, const TipSettings& settings) {
-  return std::make_unique<Tip>(anatomy, settings);
+std::unique_ptr<Tool> make_tip(Anatomy& anatomy, std::string_view rule,
+                               const TipSettings& settings) {
+  return std::make_unique<Tip>(anatomy, rule, settings);
 }

@@ -21,7 +21,7 @@ struct Cycle {
   double distance = std::numeric_limits<double>::quiet_NaN();  // of the tip, or of the nearest
                                                                // body, before the cycle [mm]
   double cores[6 * keepout::Instrument::most_bodies];  // both ends of each body, after the cycle
-  std::uint32_t status;                                // keepout_status_name has its name
+  std::uint32_t status;                                // keepout_statuses has its name
   std::uint32_t held;                                  // planes or rows that limit the motion
   std::uint32_t rounds;                                // judged trial motions of an instrument
   std::int32_t nearest = -1;                           // number of that body; -1: not known
@@ -59,15 +59,19 @@ struct Tool {
   Cycle cycle = {};
 };
 
-/// A tip at the origin under a rule; without a constraint for rule "none". Lengths in mm, stiffness
-/// in N/mm, force in N. `max_step`: the tip's longest way in a cycle. Throws Error.
+/// Lengths in mm, stiffness in N/mm, force in N. `max_step`: the tip's longest way in a cycle.
 struct TipSettings {
-  std::string_view rule;
   double radius, tool_radius, margin, max_step, stiffness, largest_force;
 };
-std::unique_ptr<Tool> make_tip(Anatomy& anatomy, const TipSettings& settings);
+/// A tip at the origin under a rule; without a constraint for rule "none". Throws Error.
+std::unique_ptr<Tool> make_tip(Anatomy& anatomy, std::string_view rule,
+                               const TipSettings& settings);
 
-/// The instrument of a named robot. `base`: the place of link 0 and the rows of its rotation (12).
-/// Throws Error.
+/// `base`: the place of link 0 and the rows of its rotation. Lengths in mm.
+struct InstrumentSettings {
+  double base[12];
+  double margin, max_step;
+};
+/// The instrument of a named robot. Throws Error.
 std::unique_ptr<Tool> make_instrument(const Anatomy& anatomy, std::string_view robot,
-                                      const double* base, double margin, double max_step);
+                                      const InstrumentSettings& settings);

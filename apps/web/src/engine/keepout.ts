@@ -21,8 +21,7 @@ export interface Module {
   _keepout_failure(): number;
   _keepout_shapes(): number;
   _keepout_counterexamples(): number;
-  _keepout_status_name(status: number): number;
-  _keepout_status_reason(status: number, subject: number): number;
+  _keepout_statuses(subject: number): number;
   _keepout_anatomy_of_surface(
     vertices: number,
     vertexCount: number,
@@ -35,23 +34,8 @@ export interface Module {
   _keepout_surface(anatomy: number): number;
   _keepout_findings(anatomy: number): number;
   _keepout_clearance(anatomy: number, x: number, y: number, z: number): number;
-  _keepout_make_tip(
-    anatomy: number,
-    rule: number,
-    radius: number,
-    toolRadius: number,
-    margin: number,
-    maxStep: number,
-    stiffness: number,
-    largestForce: number,
-  ): number;
-  _keepout_make_instrument(
-    anatomy: number,
-    robot: number,
-    base: number,
-    margin: number,
-    maxStep: number,
-  ): number;
+  _keepout_make_tip(anatomy: number, rule: number, settings: number): number;
+  _keepout_make_instrument(anatomy: number, robot: number, settings: number): number;
   _keepout_discard_tool(tool: number): void;
   _keepout_tool_facts(tool: number): number;
   _keepout_place(tool: number, positions: number): number;
@@ -105,45 +89,28 @@ export class Keepout {
 
   /** Returns all statuses by number, with their reasons for a tip or an instrument. */
   statuses(subject: Subject): { name: string; reason: string }[] {
-    const all = [];
-    for (let i = 0; this.statusName(i) !== "unknown"; ++i) {
-      all.push({ name: this.statusName(i), reason: this.statusReason(i, subject) });
-    }
-    return all;
+    const address = this.module._keepout_statuses(subject === "tip" ? 0 : 1);
+    return JSON.parse(this.text(this.given(address)));
   }
 
   counterexamples(): Counterexample[] {
     return JSON.parse(this.text(this.given(this.module._keepout_counterexamples())));
   }
 
-  statusName(status: number): string {
-    return this.text(this.module._keepout_status_name(status));
-  }
-
-  private statusReason(status: number, subject: Subject): string {
-    return this.text(this.module._keepout_status_reason(status, subject === "tip" ? 0 : 1));
-  }
-
   /** Of a surface that is welded already: (n, 3) coordinates and (m, 3) numbers of vertices. */
   anatomyOfSurface(vertices: Float64Array, corners: Uint32Array): Anatomy {
-    const { module } = this;
-    const vertexPlace = this.allocate(vertices.byteLength);
-    const cornerPlace = this.allocate(corners.byteLength);
-    try {
-      module.HEAPF64.set(vertices, vertexPlace / 8);
-      module.HEAPU32.set(corners, cornerPlace / 4);
-      return this.anatomy(
-        module._keepout_anatomy_of_surface(
-          vertexPlace,
-          vertices.length / 3,
-          cornerPlace,
-          corners.length / 3,
+    return this.withCopy(vertices, (from) =>
+      this.withCopy(corners, (to) =>
+        this.anatomy(
+          this.module._keepout_anatomy_of_surface(
+            from,
+            vertices.length / 3,
+            to,
+            corners.length / 3,
+          ),
         ),
-      );
-    } finally {
-      module._free(vertexPlace);
-      module._free(cornerPlace);
-    }
+      ),
+    );
   }
 
   /** Of the bytes of a mesh file, whose name tells the format: STL, PLY, OBJ or OFF. */
@@ -165,24 +132,21 @@ export class Keepout {
 
   /** Makes an instrument at a port, or the ball of a tip if there is no port. */
   tool(anatomy: Anatomy, settings: ToolSettings, port: Port | null): Tool {
-    const { module } = this;
     const { rule, radius, toolRadius, margin, maxStep } = settings;
-    const address = this.withText(port?.robot ?? rule, (name) => {
-      if (port === null) {
-        const { stiffness, largestForce } = spring;
-        return module._keepout_make_tip(
-          ...[anatomy.address, name, radius, toolRadius, margin, maxStep, stiffness, largestForce],
-        );
-      }
-      const base = this.allocate(12 * 8);
-      module.HEAPF64.set(port.base, base / 8);
-      try {
-        return module._keepout_make_instrument(anatomy.address, name, base, margin, maxStep);
-      } finally {
-        module._free(base);
-      }
-    });
-    return new Tool(this, this.given(address), port === null ? "tip" : "instrument");
+    const [kind, name, numbers] =
+      port === null
+        ? ([
+            "tip",
+            rule,
+            [radius, toolRadius, margin, maxStep, spring.stiffness, spring.largestForce],
+          ] as const)
+        : (["instrument", port.robot, [...port.base, margin, maxStep]] as const);
+    const address = this.withText(name, (text) =>
+      this.withNumbers(numbers, (place) =>
+        this.module[`_keepout_make_${kind}`](anatomy.address, text, place),
+      ),
+    );
+    return new Tool(this, this.given(address), kind);
   }
 
   /** The text at an address, up to its end. */
@@ -201,17 +165,21 @@ export class Keepout {
     return address;
   }
 
-  allocate(bytes: number): number {
-    const place = this.module._malloc(bytes);
-    if (place === 0) throw new Error("there is not enough memory for it");
-    return place;
+  /** Runs what needs a text in the engine's memory. */
+  private withText<T>(text: string, use: (address: number) => T): T {
+    return this.withCopy(new TextEncoder().encode(`${text}\0`), use);
   }
 
-  withText<T>(text: string, use: (address: number) => T): T {
-    const bytes = new TextEncoder().encode(`${text}\0`);
-    const place = this.allocate(bytes.length);
+  /** Runs what needs numbers in the engine's memory. */
+  withNumbers<T>(numbers: readonly number[], use: (address: number) => T): T {
+    return this.withCopy(Float64Array.from(numbers), use);
+  }
+
+  private withCopy<T>(of: ArrayBufferView, use: (address: number) => T): T {
+    const place = this.module._malloc(of.byteLength);
+    if (place === 0) throw new Error("there is not enough memory for it");
     try {
-      this.module.HEAPU8.set(bytes, place);
+      this.module.HEAPU8.set(new Uint8Array(of.buffer, of.byteOffset, of.byteLength), place);
       return use(place);
     } finally {
       this.module._free(place);

@@ -88,7 +88,6 @@ export interface Cycle {
 /** A tool that keepout constrains beside an anatomy. */
 export class Tool {
   readonly facts: ToolFacts;
-  private readonly input: number;
   private last = 0;
 
   constructor(
@@ -96,7 +95,6 @@ export class Tool {
     private readonly address: number,
     readonly subject: Subject,
   ) {
-    this.input = keepout.allocate(7 * 8);
     this.facts = JSON.parse(keepout.text(keepout.module._keepout_tool_facts(address)));
   }
 
@@ -147,7 +145,6 @@ export class Tool {
 
   discard(): void {
     this.keepout.module._keepout_discard_tool(this.address);
-    this.keepout.module._free(this.input);
   }
 
   /** Calls an export with numbers, and reads the cycle that it returns. */
@@ -156,8 +153,7 @@ export class Tool {
     numbers: readonly number[],
   ): Cycle {
     const { module } = this.keepout;
-    module.HEAPF64.set(numbers, this.input / 8);
-    this.last = module[name](this.address, this.input);
+    this.last = this.keepout.withNumbers(numbers, (at) => module[name](this.address, at));
     const { HEAPF64, HEAPU32 } = module;
     const doubles = (from: number, count: number) => {
       const at = this.last / 8 + from;

@@ -60,14 +60,12 @@ export class HandInput {
     private readonly turn?: (rotation: Vec3) => void,
   ) {
     // Before the camera's own controls see it.
-    view.addEventListener("pointerdown", (event) => this.take(event), { capture: true });
-    view.addEventListener("pointermove", (event) => this.lead(event), { capture: true });
-    view.addEventListener("pointerup", (event) => this.letGo(event), { capture: true });
-    view.addEventListener("pointercancel", (event) => this.letGo(event), { capture: true });
-    view.addEventListener("wheel", (event) => this.deepen(event), {
-      capture: true,
-      passive: false,
-    });
+    const options = { capture: true, passive: false };
+    view.addEventListener("pointerdown", (event) => this.take(event), options);
+    view.addEventListener("pointermove", (event) => this.lead(event), options);
+    view.addEventListener("pointerup", (event) => this.letGo(event), options);
+    view.addEventListener("pointercancel", (event) => this.letGo(event), options);
+    view.addEventListener("wheel", (event) => this.deepen(event), options);
     view.addEventListener("keydown", (event) => this.press(event));
     view.addEventListener("keyup", (event) => {
       this.isSlow = event.shiftKey;

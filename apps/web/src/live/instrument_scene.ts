@@ -2,7 +2,7 @@
 import * as three from "three";
 import type { Vec3 } from "../engine/keepout.ts";
 import type { ToolFacts } from "../engine/tool.ts";
-import type { DrawnSurface } from "./drawn_surface.ts";
+import type { CenteredSurface } from "../page/centered_surface.ts";
 import { Capsule, colors } from "./markers.ts";
 import type { State } from "./protocol.ts";
 import { heldBody } from "./readings.ts";
@@ -31,7 +31,7 @@ export class InstrumentScene extends Scene {
     this.toolRadius = 4; // which is held by its jaw
   }
 
-  override show(surface: DrawnSurface): void {
+  override show(surface: CenteredSurface): void {
     this.isNew = true;
     super.show(surface);
   }

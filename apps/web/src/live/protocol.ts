@@ -10,9 +10,9 @@ import type {
   ToolFacts,
   ToolSettings,
 } from "../engine/tool.ts";
+import type { CenteredSurface } from "../page/centered_surface.ts";
 import type { PackedSurface } from "../page/embedded_surface.ts";
 import type { CycleClock } from "./cycle_clock.ts";
-import type { DrawnSurface } from "./drawn_surface.ts";
 
 /** A mesh that `keepout live` has put into the page: see apps/keepout/live. */
 export interface EmbeddedMesh extends PackedSurface {
@@ -81,7 +81,7 @@ export type FromWorker =
       readonly shapes: readonly string[];
       readonly statuses: readonly StatusWords[];
     }
-  | ({ readonly kind: "surface" } & DrawnSurface)
+  | ({ readonly kind: "surface"; readonly name: string } & CenteredSurface)
   | { readonly kind: "findings"; readonly findings: Findings }
   /** The index is built: the tool can be placed. */
   | { readonly kind: "guarded" }

@@ -3,9 +3,9 @@ import * as three from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import type { Vec3 } from "../engine/keepout.ts";
 import type { ToolFacts } from "../engine/tool.ts";
+import type { CenteredSurface } from "../page/centered_surface.ts";
 import { isSoftware } from "../page/graphics.ts";
 import { StillPicture } from "../page/still_picture.ts";
-import type { DrawnSurface } from "./drawn_surface.ts";
 import { colors, Spring, Trail } from "./markers.ts";
 import type { State } from "./protocol.ts";
 
@@ -78,17 +78,16 @@ export abstract class Scene {
   }
 
   /** Another anatomy: looked at from one side, as large as the view. */
-  show({ positions, corners, origin }: DrawnSurface): void {
+  show({ positions, corners, origin, size }: CenteredSurface): void {
     const geometry = new three.BufferGeometry();
     geometry.setAttribute("position", new three.BufferAttribute(positions, 3));
     geometry.setIndex(new three.BufferAttribute(corners, 1));
     geometry.computeVertexNormals();
-    geometry.computeBoundingBox();
     this.anatomy.geometry.dispose();
     this.anatomy.geometry = geometry;
     this.corners = corners;
     this.origin.set(...origin);
-    this.size = (geometry.boundingBox as three.Box3).getSize(new three.Vector3()).length();
+    this.size = size;
     this.camera.near = 0.002 * this.size;
     this.camera.far = 10 * this.size;
     this.controls.minDistance = 0.02 * this.size;

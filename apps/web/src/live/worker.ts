@@ -3,12 +3,12 @@
 import makeModule from "keepout-module";
 import { type Anatomy, Keepout } from "../engine/keepout.ts";
 import type { Port, Subject, Tool, ToolSettings } from "../engine/tool.ts";
+import { centered } from "../page/centered_surface.ts";
 import { decodeSurface } from "../page/embedded_surface.ts";
 import { unpacked } from "../page/unpacked.ts";
 import { ControlLoop } from "./control_loop.ts";
 import { runCounterexamples } from "./counterexample_trials.ts";
 import { CycleClock } from "./cycle_clock.ts";
-import { drawnSurface } from "./drawn_surface.ts";
 import type { FromWorker, Source, ToWorker } from "./protocol.ts";
 
 let keepout: Keepout;
@@ -46,9 +46,12 @@ function tellState(time: number): void {
   tell({ kind: "state", state: { ...state, cycles, limited, lost, stepTime, rate } });
 }
 
-function tellSurface(name: string, vertices: Float64Array, corners: Uint32Array): void {
-  const drawn = drawnSurface(name, vertices, corners);
-  tell({ kind: "surface", ...drawn }, [drawn.positions.buffer, drawn.corners.buffer]);
+function tellSurface(
+  name: string,
+  surface: { vertices: Float64Array; corners: Uint32Array },
+): void {
+  const drawn = centered(surface.vertices, surface.corners);
+  tell({ kind: "surface", name, ...drawn }, [drawn.positions.buffer, drawn.corners.buffer]);
 }
 
 /** Makes a tool on the anatomy; if the engine refuses the settings, throws. */
@@ -70,16 +73,16 @@ async function load(source: Source, settings: ToolSettings, port: Port | null): 
   const name = source.kind === "embedded" ? source.mesh.name : source.name;
   let made: Anatomy;
   if (source.kind === "embedded") {
-    const { vertices, corners } = await decodeSurface(source.mesh, source.data);
+    const surface = await decodeSurface(source.mesh, source.data);
     letGo(); // what is seen from here on is the other one
-    tellSurface(name, vertices, corners);
-    made = keepout.anatomyOfSurface(vertices, corners);
+    tellSurface(name, surface);
+    made = keepout.anatomyOfSurface(surface.vertices, surface.corners);
   } else {
     made =
       source.kind === "shape"
         ? keepout.anatomyOfShape(source.name)
         : keepout.anatomyOfFile(source.name, source.bytes);
-    tellSurface(name, made.surface.vertices, made.surface.corners);
+    tellSurface(name, made.surface);
   }
   letGo();
   anatomy = { of: made, settings, port };

@@ -11,7 +11,7 @@ import { pictureGrid, runColor } from "./runs.ts";
 import { make, millimetres, rounded, show, shown } from "./shown.ts";
 import type { Place, RecordedMesh } from "./simulation_record.ts";
 import { type Column, column, harm, named, scrolled, table } from "./table.ts";
-import { timeSlider } from "./time_slider.ts";
+import { strokeChooser, timeSlider } from "./time_slider.ts";
 
 interface Run {
   readonly mode: string;
@@ -68,24 +68,20 @@ async function meshSection(record: RobotSimulationRecord, number: number): Promi
   const strokes = entries(`/meshes/${number}/strokes`);
   const option = (value: number, from: string) =>
     show(make("option", { value: String(value) }), from);
-  const chooser = make("select", { "aria-label": "stroke" });
-  chooser.append(...strokes.map((from, stroke) => option(stroke, `${from}/manner`)));
   const moment = make("select", { "aria-label": "moment" });
   const content = make("div");
   const runs = entries(`${strokes[0]}/runs`);
   moment.append(...runs.map((from, run) => option(run, `${from}/mode`)));
   moment.value = String(Math.max(runs.length - 2, 0));
   let view: ReturnType<typeof strokeView> | null = null;
-  const choose = () => {
-    view?.dispose();
-    const stroke = Number(chooser.value);
+  const options = strokes.map((from, stroke) => option(stroke, `${from}/manner`));
+  const chooser = strokeChooser(options, 0, (stroke) => {
     view = strokeView(record, anatomy, mesh.strokes[stroke] as Stroke, strokes[stroke] as string);
     content.replaceChildren(view.element);
     view.go(Number(moment.value));
-  };
-  chooser.addEventListener("change", choose);
+    return view;
+  });
   moment.addEventListener("change", () => view?.go(Number(moment.value)));
-  if (strokes.length > 0) choose();
   return section(
     shown(`/meshes/${number}/name`),
     lead(
