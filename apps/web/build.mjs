@@ -67,62 +67,36 @@ async function licences(own, packages) {
   return [own, await readFile(join(here, "../../LICENSE"), "utf8"), ...theirs].join("\n");
 }
 
-/** Writes a page: its HTML with style, licences and scripts in their places. */
-async function writePage(name, source, { own, style, scripts, packages, without = "" }) {
-  const all = [
-    script("text/plain", "licences", await licences(own, [...packages, ...style.packages])),
-    ...scripts,
-  ];
-  const html = (await readFile(join(here, "src", source), "utf8"))
-    .replaceAll(new RegExp(`<!-- ${without}: -->.*?<!-- :${without} -->`, "gs"), "")
-    .replaceAll(/ *<!-- :?(ball|instrument):? -->\n?/g, "")
+/** Writes a page: HTML and style of its folder, licences, and scripts, which are of these bundles. */
+async function writePage(name, folder, own, scripts, bundles) {
+  const style = await bundle(`${folder}/page.css`);
+  const packages = [style, ...bundles].flatMap((one) => one.packages);
+  const all = [script("text/plain", "licences", await licences(own, packages)), ...scripts];
+  const html = (await readFile(join(here, "src", folder, "page.html"), "utf8"))
     .replace("/* keepout: style */", () => style.text)
     .replace("<!-- keepout: scripts -->", () => all.join("\n"));
   await writeFile(join(pages, name), html);
 }
 
-/** A page with keepout in it: `engine`, and what is of a page with another tool, `without`. */
-async function writeLivePage(name, { engine, entries, without }) {
-  const modules = { [`${engine.replace("_", "-")}-module`]: resolve(wasm, `${engine}.mjs`) };
-  const binary = gzipSync(await readFile(resolve(wasm, `${engine}.wasm`)), { level: 9 });
-  const [worker, main] = [await bundle(entries[0], modules), await bundle(entries[1])];
-  await writePage(name, "live/page.html", {
-    own: [
-      "keepout, compiled with Eigen (MPL-2.0), Highway (Apache-2.0), xxHash (BSD-2-Clause) and the libraries",
-      "of emscripten (MIT; libc++: Apache-2.0 with LLVM exceptions):",
-    ].join("\n"),
-    style: await bundle("live/page.css"),
-    scripts: [
-      script("application/octet-stream", "engine", binary.toString("base64")),
-      script("text/plain", "worker", worker.text),
-      script("text/javascript", "", main.text),
-    ],
-    packages: [...worker.packages, ...main.packages],
-    without,
-  });
-}
-
-async function writeReportPage(name, entry) {
+for (const [name, entry] of [
+  ["report.html", "report/main.ts"],
+  ["report_with_anatomy.html", "report/main_with_anatomy.ts"],
+]) {
   const main = await bundle(entry);
-  await writePage(name, "report/page.html", {
-    own: "keepout:",
-    style: await bundle("report/page.css"),
-    scripts: [script("text/javascript", "", main.text)],
-    packages: main.packages,
-  });
+  await writePage(name, "report", "keepout:", [script("text/javascript", "", main.text)], [main]);
 }
-
-await writeReportPage("report.html", "report/main.ts");
-await writeReportPage("report_with_anatomy.html", "report/main_with_anatomy.ts");
 if (wasm) {
-  await writeLivePage("live.html", {
-    engine: "keepout",
-    entries: ["live/worker.ts", "live/main.ts"],
-    without: "instrument",
-  });
-  await writeLivePage("live_robot.html", {
-    engine: "keepout_robot",
-    entries: ["live/instrument_worker.ts", "live/instrument_main.ts"],
-    without: "ball",
-  });
+  const modules = { "keepout-module": resolve(wasm, "keepout.mjs") };
+  const binary = gzipSync(await readFile(resolve(wasm, "keepout.wasm")), { level: 9 });
+  const [worker, main] = [await bundle("live/worker.ts", modules), await bundle("live/main.ts")];
+  const own = [
+    "keepout, compiled with Eigen (MPL-2.0), Highway (Apache-2.0), xxHash (BSD-2-Clause) and the libraries",
+    "of emscripten (MIT; libc++: Apache-2.0 with LLVM exceptions):",
+  ].join("\n");
+  const scripts = [
+    script("application/octet-stream", "engine", binary.toString("base64")),
+    script("text/plain", "worker", worker.text),
+    script("text/javascript", "", main.text),
+  ];
+  await writePage("live.html", "live", own, scripts, [worker, main]);
 }

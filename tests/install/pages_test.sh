@@ -15,10 +15,10 @@ LD_LIBRARY_PATH=$(library_folder moved)
 pages=moved/share/keepout/web
 
 # They take minutes to build, so they need not be there; those that are, are installed too.
-for name in report report_with_anatomy live live_robot; do
+for name in report report_with_anatomy live; do
   page=$pages/$name.html
   place='<!-- keepout report: the record goes here -->'
-  [[ $name != live* ]] || place='<!-- keepout live: the anatomy goes here -->'
+  [ $name != live ] || place='<!-- keepout live: the anatomy goes here -->'
   if [ -e "$source/build/web/$name.html" ]; then
     cmp "$source/build/web/$name.html" "$page" || fail "$page that was built is not installed"
   elif [ ! -e "$page" ]; then
@@ -43,7 +43,7 @@ unset KEEPOUT_WEB
 moved/bin/keepout live "$here/cube.obj" --no-open --out made.html
 is_made live 1 settings mesh-0
 moved/bin/keepout live "$here/cube.obj" --robot psm --no-open --out made.html
-is_made live_robot 1 settings mesh-0
+is_made live 1 settings mesh-0
 moved/bin/keepout simulate "$here/cube.obj" --strokes 1 --cycles 10 --out made.html > told
 is_made report_with_anatomy 0 record
 moved/bin/keepout verify "$here/cube.obj" --steps 500 --out made.html > told

@@ -9,43 +9,29 @@
  * with files that are dropped, by touch and by keys. Prints times and rates, and asserts none.
  */
 import assert from "node:assert/strict";
-import { readFileSync, statSync, writeFileSync } from "node:fs";
+import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
-import { after, test } from "node:test";
+import { test } from "node:test";
 import {
+  assertReplayed,
+  dragged,
   handAt,
-  large,
-  launched,
   limitedCycles,
-  looksWell,
-  note,
-  opened,
-  programsIn,
+  livePage,
+  noteRates,
   ready,
-  root,
   savedPath,
   skull,
-  sleep,
-  small,
+  testLooks,
   textOf,
 } from "./live_tab.mjs";
+import { large, note, root, sleep, small } from "./tabs.mjs";
 
-const [keepout, judge, folder, browserPath = "/usr/bin/chromium"] = process.argv.slice(2);
-const run = programsIn(folder);
-const page = join(folder, "page.html");
-run(keepout, "live", skull, "--no-open", "--out", page);
-const browser = await launched(browserPath);
+const { keepout, judge, folder, run, open } = await livePage();
 
 /** Pushes the hand into the anatomy and rubs it up and down there. */
 async function dragIn(tab, seconds = 4) {
-  const { x, y } = await handAt(tab);
-  await tab.mouse.move(x, y);
-  await tab.mouse.down();
-  const begin = performance.now();
-  for (let t = 0; t < 1; t = (performance.now() - begin) / (1000 * seconds)) {
-    await tab.mouse.move(x - 130 * Math.min(1, 3 * t), y + 60 * Math.sin(14 * t));
-    await sleep(8);
-  }
+  await dragged(tab, seconds, (t) => [-130 * Math.min(1, 3 * t), 60 * Math.sin(14 * t)]);
   await tab.mouse.up();
 }
 
@@ -86,27 +72,14 @@ function differing(lines, rows) {
 let desk; // the page that most tests go on with
 let phone;
 
-test("the page is small, and needs nothing beside it", () => {
-  const text = readFileSync(page, "utf8");
-  const wasm = statSync(join(root, "build/wasm/keepout.wasm")).size;
-  note(`page ${(text.length / 1e6).toFixed(2)} MB, wasm ${(wasm / 1e3).toFixed(0)} kB`);
-  assert.ok(text.length <= 6e6, "the page is larger than 6 MB");
-  assert.ok(wasm <= 460e3, "keepout.wasm is larger than 460 kB");
-  assert.doesNotMatch(text, /(src|href)="(?!data:)[^"]*"/, "it names another file");
-});
-
 test("a drag into the skull: limited, out of it, and the same as keepout replay", async () => {
   const begin = performance.now();
-  desk = await opened(browser, page, folder, large);
+  desk = await open(large);
   note(
     `the tool can be dragged ${((performance.now() - begin) / 1000).toFixed(1)} s after opening`,
   );
   await dragIn(desk);
-  note(
-    `limited: ${await textOf(desk, "#limited")}; lost: ${await textOf(desk, "#lost")}; a step takes ` +
-      `${await textOf(desk, "#step-time")}; ${await textOf(desk, "#rate")} cycles and ` +
-      `${await textOf(desk, "#frames")} frames a second`,
-  );
+  await noteRates(desk);
   const path = await savedPath(desk, folder);
   const lines = linesOf(path);
   const rows = replayed(path, skull, "certified");
@@ -126,11 +99,7 @@ test("a drag into the skull: limited, out of it, and the same as keepout replay"
   // Opened again, the path is played, and goes the same way.
   const file = await desk.$("#file");
   await file.uploadFile(join(folder, path));
-  await desk.waitForFunction(
-    () => document.querySelector("#toast").textContent.startsWith("Replayed"),
-    { timeout: 60_000 },
-  );
-  assert.match(await textOf(desk, "#toast"), /bit for bit/);
+  await assertReplayed(desk);
 });
 
 test("the same drag without a fixture goes in", async () => {
@@ -235,7 +204,7 @@ test("files are dropped: a mesh, then what is none, and the page lives on", asyn
 });
 
 test("led by touch, on a phone", async () => {
-  phone = await opened(browser, page, folder, small);
+  phone = await open(small);
   const { x, y } = await handAt(phone);
   await phone.touchscreen.touchStart(x + 12, y);
   for (let i = 0; i < 50; ++i) {
@@ -246,16 +215,4 @@ test("led by touch, on a phone", async () => {
   await phone.touchscreen.touchEnd();
 });
 
-for (const [name, scheme] of [
-  ["phone", "dark"],
-  ["light", "light"],
-  ["dark", "dark"],
-]) {
-  test(`controls have names and contrast holds: ${name}`, async () => {
-    await looksWell(name === "phone" ? phone : desk, scheme, join(folder, `${name}.png`));
-  });
-}
-
-test("nothing was complained of", () => assert.deepEqual([...desk.faults, ...phone.faults], []));
-
-after(() => browser.close());
+testLooks(folder, () => ({ desk, phone }));

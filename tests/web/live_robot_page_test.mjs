@@ -9,46 +9,31 @@
  * Then it is turned, led by keys and by touch. Prints times and rates, and asserts none.
  */
 import assert from "node:assert/strict";
-import { readFileSync, statSync, writeFileSync } from "node:fs";
+import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
-import { after, test } from "node:test";
+import { test } from "node:test";
 import {
+  assertReplayed,
+  dragged,
   handAt,
-  large,
-  launched,
   limitedCycles,
-  looksWell,
-  note,
-  opened,
-  programsIn,
-  root,
+  livePage,
+  noteRates,
   savedPath,
   skull,
-  sleep,
-  small,
+  testLooks,
   textOf,
 } from "./live_tab.mjs";
+import { large, note, sleep, small } from "./tabs.mjs";
 
-const [keepout, judge, folder, browserPath = "/usr/bin/chromium"] = process.argv.slice(2);
-const run = programsIn(folder);
-const page = join(folder, "page.html");
-run(keepout, "live", skull, "--robot", "psm", "--no-open", "--out", page);
-const browser = await launched(browserPath);
+const { judge, folder, run, open } = await livePage("--robot", "psm");
 
 /** What the judge says of a path. */
 const judged = (path) => JSON.parse(run(judge, skull, path));
 
 /** Takes the jaw, leads it down the view into the anatomy, and about there; holds it. */
-async function dragIn(tab, seconds = 6) {
-  const { x, y } = await handAt(tab);
-  await tab.mouse.move(x, y);
-  await tab.mouse.down();
-  const begin = performance.now();
-  for (let t = 0; t < 1; t = (performance.now() - begin) / (1000 * seconds)) {
-    await tab.mouse.move(x + 90 * Math.sin(9 * t), y + 260 * Math.min(1, 3 * t));
-    await sleep(8);
-  }
-}
+const dragIn = (tab, seconds = 6) =>
+  dragged(tab, seconds, (t) => [90 * Math.sin(9 * t), 260 * Math.min(1, 3 * t)]);
 
 /** Waits until the instrument was held back in so many cycles; a browser may be slow. */
 async function comesTo(tab, cycles) {
@@ -59,17 +44,8 @@ async function comesTo(tab, cycles) {
 let desk; // the page that most tests go on with
 let phone;
 
-test("the page is small, and needs nothing beside it", () => {
-  const text = readFileSync(page, "utf8");
-  const wasm = statSync(join(root, "build/wasm/keepout_robot.wasm")).size;
-  note(`page ${(text.length / 1e6).toFixed(2)} MB, wasm ${(wasm / 1e3).toFixed(0)} kB`);
-  assert.ok(text.length <= 6e6, "the page is larger than 6 MB");
-  assert.ok(wasm <= 600e3, "keepout_robot.wasm is larger than 600 kB");
-  assert.doesNotMatch(text, /(src|href)="(?!data:)[^"]*"/, "it names another file");
-});
-
 test("the jaw dragged into the skull: held back, and all bodies clear, says the judge", async () => {
-  desk = await opened(browser, page, folder, large);
+  desk = await open(large);
   await dragIn(desk);
   assert.equal(await textOf(desk, "#status b"), "limited");
   assert.match(await textOf(desk, "#status span"), /limit the motion/);
@@ -77,11 +53,7 @@ test("the jaw dragged into the skull: held back, and all bodies clear, says the 
   assert.match(await textOf(desk, "#clearance"), /^0\.2\d mm$/);
   await desk.screenshot({ path: join(folder, "dragged.png") });
   await desk.mouse.up();
-  note(
-    `limited: ${await textOf(desk, "#limited")}; lost: ${await textOf(desk, "#lost")}; a step takes ` +
-      `${await textOf(desk, "#step-time")}; ${await textOf(desk, "#rate")} cycles and ` +
-      `${await textOf(desk, "#frames")} frames a second`,
-  );
+  await noteRates(desk);
   const path = await savedPath(desk, folder);
   const verdict = judged(path);
   note(JSON.stringify(verdict));
@@ -157,15 +129,11 @@ test("a wider margin is come up to, and kept", async () => {
 
 test("a path is played again, the same in every bit", async () => {
   await desk.click("#replay");
-  await desk.waitForFunction(
-    () => document.querySelector("#toast").textContent.startsWith("Replayed"),
-    { timeout: 60_000 },
-  );
-  assert.match(await textOf(desk, "#toast"), /bit for bit/);
+  await assertReplayed(desk);
 });
 
 test("led by touch, on a phone, and turned by a second finger", async () => {
-  phone = await opened(browser, page, folder, small);
+  phone = await open(small);
   const { x, y } = await handAt(phone);
   const finger = await phone.touchscreen.touchStart(x, y);
   for (let i = 0; i < 50; ++i) {
@@ -184,16 +152,4 @@ test("led by touch, on a phone, and turned by a second finger", async () => {
   assert.deepEqual([verdict.jumps, verdict.below, verdict.limits], [0, 0, 0]);
 });
 
-for (const [name, scheme] of [
-  ["phone", "dark"],
-  ["light", "light"],
-  ["dark", "dark"],
-]) {
-  test(`controls have names and contrast holds: ${name}`, async () => {
-    await looksWell(name === "phone" ? phone : desk, scheme, join(folder, `${name}.png`));
-  });
-}
-
-test("nothing was complained of", () => assert.deepEqual([...desk.faults, ...phone.faults], []));
-
-after(() => browser.close());
+testLooks(folder, () => ({ desk, phone }));

@@ -2,50 +2,75 @@
 /** A page of `keepout live` in a real browser: what its tests share. */
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import { mkdirSync, readdirSync, renameSync, rmSync } from "node:fs";
-import { createRequire } from "node:module";
+import { readdirSync, renameSync, statSync } from "node:fs";
 import { join } from "node:path";
-import { fileURLToPath, pathToFileURL } from "node:url";
+import { after, test } from "node:test";
+import {
+  assertAccessible,
+  assertAlone,
+  empty,
+  launched,
+  note,
+  opened,
+  root,
+  sleep,
+} from "./tabs.mjs";
 
-export const root = fileURLToPath(new URL("../..", import.meta.url));
-export const packages = createRequire(join(root, "apps/web/package.json"));
-const puppeteer = packages("puppeteer-core");
 export const skull = join(process.env.KEEPOUT_CACHE || join(root, ".cache"), "fixtures/skull.stl");
 
-export const large = { width: 1280, height: 800 };
-export const small = { width: 390, height: 844, hasTouch: true, isMobile: true };
-
-export const note = (text) => console.log(`# ${text}`);
-export const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
-
-/** An empty folder; gives what runs a program there, and what that prints. */
-export function programsIn(folder) {
-  rmSync(folder, { recursive: true, force: true });
-  mkdirSync(folder, { recursive: true });
-  return (program, ...args) =>
+/**
+ * The page that `keepout live` makes of the skull with options, by the arguments of a test: KEEPOUT
+ * JUDGE FOLDER [BROWSER]. Tests how large it is.
+ */
+export async function livePage(...options) {
+  const [keepout, judge, folder, browserPath = "/usr/bin/chromium"] = process.argv.slice(2);
+  empty(folder);
+  const run = (program, ...args) =>
     execFileSync(program, args, { encoding: "utf8", cwd: folder, maxBuffer: 1 << 26 });
+  const page = join(folder, "page.html");
+  run(keepout, "live", skull, ...options, "--no-open", "--out", page);
+  const browser = await launched(browserPath);
+  after(() => browser.close());
+
+  test("the page is small, and needs nothing beside it", () => {
+    const wasm = statSync(join(root, "build/wasm/keepout.wasm")).size;
+    note(`wasm ${(wasm / 1e3).toFixed(0)} kB`);
+    assert.ok(wasm <= 600e3, "keepout.wasm is larger than 600 kB");
+    assertAlone(page, 6e6);
+  });
+
+  /** Opens the page, until the tool can be dragged. Its downloads come to the folder. */
+  const open = async (viewport) => {
+    const tab = await opened(browser, page, viewport, async (one) => {
+      const client = await one.createCDPSession();
+      await client.send("Browser.setDownloadBehavior", { behavior: "allow", downloadPath: folder });
+    });
+    await ready(tab);
+    return tab;
+  };
+  return { keepout, judge, folder, run, open };
 }
 
-export const launched = (browserPath) =>
-  puppeteer.launch({
-    executablePath: browserPath,
-    args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
+/** The last tests of a page: it looks well on both, and nothing was complained of. */
+export function testLooks(folder, tabs) {
+  for (const [name, scheme] of [
+    ["phone", "dark"],
+    ["light", "light"],
+    ["dark", "dark"],
+  ]) {
+    test(`controls have names and contrast holds: ${name}`, async () => {
+      const { desk, phone } = tabs();
+      const tab = name === "phone" ? phone : desk;
+      await tab.bringToFront();
+      await tab.$eval("#save", (button) => button.click()); // a word is told, on a ground of one color
+      await assertAccessible(tab, scheme);
+      await tab.screenshot({ path: join(folder, `${name}.png`) });
+    });
+  }
+  test("nothing was complained of", () => {
+    const { desk, phone } = tabs();
+    assert.deepEqual([...desk.faults, ...phone.faults], []);
   });
-
-/** Opens the page; gives it back once the tool can be dragged. Its downloads come to the folder. */
-export async function opened(browser, page, folder, viewport) {
-  const tab = await browser.newPage();
-  tab.faults = [];
-  tab.on("pageerror", (error) => tab.faults.push(String(error)));
-  tab.on("console", (line) => {
-    if (line.type() === "error") tab.faults.push(line.text());
-  });
-  await tab.setViewport(viewport);
-  const client = await tab.createCDPSession();
-  await client.send("Browser.setDownloadBehavior", { behavior: "allow", downloadPath: folder });
-  await tab.goto(pathToFileURL(page).href);
-  await ready(tab);
-  return tab;
 }
 
 /** Waits until there is a tool, whose state is told. */
@@ -65,10 +90,42 @@ export const handAt = (tab) =>
     return { x: x + width / 2, y: y + height / 2 };
   });
 
+/** Takes the hand, and leads it for some seconds along a way of the share of the time; holds it. */
+export async function dragged(tab, seconds, way) {
+  const { x, y } = await handAt(tab);
+  await tab.mouse.move(x, y);
+  await tab.mouse.down();
+  const begin = performance.now();
+  for (let t = 0; t < 1; t = (performance.now() - begin) / (1000 * seconds)) {
+    const [across, down] = way(t);
+    await tab.mouse.move(x + across, y + down);
+    await sleep(8);
+  }
+}
+
 export const textOf = (tab, selector) => tab.$eval(selector, (element) => element.textContent);
 
 export const limitedCycles = async (tab) =>
   Number((await textOf(tab, "#limited")).split(" of ")[0].replaceAll(",", ""));
+
+/** Notes how the control loop keeps its time. */
+export async function noteRates(tab) {
+  const [limited, lost, step, rate, frames] = await Promise.all(
+    ["#limited", "#lost", "#step-time", "#rate", "#frames"].map((figure) => textOf(tab, figure)),
+  );
+  note(
+    `limited: ${limited}; lost: ${lost}; a step takes ${step}; ${rate} cycles and ${frames} frames a second`,
+  );
+}
+
+/** Waits for the end of a replay, and asserts that the tool went the same way. */
+export async function assertReplayed(tab) {
+  await tab.waitForFunction(
+    () => document.querySelector("#toast").textContent.startsWith("Replayed"),
+    { timeout: 60_000 },
+  );
+  assert.match(await textOf(tab, "#toast"), /bit for bit/);
+}
 
 /** Presses a button of the page and gives the file that it saves. */
 export async function savedPath(tab, folder) {
@@ -84,22 +141,4 @@ export async function savedPath(tab, folder) {
     }
   }
   assert.fail("no path was saved");
-}
-
-/** Controls have names, and what is written stands out, in this scheme of colours; keeps a picture. */
-export async function looksWell(tab, scheme, picture) {
-  await tab.bringToFront();
-  await tab.emulateMediaFeatures([{ name: "prefers-color-scheme", value: scheme }]);
-  await tab.$eval("#save", (button) => button.click()); // a word is told, on a ground of one colour
-  await tab.addScriptTag({ path: packages.resolve("axe-core") });
-  const { violations, passes } = await tab.evaluate(() => window.axe.run());
-  assert.ok(
-    passes.some(({ id }) => id === "color-contrast"),
-    "contrast was not looked at",
-  );
-  assert.deepEqual(
-    violations.map(({ id, nodes }) => [id, ...nodes.map((node) => node.html)]),
-    [],
-  );
-  await tab.screenshot({ path: picture });
 }

@@ -16,7 +16,7 @@ touch "$work"/build/{release,wasm}/build.ninja
 touch "$work/apps/web/"{package.json,.npmrc}
 echo 'first' > "$work/apps/web/package-lock.json"
 mkdir "$work/apps/web/src"
-touch "$work"/{LICENSE,apps/web/src/main.ts,apps/web/build.mjs,build/wasm/keepout.mjs,build/wasm/keepout.wasm,build/wasm/keepout_robot.mjs,build/wasm/keepout_robot.wasm}
+touch "$work"/{LICENSE,apps/web/src/main.ts,apps/web/build.mjs,build/wasm/keepout.mjs,build/wasm/keepout.wasm}
 export calls=$work/calls page=$work/build/web/live.html
 
 # program NAME: is played by the script on stdin, which tells how it was called.
@@ -41,8 +41,7 @@ else
   done
   [ -z "$KEEPOUT_WASM" ] || [ -d "$KEEPOUT_WASM" ] || exit 1
   [ -z "$KEEPOUT_WASM" ] ||
-    printf '%s\n' "${bundled-<!-- keepout live: the anatomy goes here -->}" |
-      tee "$KEEPOUT_PAGES/live.html" > "$KEEPOUT_PAGES/live_robot.html"
+    printf '%s\n' "${bundled-<!-- keepout live: the anatomy goes here -->}" > "$KEEPOUT_PAGES/live.html"
 fi
 PROGRAM
 program "$work/build/release/apps/keepout/keepout" <<< 'echo "in ${KEEPOUT_WEB:-nowhere}"'

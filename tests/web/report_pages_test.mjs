@@ -10,25 +10,26 @@
  */
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import { mkdirSync, readdirSync, readFileSync, rmSync, statSync, writeFileSync } from "node:fs";
-import { createRequire } from "node:module";
+import { readdirSync, readFileSync, writeFileSync } from "node:fs";
 import { basename, join } from "node:path";
 import { after, test } from "node:test";
-import { fileURLToPath, pathToFileURL } from "node:url";
 import { gunzipSync } from "node:zlib";
 import { experimentsRecord } from "./experiments_record.mjs";
+import {
+  assertAccessible,
+  assertAlone,
+  empty,
+  launched,
+  note,
+  opened as openedTab,
+  sleep,
+  small,
+} from "./tabs.mjs";
 
 const [keepout, folder, browserPath = "/usr/bin/chromium"] = process.argv.slice(2);
-const root = fileURLToPath(new URL("../..", import.meta.url));
-const packages = createRequire(join(root, "apps/web/package.json"));
-const puppeteer = packages("puppeteer-core");
 const given = process.env.REPORT_RECORDS;
-
-rmSync(folder, { recursive: true, force: true });
-mkdirSync(folder, { recursive: true });
-
-const note = (text) => console.log(`# ${text}`);
-const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
+const large = { width: 1280, height: 900 };
+empty(folder);
 
 /** Makes a page by a command, which may find that something does not hold. */
 function run(name, ...args) {
@@ -182,43 +183,14 @@ async function assertNumbers(tab, record, selector) {
   return texts.length;
 }
 
-const browser = await puppeteer.launch({
-  executablePath: browserPath,
-  args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
-});
+const browser = await launched(browserPath);
 
 /** Opens a page; gives it back once it is built. */
-async function opened(file, viewport, prepare = () => {}) {
-  const tab = await browser.newPage();
-  tab.faults = [];
-  tab.on("pageerror", (error) => tab.faults.push(String(error)));
-  tab.on("console", (line) => {
-    if (line.type() === "error") tab.faults.push(line.text());
-  });
-  tab.on("request", (request) => {
-    if (!/^(file|data|blob):/.test(request.url())) tab.faults.push(`asks for ${request.url()}`);
-  });
-  await tab.setViewport(viewport);
-  await prepare(tab);
-  await tab.goto(pathToFileURL(file).href);
+async function opened(file, viewport, prepare) {
+  const tab = await openedTab(browser, file, viewport, prepare);
   await tab.waitForSelector("main > section:last-child .command", { timeout: 120_000 });
   await sleep(500); // for what is drawn when it is first seen
   return tab;
-}
-
-const large = { width: 1280, height: 900 };
-const small = { width: 390, height: 844, hasTouch: true, isMobile: true };
-
-async function assertAccessible(tab, scheme) {
-  await tab.emulateMediaFeatures([{ name: "prefers-color-scheme", value: scheme }]);
-  await tab.addScriptTag({ path: packages.resolve("axe-core") });
-  const violations = await tab.evaluate(async () =>
-    (await window.axe.run()).violations.map(({ id, nodes }) => [
-      id,
-      ...nodes.map(({ html }) => html),
-    ]),
-  );
-  assert.deepEqual(violations, [], scheme);
 }
 
 /** Presses headings, by mouse and by key, and looks whether their columns are in order. */
@@ -304,16 +276,7 @@ async function assertTips(tab, record) {
 
 for (const { file, name, record } of pages) {
   test(`${name}: every number is of the record, tables sort, plots tell`, async () => {
-    const size = statSync(file).size;
-    const most = showsAnatomy({ record }) ? 8e6 : 500e3;
-    note(`${name}: ${(size / 1e3).toFixed(0)} kB`);
-    assert.ok(size <= most, `the page has ${size} bytes`);
-    assert.doesNotMatch(
-      readFileSync(file, "utf8"),
-      /(src|href)="(?!data:)[^"]*"/,
-      "it names another file",
-    );
-
+    assertAlone(file, showsAnatomy({ record }) ? 8e6 : 500e3);
     const tab = await opened(file, large);
     const headline = await tab.$eval("h1", (one) => one.textContent);
     assert.equal(headline, record.headline);

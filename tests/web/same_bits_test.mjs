@@ -13,6 +13,7 @@
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { createRequire } from "node:module";
 import { tmpdir } from "node:os";
 import { dirname, join, resolve } from "node:path";
 import { fileURLToPath, pathToFileURL } from "node:url";
@@ -24,8 +25,16 @@ const fixtures = join(process.env.KEEPOUT_CACHE || join(repository, ".cache"), "
 const scratch = mkdtempSync(join(tmpdir(), "keepout-same-bits-"));
 process.on("exit", () => rmSync(scratch, { recursive: true, force: true }));
 
+// As pages have it, in TypeScript that node cannot read.
+const { buildSync } = createRequire(join(repository, "apps/web/package.json"))("esbuild");
+const engine = join(scratch, "keepout.mjs");
+const source = join(repository, "apps/web/src/engine/keepout.ts");
+buildSync({ entryPoints: [source], outfile: engine, bundle: true, format: "esm" });
+const { Keepout } = await import(pathToFileURL(engine));
 const { default: instantiate } = await import(pathToFileURL(join(buildFolder, "keepout.mjs")));
-const wasm = await instantiate({ wasmBinary: readFileSync(join(buildFolder, "keepout.wasm")) });
+const keepout = await Keepout.load(instantiate, readFileSync(join(buildFolder, "keepout.wasm")));
+
+const statuses = keepout.statuses("tip");
 
 const openSteps = 8000;
 const closedSteps = 4000;
@@ -140,33 +149,17 @@ function rowsOf(file) {
 
 /** What native keepout makes of poses: for each step its numbers in a row, and its planes'. */
 function native(mesh, rule, loop, poses) {
-  const [posesFile, steps, planes] = ["poses.txt", "steps.csv", "planes.csv"].map((f) =>
-    join(scratch, f),
-  );
-  writeFileSync(posesFile, `${poses.map((pose) => pose.join(" ")).join("\n")}\n`);
-  execFileSync(
-    command,
-    [
-      "replay",
-      mesh,
-      "--poses",
-      posesFile,
-      "--out",
-      steps,
-      "--planes",
-      planes,
-      "--activation",
-      rule,
-      "--radius",
-      settings.radius,
-      "--tool-radius",
-      settings.toolRadius,
-      "--margin",
-      settings.margin,
-      ...(loop === "closed" ? ["--closed-loop", "--max-step", settings.maxStep] : []),
-    ],
-    { stdio: ["ignore", "ignore", "inherit"] },
-  );
+  const file = (name) => join(scratch, name);
+  const [steps, planes] = [file("steps.csv"), file("planes.csv")];
+  writeFileSync(file("poses.txt"), `${poses.map((pose) => pose.join(" ")).join("\n")}\n`);
+  const options = {
+    ...{ poses: file("poses.txt"), out: steps, planes, activation: rule },
+    ...{ radius: settings.radius, "tool-radius": settings.toolRadius, margin: settings.margin },
+    ...(loop === "closed" ? { "max-step": settings.maxStep } : {}),
+  };
+  const words = Object.entries(options).flatMap(([name, value]) => [`--${name}`, value]);
+  if (loop === "closed") words.push("--closed-loop");
+  execFileSync(command, ["replay", mesh, ...words], { stdio: ["ignore", "ignore", "inherit"] });
   const told = rowsOf(steps).map((row) => ({
     status: row[1],
     planes: Number(row[12]),
@@ -181,57 +174,26 @@ function native(mesh, rule, loop, poses) {
   return told;
 }
 
-/** A text in the module's memory, for as long as `use` runs. */
-function withText(text, use) {
-  const size = wasm.lengthBytesUTF8(text) + 1;
-  const place = wasm._malloc(size);
-  wasm.stringToUTF8(text, place, size);
-  try {
-    return use(place);
-  } finally {
-    wasm._free(place);
-  }
-}
-
-/** Not null, or the reason why it is. */
-function made(handle) {
-  assert(handle !== 0, wasm.UTF8ToString(wasm._keepout_failure()));
-  return handle;
-}
-
-function makeGuard(anatomy, rule, margin) {
-  const { radius, toolRadius, maxStep } = settings;
-  return withText(rule, (name) =>
-    made(wasm._keepout_make_guard(anatomy, name, radius, toolRadius, margin, maxStep, 1, 4)),
-  );
-}
-
-/** What a cycle told, in the order of native(). */
-function toldBy(rule, cycle, tip) {
-  const { HEAPF64, HEAPU32 } = wasm;
-  const d = cycle / 8;
-  const [status, triangles, count, , planes] = HEAPU32.subarray(cycle / 4 + 20, cycle / 4 + 25);
-  const numbers = [
-    ...tip,
-    ...HEAPF64.subarray(d + 3, d + 6),
-    comparable(rule, triangles),
-    HEAPF64[d + 9],
-  ];
-  for (let plane = planes; plane < planes + 40 * count; plane += 40) {
+/** What a cycle told, in the order of native(), all planes included. */
+function toldBy(rule, tool, cycle, tip) {
+  const { HEAPF64, HEAPU32 } = keepout.module;
+  const { distance, motion, planeCount } = cycle;
+  const numbers = [...tip, ...motion, comparable(rule, cycle.triangles), distance];
+  const begin = HEAPU32[tool.last / 4 + 264]; // as struct Cycle of apps/web/engine/tool.h lies there
+  for (let plane = begin; plane < begin + 40 * planeCount; plane += 40) {
     numbers.push(HEAPU32[plane / 4 + 8], ...HEAPF64.subarray(plane / 8, plane / 8 + 4));
   }
-  return { status: wasm.UTF8ToString(wasm._keepout_status_name(status)), planes: count, numbers };
+  return { status: statuses[cycle.status].name, planes: planeCount, numbers };
 }
 
 /** What the module makes of the same poses. */
-function byModule(guard, rule, loop, poses) {
-  let tip = poses[0].slice(3);
-  wasm._keepout_place(guard, ...tip);
+function byModule(tool, rule, loop, poses) {
+  let tip = tool.place(poses[0].slice(3)).positions;
   return poses.map((pose) => {
-    if (loop === "open") return toldBy(rule, wasm._keepout_step(guard, ...pose), pose.slice(0, 3));
-    const cycle = wasm._keepout_follow(guard, ...pose.slice(0, 3));
-    const told = toldBy(rule, cycle, tip);
-    tip = [...wasm.HEAPF64.subarray(cycle / 8, cycle / 8 + 3)];
+    if (loop === "open") return toldBy(rule, tool, tool.step(pose), pose.slice(0, 3));
+    const cycle = tool.follow({ place: pose.slice(0, 3), turn: [0, 0, 0, 1] });
+    const told = toldBy(rule, tool, cycle, tip);
+    tip = cycle.positions;
     return told;
   });
 }
@@ -253,17 +215,14 @@ for (const name of ["skull", "aneurysm", "airway"]) {
   const file = fixture(name);
   const triangles = trianglesOf(file);
   const mesh = name === "airway" ? asText(triangles, name) : file;
-  const inMemory = `/${name}${mesh.slice(-4)}`;
-  wasm.FS.writeFile(inMemory, readFileSync(mesh));
-  const anatomy = withText(inMemory, (path) => made(wasm._keepout_anatomy_of_file(path)));
-  wasm.FS.unlink(inMemory);
+  const anatomy = keepout.anatomyOfFile(`${name}${mesh.slice(-4)}`, readFileSync(mesh));
   const random = seeded(triangles.length);
   const loops = { open: openPoses(triangles, random), closed: closedPoses(triangles, random) };
   for (const rule of ["all_faces", "paper", "certified"]) {
-    const guard = makeGuard(anatomy, rule, settings.margin);
+    const tool = keepout.tool(anatomy, { ...settings, rule }, null);
     for (const [loop, poses] of Object.entries(loops)) {
       const expected = native(mesh, rule, loop, poses);
-      const different = differences(expected, byModule(guard, rule, loop, poses));
+      const different = differences(expected, byModule(tool, rule, loop, poses));
       const limited = expected.filter((told) => told.status === "limited").length;
       const planes = expected.reduce((sum, told) => sum + told.planes, 0);
       console.log(
@@ -274,14 +233,15 @@ for (const name of ["skull", "aneurysm", "airway"]) {
       total.planes += planes;
       total.different += different;
       if (!isAwake) {
-        const other = makeGuard(anatomy, rule, settings.margin * (1 + 1e-12));
+        const margin = settings.margin * (1 + 1e-12);
+        const other = keepout.tool(anatomy, { ...settings, rule, margin }, null);
         isAwake = differences(expected, byModule(other, rule, loop, poses)) > 0;
-        wasm._keepout_discard_guard(other);
+        other.discard();
       }
     }
-    wasm._keepout_discard_guard(guard);
+    tool.discard();
   }
-  wasm._keepout_discard_anatomy(anatomy);
+  anatomy.discard();
 }
 console.log(
   `in all: ${total.steps} steps, ${total.limited} limited, ${total.planes} planes, ${total.different} different`,

@@ -5,7 +5,7 @@
 set -euo pipefail
 root=$1
 shift
-for needed in web/{live,live_robot,report,report_with_anatomy}.html wasm/{keepout,keepout_robot}.wasm web/fetched_for_tests.json; do
+for needed in web/{live,report,report_with_anatomy}.html wasm/keepout.wasm web/fetched_for_tests.json; do
   [ -f "$root/build/$needed" ] ||
     { echo "skipped: there is no build/$needed; apps/web/build tests makes it"; exit 77; }
 done

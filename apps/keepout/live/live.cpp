@@ -189,8 +189,7 @@ void add_live(CLI::App& app, LiveOptions& options) {
 void live(const LiveOptions& options, std::ostream& out) {
   if (options.robot.empty())
     require_within_reach(options.max_step, options.constraint.options.radius);
-  const std::filesystem::path template_file =
-      page_template_file(options.robot.empty() ? "live.html" : "live_robot.html");
+  const std::filesystem::path template_file = page_template_file("live.html");
   const PageTemplate parts =
       read_page_template(template_file, "<!-- keepout live: the anatomy goes here -->");
   std::vector<NamedPath> inputs{{"the page without an anatomy", template_file}};

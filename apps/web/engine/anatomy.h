@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <exception>
+#include <limits>
 #include <memory>
-#include <new>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,7 +11,7 @@
 #include "keepout/index/wide_bvh.h"
 #include "keepout/mesh/load_mesh.h"
 
-/// A mesh, the one index that all guards on it share, and what its file was found to be.
+/// A mesh, the one index that all tools on it share, and the warnings of its file.
 struct Anatomy {
   explicit Anatomy(keepout::LoadedMesh loaded)
       : mesh(std::move(loaded.mesh)),
@@ -23,33 +22,31 @@ struct Anatomy {
       : Anatomy(keepout::LoadedMesh{
             .mesh = std::make_shared<const keepout::Mesh>(std::move(surface))}) {}
 
-  /// A guard on it.
+  /// Returns a constraint on it.
   keepout::MotionConstraint guard(const keepout::MotionConstraintSettings& settings) const {
     return make_motion_constraint(mesh, index, settings);
+  }
+
+  /// Returns the distance from a place to the nearest triangle, below 0 inside a watertight mesh,
+  /// NaN where it is not known. Throws what guard() throws. [mm]
+  double clearance(const keepout::Vec3& place) {
+    if (!probe) {
+      // The probe retreats from no depth: the winding number alone decides about the inside.
+      const double size = mesh->bounds().size().norm();
+      probe = std::make_unique<keepout::MotionConstraint>(
+          guard({.options = {.radius = 1e-3 * size,
+                             .margin = 1e-6 * size,
+                             .deepest = 0.0,
+                             .distances = keepout::Distances::always}}));
+    }
+    probe->forget();
+    const keepout::Step step = probe->step({.tip = place, .desired = keepout::Vec3::Zero()});
+    if (!step.distance) return std::numeric_limits<double>::quiet_NaN();
+    return step.status == keepout::Status::inside ? -*step.distance : *step.distance;
   }
 
   std::shared_ptr<const keepout::Mesh> mesh;
   std::shared_ptr<const keepout::SpatialIndex> index;
   std::vector<std::string> warnings;
-  std::unique_ptr<keepout::MotionConstraint>
-      probe;  // what keepout_clearance asks, once it was asked
+  std::unique_ptr<keepout::MotionConstraint> probe;  // of clearance(); null before its first call
 };
-
-namespace keepout::web {
-
-inline std::string failure;  // why the last call that returned null failed
-
-/// What make() makes; null, with a message, where it throws.
-template <class Make>
-auto made(const Make& make) noexcept -> decltype(make().release()) {
-  try {
-    return make().release();
-  } catch (const std::bad_alloc&) {
-    failure = "there is not enough memory for it";
-  } catch (const std::exception& error) {
-    failure = error.what();
-  }
-  return nullptr;
-}
-
-}  // namespace keepout::web

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What a web page calls of keepout: anatomy is made of a surface, a file or a shape, and guards of
-// anatomy, with the parts and in the way that the command has them. Nothing is thrown out of here:
-// what cannot be made is null, and keepout_failure says why. Texts stay valid until the next call
-// that returns one; all are UTF-8.
-#include <array>
+// The exports of keepout to a web page: the page makes anatomy of a surface, a file or a shape, and
+// tools on anatomy, with the parts and in the way of the command. No export throws: one that fails
+// to make an object or a text returns null, and keepout_failure says why. Texts stay valid until
+// the next call that returns one; all are UTF-8.
 #include <cstddef>
 #include <cstdint>
 #include <exception>
@@ -19,99 +18,61 @@
 
 #include "anatomy.h"
 #include "json_text.h"
-#include "keepout/control/haptic_force.h"
-#include "keepout/error.h"
-#include "keepout/factory/make_motion_constraint.h"
 #include "keepout/fixtures/counterexamples.h"
 #include "keepout/fixtures/shapes.h"
-#include "keepout/index/wide_bvh.h"
 #include "keepout/mesh/doctor.h"
 #include "keepout/mesh/load_mesh.h"
-#include "shared/clip.h"
 #include "shared/findings.h"
+#include "tool.h"
 
 namespace {
 
 using keepout::Vec3;
-using keepout::web::failure;
 using keepout::web::json;
 using keepout::web::json_list;
-using keepout::web::made;
 
-std::string text;  // the last one that was handed out
+std::string failure;  // reason why the last call that returned null failed
+std::string text;     // the last one that was handed out
 
-/// Null, with a message, where it throws.
-template <class Make>
-const char* made_text(const Make& make) noexcept {
+/// Returns what make() returns; `otherwise`, with a message, where it throws.
+template <class Make, class Result>
+Result made(const Make& make, Result otherwise) noexcept {
   try {
-    text = make();
-    return text.c_str();
+    return make();
+  } catch (const std::bad_alloc&) {
+    failure = "there is not enough memory for it";
   } catch (const std::exception& error) {
     failure = error.what();
   }
-  return nullptr;
+  return otherwise;
 }
 
-/// A literal of the library's, which ends with a zero.
-const char* literal(std::string_view words) noexcept { return words.data(); }
+Anatomy* made_anatomy(const auto& make) noexcept {
+  return made([&] { return new Anatomy(make()); }, static_cast<Anatomy*>(nullptr));
+}
+
+Tool* made_tool(const auto& make) noexcept {
+  return made([&] { return make().release(); }, static_cast<Tool*>(nullptr));
+}
+
+const char* made_text(const auto& make) noexcept {
+  return made(
+      [&] {
+        text = make();
+        return text.c_str();
+      },
+      static_cast<const char*>(nullptr));
+}
 
 }  // namespace
 
-/// What a control cycle came to, as it lies in memory. Valid until the guard's next call.
-struct Cycle {
-  double tip[3];     // of the tool, after the cycle [mm]
-  double motion[3];  // of the tool in it [mm]
-  double force[3];   // of the spring between hand and tool, on the hand [N]
-  double distance;   // from the tool before the cycle to the nearest triangle; NaN: not known [mm]
-  std::uint32_t status;     // keepout_status_name has its name
-  std::uint32_t triangles;  // that it rests on
-  std::uint32_t plane_count;
-  std::uint32_t active_count;
-  const keepout::HalfSpace* planes;  // (plane_count), from the tip before the cycle
-  const std::uint32_t* active;       // (active_count): the planes that hold the motion back
-};
-static_assert(sizeof(void*) == 4 && sizeof(Cycle) == 104);
-static_assert(offsetof(Cycle, motion) == 24 && offsetof(Cycle, force) == 48);
-static_assert(offsetof(Cycle, distance) == 72 && offsetof(Cycle, status) == 80);
-static_assert(offsetof(Cycle, triangles) == 84 && offsetof(Cycle, plane_count) == 88);
-static_assert(offsetof(Cycle, active_count) == 92 && offsetof(Cycle, planes) == 96);
-static_assert(offsetof(Cycle, active) == 100 && sizeof(keepout::HalfSpace) == 40);
-static_assert(offsetof(keepout::HalfSpace, offset) == 24);
-static_assert(offsetof(keepout::HalfSpace, source) == 32);
-
-/// A tool, the hand that leads it, and what keeps it out, if anything does.
-struct Guard {
-  /// One step from a tip. Leaves the tool where it led to.
-  const Cycle* step(const keepout::Motion& motion) noexcept {
-    keepout::Step step{.status = keepout::Status::free, .motion = motion.desired};
-    if (constraint) step = constraint->step(motion);
-    tip = motion.tip + step.motion;
-    cycle.distance = step.distance.value_or(std::numeric_limits<double>::quiet_NaN());
-    cycle.status = static_cast<std::uint32_t>(step.status);
-    cycle.triangles = static_cast<std::uint32_t>(step.triangles);
-    cycle.plane_count = static_cast<std::uint32_t>(step.planes.size());
-    cycle.active_count = static_cast<std::uint32_t>(step.active.size());
-    cycle.planes = step.planes.data();
-    cycle.active = step.active.data();
-    Eigen::Map<Vec3>(cycle.tip) = tip;
-    Eigen::Map<Vec3>(cycle.motion) = step.motion;
-    return &cycle;
-  }
-
-  /// The spring's part of what a hand there feels.
-  void pull(const Vec3& hand) noexcept {
-    const Vec3 stretch = tip - hand;
-    const double length = stretch.norm();
-    Eigen::Map<Vec3> force(cycle.force);
-    force.setZero();
-    if (constraint && length > 0.0) force = stretch * (spring.spring_force(length) / length);
-  }
-
-  std::optional<keepout::MotionConstraint> constraint;  // none: the tool goes where the hand leads
-  keepout::SpringDamper spring;
-  double max_step;
-  Vec3 tip = Vec3::Zero();
-  Cycle cycle = {};
+/// The vertices (vertex_count, 3) [mm] and the corners (triangle_count, 3) of a mesh, as they lie
+/// in memory.
+struct Surface {
+  const double* vertices;
+  std::size_t vertex_count;
+  const std::uint32_t* corners;
+  std::size_t triangle_count;
 };
 
 extern "C" {
@@ -123,7 +84,7 @@ const char* keepout_failure() { return failure.c_str(); }
 /// corners (triangle_count, 3). It is copied.
 Anatomy* keepout_anatomy_of_surface(const double* vertices, std::uint32_t vertex_count,
                                     const std::uint32_t* corners, std::uint32_t triangle_count) {
-  return made([&] {
+  return made_anatomy([&] {
     keepout::Surface surface;
     surface.vertices.reserve(vertex_count);
     for (std::size_t v = 0; v < vertex_count; ++v) surface.vertices.emplace_back(vertices + 3 * v);
@@ -132,45 +93,32 @@ Anatomy* keepout_anatomy_of_surface(const double* vertices, std::uint32_t vertex
       const std::uint32_t* const c = corners + 3 * t;
       surface.triangles.push_back({c[0], c[1], c[2]});
     }
-    return std::make_unique<Anatomy>(std::move(surface));
+    return surface;
   });
 }
 
 /// Anatomy of a file of the file system in memory: STL, PLY, OBJ or OFF, in mm.
 Anatomy* keepout_anatomy_of_file(const char* path) {
-  return made([&] {
-    return std::make_unique<Anatomy>(keepout::load_mesh(path, {.check = keepout::MeshCheck::none}));
-  });
+  return made_anatomy(
+      [&] { return keepout::load_mesh(path, {.check = keepout::MeshCheck::none}); });
 }
 
 /// Anatomy of a generated shape: keepout_shapes() has the names.
 Anatomy* keepout_anatomy_of_shape(const char* name) {
-  return made([&] { return std::make_unique<Anatomy>(keepout::make_shape(name)); });
+  return made_anatomy([&] { return keepout::make_shape(name); });
 }
 
-/// Frees anatomy; guards on it may go on.
+/// Frees anatomy. The caller must discard the tools on it first.
 void keepout_discard_anatomy(Anatomy* anatomy) { delete anatomy; }
 
-/// How many vertices there are.
-std::uint32_t keepout_vertex_count(const Anatomy* anatomy) {
-  return static_cast<std::uint32_t>(anatomy->mesh->vertex_count());
-}
-
-/// Where they are (keepout_vertex_count, 3). [mm]
-const double* keepout_vertices(const Anatomy* anatomy) {
-  static_assert(sizeof(Vec3) == 3 * sizeof(double));
-  return anatomy->mesh->vertices().data()->data();
-}
-
-/// How many triangles there are.
-std::uint32_t keepout_triangle_count(const Anatomy* anatomy) {
-  return static_cast<std::uint32_t>(anatomy->mesh->triangle_count());
-}
-
-/// The vertices of each (keepout_triangle_count, 3).
-const std::uint32_t* keepout_corners(const Anatomy* anatomy) {
-  static_assert(sizeof(keepout::Corners) == 3 * sizeof(std::uint32_t));
-  return anatomy->mesh->triangles().data()->data();
+/// Returns the surface of anatomy, which stays valid until the next call.
+const Surface* keepout_surface(const Anatomy* anatomy) {
+  static_assert(sizeof(Vec3) == 24 && sizeof(keepout::Corners) == 12);
+  static Surface surface;
+  const keepout::Mesh& mesh = *anatomy->mesh;
+  surface = {mesh.vertices().data()->data(), mesh.vertex_count(), mesh.triangles().data()->data(),
+             mesh.triangle_count()};
+  return &surface;
 }
 
 /// What is to be known of the mesh, as JSON: watertight, size, the warnings of its file, and the
@@ -189,87 +137,72 @@ const char* keepout_findings(const Anatomy* anatomy) {
   });
 }
 
-/// From a place to the nearest triangle; below 0 inside of a watertight mesh. NaN where that cannot
-/// be told. [mm]
+/// Returns the distance from a place to the nearest triangle, below 0 inside a watertight mesh, NaN
+/// where it is not known. [mm]
 double keepout_clearance(Anatomy* anatomy, double x, double y, double z) {
-  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-  if (!anatomy->probe) {
-    // What is not led out from any depth is said to be inside: by the winding, and nothing else.
-    const double size = anatomy->mesh->bounds().size().norm();
-    anatomy->probe.reset(made([&] {
-      return std::make_unique<keepout::MotionConstraint>(
-          anatomy->guard({.options = {.radius = 1e-3 * size,
-                                      .margin = 1e-6 * size,
-                                      .deepest = 0.0,
-                                      .distances = keepout::Distances::always}}));
-    }));
-    if (!anatomy->probe) return unknown;
-  }
-  keepout::MotionConstraint& probe = *anatomy->probe;
-  probe.forget();
-  const keepout::Step step = probe.step({.tip = {x, y, z}, .desired = Vec3::Zero()});
-  if (!step.distance) return unknown;
-  return step.status == keepout::Status::inside ? -*step.distance : *step.distance;
+  return made(
+      [&] {
+        return anatomy->clearance({x, y, z});
+      },
+      std::numeric_limits<double>::quiet_NaN());
 }
 
-/// A tool at the origin that is kept out of anatomy by a rule, or by none: rule "none". Lengths in
-/// mm, stiffness in N/mm, force in N. `max_step`: how far the tool may follow the hand in a cycle.
-Guard* keepout_make_guard(Anatomy* anatomy, const char* rule, double radius, double tool_radius,
-                          double margin, double max_step, double stiffness, double largest_force) {
-  return made([&] {
-    auto guard = std::make_unique<Guard>();
-    guard->spring = {.stiffness = stiffness, .largest_force = largest_force};
-    check(guard->spring);
-    guard->max_step = max_step;
-    if (std::string_view(rule) == "none") return guard;
-    keepout::app::require_within_reach(max_step, radius);
-    guard->constraint = anatomy->guard({.activation = rule,
-                                        .options = {.radius = radius,
-                                                    .tool_radius = tool_radius,
-                                                    .margin = margin,
-                                                    .distances = keepout::Distances::always}});
-    return guard;
+/// See make_tip().
+Tool* keepout_make_tip(Anatomy* anatomy, const char* rule, const TipSettings* settings) {
+  return made_tool([&] { return make_tip(*anatomy, rule, *settings); });
+}
+
+/// See make_instrument().
+Tool* keepout_make_instrument(Anatomy* anatomy, const char* robot,
+                              const InstrumentSettings* settings) {
+  return made_tool([&] { return make_instrument(*anatomy, robot, *settings); });
+}
+
+/// Frees a tool.
+void keepout_discard_tool(Tool* tool) { delete tool; }
+
+/// Returns the facts of a tool as JSON: numbers of a position, band [mm], period [s], and name and
+/// radius [mm] of each body.
+const char* keepout_tool_facts(const Tool* tool) { return tool->facts.c_str(); }
+
+/// See Tool::place().
+const Cycle* keepout_place(Tool* tool, const double* positions) {
+  tool->cycle = {};
+  tool->place(positions);
+  return &tool->cycle;
+}
+
+/// See Tool::follow().
+const Cycle* keepout_follow(Tool* tool, const double* hand) {
+  tool->follow(hand);
+  return &tool->cycle;
+}
+
+/// See Tool::step().
+const Cycle* keepout_step(Tool* tool, const double* asked) {
+  tool->step(asked);
+  return &tool->cycle;
+}
+
+/// See Tool::clearance(); NaN if there is no memory for it.
+double keepout_body_clearance(Tool* tool, std::uint32_t body) {
+  return made([&] { return tool->clearance(body); }, std::numeric_limits<double>::quiet_NaN());
+}
+
+/// Returns all statuses by number, as a JSON list of objects: name, and reason, one line on what it
+/// means and what to do about it. `subject`: 0 a tip, 1 an instrument.
+const char* keepout_statuses(std::uint32_t subject) {
+  return made_text([&] {
+    std::vector<keepout::Status> all;
+    for (keepout::Status next{}; name(next) != "unknown";) {
+      all.push_back(next);
+      next = static_cast<keepout::Status>(all.size());
+    }
+    return json_list(all, [&](keepout::Status status) {
+      return R"({"name":)" + json(name(status)) + R"(,"reason":)" +
+             json(reason(status, static_cast<keepout::Subject>(subject))) + '}';
+    });
   });
-}
-
-/// Frees a guard.
-void keepout_discard_guard(Guard* guard) { delete guard; }
-
-/// Puts the tool there and forgets the past: from here on it does what `keepout replay
-/// --closed-loop` does from a first line that says so.
-void keepout_place(Guard* guard, double x, double y, double z) {
-  guard->tip = {x, y, z};
-  if (guard->constraint) guard->constraint->forget();
-}
-
-/// One control cycle towards where the hand is, as `keepout replay --closed-loop`.
-const Cycle* keepout_follow(Guard* guard, double gx, double gy, double gz) {
-  const Vec3 hand(gx, gy, gz);
-  const Vec3 desired = keepout::app::clipped(hand - guard->tip, guard->max_step);
-  const Cycle* const cycle = guard->step({.tip = guard->tip, .desired = desired});
-  guard->pull(hand);
-  return cycle;
-}
-
-/// One step from a tip by an increment that is desired, as `keepout replay`.
-const Cycle* keepout_step(Guard* guard, double px, double py, double pz, double dx, double dy,
-                          double dz) {
-  const keepout::Motion motion{.tip = {px, py, pz}, .desired = {dx, dy, dz}};
-  const Cycle* const cycle = guard->step(motion);
-  guard->pull(motion.tip + motion.desired);
-  return cycle;
-}
-
-/// The name of a status: free, limited, ...
-const char* keepout_status_name(std::uint32_t status) {
-  return literal(name(static_cast<keepout::Status>(status)));
-}
-
-/// Returns one line on what a status means and what to do about it. `subject`: 0 a tip, 1 an
-/// instrument.
-const char* keepout_status_reason(std::uint32_t status, std::uint32_t subject) {
-  return literal(
-      reason(static_cast<keepout::Status>(status), static_cast<keepout::Subject>(subject)));
 }
 
 /// The names of the generated shapes, as a JSON list.

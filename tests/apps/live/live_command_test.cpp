@@ -31,9 +31,7 @@ class Live : public testing::Test {
  protected:
   void SetUp() override {
     fs::create_directory(folder_.file("web"));
-    for (const std::string page : {"web/live.html", "web/live_robot.html"}) {
-      folder_.write(page, "<p>before</p>\n" + place + "<p>after</p>\n");
-    }
+    folder_.write("web/live.html", "<p>before</p>\n" + place + "<p>after</p>\n");
   }
   Outcome run(const std::string& arguments, const std::string& environment = {}) const {
     return folder_.run("live " + arguments,

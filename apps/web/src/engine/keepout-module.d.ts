@@ -4,9 +4,3 @@ declare module "keepout-module" {
   const makeModule: import("./keepout.ts").ModuleFactory;
   export default makeModule;
 }
-
-/** The same with whole instruments: build/wasm/keepout_robot.mjs. */
-declare module "keepout-robot-module" {
-  const makeModule: import("./keepout.ts").ModuleFactory<import("./manipulator.ts").RobotModule>;
-  export default makeModule;
-}

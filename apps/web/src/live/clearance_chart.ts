@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import uPlot from "uplot";
+import { colorOf } from "../page/color_of.ts";
 import { colors } from "./markers.ts";
 
 /** How much of the past is seen. [s] */
@@ -15,10 +16,13 @@ export class ClearanceChart {
   private isDue = false;
 
   constructor(container: HTMLElement) {
-    const style = getComputedStyle(container);
-    const ink = style.getPropertyValue("--quiet");
-    const grid = { stroke: style.getPropertyValue("--line"), width: 1 };
-    const axis = { stroke: ink, grid, ticks: { show: false }, font: "11px system-ui" };
+    let [ink, line] = ["", ""];
+    const read = () => {
+      [ink, line] = [colorOf("--quiet"), colorOf("--line")];
+    };
+    read();
+    const grid = { stroke: () => line, width: 1 };
+    const axis = { stroke: () => ink, grid, ticks: { show: false }, font: "11px system-ui" };
     this.plot = new uPlot(
       {
         width: 300,
@@ -53,12 +57,7 @@ export class ClearanceChart {
     };
     new ResizeObserver(fit).observe(container);
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
-      axis.stroke = style.getPropertyValue("--quiet");
-      grid.stroke = style.getPropertyValue("--line");
-      for (const one of this.plot.axes) {
-        one.stroke = () => style.getPropertyValue("--quiet");
-        if (one.grid) one.grid.stroke = () => style.getPropertyValue("--line");
-      }
+      read();
       this.plot.redraw();
     });
   }

@@ -1,137 +1,127 @@
 // SPDX-License-Identifier: BSD-3-Clause
-import type { Anatomy, Cycle, Guard, GuardSettings, Keepout, Vec3 } from "../engine/keepout.ts";
-import { PathRecord } from "./path_record.ts";
-import { mostCycles } from "./protocol.ts";
+import type { Cycle, Frame, Tool, ToolSettings } from "../engine/tool.ts";
+import { type PathFormat, PathRecord, pathFormat } from "./path_record.ts";
 
 /** How long the hand takes to come by 63 % to where the pointer has jumped. [cycles] */
-export const handSmoothing = 8;
+const handSmoothing = 8;
 /** Statuses up to this one, yielding, come with a motion: see keepout/status.h. */
-export const lastOk = 4;
+const lastOk = 4;
 /** Nearer than this the hand is there. [mm] */
 const arrival = 1e-6;
 
 /**
  * The control loop of a robot whose surgeon is the pointer: each cycle is one millisecond. The hand
  * goes to where the pointer is, smoothly, as pointers are seen a hundred times a second and less;
- * the tool goes towards the hand as far as the guard allows.
+ * the tool goes towards the hand as far as keepout allows.
  */
 export class ControlLoop {
-  readonly record = new PathRecord(6, mostCycles);
+  readonly record: PathRecord;
   cycles = 0;
   limited = 0;
-  /** What the last cycle came to; of none yet: null. */
-  last: Cycle | null = null;
-  private guard: Guard;
-  private tip_: Vec3;
-  private hand_: Vec3;
-  private pointer: Vec3 | null = null;
+  /** Result of the last cycle, or of placing the tool. */
+  last: Cycle;
+  hand: Frame;
+  tool: Tool;
+  private readonly format: PathFormat;
+  private pointer: Frame | null = null;
   private replay: { lines: Float64Array; next: number; differs: number } | null = null;
 
   constructor(
-    private readonly keepout: Keepout,
-    readonly anatomy: Anatomy,
-    private settings_: GuardSettings,
-    place: Vec3,
+    private readonly make: (settings: ToolSettings) => Tool,
+    private settings_: ToolSettings,
+    positions: readonly number[],
   ) {
-    this.guard = keepout.guard(anatomy, settings_);
-    this.tip_ = this.hand_ = place;
-    this.place(place);
+    this.tool = make(settings_);
+    this.format = pathFormat(this.tool);
+    this.record = new PathRecord(this.format);
+    this.last = this.tool.place(positions);
+    this.hand = this.last.flange;
   }
 
-  get tip(): Vec3 {
-    return this.tip_;
-  }
-
-  get hand(): Vec3 {
-    return this.hand_;
-  }
-
-  get settings(): GuardSettings {
+  get settings(): ToolSettings {
     return this.settings_;
   }
 
-  activePlanes() {
-    return this.last === null ? [] : this.guard.activePlanes();
-  }
-
-  /** Goes on from here as another guard would; what it refuses is thrown, and nothing changes. */
-  use(settings: GuardSettings): void {
-    const guard = this.keepout.guard(this.anatomy, settings);
-    this.guard.discard();
-    this.guard = guard;
+  /** Goes on from here with other settings; if the engine refuses them, throws, and nothing changes. */
+  use(settings: ToolSettings): void {
+    const tool = this.make(settings);
+    this.tool.discard();
+    this.tool = tool;
     this.settings_ = settings;
     const { replay } = this;
-    this.place(this.tip_);
-    // Of what is replayed, the same again under what is now chosen.
+    this.place(this.last.positions);
+    // A replay begins again under the new settings.
     if (replay !== null) this.startReplay(replay.lines);
   }
 
   /** Puts tool and hand there; a new path begins. */
-  place(tip: Vec3): void {
-    this.tip_ = this.hand_ = tip;
-    this.pointer = this.replay = this.last = null;
-    this.guard.place(tip);
+  place(positions: readonly number[]): void {
+    this.last = this.tool.place(positions);
+    this.hand = this.last.flange;
+    this.pointer = this.replay = null;
     this.record.clear();
   }
 
   /** Where the pointer holds the hand; null: it has let go. Ends a replay. */
-  hold(pointer: Vec3 | null): void {
-    if (pointer !== null && !pointer.every(Number.isFinite)) return;
-    if (this.replay !== null) {
-      if (pointer === null) return;
-      this.replay = null;
-    }
+  hold(pointer: Frame | null): void {
+    if (pointer !== null && ![...pointer.place, ...pointer.turn].every(Number.isFinite)) return;
+    if (this.replay !== null && pointer === null) return;
+    this.replay = null;
     this.pointer = pointer;
   }
 
-  /** Follows a recorded hand from where its tool began. (n, 6), n > 0 */
+  /** Repeats a recorded path, from where its tool began. (n, width), n > 0 */
   startReplay(lines: Float64Array): void {
-    this.place([lines[3] as number, lines[4] as number, lines[5] as number]);
+    this.place(this.format.start([...lines.subarray(0, this.format.width)]));
     this.replay = { lines, next: 0, differs: -1 };
   }
 
-  /** One cycle. Gives, at the end of a replay, how many cycles it had, and the first that differs. */
+  /** One cycle. Returns, at the end of a replay, its cycles and the first one that differs. */
   run(): { cycles: number; differs: number } | null {
-    const before = this.tip_;
-    this.hand_ = this.nextHand();
-    const wasOk = this.last !== null && this.last.status <= lastOk;
-    this.last = this.guard.follow(this.hand_);
-    this.tip_ = this.last.tip;
-    this.record.add([...this.hand_, ...before], wasOk);
-    ++this.cycles;
-    if (this.last.activeCount > 0) ++this.limited;
-    return this.advanceReplay(before);
-  }
-
-  discard(): void {
-    this.guard.discard();
-  }
-
-  private nextHand(): Vec3 {
-    if (this.replay !== null) {
-      const { lines, next } = this.replay;
-      return [
-        lines[6 * next] as number,
-        lines[6 * next + 1] as number,
-        lines[6 * next + 2] as number,
-      ];
+    const { last: before, replay, format, tool } = this;
+    const { width } = format;
+    const recorded =
+      replay &&
+      ([...replay.lines.subarray(width * replay.next, width * (replay.next + 1))] as const);
+    if (recorded !== null) {
+      this.last = format.repeat(tool, recorded);
+      this.hand = format.hand(this.last);
+    } else {
+      // Let go, the hand is drawn to the tool.
+      this.hand = between(this.hand, this.pointer ?? before.flange, 1 / handSmoothing);
+      this.last = tool.follow(this.hand);
     }
-    // Let go, the hand is drawn to the tool.
-    const towards = this.pointer ?? this.tip_;
-    const way = towards.map((value, i) => value - (this.hand_[i] as number)) as unknown as Vec3;
-    if (Math.hypot(...way) < arrival) return towards;
-    const share = 1 / handSmoothing;
-    return this.hand_.map((value, i) => value + share * (way[i] as number)) as unknown as Vec3;
-  }
-
-  private advanceReplay(before: Vec3): { cycles: number; differs: number } | null {
-    const { replay } = this;
+    const line = format.line(before, this.last);
+    this.record.add(line, before.status <= lastOk);
+    ++this.cycles;
+    if (this.last.held > 0) ++this.limited;
     if (replay === null) return null;
-    const at = 6 * replay.next + 3;
-    const isSame = before.every((value, i) => Object.is(value, replay.lines[at + i]));
+    const isSame = line.every((value, i) => Object.is(value, recorded?.[i]));
     if (!isSame && replay.differs < 0) replay.differs = replay.next;
-    if (6 * ++replay.next < replay.lines.length) return null;
+    if (width * ++replay.next < replay.lines.length) return null;
     this.replay = null;
     return { cycles: replay.next, differs: replay.differs };
   }
+
+  discard(): void {
+    this.tool.discard();
+  }
+}
+
+/** A share of the way from one frame to another; of what is nearer than matters: the other. */
+function between(from: Frame, to: Frame, share: number): Frame {
+  const sign =
+    from.turn.reduce((sum, value, i) => sum + value * (to.turn[i] as number), 0) < 0 ? -1 : 1;
+  const off = Math.hypot(
+    ...from.place.map((value, i) => value - (to.place[i] as number)),
+    ...from.turn.map((value, i) => value - sign * (to.turn[i] as number)),
+  );
+  if (off < arrival) return to;
+  const place = from.place.map((value, i) => value + share * ((to.place[i] as number) - value));
+  const turn = from.turn.map((value, i) => value + share * (sign * (to.turn[i] as number) - value));
+  const length = Math.hypot(...turn);
+  return {
+    place: place as unknown as Frame["place"],
+    turn: turn.map((value) => value / length) as unknown as Frame["turn"],
+  };
 }

@@ -20,16 +20,12 @@ export function runCounterexamples(
         Uint32Array.from(example.triangles.flat()),
       );
       const ends = (["paper", "certified"] as const).map((rule): Vec3 => {
-        const guard = keepout.guard(anatomy, {
-          rule,
-          radius: example.radius,
-          toolRadius: 0,
-          margin,
-          maxStep: example.radius,
-        });
-        const { motion } = guard.step(example.tip, example.desired);
-        guard.discard();
-        return example.tip.map((value, i) => value + (motion[i] as number)) as unknown as Vec3;
+        const { radius, tip, desired } = example;
+        const settings = { rule, radius, toolRadius: 0, margin, maxStep: radius };
+        const tool = keepout.tool(anatomy, settings, null);
+        const { motion } = tool.step([...tip, ...desired]);
+        tool.discard();
+        return tip.map((value, i) => value + (motion[i] as number)) as unknown as Vec3;
       });
       anatomy.discard();
       return { example, ends };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import type { Vec3 } from "../engine/keepout.ts";
-import type { AnatomyScene } from "./anatomy_scene.ts";
+import type { Scene } from "./scene.ts";
 
 /** How near a pointer must be to take hold, or on the ball. [px] */
 const reach = { mouse: 30, touch: 52 } as const;
@@ -54,20 +54,18 @@ export class HandInput {
    * an axis of the mesh's frame, as long as the angle [rad]; without it, it does not.
    */
   constructor(
-    private readonly scene: AnatomyScene,
+    private readonly scene: Scene,
     private readonly view: HTMLElement,
     private readonly hold: (place: Vec3 | null) => void,
     private readonly turn?: (rotation: Vec3) => void,
   ) {
     // Before the camera's own controls see it.
-    view.addEventListener("pointerdown", (event) => this.take(event), { capture: true });
-    view.addEventListener("pointermove", (event) => this.lead(event), { capture: true });
-    view.addEventListener("pointerup", (event) => this.letGo(event), { capture: true });
-    view.addEventListener("pointercancel", (event) => this.letGo(event), { capture: true });
-    view.addEventListener("wheel", (event) => this.deepen(event), {
-      capture: true,
-      passive: false,
-    });
+    const options = { capture: true, passive: false };
+    view.addEventListener("pointerdown", (event) => this.take(event), options);
+    view.addEventListener("pointermove", (event) => this.lead(event), options);
+    view.addEventListener("pointerup", (event) => this.letGo(event), options);
+    view.addEventListener("pointercancel", (event) => this.letGo(event), options);
+    view.addEventListener("wheel", (event) => this.deepen(event), options);
     view.addEventListener("keydown", (event) => this.press(event));
     view.addEventListener("keyup", (event) => {
       this.isSlow = event.shiftKey;
@@ -192,7 +190,7 @@ export class HandInput {
   }
 
   /** From -1 to 1 both ways. */
-  private inView(event: PointerEvent): { x: number; y: number } {
+  inView(event: MouseEvent): { x: number; y: number } {
     const box = this.view.getBoundingClientRect();
     return {
       x: (2 * (event.clientX - box.left)) / box.width - 1,

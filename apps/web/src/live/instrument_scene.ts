@@ -1,20 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import * as three from "three";
 import type { Vec3 } from "../engine/keepout.ts";
-import type { Frame, InstrumentFacts } from "../engine/manipulator.ts";
-import { AnatomyScene } from "./anatomy_scene.ts";
-import { Capsule } from "./capsule.ts";
-import { colors, Spring, Trail } from "./markers.ts";
-
-/** What is seen of a moment. */
-export interface InstrumentMoment {
-  readonly hand: Frame;
-  readonly flange: Frame;
-  /** Both ends of each body's axis: (bodies, 6). [mm] */
-  readonly cores: readonly number[];
-  /** The number of the body that is held back; -1: none is. */
-  readonly held: number;
-}
+import type { ToolFacts } from "../engine/tool.ts";
+import type { CenteredSurface } from "../page/centered_surface.ts";
+import { Capsule, colors } from "./markers.ts";
+import type { State } from "./protocol.ts";
+import { heldBody } from "./readings.ts";
+import { Scene } from "./scene.ts";
 
 /** How much of the instrument is seen at first, across the view. [mm] */
 const seenAtFirst = 130;
@@ -22,26 +14,29 @@ const seenAtFirst = 130;
 const steel = "#8d9db5";
 
 /** The anatomy, and in it an instrument, and where the hand wants its jaw. */
-export class InstrumentScene extends AnatomyScene {
+export class InstrumentScene extends Scene {
   private bodies: Capsule[] = [];
   private wanted: Capsule | null = null;
-  private readonly spring = new Spring();
-  private readonly trail = new Trail(colors.tool);
   private readonly port = new three.Mesh(
     new three.TorusGeometry(9, 1.6, 12, 40),
     new three.MeshStandardMaterial({ color: steel, roughness: 0.5 }),
   );
-  private moment: InstrumentMoment | null = null;
+  /** Whether the view is still to be turned to the jaw. */
+  private isNew = true;
 
   constructor(container: HTMLElement, room: () => number, onDraw: () => void) {
     super(container, room, onDraw);
-    this.moving.add(this.spring.line, this.trail.line, this.port);
+    this.moving.add(this.port);
     this.spring.line.renderOrder = 3;
     this.toolRadius = 4; // which is held by its jaw
   }
 
-  /** Another instrument. */
-  equip({ bodies }: InstrumentFacts): void {
+  override show(surface: CenteredSurface): void {
+    this.isNew = true;
+    super.show(surface);
+  }
+
+  equip({ bodies }: ToolFacts): void {
     for (const body of [...this.bodies, this.wanted]) {
       if (body === null) continue;
       this.moving.remove(...body.parts);
@@ -53,27 +48,20 @@ export class InstrumentScene extends AnatomyScene {
     );
     this.wanted = new Capsule(1.25 * (bodies[last]?.radius ?? 1), colors.hand, 0.6);
     this.moving.add(...[...this.bodies, this.wanted].flatMap(({ parts }) => parts));
-    this.moment = null;
-    this.moving.visible = false;
-    this.trail.clear();
+    this.clear();
   }
 
-  /** What is to be seen from now on. */
-  update(moment: InstrumentMoment): void {
-    const { place } = moment.flange;
-    if (this.moment?.flange.place.some((value, i) => value !== place[i])) {
-      this.trail.add(this.inside(place));
-    }
-    this.moment = moment;
-    this.moving.visible = true;
-    this.redraw();
+  override update(moment: State): void {
+    if (this.isNew) this.lookAtJaw(moment);
+    this.isNew = false;
+    super.update(moment);
   }
 
   /**
    * Looks at the jaw from beside the shaft, whence the anatomy hides as little as can be; of such
    * places the highest.
    */
-  lookAtJaw({ cores, flange }: InstrumentMoment): void {
+  private lookAtJaw({ cores, flange }: State): void {
     const tip = this.inside(flange.place);
     const port = this.inside(cores.slice(0, 3) as unknown as Vec3);
     const back = port.clone().sub(tip).normalize();
@@ -112,9 +100,10 @@ export class InstrumentScene extends AnatomyScene {
     this.controls.update();
   }
 
-  protected arrange(): void {
-    if (this.moment === null || this.wanted === null) return;
-    const { hand, flange, cores, held } = this.moment;
+  protected arrange(moment: State): void {
+    if (this.wanted === null) return;
+    const { hand, flange, cores } = moment;
+    const held = heldBody(moment);
     const point = (i: number) => this.inside(cores.slice(3 * i, 3 * i + 3) as unknown as Vec3);
     const last = this.bodies.length - 1;
     this.bodies.forEach((body, i) => {

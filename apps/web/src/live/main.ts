@@ -1,43 +1,63 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/** The page of `keepout live`: puts its parts together. */
-import type { GuardSettings, Rule, Vec3 } from "../engine/keepout.ts";
+/** The page of `keepout live`, for the ball of a tip or for an instrument: puts its parts together. */
+import { Quaternion, Vector3 } from "three";
+import type { Vec3 } from "../engine/keepout.ts";
+import {
+  type Frame,
+  type Rule,
+  type ToolFacts,
+  type ToolSettings,
+  unturned,
+} from "../engine/tool.ts";
+import { saveFile } from "../page/save_file.ts";
 import { ClearanceChart } from "./clearance_chart.ts";
 import { CounterexampleView } from "./counterexample_view.ts";
+import { takeFiles } from "./file_input.ts";
+import { showFindings } from "./findings.ts";
 import { HandInput } from "./hand_input.ts";
+import { InstrumentScene } from "./instrument_scene.ts";
+import { type Choice, MeshList, meshOf, nameOf } from "./mesh_list.ts";
 import {
   element,
   embeddedText,
   grouped,
+  isTip,
   made,
-  type PageSettings,
+  page,
   roomBetweenCards,
-  save,
   toast,
 } from "./page.ts";
-import { type PathHeader, parsePath, pathText, replayCommand } from "./path_file.ts";
-import { type FromWorker, mostCycles, type Source, type State, type ToWorker } from "./protocol.ts";
-import { Readings, showFindings } from "./readings.ts";
-import { Scene } from "./scene.ts";
+import {
+  instrumentPathText,
+  type PathHeader,
+  parsePath,
+  pathText,
+  replayCommand,
+} from "./path_file.ts";
+import { tenMinutes } from "./path_record.ts";
+import type { FromWorker, State, ToWorker } from "./protocol.ts";
+import { Readings } from "./readings.ts";
+import { SettingsPanel } from "./settings_panel.ts";
+import { TipScene } from "./tip_scene.ts";
 
-const page: PageSettings = JSON.parse(embeddedText("settings"));
-let settings: GuardSettings = {
+// The page has the elements for both tools.
+for (const part of document.querySelectorAll<HTMLElement>("[data-tool]")) {
+  if ((part.dataset.tool === "tip") === isTip) part.removeAttribute("data-tool");
+  else part.remove();
+}
+
+let settings: ToolSettings = {
   rule: page.activation as Rule,
   radius: page.radius,
   toolRadius: page.tool_radius,
   margin: page.margin,
   maxStep: page.max_step,
 };
-/** An anatomy that can be chosen, and what to call it on a command line. */
-interface Choice {
-  readonly source: Source;
-  readonly command: string;
-}
-/** By the values of the list's options. */
-const choices = new Map<string, Choice>();
 let shown: Choice | null = null;
 /** That which is being loaded, until it is there or has failed. */
 let awaited: Choice | null = null;
 let triangles = 0;
+let facts: ToolFacts | null = null;
 let state: State | null = null;
 let readings: Readings | null = null;
 /** A path that is to be played, once its mesh is there. */
@@ -50,55 +70,89 @@ const worker = new Worker(
 worker.onmessage = ({ data }: MessageEvent<FromWorker>) => hear(data);
 worker.onerror = () => toast("keepout itself has failed in this page: reload it.");
 
-tell({ kind: "start", engine: embeddedText("engine") });
-const meshes = element("mesh", HTMLSelectElement);
+const subject = isTip ? "tip" : "instrument";
+tell({ kind: "start", engine: embeddedText("engine"), subject });
+const meshes = new MeshList(load);
 const grip = element("grip", HTMLElement);
 page.meshes.forEach((mesh, i) => {
   const source = { kind: "embedded", mesh, data: embeddedText(`mesh-${i}`) } as const;
-  offer("In this page", { source, command: mesh.command_name });
+  meshes.offer("In this page", { source, command: mesh.command_name });
 });
-chooseMesh();
+meshes.choose();
 
 const view = element("view", HTMLElement);
-const scene = made(() => new Scene(view, () => roomBetweenCards(view), placeGrip));
+const room = () => roomBetweenCards(view);
+const tipScene = isTip ? made(() => new TipScene(view, room, placeGrip)) : null;
+const scene = tipScene ?? made(() => new InstrumentScene(view, room, placeGrip));
 const chart = new ClearanceChart(element("chart", HTMLElement));
-const failures = new CounterexampleView();
-const input = new HandInput(scene, view, (place) => {
-  grip.classList.remove("new");
-  tell({ kind: "hand", place });
-});
+/** Where the hand holds the tool, and how the hand is turned; null: it does not hold it. */
+let held: Vec3 | null = null;
+let turn = new Quaternion();
+const input = new HandInput(
+  scene,
+  view,
+  (place) => {
+    grip.classList.remove("new");
+    if (place !== null && held === null) turn = new Quaternion(...(state?.hand.turn ?? unturned));
+    held = place;
+    tellHand();
+  },
+  isTip ? undefined : turnBy,
+);
+
+/** Turns the hand about an axis as long as the angle. [rad] */
+function turnBy(rotation: Vec3): void {
+  const about = new Vector3(...rotation);
+  const angle = about.length();
+  turn.premultiply(new Quaternion().setFromAxisAngle(about.divideScalar(angle), angle));
+  tellHand();
+}
 
 function tell(message: ToWorker): void {
   worker.postMessage(message);
+}
+
+function tellHand(): void {
+  const hand = held === null ? null : { place: held, turn: turn.toArray() as Frame["turn"] };
+  tell({ kind: "hand", hand });
+}
+
+/** The hand is taken away from whatever leads it; it stays where it is, as the tool does. */
+function drop(): void {
+  input.drop();
+  held = null;
 }
 
 function hear(message: FromWorker): void {
   switch (message.kind) {
     case "ready":
       readings = new Readings(message.statuses);
-      for (const name of message.shapes) {
-        offer("Generated", { source: { kind: "shape", name }, command: name });
+      // An instrument has no port at a generated mesh.
+      for (const name of isTip ? message.shapes : []) {
+        meshes.offer("Generated", { source: { kind: "shape", name }, command: name });
       }
       return;
     case "surface":
-      input.drop();
+      drop();
       scene.show(message);
       chart.clear();
       state = null;
       shown = awaited;
-      if (shown !== null && optionOf(shown) === undefined) offer("Opened", shown);
-      selectShown();
+      if (shown !== null) meshes.select(shown);
       document.title = `${message.name} – keepout live`;
       triangles = message.corners.length / 3;
       return;
     case "findings":
-      showFindings(message.findings, triangles, warningsOf(shown));
+      showFindings(message.findings, triangles, meshOf(shown)?.warnings ?? []);
       return;
     case "guarded":
-      awaited = null;
-      element("loading", HTMLElement).hidden = true;
+      endLoading();
       begin();
       play();
+      return;
+    case "tool":
+      facts = message.facts;
+      scene.equip(facts);
       return;
     case "state":
       show(message.state);
@@ -106,100 +160,77 @@ function hear(message: FromWorker): void {
     case "path":
       takePath(message.use, message.lines, message.settings);
       return;
-    case "replayed":
+    case "replayed": {
+      const what = isTip ? "the tool" : "the joints";
       toast(
         message.differs < 0
-          ? `Replayed: ${grouped(message.cycles)} cycles, and the tool went the same way, bit for bit.`
+          ? `Replayed: ${grouped(message.cycles)} cycles, and ${what} went the same way, bit for bit.`
           : `Replayed: ${grouped(message.cycles)} cycles; from cycle ${grouped(message.differs + 1)} ` +
-              "on the tool went another way than on record.",
+              `on ${what} went another way than on record.`,
       );
       return;
+    }
     case "counterexamples":
-      failures.open(message);
+      failures?.open(message);
       return;
     case "settings":
-      input.drop();
+      drop();
       settings = message.settings;
       showSettings();
       return;
     case "failure":
       toast(message.message);
       if (message.of !== "load") return;
-      awaited = pendingPath = null;
-      element("loading", HTMLElement).hidden = true;
+      endLoading();
+      pendingPath = null;
       grip.hidden = state === null;
-      selectShown();
+      meshes.select(shown);
       return;
   }
 }
 
-/** The tool begins beside the anatomy. */
+function endLoading(): void {
+  awaited = null;
+  element("loading", HTMLElement).hidden = true;
+}
+
+/** An instrument begins where the command has placed it, a tip beside the anatomy. */
 function begin(): void {
-  const place = scene.placeBeside(settings.toolRadius + settings.margin);
-  tell({ kind: "place", tip: place });
+  const start = meshOf(shown)?.start?.positions;
+  const positions = start ?? tipScene?.placeBeside(settings.toolRadius + settings.margin);
+  if (positions !== undefined) tell({ kind: "place", positions });
 }
 
 function show(now: State): void {
+  if (facts === null) return;
   state = now;
   if (awaited === null && grip.hidden) {
     placeGrip();
     grip.hidden = false;
   }
-  input.rest(now.hand);
-  scene.update({ hand: now.hand, tip: now.tip, planes: now.planes });
-  chart.add(now.time, now.handClearance, now.toolClearance);
-  readings?.show(now, settings, scene.frames);
+  input.rest(now.hand.place);
+  scene.update(now);
+  chart.add(now.time, now.handClearance, Math.min(...now.clearances));
+  readings?.show(now, settings, facts, scene.frames);
 }
 
 /** The ring around the hand, where the view has it. */
 function placeGrip(): void {
-  if (state !== null) grip.style.transform = scene.shift(state.hand);
+  if (state !== null) grip.style.transform = scene.shift(state.hand.place);
 }
 
 // What is chosen.
 
-function nameOf({ source }: Choice): string {
-  return source.kind === "embedded" ? source.mesh.name : source.name;
-}
-
-/** What `keepout live` had to say of it. */
-function warningsOf(choice: Choice | null): readonly string[] {
-  return choice?.source.kind === "embedded" ? choice.source.mesh.warnings : [];
-}
-
-/** The value of its option in the list, if it stands there. */
-function optionOf(choice: Choice): string | undefined {
-  return [...choices].find(([, one]) => one === choice)?.[0];
-}
-
-/** Puts a choice into the list, under a heading. */
-function offer(heading: string, choice: Choice): void {
-  let group = meshes.querySelector<HTMLOptGroupElement>(`optgroup[label="${heading}"]`);
-  if (group === null) {
-    group = document.createElement("optgroup");
-    group.label = heading;
-    meshes.append(group);
-  }
-  const value = String(choices.size);
-  choices.set(value, choice);
-  group.append(new Option(nameOf(choice), value));
-}
-
-function chooseMesh(): void {
-  const choice = choices.get(meshes.value);
-  if (choice !== undefined) load(choice);
-}
-
-/** The list says what is in the view, also when what was chosen could not be. */
-function selectShown(): void {
-  if (shown !== null) meshes.value = optionOf(shown) ?? "";
+/** Whether another mesh is being read, which the user is then told. */
+function isReading(): boolean {
+  if (awaited !== null) toast(`${nameOf(awaited)} is still being read`);
+  return awaited !== null;
 }
 
 function load(choice: Choice): void {
-  if (awaited !== null) {
-    toast(`${nameOf(awaited)} is still being read`);
+  if (isReading()) {
     pendingPath = null;
-    selectShown();
+    meshes.select(shown);
     return;
   }
   awaited = choice;
@@ -207,15 +238,14 @@ function load(choice: Choice): void {
   line.textContent = `Reading ${nameOf(choice)} …`;
   line.hidden = false;
   grip.hidden = true;
-  tell({ kind: "load", source: choice.source, settings });
+  const base = meshOf(choice)?.start?.base;
+  const port = page.robot !== undefined && base ? { robot: page.robot, base } : null;
+  tell({ kind: "load", source: choice.source, settings, port });
 }
 
 async function openFile(file: File): Promise<void> {
   if (/\.(txt|csv)$/i.test(file.name)) {
-    if (awaited !== null) {
-      toast(`${nameOf(awaited)} is still being read`);
-      return;
-    }
+    if (isReading()) return;
     try {
       pendingPath = parsePath(await file.text());
     } catch (error) {
@@ -239,9 +269,9 @@ function adopt(header: PathHeader | null): void {
     showSettings();
     tell({ kind: "settings", settings });
     if (header.mesh !== shown?.command) {
-      const choice = [...choices].find(([, { command }]) => command === header.mesh);
+      const choice = meshes.called(header.mesh);
       if (choice !== undefined) {
-        load(choice[1]); // it is played once that is there
+        load(choice); // it is played once that is there
         return;
       }
       pendingPath = null;
@@ -253,7 +283,7 @@ function adopt(header: PathHeader | null): void {
 }
 
 function replay(lines: Float64Array): void {
-  input.drop();
+  drop();
   tell({ kind: "replay", lines });
 }
 
@@ -263,19 +293,29 @@ function play(): void {
   pendingPath = null;
 }
 
-function takePath(use: "save" | "replay", lines: Float64Array, made: GuardSettings): void {
-  if (lines.length === 0 || shown === null) return;
+function takePath(use: "save" | "replay", lines: Float64Array, madeWith: ToolSettings): void {
+  if (lines.length === 0 || shown === null || facts === null) return;
   if (use === "replay") {
     replay(lines);
     return;
   }
-  const header: PathHeader = { keepout: page.keepout, mesh: shown.command, settings: made };
-  const file = `keepout-path-${nameOf(shown).replaceAll(/[^\w.-]/g, "_")}.txt`;
-  save(file, pathText(header, lines));
-  const isFull = lines.length / 6 >= mostCycles;
+  const { keepout, robot } = page;
+  const name = nameOf(shown).replaceAll(/[^\w.-]/g, "_");
+  const mesh = meshOf(shown);
+  if (robot !== undefined && mesh !== undefined) {
+    const { margin, maxStep } = madeWith;
+    const text = instrumentPathText({ keepout, robot, margin, maxStep }, mesh, facts, lines);
+    saveFile(`keepout-path-${robot}-${name}.txt`, text, "text/plain");
+    toast(`${grouped(lines.length / (2 * facts.positions + 6))} cycles saved.`);
+    return;
+  }
+  const header: PathHeader = { keepout, mesh: shown.command, settings: madeWith };
+  const file = `keepout-path-${name}.txt`;
+  saveFile(file, pathText(header, lines), "text/plain");
+  const isFull = lines.length / 6 >= tenMinutes;
   toast(
     `${grouped(lines.length / 6)} cycles saved${isFull ? ", the first ten minutes" : ""}. ` +
-      (made.rule === "none"
+      (madeWith.rule === "none"
         ? "Open the file here to see them again."
         : `To do them again outside: ${replayCommand(header, file)}`),
   );
@@ -283,89 +323,52 @@ function takePath(use: "save" | "replay", lines: Float64Array, made: GuardSettin
 
 // Controls.
 
-const sliders = [
-  ["tool-radius", "toolRadius"],
-  ["margin", "margin"],
-  ["radius", "radius"],
-] as const;
+const panel = new SettingsPanel(change);
 
 function showSettings(): void {
-  for (const radio of document.querySelectorAll<HTMLInputElement>("#rules input")) {
-    radio.checked = radio.value === settings.rule;
-  }
-  for (const [id, key] of sliders) {
-    const slider = element(id, HTMLInputElement);
-    // What the page was made with may be beyond what the slider has.
-    slider.min = String(Math.min(Number(slider.min), settings[key]));
-    slider.max = String(Math.max(Number(slider.max), settings[key]));
-    slider.value = String(settings[key]);
-    slider.ariaValueText = `${settings[key]} mm`;
-    const output = slider.parentElement?.querySelector("output");
-    if (output) output.textContent = `${settings[key]} mm`;
-  }
-  scene.setToolRadius(settings.toolRadius);
+  panel.show(settings);
   chart.setMargin(settings.margin);
 }
 
-function change(part: Partial<GuardSettings>): void {
-  input.drop(); // the tool stands where it is, and so does the hand
+function change(part: Partial<ToolSettings>): void {
+  drop();
   settings = { ...settings, ...part };
   showSettings();
   tell({ kind: "settings", settings });
 }
 
-element("rules", HTMLElement).addEventListener("change", (event) => {
-  change({ rule: (event.target as HTMLInputElement).value as Rule });
-});
-for (const [id, key] of sliders) {
-  const slider = element(id, HTMLInputElement);
-  slider.addEventListener("input", () => change({ [key]: Number(slider.value) }));
-}
-meshes.addEventListener("change", chooseMesh);
-element("open", HTMLButtonElement).onclick = () => element("file", HTMLInputElement).click();
 element("again", HTMLButtonElement).onclick = () => {
-  input.drop();
+  drop();
   begin();
-};
-element("file", HTMLInputElement).onchange = ({ target }) => {
-  const field = target as HTMLInputElement;
-  const file = field.files?.[0];
-  if (file) void openFile(file);
-  field.value = "";
 };
 for (const use of ["save", "replay"] as const) {
   element(use, HTMLButtonElement).onclick = () => tell({ kind: "ask for path", use });
 }
-element("fail", HTMLButtonElement).onclick = () => tell({ kind: "ask for counterexamples" });
-
-// The tool is put where the anatomy is double-clicked.
-view.addEventListener("dblclick", (event) => {
-  const box = view.getBoundingClientRect();
-  const x = (2 * (event.clientX - box.left)) / box.width - 1;
-  const y = 1 - (2 * (event.clientY - box.top)) / box.height;
-  const place: Vec3 | null = scene.placeBefore(x, y, settings.toolRadius + settings.margin);
-  if (place === null) return;
-  input.drop();
-  tell({ kind: "place", tip: place });
-});
-
-// Files that are dropped.
-const dropHint = element("drop", HTMLElement);
-window.addEventListener("dragover", (event) => {
-  event.preventDefault();
-  dropHint.hidden = false;
-});
-window.addEventListener("dragleave", (event) => {
-  if (event.relatedTarget === null) dropHint.hidden = true;
-});
-window.addEventListener("drop", (event) => {
-  event.preventDefault();
-  dropHint.hidden = true;
-  const file = event.dataTransfer?.files[0];
-  if (file) void openFile(file);
-});
 document.addEventListener("visibilitychange", () => {
   tell({ kind: "pause", paused: document.hidden });
 });
-
+if (!isTip) {
+  view.ariaLabel =
+    "The anatomy and the instrument, with the hand in red. Arrow keys lead its jaw across the view, " +
+    "Page Up and Page Down into it and out of it; A, D, W, S, Q and E turn it; with Shift slowly; " +
+    "Escape lets go.";
+}
+const failures = tipScene === null ? null : addTipControls(tipScene);
 showSettings();
+
+/** Adds files, double-clicks and counterexamples, which a page of an instrument lacks. */
+function addTipControls(tip: TipScene): CounterexampleView {
+  takeFiles((file) => void openFile(file));
+  element("fail", HTMLButtonElement).onclick = () => tell({ kind: "ask for counterexamples" });
+
+  // The tool is put where the anatomy is double-clicked.
+  view.addEventListener("dblclick", (event) => {
+    const { x, y } = input.inView(event);
+    const place = tip.placeBefore(x, y, settings.toolRadius + settings.margin);
+    if (place === null) return;
+    drop();
+    tell({ kind: "place", positions: place });
+  });
+
+  return new CounterexampleView();
+}

@@ -9,6 +9,8 @@ export interface PageSettings {
   readonly tool_radius: number;
   readonly margin: number;
   readonly max_step: number;
+  /** Of an instrument; a tip has none. */
+  readonly robot?: string;
   readonly meshes: readonly EmbeddedMesh[];
 }
 
@@ -24,6 +26,11 @@ export function embeddedText(id: string): string {
   return document.getElementById(id)?.textContent ?? "";
 }
 
+export const page: PageSettings = JSON.parse(embeddedText("settings"));
+
+/** Whether the tool is the ball of a tip, or else an instrument. */
+export const isTip = page.robot === undefined;
+
 /** For people: 1,234,567. */
 export const grouped = (count: number): string => Math.round(count).toLocaleString("en");
 
@@ -34,15 +41,6 @@ export function set(where: string | Element | null, text: string): void {
 }
 
 export const millimetres = (length: number): string => `${length.toFixed(2)} mm`;
-
-/** Hands a file to whoever looks at the page. */
-export function save(name: string, text: string): void {
-  const link = document.createElement("a");
-  link.href = URL.createObjectURL(new Blob([text], { type: "text/plain" }));
-  link.download = name;
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
-}
 
 /** The share of the view's width between the columns of cards; on a phone they are below it. */
 export function roomBetweenCards(view: HTMLElement): number {

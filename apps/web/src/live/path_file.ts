@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-import type { GuardSettings, Rule } from "../engine/keepout.ts";
+import type { Rule, ToolFacts, ToolSettings } from "../engine/tool.ts";
+import type { EmbeddedMesh } from "./protocol.ts";
 
-/** What a path was made with; stands in its file as JSON, after "# path: ". */
+/** What a path of a tip was made with; stands in its file as JSON, after "# path: ". */
 export interface PathHeader {
   readonly keepout: string;
   /** As `keepout replay` takes it: a file, or the name of a fixture. */
   readonly mesh: string;
-  readonly settings: GuardSettings;
+  readonly settings: ToolSettings;
 }
 
 const mark = "# path: ";
@@ -19,10 +20,6 @@ const rules: readonly string[] = ["none", "all_faces", "paper", "certified"] sat
  */
 export function pathText(header: PathHeader, lines: Float64Array): string {
   const { settings } = header;
-  const rows: string[] = [];
-  for (let i = 0; i < lines.length; i += 6) {
-    rows.push([...lines.subarray(i, i + 6)].map(numberText).join(" "));
-  }
   return [
     "# A path of keepout live: gx gy gz rx ry rz [mm], a line for each cycle of a millisecond: where",
     "# the hand was, and where the tool was before it. A cycle like the one before is left out.",
@@ -30,10 +27,32 @@ export function pathText(header: PathHeader, lines: Float64Array): string {
       ? "# There was no fixture; to replay it, choose a rule with --activation."
       : "# To do it again, and find the tool in columns px py pz, bit for bit:",
     `#   ${replayCommand(header, "THIS_FILE")}`,
-    mark + JSON.stringify(header),
-    ...rows,
-    "",
+    ...headerAndRows(header, lines, 6),
   ].join("\n");
+}
+
+/** A path of an instrument; its header says what it was made with. All bits are kept. */
+export function instrumentPathText(
+  made: { keepout: string; robot: string; margin: number; maxStep: number },
+  { command_name, digest, start }: EmbeddedMesh,
+  { positions: joints, band, period }: ToolFacts,
+  lines: Float64Array,
+): string {
+  const header = { ...made, mesh: command_name, digest, base: start?.base, band, period };
+  return [
+    "# A path of keepout live --robot, a line for each cycle of a millisecond: where the joints were [rad,",
+    `# mm] (${joints}), by how much they went (${joints}), and what was asked of the flange: how it should move [mm]`,
+    "# (3) and turn [rad] (3). A cycle like the one before is left out.",
+    ...headerAndRows(header, lines, 2 * joints + 6),
+  ].join("\n");
+}
+
+function headerAndRows(header: object, lines: Float64Array, width: number): string[] {
+  const rows = [mark + JSON.stringify(header)];
+  for (let i = 0; i < lines.length; i += width) {
+    rows.push([...lines.subarray(i, i + width)].map(numberText).join(" "));
+  }
+  return [...rows, ""];
 }
 
 /** What to type to do a path again. */
@@ -72,7 +91,7 @@ function parseHeader(text: string, line: number): PathHeader {
   } catch {
     throw wrong;
   }
-  const settings: Partial<GuardSettings> = header?.settings ?? {};
+  const settings: Partial<ToolSettings> = header?.settings ?? {};
   const lengths = [settings.radius, settings.toolRadius, settings.margin, settings.maxStep];
   if (typeof header?.mesh !== "string") throw wrong;
   if (!rules.includes(settings.rule ?? "") || !lengths.every(Number.isFinite)) throw wrong;
@@ -80,6 +99,6 @@ function parseHeader(text: string, line: number): PathHeader {
 }
 
 /** The fewest digits that read back exactly; JavaScript would lose the sign of zero. */
-export function numberText(value: number): string {
+function numberText(value: number): string {
   return Object.is(value, -0) ? "-0" : String(value);
 }

@@ -1,9 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/** What the page and its worker, in which keepout runs, tell each other. */
-import type { Counterexample, Findings, GuardSettings, Plane, Vec3 } from "../engine/keepout.ts";
+/** Messages between the page and its worker, in which keepout runs. */
+import type { Counterexample, Findings, Vec3 } from "../engine/keepout.ts";
+import type {
+  Cycle,
+  Frame,
+  Plane,
+  Port,
+  Subject,
+  ToolFacts,
+  ToolSettings,
+} from "../engine/tool.ts";
+import type { CenteredSurface } from "../page/centered_surface.ts";
 import type { PackedSurface } from "../page/embedded_surface.ts";
-import type { DrawnSurface } from "./drawn_surface.ts";
-import type { LoopState, StatusWords } from "./status_line.ts";
+import type { CycleClock } from "./cycle_clock.ts";
 
 /** A mesh that `keepout live` has put into the page: see apps/keepout/live. */
 export interface EmbeddedMesh extends PackedSurface {
@@ -11,10 +20,11 @@ export interface EmbeddedMesh extends PackedSurface {
   /** What to give to `keepout replay` as MESH. */
   readonly command_name: string;
   readonly warnings: readonly string[];
+  /** Where an instrument begins: its port, and its joints. [mm, rad] */
+  readonly start?: { readonly base: readonly number[]; readonly positions: readonly number[] };
+  /** Of the mesh of an instrument, as keepout has it. */
+  readonly digest?: string;
 }
-
-/** Of a path: ten minutes at 1 kHz. */
-export const mostCycles = 600_000;
 
 /** Where an anatomy comes from. */
 export type Source =
@@ -24,33 +34,45 @@ export type Source =
 
 export type ToWorker =
   /** The engine, as the page holds it: base64 of gzip. */
-  | { readonly kind: "start"; readonly engine: string }
-  | { readonly kind: "load"; readonly source: Source; readonly settings: GuardSettings }
-  | { readonly kind: "settings"; readonly settings: GuardSettings }
-  /** The tool is put there, and a new path begins. */
-  | { readonly kind: "place"; readonly tip: Vec3 }
+  | { readonly kind: "start"; readonly engine: string; readonly subject: Subject }
+  | {
+      readonly kind: "load";
+      readonly source: Source;
+      readonly settings: ToolSettings;
+      readonly port: Port | null;
+    }
+  | { readonly kind: "settings"; readonly settings: ToolSettings }
+  /** The tip or the joints are put there, and a new path begins. */
+  | { readonly kind: "place"; readonly positions: readonly number[] }
   /** Where the hand is; null: it lets go, and the spring draws it to the tool. */
-  | { readonly kind: "hand"; readonly place: Vec3 | null }
-  /** Follows a recorded hand: (n, 6), as a path file has it. */
+  | { readonly kind: "hand"; readonly hand: Frame | null }
+  /** Repeats a recorded path: see path_record.ts. */
   | { readonly kind: "replay"; readonly lines: Float64Array }
   | { readonly kind: "ask for path"; readonly use: "save" | "replay" }
   | { readonly kind: "ask for counterexamples" }
   /** Time stands still while nobody looks. */
   | { readonly kind: "pause"; readonly paused: boolean };
 
-/** What the last cycles came to: told some sixty times a second. */
-export interface State extends LoopState {
-  readonly tip: Vec3;
-  readonly hand: Vec3;
-  /** On the hand. [N] */
-  readonly force: Vec3;
-  /** From the ball of the tool to the surface; below 0 inside. NaN where unknown. [mm] */
-  readonly toolClearance: number;
-  /** The same of a ball as large where the hand is. [mm] */
+/** The last cycle, and those before it: told some sixty times a second. */
+export interface State extends Cycle, Pick<CycleClock, "lost" | "stepTime" | "rate"> {
+  /** Of the worker's clock, at the last cycle. [ms] */
+  readonly time: number;
+  readonly hand: Frame;
+  /** From each body's surface to the mesh; of a tip below 0 inside, NaN where unknown. [mm] */
+  readonly clearances: readonly number[];
+  /** The same of the last body's radius where the hand is. [mm] */
   readonly handClearance: number;
+  /** Those that limit the motion of a tip. */
   readonly planes: readonly Plane[];
-  readonly planeCount: number;
-  readonly triangles: number;
+  /** All cycles since the anatomy was loaded, and those in which something limited the motion. */
+  readonly cycles: number;
+  readonly limited: number;
+}
+
+/** A status in words. */
+export interface StatusWords {
+  readonly name: string;
+  readonly reason: string;
 }
 
 export type FromWorker =
@@ -59,16 +81,18 @@ export type FromWorker =
       readonly shapes: readonly string[];
       readonly statuses: readonly StatusWords[];
     }
-  | ({ readonly kind: "surface" } & DrawnSurface)
+  | ({ readonly kind: "surface"; readonly name: string } & CenteredSurface)
   | { readonly kind: "findings"; readonly findings: Findings }
   /** The index is built: the tool can be placed. */
   | { readonly kind: "guarded" }
+  /** A tool was made. */
+  | { readonly kind: "tool"; readonly facts: ToolFacts }
   | { readonly kind: "state"; readonly state: State }
   | {
       readonly kind: "path";
       readonly use: "save" | "replay";
       readonly lines: Float64Array;
-      readonly settings: GuardSettings;
+      readonly settings: ToolSettings;
     }
   /** A replay has come to its end; `differs`: the first cycle with another tool, or -1. */
   | { readonly kind: "replayed"; readonly cycles: number; readonly differs: number }
@@ -79,6 +103,6 @@ export type FromWorker =
       readonly examples: readonly { example: Counterexample; ends: readonly Vec3[] }[];
     }
   /** Those that stay in force, when others were refused. */
-  | { readonly kind: "settings"; readonly settings: GuardSettings }
+  | { readonly kind: "settings"; readonly settings: ToolSettings }
   /** `of`: what was asked for. */
   | { readonly kind: "failure"; readonly of: ToWorker["kind"]; readonly message: string };

@@ -1,69 +1,108 @@
 // SPDX-License-Identifier: BSD-3-Clause
-import { type Findings, type GuardSettings, spring } from "../engine/keepout.ts";
-import { element, grouped, millimetres, set } from "./page.ts";
-import type { State } from "./protocol.ts";
-import { StatusLine, type StatusWords } from "./status_line.ts";
+import { type Frame, spring, type ToolFacts, type ToolSettings } from "../engine/tool.ts";
+import { element, grouped, isTip, millimetres, set } from "./page.ts";
+import type { State, StatusWords } from "./protocol.ts";
 
-/** The card that tells what keepout does. */
+/** How each status is to be taken: the colour of its chip. */
+const moods: Readonly<Record<string, "free" | "limited">> = {
+  free: "free",
+  limited: "limited",
+  recovering: "limited",
+  fallback: "limited",
+  yielding: "limited",
+};
+
+/** The number of the body that is held back: the nearest to the surface while a row holds; else -1. */
+export const heldBody = ({ held, nearest }: State): number => (held > 0 ? nearest : -1);
+
+/** The card that shows what keepout does. The page of each tool has some of its figures. */
 export class Readings {
-  private readonly line: StatusLine;
+  private readonly status = element("status", HTMLElement);
   private readonly figure = element("clearance", HTMLElement);
+  private readonly bodies = new Map<string, HTMLElement>();
+  private spokenAt = 0;
+  private frames = { at: performance.now(), count: 0 };
 
-  constructor(statuses: readonly StatusWords[]) {
-    this.line = new StatusLine(statuses);
-  }
+  constructor(private readonly statuses: readonly StatusWords[]) {}
 
   /** `frames`: drawn since the beginning. */
-  show(state: State, settings: GuardSettings, frames: number): void {
+  show(state: State, settings: ToolSettings, facts: ToolFacts, frames: number): void {
     const isGuarded = settings.rule !== "none";
-    this.line.show(state, isGuarded, frames);
-    const isInside = state.toolClearance < 0;
-    this.figure.parentElement?.classList.toggle("inside", isInside);
-    set(this.figure, Number.isNaN(state.toolClearance) ? "–" : millimetres(state.toolClearance));
-    set(
-      element("clearance-words", HTMLElement),
-      isInside ? "the tool is in" : "from tool to surface",
-    );
-
+    this.showStatus(state, isGuarded);
+    this.showClearances(state, facts);
     const newtons = Math.hypot(...state.force);
-    const bar = element("force", HTMLElement).querySelector("i");
+    const bar = document.querySelector<HTMLElement>("#force i");
     if (bar) bar.style.width = `${(100 * newtons) / spring.largestForce}%`;
     set("newtons", `${newtons.toFixed(2)} N`);
+    const { hand, flange } = state;
+    const way = Math.hypot(...hand.place.map((value, i) => value - (flange.place[i] as number)));
+    set("hand-off", `${millimetres(way)}, ${degreesBetween(hand, flange).toFixed(0)}°`);
     set("margin-kept", isGuarded ? millimetres(settings.margin) : "–");
-    set("planes", isGuarded ? `${state.planes.length} of ${state.planeCount}` : "–");
+    const planes = isTip ? `${state.planes.length} of ${state.planeCount}` : `${state.held}`;
+    set("planes", isGuarded ? planes : "–");
     set("triangles", isGuarded ? grouped(state.triangles) : "–");
+    set("rounds", `${state.rounds}`);
+    set("step-time", state.rate > 0 ? `${state.stepTime.toFixed(1)} µs` : "–");
+    set("rate", state.rate > 0 ? grouped(state.rate) : "–");
+    set("limited", `${grouped(state.limited)} of ${grouped(state.cycles)}`);
+    set("lost", grouped(state.lost));
+    this.countFrames(frames);
+  }
+
+  /** How the last cycle ended, in a chip and in words. */
+  private showStatus({ status, time }: State, isGuarded: boolean): void {
+    const { name, reason } = this.statuses[status] ?? { name: "unknown", reason: "" };
+    this.status.className = moods[name] ?? "stopped";
+    set(this.status.querySelector("b"), isGuarded ? name.replaceAll("_", " ") : "no fixture");
+    set(this.status.querySelector("span"), isGuarded ? reason : "nothing holds the tool back");
+    // What a screen reader says is heard out before it changes.
+    if (time - this.spokenAt <= 2000) return;
+    this.spokenAt = time;
+    set("spoken", isGuarded ? `${name}: ${reason}` : "no fixture");
+  }
+
+  private showClearances(state: State, { bodies }: ToolFacts): void {
+    const { clearances } = state;
+    const least = Math.min(...clearances);
+    this.figure.parentElement?.classList.toggle("inside", least < 0);
+    set(this.figure, Number.isNaN(least) ? "–" : millimetres(least));
+    if (isTip) {
+      set("clearance-words", least < 0 ? "the tool is in" : "from tool to surface");
+      return;
+    }
+    set("clearance-words", `from the ${bodies[clearances.indexOf(least)]?.name} to the surface`);
+    const held = heldBody(state);
+    set("held", held < 0 ? "nothing" : `by the ${bodies[held]?.name}`);
+    bodies.forEach(({ name }, i) => {
+      const row = this.rowOf(name);
+      set(row, millimetres(clearances[i] as number));
+      row.className = i === held ? "held" : "";
+    });
+  }
+
+  /** Where the clearance of a body stands. */
+  private rowOf(body: string): HTMLElement {
+    let row = this.bodies.get(body);
+    if (row === undefined) {
+      row = document.createElement("dd");
+      const name = document.createElement("dt");
+      name.textContent = `From the ${body}`;
+      element("bodies", HTMLElement).append(name, row);
+      this.bodies.set(body, row);
+    }
+    return row;
+  }
+
+  private countFrames(frames: number): void {
+    const now = performance.now();
+    if (now - this.frames.at < 1000) return;
+    const rate = (1000 * (frames - this.frames.count)) / (now - this.frames.at);
+    set("frames", rate.toFixed(0));
+    this.frames = { at: now, count: frames };
   }
 }
 
-/** What `keepout inspect` would say of the mesh, and what `keepout live` had to say. */
-export function showFindings(
-  { watertight, size, warnings, findings }: Findings,
-  triangles: number,
-  told: readonly string[],
-): void {
-  const details = element("findings", HTMLDetailsElement);
-  const list = document.createElement("ul");
-  for (const { text, advice } of findings) list.append(item(`${text}. ${sentence(advice)}`));
-  for (const warning of warnings) list.append(item(`In the file: ${warning}.`));
-  for (const warning of told) list.append(item(`${warning}.`));
-  const facts = document.createElement("p");
-  facts.textContent =
-    `${grouped(triangles)} triangles; ${size.map((length) => Number(length.toPrecision(4))).join(" × ")} mm; ` +
-    (watertight ? "watertight" : "not watertight");
-  const count = findings.length + warnings.length + told.length;
-  set(
-    details.querySelector("summary"),
-    count === 0 ? "The mesh: nothing wrong" : `The mesh: ${count} finding${count > 1 ? "s" : ""}`,
-  );
-  details.querySelector("div")?.replaceChildren(facts, list);
-}
-
-function item(text: string): HTMLLIElement {
-  const line = document.createElement("li");
-  line.textContent = text;
-  return line;
-}
-
-function sentence(advice: string): string {
-  return `What to do: ${advice}.`;
+function degreesBetween(a: Frame, b: Frame): number {
+  const cosine = Math.abs(a.turn.reduce((sum, value, i) => sum + value * (b.turn[i] as number), 0));
+  return (360 / Math.PI) * Math.acos(Math.min(cosine, 1));
 }

@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /** Where keepout runs: apart from the page, so that cycles do not wait for drawing. */
 import makeModule from "keepout-module";
-import { type Anatomy, type GuardSettings, Keepout, type Vec3 } from "../engine/keepout.ts";
+import { type Anatomy, Keepout } from "../engine/keepout.ts";
+import type { Port, Subject, Tool, ToolSettings } from "../engine/tool.ts";
+import { centered } from "../page/centered_surface.ts";
 import { decodeSurface } from "../page/embedded_surface.ts";
 import { unpacked } from "../page/unpacked.ts";
 import { ControlLoop } from "./control_loop.ts";
 import { runCounterexamples } from "./counterexample_trials.ts";
 import { CycleClock } from "./cycle_clock.ts";
-import { drawnSurface } from "./drawn_surface.ts";
-import { handleInTurn } from "./message_queue.ts";
 import type { FromWorker, Source, ToWorker } from "./protocol.ts";
 
 let keepout: Keepout;
-let anatomy: { of: Anatomy; settings: GuardSettings } | null = null;
+let anatomy: { of: Anatomy; settings: ToolSettings; port: Port | null } | null = null;
 let loop: ControlLoop | null = null;
-let accepted: GuardSettings | null = null; // those that a guard was last made with
-let place: Vec3 | null = null; // where the tool was put last, in this anatomy
+let accepted: ToolSettings | null = null; // those that a tool was last made with
+let place: readonly number[] | null = null; // where the tool was put last, in this anatomy
 const clock = new CycleClock();
 
 function tell(message: FromWorker, transfer: Transferable[] = []): void {
@@ -33,72 +33,67 @@ function run(): void {
 }
 
 function tellState(time: number): void {
-  const last = loop?.last;
-  if (!loop || !last) return;
-  tell({
-    kind: "state",
-    state: {
-      time,
-      tip: loop.tip,
-      hand: loop.hand,
-      force: last.force,
-      status: last.status,
-      planes: loop.activePlanes().map(({ normal, offset, triangle }) => ({
-        normal,
-        // From where the tool is now, no more from where it was before the cycle.
-        offset: offset - normal.reduce((sum, n, i) => sum + n * (last.motion[i] as number), 0),
-        triangle,
-      })),
-      planeCount: last.planeCount,
-      triangles: last.triangles,
-      toolClearance: loop.anatomy.clearance(loop.tip) - loop.settings.toolRadius,
-      handClearance: loop.anatomy.clearance(loop.hand) - loop.settings.toolRadius,
-      cycles: loop.cycles,
-      limited: loop.limited,
-      lost: clock.lost,
-      stepTime: clock.stepTime,
-      rate: clock.rate,
-    },
-  });
+  if (loop === null || anatomy === null) return;
+  const { last, hand, tool, cycles, limited } = loop;
+  const { bodies } = tool.facts;
+  const clearances = bodies.map((_, i) => tool.clearance(i));
+  // The engine's own figure of the nearest, where it has one.
+  if (last.nearest >= 0) clearances[last.nearest] = last.distance;
+  const handClearance = anatomy.of.clearance(hand.place) - (bodies.at(-1)?.radius ?? 0);
+  const planes = tool.activePlanes();
+  const { lost, stepTime, rate } = clock;
+  const state = { ...last, time, hand, clearances, handClearance, planes };
+  tell({ kind: "state", state: { ...state, cycles, limited, lost, stepTime, rate } });
 }
 
-function tellSurface(name: string, vertices: Float64Array, corners: Uint32Array): void {
-  const drawn = drawnSurface(name, vertices, corners);
-  tell({ kind: "surface", ...drawn }, [drawn.positions.buffer, drawn.corners.buffer]);
+function tellSurface(
+  name: string,
+  surface: { vertices: Float64Array; corners: Uint32Array },
+): void {
+  const drawn = centered(surface.vertices, surface.corners);
+  tell({ kind: "surface", name, ...drawn }, [drawn.positions.buffer, drawn.corners.buffer]);
 }
 
-/** No anatomy, and nothing that guards it. */
+/** Makes a tool on the anatomy; if the engine refuses the settings, throws. */
+function makeTool(settings: ToolSettings): Tool {
+  const { of, port } = anatomy as NonNullable<typeof anatomy>;
+  const tool = keepout.tool(of, settings, port);
+  tell({ kind: "tool", facts: tool.facts });
+  return tool;
+}
+
+/** No anatomy, and no tool. */
 function letGo(): void {
   loop?.discard();
   anatomy?.of.discard();
   loop = anatomy = place = null;
 }
 
-async function load(source: Source, settings: GuardSettings): Promise<void> {
+async function load(source: Source, settings: ToolSettings, port: Port | null): Promise<void> {
   const name = source.kind === "embedded" ? source.mesh.name : source.name;
   let made: Anatomy;
   if (source.kind === "embedded") {
-    const { vertices, corners } = await decodeSurface(source.mesh, source.data);
+    const surface = await decodeSurface(source.mesh, source.data);
     letGo(); // what is seen from here on is the other one
-    tellSurface(name, vertices, corners);
-    made = keepout.anatomyOfSurface(vertices, corners);
+    tellSurface(name, surface);
+    made = keepout.anatomyOfSurface(surface.vertices, surface.corners);
   } else {
     made =
       source.kind === "shape"
         ? keepout.anatomyOfShape(source.name)
         : keepout.anatomyOfFile(source.name, source.bytes);
-    tellSurface(name, made.vertices, made.corners);
+    tellSurface(name, made.surface);
   }
   letGo();
-  anatomy = { of: made, settings };
+  anatomy = { of: made, settings, port };
   clock.lost = 0;
   tell({ kind: "findings", findings: made.findings() });
   tell({ kind: "guarded" });
 }
 
-async function start(engine: string): Promise<void> {
+async function start(engine: string, subject: Subject): Promise<void> {
   keepout = await Keepout.load(makeModule, new Uint8Array(await unpacked(engine)));
-  tell({ kind: "ready", shapes: keepout.shapes, statuses: keepout.statuses("tip") });
+  tell({ kind: "ready", shapes: keepout.shapes, statuses: keepout.statuses(subject) });
   setInterval(run, 1);
 }
 
@@ -106,12 +101,12 @@ async function start(engine: string): Promise<void> {
 function begin(): void {
   if (loop !== null || anatomy === null || place === null) return;
   try {
-    loop = new ControlLoop(keepout, anatomy.of, anatomy.settings, place);
+    loop = new ControlLoop(makeTool, anatomy.settings, place);
   } catch (error) {
     if (accepted === null) throw error;
     anatomy.settings = accepted;
     tell({ kind: "settings", settings: accepted });
-    loop = new ControlLoop(keepout, anatomy.of, accepted, place);
+    loop = new ControlLoop(makeTool, accepted, place);
     throw error;
   } finally {
     clock.restart();
@@ -122,9 +117,9 @@ function begin(): void {
 function handle(message: ToWorker): void | Promise<void> {
   switch (message.kind) {
     case "start":
-      return start(message.engine);
+      return start(message.engine, message.subject);
     case "load":
-      return load(message.source, message.settings);
+      return load(message.source, message.settings, message.port);
     case "settings":
       if (loop !== null) {
         loop.use(message.settings);
@@ -134,12 +129,12 @@ function handle(message: ToWorker): void | Promise<void> {
       begin();
       return;
     case "place":
-      place = message.tip;
+      place = message.positions;
       loop?.place(place);
       begin();
       return;
     case "hand":
-      loop?.hold(message.place);
+      loop?.hold(message.hand);
       return;
     case "replay":
       loop?.startReplay(message.lines);
@@ -164,16 +159,18 @@ function handle(message: ToWorker): void | Promise<void> {
   }
 }
 
-/** Whether there is an engine: where it could not be loaded, nothing else is tried. */
-const isReady = (message: ToWorker): boolean => message.kind === "start" || keepout !== undefined;
-
-handleInTurn<ToWorker>(
-  (message) => (isReady(message) ? handle(message) : undefined),
-  (message, words) => {
-    tell({ kind: "failure", of: message.kind, message: words });
-    if (message.kind === "settings" && anatomy !== null) {
-      tell({ kind: "settings", settings: anatomy.settings });
-    }
-    clock.restart();
-  },
-);
+/** Messages are handled one after the other; one that fails is reported, and the next goes on. */
+let queue: Promise<void> = Promise.resolve();
+self.onmessage = ({ data: message }: MessageEvent<ToWorker>) => {
+  queue = queue
+    // Without an engine, nothing but its start is tried.
+    .then(() => (message.kind === "start" || keepout ? handle(message) : undefined))
+    .catch((error: unknown) => {
+      const words = error instanceof Error ? error.message : String(error);
+      tell({ kind: "failure", of: message.kind, message: words });
+      if (message.kind === "settings" && anatomy !== null) {
+        tell({ kind: "settings", settings: anatomy.settings });
+      }
+      clock.restart();
+    });
+};

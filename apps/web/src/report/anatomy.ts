@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import * as three from "three";
+import { type CenteredSurface, centered } from "../page/centered_surface.ts";
 import { decodeSurface } from "../page/embedded_surface.ts";
 import type { Place, RecordedMesh } from "./simulation_record.ts";
 
-/** A surface to be drawn, about the middle of its box. */
-export interface Anatomy {
-  readonly positions: Float32Array;
-  readonly corners: Uint32Array;
+/** The mesh of a record, about the middle of its box. */
+export interface Anatomy extends CenteredSurface {
   readonly isClosed: boolean;
-  /** The diagonal of its box. [mm] */
-  readonly size: number;
   /** A place of the record as one of these positions. */
   readonly placed: (place: Place) => three.Vector3;
 }
@@ -17,18 +14,11 @@ export interface Anatomy {
 /** Unpacks the mesh of a record. */
 export async function unpackedAnatomy(mesh: RecordedMesh): Promise<Anatomy> {
   const { vertices, corners } = await decodeSurface(mesh.drawn, mesh.drawn.packed);
-  const box = new three.Box3().setFromArray(vertices);
-  const middle = box.getCenter(new three.Vector3());
-  const origin = middle.toArray();
-  const positions = new Float32Array(vertices.length);
-  for (let i = 0; i < vertices.length; ++i) {
-    positions[i] = (vertices[i] as number) - (origin[i % 3] as number);
-  }
+  const surface = centered(vertices, corners);
+  const middle = new three.Vector3(...surface.origin);
   return {
-    positions,
-    corners,
+    ...surface,
     isClosed: mesh.surface === "closed",
-    size: box.getSize(new three.Vector3()).length(),
     placed: (place) => new three.Vector3(...place).sub(middle),
   };
 }

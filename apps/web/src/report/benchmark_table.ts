@@ -2,45 +2,43 @@
 import type { BenchmarkRow } from "./benchmark.ts";
 import { valueAt } from "./record.ts";
 import { lead, section } from "./report_page.ts";
-import { type Format, grouped, mean, percent, rounded, show } from "./shown.ts";
-import { type Column, rowFilter, scrolled, table } from "./table.ts";
+import { type Format, mean, percent, rounded, show } from "./shown.ts";
+import { type Column, column, named, rowFilter, scrolled, table } from "./table.ts";
 
 /** Nothing for what an index of no cost has. */
 const cost: Format = (value) => (value > 0 ? rounded(value) : "–");
 
 const columns: readonly Column[] = [
   { heading: "index", from: "/index" },
-  { heading: "rule", from: "/activation", look: "name" },
-  { heading: "solver", from: "/solver", look: "name" },
-  { heading: "mesh", from: "/mesh", look: "name" },
-  { heading: "triangles", from: "/triangles", format: grouped },
+  named("rule", "/activation"),
+  named("solver", "/solver"),
+  named("mesh", "/mesh"),
+  column("triangles", "/triangles"),
   { heading: "radius [mm]", from: "/radius" },
-  { heading: "build [s]", from: "/build_s", format: cost },
-  { heading: "cores busy", from: "/build_cores", format: cost },
-  { heading: "bytes a triangle", from: "/bytes_per_triangle", format: cost },
-  { heading: "queries", from: "/queries", format: grouped },
-  { heading: "candi\u00addates", from: "/candidates_mean", format: mean },
-  { heading: "hits", from: "/hits_mean", format: mean },
-  { heading: "reach any [%]", from: "/reaching_share", format: percent },
-  { heading: "planes", from: "/planes_mean", format: mean },
-  { heading: "not solved [%]", from: "/unsolved_share", format: percent },
-  { heading: "worse [%]", from: "/worse_share", format: percent },
-  { heading: "candidates only [µs]", from: "/collect_us/p50", format: rounded },
-  { heading: "query [µs]", from: "/query_us/p50", format: rounded },
-  { heading: "find [µs]", from: "/step_query_us/p50", format: rounded },
-  { heading: "activate [µs]", from: "/activate_us/p50", format: rounded },
-  { heading: "solve [µs]", from: "/solve_us/p50", format: rounded },
-  { heading: "step [µs]", from: "/step_us/p50", format: rounded },
-  { heading: "step 99 % [µs]", from: "/step_us/p99", format: rounded },
-  { heading: "step 99.9 % [µs]", from: "/step_us/p999", format: rounded },
-  { heading: "slowest step [µs]", from: "/step_us/max", format: rounded },
+  column("build [s]", "/build_s", cost),
+  column("cores busy", "/build_cores", cost),
+  column("bytes a triangle", "/bytes_per_triangle", cost),
+  column("queries", "/queries"),
+  column("candi\u00addates", "/candidates_mean", mean),
+  column("hits", "/hits_mean", mean),
+  column("reach any [%]", "/reaching_share", percent),
+  column("planes", "/planes_mean", mean),
+  column("not solved [%]", "/unsolved_share", percent),
+  column("worse [%]", "/worse_share", percent),
+  column("candidates only [µs]", "/collect_us/p50", rounded),
+  column("query [µs]", "/query_us/p50", rounded),
+  column("find [µs]", "/step_query_us/p50", rounded),
+  column("activate [µs]", "/activate_us/p50", rounded),
+  column("solve [µs]", "/solve_us/p50", rounded),
+  column("step [µs]", "/step_us/p50", rounded),
+  column("step 99 % [µs]", "/step_us/p99", rounded),
+  column("step 99.9 % [µs]", "/step_us/p999", rounded),
+  column("slowest step [µs]", "/step_us/max", rounded),
   { heading: "hash of all steps", from: "/hash" },
   { heading: "remark", from: "/remark", look: "words" },
 ];
 
-const only: readonly Column[] = [
-  { heading: "query 99 % [µs]", from: "/query_us/p99", format: rounded },
-];
+const only: readonly Column[] = [column("query 99 % [µs]", "/query_us/p99", rounded)];
 
 /** What is told of a row elsewhere as the table tells it, by where below a row it is. */
 export const columnsOf = (...wanted: readonly string[]): Column[] =>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import * as three from "three";
-import { colorOf } from "./painting.ts";
+import { colorOf } from "../page/color_of.ts";
 
 /** A body of an instrument: all within a radius of what is between two places. */
 export interface Capsule {

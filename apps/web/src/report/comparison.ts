@@ -6,22 +6,19 @@ import { entries, valueAt } from "./record.ts";
 import { lead, panel, panels, section } from "./report_page.ts";
 import { inRow, rowChart } from "./row_chart.ts";
 import { error, grouped, make, rounded, show, shown, shownName } from "./shown.ts";
-import { type Column, scrolled, table } from "./table.ts";
+import { type Column, column, harm, named, scrolled, table } from "./table.ts";
 
-const count = (heading: string, from: string): Column => ({ heading, from, format: grouped });
-const harm = (heading: string, from: string): Column => ({ ...count(heading, from), look: "harm" });
-const name = (heading: string, from: string): Column => ({ heading, from, look: "name" });
-const size = (heading: string, from: string): Column => ({ heading, from, format: error });
+const size = (heading: string, from: string): Column => column(heading, from, error);
 const times: readonly Column[] = [
-  { heading: "median [µs]", from: "/p50_us", format: rounded },
-  { heading: "99 % [µs]", from: "/p99_us", format: rounded },
+  column("median [µs]", "/p50_us", rounded),
+  column("99 % [µs]", "/p99_us", rounded),
 ];
 
 const indexColumns: readonly Column[] = [
-  name("index", "/index"),
-  name("rule", "/activation"),
-  name("mesh", "/mesh"),
-  count("poses", "/poses"),
+  named("index", "/index"),
+  named("rule", "/activation"),
+  named("mesh", "/mesh"),
+  column("poses", "/poses"),
   harm("missed", "/missed"),
   harm("invented", "/invented"),
   size("worst error of a closest point [mm]", "/closest_point_error_mm"),
@@ -30,11 +27,11 @@ const indexColumns: readonly Column[] = [
   harm("steps that differ", "/steps_that_differ"),
 ];
 const solverColumns: readonly Column[] = [
-  name("solver", "/solver"),
-  name("rule", "/activation"),
-  count("problems", "/problems"),
-  count("optimal", "/optimal"),
-  count("infeasible", "/infeasible"),
+  named("solver", "/solver"),
+  named("rule", "/activation"),
+  column("problems", "/problems"),
+  column("optimal", "/optimal"),
+  column("infeasible", "/infeasible"),
   harm("gave up", "/gave_up"),
   harm("wrong", "/wrong"),
   size("worst difference of a step, relative", "/step_difference"),
@@ -42,10 +39,10 @@ const solverColumns: readonly Column[] = [
   ...times,
 ];
 const narrowPhaseColumns: readonly Column[] = [
-  name("narrow phase", "/backend"),
-  name("tool", "/tool"),
-  name("relation", "/relation"),
-  count("pairs", "/pairs"),
+  named("narrow phase", "/backend"),
+  named("tool", "/tool"),
+  named("relation", "/relation"),
+  column("pairs", "/pairs"),
   harm("no answer", "/failed"),
   harm("contradicted", "/contradicted"),
   size("median error [mm]", "/median_error_mm"),
@@ -122,7 +119,7 @@ function errors(pointers: readonly string[]): HTMLElement[] {
   const above = (value: number) => (value > 0 ? value : Number.NaN);
   const middle = ({ median_error_mm }: NarrowPhaseRow) => above(median_error_mm);
   const worst = ({ worst_error_mm }: NarrowPhaseRow) => above(worst_error_mm);
-  const named = (from: string) => [{ from: `${from}/backend` }, ", ", { from: `${from}/tool` }];
+  const inscribed = (from: string) => [{ from: `${from}/backend` }, ", ", { from: `${from}/tool` }];
   const chartOf = (relation: string) =>
     rowChart({
       description: `Median and worst error of each narrow phase, ${relation}`,
@@ -131,7 +128,7 @@ function errors(pointers: readonly string[]): HTMLElement[] {
       legend,
       tip: ({ from }) =>
         tipOfColumns([shown(`${from}/backend`)], from, narrowPhaseColumns.slice(1)),
-      name: ({ from }) => named(from),
+      name: ({ from }) => inscribed(from),
       value: ({ from }) => [
         { from: `${from}/median_error_mm`, format: error },
         " to ",

@@ -4,7 +4,7 @@ import { drawnSvg } from "./drawn_svg.ts";
 import { below, entries, valueAt } from "./record.ts";
 import { lead, panels, section } from "./report_page.ts";
 import { make, paragraphs, show, shown } from "./shown.ts";
-import { type Column, scrolled, table } from "./table.ts";
+import { type Column, named, scrolled, table } from "./table.ts";
 
 /** The paper's numbers beside ours, of all experiments; then what each found. */
 export function experimentSections(): HTMLElement[] {
@@ -24,11 +24,11 @@ const claimColumns: readonly Column[] = [
       make("span", { class: "of" }, shown(`${experimentOf(claim)}/title`)),
     ],
   },
-  { heading: "evidence", from: "/sure", look: "name" },
-  { heading: "paper", from: "/paper", look: "name" },
-  { heading: "its rule here", from: "/reproduction", look: "name" },
-  { heading: "certified", from: "/certified", look: "name" },
-  { heading: "best", from: "/best", look: "name" },
+  named("evidence", "/sure"),
+  named("paper", "/paper"),
+  named("its rule here", "/reproduction"),
+  named("certified", "/certified"),
+  named("best", "/best"),
   { heading: "why it differs", from: "/note", look: "words" },
 ];
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import * as three from "three";
-import { colorOf, type Lengths } from "./painting.ts";
+import { colorOf } from "../page/color_of.ts";
+import type { Lengths } from "./painting.ts";
 
 /** The four corners of what is drawn of a length: at which of its ends, and at which side. */
 const corners = [0, 0, 1, 1].map((end, i) => [end, i % 2 === 0 ? -1 : 1] as const);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import * as three from "three";
+import { isSoftware } from "../page/graphics.ts";
 import { StillPicture } from "../page/still_picture.ts";
 import { type Anatomy, coarsened } from "./anatomy.ts";
 import { type Capsule, CapsuleBrush } from "./capsules.ts";
@@ -39,15 +40,6 @@ export interface Painter {
   dispose(): void;
 }
 
-/** The colour that a variable of the page's style has now. */
-export function colorOf(variable: string): string {
-  const probe = document.body.appendChild(document.createElement("i"));
-  probe.style.color = `var(${variable})`;
-  const { color } = getComputedStyle(probe);
-  probe.remove();
-  return color;
-}
-
 /** What bone looks like, in linear light: of a free side, of a back, of a section and of its edge. */
 export const materials = {
   bone: [0.8, 0.69, 0.52],
@@ -70,9 +62,7 @@ export class GraphicsProcessor {
     const canvas = document.createElement("canvas");
     const gl = canvas.getContext("webgl2", { alpha: true });
     if (!gl) throw new Error("there is no WebGL");
-    const names = gl.getExtension("WEBGL_debug_renderer_info");
-    const name = String(gl.getParameter(names ? names.UNMASKED_RENDERER_WEBGL : gl.RENDERER));
-    this.isSlow = /swiftshader|llvmpipe|software/i.test(name);
+    this.isSlow = isSoftware(gl);
     this.renderer = new three.WebGLRenderer({ canvas, context: gl, alpha: true });
     this.renderer.autoClear = false;
     this.renderer.setClearColor(0, 0);

@@ -8,7 +8,7 @@ import { lead, section } from "./report_page.ts";
 import { pictureGrid, runColor } from "./runs.ts";
 import { grouped, make, rounded, shown } from "./shown.ts";
 import type { PlanRecord } from "./simulation_record.ts";
-import { type Column, scrolled, table } from "./table.ts";
+import { type Column, column, harm, named, scrolled, table } from "./table.ts";
 
 /** What the page of `plan` shows. */
 export async function planningSections(main: HTMLElement, record: ReportRecord): Promise<void> {
@@ -17,9 +17,9 @@ export async function planningSections(main: HTMLElement, record: ReportRecord):
 }
 
 const columns: readonly Column[] = [
-  { heading: "checker", from: "/checker", look: "name" },
-  { heading: "runs", from: "/runs", format: grouped },
-  { heading: "solved", from: "/solved", format: grouped },
+  named("checker", "/checker"),
+  column("runs", "/runs"),
+  column("solved", "/solved"),
   {
     heading: "valid",
     from: "/valid",
@@ -28,12 +28,12 @@ const columns: readonly Column[] = [
       return [make("span", isLess ? { class: "bad" } : {}, shown(`${row}/valid`, grouped))];
     },
   },
-  { heading: "enters", from: "/entering", format: grouped, look: "harm" },
-  { heading: "least clearance [mm]", from: "/least_clearance_mm", format: (mm) => rounded(mm, 4) },
-  { heading: "median [s]", from: "/median_seconds", format: rounded },
-  { heading: "checking [s]", from: "/median_checking_seconds", format: rounded },
-  { heading: "motions asked", from: "/median_checks", format: grouped },
-  { heading: "length [mm]", from: "/median_length_mm", format: rounded },
+  harm("enters", "/entering"),
+  column("least clearance [mm]", "/least_clearance_mm", (mm) => rounded(mm, 4)),
+  column("median [s]", "/median_seconds", rounded),
+  column("checking [s]", "/median_checking_seconds", rounded),
+  column("motions asked", "/median_checks"),
+  column("length [mm]", "/median_length_mm", rounded),
 ];
 
 /** One mesh: what came out under each checker, and all paths that were found. */
@@ -68,8 +68,8 @@ async function meshSection(plan: PlanRecord, number: number): Promise<HTMLElemen
     const picture = view.picture(description, { lengths, cut: null }, []);
     group.append(make("figure", {}, picture, caption));
   });
-  const title = section(
-    "",
+  return section(
+    shown(`/meshes/${number}/name`),
     lead(
       "All paths found under each checker. ",
       make("b", {}, "Red"),
@@ -84,8 +84,6 @@ async function meshSection(plan: PlanRecord, number: number): Promise<HTMLElemen
     group,
     hint(),
   );
-  (title.firstChild as HTMLElement).append(shown(`/meshes/${number}/name`));
-  return title;
 }
 
 /** From the side and a little above, z upwards, as the fixtures stand. */

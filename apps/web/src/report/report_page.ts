@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+import { saveFile } from "../page/save_file.ts";
 import { type ReportRecord, readRecord, recordText, valueAt } from "./record.ts";
 import { make, paragraphs, rounded, show, shown, shownMembers, shownWhole } from "./shown.ts";
 
@@ -42,7 +43,7 @@ export async function showReport(kinds: Readonly<Record<string, Sections>>): Pro
 }
 
 /** A section under a heading. */
-export function section(title: string, ...content: readonly (Node | string)[]): HTMLElement {
+export function section(title: Node | string, ...content: readonly (Node | string)[]): HTMLElement {
   return make("section", {}, make("h2", {}, title), ...content);
 }
 
@@ -96,10 +97,8 @@ function circumstances(record: ReportRecord): HTMLElement {
   });
   const save = make("button", { type: "button" }, "Save the figures");
   save.addEventListener("click", () => {
-    const file = URL.createObjectURL(new Blob([recordText()], { type: "application/json" }));
     const date = record.date.replaceAll(":", "");
-    make("a", { href: file, download: `keepout-${record.keepout_record}-${date}.json` }).click();
-    setTimeout(() => URL.revokeObjectURL(file), 1000);
+    saveFile(`keepout-${record.keepout_record}-${date}.json`, recordText(), "application/json");
   });
   const facts = [make("dt", {}, "date"), show(make("dd"), "/date"), ...machineFacts("/machine")];
   const lists = [facts, shownMembers("/settings")].filter((list) => list.length > 0);

@@ -2,23 +2,10 @@
 /** The sections of plans for a whole instrument. */
 import { entries } from "./record.ts";
 import { lead, section } from "./report_page.ts";
-import { type Format, grouped, rounded } from "./shown.ts";
-import { type Column, scrolled, table } from "./table.ts";
+import { rounded } from "./shown.ts";
+import { type Column, column, harm, named, scrolled, table } from "./table.ts";
 
-const column = (heading: string, from: string, format: Format = grouped): Column => ({
-  heading,
-  from,
-  format,
-});
-const harm = (heading: string, from: string): Column => ({
-  ...column(heading, from),
-  look: "harm",
-});
-
-const which: readonly Column[] = [
-  { heading: "mesh", from: "/mesh" },
-  { heading: "checker", from: "/checker", look: "name" },
-];
+const which: readonly Column[] = [{ heading: "mesh", from: "/mesh" }, named("checker", "/checker")];
 /** What is told of one path, and added up of many. */
 const judged: readonly Column[] = [
   column("motions", "/motions"),

@@ -8,10 +8,10 @@ import type { Layer } from "./painting.ts";
 import { entries, type ReportRecord } from "./record.ts";
 import { lead, section } from "./report_page.ts";
 import { pictureGrid, runColor } from "./runs.ts";
-import { type Format, grouped, make, millimetres, rounded, show, shown } from "./shown.ts";
+import { make, millimetres, rounded, show, shown } from "./shown.ts";
 import type { Place, RecordedMesh } from "./simulation_record.ts";
-import { type Column, scrolled, table } from "./table.ts";
-import { timeSlider } from "./time_slider.ts";
+import { type Column, column, harm, named, scrolled, table } from "./table.ts";
+import { strokeChooser, timeSlider } from "./time_slider.ts";
 
 interface Run {
   readonly mode: string;
@@ -39,18 +39,15 @@ export async function robotSimulationSections(
 }
 
 function figures({ bodies }: RobotSimulationRecord): HTMLElement {
-  const harm = (heading: string, from: string, format: Format = grouped): Column => ({
-    ...{ heading, from, format, look: "harm" },
-  });
   const columns: Column[] = [
     { heading: "mesh", from: "/mesh" },
     { heading: "speed", from: "/speed" },
-    { heading: "mode", from: "/mode", look: "name" },
-    { heading: "cycles", from: "/cycles", format: grouped },
+    named("mode", "/mode"),
+    column("cycles", "/cycles"),
     ...bodies.flatMap(({ name }) => [
       harm(`${name}: too close`, `/${name}_below`),
       harm("in the mesh", `/${name}_in_mesh`),
-      harm("deepest [mm]", `/${name}_deepest_mm`, (mm) => rounded(mm)),
+      harm("deepest [mm]", `/${name}_deepest_mm`, rounded),
     ]),
   ];
   return section(
@@ -71,26 +68,22 @@ async function meshSection(record: RobotSimulationRecord, number: number): Promi
   const strokes = entries(`/meshes/${number}/strokes`);
   const option = (value: number, from: string) =>
     show(make("option", { value: String(value) }), from);
-  const chooser = make("select", { "aria-label": "stroke" });
-  chooser.append(...strokes.map((from, stroke) => option(stroke, `${from}/manner`)));
   const moment = make("select", { "aria-label": "moment" });
   const content = make("div");
   const runs = entries(`${strokes[0]}/runs`);
   moment.append(...runs.map((from, run) => option(run, `${from}/mode`)));
   moment.value = String(Math.max(runs.length - 2, 0));
   let view: ReturnType<typeof strokeView> | null = null;
-  const choose = () => {
-    view?.dispose();
-    const stroke = Number(chooser.value);
+  const options = strokes.map((from, stroke) => option(stroke, `${from}/manner`));
+  const chooser = strokeChooser(options, 0, (stroke) => {
     view = strokeView(record, anatomy, mesh.strokes[stroke] as Stroke, strokes[stroke] as string);
     content.replaceChildren(view.element);
     view.go(Number(moment.value));
-  };
-  chooser.addEventListener("change", choose);
+    return view;
+  });
   moment.addEventListener("change", () => view?.go(Number(moment.value)));
-  if (strokes.length > 0) choose();
-  const title = section(
-    "",
+  return section(
+    shown(`/meshes/${number}/name`),
     lead(
       "Stroke: ",
       chooser,
@@ -103,8 +96,6 @@ async function meshSection(record: RobotSimulationRecord, number: number): Promi
     content,
     hint(),
   );
-  (title.firstChild as HTMLElement).append(shown(`/meshes/${number}/name`));
-  return title;
 }
 
 /** Where the instrument's bodies end in a cycle: at the port, and each at the next. */

@@ -2,14 +2,9 @@
 /** The sections of a campaign with a whole instrument. */
 import { entries, valueAt } from "./record.ts";
 import { lead, section } from "./report_page.ts";
-import { error, type Format, grouped, mean, microseconds, percent, rounded } from "./shown.ts";
-import { type Column, scrolled, table } from "./table.ts";
+import { error, mean, microseconds, percent, rounded } from "./shown.ts";
+import { type Column, column, harm, scrolled, table } from "./table.ts";
 
-const column = (heading: string, from: string, format: Format = grouped): Column => ({
-  heading,
-  from,
-  format,
-});
 const share = (heading: string, from: string): Column =>
   column(heading, from, (value) => `${percent(value)} %`);
 const time = (heading: string, key: string, of = "step_us"): Column =>
@@ -32,9 +27,9 @@ export function robotVerificationSections(): HTMLElement[] {
     column("triangles", "/triangles"),
     column("starts", "/starts"),
     column("cycles", "/cycles"),
-    { ...column("too close", "/below"), look: "harm" },
-    { ...column("in the mesh", "/in_mesh"), look: "harm" },
-    { ...column("limits broken", "/limits_broken"), look: "harm" },
+    harm("too close", "/below"),
+    harm("in the mesh", "/in_mesh"),
+    harm("limits broken", "/limits_broken"),
     column("least beyond what is kept [mm]", "/least_beyond_mm", error),
   ];
   const work: readonly Column[] = [
@@ -55,7 +50,7 @@ export function robotVerificationSections(): HTMLElement[] {
     share("blocked", "/blocked_share"),
     share("cut short", "/cut_share"),
     share("no motion proven", "/unmoved_share"),
-    { ...column("worse than none", "/worse"), look: "harm" },
+    harm("worse than none", "/worse"),
     column("excess", "/excess_mean", (value) => rounded(value, 2)),
     column("searched", "/excess_samples"),
     column("useful", "/useful"),

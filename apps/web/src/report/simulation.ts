@@ -8,12 +8,12 @@ import { coloured, parted, widths } from "./paths.ts";
 import { lastKey, type ReportRecord, valueAt } from "./record.ts";
 import { lead, section } from "./report_page.ts";
 import { pictureGrid, runColor, runName } from "./runs.ts";
-import { grouped, make, millimetres, rounded, show, shown } from "./shown.ts";
+import { make, millimetres, rounded, show, shown } from "./shown.ts";
 import { stepTimes } from "./simulation_charts.ts";
 import { type Run, type SimulationRecord, trespass } from "./simulation_record.ts";
 import { seen } from "./still.ts";
 import { strokeSection } from "./stroke.ts";
-import { scrolled, table } from "./table.ts";
+import { column, harm, named, scrolled, table } from "./table.ts";
 
 /** What the page of `simulate` shows. */
 export async function simulationSections(main: HTMLElement, record: ReportRecord): Promise<void> {
@@ -126,43 +126,22 @@ function directions(up: three.Vector3): three.Vector3[] {
 }
 
 function figures(record: SimulationRecord): HTMLElement {
-  const length = (key: string, heading: string) => ({
-    heading,
-    from: `/summary/${key}`,
-    format: millimetres,
-  });
-  const count = (key: string, heading: string) => ({
-    heading,
-    from: `/summary/${key}`,
-    format: grouped,
-  });
-  const time = (key: string, heading: string) => ({
-    heading,
-    from: `/summary/${key}`,
-    format: rounded,
-  });
-  const harm = { look: "harm" } as const;
   const rows = table(
     record.runs.map((_, run) => `/runs/${run}`),
     [
-      {
-        heading: "rule",
-        from: "/name",
-        look: "name",
-        content: (row) => [runName(Number(lastKey(row)))],
-      },
-      { ...length("deepest_mm", "deepest inside"), ...harm },
-      { ...count("cycles_inside", "cycles inside"), ...harm },
-      { ...count("crossings", "crossings"), ...harm },
-      length("closest_approach_mm", "closest approach"),
-      count("cycles", "cycles"),
-      count("limited", "cycles limited"),
-      count("stopped", "cycles stopped"),
-      time("rate_khz", "rate [kHz]"),
-      time("p50_us", "median step [µs]"),
-      time("p99_us", "99 % [µs]"),
-      time("p999_us", "99.9 % [µs]"),
-      time("max_us", "slowest [µs]"),
+      { ...named("rule", "/name"), content: (row) => [runName(Number(lastKey(row)))] },
+      harm("deepest inside", "/summary/deepest_mm", millimetres),
+      harm("cycles inside", "/summary/cycles_inside"),
+      harm("crossings", "/summary/crossings"),
+      column("closest approach", "/summary/closest_approach_mm", millimetres),
+      column("cycles", "/summary/cycles"),
+      column("cycles limited", "/summary/limited"),
+      column("cycles stopped", "/summary/stopped"),
+      column("rate [kHz]", "/summary/rate_khz", rounded),
+      column("median step [µs]", "/summary/p50_us", rounded),
+      column("99 % [µs]", "/summary/p99_us", rounded),
+      column("99.9 % [µs]", "/summary/p999_us", rounded),
+      column("slowest [µs]", "/summary/max_us", rounded),
     ],
   );
   return section(

@@ -5,8 +5,8 @@ import { chart, Legend, type Look, logarithmic, tipOfColumns } from "./charts.ts
 import { curves } from "./curves.ts";
 import { entries, type Timing, valueAt } from "./record.ts";
 import { lead, panel, panels, section } from "./report_page.ts";
-import { type Format, grouped, make, mean, nanoseconds, rounded, shown, trimmed } from "./shown.ts";
-import { type Column, scrolled, table } from "./table.ts";
+import { type Format, make, mean, nanoseconds, rounded, shown, trimmed } from "./shown.ts";
+import { type Column, column, scrolled, table } from "./table.ts";
 
 /** Median, 99 % and 99.9 %, as far as there are enough samples, in one unit. */
 function percentiles(from: string): (Node | string)[] {
@@ -80,7 +80,7 @@ const ratioColumns: readonly Column[] = [
 const queryColumns: readonly Column[] = [
   { heading: "Index", from: "/index" },
   { heading: "r [mm]", from: "/radius" },
-  { heading: "Triangles found", from: "/found_mean", format: mean },
+  column("Triangles found", "/found_mean", mean),
   ...[
     ["Candidates", "/candidates_us"],
     ["Answer", "/answer_us"],
@@ -154,10 +154,7 @@ const looks: ReadonlyMap<string, Look> = new Map([
   ["empty loop", { color: "var(--series-7)", symbol: "square" }],
   ["certified step", { color: "var(--series-0)", symbol: "circle" }],
 ]);
-const binColumns: readonly Column[] = [
-  { heading: "from", from: "/0", format: nanoseconds },
-  { heading: "cycles", from: "/1", format: grouped },
-];
+const binColumns: readonly Column[] = [column("from", "/0", nanoseconds), column("cycles", "/1")];
 
 function histogramSection(): HTMLElement[] {
   const from = "/histogram/steps";

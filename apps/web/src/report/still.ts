@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import * as three from "three";
+import { colorOf } from "../page/color_of.ts";
 import type { Anatomy } from "./anatomy.ts";
 import { type Cut, restBehind } from "./cut.ts";
-import { colorOf, hatching, type Layer, materials, type Painter } from "./painting.ts";
+import { hatching, type Layer, materials, type Painter } from "./painting.ts";
 
 /** A surface as it is seen: what the picture shows, and how deep that is, from -1 to 1. */
 interface Seen {

@@ -17,7 +17,7 @@ import {
   tellingMoment,
   trespass,
 } from "./simulation_record.ts";
-import { timeSlider } from "./time_slider.ts";
+import { strokeChooser, timeSlider } from "./time_slider.ts";
 
 /** Up to here a tip touches. [mm] */
 const touching = 1e-6;
@@ -30,16 +30,10 @@ const outcomes: Readonly<Record<string, string>> = {
 /** One stroke: the anatomy cut open along it for each run, how near it came, and all of it in time. */
 export function strokeSection(record: SimulationRecord, anatomy: Anatomy): HTMLElement {
   const isClosed = record.mesh.surface === "closed";
-  const chooser = make("select", { "aria-label": "stroke" }, ...options(record));
   const content = make("div");
-  let view: { dispose: () => void } | null = null;
-  const choose = () => {
-    view?.dispose();
-    view = strokeView(record, anatomy, Number(chooser.value), content);
-  };
-  chooser.value = String(record.moment.stroke);
-  chooser.addEventListener("change", choose);
-  choose();
+  const chooser = strokeChooser(options(record), record.moment.stroke, (stroke) =>
+    strokeView(record, anatomy, stroke, content),
+  );
   return section(
     "One stroke, cut open",
     lead(

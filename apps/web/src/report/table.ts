@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import { valueAt } from "./record.ts";
-import { type Format, make, show } from "./shown.ts";
+import { type Format, grouped, make, show } from "./shown.ts";
 
 /** A column of a table: what of each row it shows. */
 export interface Column {
@@ -13,6 +13,18 @@ export interface Column {
   /** What is in the cell, where that is more than the value. */
   readonly content?: (row: string) => readonly (Node | string)[];
 }
+
+/** A column of numbers: counts, unless there is another format. */
+export const column = (heading: string, from: string, format: Format = grouped): Column => ({
+  ...{ heading, from, format },
+});
+/** A column of numbers that ought to be nothing. */
+export const harm = (heading: string, from: string, format?: Format): Column => ({
+  ...column(heading, from, format),
+  look: "harm",
+});
+/** A column of names. */
+export const named = (heading: string, from: string): Column => ({ heading, from, look: "name" });
 
 /**
  * A table of rows that are in the record, at these pointers, sorted by whichever heading is pressed;

@@ -5,6 +5,22 @@ import { make } from "./shown.ts";
 /** How long a stroke is played. [ms] */
 const playing = 8000;
 
+/** A list of strokes; `show` makes the view of the chosen one, in place of that before. */
+export function strokeChooser(
+  options: readonly HTMLElement[],
+  first: number,
+  show: (stroke: number) => { dispose: () => void },
+): HTMLSelectElement {
+  const chooser = make("select", { "aria-label": "stroke" }, ...options);
+  chooser.value = String(first);
+  let view = options.length > 0 ? show(first) : null;
+  chooser.addEventListener("change", () => {
+    view?.dispose();
+    view = show(Number(chooser.value));
+  });
+  return chooser;
+}
+
 /** Chooses a cycle of a stroke, and plays it, slower than it was. `from`: an array with one entry a cycle. */
 export function timeSlider(from: string, cycles: number, follow: (cycle: number) => void) {
   const slider = make("input", { type: "range", min: "0", "aria-label": "time" });

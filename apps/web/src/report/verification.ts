@@ -2,44 +2,38 @@
 /** The sections of a campaign that looks for a step that breaks the theorem. */
 import { entries, lastKey, valueAt } from "./record.ts";
 import { lead, section } from "./report_page.ts";
-import { error, grouped, make, mean, shownMembers, shownWhole } from "./shown.ts";
-import { type Column, scrolled, table } from "./table.ts";
+import { error, make, mean, shownMembers, shownWhole } from "./shown.ts";
+import { type Column, column, harm, named, scrolled, table } from "./table.ts";
 
 /** A column for each member that is not nothing in all. */
-const membersOf = (key: string, look: Pick<Column, "look">): Column[] =>
+const membersOf = (key: string, kind: typeof column): Column[] =>
   entries(`/total/${key}`)
-    .filter((member) => look.look === "harm" || valueAt<number>(member) !== 0)
-    .map((member) => ({
-      heading: lastKey(member).replaceAll("_", " "),
-      from: `/${key}/${lastKey(member)}`,
-      format: grouped,
-      ...look,
-    }));
+    .filter((member) => kind === harm || valueAt<number>(member) !== 0)
+    .map((member) => kind(lastKey(member).replaceAll("_", " "), `/${key}/${lastKey(member)}`));
 
 /** What was done on each mesh and what came out, in which shards, and each breach in full. */
 export function verificationSections(): HTMLElement[] {
-  const count = (heading: string, from: string): Column => ({ heading, from, format: grouped });
   const work: readonly Column[] = [
     { heading: "mesh", from: "/mesh" },
-    count("triangles", "/triangles"),
-    count("trajectories", "/trajectories"),
-    count("steps", "/steps"),
-    count("tips", "/tips"),
-    count("led out", "/led_out"),
-    ...membersOf("breaches", { look: "harm" }),
-    { heading: "least beyond margin [mm]", from: "/least_beyond_margin", format: error },
-    { heading: "the same in τ", from: "/least_beyond_margin_in_tau", format: error },
-    { heading: "time [s]", from: "/seconds", format: mean },
+    column("triangles", "/triangles"),
+    column("trajectories", "/trajectories"),
+    column("steps", "/steps"),
+    column("tips", "/tips"),
+    column("led out", "/led_out"),
+    ...membersOf("breaches", harm),
+    column("least beyond margin [mm]", "/least_beyond_margin", error),
+    column("the same in τ", "/least_beyond_margin_in_tau", error),
+    column("time [s]", "/seconds", mean),
   ];
   const statuses: readonly Column[] = [
     { heading: "mesh", from: "/mesh" },
-    count("steps", "/steps"),
-    ...membersOf("statuses", {}),
+    column("steps", "/steps"),
+    ...membersOf("statuses", column),
   ];
   const shards: readonly Column[] = [
     { heading: "shard", from: "/index" },
-    { heading: "time [s]", from: "/seconds", format: mean },
-    { heading: "complete", from: "/complete", look: "name" },
+    column("time [s]", "/seconds", mean),
+    named("complete", "/complete"),
     { heading: "machine", from: "/machine", look: "words" },
   ];
   const meshes = entries("/meshes");

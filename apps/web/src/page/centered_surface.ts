@@ -1,20 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import type { Vec3 } from "../engine/keepout.ts";
 
-/** What to draw of a mesh: (n, 3) coordinates from `origin` on, and (m, 3) corners. */
-export interface DrawnSurface {
-  readonly name: string;
+/** A surface to be drawn: (n, 3) coordinates from the middle of its box, `origin`, and (m, 3) corners. */
+export interface CenteredSurface {
   readonly origin: Vec3;
+  /** The diagonal of its box. [mm] */
+  readonly size: number;
   readonly positions: Float32Array<ArrayBuffer>;
   readonly corners: Uint32Array<ArrayBuffer>;
 }
 
-/** What is drawn are floats: of coordinates from the middle on, which are small. */
-export function drawnSurface(
-  name: string,
-  vertices: Float64Array,
-  corners: Uint32Array,
-): DrawnSurface {
+/** Makes floats, which are drawn, of coordinates from the middle, which are small. Copies all. */
+export function centered(vertices: Float64Array, corners: Uint32Array): CenteredSurface {
   const low = [Infinity, Infinity, Infinity];
   const high = [-Infinity, -Infinity, -Infinity];
   for (let i = 0; i < vertices.length; ++i) {
@@ -24,6 +21,7 @@ export function drawnSurface(
     if (value > (high[axis] as number)) high[axis] = value;
   }
   const origin = low.map((value, i) => 0.5 * (value + (high[i] as number))) as unknown as Vec3;
+  const size = Math.hypot(...low.map((value, i) => (high[i] as number) - value));
   const positions = Float32Array.from(vertices, (value, i) => value - (origin[i % 3] as number));
-  return { name, origin, positions, corners: new Uint32Array(corners) };
+  return { origin, size, positions, corners: new Uint32Array(corners) };
 }

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+import { element } from "./page.ts";
+import type { EmbeddedMesh, Source } from "./protocol.ts";
+
+/** An anatomy that can be chosen, and what to call it on a command line. */
+export interface Choice {
+  readonly source: Source;
+  readonly command: string;
+}
+
+export const nameOf = ({ source }: Choice): string =>
+  source.kind === "embedded" ? source.mesh.name : source.name;
+
+/** The mesh of a choice that `keepout live` has put into the page. */
+export const meshOf = (choice: Choice | null): EmbeddedMesh | undefined =>
+  choice?.source.kind === "embedded" ? choice.source.mesh : undefined;
+
+/** The list of anatomies. */
+export class MeshList {
+  private readonly list = element("mesh", HTMLSelectElement);
+  /** By the values of the list's options. */
+  private readonly choices: Choice[] = [];
+
+  constructor(private readonly load: (choice: Choice) => void) {
+    this.list.addEventListener("change", () => this.choose());
+  }
+
+  /** Loads what the list says. */
+  choose(): void {
+    const choice = this.choices[Number(this.list.value)];
+    if (choice !== undefined) this.load(choice);
+  }
+
+  /** Puts a choice into the list, under a heading. */
+  offer(heading: string, choice: Choice): void {
+    let group = this.list.querySelector<HTMLOptGroupElement>(`optgroup[label="${heading}"]`);
+    if (group === null) {
+      group = document.createElement("optgroup");
+      group.label = heading;
+      this.list.append(group);
+    }
+    group.append(new Option(nameOf(choice), String(this.choices.length)));
+    this.choices.push(choice);
+  }
+
+  /** Makes the list say what is in the view, also when what was chosen could not be. */
+  select(shown: Choice | null): void {
+    if (shown === null) return;
+    if (!this.choices.includes(shown)) this.offer("Opened", shown);
+    this.list.value = String(this.choices.indexOf(shown));
+  }
+
+  /** The choice that a command line calls so. */
+  called(command: string): Choice | undefined {
+    return this.choices.find((choice) => choice.command === command);
+  }
+}

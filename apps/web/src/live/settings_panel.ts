@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+import type { Rule, ToolSettings } from "../engine/tool.ts";
+import { element } from "./page.ts";
+
+/** Rule and lengths of a tool, as far as the page has controls for them. */
+export class SettingsPanel {
+  private readonly radios = document.querySelectorAll<HTMLInputElement>("#rules input");
+  private readonly sliders = (
+    [
+      ["tool-radius", "toolRadius"],
+      ["margin", "margin"],
+      ["radius", "radius"],
+    ] as const
+  )
+    .filter(([id]) => document.getElementById(id))
+    .map(([id, key]) => ({ slider: element(id, HTMLInputElement), key }));
+
+  /** `change`: called with each setting that the user changes. */
+  constructor(change: (part: Partial<ToolSettings>) => void) {
+    for (const radio of this.radios) {
+      radio.addEventListener("change", () => change({ rule: radio.value as Rule }));
+    }
+    for (const { slider, key } of this.sliders) {
+      slider.addEventListener("input", () => change({ [key]: Number(slider.value) }));
+    }
+  }
+
+  show(settings: ToolSettings): void {
+    for (const radio of this.radios) radio.checked = radio.value === settings.rule;
+    for (const { slider, key } of this.sliders) {
+      // What the page was made with may be beyond what the slider has.
+      slider.min = String(Math.min(Number(slider.min), settings[key]));
+      slider.max = String(Math.max(Number(slider.max), settings[key]));
+      slider.value = String(settings[key]);
+      slider.ariaValueText = `${settings[key]} mm`;
+      const output = slider.parentElement?.querySelector("output");
+      if (output) output.textContent = `${settings[key]} mm`;
+    }
+  }
+}

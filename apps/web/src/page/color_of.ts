@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: BSD-3-Clause
+
+/** The colour that a variable of the page's style has now. */
+export function colorOf(variable: string): string {
+  const probe = document.body.appendChild(document.createElement("i"));
+  probe.style.color = `var(${variable})`;
+  const { color } = getComputedStyle(probe);
+  probe.remove();
+  return color;
+}

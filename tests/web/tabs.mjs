@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/** A page of keepout in a real browser: what the tests of all pages share. */
+import assert from "node:assert/strict";
+import { mkdirSync, readFileSync, rmSync } from "node:fs";
+import { createRequire } from "node:module";
+import { join } from "node:path";
+import { fileURLToPath, pathToFileURL } from "node:url";
+
+export const root = fileURLToPath(new URL("../..", import.meta.url));
+export const packages = createRequire(join(root, "apps/web/package.json"));
+const puppeteer = packages("puppeteer-core");
+
+export const large = { width: 1280, height: 800 };
+export const small = { width: 390, height: 844, hasTouch: true, isMobile: true };
+
+export const note = (text) => console.log(`# ${text}`);
+export const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
+
+export function empty(folder) {
+  rmSync(folder, { recursive: true, force: true });
+  mkdirSync(folder, { recursive: true });
+}
+
+export const launched = (browserPath) =>
+  puppeteer.launch({
+    executablePath: browserPath,
+    args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
+  });
+
+/** Opens a page, once `prepare` is done with its tab; the tab has a list of faults. */
+export async function opened(browser, file, viewport, prepare = () => {}) {
+  const tab = await browser.newPage();
+  tab.faults = [];
+  tab.on("pageerror", (error) => tab.faults.push(String(error)));
+  tab.on("console", (line) => {
+    if (line.type() === "error") tab.faults.push(line.text());
+  });
+  tab.on("request", (request) => {
+    if (!/^(file|data|blob):/.test(request.url())) tab.faults.push(`asks for ${request.url()}`);
+  });
+  await tab.setViewport(viewport);
+  await prepare(tab);
+  await tab.goto(pathToFileURL(file).href);
+  return tab;
+}
+
+/** Asserts that a page is at most so large, and names no file beside it. */
+export function assertAlone(file, most) {
+  const text = readFileSync(file, "utf8");
+  note(`${(text.length / 1e3).toFixed(0)} kB`);
+  assert.ok(Buffer.byteLength(text) <= most, `the page is larger than ${most} bytes`);
+  assert.doesNotMatch(text, /(src|href)="(?!data:)[^"]*"/, "it names another file");
+}
+
+/** Controls have names, and texts stand out, in this scheme of colors. */
+export async function assertAccessible(tab, scheme) {
+  await tab.emulateMediaFeatures([{ name: "prefers-color-scheme", value: scheme }]);
+  await tab.addScriptTag({ path: packages.resolve("axe-core") });
+  const { violations, passes } = await tab.evaluate(() => window.axe.run());
+  assert.ok(
+    passes.some(({ id }) => id === "color-contrast"),
+    "contrast was not looked at",
+  );
+  assert.deepEqual(
+    violations.map(({ id, nodes }) => [id, ...nodes.map(({ html }) => html)]),
+    [],
+    scheme,
+  );
+}
