@@ -53,12 +53,12 @@ MotionConstraint make_motion_constraint(std::shared_ptr<const Mesh> mesh,
 MotionConstraint make_motion_constraint(std::shared_ptr<const Mesh> mesh,
                                         std::shared_ptr<const SpatialIndex> index,
                                         const MotionConstraintSettings& settings) {
-  if (!mesh) throw Error("a motion constraint needs a mesh: none was given");
   if (index) {
     warn_of_coarse_index(*index, required_clearance(settings.options), settings.warn);
   }
   auto activation = make_rule(settings);
   auto solver = make_solver(settings.solver);
+  // Only the certified rule of a ball knows sides: for others `inside` has no effect.
   const bool has_sides = settings.activation == "certified" && !settings.tool;
   return {std::move(mesh),
           std::move(index),

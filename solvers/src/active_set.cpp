@@ -22,7 +22,7 @@ bool shapes_agree(const StepProblem& problem) noexcept {
            problem.planes.size() <= static_cast<std::size_t>(problem.rows.rows())));
 }
 
-/// J, d and damping are numbers, and not too large to calculate with.
+/// Returns true if J, d and damping are finite and in range.
 bool cost_in_range(const StepProblem& problem) noexcept {
   // Written so that NaN fails.
   const auto in_range = [](double x) { return std::abs(x) <= active_set::largest; };
@@ -43,8 +43,8 @@ struct ActiveSet::Workspace {
   int variables = 0;
   int rows = 0;
   RowStore store;
-  PointMethod point;       // the tip itself
-  Method<3> space;         // what is left of it, and three joints
+  PointMethod point;       // the tip itself, J = I (moves_a_point)
+  Method<3> space;         // three joints, and problems that PointMethod could not prove
   Method<6> six_joints;    // a pose, or most arms
   Method<7> seven_joints;  // a redundant arm
   Method<Eigen::Dynamic> any;
@@ -55,23 +55,23 @@ struct ActiveSet::Workspace {
   SolveStatus solve(Method<N>& method, const StepProblem& problem, Solution& solution) noexcept {
     const SolveStatus status = method.solve(problem);
     solution.iterations += method.iterations();
-    if (status == SolveStatus::optimal) take_down(method, problem, solution);
+    if (status == SolveStatus::optimal) write_solution(method, problem, solution);
     return status;
   }
 
   template <class M>
-  void take_down(const M& method, const StepProblem& problem, Solution& solution) noexcept {
+  void write_solution(const M& method, const StepProblem& problem, Solution& solution) noexcept {
     std::size_t count = 0;
     for (int i = 0; i < method.active(); ++i) {
       if (!(method.multiplier(i) > 0)) continue;
-      std::size_t place = count++;
+      std::size_t slot = count++;  // sorted by row
       const auto row = static_cast<std::uint32_t>(method.row(i));
-      for (; place > 0 && active[place - 1] > row; --place) {
-        active[place] = active[place - 1];
-        multipliers[place] = multipliers[place - 1];
+      for (; slot > 0 && active[slot - 1] > row; --slot) {
+        active[slot] = active[slot - 1];
+        multipliers[slot] = multipliers[slot - 1];
       }
-      active[place] = row;
-      multipliers[place] = 2 * method.multiplier(i);  // the method halves the cost
+      active[slot] = row;
+      multipliers[slot] = 2 * method.multiplier(i);  // the method halves the cost
     }
     const auto n = static_cast<std::size_t>(problem.jacobian.cols());
     solution.u = {method.u().data(), n};
@@ -108,7 +108,7 @@ SolveStatus ActiveSet::solve(const StepProblem& problem, Solution& solution) noe
     const bool solved = work.point.solve(problem);
     solution.iterations = work.point.iterations();
     if (solved) {
-      work.take_down(work.point, problem, solution);
+      work.write_solution(work.point, problem, solution);
       return SolveStatus::optimal;
     }
   }

@@ -42,8 +42,8 @@ class Method {
     const int budget = 100 + 20 * n();
     while (iterations_ < budget) {
       const int row = rows_.most_violated(u_, feasibility * reach_);
-      if (row == Rows<N>::none && corrected_) return SolveStatus::optimal;
-      switch (row != Rows<N>::none ? enter(row) : settle()) {
+      if (row == no_row && corrected_) return SolveStatus::optimal;
+      switch (row != no_row ? enter(row) : settle()) {
         case Outcome::moved:
           break;
         case Outcome::settled:
@@ -168,7 +168,7 @@ class Method {
   /// How far the dual step may go until an active multiplier reaches zero, and which; the
   /// first to have entered, of equals.
   std::pair<int, double> longest_dual_step() const noexcept {
-    std::pair<int, double> first{Rows<N>::none, unbounded};
+    std::pair<int, double> first{no_row, unbounded};
     for (int i = 0; i < basis_.size(); ++i) {
       if (!(r_[i] * rows_.norm(basis_.row(i)) > noise_)) continue;
       const double t = mu_[i] / r_[i];
@@ -214,7 +214,7 @@ class Method {
     for (int j = 0; j < n(); ++j) rest_[j] = u_[j];
     if (!correct()) return Outcome::lost;
     bool dropped = false;
-    for (int pulling = most_negative(); pulling != Rows<N>::none; pulling = most_negative()) {
+    for (int pulling = most_negative(); pulling != no_row; pulling = most_negative()) {
       drop(pulling);
       ++iterations_;
       dropped = true;
@@ -285,7 +285,7 @@ class Method {
   int most_negative() const noexcept {
     double forces = task_.desired();
     for (int i = 0; i < basis_.size(); ++i) forces += std::abs(mu_[i]) * basis_.length(i);
-    int worst = Rows<N>::none;
+    int worst = no_row;
     double least = -acceptable * forces;
     for (int i = 0; i < basis_.size(); ++i) {
       const double force = mu_[i] * basis_.length(i);

@@ -56,8 +56,6 @@ struct RowStore {
 template <int N>
 class Rows {
  public:
-  static constexpr int none = -1;
-
   void reserve(RowStore& store) { store_ = &store; }
 
   /// Takes the rows in. Anything but `optimal` ends the solve: see row_status.
@@ -83,7 +81,7 @@ class Rows {
   /// lowest of equals. Compares squares: a root and a division a row would cost more than the rest.
   /// Of the planes, the one that the tip violates most.
   int most_violated(const Vector<N>& u, double tolerance) noexcept {
-    int worst = none;
+    int worst = no_row;
     double worst_square = tolerance * tolerance;
     if (first_read_ > 0) worst = most_violated_plane(u, tolerance, worst_square);
     for (int i = first_read_; i < size_; ++i) {
@@ -96,7 +94,6 @@ class Rows {
     return worst;
   }
 
-  int size() const noexcept { return size_; }
   const double* operator[](int row) const noexcept {
     const double* rows = row < planes_ ? store_->written.data() : problem_->rows.data();
     return rows + static_cast<std::ptrdiff_t>(row) * n();
@@ -128,15 +125,9 @@ class Rows {
   /// False if the planes must be looked through as rows.
   bool list_planes() noexcept {
     if (!measure_jacobian()) return false;
-    bool usual = true;
-    store_->planes.clear();
-    for (const HalfSpace& plane : problem_->planes) {
-      usual &=
-          is_unit(active_set::dot(plane.normal, plane.normal)) && std::abs(plane.offset) <= largest;
-      store_->planes.push(plane.normal.data(), plane.offset);
-    }
+    const bool usable = store_->planes.assign(problem_->planes);
     store_->planes.close();
-    return usual;
+    return usable;
   }
 
   /// Bounds |n^T J| for unit vectors n: not below `shortest_`, the root of the smallest eigenvalue
@@ -176,11 +167,11 @@ class Rows {
     }
     const Violated worst = store_->planes.most_violated(tip);
     const double noise = 4 * (n() + 8) * epsilon * size_of_jacobian_ * std::sqrt(length2);
-    if (!(worst.by > tolerance * shortest_ + noise)) return none;
+    if (!(worst.by > tolerance * shortest_ + noise)) return no_row;
     write(worst.plane);
     squares()[worst.plane] = dot((*this)[worst.plane], (*this)[worst.plane]);
     const double missing = violation(worst.plane, u);
-    if (!(missing > 0)) return none;
+    if (!(missing > 0)) return no_row;
     worst_square = missing * missing / squares()[worst.plane];
     return worst.plane;
   }

@@ -8,13 +8,13 @@
 namespace keepout::active_set {
 namespace {
 
-// So few planes are looked through as they lie in memory.
-constexpr std::size_t few = 16;
+// So few planes are scanned without being listed coordinate by coordinate.
+constexpr std::size_t most_scanned = 16;
 
-// A step into what is left of a row that makes a smaller angle with the active ones is not tried.
-constexpr double slim = 1e-7;
+// A row at a smaller angle to the span of the active ones does not enter.
+constexpr double least_angle = 1e-7;
 
-// Of an active row, relative to its norm and the reach. Far below what counts as violated.
+// Error of an active row, relative to its norm and the reach. Far below a violation.
 constexpr double exact_enough = 32 * epsilon;
 
 constexpr int most_iterations = 60;
@@ -27,41 +27,26 @@ Vec3 cross(const Vec3& a, const Vec3& b) noexcept {
 
 double square(double x) noexcept { return x * x; }
 
-/// Planes as they are given.
-struct GivenPlanes {
-  std::span<const HalfSpace> planes;
-
-  Violated most_violated(const Vec3& u) const noexcept {
-    Violated worst;
-    for (std::size_t i = 0; i < planes.size(); ++i) {
-      const double by = missing(planes[i].normal.data(), planes[i].offset, u.data());
-      const bool more = by > worst.by;  // chosen without a branch, which would be a guess
-      worst.plane = more ? static_cast<int>(i) : worst.plane;
-      worst.by = more ? by : worst.by;
-    }
-    return worst;
+Violated most_violated(std::span<const HalfSpace> planes, const Vec3& u) noexcept {
+  Violated worst;
+  for (std::size_t i = 0; i < planes.size(); ++i) {
+    const double by = missing(planes[i].normal.data(), planes[i].offset, u.data());
+    const bool more = by > worst.by;  // chosen without a branch, which is hard to predict
+    worst.plane = more ? static_cast<int>(i) : worst.plane;
+    worst.by = more ? by : worst.by;
   }
-};
-
-struct ListedPlanes {
-  const UnitPlanes& planes;
-
-  Violated most_violated(const Vec3& u) const noexcept { return planes.most_violated(u.data()); }
-};
+  return worst;
+}
 
 bool in_range(const Vec3& desired) noexcept {
   return std::abs(desired[0]) <= largest && std::abs(desired[1]) <= largest &&
          std::abs(desired[2]) <= largest;
 }
 
-bool is_usual(const HalfSpace& plane) noexcept {
-  return is_unit(dot(plane.normal, plane.normal)) && std::abs(plane.offset) <= largest;
-}
-
-bool are_usual(std::span<const HalfSpace> planes) noexcept {
-  bool usual = true;
-  for (const HalfSpace& plane : planes) usual &= is_usual(plane);
-  return usual;
+bool are_units_in_range(std::span<const HalfSpace> planes) noexcept {
+  bool usable = true;
+  for (const HalfSpace& plane : planes) usable &= is_unit_in_range(plane);
+  return usable;
 }
 
 }  // namespace
@@ -72,21 +57,18 @@ bool PointMethod::solve(const StepProblem& problem) noexcept {
   active_ = 0;
   if (!in_range(desired_)) return false;
   const bool planes_only = static_cast<std::size_t>(problem.rows.rows()) == problem.planes.size();
-  if (planes_only && problem.planes.size() <= few) {
-    return are_usual(problem.planes) && run(problem, GivenPlanes{problem.planes});
+  if (planes_only && problem.planes.size() <= most_scanned) {
+    const auto scan = [&](const Vec3& u) { return most_violated(problem.planes, u); };
+    return are_units_in_range(problem.planes) && run(problem, scan);
   }
-  return list_rows(problem) && run(problem, ListedPlanes{unit_});
+  const auto scan = [&](const Vec3& u) { return unit_.most_violated(u.data()); };
+  return list_rows(problem) && run(problem, scan);
 }
 
 /// Lists all rows as unit planes. Rows that are unit vectors are not scaled, so that they are
 /// chosen as planes are.
 bool PointMethod::list_rows(const StepProblem& problem) noexcept {
-  unit_.clear();
-  bool usual = true;
-  for (const HalfSpace& plane : problem.planes) {
-    usual &= is_usual(plane);
-    unit_.push(plane.normal.data(), plane.offset);
-  }
+  bool usable = unit_.assign(problem.planes);
   for (Eigen::Index i = static_cast<Eigen::Index>(problem.planes.size()); i < problem.rows.rows();
        ++i) {
     const double* row = problem.rows.data() + 3 * i;
@@ -98,12 +80,12 @@ bool PointMethod::list_rows(const StepProblem& problem) noexcept {
       const double scale = 1.0 / std::sqrt(norm2);
       const double scaled[3] = {scale * row[0], scale * row[1], scale * row[2]};
       unit_.push(scaled, scale * bound);
-      usual &= norm2 >= square(smallest) && norm2 <= square(largest);
+      usable &= norm2 >= square(smallest) && norm2 <= square(largest);
     }
-    usual &= std::abs(bound) <= largest;
+    usable &= std::abs(bound) <= largest;
   }
   unit_.close();
-  return usual;
+  return usable;
 }
 
 template <class Scan>
@@ -111,7 +93,7 @@ bool PointMethod::run(const StepProblem& problem, const Scan& scan) noexcept {
   u_ = desired_;
   asked_ = dot(desired_, desired_);
   while (iterations_ < most_iterations) {
-    const Violated worst = scan.most_violated(u_);
+    const Violated worst = scan(u_);
     const double reach2 = std::max(asked_, dot(u_, u_));
     if (!(worst.by > 0 && square(worst.by) > square(feasibility) * reach2)) return true;
     take_in(problem, worst.plane);
@@ -122,44 +104,44 @@ bool PointMethod::run(const StepProblem& problem, const Scan& scan) noexcept {
 
 /// Puts a row in the place of the one that is to enter.
 void PointMethod::take_in(const StepProblem& problem, int row) noexcept {
-  Face& face = face_[at(active_)];
+  ActiveRow& active = active_rows_[at(active_)];
   if (at(row) < problem.planes.size()) {
-    face.normal = problem.planes[at(row)].normal;
-    face.bound = problem.planes[at(row)].offset;
+    active.normal = problem.planes[at(row)].normal;
+    active.bound = problem.planes[at(row)].offset;
   } else {
-    face.normal = Eigen::Map<const Vec3>(problem.rows.data() + 3 * std::ptrdiff_t{row});
-    face.bound = problem.bounds[row];
+    active.normal = Eigen::Map<const Vec3>(problem.rows.data() + 3 * std::ptrdiff_t{row});
+    active.bound = problem.bounds[row];
   }
-  face.square = dot(face.normal, face.normal);
-  face.mu = 0;
-  face.row = row;
+  active.square = dot(active.normal, active.normal);
+  active.mu = 0;
+  active.row = row;
 }
 
 /// Raises the multiplier of a violated row until the row holds, letting go of active rows whose
 /// multiplier reaches zero on the way.
 bool PointMethod::enter() noexcept {
   for (;;) {
-    Face& entering = face_[at(active_)];
+    ActiveRow& entering = active_rows_[at(active_)];
     const double violation =
         std::max(missing(entering.normal.data(), entering.bound, u_.data()), 0.0);
     const Split parts = split();
     const double full = parts.rest > 0 ? violation / parts.rest : unbounded;
     double partial = unbounded;
-    int blocking = Violated::none;
+    int blocking = no_row;
     for (int i = 0; i < active_; ++i) {
-      const Face& face = face_[at(i)];
+      const ActiveRow& active = active_rows_[at(i)];
       const double weight = parts.weight[at(i)];
-      const bool counts = square(weight) * face.square > square(dependence) * entering.square;
-      if (!(weight > 0 && counts && face.mu < partial * weight)) continue;
-      partial = face.mu / weight;
+      const bool counts = square(weight) * active.square > square(dependence) * entering.square;
+      if (!(weight > 0 && counts && active.mu < partial * weight)) continue;
+      partial = active.mu / weight;
       blocking = i;
     }
     const double t = std::min(full, partial);
     if (!(t < unbounded) || ++iterations_ > most_iterations) return false;
     const bool holds = full <= partial;
-    if (holds && !(parts.rest > square(slim) * entering.square)) return false;
+    if (holds && !(parts.rest > square(least_angle) * entering.square)) return false;
     for (int i = 0; i < active_; ++i) {
-      double& mu = face_[at(i)].mu;
+      double& mu = active_rows_[at(i)].mu;
       mu = std::max(mu - t * parts.weight[at(i)], 0.0);
     }
     entering.mu += t;
@@ -168,22 +150,22 @@ bool PointMethod::enter() noexcept {
       return settle();
     }
     drop(blocking);
-    place(active_ + 1);
+    update_u(active_ + 1);
   }
 }
 
 PointMethod::Split PointMethod::split() const noexcept {
-  const Vec3& w = face_[at(active_)].normal;
-  const Vec3& a = face_[0].normal;
-  const Vec3& b = face_[1].normal;
-  const Vec3& c = face_[2].normal;
+  const Vec3& w = active_rows_[at(active_)].normal;
+  const Vec3& a = active_rows_[0].normal;
+  const Vec3& b = active_rows_[1].normal;
+  const Vec3& c = active_rows_[2].normal;
   Split parts;
   switch (active_) {
     case 0:
-      parts.rest = face_[0].square;
+      parts.rest = active_rows_[0].square;
       break;
     case 1: {
-      parts.weight[0] = dot(a, w) / face_[0].square;
+      parts.weight[0] = dot(a, w) / active_rows_[0].square;
       const Vec3 rest = w - parts.weight[0] * a;
       parts.rest = dot(rest, rest);
       break;
@@ -211,14 +193,14 @@ PointMethod::Split PointMethod::split() const noexcept {
 /// Corrects the multipliers until the active rows hold with equality, to rounding.
 bool PointMethod::settle() noexcept {
   for (int pass = 0; pass < 4; ++pass) {
-    place(active_);
+    update_u(active_);
     const double reach2 = std::max(asked_, dot(u_, u_));
     std::array<double, 3> slack{};
     bool exact = true;
     for (int i = 0; i < active_; ++i) {
-      const Face& face = face_[at(i)];
-      slack[at(i)] = missing(face.normal.data(), face.bound, u_.data());
-      exact &= square(slack[at(i)]) <= square(exact_enough) * face.square * reach2;
+      const ActiveRow& active = active_rows_[at(i)];
+      slack[at(i)] = missing(active.normal.data(), active.bound, u_.data());
+      exact &= square(slack[at(i)]) <= square(exact_enough) * active.square * reach2;
     }
     if (exact) return true;
     correct(slack);
@@ -228,19 +210,19 @@ bool PointMethod::settle() noexcept {
 
 /// Adds to the multipliers what moves u by the slacks, one for each active row.
 void PointMethod::correct(const std::array<double, 3>& slack) noexcept {
-  const Vec3& a = face_[0].normal;
-  const Vec3& b = face_[1].normal;
-  const Vec3& c = face_[2].normal;
+  const Vec3& a = active_rows_[0].normal;
+  const Vec3& b = active_rows_[1].normal;
+  const Vec3& c = active_rows_[2].normal;
   std::array<double, 3> more{};
   switch (active_) {
     case 1:
-      more[0] = slack[0] / face_[0].square;
+      more[0] = slack[0] / active_rows_[0].square;
       break;
     case 2: {
-      const double slope = dot(a, b) / face_[0].square;
+      const double slope = dot(a, b) / active_rows_[0].square;
       const Vec3 rest = b - slope * a;
       more[1] = (slack[1] - slope * slack[0]) / dot(rest, rest);
-      more[0] = slack[0] / face_[0].square - slope * more[1];
+      more[0] = slack[0] / active_rows_[0].square - slope * more[1];
       break;
     }
     default: {
@@ -252,19 +234,19 @@ void PointMethod::correct(const std::array<double, 3>& slack) noexcept {
     }
   }
   for (int i = 0; i < active_; ++i) {
-    face_[at(i)].mu = std::max(face_[at(i)].mu + more[at(i)], 0.0);
+    active_rows_[at(i)].mu = std::max(active_rows_[at(i)].mu + more[at(i)], 0.0);
   }
 }
 
 /// u = d + sum mu_i a_i
-void PointMethod::place(int faces) noexcept {
+void PointMethod::update_u(int rows) noexcept {
   u_ = desired_;
-  for (int i = 0; i < faces; ++i) u_ += face_[at(i)].mu * face_[at(i)].normal;
+  for (int i = 0; i < rows; ++i) u_ += active_rows_[at(i)].mu * active_rows_[at(i)].normal;
 }
 
 /// Lets an active row go; the one that is to enter moves up with the others.
 void PointMethod::drop(int position) noexcept {
-  for (int i = position; i < active_; ++i) face_[at(i)] = face_[at(i + 1)];
+  for (int i = position; i < active_; ++i) active_rows_[at(i)] = active_rows_[at(i + 1)];
   --active_;
 }
 

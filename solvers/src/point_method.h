@@ -14,26 +14,26 @@ namespace keepout::active_set {
 /// satisfies every row. There the pieces have a closed form, by cross products, and at most three
 /// rows are active.
 ///
-/// It guards against nothing and takes nothing for granted: u is d + sum mu_i a_i with mu >= 0 by
-/// construction, and is an answer only if the active rows hold with equality and no row is
-/// violated, which together prove it the minimum however it was come by. Whatever it cannot prove,
-/// infeasible problems among them, it leaves to the general method.
+/// Its answer proves itself: u is d + sum mu_i a_i with mu >= 0 by construction, and is an answer
+/// only if the active rows hold with equality and no row is violated, which together prove it the
+/// minimum however it was found. Problems that it cannot prove, infeasible ones among them, are
+/// left to the general method.
 class PointMethod {
  public:
   void reserve(int rows) { unit_.reserve(static_cast<std::size_t>(rows)); }
 
-  /// True if it found the minimum. Precondition: moves_a_point(problem), and the shapes agree and
-  /// fit the reserve.
+  /// Returns true if it found the minimum. Precondition: moves_a_point(problem), and the shapes
+  /// agree and fit the reserve.
   bool solve(const StepProblem& problem) noexcept;
 
   const Vec3& u() const noexcept { return u_; }
   int active() const noexcept { return active_; }
-  int row(int i) const noexcept { return face_[at(i)].row; }
-  double multiplier(int i) const noexcept { return face_[at(i)].mu; }
+  int row(int i) const noexcept { return active_rows_[at(i)].row; }
+  double multiplier(int i) const noexcept { return active_rows_[at(i)].mu; }
   int iterations() const noexcept { return iterations_; }
 
  private:
-  struct Face {
+  struct ActiveRow {
     Vec3 normal;
     double square;  // of the normal
     double bound;
@@ -57,14 +57,14 @@ class PointMethod {
   Split split() const noexcept;
   bool settle() noexcept;
   void correct(const std::array<double, 3>& slack) noexcept;
-  void place(int faces) noexcept;
+  void update_u(int rows) noexcept;
   void drop(int position) noexcept;
 
   UnitPlanes unit_;
   Vec3 desired_ = Vec3::Zero();
   Vec3 u_ = Vec3::Zero();
-  double asked_ = 0;            // |d|^2
-  std::array<Face, 4> face_{};  // the active rows, then the one that is to enter
+  double asked_ = 0;                        // |d|^2
+  std::array<ActiveRow, 4> active_rows_{};  // the active rows, then the one that is to enter
   int active_ = 0;
   int iterations_ = 0;
 };

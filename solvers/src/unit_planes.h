@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "active_set_tolerances.h"
@@ -11,10 +12,12 @@
 
 namespace keepout::active_set {
 
-/// A plane and how far a point is on its wrong side; none if there is no plane.
+/// Stands where there is no row or plane.
+inline constexpr int no_row = -1;
+
+/// A plane and the distance of a point on its wrong side; no_row if there is no plane.
 struct Violated {
-  static constexpr int none = -1;
-  int plane = none;
+  int plane = no_row;
   double by = -std::numeric_limits<double>::infinity();
 };
 
@@ -24,21 +27,33 @@ inline double dot(const double* a, const double* b) noexcept {
 }
 inline double dot(const Vec3& a, const Vec3& b) noexcept { return dot(a.data(), b.data()); }
 
-/// What a point misses of a plane n . u >= offset.
+/// Returns the violation of a plane n . u >= offset by a point.
 inline double missing(const double* normal, double offset, const double* point) noexcept {
   return offset - dot(normal, point);
 }
 
-/// Whether n . n is that of a unit vector, up to the rounding of whoever made it.
+/// Returns true if n . n is that of a unit vector, up to the rounding of its computation.
 inline bool is_unit(double square) noexcept { return std::abs(square - 1.0) <= 1e-12; }
 
-/// Planes with unit normals, coordinate by coordinate, to look for the one violated most.
+inline bool is_unit_in_range(const HalfSpace& plane) noexcept {
+  return is_unit(dot(plane.normal, plane.normal)) && std::abs(plane.offset) <= largest;
+}
+
+/// Planes with unit normals, coordinate by coordinate, to find the one violated most.
 class UnitPlanes {
  public:
   void reserve(std::size_t planes);
 
-  void clear() noexcept { size_ = 0; }
-  std::size_t size() const noexcept { return size_; }
+  /// Replaces the list. Returns true if all normals are unit vectors and all offsets in range.
+  bool assign(std::span<const HalfSpace> planes) noexcept {
+    size_ = 0;
+    bool usable = true;
+    for (const HalfSpace& plane : planes) {
+      usable &= is_unit_in_range(plane);
+      push(plane.normal.data(), plane.offset);
+    }
+    return usable;
+  }
 
   /// Precondition: fewer than reserved.
   void push(const double* normal, double offset) noexcept {
@@ -49,17 +64,17 @@ class UnitPlanes {
     ++size_;
   }
 
-  /// A place in the order that nothing violates.
+  /// Adds a plane that no point violates.
   void push_idle() noexcept {
     constexpr double zero[3] = {};
     push(zero, -std::numeric_limits<double>::infinity());
   }
 
-  /// Ends the list: to be called before it is looked through.
+  /// Ends the list: must be called before most_violated().
   void close() noexcept;
 
-  /// The plane violated most, or least satisfied; of equals the first. The same bits on every
-  /// target. Precondition: closed; the point is finite.
+  /// Returns the plane violated most, or least satisfied; of equals the first. Bitwise identical on
+  /// every target. Precondition: closed; the point is finite.
   Violated most_violated(const double* point) const noexcept;
 
  private:

@@ -10,7 +10,7 @@ namespace keepout {
 /// The outcome of a step or a query. The first five come with a motion that may be executed, which
 /// may be zero; every other one comes with zero motion.
 enum class Status : std::uint8_t {
-  free,              // the motion asked for: no constraint limits it; of a polytope: complete
+  free,              // the desired increment: no constraint limits it; of a polytope: complete
   limited,           // the nearest motion that the constraints allow: see Limits
   recovering,        // something was too close or out of its region: the motion recovers from it
   fallback,          // a shorter motion: nothing longer was proved, see Limits
@@ -18,10 +18,10 @@ enum class Status : std::uint8_t {
   infeasible,        // the constraints contradict each other
   ill_posed,         // the Jacobian lacks full column rank and there is no damping
   invalid_input,     // a number is not finite or out of range
-  beyond_reach,      // the motion asked for is longer than the motion sphere's radius
+  beyond_reach,      // the desired increment is longer than the radius of the motion sphere
   over_capacity,     // more triangles, planes, rows or joints than the capacity holds
   unsolved,          // the search ended without a motion that could be proved
-  inside,            // the tip or a body is on the forbidden side, and is not led out
+  inside,            // the tip or a body is on the forbidden side, and does not escape
   touching,          // on the surface: the free side is unknown
   margin_too_small,  // the margin or band is lost in the rounding of lengths this large
   mesh_changed,      // the index was refit to another mesh, which is not followed yet
@@ -44,7 +44,7 @@ std::string_view name(Status status) noexcept;
 /// Returns one line on what happened and what to do about it.
 std::string_view reason(Status status, Subject subject) noexcept;
 
-/// A cause that kept a motion from being the one asked for, or a finding that goes with it.
+/// A cause why a motion is not the desired one, or a finding that goes with it.
 enum class Limit : std::uint8_t {
   mesh,            // the required clearance from a mesh
   guide,           // a guide: see GuideState

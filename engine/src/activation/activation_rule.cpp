@@ -5,15 +5,15 @@
 
 namespace keepout {
 
-Ball ends_of_motions(const CycleProblem& problem) noexcept {
+Ball searched_ends(const CycleProblem& problem) noexcept {
   if (problem.searched_region == EndRegion::motion_sphere) return {problem.tip, problem.longest};
-  // Projections of the aim on a convex set that holds 0 lie in the ball over it (Thales).
+  // Projections of the target on a convex set that holds 0 lie in the ball over it (Thales).
   return {problem.tip + 0.5 * problem.target, 0.5 * problem.target.norm()};
 }
 
 Ball ActivationRule::region(const CycleProblem& problem) const noexcept {
-  Ball ball = ends_of_motions(problem);
-  ball.radius += problem.margin;
+  Ball ball = searched_ends(problem);
+  ball.radius += problem.clearance;
   return ball;
 }
 

@@ -9,7 +9,7 @@ Opening AllFaces::open(const CycleProblem& problem, HalfSpaceBuffer& planes) noe
   for (const Hit& hit : hits()) {
     const Vec3 normal = mesh().normal(hit.triangle);
     if (normal.isZero(0.0) || !on_positive_side(problem, hit, normal)) continue;
-    planes.push(plane_through(hit, normal, problem.margin));
+    planes.push(plane_through(hit, normal, problem.clearance));
   }
   return {};
 }

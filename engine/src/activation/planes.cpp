@@ -14,7 +14,7 @@ bool touches(const CycleProblem& problem, const Hit& hit) noexcept {
   return hit.closest.distance <= problem.rounding;
 }
 
-Vec3 way_out(const CycleProblem& problem, const Vec3& off, double lift) noexcept {
+Vec3 retreat_target(const CycleProblem& problem, const Vec3& off, double lift) noexcept {
   const double climb = std::max(off.dot(problem.target), 0.0);
   Vec3 along = problem.target - off.dot(problem.target) * off;
   const double up = std::min(climb + lift, problem.radius);

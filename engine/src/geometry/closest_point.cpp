@@ -13,7 +13,7 @@ namespace {
 constexpr double needle = 1e-14;
 
 /// The origin's projection on the plane of a triangle, if it falls inside. The plane's frame is the
-/// longest side and the height upon it, orthogonalised twice, so that even needles lose no digits.
+/// longest side and the height upon it, orthogonalized twice, so that even needles lose no digits.
 bool project_inside(const Vec3& a, const Vec3& b, const Vec3& apex, Vec3& projection) noexcept {
   const Vec3 base = b - a;
   const double base2 = base.squaredNorm();
@@ -62,11 +62,11 @@ ClosestPoint closest_point(const Triangle& triangle, const Vec3& query) noexcept
 ClosestPoint closest_point_of_ordered(const Triangle& triangle, const Vec3& query) noexcept {
   const std::array<Vec3, 3> p{triangle[0] - query, triangle[1] - query, triangle[2] - query};
   for (int corner = 0; corner < 3; ++corner) {
-    const Vec3& its = p[corner];
-    // Beyond both sides that meet there.
-    const auto is_beyond = [&](const Vec3& other) { return !(-its.dot(other - its) > 0.0); };
+    const Vec3& here = p[corner];
+    // Beyond both sides that meet there; true for NaN, as of a side without a length.
+    const auto is_beyond = [&](const Vec3& other) { return !(-here.dot(other - here) > 0.0); };
     if (is_beyond(p[(corner + 1) % 3]) && is_beyond(p[(corner + 2) % 3])) {
-      return {its, its.norm(), vertex_feature(corner)};
+      return {here, here.norm(), vertex_feature(corner)};
     }
   }
 

@@ -19,7 +19,13 @@ inline Vec3 at_moderate_length(const Vec3& v) noexcept {
   return v.unaryExpr([exponent](double x) { return std::scalbn(x, -exponent); });
 }
 
-/// v at unit length, however short it is; zero for zero and for what is no number.
+/// Returns v at unit length; zero if it has none. For lengths whose square does not underflow.
+inline Vec3 unit(const Vec3& v) noexcept {
+  const double length = v.norm();
+  return length > 0.0 ? Vec3(v / length) : Vec3::Zero();
+}
+
+/// Returns v at unit length, however short it is; zero for zero and if a coordinate is not finite.
 inline Vec3 direction_of(const Vec3& v) noexcept {
   const double length = v.norm();
   if (length > least_length_of_squares) return v / length;

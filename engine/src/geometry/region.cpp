@@ -9,8 +9,8 @@
 namespace keepout {
 namespace {
 
-Vec3 unit(const Vec3& direction) {
-  const Vec3 n = direction_of(direction);
+Vec3 required_direction(const Vec3& given) {
+  const Vec3 n = direction_of(given);
   if (n.isZero(0.0)) throw Error("the direction of a region has no length, or is not finite");
   return n;
 }
@@ -33,19 +33,19 @@ Region::Region(const Vec3& origin, const Mat3& across, double radius)
 
 Region Region::half_space(const Vec3& point, const Vec3& into) {
   Mat3 across = Mat3::Zero();
-  across.row(0) = -unit(into);
+  across.row(0) = -required_direction(into);
   Region region(point, across, 0.0);
   region.one_sided_ = true;
   return region;
 }
 
 Region Region::slab(const Vec3& point, const Vec3& normal, double half_width) {
-  const Vec3 n = unit(normal);
+  const Vec3 n = required_direction(normal);
   return {point, n * n.transpose(), distance(half_width)};
 }
 
 Region Region::tube(const Vec3& point, const Vec3& direction, double radius) {
-  const Vec3 d = unit(direction);
+  const Vec3 d = required_direction(direction);
   return {point, Mat3::Identity() - d * d.transpose(), distance(radius)};
 }
 

@@ -45,20 +45,23 @@ Neighborhood::Neighborhood(std::shared_ptr<const Mesh> mesh,
 
 bool Neighborhood::gather(const Ball& ball) noexcept {
   ball_ = ball;
-  candidates_.clear();
   hits_.clear();
-  if (!ball.center.allFinite() || !(ball.radius >= 0.0)) return false;
-  index_->collect(ball, candidates_);
-  budget_->spend(work_of_hit * candidates_.size());
-  if (candidates_.overflowed()) budget_->mark_overflow();
-  if (candidates_.overflowed() || budget_->is_spent()) return false;
+  if (!ball.center.allFinite() || !(ball.radius >= 0.0) || !collect(ball)) return false;
   refine(*mesh_, ball, candidates_.view(), hits_);
   return true;
 }
 
+bool Neighborhood::collect(const Ball& ball) noexcept {
+  candidates_.clear();
+  index_->collect(ball, candidates_);
+  budget_->spend(work_of_hit * candidates_.size());
+  if (candidates_.overflowed()) budget_->mark_overflow();
+  return !candidates_.overflowed() && !budget_->is_spent();
+}
+
 namespace {
 
-/// Of the candidates within the ball, the one nearest to its centre.
+/// Returns the candidate within the ball that is nearest to its center.
 std::optional<Hit> nearest_of(const Mesh& mesh, const Ball& ball,
                               std::span<const TriangleId> candidates) noexcept {
   std::optional<Hit> best;
@@ -74,8 +77,8 @@ std::optional<Hit> nearest_of(const Mesh& mesh, const Ball& ball,
 
 std::optional<Hit> find_nearest(const Mesh& mesh, const SpatialIndex& index, const Vec3& point,
                                 double guess, TriangleBuffer& candidates, Budget& budget) noexcept {
-  if (const TriangleId its = index.nearest(point, budget); its != no_triangle) {
-    return Hit{its, closest_point(mesh.triangle(its), point)};
+  if (const TriangleId found = index.nearest(point, budget); found != no_triangle) {
+    return Hit{found, closest_point(mesh.triangle(found), point)};
   }
   const Box& bounds = mesh.bounds();
   const double size = bounds.size().norm() + point.cwiseAbs().maxCoeff() + bounds.low.norm();
@@ -83,7 +86,7 @@ std::optional<Hit> find_nearest(const Mesh& mesh, const SpatialIndex& index, con
   double radius = std::max(distance_to(bounds, point) * (1.0 + 1e-12) + 1e-6 * size, guess);
   double empty = 0.0;  // nothing is within
   double crowded = std::numeric_limits<double>::infinity();
-  // Doubling ends within some tens of rounds, and so does halving, at neighbouring numbers.
+  // Doubling ends within some tens of rounds, and so does halving, at neighboring numbers.
   constexpr int most_rounds = 80;
   for (int round = 0; round < most_rounds && !budget.is_spent(); ++round) {
     candidates.clear();
@@ -112,21 +115,6 @@ std::optional<Hit> find_nearest(Neighborhood& near, const Vec3& point) noexcept 
   return find_nearest(near.mesh(), near.index(), point, 0.0, near.candidates(), near.budget());
 }
 
-namespace {
-
-/// Collects the triangles that may touch a ball. Returns false if there is no room for them, or the
-/// budget is spent.
-bool collect(Neighborhood& near, const Ball& ball) noexcept {
-  TriangleBuffer& candidates = near.candidates();
-  candidates.clear();
-  near.index().collect(ball, candidates);
-  near.budget().spend(work_of_hit * candidates.size());
-  if (candidates.overflowed()) near.budget().mark_overflow();
-  return !candidates.overflowed() && !near.budget().is_spent();
-}
-
-}  // namespace
-
 std::optional<SideOfSurface> find_side(Neighborhood& near, const Vec3& point) noexcept {
   // Beyond the box around the mesh all is one side. A point that is so far off that rounding makes
   // all triangles equally near is replaced by a nearer one.
@@ -134,7 +122,7 @@ std::optional<SideOfSurface> find_side(Neighborhood& near, const Vec3& point) no
   const Vec3 beyond = Vec3::Constant(4.0 * bounds.size().norm());
   const Vec3 nearer = point.cwiseMax(bounds.low - beyond).cwiseMin(bounds.high + beyond);
   if (nearer != point) {
-    auto side = find_side(near, nearer);
+    auto side = find_side(near, nearer);  // has no further recursion
     if (!side || side->is_outside) return side;
     const std::optional<Hit> hit = find_nearest(near, point);
     if (!hit) return std::nullopt;
@@ -145,10 +133,10 @@ std::optional<SideOfSurface> find_side(Neighborhood& near, const Vec3& point) no
   const std::optional<Hit> hit = find_nearest(near, point);
   if (!hit) return std::nullopt;
   SideProbe probe(near.mesh(), point, hit->closest);
-  if (!collect(near, probe.nearest_ball())) return std::nullopt;
+  if (!near.collect(probe.nearest_ball())) return std::nullopt;
   probe.aim({near.candidates().begin(), near.candidates().end()});
   if (probe.is_on_surface()) return probe.side({});
-  if (!collect(near, probe.probe_ball())) return std::nullopt;
+  if (!near.collect(probe.probe_ball())) return std::nullopt;
   return probe.side(near.candidates().view());
 }
 

@@ -93,21 +93,22 @@ SideOfSurface SideProbe::side(std::span<const TriangleId> candidates) const noex
   double first = std::numeric_limits<double>::infinity();
   for (const TriangleId t : candidates) {
     const Triangle triangle = mesh_.triangle(t);
-    if (are_slivers_asked || !is_sliver(triangle))
-      first = std::min(first, met_at(triangle, point_, probe_));
+    if (!are_slivers_asked && is_sliver(triangle)) continue;
+    first = std::min(first, met_at(triangle, point_, probe_));
   }
-  // Positive if the probe meets a back face first; at an edge, that of the triangle that faces the
-  // point more.
-  double facing = 0.0;
+  // Positive if the probe meets a back face first: the point sees the surface from behind. At an
+  // edge, the triangle counts that faces the point more.
+  double from_behind = 0.0;
   for (const TriangleId t : candidates) {
     const Triangle triangle = mesh_.triangle(t);
     if (!are_slivers_asked && is_sliver(triangle)) continue;
     if (!(met_at(triangle, point_, probe_) <= first + 1e-12)) continue;
     const double side = unit_normal(triangle).dot(probe_);
-    if (std::abs(side) > std::abs(facing)) facing = side;
+    if (std::abs(side) > std::abs(from_behind)) from_behind = side;
   }
-  if (facing == 0.0) facing = unit_normal(faced_).dot(probe_);
-  return {!(facing > 0.0), distance_, (facing > 0.0 ? 1.0 : -1.0) * offset_ / distance_, normal_};
+  if (from_behind == 0.0) from_behind = unit_normal(faced_).dot(probe_);
+  const bool is_inside = from_behind > 0.0;
+  return {!is_inside, distance_, (is_inside ? 1.0 : -1.0) * offset_ / distance_, normal_};
 }
 
 }  // namespace keepout

@@ -12,7 +12,8 @@ namespace keepout {
 /// Classifies a point by a probe: a segment to a place close to the nearest point, inside the
 /// triangle there that faces the point the most. The side of the first triangle that the probe
 /// meets is the point's. The result depends neither on a sum of normals nor on rounding that
-/// decides which of several triangles is the nearest.
+/// decides which of several triangles is the nearest. Use: aim() with the triangles of
+/// nearest_ball(), then, unless is_on_surface(), side() with those of probe_ball().
 class SideProbe {
  public:
   /// `nearest`: from the point to the mesh.
@@ -27,7 +28,7 @@ class SideProbe {
   /// True if the point is on the surface, to within rounding: then side() needs no candidates.
   bool is_on_surface() const noexcept { return distance_ <= 1e3 * rounding_; }
 
-  /// Ball around the probe.
+  /// Ball around the probe. Precondition: aim.
   Ball probe_ball() const noexcept { return {point_, probe_.norm() * (1.0 + 1e-9)}; }
 
   /// Classifies the point. Takes the triangles that touch probe_ball(), in any order.

@@ -34,40 +34,40 @@ Cycle::Trial Cycle::refine(Trial best) noexcept {
   return best;
 }
 
-/// Looks for a better motion than the best one known, by branch and bound. Around each triangle
-/// there are several ways, each beyond a plane of its own; a node is a choice of one way for each
-/// triangle met so far, and no motion within its planes is better than the nearest one. The most
-/// promising node is asked first: once the rule accepts its motion, none is better among the ways
-/// considered.
+/// Searches for a better motion than the best one known, by branch and bound. For each triangle
+/// there are alternative planes; a node is a choice of one plane for each triangle met so far, and
+/// no motion within its planes is better than the nearest one. The node of least cost goes first:
+/// once the rule accepts its motion, no other choice of the planes considered has a better one.
 ///
-/// Bounded by options.nodes. What it returns has stood the same test as any other motion, so the
-/// bound costs quality and never safety.
+/// At most options.nodes nodes. The rule judges every motion that is returned, so the limit costs
+/// quality and never safety.
 Cycle::Trial Cycle::branch(const Trial& best) noexcept {
   work_.save();
   work_.branches.clear();
-  open_branch(best);
+  push_branch(best);
   for (int node = 0; node < options_.nodes && !budget_.is_spent(); ++node) {
     const Branch* nearest = work_.branches.pop_nearest();
     if (nearest == nullptr) break;
     work_.planes.assign(nearest->planes());
     const Verdict verdict = rule_.judge(problem_, nearest->motion, work_.planes).verdict;
     if (verdict == Verdict::accepted) {
-      // Solved once more: the solver has gone on since.
+      // Solved once more: the solver's memory holds a later solution.
       const Trial trial = solve();
       if (!is_ok(trial.status) || trial.motion != nearest->motion) break;
-      work_.store_result(motion_, trial.motion, 1.0, relaxation_, {});
+      work_.store_result(request_, trial.motion, 1.0, relaxation_, {});
       return {Status::limited, trial.motion};
     }
     if (verdict == Verdict::blocked) continue;
-    // The plane of the contact is one way around the triangle; the rule may know others.
+    // The plane that the rule has added is one choice; there may be alternatives. (The last plane
+    // may be that of a wall, in a recovery: then the choice is among planes of the wall.)
     const TriangleId in_the_way = work_.planes[work_.planes.size() - 1].source;
-    open_branch(best);
-    work_.ways.clear();
-    rule_.ways_around(in_the_way, work_.ways);
-    for (const HalfSpace& way : work_.ways) {
+    push_branch(best);
+    work_.alternatives.clear();
+    rule_.add_alternatives(in_the_way, work_.alternatives);
+    for (const HalfSpace& alternative : work_.alternatives) {
       work_.planes.assign(nearest->planes());
-      work_.planes.push(way);
-      open_branch(best);
+      work_.planes.push(alternative);
+      push_branch(best);
     }
   }
   work_.restore();
@@ -75,7 +75,7 @@ Cycle::Trial Cycle::branch(const Trial& best) noexcept {
 }
 
 /// Adds a node for the present planes, unless it cannot contain a better motion.
-void Cycle::open_branch(const Trial& best) noexcept {
+void Cycle::push_branch(const Trial& best) noexcept {
   const Trial trial = solve();
   if (!is_ok(trial.status) || trial.motion.norm() > problem_.longest) return;
   if (!work_.guides.allow(trial.motion)) return;

@@ -7,7 +7,7 @@
 namespace keepout {
 namespace {
 
-// Of what is no length: products of it and of lengths must stay finite.
+// For numbers that are not lengths: their products with lengths must stay finite.
 constexpr double largest_number = 1e30;
 
 template <class Numbers>
@@ -36,38 +36,43 @@ void require_in_range(const StepOptions& options) {
   }
 }
 
-Status check(const Motion& motion, const StepOptions& options) noexcept {
-  if (!are_within(longest_length, motion.tip) || !are_within(longest_length, motion.desired)) {
+std::optional<Status> refusal(const Motion& request, const StepOptions& options) noexcept {
+  if (!are_within(longest_length, request.tip) || !are_within(longest_length, request.desired)) {
     return Status::invalid_input;
   }
-  if (const auto& j = motion.jacobian) {
+  if (const auto& j = request.jacobian) {
     if (j->joints() < 1 || j->data() == nullptr || !are_within(largest_number, j->matrix())) {
       return Status::invalid_input;
     }
   }
-  const Eigen::Index variables = motion.jacobian ? motion.jacobian->joints() : 3;
-  if (motion.rows && !are_usable(*motion.rows, variables)) return Status::invalid_input;
-  // So far from the origin that a step is lost in the digits of the tip.
-  if (position_rounding(motion.tip, options) > 1e-3 * options.radius) return Status::invalid_input;
-  if (!(motion.desired.norm() <= longest_motion(options))) return Status::beyond_reach;
-  return Status::free;
+  const Eigen::Index variables = request.jacobian ? request.jacobian->joints() : 3;
+  if (request.rows && !are_usable(*request.rows, variables)) return Status::invalid_input;
+  // Too far from the origin: a step would be lost in the digits of the tip.
+  if (position_rounding(request.tip, options) > 1e-3 * options.radius) return Status::invalid_input;
+  if (!(request.desired.norm() <= longest_motion(options))) return Status::beyond_reach;
+  return std::nullopt;
 }
 
-CycleProblem cycle_problem_of(const Motion& motion, const StepOptions& options,
-                              EndRegion projections) noexcept {
+void add_cause(Status status, Limits& limits) noexcept {
+  if (status == Status::out_of_budget) limits.add(Limit::budget);
+  if (status == Status::over_capacity) limits.add(Limit::capacity);
+  if (status == Status::inside || status == Status::touching) limits.add(Limit::mesh);
+}
+
+CycleProblem cycle_problem_of(const Motion& request, const StepOptions& options,
+                              EndRegion rule_region) noexcept {
   // With joints or rows of the caller's own the motion need not be a projection of the target.
-  const EndRegion ends = motion.jacobian || motion.rows ? EndRegion::motion_sphere : projections;
-  return {.tip = motion.tip,
-          .target = motion.desired,
+  const EndRegion ends = request.jacobian || request.rows ? EndRegion::motion_sphere : rule_region;
+  return {.tip = request.tip,
+          .target = request.desired,
           .accepted = Vec3::Zero(),
           .radius = options.radius,
           .longest = longest_motion(options),
-          .margin = required_clearance(options),
+          .clearance = required_clearance(options),
           .recovery = options.recovery,
-          .rounding = position_rounding(motion.tip, options),
+          .rounding = position_rounding(request.tip, options),
           .end_region = ends,
-          .searched_region = options.query == Query::motion ? ends : EndRegion::motion_sphere,
-          .is_projected = false};
+          .searched_region = options.query == Query::motion ? ends : EndRegion::motion_sphere};
 }
 
 }  // namespace keepout

@@ -14,7 +14,7 @@
 namespace keepout {
 namespace {
 
-void require_in_range(const Mesh& mesh) {
+void require_mesh_in_range(const Mesh& mesh) {
   const double farthest =
       std::max(mesh.bounds().low.cwiseAbs().maxCoeff(), mesh.bounds().high.cwiseAbs().maxCoeff());
   const double longest = mesh.longest_edge();
@@ -33,24 +33,18 @@ std::unique_ptr<Neighborhood> neighborhood_of(std::shared_ptr<const Mesh> mesh,
   if (!mesh || !index || activation == nullptr || solver == nullptr) {
     throw Error("a motion constraint needs a mesh, an index, an activation rule and a solver");
   }
-  require_in_range(*mesh);
+  require_mesh_in_range(*mesh);
   return std::make_unique<Neighborhood>(std::move(mesh), std::move(index), capacity.triangles,
                                         budget);
 }
 
-/// Throws for what cannot be held.
+/// Returns the capacity with room for the nodes of the options. Throws Error for options or a
+/// capacity out of range.
 Capacity checked(Capacity capacity, const StepOptions& options) {
   require_in_range(options);
   require_in_range(capacity_options, capacity);
   capacity.nodes = std::max(capacity.nodes, static_cast<std::size_t>(std::max(options.nodes, 0)));
   return capacity;
-}
-
-/// Adds the limit that a status without a motion stands for.
-void name_cause(Status status, Limits& limits) noexcept {
-  if (status == Status::out_of_budget) limits.add(Limit::budget);
-  if (status == Status::over_capacity) limits.add(Limit::capacity);
-  if (status == Status::inside || status == Status::touching) limits.add(Limit::mesh);
 }
 
 }  // namespace
@@ -65,19 +59,18 @@ MotionConstraint::MotionConstraint(std::shared_ptr<const Mesh> mesh,
                                    std::unique_ptr<ActivationRule> activation,
                                    std::unique_ptr<Solver> solver, const StepOptions& options,
                                    const Capacity& capacity, Inside inside)
-    : budget_(std::make_unique<Budget>()),
-      near_(neighborhood_of(mesh, std::move(index), activation.get(), solver.get(), capacity,
+    : options_(options),
+      capacity_(checked(capacity, options)),
+      budget_(std::make_unique<Budget>()),
+      near_(neighborhood_of(mesh, std::move(index), activation.get(), solver.get(), capacity_,
                             *budget_)),
       activation_(std::move(activation)),
       solver_(std::move(solver)),
-      options_(options),
-      capacity_(checked(capacity, options)),
       work_(std::make_unique<Workspace>(capacity_, *solver_)),
       polytope_(mesh, near_->room()),
       polytope_planes_(std::max(work_->planes.capacity(), planes_to_hold_still)),
-      makes_queries_(false),
       inside_(inside),
-      watch_(inside == Inside::led_out && is_watertight(*mesh)) {
+      has_sides_(inside == Inside::led_out && is_watertight(*mesh)) {
   if (inside == Inside::led_out && activation_->guards_a_tool()) {
     throw Error(
         "a tip that starts inside is led out without regard to the rest of a tool: with a rule "
@@ -86,7 +79,6 @@ MotionConstraint::MotionConstraint(std::shared_ptr<const Mesh> mesh,
   prepare();
   reserve_solver(0);
   require_usable(options_);
-  makes_queries_ = near_->ball().radius >= 0.0;  // once it has been asked at all
 }
 
 void MotionConstraint::reserve_solver(std::size_t guides) {
@@ -95,7 +87,7 @@ void MotionConstraint::reserve_solver(std::size_t guides) {
                    static_cast<int>(capacity_.planes + of_guides + capacity_.extra_rows));
 }
 
-/// Makes what is made of a mesh.
+/// Prepares the rule and the work budget for the mesh and its index.
 void MotionConstraint::prepare() {
   is_prepared_ = false;
   *budget_ = Budget(Capacity::looks_or_default(capacity_.looks, index()));
@@ -109,7 +101,7 @@ void MotionConstraint::follow(std::shared_ptr<const Mesh> moved,
                               *budget_);
   FreePolytope polytope(moved, near->room());
   const bool has_same_triangles = std::ranges::equal(moved->triangles(), mesh().triangles());
-  if (!has_same_triangles) watch_ = inside_ == Inside::led_out && is_watertight(*moved);
+  if (!has_same_triangles) has_sides_ = inside_ == Inside::led_out && is_watertight(*moved);
   *near_ = std::move(*near);
   polytope_ = std::move(polytope);
   forget();
@@ -133,13 +125,14 @@ void MotionConstraint::set_guides(std::vector<Guide> guides) {
 
 std::span<const Guide> MotionConstraint::guides() const noexcept { return work_->guides.guides(); }
 
-/// In range, and so that rounding leaves something of the margin.
+/// Throws Error for options out of range, and if the rule finds the margin too small beside its
+/// rounding. Opens a cycle to ask the rule.
 void MotionConstraint::require_usable(const StepOptions& options) {
   require_in_range(options);
   if (static_cast<std::size_t>(options.nodes) > capacity_.nodes) {
     throw Error("more nodes than room was made for: see Capacity::nodes");
   }
-  // At the tip nearest to the origin that there can be, where rounding is least.
+  // At the tip nearest to the origin, where rounding is least.
   const Box& bounds = mesh().bounds();
   budget_->renew();
   const Vec3 tip = bounds.low.cwiseMax(Vec3::Zero()).cwiseMin(bounds.high);
@@ -156,21 +149,11 @@ void MotionConstraint::require_usable(const StepOptions& options) {
   }
 }
 
-Ball MotionConstraint::region(const Motion& motion) const noexcept {
-  return activation_->region(cycle_problem_of(motion, options_, activation_->end_region()));
+Ball MotionConstraint::region(const Motion& request) const noexcept {
+  return activation_->region(cycle_problem_of(request, options_, activation_->end_region()));
 }
 
-Step MotionConstraint::step(const Motion& motion) noexcept { return step(motion, sides_, nullptr); }
-
-Step MotionConstraint::step(const Motion& motion, StageTimes& times) noexcept {
-  return step(motion, sides_, &times);
-}
-
-Step MotionConstraint::step(const Motion& motion, SideWatch& sides) noexcept {
-  return step(motion, sides, nullptr);
-}
-
-Step MotionConstraint::step(const Motion& motion, SideWatch& sides, StageTimes* times) noexcept {
+Step MotionConstraint::step(const Motion& request, SideWatch& sides, StageTimes* times) noexcept {
   Step result;
   if (times != nullptr) *times = {};
   if (!is_current()) {
@@ -178,38 +161,40 @@ Step MotionConstraint::step(const Motion& motion, SideWatch& sides, StageTimes* 
     return result;
   }
   budget_->renew();
-  result.status = check(motion, options_);
-  // What is refused says nothing of where the tip is.
-  if (is_ok(result.status)) {
-    step_as_checked(motion, sides, times, result);
+  // A refused request does not change what is known of the tip.
+  if (const std::optional<Status> refused = refusal(request, options_)) {
+    result.status = *refused;
+  } else {
+    step_checked(request, sides, times, result);
     if (TipGuides& guides = work_->guides; !guides.empty()) {
       result.guides = guides.states(result.relaxation);
       if (result.ok() && guides.is_recovering()) result.status = Status::recovering;
     }
   }
-  if (!result.ok()) name_cause(result.status, result.limits);
-  const bool is_asked = options_.distances == Distances::always && !result.distance;
-  if (is_asked && result.status != Status::invalid_input) {
-    const auto nearest = find_nearest(*near_, motion.tip);
+  if (!result.ok()) add_cause(result.status, result.limits);
+  const bool is_missing = options_.distances == Distances::always && !result.distance;
+  if (is_missing && result.status != Status::invalid_input) {
+    const auto nearest = find_nearest(*near_, request.tip);
     if (nearest) result.distance = nearest->closest.distance;
   }
   return result;
 }
 
-/// A tip on the forbidden side is led out; any other steps as the rule allows.
-void MotionConstraint::step_as_checked(const Motion& motion, SideWatch& sides, StageTimes* times,
-                                       Step& result) noexcept {
-  if (!work_->guides.empty()) work_->guides.open(motion.tip, options_.recovery);
-  if (watch_ && sides.must_classify(motion.tip, mesh()) &&
-      escape_from_inside(*near_, motion, options_, *work_, result)) {
+/// Steps a tip: an escape on the forbidden side, else a cycle. After an escape, or if the tip could
+/// not be classified, the next tip must be classified again: nothing is noted.
+void MotionConstraint::step_checked(const Motion& request, SideWatch& sides, StageTimes* times,
+                                    Step& result) noexcept {
+  if (!work_->guides.empty()) work_->guides.open(request.tip, options_.recovery);
+  if (classifies(sides) && sides.must_classify(request.tip, mesh()) &&
+      escape_if_inside(*near_, request, options_, *work_, result)) {
     return;
   }
-  Cycle(*activation_, *solver_, *work_, *budget_, options_, motion, times).run(result);
-  if (result.status == Status::touching && watch_ && sides.is_on() &&
-      escape_from_surface(*near_, motion, options_, *work_, result)) {
+  Cycle(*activation_, *solver_, *work_, *budget_, options_, request, times).run(result);
+  if (result.status == Status::touching && classifies(sides) &&
+      escape_from_surface(*near_, request, options_, *work_, result)) {
     return;
   }
-  sides.after(motion, result, options_, mesh());
+  sides.after(request, result, options_, mesh());
 }
 
 Polytope MotionConstraint::free_polytope(const Vec3& tip, double radius) noexcept {
@@ -219,7 +204,7 @@ Polytope MotionConstraint::free_polytope(const Vec3& tip, double radius) noexcep
   } else if (!activation_->guards_a_tool()) {
     budget_->renew();
     const double kept = required_clearance(options_);
-    // around() refuses a ball that is not one.
+    // around() reports a ball that is not valid.
     const bool fits = near_->gather({tip, radius + kept}) || !(radius >= 0.0 && tip.allFinite());
     status = fits ? polytope_.around(tip, radius, kept, near_->hits(), *budget_, polytope_planes_)
                   : budget_->status_at_end();

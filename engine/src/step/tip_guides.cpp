@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "keepout/activation/planes.h"
 #include "keepout/error.h"
 
 namespace keepout {
@@ -12,7 +13,7 @@ namespace keepout {
 TipGuides::TipGuides(std::vector<Guide> guides)
     : guides_(std::move(guides)),
       states_(guides_.size()),
-      allowed_(guides_.size()),
+      most_excess_(guides_.size()),
       planes_(most_planes_of_a_guide * guides_.size()),
       guide_of_(planes_.capacity()) {
   if (guides_.size() > Guide::most) {
@@ -38,7 +39,7 @@ void TipGuides::open(const Vec3& tip, double recovery) noexcept {
     // Motions along the boundary end beside it by the rounding of their coordinates.
     const double rounding = 1e-15 * (tip.lpNorm<1>() + guides_[g].region().origin().lpNorm<1>());
     states_[g] = {.excess = excess};
-    allowed_[g] = std::max(guides_[g].band(), excess) + rounding;
+    most_excess_[g] = std::max(guides_[g].band(), excess) + rounding;
     if (excess > 0.0) add(g, tip);
   }
 }
@@ -68,14 +69,8 @@ bool TipGuides::leads_back() const noexcept {
 }
 
 bool TipGuides::relax() noexcept {
-  bool changed = false;
   recovery_ = 0.0;
-  for (std::size_t p = 0; p < planes_.size(); ++p) {
-    if (!(planes_[p].offset > 0.0)) continue;
-    planes_[p].offset = 0.0;
-    changed = true;
-  }
-  return changed;
+  return let_stand_still(planes_);
 }
 
 std::span<const GuideState> TipGuides::states(Relaxation relaxation) noexcept {
@@ -87,7 +82,7 @@ std::span<const GuideState> TipGuides::states(Relaxation relaxation) noexcept {
 
 bool TipGuides::all_allow(const Vec3& motion) const noexcept {
   for (std::size_t g = 0; g < guides_.size(); ++g) {
-    if (!(guides_[g].region().excess(at_end(motion)) <= allowed_[g])) return false;
+    if (!(guides_[g].region().excess(at_end(motion)) <= most_excess_[g])) return false;
   }
   return true;
 }
@@ -105,7 +100,7 @@ bool TipGuides::exclude(const Vec3& motion) noexcept {
   const Vec3 end = at_end(motion);
   bool is_excluded = false;
   for (std::size_t g = 0; g < guides_.size(); ++g) {
-    if (guides_[g].region().excess(end) > allowed_[g]) is_excluded = add(g, end) || is_excluded;
+    if (guides_[g].region().excess(end) > most_excess_[g]) is_excluded = add(g, end) || is_excluded;
   }
   return is_excluded;
 }
@@ -113,7 +108,7 @@ bool TipGuides::exclude(const Vec3& motion) noexcept {
 void TipGuides::note_left_by(const Vec3& motion) noexcept {
   const Vec3 end = at_end(motion);
   for (std::size_t g = 0; g < guides_.size(); ++g) {
-    states_[g].limits = states_[g].limits || guides_[g].region().excess(end) > allowed_[g];
+    states_[g].limits = states_[g].limits || guides_[g].region().excess(end) > most_excess_[g];
   }
 }
 

@@ -28,7 +28,7 @@ class TipGuides {
   std::span<const Guide> guides() const noexcept { return guides_; }
   bool empty() const noexcept { return guides_.empty(); }
 
-  /// Begins a cycle with the half-spaces of the regions that the tip is outside of. They lead it
+  /// Begins a cycle with the half-spaces of the regions that the tip is outside of. They pull it
   /// back by up to `recovery`. [length]
   void open(const Vec3& tip, double recovery) noexcept;
 
@@ -39,9 +39,10 @@ class TipGuides {
   /// Stops leading back. Returns true if any half-space changed.
   bool relax() noexcept;
 
-  /// Returns true if a motion stays as far within all regions as this cycle requires.
+  /// Returns true if a motion ends in no region with an excess above that guide's band, or above
+  /// the excess at the start if that is larger.
   bool allow(const Vec3& motion) const noexcept { return empty() || all_allow(motion); }
-  /// Returns a fraction of a motion that is allowed; 1 if all of it is.
+  /// Returns a fraction of a motion that is allowed, by bisection to 1/1000; 1 if all of it is.
   double allowed_fraction(const Vec3& motion) const noexcept;
   /// Adds a half-space for each region that a motion leaves. Returns false if there is none to add.
   bool exclude(const Vec3& motion) noexcept;
@@ -67,11 +68,11 @@ class TipGuides {
 
   std::vector<Guide> guides_;
   std::vector<GuideState> states_;
-  std::vector<double> allowed_;  // excess of each in this cycle [length]
+  std::vector<double> most_excess_;  // that each allows in this cycle [length]
   HalfSpaceBuffer planes_;
   std::vector<std::size_t> guide_of_;  // of each half-space
   Vec3 tip_ = Vec3::Zero();
-  double recovery_ = 0.0;  // 0 once relaxed
+  double recovery_ = 0.0;  // 0 once relaxed [length]
 };
 
 }  // namespace keepout

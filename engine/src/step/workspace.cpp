@@ -8,11 +8,11 @@
 namespace keepout {
 namespace {
 
-// What the tip's increment is to itself.
+// The Jacobian of a tip without joints.
 constexpr std::array<double, 9> identity{1, 0, 0, 0, 1, 0, 0, 0, 1};
 
-// Ways around one triangle: the plane of the contact, of the face, and of each edge.
-constexpr std::size_t most_ways = 5;
+// Planes that a triangle can have: of the contact, of the face, and around each edge.
+constexpr std::size_t most_alternatives = 5;
 
 std::size_t most_rows(const Capacity& capacity) {
   return capacity.planes + TipGuides::most_planes + capacity.extra_rows;
@@ -20,31 +20,11 @@ std::size_t most_rows(const Capacity& capacity) {
 
 }  // namespace
 
-void Branches::push(double cost, const Vec3& motion, std::span<const HalfSpace> planes) noexcept {
-  if (size_ == branches_.size() || planes.size() > Branch::most_planes) return;
-  Branch& branch = branches_[size_++];
-  branch.cost = cost;
-  branch.motion = motion;
-  std::copy(planes.begin(), planes.end(), branch.planes_.begin());
-  branch.count_ = planes.size();
-  branch.open_ = true;
-}
-
-const Branch* Branches::pop_nearest() noexcept {
-  Branch* nearest = nullptr;
-  for (std::size_t i = 0; i < size_; ++i) {
-    Branch& branch = branches_[i];
-    if (branch.open_ && (nearest == nullptr || branch.cost < nearest->cost)) nearest = &branch;
-  }
-  if (nearest != nullptr) nearest->open_ = false;
-  return nearest;
-}
-
 Workspace::Workspace(const Capacity& capacity, const Solver& solver)
     : planes(capacity.planes),
       earlier_planes(capacity.planes),
-      ways(most_ways),
-      branches(most_ways * capacity.nodes + 1),
+      alternatives(most_alternatives),
+      branches(most_alternatives * capacity.nodes + 1),
       variables_(static_cast<Eigen::Index>(std::max<std::size_t>(capacity.variables, 3))),
       extra_rows_(static_cast<Eigen::Index>(capacity.extra_rows)),
       writes_planes_(!solver.reads_planes()),
@@ -56,28 +36,28 @@ Workspace::Workspace(const Capacity& capacity, const Solver& solver)
               Buffer<std::uint32_t>(most_rows(capacity))},
       earlier_result_(result_) {}
 
-bool Workspace::has_room_for(const Motion& motion) const noexcept {
-  return (!motion.jacobian || motion.jacobian->joints() <= variables_) &&
-         (!motion.rows || motion.rows->count() <= extra_rows_);
+bool Workspace::has_room_for(const Motion& request) const noexcept {
+  return (!request.jacobian || request.jacobian->joints() <= variables_) &&
+         (!request.rows || request.rows->count() <= extra_rows_);
 }
 
-StepProblem Workspace::pose(const Motion& motion, const Vec3& target, double damping) noexcept {
-  const Eigen::Index n = motion.jacobian ? motion.jacobian->joints() : 3;
+StepProblem Workspace::pose(const Motion& request, const Vec3& target, double damping) noexcept {
+  const Eigen::Index n = request.jacobian ? request.jacobian->joints() : 3;
   const double* jacobian = identity.data();
-  if (motion.jacobian) {
-    jacobian = motion.jacobian->data();
-    if (!motion.jacobian->is_packed()) {
-      Eigen::Map<TipJacobian::Matrix>(jacobian_.data(), 3, n) = motion.jacobian->matrix();
+  if (request.jacobian) {
+    jacobian = request.jacobian->data();
+    if (!request.jacobian->is_packed()) {
+      Eigen::Map<TipJacobian::Matrix>(jacobian_.data(), 3, n) = request.jacobian->matrix();
       jacobian = jacobian_.data();
     }
   }
   const std::span<const HalfSpace> half_spaces = posed();
-  if (writes_planes_) write_rows_of(half_spaces, motion.jacobian ? jacobian : nullptr, n);
+  if (writes_planes_) write_rows_of(half_spaces, request.jacobian ? jacobian : nullptr, n);
   const auto m = static_cast<Eigen::Index>(half_spaces.size());
-  const Eigen::Index extra = motion.rows ? motion.rows->count() : 0;
+  const Eigen::Index extra = request.rows ? request.rows->count() : 0;
   if (extra > 0) {
-    std::copy_n(motion.rows->matrix(), extra * n, rows_.data() + m * n);
-    std::copy_n(motion.rows->bounds(), extra, bounds_.data() + m);
+    std::copy_n(request.rows->matrix(), extra * n, rows_.data() + m * n);
+    std::copy_n(request.rows->bounds(), extra, bounds_.data() + m);
   }
   desired_ = target;
   return {.jacobian = {jacobian, 3, n},
@@ -102,41 +82,35 @@ void Workspace::write_rows_of(std::span<const HalfSpace> posed, const double* ja
   }
 }
 
-std::span<const HalfSpace> Workspace::joined(std::size_t guide_planes) noexcept {
+std::span<const HalfSpace> Workspace::join_guides(std::size_t guide_planes) noexcept {
   posed_.assign(planes.view());
   for (const HalfSpace& plane : guides.planes().first(guide_planes)) posed_.push(plane);
   return posed_.view();
 }
 
-void Workspace::store_result(const Motion& motion, const Vec3& tip_motion, double share,
+void Workspace::store_result(const Motion& request, const Vec3& tip_motion, double fraction,
                              Relaxation relaxation, Limits limits) noexcept {
   result_.guide_planes = guides.planes().size();
   result_.relaxation = relaxation;
   result_.limits = limits;
   result_.increment.clear();
-  // The sum with 0 takes the sign off a zero, which else that of some zero in the input decides.
-  if (motion.jacobian) {
-    for (const double u : solution.u) result_.increment.push(share * u + 0.0);
+  if (request.jacobian) {
+    for (const double u : solution.u) result_.increment.push(fraction * u + 0.0);  // no signed zero
   } else {
-    for (const double u : tip_motion) result_.increment.push(u + 0.0);
+    for (const double u : without_signed_zeros(tip_motion)) result_.increment.push(u);
   }
   result_.active.assign(solution.active);
 }
 
-void Workspace::store_zero_result(const Motion& motion, Relaxation relaxation,
+void Workspace::store_zero_result(const Motion& request, Relaxation relaxation,
                                   Limits limits) noexcept {
   solution = {};
-  store_result(motion, Vec3::Zero(), 0.0, relaxation, limits);
-  const Eigen::Index joints = motion.jacobian ? motion.jacobian->joints() : 0;
+  store_result(request, Vec3::Zero(), 0.0, relaxation, limits);
+  const Eigen::Index joints = request.jacobian ? request.jacobian->joints() : 0;
   for (Eigen::Index k = 0; k < joints; ++k) result_.increment.push(0.0);
 }
 
-void Workspace::save() noexcept {
-  restore();
-  planes.clear();
-}
-
-void Workspace::restore() noexcept {
+void Workspace::swap_with_earlier() noexcept {
   std::swap(planes, earlier_planes);
   std::swap(result_, earlier_result_);
 }

@@ -45,6 +45,7 @@ class Watched final : public Solver {
 
   void reserve(int variables, int rows) override { exact_.reserve(variables, rows); }
   bool reads_planes() const noexcept override { return exact_.reads_planes(); }
+  bool ignores_idle_planes() const noexcept override { return exact_.ignores_idle_planes(); }
   SolveStatus solve(const StepProblem& problem, Solution& solution) noexcept override {
     return watch_(problem, solution, exact_.solve(problem, solution));
   }

@@ -22,6 +22,10 @@
 namespace keepout {
 namespace {
 
+bool keeps_clear(const Facet& facet, const Vec3& z, double level, double slack) {
+  return proof_of_clearance(facet, z, level, slack).has_value();
+}
+
 Vec3 random_point(Random& random, double size) {
   return size * random.uniform(0.1, 1.0) * random.direction();
 }

@@ -50,7 +50,7 @@ TEST(FloatSlack, NoProofOfALeafClaimsMoreThanItsPlaneDoes) {
       const Vec3 tip = random.uniform(0.0, 2.0) * size * random.direction();
       const FloatReach reach = float_reach(margin, longest, tip, index.tree().frame().error);
       LeafFilter filter;
-      look(index.tree().leaves()[0], float_tip(tip), reach, filter);
+      fill_filter(index.tree().leaves()[0], float_tip(tip), reach, filter);
       for (int i = 0; i < 10; ++i) {
         // The motion ends slightly beyond the last point that the plane of one triangle allows.
         const std::size_t chosen = random.below(LeafBlock::lanes);
@@ -139,7 +139,7 @@ TEST(FloatSlack, AFrontierHasEveryBoxThatItsBallTouches) {
     const std::size_t touched = random.below(NodeBlock::lanes);
     const double radius = distances[touched] * (1.0 + 1e-10);
     Frontier frontier;
-    frontier.gather(index.tree(), {center, radius});
+    frontier.cover(index.tree(), {center, radius});
     std::set<std::uint32_t> found;
     for (const NodeBlock& block : frontier.blocks()) {
       found.insert(std::begin(block.child), std::end(block.child));

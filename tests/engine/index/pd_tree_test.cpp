@@ -7,43 +7,9 @@
 
 #include "engine/index/exact_index.h"
 #include "index/pd_tree/tree.h"
-#include "shapes_to_try.h"
 
 namespace keepout {
 namespace {
-
-TEST(PdTree, GivesTheTrianglesThatTouchTheBallAndNoOthers) {
-  for (const Shape& shape : shapes_to_try()) {
-    SCOPED_TRACE(shape.name);
-    const auto mesh = mesh_of(shape.make());
-    expect_exact(*mesh, PdTree(mesh), 10);
-    if (HasFatalFailure()) return;
-  }
-}
-
-TEST(PdTree, IsExactWhereverTheMeshIsAndHoweverLarge) {
-  for (const double scale : {1e-30, 1e-12, 1e-6, 1.0, 1e6, 1e16, 1e22}) {
-    for (const double offset : {0.0, 10.0, 1e6}) {
-      SCOPED_TRACE(testing::Message() << "scale " << scale << " offset " << offset);
-      const auto mesh = moved(*mesh_of("gear"), [&](const Vec3& v) -> Vec3 {
-        return scale * (v + offset * Vec3(1.0, -0.7, 0.3));
-      });
-      expect_exact(*mesh, PdTree(mesh), 3);
-      if (HasFatalFailure()) return;
-    }
-  }
-}
-
-TEST(PdTree, IsExactForEveryNumberOfTrianglesAboutFullLeaves) {
-  for (const std::size_t count : {1u, 2u, 15u, 16u, 17u, 33u, 255u, 256u, 257u, 4097u}) {
-    SCOPED_TRACE(count);
-    const auto mesh = beginning_of("cortex", count);
-    const PdTree index(mesh);
-    expect_leaves_hold(*mesh, index.tree());
-    expect_exact(*mesh, index, 2);
-    if (HasFatalFailure()) return;
-  }
-}
 
 /// Fails unless the boxes of the subtree hold their triangles, and have directions that are
 /// orthonormal to the rounding of floats.
@@ -98,28 +64,6 @@ TEST(PdTree, IsTheSameTreeWhateverTheNumberOfThreads) {
     EXPECT_EQ(std::memcmp(tree.leaves().data(), alone.leaves().data(), alone.leaves().size_bytes()),
               0);
   }
-}
-
-TEST(PdTree, HoldsFewBytesATriangle) {
-  const auto mesh = mesh_of(make_cortex(0.7, 1));
-  const auto count = static_cast<double>(mesh->triangle_count());
-  EXPECT_LT(static_cast<double>(PdTree(mesh).memory()) / count, 52.0);
-}
-
-// Limits a little above what was found: a worse tree, or a test less sharp, shows here.
-TEST(PdTree, LooksAtNoMoreThanItDid) {
-  const auto mesh = mesh_of(make_cortex(0.7, 1));
-  const PdTree index(mesh);
-  TriangleBuffer found(mesh->triangle_count());
-  Random random(4);
-  QueryCounts counts;
-  for (const Vec3& point : surface_points(*mesh, 1000, 0.5, random)) {
-    found.clear();
-    index.collect({point, 5.0}, found, &counts);
-  }
-  EXPECT_LE(counts.nodes, 135'000u);
-  EXPECT_LE(counts.blocks, 26'000u);
-  EXPECT_LE(counts.triangles, 10u);
 }
 
 }  // namespace

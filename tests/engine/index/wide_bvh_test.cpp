@@ -12,59 +12,6 @@
 namespace keepout {
 namespace {
 
-TEST(WideBvh, GivesTheTrianglesThatTouchTheBallAndNoOthers) {
-  for (const Shape& shape : shapes_to_try()) {
-    SCOPED_TRACE(shape.name);
-    const auto mesh = mesh_of(shape.make());
-    expect_exact(*mesh, WideBvh(mesh), 10);
-    if (HasFatalFailure()) return;
-  }
-}
-
-TEST(WideBvh, IsExactWhereverTheMeshIsAndHoweverLarge) {
-  for (const double scale : {1e-30, 1e-12, 1e-6, 1.0, 1e6, 1e16, 1e22}) {
-    for (const double offset : {0.0, 10.0, 1e6}) {
-      SCOPED_TRACE(testing::Message() << "scale " << scale << " offset " << offset);
-      const auto mesh = moved(*mesh_of("gear"), [&](const Vec3& v) -> Vec3 {
-        return scale * (v + offset * Vec3(1.0, -0.7, 0.3));
-      });
-      expect_exact(*mesh, WideBvh(mesh), 3);
-      if (HasFatalFailure()) return;
-    }
-  }
-}
-
-TEST(WideBvh, IsExactForEveryNumberOfTrianglesAboutAFullTree) {
-  for (const std::size_t count : {1u, 2u, 15u, 16u, 17u, 255u, 256u, 257u, 4095u, 4096u, 4097u}) {
-    SCOPED_TRACE(count);
-    const auto mesh = beginning_of("cortex", count);
-    const WideBvh index(mesh);
-    expect_leaves_hold(*mesh, index.tree());
-    expect_exact(*mesh, index, 2);
-    if (HasFatalFailure()) return;
-  }
-}
-
-TEST(WideBvh, IsExactWhereTrianglesAreInOnePlaneOrAllAlike) {
-  const auto flat = moved(*mesh_of("cortex"), [](const Vec3& v) -> Vec3 {
-    return {v.x(), v.y(), 3.0};
-  });
-  expect_exact(*flat, WideBvh(flat), 5);
-  Surface alike{{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)}, {}};
-  alike.triangles.assign(3000, {0, 1, 2});
-  const auto mesh = mesh_of(alike);
-  expect_exact(*mesh, WideBvh(mesh), 5);
-}
-
-TEST(WideBvh, HoldsNothingInABallThatIsNoNumber) {
-  const auto mesh = mesh_of("cube");
-  const WideBvh index(mesh);
-  TriangleBuffer found(mesh->triangle_count());
-  index.collect({Vec3::Constant(std::nan("")), 1.0}, found);
-  index.collect({Vec3::Zero(), std::nan("")}, found);
-  EXPECT_TRUE(found.empty());
-}
-
 /// Fails unless every box of the subtree holds the triangles in it, and a child stands behind its
 /// parent. Appends its leaves.
 void expect_boxes_hold(const WideBvh::Tree& index, std::size_t self,
@@ -214,31 +161,6 @@ TEST(WideBvh, RefusesToBeRefitToOtherTriangles) {
   EXPECT_THROW(index.refit(mesh_of(more)), Error);
   EXPECT_TRUE(are_equal(index.tree(), was.tree()));
   EXPECT_EQ(&index.mesh(), mesh.get());
-}
-
-TEST(WideBvh, HoldsFewBytesATriangle) {
-  const auto mesh = mesh_of(make_cortex(0.7, 1));
-  const auto count = static_cast<double>(mesh->triangle_count());
-  EXPECT_LT(static_cast<double>(WideBvh(mesh).memory()) / count, 45.0);
-}
-
-// Limits a little above what was found: a worse tree, or a test less sharp, shows here.
-TEST(WideBvh, LooksAtNoMoreThanItDid) {
-  const auto mesh = mesh_of(make_cortex(0.7, 1));
-  const WideBvh index(mesh);
-  TriangleBuffer found(mesh->triangle_count());
-  Random random(4);
-  QueryCounts counts;
-  std::size_t triangles = 0;
-  for (const Vec3& point : surface_points(*mesh, 1000, 0.5, random)) {
-    found.clear();
-    index.collect({point, 5.0}, found, &counts);
-    triangles += found.size();
-  }
-  EXPECT_EQ(triangles, 251'838u);
-  EXPECT_LE(counts.nodes, 10'500u);
-  EXPECT_LE(counts.blocks, 28'000u);
-  EXPECT_LE(counts.triangles, 10u);
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 #include "keepout/fixtures/poses.h"
 #include "keepout/oracle/safety_oracle.h"
 #include "meshes.h"
-#include "step/workspace.h"
+#include "step/branches.h"
 
 namespace keepout {
 namespace {

@@ -19,32 +19,34 @@ using HalfSpaceBuffer = Buffer<HalfSpace>;
 /// The region in which the solved motions of a cycle may end.
 enum class EndRegion : std::uint8_t {
   target_ball,   // the ball whose diameter is the target: all projections of the target (Thales)
-  motion_sphere  // the motion sphere: with joints, or with rows of the caller's own
+  motion_sphere  // wherever the motion need not be a projection: joints, rows, a retreat, guides
+                 // that lead back, rules that return nothing else; or by StepOptions::query
 };
 
-/// The problem of a cycle: the input of a rule.
+/// The input of a rule in a cycle. (The quadratic program of the solver is StepProblem.)
 struct CycleProblem {
   Vec3 tip;                   // [length]
-  Vec3 target;                // the wanted increment: the commanded one, or the retreat [length]
+  Vec3 target;                // what the cycle pursues: the desired increment, a part of it, or the
+                              // retreat [length]
   Vec3 accepted;              // a motion that planes must go on allowing; zero at first [length]
   double radius;              // of the motion sphere [length]
   double longest;             // no motion is longer: at most the radius [length]
-  double margin;              // required clearance from the mesh [length], >= 0
+  double clearance;           // required from the mesh: tool radius and margin [length], >= 0
   double recovery;            // the longest retreat of a tip that is too close, in a cycle [length]
   double rounding;            // bound of the tip's error after earlier steps [length]
   EndRegion end_region;       // where motions may end
   EndRegion searched_region;  // what the gathered triangles must cover: the same, or more
-  bool is_projected;  // the motion is the projection of the target on the planes, by a solver for
-                      // which idle planes make no difference: a rule may leave them out
+  bool is_projected = false;  // no joints, rows, damping or guides that lead back, and the solver
+                              // ignores idle planes: a rule may leave them out
 };
 
-/// Returns a ball that contains the ends of all motions.
-Ball ends_of_motions(const CycleProblem& problem) noexcept;
+/// Returns a ball around the ends that the gathered triangles must cover: those of searched_region.
+Ball searched_ends(const CycleProblem& problem) noexcept;
 
 /// The start of a cycle.
 struct Opening {
-  /// free: solve for the target. recovering: the tip is closer than the margin, and `target` is its
-  /// retreat. Any other status ends the step.
+  /// free: solve for the target. recovering: the tip is closer than the required clearance, and
+  /// `target` is its retreat. Any other status ends the step.
   Status status = Status::free;
   Vec3 target = Vec3::Zero();  // the retreat, when recovering [length]
   /// From the tip to the nearest triangle, if the rule knows it at no cost. [length]
@@ -56,7 +58,7 @@ struct Judgement {
   /// The outcome.
   enum class Verdict : std::uint8_t {
     accepted,
-    objected,  // a plane that excludes the trial was added
+    objected,  // planes were added, of which at least one excludes the trial
     blocked    // the trial is not accepted, and no plane would help
   };
   Verdict verdict = Verdict::accepted;  // on the trial as a whole
@@ -82,12 +84,16 @@ class ActivationRule {
   /// space around the tip, then do not hold for the tool.
   virtual bool guards_a_tool() const noexcept { return false; }
 
+  /// Returns true if the rule asks the index for all triangles in the region, and not by something
+  /// faster that the index offers. Precondition: prepare.
+  virtual bool makes_queries() const noexcept { return true; }
+
   /// Returns the region in which motions end that are projections of the target: without joints and
   /// without rows of the caller's own.
   virtual EndRegion end_region() const noexcept { return EndRegion::motion_sphere; }
 
   /// Returns the ball that contains all triangles that matter: by default the ends of motions,
-  /// grown by the margin. Precondition: prepare.
+  /// grown by the required clearance. Precondition: prepare.
   virtual Ball region(const CycleProblem& problem) const noexcept;
 
   /// Gathers the triangles of the region from the index. Returns false if they exceed the capacity
@@ -115,7 +121,8 @@ class ActivationRule {
 
   /// Adds planes that each have one triangle behind them and allow zero motion: alternatives to the
   /// plane that `judge` has added for the triangle.
-  virtual void ways_around(TriangleId /*source*/, HalfSpaceBuffer& /*ways*/) const noexcept {}
+  virtual void add_alternatives(TriangleId /*source*/, HalfSpaceBuffer& /*planes*/) const noexcept {
+  }
 
   /// Returns the number of triangles that the last result depends on: all hits, or those that the
   /// rule has examined.
@@ -124,6 +131,8 @@ class ActivationRule {
  protected:
   /// Returns the mesh. Precondition: prepare.
   const Mesh& mesh() const noexcept { return near_->mesh(); }
+  /// Returns the index. Precondition: prepare.
+  const SpatialIndex& index() const noexcept { return near_->index(); }
   /// Returns the work budget. Precondition: prepare.
   Budget& budget() const noexcept { return near_->budget(); }
   /// Returns the hits of the last gather; empty before it.

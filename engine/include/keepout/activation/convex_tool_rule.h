@@ -61,10 +61,10 @@ class ConvexToolRule final : public ActivationRule {
   struct Near {
     TriangleId triangle;
     Proof at_start;
-    bool is_refined;         // at_start is the narrow phase's: other proofs may be much weaker
-    double clearance = 0.0;  // of planes
-    double demand = 0.0;     // a trial that comes closer is rejected
-    double floor = 0.0;      // the least distance of a trial that satisfies the triangle's plane
+    bool is_refined;           // at_start is the narrow phase's: other proofs may be much weaker
+    double plane_level = 0.0;  // distance at which planes are put
+    double demand = 0.0;       // a trial that comes closer is rejected
+    double floor = 0.0;        // the least distance of a trial that satisfies the triangle's plane
   };
 
   /// A triangle that a trial may come too close to.

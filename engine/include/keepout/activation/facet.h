@@ -8,20 +8,20 @@
 
 namespace keepout {
 
-/// max n . p over the points p of a triangle. [length]
+/// Returns max n . p over the points p of a triangle. [length]
 inline double support(const Triangle& corners, const Vec3& n) noexcept {
   return std::max({n.dot(corners[0]), n.dot(corners[1]), n.dot(corners[2])});
 }
 
-/// A triangle as a motion sees it: relative to the tip, its corners in lexicographic order, so that
-/// nothing depends on how it is wound, rotated or numbered, nor on how far off the origin lies.
+/// A triangle prepared for proofs: relative to the tip, its corners in lexicographic order, so that
+/// nothing depends on how it is wound, rotated or numbered, nor on the distance of the origin.
 ///
-/// Everything below rests on one fact: the distance of the point t z to a triangle is convex in t,
-/// and each unit vector n bounds it from below by n . (t z) - support(n), with equality at the t
-/// where n points from the triangle's closest point to t z.
+/// Proofs rest on Lemma 2 of docs/certified-step.md: the distance of the point t z to a triangle is
+/// convex in t, and each unit vector n bounds it from below by n . (t z) - support(n), with
+/// equality at the t where n points from the triangle's closest point to t z.
 class Facet {
  public:
-  /// What a point has of the facet.
+  /// The facet's closest point to a point, as a proof of the distance.
   struct Nearest {
     Vec3 normal;      // a unit vector from the closest point to the point; zero on the facet
     double distance;  // of the point [length]
@@ -41,43 +41,46 @@ class Facet {
   /// In lexicographic order, relative to the tip. [length]
   const Triangle& corners() const noexcept { return corners_; }
 
-  /// Of all that the normal could be within rounding, the one that proves the largest distance.
+  /// Returns the closest point to a point: of all normals within rounding, the one that proves the
+  /// largest distance.
   Nearest nearest_to(const Vec3& point) const noexcept;
 
-  /// The same, sooner where the closest point lies on the feature that it is `likely` to lie on.
+  /// Like nearest_to(point), but faster if the closest point lies on the `likely` feature.
   Nearest nearest_to(const Vec3& point, Feature likely) const noexcept;
 
-  /// nearest_to the tip.
+  /// Returns nearest_to the tip.
   const Nearest& at_tip() const noexcept { return at_tip_; }
-  /// Of the tip. [length]
+  /// Returns the distance of the tip. [length]
   double distance() const noexcept { return at_tip_.distance; }
-  /// Towards the tip, a unit vector; zero when the tip is on the facet.
+  /// Returns the unit vector towards the tip; zero when the tip is on the facet.
   const Vec3& normal() const noexcept { return at_tip_.normal; }
 
-  /// The direction of an edge (0, 1, 2), of its length. [length]
+  /// Returns an edge (0, 1, 2) as a vector from its first corner. [length]
   Vec3 edge(int number) const noexcept { return corners_[(number + 1) % 3] - corners_[number]; }
 
-  /// max n . p over the points p of the facet. [length]
+  /// Returns max n . p over the points p of the facet. [length]
   double support(const Vec3& n) const noexcept { return keepout::support(corners_, n); }
 
-  /// Whether there is a face, and not just a thin facet's edges.
+  /// Returns true unless the facet is thin: a thin one counts as its edges.
   bool has_face() const noexcept { return determinant_ > 0.0; }
 
-  /// What the tip would have of the face, if that were the nearest. Precondition: has_face().
+  /// Returns the closest point of the face's plane to the tip. Precondition: has_face().
   Nearest face() const noexcept;
 
-  /// Whether a point is right over the face, on either side; no for a thin facet.
+  /// Returns true if a point is right over the face, on either side; false for a thin facet.
   bool is_under(const Vec3& point) const noexcept;
 
-  /// The facet's own unit normal, on the side of the tip; zero without an area.
+  /// Returns the facet's own unit normal, on the side of the tip; zero without an area.
   Vec3 face_normal() const noexcept;
 
-  /// The unit normal of the plane through the tip that has the facet on its far side, `level` away,
-  /// and one of its edges (0, 1, 2) just so: the way around that edge. Zero when the edge's line
-  /// comes closer than that, or when the facet sticks out on the other side.
+  /// Returns the unit normal of the plane through the tip that has the facet on its far side, at
+  /// least `level` away, and one of its edges (0, 1, 2) exactly so: the alternative around that
+  /// edge. Zero if the edge's line comes closer than that, or if the facet is on both sides of the
+  /// plane.
   Vec3 normal_around(int edge, double level) const noexcept;
 
-  /// Whether the facet comes before another by its corners; a total order but for duplicates.
+  /// Returns true if the facet comes before another by its corners; a total order except for
+  /// duplicates.
   bool before(const Facet& other) const noexcept;
 
  private:

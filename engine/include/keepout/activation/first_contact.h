@@ -12,15 +12,15 @@ struct Contact {
   /// that the earliest of several almost simultaneous contacts is found.
   double time;
   HalfSpace plane;  // that the facet, grown by `level`, is behind; allows 0 unless already closer
-  bool is_reached = false;      // or given up, or never
-  Vec3 touched = Vec3::Zero();  // of the facet, to within the root of a rounding; if it is reached
+  bool is_reached = false;      // false: never reached, or given up
+  Vec3 touched = Vec3::Zero();  // point of the facet, to within the root of a rounding; if reached
 };
 
-/// The first contact of a motion that is not clear, by Newton's method from the left on the
-/// convex distance, which never goes past it; where the nearest corner or side stays the nearest
-/// one, its own contact is the facet's, and found in one leap. Gives up, with a time after
-/// `latest`, as soon as the contact is known to be later than that. `slack`: how close is close
-/// enough. [length]
+/// Returns the first contact of a motion that is not clear, by Newton's method from the left on the
+/// convex distance, which never goes past it (Lemma 6 of docs/certified-step.md). Where the nearest
+/// corner or edge stays the nearest one, its own contact is the facet's, and is found in one leap.
+/// Gives up as soon as the contact is known to be later than `latest`, with a time after that. The
+/// time is always a lower bound. `slack`: distance from the level that counts as contact. [length]
 Contact first_contact(const Facet& facet, const Vec3& z, double level, double slack,
                       double latest) noexcept;
 

@@ -35,6 +35,7 @@ class PaperRule final : public ActivationRule {
   /// triangles in blocks.
   void prepare(Neighborhood& near) override;
   bool gather(const CycleProblem& problem) noexcept override;
+  bool makes_queries() const noexcept override { return blocks_ == nullptr; }
   std::size_t triangles() const noexcept override;
   Opening open(const CycleProblem& problem, HalfSpaceBuffer& planes) noexcept override;
   Judgement judge(const CycleProblem& problem, const Vec3& trial,

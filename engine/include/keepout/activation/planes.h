@@ -7,8 +7,8 @@
 
 namespace keepout {
 
-/// The most planes that a rule adds in a cycle. A cycle's planes are few, and some hundred under
-/// the tip of a cone of 400 faces; more are a loop that does not end.
+/// The most planes that a rule adds in a cycle. A cycle needs few, and about a hundred under the
+/// tip of a cone of 400 faces; more than that is an endless loop.
 inline constexpr std::size_t most_cutting_planes = 192;
 
 /// The paper's plane {n, p} (eq. 2) with a margin: all motions d that end at least `margin` beyond
@@ -30,11 +30,13 @@ bool on_positive_side(const CycleProblem& problem, const Hit& hit, const Vec3& n
 /// Whether the tip lies on the surface, to within rounding: x - CP has no direction there.
 bool touches(const CycleProblem& problem, const Hit& hit) noexcept;
 
-/// The increment asked for without what leads closer to the surface, and some way straight off it:
-/// `lift` along the unit vector `off`. No longer than the motion sphere's radius. [length]
-Vec3 way_out(const CycleProblem& problem, const Vec3& off, double lift) noexcept;
+/// Returns the retreat of a tip that is too close: the target without its part towards the surface,
+/// plus `lift` along the unit vector `off`, away from the surface. At most as long as the radius of
+/// the motion sphere. [length]
+Vec3 retreat_target(const CycleProblem& problem, const Vec3& off, double lift) noexcept;
 
-/// Sets back the planes that ask for motion, so that standing still is allowed. Whether any did.
+/// Relaxes the planes that demand motion until they allow standing still. Returns true if any
+/// changed.
 bool let_stand_still(HalfSpaceBuffer& planes) noexcept;
 
 /// Whether a motion satisfies all planes, to within half of the rounding of a position.

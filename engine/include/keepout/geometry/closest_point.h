@@ -29,8 +29,9 @@ struct ClosestPoint {
   Feature feature;  // where on the triangle the closest point lies
 };
 
-/// The point of `triangle` nearest to `query`: the one exact kernel of the engine. Every index is
-/// refined by it, so that accuracy does not depend on the index.
+/// Returns the point of `triangle` nearest to `query`: the exact kernel of queries. It decides
+/// which triangles touch a ball and which is the nearest, so that accuracy does not depend on the
+/// index. (The certified rule judges trials by Facet.)
 ///
 /// The offset and the distance are the same, bit for bit, in whatever order the corners are given.
 /// All arithmetic is relative to the query, so the error (some 1e-15 of the largest distance from
@@ -38,7 +39,7 @@ struct ClosestPoint {
 /// without an area are handled as the segments or points that they are.
 ClosestPoint closest_point(const Triangle& triangle, const Vec3& query) noexcept;
 
-/// The same for a triangle whose corners are in lexicographic order already.
+/// Like closest_point, for a triangle whose corners are in lexicographic order already.
 ClosestPoint closest_point_of_ordered(const Triangle& triangle, const Vec3& query) noexcept;
 
 }  // namespace keepout

@@ -10,18 +10,19 @@
 
 namespace keepout {
 
-/// The work that a control cycle may do, whatever happens in it: counted in looks, so that it is
-/// the same on every run and every processor. A look is one at sixteen boxes or triangles in single
-/// precision, at one triangle in double, or at sixteen planes.
+/// The work that a control cycle may do, counted in work units (looks), so that it is the same on
+/// every run and every processor. A unit is the examination of sixteen boxes or triangles in single
+/// precision, of one triangle in double, or of sixteen planes. (A tree's traversal cache is not
+/// counted: Frontier::cover, at most 32 nodes.)
 ///
-/// Whoever works spends, before or after, and stops once all is spent. What was not looked at then
-/// is not known, so no motion is accepted that could depend on it.
+/// Each part spends its units, before or after the work, and stops once all are spent. What was not
+/// examined then is unknown, so no motion is accepted that could depend on it.
 class Budget {
  public:
-  /// As much as nobody spends: for measuring, and where there is no control cycle.
+  /// Effectively unlimited: for measurements, and without a control cycle.
   static constexpr std::size_t unlimited = std::numeric_limits<std::ptrdiff_t>::max() / 4;
 
-  /// For so many looks in a cycle, at most `unlimited`.
+  /// With so many work units in a cycle, at most `unlimited`.
   explicit Budget(std::size_t looks = unlimited) noexcept
       : all_(static_cast<std::int64_t>(looks < unlimited ? looks : unlimited)), left_(all_) {}
 
@@ -31,10 +32,10 @@ class Budget {
     overflowed_ = false;
   }
 
-  /// Takes so many looks away.
+  /// Takes so many work units away.
   void spend(std::size_t looks) noexcept { left_ -= static_cast<std::int64_t>(looks); }
 
-  /// Spends all: nothing more may be looked at.
+  /// Spends all: nothing more may be examined.
   void spend_all() noexcept { left_ = 0; }
 
   /// Notes that a store was too small for what was found.
@@ -45,19 +46,19 @@ class Budget {
     return overflowed_ ? Status::over_capacity : Status::out_of_budget;
   }
 
-  /// Whether nothing is left.
+  /// Returns true if nothing is left.
   bool is_spent() const noexcept { return left_ <= 0; }
 
-  /// How many looks a cycle may take.
+  /// Returns the work units of a cycle.
   std::size_t all() const noexcept { return static_cast<std::size_t>(all_); }
 
-  /// How many looks were taken in this cycle.
+  /// Returns the work units spent in this cycle.
   std::size_t spent() const noexcept {
     return static_cast<std::size_t>(left_ > 0 ? all_ - left_ : all_);
   }
 
-  /// Leaves half of what is left to `attempt`, and what that leaves with the other half to those
-  /// that come after it. Returns what the attempt does.
+  /// Runs `attempt` with half of what is left and without an earlier overflow; what it does not
+  /// spend is returned. Returns the result of the attempt.
   template <class Attempt>
   auto halved(const Attempt& attempt) noexcept(noexcept(attempt())) {
     const std::int64_t aside = left_ / 2;

@@ -15,13 +15,13 @@
 
 namespace keepout {
 
-/// A triangle that touches the query ball, and its point nearest to the centre.
+/// A triangle that touches the query ball, and its point nearest to the center.
 struct Hit {
   TriangleId triangle;   // its number
-  ClosestPoint closest;  // relative to the ball's centre
+  ClosestPoint closest;  // relative to the ball's center
 };
 
-/// What it takes to find one, in looks (Budget): mostly a wait for its corners.
+/// The work of finding one, in work units (Budget): mostly a wait for its corners.
 inline constexpr std::size_t work_of_hit = 4;
 
 /// Hits, with a declared capacity.
@@ -32,8 +32,9 @@ using HitBuffer = Buffer<Hit>;
 void refine(const Mesh& mesh, const Ball& ball, std::span<const TriangleId> candidates,
             HitBuffer& hits) noexcept;
 
-/// The triangles around a place, exactly, from whatever index: asks it for candidates and refines
-/// them. All memory is made at construction. One for each thread; mesh and index are shared.
+/// Finds the triangles that touch a ball, exactly, on any index: the index proposes candidates, and
+/// refine() keeps the hits. All memory is made at construction. One for each thread; mesh and index
+/// are shared.
 class Neighborhood {
  public:
   /// With a capacity of `room` candidates in a query, or of all triangles if they are fewer.
@@ -42,28 +43,34 @@ class Neighborhood {
   Neighborhood(std::shared_ptr<const Mesh> mesh, std::shared_ptr<const SpatialIndex> index,
                std::size_t room, Budget& budget);
 
-  /// Finds all triangles that touch the ball. False, and no hits, if the index proposes more than
-  /// there is room for, or than the budget allows to look at, or the ball is none.
+  /// Finds all triangles that touch the ball. Returns false, without hits, if the index proposes
+  /// more than there is room for, or than the budget allows, or if the center is not finite or the
+  /// radius negative or NaN.
   [[nodiscard]] bool gather(const Ball& ball) noexcept;
 
-  /// What the last look found, sorted by number; closest points are relative to the ball's centre.
+  /// Fills candidates() with the triangles that may touch a ball; hits and ball stay as they are.
+  /// Returns false if there is no room for them, or if the budget is spent.
+  [[nodiscard]] bool collect(const Ball& ball) noexcept;
+
+  /// Returns what the last gather found, sorted by number; closest points are relative to the
+  /// ball's center.
   std::span<const Hit> hits() const noexcept { return hits_.view(); }
-  /// Where it looked.
+  /// Returns the ball of the last gather.
   const Ball& ball() const noexcept { return ball_; }
 
-  /// For queries of another kind, which leave hits and ball as they are.
+  /// Returns the candidates of the last query.
   TriangleBuffer& candidates() noexcept { return candidates_; }
-  /// How many candidates there is room for.
+  /// Returns the capacity for candidates.
   std::size_t room() const noexcept { return candidates_.capacity(); }
   /// Returns the work budget, shared with the users of the hits. The owner of the control cycle
   /// resets it.
   Budget& budget() const noexcept { return *budget_; }
-  /// Whether the index is still of the mesh: not so once it was refit to another.
+  /// Returns true if the index is still of the mesh: not so once it was refit to another.
   bool is_current() const noexcept { return &index_->mesh() == mesh_.get(); }
 
-  /// What is looked at.
+  /// Returns the mesh.
   const Mesh& mesh() const noexcept { return *mesh_; }
-  /// What is asked.
+  /// Returns the index.
   const SpatialIndex& index() const noexcept { return *index_; }
 
  private:
@@ -76,12 +83,12 @@ class Neighborhood {
   Budget* budget_;
 };
 
-/// The triangle nearest to a point, and its closest point, relative to `point`; ties go to the
-/// lowest id. Of every index the same, bit for bit. One that has no search of its own for it
-/// (SpatialIndex::nearest) is asked about a ball around the point that grows until it touches the
-/// mesh: far from it that may be a large part of it. There is no answer when it is more than there
-/// is room for, or when the budget is spent. What was looked for before stays found. Allocates
-/// nothing. Precondition: the point is finite.
+/// Returns the triangle nearest to a point, and its closest point, relative to `point`; ties go to
+/// the lowest id. Bitwise identical on every index. An index without a search of its own
+/// (SpatialIndex::nearest) is queried with a ball around the point that grows until it touches the
+/// mesh: far from the mesh that may be a large part of it. Returns nothing if that is more than
+/// there is room for, or if the budget is spent. Hits stay as they are. Allocates nothing.
+/// Precondition: the point is finite.
 std::optional<Hit> find_nearest(Neighborhood& near, const Vec3& point) noexcept;
 
 /// Classifies a point as inside or outside a watertight mesh that does not cut through itself. The
@@ -90,15 +97,15 @@ std::optional<Hit> find_nearest(Neighborhood& near, const Vec3& point) noexcept;
 /// Precondition: the mesh is watertight.
 std::optional<SideOfSurface> find_side(Neighborhood& near, const Vec3& point) noexcept;
 
-/// The same with memory that grows as needed: for measuring, not for the control path.
+/// Like find_nearest, with memory that grows as needed: for measuring, not for the control path.
 class NearestTriangle {
  public:
   /// Both must outlive this object.
   NearestTriangle(const Mesh& mesh, const SpatialIndex& index);
 
   /// The nearest triangle; ties and precondition as for find_nearest. `guess`: for an index without
-  /// a search of its own a radius worth trying first, such as the last distance plus the way since.
-  /// [length] Allocates.
+  /// a search of its own a radius worth trying first, such as the last distance plus the
+  /// displacement since. [length] Allocates.
   Hit operator()(const Vec3& point, double guess = 0.0);
 
  private:

@@ -53,14 +53,14 @@ class SpatialIndex {
     return no_triangle;
   }
 
-  /// A walk of its own along motions, which asks about far fewer triangles than are near; null of
-  /// an index that has none: see make_motion_walk. Its work is taken from the budget. Index and
+  /// Returns a walk of its own along motions, which shows far fewer triangles than are near; null
+  /// if the index has none: see make_motion_walk. Its work is taken from the budget. Index and
   /// budget must outlive it, and the index must not be refit.
   virtual std::unique_ptr<MotionWalk> walk_along_motions(Budget& /*budget*/) const {
     return nullptr;
   }
 
-  /// True if walk_along_motions() returns a walk.
+  /// Returns true if walk_along_motions() returns a walk: override both.
   virtual bool walks() const noexcept { return false; }
 
   /// An index of a mesh whose triangles are the same, of as many vertices that are elsewhere, made

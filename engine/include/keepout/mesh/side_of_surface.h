@@ -12,8 +12,7 @@ struct SideOfSurface {
   /// From the surface; 0 on it, to within rounding. Of an outside point that is farther away than
   /// four diagonals of the mesh's bounds, a lower bound. [length]
   double distance;
-  Vec3 outward;  // unit vector: from an inside point to its nearest one, from that to an outside
-                 // point
+  Vec3 outward;  // unit vector across the surface to the free side, along the shortest segment
   Vec3 normal;   // unit vector: of the surface at its nearest point
 };
 

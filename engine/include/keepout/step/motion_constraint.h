@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -20,11 +21,14 @@ namespace keepout {
 
 class Workspace;
 
-/// What becomes of a tip that starts on the forbidden side. For the certified rule.
+/// The treatment of a tip that starts on the forbidden side. For the certified rule.
 enum class Inside : std::uint8_t {
-  led_out,     // straight through the nearest point of the surface, before it may do anything else
-  taken_as_is  // not asked: the surface is kept from on whichever side the tip is
+  led_out,     // escapes straight through the nearest point of the surface, before anything else
+  taken_as_is  // not classified: the tip keeps off the surface on whichever side it is
 };
+
+/// The names of Inside.
+inline constexpr std::array<std::string_view, 2> inside_names{"led_out", "taken_as_is"};
 
 /// Planes around a tip.
 struct Polytope {
@@ -38,17 +42,20 @@ struct Polytope {
 };
 
 /// Keeps a tool tip out of a mesh: puts an index, a rule and a solver together, with their memory.
-/// Whatever steps does so through here: what is tested, timed and attacked is what runs.
+/// Every step of a tip runs through here: what is tested, timed and attacked is what runs. Examples
+/// call an object of this type `guard`.
 ///
-///     mesh -> index -> candidates -> exact hits -> planes -> problem -> step
+///     mesh -> index walk <-> rule -> planes -> quadratic program -> step
 ///
-/// By default, under the rule certified on a WideBvh, candidates and hits are passed by: the index
-/// shows the rule the triangles in the way of each motion that is tried (MotionWalk).
+/// So it is by default, under the rule certified on a WideBvh: the index shows the rule the
+/// triangles in the way of each trial (MotionWalk). Other indices and rules work on exact hits
+/// instead: the index proposes candidates, and the exact kernel keeps those in the region
+/// (Neighborhood).
 ///
 /// Not thread-safe: one for each control loop; mesh and index may be shared.
 ///
-/// A tip that the last step did not lead to is placed anew: on a watertight mesh its side is found
-/// by the winding. From there on no certified step changes sides.
+/// On a watertight mesh with Inside::led_out, a tip that the last step did not move there is
+/// classified as inside or outside. From there on no certified step changes sides.
 class MotionConstraint {
  public:
   /// The index must be built on `mesh`. It may be shared with other motion constraints,
@@ -59,37 +66,43 @@ class MotionConstraint {
                    std::unique_ptr<ActivationRule> activation, std::unique_ptr<Solver> solver,
                    const StepOptions& options, const Capacity& capacity = {},
                    Inside inside = Inside::taken_as_is);
-  /// Takes over all that another one has, which is of no use any more.
+  /// Takes over all that another one has, which may then only be destroyed or assigned to.
   MotionConstraint(MotionConstraint&&) noexcept;
-  /// The same.
+  /// Like the move constructor.
   MotionConstraint& operator=(MotionConstraint&&) noexcept;
   ~MotionConstraint();
 
-  /// The nearest motion that the rule and the guides allow: one control cycle. The result's views
-  /// stay valid until the next step. Allocates nothing, throws nothing. On any trouble the motion
-  /// is zero and the status says why.
-  Step step(const Motion& motion) noexcept;
+  /// Runs one control cycle: returns the nearest motion that the rule and the guides allow. The
+  /// result's views stay valid until the next step. Allocates nothing, throws nothing. On failure
+  /// the motion is zero and the status gives the cause.
+  Step step(const Motion& request) noexcept { return step(request, side_watch_, nullptr); }
 
-  /// The same, and what each stage took; not so looking for a distance, see Distances::always.
-  Step step(const Motion& motion, StageTimes& times) noexcept;
+  /// Like step(request), but also measures the time of each stage, without that of a search for the
+  /// distance (Distances::always).
+  Step step(const Motion& request, StageTimes& times) noexcept {
+    return step(request, side_watch_, &times);
+  }
 
-  /// The same for one of several tips that are stepped in turn, with one memory: each has a
-  /// SideWatch of its own, and gets the answers that a MotionConstraint of its own would give.
-  Step step(const Motion& motion, SideWatch& sides) noexcept;
+  /// Like step(request), for one of several tips that are stepped in turn: each has a SideWatch of
+  /// its own, and gets the answers that a MotionConstraint of its own would give.
+  Step step(const Motion& request, SideWatch& sides) noexcept {
+    return step(request, sides, nullptr);
+  }
 
   /// The free space around a tip as one convex polytope, whatever the direction of the motion: for
   /// a caller's own QP, MPC or sampler. Every motion that stays within all planes and within
   /// `radius` keeps the margin; guarantee and failures: FreePolytope. The planes stay valid until
-  /// the next call; a failure allows standing still only. Sides are not asked about: around a tip
+  /// the next call; a failure allows standing still only. The tip is not classified: around a tip
   /// inside it is the space inside. With a rule that guards a whole tool it is refused.
   Polytope free_polytope(const Vec3& tip, double radius) noexcept;
 
-  /// Goes on with anatomy that has moved: with a mesh and an index of it, which may be the one at
-  /// hand, refit, or one that was made ready elsewhere in the meantime. What the rule knows is made
-  /// anew, and all tips are placed anew; nothing tells whether a surface has moved over a tip whose
-  /// side is not asked about: of an open mesh, or with Inside::taken_as_is. Once an index is refit,
-  /// every step is `mesh_changed` until it is followed. Allocates, and is not for the control path.
-  /// Throws Error, and stays as it is, if the index is not of this mesh, or the mesh out of range.
+  /// Continues with anatomy that has moved: with a mesh and an index of it, which may be the
+  /// present one, refit, or one that was prepared elsewhere in the meantime. Prepares the rule
+  /// again, and all tips are classified again. It is not detected that a surface has moved over a
+  /// tip that is not classified: beside an open mesh, or with Inside::taken_as_is. Once an index is
+  /// refit, every step is `mesh_changed` until this is called. Allocates, and is not for the
+  /// control path. Throws Error, and stays as it is, if the index is not of this mesh, or the mesh
+  /// out of range.
   void follow(std::shared_ptr<const Mesh> moved, std::shared_ptr<const SpatialIndex> index);
 
   /// Whether the index is of the mesh that is kept out of: not so from a refit until follow.
@@ -107,9 +120,9 @@ class MotionConstraint {
   /// Returns the guides.
   std::span<const Guide> guides() const noexcept;
 
-  /// Forgets where the last step led, so that the next tip is placed anew however near it is, as at
-  /// the start: for motions that have nothing to do with each other.
-  void forget() noexcept { sides_.forget(); }
+  /// Forgets where the last step ended, so that the next tip is classified again however near it
+  /// is, as at the start: for motions that have nothing to do with each other.
+  void forget() noexcept { side_watch_.forget(); }
 
   /// What the tip is kept out of.
   const Mesh& mesh() const noexcept { return near_->mesh(); }
@@ -118,11 +131,11 @@ class MotionConstraint {
   const SpatialIndex& index() const noexcept { return near_->index(); }
 
   /// Where the rule looks for triangles at first. Precondition: the motion is valid.
-  Ball region(const Motion& motion) const noexcept;
+  Ball region(const Motion& request) const noexcept;
 
-  /// Whether a step asks the index for all triangles in the region, and not by something faster
-  /// that the index offers for the rule.
-  bool makes_queries() const noexcept { return makes_queries_; }
+  /// Returns true if a step asks the index for all triangles in the region, and not by something
+  /// faster that the index offers for the rule.
+  bool makes_queries() const noexcept { return activation_->makes_queries(); }
 
   /// How it behaves: radius, tool radius and margin, among others.
   const StepOptions& options() const noexcept { return options_; }
@@ -136,27 +149,27 @@ class MotionConstraint {
   void set_options(const StepOptions& options);
 
  private:
-  Step step(const Motion& motion, SideWatch& sides, StageTimes* times) noexcept;
-  void step_as_checked(const Motion& motion, SideWatch& sides, StageTimes* times,
-                       Step& result) noexcept;
+  Step step(const Motion& request, SideWatch& sides, StageTimes* times) noexcept;
+  void step_checked(const Motion& request, SideWatch& sides, StageTimes* times,
+                    Step& result) noexcept;
+  bool classifies(const SideWatch& sides) const noexcept { return has_sides_ && sides.is_on(); }
   void prepare();
   void reserve_solver(std::size_t guides);
   void require_usable(const StepOptions& options);
 
-  std::unique_ptr<Budget> budget_;      // of a cycle
-  std::unique_ptr<Neighborhood> near_;  // the rule holds on to it, wherever this is moved
-  std::unique_ptr<ActivationRule> activation_;
-  std::unique_ptr<Solver> solver_;
   StepOptions options_;
   Capacity capacity_;
+  std::unique_ptr<Budget> budget_;      // of a cycle
+  std::unique_ptr<Neighborhood> near_;  // the rule refers to it, wherever this object is moved
+  std::unique_ptr<ActivationRule> activation_;
+  std::unique_ptr<Solver> solver_;
   std::unique_ptr<Workspace> work_;
   FreePolytope polytope_;
   HalfSpaceBuffer polytope_planes_;
-  bool makes_queries_;
   bool is_prepared_ = false;
   Inside inside_;
-  bool watch_;  // whether sides are asked about
-  SideWatch sides_;
+  bool has_sides_;        // the mesh is watertight, and tips inside escape
+  SideWatch side_watch_;  // of the tip that is stepped without one of its own
 };
 
 }  // namespace keepout

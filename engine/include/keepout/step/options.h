@@ -15,17 +15,17 @@ class SpatialIndex;
 
 /// The region around the tip that is searched for triangles.
 enum class Query : std::uint8_t {
-  motion,  // as far as the motion asked for can lead, where the rule allows that
+  motion,  // as far as motions towards the target can end, where the rule allows that
   sphere   // always the whole motion sphere
 };
 
 /// The names of Query.
 inline constexpr std::array<std::string_view, 2> query_names{"motion", "sphere"};
 
-/// Of which tips a step tells how far the surface is: Step::distance.
+/// The tips whose distance a step reports: Step::distance.
 enum class Distances : std::uint8_t {
-  where_known,  // of those whose distance the rule comes by anyway: costs nothing
-  always        // of all; the nearest triangle is looked for after the step, where it is not known
+  where_known,  // those whose distance the rule finds in any case: costs nothing
+  always        // all; after the step the nearest triangle is searched if its distance is unknown
 };
 
 /// The names of Distances.
@@ -37,17 +37,17 @@ struct StepOptions {
   double radius = 5.0;       // of the motion sphere: the longest motion in a cycle [length]
   double tool_radius = 0.0;  // of the ball around the tip that must not touch [length]
   double margin = 0.2;  // required clearance beyond that; the certified rule needs one [length]
-  /// Weight of |u|^2 beside the task. With more than three joints, or joints that move the tip
-  /// alike, there is no best increment without it, and the step is ill_posed: use about 1e-6 of a
-  /// column's squared length.
+  /// Weight of |u|^2 beside the task. With more than three joints, or joints that move the tip in
+  /// the same direction, there is no best increment without it, and the step is ill_posed: use
+  /// about 1e-6 of a column's squared length.
   double damping = 0.0;
-  /// Longest retreat per cycle of a tip that is too close or inside; it retreats by a tolerance of
-  /// the rule at least, where it can, so that nothing adds up. [length]
+  /// Longest retreat per cycle of a tip that is too close or inside. Where it can, it retreats by
+  /// at least a tolerance of the rule, so that rounding does not accumulate. [length]
   double recovery = 0.05;
-  double deepest = 10.0;        // a tip deeper inside is not led out; the step is `inside` [length]
-  int refinements = 3;          // how often cuts are rotated towards a better motion
-  int nodes = 0;                // of a branch and bound search; 0: none
-  Query query = Query::motion;  // the region that is searched
+  double deepest = 10.0;  // a tip deeper inside does not escape; the step is `inside` [length]
+  int refinements = 3;    // how often planes are turned towards a better motion
+  int nodes = 0;          // of a branch and bound search; 0: none
+  Query query = Query::motion;                   // the region that is searched
   Distances distances = Distances::where_known;  // see Step::distance
 };
 
@@ -84,28 +84,29 @@ inline constexpr std::array step_options{
 /// Returns the table of the options of a struct.
 constexpr const auto& table_of(const StepOptions&) { return step_options; }
 
-/// From the tip to the surface: tool radius and margin. [length]
+/// Returns the required distance of the tip from the surface: tool radius and margin. [length]
 constexpr double required_clearance(const StepOptions& options) noexcept {
   return options.tool_radius + options.margin;
 }
 
-/// How far the tip may go, all told: a step clipped to the radius may be longer by its rounding.
+/// Returns the longest motion: a step clipped to the radius may be longer by its rounding. [length]
 constexpr double longest_motion(const StepOptions& options) noexcept {
   return options.radius * (1.0 + 1e-9);
 }
 
-/// Room for the largest step that shall be solved; a step that needs more ends with over_capacity.
+/// Capacity for the largest step; a step that needs more ends with over_capacity.
 struct Capacity {
-  /// Candidates of one query. An index that walks along motions by itself makes no such query for
-  /// the certified rule, but to place a tip.
+  /// Candidates of one query. On an index that walks along motions, the certified rule makes such
+  /// queries only to classify a tip.
   std::size_t triangles = std::size_t{1} << 16;
-  std::size_t planes = std::size_t{1} << 14;  // that a rule may pose at the same time
-  std::size_t variables = 7;                  // columns of the Jacobian, or 3 without one
-  std::size_t extra_rows = 64;                // of the caller's own
-  std::size_t nodes = 0;                      // of the branch and bound
-  /// The work of one cycle, whatever happens in it: see Budget. What cannot be proven with it is
-  /// not moved. 0: looks_of_a_walk on an index that walks along motions by itself, as wide_bvh, and
-  /// looks_of_queries on others, which are asked for all that is near.
+  std::size_t planes = std::size_t{1}
+                       << 14;   // of a rule, at the same time; see most_cutting_planes
+  std::size_t variables = 7;    // columns of the Jacobian, or 3 without one
+  std::size_t extra_rows = 64;  // of the caller's own
+  std::size_t nodes = 0;        // of the branch and bound; at least StepOptions::nodes
+  /// Work units of one cycle: see Budget. A motion that cannot be proven with them is not made. 0:
+  /// looks_of_a_walk on an index that walks along motions, such as wide_bvh, and looks_of_queries
+  /// on others, which return all triangles in the region.
   std::size_t looks = 0;
 
   static constexpr std::size_t looks_of_a_walk = std::size_t{1} << 16;   // of an index that walks

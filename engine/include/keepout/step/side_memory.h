@@ -11,8 +11,8 @@
 
 namespace keepout {
 
-/// Remembers the straight ways of points that the last step proved to be on the free side of a
-/// mesh. Certified motions never cross the surface, so only a point away from its way must be
+/// Remembers the straight paths of points that the last step proved to be on the free side of a
+/// mesh. Certified motions never cross the surface, so only a point away from its path must be
 /// classified again.
 template <std::size_t most_points>
 class SideMemory {
@@ -20,34 +20,34 @@ class SideMemory {
   /// Returns true if the last step was beside this mesh.
   bool is_of(const Mesh& mesh) const noexcept { return mesh_id_ == mesh.id(); }
 
-  /// Returns true if a point is within `distance` of the way of its last step. [length]
+  /// Returns true if a point is within `distance` of the path of its last step. [length]
   bool is_near(std::size_t point, const Vec3& position, double distance) const noexcept {
-    const Way& way = ways_[point];
-    const Vec3 off = position - way.end;
+    const Path& path = paths_[point];
+    const Vec3 off = position - path.end;
     if (off.norm() <= distance) return true;
-    const double length2 = way.back.squaredNorm();
+    const double length2 = path.back.squaredNorm();
     if (!(length2 > 0.0)) return false;
-    const double fraction = std::clamp(off.dot(way.back) / length2, 0.0, 1.0);
-    return (off - fraction * way.back).norm() <= distance;
+    const double fraction = std::clamp(off.dot(path.back) / length2, 0.0, 1.0);
+    return (off - fraction * path.back).norm() <= distance;
   }
 
   /// Notes the end of a step of a point, and the vector from there to its start. [length]
   void note(const Mesh& mesh, std::size_t point, const Vec3& end, const Vec3& back) noexcept {
     mesh_id_ = mesh.id();
-    ways_[point] = {end, back};
+    paths_[point] = {end, back};
   }
 
   /// Forgets all: every point must be classified again.
   void forget() noexcept { mesh_id_ = 0; }
 
  private:
-  struct Way {
+  struct Path {
     Vec3 end = Vec3::Zero();
     Vec3 back = Vec3::Zero();
   };
 
   std::uint64_t mesh_id_ = 0;  // 0: of no mesh
-  std::array<Way, most_points> ways_ = {};
+  std::array<Path, most_points> paths_ = {};
 };
 
 }  // namespace keepout

@@ -9,11 +9,11 @@
 namespace keepout {
 
 /// Remembers that a tip is on the free side of the surface, so that certified steps, which never
-/// change sides, keep it there. A tip away from the straight way of the last step is classified
+/// change sides, keep it there. A tip away from the straight path of the last step is classified
 /// again; a tip on the forbidden side escapes.
 class SideWatch {
  public:
-  /// Of a tip before its first step. The motion constraint decides if sides matter.
+  /// Starts without a last step. The motion constraint decides if the mesh has sides.
   SideWatch() = default;
 
   /// Returns a watch that never classifies the tip: the surface is avoided from either side.
@@ -26,15 +26,17 @@ class SideWatch {
   /// Returns true if it classifies tips.
   bool is_on() const noexcept { return is_on_; }
 
-  /// Returns true if the side of a tip is unknown: no step has moved it there.
+  /// Returns true if the side of a tip is unknown: no step has moved it there. Precondition: it is
+  /// on.
   bool must_classify(const Vec3& tip, const Mesh& mesh) const noexcept {
-    return is_on_ && !(memory_.is_of(mesh) && memory_.is_near(0, tip, free_around_));
+    return !(memory_.is_of(mesh) && memory_.is_near(0, tip, free_around_));
   }
 
-  /// Notes the end of a step on the free side of a mesh.
-  void after(const Motion& motion, const Step& step, const StepOptions& options,
+  /// Notes the end of a step on the free side of a mesh, whatever its status: after a failure the
+  /// tip has stayed.
+  void after(const Motion& request, const Step& step, const StepOptions& options,
              const Mesh& mesh) noexcept {
-    memory_.note(mesh, 0, motion.tip + step.motion, -step.motion);
+    memory_.note(mesh, 0, request.tip + step.motion, -step.motion);
     // A step that maintains the margin leaves more than half of it free, whatever the tolerance.
     const bool maintains_margin = step.ok() && step.status != Status::recovering;
     free_around_ = maintains_margin ? 0.5 * required_clearance(options) : 0.0;
@@ -46,7 +48,7 @@ class SideWatch {
  private:
   bool is_on_ = true;
   SideMemory<1> memory_;
-  double free_around_ = 0.0;  // the distance around the last way that is free as well [length]
+  double free_around_ = 0.0;  // the distance around the last path that is free as well [length]
 };
 
 }  // namespace keepout

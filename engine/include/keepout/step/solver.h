@@ -15,7 +15,7 @@ namespace keepout {
 ///
 ///     min  |J u - d|^2 + damping |u|^2    subject to    A u >= b
 ///
-/// Views only: whoever poses the problem owns the numbers. n variables, k task rows, m constraints.
+/// Views only: the caller owns the numbers. n variables, k task rows, m constraints.
 struct StepProblem {
   using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic>;  // column by column
   /// Row by row.
@@ -41,8 +41,8 @@ inline void write_row(const Vec3& normal, const double* jacobian, Eigen::Index v
   }
 }
 
-/// Whether u is the increment of a point itself: three variables, J = I and no damping. The answer
-/// is then the point of the feasible set that is nearest to d.
+/// Returns true if u is the increment of a point itself: three variables, J = I and no damping. The
+/// answer is then the point of the feasible set that is nearest to d.
 inline bool moves_a_point(const StepProblem& problem) noexcept {
   if (problem.jacobian.cols() != 3 || problem.jacobian.rows() != 3) return false;
   const double* j = problem.jacobian.data();
@@ -54,7 +54,7 @@ inline bool moves_a_point(const StepProblem& problem) noexcept {
 enum class SolveStatus : std::uint8_t {
   optimal,         // feasible, and no feasible point is better
   infeasible,      // no u satisfies all rows
-  ill_posed,       // the minimiser is not unique: J lacks full column rank and damping is 0
+  ill_posed,       // the minimizer is not unique: J lacks full column rank and damping is 0
   invalid_input,   // a number is not finite or out of range, or the shapes do not agree
   over_capacity,   // more variables or rows than reserved
   iteration_limit  // gave up: the budget of work is spent, or rounding hides the answer
@@ -63,7 +63,7 @@ enum class SolveStatus : std::uint8_t {
 /// Returns the name as it stands in the enumeration, for files and logs.
 std::string_view name(SolveStatus status) noexcept;
 
-/// Returns what a solve that failed means for the step; free for an optimal one.
+/// Returns the status of a step whose solve failed; free for an optimal solution.
 Status status_of(SolveStatus status) noexcept;
 
 /// What a solver leaves behind. Views into the solver's own memory, valid until its next solve.
@@ -88,11 +88,14 @@ class Solver {
   /// in it may not be used. More variables or rows than reserved: `over_capacity`.
   virtual SolveStatus solve(const StepProblem& problem, Solution& solution) noexcept = 0;
 
-  /// Whether it takes rows that come from planes from StepProblem::planes, so that they need not be
-  /// written; and whether planes that no iterate violates have no bearing on the answer, not even
-  /// on its last bit, while all iterates for the point nearest to d are its projections on some of
-  /// them. So it is with a dual active-set method.
+  /// Returns true if it reads rows that come from planes from StepProblem::planes, so that they
+  /// need not be written.
   virtual bool reads_planes() const noexcept { return false; }
+
+  /// Returns true if planes that no iterate violates do not change one bit of the answer, and all
+  /// iterates for the point nearest to d are its projections on some of the planes, as in a dual
+  /// active-set method. A rule may then leave out planes that no projection of d violates.
+  virtual bool ignores_idle_planes() const noexcept { return false; }
 };
 
 }  // namespace keepout

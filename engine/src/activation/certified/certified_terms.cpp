@@ -13,27 +13,27 @@
 namespace keepout {
 namespace {
 
-// A plane that an accepted motion is farther from, as a share of it, has not shaped it.
+// A plane that is farther from an accepted motion, as a fraction of the target, has not shaped it.
 constexpr double idle_slack = 1e-6;
 
 /// A plane's normal on its way from an old one to a wanted one, n = old + theta (wanted - old). The
 /// normals that allow a motion are a convex cone, so those that do are an interval from theta 0.
 class Turn {
  public:
-  Turn(const HalfSpace& plane, const Vec3& change, const Triangle& corners, double clearance,
+  Turn(const HalfSpace& plane, const Vec3& change, const Triangle& corners, double plane_level,
        const Vec3& kept, double slack) noexcept
       : old_(plane.normal), change_(change), slack_(slack) {
     const double along_kept = old_.dot(kept);
-    ends_[0] = {0.0, 0.0, clearance + std::min(-plane.offset, 0.0) - slack};
+    ends_[0] = {0.0, 0.0, plane_level + std::min(-plane.offset, 0.0) - slack};
     ends_[1] = {along_kept, change_.dot(kept),
-                clearance + std::min(along_kept - plane.offset, 0.0) - slack};
+                plane_level + std::min(along_kept - plane.offset, 0.0) - slack};
     for (std::size_t c = 0; c < 3; ++c) {
       depth_[c] = old_.dot(corners[c]);
       deepens_[c] = change_.dot(corners[c]);
     }
   }
 
-  /// Whether the plane at theta goes on allowing what is to be allowed.
+  /// Returns true if the plane at theta allows the kept motion and standing still.
   bool is_allowed_at(double theta) noexcept {
     blend_ = old_ + theta * change_;
     length_ = blend_.norm();
@@ -41,9 +41,9 @@ class Turn {
     deepest_ = 0;
     double most = depth_[0] + theta * deepens_[0];
     for (std::size_t c = 1; c < 3; ++c) {
-      const double its = depth_[c] + theta * deepens_[c];
-      deepest_ = its > most ? c : deepest_;
-      most = std::max(its, most);
+      const double depth = depth_[c] + theta * deepens_[c];
+      deepest_ = depth > most ? c : deepest_;
+      most = std::max(depth, most);
     }
     const auto left = [&](const End& end) {
       return end.along_old + theta * end.along_change - most - end.least * length_;
@@ -55,12 +55,12 @@ class Turn {
     return !(left_ < 0.0);
   }
 
-  /// The unit normal at the last theta asked about.
+  /// Returns the unit normal at the last theta.
   Vec3 normal() const noexcept { return blend_ / length_; }
 
-  /// Newton's next theta after one that failed. What a blend allows is concave in theta: so this
-  /// comes from above, and never passes the last theta that holds. It heads for half of the slack,
-  /// so as to arrive.
+  /// Returns Newton's next theta after one that failed. The distance that a blend leaves is concave
+  /// in theta: so this comes from above, and never passes the last theta that is allowed. It heads
+  /// for half of the slack, so that it arrives.
   double next(double theta) const noexcept {
     const End& end = ends_[tight_];
     const double missing = left_ - 0.5 * slack_ * length_;
@@ -71,7 +71,7 @@ class Turn {
   }
 
  private:
-  /// An end of what is kept, and how far off the corners a plane has to leave it.
+  /// An end of the kept motion, and the distance from the corners that a plane must leave it.
   struct End {
     double along_old;
     double along_change;
@@ -87,22 +87,28 @@ class Turn {
   // Of the last theta.
   Vec3 blend_;
   double length_ = 0;  // |blend|
-  double left_ = 0;    // what it allows, less what it has to, times its length
+  double left_ = 0;    // distance beyond the least one, times the length of the blend
   std::size_t tight_ = 0;
   std::size_t deepest_ = 0;
 };
 
 }  // namespace
 
-CertifiedTerms CertifiedTerms::keeping(double margin, double tolerance) noexcept {
-  return {tolerance, margin, margin - demand_below * tolerance, margin - floor_below * tolerance,
-          0.0,       0.0};
+CertifiedTerms CertifiedTerms::keeping(double clearance, double tolerance) noexcept {
+  return {.tolerance = tolerance,
+          .plane_level = clearance,
+          .most_demand = clearance - demand_below * tolerance,
+          .most_floor = clearance - floor_below * tolerance};
 }
 
-CertifiedTerms CertifiedTerms::leading_off(double nearest, double lift, double tolerance) noexcept {
-  // But for a share that the rounding of doubles is small beside.
-  const double strict = (proof_slack - 1e-5) * tolerance;
-  return {tolerance, nearest + lift, nearest + 0.5 * tolerance, nearest + strict, lift, strict};
+CertifiedTerms CertifiedTerms::recovering(double nearest, double lift, double tolerance) noexcept {
+  const double slack_compensation = (proof_slack - 1e-5) * tolerance;
+  return {.tolerance = tolerance,
+          .plane_level = nearest + lift,
+          .most_demand = nearest + 0.5 * tolerance,
+          .most_floor = nearest + slack_compensation,
+          .lift = lift,
+          .slack_compensation = slack_compensation};
 }
 
 bool CertifiedTerms::relax(HalfSpaceBuffer& planes) noexcept {
@@ -114,11 +120,11 @@ bool CertifiedTerms::relax(HalfSpaceBuffer& planes) noexcept {
   }
   bool changed = false;
   for (HalfSpace& plane : planes) {
-    if (plane.source == no_triangle) continue;  // the motion sphere's
+    if (plane.source == no_triangle) continue;  // of the motion sphere
     changed = changed || plane.offset > 0.0;
     plane.offset -= lift - less;
   }
-  clearance -= lift - less;
+  plane_level -= lift - less;
   lift = less;
   return changed;
 }
@@ -130,15 +136,15 @@ bool CertifiedTerms::is_covered(const Triangle& corners, const Vec3& trial,
   });
 }
 
-bool CertifiedTerms::keeps_clear(const Facet& facet, const Vec3& trial,
-                                 bool answered) const noexcept {
-  const double level = answered ? floor(facet) : demand(facet);
-  return keepout::keeps_clear(facet, trial, level, proof_slack * tolerance);
+bool CertifiedTerms::stays_clear(const Facet& facet, const Vec3& trial,
+                                 bool has_own_plane) const noexcept {
+  const double level = has_own_plane ? floor(facet) : demand(facet);
+  return proof_of_clearance(facet, trial, level, proof_slack * tolerance).has_value();
 }
 
 Contact CertifiedTerms::contact(const Facet& facet, const Vec3& trial,
                                 double latest) const noexcept {
-  return first_contact(facet, trial, clearance, contact_slack * tolerance, latest);
+  return first_contact(facet, trial, plane_level, contact_slack * tolerance, latest);
 }
 
 bool CertifiedTerms::is_beyond_doubt(const Contact& contact, const Facet& facet,
@@ -146,19 +152,19 @@ bool CertifiedTerms::is_beyond_doubt(const Contact& contact, const Facet& facet,
   if (!contact.is_reached) return false;
   const double along = contact.touched.dot(trial) / trial.squaredNorm();
   const Vec3 nearest = std::clamp(along, 0.0, 1.0) * trial - contact.touched;
-  // Beside the root of a rounding; and by more than what keeps_clear forgives, however small the
-  // floor is.
+  // Closer by more than the rounding of `touched`, and than the slack of stays_clear, however small
+  // the floor is.
   constexpr double clearly = 1.0 - 1e-5;
   return nearest.norm() < clearly * floor(facet) - 2.0 * proof_slack * tolerance;
 }
 
-HalfSpace CertifiedTerms::answer(const Facet& facet, const CycleProblem& problem, const Vec3& trial,
-                                 const HalfSpace& contact) const noexcept {
+HalfSpace CertifiedTerms::plane_for(const Facet& facet, const CycleProblem& problem,
+                                    const Vec3& trial, const HalfSpace& contact) const noexcept {
   if (problem.accepted.isZero(0.0)) return contact;
   const std::optional<Vec3> proof =
       proof_of_clearance(facet, problem.accepted, floor(facet), proof_slack * tolerance);
   if (!proof) return contact;
-  const HalfSpace plane{*proof, facet.support(*proof) + clearance, facet.source()};
+  const HalfSpace plane{*proof, facet.support(*proof) + plane_level, facet.source()};
   return turned(plane, facet, problem.accepted, trial);
 }
 
@@ -166,13 +172,13 @@ HalfSpace CertifiedTerms::turned(const HalfSpace& plane, const Facet& facet, con
                                  const Vec3& towards) const noexcept {
   const Vec3 change = facet.nearest_to(towards).normal - plane.normal;
   if (!(change.squaredNorm() > least_turn * least_turn)) return plane;
-  Turn turn(plane, change, facet.corners(), clearance, kept, proof_slack * tolerance);
+  Turn turn(plane, change, facet.corners(), plane_level, kept, proof_slack * tolerance);
   constexpr int most_evaluations = 16;  // five were seen
   double theta = 1.0;
   for (int i = 0; i < most_evaluations; ++i) {
     if (turn.is_allowed_at(theta)) {
       const Vec3 n = turn.normal();
-      return {n, facet.support(n) + clearance, plane.source};
+      return {n, facet.support(n) + plane_level, plane.source};
     }
     theta = std::min(turn.next(theta), theta);
     if (!(theta > 1e-6)) break;  // not worth it
@@ -180,26 +186,25 @@ HalfSpace CertifiedTerms::turned(const HalfSpace& plane, const Facet& facet, con
   return plane;
 }
 
-void CertifiedTerms::ways_around(const Facet& facet, HalfSpaceBuffer& ways) const noexcept {
+void CertifiedTerms::add_alternatives(const Facet& facet, HalfSpaceBuffer& planes) const noexcept {
   const auto add = [&](const Vec3& n) {
-    const double offset = facet.support(n) + clearance;
+    const double offset = facet.support(n) + plane_level;
     if (!n.isZero(0.0) && offset <= proof_slack * tolerance) {
-      ways.push({n, offset, facet.source()});
+      planes.push({n, offset, facet.source()});
     }
   };
   add(facet.face_normal());
-  for (int edge = 0; edge < 3; ++edge) add(facet.normal_around(edge, clearance));
+  for (int edge = 0; edge < 3; ++edge) add(facet.normal_around(edge, plane_level));
 }
 
 bool is_idle(const HalfSpace& plane, const CycleProblem& problem) noexcept {
   return plane.normal.dot(problem.accepted) - plane.offset > idle_slack * problem.target.norm();
 }
 
-std::optional<double> known_distance(const Facet* nearest, double margin,
+std::optional<double> known_distance(const Facet* nearest, double clearance,
                                      double tolerance) noexcept {
-  constexpr double share = 5e-7;
-  const double beyond = std::min(0.5 * region_beyond * tolerance, share * margin);
-  if (nearest == nullptr || nearest->distance() > margin + beyond) return std::nullopt;
+  const double beyond = std::min(0.5 * region_beyond * tolerance, 5e-7 * clearance);
+  if (nearest == nullptr || nearest->distance() > clearance + beyond) return std::nullopt;
   return nearest->distance();
 }
 

@@ -6,10 +6,11 @@
 #include <cmath>
 
 #include "../../geometry/corner_order.h"
-#include "distance_bound.h"
+#include "../../geometry/direction_of.h"
 #include "keepout/geometry/closest_point.h"
 
 namespace keepout {
+
 Facet::Facet(const Triangle& triangle, const Vec3& tip, TriangleId source) noexcept
     : Facet(ordered_relative(triangle, tip), source) {}
 
@@ -23,7 +24,7 @@ Facet::Facet(const Triangle& ordered, TriangleId source) noexcept
   last2_ = last.squaredNorm();
   between_ = first.dot(last);
   const double longest2 = std::max({first2_, last2_, first2_ - 2.0 * between_ + last2_});
-  // Of what is thinner, the shares of the corners are not known well enough.
+  // For a thinner triangle barycentric coordinates are not exact enough.
   constexpr double thin = 1e-2;  // height, in lengths of the longest edge
   if (area2 > thin * thin * longest2 * longest2) {
     determinant_ = first2_ * last2_ - between_ * between_;
@@ -42,13 +43,13 @@ inline Facet::Shares Facet::shares(const Vec3& point) const noexcept {
           first2_ * along_last - between_ * along_first};
 }
 
-// A direction is known only to the root of a rounding where two features are about equally near,
-// and worse close to the facet and on a needle. What proves less than this of a distance is not
-// taken before all that it could be was tried.
+// A direction is known only to the root of a rounding if two features are about equally near, and
+// worse close to the facet and on a needle. A normal that proves less than this of a distance is
+// not taken before all candidates were tried (nearest_with_care).
 constexpr double tight = 1.0 - 1e-12;
 
-/// `off`: from a point of the facet to `point`, `distance` long. It is the shortest one if what it
-/// proves is as long.
+/// Fills `nearest` for the vector `off`, `distance` long, from a point of the facet to `point`.
+/// Returns true if its normal proves that distance, so that no other point is closer.
 inline bool Facet::is_nearest(const Vec3& point, const Vec3& off, double distance, Feature feature,
                               Nearest& nearest) const noexcept {
   nearest.normal = off / distance;
@@ -99,23 +100,26 @@ Facet::Nearest Facet::face() const noexcept {
 
 Facet::Nearest Facet::nearest_to(const Vec3& point) const noexcept {
   Nearest nearest;
-  const Shares its = shares(point);
+  const Shares at = shares(point);
   bool found = false;
-  if (its.are_inside(determinant_)) {
+  // The region of the point, by its barycentric coordinates and its feet on the edges: first from
+  // corner 0 to 1, second from 1 to 2, last from 0 to 2. Face: all coordinates are positive. Edge:
+  // the coordinate of the opposite corner is not, and the foot is on the edge. Else a corner.
+  if (at.are_inside(determinant_)) {
     found = face_is_nearest(point, nearest);
   } else if (determinant_ > 0.0) {
-    const double along_second = (its.along_last - between_) - (its.along_first - first2_);
+    const double along_second = (at.along_last - between_) - (at.along_first - first2_);
     const double second2 = (first2_ - between_) + (last2_ - between_);
-    const unsigned first = unsigned{its.of_third <= 0.0} & unsigned{its.along_first > 0.0} &
-                           unsigned{its.along_first < first2_};
-    const unsigned second = unsigned{its.of_second + its.of_third >= determinant_} &
+    const unsigned first = unsigned{at.of_third <= 0.0} & unsigned{at.along_first > 0.0} &
+                           unsigned{at.along_first < first2_};
+    const unsigned second = unsigned{at.of_second + at.of_third >= determinant_} &
                             unsigned{along_second > 0.0} & unsigned{along_second < second2};
-    const unsigned last = unsigned{its.of_second <= 0.0} & unsigned{its.along_last > 0.0} &
-                          unsigned{its.along_last < last2_};
+    const unsigned last = unsigned{at.of_second <= 0.0} & unsigned{at.along_last > 0.0} &
+                          unsigned{at.along_last < last2_};
     if ((first | second | last) != 0) {
       found = edge_is_nearest(point, first != 0 ? 0 : second != 0 ? 1 : 2, nearest);
     } else {
-      const bool is_first = its.along_first <= 0.0 && its.along_last <= 0.0;
+      const bool is_first = at.along_first <= 0.0 && at.along_last <= 0.0;
       const bool is_second = along_second <= 0.0;
       found = corner_is_nearest(point, is_first ? 0 : is_second ? 1 : 2, nearest);
     }
@@ -150,19 +154,19 @@ Facet::Nearest Facet::nearest_with_care(const Vec3& point) const noexcept {
   return {best, closest.distance, support(best), closest.feature};
 }
 
-/// On either side, for the order of the corners does not tell; zero without an area.
+/// Returns the unit normal on an arbitrary side; zero without an area.
 Vec3 Facet::plane_normal() const noexcept {
   return unit((corners_[1] - corners_[0]).cross(corners_[2] - corners_[0]));
 }
 
-/// The facet's own normal, on the side from which its closest point was found.
+/// Returns the facet's own normal, on the side from which its closest point was found.
 Vec3 Facet::facing(const ClosestPoint& closest) const noexcept {
   const Vec3 normal = plane_normal();
   return normal.dot(closest.offset) <= 0.0 ? normal : Vec3(-normal);
 }
 
-/// A direction made perpendicular to an edge: along it, a rounding would tell over its whole
-/// length.
+/// Returns a direction made perpendicular to an edge: rounding along the edge would count over its
+/// whole length.
 Vec3 Facet::across(const Vec3& n, int edge) const noexcept {
   const Vec3 along = this->edge(edge);
   const double length2 = along.squaredNorm();

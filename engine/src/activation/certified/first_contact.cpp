@@ -4,20 +4,20 @@
 #include <algorithm>
 #include <cmath>
 
-#include "distance_bound.h"
+#include "straight_clearance.h"
 
 namespace keepout {
 namespace {
 
-// A budget of work, far above what was ever seen (9): beyond it the answer is the safe one.
+// Far above the most ever seen (9): beyond it the time is earlier than the contact, which is safe.
 constexpr int most_newton_steps = 48;
 
 HalfSpace plane_of(const Facet::Nearest& nearest, const Facet& facet, double level) noexcept {
   return {nearest.normal, nearest.support + level, facet.source()};
 }
 
-/// How long until a motion along z comes within `level` of what it is `away` from; 0 if it does
-/// not.
+/// Returns the time until a motion along z comes within `level` of a point, where `away` leads from
+/// the point to the start; 0 if it does not.
 double time_until(const Vec3& away, const Vec3& z, double level) noexcept {
   // |away + t z| = level, the earlier of the two.
   const double falling = -away.dot(z);
@@ -27,12 +27,13 @@ double time_until(const Vec3& away, const Vec3& z, double level) noexcept {
   return missing / (falling + std::sqrt(square));
 }
 
-/// What of v is across an edge: as of an edge of any other facet that shares it, bit for bit.
+/// Returns the part of v across an edge: bitwise identical for every facet that shares the edge.
 Vec3 across_edge(const Vec3& v, const Vec3& along) noexcept {
   return v - along * (along.dot(v) / along.squaredNorm());
 }
 
-/// The same from a point that is `away` from the closest corner, or the closest side's line.
+/// Returns the time until a motion along z comes within `level` of a facet's corner, or of the line
+/// of its edge, where `away` leads from there to the start; 0 for the face, or if it does not.
 double time_until(const Vec3& away, const Vec3& z, const Facet& facet, Feature feature,
                   double level) noexcept {
   if (is_face(feature)) return 0.0;
@@ -40,8 +41,10 @@ double time_until(const Vec3& away, const Vec3& z, const Facet& facet, Feature f
   return time_until(away, across_edge(z, facet.edge(number_of(feature))), level);
 }
 
-/// The same from the tip, by the corner or side alone, so that all facets that share it agree to
-/// the last bit on when it is met: then their corners decide which was first, and not rounding.
+/// Returns the time until a motion along z from the tip comes within `level` of a facet's corner or
+/// of the line of its edge; 0 for the face, or if it does not. It depends on corner or edge alone,
+/// so it is bitwise identical for all facets that share them: their corners decide which is first,
+/// and not rounding.
 double time_from_tip(const Vec3& z, const Facet& facet, Feature feature, double level) noexcept {
   if (is_face(feature)) return 0.0;
   const int number = number_of(feature);
@@ -57,7 +60,7 @@ Contact first_contact(const Facet& facet, const Vec3& z, double level, double sl
                       double latest) noexcept {
   Facet::Nearest nearest = facet.at_tip();
   double time = 0.0;
-  // What is given up is later than `latest` by more than the last digits can make up for.
+  // A contact that is given up is later than `latest` by more than its last digits.
   const double digits = slack / z.norm();
   const double too_late = latest + digits;
   for (int i = 0; i < most_newton_steps; ++i) {
@@ -65,7 +68,7 @@ Contact first_contact(const Facet& facet, const Vec3& z, double level, double sl
     if (!(line.slope < 0.0)) break;
     const double last = time;
     time = -line.at_0 / line.slope;
-    // Later than `latest` shall mean later at the end as well, whatever rounding does.
+    // Never earlier than before, whatever rounding does: a time later than `latest` stays later.
     if (i > 0) time = std::max(time, last);
     if (nearest.distance - level <= slack) {
       const double direct = time_from_tip(z, facet, nearest.feature, level);
@@ -73,16 +76,16 @@ Contact first_contact(const Facet& facet, const Vec3& z, double level, double sl
       return {time, plane_of(nearest, facet, level), true,
               last * z - nearest.distance * nearest.normal};
     }
-    // Too late, or as far as numbers go.
+    // Too late, or no progress in double.
     if (time > too_late || !(time > last && time < 1.0)) break;
     if (is_face(nearest.feature)) {
-      // It is met where its plane is, if that is where the face is.
+      // The contact of its plane is the contact if it is over the face.
       if (facet.is_under(time * z)) {
         return {time, plane_of(nearest, facet, level), true, time * z - level * nearest.normal};
       }
     } else {
       if (i == 0 && facet.has_face()) {
-        // The face's plane is not met later than the facet. It is met there, or on the way on.
+        // The contact of the face's plane is not later than that of the facet: a lower bound.
         const Facet::Nearest face = facet.face();
         const Line fall = line_of(face, z, level);
         if (fall.at_0 > 0.0 && fall.slope < 0.0) {

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "straight_clearance.h"
 
-#include "distance_bound.h"
+#include "../../geometry/direction_of.h"
 
 namespace keepout {
 namespace {
 
-// A budget of work, far above what was ever seen (12): beyond it the answer is the safe one.
-constexpr int most_cuts = 40;
+// Far above the most ever seen (12): beyond it the answer is no, which is safe.
+constexpr int most_blends = 40;
 
-/// Of all blends of a falling and a rising normal, the one that is level along the motion.
+/// Returns the blend of a falling and a rising normal whose line is level along the motion.
 Vec3 level_blend(const Vec3& falling, double fall, const Vec3& rising, double rise) noexcept {
   return unit(rise * falling - fall * rising);
 }
@@ -20,27 +20,27 @@ std::optional<Vec3> proof_of_clearance(const Facet& facet, const Vec3& z, double
                                        double slack) noexcept {
   Vec3 n_left = facet.normal();
   Line left = line_of(facet.at_tip(), z, level);
-  if (holds(left, slack)) return n_left;
+  if (left.holds(slack)) return n_left;
 
   const Facet::Nearest at_end = facet.nearest_to(z);
   if (!(at_end.distance - level >= -slack)) return std::nullopt;
   Vec3 n_right = at_end.normal;
   Line right = line_of(at_end, z, level);
-  if (holds(right, slack)) return n_right;
-  // A distance that never falls, or always does, is least at an end, and was proven there: but for
-  // a rounding, and then no is the safe answer.
+  if (right.holds(slack)) return n_right;
+  // A distance that never falls, or always does, is least at an end, where the level was proven, up
+  // to rounding; then no is the safe answer.
   if (!(left.slope < 0.0 && right.slope > 0.0)) return std::nullopt;
 
-  // In between the two lines bound the least distance from below, where they cross. So does the
-  // blend of their normals, and better; it is exact where both look at the same corner or edge.
-  for (int cut = 0; cut < most_cuts; ++cut) {
+  // In between, the crossing of the two lines bounds the least distance from below. The line of the
+  // blended normal is a better bound; it is exact if both normals are of the same corner or edge.
+  for (int i = 0; i < most_blends; ++i) {
     const Vec3 blend = level_blend(n_left, left.slope, n_right, right.slope);
     if (separates(blend, facet.corners(), z, level, slack)) return blend;
     const double t = (left.at_0 - right.at_0) / (right.slope - left.slope);
     const Facet::Nearest nearest = facet.nearest_to(t * z);
     if (!(nearest.distance - level >= -slack)) return std::nullopt;
     const Line line = line_of(nearest, z, level);
-    if (holds(line, slack)) return nearest.normal;
+    if (line.holds(slack)) return nearest.normal;
     if (line.slope < 0.0) {
       n_left = nearest.normal;
       left = line;

@@ -7,31 +7,33 @@
 
 namespace keepout {
 
+/// A lower bound of the distance from a facet along a motion z, less a level: `at_0` + t `slope`
+/// (Lemma 2 of docs/certified-step.md).
+struct Line {
+  double at_0;
+  double slope;
+
+  /// Returns true if the bound stays above -slack on the whole motion: it proves the level (Lemma
+  /// 1).
+  bool holds(double slack) const noexcept { return at_0 >= -slack && at_0 + slope >= -slack; }
+};
+
+inline Line line_of(const Facet::Nearest& nearest, const Vec3& z, double level) noexcept {
+  return {-nearest.support - level, nearest.normal.dot(z)};
+}
+
 /// Returns the normal of a plane that proves that the whole motion from 0 to z stays `level` away
 /// from the facet: dist(t z, T) >= level - slack for all t in [0, 1]. Returns nothing if the motion
-/// comes closer, or if rounding hides the answer. Precondition: level <= facet.distance(), and far
-/// above the rounding of lengths. [length]
+/// comes closer, or if rounding hides the answer. Precondition: level <= facet.distance() + slack,
+/// and far above the rounding of lengths. [length]
 std::optional<Vec3> proof_of_clearance(const Facet& facet, const Vec3& z, double level,
                                        double slack) noexcept;
-
-/// Returns true if the plane across the shortest segment from the tip to the facet is such a proof:
-/// the fastest test.
-inline bool clears_at_once(const Facet& facet, const Vec3& z, double level, double slack) noexcept {
-  const double at_0 = -facet.at_tip().support - level;
-  return at_0 >= -slack && at_0 + facet.normal().dot(z) >= -slack;
-}
-
-/// Returns true if there is such a proof: see proof_of_clearance.
-inline bool keeps_clear(const Facet& facet, const Vec3& z, double level, double slack) noexcept {
-  return proof_of_clearance(facet, z, level, slack).has_value();
-}
 
 /// Returns true if a plane with normal n is such a proof: the triangle, relative to the tip and
 /// grown by `level`, is on one side, and both ends of the motion are on the other.
 inline bool separates(const Vec3& n, const Triangle& corners, const Vec3& z, double level,
                       double slack) noexcept {
-  const double at_0 = -support(corners, n) - level;
-  return at_0 >= -slack && at_0 + n.dot(z) >= -slack;
+  return Line{-support(corners, n) - level, n.dot(z)}.holds(slack);
 }
 
 }  // namespace keepout

@@ -40,14 +40,14 @@ void ConvexToolRule::prepare(Neighborhood& near) {
 double ConvexToolRule::tolerance(const CycleProblem& problem) const noexcept {
   const Ball& bounds = tool_.bounding_ball();
   return problem.rounding +
-         1e-12 * (mesh().longest_edge() + bounds.center.norm() + bounds.radius + problem.margin);
+         1e-12 * (mesh().longest_edge() + bounds.center.norm() + bounds.radius + problem.clearance);
 }
 
 Ball ConvexToolRule::region(const CycleProblem& problem) const noexcept {
   const Ball& bounds = tool_.bounding_ball();
-  const Ball ends = ends_of_motions(problem);
+  const Ball ends = searched_ends(problem);
   return {ends.center + bounds.center,
-          ends.radius + bounds.radius + problem.margin + region_beyond * tolerance(problem)};
+          ends.radius + bounds.radius + problem.clearance + region_beyond * tolerance(problem)};
 }
 
 ConvexToolRule::Proof ConvexToolRule::proof_along(const Vec3& normal, const Vec3& position,
@@ -89,17 +89,18 @@ ConvexToolRule::Proof ConvexToolRule::proof_of(double enough, const Vec3& positi
 
 Opening ConvexToolRule::open(const CycleProblem& problem, HalfSpaceBuffer&) noexcept {
   const double tau = tolerance(problem);
-  if (!(problem.margin > needed_margin * tau)) return {Status::margin_too_small};
+  if (!(problem.clearance > needed_margin * tau)) return {Status::margin_too_small};
 
   near_.clear();
   const Near* nearest = nullptr;
-  const Ball ends = ends_of_motions(problem);
+  const Ball ends = searched_ends(problem);
   const double longest = (ends.center - problem.tip).norm() + ends.radius + region_beyond * tau;
   for (const Hit& hit : hits()) {
     Near near{hit.triangle, quick_proof(hit, problem.tip), false};
-    if (near.at_start.distance > problem.margin + longest) continue;  // out of any motion's reach
-    if (!(near.at_start.distance > problem.margin)) {
-      near.at_start = proof_of(problem.margin, problem.tip, hit.triangle);
+    if (near.at_start.distance > problem.clearance + longest)
+      continue;  // out of any motion's reach
+    if (!(near.at_start.distance > problem.clearance)) {
+      near.at_start = proof_of(problem.clearance, problem.tip, hit.triangle);
       near.is_refined = true;
     }
     near_.push(near);
@@ -110,24 +111,24 @@ Opening ConvexToolRule::open(const CycleProblem& problem, HalfSpaceBuffer&) noex
   if (nearest == nullptr) return {};
 
   const Proof closest = nearest->at_start;
-  if (closest.distance >= problem.margin - lost_below * tau) {
+  if (closest.distance >= problem.clearance - lost_below * tau) {
     for (Near& near : near_) {
-      near.clearance = problem.margin;
-      near.demand = std::min(problem.margin - demand_below * tau, near.at_start.distance);
-      near.floor = std::min(problem.margin - floor_below * tau, near.at_start.distance);
+      near.plane_level = problem.clearance;
+      near.demand = std::min(problem.clearance - demand_below * tau, near.at_start.distance);
+      near.floor = std::min(problem.clearance - floor_below * tau, near.at_start.distance);
     }
     return {};
   }
   // Not above for NaN.
   if (!(closest.distance > touching_within * tau)) return {Status::touching};
   // Too close already: no triangle may come closer than the nearest one, and all of them retreat.
-  const double lift = std::min(problem.recovery, problem.margin - closest.distance);
+  const double lift = std::min(problem.recovery, problem.clearance - closest.distance);
   for (Near& near : near_) {
-    near.clearance = closest.distance + lift;
+    near.plane_level = closest.distance + lift;
     near.demand = closest.distance;
     near.floor = closest.distance;
   }
-  return {Status::recovering, way_out(problem, closest.normal, lift)};
+  return {Status::recovering, retreat_target(problem, closest.normal, lift)};
 }
 
 /// Fills the list with all triangles that the trial may come too close to.
@@ -159,7 +160,7 @@ bool ConvexToolRule::keeps_clear(Near& near, const CycleProblem& problem, const 
            proves(proof_along(plane.normal, problem.tip, near.triangle));
   });
   if (is_proven || near.is_refined) return is_proven;
-  near.at_start = proof_of(problem.margin, problem.tip, near.triangle);
+  near.at_start = proof_of(problem.clearance, problem.tip, near.triangle);
   near.is_refined = true;
   return proves(near.at_start);
 }
@@ -186,7 +187,7 @@ std::optional<ConvexToolRule::Contact> ConvexToolRule::first_contact(const Near&
     proof = proof_of(enough, problem.tip + time * trial, near.triangle);
   }
   const Proof from_start = proof_along(proof.normal, problem.tip, near.triangle);
-  return Contact{time, {proof.normal, near.clearance - from_start.distance, near.triangle}};
+  return Contact{time, {proof.normal, near.plane_level - from_start.distance, near.triangle}};
 }
 
 Judgement ConvexToolRule::judge(const CycleProblem& problem, const Vec3& trial,
@@ -195,7 +196,7 @@ Judgement ConvexToolRule::judge(const CycleProblem& problem, const Vec3& trial,
   // Nothing is known of triangles outside the query.
   const Ball& bounds = tool_.bounding_ball();
   const double from_center = (problem.tip + bounds.center + trial - gathered_ball().center).norm();
-  if (!(from_center + bounds.radius + problem.margin <= gathered_ball().radius)) {
+  if (!(from_center + bounds.radius + problem.clearance <= gathered_ball().radius)) {
     return {Verdict::blocked, 0.0};
   }
   find_suspects(problem, trial);

@@ -354,8 +354,8 @@ FilterQuery filter_query(const CycleProblem& problem, const Ball& ball, const Le
   query.idle_height = query.idle = std::numeric_limits<float>::infinity();
   if (idle_planes == IdlePlanes::left_out) {
     // A share of the height makes up for the rounding of the middle's.
-    query.idle_height = at_least((idle.radius + problem.margin) * (1.0 + 0x1p-19));
-    query.idle = at_least(idle.radius + idle.center.norm() + problem.margin);
+    query.idle_height = at_least((idle.radius + problem.clearance) * (1.0 + 0x1p-19));
+    query.idle = at_least(idle.radius + idle.center.norm() + problem.clearance);
   }
   return query;
 }

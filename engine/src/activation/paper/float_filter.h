@@ -26,8 +26,8 @@ struct FilterQuery {
   float idle;         // distance of a point that an idle plane faces the tip from [length]
 };
 
-/// The motions that are nearer to half the aim than half its length, and a little more: every
-/// projection of the aim on planes that allow standing still is one (Thales).
+/// The motions that are nearer to half the target than half its length, and a little more: every
+/// projection of the target on planes that allow standing still is one (Thales).
 Ball idle_ball(const Vec3& target) noexcept;
 
 /// What becomes of planes that no motion in idle_ball violates.

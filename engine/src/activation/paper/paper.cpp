@@ -68,14 +68,14 @@ std::optional<HalfSpace> PaperRule::plane_of(const CycleProblem& problem,
   // Condition 1: the closest point is in the triangle.
   if (is_face(hit.closest.feature)) {
     if (!positive) return std::nullopt;
-    return plane_through(hit, normal, problem.margin);
+    return plane_through(hit, normal, problem.clearance);
   }
   // Condition 2: on a ridge, and nearest for the neighbour as well.
   switch (role_in_condition_2(problem, hit)) {
     case Role::speaks: {
-      if (!touches(problem, hit)) return plane_through(hit, away_from(hit), problem.margin);
+      if (!touches(problem, hit)) return plane_through(hit, away_from(hit), problem.clearance);
       if (normal.isZero(0.0)) return std::nullopt;
-      return plane_through(hit, normal, problem.margin);
+      return plane_through(hit, normal, problem.clearance);
     }
     case Role::leaves_it_to_a_neighbor:
       return std::nullopt;
@@ -84,7 +84,7 @@ std::optional<HalfSpace> PaperRule::plane_of(const CycleProblem& problem,
   }
   // Condition 3: on a valley.
   if (positive && !normal.isZero(0.0) && touches_a_valley(hit)) {
-    return plane_through(hit, normal, problem.margin);
+    return plane_through(hit, normal, problem.clearance);
   }
   return std::nullopt;
 }

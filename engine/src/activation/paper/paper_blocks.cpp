@@ -70,7 +70,8 @@ bool PaperBlocks::gather(const CycleProblem& problem, const Ball& ball, IdlePlan
         const std::size_t place = plane >> Unfinished::plane_bits;
         const Hit hit{t, closest_point_at(place, leaf, which % LeafBlock::lanes, problem.tip)};
         const bool faces_tip = (plane & Unfinished::faces_tip) != 0;
-        found_.push(plane_through(hit, faces_tip ? away_from(hit) : normals_[t], problem.margin));
+        found_.push(
+            plane_through(hit, faces_tip ? away_from(hit) : normals_[t], problem.clearance));
       }
     }
     if (triangles_ > found_.capacity()) {

@@ -35,9 +35,6 @@ struct MotionConstraintSettings {
   Capacity capacity = {};           // for the largest step
 };
 
-/// The names of Inside.
-inline constexpr std::array<std::string_view, 2> inside_names{"led_out", "taken_as_is"};
-
 /// The table of the settings that are neither in StepOptions nor in Capacity.
 inline constexpr std::array motion_settings{
     option<&MotionConstraintSettings::activation>(

@@ -9,7 +9,7 @@ namespace keepout {
 
 /// The dual active-set method for strictly convex quadratic programs: starts from the
 /// unconstrained minimum and adds the most violated row until none is left, so that its work is
-/// that of the rows which matter and an infeasible problem is recognised, not guessed.
+/// that of the rows which matter and an infeasible problem is recognized, not guessed.
 ///
 /// Bounds must be finite (leave out a row that asks for nothing) and all numbers below 1e70. A row
 /// of zeros is satisfied if its bound is at most 0, and infeasible otherwise. Equal rows: the
@@ -28,6 +28,7 @@ class ActiveSet final : public Solver {
   void reserve(int variables, int rows) override;
   SolveStatus solve(const StepProblem& problem, Solution& solution) noexcept override;
   bool reads_planes() const noexcept override { return true; }
+  bool ignores_idle_planes() const noexcept override { return true; }
 
  private:
   struct Workspace;

@@ -40,6 +40,7 @@ class StraightOnly final : public Solver {
  public:
   void reserve(int, int) override {}
   bool reads_planes() const noexcept override { return true; }
+  bool ignores_idle_planes() const noexcept override { return true; }
   SolveStatus solve(const StepProblem&, Solution&) noexcept override {
     return SolveStatus::iteration_limit;
   }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "../../tree_parts/prefetch.h"
 #include "../tree.h"
 #include "keepout/index/brute_force.h"
 
@@ -65,8 +66,7 @@ HWY_INLINE std::size_t all_children(const NodeBlock& node, std::uint32_t* childr
 /// Shows a visitor the leaves that the ball reaches.
 template <class Visitor>
 HWY_INLINE void walk(const NodeBlock* nodes, const BallScreen& ball, const Visitor& visitor) {
-  // Seven levels of sixteen children hold the most triangles there can be.
-  std::uint32_t stack[9 * NodeBlock::lanes];
+  std::uint32_t stack[(WideBvh::most_levels + 1) * NodeBlock::lanes];
   std::size_t waiting = 0;
   LeafList list;
   stack[waiting++] = 0;
@@ -84,9 +84,7 @@ HWY_INLINE void walk(const NodeBlock* nodes, const BallScreen& ball, const Visit
       list.grow(count);
     } else {
       for (std::size_t i = 0; i < count; ++i) {
-        const auto* lines = reinterpret_cast<const char*>(nodes + (to[i] & ~whole_leaf));
-        for (std::size_t line = 0; line < sizeof(NodeBlock); line += 64)
-          hwy::Prefetch(lines + line);
+        prefetch(nodes[to[i] & ~whole_leaf]);
       }
       waiting += count;
     }

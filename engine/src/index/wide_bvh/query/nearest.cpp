@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The nearest triangle by branch and bound: the nearest boxes first, and none that is farther away
-// than a triangle that was found. Float tell what is surely farther, as in a query with a ball
+// than a triangle that was found. Floats tell what is surely farther, as in a query with a ball
 // that reaches as far as the best so far (ball_screen.cpp has the bounds); the exact kernel decides
 // about the rest, ties included. So the answer is that of asking it about all triangles.
 #include <array>
 #include <limits>
 
+#include "../../tree_parts/prefetch.h"
 #include "../tree.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -115,14 +116,13 @@ HWY_INLINE void look(const LeafBlock& leaf, const WideBvh::Tree& tree, Budget& b
   }
 }
 
-/// Has the memory brought nearer of what comes soon.
+/// Prefetches a leaf or a node.
 HWY_INLINE void fetch(const WideBvh::Tree& tree, std::uint32_t what) {
-  const bool is_leaf = (what & NodeBlock::leaf) != 0;
-  const char* lines = is_leaf
-                          ? reinterpret_cast<const char*>(&tree.leaves()[what & ~NodeBlock::leaf])
-                          : reinterpret_cast<const char*>(&tree.nodes()[what]);
-  const std::size_t size = is_leaf ? sizeof(LeafBlock) : sizeof(NodeBlock);
-  for (std::size_t at = 0; at < size; at += 64) hwy::Prefetch(lines + at);
+  if ((what & NodeBlock::leaf) != 0) {
+    prefetch(tree.leaves()[what & ~NodeBlock::leaf]);
+  } else {
+    prefetch(tree.nodes()[what]);
+  }
 }
 
 /// Looks into boxes, the nearest first, but not into what `is_beyond`. `measure` tells how far the

@@ -4,7 +4,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "index/wide_bvh/walk/box_filter.cpp"
 #include <hwy/foreach_target.h>
-// After it, for it tells for whom to compile.
+// After it: it sets the target.
 #include "filters.h"
 #include "proof_lanes-inl.h"
 
@@ -63,7 +63,7 @@ HWY_INLINE Boxes boxes_at(Float d, const NodeBlock& node, const FloatTip& tip, s
 void EnterBoxes(const NodeBlock& node, const FloatTip& tip, const float* motion,
                 const FloatReach& reach, BoxEntries& entries) {
   const Float d;
-  const V margin = hn::Set(d, reach.boxes);
+  const V beyond = hn::Set(d, reach.boxes);
   // Where the motion stands still along an axis, a box is beside it or around it for good.
   V inverse[3];
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -78,8 +78,8 @@ void EnterBoxes(const NodeBlock& node, const FloatTip& tip, const float* motion,
     V enter = hn::Zero(d);
     V leave = hn::Set(d, 1.0f);
     const auto clip = [&](V low, V high, V per_motion) {
-      const V one_end = hn::Mul(hn::Sub(low, margin), per_motion);
-      const V other_end = hn::Mul(hn::Add(high, margin), per_motion);
+      const V one_end = hn::Mul(hn::Sub(low, beyond), per_motion);
+      const V other_end = hn::Mul(hn::Add(high, beyond), per_motion);
       enter = hn::Max(enter, hn::Min(one_end, other_end));
       leave = hn::Min(leave, hn::Max(one_end, other_end));
     };

@@ -9,38 +9,41 @@
 
 namespace keepout {
 
-/// The tip as the sum of two floats, so that what is near it keeps its digits when it is looked at
-/// in float.
+/// The tip as the sum of two floats, so that positions near it keep their digits in single
+/// precision.
 struct FloatTip {
   float high[3];
   float low[3];
 };
 
-FloatTip float_tip(const Vec3& tip) noexcept;
-
-/// How near is near. All are rounded up.
+/// The level of a walk in single precision. All are rounded up.
 struct FloatReach {
-  float margin;    // to keep from the motion [length]
-  float relative;  // what rounding adds: so much of |v - tip| of the farthest corner v ...
+  float level;     // distance within which a motion comes near: MotionWalk::Start::level [length]
+  float relative;  // rounding adds so much of |v - tip| of the farthest corner v ...
   float slack;     // ... and this [length]
-  float boxes;     // margin and rounding, for boxes [length]
+  float boxes;     // level and rounding, for boxes [length]
 };
 
-/// `error`: of the coordinates in leaves. `longest`: no motion that is looked at is longer.
-FloatReach float_reach(double margin, double longest, const Vec3& tip, double error) noexcept;
+// The next two are defined in tree_walk.cpp, which they are inlined in.
 
-/// What is known of sixteen things while the tip stays where it is: unit vectors, and how far the
-/// margin is kept along each. That the plane between thing and tip along a vector is valid is
-/// checked by what holds the thing, however the vector was come by.
+FloatTip float_tip(const Vec3& tip) noexcept;
+
+/// `error`: of the coordinates in leaves. `longest`: no motion is longer.
+FloatReach float_reach(double level, double longest, const Vec3& tip, double error) noexcept;
+
+/// Proofs for sixteen triangles (or boxes) while the tip stays where it is: unit vectors, and the
+/// clearance that each proves. Any unit vector may stand here: its clearance is computed from the
+/// triangle itself.
 struct ProofBlock {
   static constexpr std::size_t lanes = 16;
 
-  alignas(64) float n[3][lanes];   // [axis][lane]
-  alignas(64) float clear[lanes];  // of the margin at the tip, less rounding [length]
+  alignas(64) float n[3][lanes];  // [axis][lane]
+  alignas(
+      64) float clear[lanes];  // proven distance of the tip less the level and rounding [length]
 };
 
-/// When a motion may first come within the margin of what is in each of sixteen boxes: a share of
-/// the motion, never late; 0 where it begins there, beyond 1 where it never does.
+/// The time at which a motion may first come within the level of the triangles in each of sixteen
+/// boxes: a fraction of the motion, never late; 0 if it begins there, beyond 1 if it never does.
 struct BoxEntries {
   alignas(64) float time[NodeBlock::lanes];
   std::uint32_t reached;  // a bit for each box that is reached
@@ -49,29 +52,30 @@ struct BoxEntries {
 void enter_boxes(const NodeBlock& boxes, const FloatTip& tip, const float* motion,
                  const FloatReach& reach, BoxEntries& entries) noexcept;
 
-/// Looks closer at the boxes that are reached: by the directions from their cylinders to the places
-/// of the motion that are nearest to them.
+/// Sharpens the entries of the boxes that are reached: by the directions from their cylinders to
+/// the points of the motion that are nearest to them.
 void enter_cylinders(const CylinderBlock& cylinders, const FloatTip& tip, const float* motion,
                      const FloatReach& reach, BoxEntries& entries) noexcept;
 
-/// The boxes within `radius` of the tip: a bit for each. Never one too few.
+/// Returns the boxes within `radius` of the center: a bit for each, and perhaps some others.
 std::uint32_t boxes_near(const NodeBlock& boxes, const FloatTip& center, float radius) noexcept;
 
-/// How far the nearest of the boxes is from the centre, or a little less. [length]
+/// Returns the distance of the nearest box from the center, or a little less. [length]
 float distance_to_boxes(const NodeBlock& boxes, const FloatTip& center) noexcept;
 
-/// What is known of the sixteen triangles of a leaf.
+/// Proofs for the sixteen triangles of a leaf.
 struct LeafFilter {
-  ProofBlock at_tip;  // from the closest points to the tip
-  ProofBlock last;    // the last ones that were found better for some motion
+  ProofBlock at_tip;  // along the shortest segments to the tip
+  ProofBlock last;    // the last ones that were better for some motion
 };
 
-/// Looks at a leaf for the first time from this tip.
-void look(const LeafBlock& leaf, const FloatTip& tip, const FloatReach& reach,
-          LeafFilter& filter) noexcept;
+/// Fills the filter of a leaf for this tip.
+void fill_filter(const LeafBlock& leaf, const FloatTip& tip, const FloatReach& reach,
+                 LeafFilter& filter) noexcept;
 
-/// Triangles that a motion is not sure to keep clear of: a bit for each, and when it may meet them,
-/// never late: a share of the motion, or minus infinity for those that may be too close already.
+/// Triangles that a motion is not proved to stay clear of: a bit for each, and the time at which it
+/// may meet them, never late: a fraction of the motion, or minus infinity if they may be too close
+/// already.
 struct Suspects {
   alignas(64) float time[LeafBlock::lanes];
   std::uint32_t mask;
@@ -79,13 +83,14 @@ struct Suspects {
 
 void find_suspects(const LeafFilter& filter, const float* motion, Suspects& suspects) noexcept;
 
-/// The same, after some cutting-plane steps for those that are left over: dearer, and sharper.
-/// Those that come later than `latest`, a share of the motion, may be left as they are.
-void refine_suspects(const LeafBlock& leaf, const FloatTip& tip, const float* motion,
-                     const FloatReach& reach, float latest, LeafFilter& filter,
-                     Suspects& suspects) noexcept;
+/// Searches for better proofs for the suspects, which removes some and makes the others later.
+/// Costs more than find_suspects. Suspects later than `latest`, a fraction of the motion, may stay
+/// as they are.
+void sharpen_suspects(const LeafBlock& leaf, const FloatTip& tip, const float* motion,
+                      const FloatReach& reach, float latest, LeafFilter& filter,
+                      Suspects& suspects) noexcept;
 
-/// A Newton step towards the times when the suspects are met: makes them later. As far as `latest`.
+/// Makes the suspects later by a Newton step towards the times when they are met, up to `latest`.
 void delay_suspects(const LeafBlock& leaf, const FloatTip& tip, const float* motion,
                     const FloatReach& reach, float latest, Suspects& suspects) noexcept;
 

@@ -11,40 +11,42 @@
 
 namespace keepout {
 
-/// The parts of a tree that come near a place, as blocks of boxes like its nodes: a root of its own
-/// for searches near there. A tip moves little from cycle to cycle, so one gathering serves many;
-/// up to the nearest box it is a ball of free space. What is in it never changes an answer.
+/// A traversal cache: the parts of a tree that come near a place, as blocks of boxes like its
+/// nodes, a root of its own for searches there. A tip moves little from cycle to cycle, so it
+/// serves many of them. The ball up to the nearest box is known to be free. The cache never changes
+/// an answer.
 class Frontier {
  public:
-  /// Whether all that is in the ball is under the boxes.
+  /// Returns true if all triangles in the ball are under the boxes.
   bool covers(const Ball& ball) const noexcept {
-    return (ball.center - problem_.center).norm() + ball.radius <= problem_.radius;
+    return (ball.center - covered_.center).norm() + ball.radius <= covered_.radius;
   }
 
-  /// Whether nothing at all is in the ball.
+  /// Returns true if the ball is known to hold no triangle.
   bool is_free(const Ball& ball) const noexcept {
-    return (ball.center - problem_.center).norm() + ball.radius <= free_radius_;
+    return (ball.center - covered_.center).norm() + ball.radius <= free_radius_;
   }
 
-  /// Whether the ball is next to what is covered: where a tip that moves on leaves.
+  /// Returns true if the ball overlaps the covered one: the tip has moved on, and not jumped.
   bool is_near(const Ball& ball) const noexcept {
-    return (ball.center - problem_.center).norm() <= problem_.radius + ball.radius;
+    return (ball.center - covered_.center).norm() <= covered_.radius + ball.radius;
   }
 
-  /// Makes it cover the ball. The work is bounded: what is left over stays unopened, as large
-  /// boxes. Returns the number of nodes that were looked at.
-  std::size_t gather(const WideBvh::Tree& tree, const Ball& ball) noexcept;
+  /// Covers a ball. Opens at most 32 nodes, which take no work units; the others stay unopened, as
+  /// large boxes.
+  void cover(const WideBvh::Tree& tree, const Ball& ball) noexcept;
 
   std::span<const NodeBlock> blocks() const noexcept {
     return {blocks_.data(), (size_ + NodeBlock::lanes - 1) / NodeBlock::lanes};
   }
 
-  /// Beside the boxes of a block. Taken from the tree when first asked for, which few cycles do.
+  /// Returns the cylinders of a block's boxes. Copied from the tree at the first call, which few
+  /// cycles make.
   const CylinderBlock& cylinders(const WideBvh::Tree& tree, std::size_t block) noexcept;
 
   std::size_t size() const noexcept { return size_; }
 
-  /// Whether all of its boxes are those of leaves: none was left unopened.
+  /// Returns true if all of its boxes are those of leaves: none was left unopened.
   bool is_opened() const noexcept { return is_opened_; }
 
  private:
@@ -59,8 +61,8 @@ class Frontier {
 
   void add(const WideBvh::Tree& tree, std::uint32_t node, std::size_t lane) noexcept;
 
-  Ball problem_{Vec3::Zero(), -1.0};
-  double free_radius_ = -1.0;  // around the same centre there are no boxes [length]
+  Ball covered_{Vec3::Zero(), -1.0};
+  double free_radius_ = -1.0;  // around the same center there are no boxes [length]
   bool is_opened_ = true;
   std::size_t size_ = 0;  // boxes
   std::array<NodeBlock, most_blocks> blocks_;

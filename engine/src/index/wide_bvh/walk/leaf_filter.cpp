@@ -2,26 +2,28 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "index/wide_bvh/walk/leaf_filter.cpp"
 #include <hwy/foreach_target.h>
-// After it, for it tells for whom to compile.
+// After it: it sets the target.
 #include "filters.h"
 #include "proof_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace keepout::HWY_NAMESPACE {
 
-/// Triangles, relative to the tip.
-struct Corners {
+/// A triangle in each lane, relative to the tip.
+struct TriangleLanes {
   Vector a, b, c;
 };
 
-HWY_INLINE Corners corners(Float d, const LeafBlock& leaf, const FloatTip& tip, std::size_t lane) {
+HWY_INLINE TriangleLanes corners(Float d, const LeafBlock& leaf, const FloatTip& tip,
+                                 std::size_t lane) {
   return {relative(d, leaf.corner[0], lane, tip), relative(d, leaf.corner[1], lane, tip),
           relative(d, leaf.corner[2], lane, tip)};
 }
 
-/// About the point of each triangle that is nearest to p.
+/// Returns approximately the point of each triangle that is nearest to p. (Not nearest_point() of
+/// leaf_test-inl.h, whose band of error is proved: here any point gives a valid proof.)
 /// Source: Ericson, "Real-Time Collision Detection", 2005, section 5.1.5.
-HWY_INLINE Vector nearest(Float d, const Corners& t, const Vector& p) {
+HWY_INLINE Vector nearest(Float d, const TriangleLanes& t, const Vector& p) {
   const V zero = hn::Zero(d);
   const Vector ab = t.b - t.a;
   const Vector ac = t.c - t.a;
@@ -39,10 +41,10 @@ HWY_INLINE Vector nearest(Float d, const Corners& t, const Vector& p) {
 
   // v and w of a + v ab + w ac, each over `whole`; the last that applies counts.
   V v = vb, w = vc, whole = hn::Add(hn::Add(va, vb), vc);
-  const auto take = [&](M where, V its_v, V its_w, V its_whole) {
-    v = hn::IfThenElse(where, its_v, v);
-    w = hn::IfThenElse(where, its_w, w);
-    whole = hn::IfThenElse(where, its_whole, whole);
+  const auto take = [&](M where, V new_v, V new_w, V new_whole) {
+    v = hn::IfThenElse(where, new_v, v);
+    w = hn::IfThenElse(where, new_w, w);
+    whole = hn::IfThenElse(where, new_whole, whole);
   };
   const auto edge = [&](V beyond, V from, V to) {
     return hn::And(hn::Le(beyond, zero), hn::And(hn::Ge(from, zero), hn::Ge(to, zero)));
@@ -58,23 +60,25 @@ HWY_INLINE Vector nearest(Float d, const Corners& t, const Vector& p) {
   return t.a + (hn::Mul(v, share) * ab + hn::Mul(w, share) * ac);
 }
 
-/// What a unit vector proves.
-HWY_INLINE V clear_along(Float d, const Corners& t, const Vector& n, const FloatReach& reach) {
+/// Returns the clearance that a unit vector proves.
+HWY_INLINE V clear_along(Float d, const TriangleLanes& t, const Vector& n,
+                         const FloatReach& reach) {
   const V support = hn::Max(dot(n, t.a), hn::Max(dot(n, t.b), dot(n, t.c)));
   const V far = hn::Max(size(t.a), hn::Max(size(t.b), size(t.c)));
   return clear_of(d, support, far, reach);
 }
 
-HWY_INLINE Proof proof_at(Float d, const Corners& t, const Vector& p, const FloatReach& reach) {
+HWY_INLINE Proof proof_at(Float d, const TriangleLanes& t, const Vector& p,
+                          const FloatReach& reach) {
   return proof_along(d, t, p - nearest(d, t, p), reach);
 }
 
-void LookAtLeaf(const LeafBlock& leaf, const FloatTip& tip, const FloatReach& reach,
+void FillFilter(const LeafBlock& leaf, const FloatTip& tip, const FloatReach& reach,
                 LeafFilter& filter) {
   const Float d;
   const V zero = hn::Zero(d);
   for (std::size_t lane = 0; lane < LeafBlock::lanes; lane += hn::Lanes(d)) {
-    const Corners t = corners(d, leaf, tip, lane);
+    const TriangleLanes t = corners(d, leaf, tip, lane);
     const Proof proof = proof_at(d, t, {zero, zero, zero}, reach);
     store(d, proof, lane, filter.at_tip);
     store(d, proof, lane, filter.last);
@@ -97,20 +101,21 @@ void FindSuspects(const LeafFilter& filter, const float* motion, Suspects& suspe
   }
 }
 
-/// The lanes whose bits are set, at their place in the block.
+/// Returns the lanes whose bits are set, at their place in the block.
 HWY_INLINE M lanes_of(Float d, std::uint32_t mask, std::size_t lane) {
   const hn::RebindToUnsigned<Float> du;
   const auto bit = hn::Shl(hn::Set(du, 1u), hn::Iota(du, static_cast<std::uint32_t>(lane)));
   return hn::RebindMask(d, hn::TestBit(hn::Set(du, mask), bit));
 }
 
-/// The suspects of a vector that may be met in time: those that a closer look is worth it for.
+/// Returns the suspects of a vector that may be met in time: sharpening the others is not worth it.
 HWY_INLINE M in_time(Float d, const Suspects& suspects, V time, float latest, std::size_t lane) {
   return hn::And(lanes_of(d, suspects.mask, lane), hn::Le(time, hn::Set(d, latest)));
 }
 
-void RefineSuspects(const LeafBlock& leaf, const FloatTip& tip, const float* motion,
-                    const FloatReach& reach, float latest, LeafFilter& filter, Suspects& suspects) {
+void SharpenSuspects(const LeafBlock& leaf, const FloatTip& tip, const float* motion,
+                     const FloatReach& reach, float latest, LeafFilter& filter,
+                     Suspects& suspects) {
   constexpr int cuts = 2;
   const Float d;
   const Vector z = all(d, motion);
@@ -125,7 +130,7 @@ void RefineSuspects(const LeafBlock& leaf, const FloatTip& tip, const float* mot
     V fall = dot(left.n, z);
     Proof best = load(d, filter.last, lane);
     M clear = hn::Or(holds(d, left, fall), holds(d, best, dot(best.n, z)));
-    const Corners t = corners(d, leaf, tip, lane);
+    const TriangleLanes t = corners(d, leaf, tip, lane);
     const auto consider = [&](const Proof& proof, V along) {
       const M better = hn::AndNot(clear, holds(d, proof, along));
       best = select(better, proof, best);
@@ -135,7 +140,7 @@ void RefineSuspects(const LeafBlock& leaf, const FloatTip& tip, const float* mot
     Proof right = proof_at(d, t, z, reach);
     V rise = dot(right.n, z);
     consider(right, rise);
-    // Where the motion ends too close there is no proof to be found.
+    // There is no proof for a motion that ends too close.
     asked = hn::AndNot(hn::Lt(hn::Add(right.clear, rise), zero), asked);
     for (int cut = 0; cut < cuts; ++cut) {
       asked = hn::AndNot(hn::Or(clear, hn::Gt(time, hn::Set(d, latest))), asked);
@@ -185,24 +190,24 @@ HWY_AFTER_NAMESPACE();
 
 namespace keepout {
 
-HWY_EXPORT(LookAtLeaf);
+HWY_EXPORT(FillFilter);
 HWY_EXPORT(FindSuspects);
-HWY_EXPORT(RefineSuspects);
+HWY_EXPORT(SharpenSuspects);
 HWY_EXPORT(DelaySuspects);
 
-void look(const LeafBlock& leaf, const FloatTip& tip, const FloatReach& reach,
-          LeafFilter& filter) noexcept {
-  HWY_DYNAMIC_DISPATCH(LookAtLeaf)(leaf, tip, reach, filter);
+void fill_filter(const LeafBlock& leaf, const FloatTip& tip, const FloatReach& reach,
+                 LeafFilter& filter) noexcept {
+  HWY_DYNAMIC_DISPATCH(FillFilter)(leaf, tip, reach, filter);
 }
 
 void find_suspects(const LeafFilter& filter, const float* motion, Suspects& suspects) noexcept {
   HWY_DYNAMIC_DISPATCH(FindSuspects)(filter, motion, suspects);
 }
 
-void refine_suspects(const LeafBlock& leaf, const FloatTip& tip, const float* motion,
-                     const FloatReach& reach, float latest, LeafFilter& filter,
-                     Suspects& suspects) noexcept {
-  HWY_DYNAMIC_DISPATCH(RefineSuspects)(leaf, tip, motion, reach, latest, filter, suspects);
+void sharpen_suspects(const LeafBlock& leaf, const FloatTip& tip, const float* motion,
+                      const FloatReach& reach, float latest, LeafFilter& filter,
+                      Suspects& suspects) noexcept {
+  HWY_DYNAMIC_DISPATCH(SharpenSuspects)(leaf, tip, motion, reach, latest, filter, suspects);
 }
 
 void delay_suspects(const LeafBlock& leaf, const FloatTip& tip, const float* motion,

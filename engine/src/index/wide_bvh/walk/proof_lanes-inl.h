@@ -4,7 +4,7 @@
 //
 // Rounding. In units of u = 2^-24: a coordinate relative to the tip is off by less than 3 u of
 // itself, and by the error of the leaf's own; a product n . v of three terms by 5 u |n| |v|; the
-// length of a unit vector by 3 u. Together they stay below 16 u = 1e-6 of |v|, of the margin and of
+// length of a unit vector by 3 u. Together they stay below 16 u = 1e-6 of |v|, of the level and of
 // the length of the motion; FloatReach takes half as much again, or more.
 #if defined(KEEPOUT_PROOF_LANES_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef KEEPOUT_PROOF_LANES_INL_H
@@ -26,11 +26,11 @@ HWY_INLINE Vector relative(Float d, const float (&from)[3][Lanes], std::size_t l
   return load(d, from, lane) - all(d, tip.high) - all(d, tip.low);
 }
 
-/// A unit vector for each lane, and what it proves: that the tip is so much beyond the margin along
+/// A unit vector for each lane, and what it proves: that the tip is so much beyond the level along
 /// it.
 struct Proof {
   Vector n;
-  V clear;  // of the margin, at the tip, less rounding [length]
+  V clear;  // distance of the tip less the level and rounding [length]
 };
 
 /// What holds wherever the direction has digits enough to be of unit length; elsewhere nothing.
@@ -50,7 +50,7 @@ HWY_INLINE M has_direction(Float d, V length2) {
 /// from the tip than `far`.
 HWY_INLINE V clear_of(Float d, V support, V far, const FloatReach& reach) {
   const V rounding = hn::Add(hn::Mul(far, hn::Set(d, reach.relative)), hn::Set(d, reach.slack));
-  return hn::Sub(hn::Sub(hn::Neg(support), hn::Set(d, reach.margin)), rounding);
+  return hn::Sub(hn::Sub(hn::Neg(support), hn::Set(d, reach.level)), rounding);
 }
 
 /// What the direction of `way` proves; nothing, if it is none. `clear_along(d, shapes, n, reach)`

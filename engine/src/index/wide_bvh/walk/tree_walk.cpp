@@ -4,29 +4,29 @@
 #include <algorithm>
 #include <bit>
 
+#include "../../tree_parts/prefetch.h"
+
 namespace keepout {
 namespace {
 
-// Leaves whose filters are kept, a power of 2; a cycle in contact looks at a dozen.
-constexpr std::size_t most_leaves = 256;
 constexpr std::size_t most_waiting = 4096;
 constexpr std::size_t most_deferred = 1024;
 
-// In looks, about as long as each takes: see Budget.
+// In work units, about as long as each takes: see Budget.
 constexpr std::size_t work_of_boxes = 1;
 constexpr std::size_t work_of_cylinders = 2;
 constexpr std::size_t work_of_leaf = 4;
 constexpr std::size_t work_of_suspects = 1;
-constexpr std::size_t work_of_closer_look = 4;
+constexpr std::size_t work_of_sharpening = 4;
 
-/// Whether more than so many bits are set. Not every processor that this is compiled for has
-/// an instruction that counts them.
+/// Returns true if more than `count` bits are set. Not every processor that this is compiled for
+/// has an instruction that counts bits.
 bool are_more(std::uint32_t bits, int count) noexcept {
   for (; count > 0; --count) bits &= bits - 1;
   return bits != 0;
 }
 
-/// A bit for each; all leaves but one are full.
+/// Returns a bit for each lane that is used; all leaves but one are full.
 std::uint32_t lanes_used(const LeafBlock& leaf) noexcept {
   std::size_t count = LeafBlock::lanes;
   while (!leaf.is_used(count - 1)) --count;
@@ -63,24 +63,27 @@ void TreeWalk::begin_again(double level) noexcept {
   }
 }
 
-/// Sees to it that the frontier covers all that the cycle may ask about. It reaches farther than it
-/// must, for the cycles to come, as long as that leaves few boxes and cycles are short.
+/// Makes the frontier cover the region of the cycle, and more if that is likely to serve the cycles
+/// to come. The padding is tuned by experience: it grows while a cover has fewer than 12 boxes, and
+/// shrinks if it has more than 24, or boxes left unopened. It pays only while it is longer than the
+/// motions, and while the tip moves on without a jump. It changes no answer.
 void TreeWalk::locate(const Start& start) noexcept {
   if (frontier_.covers(start.region)) return;
   const double motion = start.longest;
-  // A planner's states have nothing to do with each other: more would serve none of them.
+  // After a jump, as between the states of a planner, a larger cover would not serve the next
+  // cycle.
   const bool serves_more = padding_ > motion && frontier_.is_near(start.region);
-  const auto gather = [&](double padding) {
-    frontier_.gather(tree_, {start.region.center, start.region.radius + padding});
+  const auto cover = [&](double padding) {
+    frontier_.cover(tree_, {start.region.center, start.region.radius + padding});
   };
-  gather(serves_more ? padding_ : 0.0);
+  cover(serves_more ? padding_ : 0.0);
   if (serves_more && !frontier_.is_opened()) {
-    // So far that large boxes are left over, which every cycle to come would have to look into.
+    // Large boxes are left unopened, which every cycle to come would have to open.
     padding_ *= 0.25;
-    gather(padding_ > motion ? padding_ : 0.0);
+    cover(padding_ > motion ? padding_ : 0.0);
     return;
   }
-  if (padding_ > motion && !serves_more) return;  // it tells nothing of reaching that far
+  if (padding_ > motion && !serves_more) return;  // no experience with this padding
   constexpr std::size_t few = 12;
   constexpr std::size_t many = 24;
   if (frontier_.size() == 0) {
@@ -97,7 +100,7 @@ bool TreeWalk::walk(const Vec3& motion, EncounterVisitor& visitor) noexcept {
     motion_[axis] = static_cast<float>(motion[static_cast<Eigen::Index>(axis)]);
   }
   visitor_ = &visitor;
-  latest_ = 2.0;  // after the motion's end
+  latest_ = after_the_end;
   begun_size_ = 0;
   waiting_size_ = 0;
   deferred_size_ = 0;
@@ -108,37 +111,39 @@ bool TreeWalk::walk(const Vec3& motion, EncounterVisitor& visitor) noexcept {
   }
   while (!budget_.is_spent()) {
     if (begun_size_ > 0) {
-      open(begun_[--begun_size_]);
+      descend(begun_[--begun_size_]);
       continue;
     }
     if (waiting_size_ == 0) return meets_nothing_;
     if (comes_too_late(waiting_[0].time)) return false;
     const std::uint32_t what = next().what;
+    // Leaf numbers have 31 bits, so bit `suspects` counts only without bit `leaf`.
     if ((what & NodeBlock::leaf) == 0 && (what & suspects) != 0) {
       resume(what & ~suspects);
     } else {
-      open(what);
+      descend(what);
     }
   }
   return false;
 }
 
-void TreeWalk::open(std::uint32_t box) noexcept {
+/// Goes into a box: a leaf or a node.
+void TreeWalk::descend(std::uint32_t box) noexcept {
   if ((box & NodeBlock::leaf) != 0) {
-    look_at(box & ~NodeBlock::leaf);
+    inspect(box & ~NodeBlock::leaf);
   } else {
     enter(tree_.nodes()[box], [&]() -> const CylinderBlock& { return tree_.cylinders()[box]; });
   }
 }
 
-/// Finds out which boxes of a node the motion reaches, and when. `cylinders()` are those beside
-/// them, asked for where they are needed.
+/// Finds the boxes of a node that the motion reaches, and when: each is opened now or waits.
+/// `cylinders()` returns those of the boxes; called only if needed.
 template <class Cylinders>
 void TreeWalk::enter(const NodeBlock& node, Cylinders&& cylinders) noexcept {
   BoxEntries entries;
   budget_.spend(work_of_boxes);
   enter_boxes(node, float_tip_, motion_.data(), reach_, entries);
-  // To look closer is cheaper than to look into more boxes than this.
+  // Cylinders are cheaper than to open more boxes than this.
   if (are_more(entries.reached, is_long_ ? 1 : 4)) {
     budget_.spend(work_of_cylinders);
     enter_cylinders(cylinders(), float_tip_, motion_.data(), reach_, entries);
@@ -146,10 +151,11 @@ void TreeWalk::enter(const NodeBlock& node, Cylinders&& cylinders) noexcept {
   for (std::uint32_t reached = entries.reached; reached != 0; reached &= reached - 1) {
     const auto lane = static_cast<std::size_t>(std::countr_zero(reached));
     const std::uint32_t child = node.child[lane];
-    if (child == 0) break;
+    if (!node.is_used(lane)) break;
     if ((child & NodeBlock::leaf) != 0) fetch(child & ~NodeBlock::leaf);
     const float time = entries.time[lane];
-    // What the motion begins in it may meet before it begins: where the tip is too close already.
+    // If the motion begins in a box, the tip may be too close already: it is opened now, however
+    // early the first contact so far is, and also if there is no room to wait.
     if (time > 0.0f) {
       if (comes_too_late(time)) {
         meets_nothing_ = false;
@@ -161,7 +167,8 @@ void TreeWalk::enter(const NodeBlock& node, Cylinders&& cylinders) noexcept {
   }
 }
 
-void TreeWalk::look_at(std::uint32_t number) noexcept {
+/// Finds the suspects of a leaf; visits or defers them.
+void TreeWalk::inspect(std::uint32_t number) noexcept {
   Leaf& seen = leaf(number);
   Deferred& found = deferred_[deferred_size_];
   found.leaf = number;
@@ -172,8 +179,8 @@ void TreeWalk::look_at(std::uint32_t number) noexcept {
   if (mask == 0) return;
   meets_nothing_ = false;
 
-  // What the motion may meet before it begins, where the tip is too close already, is visited now;
-  // and all, where there is no room to defer it.
+  // Suspects that the motion may meet at time 0 or before, as the tip is too close already, are
+  // visited now; and all, if there is no room to defer them.
   const bool has_room = deferred_size_ + 1 < deferred_.size();
   std::uint32_t later = 0;
   for (std::uint32_t lanes = mask; lanes != 0; lanes &= lanes - 1) {
@@ -190,35 +197,36 @@ void TreeWalk::look_at(std::uint32_t number) noexcept {
   }
   mask = later;
   if (mask == 0) return;
-  found.looks_left = is_long_ ? closer_looks : are_more(mask, 2) ? 1 : 0;
+  found.sharpenings_left = is_long_ ? most_sharpenings : are_more(mask, 2) ? 1 : 0;
   const auto deferred = static_cast<std::uint32_t>(deferred_size_++);
   if (!wait(found.suspects.time[found.earliest()], deferred | suspects)) resume(deferred);
 }
 
-/// Visits suspects of a leaf for as long as they are the next.
+/// Visits suspects of a leaf, the earliest first, until one that waits is earlier.
 void TreeWalk::resume(std::uint32_t number) noexcept {
   Deferred& deferred = deferred_[number];
   while (deferred.suspects.mask != 0) {
-    if (deferred.looks_left > 0) look_closer(deferred);
+    if (deferred.sharpenings_left > 0) sharpen(deferred);
     if (deferred.suspects.mask == 0) return;
     const std::uint32_t lane = deferred.earliest();
     const float time = deferred.suspects.time[lane];
     if (comes_too_late(time)) return;
     if (waiting_size_ > 0 && waiting_[0].time < time && wait(time, number | suspects)) return;
-    if (deferred.looks_left > 0) continue;
+    if (deferred.sharpenings_left > 0) continue;
     deferred.suspects.mask &= ~(std::uint32_t{1} << lane);
     visit(leaf(deferred.leaf), lane);
   }
 }
 
-/// At suspects that may be met before it is too late.
-void TreeWalk::look_closer(Deferred& deferred) noexcept {
+/// Sharpens the suspects that may be met before it is too late: the first time of a long motion by
+/// better proofs, else by a Newton step.
+void TreeWalk::sharpen(Deferred& deferred) noexcept {
   const LeafBlock& block = tree_.leaves()[deferred.leaf];
   const auto until = static_cast<float>(latest_ * (1.0 + 1e-6));  // not before it, when rounded
-  budget_.spend(work_of_closer_look);
-  if (deferred.looks_left-- == closer_looks) {
-    refine_suspects(block, float_tip_, motion_.data(), reach_, until, leaf(deferred.leaf).filter,
-                    deferred.suspects);
+  budget_.spend(work_of_sharpening);
+  if (deferred.sharpenings_left-- == most_sharpenings) {
+    sharpen_suspects(block, float_tip_, motion_.data(), reach_, until, leaf(deferred.leaf).filter,
+                     deferred.suspects);
   } else {
     delay_suspects(block, float_tip_, motion_.data(), reach_, until, deferred.suspects);
   }
@@ -235,7 +243,7 @@ void TreeWalk::visit(Leaf& seen, std::uint32_t lane) noexcept {
   }
 }
 
-/// Relative to the tip, in lexicographic order.
+/// Returns the corners of a triangle relative to the tip, in lexicographic order.
 Triangle TreeWalk::corners(std::uint32_t number, std::size_t lane) const noexcept {
   const LeafBlock& block = tree_.leaves()[number];
   if (!tree_.frame().is_exact()) {
@@ -249,6 +257,7 @@ Triangle TreeWalk::corners(std::uint32_t number, std::size_t lane) const noexcep
   return corners;
 }
 
+/// Returns the filter and notes of a leaf in this cycle; fills them at the first call.
 TreeWalk::Leaf& TreeWalk::leaf(std::uint32_t number) noexcept {
   Leaf& seen = leaves_[number % most_leaves];
   if (seen.number == number && seen.cycle == cycle_) return seen;
@@ -258,31 +267,28 @@ TreeWalk::Leaf& TreeWalk::leaf(std::uint32_t number) noexcept {
   seen.cycle = cycle_;
   seen.note.fill(Encounter::no_note);
   seen.used = lanes_used(block);
-  look(block, float_tip_, reach_, seen.filter);
+  fill_filter(block, float_tip_, reach_, seen.filter);
   return seen;
 }
 
-/// Has a leaf brought nearer that is likely to be looked at soon, and has not been in this cycle.
+/// Prefetches a leaf that is likely to be needed soon, unless it was filled in this cycle.
 void TreeWalk::fetch(std::uint32_t number) const noexcept {
   const Leaf& seen = leaves_[number % most_leaves];
-  if (seen.number == number && seen.cycle == cycle_) return;
-  constexpr std::size_t line = 64;
-  const char* block = reinterpret_cast<const char*>(&tree_.leaves()[number]);
-  for (std::size_t at = 0; at < sizeof(LeafBlock); at += line) __builtin_prefetch(block + at);
+  if (seen.number != number || seen.cycle != cycle_) prefetch(tree_.leaves()[number]);
 }
 
-/// False where there is no room.
+/// Returns false if there is no room.
 bool TreeWalk::wait(float time, std::uint32_t what) noexcept {
   if (waiting_size_ == waiting_.size()) return false;
   waiting_[waiting_size_++] = {time, what};
   std::push_heap(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(waiting_size_),
-                 [](const Waiting& a, const Waiting& b) { return a.time > b.time; });
+                 is_later);
   return true;
 }
 
 TreeWalk::Waiting TreeWalk::next() noexcept {
   std::pop_heap(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(waiting_size_),
-                [](const Waiting& a, const Waiting& b) { return a.time > b.time; });
+                is_later);
   return waiting_[--waiting_size_];
 }
 
@@ -304,13 +310,13 @@ FloatTip float_tip(const Vec3& tip) noexcept {
   return split;
 }
 
-FloatReach float_reach(double margin, double longest, const Vec3& tip, double error) noexcept {
-  // What the two floats of the tip leave over, and what the leaf's coordinates are off by.
+FloatReach float_reach(double level, double longest, const Vec3& tip, double error) noexcept {
+  // The rest that the two floats of the tip leave, and the error of the leaf's coordinates.
   const double fixed = 1e-13 * tip.lpNorm<1>() + 4.0 * error;
-  const double slack = 2e-6 * margin + 3e-6 * longest + fixed;
-  const double boxes = margin * (1.0 + 2e-6) + 4e-6 * longest + fixed;
+  const double slack = 2e-6 * level + 3e-6 * longest + fixed;
+  const double boxes = level * (1.0 + 2e-6) + 4e-6 * longest + fixed;
   constexpr double up = 1.0 + 1e-6;
-  return {static_cast<float>(margin * up), 1.5e-6f, static_cast<float>(slack * up),
+  return {static_cast<float>(level * up), 1.5e-6f, static_cast<float>(slack * up),
           static_cast<float>(boxes * up)};
 }
 

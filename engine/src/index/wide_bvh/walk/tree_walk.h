@@ -13,10 +13,10 @@
 
 namespace keepout {
 
-/// The walk of a WideBvh: through the boxes along a motion, to the triangles that it is not sure to
-/// keep clear of, the earliest first, until the visitor has met one. Floats clear what is surely
-/// clear. What is remembered from motion to motion, and of where the last cycles were, saves time
-/// and changes nothing else.
+/// The walk of a WideBvh: through the boxes along a motion, to the triangles that it is not proved
+/// to stay clear of, the earliest first, until the visitor has met one. Single precision passes
+/// over triangles that are surely clear. What the walk remembers from motion to motion and from
+/// cycle to cycle saves time and changes no answer.
 class TreeWalk final : public MotionWalk {
  public:
   /// Both must outlive this. Precondition: the tree is not refit.
@@ -26,50 +26,56 @@ class TreeWalk final : public MotionWalk {
   void begin_again(double level) noexcept override;
   bool is_free() const noexcept override { return is_free_; }
   bool walk(const Vec3& motion, EncounterVisitor& visitor) noexcept override;
-  std::size_t room() const noexcept override { return most_notes; }
+  std::size_t room() const noexcept override { return most_leaves * LeafBlock::lanes; }
 
-  /// Where the walks of the last cycle began.
+  /// Returns the boxes at which the walks of the last cycle began.
   const Frontier& frontier() const noexcept { return frontier_; }
 
  private:
-  static constexpr std::size_t most_notes = 4096;
+  // Leaves whose filters and notes are kept, a power of 2; a cycle in contact looks at a dozen. A
+  // leaf takes the place of another whose number has the same remainder.
+  static constexpr std::size_t most_leaves = 256;
 
   /// A leaf as it is seen from the tip.
   struct Leaf {
     LeafFilter filter;
     std::array<std::uint32_t, LeafBlock::lanes> note;
     std::uint32_t number = 0;
-    std::uint32_t cycle = 0;  // that it was looked at in; 0: none yet
+    std::uint32_t cycle = 0;  // in which it was last filled; 0: none yet
     std::uint32_t used = 0;   // a bit for each lane
   };
 
-  /// Something that the motion may meet at some time.
+  /// A box or suspects that the motion may meet at some time.
   struct Waiting {
     float time;
     std::uint32_t what;  // as NodeBlock::child, or a number in deferred_ with bit `suspects`
   };
+  /// Orders a heap with the earliest on top.
+  static constexpr auto is_later = [](const Waiting& a, const Waiting& b) {
+    return a.time > b.time;
+  };
   static constexpr std::uint32_t suspects = std::uint32_t{1} << 30;
 
-  /// How often suspects are looked at more closely before they are visited, where motions are long:
-  /// many that come late turn out not to be met, or not first. Where motions are short, once is
-  /// enough, and only if they are many.
-  static constexpr int closer_looks = 3;
+  /// How often suspects are sharpened before they are visited, if motions are long: many that come
+  /// late turn out not to be met, or not first. If motions are short, once is enough, and only if
+  /// there are many suspects.
+  static constexpr int most_sharpenings = 3;
 
   /// Suspects of a leaf that are still to be visited.
   struct Deferred {
     Suspects suspects;
     std::uint32_t leaf;
-    int looks_left;
+    int sharpenings_left;
 
     std::uint32_t earliest() const noexcept;
   };
 
   void locate(const Start& start) noexcept;
-  void open(std::uint32_t box) noexcept;
+  void descend(std::uint32_t box) noexcept;
   template <class Cylinders>
   void enter(const NodeBlock& node, Cylinders&& cylinders) noexcept;
-  void look_at(std::uint32_t leaf) noexcept;
-  void look_closer(Deferred& deferred) noexcept;
+  void inspect(std::uint32_t leaf) noexcept;
+  void sharpen(Deferred& deferred) noexcept;
   void resume(std::uint32_t deferred) noexcept;
   void visit(Leaf& leaf, std::uint32_t lane) noexcept;
   bool wait(float time, std::uint32_t what) noexcept;
@@ -82,7 +88,7 @@ class TreeWalk final : public MotionWalk {
   const WideBvh::Tree& tree_;
   Budget& budget_;
   Frontier frontier_;
-  double padding_ = 0.0;  // gathered beyond what is needed, for cycles to come [length]
+  double padding_ = 0.0;  // covered beyond the region, for cycles to come [length]
 
   // Of this cycle.
   Vec3 tip_ = Vec3::Zero();
@@ -90,19 +96,21 @@ class TreeWalk final : public MotionWalk {
   FloatTip float_tip_{};
   FloatReach reach_{};
   bool is_free_ = false;
-  bool is_long_ = false;  // motions lead far beyond the level
+  bool is_long_ = false;  // motions may be longer than the level
   std::uint32_t cycle_ = 0;
-  std::vector<Leaf> leaves_;  // some that were looked at
+  std::vector<Leaf> leaves_;
 
   // Of this motion.
   EncounterVisitor* visitor_ = nullptr;
-  double latest_ = 0.0;  // what is met later does not matter; a share of the motion
+  double latest_ = 0.0;  // contacts after this fraction of the motion do not matter
   std::array<float, 3> motion_{};
-  std::array<std::uint32_t, 16 * NodeBlock::lanes> begun_{};  // boxes that it begins in
+  // Boxes that it begins in, to be opened now. Those of the frontier, and fifteen more a level,
+  // fit.
+  std::array<std::uint32_t, 16 * NodeBlock::lanes> begun_{};
   std::size_t begun_size_ = 0;
   std::vector<Waiting> waiting_;  // a heap, the earliest first
   std::size_t waiting_size_ = 0;
-  std::vector<Deferred> deferred_;
+  std::vector<Deferred> deferred_;  // the place after the last one is for inspect() to write in
   std::size_t deferred_size_ = 0;
   bool meets_nothing_ = false;
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The quadratic problem of a cycle: its solution, and the relaxation of planes that contradict each
-// other.
+// The solve stage of a cycle: the quadratic program, and the relaxation of planes that contradict
+// each other.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,11 +12,10 @@
 namespace keepout {
 namespace {
 
-/// Returns a solver's projection of the target, corrected to the accuracy of the planes. The motion
-/// ends in the ball over the target, in which the index was searched.
-Vec3 sharpened(const Vec3& motion, const Vec3& target, std::span<const HalfSpace> planes) noexcept {
-  // Solvers differ in their last digits; alternating projections on the planes that are violated
-  // settle them. Each is at most a last digit for an exact solver.
+/// Returns a solver's projection of the target, corrected to the accuracy of the planes: by
+/// alternating projections on the planes that are violated, as solvers differ in their last digits.
+/// For an exact solver each correction is at most a last digit.
+Vec3 corrected(const Vec3& motion, const Vec3& target, std::span<const HalfSpace> planes) noexcept {
   constexpr int most_corrections = 32;
   Vec3 z = motion;
   const double digits2 = 1e-30 * target.squaredNorm();
@@ -32,6 +31,12 @@ Vec3 sharpened(const Vec3& motion, const Vec3& target, std::span<const HalfSpace
     if (worst == nullptr || !(violation * violation > digits2)) break;
     z += violation * worst->normal;
   }
+  return z;
+}
+
+/// Returns a motion that ends in the ball over the target, in which the index was searched: rule 4
+/// of docs/certified-step.md, the clip.
+Vec3 clipped_to_ball(Vec3 z, const Vec3& target) noexcept {
   const double along = target.dot(z);
   const double length2 = z.squaredNorm();
   if (along < length2) z *= std::max(along, 0.0) / length2;
@@ -75,8 +80,8 @@ Cycle::Trial Cycle::solve_relaxing() noexcept {
   if (work_.planes.overflowed()) return {Status::over_capacity, Vec3::Zero()};
   std::optional<Vec3> motion;
   Status solved = solve_once(motion);
-  // Planes may contradict each other, or nearly, so that the solver finds a point out of the world,
-  // or comes to no end.
+  // If planes contradict each other, or nearly, the solver may also find a point far away, or reach
+  // its iteration limit.
   const auto contradict = [&] {
     return solved == Status::infeasible || solved == Status::ill_posed ||
            solved == Status::unsolved;
@@ -84,10 +89,11 @@ Cycle::Trial Cycle::solve_relaxing() noexcept {
   while (contradict() && relax()) solved = solve_once(motion);
   if (is_ok(solved) && !motion->allFinite()) solved = Status::unsolved;
   // Without a Jacobian only rows that almost contradict each other make a problem ill-posed.
-  if (solved == Status::ill_posed && !motion_.jacobian) solved = Status::infeasible;
+  if (solved == Status::ill_posed && !request_.jacobian) solved = Status::infeasible;
   if (!is_ok(solved)) return {solved, Vec3::Zero()};
   if (problem_.end_region == EndRegion::motion_sphere) return {Status::free, *motion};
-  return {Status::free, sharpened(*motion, problem_.target, work_.posed())};
+  const Vec3& target = problem_.target;
+  return {Status::free, clipped_to_ball(corrected(*motion, target, work_.posed()), target)};
 }
 
 /// Relaxes constraints that pull back: guides first. Returns true if any plane changed.
@@ -103,7 +109,7 @@ bool Cycle::relax() noexcept {
 
 Status Cycle::solve_once(std::optional<Vec3>& motion) noexcept {
   if (budget_.is_spent()) return budget_.status_at_end();
-  const StepProblem problem = work_.pose(motion_, problem_.target, options_.damping);
+  const StepProblem problem = work_.pose(request_, problem_.target, options_.damping);
   work_.solution = {};
   const SolveStatus solved = solver_.solve(problem, work_.solution);
   budget_.spend(work_of(problem, work_.solution));
@@ -122,18 +128,18 @@ std::optional<Vec3> tip_motion(const StepProblem& problem, const Solution& solut
                         (1.0 + 0.5 * static_cast<double>(problem.jacobian.cols()));
   if (moves_a_point(problem)) {
     const double* u = solution.u.data();
-    const double way = std::abs(u[0]) + std::abs(u[1]) + std::abs(u[2]);
-    if (!(digits * way <= rounding)) return std::nullopt;
+    const double size = std::abs(u[0]) + std::abs(u[1]) + std::abs(u[2]);
+    if (!(digits * size <= rounding)) return std::nullopt;
     return std::optional<Vec3>(std::in_place, Eigen::Map<const Vec3>(u));
   }
   Vec3 motion = Vec3::Zero();
-  double way = 0.0;  // of the tip, were all joints to move it alike
+  double size = 0.0;  // of the sum: the motion if all joints moved the tip the same way
   for (Eigen::Index c = 0; c < problem.jacobian.cols(); ++c) {
     const double u = solution.u[static_cast<std::size_t>(c)];
     motion += problem.jacobian.col(c) * u;
-    way += problem.jacobian.col(c).norm() * std::abs(u);
+    size += problem.jacobian.col(c).norm() * std::abs(u);
   }
-  if (!(digits * way <= rounding)) return std::nullopt;
+  if (!(digits * size <= rounding)) return std::nullopt;
   return motion;
 }
 
