@@ -44,9 +44,11 @@ class UnitPlanes {
  public:
   void reserve(std::size_t planes);
 
+  void clear() noexcept { size_ = 0; }
+
   /// Replaces the list. Returns true if all normals are unit vectors and all offsets in range.
   bool assign(std::span<const HalfSpace> planes) noexcept {
-    size_ = 0;
+    clear();
     bool usable = true;
     for (const HalfSpace& plane : planes) {
       usable &= is_unit_in_range(plane);
