@@ -22,7 +22,7 @@ void require_finite(bool is_finite) {
 }  // namespace
 
 Judge::Judge(const std::shared_ptr<const Mesh>& mesh)
-    : oracle_(mesh), closed_(oracle_.inside(oracle_.tree().bounds().low).has_value()) {}
+    : oracle_(mesh), closed_(oracle_.inside(oracle_.tree()->bounds().low).has_value()) {}
 
 Eigen::VectorXd Judge::distances(const Eigen::Ref<const Rows>& points) {
   require_finite(points.allFinite());
@@ -44,7 +44,7 @@ Eigen::VectorXd Judge::least_distances(const Eigen::Ref<const Rows>& starts,
                                        const Eigen::Ref<const Rows>& ends, double reach) {
   require_pairs(starts, ends);
   require_finite(starts.allFinite() && ends.allFinite());
-  const oracle::TriangleTree& tree = oracle_.tree();
+  const oracle::TriangleTree& tree = *oracle_.tree();
   std::vector<TriangleId> near;
   Eigen::VectorXd out(starts.rows());
   for (Eigen::Index i = 0; i < starts.rows(); ++i) {
@@ -79,9 +79,9 @@ std::tuple<Vec3, double, double> Judge::best_step(const Vec3& tip, const Vec3& d
   if (oracle_.distance(tip) == 0.0) throw Error("a tip on the mesh has no best step");
   const Vec3 middle = tip + 0.5 * desired;
   std::vector<TriangleId> near;
-  oracle_.tree().collect_within(0.5 * desired.norm() + 1.001 * margin, {middle, middle}, near);
+  oracle_.tree()->collect_within(0.5 * desired.norm() + 1.001 * margin, {middle, middle}, near);
   const oracle::BestStep best =
-      oracle::best_step(oracle_.tree().mesh(), near, tip, desired, margin);
+      oracle::best_step(oracle_.tree()->mesh(), near, tip, desired, margin);
   return {best.motion, best.cost, best.bound};
 }
 
