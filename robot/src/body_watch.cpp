@@ -247,8 +247,7 @@ Status BodyWatch::gather(std::size_t p, double needed) noexcept {
     if (budget.is_spent()) break;
   }
   pair.triangles.forget();
-  const bool is_full = near.candidates().overflowed() || pair.triangles.is_full();
-  return is_full ? Status::over_capacity : Status::out_of_budget;
+  return budget.is_spent() ? Status::out_of_budget : Status::over_capacity;
 }
 
 NearTriangle* BodyWatch::find(std::size_t p, TriangleId id) noexcept {

@@ -60,7 +60,7 @@ void JointCycle::run(const JointTask& task, InstrumentStep& result) noexcept {
   } else {
     search(task, best, result);
   }
-  if (bodies_.owes() || guides_.owes()) judge_cut(best);
+  cut(best);
   result.degraded = bodies_.degraded();
   bodies_.close();
   if (is_ok(result.status) && result.status != Status::yielding && is_recovering())
@@ -139,14 +139,14 @@ bool JointCycle::search_fraction(const JointTask& task, double asked, Trial& bes
          search_status_ == Status::out_of_budget;
 }
 
-/// If less than all of a motion is executed, proves that part as a motion of its own, because its
-/// end must make up for rounding. If the proof fails, there is no motion.
-void JointCycle::judge_cut(Trial& best) noexcept {
-  if (!(best.fraction > 0.0 && best.fraction < 1.0)) return;
-  Trial part;
-  for (std::size_t k = 0; k < part.increment.size(); ++k) {
-    part.increment[k] = best.fraction * best.increment[k];
-  }
+/// Cuts a motion to the fraction that is executed. If rounding has left less than some clearance,
+/// the end of that part must make up for it, so it is proved as a motion of its own. If the proof
+/// fails, there is no motion.
+void JointCycle::cut(Trial& best) noexcept {
+  if (best.fraction == 1.0) return;
+  for (double& number : best.increment) number *= best.fraction;
+  if (best.fraction == 0.0 || !(bodies_.owes() || guides_.owes())) return;
+  Trial part{.increment = best.increment};
   judge(part);
   if (part.is_proved()) return;
   best.fraction = 0.0;
@@ -158,7 +158,7 @@ void JointCycle::carry_out(const Trial& best, InstrumentStep& result) noexcept {
   const auto n = static_cast<std::size_t>(context_.instrument.chain().size());
   JointVector& increment = memory_.increment;
   // The sum turns -0 into 0. Clipping changes nothing (docs/joint-space-step.md, Lemma 7).
-  for (std::size_t k = 0; k < n; ++k) increment[k] = best.fraction * best.increment[k] + 0.0;
+  for (std::size_t k = 0; k < n; ++k) increment[k] = best.increment[k] + 0.0;
   box_.clip(increment);
   result.increment = {increment.data(), n};
   // The last motion judged may be another one.

@@ -15,7 +15,7 @@ namespace keepout {
 ///
 ///     run -> open -> search -> search_fraction -> solve_and_judge -> solve, judge, add_rows
 ///                                              -> refine
-///         -> judge_cut -> report -> carry_out
+///         -> cut -> report -> carry_out
 class JointCycle {
  public:
   /// Whether the velocities of the meshes count in the cycle, or the meshes stand still.
@@ -45,7 +45,7 @@ class JointCycle {
   bool strays(const JointTask& task, Trial& trial) noexcept;
   bool add_rows() noexcept;
   void refine(const JointTask& task, const JointTask& part, Trial& best) noexcept;
-  void judge_cut(Trial& best) noexcept;
+  void cut(Trial& best) noexcept;
   void carry_out(const Trial& best, InstrumentStep& result) noexcept;
   // Beside meshes that move (beside_moving.cpp).
   void search_beside_moving(const JointTask& task, Trial& best, InstrumentStep& result) noexcept;

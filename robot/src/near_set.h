@@ -46,8 +46,6 @@ class NearSet {
   std::span<const Vec3> core() const noexcept { return core_; }
   /// Returns the number of triangles.
   std::size_t size() const noexcept { return ids_.size(); }
-  /// Returns true if no more triangles fit.
-  bool is_full() const noexcept { return ids_.size() == capacity_; }
 
   /// Starts a new listing, with the core at other positions. All listed triangles become invalid.
   void start_listing(std::span<const Vec3> core) noexcept;

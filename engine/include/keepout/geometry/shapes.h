@@ -19,7 +19,7 @@ inline constexpr double shortest_length = 1e-15;
 /// See shortest_length.
 inline constexpr double longest_length = 1e15;
 
-/// A point, or a displacement, in the frame of the mesh. [length]
+/// A point or a displacement, in the world unless another frame is named. [length]
 using Vec3 = Eigen::Vector3d;
 
 /// All points within `radius` of `center`, the boundary included. The paper's motion sphere is one:

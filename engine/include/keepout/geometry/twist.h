@@ -5,8 +5,9 @@
 
 namespace keepout {
 
-/// How a frame moves: what is asked of the flange in one cycle; or of a mesh, in a second. In the
-/// axes of the world, which are those of the first mesh unless that is placed elsewhere.
+/// A displacement of a frame in one cycle (InstrumentConstraint::step), or its velocity
+/// (InstrumentConstraint::place: per second). In the axes of the world, which are those of the
+/// first mesh unless that is placed elsewhere.
 struct Twist {
   Vec3 linear = Vec3::Zero();   // of its origin [length]
   Vec3 angular = Vec3::Zero();  // its turn: axis times angle [rad]

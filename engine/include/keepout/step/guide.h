@@ -25,15 +25,16 @@ class Guide {
   /// is nearest to the region.
   enum class Kind : std::uint8_t { point, axis, shaft };
 
-  /// Returns a guide for the tip of a MotionConstraint. `region`: in the frame of the mesh. Like
-  /// all functions below it throws Error for a number that is not finite or out of range.
+  /// Returns a guide for the tip of a MotionConstraint. `region`: in the world
+  /// (docs/conventions.md). Like all functions below it throws Error for a number that is not
+  /// finite or out of range.
   static Guide point(std::string name, const Region& region);
 
   /// Returns a guide for a point that a link of an instrument carries.
   static Guide point(std::string name, const LinkPoint& point, const Region& region);
 
   /// Returns a guide that keeps an axis of a link, a direction in the link's frame, within `angle`
-  /// (up to 3) of a direction in the mesh's frame. [rad]
+  /// (up to 3) of a direction in the world. [rad]
   static Guide axis(std::string name, int link, const Vec3& axis, const Vec3& direction,
                     double angle);
 
@@ -44,7 +45,7 @@ class Guide {
                              const Vec3& center, double tolerance);
 
   /// Returns three guides, one for each axis, that keep the orientation of a link within `angle` of
-  /// `rotation`, given in the mesh's frame. [rad]
+  /// `rotation`, given in the world. [rad]
   static std::vector<Guide> orientation(const std::string& name, int link, const Mat3& rotation,
                                         double angle);
 

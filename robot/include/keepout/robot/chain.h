@@ -50,7 +50,7 @@ class Chain {
   /// Of a chain.
   static constexpr int most_joints = 8;
 
-  /// `base`: where link 0 is, in the frame of the mesh. `flange`: the frame that is steered, told
+  /// `base`: the pose of link 0 in the world. `flange`: the frame that is steered, told
   /// in that of the last link. Throws Error, naming the joint, for none or more than most_joints,
   /// an axis that is not a unit vector, a pose that is none, or limits that are empty or no
   /// numbers.
@@ -60,7 +60,7 @@ class Chain {
   int size() const noexcept { return static_cast<int>(joints_.size()); }
   /// Joint k, from 1 to size().
   const Joint& joint(int k) const noexcept { return joints_[static_cast<std::size_t>(k - 1)]; }
-  /// Where link 0 is, in the frame of the mesh.
+  /// Returns the pose of link 0 in the world.
   const Pose& base() const noexcept { return base_; }
   /// The frame that is steered, in that of the last link.
   const Pose& flange() const noexcept { return flange_; }
@@ -90,7 +90,7 @@ class Chain {
   friend class ChainState;
 };
 
-/// Where the links of a chain are at one configuration, in the frame of the mesh.
+/// The poses of the links of a chain at one configuration, in the world.
 class ChainState {
  public:
   /// Of no chain yet: see Chain::forward_kinematics.
@@ -105,7 +105,7 @@ class ChainState {
   /// Whether joint k turns.
   bool turns(int k) const noexcept { return turns_[static_cast<std::size_t>(k)]; }
 
-  /// Where a point of a link is, in the frame of the mesh. [length]
+  /// Returns the position of a point of a link in the world. [length]
   Vec3 at(int link, const Vec3& point) const noexcept;
   /// Where the frame of a link is.
   Pose link(int link) const noexcept;

@@ -23,7 +23,9 @@ struct DegradedClearance {
 struct InstrumentStep {
   Status status = Status::invalid_input;   // the outcome of the cycle
   std::span<const double> increment = {};  // dq (n); empty unless ok() [rad or length]
-  double share = 0.0;         // the fraction of the motion found that is made; below 1: truncated
+  /// The fraction of the motion that was found, which may be one for a part of the command: 1 with
+  /// status fallback means all of that part.
+  double share = 0.0;
   int rounds = 0;             // how many solved trial motions were judged
   std::size_t rows = 0;       // constraints that limit the motion, joint limits apart
   std::size_t triangles = 0;  // in reach of one body and one trial motion, at the most
