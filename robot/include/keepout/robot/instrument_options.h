@@ -25,17 +25,17 @@ inline constexpr std::array<std::string_view, 2> certified_motion_names{"actual"
 /// Options of an instrument constraint that stay the same from cycle to cycle. The table below says
 /// what each means, and its range.
 struct InstrumentOptions {
-  double margin = 0.2;               // [length]
-  double band = 0.002;               // [length]
-  double period = 1e-3;              // [s]
-  double recovery = 0.05;            // [length]
-  double slowing_within = 0.0;       // [length]
-  double slowing_time = 0.05;        // [s]
-  double damping = 0.1;              // [length^2]
-  double orientation_weight = 20.0;  // [length/rad]
-  int refinements = 1;
-  bool check_sides = true;
-  CertifiedMotion certified = CertifiedMotion::actual;
+  double margin = 0.2;                                  // [length]
+  double band = 0.002;                                  // [length]
+  double period = 1e-3;                                 // [s]
+  double recovery = 0.05;                               // [length]
+  double slowing_within = 0.0;                          // [length]
+  double slowing_time = 0.05;                           // [s]
+  double damping = 0.1;                                 // [length^2]
+  double orientation_weight = 20.0;                     // [length/rad]
+  int refinements = 1;                                  // at most
+  bool check_sides = true;                              // of watertight meshes
+  CertifiedMotion certified = CertifiedMotion::actual;  // the motion that is proved
 };
 
 /// The table of these options. The band must also be below each mesh's margin.
@@ -83,11 +83,11 @@ constexpr const auto& table_of(const InstrumentOptions&) { return instrument_opt
 
 /// Capacity of the largest cycle. The table below says what each member means.
 struct InstrumentCapacity {
-  static constexpr std::size_t most_meshes = 8;
+  static constexpr std::size_t most_meshes = 8;  // beside one instrument
 
-  std::size_t triangles = std::size_t{1} << 14;
-  std::size_t planes = 128;
-  std::size_t looks = 0;
+  std::size_t triangles = std::size_t{1} << 14;  // near one body
+  std::size_t planes = 128;                      // rows of a cycle
+  std::size_t looks = 0;                         // work units of a cycle
 };
 
 /// The table of these options.
