@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Writes the stubs of the module that was built: write_stubs.py TEMPLATE OUT, with PYTHONPATH at the module.
 
-What the template says of the options of a class becomes its keywords, set_options and properties. An attribute
+The comments on the options of a class become its keywords, set_options and properties. An attribute
 of a class, `name: type`, becomes a property that cannot be set."""
 
 import re

@@ -18,7 +18,7 @@ namespace keepout {
 ///         -> cut -> report -> carry_out
 class JointCycle {
  public:
-  /// Whether the velocities of the meshes count in the cycle, or the meshes stand still.
+  /// The meshes in a cycle: they stand still, or move with their velocities.
   enum class Meshes : bool { still, moving };
 
   /// From q (n). The indices must be current. All must outlive it.

@@ -13,7 +13,7 @@ struct JointProblem::Stage {
   Relaxation relaxation;
   double unused;      // the fraction of a guide's band that is left to curvature; 1: all rows hold
   bool pulls_guides;  // towards their regions; false: their rows only hold them
-  double recovery;    // the fraction of a body's retreat that is demanded; 0: none, nor corrections
+  double recovery;    // the fraction of a body's retreat that is demanded; 0: no row demands motion
 
   static const Stage all[7];
   static const Stage& softest() { return all[6]; }

@@ -135,7 +135,7 @@ std::span<NearTriangle> NearSet::nearer_than(double distance, Budget& budget) no
       }
     }
     budget.spend(listed_.size() - static_cast<std::size_t>(old_count));
-    // What was listed before is nearer than all of these.
+    // All triangles listed before are nearer than these.
     std::sort(listed_.begin() + old_count, listed_.end(),
               [](const NearTriangle& x, const NearTriangle& y) {
                 return x.least < y.least || (x.least == y.least && x.id < y.id);

@@ -67,7 +67,7 @@ class NearSet {
   std::vector<Triangle> corners_;
   std::vector<NearBlock> blocks_;  // the corners in single precision
   std::vector<Vec3> normals_;      // see NearTriangle::normal
-  // Of the listing.
+  // The current listing.
   std::vector<Vec3> now_;     // the core's points
   Vec3 from_ = Vec3::Zero();  // the segment of the first two
   Vec3 to_ = Vec3::Zero();

@@ -93,7 +93,7 @@ TEST(SameSteps, OfTips) {
   EXPECT_EQ(fingerprint.text(), recorded("tips"));
 }
 
-/// A robot near a mesh, which may move, and whose flange may have guides.
+/// Adds the steps of one robot near a mesh, which may move; the flange may have a guide.
 void add_stroke(int stroke, bool meshes_move, bool is_guided, Fingerprint& fingerprint,
                 int& limited) {
   Random random(static_cast<std::uint64_t>(100 + stroke));

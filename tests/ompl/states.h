@@ -14,7 +14,7 @@
 
 namespace keepout {
 
-// What tests of planning for a tip and for an instrument share. All spaces are
+// Shared by the tests of planning for a tip and for an instrument. All spaces are
 // RealVectorStateSpaces.
 
 namespace base = ompl::base;

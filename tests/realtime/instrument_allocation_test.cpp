@@ -36,6 +36,7 @@ TEST(InstrumentConstraint, AllocatesNothingWhateverTheOutcome) {
   guards.emplace_back(cube, cube_index,
                       Instrument(turning, {{.points = {{6, Vec3::Zero()}}, .radius = 1.0}}),
                       std::make_unique<ActiveSet>(), InstrumentOptions{});
+  guards.emplace_back(psm(), std::make_unique<ActiveSet>(), InstrumentOptions{});  // no mesh
   // Two meshes, one of which comes on, at times faster than can be given way to.
   InstrumentConstraint& beside_two = guards.front();
   beside_two.add_mesh(cube, cube_index, 0.5);

@@ -58,7 +58,8 @@ TEST(RelativeMotion, NoPointIsElsewhereNorBendsMoreThanIsSaid) {
         ASSERT_LE((seen.points_in_mesh(c)[p] - expected).norm(), rounding);
       }
       for (int c = 1; c < PointMotion::last_knot; ++c) {
-        const Vec3 turn = seen.points_in_mesh(c + 1)[p] - 2.0 * seen.points_in_mesh(c)[p] + seen.points_in_mesh(c - 1)[p];
+        const Vec3 turn = seen.points_in_mesh(c + 1)[p] - 2.0 * seen.points_in_mesh(c)[p] +
+                          seen.points_in_mesh(c - 1)[p];
         sharpest = std::max(sharpest, 64.0 * 64.0 * turn.norm());
       }
       ASSERT_LE(sharpest, seen.bend(p) + 64.0 * 64.0 * 4.0 * rounding);
@@ -67,7 +68,8 @@ TEST(RelativeMotion, NoPointIsElsewhereNorBendsMoreThanIsSaid) {
     for (std::size_t b = 0; b < robot.bodies().size(); ++b) {
       for (int c = 0; c <= PointMotion::last_knot; ++c) {
         for (const std::uint8_t p : robot.points_of(b)) {
-          ASSERT_LE((seen.points_in_mesh(c)[p] - seen.start_in_mesh()[p]).norm(), seen.largest_displacement(b) + rounding);
+          ASSERT_LE((seen.points_in_mesh(c)[p] - seen.start_in_mesh()[p]).norm(),
+                    seen.largest_displacement(b) + rounding);
         }
       }
     }

@@ -224,7 +224,7 @@ int bench(const BenchOptions& options, std::ostream& out, std::ostream& notes) {
   const RecordFiles& files = options.files;
   std::vector<std::string> meshes;
   for (const Subject& subject : plan.subjects) meshes.push_back(subject.mesh);
-  // Refuses a mesh of which there is none, too: a mistyped name is told of before the first row.
+  // Also refuses a mesh that does not exist, before the first row.
   std::optional outputs(files.open(meshes, "--mesh"));
 
   const StopSignal stop;

@@ -16,7 +16,7 @@
 namespace keepout::app {
 namespace {
 
-/// What a planner that steers by itself says of that: of others nothing.
+/// Adds the steering time and count that a planner reports; most planners report none.
 void add_steering(const ompl::base::PlannerPtr& planner, CheckTimer& timer) {
   const auto& properties = planner->getPlannerProgressProperties();
   const auto seconds = properties.find("steering time REAL");

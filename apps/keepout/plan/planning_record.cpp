@@ -17,10 +17,10 @@ namespace {
 
 /// The runs of one mesh under one checker.
 using Group = std::vector<const Json*>;
-/// What a row says of a group.
+/// Returns the figure of a group for a column.
 using Figure = std::function<Json(const Group&)>;
 
-/// Of two in the middle their mean; null where there is none.
+/// Returns the median, the mean of the middle two of an even number of values; null without values.
 Json median(std::vector<double> values) {
   if (values.empty()) return nullptr;
   std::ranges::sort(values);
@@ -28,7 +28,7 @@ Json median(std::vector<double> values) {
   return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
 }
 
-/// Of the runs that have the member: most have it only if they are solved.
+/// Returns a member of the runs that have it; most have it only if they are solved.
 std::vector<double> values_of(const Group& runs, const char* member) {
   std::vector<double> values;
   for (const Json* run : runs) {
@@ -134,7 +134,7 @@ std::string headline_of(const Json& runs, bool is_instrument) {
                         : "come nearer to the anatomy than allowed, or enter it.");
 }
 
-/// Of a tip the subject, the account and the settings.
+/// Returns subject, account and settings of a plan for a tip.
 RecordHead head_of_a_tip(const PlanOptions& options) {
   const std::string seconds = trimmed(options.seconds) + " s";
   const std::string clearance = trimmed(options.clearance()) + " mm";

@@ -24,7 +24,7 @@ struct PlanningProblem {
   Json members = {};  // of its runs in the record: all of this, and how hard it is
 };
 
-/// Where to plan for a tip: a mesh, and which side of it is free.
+/// The scene of a plan for a tip: a mesh, and its free side.
 struct PlanningScene {
   enum class Space : std::uint8_t { within, around };
   enum class Starts : std::uint8_t {

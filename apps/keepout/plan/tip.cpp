@@ -23,9 +23,9 @@ namespace base = ompl::base;
 /// wound, so a tree that starts within stays within.
 constexpr Inside sides = Inside::taken_as_is;
 
-/// What a user of OMPL would write: no triangle within the clearance, by the fastest index here.
-/// Which side a place is on is not asked: that would only cost time, as a tree starts on the right
-/// one. For one thread.
+/// The validity checker that a user of OMPL would write: no triangle within the clearance, by the
+/// fastest index here. It does not classify positions: a tree starts on the right side, so that
+/// would only cost time. For one thread.
 class ClearPlaces final : public base::StateValidityChecker {
  public:
   ClearPlaces(const base::SpaceInformationPtr& space, const Scene& scene, double clearance)

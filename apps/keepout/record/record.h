@@ -40,7 +40,7 @@ Json new_record(const RecordHead& head);
 /// Why this is no record of the format that is known, as far as its head goes; empty where it is.
 std::string fault_of(const Json& json);
 
-/// Where a command writes its record, its report, and its rows as a table.
+/// The files that a command writes: its record, its report, and its rows as a table.
 struct RecordFiles {
   std::optional<std::filesystem::path> json, page, csv = {};
 

@@ -62,7 +62,7 @@ std::string explanation(const Run& run) {
   return "the tool goes where the hand goes";
 }
 
-/// What was simulated.
+/// Returns a sentence on the mesh, the strokes and the cycles.
 std::string subject(const Simulation& simulation, const std::vector<RunSummary>& summaries) {
   const RunSummary& first = summaries.front();
   return "A simulated hand pushed a tool over and into " + simulation.mesh_name + " (" +
@@ -180,7 +180,7 @@ void check(const Simulation& simulation) {
   }
 }
 
-/// With so many digits behind the point as are told of a cycle.
+/// Rounds a number of a cycle to the digits that records have.
 double to_digits(double value, double parts_of_one) {
   return std::round(value * parts_of_one) / parts_of_one;
 }
@@ -228,7 +228,7 @@ Json hands_of(const Run& run) {
   return hands;
 }
 
-/// Where the tips of all runs were in a stroke, and half as far again on all sides.
+/// Returns the bounds of the tips of all runs in a stroke, enlarged by half on all sides.
 Box around(const Simulation& simulation, std::size_t stroke) {
   const Vec3 first = simulation.runs.front().strokes[stroke].cycles.front().tip;
   Box box{first, first};

@@ -92,9 +92,9 @@ struct Findings {
 inline constexpr std::size_t most_breaches = 1000;
 inline constexpr std::size_t most_anomalies = 200;
 
-/// What a campaign calls after each part of it, with the steps that were done and the row that they
-/// are of. Returns whether to go on.
+/// The answer of an Advanced.
 enum class Next : std::uint8_t { go_on, stop };
+/// Called by a campaign after each part of it, with the number of its steps and their row.
 using Advanced = std::function<Next(std::uint64_t steps, const std::string& row)>;
 
 /// Runs trajectories, in closed loop, and has each step judged: mesh by mesh, so that only one is

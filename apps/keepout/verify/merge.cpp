@@ -11,7 +11,8 @@
 namespace keepout::app {
 namespace {
 
-/// What the two do not agree on though one campaign would; empty when they do.
+/// Returns the property that differs though the shards of one campaign have it in common; else
+/// empty.
 std::string difference(const Json& a, const Json& b) {
   using Named = std::pair<const char*, const char*>;
   for (const auto& [key, what] : {Named{"version", "versions of keepout"}, Named{"seed", "seeds"},

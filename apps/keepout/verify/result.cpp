@@ -24,7 +24,7 @@ std::uint64_t sum(const Json& counts) {
   return sum;
 }
 
-/// What is at some place of a row: a count, unless it is told otherwise.
+/// Returns a column of the values at a place of a row, written as counts by default.
 Column<Json> column(const char* place, const char* heading, int width,
                     std::string (*text)(const Json&) = &count_text) {
   return {"", [at = Json::json_pointer(place)](const Json& row) { return row.at(at); }, heading,

@@ -13,7 +13,7 @@
 
 namespace keepout::app {
 
-/// What a campaign ends with. Its record (docs/records.md) is of the kind verify, for a tip, or
+/// The result of a campaign. Its record (docs/records.md) is of the kind verify, for a tip, or
 /// verify_robot.
 struct CampaignResult {
   Json record;
@@ -25,7 +25,7 @@ struct CampaignResult {
   void print(std::ostream& out) const;
 };
 
-/// What was run with a tip, beside what came out.
+/// The conditions of a campaign with a tip.
 struct CampaignRun {
   CampaignSettings settings;
   std::string command;                    // that does it again

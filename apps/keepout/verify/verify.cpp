@@ -25,8 +25,9 @@ bool is_of_instruments(const VerifyOptions& options) {
   return !options.robot.robot.empty() || !options.robot.scenarios.empty();
 }
 
-/// Meshes that are named, by the user or for a robot. Without a name, for instruments small hostile
-/// ones that are drawn; else all fixtures, of which `missing` is told those that are not there.
+/// Returns the meshes that are named, by the user or for a robot. Without a name, returns small
+/// hostile meshes that are drawn, for instruments, or else all sample meshes; adds those that are
+/// not there to `missing`.
 std::vector<Arena> arenas_of(const VerifyOptions& options, std::vector<std::string>& missing) {
   std::vector<std::filesystem::path> named = options.meshes;
   if (named.empty() && !options.robot.robot.empty()) named = {"skull", "airway", "brain", "femur"};

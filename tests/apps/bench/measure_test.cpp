@@ -71,7 +71,7 @@ std::unique_ptr<Solver> flawed(Flaw flaw) {
   });
 }
 
-/// How many planes and rows a solver was given each time.
+/// The numbers of planes and rows of each problem that a solver was given.
 using Given = std::vector<std::pair<std::size_t, Eigen::Index>>;
 
 std::unique_ptr<Solver> taking_down(Given& given) {

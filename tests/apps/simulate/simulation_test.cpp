@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a record says of a simulation: figures, words and moments.
+// Figures, sentences and moments of a simulation's record.
 #include "simulate/simulation.h"
 
 #include <gtest/gtest.h>

@@ -253,5 +253,20 @@ TEST(SourcesFarOff, AgreeBitForBitFarFromTheOrigin) {
   EXPECT_GT(limited, 50u);
 }
 
+/// A tip all but on the surface, so much too close that all triangles of the mesh are: they and the
+/// walls, which count again, are more than the mesh has.
+TEST(SourcesOfFewTriangles, AgreeBitForBitWhereAllOfThemAreTooNear) {
+  Sources sources(make_shape("fan"));
+  const StepOptions options{.radius = 0.77441466440074269,
+                            .margin = 3.2828089091695691,
+                            .recovery = 3.815327964143576,
+                            .refinements = 2};
+  const Motion motion{.tip = {0.94064291854926918, -1.9268900355953931, 19.103223995590586},
+                      .desired = {0.34218607883870539, 0, 0}};
+  const Outcome expected = sources.asking(motion, options);
+  EXPECT_EQ(expected.status, Status::recovering);
+  EXPECT_EQ(sources.walking(motion, options), expected);
+}
+
 }  // namespace
 }  // namespace keepout

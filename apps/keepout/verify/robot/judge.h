@@ -82,7 +82,7 @@ class RobotJudge {
   /// Returns the oracle of the instrument beside the first mesh. Valid until the next call.
   const oracle::InstrumentOracle& oracle() const noexcept { return meshes_.front().oracle; }
 
-  /// Where a mesh is after the last cycle.
+  /// Returns the pose of a mesh after the last cycle.
   const Pose& pose(std::size_t mesh) const noexcept { return meshes_[mesh].pose; }
 
   /// Returns true if no body is closer than margin - band.

@@ -58,7 +58,7 @@ export class Capsule extends Body {
     opacity: number,
   ) {
     super(color, opacity);
-    // What can be seen covers what shines through.
+    // The visible part is drawn over the part behind the surface.
     this.ghost.renderOrder = 1;
     this.solid.renderOrder = 2;
   }

@@ -55,7 +55,7 @@ export class Readings {
     this.status.className = moods[name] ?? "stopped";
     set(this.status.querySelector("b"), isGuarded ? name.replaceAll("_", " ") : "no fixture");
     set(this.status.querySelector("span"), isGuarded ? reason : "nothing holds the tool back");
-    // What a screen reader says is heard out before it changes.
+    // A screen reader finishes a sentence before the text changes.
     if (time - this.spokenAt <= 2000) return;
     this.spokenAt = time;
     set("spoken", isGuarded ? `${name}: ${reason}` : "no fixture");

@@ -28,7 +28,7 @@ export class SettingsPanel {
   show(settings: ToolSettings): void {
     for (const radio of this.radios) radio.checked = radio.value === settings.rule;
     for (const { slider, key } of this.sliders) {
-      // What the page was made with may be beyond what the slider has.
+      // The page may have been made with a value beyond the range of the slider.
       slider.min = String(Math.min(Number(slider.min), settings[key]));
       slider.max = String(Math.max(Number(slider.max), settings[key]));
       slider.value = String(settings[key]);

@@ -38,7 +38,7 @@ class ExtraRows {
 struct Motion {
   Vec3 tip = unset;      // commanded tip, in the frame of the mesh [length]
   Vec3 desired = unset;  // desired increment [length]
-  /// Of the joints that move the tip: a 3 x n matrix of Eigen's. With more than three joints, or
+  /// The Jacobian of the joints that move the tip, a 3 x n matrix. With more than three joints, or
   /// joints that move the tip in the same direction, it needs StepOptions::damping above 0. Without
   /// a Jacobian the tip itself moves: u = dx.
   std::optional<TipJacobian> jacobian = std::nullopt;

@@ -110,7 +110,8 @@ CertifiedRule::~CertifiedRule() = default;
 void CertifiedRule::prepare(Neighborhood& near) {
   ActivationRule::prepare(near);
   walk_ = make_motion_walk(near);
-  facets_ = Buffer<Facet>(walk_->room());
+  // The walls are in it twice if the walk shows them again.
+  facets_ = Buffer<Facet>(walk_->room() + most_walls);
 }
 
 double CertifiedRule::tolerance(const CycleProblem& problem) const noexcept {
