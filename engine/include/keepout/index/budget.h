@@ -13,7 +13,7 @@ namespace keepout {
 /// The work that a control cycle may do, counted in work units (looks), so that it is the same on
 /// every run and every processor. A unit is the examination of sixteen boxes or triangles in single
 /// precision, of one triangle in double, or of sixteen planes. (A tree's traversal cache is not
-/// counted: Frontier::cover, at most 32 nodes.)
+/// counted: Frontier::cover, at most 32 nodes each time.)
 ///
 /// Each part spends its units, before or after the work, and stops once all are spent. What was not
 /// examined then is unknown, so no motion is accepted that could depend on it.

@@ -77,8 +77,8 @@ class MotionConstraint {
   /// the motion is zero and the status gives the cause.
   Step step(const Motion& request) noexcept { return step(request, side_watch_, nullptr); }
 
-  /// Like step(request), but also measures the time of each stage, without that of a search for the
-  /// distance (Distances::always).
+  /// Like step(request), but also measures the time of each stage, without that of the
+  /// classification of the tip and of a search for the distance (Distances::always).
   Step step(const Motion& request, StageTimes& times) noexcept {
     return step(request, side_watch_, &times);
   }

@@ -25,7 +25,8 @@ inline constexpr std::array<std::string_view, 2> query_names{"motion", "sphere"}
 /// The tips whose distance a step reports: Step::distance.
 enum class Distances : std::uint8_t {
   where_known,  // those whose distance the rule finds in any case: costs nothing
-  always        // all; after the step the nearest triangle is searched if its distance is unknown
+  always        // all: if it is unknown, the nearest triangle is searched after the step, with the
+                // work units that are left
 };
 
 /// The names of Distances.

@@ -66,7 +66,8 @@ void TreeWalk::begin_again(double level) noexcept {
 /// Makes the frontier cover the region of the cycle, and more if that is likely to serve the cycles
 /// to come. The padding is tuned by experience: it grows while a cover has fewer than 12 boxes, and
 /// shrinks if it has more than 24, or boxes left unopened. It pays only while it is longer than the
-/// motions, and while the tip moves on without a jump. It changes no answer.
+/// motions, and while the tip moves on without a jump. Steps are the
+/// same whatever it is, unless the work budget ends first.
 void TreeWalk::locate(const Start& start) noexcept {
   if (frontier_.covers(start.region)) return;
   const double motion = start.longest;

@@ -16,7 +16,8 @@ namespace keepout {
 /// The walk of a WideBvh: through the boxes along a motion, to the triangles that it is not proved
 /// to stay clear of, the earliest first, until the visitor has met one. Single precision passes
 /// over triangles that are surely clear. What the walk remembers from motion to motion and from
-/// cycle to cycle saves time and changes no answer.
+/// cycle to cycle saves time; steps are the
+/// same without it, unless the work budget ends first.
 class TreeWalk final : public MotionWalk {
  public:
   /// Both must outlive this. Precondition: the tree is not refit.
