@@ -14,43 +14,8 @@ Lengths are in the unit of the mesh, usually mm, and everything is in its frame.
 or anything that numpy makes one of; what is wrong with one is said by keepout.Error.
 """
 
-from ._core import (
-    Body,
-    Chain,
-    ConvexTool,
-    Error,
-    Guide,
-    GuideState,
-    Hits,
-    Index,
-    Inspection,
-    Instrument,
-    InstrumentGuard,
-    InstrumentStep,
-    Joint,
-    Mesh,
-    MotionConstraint,
-    MotionProof,
-    Planes,
-    Polytope,
-    Region,
-    RigidFit,
-    Step,
-    TableRow,
-    __version__,
-    activations,
-    chain_of_table,
-    fit_rigid,
-    free_ball,
-    indices,
-    load_mesh,
-    narrow_phases,
-    options,
-    read_chain,
-    registration_margin,
-    solvers,
-    target_error,
-)
+from ._core import *  # noqa: F403
+from ._core import __version__
 from ._results import Option, Part, Proofs, Simulation, Status, Steps
 
 __all__ = ["__version__", *(name for name in dir() if not name.startswith("_"))]

@@ -71,7 +71,7 @@ class Status(IntEnum):
         'instrument' or 'polytope'."""
         from . import _core  # which imports this file first
 
-        return _core.status_reason(self, subject)
+        return _core._status_reason(self, subject)
 
 
 class _Batch:

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "arrays.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 
 #include "keepout/error.h"
 
 namespace keepout::python {
 namespace {
+
+using Matrix4 = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
 
 bool fits(const py::array& array, const Expected& expected) {
   const auto axes = static_cast<std::size_t>(array.ndim());
@@ -96,6 +99,41 @@ Vec3 point(py::handle argument, std::string_view name) {
   if (read_array(argument, values) || read_floats(argument.ptr(), values)) return values;
   const Doubles three = doubles(argument, {name, {3}, "(3,)"});
   return row(three.data(), 0);
+}
+
+std::vector<Vec3> points(py::handle argument, const Expected& expected) {
+  const Doubles numbers = doubles(argument, expected);
+  std::vector<Vec3> points(static_cast<std::size_t>(numbers.size()) / 3);
+  for (std::size_t i = 0; i < points.size(); ++i) points[i] = row(numbers.data(), i);
+  return points;
+}
+
+Mat3 rotation(const py::object& matrix) {
+  const Doubles numbers = doubles(matrix, {"rotation", {3, 3}, "(3, 3)"});
+  return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(numbers.data());
+}
+
+Pose pose_of(const py::object& matrix, std::string_view name) {
+  if (matrix.is_none()) return {};
+  const Doubles numbers = doubles(matrix, {name, {4, 4}, "(4, 4)"});
+  const Eigen::Map<const Matrix4> m(numbers.data());
+  if (m.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) {
+    refuse(name, "a homogeneous matrix, whose last row is 0, 0, 0, 1", "another last row");
+  }
+  return {m.topRightCorner<3, 1>(), m.topLeftCorner<3, 3>()};
+}
+
+void write(double* to, const Pose& pose) {
+  Eigen::Map<Matrix4> m(to);
+  m.setIdentity();
+  m.topRightCorner<3, 1>() = pose.position;
+  m.topLeftCorner<3, 3>() = pose.rotation;
+}
+
+py::array_t<double> matrix_of(const Pose& pose) {
+  py::array_t<double> matrix({4, 4});
+  write(matrix.mutable_data(), pose);
+  return matrix;
 }
 
 std::size_t count(py::ssize_t value, std::string_view name) {

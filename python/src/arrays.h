@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "keepout/geometry/pose.h"
 #include "keepout/geometry/shapes.h"
 
 namespace keepout::python {
@@ -73,12 +74,28 @@ Vec3 point(py::handle argument, std::string_view name);
 /// A count that must not be negative.
 std::size_t count(py::ssize_t value, std::string_view name);
 
+/// The points of an array, (n, 3) or, if `expected` allows it, one (3,).
+std::vector<Vec3> points(py::handle argument, const Expected& expected);
+
+/// A rotation matrix, (3, 3). The receiver checks that it is one.
+Mat3 rotation(const py::object& matrix);
+
+/// The pose of a homogeneous matrix, (4, 4); None is the identity. The receiver checks its
+/// rotation.
+Pose pose_of(const py::object& matrix, std::string_view name);
+
 /// As the index of a row in an array of points. Precondition: the array has three columns.
 inline Vec3 row(const double* points, std::size_t i) noexcept {
   return {points[3 * i], points[3 * i + 1], points[3 * i + 2]};
 }
 
-// What goes out: views of what we hold.
+// What goes out: copies, and views of what we hold.
+
+/// Writes the sixteen numbers of a homogeneous matrix, row by row.
+void write(double* to, const Pose& pose);
+
+/// Returns a homogeneous matrix, (4, 4).
+py::array_t<double> matrix_of(const Pose& pose);
 
 /// A read-only array over memory that `owner` keeps: no copy, and the owner lives as long as any
 /// view does.

@@ -9,8 +9,10 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "arrays.h"
 #include "keepout/activation/free_polytope.h"
 #include "keepout/geometry/shapes.h"
 #include "keepout/index/spatial_index.h"
@@ -62,24 +64,57 @@ struct Planes {
 /// A free polytope, and whether it is one.
 struct FreeSpace : Planes {
   Status status = Status::invalid_input;
+
+  bool ok() const noexcept { return is_ok(status); }
+  std::string_view reason() const noexcept { return keepout::reason(status, Subject::polytope); }
 };
 
-/// A step that outlives the next one.
-struct StepResult {
-  Status status;
-  Vec3 motion;
+/// A step that outlives the next one: its own lists hide the views of the engine's step.
+struct StepResult : Step {
   std::vector<double> increment;
   Planes planes;
   std::vector<std::uint32_t> active;
-  std::size_t triangles;
-  std::optional<double> distance;
   std::vector<GuideState> guides;
-  Relaxation relaxation;
-  Limits limits;
 };
 
 /// Returns the names of all limits in a set.
 py::tuple names_of(Limits limits);
+
+/// Adds how a result ended: `status` and `reason`.
+template <class Class>
+void bind_ending(Class& type, const char* status_doc) {
+  using Result = typename Class::type;
+  type.def_property_readonly(
+          "status", [](const Result& self) { return status_object(self.status); }, status_doc)
+      .def_property_readonly(
+          "reason", [](const Result& self) { return self.reason(); },
+          "One line on what happened and what to do about it.");
+}
+
+/// Adds the members that the steps of a tip and of an instrument have.
+template <class Class>
+void bind_step_result(Class& type, const char* ok_doc) {
+  using Result = typename Class::type;
+  bind_ending(type, "How the step ended: a Status.");
+  type.def_property_readonly(
+          "ok", [](const Result& self) { return self.ok(); }, ok_doc)
+      .def_property_readonly(
+          "increment",
+          [](const py::object& self) { return view(self.cast<const Result&>().increment, self); },
+          "(n,) float64 [rad or length]: of the joints, or of the tip of a MotionConstraint "
+          "without a\n"
+          "Jacobian. Unless ok: zeros of an instrument, empty of a tip.")
+      .def_readonly("guides", &Result::guides,
+                    "The state of each guide, in the order of set_guides: a list of GuideState.")
+      .def_property_readonly(
+          "relaxation", [](const Result& self) { return name(self.relaxation); },
+          "What was relaxed because not all constraints could be met: 'none', 'guides' or\n"
+          "'recovery'.")
+      .def_property_readonly(
+          "limits", [](const Result& self) { return names_of(self.limits); },
+          "The causes that kept the motion from being the commanded one: a tuple of names such as\n"
+          "'mesh' or 'joint_velocity'.");
+}
 
 // Each adds one concept to the module; the order matters where one is an argument of the next.
 void bind_status(py::module_& module);

@@ -15,7 +15,6 @@
 #include "bindings.h"
 #include "keepout/error.h"
 #include "keepout/robot/denavit_hartenberg.h"
-#include "poses.h"
 #if KEEPOUT_HAS_URDF
 #include "keepout/urdf/read_chain.h"
 #endif

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "keepout/geometry/convex_tool.h"
 
-#include <vector>
-
 #include "arrays.h"
 #include "bindings.h"
 #include "keepout/factory/convex_tool_text.h"
@@ -11,21 +9,14 @@ namespace keepout::python {
 namespace {
 
 ConvexTool hull(const py::object& given, double radius) {
-  const Doubles points = doubles(given, {"points", {any, 3}, "(n, 3)"});
-  std::vector<Vec3> corners;
-  for (py::ssize_t i = 0; i < points.shape(0); ++i) {
-    corners.push_back(row(points.data(), static_cast<std::size_t>(i)));
-  }
-  return ConvexTool::hull(corners, radius);
+  return ConvexTool::hull(points(given, {"points", {any, 3}, "(n, 3)"}), radius);
 }
 
-ConvexTool rotated(const ConvexTool& tool, const py::object& rotation) {
-  const Doubles numbers = doubles(rotation, {"rotation", {3, 3}, "(3, 3)"});
-  using RowByRow = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
-  return tool.rotated(Eigen::Map<const RowByRow>(numbers.data()));
+ConvexTool rotated(const ConvexTool& tool, const py::object& by) {
+  return tool.rotated(rotation(by));
 }
 
-py::array points(const py::object& self) {
+py::array core_of(const py::object& self) {
   const auto first_of = [](const Vec3& p) { return p.data(); };
   return view(self.cast<const ConvexTool&>().points(), 3, first_of, self);
 }
@@ -63,7 +54,7 @@ void bind_convex_tool(py::module_& module) {
       .def_static("of_text", &tool_of_text, py::arg("text"), text_doc)
       .def("rotated", &rotated, py::arg("rotation"),
            "The same tool, turned about the tip by a rotation matrix (3, 3).")
-      .def_property_readonly("points", &points, "(n, 3) float64: of the core, as given [length].")
+      .def_property_readonly("points", &core_of, "(n, 3) float64: of the core, as given [length].")
       .def_property_readonly("radius", &ConvexTool::radius, "[length]")
       .def("__repr__", [](const ConvexTool& self) {
         return py::str("<keepout.ConvexTool of {} points, radius {:g}>")

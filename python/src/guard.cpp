@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "guard.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -64,9 +65,7 @@ void write(const StepColumns& columns, std::size_t i, const Step& step) {
 }
 
 void write(double* points, std::size_t i, const Vec3& point) {
-  points[3 * i] = point.x();
-  points[3 * i + 1] = point.y();
-  points[3 * i + 2] = point.z();
+  std::copy_n(point.data(), 3, points + 3 * i);
 }
 
 /// One loop: the tip follows the hand as far as the steps lead.
@@ -126,16 +125,11 @@ StepResult Guard::step(const py::object& tip, const py::object& desired, const p
   }
   const InUse in_use(constraint_in_use_);
   const Step step = constraint_.step(motion);
-  return {.status = step.status,
-          .motion = step.motion,
-          .increment = {step.increment.begin(), step.increment.end()},
-          .planes = {{step.planes.begin(), step.planes.end()}},
-          .active = {step.active.begin(), step.active.end()},
-          .triangles = step.triangles,
-          .distance = step.distance,
-          .guides = {step.guides.begin(), step.guides.end()},
-          .relaxation = step.relaxation,
-          .limits = step.limits};
+  return {step,
+          {step.increment.begin(), step.increment.end()},
+          {{step.planes.begin(), step.planes.end()}},
+          {step.active.begin(), step.active.end()},
+          {step.guides.begin(), step.guides.end()}};
 }
 
 FreeSpace Guard::free_polytope(const py::object& tip, double radius) {

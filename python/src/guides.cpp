@@ -22,11 +22,6 @@ point, axis, remote_center or orientation, for MotionConstraint.set_guides (of a
 point(name, region)) and InstrumentGuard.set_guides. Guides compose; each holds on the whole
 executed motion.)";
 
-Mat3 matrix_of(const py::object& rotation) {
-  const Doubles numbers = doubles(rotation, {"rotation", {3, 3}, "(3, 3)"});
-  return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(numbers.data());
-}
-
 void bind_states(py::module_& module) {
   py::class_<GuideState>(module, "GuideState", "The state of a guide in a step.")
       .def_readonly("excess", &GuideState::excess,
@@ -117,8 +112,8 @@ void bind_guides(py::module_& module) {
           "frame, passes within a tolerance of a center (3,), such as a trocar [length].")
       .def_static(
           "orientation",
-          [](const std::string& name, int link, const py::object& rotation, double angle) {
-            return Guide::orientation(name, link, matrix_of(rotation), angle);
+          [](const std::string& name, int link, const py::object& kept, double angle) {
+            return Guide::orientation(name, link, rotation(kept), angle);
           },
           py::arg("name"), py::arg("link"), py::arg("rotation"), py::arg("angle"),
           "A link keeps an orientation, (3, 3) in the mesh's frame, to within an angle of any "

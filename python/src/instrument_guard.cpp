@@ -13,7 +13,6 @@
 #include <utility>
 
 #include "batch.h"
-#include "poses.h"
 
 namespace keepout::python {
 namespace {
@@ -69,9 +68,6 @@ InstrumentStepResult InstrumentGuard::step(const py::object& q, const py::object
                               {step.guides.begin(), step.guides.end()},
                               {step.degraded.begin(), step.degraded.end()}};
     std::copy(step.increment.begin(), step.increment.end(), kept.increment.begin());
-    kept.step.increment = {};
-    kept.step.guides = {};
-    kept.step.degraded = {};
     return kept;
   };
   if (has_twist) {

@@ -11,9 +11,9 @@
 
 namespace keepout::python {
 
-/// A step that outlives the next one. The increment has a number for each joint: zeros unless ok.
-struct InstrumentStepResult {
-  InstrumentStep step;  // but for its increment and guides
+/// A step that outlives the next one: its own lists hide the views of the robot's step. The
+/// increment has a number for each joint: zeros unless ok.
+struct InstrumentStepResult : InstrumentStep {
   std::vector<double> increment;
   std::vector<GuideState> guides;
   std::vector<DegradedClearance> degraded;

@@ -7,61 +7,33 @@ namespace keepout::python {
 
 void bind_instrument_results(py::module_& module) {
   using Result = InstrumentStepResult;
-  py::class_<Result>(module, "InstrumentStep",
-                     "What one cycle of an instrument may do. Arrays are read-only views of it.")
-      .def_property_readonly(
-          "status", [](const Result& self) { return status_object(self.step.status); },
-          "How the step ended: a Status.")
-      .def_property_readonly(
-          "ok", [](const Result& self) { return self.step.ok(); },
-          "Whether there is a motion that may be carried out; it may be zero.")
-      .def_property_readonly(
-          "reason", [](const Result& self) { return self.step.reason(); },
-          "One line on what happened and what to do about it.")
-      .def_property_readonly(
-          "increment",
-          [](const py::object& self) { return view(self.cast<const Result&>().increment, self); },
-          "(n,) float64 [rad or length]: of the joints; zeros unless ok.")
-      .def_property_readonly(
-          "share", [](const Result& self) { return self.step.share; },
-          "How much of the motion that was found is made: below 1 when it was cut short.")
-      .def_property_readonly(
-          "rounds", [](const Result& self) { return self.step.rounds; },
-          "How often a trial motion was judged.")
-      .def_property_readonly(
-          "rows", [](const Result& self) { return self.step.rows; },
-          "How many rows hold the motion back, joint limits apart.")
-      .def_property_readonly(
-          "distance", [](const Result& self) { return self.step.distance; },
+  py::class_<Result> step(
+      module, "InstrumentStep",
+      "What one cycle of an instrument may do. Arrays are read-only views of it.");
+  bind_step_result(step, "Whether there is a motion that may be carried out; it may be zero.");
+  step.def_readonly("share", &Result::share,
+                    "How much of the motion that was found is made: below 1 when it was cut short.")
+      .def_readonly("rounds", &Result::rounds, "How often a trial motion was judged.")
+      .def_readonly("rows", &Result::rows,
+                    "How many rows hold the motion back, joint limits apart.")
+      .def_readonly(
+          "distance", &Result::distance,
           "From the body nearest to the mesh, as the cycle began [length]; None where none is\n"
           "closer than the margin and its band, negative where it reaches through the surface.")
       .def_property_readonly(
-          "guides", [](const Result& self) { return self.guides; },
-          "The state of each guide, in the order of set_guides: a list of GuideState.")
-      .def_property_readonly(
-          "relaxation", [](const Result& self) { return name(self.step.relaxation); },
-          "What was relaxed because not all constraints could be met: 'none', 'guides' or\n"
-          "'recovery'.")
-      .def_property_readonly(
-          "limits", [](const Result& self) { return names_of(self.step.limits); },
-          "The causes that kept the motion from being the commanded one: a tuple of names such as "
-          "'mesh' or\n"
-          "'joint_velocity'.")
-      .def_property_readonly(
           "nearest",
           [](const Result& self) {
-            return self.step.nearest < 0 ? std::nullopt : std::optional(self.step.nearest);
+            return self.nearest < 0 ? std::nullopt : std::optional(self.nearest);
           },
           "The number of that body; None where there is no distance.")
       .def_property_readonly(
           "nearest_mesh",
           [](const Result& self) {
-            return self.step.nearest_mesh < 0 ? std::nullopt
-                                              : std::optional(self.step.nearest_mesh);
+            return self.nearest_mesh < 0 ? std::nullopt : std::optional(self.nearest_mesh);
           },
           "The number of the mesh that it is nearest to; None where there is no distance.")
-      .def_property_readonly(
-          "level", [](const Result& self) { return self.step.level; },
+      .def_readonly(
+          "level", &Result::level,
           "How much could be kept of what is certified otherwise: below 1 where a mesh came on\n"
           "faster than the joints can give way.")
       .def_property_readonly(
@@ -79,17 +51,13 @@ void bind_instrument_results(py::module_& module) {
           "(body, mesh, level); level is None if nothing is certified for the pair.")
       .def("__repr__", [](const Result& self) {
         return py::str("<keepout.InstrumentStep: {}, increment {}>")
-            .format(name(self.step.status), py::cast(self.increment));
+            .format(name(self.status), py::cast(self.increment));
       });
 
-  py::class_<MotionProof>(module, "MotionProof", "How much of a motion is certified.")
-      .def_property_readonly(
-          "status", [](const MotionProof& self) { return status_object(self.status); },
-          "How it ended: a Status; 'recovering' where some body is too close as it starts.")
-      .def_property_readonly(
-          "reason",
-          [](const MotionProof& self) { return reason(self.status, Subject::instrument); },
-          "One line on what happened and what to do about it.")
+  py::class_<MotionProof> proof(module, "MotionProof", "How much of a motion is certified.");
+  bind_ending(proof,
+              "How it ended: a Status; 'recovering' where some body is too close as it starts.");
+  proof
       .def_readonly("share", &MotionProof::share,
                     "Proven is the motion from its start to here: 1 if all of it is.")
       .def_readonly("distance", &MotionProof::distance,

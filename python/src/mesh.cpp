@@ -21,13 +21,6 @@
 namespace keepout::python {
 namespace {
 
-std::vector<Vec3> vertices_from(py::handle argument) {
-  const Doubles array = doubles(argument, {"vertices", {any, 3}, "(n, 3)"});
-  std::vector<Vec3> vertices(static_cast<std::size_t>(array.shape(0)));
-  for (std::size_t i = 0; i < vertices.size(); ++i) vertices[i] = row(array.data(), i);
-  return vertices;
-}
-
 using Ids = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
 
 std::vector<Corners> triangles_from(py::handle argument, std::size_t vertices) {
@@ -54,7 +47,7 @@ std::vector<Corners> triangles_from(py::handle argument, std::size_t vertices) {
 
 MeshHandle mesh_from(const py::object& vertices, const py::object& triangles, bool welded) {
   Surface surface;
-  surface.vertices = vertices_from(vertices);
+  surface.vertices = points(vertices, {"vertices", {any, 3}, "(n, 3)"});
   surface.triangles = triangles_from(triangles, surface.vertices.size());
   const py::gil_scoped_release release;
   if (!welded) return {{.mesh = std::make_shared<const Mesh>(std::move(surface))}};

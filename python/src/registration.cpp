@@ -22,15 +22,6 @@ py::array_t<double> array_of(const Matrix& matrix) {
   return array;
 }
 
-std::vector<Vec3> points_of(const py::object& given, const Expected& expected) {
-  const Doubles numbers = doubles(given, expected);
-  std::vector<Vec3> points;
-  for (py::ssize_t i = 0; i < numbers.size() / 3; ++i) {
-    points.push_back(row(numbers.data(), static_cast<std::size_t>(i)));
-  }
-  return points;
-}
-
 RigidFit fit(const py::object& measured, const py::object& model, const py::object& weights) {
   std::vector<double> each;
   if (!weights.is_none()) {
@@ -38,14 +29,14 @@ RigidFit fit(const py::object& measured, const py::object& model, const py::obje
     each.assign(given.data(), given.data() + given.size());
     if (each.empty()) refuse("weights", "one for each pair, or None", "none at all");
   }
-  return fit_rigid(points_of(measured, {"measured", {any, 3}, "(n, 3)"}),
-                   points_of(model, {"model", {any, 3}, "(n, 3)"}), each);
+  return fit_rigid(points(measured, {"measured", {any, 3}, "(n, 3)"}),
+                   points(model, {"model", {any, 3}, "(n, 3)"}), each);
 }
 
 double margin(const RigidFit& fit, const py::object& targets, double confidence,
               std::optional<double> fle) {
   const Expected expected{"targets", {any, 3}, "(n, 3) or (3,)", OneForAll::allowed};
-  return registration_margin(fit, points_of(targets, expected), confidence, fle);
+  return registration_margin(fit, points(targets, expected), confidence, fle);
 }
 
 constexpr const char* fit_doc =

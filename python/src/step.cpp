@@ -48,9 +48,9 @@ void bind_status(py::module_& module) {
   for (std::size_t i = 0; i < status_count; ++i) {
     names.emplace_back(name(static_cast<Status>(i)));
   }
-  module.attr("status_names") = py::tuple(py::cast(names));
+  module.attr("_status_names") = py::tuple(py::cast(names));
   module.def(
-      "status_reason",
+      "_status_reason",
       [](py::ssize_t value, const std::string& subject) {
         return reason(status_from(value), subject_from(subject));
       },
@@ -81,19 +81,14 @@ void bind_planes(py::module_& module) {
         return "<keepout.Planes: " + std::to_string(self.planes.size()) + ">";
       });
 
-  py::class_<FreeSpace, Planes>(
+  py::class_<FreeSpace, Planes> polytope(
       module, "Polytope",
       "The free space around a tip as planes: see MotionConstraint.free_polytope. One that is not\n"
-      "ok allows standing still only.")
+      "ok allows standing still only.");
+  bind_ending(polytope, "Status.free if the planes are complete, or the Status that says why not.");
+  polytope
       .def_property_readonly(
-          "status", [](const FreeSpace& self) { return status_object(self.status); },
-          "Status.free if the planes are complete, or the Status that says why not.")
-      .def_property_readonly(
-          "ok", [](const FreeSpace& self) { return is_ok(self.status); },
-          "Whether the planes are complete.")
-      .def_property_readonly(
-          "reason", [](const FreeSpace& self) { return reason(self.status, Subject::polytope); },
-          "One line on what happened and what to do about it.")
+          "ok", [](const FreeSpace& self) { return self.ok(); }, "Whether the planes are complete.")
       .def("__repr__", [](const FreeSpace& self) {
         return py::str("<keepout.Polytope: {}, {} planes>")
             .format(name(self.status), self.planes.size());
@@ -101,30 +96,15 @@ void bind_planes(py::module_& module) {
 }
 
 void bind_step(py::module_& module) {
-  py::class_<StepResult>(module, "Step",
-                         "What one control cycle may do. Arrays are read-only views of it.")
-      .def_property_readonly(
-          "status", [](const StepResult& self) { return status_object(self.status); },
-          "How the step ended: a Status.")
-      .def_property_readonly(
-          "ok", [](const StepResult& self) { return is_ok(self.status); },
-          "Whether the motion may be carried out; it may be zero.")
-      .def_property_readonly(
-          "reason", [](const StepResult& self) { return reason(self.status, Subject::tip); },
-          "One line on what happened and what to do about it.")
-      .def_property_readonly(
+  py::class_<StepResult> type(module, "Step",
+                              "What one control cycle may do. Arrays are read-only views of it.");
+  bind_step_result(type, "Whether the motion may be carried out; it may be zero.");
+  type.def_property_readonly(
           "motion",
           [](const py::object& self) {
             return view(self.cast<const StepResult&>().motion.data(), {3}, {sizeof(double)}, self);
           },
           "(3,) float64 [length]: of the tip; zero unless ok.")
-      .def_property_readonly(
-          "increment",
-          [](const py::object& self) {
-            return view(self.cast<const StepResult&>().increment, self);
-          },
-          "(n,) float64: of the joints with a Jacobian [their unit], else of the tip [length];\n"
-          "empty unless ok.")
       .def_readonly("planes", &StepResult::planes,
                     "All planes that were posed to the solver: Planes.")
       .def_property_readonly(
@@ -137,16 +117,6 @@ void bind_step(py::module_& module) {
           "From the tip, as the step began, to the nearest triangle [length]; None where the\n"
           "rule does not come by it, unless the constraint was made with "
           "distances='always'.")
-      .def_readonly("guides", &StepResult::guides,
-                    "The state of each guide, in the order of set_guides: a list of GuideState.")
-      .def_property_readonly(
-          "relaxation", [](const StepResult& self) { return name(self.relaxation); },
-          "What was relaxed because not all constraints could be met: 'none', 'guides' or\n"
-          "'recovery'.")
-      .def_property_readonly(
-          "limits", [](const StepResult& self) { return names_of(self.limits); },
-          "The causes that kept the motion from being the commanded one: a tuple of names such as "
-          "'mesh'.")
       .def("__repr__", [](const StepResult& self) {
         const Vec3& u = self.motion;
         return py::str("<keepout.Step: {}, motion ({}, {}, {})>")

@@ -131,11 +131,14 @@ def entry_points_in_headers(root):
 
 
 def entry_points_in_python(root):
-    for text in read(root / "python/stubs/__init__.pyi.in").split("\nclass ")[1:]:
-        name = re.match(r"\w+", text)[0]
-        methods = re.findall(r"    def (\w+)\(", text)
+    defined = re.compile(r'(?<!module)\.def\(\s*"([a-z]\w*)"')
+    of_both = defined.findall(read(root / "python/src/guard_of.h"))
+    for path in (root / "python/src").glob("*.cpp"):
+        text = read(path)
+        methods = defined.findall(text) + (of_both if "bind_guard<" in text else [])
         if "step" in methods:
-            yield from (f"{name}.{method}" for method in methods if not method.startswith("_"))
+            name = re.search(r'type\(module, "(\w+)"', text)[1]
+            yield from (f"{name}.{method}" for method in methods)
 
 
 def entry_points_of(root):

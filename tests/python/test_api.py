@@ -28,7 +28,7 @@ def test_parts_are_listed_and_each_can_be_used(mesh):
 
 
 def test_status_is_the_one_of_cpp():
-    assert tuple(status.name for status in Status) == _core.status_names
+    assert tuple(status.name for status in Status) == _core._status_names
     assert [int(status) for status in Status] == list(range(len(Status)))
     for subject in ("tip", "instrument", "polytope"):
         assert all(len(status.reason_for(subject)) > 10 for status in Status)
