@@ -2,17 +2,10 @@
 """The pictures of docs/concepts.md; see `draw`, which draws them."""
 
 import math
-import os
-import pathlib
-import struct
-import subprocess
 import sys
-import tempfile
 
-from section import (ROOT, Picture, Section, add, closed_loop, dot, left_of, math_of, prism, solved, split,
-                     sub, times, unit)
-
-POLYTOPE = os.environ.get("DRAW_POLYTOPE", ROOT / "build/release/docs/pictures/draw_polytope")
+from section import (Picture, Section, add, closed_loop, dot, math_of, prism, served, solved, split, sub, times,
+                     unit)
 
 
 def tissue(x):
@@ -246,16 +239,11 @@ def margin():
 def polytope():
     profile = profile_of(tissue, -5.5, 5.5, 0.22)
     tip, tool, offset, radius = (0.75, 0.55), 0.15, 0.1, 1.55
-    with tempfile.TemporaryDirectory() as folder:
-        path = pathlib.Path(folder) / "mesh.stl"
-        mesh = prism(profile, 0.22)
-        path.write_bytes(bytes(80) + struct.pack("<I", len(mesh)) +
-                         b"".join(struct.pack("<12fH", 0, 0, 0, *a, *b, *c, 0) for a, b, c in mesh))
-        out = subprocess.run([POLYTOPE, path, *map(str, (tool, offset, radius, *tip, 0.017))], check=True,
-                             stdout=subprocess.PIPE, text=True).stdout
-    planes = [tuple(map(float, line.split())) for line in out.splitlines()]
+    with served(prism(profile, 0.22), "--tool-radius", tool, "--margin", offset) as (ask, _):
+        free = ask(do="polytope", tip=[*tip, 0.017], radius=radius)
+    planes = list(zip(free["normals"], free["offsets"]))
     # Cut by the plane of the section: what they allow of motions in it.
-    cut = [((nx, ny), b) for nx, ny, nz, b in planes if math.hypot(nx, ny) > 1e-9]
+    cut = [((nx, ny), b) for (nx, ny, nz), b in planes if math.hypot(nx, ny) > 1e-9]
     region = [times(radius, (math.cos(a), math.sin(a))) for a in (math.tau * k / 360 for k in range(360))]
     for n, b in cut:
         clipped = []

@@ -2,14 +2,9 @@
 """The picture of docs/joint-space-step-algorithm.md: an instrument of three joints that move in the plane. Its
 steps are made by `keepout serve`."""
 
-import json
 import math
-import pathlib
-import struct
-import subprocess
-import tempfile
 
-from section import KEEPOUT, Picture, Section, add, prism, split, times, unit
+from section import Picture, Section, add, prism, served, split, times, unit
 
 PORT, WRIST, RADII, MARGIN = (0.0, 0.0), 14.0, (2.2, 1.6), 0.5
 
@@ -31,25 +26,8 @@ def places(q):
 
 def steps(triangles, q, target, cycles):
     """Where the joints are after each cycle, and the names of the statuses."""
-    with tempfile.TemporaryDirectory() as folder:
-        folder = pathlib.Path(folder)
+    with served(triangles, "--margin", MARGIN) as (ask, folder):
         (folder / "planar.urdf").write_text(URDF)
-        with open(folder / "mesh.stl", "wb") as file:
-            file.write(bytes(80) + struct.pack("<I", len(triangles)))
-            for a, b, c in triangles:
-                file.write(struct.pack("<12fH", 0, 0, 0, *a, *b, *c, 0))
-        server = subprocess.Popen([KEEPOUT, "serve", folder / "mesh.stl", "--margin", str(MARGIN)],
-                                  stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
-                                  stderr=subprocess.DEVNULL)
-
-        def ask(**request):
-            server.stdin.write(json.dumps(request) + "\n")
-            server.stdin.flush()
-            answer = json.loads(server.stdout.readline())
-            if not answer.get("ok"):
-                raise SystemExit(f"draw: {answer}")
-            return answer
-
         ask(id=0, do="instrument", urdf=str(folder / "planar.urdf"), scale=1.0, margin=MARGIN, band=0.01,
             capsules=[[0, 0, 0, 0, 2, 0, 0, 0, RADII[0]], [2, 0, 0, 0, 3, 0, -WRIST, 0, RADII[1]]])
         way = [(q, "start")]
@@ -64,8 +42,6 @@ def steps(triangles, q, target, cycles):
             answer = ask(id=1, do="joint_step", q=q, increment=gain, weights=[900.0, 1.0, 60.0])
             q = [a + b for a, b in zip(q, answer["increment"])]
             way.append((q, answer["status"]))
-        server.stdin.close()
-        server.wait()
     return way
 
 

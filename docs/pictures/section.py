@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the pictures of `draw` are made with: vectors of the plane, steps that keepout makes, SVG."""
 
+import contextlib
 import csv
+import json
 import math
 import os
 import pathlib
@@ -80,17 +82,40 @@ def prism(points, piece, half=9.0):
     return triangles
 
 
+def write_stl(path, triangles):
+    path.write_bytes(bytes(80) + struct.pack("<I", len(triangles)) +
+                     b"".join(struct.pack("<12fH", 0, 0, 0, *a, *b, *c, 0) for a, b, c in triangles))
+
+
+@contextlib.contextmanager
+def served(triangles, *settings):
+    """Yields a function that sends a request to `keepout serve` over a mesh and returns the answer, and a directory."""
+    with tempfile.TemporaryDirectory() as folder:
+        folder = pathlib.Path(folder)
+        write_stl(folder / "mesh.stl", triangles)
+        server = subprocess.Popen([KEEPOUT, "serve", folder / "mesh.stl", *map(str, settings)], stdin=subprocess.PIPE,
+                                  stdout=subprocess.PIPE, text=True, stderr=subprocess.DEVNULL)
+
+        def ask(**request):
+            server.stdin.write(json.dumps(request) + "\n")
+            server.stdin.flush()
+            answer = json.loads(server.stdout.readline())
+            if not answer.get("ok"):
+                raise SystemExit(f"draw: {answer}")
+            return answer
+
+        yield ask, folder
+        server.stdin.close()
+        server.wait()
+
+
 def replay(mesh, poses, *settings):
     """Rows of STEPS.csv and PLANES.csv. `mesh`: triangles, or the path of a file."""
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)
         if not isinstance(mesh, pathlib.Path):
-            path = folder / "mesh.stl"
-            with open(path, "wb") as file:
-                file.write(bytes(80) + struct.pack("<I", len(mesh)))
-                for a, b, c in mesh:
-                    file.write(struct.pack("<12fH", 0, 0, 0, *a, *b, *c, 0))
-            mesh = path
+            write_stl(folder / "mesh.stl", mesh)
+            mesh = folder / "mesh.stl"
         lines = [" ".join(map(repr, map(float, pose))) for pose in poses]
         (folder / "poses").write_text("\n".join(lines) + "\n")
         subprocess.run(
