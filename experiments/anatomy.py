@@ -15,7 +15,8 @@ import keepout
 import numpy as np
 from scipy.ndimage import gaussian_filter, gaussian_filter1d
 
-from .planned_path import Array, PlannedPath
+from .experiment import Array
+from .planned_path import PlannedPath
 
 #: Where the sagittal plane is on the skull, and where on it the path begins [mm]; z is up.
 SAGITTAL_X = 125.0

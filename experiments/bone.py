@@ -13,7 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .planned_path import Array, PlannedPath
+from .experiment import Array
+from .planned_path import PlannedPath
 
 
 @dataclass(frozen=True)

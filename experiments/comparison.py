@@ -15,7 +15,7 @@ import numpy as np
 from . import figures, hypothesis_tests, modes
 from .experiment import Claim, Figure, Findings, Row, Table
 from .hypothesis_tests import Effect, Summary
-from .planned_path import Array
+from .experiment import Array
 from .published import Comparison
 
 

@@ -22,14 +22,12 @@ from scipy import stats
 
 from . import figures
 from .anatomy import mesh_file
-from .experiment import Claim, Figure, Findings, Row, Scale, Table, Unit
+from .experiment import Array, Claim, Figure, Findings, Row, Scale, Table, Unit
 from .hypothesis_tests import holm
 from .modes import make_rule
 from .rules.rule import Rule, Task
 from .rules.signed_distance_field import SignedDistanceField, VoxelGrid
 from .sides import turns_outside
-
-Array = NDArray[np.float64]
 
 NAME = "e5_distance_field"
 TITLE = "E5 A distance field beside the mesh, at thin walls"

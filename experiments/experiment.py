@@ -17,6 +17,11 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
 #: A row of an experiment's table: names and values, which are text, numbers, true or false, or None.
 Row = dict[str, Any]
 

@@ -11,10 +11,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy import stats
 
-Array = NDArray[np.float64]
+from .experiment import Array
 
 
 @dataclass(frozen=True)
@@ -33,10 +33,9 @@ class Summary:
 
 @dataclass(frozen=True)
 class MeanTest:
-    """Of equal means: the statistic, its degrees of freedom, and the two-sided p."""
+    """Of equal means: the statistic, and the two-sided p."""
 
     t: float
-    dof: float
     p: float
 
 
@@ -51,16 +50,12 @@ class Effect:
 
 def student(a: Summary, b: Summary) -> MeanTest:
     """The pooled test: exact for normal samples of the same variance."""
-    return _test(a.mean - b.mean, _pooled_sd(a, b) * np.sqrt(1 / a.n + 1 / b.n), a.n + b.n - 2)
+    return _test(a, b, equal_var=True)
 
 
 def welch(a: Summary, b: Summary) -> MeanTest:
     """For variances that may differ, with the degrees of freedom of Welch and Satterthwaite."""
-    in_a, in_b = a.sd**2 / a.n, b.sd**2 / b.n
-    if in_a + in_b == 0.0:
-        return _test(a.mean - b.mean, 0.0, a.n + b.n - 2)
-    dof = (in_a + in_b) ** 2 / (in_a**2 / (a.n - 1) + in_b**2 / (b.n - 1))
-    return _test(a.mean - b.mean, np.sqrt(in_a + in_b), dof)
+    return _test(a, b, equal_var=False)
 
 
 def hedges_g(a: Summary, b: Summary) -> float:
@@ -117,12 +112,12 @@ def in_words(p_after_holm: float, size: Effect) -> str:
     return f"{p}, g = {size.g:.3g} [{size.low:.3g}, {size.high:.3g}]"
 
 
-def _test(difference: float, error: float, dof: float) -> MeanTest:
-    if error == 0.0:  # no spread: equal for certain, or different for certain
-        same = difference == 0.0
-        return MeanTest(0.0 if same else float(np.copysign(np.inf, difference)), dof, float(same))
-    t = float(difference / error)
-    return MeanTest(t, float(dof), float(2 * stats.t.sf(abs(t), dof)))
+def _test(a: Summary, b: Summary, *, equal_var: bool) -> MeanTest:
+    if a.sd == b.sd == 0.0:  # no spread: equal for certain, or different for certain
+        same = a.mean == b.mean
+        return MeanTest(0.0 if same else float(np.copysign(np.inf, a.mean - b.mean)), float(same))
+    found = stats.ttest_ind_from_stats(a.mean, a.sd, a.n, b.mean, b.sd, b.n, equal_var)
+    return MeanTest(float(found.statistic), float(found.pvalue))
 
 
 def _pooled_sd(a: Summary, b: Summary) -> float:

@@ -8,7 +8,7 @@ from functools import partial
 import keepout
 
 from .rules.closest_points_2007 import ClosestPoints2007
-from .rules.collision_library import BulletSweep, FclContinuous
+from .rules.collision_library import StopAtContact
 from .rules.keepout_rules import KeepoutRule
 from .rules.rule import Rule, Task
 from .rules.signed_distance_field import SignedDistanceField
@@ -26,8 +26,8 @@ _rules: dict[str, Callable[[Task, keepout.Index], Rule]] = {
     "sdf_0.25": partial(SignedDistanceField, cell=0.25),
     "sdf_0.5": partial(SignedDistanceField, cell=0.5),
     "sdf_1": partial(SignedDistanceField, cell=1.0),
-    "fcl_continuous": FclContinuous,
-    "bullet_sweep": BulletSweep,
+    "fcl_continuous": partial(StopAtContact, library="continuous_collision"),
+    "bullet_sweep": partial(StopAtContact, library="convex_sweep"),
 }
 
 #: All fixtures, in the order of tables and figures.

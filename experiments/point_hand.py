@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import keepout
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from .experiment import Array
 
 #: push: straight in. slide: along the surface, leaning on it. wedge: at corners and edges nearby,
 #: and beyond. press: held behind the surface, with a tremor. through: at vertices anywhere.

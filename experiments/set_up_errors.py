@@ -13,9 +13,8 @@ from dataclasses import dataclass
 
 import keepout
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from .experiment import Array
 
 
 @dataclass(frozen=True)

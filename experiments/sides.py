@@ -14,7 +14,7 @@ import keepout
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from .experiment import Array
 Numbers = NDArray[np.int64]
 
 #: So many pairs of a line and a triangle are looked at together: some hundred MB.

@@ -8,9 +8,8 @@ depends on how fast or how far the motion goes; both on how long it takes: more 
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from .experiment import Array
 
 #: The spectrum is sampled this many doublings finer than the speed's own length asks for, by zeros
 #: after its end: then the sum over samples is the integral to about four digits.

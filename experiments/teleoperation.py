@@ -14,7 +14,7 @@ from scipy import signal
 from . import modes
 from .experiment import Row
 from .operator_model import Operator
-from .planned_path import Array
+from .experiment import Array
 from .rules.rule import Corridor, Task
 from .set_up_errors import RigidMotion, SetUp, fiducials_around, registered_from_true
 from .smoothness import spectral_arc_length, sparc

@@ -16,7 +16,8 @@ import numpy as np
 
 from .bone import Bone, BoneProperties
 from .operator_model import Arm, Operator, adjustments, slow_error, tremor
-from .planned_path import Array, PlannedPath
+from .experiment import Array
+from .planned_path import PlannedPath
 from .rules.rule import Rule
 from .set_up_errors import RigidMotion, SetUp
 

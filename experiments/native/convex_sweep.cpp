@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "convex_sweep.h"
-
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
 #include <BulletCollision/CollisionDispatch/btCollisionWorld.h>
 #include <BulletCollision/CollisionShapes/btBvhTriangleMeshShape.h>
@@ -11,6 +9,7 @@
 #include <vector>
 
 #include "keepout/error.h"
+#include "sweep.h"
 
 // Debian ships Bullet in both precisions, and the one links with headers set for the other.
 static_assert(sizeof(btScalar) == sizeof(double), "Bullet is used in double precision");
@@ -24,62 +23,56 @@ btVector3 bullet(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
 
 std::vector<double> coordinates_of(const Mesh& mesh) {
   std::vector<double> out;
-  for (VertexId v = 0; v < mesh.vertex_count(); ++v) {
-    for (const double x : mesh.vertex(v)) out.push_back(x);
-  }
+  for (const Vec3& vertex : mesh.vertices()) out.insert(out.end(), vertex.begin(), vertex.end());
   return out;
 }
 
 std::vector<int> corners_of(const Mesh& mesh) {
   std::vector<int> out;
-  for (TriangleId t = 0; t < mesh.triangle_count(); ++t) {
-    for (const VertexId v : mesh.corners(t)) out.push_back(static_cast<int>(v));
-  }
+  for (const Corners& c : mesh.triangles()) out.insert(out.end(), c.begin(), c.end());
   return out;
 }
 
-}  // namespace
-
-struct ConvexSweep::Bodies {
-  Bodies(const Mesh& mesh, double radius)
-      : points(coordinates_of(mesh)),
-        numbers(corners_of(mesh)),
-        arrays(static_cast<int>(numbers.size() / 3), numbers.data(), 3 * sizeof(int),
-               static_cast<int>(points.size() / 3), points.data(), 3 * sizeof(double)),
-        shape(&arrays, true),
-        ball(radius) {
-    shape.setMargin(0.0);
-    object.setCollisionShape(&shape);
-    object.setWorldTransform(btTransform::getIdentity());
+class ConvexSweep : public Sweep {
+ public:
+  ConvexSweep(const Mesh& mesh, double radius)
+      : points_(coordinates_of(mesh)),
+        numbers_(corners_of(mesh)),
+        arrays_(static_cast<int>(numbers_.size() / 3), numbers_.data(), 3 * sizeof(int),
+                static_cast<int>(points_.size() / 3), points_.data(), 3 * sizeof(double)),
+        shape_(&arrays_, true),
+        ball_(radius) {
+    shape_.setMargin(0.0);
+    object_.setCollisionShape(&shape_);
+    object_.setWorldTransform(btTransform::getIdentity());
   }
 
-  std::vector<double> points;  // the shape reads both lists
-  std::vector<int> numbers;
-  btTriangleIndexVertexArray arrays;
-  btBvhTriangleMeshShape shape;
-  btCollisionObject object;
-  btSphereShape ball;
+  double time_of_impact(const Vec3& tip, const Vec3& motion) const override {
+    const btTransform from(btQuaternion::getIdentity(), bullet(tip));
+    const btTransform to(btQuaternion::getIdentity(), bullet(tip + motion));
+    btCollisionWorld::ClosestConvexResultCallback result(from.getOrigin(), to.getOrigin());
+    btCollisionWorld::objectQuerySingle(&ball_, from, to, &object_, &shape_,
+                                        object_.getWorldTransform(), result, allowed_penetration);
+    return std::clamp(static_cast<double>(result.m_closestHitFraction), 0.0, 1.0);
+  }
+
+ private:
+  std::vector<double> points_;  // the shape reads both lists
+  std::vector<int> numbers_;
+  btTriangleIndexVertexArray arrays_;
+  btBvhTriangleMeshShape shape_;
+  mutable btCollisionObject object_;  // Bullet asks for one that it might change
+  btSphereShape ball_;
 };
 
-ConvexSweep::ConvexSweep(const Mesh& mesh, double radius) {
+}  // namespace
+
+std::unique_ptr<Sweep> convex_sweep(const Mesh& mesh, double radius) {
   if (!(radius > 0.0)) throw Error("the ball needs a radius > 0");
   // In Bullet's tree 21 bits hold the number of a triangle.
   constexpr std::size_t most_triangles = std::size_t{1} << 21;
   if (mesh.triangle_count() > most_triangles) throw Error("more triangles than Bullet can number");
-  bodies_ = std::make_unique<Bodies>(mesh, radius);
-}
-
-ConvexSweep::~ConvexSweep() = default;
-ConvexSweep::ConvexSweep(ConvexSweep&&) noexcept = default;
-
-double ConvexSweep::time_of_impact(const Vec3& tip, const Vec3& motion) const {
-  const btTransform from(btQuaternion::getIdentity(), bullet(tip));
-  const btTransform to(btQuaternion::getIdentity(), bullet(tip + motion));
-  btCollisionWorld::ClosestConvexResultCallback result(from.getOrigin(), to.getOrigin());
-  btCollisionWorld::objectQuerySingle(&bodies_->ball, from, to, &bodies_->object, &bodies_->shape,
-                                      bodies_->object.getWorldTransform(), result,
-                                      allowed_penetration);
-  return std::clamp(static_cast<double>(result.m_closestHitFraction), 0.0, 1.0);
+  return std::make_unique<ConvexSweep>(mesh, radius);
 }
 
 }  // namespace keepout::peers

@@ -11,14 +11,13 @@
 #include <utility>
 #include <vector>
 
-#include "continuous_collision.h"
-#include "convex_sweep.h"
 #include "judge.h"
 #include "keepout/error.h"
 #include "keepout/fixtures/counterexamples.h"
 #include "keepout/fixtures/real_mesh.h"
 #include "keepout/fixtures/shapes.h"
 #include "keepout/mesh/load_mesh.h"
+#include "sweep.h"
 
 namespace keepout::peers {
 namespace {
@@ -65,16 +64,21 @@ are judged fastest in their order. Lengths are in the unit of the mesh.)")
            "bound.");
 }
 
-template <class Library>
-void bind_library(py::module_& module, const char* name, const char* doc) {
-  py::class_<Library>(module, name, doc)
-      .def(py::init([](const Eigen::Ref<const Rows>& vertices,
-                       const Eigen::Ref<const CornerRows>& triangles,
-                       double radius) { return Library(mesh_of(vertices, triangles), radius); }),
-           "vertices"_a, "triangles"_a, "radius"_a, Unlocked())
-      .def("time_of_impact", &Library::time_of_impact, "tip"_a, "motion"_a,
-           "The share of the motion that a ball of that radius is said to be free for: from 0 to "
-           "1.");
+void bind_sweeps(py::module_& module) {
+  py::class_<Sweep>(module, "Sweep", "What another library says of a ball that moves past a mesh.")
+      .def("time_of_impact", &Sweep::time_of_impact, "tip"_a, "motion"_a,
+           "The share of the motion that the ball is said to be free for: from 0 to 1.");
+  const auto add = [&](const char* name, auto make, const char* doc) {
+    module.def(
+        name,
+        [make](const Eigen::Ref<const Rows>& vertices,
+               const Eigen::Ref<const CornerRows>& triangles,
+               double radius) { return make(mesh_of(vertices, triangles), radius); },
+        "vertices"_a, "triangles"_a, "radius"_a, Unlocked(), doc);
+  };
+  add("continuous_collision", &continuous_collision,
+      "FCL's continuous collision of a ball with a mesh, by places all along the motion.");
+  add("convex_sweep", &convex_sweep, "Bullet's sweep of a ball past a mesh.");
 }
 
 std::vector<std::pair<std::string, std::string>> named_meshes() {
@@ -124,10 +128,7 @@ PYBIND11_MODULE(keepout_peers, module) {
   module.doc() = "What the experiments hold keepout against, and what judges them.";
   py::register_exception<keepout::Error>(module, "Error", PyExc_ValueError);
   bind_judge(module);
-  bind_library<ContinuousCollision>(
-      module, "ContinuousCollision",
-      "FCL's continuous collision of a ball with a mesh, by places all along the motion.");
-  bind_library<ConvexSweep>(module, "ConvexSweep", "Bullet's sweep of a ball past a mesh.");
+  bind_sweeps(module);
   module.def("named_meshes", &named_meshes,
              "Name and kind of each mesh that keepout names: solid, sheet, broken; or real.");
   module.def("counterexamples", &all_counterexamples,

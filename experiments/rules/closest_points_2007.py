@@ -21,6 +21,7 @@ import keepout
 import numpy as np
 from numpy.typing import NDArray
 
+from ..experiment import Array
 from .projection import Plane, corridor_planes, nearest_motion
 from .rule import RECOVERY, Task
 from .side import is_outside
@@ -44,7 +45,7 @@ class _Surface:
         self.edges, self.at_edge = np.unique(ends @ [self.count, 1], return_counts=True)
 
     def minima(
-        self, triangles: NDArray[np.uint32], points: NDArray[np.float64]
+        self, triangles: NDArray[np.uint32], points: Array
     ) -> NDArray[np.int64]:
         """One of the triangles at each local minimum: its number among those given."""
         weights = self._barycentric(triangles, points)
@@ -64,8 +65,8 @@ class _Surface:
         return first[agreeing >= needed[first]]
 
     def _barycentric(
-        self, triangles: NDArray[np.uint32], points: NDArray[np.float64]
-    ) -> NDArray[np.float64]:
+        self, triangles: NDArray[np.uint32], points: Array
+    ) -> Array:
         """Of a point of each triangle, (k, 3); without an area, those of the nearest corner."""
         u, v, w = self.u[triangles], self.v[triangles], points - self.first[triangles]
         uu, vv, uv = (u * u).sum(axis=1), (v * v).sum(axis=1), (u * v).sum(axis=1)
@@ -90,14 +91,12 @@ def _surface_of(mesh: keepout.Mesh) -> _Surface:
 class ClosestPoints2007:
     """A plane for each local minimum of the distance."""
 
-    NAME = "closest_points_2007"
-
     def __init__(self, task: Task, index: keepout.Index) -> None:
         self._task = task
         self._index = index
         self._surface = _surface_of(task.mesh)
 
-    def step(self, tip: NDArray[np.float64], desired: NDArray[np.float64]) -> NDArray[np.float64]:
+    def step(self, tip: Array, desired: Array) -> Array:
         margin = self._task.margin
         planes: list[Plane] = corridor_planes(self._task.corridor, tip)
         motion = nearest_motion(desired, planes)

@@ -5,7 +5,7 @@ The motion is shortened to the share after which a ball of the margin's radius t
 turned. With a corridor, the desired motion is first brought into it. A tip that is in contact or
 deeper gets what the library says of it: FCL tells such a ball to be in collision from the start, so
 that it stays where it is for good; Bullet lets it go wherever it does not come nearer. How either
-is asked is in experiments/native/continuous_collision.h and convex_sweep.h.
+is asked is in experiments/native/sweep.h.
 """
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from typing import Any
 
 import keepout
 import numpy as np
-from numpy.typing import NDArray
 
+from ..experiment import Array
 from .projection import corridor_planes, nearest_motion
 from .rule import Task
 
@@ -31,32 +31,16 @@ def _model(library: str, mesh: keepout.Mesh, radius: float) -> Any:
     return getattr(keepout_peers, library)(mesh.vertices, mesh.triangles, radius)
 
 
-class _StopAtContact:
-    """`library` is the class of keepout_peers that tells when there is contact."""
+class StopAtContact:
+    """`library`: the function of keepout_peers that makes what tells when there is contact."""
 
-    library: str
-
-    def __init__(self, task: Task, index: keepout.Index) -> None:
+    def __init__(self, task: Task, index: keepout.Index, library: str) -> None:
         self._corridor = task.corridor
         radius = max(task.margin, LEAST_RADIUS)
-        self._time_of_impact = _model(self.library, task.mesh, radius).time_of_impact
+        self._time_of_impact = _model(library, task.mesh, radius).time_of_impact
 
-    def step(self, tip: NDArray[np.float64], desired: NDArray[np.float64]) -> NDArray[np.float64]:
+    def step(self, tip: Array, desired: Array) -> Array:
         if self._corridor:
             within = nearest_motion(desired, corridor_planes(self._corridor, tip))
             desired = np.zeros(3) if within is None else within
         return self._time_of_impact(tip, desired) * desired
-
-
-class FclContinuous(_StopAtContact):
-    """Continuous collision of FCL."""
-
-    NAME = "fcl_continuous"
-    library = "ContinuousCollision"
-
-
-class BulletSweep(_StopAtContact):
-    """The convex sweep of Bullet."""
-
-    NAME = "bullet_sweep"
-    library = "ConvexSweep"

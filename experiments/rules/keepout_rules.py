@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import keepout
 import numpy as np
-from numpy.typing import NDArray
 
+from ..experiment import Array
 from .rule import Task
 
 
@@ -22,7 +22,7 @@ class KeepoutRule:
             )
             self._guard.set_guides([keepout.Guide.point("corridor", slab)])
 
-    def step(self, tip: NDArray[np.float64], desired: NDArray[np.float64]) -> NDArray[np.float64]:
+    def step(self, tip: Array, desired: Array) -> Array:
         """Zero wherever keepout refuses the motion; a step's status says why."""
-        motion: NDArray[np.float64] = self._guard.step(tip, desired).motion
+        motion: Array = self._guard.step(tip, desired).motion
         return motion

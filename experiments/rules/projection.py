@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import nnls
 
+from ..experiment import Array
 from .rule import Corridor
 
 #: A half space of motions d: normal . d >= offset.
-Plane = tuple[NDArray[np.float64], float]
+Plane = tuple[Array, float]
 
 
-def nearest_motion(desired: NDArray[np.float64], planes: list[Plane]) -> NDArray[np.float64] | None:
+def nearest_motion(desired: Array, planes: list[Plane]) -> Array | None:
     """The d nearest to `desired` with normal . d >= offset for each plane; None where there is none.
 
     Least distance programming (Lawson and Hanson, "Solving Least Squares Problems", 1974, chapter 23).
@@ -32,7 +32,7 @@ def nearest_motion(desired: NDArray[np.float64], planes: list[Plane]) -> NDArray
     return desired - rest[:3] / rest[3] * scale
 
 
-def corridor_planes(corridor: Corridor | None, tip: NDArray[np.float64]) -> list[Plane]:
+def corridor_planes(corridor: Corridor | None, tip: Array) -> list[Plane]:
     """Those that keep a tip within the corridor, and lead it back without haste if it is outside."""
     if corridor is None:
         return []

@@ -7,7 +7,8 @@ from typing import Protocol
 
 import keepout
 import numpy as np
-from numpy.typing import NDArray
+
+from ..experiment import Array
 
 
 #: A tip nearer than the margin is led off it by so much in a cycle at the most, by each rule [mm].
@@ -41,6 +42,6 @@ class Task:
 class Rule(Protocol):
     """One for each trial: a rule may remember what happened. Add one of your own here and in modes.py."""
 
-    def step(self, tip: NDArray[np.float64], desired: NDArray[np.float64]) -> NDArray[np.float64]:
+    def step(self, tip: Array, desired: Array) -> Array:
         """The allowed motion, (3,) in mm, for a tip at `tip` that is to move by `desired`."""
         ...

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import keepout
 import numpy as np
-from numpy.typing import NDArray
+
+from ..experiment import Array
 
 
-def is_outside(hits: keepout.Hits, normals: NDArray[np.float64]) -> bool:
+def is_outside(hits: keepout.Hits, normals: Array) -> bool:
     """Told by the sum of the normals of the triangles that have the nearest point; True without hits.
 
     That is the pseudonormal of Baerentzen and Aanaes (2005) but for the weights by angle, and as right

@@ -14,8 +14,9 @@ from math import floor, inf, sqrt
 
 import keepout
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..experiment import Array
 from ..sides import is_closed, lattice_is_solid
 from .projection import Plane, corridor_planes, nearest_motion
 from .rule import RECOVERY, Task
@@ -91,7 +92,7 @@ class VoxelGrid:
             (up_near + u * (up_far - up_near)) / cell,
         )
 
-    def distances(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+    def distances(self, points: Array) -> Array:
         """The interpolated distances of (n, 3) points."""
         return np.array([self.look(x, y, z)[0] for x, y, z in points.tolist()])
 
@@ -118,7 +119,7 @@ class SignedDistanceField:
         self._task = task
         self.grid = grid or _grid_for(task, index, cell)
 
-    def step(self, tip: NDArray[np.float64], desired: NDArray[np.float64]) -> NDArray[np.float64]:
+    def step(self, tip: Array, desired: Array) -> Array:
         """No motion at all where the plane and the corridor exclude each other."""
         x, y, z = tip.tolist()
         distance, n_x, n_y, n_z = self.grid.look(x, y, z)
@@ -140,7 +141,7 @@ class SignedDistanceField:
 
 
 def _shape(
-    low: NDArray[np.float64], high: NDArray[np.float64], cell: float
+    low: Array, high: Array, cell: float
 ) -> tuple[int, int, int]:
     cells = np.ceil((high - low) / cell - 1e-9).astype(int) + 1
     return int(cells[0]), int(cells[1]), int(cells[2])

@@ -17,8 +17,8 @@ from __future__ import annotations
 
 import keepout
 import numpy as np
-from numpy.typing import NDArray
 
+from ..experiment import Array
 from .projection import Plane, corridor_planes, nearest_motion
 from .rule import RECOVERY, Task
 from .side import is_outside
@@ -27,7 +27,6 @@ from .side import is_outside
 class VectorFieldInequality:
     """One plane each cycle."""
 
-    NAME = "vector_field"
     ETA_PERIOD = 1.0  # eta T
 
     def __init__(self, task: Task, index: keepout.Index) -> None:
@@ -35,7 +34,7 @@ class VectorFieldInequality:
         self._index = index
         self._normals = task.mesh.normals
 
-    def step(self, tip: NDArray[np.float64], desired: NDArray[np.float64]) -> NDArray[np.float64]:
+    def step(self, tip: Array, desired: Array) -> Array:
         margin, gain = self._task.margin, self.ETA_PERIOD
         planes: list[Plane] = corridor_planes(self._task.corridor, tip)
         # Of a point that is farther off no desired motion violates the inequality.
