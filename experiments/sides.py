@@ -21,43 +21,6 @@ Numbers = NDArray[np.int64]
 PAIRS_AT_ONCE = 1_000_000
 
 
-def crossings(mesh: keepout.Mesh, lines: Array, row: float) -> tuple[Numbers, Array, Numbers]:
-    """Where vertical lines pass through: which line, at which height, +1 entering or -1 leaving.
-
-    `lines` are their x and y, (n, 2). They are looked up in rows of y of this width [mm], such as
-    their spacing, within which they are sorted by x.
-    """
-    vertices, corners = mesh.vertices, mesh.triangles.astype(np.int64)
-    low, high = lines.min(axis=0), lines.max(axis=0)
-    span = high[0] - low[0] + 1.0
-    key = np.floor((lines[:, 1] - low[1]) / row) * span + (lines[:, 0] - low[0])
-    order = np.argsort(key, kind="stable")
-    key = key[order]
-
-    flat = vertices[corners][:, :, :2]
-    lowest, highest = flat.min(axis=1), flat.max(axis=1)
-    near = np.flatnonzero(np.all((lowest <= high) & (highest >= low), axis=1))
-    lowest = np.clip(lowest[near], low, high) - low
-    highest = np.clip(highest[near], low, high) - low
-    first_row = np.floor(lowest[:, 1] / row)
-    rows = (np.floor(highest[:, 1] / row) - first_row + 1).astype(np.int64)
-    which = np.repeat(np.arange(len(near)), rows)  # a triangle in one of its rows
-    at_row = first_row[which] + _counted_up(rows)
-    begin = np.searchsorted(key, at_row * span + lowest[which, 0], "left")
-    end = np.searchsorted(key, at_row * span + highest[which, 0], "right")
-
-    found: list[tuple[Numbers, Array, Numbers]] = []
-    for part in _parts(end - begin):
-        many = end[part] - begin[part]
-        line = order[np.repeat(begin[part], many) + _counted_up(many)]
-        triangle = corners[near[np.repeat(which[part], many)]]
-        found.append(_crossings_of_pairs(vertices, triangle, line, lines))
-    if not found:
-        return np.zeros(0, np.int64), np.zeros(0), np.zeros(0, np.int64)
-    line, height, turn = (np.concatenate(column) for column in zip(*found))
-    return line, height, turn
-
-
 def is_closed(mesh: keepout.Mesh) -> bool:
     """Whether each edge has as many triangles on one side as on the other: then there are sides."""
     start = mesh.triangles.astype(np.int64)
@@ -80,8 +43,20 @@ def lattice_is_solid(
     mesh: keepout.Mesh, low: Array, cell: float, shape: tuple[int, int, int]
 ) -> NDArray[np.bool_]:
     """Which of the places low + cell (i, j, k) are in the solid of a closed mesh: (nx, ny, nz)."""
+    vertices, corners = mesh.vertices, mesh.triangles.astype(np.int64)
     columns = np.indices(shape[:2]).reshape(2, -1).T * cell + low[:2]
-    line, height, turn = crossings(mesh, columns, cell)
+    # The columns that may pass through each triangle: those of its box, with some room for rounding.
+    flat = (vertices[corners][:, :, :2] - low[:2]) / cell
+    first = np.clip(np.ceil(flat.min(axis=1) - 1e-6), 0, shape[:2]).astype(np.int64)
+    many = np.clip(np.floor(flat.max(axis=1) + 1e-6) + 1, first, shape[:2]).astype(np.int64) - first
+    found = []
+    for part in _parts(many.prod(axis=1)):
+        each = many[part].prod(axis=1)
+        which = np.repeat(np.arange(part.start, part.stop), each)
+        across = np.stack(np.divmod(_counted_up(each), many[which, 1]), axis=1)
+        line = (first[which] + across) @ [shape[1], 1]
+        found.append(_crossings_of_pairs(vertices, corners[which], line, columns))
+    line, height, turn = (np.concatenate(column) for column in zip(*found))
     level = np.clip(np.floor((height - low[2]) / cell) + 1, 0, shape[2]).astype(np.int64)
     order = np.argsort(line, kind="stable")
     line, level, turn = line[order], level[order], turn[order]

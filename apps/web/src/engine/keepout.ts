@@ -79,7 +79,7 @@ export class Keepout {
   readonly shapes: readonly string[];
 
   private constructor(readonly module: Module) {
-    this.shapes = JSON.parse(this.text(this.given(module._keepout_shapes())));
+    this.shapes = this.json(module._keepout_shapes());
   }
 
   static async load(make: ModuleFactory, wasmBinary: Uint8Array): Promise<Keepout> {
@@ -89,12 +89,11 @@ export class Keepout {
 
   /** Returns all statuses by number, with their reasons for a tip or an instrument. */
   statuses(subject: Subject): { name: string; reason: string }[] {
-    const address = this.module._keepout_statuses(subject === "tip" ? 0 : 1);
-    return JSON.parse(this.text(this.given(address)));
+    return this.json(this.module._keepout_statuses(subject === "tip" ? 0 : 1));
   }
 
   counterexamples(): Counterexample[] {
-    return JSON.parse(this.text(this.given(this.module._keepout_counterexamples())));
+    return this.json(this.module._keepout_counterexamples());
   }
 
   /** Of a surface that is welded already: (n, 3) coordinates and (m, 3) numbers of vertices. */
@@ -149,8 +148,13 @@ export class Keepout {
     return new Tool(this, this.given(address), kind);
   }
 
+  /** What the JSON at an address says. */
+  json<T>(address: number): T {
+    return JSON.parse(this.text(this.given(address)));
+  }
+
   /** The text at an address, up to its end. */
-  text(address: number): string {
+  private text(address: number): string {
     const heap = this.module.HEAPU8;
     return new TextDecoder().decode(heap.slice(address, heap.indexOf(0, address)));
   }
@@ -209,9 +213,7 @@ export class Anatomy {
   }
 
   findings(): Findings {
-    return JSON.parse(
-      this.keepout.text(this.keepout.given(this.keepout.module._keepout_findings(this.address))),
-    );
+    return this.keepout.json(this.keepout.module._keepout_findings(this.address));
   }
 
   /** To the surface; below 0 inside a watertight mesh. [mm] */

@@ -95,7 +95,7 @@ export class Tool {
     private readonly address: number,
     readonly subject: Subject,
   ) {
-    this.facts = JSON.parse(keepout.text(keepout.module._keepout_tool_facts(address)));
+    this.facts = keepout.json(keepout.module._keepout_tool_facts(address));
   }
 
   /** Puts the tip or the joints there, and forgets the past. */

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import * as three from "three";
 import type { Counterexample, Vec3 } from "../engine/keepout.ts";
+import { make } from "../page/elements.ts";
 import { colors } from "./markers.ts";
 import { element } from "./page.ts";
 import type { FromWorker } from "./protocol.ts";
@@ -56,9 +57,8 @@ export class CounterexampleView {
     }
     element("examples", HTMLElement).replaceChildren(
       ...examples.map(({ example }, i) => {
-        const button = document.createElement("button");
-        button.type = "button";
-        button.textContent = words[example.name]?.[0] ?? example.name;
+        const title = words[example.name]?.[0] ?? example.name;
+        const button = make("button", { type: "button" }, title);
         button.onclick = () => this.choose(i);
         return button;
       }),
@@ -170,14 +170,16 @@ class Stage {
     key.position.set(2, -1, 3);
     this.scene.add(bone, rims, this.tip, asked, gone, key, new three.AmbientLight("#ffffff", 1.3));
 
-    const crossings = crossingsOf(example, this.begin, this.end);
+    const way = this.end.clone().sub(this.begin);
+    const caster = new three.Raycaster(this.begin, way.clone().normalize(), 0, way.length());
+    const crossings = caster.intersectObject(bone);
     this.goesThrough = crossings.length > 0;
-    for (const crossing of crossings) {
+    for (const { point } of crossings) {
       const mark = new three.Mesh(
         new three.SphereGeometry(ball * 0.7, 24, 12),
         new three.MeshBasicMaterial({ color: colors.hand, depthTest: false, transparent: true }),
       );
-      mark.position.copy(crossing);
+      mark.position.copy(point);
       mark.renderOrder = 2;
       this.scene.add(mark);
     }
@@ -204,26 +206,4 @@ class Stage {
 
 function vector(place: Vec3): three.Vector3 {
   return new three.Vector3(...place);
-}
-
-/** Where a way crosses the triangles of a mesh. */
-function crossingsOf(
-  mesh: Counterexample,
-  begin: three.Vector3,
-  end: three.Vector3,
-): three.Vector3[] {
-  const length = begin.distanceTo(end);
-  const ray = new three.Ray(begin, end.clone().sub(begin).normalize());
-  return mesh.triangles.flatMap((triangle) => {
-    const [a, b, c] = triangle.map((corner) => vector(mesh.vertices[corner] as Vec3));
-    const at = new three.Vector3();
-    const met = ray.intersectTriangle(
-      a as three.Vector3,
-      b as three.Vector3,
-      c as three.Vector3,
-      false,
-      at,
-    );
-    return met !== null && at.distanceTo(begin) < length ? [at] : [];
-  });
 }

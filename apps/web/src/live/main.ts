@@ -9,7 +9,7 @@ import {
   type ToolSettings,
   unturned,
 } from "../engine/tool.ts";
-import { saveFile } from "../page/save_file.ts";
+import { grouped, saveFile } from "../page/elements.ts";
 import { ClearanceChart } from "./clearance_chart.ts";
 import { CounterexampleView } from "./counterexample_view.ts";
 import { takeFiles } from "./file_input.ts";
@@ -17,16 +17,7 @@ import { showFindings } from "./findings.ts";
 import { HandInput } from "./hand_input.ts";
 import { InstrumentScene } from "./instrument_scene.ts";
 import { type Choice, MeshList, meshOf, nameOf } from "./mesh_list.ts";
-import {
-  element,
-  embeddedText,
-  grouped,
-  isTip,
-  made,
-  page,
-  roomBetweenCards,
-  toast,
-} from "./page.ts";
+import { element, embeddedText, isTip, made, page, roomBetweenCards, toast } from "./page.ts";
 import {
   instrumentPathText,
   type PathHeader,

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+import { make } from "../page/elements.ts";
 import { element } from "./page.ts";
 import type { EmbeddedMesh, Source } from "./protocol.ts";
 
@@ -35,8 +36,7 @@ export class MeshList {
   offer(heading: string, choice: Choice): void {
     let group = this.list.querySelector<HTMLOptGroupElement>(`optgroup[label="${heading}"]`);
     if (group === null) {
-      group = document.createElement("optgroup");
-      group.label = heading;
+      group = make("optgroup", { label: heading });
       this.list.append(group);
     }
     group.append(new Option(nameOf(choice), String(this.choices.length)));

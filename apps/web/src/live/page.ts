@@ -31,9 +31,6 @@ export const page: PageSettings = JSON.parse(embeddedText("settings"));
 /** Whether the tool is the ball of a tip, or else an instrument. */
 export const isTip = page.robot === undefined;
 
-/** For people: 1,234,567. */
-export const grouped = (count: number): string => Math.round(count).toLocaleString("en");
-
 /** The element of an identifier shows a text: changed where it has changed, as a screen reader shall not hear what has not. */
 export function set(where: string | Element | null, text: string): void {
   const place = typeof where === "string" ? document.getElementById(where) : where;
@@ -67,10 +64,8 @@ export function toast(text: string): void {
   line.textContent = text;
   line.hidden = false;
   clearTimeout(toastEnd);
-  toastEnd = setTimeout(
-    () => {
-      line.hidden = true;
-    },
-    3000 + 55 * text.length,
-  );
+  const end = () => {
+    line.hidden = true;
+  };
+  toastEnd = setTimeout(end, 3000 + 55 * text.length);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import { type Frame, spring, type ToolFacts, type ToolSettings } from "../engine/tool.ts";
-import { element, grouped, isTip, millimetres, set } from "./page.ts";
+import { grouped, make } from "../page/elements.ts";
+import { element, isTip, millimetres, set } from "./page.ts";
 import type { State, StatusWords } from "./protocol.ts";
 
 /** How each status is to be taken: the colour of its chip. */
@@ -84,10 +85,8 @@ export class Readings {
   private rowOf(body: string): HTMLElement {
     let row = this.bodies.get(body);
     if (row === undefined) {
-      row = document.createElement("dd");
-      const name = document.createElement("dt");
-      name.textContent = `From the ${body}`;
-      element("bodies", HTMLElement).append(name, row);
+      row = make("dd");
+      element("bodies", HTMLElement).append(make("dt", {}, `From the ${body}`), row);
       this.bodies.set(body, row);
     }
     return row;

@@ -4,7 +4,7 @@ import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import type { Vec3 } from "../engine/keepout.ts";
 import type { ToolFacts } from "../engine/tool.ts";
 import type { CenteredSurface } from "../page/centered_surface.ts";
-import { isSoftware } from "../page/graphics.ts";
+import { makeGraphics, surfaceGeometry } from "../page/graphics.ts";
 import { StillPicture } from "../page/still_picture.ts";
 import { colors, Spring, Trail } from "./markers.ts";
 import type { State } from "./protocol.ts";
@@ -41,11 +41,9 @@ export abstract class Scene {
     private readonly onDraw: () => void,
   ) {
     // The still picture has smooth edges of its own.
-    this.renderer = new three.WebGLRenderer({ antialias: false, alpha: true });
-    const isSlow = isSoftware(this.renderer.getContext());
+    const { renderer, isSlow } = makeGraphics(false);
+    this.renderer = renderer;
     this.finest = isSlow ? 0.6 : 1;
-    this.renderer.autoClear = false;
-    this.renderer.setClearColor(0, 0);
     container.prepend(this.renderer.domElement);
     this.camera.up.set(0, 0, 1);
 
@@ -60,14 +58,8 @@ export abstract class Scene {
     this.moving.visible = false;
 
     this.controls = new OrbitControls(this.camera, this.renderer.domElement);
-    this.renderer.domElement.addEventListener("webglcontextrestored", () => {
-      this.still.outdate();
-      this.redraw();
-    });
-    this.controls.addEventListener("change", () => {
-      this.still.outdate();
-      this.redraw();
-    });
+    this.renderer.domElement.addEventListener("webglcontextrestored", () => this.outdate());
+    this.controls.addEventListener("change", () => this.outdate());
     new ResizeObserver(() => this.resize()).observe(container);
     this.resize();
   }
@@ -79,12 +71,8 @@ export abstract class Scene {
 
   /** Another anatomy: looked at from one side, as large as the view. */
   show({ positions, corners, origin, size }: CenteredSurface): void {
-    const geometry = new three.BufferGeometry();
-    geometry.setAttribute("position", new three.BufferAttribute(positions, 3));
-    geometry.setIndex(new three.BufferAttribute(corners, 1));
-    geometry.computeVertexNormals();
     this.anatomy.geometry.dispose();
-    this.anatomy.geometry = geometry;
+    this.anatomy.geometry = surfaceGeometry(positions, corners);
     this.corners = corners;
     this.origin.set(...origin);
     this.size = size;
@@ -187,6 +175,11 @@ export abstract class Scene {
     this.renderer.setSize(width, height);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
+    this.outdate();
+  }
+
+  /** Draws the anatomy anew, too. */
+  private outdate(): void {
     this.still.outdate();
     this.redraw();
   }

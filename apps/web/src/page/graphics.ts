@@ -1,8 +1,31 @@
 // SPDX-License-Identifier: BSD-3-Clause
+import * as three from "three";
 
-/** Whether a processor draws by software: then every pixel takes its time. */
-export function isSoftware(gl: WebGLRenderingContext | WebGL2RenderingContext): boolean {
-  const names = gl.getExtension("WEBGL_debug_renderer_info");
-  const name = String(gl.getParameter(names ? names.UNMASKED_RENDERER_WEBGL : gl.RENDERER));
-  return /swiftshader|llvmpipe|software/i.test(name);
+/** What draws with WebGL, over what was drawn before. */
+export interface Graphics {
+  readonly renderer: three.WebGLRenderer;
+  /** Without a graphics processor every pixel takes its time. */
+  readonly isSlow: boolean;
+}
+
+/** Throws where there is no WebGL. */
+export function makeGraphics(antialias: boolean): Graphics {
+  const canvas = document.createElement("canvas");
+  const context = canvas.getContext("webgl2", { alpha: true, antialias });
+  if (!context) throw new Error("there is no WebGL");
+  const renderer = new three.WebGLRenderer({ canvas, context, alpha: true });
+  renderer.autoClear = false;
+  renderer.setClearColor(0, 0);
+  const names = context.getExtension("WEBGL_debug_renderer_info");
+  const name = context.getParameter(names ? names.UNMASKED_RENDERER_WEBGL : context.RENDERER);
+  return { renderer, isSlow: /swiftshader|llvmpipe|software/i.test(String(name)) };
+}
+
+/** A surface with smooth shading: (n, 3) coordinates and (m, 3) corners. */
+export function surfaceGeometry(positions: Float32Array, corners: Uint32Array) {
+  const geometry = new three.BufferGeometry();
+  geometry.setAttribute("position", new three.BufferAttribute(positions, 3));
+  geometry.setIndex(new three.BufferAttribute(corners, 1));
+  geometry.computeVertexNormals();
+  return geometry;
 }

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
+
 import type * as three from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import { drawn, make } from "../page/elements.ts";
+import { type Graphics, makeGraphics } from "../page/graphics.ts";
 import type { Anatomy, Outlook } from "./anatomy.ts";
-import { drawn, type Mark, placeMark, scaleBar } from "./marks.ts";
-import { GraphicsPainter, GraphicsProcessor, type Layer, type Painter } from "./painting.ts";
-import { make } from "./shown.ts";
+import { type Mark, placeMark, scaleBar } from "./marks.ts";
+import { GraphicsPainter, type Layer, type Painter } from "./painting.ts";
 import { StillPainter } from "./still.ts";
 
 /** How long after the last motion of a view it is drawn as fine as it can be. [ms] */
@@ -12,17 +14,17 @@ const rest = 160;
 /** By how much a key turns, and by how much it zooms. */
 const [turn, zoom] = [0.12, 1.15];
 
-let processor: GraphicsProcessor | null | undefined;
+let shared: Graphics | null | undefined;
 
-/** What draws with WebGL, another one when that was lost; null where there is none. */
-function graphicsProcessor(): GraphicsProcessor | null {
-  if (processor !== undefined) return processor;
+/** What draws all pictures of the page with WebGL, another one when that was lost; null where there is none. */
+function sharedGraphics(): Graphics | null {
+  if (shared !== undefined) return shared;
   try {
-    processor = new GraphicsProcessor();
+    shared = makeGraphics(true);
   } catch {
-    processor = null;
+    shared = null;
   }
-  return processor;
+  return shared;
 }
 
 interface Picture {
@@ -65,11 +67,11 @@ export class AnatomyView {
     const { signal } = this.end;
     const { camera } = outlook;
     const begin = (): Painter => {
-      const graphics = graphicsProcessor();
+      const graphics = sharedGraphics();
       this.isSlow = graphics?.isSlow ?? true;
       if (!graphics) return new StillPainter(anatomy, corners, camera);
       const lost = () => {
-        if (processor === graphics) processor = undefined;
+        if (shared === graphics) shared = undefined;
         this.painter = begin();
         this.outdate();
       };
@@ -87,8 +89,13 @@ export class AnatomyView {
     this.tellView();
   }
 
-  /** Another picture. */
-  picture(description: string, layer: Layer, marks: readonly Mark[]): HTMLElement {
+  /** Adds another picture to the group, above a caption. */
+  add(
+    description: string,
+    layer: Layer,
+    marks: readonly Mark[],
+    ...caption: readonly (Node | string)[]
+  ): void {
     const canvas = make("canvas", { class: "anatomy" });
     const scale = drawn("g", { class: "scale" }, drawn("path", {}), drawn("text", {}));
     const overlay = drawn("svg", {}, ...marks.map(({ element }) => element), scale);
@@ -102,7 +109,7 @@ export class AnatomyView {
     });
     this.sight.observe(element);
     this.sizes.observe(element);
-    return element;
+    this.group.append(make("figure", {}, element, make("figcaption", {}, ...caption)));
   }
 
   /** Puts the marks of all pictures where they are now. */
@@ -233,7 +240,7 @@ export const hint = (): HTMLElement =>
     { class: "hint" },
     "Drag to turn: all turn together. Ctrl and the wheel zoom, or the wheel alone in a picture that was clicked; so do two fingers. ",
     "Arrow keys turn, + and − zoom, Home or a double click goes back.",
-    ...(graphicsProcessor() ? [] : [" There is no WebGL here: the pictures are plain."]),
+    ...(sharedGraphics() ? [] : [" There is no WebGL here: the pictures are plain."]),
   );
 
 /** The direction, of those all around and a little above, from which most places are seen. */

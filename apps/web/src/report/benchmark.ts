@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /** The sections of a benchmark: plots of the rows that are chosen, then every row. */
+
 import * as Plot from "@observablehq/plot";
+import { grouped, make } from "../page/elements.ts";
 import { benchmarkMethod } from "./benchmark_method.ts";
 import { benchmarkTable, columnsOf } from "./benchmark_table.ts";
 import { Legend, logarithmic, looksOf, tickText, tipOfColumns } from "./charts.ts";
@@ -11,9 +13,7 @@ import { lead, panel, panels, section } from "./report_page.ts";
 import { barInRow, inRow, rowChart } from "./row_chart.ts";
 import { type Question, Selection } from "./selection.ts";
 import {
-  grouped,
   inUnit,
-  make,
   microseconds,
   paragraphs,
   rounded,

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
+import { make } from "../page/elements.ts";
 import type { BenchmarkRow } from "./benchmark.ts";
 import { valueAt } from "./record.ts";
-import { section } from "./report_page.ts";
-import { make, rounded, shown, shownMembers } from "./shown.ts";
+import { method, section } from "./report_page.ts";
+import { rounded, shown, shownMembers } from "./shown.ts";
 
-const method = (...words: readonly (Node | string)[]): HTMLElement =>
-  make("p", { class: "method" }, ...words);
 const term = (name: string): HTMLElement => make("b", {}, name);
 
 /** How a benchmark was measured, on what, and what the names of its parts stand for. */

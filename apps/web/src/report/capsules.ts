@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import * as three from "three";
 import { colorOf } from "../page/color_of.ts";
+import { type Shaded, setUniforms } from "./line.ts";
 
 /** A body of an instrument: all within a radius of what is between two places. */
 export interface Capsule {
@@ -16,15 +17,16 @@ export interface Capsule {
 
 /** Draws capsules over what was drawn before, and with its depths. */
 export class CapsuleBrush {
-  private readonly mesh: three.Mesh<three.CapsuleGeometry, three.ShaderMaterial>;
+  readonly mesh: Shaded = new three.Mesh(
+    new three.CapsuleGeometry(1, 1, 12, 32),
+    capsuleMaterial(),
+  );
 
   constructor() {
-    this.mesh = new three.Mesh(new three.CapsuleGeometry(1, 1, 12, 32), capsuleMaterial());
     this.mesh.frustumCulled = false;
   }
 
   draw(renderer: three.WebGLRenderer, camera: three.Camera, capsules: readonly Capsule[]): void {
-    const { uniforms } = this.mesh.material;
     // What is hidden of all of them, and then what is seen.
     for (const isHidden of [true, false]) {
       this.mesh.material.depthFunc = isHidden ? three.GreaterDepth : three.LessEqualDepth;
@@ -37,17 +39,10 @@ export class CapsuleBrush {
         );
         const color = new three.Color(colorOf(variable));
         const opacity = isHidden ? hidden : 1;
-        for (const [name, value] of Object.entries({ from, to, radius, axes, color, opacity })) {
-          (uniforms[name] as three.IUniform).value = value;
-        }
+        setUniforms(this.mesh.material, { from, to, radius, axes, color, opacity });
         renderer.render(this.mesh, camera);
       }
     }
-  }
-
-  dispose(): void {
-    this.mesh.geometry.dispose();
-    this.mesh.material.dispose();
   }
 }
 

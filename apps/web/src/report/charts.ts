@@ -2,8 +2,9 @@
 /** What all plots share: how they are drawn to fit, told of by a tip, and filtered by a legend. */
 
 import * as Plot from "@observablehq/plot";
+import { make } from "../page/elements.ts";
 import { extremes } from "./extremes.ts";
-import { make, shown } from "./shown.ts";
+import { shown } from "./shown.ts";
 import type { Column } from "./table.ts";
 
 /** How a series is told from others, by its colour and by its mark. */
@@ -141,6 +142,20 @@ export const tipOfColumns = (
     title,
     columns.map(({ heading, from, format }) => [heading, shown(row + from, format)]),
   );
+
+/** A dashed line over the whole plot, at a level of one axis, and its name. */
+export function levelMarks(
+  axis: "x" | "y",
+  level: number,
+  name: string,
+  place: Plot.TextOptions,
+): Plot.Markish[] {
+  const [stroke, line] = ["var(--soft)", axis === "x" ? Plot.ruleX : Plot.ruleY];
+  return [
+    line([level], { stroke, strokeDasharray: "5 4" }),
+    Plot.text([name], { [axis]: level, fill: stroke, ...place }),
+  ];
+}
 
 /** A logarithmic scale, with ticks that fit the values. */
 export function logarithmic(label: string | null, values: readonly number[]): Plot.ScaleOptions {

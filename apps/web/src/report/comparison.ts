@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /** The sections of a comparison: whether indices, solvers and narrow phases give the same answers. */
+
 import * as Plot from "@observablehq/plot";
+import { grouped, make } from "../page/elements.ts";
 import { Legend, logarithmic, looksOf, tipOfColumns } from "./charts.ts";
 import { entries, valueAt } from "./record.ts";
 import { lead, panel, panels, section } from "./report_page.ts";
 import { inRow, rowChart } from "./row_chart.ts";
-import { error, grouped, make, rounded, show, shown, shownName } from "./shown.ts";
+import { error, rounded, show, shown, shownName } from "./shown.ts";
 import { type Column, column, harm, named, scrolled, table } from "./table.ts";
 
 const size = (heading: string, from: string): Column => column(heading, from, error);

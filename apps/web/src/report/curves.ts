@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import * as Plot from "@observablehq/plot";
-import { type Chart, chart, type Legend, logarithmic } from "./charts.ts";
+import { type Chart, chart, type Legend, levelMarks, logarithmic } from "./charts.ts";
 
 /** What is drawn as lines through marks, a line for each series, on two logarithmic axes. */
 interface Curves<Datum> extends Omit<Chart<Datum>, "draw"> {
@@ -31,15 +31,13 @@ export function curves<Datum>(wanted: Curves<Datum>): HTMLElement {
       .sort((a, b) => x(a) - x(b));
     const seen = data.filter((datum) => legend.shows(series(datum)));
     const joined = seen.filter((datum) => !isLoose && symbol(datum) !== "star");
-    const text = { frameAnchor: "left", dx: 4, dy: -8, fill: "var(--soft)" } as const;
     return {
       height: 420,
       r: { type: "identity" } as const,
       x: logarithmic(xLabel, data.map(x)),
       y: logarithmic(yLabel, [...data.map(y), ...(rule ? [rule[0]] : [])]),
       marks: [
-        Plot.ruleY(rule ? [rule[0]] : [], { stroke: "var(--soft)", strokeDasharray: "5 4" }),
-        Plot.text(rule ? [rule] : [], { ...text, y: "0", text: "1" }),
+        ...(rule ? levelMarks("y", ...rule, { frameAnchor: "left", dx: 4, dy: -8 }) : []),
         Plot.line(joined, { x, y, z: series, stroke: fill, strokeWidth: 2 }),
         Plot.dot(seen, { x, y, symbol, fill, stroke: "var(--card)", r }),
         Plot.dot(seen, Plot.pointer({ x, y, stroke: "var(--ink)", strokeWidth: 2, r: 9 })),

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /** The sections of the paper's experiments, done again. */
+import { make } from "../page/elements.ts";
 import { drawnSvg } from "./drawn_svg.ts";
 import { below, entries, valueAt } from "./record.ts";
 import { lead, panels, section } from "./report_page.ts";
-import { make, paragraphs, show, shown } from "./shown.ts";
+import { paragraphs, show, shown } from "./shown.ts";
 import { type Column, named, scrolled, table } from "./table.ts";
 
 /** The paper's numbers beside ours, of all experiments; then what each found. */

@@ -8,7 +8,7 @@ const corners = [0, 0, 1, 1].map((end, i) => [end, i % 2 === 0 ? -1 : 1] as cons
 
 /** Lengths of paths as tubes that are as wide wherever the view is. */
 export class Line {
-  readonly mesh: three.Mesh<three.BufferGeometry, three.ShaderMaterial>;
+  readonly mesh: Shaded;
 
   constructor(readonly lengths: Lengths) {
     const { ends } = lengths;
@@ -40,19 +40,29 @@ export class Line {
 
   /** `width` and `height`: of what is drawn to; `pixel`: one of the page, as a depth. */
   adjust(width: number, height: number, scale: number, pixel: number): void {
-    const { color, width: wide } = this.lengths;
-    const { uniforms } = this.mesh.material;
-    const radius = wide / 2 + 0.4;
-    (uniforms.color as three.IUniform<three.Color>).value.set(colorOf(color));
-    (uniforms.middle as three.IUniform<three.Vector2>).value.set(width / 2, height / 2);
-    (uniforms.radius as three.IUniform<number>).value = radius * scale;
-    (uniforms.depth as three.IUniform<number>).value = radius * pixel;
+    const radius = this.lengths.width / 2 + 0.4;
+    setUniforms(this.mesh.material, {
+      color: new three.Color(colorOf(this.lengths.color)),
+      middle: new three.Vector2(width / 2, height / 2),
+      radius: radius * scale,
+      depth: radius * pixel,
+    });
   }
+}
 
-  dispose(): void {
-    this.mesh.geometry.dispose();
-    this.mesh.material.dispose();
+/** A mesh with a shader. */
+export type Shaded = three.Mesh<three.BufferGeometry, three.ShaderMaterial>;
+
+/** Gives a shader values by the names of its uniforms. */
+export function setUniforms({ uniforms }: three.ShaderMaterial, values: object): void {
+  for (const [name, value] of Object.entries(values)) {
+    (uniforms[name] as three.IUniform).value = value;
   }
+}
+
+export function discard({ geometry, material }: Shaded): void {
+  geometry.dispose();
+  material.dispose();
 }
 
 /** A tube with round ends, lit and rimmed to stand out from bone of any brightness. */

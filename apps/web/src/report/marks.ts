@@ -1,23 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /** What lies over a picture of anatomy: balls, rings and labels at places of it, and a scale bar. */
 import type * as three from "three";
+import { drawn } from "../page/elements.ts";
 
 /** Something at a place of the anatomy. */
 export interface Mark {
   readonly element: SVGGElement;
   place: three.Vector3;
-}
-
-/** An element of a drawing. Text is never taken for markup. */
-export function drawn<Tag extends keyof SVGElementTagNameMap>(
-  tag: Tag,
-  attributes: Readonly<Record<string, string>>,
-  ...children: readonly (Node | string)[]
-): SVGElementTagNameMap[Tag] {
-  const element = document.createElementNS("http://www.w3.org/2000/svg", tag);
-  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
-  element.append(...children);
-  return element;
 }
 
 /** A circle at a place. `label`: what it is called, beside it, or with a ball below. */

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import * as three from "three";
-import { isSoftware } from "../page/graphics.ts";
+import { type Graphics, surfaceGeometry } from "../page/graphics.ts";
 import { StillPicture } from "../page/still_picture.ts";
 import { type Anatomy, coarsened } from "./anatomy.ts";
 import { type Capsule, CapsuleBrush } from "./capsules.ts";
 import type { Cut } from "./cut.ts";
-import { Line } from "./line.ts";
+import { discard, Line, setUniforms } from "./line.ts";
 
 /** Lengths of paths that look alike. */
 export interface Lengths {
@@ -51,24 +51,6 @@ export const materials = {
 /** Lines of a hatched section: how far apart, and how wide. [px of the page] */
 export const hatching = { period: 15, line: 1.7 } as const;
 
-/** The one thing that draws with a graphics processor, for all pictures of the page. */
-export class GraphicsProcessor {
-  readonly renderer: three.WebGLRenderer;
-  /** Without a graphics processor every pixel takes its time. */
-  readonly isSlow: boolean;
-
-  /** Throws where there is no WebGL. */
-  constructor() {
-    const canvas = document.createElement("canvas");
-    const gl = canvas.getContext("webgl2", { alpha: true });
-    if (!gl) throw new Error("there is no WebGL");
-    this.isSlow = isSoftware(gl);
-    this.renderer = new three.WebGLRenderer({ canvas, context: gl, alpha: true });
-    this.renderer.autoClear = false;
-    this.renderer.setClearColor(0, 0);
-  }
-}
-
 /** Draws with WebGL. */
 export class GraphicsPainter implements Painter {
   private readonly anatomy: three.Mesh<three.BufferGeometry, three.ShaderMaterial>;
@@ -84,25 +66,22 @@ export class GraphicsPainter implements Painter {
 
   /** `corners`: of the triangles that are drawn. `isCut`: whether each picture cuts them open. */
   constructor(
-    private readonly processor: GraphicsProcessor,
+    private readonly graphics: Graphics,
     anatomy: Anatomy,
     corners: Uint32Array,
     private readonly camera: three.OrthographicCamera,
     isCut: boolean,
   ) {
-    const geometry = new three.BufferGeometry();
-    geometry.setAttribute("position", new three.BufferAttribute(anatomy.positions, 3));
-    this.fine = new three.BufferAttribute(corners, 1);
-    geometry.setIndex(this.fine);
-    geometry.computeVertexNormals();
+    const geometry = surfaceGeometry(anatomy.positions, corners);
+    this.fine = geometry.index as three.BufferAttribute;
     const grain = (camera.top - camera.bottom) / 120;
-    this.coarse = processor.isSlow
+    this.coarse = graphics.isSlow
       ? new three.BufferAttribute(coarsened(anatomy.positions, corners, grain), 1)
       : this.fine;
     this.anatomy = new three.Mesh(geometry, boneMaterial(isCut, anatomy.isClosed, this.depths));
     this.anatomy.frustumCulled = false;
     this.scene.add(this.anatomy);
-    this.still = new StillPicture(this.scene, camera, processor.isSlow ? 0 : 4);
+    this.still = new StillPicture(this.scene, camera, graphics.isSlow ? 0 : 4);
   }
 
   outdate(): void {
@@ -110,7 +89,7 @@ export class GraphicsPainter implements Painter {
   }
 
   paint(layer: Layer, width: number, height: number, scale: number): HTMLCanvasElement {
-    const { renderer } = this.processor;
+    const { renderer } = this.graphics;
     const size = renderer.getSize(new three.Vector2());
     const [columns, rows] = [Math.round(width * scale), Math.round(height * scale)];
     if (size.x !== columns || size.y !== rows) renderer.setSize(columns, rows, false);
@@ -139,11 +118,9 @@ export class GraphicsPainter implements Painter {
   }
 
   dispose(): void {
-    this.anatomy.geometry.dispose();
-    this.anatomy.material.dispose();
     this.depths.dispose();
-    this.brush.dispose();
-    for (const line of [...this.linesOf.values()].flat()) line.dispose();
+    for (const { mesh } of [this.brush, ...[...this.linesOf.values()].flat()]) discard(mesh);
+    discard(this.anatomy);
   }
 
   private hang(cut: Cut, sizes: Readonly<Record<string, number>>): void {
@@ -151,9 +128,7 @@ export class GraphicsPainter implements Painter {
     const data = depths as Float32Array<ArrayBuffer>;
     this.depths.image = { data, width: data.length, height: 1 };
     this.depths.needsUpdate = true;
-    for (const [name, value] of Object.entries({ ...frame, ...sizes })) {
-      (this.anatomy.material.uniforms[name] as three.IUniform).value = value;
-    }
+    setUniforms(this.anatomy.material, { ...frame, ...sizes });
   }
 }
 

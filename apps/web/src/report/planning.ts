@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
+
 import * as three from "three";
+import { grouped, make } from "../page/elements.ts";
 import { type Anatomy, fitted, lookFrom, unpackedAnatomy } from "./anatomy.ts";
 import { AnatomyView, hint } from "./anatomy_view.ts";
 import { coloured, ends, widths } from "./paths.ts";
 import { type ReportRecord, valueAt } from "./record.ts";
 import { lead, section } from "./report_page.ts";
 import { pictureGrid, runColor } from "./runs.ts";
-import { grouped, make, rounded, shown } from "./shown.ts";
+import { rounded, shown } from "./shown.ts";
 import type { PlanRecord } from "./simulation_record.ts";
 import { type Column, column, harm, named, scrolled, table } from "./table.ts";
 
@@ -45,18 +47,16 @@ async function meshSection(plan: PlanRecord, number: number): Promise<HTMLElemen
   const view = new AnatomyView(group, anatomy, anatomy.corners, outlook(anatomy));
   rows.forEach((row, place) => {
     const checker = plan.summaries[row]?.checker as string;
-    const [good, bad]: [number[], number[]] = [[], []];
-    for (const run of plan.runs) {
-      if (run.mesh !== mesh.name || run.checker !== checker) continue;
-      for (const end of ends((run.path ?? []).map(anatomy.placed))) good.push(end);
-      for (const end of (run.too_near ?? []).flatMap((length) => ends(length.map(anatomy.placed))))
-        bad.push(end);
-    }
+    const runs = plan.runs.filter((run) => run.mesh === mesh.name && run.checker === checker);
+    const good = runs.flatMap(({ path }) => ends((path ?? []).map(anatomy.placed)));
+    const tooNear = runs.flatMap(({ too_near }) => too_near ?? []);
+    const bad = tooNear.flatMap((length) => ends(length.map(anatomy.placed)));
     const lengths = coloured(good, bad, runColor(place + 1), widths.many, mesh.inside);
     const from = `/summaries/${row}`;
-    const caption = make(
-      "figcaption",
-      {},
+    view.add(
+      `All paths found under the checker ${checker}.`,
+      { lengths, cut: null },
+      [],
       make("span", { class: "name" }, shown(`${from}/checker`)),
       make("br"),
       shown(`${from}/solved`, grouped),
@@ -64,9 +64,6 @@ async function meshSection(plan: PlanRecord, number: number): Promise<HTMLElemen
       shown(`${from}/valid`, grouped),
       " valid",
     );
-    const description = `All paths found under the checker ${checker}.`;
-    const picture = view.picture(description, { lengths, cut: null }, []);
-    group.append(make("figure", {}, picture, caption));
   });
   return section(
     shown(`/meshes/${number}/name`),

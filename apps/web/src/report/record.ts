@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /** The record that the page shows: docs/records.md says what is in it. */
-import { unpacked } from "../page/unpacked.ts";
+import { unpacked } from "../page/embedded_surface.ts";
 
 interface Machine {
   readonly processor: string;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-import { saveFile } from "../page/save_file.ts";
+import { make, saveFile } from "../page/elements.ts";
 import { type ReportRecord, readRecord, recordText, valueAt } from "./record.ts";
-import { make, paragraphs, rounded, show, shown, shownMembers, shownWhole } from "./shown.ts";
+import { paragraphs, rounded, show, shown, shownMembers, shownWhole } from "./shown.ts";
 
 /** What a page shows between its headline and its machine. */
 type Sections = (main: HTMLElement, record: ReportRecord) => void | Promise<void>;
@@ -50,6 +50,10 @@ export function section(title: Node | string, ...content: readonly (Node | strin
 /** A paragraph of the page's own words under a heading. */
 export const lead = (...content: readonly (Node | string)[]): HTMLElement =>
   make("p", { class: "lead" }, ...content);
+
+/** A paragraph on how something was measured. */
+export const method = (...words: readonly (Node | string)[]): HTMLElement =>
+  make("p", { class: "method" }, ...words);
 
 /** Cards with plots, side by side where there is room. */
 export const panels = (...figures: readonly HTMLElement[]): HTMLElement =>

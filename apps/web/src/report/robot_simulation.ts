@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /** The sections of a simulation with a whole instrument: docs/records.md. */
+
 import * as three from "three";
+import { make } from "../page/elements.ts";
 import { type Anatomy, fitted, lookFrom, unpackedAnatomy } from "./anatomy.ts";
 import { AnatomyView, hint } from "./anatomy_view.ts";
 import type { Capsule } from "./capsules.ts";
 import type { Layer } from "./painting.ts";
 import { entries, type ReportRecord } from "./record.ts";
 import { lead, section } from "./report_page.ts";
-import { pictureGrid, runColor } from "./runs.ts";
-import { make, millimetres, rounded, show, shown } from "./shown.ts";
+import { pictureGrid, runColor, runName } from "./runs.ts";
+import { millimetres, rounded, show, shown } from "./shown.ts";
 import type { Place, RecordedMesh } from "./simulation_record.ts";
 import { type Column, column, harm, named, scrolled, table } from "./table.ts";
 import { strokeChooser, timeSlider } from "./time_slider.ts";
@@ -114,11 +116,8 @@ function strokeView(
   const followed = stroke.runs.map((run, number) => {
     const layer: Layer = { lengths: [], cut: null };
     const now = make("span", { class: "now" });
-    const style = `--color: var(${runColor(number)})`;
-    const mode = shown(`${from}/runs/${number}/mode`);
-    const name = make("span", { class: "name", style }, make("span", { class: "swatch" }), mode);
-    const picture = view.picture(`The instrument beside the anatomy, ${run.mode}.`, layer, []);
-    group.append(make("figure", {}, picture, make("figcaption", {}, name, now)));
+    const name = runName(number, `${from}/runs/${number}/mode`);
+    view.add(`The instrument beside the anatomy, ${run.mode}.`, layer, [], name, now);
     return (cycle: number) => {
       const clearances = (run.clearance_mm[cycle] ?? []).map(
         (mm) => mm ?? Number.POSITIVE_INFINITY,

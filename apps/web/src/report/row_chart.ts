@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import * as Plot from "@observablehq/plot";
+import { drawn } from "../page/elements.ts";
 import { type Chart, chart } from "./charts.ts";
-import { type Format, textOf } from "./shown.ts";
+import { type Format, show } from "./shown.ts";
 
 /** A value of the record within a text of a plot. */
 interface Inscribed {
@@ -77,10 +78,8 @@ function inscribed<Datum>(data: Datum[], content: Inscription<Datum>, options: P
       const group = next?.(index, scales, values, dimensions, context) ?? null;
       group?.querySelectorAll("text").forEach((text, i) => {
         const parts = content(data[index[i] as number] as Datum).map((part) => {
-          const span = document.createElementNS("http://www.w3.org/2000/svg", "tspan");
-          span.textContent = typeof part === "string" ? part : textOf(part.from, part.format);
-          if (typeof part !== "string") span.setAttribute("data-from", part.from);
-          return span;
+          if (typeof part === "string") return drawn("tspan", {}, part);
+          return show(drawn("tspan"), part.from, part.format);
         });
         text.replaceChildren(...parts);
       });

@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /** How runs are told apart on a page: by their names, with a swatch of their colours. */
+import { make } from "../page/elements.ts";
 import { lastKey } from "./record.ts";
-import { make, shown } from "./shown.ts";
+import { shown } from "./shown.ts";
 
 /** The variable of the page's style that has the colour of a run. */
 export const runColor = (run: number): string => `--rule-${run % 6}`;
 
-/** The name of a run, after a swatch of its colour. */
-export const runName = (run: number): HTMLElement =>
+/** The name of a run, after a swatch of its colour. `from`: where the name is. */
+export const runName = (run: number, from = `/runs/${run}/name`): HTMLElement =>
   make(
     "span",
     { class: "name", style: `--color: var(${runColor(run)})` },
     make("span", { class: "swatch" }),
-    shown(`/runs/${run}/name`),
+    shown(from),
   );
 
 /** The place of something in an array of the record, as people count: from one. */

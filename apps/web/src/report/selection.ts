@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+import { make } from "../page/elements.ts";
 import { Choices } from "./charts.ts";
-import { make } from "./shown.ts";
 
 /** Something that rows differ in, of which one at a time is chosen. */
 export interface Question<Row> {

@@ -1,18 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /** How values of the record are shown: each element says from where in the record its text is. */
+import { grouped, make } from "../page/elements.ts";
 import { entries, lastKey, valueAt } from "./record.ts";
-
-/** An element with attributes and what is in it. Text is never taken for HTML. */
-export function make<Tag extends keyof HTMLElementTagNameMap>(
-  tag: Tag,
-  attributes: Readonly<Record<string, string>> = {},
-  ...children: readonly (Node | string)[]
-): HTMLElementTagNameMap[Tag] {
-  const element = document.createElement(tag);
-  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
-  element.append(...children);
-  return element;
-}
 
 /** What a number looks like. */
 export type Format = (value: number) => string;
@@ -29,9 +18,6 @@ export const trimmed = (value: number, digits = 6): string => {
   const text = rounded(value, digits);
   return text.includes(".") ? text.replace(/\.?0+$/, "").replace(/^-0$/, "0") : text;
 };
-
-/** A count with its thousands set apart: 24,000. */
-export const grouped: Format = (value) => Math.round(value).toLocaleString("en");
 
 /** A mean of counts: 0.130, 26.2, 10,151. */
 export const mean: Format = (value) => (value >= 1e3 ? grouped(value) : rounded(value));
@@ -70,7 +56,7 @@ export const inUnit =
     `${format(value)}\u00a0${unit}`;
 
 /** The text of a value of the record: a dash for what was not measured or has no meaning there. */
-export function textOf(pointer: string, format: Format = trimmed): string {
+function textOf(pointer: string, format: Format = trimmed): string {
   const value = valueAt<unknown>(pointer);
   if (value === null || value === undefined || value === "") return "–";
   return typeof value === "number" ? format(value) : String(value);

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
+
 import * as three from "three";
+import { drawn, make } from "../page/elements.ts";
 import { type Anatomy, fitted, lookFrom, type Outlook, unpackedAnatomy } from "./anatomy.ts";
 import { AnatomyView, bestDirection, hint } from "./anatomy_view.ts";
 import { benchmarkSections } from "./benchmark.ts";
-import { drawn, mark } from "./marks.ts";
+import { mark } from "./marks.ts";
 import { coloured, parted, widths } from "./paths.ts";
 import { lastKey, type ReportRecord, valueAt } from "./record.ts";
-import { lead, section } from "./report_page.ts";
+import { lead, method, section } from "./report_page.ts";
 import { pictureGrid, runColor, runName } from "./runs.ts";
-import { make, millimetres, rounded, show, shown } from "./shown.ts";
+import { millimetres, rounded, show, shown } from "./shown.ts";
 import { stepTimes } from "./simulation_charts.ts";
 import { type Run, type SimulationRecord, trespass } from "./simulation_record.ts";
 import { seen } from "./still.ts";
@@ -24,7 +26,7 @@ export async function simulationSections(main: HTMLElement, record: ReportRecord
     figures(simulation),
     strokeSection(simulation, anatomy),
     ...speed(simulation),
-    method(simulation.mesh.surface === "closed"),
+    measurement(simulation.mesh.surface === "closed"),
     ...benchmarkSections("/benchmark", "/comparison"),
   );
 }
@@ -37,9 +39,10 @@ function overview(record: SimulationRecord, anatomy: Anatomy): HTMLElement {
     const layer = { lengths: strokes(record, anatomy, run, number), cut: null };
     const description = `The anatomy with the paths of the tool tip, ${run.name}; in the colour of alarm where the tip is where it must not be.`;
     const [verdict, words] = run.kept_out ? ["good", "stayed out"] : ["bad", "went in"];
-    const caption = make(
-      "figcaption",
-      {},
+    view.add(
+      description,
+      layer,
+      worstPlace(anatomy, run, number),
       make("span", { class: `badge ${verdict}` }, words),
       runName(number),
       make("br"),
@@ -48,8 +51,6 @@ function overview(record: SimulationRecord, anatomy: Anatomy): HTMLElement {
         ? [make("br"), show(make("span", { class: "about" }), `/runs/${number}/description`)]
         : []),
     );
-    const picture = view.picture(description, layer, worstPlace(anatomy, run, number));
-    group.append(make("figure", {}, picture, caption));
   });
   return make("section", {}, group, hint());
 }
@@ -68,13 +69,11 @@ function worstPlace(anatomy: Anatomy, run: Run, number: number) {
 }
 
 function strokes(record: SimulationRecord, anatomy: Anatomy, run: Run, number: number) {
-  const [good, bad]: [number[], number[]] = [[], []];
-  run.strokes.forEach(({ tip }, stroke) => {
+  const parts = run.strokes.map(({ tip }, stroke) => {
     const isBad = trespass(run, stroke, record.mesh.surface);
-    const parts = parted(tip.map(anatomy.placed), isBad, 1e-3 * anatomy.size);
-    for (const value of parts.good) good.push(value);
-    for (const value of parts.bad) bad.push(value);
+    return parted(tip.map(anatomy.placed), isBad, 1e-3 * anatomy.size);
   });
+  const [good, bad] = [parts.flatMap((part) => part.good), parts.flatMap((part) => part.bad)];
   return coloured(good, bad, runColor(number), widths.whole);
 }
 
@@ -165,21 +164,17 @@ function speed(record: SimulationRecord): HTMLElement[] {
   ];
 }
 
-function method(isClosed: boolean): HTMLElement {
+function measurement(isClosed: boolean): HTMLElement {
   return section(
     "How this was measured",
-    make(
-      "p",
-      { class: "method" },
+    method(
       "A seeded random hand moves over the anatomy and pushes into it, cycle by cycle. Each rule gets the very same hand; it may shorten or turn each motion before the tool follows. In every cycle it is then checked where the tip really is. ",
       isClosed
         ? "Inside or outside is told by counting how often a ray from the tip passes through the surface, which shares nothing with the rules."
         : "The surface has holes, so it has no inside: only crossings count. On which side of the surface the tip is, is told by the angle-weighted normal at the nearest point of it (the pseudonormal), which no rule uses. The tip may go around a rim; sliding around one in contact counts as a crossing.",
       " Distances come from a search tree (a PD-tree) and a closest-point computation that the rules may use too; the tests hold both to brute force and to an independent computation in quadruple precision. Depths up to a nanometre count as touching, not as inside.",
     ),
-    make(
-      "p",
-      { class: "method" },
+    method(
       "Times are of the step alone, on the machine named below, with whatever else that machine did meanwhile.",
     ),
   );

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 import * as Plot from "@observablehq/plot";
-import { chart, Legend, type Look, logarithmic, tickText, tipOf } from "./charts.ts";
+import { drawn, make } from "../page/elements.ts";
+import { chart, Legend, type Look, levelMarks, logarithmic, tickText, tipOf } from "./charts.ts";
 import { extremes } from "./extremes.ts";
-import { drawn } from "./marks.ts";
 import { panels } from "./report_page.ts";
 import { ordinal, runColor } from "./runs.ts";
-import { make, microseconds, millimetres, shown } from "./shown.ts";
+import { microseconds, millimetres, shown } from "./shown.ts";
 import type { SimulationRecord, Stroke } from "./simulation_record.ts";
 
 /** A cycle in a plot: what is drawn of it, and where in the record that is. */
@@ -75,10 +75,8 @@ export function clearanceCharts(record: SimulationRecord, stroke: number) {
     };
   };
   const isClosed = record.mesh.surface === "closed";
-  const level = (y: number, text: string, dy = -8) => [
-    Plot.ruleY([y], { stroke: "var(--soft)", strokeDasharray: "5 4" }),
-    Plot.text([text], { y, frameAnchor: "right", dy, textAnchor: "end", fill: "var(--soft)" }),
-  ];
+  const level = (y: number, text: string, dy = -8) =>
+    levelMarks("y", y, text, { frameAnchor: "right", dy, textAnchor: "end" });
   const draw = (domain: readonly [number, number], kept: number) => (): Plot.PlotOptions => ({
     height: 340,
     marginLeft: 52,
@@ -179,14 +177,8 @@ export function stepTimes(record: SimulationRecord): HTMLElement[] {
       tickFormat: (share: number) => `${tickText(share)} %`,
     },
     marks: [
-      Plot.ruleX([cycle], { stroke: "var(--soft)", strokeDasharray: "5 4" }),
-      Plot.text(["one control cycle"], {
-        x: cycle,
-        frameAnchor: "top",
-        dx: -8,
-        dy: 6,
-        textAnchor: "end",
-        fill: "var(--soft)",
+      ...levelMarks("x", cycle, "one control cycle", {
+        ...{ frameAnchor: "top", dx: -8, dy: 6, textAnchor: "end" },
       }),
       ...lines(points.filter(({ run }) => legend.shows(String(run)))),
     ],

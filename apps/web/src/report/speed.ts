@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /** The sections of the table of ratios that keepout is held to. */
+
 import * as Plot from "@observablehq/plot";
+import { make } from "../page/elements.ts";
 import { chart, Legend, type Look, logarithmic, tipOfColumns } from "./charts.ts";
 import { curves } from "./curves.ts";
 import { entries, type Timing, valueAt } from "./record.ts";
 import { lead, panel, panels, section } from "./report_page.ts";
-import { type Format, make, mean, nanoseconds, rounded, shown, trimmed } from "./shown.ts";
+import { type Format, mean, nanoseconds, rounded, shown, trimmed } from "./shown.ts";
 import { type Column, column, scrolled, table } from "./table.ts";
 
 /** Median, 99 % and 99.9 %, as far as there are enough samples, in one unit. */

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
+import { drawn, make } from "../page/elements.ts";
 import { type Anatomy, cornersAround } from "./anatomy.ts";
 import { AnatomyView } from "./anatomy_view.ts";
 import { type Cut, closeUp, hang, markedCycle } from "./cut.ts";
 import { extremes } from "./extremes.ts";
-import { drawn, mark } from "./marks.ts";
+import { mark } from "./marks.ts";
 import { coloured, parted, widths } from "./paths.ts";
 import { lead, section } from "./report_page.ts";
 import { ordinal, pictureGrid, runColor, runName } from "./runs.ts";
-import { make, millimetres, show } from "./shown.ts";
+import { millimetres, show } from "./shown.ts";
 import { clearanceCharts } from "./simulation_charts.ts";
 import {
   type Run,
@@ -110,9 +111,7 @@ function strokeView(
     }
     const now = make("span", { class: "now" });
     const description = `Section along the path of the tip, ${run.name}: ${label.textContent}.`;
-    const picture = view.picture(description, { lengths, cut }, Object.values(marks));
-    const caption = make("figcaption", {}, runName(number), now);
-    group.append(make("figure", {}, picture, caption));
+    view.add(description, { lengths, cut }, Object.values(marks), runName(number), now);
     return (cycle: number) => {
       marks.tool.place = at(cycle);
       marks.hand.place = hand[cycle] ?? at(cycle);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+import { grouped, make } from "../page/elements.ts";
 import { valueAt } from "./record.ts";
-import { type Format, grouped, make, show } from "./shown.ts";
+import { type Format, show } from "./shown.ts";
 
 /** A column of a table: what of each row it shows. */
 export interface Column {

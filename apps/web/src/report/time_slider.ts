@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+import { make } from "../page/elements.ts";
 import { ordinal } from "./runs.ts";
-import { make } from "./shown.ts";
 
 /** How long a stroke is played. [ms] */
 const playing = 8000;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /** The sections of a campaign that looks for a step that breaks the theorem. */
+import { make } from "../page/elements.ts";
 import { entries, lastKey, valueAt } from "./record.ts";
 import { lead, section } from "./report_page.ts";
-import { error, make, mean, shownMembers, shownWhole } from "./shown.ts";
+import { error, mean, shownMembers, shownWhole } from "./shown.ts";
 import { type Column, column, harm, named, scrolled, table } from "./table.ts";
 
 /** A column for each member that is not nothing in all. */
