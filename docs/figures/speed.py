@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the pages print of `bench` and `bench --speed`."""
 
-from values import number, of_kind, share, table
+from values import grouped, number, of_kind, share, table
 
 
 def with_unit(value, unit):
@@ -105,9 +105,7 @@ def speed(record):
 @of_kind("bench")
 def bench(record):
     rows = record["benchmark"]["rows"]
-    meshes = list(dict.fromkeys((row["mesh"], row["triangles"]) for row in rows))
-    for mesh, triangles in meshes:
-        of_mesh = [row for row in rows if (row["mesh"], row["triangles"]) == (mesh, triangles)]
+    for (mesh, triangles), of_mesh in grouped(rows, "mesh", "triangles").items():
         yield f"{mesh}{triangles}.indices", index_table(of_mesh)
         yield f"{mesh}{triangles}.solvers", solver_table(of_mesh)
         yield f"{mesh}{triangles}.rules", rule_table(of_mesh)

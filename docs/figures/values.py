@@ -62,6 +62,18 @@ def table(columns, rows, left=1):
     return "\n".join(lines)
 
 
+def grouped(rows, *keys):
+    """Returns the rows by their values of these keys, or of this key, in the order of the first ones."""
+    groups = {}
+    for row in rows:
+        groups.setdefault(tuple(row[key] for key in keys) if len(keys) > 1 else row[keys[0]], []).append(row)
+    return groups
+
+
+def total(rows, key):
+    return sum(row[key] for row in rows)
+
+
 @of_kind("simulate")
 def simulate(record):
     rows = []
@@ -99,58 +111,40 @@ def simulate_robot(record):
             cells.append(f"{below:,}; {inside:,}{deepest}" if below else "0")
         rows.append([f"{row['mesh']}, x{row['speed']:g}", row["mode"], *cells, f"{row['refused']:,}"])
     yield "table", table(["mesh, speed", "mode", *bodies, "no motion"], rows, left=2)
-    for mode in {row["mode"] for row in record["rows"]}:
-        of_mode = [row for row in record["rows"] if row["mode"] == mode]
+    for mode, of_mode in grouped(record["rows"], "mode").items():
         key = mode.replace(" ", "_")
-        yield f"{key}.cycles", f"{sum(row['cycles'] for row in of_mode):,}"
-        yield f"{key}.refused", f"{sum(row['refused'] for row in of_mode):,}"
-        yield f"{key}.below", f"{sum(row[f'{b}_below'] for row in of_mode for b in bodies):,}"
-        yield f"{key}.in_mesh", f"{sum(row[f'{b}_in_mesh'] for row in of_mode for b in bodies):,}"
+        for what in ("cycles", "refused"):
+            yield f"{key}.{what}", f"{total(of_mode, what):,}"
+        for what in ("below", "in_mesh"):
+            yield f"{key}.{what}", f"{sum(total(of_mode, f'{b}_{what}') for b in bodies):,}"
         yield f"{key}.deepest_mm", number(max(row[f"{b}_deepest_mm"] for row in of_mode for b in bodies))
 
 
 @of_kind("verify")
 def verify(record):
-    total = record["total"]
-    yield "steps", f"{total['steps']:,}"
+    its = record["total"]
+    yield "steps", f"{its['steps']:,}"
     yield "meshes", str(len(record["meshes"]))
-    yield "breaches", f"{sum(total['breaches'].values()):,}"
-    for kind, count in total["breaches"].items():
+    yield "breaches", f"{sum(its['breaches'].values()):,}"
+    for kind, count in its["breaches"].items():
         yield f"breaches.{kind}", f"{count:,}"
-    yield "led_out", f"{total['led_out']:,}"
-    yield "least_mm", f"{total['least_beyond_margin']:.2g}"
-    yield "least_tau", f"{total['least_beyond_margin_in_tau']:.3g}"
-    yield "statuses", ", ".join(f"`{name}` {count:,}" for name, count in total["statuses"].items() if count)
-
-
-def merged_rows(rows):
-    """Returns the sums of a campaign's rows by scenario and speed."""
-    sums = {}
-    for row in rows:
-        its = sums.setdefault((row["scenario"], row["speed"]), {
-            "cycles": 0, "below": 0, "guides_left": 0, "limits_broken": 0, "strayed": 0, "searched": 0,
-            "useful": 0, "movable": 0, "least_beyond_tau": float("inf"), "deepest_mm": 0.0})
-        for key in ("cycles", "below", "guides_left", "limits_broken", "strayed", "useful", "movable"):
-            its[key] += row[key]
-        its["searched"] += row["excess_samples"]
-        if row["least_beyond_tau"] is not None:
-            its["least_beyond_tau"] = min(its["least_beyond_tau"], row["least_beyond_tau"])
-        its["deepest_mm"] = max(its["deepest_mm"], row["deepest_mm"])
-    return sums
+    yield "led_out", f"{its['led_out']:,}"
+    yield "least_mm", f"{its['least_beyond_margin']:.2g}"
+    yield "least_tau", f"{its['least_beyond_margin_in_tau']:.3g}"
+    yield "statuses", ", ".join(f"`{name}` {count:,}" for name, count in its["statuses"].items() if count)
 
 
 @of_kind("verify_robot")
 def verify_robot(record):
-    total = record["total"]
     for key in ("cycles", "below", "in_mesh", "guides_left", "limits_broken", "strayed"):
-        yield key, f"{total[key]:,}"
-    sums = merged_rows(record["rows"])
+        yield key, f"{record['total'][key]:,}"
     yield "scenarios", table(
         ["scenario", "speed", "cycles", "below", "guides left", "joint limits broken", "strayed",
          "blocked, searched", "movable"],
-        [[scenario, f"x{speed:g}", f"{its['cycles']:,}", its["below"], its["guides_left"], its["limits_broken"],
-          its["strayed"], f"{its['searched']:,}", share(its["movable"], its["searched"])]
-         for (scenario, speed), its in sums.items()])
+        [[scenario, f"x{speed:g}", f"{total(rows, 'cycles'):,}",
+          *(total(rows, key) for key in ("below", "guides_left", "limits_broken", "strayed")),
+          f"{total(rows, 'excess_samples'):,}", share(total(rows, "movable"), total(rows, "excess_samples"))]
+         for (scenario, speed), rows in grouped(record["rows"], "scenario", "speed").items()])
     yield "by_mesh", table(
         ["mesh", "scenario", "speed", "cycles", "below", "rounds, mean/max", "blocked", "truncated",
          "no motion", "excess", "with a useful motion"],
@@ -184,21 +178,17 @@ def verify_robot(record):
 
 def step_lengths(rows):
     """Returns a table by the length of a step, and by the rate of the cycles."""
-    by_speed = {}
-    for row in rows:
-        its = by_speed.setdefault(row["speed"], {"cycle_s": row.get("cycle_s", 0.0), "cycles": 0, "below": 0, "in_mesh": 0,
-                                               "blocked": 0.0, "least": 0.0, "deepest": 0.0})
-        its["blocked"] += row["blocked_share"] * row["cycles"] if row["cycles"] else 0.0
-        for key in ("cycles", "below", "in_mesh"):
-            its[key] += row[key]
-        its["least"] = min(its["least"], row["least_beyond_mm"] or 0.0)
-        its["deepest"] = max(its["deepest"], row["deepest_mm"])
+    body = []
+    for speed, its in sorted(grouped(rows, "speed").items()):
+        cycles, cycle_s = total(its, "cycles"), its[0].get("cycle_s")
+        blocked = sum(row["blocked_share"] * row["cycles"] for row in its if row["cycles"])
+        least = min(0.0, *(row["least_beyond_mm"] or 0.0 for row in its))
+        body.append([f"{0.5 * speed:g} mm, {0.02 * speed:g} rad", f"{number(1.0 / cycle_s)} Hz" if cycle_s else "-",
+                     f"{cycles:,}", share(blocked, cycles), f"{total(its, 'below'):,}", number(-least, 2),
+                     f"{total(its, 'in_mesh'):,}", number(max(row["deepest_mm"] for row in its), 2)])
     return table(
         ["step length, at most", "cycle rate", "cycles", "in contact", "below the certified clearance", "at most by, mm",
-         "in the mesh", "deepest, mm"],
-        [[f"{0.5 * speed:g} mm, {0.02 * speed:g} rad", f"{number(1.0 / its['cycle_s'])} Hz" if its["cycle_s"] else "-", f"{its['cycles']:,}",
-          share(its["blocked"], its["cycles"]), f"{its['below']:,}", number(-its["least"], 2), f"{its['in_mesh']:,}", number(its["deepest"], 2)]
-         for speed, its in sorted(by_speed.items())])
+         "in the mesh", "deepest, mm"], body)
 
 
 @of_kind("plan")
@@ -229,19 +219,18 @@ def plan_robot(record):
 
 def plan_numbers(record):
     """Yields sums over the meshes for each checker, and its time beside that of `certified`."""
-    for checker in dict.fromkeys(its["checker"] for its in record["summaries"]):
-        of_it = [its for its in record["summaries"] if its["checker"] == checker]
+    summaries = grouped(record["summaries"], "checker")
+    certified = {its["mesh"]: its for its in summaries["certified"]}
+    for checker, of_it in summaries.items():
         key = checker.replace(" %", "").replace(" ", "_")
         for what in ("runs", "solved", "valid", "entering"):
-            yield f"{key}.{what}", str(sum(its[what] for its in of_it))
-        yield f"{key}.invalid", str(sum(its["solved"] - its["valid"] for its in of_it))
-        yield f"{key}.unsolved", str(sum(its["runs"] - its["solved"] for its in of_it))
+            yield f"{key}.{what}", str(total(of_it, what))
+        yield f"{key}.invalid", str(total(of_it, "solved") - total(of_it, "valid"))
+        yield f"{key}.unsolved", str(total(of_it, "runs") - total(of_it, "solved"))
         for its in of_it:
-            certified = next(other for other in record["summaries"]
-                             if other["mesh"] == its["mesh"] and other["checker"] == "certified")
             yield f"{key}.{its['mesh']}.ms", number(1e3 * its["median_seconds"], 2)
             yield f"{key}.{its['mesh']}.checks", number(its["median_checks"])
-            yield f"{key}.{its['mesh']}.times_certified", number(its["median_seconds"] / certified["median_seconds"], 2)
+            yield f"{key}.{its['mesh']}.times_certified", number(its["median_seconds"] / certified[its["mesh"]]["median_seconds"], 2)
             yield f"{key}.{its['mesh']}.solved", str(its["solved"])
 
 
@@ -257,16 +246,12 @@ def compare(record):
     solvers, phases = record["comparison"]["solvers"], record["comparison"]["narrow_phases"]
     if solvers:
         sums = {}
-        for row in solvers["rows"]:
-            its = sums.setdefault(row["solver"], dict.fromkeys(
-                ("problems", "optimal", "infeasible", "gave_up", "wrong", "step_difference", "kkt_residual",
-                 "converged"), 0))
-            for key in ("problems", "optimal", "infeasible", "gave_up", "wrong"):
-                its[key] += row[key]
+        for name, rows in grouped(solvers["rows"], "solver").items():
+            sums[name] = {key: total(rows, key) for key in ("problems", "optimal", "infeasible", "gave_up", "wrong")}
             for key in ("step_difference", "kkt_residual"):
-                its[key] = max(its[key], row[key])
-            its["converged"] += sum(count for outcome, count in row["outcomes"].items()
-                                    if outcome.startswith("XTOL_REACHED -> infeasible"))
+                sums[name][key] = max(row[key] for row in rows)
+            sums[name]["converged"] = sum(count for row in rows for outcome, count in row["outcomes"].items()
+                                          if outcome.startswith("XTOL_REACHED -> infeasible"))
         yield "solvers", table(
             ["solver", "problems", "optimal", "without a solution, proved", "of these, claimed as converged",
              "given up", "wrong answers that passed", "worst difference, of the motion", "worst KKT residual"],
@@ -277,14 +262,12 @@ def compare(record):
             for key in ("problems", "infeasible", "converged", "gave_up", "wrong"):
                 yield f"{name}.{key}", f"{its[key]:,}"
     if phases:
-        groups = {}
-        for row in phases["rows"]:
-            groups.setdefault((row["tool"], row["backend"]), []).append(row)
+        groups = grouped(phases["rows"], "tool", "backend")
         relations = [row["relation"] for row in next(iter(groups.values()))]
         yield "narrow_phases", table(
             ["tool", "narrow phase", "pairs", "failed", "contradicted", "worst error, mm", "unproven, mm",
              *(f"p50 {relation}, µs" for relation in relations), "p99, the worst, µs"],
-            [[tool, f"`{backend}`", *(number(sum(row[key] for row in rows), 5)
+            [[tool, f"`{backend}`", *(number(total(rows, key), 5)
                                       for key in ("pairs", "failed", "contradicted")),
               *(short(max(row[key] for row in rows)) for key in ("worst_error_mm", "worst_unproven_mm")),
               *(number(row["p50_us"], 2) for row in rows), number(max(row["p99_us"] for row in rows), 2)]
