@@ -26,7 +26,7 @@ import {
   replayCommand,
 } from "./path_file.ts";
 import { tenMinutes } from "./path_record.ts";
-import type { FromWorker, State, ToWorker } from "./protocol.ts";
+import { type FromWorker, type Handlers, handled, type State, type ToWorker } from "./protocol.ts";
 import { Readings } from "./readings.ts";
 import { SettingsPanel } from "./settings_panel.ts";
 import { TipScene } from "./tip_scene.ts";
@@ -58,7 +58,7 @@ let pendingPath: { header: PathHeader | null; lines: Float64Array } | null = nul
 const worker = new Worker(
   URL.createObjectURL(new Blob([embeddedText("worker")], { type: "text/javascript" })),
 );
-worker.onmessage = ({ data }: MessageEvent<FromWorker>) => hear(data);
+worker.onmessage = ({ data }: MessageEvent<FromWorker>) => handled(handlers, data);
 worker.onerror = () => toast("keepout itself has failed in this page: reload it.");
 
 const subject = isTip ? "tip" : "instrument";
@@ -114,71 +114,60 @@ function drop(): void {
   held = null;
 }
 
-function hear(message: FromWorker): void {
-  switch (message.kind) {
-    case "ready":
-      readings = new Readings(message.statuses);
-      // An instrument has no port at a generated mesh.
-      for (const name of isTip ? message.shapes : []) {
-        meshes.offer("Generated", { source: { kind: "shape", name }, command: name });
-      }
-      return;
-    case "surface":
-      drop();
-      scene.show(message);
-      chart.clear();
-      state = null;
-      shown = awaited;
-      if (shown !== null) meshes.select(shown);
-      document.title = `${message.name} – keepout live`;
-      triangles = message.corners.length / 3;
-      return;
-    case "findings":
-      showFindings(message.findings, triangles, meshOf(shown)?.warnings ?? []);
-      return;
-    case "guarded":
-      endLoading();
-      begin();
-      play();
-      return;
-    case "tool":
-      facts = message.facts;
-      scene.equip(facts);
-      return;
-    case "state":
-      show(message.state);
-      return;
-    case "path":
-      takePath(message.use, message.lines, message.settings);
-      return;
-    case "replayed": {
-      const what = isTip ? "the tool" : "the joints";
-      toast(
-        message.differs < 0
-          ? `Replayed: ${grouped(message.cycles)} cycles, and ${what} went the same way, bit for bit.`
-          : `Replayed: ${grouped(message.cycles)} cycles; from cycle ${grouped(message.differs + 1)} ` +
-              `on ${what} went another way than on record.`,
-      );
-      return;
+const handlers: Handlers<FromWorker> = {
+  ready({ statuses, shapes }) {
+    readings = new Readings(statuses);
+    // An instrument has no port at a generated mesh.
+    for (const name of isTip ? shapes : []) {
+      meshes.offer("Generated", { source: { kind: "shape", name }, command: name });
     }
-    case "counterexamples":
-      failures?.open(message);
-      return;
-    case "settings":
-      drop();
-      settings = message.settings;
-      showSettings();
-      return;
-    case "failure":
-      toast(message.message);
-      if (message.of !== "load") return;
-      endLoading();
-      pendingPath = null;
-      grip.hidden = state === null;
-      meshes.select(shown);
-      return;
-  }
-}
+  },
+  surface(surface) {
+    drop();
+    scene.show(surface);
+    chart.clear();
+    state = null;
+    shown = awaited;
+    if (shown !== null) meshes.select(shown);
+    document.title = `${surface.name} – keepout live`;
+    triangles = surface.corners.length / 3;
+  },
+  findings: ({ findings }) => showFindings(findings, triangles, meshOf(shown)?.warnings ?? []),
+  guarded() {
+    endLoading();
+    begin();
+    play();
+  },
+  tool(tool) {
+    facts = tool.facts;
+    scene.equip(facts);
+  },
+  state: (message) => show(message.state),
+  path: ({ use, lines, settings: madeWith }) => takePath(use, lines, madeWith),
+  replayed({ cycles, differs }) {
+    const what = isTip ? "the tool" : "the joints";
+    toast(
+      differs < 0
+        ? `Replayed: ${grouped(cycles)} cycles, and ${what} went the same way, bit for bit.`
+        : `Replayed: ${grouped(cycles)} cycles; from cycle ${grouped(differs + 1)} ` +
+            `on ${what} went another way than on record.`,
+    );
+  },
+  counterexamples: (message) => failures?.open(message),
+  settings(message) {
+    drop();
+    settings = message.settings;
+    showSettings();
+  },
+  failure({ message, of }) {
+    toast(message);
+    if (of !== "load") return;
+    endLoading();
+    pendingPath = null;
+    grip.hidden = state === null;
+    meshes.select(shown);
+  },
+};
 
 function endLoading(): void {
   awaited = null;

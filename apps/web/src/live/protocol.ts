@@ -53,6 +53,19 @@ export type ToWorker =
   /** Time stands still while nobody looks. */
   | { readonly kind: "pause"; readonly paused: boolean };
 
+/** What to do with messages of each kind. */
+export type Handlers<Message extends { readonly kind: string }> = {
+  readonly [Kind in Message["kind"]]: (
+    message: Extract<Message, { kind: Kind }>,
+  ) => void | Promise<void>;
+};
+
+/** Handles a message. */
+export const handled = <Message extends { readonly kind: string }>(
+  handlers: Handlers<Message>,
+  message: Message,
+): void | Promise<void> => handlers[message.kind as Message["kind"]](message as never);
+
 /** The last cycle, and those before it: told some sixty times a second. */
 export interface State extends Cycle, Pick<CycleClock, "lost" | "stepTime" | "rate"> {
   /** Of the worker's clock, at the last cycle. [ms] */

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-import { type Frame, spring, type ToolFacts, type ToolSettings } from "../engine/tool.ts";
+import { MathUtils, Quaternion } from "three";
+import { spring, type ToolFacts, type ToolSettings } from "../engine/tool.ts";
 import { grouped, make } from "../page/elements.ts";
 import { element, isTip, millimetres, set } from "./page.ts";
 import type { State, StatusWords } from "./protocol.ts";
@@ -37,7 +38,9 @@ export class Readings {
     set("newtons", `${newtons.toFixed(2)} N`);
     const { hand, flange } = state;
     const way = Math.hypot(...hand.place.map((value, i) => value - (flange.place[i] as number)));
-    set("hand-off", `${millimetres(way)}, ${degreesBetween(hand, flange).toFixed(0)}°`);
+    const turn = new Quaternion(...hand.turn).angleTo(new Quaternion(...flange.turn));
+    const degrees = MathUtils.radToDeg(turn);
+    set("hand-off", `${millimetres(way)}, ${degrees.toFixed(0)}°`);
     set("margin-kept", isGuarded ? millimetres(settings.margin) : "–");
     const planes = isTip ? `${state.planes.length} of ${state.planeCount}` : `${state.held}`;
     set("planes", isGuarded ? planes : "–");
@@ -99,9 +102,4 @@ export class Readings {
     set("frames", rate.toFixed(0));
     this.frames = { at: now, count: frames };
   }
-}
-
-function degreesBetween(a: Frame, b: Frame): number {
-  const cosine = Math.abs(a.turn.reduce((sum, value, i) => sum + value * (b.turn[i] as number), 0));
-  return (360 / Math.PI) * Math.acos(Math.min(cosine, 1));
 }

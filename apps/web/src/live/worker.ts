@@ -8,7 +8,7 @@ import { decodeSurface, unpacked } from "../page/embedded_surface.ts";
 import { ControlLoop } from "./control_loop.ts";
 import { runCounterexamples } from "./counterexample_trials.ts";
 import { CycleClock } from "./cycle_clock.ts";
-import type { FromWorker, Source, ToWorker } from "./protocol.ts";
+import { type FromWorker, type Handlers, handled, type Source, type ToWorker } from "./protocol.ts";
 
 let keepout: Keepout;
 let anatomy: { of: Anatomy; settings: ToolSettings; port: Port | null } | null = null;
@@ -113,57 +113,41 @@ function begin(): void {
   accepted = anatomy.settings;
 }
 
-function handle(message: ToWorker): void | Promise<void> {
-  switch (message.kind) {
-    case "start":
-      return start(message.engine, message.subject);
-    case "load":
-      return load(message.source, message.settings, message.port);
-    case "settings":
-      if (loop !== null) {
-        loop.use(message.settings);
-        accepted = message.settings;
-      }
-      if (anatomy !== null) anatomy.settings = message.settings;
-      begin();
-      return;
-    case "place":
-      place = message.positions;
-      loop?.place(place);
-      begin();
-      return;
-    case "hand":
-      loop?.hold(message.hand);
-      return;
-    case "replay":
-      loop?.startReplay(message.lines);
-      return;
-    case "ask for path":
-      if (loop !== null) {
-        tell({
-          kind: "path",
-          use: message.use,
-          lines: loop.record.lines(),
-          settings: loop.settings,
-        });
-      }
-      return;
-    case "ask for counterexamples":
-      tell({ kind: "counterexamples", ...runCounterexamples(keepout) });
-      clock.restart();
-      return;
-    case "pause":
-      clock.pause(message.paused);
-      return;
-  }
-}
+const handlers: Handlers<ToWorker> = {
+  start: ({ engine, subject }) => start(engine, subject),
+  load: ({ source, settings, port }) => load(source, settings, port),
+  settings({ settings }) {
+    if (loop !== null) {
+      loop.use(settings);
+      accepted = settings;
+    }
+    if (anatomy !== null) anatomy.settings = settings;
+    begin();
+  },
+  place({ positions }) {
+    place = positions;
+    loop?.place(place);
+    begin();
+  },
+  hand: ({ hand }) => loop?.hold(hand),
+  replay: ({ lines }) => loop?.startReplay(lines),
+  "ask for path"({ use }) {
+    if (loop === null) return;
+    tell({ kind: "path", use, lines: loop.record.lines(), settings: loop.settings });
+  },
+  "ask for counterexamples"() {
+    tell({ kind: "counterexamples", ...runCounterexamples(keepout) });
+    clock.restart();
+  },
+  pause: ({ paused }) => clock.pause(paused),
+};
 
 /** Messages are handled one after the other; one that fails is reported, and the next goes on. */
 let queue: Promise<void> = Promise.resolve();
 self.onmessage = ({ data: message }: MessageEvent<ToWorker>) => {
   queue = queue
     // Without an engine, nothing but its start is tried.
-    .then(() => (message.kind === "start" || keepout ? handle(message) : undefined))
+    .then(() => (message.kind === "start" || keepout ? handled(handlers, message) : undefined))
     .catch((error: unknown) => {
       const words = error instanceof Error ? error.message : String(error);
       tell({ kind: "failure", of: message.kind, message: words });

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import * as three from "three";
+import { FullScreenQuad } from "three/addons/postprocessing/Pass.js";
 
 /**
  * A picture of what stands still, with its depths, that is drawn anew only when the view changes.
@@ -8,8 +9,7 @@ import * as three from "three";
  */
 export class StillPicture {
   private readonly target: three.WebGLRenderTarget;
-  private readonly sheet = new three.Scene();
-  private readonly sheetCamera = new three.OrthographicCamera(-1, 1, 1, -1, 0, 1);
+  private readonly sheet: FullScreenQuad;
   private isOutdated = true;
 
   /** `samples`: of each pixel, for smooth edges. */
@@ -46,9 +46,7 @@ export class StillPicture {
       depthFunc: three.AlwaysDepth,
       blending: three.NoBlending,
     });
-    const rectangle = new three.Mesh(new three.PlaneGeometry(2, 2), material);
-    rectangle.frustumCulled = false;
-    this.sheet.add(rectangle);
+    this.sheet = new FullScreenQuad(material);
   }
 
   /** What was drawn is no more what is seen. */
@@ -68,6 +66,6 @@ export class StillPicture {
       this.isOutdated = false;
     }
     renderer.clear();
-    renderer.render(this.sheet, this.sheetCamera);
+    this.sheet.render(renderer);
   }
 }
