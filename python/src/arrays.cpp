@@ -136,9 +136,4 @@ py::array_t<double> matrix_of(const Pose& pose) {
   return matrix;
 }
 
-std::size_t count(py::ssize_t value, std::string_view name) {
-  if (value < 0) refuse(name, "a number not below zero", std::to_string(value));
-  return static_cast<std::size_t>(value);
-}
-
 }  // namespace keepout::python

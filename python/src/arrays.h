@@ -71,9 +71,6 @@ void warn(const std::string& text);
 /// Three numbers. Fast for an array, a list or a tuple of floats.
 Vec3 point(py::handle argument, std::string_view name);
 
-/// A count that must not be negative.
-std::size_t count(py::ssize_t value, std::string_view name);
-
 /// The points of an array, (n, 3) or, if `expected` allows it, one (3,).
 std::vector<Vec3> points(py::handle argument, const Expected& expected);
 

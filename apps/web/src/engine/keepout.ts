@@ -55,12 +55,7 @@ export interface Findings {
   readonly watertight: boolean;
   readonly size: Vec3;
   readonly warnings: readonly string[];
-  readonly findings: readonly {
-    readonly key: string;
-    readonly count: number;
-    readonly text: string;
-    readonly advice: string;
-  }[];
+  readonly findings: readonly { readonly text: string; readonly advice: string }[];
 }
 
 /** A small mesh, and a motion on which the paper's rule fails. */

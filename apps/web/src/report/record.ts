@@ -2,26 +2,14 @@
 /** The record that the page shows: docs/records.md says what is in it. */
 import { unpacked } from "../page/embedded_surface.ts";
 
-interface Machine {
-  readonly processor: string;
-  readonly cores: number;
-  readonly memory_gib: number;
-  readonly simd: string;
-  readonly libraries: readonly string[];
-  readonly clock_ns: number;
-}
-
-/** What all records have. */
+/** What all records have, as far as the page does not only show it. */
 export interface ReportRecord {
   readonly keepout_record: string;
   readonly date: string;
   readonly command: string;
   readonly complete: boolean;
-  readonly subject: string;
   readonly headline: string;
-  readonly account: readonly string[];
-  readonly machine: Machine | null;
-  readonly settings: Readonly<Record<string, string>>;
+  readonly machine: object | null;
 }
 
 /** Times of which some need more samples than there are. */

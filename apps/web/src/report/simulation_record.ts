@@ -46,13 +46,10 @@ export interface SimulationRecord extends ReportRecord {
   readonly hand: readonly (readonly Place[])[];
   readonly runs: readonly Run[];
   readonly moment: Moment;
-  readonly benchmark: unknown;
-  readonly comparison: unknown;
 }
 
 export interface PlanRecord extends ReportRecord {
   readonly meshes: readonly (RecordedMesh & { readonly inside: boolean })[];
-  readonly checkers: readonly string[];
   readonly summaries: readonly { readonly mesh: string; readonly checker: string }[];
   readonly runs: readonly {
     readonly mesh: string;
