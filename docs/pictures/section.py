@@ -7,6 +7,7 @@ import json
 import math
 import os
 import pathlib
+import re
 import struct
 import subprocess
 import sys
@@ -254,7 +255,13 @@ class Picture:
         self.text(x, y + 4.6, number, "badge", "middle")
 
     def save(self, name):
-        (HERE / name).write_text("\n".join(self.parts) + "\n</svg>\n")
+        """Writes the file, with those rules of STYLE that the picture uses."""
+        text = "\n".join(self.parts)
+        used = set(" ".join(re.findall(r'class="([^"]*)"', text)).split())
+        of_used = lambda rule: rule[0] if used & set(re.findall(r"\.([\w-]+)", rule[0].split("{")[0])) else ""
+        style = re.sub(r" *\.[\w-]+(?:, \.[\w-]+)* \{[^}]*\}", of_used, STYLE)
+        text = text.replace(STYLE, re.sub(r"\n(?: *\n)+", "\n", style))
+        (HERE / name).write_text(text + "\n</svg>\n")
         print(f"draw: {name}")
 
 

@@ -2,7 +2,6 @@
 #include "guard.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "arrays.h"
