@@ -27,7 +27,6 @@ from .hypothesis_tests import holm
 from .modes import make_rule
 from .rules.rule import Rule, Task
 from .rules.signed_distance_field import SignedDistanceField, VoxelGrid
-from .sides import turns_outside
 
 NAME = "e5_distance_field"
 TITLE = "E5 A distance field beside the mesh, at thin walls"
@@ -69,7 +68,7 @@ class Truth:
 
     def __init__(self, mesh: keepout.Mesh) -> None:
         self._judge = Judge(mesh.vertices, mesh.triangles)
-        self._sign = -1.0 if turns_outside(mesh) else 1.0
+        self._sign = -1.0 if mesh.inspect().inside_out else 1.0
 
     def distances(self, points: Array) -> Array:
         """Of (n, 3) points; negative in the solid."""

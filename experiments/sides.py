@@ -21,24 +21,6 @@ Numbers = NDArray[np.int64]
 PAIRS_AT_ONCE = 1_000_000
 
 
-def is_closed(mesh: keepout.Mesh) -> bool:
-    """Whether each edge has as many triangles on one side as on the other: then there are sides."""
-    start = mesh.triangles.astype(np.int64)
-    end = np.roll(start, -1, axis=1)
-    count = len(mesh.vertices)
-    forth, back = (start * count + end).ravel(), (end * count + start).ravel()
-    return bool(np.array_equal(np.sort(forth), np.sort(back)))
-
-
-def turns_outside(mesh: keepout.Mesh) -> int:
-    """How often the outermost room is wound about: 0, or 1 of a mesh whose normals point inwards.
-
-    Of such a mesh, as of an airway in which the tool is to stay, all that is outside is solid.
-    """
-    a, b, c = (mesh.vertices[mesh.triangles[:, i]] for i in range(3))
-    return int(np.sum(np.einsum("ij,ij->i", a, np.cross(b, c))) < 0.0)
-
-
 def lattice_is_solid(
     mesh: keepout.Mesh, low: Array, cell: float, shape: tuple[int, int, int]
 ) -> NDArray[np.bool_]:
@@ -60,7 +42,8 @@ def lattice_is_solid(
     level = np.clip(np.floor((height - low[2]) / cell) + 1, 0, shape[2]).astype(np.int64)
     order = np.argsort(line, kind="stable")
     line, level, turn = line[order], level[order], turn[order]
-    outside = turns_outside(mesh)
+    # Of a mesh whose normals point inwards, as of an airway in which the tool is to stay, all that is outside is solid.
+    outside = int(mesh.inspect().inside_out)
     solid = np.empty(shape, dtype=bool)
     plane = shape[1] * (shape[2] + 1)  # of one i; the last level is above all places
     edges = np.searchsorted(line, np.arange(shape[0] + 1) * shape[1])

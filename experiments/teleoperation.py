@@ -59,7 +59,6 @@ def operate(
         index.mesh,
         margin=MARGIN,
         radius=course.radius,
-        period=course.period,
         corridor=Corridor((a, b, c), (x, y, z), corridor),
     )
     rule = modes.make_rule(mode, task, index)

@@ -28,14 +28,13 @@ class Corridor:
 class Task:
     """What a rule is to do: keep the tip, a ball of no size, `margin` [mm] off a mesh.
 
-    `radius` [mm] is that of the motion sphere: no desired motion is longer. `period` [s] is that of
-    the control cycle. A corridor is kept besides, if there is one.
+    `radius` [mm] is that of the motion sphere: no desired motion is longer. A corridor is kept
+    besides, if there is one.
     """
 
     mesh: keepout.Mesh
     margin: float = 0.2
     radius: float = 5.0
-    period: float = 0.001
     corridor: Corridor | None = None
 
 

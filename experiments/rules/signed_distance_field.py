@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..experiment import Array
-from ..sides import is_closed, lattice_is_solid
+from ..sides import lattice_is_solid
 from .projection import Plane, corridor_planes, nearest_motion
 from .rule import RECOVERY, Task
 
@@ -49,7 +49,7 @@ class VoxelGrid:
         shape = _shape(self.low, np.asarray(high), self.cell)
         if min(shape) < 2 or np.prod(shape) > MOST_VOXELS:
             raise ValueError(f"a grid of {shape} voxels: none, or more than {MOST_VOXELS}")
-        self.is_signed = is_closed(mesh)
+        self.is_signed = mesh.inspect().watertight
         self.values = np.empty(shape, dtype=np.float32)
         across = np.indices(shape[1:]).reshape(2, -1).T * self.cell + self.low[1:]
         slab = np.empty((len(across), 3))
