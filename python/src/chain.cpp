@@ -47,6 +47,10 @@ JointLimits limits_of(Optional lower, Optional upper, Optional velocity, Optiona
           .increment = increment.value_or(none.increment)};
 }
 
+const char* kind_name(const Joint& joint) {
+  return joint.kind == JointKind::revolute ? "revolute" : "prismatic";
+}
+
 /// Where the flange is at each row of q; of what is not finite, nowhere.
 py::array_t<double> forward_kinematics(const Chain& chain, const py::object& positions) {
   const auto n = static_cast<py::ssize_t>(chain.size());
@@ -130,12 +134,7 @@ void bind_chain(py::module_& module) {
            py::arg("lower") = py::none(), py::arg("upper") = py::none(),
            py::arg("velocity") = py::none(), py::arg("increment") = py::none())
       .def_readonly("name", &Joint::name, "For messages.")
-      .def_property_readonly(
-          "kind",
-          [](const Joint& self) {
-            return self.kind == JointKind::revolute ? "revolute" : "prismatic";
-          },
-          "'revolute' or 'prismatic'.")
+      .def_property_readonly("kind", &kind_name, "'revolute' or 'prismatic'.")
       .def_property_readonly(
           "lower", [](const Joint& self) { return self.limits.lower; },
           "Least position [rad or length]; -inf where there is no limit.")
@@ -149,8 +148,7 @@ void bind_chain(py::module_& module) {
           "increment", [](const Joint& self) { return self.limits.increment; },
           "In a cycle [rad or length]; inf where there is no limit.")
       .def("__repr__", [](const Joint& self) {
-        return py::str("<keepout.Joint '{}', {}>")
-            .format(self.name, self.kind == JointKind::revolute ? "revolute" : "prismatic");
+        return py::str("<keepout.Joint '{}', {}>").format(self.name, kind_name(self));
       });
 
   py::class_<DenavitHartenberg>(module, "TableRow", row_doc)

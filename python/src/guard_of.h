@@ -116,9 +116,11 @@ std::string documented(const char* summary) {
   return text;
 }
 
-/// Adds the members that both constraints have, and a property for each option.
-template <class Settings, class Guard>
-void bind_guard(py::class_<Guard>& type, const std::string& name) {
+/// Adds the members that both constraints have, and a property for each option. `signature`: that
+/// of the constructor up to its options. `init`: the constructor and its other arguments.
+template <class Settings, class Guard, class... Init>
+void bind_guard(py::class_<Guard>& type, const std::string& name, const char* signature,
+                Init&&... init) {
   type.def("forget", &Guard::forget,
            "Forgets where the last step led, for motions that have nothing to do with each other: "
            "the\nside of the next position is found anew.")
@@ -138,6 +140,7 @@ void bind_guard(py::class_<Guard>& type, const std::string& name) {
   }
   py::options texts;
   texts.disable_function_signatures();  // which do not know the options
+  type.def(std::forward<Init>(init)..., (signature + keywords_of(usual) + ") -> None").c_str());
   type.def(
       "set_options", [](Guard& self, const py::kwargs& given) { self.set_options(given); },
       ("set_options(self: keepout." + name + ", *" + keywords +

@@ -21,6 +21,13 @@ std::span<const double> numbers_of(const Doubles& array) {
   return {array.data(), static_cast<std::size_t>(array.size())};
 }
 
+Twist twist_of(const py::object& linear, const py::object& angular) {
+  Twist twist;
+  if (!linear.is_none()) twist.linear = point(linear, "linear");
+  if (!angular.is_none()) twist.angular = point(angular, "angular");
+  return twist;
+}
+
 /// Row i, or the only one, which stands for all.
 std::span<const double> row_of(const Doubles& rows, std::size_t i, std::size_t width) {
   return numbers_of(rows).subspan(rows.ndim() == 1 ? 0 : i * width, width);
@@ -71,9 +78,7 @@ InstrumentStepResult InstrumentGuard::step(const py::object& q, const py::object
     return kept;
   };
   if (has_twist) {
-    Twist twist;
-    if (!linear.is_none()) twist.linear = point(linear, "linear");
-    if (!angular.is_none()) twist.angular = point(angular, "angular");
+    const Twist twist = twist_of(linear, angular);
     const InUse in_use(constraint_in_use_);
     return result(constraint_.step(numbers_of(at), twist));
   }
@@ -156,9 +161,7 @@ std::size_t InstrumentGuard::add_mesh(std::shared_ptr<IndexHandle> index, double
 
 void InstrumentGuard::place(std::size_t mesh, const py::object& pose, const py::object& linear,
                             const py::object& angular) {
-  Twist velocity;
-  if (!linear.is_none()) velocity.linear = point(linear, "linear");
-  if (!angular.is_none()) velocity.angular = point(angular, "angular");
+  const Twist velocity = twist_of(linear, angular);
   const Pose at = pose_of(pose, "pose");
   require_mesh(mesh);
   const InUse no_step(constraint_in_use_);
@@ -262,16 +265,10 @@ void bind_meshes(py::class_<InstrumentGuard>& type) {
 void bind_instrument_guard(py::module_& module) {
   const std::string doc = documented<InstrumentConstraintSettings>(guard_doc);
   py::class_<InstrumentGuard> type(module, "InstrumentGuard", doc.c_str());
-  {
-    py::options texts;
-    texts.disable_function_signatures();
-    const std::string text =
-        guard_signature + keywords_of(InstrumentConstraintSettings()) + ") -> None";
-    type.def(py::init(&make_instrument_guard), py::arg("mesh"), py::arg("instrument"),
-             py::kw_only(), py::arg("index") = "wide_bvh", py::arg("index_cache") = py::none(),
-             text.c_str());
-  }
-  bind_guard<InstrumentConstraintSettings>(type, "InstrumentGuard");
+  bind_guard<InstrumentConstraintSettings>(
+      type, "InstrumentGuard", guard_signature, py::init(&make_instrument_guard), py::arg("mesh"),
+      py::arg("instrument"), py::kw_only(), py::arg("index") = "wide_bvh",
+      py::arg("index_cache") = py::none());
   bind_meshes(type);
   type.def("step", &InstrumentGuard::step, py::arg("q"), py::arg("linear") = py::none(),
            py::arg("angular") = py::none(), py::kw_only(), py::arg("increment") = py::none(),

@@ -105,15 +105,10 @@ void bind_batches(py::class_<Guard>& type) {
 void bind_motion_constraint(py::module_& module) {
   const std::string doc = documented<MotionConstraintSettings>(class_doc);
   py::class_<Guard> type(module, "MotionConstraint", doc.c_str());
-  {
-    py::options texts;
-    texts.disable_function_signatures();
-    const std::string text =
-        constraint_signature + keywords_of(MotionConstraintSettings()) + ") -> None";
-    type.def(py::init(&make_guard), py::arg("mesh"), py::kw_only(), py::arg("index") = "wide_bvh",
-             py::arg("index_cache") = py::none(), py::arg("tool") = py::none(), text.c_str());
-  }
-  bind_guard<MotionConstraintSettings>(type, "MotionConstraint");
+  bind_guard<MotionConstraintSettings>(
+      type, "MotionConstraint", constraint_signature, py::init(&make_guard), py::arg("mesh"),
+      py::kw_only(), py::arg("index") = "wide_bvh", py::arg("index_cache") = py::none(),
+      py::arg("tool") = py::none());
   bind_batches(type);
   type.def("step", &Guard::step, py::arg("tip"), py::arg("desired"),
            py::arg("jacobian") = py::none(), py::arg("rows") = py::none(), step_doc)
