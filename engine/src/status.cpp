@@ -4,6 +4,8 @@
 #include <array>
 #include <cstddef>
 
+#include "keepout/step/solver.h"
+
 namespace keepout {
 namespace {
 
@@ -136,6 +138,30 @@ std::string_view reason(Status status, Subject subject) noexcept {
 std::string_view name(Limit limit) noexcept {
   const auto place = static_cast<std::size_t>(limit);
   return place < limit_names.size() ? limit_names[place] : "unknown";
+}
+
+std::string_view name(SolveStatus status) noexcept {
+  return status == SolveStatus::optimal           ? "optimal"
+         : status == SolveStatus::iteration_limit ? "iteration_limit"
+                                                  : name(status_of(status));
+}
+
+Status status_of(SolveStatus status) noexcept {
+  switch (status) {
+    case SolveStatus::optimal:
+      return Status::free;
+    case SolveStatus::infeasible:
+      return Status::infeasible;
+    case SolveStatus::ill_posed:
+      return Status::ill_posed;
+    case SolveStatus::invalid_input:
+      return Status::invalid_input;
+    case SolveStatus::over_capacity:
+      return Status::over_capacity;
+    case SolveStatus::iteration_limit:
+      break;
+  }
+  return Status::unsolved;
 }
 
 }  // namespace keepout

@@ -56,17 +56,15 @@ MotionConstraint make_motion_constraint(std::shared_ptr<const Mesh> mesh,
   if (index) {
     warn_of_coarse_index(*index, required_clearance(settings.options), settings.warn);
   }
-  auto activation = make_rule(settings);
-  auto solver = make_solver(settings.solver);
   // Only the certified rule of a ball knows sides: for others `inside` has no effect.
-  const bool has_sides = settings.activation == "certified" && !settings.tool;
+  const bool rule_knows_sides = settings.activation == "certified" && !settings.tool;
   return {std::move(mesh),
           std::move(index),
-          std::move(activation),
-          std::move(solver),
+          make_rule(settings),
+          make_solver(settings.solver),
           settings.options,
           settings.capacity,
-          has_sides ? settings.inside : Inside::taken_as_is};
+          rule_knows_sides ? settings.inside : Inside::taken_as_is};
 }
 
 }  // namespace keepout

@@ -193,7 +193,7 @@ Status BodyWatch::find_unknown_sides(std::size_t m) noexcept {
   for (std::size_t p = m * bodies; p < (m + 1) * bodies; ++p) {
     if (memory_.pairs[p].is_dropped) continue;
     const auto side = find_side(*mesh.neighborhood, mesh.motion.start_in_mesh()[points(p).back()]);
-    if (!side || budget.is_spent()) return budget.status_at_end();
+    if (!side || budget.is_spent()) return budget.failure();
     if (!side->is_outside && !context_.meshes_move) return Status::inside;
     if (!side->is_outside) drop(p, Status::inside);
     memory_.pairs[p].may_have_crossed = false;

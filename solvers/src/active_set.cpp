@@ -62,7 +62,7 @@ struct ActiveSet::Workspace {
   template <class M>
   void write_solution(const M& method, const StepProblem& problem, Solution& solution) noexcept {
     std::size_t count = 0;
-    for (int i = 0; i < method.active(); ++i) {
+    for (int i = 0; i < method.active_count(); ++i) {
       if (!(method.multiplier(i) > 0)) continue;
       std::size_t slot = count++;  // sorted by row
       const auto row = static_cast<std::uint32_t>(method.row(i));

@@ -61,7 +61,7 @@ class Method {
   }
 
   const Vector<N>& u() const noexcept { return u_; }
-  int active() const noexcept { return basis_.size(); }
+  int active_count() const noexcept { return basis_.size(); }
   int row(int i) const noexcept { return basis_.row(i); }
   double multiplier(int i) const noexcept { return mu_[i]; }
   int iterations() const noexcept { return iterations_; }

@@ -168,12 +168,12 @@ class Rows {
     const Violated worst = store_->planes.most_violated(tip);
     const double noise = 4 * (n() + 8) * epsilon * size_of_jacobian_ * std::sqrt(length2);
     if (!(worst.by > tolerance * shortest_ + noise)) return no_row;
-    write(worst.plane);
-    squares()[worst.plane] = dot((*this)[worst.plane], (*this)[worst.plane]);
-    const double missing = violation(worst.plane, u);
+    write(worst.row);
+    squares()[worst.row] = dot((*this)[worst.row], (*this)[worst.row]);
+    const double missing = violation(worst.row, u);
     if (!(missing > 0)) return no_row;
-    worst_square = missing * missing / squares()[worst.plane];
-    return worst.plane;
+    worst_square = missing * missing / squares()[worst.row];
+    return worst.row;
   }
 
   const StepProblem* problem_ = nullptr;

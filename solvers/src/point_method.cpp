@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "point_method.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -21,10 +22,6 @@ constexpr int most_iterations = 60;
 
 constexpr double unbounded = std::numeric_limits<double>::infinity();
 
-Vec3 cross(const Vec3& a, const Vec3& b) noexcept {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
 double square(double x) noexcept { return x * x; }
 
 Violated most_violated(std::span<const HalfSpace> planes, const Vec3& u) noexcept {
@@ -32,7 +29,7 @@ Violated most_violated(std::span<const HalfSpace> planes, const Vec3& u) noexcep
   for (std::size_t i = 0; i < planes.size(); ++i) {
     const double by = missing(planes[i].normal.data(), planes[i].offset, u.data());
     const bool more = by > worst.by;  // chosen without a branch, which is hard to predict
-    worst.plane = more ? static_cast<int>(i) : worst.plane;
+    worst.row = more ? static_cast<int>(i) : worst.row;
     worst.by = more ? by : worst.by;
   }
   return worst;
@@ -91,12 +88,12 @@ bool PointMethod::list_rows(const StepProblem& problem) noexcept {
 template <class Scan>
 bool PointMethod::run(const StepProblem& problem, const Scan& scan) noexcept {
   u_ = desired_;
-  asked_ = dot(desired_, desired_);
+  asked2_ = dot(desired_, desired_);
   while (iterations_ < most_iterations) {
     const Violated worst = scan(u_);
-    const double reach2 = std::max(asked_, dot(u_, u_));
+    const double reach2 = std::max(asked2_, dot(u_, u_));
     if (!(worst.by > 0 && square(worst.by) > square(feasibility) * reach2)) return true;
-    take_in(problem, worst.plane);
+    take_in(problem, worst.row);
     if (!enter()) return false;
   }
   return false;
@@ -125,7 +122,8 @@ bool PointMethod::enter() noexcept {
     const double violation =
         std::max(missing(entering.normal.data(), entering.bound, u_.data()), 0.0);
     const Split parts = split();
-    const double full = parts.rest > 0 ? violation / parts.rest : unbounded;
+    // With three active rows rest2 is 0: they span the space, so one of them must go.
+    const double full = parts.rest2 > 0 ? violation / parts.rest2 : unbounded;
     double partial = unbounded;
     int blocking = no_row;
     for (int i = 0; i < active_; ++i) {
@@ -139,7 +137,7 @@ bool PointMethod::enter() noexcept {
     const double t = std::min(full, partial);
     if (!(t < unbounded) || ++iterations_ > most_iterations) return false;
     const bool holds = full <= partial;
-    if (holds && !(parts.rest > square(least_angle) * entering.square)) return false;
+    if (holds && !(parts.rest2 > square(least_angle) * entering.square)) return false;
     for (int i = 0; i < active_; ++i) {
       double& mu = active_rows_[at(i)].mu;
       mu = std::max(mu - t * parts.weight[at(i)], 0.0);
@@ -162,28 +160,28 @@ PointMethod::Split PointMethod::split() const noexcept {
   Split parts;
   switch (active_) {
     case 0:
-      parts.rest = active_rows_[0].square;
+      parts.rest2 = active_rows_[0].square;
       break;
     case 1: {
       parts.weight[0] = dot(a, w) / active_rows_[0].square;
       const Vec3 rest = w - parts.weight[0] * a;
-      parts.rest = dot(rest, rest);
+      parts.rest2 = dot(rest, rest);
       break;
     }
     case 2: {
-      const Vec3 edge = cross(a, b);
+      const Vec3 edge = a.cross(b);
       const double scale = 1.0 / dot(edge, edge);
-      parts.weight[0] = scale * dot(cross(w, b), edge);
-      parts.weight[1] = scale * dot(cross(a, w), edge);
-      parts.rest = scale * square(dot(edge, w));
+      parts.weight[0] = scale * dot(w.cross(b), edge);
+      parts.weight[1] = scale * dot(a.cross(w), edge);
+      parts.rest2 = scale * square(dot(edge, w));
       break;
     }
     default: {
-      const Vec3 bc = cross(b, c);
+      const Vec3 bc = b.cross(c);
       const double scale = 1.0 / dot(a, bc);
       parts.weight[0] = scale * dot(w, bc);
-      parts.weight[1] = scale * dot(w, cross(c, a));
-      parts.weight[2] = scale * dot(w, cross(a, b));
+      parts.weight[1] = scale * dot(w, c.cross(a));
+      parts.weight[2] = scale * dot(w, a.cross(b));
       break;
     }
   }
@@ -194,7 +192,7 @@ PointMethod::Split PointMethod::split() const noexcept {
 bool PointMethod::settle() noexcept {
   for (int pass = 0; pass < 4; ++pass) {
     update_u(active_);
-    const double reach2 = std::max(asked_, dot(u_, u_));
+    const double reach2 = std::max(asked2_, dot(u_, u_));
     std::array<double, 3> slack{};
     bool exact = true;
     for (int i = 0; i < active_; ++i) {
@@ -226,7 +224,7 @@ void PointMethod::correct(const std::array<double, 3>& slack) noexcept {
       break;
     }
     default: {
-      const Vec3 bc = cross(b, c), ca = cross(c, a), ab = cross(a, b);
+      const Vec3 bc = b.cross(c), ca = c.cross(a), ab = a.cross(b);
       const double scale = 1.0 / dot(a, bc);
       const Vec3 way = scale * (slack[0] * bc + slack[1] * ca + slack[2] * ab);
       more = {scale * dot(bc, way), scale * dot(ca, way), scale * dot(ab, way)};

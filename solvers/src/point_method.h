@@ -27,7 +27,7 @@ class PointMethod {
   bool solve(const StepProblem& problem) noexcept;
 
   const Vec3& u() const noexcept { return u_; }
-  int active() const noexcept { return active_; }
+  int active_count() const noexcept { return active_; }
   int row(int i) const noexcept { return active_rows_[at(i)].row; }
   double multiplier(int i) const noexcept { return active_rows_[at(i)].mu; }
   int iterations() const noexcept { return iterations_; }
@@ -44,7 +44,7 @@ class PointMethod {
   /// A row as a sum of the active ones and a rest that is normal to them.
   struct Split {
     std::array<double, 3> weight{};
-    double rest = 0;  // squared
+    double rest2 = 0;  // |rest|^2
   };
 
   static std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
@@ -63,7 +63,7 @@ class PointMethod {
   UnitPlanes unit_;
   Vec3 desired_ = Vec3::Zero();
   Vec3 u_ = Vec3::Zero();
-  double asked_ = 0;                        // |d|^2
+  double asked2_ = 0;                       // |d|^2
   std::array<ActiveRow, 4> active_rows_{};  // the active rows, then the one that is to enter
   int active_ = 0;
   int iterations_ = 0;

@@ -57,7 +57,9 @@ void UnitPlanes::reserve(std::size_t planes) {
 
 void UnitPlanes::close() noexcept {
   const std::size_t used = size_;
-  while (size_ % most_lanes != 0) push_idle();
+  // Planes that no point violates fill the last vector.
+  constexpr double zero[3] = {};
+  while (size_ % most_lanes != 0) push(zero, -std::numeric_limits<double>::infinity());
   size_ = used;
 }
 

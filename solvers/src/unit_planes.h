@@ -15,9 +15,10 @@ namespace keepout::active_set {
 /// Stands where there is no row or plane.
 inline constexpr int no_row = -1;
 
-/// A plane and the distance of a point on its wrong side; no_row if there is no plane.
+/// A row, which may be a plane, and the distance of a point on its wrong side; no_row if there is
+/// none.
 struct Violated {
-  int plane = no_row;
+  int row = no_row;
   double by = -std::numeric_limits<double>::infinity();
 };
 
@@ -64,12 +65,6 @@ class UnitPlanes {
     z_[size_] = normal[2];
     offset_[size_] = offset;
     ++size_;
-  }
-
-  /// Adds a plane that no point violates.
-  void push_idle() noexcept {
-    constexpr double zero[3] = {};
-    push(zero, -std::numeric_limits<double>::infinity());
   }
 
   /// Ends the list: must be called before most_violated().

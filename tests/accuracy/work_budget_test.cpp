@@ -34,29 +34,30 @@ class CountedTree final : public SpatialIndex {
   mutable std::size_t visits = 0;
 
  private:
-  class Walk final : public MotionWalk, private EncounterVisitor {
+  class Walk final : public MotionWalk, private TriangleVisitor {
    public:
     Walk(std::unique_ptr<MotionWalk> walk, const CountedTree& tree)
         : walk_(std::move(walk)), tree_(tree) {}
 
     bool begin(const Start& start) noexcept override { return walk_->begin(start); }
     void begin_again(double level) noexcept override { walk_->begin_again(level); }
-    bool is_free() const noexcept override { return walk_->is_free(); }
-    bool walk(const Vec3& motion, EncounterVisitor& visitor) noexcept override {
+    bool region_is_empty() const noexcept override { return walk_->region_is_empty(); }
+    bool walk(const Vec3& motion, TriangleVisitor& visitor) noexcept override {
       visitor_ = &visitor;
       return walk_->walk(motion, *this);
     }
     std::size_t room() const noexcept override { return walk_->room(); }
 
    private:
-    double visit(const Encounter& its) noexcept override {
+    double visit(TriangleId triangle, std::uint32_t& note,
+                 const Triangle* corners) noexcept override {
       ++tree_.visits;
-      return visitor_->visit(its);
+      return visitor_->visit(triangle, note, corners);
     }
 
     std::unique_ptr<MotionWalk> walk_;
     const CountedTree& tree_;
-    EncounterVisitor* visitor_ = nullptr;
+    TriangleVisitor* visitor_ = nullptr;
   };
 
   WideBvh tree_;

@@ -109,7 +109,7 @@ TEST(UnitPlanes, TheMostViolatedIsThatOfALoopOnEveryTarget) {
     listed.close();
     on_each_simd_target([&] {
       const active_set::Violated got = listed.most_violated(point.data());
-      ASSERT_EQ(got.plane, expected.plane) << "seed " << i;
+      ASSERT_EQ(got.row, expected.row) << "seed " << i;
       ASSERT_EQ(got.by, expected.by) << "seed " << i;
     });
   }

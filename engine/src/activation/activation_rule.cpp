@@ -5,26 +5,26 @@
 
 namespace keepout {
 
-Ball searched_ends(const CycleProblem& problem) noexcept {
-  if (problem.searched_region == EndRegion::motion_sphere) return {problem.tip, problem.longest};
+Ball searched_ends(const RuleInput& input) noexcept {
+  if (input.searched_region == EndRegion::motion_sphere) return {input.tip, input.longest};
   // Projections of the target on a convex set that holds 0 lie in the ball over it (Thales).
-  return {problem.tip + 0.5 * problem.target, 0.5 * problem.target.norm()};
+  return {input.tip + 0.5 * input.target, 0.5 * input.target.norm()};
 }
 
-Ball ActivationRule::region(const CycleProblem& problem) const noexcept {
-  Ball ball = searched_ends(problem);
-  ball.radius += problem.clearance;
+Ball ActivationRule::region(const RuleInput& input) const noexcept {
+  Ball ball = searched_ends(input);
+  ball.radius += input.clearance;
   return ball;
 }
 
-bool ActivationRule::gather(const CycleProblem& problem) noexcept {
-  return near_->gather(region(problem));
+bool ActivationRule::gather(const RuleInput& input) noexcept {
+  return neighborhood_->gather(region(input));
 }
 
-Judgement ActivationRule::judge(const CycleProblem& problem, const Vec3& trial,
+Judgement ActivationRule::judge(const RuleInput& input, const Vec3& trial,
                                 HalfSpaceBuffer& planes) noexcept {
   using Verdict = Judgement::Verdict;
-  if (satisfies(trial, planes.view(), problem.rounding)) return {Verdict::accepted, 1.0};
+  if (satisfies(trial, planes.view(), input.rounding)) return {Verdict::accepted, 1.0};
   return {Verdict::blocked, 0.0};
 }
 

@@ -5,11 +5,11 @@
 
 namespace keepout {
 
-Opening AllFaces::open(const CycleProblem& problem, HalfSpaceBuffer& planes) noexcept {
+Opening AllFaces::open(const RuleInput& input, HalfSpaceBuffer& planes) noexcept {
   for (const Hit& hit : hits()) {
     const Vec3 normal = mesh().normal(hit.triangle);
-    if (normal.isZero(0.0) || !on_positive_side(problem, hit, normal)) continue;
-    planes.push(plane_through(hit, normal, problem.clearance));
+    if (normal.isZero(0.0) || !on_positive_side(input, hit, normal)) continue;
+    planes.push(plane_through(hit, normal, input.clearance));
   }
   return {};
 }

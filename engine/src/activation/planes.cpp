@@ -6,19 +6,19 @@
 
 namespace keepout {
 
-bool on_positive_side(const CycleProblem& problem, const Hit& hit, const Vec3& normal) noexcept {
-  return -normal.dot(hit.closest.offset) >= -problem.rounding;
+bool on_positive_side(const RuleInput& input, const Hit& hit, const Vec3& normal) noexcept {
+  return -normal.dot(hit.closest.offset) >= -input.rounding;
 }
 
-bool touches(const CycleProblem& problem, const Hit& hit) noexcept {
-  return hit.closest.distance <= problem.rounding;
+bool touches(const RuleInput& input, const Hit& hit) noexcept {
+  return hit.closest.distance <= input.rounding;
 }
 
-Vec3 retreat_target(const CycleProblem& problem, const Vec3& off, double lift) noexcept {
-  const double climb = std::max(off.dot(problem.target), 0.0);
-  Vec3 along = problem.target - off.dot(problem.target) * off;
-  const double up = std::min(climb + lift, problem.radius);
-  const double room = std::sqrt(std::max(problem.radius * problem.radius - up * up, 0.0));
+Vec3 retreat_target(const RuleInput& input, const Vec3& off, double lift) noexcept {
+  const double climb = std::max(off.dot(input.target), 0.0);
+  Vec3 along = input.target - off.dot(input.target) * off;
+  const double up = std::min(climb + lift, input.radius);
+  const double room = std::sqrt(std::max(input.radius * input.radius - up * up, 0.0));
   const double length = along.norm();
   if (length > room) along *= room / length;
   return along + up * off;
@@ -40,9 +40,9 @@ bool satisfies(const Vec3& motion, std::span<const HalfSpace> planes, double rou
   });
 }
 
-bool has_plane(TriangleId source, std::span<const HalfSpace> planes) noexcept {
+bool has_plane(TriangleId triangle, std::span<const HalfSpace> planes) noexcept {
   return std::any_of(planes.begin(), planes.end(),
-                     [&](const HalfSpace& plane) { return plane.source == source; });
+                     [&](const HalfSpace& plane) { return plane.source == triangle; });
 }
 
 }  // namespace keepout

@@ -10,7 +10,7 @@ namespace keepout {
 namespace {
 
 // A height below this share of the longest side is rounding: such a triangle is its longest edge.
-constexpr double needle = 1e-14;
+constexpr double no_height = 1e-14;
 
 /// The origin's projection on the plane of a triangle, if it falls inside. The plane's frame is the
 /// longest side and the height upon it, orthogonalized twice, so that even needles lose no digits.
@@ -23,7 +23,7 @@ bool project_inside(const Vec3& a, const Vec3& b, const Vec3& apex, Vec3& projec
   Vec3 height = side - foot * base;
   height -= (height.dot(base) * per_base2) * base;
   const double height2 = height.squaredNorm();
-  if (!(height2 > needle * needle * base2)) return false;
+  if (!(height2 > no_height * no_height * base2)) return false;
 
   const double along = -a.dot(base) * per_base2;
   const double up = -a.dot(height) / height2;  // barycentric coordinate of the apex

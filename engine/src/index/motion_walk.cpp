@@ -10,51 +10,52 @@
 namespace keepout {
 namespace {
 
-/// Visits all hits in the region, whatever the motion: for indices that know of no motions.
+/// Visits all hits in the region, whatever the motion: for indices without a walk of their own.
 class WalkOfHits final : public MotionWalk {
  public:
-  explicit WalkOfHits(Neighborhood& near) : near_(near), notes_(near.room()) {}
+  explicit WalkOfHits(Neighborhood& neighborhood)
+      : neighborhood_(neighborhood), notes_(neighborhood.room()) {}
 
   bool begin(const Start& start) noexcept override {
     tip_ = start.tip;
-    if (!near_.gather(start.region)) return false;
+    if (!neighborhood_.gather(start.region)) return false;
     begin_again(start.level);
     return true;
   }
 
   void begin_again(double) noexcept override {
-    std::fill_n(notes_.begin(), near_.hits().size(), Encounter::no_note);
+    std::fill_n(notes_.begin(), neighborhood_.hits().size(), no_note);
   }
 
-  bool is_free() const noexcept override { return near_.hits().empty(); }
+  bool region_is_empty() const noexcept override { return neighborhood_.hits().empty(); }
 
-  bool walk(const Vec3&, EncounterVisitor& visitor) noexcept override {
-    const std::span<const Hit> hits = near_.hits();
-    for (std::size_t i = 0; i < hits.size() && !near_.budget().is_spent(); ++i) {
+  bool walk(const Vec3&, TriangleVisitor& visitor) noexcept override {
+    const std::span<const Hit> hits = neighborhood_.hits();
+    for (std::size_t i = 0; i < hits.size() && !neighborhood_.budget().is_spent(); ++i) {
       const TriangleId t = hits[i].triangle;
-      if (notes_[i] == Encounter::no_note) {
-        const Triangle corners = ordered_relative(near_.mesh().triangle(t), tip_);
-        visitor.visit({t, notes_[i], &corners});
+      if (notes_[i] == no_note) {
+        const Triangle corners = ordered_relative(neighborhood_.mesh().triangle(t), tip_);
+        visitor.visit(t, notes_[i], &corners);
       } else {
-        visitor.visit({t, notes_[i], nullptr});
+        visitor.visit(t, notes_[i], nullptr);
       }
     }
     return false;
   }
 
-  std::size_t room() const noexcept override { return near_.room(); }
+  std::size_t room() const noexcept override { return neighborhood_.room(); }
 
  private:
-  Neighborhood& near_;
+  Neighborhood& neighborhood_;
   Vec3 tip_ = Vec3::Zero();
   std::vector<std::uint32_t> notes_;  // of each hit
 };
 
 }  // namespace
 
-std::unique_ptr<MotionWalk> make_motion_walk(Neighborhood& near) {
-  if (auto own = near.index().walk_along_motions(near.budget())) return own;
-  return std::make_unique<WalkOfHits>(near);
+std::unique_ptr<MotionWalk> make_motion_walk(Neighborhood& neighborhood) {
+  if (auto own = neighborhood.index().walk_along_motions(neighborhood.budget())) return own;
+  return std::make_unique<WalkOfHits>(neighborhood);
 }
 
 }  // namespace keepout

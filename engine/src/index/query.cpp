@@ -5,7 +5,6 @@
 #include <limits>
 #include <utility>
 
-#include "../mesh/side_probe.h"
 #include "keepout/error.h"
 
 namespace keepout {
@@ -75,17 +74,18 @@ std::optional<Hit> nearest_of(const Mesh& mesh, const Ball& ball,
   return best;
 }
 
-std::optional<Hit> find_nearest(const Mesh& mesh, const SpatialIndex& index, const Vec3& point,
-                                double guess, TriangleBuffer& candidates, Budget& budget) noexcept {
-  if (const TriangleId found = index.nearest(point, budget); found != no_triangle) {
-    return Hit{found, closest_point(mesh.triangle(found), point)};
-  }
+/// Finds the nearest triangle by queries with a ball that grows until it touches the mesh, and
+/// shrinks if it touches more triangles than there is room for. Marks an overflow of the budget if
+/// no ball fits.
+std::optional<Hit> find_nearest_by_queries(const Mesh& mesh, const SpatialIndex& index,
+                                           const Vec3& point, double guess,
+                                           TriangleBuffer& candidates, Budget& budget) noexcept {
   const Box& bounds = mesh.bounds();
   const double size = bounds.size().norm() + point.cwiseAbs().maxCoeff() + bounds.low.norm();
-  // No triangle is nearer than the box around them; the floor keeps the growth from starting at 0.
+  // No triangle is nearer than the bounds; the second term keeps the growth from starting at 0.
   double radius = std::max(distance_to(bounds, point) * (1.0 + 1e-12) + 1e-6 * size, guess);
-  double empty = 0.0;  // nothing is within
-  double crowded = std::numeric_limits<double>::infinity();
+  double empty = 0.0;  // radius of a ball without triangles [length]
+  double crowded = std::numeric_limits<double>::infinity();  // ... of one with too many [length]
   // Doubling ends within some tens of rounds, and so does halving, at neighboring numbers.
   constexpr int most_rounds = 80;
   for (int round = 0; round < most_rounds && !budget.is_spent(); ++round) {
@@ -109,35 +109,20 @@ std::optional<Hit> find_nearest(const Mesh& mesh, const SpatialIndex& index, con
   return std::nullopt;
 }
 
-}  // namespace
-
-std::optional<Hit> find_nearest(Neighborhood& near, const Vec3& point) noexcept {
-  return find_nearest(near.mesh(), near.index(), point, 0.0, near.candidates(), near.budget());
+std::optional<Hit> find_nearest(const Mesh& mesh, const SpatialIndex& index, const Vec3& point,
+                                double guess, TriangleBuffer& candidates, Budget& budget) noexcept {
+  if (const TriangleId found = index.nearest(point, budget); found != no_triangle) {
+    return Hit{found, closest_point(mesh.triangle(found), point)};
+  }
+  // Without a search of its own; one that spent the budget leaves nothing for these queries.
+  return find_nearest_by_queries(mesh, index, point, guess, candidates, budget);
 }
 
-std::optional<SideOfSurface> find_side(Neighborhood& near, const Vec3& point) noexcept {
-  // Beyond the box around the mesh all is one side. A point that is so far off that rounding makes
-  // all triangles equally near is replaced by a nearer one.
-  const Box& bounds = near.mesh().bounds();
-  const Vec3 beyond = Vec3::Constant(4.0 * bounds.size().norm());
-  const Vec3 nearer = point.cwiseMax(bounds.low - beyond).cwiseMin(bounds.high + beyond);
-  if (nearer != point) {
-    auto side = find_side(near, nearer);  // has no further recursion
-    if (!side || side->is_outside) return side;
-    const std::optional<Hit> hit = find_nearest(near, point);
-    if (!hit) return std::nullopt;
-    side->distance = hit->closest.distance;
-    side->outward = hit->closest.offset / hit->closest.distance;
-    return side;
-  }
-  const std::optional<Hit> hit = find_nearest(near, point);
-  if (!hit) return std::nullopt;
-  SideProbe probe(near.mesh(), point, hit->closest);
-  if (!near.collect(probe.nearest_ball())) return std::nullopt;
-  probe.aim({near.candidates().begin(), near.candidates().end()});
-  if (probe.is_on_surface()) return probe.side({});
-  if (!near.collect(probe.probe_ball())) return std::nullopt;
-  return probe.side(near.candidates().view());
+}  // namespace
+
+std::optional<Hit> find_nearest(Neighborhood& neighborhood, const Vec3& point) noexcept {
+  return find_nearest(neighborhood.mesh(), neighborhood.index(), point, 0.0,
+                      neighborhood.candidates(), neighborhood.budget());
 }
 
 NearestTriangle::NearestTriangle(const Mesh& mesh, const SpatialIndex& index)

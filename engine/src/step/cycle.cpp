@@ -10,8 +10,6 @@
 namespace keepout {
 namespace {
 
-using Verdict = Judgement::Verdict;
-
 // A sound rule needs few trials, and about a hundred at the tip of a cone. The limit bounds an
 // unsound one; the work budget, most_cutting_planes and Capacity::planes usually end a search
 // first.
@@ -33,133 +31,86 @@ bool allow_parts(const std::optional<ExtraRows>& rows) noexcept {
 
 }  // namespace
 
-Cycle::Cycle(ActivationRule& rule, Solver& solver, Workspace& work, Budget& budget,
+void add_limit_of(Status failure, Limits& limits) noexcept {
+  if (failure == Status::out_of_budget) limits.add(Limit::budget);
+  if (failure == Status::over_capacity) limits.add(Limit::capacity);
+  if (failure == Status::inside || failure == Status::touching) limits.add(Limit::mesh);
+}
+
+Cycle::Cycle(ActivationRule& rule, Solver& solver, TipMemory& memory, Budget& budget,
              const StepOptions& options, const Motion& request, StageTimes* times) noexcept
     : rule_(rule),
       solver_(solver),
-      work_(work),
+      memory_(memory),
       budget_(budget),
       options_(options),
       request_(request),
-      problem_(cycle_problem_of(request, options, rule.end_region())),
+      input_(rule_input_of(request, options, rule.end_region())),
+      end_region_(end_region_of(request, rule.end_region())),
       times_(times) {
   // Guides that pull back may demand more than the projection of the target.
-  const bool leads_back = !work.guides.empty() && work.guides.leads_back();
-  if (leads_back) problem_.end_region = problem_.searched_region = EndRegion::motion_sphere;
+  const bool leads_back = memory.guides.leads_back();
+  if (leads_back) end_region_ = input_.searched_region = EndRegion::motion_sphere;
   // With joints, rows or damping the motion is no projection.
-  problem_.is_projected = !request.jacobian && !request.rows && options.damping == 0.0 &&
-                          solver.ignores_idle_planes() && !leads_back;
+  input_.is_projected = !request.jacobian && !request.rows && options.damping == 0.0 &&
+                        solver.ignores_idle_planes() && !leads_back;
   if (times_ != nullptr) stage_began_ = std::chrono::steady_clock::now();
 }
 
-void Cycle::run(Step& result) noexcept {
-  work_.planes.clear();
-  if (!work_.has_room_for(request_)) {
-    result.status = Status::over_capacity;
-    return;
+Step Cycle::run() noexcept {
+  Step step;
+  // Not one of the input checks: a tip inside is reported as such whatever the capacity.
+  if (!memory_.has_room_for(request_)) {
+    step.status = Status::over_capacity;
+    return step;
   }
   // Halving the target helps only if the region shrinks with it: the ball over the target does, the
   // motion sphere does not.
-  Opening opening = problem_.end_region == EndRegion::target_ball ? open_as_far_as_fits() : open();
-  result.distance = opening.distance;
+  Opening opening = end_region_ == EndRegion::target_ball ? open_as_far_as_fits() : open();
+  step.distance = opening.distance;
   const bool recovering = opening.status == Status::recovering;
   if (recovering) {
     // The first opening finds the retreat; the second, by the same code, prepares the search with
     // the retreat as target, and the retreat that it returns is not used. The planes of a retreat
     // exclude standing still, so the motion may end outside the ball over the target; it need not
     // be much longer than the target.
-    problem_.target = opening.target;
-    problem_.end_region = problem_.searched_region = EndRegion::motion_sphere;
-    problem_.longest = std::min(problem_.longest, 2.0 * problem_.target.norm());
+    input_.target = opening.target;
+    end_region_ = input_.searched_region = EndRegion::motion_sphere;
+    input_.longest = std::min(input_.longest, 2.0 * input_.target.norm());
     opening = open_as_far_as_fits();
   }
-  Trial found{opening.status, Vec3::Zero()};
+  Outcome found{opening.status};
   if (is_ok(opening.status)) {
     found = search_and_refine();
     add_time(&StageTimes::solve);
-    result.planes = work_.posed();
+    step.planes = memory_.solver_planes();
   }
-  result.triangles = rule_.triangles();
+  step.triangles = rule_.triangles();
   if (found.status == Status::infeasible || found.status == Status::unsolved) {
-    const Limits constraints = unsatisfied();
+    const Limits constraints = note_unsatisfied();
     if (!may_stand_still()) {
-      result.limits = constraints;
+      step.limits = constraints;
     } else {
-      found = {Status::fallback, Vec3::Zero()};
+      found = {Status::fallback};
       limits_.add(constraints);
       limits_.add(Limit::truncated);
-      work_.store_zero_result(request_, relaxation_, limits_);
+      memory_.store_zero_result(request_, relaxation_, limits_);
     }
   }
-  result.status = found.status;
-  if (!is_ok(found.status)) return;
-  result.motion = without_signed_zeros(found.motion);
-  result.increment = work_.increment();
-  report(result);
+  step.status = found.status;
+  if (!is_ok(found.status)) return step;
+  step.motion = without_signed_zeros(found.motion);
+  step.increment = memory_.increment();
+  report(step);
   // In a recovery the target is the retreat, not the desired increment.
-  if (result.status == Status::free && request_.jacobian &&
-      (problem_.target - result.motion).squaredNorm() > 0.25 * problem_.target.squaredNorm()) {
-    result.status = Status::limited;
-    result.limits.add(Limit::singularity);
+  if (step.status == Status::free && request_.jacobian &&
+      (input_.target - step.motion).squaredNorm() > 0.25 * input_.target.squaredNorm()) {
+    step.status = Status::limited;
+    step.limits.add(Limit::singularity);
   }
-  if (halvings_ > 0) result.status = Status::fallback;
-  if (recovering) result.status = Status::recovering;
-}
-
-/// Returns true if standing still satisfies the constraints without a solution: guides, and rows
-/// that demand no motion. Without guides the failure is reported instead.
-bool Cycle::may_stand_still() const noexcept {
-  return !work_.guides.planes().empty() && allow_parts(request_.rows);
-}
-
-/// Returns the kinds of the constraints for which no motion was found, and marks their guides as
-/// limiting the step.
-Limits Cycle::unsatisfied() noexcept {
-  Limits constraints;
-  for (const HalfSpace& plane : work_.planes) {
-    constraints.add(plane.source == no_triangle ? Limit::radius : Limit::mesh);
-  }
-  if (!work_.guides.planes().empty()) {
-    constraints.add(Limit::guide);
-    work_.guides.note_all_active();
-  }
-  if (request_.rows) constraints.add(Limit::rows);
-  return constraints;
-}
-
-/// Reports the constraints that limit the motion.
-void Cycle::report(Step& result) noexcept {
-  result.planes = work_.posed_for_result();
-  result.active = work_.active();
-  result.relaxation = work_.relaxation();
-  result.limits = work_.limits();
-  if (halvings_ > 0) {
-    result.limits.add(Limit::truncated);
-    result.limits.add(halved_for_ == Status::over_capacity ? Limit::capacity : Limit::budget);
-  }
-  const std::size_t of_mesh = work_.planes.size();
-  for (const std::uint32_t row : result.active) {
-    if (row < of_mesh) {
-      const bool is_bound = work_.planes[row].source == no_triangle;
-      result.limits.add(is_bound ? Limit::radius : Limit::mesh);
-    } else if (row < result.planes.size()) {
-      result.limits.add(Limit::guide);
-      work_.guides.note_active(row - of_mesh);
-    } else {
-      result.limits.add(Limit::rows);
-    }
-  }
-}
-
-/// Has the rule gather the triangles that matter for the target, and open.
-Opening Cycle::open() noexcept {
-  work_.planes.clear();
-  const bool fits = rule_.gather(problem_);
-  add_time(&StageTimes::query);
-  if (!fits) return {budget_.status_at_end()};
-  const Opening opening = rule_.open(problem_, work_.planes);
-  add_time(&StageTimes::activation);
-  return opening;
+  if (target_halvings_ > 0) step.status = Status::fallback;
+  if (recovering) step.status = Status::recovering;
+  return step;
 }
 
 /// Opens the cycle, each time with half of the work budget that is left. Halves the target until
@@ -170,70 +121,80 @@ Opening Cycle::open_as_far_as_fits() noexcept {
   const auto is_too_much = [&] {
     return opening.status == Status::over_capacity || opening.status == Status::out_of_budget;
   };
-  while (is_too_much() && halvings_ < most_halvings) {
+  while (is_too_much() && target_halvings_ < most_halvings) {
     halved_for_ = opening.status;
-    problem_.searched_region = problem_.end_region;
-    problem_.target *= 0.5;
-    if (problem_.end_region == EndRegion::motion_sphere) problem_.longest *= 0.5;
-    ++halvings_;
+    input_.searched_region = end_region_;
+    input_.target *= 0.5;
+    // Only in a recovery, where the longest motion is about twice the target (see run).
+    if (end_region_ == EndRegion::motion_sphere) input_.longest *= 0.5;
+    ++target_halvings_;
     opening = open_with_half();
   }
   return opening;
 }
 
+/// Has the rule gather the triangles that matter for the target, or begin a walk to them, and open.
+Opening Cycle::open() noexcept {
+  memory_.planes.clear();
+  const bool fits = rule_.gather(input_);
+  add_time(&StageTimes::query);
+  if (!fits) return {budget_.failure()};
+  const Opening opening = rule_.open(input_, memory_.planes);
+  add_time(&StageTimes::activation);
+  return opening;
+}
+
 /// Finds a motion that the rule accepts, and improves upon it.
-Cycle::Trial Cycle::search_and_refine() noexcept {
-  Trial best = search();
+Cycle::Outcome Cycle::search_and_refine() noexcept {
+  Outcome best = search();
   if (best.status != Status::limited) return best;
   best = refine(best);
   if (options_.nodes == 0) return best;
-  const Trial other = branch(best);
+  const Outcome other = branch(best);
   return other.motion == best.motion ? best : refine(other);
 }
 
 /// Searches with half of the work budget. The rest is for a part of the last trial.
-Cycle::Trial Cycle::search() noexcept {
+Cycle::Outcome Cycle::search() noexcept {
   limits_ = {};
   LastTrial last;
-  const std::optional<Trial> found = budget_.halved([&] { return solve_and_judge(last); });
+  const std::optional<Outcome> found = budget_.halved([&] { return solve_and_judge(last); });
   return found ? *found : cut(last);
 }
 
 /// Solves again with the plane of each objection, until the rule accepts a trial or the solver
 /// fails. Returns nothing if a part of the last trial is to be judged instead.
-std::optional<Cycle::Trial> Cycle::solve_and_judge(LastTrial& last) noexcept {
+std::optional<Cycle::Outcome> Cycle::solve_and_judge(LastTrial& last) noexcept {
   for (int round = 0; round < most_rounds; ++round) {
     const Trial trial = solve();
-    // With joints, this solution has replaced the increment of the last trial in work_.solution.
+    last.solution = {};  // the solver has replaced it: with joints, no part of it can be made
     const bool has_part = last.free_fraction > 0.0 && !request_.jacobian;
-    if (!is_ok(trial.status)) {
-      if (!has_part) return trial;
-      add_cause(trial.status, limits_);
-      work_.solution = {};
+    if (!trial.motion) {
+      if (!has_part) return Outcome{trial.failure};
+      add_limit_of(trial.failure, limits_);
       break;
     }
-    // No triangle was gathered beyond the sphere.
-    if (trial.motion.norm() > problem_.longest) {
-      work_.planes.push(bound_of(trial.motion, problem_.longest));
+    const Vec3& motion = *trial.motion;
+    // Triangles beyond the motion sphere were not searched.
+    if (motion.norm() > input_.longest) {
+      memory_.planes.push(bound_of(motion, input_.longest));
       last.free_fraction = 0.0;
       continue;
     }
-    // No half-space was left that excludes it. The rule has not judged it: all of it may be free.
-    if (!work_.guides.allow(trial.motion)) {
-      last = {trial.motion, 1.0};
+    // A guide had no half-space left that excludes the trial. The rule has not judged the trial, so
+    // all of it may be free.
+    if (!memory_.guides.allow(motion)) {
+      last = {motion, 1.0, trial.solution};
       break;
     }
-    const Judgement judgement = rule_.judge(problem_, trial.motion, work_.planes);
+    const Judgement judgement = rule_.judge(input_, motion, memory_.planes);
     if (judgement.verdict == Verdict::accepted) {
-      work_.store_result(request_, trial.motion, 1.0, relaxation_, {});
-      return Trial{work_.solution.active.empty() ? Status::free : Status::limited, trial.motion};
+      memory_.store_result(request_, motion, 1.0, trial.solution, relaxation_, {});
+      return Outcome{trial.solution.active.empty() ? Status::free : Status::limited, motion};
     }
-    if (budget_.is_spent()) add_cause(budget_.status_at_end(), limits_);
-    if (budget_.is_spent() && has_part) {  // this trial was not judged
-      work_.solution = {};
-      break;
-    }
-    last = {trial.motion, judgement.free_fraction};
+    if (budget_.is_spent()) add_limit_of(budget_.failure(), limits_);
+    if (budget_.is_spent() && has_part) break;  // this trial was not judged
+    last = {motion, judgement.free_fraction, trial.solution};
     if (judgement.verdict == Verdict::blocked) break;
   }
   return std::nullopt;
@@ -241,21 +202,66 @@ std::optional<Cycle::Trial> Cycle::solve_and_judge(LastTrial& last) noexcept {
 
 /// Returns the part of the last trial up to the first contact and within the guides' regions, if
 /// the rule accepts it. If it objects, its plane is reported with the failure.
-Cycle::Trial Cycle::cut(const LastTrial& last) noexcept {
-  const double allowed = work_.guides.allowed_fraction(last.motion);
+Cycle::Outcome Cycle::cut(const LastTrial& last) noexcept {
+  const double allowed = memory_.guides.allowed_fraction(last.motion);
   const double fraction = std::min(last.free_fraction * (1.0 - 1e-9), allowed);
   const Vec3 part = fraction * last.motion;
   if (!(fraction > 0.0) || !allow_parts(request_.rows) ||
-      rule_.judge(problem_, part, work_.planes).verdict != Verdict::accepted) {
-    if (limits_.has(Limit::capacity)) return {Status::over_capacity, Vec3::Zero()};
-    return {limits_.has(Limit::budget) ? Status::out_of_budget : Status::unsolved, Vec3::Zero()};
+      rule_.judge(input_, part, memory_.planes).verdict != Verdict::accepted) {
+    if (limits_.has(Limit::capacity)) return {Status::over_capacity};
+    return {limits_.has(Limit::budget) ? Status::out_of_budget : Status::unsolved};
   }
   limits_.add(Limit::truncated);
   if (last.free_fraction < 1.0) limits_.add(Limit::mesh);
   if (allowed < 1.0) limits_.add(Limit::guide);
-  work_.guides.note_left_by(last.motion);
-  work_.store_result(request_, part, fraction, relaxation_, limits_);
+  memory_.guides.note_left_by(last.motion);
+  memory_.store_result(request_, part, fraction, last.solution, relaxation_, limits_);
   return {Status::fallback, part};
+}
+
+/// Returns the kinds of the constraints for which no motion was found, and marks their guides as
+/// limiting the step.
+Limits Cycle::note_unsatisfied() noexcept {
+  Limits constraints;
+  for (const HalfSpace& plane : memory_.planes) {
+    constraints.add(plane.source == no_triangle ? Limit::radius : Limit::mesh);
+  }
+  if (!memory_.guides.planes().empty()) {
+    constraints.add(Limit::guide);
+    memory_.guides.note_all_active();
+  }
+  if (request_.rows) constraints.add(Limit::rows);
+  return constraints;
+}
+
+/// Returns true if standing still satisfies the constraints without a solution: guides, and rows
+/// that demand no motion. Without guides only a retreat or rows demand motions that contradict each
+/// other, and the failure is reported instead.
+bool Cycle::may_stand_still() const noexcept {
+  return !memory_.guides.planes().empty() && allow_parts(request_.rows);
+}
+
+/// Reports the constraints that limit the motion of the result.
+void Cycle::report(Step& step) noexcept {
+  step.planes = memory_.result_planes();
+  step.active = memory_.active();
+  step.relaxation = memory_.relaxation();
+  step.limits = memory_.limits();
+  if (target_halvings_ > 0) {
+    step.limits.add(Limit::truncated);
+    step.limits.add(halved_for_ == Status::over_capacity ? Limit::capacity : Limit::budget);
+  }
+  const std::size_t of_mesh = memory_.planes.size();  // the planes of guides follow
+  for (const std::uint32_t row : step.active) {
+    if (row < of_mesh) {
+      step.limits.add(step.planes[row].source == no_triangle ? Limit::radius : Limit::mesh);
+    } else if (row < step.planes.size()) {
+      step.limits.add(Limit::guide);
+      memory_.guides.note_active(row - of_mesh);
+    } else {
+      step.limits.add(Limit::rows);
+    }
+  }
 }
 
 void Cycle::add_time(std::int64_t StageTimes::*stage) noexcept {

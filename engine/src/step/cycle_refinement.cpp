@@ -5,32 +5,26 @@
 #include "cycle.h"
 
 namespace keepout {
-namespace {
 
-using Verdict = Judgement::Verdict;
-
-}  // namespace
-
-/// Linearizes the planes of an accepted motion again, at that motion, while they allow a better
-/// one, at most options.refinements times. All planes go on allowing the accepted motion, so
-/// nothing is lost.
-Cycle::Trial Cycle::refine(Trial best) noexcept {
-  const Vec3 accepted = problem_.accepted;
+/// Linearizes the planes of an accepted motion again, at that motion (the certified rule turns
+/// them), while they allow a better one, at most options.refinements times. All planes go on
+/// allowing the accepted motion, so nothing is lost.
+Cycle::Outcome Cycle::refine(Outcome best) noexcept {
   for (int refinement = 0; refinement < options_.refinements; ++refinement) {
-    work_.save();
-    problem_.accepted = best.motion;
-    if (rule_.relinearize(problem_, work_.earlier_planes.view(), work_.planes)) {
-      const Trial next = search();
+    memory_.set_aside();
+    input_.accepted = best.motion;
+    if (rule_.relinearize(input_, memory_.earlier_planes.view(), memory_.planes)) {
+      const Outcome next = search();
       const bool is_accepted = next.status == Status::limited || next.status == Status::free;
       if (is_accepted && is_worthwhile(next.motion, best.motion)) {
         best = next;
         continue;
       }
     }
-    work_.restore();
+    memory_.take_back();
     break;
   }
-  problem_.accepted = accepted;
+  input_.accepted.setZero();
   return best;
 }
 
@@ -41,52 +35,51 @@ Cycle::Trial Cycle::refine(Trial best) noexcept {
 ///
 /// At most options.nodes nodes. The rule judges every motion that is returned, so the limit costs
 /// quality and never safety.
-Cycle::Trial Cycle::branch(const Trial& best) noexcept {
-  work_.save();
-  work_.branches.clear();
+Cycle::Outcome Cycle::branch(const Outcome& best) noexcept {
+  memory_.set_aside();
+  memory_.branches.clear();
   push_branch(best);
   for (int node = 0; node < options_.nodes && !budget_.is_spent(); ++node) {
-    const Branch* nearest = work_.branches.pop_nearest();
+    const Branch* nearest = memory_.branches.pop_nearest();
     if (nearest == nullptr) break;
-    work_.planes.assign(nearest->planes());
-    const Verdict verdict = rule_.judge(problem_, nearest->motion, work_.planes).verdict;
+    memory_.planes.assign(nearest->planes());
+    const Verdict verdict = rule_.judge(input_, nearest->motion, memory_.planes).verdict;
     if (verdict == Verdict::accepted) {
       // Solved once more: the solver's memory holds a later solution.
       const Trial trial = solve();
-      if (!is_ok(trial.status) || trial.motion != nearest->motion) break;
-      work_.store_result(request_, trial.motion, 1.0, relaxation_, {});
-      return {Status::limited, trial.motion};
+      if (trial.motion != nearest->motion) break;
+      memory_.store_result(request_, nearest->motion, 1.0, trial.solution, relaxation_, {});
+      return {Status::limited, nearest->motion};
     }
     if (verdict == Verdict::blocked) continue;
     // The plane that the rule has added is one choice; there may be alternatives. (The last plane
     // may be that of a wall, in a recovery: then the choice is among planes of the wall.)
-    const TriangleId in_the_way = work_.planes[work_.planes.size() - 1].source;
+    const TriangleId in_the_way = memory_.planes[memory_.planes.size() - 1].source;
     push_branch(best);
-    work_.alternatives.clear();
-    rule_.add_alternatives(in_the_way, work_.alternatives);
-    for (const HalfSpace& alternative : work_.alternatives) {
-      work_.planes.assign(nearest->planes());
-      work_.planes.push(alternative);
+    memory_.alternatives.clear();
+    rule_.add_alternatives(in_the_way, memory_.alternatives);
+    for (const HalfSpace& alternative : memory_.alternatives) {
+      memory_.planes.assign(nearest->planes());
+      memory_.planes.push(alternative);
       push_branch(best);
     }
   }
-  work_.restore();
+  memory_.take_back();
   return best;
 }
 
 /// Adds a node for the present planes, unless it cannot contain a better motion.
-void Cycle::push_branch(const Trial& best) noexcept {
-  const Trial trial = solve();
-  if (!is_ok(trial.status) || trial.motion.norm() > problem_.longest) return;
-  if (!work_.guides.allow(trial.motion)) return;
-  if (!is_worthwhile(trial.motion, best.motion)) return;
-  work_.branches.push((problem_.target - trial.motion).norm(), trial.motion, work_.planes.view());
+void Cycle::push_branch(const Outcome& best) noexcept {
+  const std::optional<Vec3> motion = solve().motion;
+  if (!motion || motion->norm() > input_.longest) return;
+  if (!memory_.guides.allow(*motion) || !is_worthwhile(*motion, best.motion)) return;
+  memory_.branches.push((input_.target - *motion).norm(), *motion, memory_.planes.view());
 }
 
 /// Returns true if a motion is nearer to the target than the best one, by more than a millionth of
 /// the target.
 bool Cycle::is_worthwhile(const Vec3& motion, const Vec3& best) const noexcept {
-  const Vec3& target = problem_.target;
+  const Vec3& target = input_.target;
   return (target - motion).norm() < (target - best).norm() - 1e-6 * target.norm();
 }
 

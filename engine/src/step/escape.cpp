@@ -5,8 +5,8 @@
 
 namespace keepout {
 
-Vec3 escape_motion(Neighborhood& near, const Vec3& tip, const SideOfSurface& side, double longest,
-                   double clear_by) noexcept {
+Vec3 escape_motion(Neighborhood& neighborhood, const Vec3& tip, const SideOfSurface& side,
+                   double longest, double clear_by) noexcept {
   const double through = side.distance + clear_by;
   // An escape that cannot get through in one cycle stops short of the surface.
   if (through > longest) {
@@ -18,7 +18,7 @@ Vec3 escape_motion(Neighborhood& near, const Vec3& tip, const SideOfSurface& sid
   double best_distance = 0.0;                // of that end from the surface
   const auto consider = [&](const Vec3& motion) {
     if (best_distance >= 0.5 * clear_by) return;  // good enough
-    const auto there = find_side(near, tip + motion);
+    const auto there = find_side(neighborhood, tip + motion);
     if (!there || !there->is_outside || there->distance <= best_distance) return;
     best_distance = there->distance;
     best = motion;
@@ -35,61 +35,58 @@ Vec3 escape_motion(Neighborhood& near, const Vec3& tip, const SideOfSurface& sid
 
 namespace {
 
-/// Returns the distance from the surface at which an escape ends: far above the distance at which
-/// the certified rule can no longer determine a side. [length]
+/// Returns the distance from the surface at which an escape ends: far above touching_within, the
+/// distance at which the certified rule can no longer determine a side. [length]
 double escape_clearance(const Mesh& mesh, const StepOptions& options) noexcept {
   const double size = mesh.bounds().size().norm() + options.radius + required_clearance(options);
   return std::max(1e-4 * options.recovery, 1e-8 * size);
 }
 
+/// Returns the length of the longest escape in a cycle. [length]
 double longest_escape(const StepOptions& options) noexcept {
   return std::min(options.recovery, options.radius);
 }
 
+/// Returns true if a straight escape may be made: joints and rows need not satisfy it.
 bool may_escape(const Motion& request, const StepOptions& options, const Mesh& mesh) noexcept {
   return !request.jacobian && !request.rows &&
          longest_escape(options) >= escape_clearance(mesh, options);
 }
 
-Step escape_step(const SideOfSurface& side, Neighborhood& near, const Motion& request,
-                 const StepOptions& options, Workspace& work) noexcept {
-  const Vec3 motion = without_signed_zeros(escape_motion(
-      near, request.tip, side, longest_escape(options), escape_clearance(near.mesh(), options)));
-  work.solution = {};
-  work.store_result(request, motion, 1.0, Relaxation::none, {});
+Step escape_step(const SideOfSurface& side, Neighborhood& neighborhood, const Motion& request,
+                 const StepOptions& options, TipMemory& memory) noexcept {
+  const Vec3 motion =
+      without_signed_zeros(escape_motion(neighborhood, request.tip, side, longest_escape(options),
+                                         escape_clearance(neighborhood.mesh(), options)));
+  memory.store_result(request, motion, 1.0, {}, Relaxation::none, {});
   return {.status = Status::recovering,
           .motion = motion,
-          .increment = work.increment(),
+          .increment = memory.increment(),
           .distance = side.distance};
 }
 
 }  // namespace
 
-bool escape_if_inside(Neighborhood& near, const Motion& request, const StepOptions& options,
-                      Workspace& work, Step& step) noexcept {
-  const auto side = find_side(near, request.tip);
-  if (!side) {
-    step.status = near.budget().status_at_end();
-    return true;
+std::optional<Step> step_of_tip_inside(Neighborhood& neighborhood, const Motion& request,
+                                       const StepOptions& options, TipMemory& memory) noexcept {
+  const auto side = find_side(neighborhood, request.tip);
+  if (!side) return Step{.status = neighborhood.budget().failure()};
+  if (side->is_outside) return std::nullopt;
+  if (may_escape(request, options, neighborhood.mesh()) && side->distance <= options.deepest) {
+    const Step escape = escape_step(*side, neighborhood, request, options, memory);
+    if (memory.guides.allow(escape.motion)) return escape;
   }
-  if (side->is_outside) return false;
-  if (may_escape(request, options, near.mesh()) && side->distance <= options.deepest) {
-    step = escape_step(*side, near, request, options, work);
-    if (work.guides.allow(step.motion)) return true;
-  }
-  step = {.status = Status::inside, .distance = side->distance};
-  return true;
+  return Step{.status = Status::inside, .distance = side->distance};
 }
 
-bool escape_from_surface(Neighborhood& near, const Motion& request, const StepOptions& options,
-                         Workspace& work, Step& step) noexcept {
-  if (!may_escape(request, options, near.mesh())) return false;
-  const auto side = find_side(near, request.tip);
-  if (!side) return false;
-  const Step escape = escape_step(*side, near, request, options, work);
-  if (escape.motion.isZero(0.0) || !work.guides.allow(escape.motion)) return false;
-  step = escape;
-  return true;
+std::optional<Step> escape_from_surface(Neighborhood& neighborhood, const Motion& request,
+                                        const StepOptions& options, TipMemory& memory) noexcept {
+  if (!may_escape(request, options, neighborhood.mesh())) return std::nullopt;
+  const auto side = find_side(neighborhood, request.tip);
+  if (!side) return std::nullopt;
+  const Step escape = escape_step(*side, neighborhood, request, options, memory);
+  if (escape.motion.isZero(0.0) || !memory.guides.allow(escape.motion)) return std::nullopt;
+  return escape;
 }
 
 }  // namespace keepout

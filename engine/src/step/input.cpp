@@ -53,16 +53,14 @@ std::optional<Status> refusal(const Motion& request, const StepOptions& options)
   return std::nullopt;
 }
 
-void add_cause(Status status, Limits& limits) noexcept {
-  if (status == Status::out_of_budget) limits.add(Limit::budget);
-  if (status == Status::over_capacity) limits.add(Limit::capacity);
-  if (status == Status::inside || status == Status::touching) limits.add(Limit::mesh);
+EndRegion end_region_of(const Motion& request, EndRegion rule_region) noexcept {
+  // With joints or rows of the caller's own the motion need not be a projection of the target.
+  return request.jacobian || request.rows ? EndRegion::motion_sphere : rule_region;
 }
 
-CycleProblem cycle_problem_of(const Motion& request, const StepOptions& options,
-                              EndRegion rule_region) noexcept {
-  // With joints or rows of the caller's own the motion need not be a projection of the target.
-  const EndRegion ends = request.jacobian || request.rows ? EndRegion::motion_sphere : rule_region;
+RuleInput rule_input_of(const Motion& request, const StepOptions& options,
+                        EndRegion rule_region) noexcept {
+  const EndRegion ends = end_region_of(request, rule_region);
   return {.tip = request.tip,
           .target = request.desired,
           .accepted = Vec3::Zero(),
@@ -71,7 +69,6 @@ CycleProblem cycle_problem_of(const Motion& request, const StepOptions& options,
           .clearance = required_clearance(options),
           .recovery = options.recovery,
           .rounding = position_rounding(request.tip, options),
-          .end_region = ends,
           .searched_region = options.query == Query::motion ? ends : EndRegion::motion_sphere};
 }
 

@@ -17,19 +17,20 @@ void require_in_range(const StepOptions& options);
 /// it may be. Precondition: the options are in range.
 std::optional<Status> refusal(const Motion& request, const StepOptions& options) noexcept;
 
-/// Adds the limit that a failure with this status stands for, if there is one.
-void add_cause(Status status, Limits& limits) noexcept;
-
 /// Returns a bound of a position's error after a step: the rounding of tip + motion, about 1e-16 of
-/// the tip's coordinates, taken ten thousand times, and the solver's, about 1e-13 of the motion,
-/// taken a thousand times. [length]
+/// the tip's coordinates, times ten thousand for safety, and the solver's, about 1e-13 of the
+/// motion, times a thousand. [length]
 inline double position_rounding(const Vec3& tip, const StepOptions& options) noexcept {
   return 1e-12 * (tip.lpNorm<1>() + required_clearance(options)) + 1e-10 * options.radius;
 }
 
-/// Returns the input of the rule for a request. `rule_region`: the rule's
-/// ActivationRule::end_region().
-CycleProblem cycle_problem_of(const Motion& request, const StepOptions& options,
-                              EndRegion rule_region) noexcept;
+/// Returns where motions for a request may end: in the motion sphere, or where the rule restricts
+/// them to. `rule_region`: the rule's ActivationRule::end_region().
+EndRegion end_region_of(const Motion& request, EndRegion rule_region) noexcept;
+
+/// Returns the input of the rule for a request, whose target is the desired increment.
+/// `rule_region`: as for end_region_of().
+RuleInput rule_input_of(const Motion& request, const StepOptions& options,
+                        EndRegion rule_region) noexcept;
 
 }  // namespace keepout

@@ -27,10 +27,9 @@ void require_mesh_in_range(const Mesh& mesh) {
 
 std::unique_ptr<Neighborhood> neighborhood_of(std::shared_ptr<const Mesh> mesh,
                                               std::shared_ptr<const SpatialIndex> index,
-                                              const ActivationRule* activation,
-                                              const Solver* solver, const Capacity& capacity,
-                                              Budget& budget) {
-  if (!mesh || !index || activation == nullptr || solver == nullptr) {
+                                              const ActivationRule* rule, const Solver* solver,
+                                              const Capacity& capacity, Budget& budget) {
+  if (!mesh || !index || rule == nullptr || solver == nullptr) {
     throw Error("a motion constraint needs a mesh, an index, an activation rule and a solver");
   }
   require_mesh_in_range(*mesh);
@@ -56,22 +55,22 @@ std::size_t Capacity::looks_or_default(std::size_t looks, const SpatialIndex& in
 
 MotionConstraint::MotionConstraint(std::shared_ptr<const Mesh> mesh,
                                    std::shared_ptr<const SpatialIndex> index,
-                                   std::unique_ptr<ActivationRule> activation,
+                                   std::unique_ptr<ActivationRule> rule,
                                    std::unique_ptr<Solver> solver, const StepOptions& options,
                                    const Capacity& capacity, Inside inside)
     : options_(options),
       capacity_(checked(capacity, options)),
       budget_(std::make_unique<Budget>()),
-      near_(neighborhood_of(mesh, std::move(index), activation.get(), solver.get(), capacity_,
-                            *budget_)),
-      activation_(std::move(activation)),
+      neighborhood_(
+          neighborhood_of(mesh, std::move(index), rule.get(), solver.get(), capacity_, *budget_)),
+      rule_(std::move(rule)),
       solver_(std::move(solver)),
-      work_(std::make_unique<Workspace>(capacity_, *solver_)),
-      polytope_(mesh, near_->room()),
-      polytope_planes_(std::max(work_->planes.capacity(), planes_to_hold_still)),
+      memory_(std::make_unique<TipMemory>(capacity_, *solver_)),
+      polytope_(mesh, neighborhood_->room()),
+      polytope_planes_(std::max(memory_->planes.capacity(), planes_to_hold_still)),
       inside_(inside),
       has_sides_(inside == Inside::led_out && is_watertight(*mesh)) {
-  if (inside == Inside::led_out && activation_->guards_a_tool()) {
+  if (inside == Inside::led_out && rule_->guards_a_tool()) {
     throw Error(
         "a tip that starts inside is led out without regard to the rest of a tool: with a rule "
         "that guards a whole tool, ask for Inside::taken_as_is");
@@ -91,18 +90,18 @@ void MotionConstraint::reserve_solver(std::size_t guides) {
 void MotionConstraint::prepare() {
   is_prepared_ = false;
   *budget_ = Budget(Capacity::looks_or_default(capacity_.looks, index()));
-  activation_->prepare(*near_);
+  rule_->prepare(*neighborhood_);
   is_prepared_ = true;
 }
 
 void MotionConstraint::follow(std::shared_ptr<const Mesh> moved,
                               std::shared_ptr<const SpatialIndex> index) {
-  auto near = neighborhood_of(moved, std::move(index), activation_.get(), solver_.get(), capacity_,
-                              *budget_);
+  auto near =
+      neighborhood_of(moved, std::move(index), rule_.get(), solver_.get(), capacity_, *budget_);
   FreePolytope polytope(moved, near->room());
   const bool has_same_triangles = std::ranges::equal(moved->triangles(), mesh().triangles());
   if (!has_same_triangles) has_sides_ = inside_ == Inside::led_out && is_watertight(*moved);
-  *near_ = std::move(*near);
+  *neighborhood_ = std::move(*near);
   polytope_ = std::move(polytope);
   forget();
   prepare();
@@ -120,10 +119,12 @@ void MotionConstraint::set_options(const StepOptions& options) {
 void MotionConstraint::set_guides(std::vector<Guide> guides) {
   TipGuides prepared(std::move(guides));
   reserve_solver(prepared.guides().size());
-  work_->guides = std::move(prepared);
+  memory_->guides = std::move(prepared);
 }
 
-std::span<const Guide> MotionConstraint::guides() const noexcept { return work_->guides.guides(); }
+std::span<const Guide> MotionConstraint::guides() const noexcept {
+  return memory_->guides.guides();
+}
 
 /// Throws Error for options out of range, and if the rule finds the margin too small beside its
 /// rounding. Opens a cycle to ask the rule.
@@ -136,11 +137,11 @@ void MotionConstraint::require_usable(const StepOptions& options) {
   const Box& bounds = mesh().bounds();
   budget_->renew();
   const Vec3 tip = bounds.low.cwiseMax(Vec3::Zero()).cwiseMin(bounds.high);
-  const CycleProblem problem =
-      cycle_problem_of({.tip = tip, .desired = Vec3::Zero()}, options, activation_->end_region());
-  work_->planes.clear();
-  const bool fits = activation_->gather(problem);
-  const Opening opening = activation_->open(problem, work_->planes);
+  const RuleInput input =
+      rule_input_of({.tip = tip, .desired = Vec3::Zero()}, options, rule_->end_region());
+  memory_->planes.clear();
+  const bool fits = rule_->gather(input);
+  const Opening opening = rule_->open(input, memory_->planes);
   if (fits && opening.status == Status::margin_too_small) {
     throw Error(
         "the margin is too small for a mesh and a radius of this size: the distance kept, "
@@ -150,64 +151,65 @@ void MotionConstraint::require_usable(const StepOptions& options) {
 }
 
 Ball MotionConstraint::region(const Motion& request) const noexcept {
-  return activation_->region(cycle_problem_of(request, options_, activation_->end_region()));
+  return rule_->region(rule_input_of(request, options_, rule_->end_region()));
 }
 
 Step MotionConstraint::step(const Motion& request, SideWatch& sides, StageTimes* times) noexcept {
-  Step result;
   if (times != nullptr) *times = {};
-  if (!is_current()) {
-    result.status = Status::mesh_changed;
-    return result;
-  }
+  if (!is_current()) return {.status = Status::mesh_changed};
   budget_->renew();
+  Step step;
   // A refused request does not change what is known of the tip.
   if (const std::optional<Status> refused = refusal(request, options_)) {
-    result.status = *refused;
+    step.status = *refused;
   } else {
-    step_checked(request, sides, times, result);
-    if (TipGuides& guides = work_->guides; !guides.empty()) {
-      result.guides = guides.states(result.relaxation);
-      if (result.ok() && guides.is_recovering()) result.status = Status::recovering;
+    step = escape_or_cycle(request, sides, times);
+    if (TipGuides& guides = memory_->guides; !guides.empty()) {
+      step.guides = guides.states(step.relaxation);
+      if (step.ok() && guides.is_recovering()) step.status = Status::recovering;
     }
   }
-  if (!result.ok()) add_cause(result.status, result.limits);
-  const bool is_missing = options_.distances == Distances::always && !result.distance;
-  if (is_missing && result.status != Status::invalid_input) {
-    const auto nearest = find_nearest(*near_, request.tip);
-    if (nearest) result.distance = nearest->closest.distance;
+  if (!step.ok()) add_limit_of(step.status, step.limits);
+  const bool is_missing = options_.distances == Distances::always && !step.distance;
+  if (is_missing && step.status != Status::invalid_input) {
+    const auto nearest = find_nearest(*neighborhood_, request.tip);
+    if (nearest) step.distance = nearest->closest.distance;
   }
-  return result;
+  return step;
 }
 
-/// Steps a tip: an escape on the forbidden side, else a cycle. After an escape, or if the tip could
-/// not be classified, the next tip must be classified again: nothing is noted.
-void MotionConstraint::step_checked(const Motion& request, SideWatch& sides, StageTimes* times,
-                                    Step& result) noexcept {
-  if (!work_->guides.empty()) work_->guides.open(request.tip, options_.recovery);
-  if (classifies(sides) && sides.must_classify(request.tip, mesh()) &&
-      escape_if_inside(*near_, request, options_, *work_, result)) {
-    return;
+/// Returns the step of a valid request: an escape on the forbidden side, else a cycle. Only a cycle
+/// notes where the tip has moved. So a tip that escaped, or that could not be classified, is
+/// classified again in the next step.
+Step MotionConstraint::escape_or_cycle(const Motion& request, SideWatch& sides,
+                                       StageTimes* times) noexcept {
+  memory_->guides.open(request.tip, options_.recovery);
+  if (classifies(sides) && sides.must_classify(request.tip, mesh())) {
+    if (auto inside = step_of_tip_inside(*neighborhood_, request, options_, *memory_))
+      return *inside;
   }
-  Cycle(*activation_, *solver_, *work_, *budget_, options_, request, times).run(result);
-  if (result.status == Status::touching && classifies(sides) &&
-      escape_from_surface(*near_, request, options_, *work_, result)) {
-    return;
+  const Step step = Cycle(*rule_, *solver_, *memory_, *budget_, options_, request, times).run();
+  if (step.status == Status::touching && classifies(sides)) {
+    if (auto escape = escape_from_surface(*neighborhood_, request, options_, *memory_))
+      return *escape;
   }
-  sides.after(request, result, options_, mesh());
+  sides.after(request, step, options_, mesh());
+  return step;
 }
 
 Polytope MotionConstraint::free_polytope(const Vec3& tip, double radius) noexcept {
   Status status = Status::unsupported;
   if (!is_current()) {
     status = Status::mesh_changed;
-  } else if (!activation_->guards_a_tool()) {
+  } else if (!rule_->guards_a_tool()) {
     budget_->renew();
     const double kept = required_clearance(options_);
     // around() reports a ball that is not valid.
-    const bool fits = near_->gather({tip, radius + kept}) || !(radius >= 0.0 && tip.allFinite());
-    status = fits ? polytope_.around(tip, radius, kept, near_->hits(), *budget_, polytope_planes_)
-                  : budget_->status_at_end();
+    const bool fits =
+        neighborhood_->gather({tip, radius + kept}) || !(radius >= 0.0 && tip.allFinite());
+    status = fits ? polytope_.around(tip, radius, kept, neighborhood_->hits(), *budget_,
+                                     polytope_planes_)
+                  : budget_->failure();
   }
   if (status != Status::free) hold_still(polytope_planes_);
   return {status, polytope_planes_.view()};

@@ -28,17 +28,17 @@ class Scene {
   }
 
   Opening open(const Vec3& tip, const Vec3& desired, EndRegion reach = EndRegion::target_ball) {
-    problem = cycle_problem_of({.tip = tip, .desired = desired}, options_, reach);
+    input = rule_input_of({.tip = tip, .desired = desired}, options_, reach);
     planes.clear();
-    if (!rule.gather(problem)) return {Status::over_capacity};
-    return rule.open(problem, planes);
+    if (!rule.gather(input)) return {Status::over_capacity};
+    return rule.open(input, planes);
   }
 
-  double tau() const { return rule.tolerance(problem); }
+  double tau() const { return rule.tolerance(input); }
 
   std::shared_ptr<const Mesh> mesh;
   CertifiedRule rule;
-  CycleProblem problem;
+  RuleInput input;
   HalfSpaceBuffer planes;
   HalfSpaceBuffer turned;
 
@@ -138,18 +138,18 @@ TEST(CertifiedRule, LooksWhereMotionsMayLead) {
     const Vec3 n = random.direction();
     const double offset = -random.uniform();
     const Vec3 motion = desired + std::max(offset - n.dot(desired), 0.0) * n;
-    ASSERT_LE((tip + motion - scene.rule.region(scene.problem).center).norm() + 0.2,
-              scene.rule.region(scene.problem).radius);
+    ASSERT_LE((tip + motion - scene.rule.region(scene.input).center).norm() + 0.2,
+              scene.rule.region(scene.input).radius);
   }
   scene.open(tip, desired, EndRegion::motion_sphere);
-  EXPECT_EQ(scene.rule.region(scene.problem).center, tip);
-  EXPECT_GE(scene.rule.region(scene.problem).radius, 1.2);
+  EXPECT_EQ(scene.rule.region(scene.input).center, tip);
+  EXPECT_GE(scene.rule.region(scene.input).radius, 1.2);
 }
 
 TEST(CertifiedRule, WhatIsFreeIsAccepted) {
   Scene scene(table(), options);
   scene.open(above(0.2), Vec3(0.5, 0.5, 0.0));
-  EXPECT_EQ(scene.rule.judge(scene.problem, Vec3(0.5, 0.5, 0.0), scene.planes).verdict,
+  EXPECT_EQ(scene.rule.judge(scene.input, Vec3(0.5, 0.5, 0.0), scene.planes).verdict,
             Verdict::accepted);
   EXPECT_TRUE(scene.planes.empty());
 }
@@ -162,7 +162,7 @@ TEST(CertifiedRule, AnObjectionIsAPlaneThatExcludesTheTrialAndNotTheTip) {
   for (const Vec3& tip : surface_points(mesh, 400, 0.25, random)) {
     const Vec3 trial = random.uniform(0.1, 1.0) * random.direction();
     if (scene.open(tip, trial).status != Status::free) continue;
-    const Judgement judgement = scene.rule.judge(scene.problem, trial, scene.planes);
+    const Judgement judgement = scene.rule.judge(scene.input, trial, scene.planes);
     if (judgement.verdict == Verdict::accepted) continue;
     ASSERT_EQ(judgement.verdict, Verdict::objected);
     ++objections;
@@ -175,9 +175,8 @@ TEST(CertifiedRule, AnObjectionIsAPlaneThatExcludesTheTrialAndNotTheTip) {
     ASSERT_GE(judgement.free_fraction, 0.0);
     ASSERT_LE(judgement.free_fraction, 1.0);
     // Up to the contact the way is free.
-    ASSERT_EQ(
-        scene.rule.judge(scene.problem, judgement.free_fraction * trial, scene.planes).verdict,
-        Verdict::accepted);
+    ASSERT_EQ(scene.rule.judge(scene.input, judgement.free_fraction * trial, scene.planes).verdict,
+              Verdict::accepted);
   }
   EXPECT_GT(objections, 50u);
 }
@@ -186,9 +185,9 @@ TEST(CertifiedRule, ATrialAgainstItsOwnPlaneIsBlocked) {
   Scene scene(table(), options);
   const Vec3 trial(0.1, 0.0, -0.8);
   scene.open(Vec3(1.0, -3.0, 0.7), trial);
-  EXPECT_EQ(scene.rule.judge(scene.problem, trial, scene.planes).verdict, Verdict::objected);
+  EXPECT_EQ(scene.rule.judge(scene.input, trial, scene.planes).verdict, Verdict::objected);
   const std::size_t planes = scene.planes.size();
-  const Judgement again = scene.rule.judge(scene.problem, trial, scene.planes);
+  const Judgement again = scene.rule.judge(scene.input, trial, scene.planes);
   EXPECT_EQ(again.verdict, Verdict::blocked);
   EXPECT_NEAR(again.free_fraction, 0.625, 1e-8);
   EXPECT_EQ(scene.planes.size(), planes);
@@ -201,7 +200,7 @@ TEST(CertifiedRule, StandingStillIsAlwaysAccepted) {
     for (const Vec3& tip : surface_points(*scene.mesh, 30, random.uniform(0.01, 0.5), random)) {
       const Opening opening = scene.open(tip, random.direction());
       if (opening.status == Status::touching) continue;
-      ASSERT_EQ(scene.rule.judge(scene.problem, Vec3::Zero(), scene.planes).verdict,
+      ASSERT_EQ(scene.rule.judge(scene.input, Vec3::Zero(), scene.planes).verdict,
                 Verdict::accepted)
           << name << " " << tip.transpose();
     }
@@ -230,14 +229,14 @@ TEST(CertifiedRule, TurnedPlanesAllowTheTipAndTheMotionAsBefore) {
     for (const Vec3& tip : surface_points(mesh, 150, 0.25, random)) {
       const Vec3 trial = random.uniform(0.2, 1.0) * random.direction();
       if (scene.open(tip, trial).status != Status::free) continue;
-      const Judgement judgement = scene.rule.judge(scene.problem, trial, scene.planes);
+      const Judgement judgement = scene.rule.judge(scene.input, trial, scene.planes);
       if (judgement.verdict != Verdict::objected) continue;
       const HalfSpace old = scene.planes[0];
       // Along the plane, which is what a solver would answer.
       const Vec3 accepted = trial + (old.offset - old.normal.dot(trial)) * old.normal;
       scene.turned.clear();
-      scene.problem.accepted = accepted;
-      if (!scene.rule.relinearize(scene.problem, scene.planes.view(), scene.turned)) continue;
+      scene.input.accepted = accepted;
+      if (!scene.rule.relinearize(scene.input, scene.planes.view(), scene.turned)) continue;
       ++changed;
       ASSERT_EQ(scene.turned.size(), 1u);
       const HalfSpace plane = scene.turned[0];
@@ -259,8 +258,8 @@ TEST(CertifiedRule, IdlePlanesAreDroppedByATurn) {
   scene.open(Vec3(1.0, -3.0, 0.7), target);
   scene.planes.push({Vec3::UnitZ(), -0.5, 0});
   scene.turned.clear();
-  scene.problem.accepted = Vec3(0.5, 0.0, 0.2);
-  EXPECT_FALSE(scene.rule.relinearize(scene.problem, scene.planes.view(), scene.turned));
+  scene.input.accepted = Vec3(0.5, 0.0, 0.2);
+  EXPECT_FALSE(scene.rule.relinearize(scene.input, scene.planes.view(), scene.turned));
   EXPECT_TRUE(scene.turned.empty());
 }
 

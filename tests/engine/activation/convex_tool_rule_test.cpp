@@ -75,22 +75,22 @@ TEST(ConvexToolRule, ASpheresPlanesAreThoseThroughTheClosestPoints) {
   const double r = 1.5;
   ConvexToolRule rule(ConvexTool::sphere(r));
   const Vec3 tip = mesh->vertex(17) * 1.1;
-  const CycleProblem problem =
-      cycle_problem_of({.tip = tip, .desired = Vec3::Zero()}, {.radius = 5.0, .margin = margin},
-                       EndRegion::motion_sphere);
+  const RuleInput input =
+      rule_input_of({.tip = tip, .desired = Vec3::Zero()}, {.radius = 5.0, .margin = margin},
+                    EndRegion::motion_sphere);
   Budget budget;
   Neighborhood near(mesh, std::make_shared<BruteForce>(mesh), mesh->triangle_count(), budget);
   rule.prepare(near);
-  EXPECT_GT(rule.region(problem).radius, 5.0 + margin + r);
-  ASSERT_TRUE(rule.gather(problem));
+  EXPECT_GT(rule.region(input).radius, 5.0 + margin + r);
+  ASSERT_TRUE(rule.gather(input));
   HalfSpaceBuffer planes(mesh->triangle_count());
-  ASSERT_EQ(rule.open(problem, planes).status, Status::free);
+  ASSERT_EQ(rule.open(input, planes).status, Status::free);
   EXPECT_TRUE(planes.empty());
   Random random(10);
   for (int i = 0; i < 100; ++i) {
     planes.clear();
     const Vec3 trial = 5.0 * random.direction();
-    const Judgement judgement = rule.judge(problem, trial, planes);
+    const Judgement judgement = rule.judge(input, trial, planes);
     if (judgement.verdict == Judgement::Verdict::accepted) continue;
     ASSERT_EQ(planes.size(), 1u);
     const HalfSpace& plane = planes[0];

@@ -227,7 +227,7 @@ TEST_P(FacetOfKind, TheOrderOfTheCornersDoesNotMatter) {
       const Triangle other{c.triangle[order[0]], c.triangle[order[1]], c.triangle[order[2]]};
       const Facet same(other, Vec3::Zero(), 9);
       ASSERT_EQ(same.distance(), facet.distance());
-      ASSERT_EQ(same.normal(), facet.normal());
+      ASSERT_EQ(same.towards_tip(), facet.towards_tip());
       ASSERT_EQ(keeps_clear(same, c.z, c.level, c.slack),
                 keeps_clear(facet, c.z, c.level, c.slack));
       ASSERT_EQ(first_contact(same, c.z, c.level, c.slack, 1.0).time,
@@ -263,7 +263,7 @@ const Triangle flat{Vec3(0, 0, 0), Vec3(4, 0, 0), Vec3(0, 4, 0)};
 TEST(Facet, AMotionAlongIsClearAndOneThroughIsNot) {
   const Facet facet(flat, Vec3(1, 1, 0.5), 3);
   EXPECT_EQ(facet.distance(), 0.5);
-  EXPECT_EQ(facet.normal(), Vec3(0, 0, 1));
+  EXPECT_EQ(facet.towards_tip(), Vec3(0, 0, 1));
   EXPECT_TRUE(keeps_clear(facet, Vec3(1, 0, 0), 0.5, 0.0));
   EXPECT_TRUE(keeps_clear(facet, Vec3(1, 0, -0.25), 0.25, 0.0));
   EXPECT_FALSE(keeps_clear(facet, Vec3(1, 0, -0.25), 0.26, 0.0));
@@ -274,8 +274,8 @@ TEST(Facet, AMotionAlongIsClearAndOneThroughIsNot) {
 TEST(Facet, ItsNormalIsOnThePointsSide) {
   const Facet above(flat, Vec3(1, 1, 0.5), 3);
   const Facet below(flat, Vec3(1, 1, -0.5), 3);
-  EXPECT_EQ(above.normal(), Vec3(0, 0, 1));
-  EXPECT_EQ(below.normal(), Vec3(0, 0, -1));
+  EXPECT_EQ(above.towards_tip(), Vec3(0, 0, 1));
+  EXPECT_EQ(below.towards_tip(), Vec3(0, 0, -1));
 }
 
 TEST(Facet, AContactStraightDownIsWhereTheLevelIs) {
@@ -302,7 +302,8 @@ TEST(Facet, StandingStillAndLeavingAreAlwaysClear) {
     const Triangle triangle = random_triangle(random, 1.0, i % 2 == 0 ? 1.0 : 1e-3);
     const Facet facet(triangle, Vec3::Zero(), 0);
     ASSERT_TRUE(keeps_clear(facet, Vec3::Zero(), facet.distance(), 1e-12));
-    ASSERT_TRUE(keeps_clear(facet, random.uniform() * facet.normal(), facet.distance(), 1e-12));
+    ASSERT_TRUE(
+        keeps_clear(facet, random.uniform() * facet.towards_tip(), facet.distance(), 1e-12));
   }
 }
 

@@ -52,10 +52,10 @@ class PaperForms {
 
   /// How a cycle begins with blocks and without, and the planes of both.
   std::array<Status, 2> start(const Vec3& tip, double radius, double margin) {
-    const CycleProblem problem =
-        cycle_problem_of({.tip = tip, .desired = Vec3::Zero()},
-                         {.radius = radius, .margin = margin}, EndRegion::motion_sphere);
-    return {start(rule_, problem, planes), start(plain_, problem, plain_planes)};
+    const RuleInput input =
+        rule_input_of({.tip = tip, .desired = Vec3::Zero()}, {.radius = radius, .margin = margin},
+                      EndRegion::motion_sphere);
+    return {start(rule_, input, planes), start(plain_, input, plain_planes)};
   }
 
   Step step(const Motion& motion, const StepOptions& options) {
@@ -77,9 +77,9 @@ class PaperForms {
   HalfSpaceBuffer plain_planes;
 
  private:
-  static Status start(PaperRule& rule, const CycleProblem& problem, HalfSpaceBuffer& planes) {
+  static Status start(PaperRule& rule, const RuleInput& input, HalfSpaceBuffer& planes) {
     planes.clear();
-    return rule.gather(problem) ? rule.open(problem, planes).status : Status::over_capacity;
+    return rule.gather(input) ? rule.open(input, planes).status : Status::over_capacity;
   }
 
   MotionConstraint constraint(std::shared_ptr<const SpatialIndex> index, const Capacity& capacity) {

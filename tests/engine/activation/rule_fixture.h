@@ -19,14 +19,14 @@ inline std::vector<HalfSpace> planes_at(const std::shared_ptr<const Mesh>& mesh,
   Budget budget;
   Neighborhood near(mesh, std::make_shared<BruteForce>(mesh), mesh->triangle_count(), budget);
   HalfSpaceBuffer planes(mesh->triangle_count());
-  const CycleProblem problem =
-      cycle_problem_of({.tip = tip, .desired = Vec3::Zero()}, {.radius = radius, .margin = margin},
-                       EndRegion::motion_sphere);
+  const RuleInput input =
+      rule_input_of({.tip = tip, .desired = Vec3::Zero()}, {.radius = radius, .margin = margin},
+                    EndRegion::motion_sphere);
   rule.prepare(near);
-  if (!rule.gather(problem) || rule.open(problem, planes).status != Status::free) return {};
+  if (!rule.gather(input) || rule.open(input, planes).status != Status::free) return {};
   for (int i = 0; i < 27; ++i) {
     const Vec3 towards(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
-    if (!towards.isZero()) rule.judge(problem, radius * towards.normalized(), planes);
+    if (!towards.isZero()) rule.judge(input, radius * towards.normalized(), planes);
   }
   return {planes.begin(), planes.end()};
 }

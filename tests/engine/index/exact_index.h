@@ -77,7 +77,7 @@ inline void expect_leaves_hold(const Mesh& mesh, const TriangleBlocks& blocks) {
       const int inversions = int{corners[0].second > corners[1].second} +
                              int{corners[0].second > corners[2].second} +
                              int{corners[1].second > corners[2].second};
-      ASSERT_EQ((leaf.source[lane] & LeafBlock::odd) != 0, inversions % 2 == 1) << t;
+      ASSERT_EQ((leaf.tagged_triangle[lane] & LeafBlock::odd) != 0, inversions % 2 == 1) << t;
       for (std::size_t c = 0; c < 3; ++c) {
         for (std::size_t axis = 0; axis < 3; ++axis) {
           const double there = leaf.corner[c][axis][lane];
@@ -100,8 +100,8 @@ inline void expect_cylinders_hold(const WideBvh::Tree& index, std::size_t self,
   };
   for (std::size_t lane = 0; lane < NodeBlock::lanes && node.is_used(lane); ++lane) {
     const std::size_t first = leaves.size();
-    if ((node.child[lane] & NodeBlock::leaf) != 0) {
-      leaves.push_back(node.child[lane] & ~NodeBlock::leaf);
+    if ((node.child[lane] & NodeBlock::leaf_bit) != 0) {
+      leaves.push_back(node.child[lane] & ~NodeBlock::leaf_bit);
     } else {
       expect_cylinders_hold(index, node.child[lane], leaves);
     }

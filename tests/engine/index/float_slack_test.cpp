@@ -48,9 +48,9 @@ TEST(FloatSlack, NoProofOfALeafClaimsMoreThanItsPlaneDoes) {
       const auto mesh = one_leaf(size, random);
       const WideBvh index(mesh);
       const Vec3 tip = random.uniform(0.0, 2.0) * size * random.direction();
-      const FloatReach reach = float_reach(margin, longest, tip, index.tree().frame().error);
+      const FloatLevels levels = float_levels(margin, longest, tip, index.tree().frame().error);
       LeafFilter filter;
-      fill_filter(index.tree().leaves()[0], float_tip(tip), reach, filter);
+      fill_filter(index.tree().leaves()[0], float_tip(tip), levels, filter);
       for (int i = 0; i < 10; ++i) {
         // The motion ends slightly beyond the last point that the plane of one triangle allows.
         const std::size_t chosen = random.below(LeafBlock::lanes);
@@ -109,7 +109,7 @@ TEST(FloatSlack, NoBoxIsPassedOverThatAMotionComesWithinTheMarginOf) {
     const float in_float[3] = {static_cast<float>(motion.x()), static_cast<float>(motion.y()),
                                static_cast<float>(motion.z())};
     BoxEntries entries;
-    enter_boxes(node, float_tip(tip), in_float, float_reach(margin, motion.norm(), tip, 0.0),
+    enter_boxes(node, float_tip(tip), in_float, float_levels(margin, motion.norm(), tip, 0.0),
                 entries);
     ASSERT_TRUE((entries.reached >> lane & 1u) != 0) << trial;
     ASSERT_LE(entries.time[lane], 1.0f) << trial;
@@ -163,7 +163,8 @@ TEST(FloatSlack, CylindersOfNodesHoldTheCylindersBelow) {
       const CylinderBlock& above = index.tree().cylinders()[node];
       for (std::size_t lane = 0; lane < NodeBlock::lanes; ++lane) {
         const std::uint32_t child = index.tree().nodes()[node].child[lane];
-        if (!index.tree().nodes()[node].is_used(lane) || (child & NodeBlock::leaf) != 0) continue;
+        if (!index.tree().nodes()[node].is_used(lane) || (child & NodeBlock::leaf_bit) != 0)
+          continue;
         const CylinderBlock& below = index.tree().cylinders()[child];
         const Vec3 axis = vector_of(above.axis, lane).normalized();
         for (std::size_t i = 0; i < NodeBlock::lanes && index.tree().nodes()[child].is_used(i);

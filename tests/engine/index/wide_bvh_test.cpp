@@ -26,8 +26,8 @@ void expect_boxes_hold(const WideBvh::Tree& index, std::size_t self,
       continue;
     }
     const std::size_t first = leaves.size();
-    if ((node.child[lane] & NodeBlock::leaf) != 0) {
-      leaves.push_back(node.child[lane] & ~NodeBlock::leaf);
+    if ((node.child[lane] & NodeBlock::leaf_bit) != 0) {
+      leaves.push_back(node.child[lane] & ~NodeBlock::leaf_bit);
     } else {
       ASSERT_GT(node.child[lane], self);
       ASSERT_LT(node.child[lane], index.nodes().size());

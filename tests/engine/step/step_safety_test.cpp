@@ -69,8 +69,8 @@ TEST(StepSafety, AnAbsurdCapacityIsRefusedBeforeMemoryIsAskedFor) {
 TEST(StepSafety, ARuleThatObjectsForEverEndsInAStatus) {
   class Grumbler final : public ActivationRule {
    public:
-    Opening open(const CycleProblem&, HalfSpaceBuffer&) noexcept override { return {}; }
-    Judgement judge(const CycleProblem&, const Vec3&, HalfSpaceBuffer& planes) noexcept override {
+    Opening open(const RuleInput&, HalfSpaceBuffer&) noexcept override { return {}; }
+    Judgement judge(const RuleInput&, const Vec3&, HalfSpaceBuffer& planes) noexcept override {
       planes.push({Vec3::UnitX(), -1.0, 0});  // which no trial here violates
       return {Judgement::Verdict::objected, 0.0};
     }

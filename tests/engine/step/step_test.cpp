@@ -183,15 +183,14 @@ class LazyFaces final : public ActivationRule {
 
   void prepare(Neighborhood& near) override { eager_.prepare(near); }
 
-  bool gather(const CycleProblem& problem) noexcept override { return eager_.gather(problem); }
+  bool gather(const RuleInput& input) noexcept override { return eager_.gather(input); }
 
-  Opening open(const CycleProblem& problem, HalfSpaceBuffer&) noexcept override {
+  Opening open(const RuleInput& input, HalfSpaceBuffer&) noexcept override {
     planes_.clear();
-    return eager_.open(problem, planes_);
+    return eager_.open(input, planes_);
   }
 
-  Judgement judge(const CycleProblem&, const Vec3& trial,
-                  HalfSpaceBuffer& planes) noexcept override {
+  Judgement judge(const RuleInput&, const Vec3& trial, HalfSpaceBuffer& planes) noexcept override {
     const HalfSpace* worst = nullptr;
     double shortfall = 1e-12;
     for (const HalfSpace& plane : planes_) {

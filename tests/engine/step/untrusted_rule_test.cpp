@@ -10,8 +10,8 @@ namespace {
 /// Rejects every motion, and yet reports that the whole of it is free.
 class Boaster final : public ActivationRule {
  public:
-  Opening open(const CycleProblem&, HalfSpaceBuffer&) noexcept override { return {}; }
-  Judgement judge(const CycleProblem&, const Vec3& trial, HalfSpaceBuffer&) noexcept override {
+  Opening open(const RuleInput&, HalfSpaceBuffer&) noexcept override { return {}; }
+  Judgement judge(const RuleInput&, const Vec3& trial, HalfSpaceBuffer&) noexcept override {
     if (trial.isZero(0.0)) return {Judgement::Verdict::accepted};
     return {Judgement::Verdict::blocked, 1.0};
   }

@@ -16,32 +16,33 @@ namespace keepout {
 /// Planes, with a declared capacity.
 using HalfSpaceBuffer = Buffer<HalfSpace>;
 
-/// The region in which the solved motions of a cycle may end.
+/// The region of the tip's increments in which the solved motions of a cycle may end.
 enum class EndRegion : std::uint8_t {
   target_ball,   // the ball whose diameter is the target: all projections of the target (Thales)
   motion_sphere  // wherever the motion need not be a projection: joints, rows, a retreat, guides
                  // that lead back, rules that return nothing else; or by StepOptions::query
 };
 
-/// The input of a rule in a cycle. (The quadratic program of the solver is StepProblem.)
-struct CycleProblem {
+/// The input of a rule in a cycle.
+struct RuleInput {
   Vec3 tip;                   // [length]
   Vec3 target;                // what the cycle pursues: the desired increment, a part of it, or the
                               // retreat [length]
-  Vec3 accepted;              // a motion that planes must go on allowing; zero at first [length]
+  Vec3 accepted;              // a motion that planes must go on allowing; zero before there is one,
+                              // as planes allow zero motion anyway [length]
   double radius;              // of the motion sphere [length]
-  double longest;             // no motion is longer: at most the radius [length]
+  double longest;             // no motion is longer: at most longest_motion() [length]
   double clearance;           // required from the mesh: tool radius and margin [length], >= 0
   double recovery;            // the longest retreat of a tip that is too close, in a cycle [length]
   double rounding;            // bound of the tip's error after earlier steps [length]
-  EndRegion end_region;       // where motions may end
-  EndRegion searched_region;  // what the gathered triangles must cover: the same, or more
+  EndRegion searched_region;  // the ends of motions whose triangles are searched: where the solved
+                              // motions may end, or more
   bool is_projected = false;  // no joints, rows, damping or guides that lead back, and the solver
                               // ignores idle planes: a rule may leave them out
 };
 
-/// Returns a ball around the ends that the gathered triangles must cover: those of searched_region.
-Ball searched_ends(const CycleProblem& problem) noexcept;
+/// Returns the smallest ball that contains searched_region, in the frame of the mesh.
+Ball searched_ends(const RuleInput& input) noexcept;
 
 /// The start of a cycle.
 struct Opening {
@@ -69,8 +70,8 @@ struct Judgement {
 ///
 /// An eager rule adds all of its planes in `open`. A lazy one is a separation oracle, as in a
 /// cutting-plane method: `judge` receives each trial motion, and adds a plane that the trial
-/// violates until it accepts one. The same loop in `step` serves both. State that a rule keeps
-/// between cycles never changes a result.
+/// violates until it accepts one. The same loop of a cycle serves both (Cycle::solve_and_judge).
+/// State that a rule keeps between cycles never changes a result, unless the work budget ends.
 class ActivationRule {
  public:
   virtual ~ActivationRule() = default;
@@ -78,72 +79,73 @@ class ActivationRule {
   /// Sets the neighborhood in which to gather triangles, before any other call, and again when its
   /// mesh has changed. The neighborhood must outlive the rule. Allocates; all other functions do
   /// not.
-  virtual void prepare(Neighborhood& near) { near_ = &near; }
+  virtual void prepare(Neighborhood& neighborhood) { neighborhood_ = &neighborhood; }
 
   /// Returns true if the rule guards a whole tool, not only the tip. The tip's side, and the free
   /// space around the tip, then do not hold for the tool.
   virtual bool guards_a_tool() const noexcept { return false; }
 
-  /// Returns true if the rule asks the index for all triangles in the region, and not by something
-  /// faster that the index offers. Precondition: prepare.
+  /// Returns true if the rule queries the index for all triangles in the region; false if it uses
+  /// the index's own walk (SpatialIndex::walk_along_motions). Precondition: prepare.
   virtual bool makes_queries() const noexcept { return true; }
 
-  /// Returns the region in which motions end that are projections of the target: without joints and
-  /// without rows of the caller's own.
+  /// Returns the region in which motions end if there are neither joints nor rows of the caller's
+  /// own, so that they are projections of the target.
   virtual EndRegion end_region() const noexcept { return EndRegion::motion_sphere; }
 
-  /// Returns the ball that contains all triangles that matter: by default the ends of motions,
-  /// grown by the required clearance. Precondition: prepare.
-  virtual Ball region(const CycleProblem& problem) const noexcept;
+  /// Returns the ball that touches all triangles that matter: by default the ball of
+  /// searched_ends(), grown by the required clearance. Precondition: prepare.
+  virtual Ball region(const RuleInput& input) const noexcept;
 
-  /// Gathers the triangles of the region from the index. Returns false if they exceed the capacity
-  /// or the work budget.
-  [[nodiscard]] virtual bool gather(const CycleProblem& problem) noexcept;
+  /// Gathers the triangles that touch region() from the index, or begins a walk that finds them
+  /// trial by trial. Returns false if they exceed the capacity or the work budget.
+  [[nodiscard]] virtual bool gather(const RuleInput& input) noexcept;
 
-  /// Opens a cycle: appends the planes that hold for every trial. Precondition: gather.
-  virtual Opening open(const CycleProblem& problem, HalfSpaceBuffer& planes) noexcept = 0;
+  /// Opens a cycle: finds if the tip is too close, and appends the planes that hold for every
+  /// trial. May judge the target already, which is the first trial. Precondition: gather.
+  virtual Opening open(const RuleInput& input, HalfSpaceBuffer& planes) noexcept = 0;
 
   /// Judges a trial motion: by default it is accepted if it satisfies the planes, which no solver
   /// is trusted to ensure. A lazy rule appends a plane that the trial violates, if there is one.
-  virtual Judgement judge(const CycleProblem& problem, const Vec3& trial,
+  virtual Judgement judge(const RuleInput& input, const Vec3& trial,
                           HalfSpaceBuffer& planes) noexcept;
 
   /// Relaxes planes that pull the tip back, when the planes contradict each other. Returns true if
   /// any plane changed.
   virtual bool relax(HalfSpaceBuffer& /*planes*/) noexcept { return false; }
 
-  /// Fills `next` with `planes`, linearized again at problem.accepted, a motion that the rule has
+  /// Fills `next` with `planes`, linearized again at input.accepted, a motion that the rule has
   /// accepted: they allow it too, and may allow a better one. Returns true if any plane changed.
-  virtual bool relinearize(const CycleProblem& /*problem*/, std::span<const HalfSpace> /*planes*/,
+  virtual bool relinearize(const RuleInput& /*input*/, std::span<const HalfSpace> /*planes*/,
                            HalfSpaceBuffer& /*next*/) noexcept {
     return false;
   }
 
   /// Adds planes that each have one triangle behind them and allow zero motion: alternatives to the
   /// plane that `judge` has added for the triangle.
-  virtual void add_alternatives(TriangleId /*source*/, HalfSpaceBuffer& /*planes*/) const noexcept {
-  }
+  virtual void add_alternatives(TriangleId /*triangle*/,
+                                HalfSpaceBuffer& /*planes*/) const noexcept {}
 
-  /// Returns the number of triangles that the last result depends on: all hits, or those that the
-  /// rule has examined.
+  /// Returns the number of triangles that the last result depends on: all hits, or the examinations
+  /// of triangles, which count a triangle again if the rule had to forget it.
   virtual std::size_t triangles() const noexcept { return hits().size(); }
 
  protected:
   /// Returns the mesh. Precondition: prepare.
-  const Mesh& mesh() const noexcept { return near_->mesh(); }
+  const Mesh& mesh() const noexcept { return neighborhood_->mesh(); }
   /// Returns the index. Precondition: prepare.
-  const SpatialIndex& index() const noexcept { return near_->index(); }
+  const SpatialIndex& index() const noexcept { return neighborhood_->index(); }
   /// Returns the work budget. Precondition: prepare.
-  Budget& budget() const noexcept { return near_->budget(); }
+  Budget& budget() const noexcept { return neighborhood_->budget(); }
   /// Returns the hits of the last gather; empty before it.
   std::span<const Hit> hits() const noexcept {
-    return near_ != nullptr ? near_->hits() : std::span<const Hit>();
+    return neighborhood_ != nullptr ? neighborhood_->hits() : std::span<const Hit>();
   }
   /// Returns the ball of the last gather. Precondition: gather.
-  const Ball& gathered_ball() const noexcept { return near_->ball(); }
+  const Ball& gathered_ball() const noexcept { return neighborhood_->ball(); }
 
  private:
-  Neighborhood* near_ = nullptr;
+  Neighborhood* neighborhood_ = nullptr;
 };
 
 }  // namespace keepout

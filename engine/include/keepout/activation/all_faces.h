@@ -10,7 +10,7 @@ namespace keepout {
 /// an area have no face and are passed over.
 class AllFaces final : public ActivationRule {
  public:
-  Opening open(const CycleProblem& problem, HalfSpaceBuffer& planes) noexcept override;
+  Opening open(const RuleInput& input, HalfSpaceBuffer& planes) noexcept override;
 };
 
 }  // namespace keepout

@@ -34,18 +34,18 @@ class ConvexToolRule final : public ActivationRule {
   /// Precondition: a narrow phase that is given is one of this tool; the exact one by default.
   explicit ConvexToolRule(ConvexTool tool, std::unique_ptr<NarrowPhase> narrow_phase = nullptr);
 
-  void prepare(Neighborhood& near) override;
+  void prepare(Neighborhood& neighborhood) override;
   bool guards_a_tool() const noexcept override { return true; }
   EndRegion end_region() const noexcept override { return EndRegion::target_ball; }
-  Ball region(const CycleProblem& problem) const noexcept override;
-  Opening open(const CycleProblem& problem, HalfSpaceBuffer& planes) noexcept override;
-  Judgement judge(const CycleProblem& problem, const Vec3& trial,
+  Ball region(const RuleInput& input) const noexcept override;
+  Opening open(const RuleInput& input, HalfSpaceBuffer& planes) noexcept override;
+  Judgement judge(const RuleInput& input, const Vec3& trial,
                   HalfSpaceBuffer& planes) noexcept override;
   bool relax(HalfSpaceBuffer& planes) noexcept override;
 
   /// Returns the resolution of distances: some 1e-12 of the lengths at hand, and the rounding of a
   /// position. Precondition: prepare. [length]
-  double tolerance(const CycleProblem& problem) const noexcept;
+  double tolerance(const RuleInput& input) const noexcept;
 
   /// Returns the tool.
   const ConvexTool& tool() const noexcept { return tool_; }
@@ -81,11 +81,11 @@ class ConvexToolRule final : public ActivationRule {
   Proof proof_along(const Vec3& normal, const Vec3& position, TriangleId triangle) const noexcept;
   Proof quick_proof(const Hit& hit, const Vec3& position) const noexcept;
   Proof proof_of(double enough, const Vec3& position, TriangleId triangle) noexcept;
-  void find_suspects(const CycleProblem& problem, const Vec3& trial) noexcept;
-  bool keeps_clear(Near& near, const CycleProblem& problem, const Vec3& trial, double level,
+  void find_suspects(const RuleInput& input, const Vec3& trial) noexcept;
+  bool keeps_clear(Near& near, const RuleInput& input, const Vec3& trial, double level,
                    std::span<const HalfSpace> planes) noexcept;
-  std::optional<Contact> first_contact(const Near& near, const CycleProblem& problem,
-                                       const Vec3& trial, double level, double latest) noexcept;
+  std::optional<Contact> first_contact(const Near& near, const RuleInput& input, const Vec3& trial,
+                                       double level, double latest) noexcept;
 
   ConvexTool tool_;
   std::unique_ptr<NarrowPhase> narrow_phase_;

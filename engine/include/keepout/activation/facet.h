@@ -30,30 +30,31 @@ class Facet {
   };
 
   Facet() = default;
-  /// Of a triangle as the mesh has it. `tip`: what it is to be relative to. [length]
-  Facet(const Triangle& triangle, const Vec3& tip, TriangleId source) noexcept;
+  /// Prepares a triangle given in the frame of the mesh, relative to a tip.
+  Facet(const Triangle& triangle, const Vec3& tip, TriangleId number) noexcept;
 
-  /// Of corners that are relative to the tip and in lexicographic order already.
-  Facet(const Triangle& ordered, TriangleId source) noexcept;
+  /// Prepares a triangle whose corners are relative to the tip and in lexicographic order already.
+  Facet(const Triangle& ordered, TriangleId number) noexcept;
 
-  /// The triangle's number; no_triangle until one is given.
-  TriangleId source() const noexcept { return source_; }
-  /// In lexicographic order, relative to the tip. [length]
+  /// Returns the triangle's number; no_triangle until one is given.
+  TriangleId triangle() const noexcept { return triangle_; }
+  /// Returns the corners, in lexicographic order, relative to the tip. [length]
   const Triangle& corners() const noexcept { return corners_; }
 
   /// Returns the closest point to a point: of all normals within rounding, the one that proves the
-  /// largest distance.
+  /// largest distance. (closest_point() finds the same point, but its offset need not prove the
+  /// distance: A9 of docs/certified-step.md.)
   Nearest nearest_to(const Vec3& point) const noexcept;
 
   /// Like nearest_to(point), but faster if the closest point lies on the `likely` feature.
   Nearest nearest_to(const Vec3& point, Feature likely) const noexcept;
 
-  /// Returns nearest_to the tip.
+  /// Returns nearest_to() the tip.
   const Nearest& at_tip() const noexcept { return at_tip_; }
   /// Returns the distance of the tip. [length]
   double distance() const noexcept { return at_tip_.distance; }
   /// Returns the unit vector towards the tip; zero when the tip is on the facet.
-  const Vec3& normal() const noexcept { return at_tip_.normal; }
+  const Vec3& towards_tip() const noexcept { return at_tip_.normal; }
 
   /// Returns an edge (0, 1, 2) as a vector from its first corner. [length]
   Vec3 edge(int number) const noexcept { return corners_[(number + 1) % 3] - corners_[number]; }
@@ -61,17 +62,19 @@ class Facet {
   /// Returns max n . p over the points p of the facet. [length]
   double support(const Vec3& n) const noexcept { return keepout::support(corners_, n); }
 
-  /// Returns true unless the facet is thin: a thin one counts as its edges.
+  /// Returns true unless the facet is a needle, which counts as its edges.
   bool has_face() const noexcept { return determinant_ > 0.0; }
 
-  /// Returns the closest point of the face's plane to the tip. Precondition: has_face().
-  Nearest face() const noexcept;
+  /// Returns the closest point of the plane of the face to a point, whether it is on the face or
+  /// not. Precondition: has_face().
+  Nearest on_face_plane(const Vec3& point) const noexcept;
 
-  /// Returns true if a point is right over the face, on either side; false for a thin facet.
-  bool is_under(const Vec3& point) const noexcept;
+  /// Returns true if a point is right over the face, on either side; false for a needle.
+  bool has_above(const Vec3& point) const noexcept;
 
-  /// Returns the facet's own unit normal, on the side of the tip; zero without an area.
-  Vec3 face_normal() const noexcept;
+  /// Returns the facet's own unit normal, on the side to which `direction` does not point; zero
+  /// without an area.
+  Vec3 normal_against(const Vec3& direction) const noexcept;
 
   /// Returns the unit normal of the plane through the tip that has the facet on its far side, at
   /// least `level` away, and one of its edges (0, 1, 2) exactly so: the alternative around that
@@ -84,39 +87,36 @@ class Facet {
   bool before(const Facet& other) const noexcept;
 
  private:
-  /// A point's coordinates along the two edges at the first corner.
+  /// A point's coordinates along the edges from corner 0 to corners 1 and 2.
   struct Shares {
-    double along_first;  // edge 0 . (point - corner 0)
-    double along_last;
-    double of_second;  // barycentric coordinates of the corners, times the determinant
-    double of_third;
+    double along_01;  // (corner 1 - corner 0) . (point - corner 0)
+    double along_02;
+    double of_1;  // barycentric coordinates of the corners, times the determinant
+    double of_2;
 
     bool are_inside(double determinant) const noexcept {
-      return of_second > 0.0 && of_third > 0.0 && of_second + of_third < determinant;
+      return of_1 > 0.0 && of_2 > 0.0 && of_1 + of_2 < determinant;
     }
   };
 
   Shares shares(const Vec3& point) const noexcept;
   bool is_nearest(const Vec3& point, const Vec3& off, double distance, Feature feature,
                   Nearest& nearest) const noexcept;
-  bool face_is_nearest(const Vec3& point, Nearest& nearest) const noexcept;
   bool edge_is_nearest(const Vec3& point, int edge, Nearest& nearest) const noexcept;
   bool corner_is_nearest(const Vec3& point, int corner, Nearest& nearest) const noexcept;
   Nearest nearest_with_care(const Vec3& point) const noexcept;
 
-  Vec3 plane_normal() const noexcept;
-  Vec3 facing(const ClosestPoint& closest) const noexcept;
   Vec3 across(const Vec3& n, int edge) const noexcept;
 
   Triangle corners_;  // relative to the tip [length]
-  // Of the edges at the first corner. The determinant is 0 for a thin facet. [length^2], [length^4]
-  double first2_ = 0;
-  double last2_ = 0;
-  double between_ = 0;
-  double determinant_ = 0;
-  Vec3 plane_normal_;  // unless the facet is thin
+  // Squared lengths of the edges at corner 0, and their product. [length^2]
+  double length2_01_ = 0;
+  double length2_02_ = 0;
+  double product_ = 0;
+  double determinant_ = 0;  // of their Gram matrix; 0 for a needle [length^4]
+  Vec3 face_normal_;        // unit, on an arbitrary side; zero for a needle
   Nearest at_tip_;
-  TriangleId source_ = no_triangle;
+  TriangleId triangle_ = no_triangle;
 };
 
 }  // namespace keepout

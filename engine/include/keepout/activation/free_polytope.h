@@ -28,7 +28,7 @@ void hold_still(HalfSpaceBuffer& planes) noexcept;
 /// callers with a QP, an MPC or a sampler of their own.
 ///
 /// Every increment d with |d| <= radius that satisfies all planes keeps
-///   distance(tip + d, mesh) >= min(margin, distance(tip, mesh)) - rounding,
+///   distance(tip + d, mesh) >= min(clearance, distance(tip, mesh)) - rounding,
 /// and as planes and ball are convex and hold d = 0, so does every motion that stays within them,
 /// straight or curved. `rounding` is 1e-12 radius + 2e-14 size [length], where size is the largest
 /// distance from the tip to a corner of a hit; it does not grow with the distance from the origin.
@@ -51,13 +51,14 @@ class FreePolytope {
   /// free, or why the planes allow standing still only: touching, invalid_input, over_capacity or
   /// out_of_budget.
   ///
-  /// `radius`, `margin` [length], >= 0. `hits`: all triangles within the ball of radius + margin
-  /// around the tip, in any order; closest points relative to the tip (refine). `planes` needs room
-  /// for at least six; with less, a failure leaves it overflowed. `budget`: work is taken from it.
+  /// `radius`, `clearance` [length], >= 0. `hits`: all triangles within the ball of radius +
+  /// clearance around the tip, in any order; closest points relative to the tip (refine). `planes`
+  /// needs room for at least six; with less, a failure leaves it overflowed. `budget`: work is
+  /// taken from it.
   ///
   /// The normals, the offsets and their order are the same, bit for bit but for the sign of a zero,
   /// however the triangles are numbered, wound and rotated. Allocates nothing.
-  [[nodiscard]] Status around(const Vec3& tip, double radius, double margin,
+  [[nodiscard]] Status around(const Vec3& tip, double radius, double clearance,
                               std::span<const Hit> hits, Budget& budget,
                               HalfSpaceBuffer& planes) noexcept;
 

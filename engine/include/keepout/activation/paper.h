@@ -33,21 +33,21 @@ class PaperRule final : public ActivationRule {
 
   /// Builds the adjacency of the mesh. Looks at the leaves by itself where the index has its
   /// triangles in blocks.
-  void prepare(Neighborhood& near) override;
-  bool gather(const CycleProblem& problem) noexcept override;
+  void prepare(Neighborhood& neighborhood) override;
+  bool gather(const RuleInput& input) noexcept override;
   bool makes_queries() const noexcept override { return blocks_ == nullptr; }
   std::size_t triangles() const noexcept override;
-  Opening open(const CycleProblem& problem, HalfSpaceBuffer& planes) noexcept override;
-  Judgement judge(const CycleProblem& problem, const Vec3& trial,
+  Opening open(const RuleInput& input, HalfSpaceBuffer& planes) noexcept override;
+  Judgement judge(const RuleInput& input, const Vec3& trial,
                   HalfSpaceBuffer& planes) noexcept override;
 
   /// The plane that one triangle calls for, if it does. Asks no hits. Precondition: prepare.
-  std::optional<HalfSpace> plane_of(const CycleProblem& problem, const Hit& hit) const noexcept;
+  std::optional<HalfSpace> plane_of(const RuleInput& input, const Hit& hit) const noexcept;
 
  private:
   enum class Role { none, speaks, leaves_it_to_a_neighbor };
 
-  Role role_in_condition_2(const CycleProblem& problem, const Hit& hit) const noexcept;
+  Role role_in_condition_2(const RuleInput& input, const Hit& hit) const noexcept;
   bool touches_a_valley(const Hit& hit) const noexcept;
 
   std::unique_ptr<const Adjacency> adjacency_;

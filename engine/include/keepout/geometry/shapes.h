@@ -13,8 +13,8 @@
 
 namespace keepout {
 
-/// Lengths that are computed with, whatever their unit. Those of a guard and of its mesh that are
-/// shorter, but for 0, or longer are refused: their squares would leave the range of a float.
+/// The range of lengths, whatever their unit: shorter ones, except 0, and longer ones are refused,
+/// as their squares would leave the range of a float.
 inline constexpr double shortest_length = 1e-15;
 /// See shortest_length.
 inline constexpr double longest_length = 1e15;
@@ -22,8 +22,8 @@ inline constexpr double longest_length = 1e15;
 /// A point or a displacement, in the world unless another frame is named. [length]
 using Vec3 = Eigen::Vector3d;
 
-/// All points within `radius` of `center`, the boundary included. The paper's motion sphere is one:
-/// it holds every place that the tip can reach in one control cycle.
+/// All points within `radius` of `center`, the boundary included. The motion sphere of Li et al.
+/// (2020) is one: it contains every position that the tip can reach in one control cycle.
 struct Ball {
   Vec3 center;    // [length]
   double radius;  // [length], >= 0
@@ -79,12 +79,13 @@ Vec3 unit_normal(const Triangle& triangle) noexcept;
 /// taken off, whose rounding could make different coordinates equal.
 Triangle ordered_relative(const Triangle& triangle, const Vec3& tip) noexcept;
 
-/// The motions that one plane allows: all d with normal . d >= offset. The plane is placed relative
-/// to the tip, so `offset` <= 0 means that standing still is allowed.
+/// A plane, as it is called everywhere: the motions that it allows are all d with
+/// normal . d >= offset. It is placed relative to the tip, so `offset` <= 0 means that standing
+/// still is allowed.
 struct HalfSpace {
   Vec3 normal;        // unit, towards the free side
   double offset;      // [length]
-  TriangleId source;  // the triangle that called for it; no_triangle if none did
+  TriangleId source;  // the triangle that it keeps the tip clear of; no_triangle if there is none
 };
 
 }  // namespace keepout

@@ -10,13 +10,15 @@
 
 namespace keepout {
 
-/// The work that a control cycle may do, counted in work units (looks), so that it is the same on
-/// every run and every processor. A unit is the examination of sixteen boxes or triangles in single
-/// precision, of one triangle in double, or of sixteen planes. (A tree's traversal cache is not
-/// counted: Frontier::cover, at most 32 nodes each time.)
+/// The work that a control cycle may do, counted in work units ("looks" in names of options), so
+/// that it is the same on every processor. It also depends on what the caches of an index remember
+/// of earlier cycles (Frontier). A unit is the examination of sixteen boxes or triangles in single
+/// precision, of one triangle in double, or of sixteen planes. (Not
+/// counted: the nodes that a traversal cache opens, Frontier::cover, at most 32 each time, at most
+/// twice at a beginning of a walk.)
 ///
-/// Each part spends its units, before or after the work, and stops once all are spent. What was not
-/// examined then is unknown, so no motion is accepted that could depend on it.
+/// Each part spends its units, before or after the work, and stops once all are spent. Triangles
+/// that were not examined are then unknown, so no motion is accepted that could depend on them.
 class Budget {
  public:
   /// Effectively unlimited: for measurements, and without a control cycle.
@@ -41,24 +43,22 @@ class Budget {
   /// Notes that a store was too small for what was found.
   void mark_overflow() noexcept { overflowed_ = true; }
 
-  /// Returns why the work ended: over_capacity if a store was too small, else out_of_budget.
-  Status status_at_end() const noexcept {
+  /// Returns why the work failed: over_capacity if a store was too small, else out_of_budget.
+  Status failure() const noexcept {
     return overflowed_ ? Status::over_capacity : Status::out_of_budget;
   }
 
   /// Returns true if nothing is left.
   bool is_spent() const noexcept { return left_ <= 0; }
 
-  /// Returns the work units of a cycle.
-  std::size_t all() const noexcept { return static_cast<std::size_t>(all_); }
-
   /// Returns the work units spent in this cycle.
   std::size_t spent() const noexcept {
     return static_cast<std::size_t>(left_ > 0 ? all_ - left_ : all_);
   }
 
-  /// Runs `attempt` with half of what is left and without an earlier overflow; what it does not
-  /// spend is returned. Returns the result of the attempt.
+  /// Runs `attempt` with half of the units that are left, and forgets an earlier overflow.
+  /// Afterwards the other half, and what the attempt has not spent, are left. Returns the result of
+  /// the attempt.
   template <class Attempt>
   auto halved(const Attempt& attempt) noexcept(noexcept(attempt())) {
     const std::int64_t aside = left_ / 2;

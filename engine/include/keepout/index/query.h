@@ -21,20 +21,20 @@ struct Hit {
   ClosestPoint closest;  // relative to the ball's center
 };
 
-/// The work of finding one, in work units (Budget): mostly a wait for its corners.
+/// The work of finding one, in work units (Budget): mostly cache misses.
 inline constexpr std::size_t work_of_hit = 4;
 
 /// Hits, with a declared capacity.
 using HitBuffer = Buffer<Hit>;
 
-/// From candidates to exact hits: keeps the triangles within the ball (distance <= radius) and
-/// sorts them by id, so that nothing downstream depends on the order of a traversal.
+/// Fills `hits` with the candidates that touch the ball by the exact kernel (distance <= radius),
+/// sorted by id, so that nothing downstream depends on the order of a traversal.
 void refine(const Mesh& mesh, const Ball& ball, std::span<const TriangleId> candidates,
             HitBuffer& hits) noexcept;
 
-/// Finds the triangles that touch a ball, exactly, on any index: the index proposes candidates, and
-/// refine() keeps the hits. All memory is made at construction. One for each thread; mesh and index
-/// are shared.
+/// A mesh with its index and a work budget, and the triangles that touch a ball, exactly, on any
+/// index: the index proposes candidates, and refine() keeps the hits. All memory is made at
+/// construction. One for each thread; mesh and index are shared.
 class Neighborhood {
  public:
   /// With a capacity of `room` candidates in a query, or of all triangles if they are fewer.
@@ -89,13 +89,13 @@ class Neighborhood {
 /// mesh: far from the mesh that may be a large part of it. Returns nothing if that is more than
 /// there is room for, or if the budget is spent. Hits stay as they are. Allocates nothing.
 /// Precondition: the point is finite.
-std::optional<Hit> find_nearest(Neighborhood& near, const Vec3& point) noexcept;
+std::optional<Hit> find_nearest(Neighborhood& neighborhood, const Vec3& point) noexcept;
 
 /// Classifies a point as inside or outside a watertight mesh that does not cut through itself. The
 /// result does not depend on the order of triangles and corners. Returns nothing if more triangles
 /// are about equally near than there is room for, or if the budget is spent. Allocates nothing.
 /// Precondition: the mesh is watertight.
-std::optional<SideOfSurface> find_side(Neighborhood& near, const Vec3& point) noexcept;
+std::optional<SideOfSurface> find_side(Neighborhood& neighborhood, const Vec3& point) noexcept;
 
 /// Like find_nearest, with memory that grows as needed: for measuring, not for the control path.
 class NearestTriangle {

@@ -34,7 +34,7 @@ class ExtraRows {
   Eigen::Index count_;
 };
 
-/// The request to one control cycle.
+/// The request to one control cycle. (A motion of the tip itself is a Vec3.)
 struct Motion {
   Vec3 tip = unset;      // commanded tip, in the frame of the mesh [length]
   Vec3 desired = unset;  // desired increment [length]
@@ -56,8 +56,9 @@ struct Step {
   Vec3 motion = Vec3::Zero();              // of the tip; zero unless ok() [length]
   std::span<const double> increment = {};  // u: the tip's, or the joints' (n); empty unless ok()
   /// All planes that the solver got: those of the mesh, then those of guides. The source is
-  /// no_triangle for a guide, and among the planes of the mesh for the bound of the motion sphere.
-  /// A rule may leave out planes on which the answer cannot depend: see CycleProblem::is_projected.
+  /// no_triangle for a guide, and also for a plane among those of the mesh that bounds the motion
+  /// to the motion sphere.
+  /// A rule may leave out planes on which the answer cannot depend: see RuleInput::is_projected.
   std::span<const HalfSpace> planes = {};
   /// The planes that limit the motion; empty unless ok(). From planes.size() on, extra rows.
   std::span<const std::uint32_t> active = {};
@@ -66,11 +67,12 @@ struct Step {
   Limits limits = {};
   std::span<const GuideState> guides = {};   // one for each guide, in the order of set_guides
   Relaxation relaxation = Relaxation::none;  // what was relaxed
-  std::size_t triangles = 0;                 // that it rests on: see ActivationRule::triangles
+  std::size_t triangles = 0;  // examinations that it rests on: see ActivationRule::triangles
   /// From the tip at the start of the step to the nearest triangle, on either side. Known at no
   /// cost under the certified rule, for a tip within the required clearance, and for an escape; for
-  /// every other tip it is searched if StepOptions::distances says so. Empty if unknown, and for
-  /// invalid input. Bitwise identical on every index. [length]
+  /// every other tip it is searched if StepOptions::distances says so, with the work units that are
+  /// left. Empty if unknown, as it may be for out_of_budget, and for invalid_input and
+  /// mesh_changed. Bitwise identical on every index. [length]
   std::optional<double> distance = std::nullopt;
 
   /// Whether there is a motion that may be carried out; it may be zero.
@@ -79,11 +81,12 @@ struct Step {
   std::string_view reason() const noexcept { return keepout::reason(status, Subject::tip); }
 };
 
-/// The time of each stage of a step. Stages that a failed step does not reach stay at zero. [ns]
+/// The time of each stage of a cycle. Stages that a step does not reach stay at zero: all of them
+/// in an escape. [ns]
 struct StageTimes {
   std::int64_t query = 0;       // the rule gathers triangles: a query, or the beginning of a walk
   std::int64_t activation = 0;  // the rule opens the cycle; may walk along the target
-  std::int64_t solve = 0;       // trials are solved and judged; may walk along each
+  std::int64_t solve = 0;       // solve, judge, cut and refine; may walk along each trial
 
   /// Returns the time of all stages. [ns]
   std::int64_t total() const noexcept { return query + activation + solve; }

@@ -19,12 +19,12 @@
 
 namespace keepout {
 
-class Workspace;
+class TipMemory;
 
 /// The treatment of a tip that starts on the forbidden side. For the certified rule.
 enum class Inside : std::uint8_t {
   led_out,     // escapes straight through the nearest point of the surface, before anything else
-  taken_as_is  // not classified: the tip keeps off the surface on whichever side it is
+  taken_as_is  // is not classified: the tip keeps its clearance on whichever side it is
 };
 
 /// The names of Inside.
@@ -41,16 +41,20 @@ struct Polytope {
   std::string_view reason() const noexcept { return keepout::reason(status, Subject::polytope); }
 };
 
-/// Keeps a tool tip out of a mesh: puts an index, a rule and a solver together, with their memory.
-/// Every step of a tip runs through here: what is tested, timed and attacked is what runs. Examples
-/// call an object of this type `guard`.
+/// Keeps a tool tip out of a mesh: puts an index, an activation rule (`rule` for short) and a
+/// solver together, with their memory. Every step of a tip runs through here. Examples call an
+/// object of this type `guard`.
 ///
-///     mesh -> index walk <-> rule -> planes -> quadratic program -> step
+///     target -> trial -> rule <-> index walk -> accepted: step
+///                 ^        |
+///                 |        v
+///                 +-- solver <- planes
 ///
-/// So it is by default, under the rule certified on a WideBvh: the index shows the rule the
-/// triangles in the way of each trial (MotionWalk). Other indices and rules work on exact hits
-/// instead: the index proposes candidates, and the exact kernel keeps those in the region
-/// (Neighborhood).
+/// This is the loop by default, under the rule certified on a WideBvh. The first trial is the
+/// target itself, without planes. The index shows the rule the triangles in the way of each trial
+/// (MotionWalk). The rule accepts the trial, or adds a plane, and the solver finds the next trial
+/// within the planes. Other indices and rules work on exact hits instead: the index proposes
+/// candidates, and the exact kernel keeps those in the region (Neighborhood).
 ///
 /// Not thread-safe: one for each control loop; mesh and index may be shared.
 ///
@@ -62,8 +66,10 @@ class MotionConstraint {
   /// of other threads too; rule and solver may not. Throws Error when a part is missing, when the
   /// index is of another mesh, when the mesh, an option or a capacity is out of range, and when
   /// tips are to be led out under a rule that guards a whole tool. Makes all memory here.
+  /// Unlike make_motion_constraint, whose default is Inside::led_out, this does not classify tips
+  /// unless `inside` says so.
   MotionConstraint(std::shared_ptr<const Mesh> mesh, std::shared_ptr<const SpatialIndex> index,
-                   std::unique_ptr<ActivationRule> activation, std::unique_ptr<Solver> solver,
+                   std::unique_ptr<ActivationRule> rule, std::unique_ptr<Solver> solver,
                    const StepOptions& options, const Capacity& capacity = {},
                    Inside inside = Inside::taken_as_is);
   /// Takes over all that another one has, which may then only be destroyed or assigned to.
@@ -77,8 +83,9 @@ class MotionConstraint {
   /// the motion is zero and the status gives the cause.
   Step step(const Motion& request) noexcept { return step(request, side_watch_, nullptr); }
 
-  /// Like step(request), but also measures the time of each stage, without that of the
-  /// classification of the tip and of a search for the distance (Distances::always).
+  /// Like step(request), but also measures the time of each stage of the cycle. The opening of
+  /// guides, the classification of the tip, an escape and a search for the distance
+  /// (Distances::always) belong to no stage.
   Step step(const Motion& request, StageTimes& times) noexcept {
     return step(request, side_watch_, &times);
   }
@@ -105,10 +112,12 @@ class MotionConstraint {
   /// out of range.
   void follow(std::shared_ptr<const Mesh> moved, std::shared_ptr<const SpatialIndex> index);
 
-  /// Whether the index is of the mesh that is kept out of: not so from a refit until follow.
-  bool is_current() const noexcept { return is_prepared_ && near_->is_current(); }
+  /// Returns true if the index is of the mesh that the tip is kept out of: false from a refit until
+  /// follow(), and after a follow() that threw an Error of the rule.
+  bool is_current() const noexcept { return is_prepared_ && neighborhood_->is_current(); }
 
-  /// How much work the last step or polytope was: see Budget and Capacity::looks.
+  /// Returns the work units (looks) that the last step or polytope spent: see Budget. The most that
+  /// it may spend: Capacity::looks.
   std::size_t looks() const noexcept { return budget_->spent(); }
 
   /// Keeps the tip in these guides' regions as well from the next step on, instead of those that
@@ -124,23 +133,24 @@ class MotionConstraint {
   /// is, as at the start: for motions that have nothing to do with each other.
   void forget() noexcept { side_watch_.forget(); }
 
-  /// What the tip is kept out of.
-  const Mesh& mesh() const noexcept { return near_->mesh(); }
+  /// Returns the mesh that the tip is kept out of.
+  const Mesh& mesh() const noexcept { return neighborhood_->mesh(); }
 
-  /// What is asked for triangles.
-  const SpatialIndex& index() const noexcept { return near_->index(); }
+  /// Returns the index of the mesh.
+  const SpatialIndex& index() const noexcept { return neighborhood_->index(); }
 
-  /// Where the rule looks for triangles at first. Precondition: the motion is valid.
+  /// Returns the ball in which the rule searches for triangles at first. Precondition: the request
+  /// is valid.
   Ball region(const Motion& request) const noexcept;
 
   /// Returns true if a step asks the index for all triangles in the region, and not by something
   /// faster that the index offers for the rule.
-  bool makes_queries() const noexcept { return activation_->makes_queries(); }
+  bool makes_queries() const noexcept { return rule_->makes_queries(); }
 
-  /// How it behaves: radius, tool radius and margin, among others.
+  /// Returns the options: radius, tool radius and margin, among others.
   const StepOptions& options() const noexcept { return options_; }
 
-  /// The largest step that there is room for.
+  /// Returns the capacity for the largest step.
   const Capacity& capacity() const noexcept { return capacity_; }
 
   /// Behaves so from the next step on. Where the last step led is remembered. Throws Error, and
@@ -150,8 +160,7 @@ class MotionConstraint {
 
  private:
   Step step(const Motion& request, SideWatch& sides, StageTimes* times) noexcept;
-  void step_checked(const Motion& request, SideWatch& sides, StageTimes* times,
-                    Step& result) noexcept;
+  Step escape_or_cycle(const Motion& request, SideWatch& sides, StageTimes* times) noexcept;
   bool classifies(const SideWatch& sides) const noexcept { return has_sides_ && sides.is_on(); }
   void prepare();
   void reserve_solver(std::size_t guides);
@@ -159,11 +168,11 @@ class MotionConstraint {
 
   StepOptions options_;
   Capacity capacity_;
-  std::unique_ptr<Budget> budget_;      // of a cycle
-  std::unique_ptr<Neighborhood> near_;  // the rule refers to it, wherever this object is moved
-  std::unique_ptr<ActivationRule> activation_;
+  std::unique_ptr<Budget> budget_;              // of a cycle
+  std::unique_ptr<Neighborhood> neighborhood_;  // the rule refers to it, so it never moves
+  std::unique_ptr<ActivationRule> rule_;
   std::unique_ptr<Solver> solver_;
-  std::unique_ptr<Workspace> work_;
+  std::unique_ptr<TipMemory> memory_;
   FreePolytope polytope_;
   HalfSpaceBuffer polytope_planes_;
   bool is_prepared_ = false;

@@ -13,10 +13,10 @@ namespace keepout {
 
 class SpatialIndex;
 
-/// The region around the tip that is searched for triangles.
+/// The extent of the search for triangles around the tip: RuleInput::searched_region.
 enum class Query : std::uint8_t {
-  motion,  // as far as motions towards the target can end, where the rule allows that
-  sphere   // always the whole motion sphere
+  motion,  // where the solved motions may end: ActivationRule::end_region
+  sphere   // the whole motion sphere, unless its triangles exceed capacity or budget
 };
 
 /// The names of Query.
@@ -37,7 +37,8 @@ inline constexpr std::array<std::string_view, 2> distances_names{"where_known", 
 struct StepOptions {
   double radius = 5.0;       // of the motion sphere: the longest motion in a cycle [length]
   double tool_radius = 0.0;  // of the ball around the tip that must not touch [length]
-  double margin = 0.2;  // required clearance beyond that; the certified rule needs one [length]
+  double margin =
+      0.2;  // required clearance beyond the tool radius: see required_clearance [length]
   /// Weight of |u|^2 beside the task. With more than three joints, or joints that move the tip in
   /// the same direction, there is no best increment without it, and the step is ill_posed: use
   /// about 1e-6 of a column's squared length.
@@ -58,8 +59,9 @@ inline constexpr std::array step_options{
                                  "Radius of the motion sphere: the longest motion in a cycle."),
     option<&StepOptions::tool_radius>("tool_radius", "length", zero_or_length,
                                       "Radius of the ball around the tip that must not touch."),
-    option<&StepOptions::margin>("margin", "length", zero_or_length,
-                                 "Clearance beyond the tool; the certified rule needs one."),
+    option<&StepOptions::margin>(
+        "margin", "length", zero_or_length,
+        "Clearance beyond the tool; the certified rule needs tool_radius + margin above 0."),
     option<&StepOptions::damping>(
         "damping", "", {0.0, 1e30},
         "Weight of |u|^2 beside the task; a Jacobian with more than three "
@@ -85,23 +87,25 @@ inline constexpr std::array step_options{
 /// Returns the table of the options of a struct.
 constexpr const auto& table_of(const StepOptions&) { return step_options; }
 
-/// Returns the required distance of the tip from the surface: tool radius and margin. [length]
+/// Returns the required clearance of the tip from the surface: tool radius and margin together,
+/// which the certified rule needs above 0. [length]
 constexpr double required_clearance(const StepOptions& options) noexcept {
   return options.tool_radius + options.margin;
 }
 
-/// Returns the longest motion: a step clipped to the radius may be longer by its rounding. [length]
+/// Returns the longest desired increment. It exceeds the radius by the rounding of a caller that
+/// clips its increments to the radius. [length]
 constexpr double longest_motion(const StepOptions& options) noexcept {
   return options.radius * (1.0 + 1e-9);
 }
 
 /// Capacity for the largest step; a step that needs more ends with over_capacity.
 struct Capacity {
-  /// Candidates of one query. On an index that walks along motions, the certified rule makes such
-  /// queries only to classify a tip.
+  /// Candidates of one query. Under the certified rule, on an index that walks along motions, a
+  /// step makes queries only to classify a tip.
   std::size_t triangles = std::size_t{1} << 16;
-  std::size_t planes = std::size_t{1}
-                       << 14;   // of a rule, at the same time; see most_cutting_planes
+  /// Planes of a rule at the same time; see most_cutting_planes.
+  std::size_t planes = std::size_t{1} << 14;
   std::size_t variables = 7;    // columns of the Jacobian, or 3 without one
   std::size_t extra_rows = 64;  // of the caller's own
   std::size_t nodes = 0;        // of the branch and bound; at least StepOptions::nodes

@@ -37,9 +37,9 @@ class SideWatch {
   void after(const Motion& request, const Step& step, const StepOptions& options,
              const Mesh& mesh) noexcept {
     memory_.note(mesh, 0, request.tip + step.motion, -step.motion);
-    // A step that maintains the margin leaves more than half of it free, whatever the tolerance.
-    const bool maintains_margin = step.ok() && step.status != Status::recovering;
-    free_around_ = maintains_margin ? 0.5 * required_clearance(options) : 0.0;
+    // A step that keeps the clearance leaves more than half of it free, whatever the tolerance.
+    const bool keeps_clearance = step.ok() && step.status != Status::recovering;
+    free_around_ = keeps_clearance ? 0.5 * required_clearance(options) : 0.0;
   }
 
   /// Forgets the last step: the next tip is classified again.

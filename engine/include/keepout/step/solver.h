@@ -23,12 +23,14 @@ struct StepProblem {
   using Vector = Eigen::VectorXd;  // of any length
 
   Eigen::Map<const Matrix> jacobian;  // J (k, n)
-  Eigen::Map<const Vector> desired;   // d (k) [length]
-  Eigen::Map<const RowMatrix> rows;   // A (m, n)
-  Eigen::Map<const Vector> bounds;    // b (m)
-  double damping = 0.0;               // >= 0; above 0 makes any J well-posed
+  /// d (k): the target, which is Motion::desired, a part of it, or a retreat: see RuleInput.
+  /// [length]
+  Eigen::Map<const Vector> desired;
+  Eigen::Map<const RowMatrix> rows;  // A (m, n)
+  Eigen::Map<const Vector> bounds;   // b (m)
+  double damping = 0.0;              // >= 0; above 0 makes any J well-posed
   /// The planes that the first rows come from, A_i = n_i^T J, b_i = offset, J (3, n); none if
-  /// unknown. A solver that reads them may be posed a problem whose first rows are not written.
+  /// unknown. For a solver that reads them (Solver::reads_planes) the first rows are not written.
   std::span<const HalfSpace> planes = {};
 };
 
@@ -63,7 +65,7 @@ enum class SolveStatus : std::uint8_t {
 /// Returns the name as it stands in the enumeration, for files and logs.
 std::string_view name(SolveStatus status) noexcept;
 
-/// Returns the status of a step whose solve failed; free for an optimal solution.
+/// Returns the status of a step whose solve ended so; free for an optimal solution.
 Status status_of(SolveStatus status) noexcept;
 
 /// What a solver leaves behind. Views into the solver's own memory, valid until its next solve.
@@ -81,11 +83,11 @@ class Solver {
  public:
   virtual ~Solver() = default;
 
-  /// Makes room. Allocates; everything after it does not.
+  /// Reserves memory for problems up to this size. Allocates; all other functions do not.
   virtual void reserve(int variables, int rows) = 0;
 
-  /// The u of least cost that satisfies all rows. Fills `solution` when optimal; otherwise what is
-  /// in it may not be used. More variables or rows than reserved: `over_capacity`.
+  /// Finds the u of least cost that satisfies all rows. Fills `solution` when optimal; otherwise
+  /// only its iterations may be used. More variables or rows than reserved: `over_capacity`.
   virtual SolveStatus solve(const StepProblem& problem, Solution& solution) noexcept = 0;
 
   /// Returns true if it reads rows that come from planes from StepProblem::planes, so that they

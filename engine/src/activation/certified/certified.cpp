@@ -10,63 +10,31 @@
 
 namespace keepout {
 
-/// Finds the first triangle that speaks against a trial, among those that the walk shows: rule 5 of
-/// docs/certified-step.md.
-class CertifiedRule::FirstMeeting final : public EncounterVisitor {
+/// Finds the first contact that speaks against a trial, among the triangles that the walk shows:
+/// rule 5 of docs/certified-step.md. Adds the triangles that it examines to the facets of the rule.
+class CertifiedRule::FirstContact final : public TriangleVisitor {
  public:
-  /// A triangle nearer to the tip than `too_close` ends the search for contacts: visit() returns 0,
-  /// and the walk then shows only triangles that may be within the level at the start of the
-  /// motion. So `facets` gets all triangles nearer than `too_close`.
-  FirstMeeting(const CertifiedTerms& terms, const Vec3& trial, std::span<const HalfSpace> planes,
-               double too_close, Buffer<Facet>& facets, Budget& budget, Meeting& meeting) noexcept
-      : terms_(terms),
+  /// Writes to `passage`, all but nothing_near. A triangle nearer to the tip than `too_close` ends
+  /// the search for contacts: visit() returns 0, and the walk then shows only triangles that may be
+  /// within the level at the start of the motion. So the facets get all triangles nearer than
+  /// `too_close`.
+  FirstContact(CertifiedRule& rule, const Vec3& trial, std::span<const HalfSpace> planes,
+               double too_close, Passage& passage) noexcept
+      : terms_(*rule.terms_),
+        facets_(rule.facets_),
+        budget_(rule.budget()),
         trial_(trial),
         length_(trial.norm()),
         planes_(planes),
-        too_close_(too_close),
-        facets_(facets),
-        budget_(budget),
         work_of_planes_(1 + planes.size() / 16),
-        meeting_(meeting) {}
+        too_close_(too_close),
+        passage_(passage) {}
 
-  double visit(const Encounter& encounter) noexcept override {
-    Contact& first = meeting_.contact;
-    budget_.spend(work_of_planes_);
-    std::uint32_t& number = encounter.note;  // of the facet of the triangle
-    const bool is_known = number != Encounter::no_note;
-    const Triangle& corners = is_known ? facets_[number].corners() : *encounter.corners;
-    if (terms_.is_covered(corners, trial_, planes_)) return first.time;
-    if (!is_known) {
-      if (facets_.size() == facets_.capacity()) {
-        budget_.mark_overflow();
-        budget_.spend_all();
-        return first.time;
-      }
-      budget_.spend(work_of_facet);
-      facets_.push(Facet(corners, encounter.triangle));
-      number = static_cast<std::uint32_t>(facets_.size() - 1);
-    }
-    const Facet& facet = facets_[number];
-    // Rule 5 (b): too far for a motion of this length.
-    if (facet.distance() - length_ > terms_.demand(facet)) return first.time;
-    if (facet.distance() < too_close_) {
-      first.time = 0.0;  // without a facet
-      return first.time;
-    }
-    if (terms_.is_clear_at_once(facet, trial_)) return first.time;
-    budget_.spend(work_of_contact);
-    // The time of contact is cheaper to find than a proof of clearance, and most triangles that
-    // come this far are met. It is a lower bound (Lemma 6): after the end of the trial it proves
-    // the facet clear, rule 5 (d); after the contact with another facet it does not matter.
-    const Contact contact = terms_.contact(facet, trial_, first.time);
-    if (!is_sooner(contact, facet)) return first.time;
-    if (!terms_.is_beyond_doubt(contact, facet, trial_)) {
-      const bool has_own_plane = has_plane(facet.source(), planes_);
-      if (terms_.stays_clear(facet, trial_, has_own_plane)) return first.time;
-    }
-    first = contact;
-    meeting_.facet = number;
-    return first.time;
+  /// `note`: the triangle's index in the facets of the rule.
+  double visit(TriangleId triangle, std::uint32_t& note,
+               const Triangle* corners) noexcept override {
+    examine(triangle, note, corners);
+    return latest();
   }
 
  private:
@@ -74,24 +42,64 @@ class CertifiedRule::FirstMeeting final : public EncounterVisitor {
   static constexpr std::size_t work_of_facet = 2;
   static constexpr std::size_t work_of_contact = 6;
 
+  /// Returns the time after which contacts do not matter.
+  double latest() const noexcept { return passage_.is_too_close ? 0.0 : passage_.contact.time; }
+
+  void examine(TriangleId triangle, std::uint32_t& note, const Triangle* corners) noexcept {
+    budget_.spend(work_of_planes_);
+    const bool is_known = note != MotionWalk::no_note;
+    if (is_known) corners = &facets_[note].corners();
+    if (terms_.is_covered(*corners, trial_, planes_)) return;
+    if (!is_known) {
+      if (facets_.size() == facets_.capacity()) {
+        budget_.mark_overflow();
+        budget_.spend_all();
+        return;
+      }
+      budget_.spend(work_of_facet);
+      facets_.push(Facet(*corners, triangle));
+      note = static_cast<std::uint32_t>(facets_.size() - 1);
+    }
+    const Facet& facet = facets_[note];
+    // Rule 5 (b): too far for a motion of this length.
+    if (facet.distance() - length_ > terms_.demand(facet)) return;
+    if (facet.distance() < too_close_) {
+      passage_.is_too_close = true;
+      return;
+    }
+    if (terms_.is_clear_at_once(facet, trial_)) return;
+    budget_.spend(work_of_contact);
+    // The time of contact is cheaper to find than a proof of clearance, and most triangles that
+    // come this far are met. It is a lower bound (Lemma 6): after the end of the trial it proves
+    // the facet clear, rule 5 (d); after the contact with another facet it does not matter.
+    const Contact contact = terms_.contact(facet, trial_, latest());
+    if (!is_sooner(contact, facet)) return;
+    if (!terms_.is_surely_too_close(contact, facet, trial_)) {
+      const bool has_own_plane = has_plane(facet.triangle(), planes_);
+      if (terms_.stays_clear(facet, trial_, has_own_plane)) return;
+    }
+    passage_.contact = contact;
+    passage_.facet = note;
+  }
+
   /// Returns true if the contact is before the first one so far; of equals the first by its
   /// corners.
   bool is_sooner(const Contact& contact, const Facet& facet) const noexcept {
-    const Contact& first = meeting_.contact;
+    const Contact& first = passage_.contact;
     return contact.time < first.time ||
-           (contact.time == first.time && meeting_.facet != Encounter::no_note &&
-            facet.before(facets_[meeting_.facet]));
+           (contact.time == first.time && passage_.facet != MotionWalk::no_note &&
+            facet.before(facets_[passage_.facet]));
   }
 
   const CertifiedTerms& terms_;
+  Buffer<Facet>& facets_;
+  Budget& budget_;
   const Vec3& trial_;
   double length_;
   std::span<const HalfSpace> planes_;
-  double too_close_;
-  Buffer<Facet>& facets_;
-  Budget& budget_;
   std::size_t work_of_planes_;
-  Meeting& meeting_;
+  double too_close_;
+  Passage& passage_;
 };
 
 namespace {
@@ -107,55 +115,50 @@ CertifiedRule::CertifiedRule() : terms_(std::make_unique<CertifiedTerms>()), fac
 
 CertifiedRule::~CertifiedRule() = default;
 
-void CertifiedRule::prepare(Neighborhood& near) {
-  ActivationRule::prepare(near);
-  walk_ = make_motion_walk(near);
-  // The walls are in it twice if the walk shows them again.
+void CertifiedRule::prepare(Neighborhood& neighborhood) {
+  ActivationRule::prepare(neighborhood);
+  walk_ = make_motion_walk(neighborhood);
+  // The walls are in facets_ twice if the walk shows them again.
   facets_ = Buffer<Facet>(walk_->room() + most_walls);
 }
 
-double CertifiedRule::tolerance(const CycleProblem& problem) const noexcept {
-  return 2e-10 * (mesh().longest_edge() + problem.radius + problem.clearance) +
-         4e-16 * problem.tip.lpNorm<1>();
+double CertifiedRule::tolerance(const RuleInput& input) const noexcept {
+  return 2e-10 * (mesh().longest_edge() + input.radius + input.clearance) +
+         4e-16 * input.tip.lpNorm<1>();
 }
 
-Ball CertifiedRule::region(const CycleProblem& problem) const noexcept {
-  Ball ball = searched_ends(problem);
-  ball.radius += problem.clearance + region_beyond * tolerance(problem);
+Ball CertifiedRule::region(const RuleInput& input) const noexcept {
+  Ball ball = searched_ends(input);
+  ball.radius += input.clearance + region_beyond * tolerance(input);
   return ball;
 }
 
 bool CertifiedRule::makes_queries() const noexcept { return !index().walks(); }
 
-bool CertifiedRule::gather(const CycleProblem& problem) noexcept {
+bool CertifiedRule::gather(const RuleInput& input) noexcept {
   facets_.clear();
-  *terms_ = CertifiedTerms::keeping(problem.clearance, tolerance(problem));
-  const Ball ends = searched_ends(problem);
-  const double longest = std::min(problem.longest, 2.0 * ends.radius * (1.0 + 1e-9));
-  const double beyond = problem.clearance + region_beyond * terms_->tolerance;
-  return walk_->begin(
-      {problem.tip, {ends.center, ends.radius + beyond}, terms_->plane_level, longest});
+  *terms_ = CertifiedTerms::keeping(input.clearance, tolerance(input));
+  const double longest = std::min(input.longest, 2.0 * searched_ends(input).radius * (1.0 + 1e-9));
+  return walk_->begin({input.tip, region(input), terms_->plane_level, longest});
 }
 
-Opening CertifiedRule::open(const CycleProblem& problem, HalfSpaceBuffer&) noexcept {
-  target_is_free_ = false;
+Opening CertifiedRule::open(const RuleInput& input, HalfSpaceBuffer&) noexcept {
   at_target_.reset();
   walls_.clear();
   const double tau = terms_->tolerance;
-  if (!(problem.clearance > needed_margin * tau)) return {Status::margin_too_small};
-  if (walk_->is_free()) return {};
+  if (!(input.clearance > needed_clearance * tau)) return {Status::margin_too_small};
+  if (walk_->region_is_empty()) return {};
 
-  // The walk shows the triangles near the tip first. If the tip keeps its clearance, it also finds
-  // what speaks against the target, which is the first trial.
-  const double least = problem.clearance - lost_below * tau;
-  const Passage passage = pass_along(problem.target, {}, least);
-  if (budget().is_spent()) return {budget().status_at_end()};
+  // The walk shows the triangles near the tip first. If the tip has its clearance, the walk also
+  // finds what speaks against the target, which is the first trial.
+  const double least = input.clearance - lost_below * tau;
+  const Passage passage = walk_along(input.target, {}, least);
+  if (budget().is_spent()) return {budget().failure()};
   // Now facets_ has all triangles nearer than `least`.
   const Facet* closest = nearest([](const Facet&) { return true; });
-  const std::optional<double> distance = known_distance(closest, problem.clearance, tau);
+  const std::optional<double> distance = known_distance(closest, input.clearance, tau);
   if (closest == nullptr || closest->distance() >= least) {
-    target_is_free_ = passage.nothing_near;
-    at_target_ = passage.first;
+    at_target_ = passage;
     return {.distance = distance};
   }
   if (closest->distance() <= touching_within * tau) {
@@ -163,23 +166,28 @@ Opening CertifiedRule::open(const CycleProblem& problem, HalfSpaceBuffer&) noexc
   }
   // Too close: the cycle recovers. The lift is at least a tolerance, so that losses to rounding are
   // regained and do not accumulate: rule 1.
-  const double missing = problem.clearance - closest->distance();
-  const double lift = std::max(std::min(problem.recovery, missing), tau);
-  const Vec3 target = retreat_target(problem, closest->normal(), lift);
+  const double missing = input.clearance - closest->distance();
+  const double lift = std::max(std::min(input.recovery, missing), tau);
+  const Vec3 target = retreat_target(input, closest->towards_tip(), lift);
   *terms_ = CertifiedTerms::recovering(closest->distance(), lift, tau);
   choose_walls(*closest, least);
-  walk_->begin_again(terms_->plane_level);
-  facets_.clear();
+  forget_facets(terms_->plane_level);
   return {Status::recovering, target, distance};
 }
 
-/// Walks along a trial to the first triangle that speaks against it; see FirstMeeting. Adds the
-/// triangles that it examines to facets_.
-CertifiedRule::Passage CertifiedRule::pass_along(const Vec3& trial,
+/// Forgets the facets together with the walk's notes, which are indices of facets. `level`: of the
+/// walks to come. [length]
+void CertifiedRule::forget_facets(double level) noexcept {
+  facets_.clear();
+  walk_->begin_again(level);
+}
+
+/// Walks along a trial to the first contact that speaks against it; see FirstContact.
+CertifiedRule::Passage CertifiedRule::walk_along(const Vec3& trial,
                                                  std::span<const HalfSpace> planes,
                                                  double too_close) noexcept {
   Passage passage;
-  FirstMeeting visitor(*terms_, trial, planes, too_close, facets_, budget(), passage.first);
+  FirstContact visitor(*this, trial, planes, too_close, passage);
   passage.nothing_near = walk_->walk(trial, visitor);
   return passage;
 }
@@ -205,7 +213,7 @@ void CertifiedRule::choose_walls(const Facet& first, double too_close) noexcept 
   const auto is_new = [&](const Facet& facet) {
     return facet.distance() < too_close &&
            std::none_of(walls_.begin(), walls_.end(), [&](const Facet& wall) {
-             return wall.normal().dot(facet.normal()) > same_direction;
+             return wall.towards_tip().dot(facet.towards_tip()) > same_direction;
            });
   };
   for (const Facet* next = &first; next != nullptr; next = nearest(is_new)) {
@@ -220,34 +228,36 @@ void CertifiedRule::choose_walls(const Facet& first, double too_close) noexcept 
 void CertifiedRule::add_planes_of_walls(HalfSpaceBuffer& planes) noexcept {
   for (const Facet& wall : walls_) {
     const bool has_similar = std::any_of(planes.begin(), planes.end(), [&](const HalfSpace& plane) {
-      return plane.source == wall.source() || plane.normal.dot(wall.normal()) > almost_parallel;
+      return plane.source == wall.triangle() ||
+             plane.normal.dot(wall.towards_tip()) > almost_parallel;
     });
     if (has_similar || facets_.size() == facets_.capacity()) continue;
-    planes.push({wall.normal(), wall.support(wall.normal()) + terms_->plane_level, wall.source()});
+    planes.push({wall.towards_tip(), wall.support(wall.towards_tip()) + terms_->plane_level,
+                 wall.triangle()});
     facets_.push(wall);
   }
   walls_.clear();
 }
 
-Judgement CertifiedRule::judge(const CycleProblem& problem, const Vec3& trial,
+Judgement CertifiedRule::judge(const RuleInput& input, const Vec3& trial,
                                HalfSpaceBuffer& planes) noexcept {
   using Verdict = Judgement::Verdict;
-  if (walk_->is_free()) return {Verdict::accepted};
-  if (target_is_free_ &&
-      (trial - problem.target).norm() <= MotionWalk::alike * problem.target.norm()) {
+  if (walk_->region_is_empty()) return {Verdict::accepted};
+  if (at_target_ && at_target_->nothing_near &&
+      (trial - input.target).norm() <= MotionWalk::alike * input.target.norm()) {
     return {Verdict::accepted};
   }
-  const bool is_known = at_target_ && planes.empty() && trial == problem.target;
-  const Meeting meeting = is_known ? *at_target_ : pass_along(trial, planes.view(), 0.0).first;
+  const bool is_known = at_target_ && planes.empty() && trial == input.target;
+  const Passage passage = is_known ? *at_target_ : walk_along(trial, planes.view(), 0.0);
   // If the budget is spent, triangles may have been left out, and nothing may be concluded.
   if (budget().is_spent()) return {Verdict::blocked, 0.0};
-  if (meeting.facet == Encounter::no_note) return {Verdict::accepted};
-  const HalfSpace& plane = meeting.contact.plane;
-  const double free_fraction = std::clamp(meeting.contact.time, 0.0, 1.0);
+  if (passage.facet == MotionWalk::no_note) return {Verdict::accepted};
+  const HalfSpace& plane = passage.contact.plane;
+  const double free_fraction = std::clamp(passage.contact.time, 0.0, 1.0);
   if (has_plane(plane.source, planes.view()) || planes.size() >= most_cutting_planes) {
     return {Verdict::blocked, free_fraction};
   }
-  planes.push(terms_->plane_for(facets_[meeting.facet], problem, trial, plane));
+  planes.push(terms_->plane_for(facets_[passage.facet], input, trial, plane));
   if (walls_.size() > 1) add_planes_of_walls(planes);
   return {Verdict::objected, free_fraction};
 }
@@ -257,15 +267,15 @@ bool CertifiedRule::relax(HalfSpaceBuffer& planes) noexcept {
   return terms_->relax(planes);
 }
 
-bool CertifiedRule::relinearize(const CycleProblem& problem, std::span<const HalfSpace> planes,
+bool CertifiedRule::relinearize(const RuleInput& input, std::span<const HalfSpace> planes,
                                 HalfSpaceBuffer& next) noexcept {
   bool changed = false;
   budget().spend(planes.size() * (4 + facets_.size() / 64));
   for (const HalfSpace& plane : planes) {
-    if (is_idle(plane, problem)) continue;
+    if (is_idle(plane, input)) continue;
     HalfSpace turned = plane;
     if (plane.source != no_triangle) {  // not the bound of the motion sphere
-      turned = terms_->turned(plane, facet(plane.source), problem.accepted, problem.accepted);
+      turned = terms_->turned(plane, facet(plane.source), input.accepted, input.accepted);
     }
     next.push(turned);
     changed = changed || (turned.normal - plane.normal).squaredNorm() > least_turn * least_turn;
@@ -273,13 +283,14 @@ bool CertifiedRule::relinearize(const CycleProblem& problem, std::span<const Hal
   return changed;
 }
 
-void CertifiedRule::add_alternatives(TriangleId source, HalfSpaceBuffer& planes) const noexcept {
-  if (source != no_triangle) terms_->add_alternatives(facet(source), planes);
+void CertifiedRule::add_alternatives(TriangleId triangle, HalfSpaceBuffer& planes) const noexcept {
+  if (triangle != no_triangle) terms_->add_alternatives(facet(triangle), planes);
 }
 
-const Facet& CertifiedRule::facet(TriangleId source) const noexcept {
+/// Returns the facet of a triangle that has a plane. Precondition: it was examined.
+const Facet& CertifiedRule::facet(TriangleId triangle) const noexcept {
   return *std::find_if(facets_.begin(), facets_.end(),
-                       [&](const Facet& one) { return one.source() == source; });
+                       [&](const Facet& one) { return one.triangle() == triangle; });
 }
 
 }  // namespace keepout

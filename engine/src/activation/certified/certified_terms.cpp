@@ -16,8 +16,8 @@ namespace {
 // A plane that is farther from an accepted motion, as a fraction of the target, has not shaped it.
 constexpr double idle_slack = 1e-6;
 
-/// A plane's normal on its way from an old one to a wanted one, n = old + theta (wanted - old). The
-/// normals that allow a motion are a convex cone, so those that do are an interval from theta 0.
+/// A turn of a plane, n = old + theta (wanted - old), normalized. The normals that allow a motion
+/// are a convex cone, so the turns that do are an interval from theta 0 (Lemma 7).
 class Turn {
  public:
   Turn(const HalfSpace& plane, const Vec3& change, const Triangle& corners, double plane_level,
@@ -108,13 +108,14 @@ CertifiedTerms CertifiedTerms::recovering(double nearest, double lift, double to
           .most_demand = nearest + 0.5 * tolerance,
           .most_floor = nearest + slack_compensation,
           .lift = lift,
+          .is_recovering = true,
           .slack_compensation = slack_compensation};
 }
 
 bool CertifiedTerms::relax(HalfSpaceBuffer& planes) noexcept {
   const double less = lift > 8.0 * tolerance ? 0.125 * lift : 0.0;
   if (less == 0.0) {
-    if (lift > 0.0) most_demand = most_floor;
+    if (lift > 0.0) most_demand = most_floor;  // once: the retreat is dropped
     lift = 0.0;
     return let_stand_still(planes);
   }
@@ -147,8 +148,8 @@ Contact CertifiedTerms::contact(const Facet& facet, const Vec3& trial,
   return first_contact(facet, trial, plane_level, contact_slack * tolerance, latest);
 }
 
-bool CertifiedTerms::is_beyond_doubt(const Contact& contact, const Facet& facet,
-                                     const Vec3& trial) const noexcept {
+bool CertifiedTerms::is_surely_too_close(const Contact& contact, const Facet& facet,
+                                         const Vec3& trial) const noexcept {
   if (!contact.is_reached) return false;
   const double along = contact.touched.dot(trial) / trial.squaredNorm();
   const Vec3 nearest = std::clamp(along, 0.0, 1.0) * trial - contact.touched;
@@ -158,14 +159,14 @@ bool CertifiedTerms::is_beyond_doubt(const Contact& contact, const Facet& facet,
   return nearest.norm() < clearly * floor(facet) - 2.0 * proof_slack * tolerance;
 }
 
-HalfSpace CertifiedTerms::plane_for(const Facet& facet, const CycleProblem& problem,
-                                    const Vec3& trial, const HalfSpace& contact) const noexcept {
-  if (problem.accepted.isZero(0.0)) return contact;
+HalfSpace CertifiedTerms::plane_for(const Facet& facet, const RuleInput& input, const Vec3& trial,
+                                    const HalfSpace& contact) const noexcept {
+  if (input.accepted.isZero(0.0)) return contact;
   const std::optional<Vec3> proof =
-      proof_of_clearance(facet, problem.accepted, floor(facet), proof_slack * tolerance);
+      proof_of_clearance(facet, input.accepted, floor(facet), proof_slack * tolerance);
   if (!proof) return contact;
-  const HalfSpace plane{*proof, facet.support(*proof) + plane_level, facet.source()};
-  return turned(plane, facet, problem.accepted, trial);
+  const HalfSpace plane{*proof, facet.support(*proof) + plane_level, facet.triangle()};
+  return turned(plane, facet, input.accepted, trial);
 }
 
 HalfSpace CertifiedTerms::turned(const HalfSpace& plane, const Facet& facet, const Vec3& kept,
@@ -190,15 +191,15 @@ void CertifiedTerms::add_alternatives(const Facet& facet, HalfSpaceBuffer& plane
   const auto add = [&](const Vec3& n) {
     const double offset = facet.support(n) + plane_level;
     if (!n.isZero(0.0) && offset <= proof_slack * tolerance) {
-      planes.push({n, offset, facet.source()});
+      planes.push({n, offset, facet.triangle()});
     }
   };
-  add(facet.face_normal());
+  add(facet.normal_against(facet.corners()[0]));  // of the face, towards the tip
   for (int edge = 0; edge < 3; ++edge) add(facet.normal_around(edge, plane_level));
 }
 
-bool is_idle(const HalfSpace& plane, const CycleProblem& problem) noexcept {
-  return plane.normal.dot(problem.accepted) - plane.offset > idle_slack * problem.target.norm();
+bool is_idle(const HalfSpace& plane, const RuleInput& input) noexcept {
+  return plane.normal.dot(input.accepted) - plane.offset > idle_slack * input.target.norm();
 }
 
 std::optional<double> known_distance(const Facet* nearest, double clearance,

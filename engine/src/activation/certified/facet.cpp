@@ -11,41 +11,42 @@
 
 namespace keepout {
 
-Facet::Facet(const Triangle& triangle, const Vec3& tip, TriangleId source) noexcept
-    : Facet(ordered_relative(triangle, tip), source) {}
+Facet::Facet(const Triangle& triangle, const Vec3& tip, TriangleId number) noexcept
+    : Facet(ordered_relative(triangle, tip), number) {}
 
-Facet::Facet(const Triangle& ordered, TriangleId source) noexcept
-    : corners_(ordered), source_(source) {
-  const Vec3 first = corners_[1] - corners_[0];
-  const Vec3 last = corners_[2] - corners_[0];
-  const Vec3 normal = first.cross(last);
+Facet::Facet(const Triangle& ordered, TriangleId number) noexcept
+    : corners_(ordered), triangle_(number) {
+  const Vec3 edge_01 = corners_[1] - corners_[0];
+  const Vec3 edge_02 = corners_[2] - corners_[0];
+  const Vec3 normal = edge_01.cross(edge_02);
   const double area2 = normal.squaredNorm();
-  first2_ = first.squaredNorm();
-  last2_ = last.squaredNorm();
-  between_ = first.dot(last);
-  const double longest2 = std::max({first2_, last2_, first2_ - 2.0 * between_ + last2_});
-  // For a thinner triangle barycentric coordinates are not exact enough.
-  constexpr double thin = 1e-2;  // height, in lengths of the longest edge
-  if (area2 > thin * thin * longest2 * longest2) {
-    determinant_ = first2_ * last2_ - between_ * between_;
-    plane_normal_ = normal / std::sqrt(area2);
+  length2_01_ = edge_01.squaredNorm();
+  length2_02_ = edge_02.squaredNorm();
+  product_ = edge_01.dot(edge_02);
+  const double longest2 =
+      std::max({length2_01_, length2_02_, length2_01_ - 2.0 * product_ + length2_02_});
+  // A needle, A9 of docs/certified-step.md: barycentric coordinates are not exact enough.
+  constexpr double needle = 1e-2;  // height, in lengths of the longest edge
+  if (area2 > needle * needle * longest2 * longest2) {
+    determinant_ = length2_01_ * length2_02_ - product_ * product_;
+    face_normal_ = normal / std::sqrt(area2);
   } else {
-    plane_normal_.setZero();
+    face_normal_.setZero();
   }
   at_tip_ = nearest_to(Vec3::Zero());
 }
 
 inline Facet::Shares Facet::shares(const Vec3& point) const noexcept {
   const Vec3 off = point - corners_[0];
-  const double along_first = off.dot(corners_[1] - corners_[0]);
-  const double along_last = off.dot(corners_[2] - corners_[0]);
-  return {along_first, along_last, last2_ * along_first - between_ * along_last,
-          first2_ * along_last - between_ * along_first};
+  const double along_01 = off.dot(corners_[1] - corners_[0]);
+  const double along_02 = off.dot(corners_[2] - corners_[0]);
+  return {along_01, along_02, length2_02_ * along_01 - product_ * along_02,
+          length2_01_ * along_02 - product_ * along_01};
 }
 
 // A direction is known only to the root of a rounding if two features are about equally near, and
-// worse close to the facet and on a needle. A normal that proves less than this of a distance is
-// not taken before all candidates were tried (nearest_with_care).
+// worse close to the facet and on a needle. A normal is accepted at once if it proves this fraction
+// of a distance; otherwise all candidates are tried (nearest_with_care).
 constexpr double tight = 1.0 - 1e-12;
 
 /// Fills `nearest` for the vector `off`, `distance` long, from a point of the facet to `point`.
@@ -57,16 +58,6 @@ inline bool Facet::is_nearest(const Vec3& point, const Vec3& off, double distanc
   nearest.support = support(nearest.normal);
   nearest.feature = feature;
   return nearest.normal.dot(point) - nearest.support >= tight * distance;
-}
-
-/// Precondition: the point is right over the face.
-inline bool Facet::face_is_nearest(const Vec3& point, Nearest& nearest) const noexcept {
-  const double height = plane_normal_.dot(point - corners_[0]);
-  nearest.normal = height < 0.0 ? Vec3(-plane_normal_) : plane_normal_;
-  nearest.distance = std::abs(height);
-  nearest.support = support(nearest.normal);
-  nearest.feature = Feature::face;
-  return nearest.normal.dot(point) - nearest.support >= tight * nearest.distance;
 }
 
 inline bool Facet::edge_is_nearest(const Vec3& point, int edge, Nearest& nearest) const noexcept {
@@ -88,40 +79,41 @@ inline bool Facet::corner_is_nearest(const Vec3& point, int corner,
                     static_cast<Feature>(static_cast<int>(Feature::vertex_0) + corner), nearest);
 }
 
-bool Facet::is_under(const Vec3& point) const noexcept {
+bool Facet::has_above(const Vec3& point) const noexcept {
   return shares(point).are_inside(determinant_);
 }
 
-Facet::Nearest Facet::face() const noexcept {
-  Nearest nearest;
-  face_is_nearest(Vec3::Zero(), nearest);
-  return nearest;
+Facet::Nearest Facet::on_face_plane(const Vec3& point) const noexcept {
+  const double height = face_normal_.dot(point - corners_[0]);
+  const Vec3 normal = height < 0.0 ? Vec3(-face_normal_) : face_normal_;
+  return {normal, std::abs(height), support(normal), Feature::face};
 }
 
 Facet::Nearest Facet::nearest_to(const Vec3& point) const noexcept {
   Nearest nearest;
   const Shares at = shares(point);
   bool found = false;
-  // The region of the point, by its barycentric coordinates and its feet on the edges: first from
-  // corner 0 to 1, second from 1 to 2, last from 0 to 2. Face: all coordinates are positive. Edge:
-  // the coordinate of the opposite corner is not, and the foot is on the edge. Else a corner.
+  // The region of the point, by its barycentric coordinates and its feet on the edges. Face: all
+  // coordinates are positive. Edge: the coordinate of the opposite corner is not, and the foot is
+  // on the edge. Else a corner.
   if (at.are_inside(determinant_)) {
-    found = face_is_nearest(point, nearest);
+    nearest = on_face_plane(point);
+    found = nearest.normal.dot(point) - nearest.support >= tight * nearest.distance;
   } else if (determinant_ > 0.0) {
-    const double along_second = (at.along_last - between_) - (at.along_first - first2_);
-    const double second2 = (first2_ - between_) + (last2_ - between_);
-    const unsigned first = unsigned{at.of_third <= 0.0} & unsigned{at.along_first > 0.0} &
-                           unsigned{at.along_first < first2_};
-    const unsigned second = unsigned{at.of_second + at.of_third >= determinant_} &
-                            unsigned{along_second > 0.0} & unsigned{along_second < second2};
-    const unsigned last = unsigned{at.of_second <= 0.0} & unsigned{at.along_last > 0.0} &
-                          unsigned{at.along_last < last2_};
-    if ((first | second | last) != 0) {
-      found = edge_is_nearest(point, first != 0 ? 0 : second != 0 ? 1 : 2, nearest);
+    const double along_12 = (at.along_02 - product_) - (at.along_01 - length2_01_);
+    const double length2_12 = (length2_01_ - product_) + (length2_02_ - product_);
+    const unsigned on_01 = unsigned{at.of_2 <= 0.0} & unsigned{at.along_01 > 0.0} &
+                           unsigned{at.along_01 < length2_01_};
+    const unsigned on_12 = unsigned{at.of_1 + at.of_2 >= determinant_} & unsigned{along_12 > 0.0} &
+                           unsigned{along_12 < length2_12};
+    const unsigned on_02 = unsigned{at.of_1 <= 0.0} & unsigned{at.along_02 > 0.0} &
+                           unsigned{at.along_02 < length2_02_};
+    if ((on_01 | on_12 | on_02) != 0) {
+      found = edge_is_nearest(point, on_01 != 0 ? 0 : on_12 != 0 ? 1 : 2, nearest);
     } else {
-      const bool is_first = at.along_first <= 0.0 && at.along_last <= 0.0;
-      const bool is_second = along_second <= 0.0;
-      found = corner_is_nearest(point, is_first ? 0 : is_second ? 1 : 2, nearest);
+      const bool at_0 = at.along_01 <= 0.0 && at.along_02 <= 0.0;
+      const bool at_1 = along_12 <= 0.0;
+      found = corner_is_nearest(point, at_0 ? 0 : at_1 ? 1 : 2, nearest);
     }
   }
   return found ? nearest : nearest_with_care(point);
@@ -134,6 +126,8 @@ Facet::Nearest Facet::nearest_to(const Vec3& point, Feature likely) const noexce
   return nearest_to(point);
 }
 
+/// Like nearest_to(), for needles and where rounding hides the direction: tries all normals that
+/// may prove the distance.
 Facet::Nearest Facet::nearest_with_care(const Vec3& point) const noexcept {
   const ClosestPoint closest = closest_point_of_ordered(corners_, point);
   const Vec3 away = unit(-closest.offset);
@@ -146,23 +140,18 @@ Facet::Nearest Facet::nearest_with_care(const Vec3& point) const noexcept {
     best = n;
     most = proves;
   };
-  if (is_face(closest.feature)) consider(facing(closest));
+  const bool is_on_face = is_face(closest.feature);
+  if (is_on_face) consider(normal_against(closest.offset));
   if (!(most >= tight * closest.distance)) {
-    consider(facing(closest));
+    if (!is_on_face) consider(normal_against(closest.offset));
     for (int edge = 0; edge < 3; ++edge) consider(across(away, edge));
   }
   return {best, closest.distance, support(best), closest.feature};
 }
 
-/// Returns the unit normal on an arbitrary side; zero without an area.
-Vec3 Facet::plane_normal() const noexcept {
-  return unit((corners_[1] - corners_[0]).cross(corners_[2] - corners_[0]));
-}
-
-/// Returns the facet's own normal, on the side from which its closest point was found.
-Vec3 Facet::facing(const ClosestPoint& closest) const noexcept {
-  const Vec3 normal = plane_normal();
-  return normal.dot(closest.offset) <= 0.0 ? normal : Vec3(-normal);
+Vec3 Facet::normal_against(const Vec3& direction) const noexcept {
+  const Vec3 normal = unit((corners_[1] - corners_[0]).cross(corners_[2] - corners_[0]));
+  return normal.dot(direction) <= 0.0 ? normal : Vec3(-normal);
 }
 
 /// Returns a direction made perpendicular to an edge: rounding along the edge would count over its
@@ -172,11 +161,6 @@ Vec3 Facet::across(const Vec3& n, int edge) const noexcept {
   const double length2 = along.squaredNorm();
   if (!(length2 > 0.0)) return n;
   return unit(n - along * (n.dot(along) / length2));
-}
-
-Vec3 Facet::face_normal() const noexcept {
-  const Vec3 normal = plane_normal();
-  return normal.dot(corners_[0]) <= 0.0 ? normal : Vec3(-normal);
 }
 
 Vec3 Facet::normal_around(int edge, double level) const noexcept {

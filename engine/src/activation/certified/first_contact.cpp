@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "straight_clearance.h"
 
@@ -13,7 +14,7 @@ namespace {
 constexpr int most_newton_steps = 48;
 
 HalfSpace plane_of(const Facet::Nearest& nearest, const Facet& facet, double level) noexcept {
-  return {nearest.normal, nearest.support + level, facet.source()};
+  return {nearest.normal, nearest.support + level, facet.triangle()};
 }
 
 /// Returns the time until a motion along z comes within `level` of a point, where `away` leads from
@@ -33,7 +34,8 @@ Vec3 across_edge(const Vec3& v, const Vec3& along) noexcept {
 }
 
 /// Returns the time until a motion along z comes within `level` of a facet's corner, or of the line
-/// of its edge, where `away` leads from there to the start; 0 for the face, or if it does not.
+/// of its edge, where `away` leads from there to the start, across the edge; 0 for the face, or if
+/// it does not.
 double time_until(const Vec3& away, const Vec3& z, const Facet& facet, Feature feature,
                   double level) noexcept {
   if (is_face(feature)) return 0.0;
@@ -41,17 +43,30 @@ double time_until(const Vec3& away, const Vec3& z, const Facet& facet, Feature f
   return time_until(away, across_edge(z, facet.edge(number_of(feature))), level);
 }
 
-/// Returns the time until a motion along z from the tip comes within `level` of a facet's corner or
-/// of the line of its edge; 0 for the face, or if it does not. It depends on corner or edge alone,
-/// so it is bitwise identical for all facets that share them: their corners decide which is first,
-/// and not rounding.
-double time_from_tip(const Vec3& z, const Facet& facet, Feature feature, double level) noexcept {
-  if (is_face(feature)) return 0.0;
+/// Returns the vector from a facet's corner, or across the line of its edge, to the tip. It depends
+/// on corner or edge alone, so times that are computed from it are bitwise identical for all facets
+/// that share them: their corners decide which is first, and not rounding.
+Vec3 from_feature_to_tip(const Facet& facet, Feature feature) noexcept {
   const int number = number_of(feature);
-  if (is_vertex(feature)) return time_until(-facet.corners()[number], z, level);
-  const Vec3 along = facet.edge(number);
-  const Vec3& first = facet.corners()[number == 2 ? 0 : number];
-  return time_until(-across_edge(first, along), across_edge(z, along), level);
+  if (is_vertex(feature)) return -facet.corners()[number];
+  return -across_edge(facet.corners()[number == 2 ? 0 : number], facet.edge(number));
+}
+
+/// Returns the contact of a motion with the plane of the face, which is no later than that with the
+/// facet. Reached if it is over the face. Returns nothing if the motion does not approach the
+/// plane.
+std::optional<Contact> contact_of_face_plane(const Facet& facet, const Vec3& z,
+                                             double level) noexcept {
+  const Facet::Nearest nearest = facet.on_face_plane(Vec3::Zero());
+  const Line fall = line_of(nearest, z, level);
+  if (!(fall.at_0 > 0.0 && fall.slope < 0.0)) return std::nullopt;
+  const double time = -fall.at_0 / fall.slope;
+  Contact contact{time, plane_of(nearest, facet, level)};
+  if (facet.has_above(time * z)) {
+    contact.is_reached = true;
+    contact.touched = time * z - level * nearest.normal;
+  }
+  return contact;
 }
 
 }  // namespace
@@ -71,7 +86,10 @@ Contact first_contact(const Facet& facet, const Vec3& z, double level, double sl
     // Never earlier than before, whatever rounding does: a time later than `latest` stays later.
     if (i > 0) time = std::max(time, last);
     if (nearest.distance - level <= slack) {
-      const double direct = time_from_tip(z, facet, nearest.feature, level);
+      const bool is_on_face = is_face(nearest.feature);
+      const double direct = is_on_face ? 0.0
+                                       : time_until(from_feature_to_tip(facet, nearest.feature), z,
+                                                    facet, nearest.feature, level);
       if (direct > 0.0 && std::abs(direct - time) <= digits) time = direct;
       return {time, plane_of(nearest, facet, level), true,
               last * z - nearest.distance * nearest.normal};
@@ -80,23 +98,18 @@ Contact first_contact(const Facet& facet, const Vec3& z, double level, double sl
     if (time > too_late || !(time > last && time < 1.0)) break;
     if (is_face(nearest.feature)) {
       // The contact of its plane is the contact if it is over the face.
-      if (facet.is_under(time * z)) {
+      if (facet.has_above(time * z)) {
         return {time, plane_of(nearest, facet, level), true, time * z - level * nearest.normal};
       }
     } else {
       if (i == 0 && facet.has_face()) {
-        // The contact of the face's plane is not later than that of the facet: a lower bound.
-        const Facet::Nearest face = facet.face();
-        const Line fall = line_of(face, z, level);
-        if (fall.at_0 > 0.0 && fall.slope < 0.0) {
-          const double meets = -fall.at_0 / fall.slope;
-          if (meets > too_late || !(meets < 1.0)) return {meets, plane_of(face, facet, level)};
-          if (facet.is_under(meets * z)) {
-            return {meets, plane_of(face, facet, level), true, meets * z - level * face.normal};
-          }
-          time = std::max(time, meets);
+        if (const auto plane = contact_of_face_plane(facet, z, level)) {
+          if (plane->time > too_late || !(plane->time < 1.0)) return {plane->time, plane->plane};
+          if (plane->is_reached) return *plane;
+          time = std::max(time, plane->time);
         }
       }
+      // The leap: to the contact of the nearest corner or edge, if the facet is no closer there.
       const double leap = last + time_until(nearest.distance * nearest.normal, z, facet,
                                             nearest.feature, level + 0.5 * slack);
       if (leap > time && leap < 1.0) {

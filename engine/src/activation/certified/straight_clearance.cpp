@@ -18,15 +18,15 @@ Vec3 level_blend(const Vec3& falling, double fall, const Vec3& rising, double ri
 
 std::optional<Vec3> proof_of_clearance(const Facet& facet, const Vec3& z, double level,
                                        double slack) noexcept {
-  Vec3 n_left = facet.normal();
+  Vec3 n_left = facet.towards_tip();
   Line left = line_of(facet.at_tip(), z, level);
-  if (left.holds(slack)) return n_left;
+  if (left.proves_clear(slack)) return n_left;
 
   const Facet::Nearest at_end = facet.nearest_to(z);
   if (!(at_end.distance - level >= -slack)) return std::nullopt;
   Vec3 n_right = at_end.normal;
   Line right = line_of(at_end, z, level);
-  if (right.holds(slack)) return n_right;
+  if (right.proves_clear(slack)) return n_right;
   // A distance that never falls, or always does, is least at an end, where the level was proven, up
   // to rounding; then no is the safe answer.
   if (!(left.slope < 0.0 && right.slope > 0.0)) return std::nullopt;
@@ -40,7 +40,7 @@ std::optional<Vec3> proof_of_clearance(const Facet& facet, const Vec3& z, double
     const Facet::Nearest nearest = facet.nearest_to(t * z);
     if (!(nearest.distance - level >= -slack)) return std::nullopt;
     const Line line = line_of(nearest, z, level);
-    if (line.holds(slack)) return nearest.normal;
+    if (line.proves_clear(slack)) return nearest.normal;
     if (line.slope < 0.0) {
       n_left = nearest.normal;
       left = line;

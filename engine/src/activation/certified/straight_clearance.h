@@ -7,17 +7,20 @@
 
 namespace keepout {
 
-/// A lower bound of the distance from a facet along a motion z, less a level: `at_0` + t `slope`
-/// (Lemma 2 of docs/certified-step.md).
+/// A lower bound of the distance of t z from a facet, less a level: `at_0` + t `slope` (Lemma 2 of
+/// docs/certified-step.md).
 struct Line {
   double at_0;
   double slope;
 
-  /// Returns true if the bound stays above -slack on the whole motion: it proves the level (Lemma
-  /// 1).
-  bool holds(double slack) const noexcept { return at_0 >= -slack && at_0 + slope >= -slack; }
+  /// Returns true if the bound stays above -slack on the whole motion, which proves that the motion
+  /// keeps the level (Lemma 1).
+  bool proves_clear(double slack) const noexcept {
+    return at_0 >= -slack && at_0 + slope >= -slack;
+  }
 };
 
+/// Returns the bound that the normal of a closest point gives.
 inline Line line_of(const Facet::Nearest& nearest, const Vec3& z, double level) noexcept {
   return {-nearest.support - level, nearest.normal.dot(z)};
 }
@@ -33,7 +36,7 @@ std::optional<Vec3> proof_of_clearance(const Facet& facet, const Vec3& z, double
 /// grown by `level`, is on one side, and both ends of the motion are on the other.
 inline bool separates(const Vec3& n, const Triangle& corners, const Vec3& z, double level,
                       double slack) noexcept {
-  return Line{-support(corners, n) - level, n.dot(z)}.holds(slack);
+  return Line{-support(corners, n) - level, n.dot(z)}.proves_clear(slack);
 }
 
 }  // namespace keepout

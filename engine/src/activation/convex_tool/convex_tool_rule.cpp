@@ -31,23 +31,23 @@ ConvexToolRule::ConvexToolRule(ConvexTool tool, std::unique_ptr<NarrowPhase> nar
       near_(0),
       suspects_(0) {}
 
-void ConvexToolRule::prepare(Neighborhood& near) {
-  ActivationRule::prepare(near);
-  near_ = Buffer<Near>(near.room());
-  suspects_ = Buffer<Suspect>(near.room());
+void ConvexToolRule::prepare(Neighborhood& neighborhood) {
+  ActivationRule::prepare(neighborhood);
+  near_ = Buffer<Near>(neighborhood.room());
+  suspects_ = Buffer<Suspect>(neighborhood.room());
 }
 
-double ConvexToolRule::tolerance(const CycleProblem& problem) const noexcept {
+double ConvexToolRule::tolerance(const RuleInput& input) const noexcept {
   const Ball& bounds = tool_.bounding_ball();
-  return problem.rounding +
-         1e-12 * (mesh().longest_edge() + bounds.center.norm() + bounds.radius + problem.clearance);
+  return input.rounding +
+         1e-12 * (mesh().longest_edge() + bounds.center.norm() + bounds.radius + input.clearance);
 }
 
-Ball ConvexToolRule::region(const CycleProblem& problem) const noexcept {
+Ball ConvexToolRule::region(const RuleInput& input) const noexcept {
   const Ball& bounds = tool_.bounding_ball();
-  const Ball ends = searched_ends(problem);
+  const Ball ends = searched_ends(input);
   return {ends.center + bounds.center,
-          ends.radius + bounds.radius + problem.clearance + region_beyond * tolerance(problem)};
+          ends.radius + bounds.radius + input.clearance + region_beyond * tolerance(input)};
 }
 
 ConvexToolRule::Proof ConvexToolRule::proof_along(const Vec3& normal, const Vec3& position,
@@ -87,20 +87,19 @@ ConvexToolRule::Proof ConvexToolRule::proof_of(double enough, const Vec3& positi
   return proof_along(exact.normal, position, triangle);
 }
 
-Opening ConvexToolRule::open(const CycleProblem& problem, HalfSpaceBuffer&) noexcept {
-  const double tau = tolerance(problem);
-  if (!(problem.clearance > needed_margin * tau)) return {Status::margin_too_small};
+Opening ConvexToolRule::open(const RuleInput& input, HalfSpaceBuffer&) noexcept {
+  const double tau = tolerance(input);
+  if (!(input.clearance > needed_clearance * tau)) return {Status::margin_too_small};
 
   near_.clear();
   const Near* nearest = nullptr;
-  const Ball ends = searched_ends(problem);
-  const double longest = (ends.center - problem.tip).norm() + ends.radius + region_beyond * tau;
+  const Ball ends = searched_ends(input);
+  const double longest = (ends.center - input.tip).norm() + ends.radius + region_beyond * tau;
   for (const Hit& hit : hits()) {
-    Near near{hit.triangle, quick_proof(hit, problem.tip), false};
-    if (near.at_start.distance > problem.clearance + longest)
-      continue;  // out of any motion's reach
-    if (!(near.at_start.distance > problem.clearance)) {
-      near.at_start = proof_of(problem.clearance, problem.tip, hit.triangle);
+    Near near{hit.triangle, quick_proof(hit, input.tip), false};
+    if (near.at_start.distance > input.clearance + longest) continue;  // out of any motion's reach
+    if (!(near.at_start.distance > input.clearance)) {
+      near.at_start = proof_of(input.clearance, input.tip, hit.triangle);
       near.is_refined = true;
     }
     near_.push(near);
@@ -111,30 +110,30 @@ Opening ConvexToolRule::open(const CycleProblem& problem, HalfSpaceBuffer&) noex
   if (nearest == nullptr) return {};
 
   const Proof closest = nearest->at_start;
-  if (closest.distance >= problem.clearance - lost_below * tau) {
+  if (closest.distance >= input.clearance - lost_below * tau) {
     for (Near& near : near_) {
-      near.plane_level = problem.clearance;
-      near.demand = std::min(problem.clearance - demand_below * tau, near.at_start.distance);
-      near.floor = std::min(problem.clearance - floor_below * tau, near.at_start.distance);
+      near.plane_level = input.clearance;
+      near.demand = std::min(input.clearance - demand_below * tau, near.at_start.distance);
+      near.floor = std::min(input.clearance - floor_below * tau, near.at_start.distance);
     }
     return {};
   }
   // Not above for NaN.
   if (!(closest.distance > touching_within * tau)) return {Status::touching};
   // Too close already: no triangle may come closer than the nearest one, and all of them retreat.
-  const double lift = std::min(problem.recovery, problem.clearance - closest.distance);
+  const double lift = std::min(input.recovery, input.clearance - closest.distance);
   for (Near& near : near_) {
     near.plane_level = closest.distance + lift;
     near.demand = closest.distance;
     near.floor = closest.distance;
   }
-  return {Status::recovering, retreat_target(problem, closest.normal, lift)};
+  return {Status::recovering, retreat_target(input, closest.normal, lift)};
 }
 
 /// Fills the list with all triangles that the trial may come too close to.
-void ConvexToolRule::find_suspects(const CycleProblem& problem, const Vec3& trial) noexcept {
+void ConvexToolRule::find_suspects(const RuleInput& input, const Vec3& trial) noexcept {
   const double length = trial.norm();
-  const double slack = contact_slack * tolerance(problem);
+  const double slack = contact_slack * tolerance(input);
   suspects_.clear();
   for (Near& near : near_) {
     if (near.at_start.distance - length >= near.demand) continue;
@@ -149,7 +148,7 @@ void ConvexToolRule::find_suspects(const CycleProblem& problem, const Vec3& tria
 
 /// Returns true if one of the planes, or the proof at the start, shows that the trial keeps the
 /// level.
-bool ConvexToolRule::keeps_clear(Near& near, const CycleProblem& problem, const Vec3& trial,
+bool ConvexToolRule::keeps_clear(Near& near, const RuleInput& input, const Vec3& trial,
                                  double level, std::span<const HalfSpace> planes) noexcept {
   const auto proves = [&](const Proof& proof) {
     return proof.distance >= level && proof.distance + proof.normal.dot(trial) >= level;
@@ -157,10 +156,10 @@ bool ConvexToolRule::keeps_clear(Near& near, const CycleProblem& problem, const 
   if (proves(near.at_start)) return true;
   const bool is_proven = std::any_of(planes.begin(), planes.end(), [&](const HalfSpace& plane) {
     return plane.source == near.triangle &&
-           proves(proof_along(plane.normal, problem.tip, near.triangle));
+           proves(proof_along(plane.normal, input.tip, near.triangle));
   });
   if (is_proven || near.is_refined) return is_proven;
-  near.at_start = proof_of(problem.clearance, problem.tip, near.triangle);
+  near.at_start = proof_of(input.clearance, input.tip, near.triangle);
   near.is_refined = true;
   return proves(near.at_start);
 }
@@ -169,11 +168,11 @@ bool ConvexToolRule::keeps_clear(Near& near, const CycleProblem& problem, const 
 /// from the left on the distance, which is convex in time: each plane proves the motion up to the
 /// next stride.
 std::optional<ConvexToolRule::Contact> ConvexToolRule::first_contact(const Near& near,
-                                                                     const CycleProblem& problem,
+                                                                     const RuleInput& input,
                                                                      const Vec3& trial,
                                                                      double level,
                                                                      double latest) noexcept {
-  const double slack = contact_slack * tolerance(problem);
+  const double slack = contact_slack * tolerance(input);
   double time = 0.0;
   Proof proof = near.at_start;
   for (int stride = 0; stride < most_strides; ++stride) {
@@ -184,31 +183,31 @@ std::optional<ConvexToolRule::Contact> ConvexToolRule::first_contact(const Near&
     time = std::min(time + (proof.distance - level) / -slope, 1.0);
     const double enough =
         stride < most_proposed_strides ? level + slack : std::numeric_limits<double>::infinity();
-    proof = proof_of(enough, problem.tip + time * trial, near.triangle);
+    proof = proof_of(enough, input.tip + time * trial, near.triangle);
   }
-  const Proof from_start = proof_along(proof.normal, problem.tip, near.triangle);
+  const Proof from_start = proof_along(proof.normal, input.tip, near.triangle);
   return Contact{time, {proof.normal, near.plane_level - from_start.distance, near.triangle}};
 }
 
-Judgement ConvexToolRule::judge(const CycleProblem& problem, const Vec3& trial,
+Judgement ConvexToolRule::judge(const RuleInput& input, const Vec3& trial,
                                 HalfSpaceBuffer& planes) noexcept {
   using Verdict = Judgement::Verdict;
   // Nothing is known of triangles outside the query.
   const Ball& bounds = tool_.bounding_ball();
-  const double from_center = (problem.tip + bounds.center + trial - gathered_ball().center).norm();
-  if (!(from_center + bounds.radius + problem.clearance <= gathered_ball().radius)) {
+  const double from_center = (input.tip + bounds.center + trial - gathered_ball().center).norm();
+  if (!(from_center + bounds.radius + input.clearance <= gathered_ball().radius)) {
     return {Verdict::blocked, 0.0};
   }
-  find_suspects(problem, trial);
+  find_suspects(input, trial);
   std::optional<Contact> first;
   bool is_answered = false;
   for (const auto& [near, earliest] : suspects_) {
     if (first && earliest > first->time) break;
     const bool answered = has_plane(near->triangle, planes.view());
     const double level = answered ? near->floor : near->demand;
-    if (keeps_clear(*near, problem, trial, level, planes.view())) continue;
+    if (keeps_clear(*near, input, trial, level, planes.view())) continue;
     const std::optional<Contact> contact =
-        first_contact(*near, problem, trial, level, first ? first->time : 1.0);
+        first_contact(*near, input, trial, level, first ? first->time : 1.0);
     if (!contact) continue;
     const auto is_before = [](const Contact& x, const Contact& y) {
       return x.time < y.time || (x.time == y.time && x.plane.source < y.plane.source);

@@ -37,7 +37,7 @@ HWY_BEFORE_NAMESPACE();
 namespace keepout::paper::HWY_NAMESPACE {
 using namespace keepout::HWY_NAMESPACE;
 
-using Unsigned = hn::RebindToUnsigned<Float>;
+using Unsigned = hn::RebindToUnsigned<FloatTag>;
 using VU = hn::Vec<Unsigned>;
 
 constexpr float u = 0x1p-24f;
@@ -45,19 +45,19 @@ constexpr float tiny = 1e-30f;
 constexpr float overflow = 1e18f;            // of squares
 constexpr float outward = 1.0f + 32.0f * u;  // more than the rounding of a length
 
-HWY_INLINE V set(float x) { return hn::Set(Float(), x); }
+HWY_INLINE V set(float x) { return hn::Set(FloatTag(), x); }
 HWY_INLINE VU set(std::uint32_t x) { return hn::Set(Unsigned(), x); }
-HWY_INLINE M none() { return hn::FirstN(Float(), 0); }
+HWY_INLINE M none() { return hn::FirstN(FloatTag(), 0); }
 HWY_INLINE M either(M a, M b) { return hn::Or(a, b); }
 HWY_INLINE M both(M a, M b) { return hn::And(a, b); }
 HWY_INLINE M but_not(M a, M b) { return hn::AndNot(b, a); }
-HWY_INLINE bool any(M a) { return !hn::AllFalse(Float(), a); }
+HWY_INLINE bool any(M a) { return !hn::AllFalse(FloatTag(), a); }
 HWY_INLINE V select(M mask, V yes, V no) { return hn::IfThenElse(mask, yes, no); }
 HWY_INLINE VU flag_if(M mask, std::uint32_t flag) {
   return hn::IfThenElseZero(hn::RebindMask(Unsigned(), mask), set(flag));
 }
 HWY_INLINE M has(VU flags, std::uint32_t flag) {
-  return hn::RebindMask(Float(), hn::TestBit(flags, set(flag)));
+  return hn::RebindMask(FloatTag(), hn::TestBit(flags, set(flag)));
 }
 
 /// Of a number that rounding may have changed by so much: what is sure.
@@ -77,14 +77,14 @@ HWY_INLINE V band_of(V reach, const FilterQuery& query) {
 /// Points of a block, relative to the tip.
 HWY_INLINE Vector relative(const float (&at)[3][LeafBlock::lanes], std::size_t lane,
                            const FilterQuery& query) {
-  const Float d;
+  const FloatTag d;
   return load(d, at, lane) - all(d, query.high) - all(d, query.low);
 }
 
 /// The first look. `place`: of the leaf's first lane.
 HWY_INLINE void look(const LeafBlock& leaf, const LeafEdges& edges, std::size_t place,
                      std::size_t lane, const FilterQuery& query, Unfinished& unfinished) {
-  const Float d;
+  const FloatTag d;
   const Unsigned du;
   Vector p[3];
   V squares[3];
@@ -196,7 +196,7 @@ HWY_INLINE Closest closest_of(const Vector (&p)[3], V band) {
                   set(std::uint32_t{0}),
                   {select(first, p[1], select(at[2], p[2], p[0])), select(at[3], p[1], p[2]),
                    select(first, squares[1], select(at[2], squares[2], squares[0])),
-                   hn::Zero(Float()), set(1.0f), inside_side}};
+                   hn::Zero(FloatTag()), set(1.0f), inside_side}};
   for (std::uint32_t i = 1; i < places; ++i) {
     closest.place = hn::Or(closest.place, flag_if(at[i], i));
   }
@@ -216,7 +216,7 @@ struct Apexes {
                     const std::uint32_t* which) {
     alignas(64) std::uint32_t at[LeafBlock::lanes];
     hn::Store(place, Unsigned(), at);
-    for (std::uint32_t rest = bits(Float(), asked, 0); rest != 0; rest &= rest - 1) {
+    for (std::uint32_t rest = bits(FloatTag(), asked, 0); rest != 0; rest &= rest - 1) {
       const auto i = static_cast<std::size_t>(std::countr_zero(rest));
       const auto& apex = edges[which[i] / LeafBlock::lanes].apex;
       for (std::size_t n = 0; n < 2; ++n) {
@@ -232,7 +232,7 @@ struct Apexes {
 /// `kept` first ones, which grow.
 HWY_INLINE void look_again(std::span<const LeafEdges> edges, const FilterQuery& query,
                            std::size_t at, Unfinished& unfinished, std::size_t& kept) {
-  const Float d;
+  const FloatTag d;
   const Unsigned du;
   Vector p[3];
   for (std::size_t c = 0; c < 3; ++c) {
@@ -302,12 +302,12 @@ std::size_t Filter(std::span<const LeafBlock> leaves, std::span<const LeafEdges>
   for (; i < listed.size() && unfinished.size + LeafBlock::lanes <= Unfinished::most; ++i) {
     const std::size_t leaf = listed[i];
     if (i + ahead < listed.size()) fetch(leaves[listed[i + ahead]], edges[listed[i + ahead]]);
-    for (std::size_t lane = 0; lane < LeafBlock::lanes; lane += hn::Lanes(Float())) {
+    for (std::size_t lane = 0; lane < LeafBlock::lanes; lane += hn::Lanes(FloatTag())) {
       look(leaves[leaf], edges[leaf], leaf * LeafBlock::lanes, lane, query, unfinished);
     }
   }
   std::size_t kept = 0;
-  for (std::size_t at = 0; at < unfinished.size; at += hn::Lanes(Float())) {
+  for (std::size_t at = 0; at < unfinished.size; at += hn::Lanes(FloatTag())) {
     look_again(edges, query, at, unfinished, kept);
   }
   unfinished.size = kept;
@@ -335,10 +335,10 @@ namespace keepout {
 
 Ball idle_ball(const Vec3& target) noexcept { return {0.5 * target, 0.51 * target.norm()}; }
 
-FilterQuery filter_query(const CycleProblem& problem, const Ball& ball, const LeafFrame& frame,
+FilterQuery filter_query(const RuleInput& input, const Ball& ball, const LeafFrame& frame,
                          IdlePlanes idle_planes) noexcept {
   const Vec3 tip = ball.center - frame.origin;
-  const Ball idle = idle_ball(problem.target);
+  const Ball idle = idle_ball(input.target);
   FilterQuery query;
   for (int axis = 0; axis < 3; ++axis) {
     query.high[axis] = static_cast<float>(tip[axis]);
@@ -347,15 +347,15 @@ FilterQuery filter_query(const CycleProblem& problem, const Ball& ball, const Le
   }
   query.radius = at_least(ball.radius);
   query.inside = at_most(ball.radius);
-  query.rounding = at_least(problem.rounding);
+  query.rounding = at_least(input.rounding);
   // What two floats leave of the tip, and the rounding of a difference as small as `low`.
   const double split = 0x1p-46 * tip.cwiseAbs().maxCoeff();
   query.error = at_least(std::sqrt(3.0) * (frame.error + split));
   query.idle_height = query.idle = std::numeric_limits<float>::infinity();
   if (idle_planes == IdlePlanes::left_out) {
     // A share of the height makes up for the rounding of the middle's.
-    query.idle_height = at_least((idle.radius + problem.clearance) * (1.0 + 0x1p-19));
-    query.idle = at_least(idle.radius + idle.center.norm() + problem.clearance);
+    query.idle_height = at_least((idle.radius + input.clearance) * (1.0 + 0x1p-19));
+    query.idle = at_least(idle.radius + idle.center.norm() + input.clearance);
   }
   return query;
 }

@@ -34,7 +34,7 @@ Ball idle_ball(const Vec3& target) noexcept;
 enum class IdlePlanes : std::uint8_t { found, left_out };
 
 /// Of the triangles in the ball. `frame`: of the leaves.
-FilterQuery filter_query(const CycleProblem& problem, const Ball& ball, const LeafFrame& frame,
+FilterQuery filter_query(const RuleInput& input, const Ball& ball, const LeafFrame& frame,
                          IdlePlanes idle_planes) noexcept;
 
 /// The triangles that floats are not done with. There is room for a whole vector beyond the last.

@@ -29,53 +29,54 @@ struct EdgesAt {
 PaperRule::PaperRule() = default;
 PaperRule::~PaperRule() = default;
 
-void PaperRule::prepare(Neighborhood& near) {
-  ActivationRule::prepare(near);
+void PaperRule::prepare(Neighborhood& neighborhood) {
+  ActivationRule::prepare(neighborhood);
   adjacency_ = std::make_unique<const Adjacency>(mesh());
   blocks_ = nullptr;
-  if (const TriangleBlocks* const blocks = near.index().blocks()) {
-    blocks_ = std::make_unique<PaperBlocks>(*this, mesh(), *adjacency_, *blocks, near.room());
+  if (const TriangleBlocks* const blocks = neighborhood.index().blocks()) {
+    blocks_ =
+        std::make_unique<PaperBlocks>(*this, mesh(), *adjacency_, *blocks, neighborhood.room());
   }
 }
 
-bool PaperRule::gather(const CycleProblem& problem) noexcept {
-  return blocks_ != nullptr || ActivationRule::gather(problem);
+bool PaperRule::gather(const RuleInput& input) noexcept {
+  return blocks_ != nullptr || ActivationRule::gather(input);
 }
 
 std::size_t PaperRule::triangles() const noexcept {
   return blocks_ ? blocks_->triangles() : ActivationRule::triangles();
 }
 
-Opening PaperRule::open(const CycleProblem& problem, HalfSpaceBuffer& planes) noexcept {
-  if (blocks_) return {blocks_->find(problem, planes) ? Status::free : Status::over_capacity};
+Opening PaperRule::open(const RuleInput& input, HalfSpaceBuffer& planes) noexcept {
+  if (blocks_) return {blocks_->find(input, planes) ? Status::free : Status::over_capacity};
   for (const Hit& hit : hits()) {
-    if (const std::optional<HalfSpace> plane = plane_of(problem, hit)) planes.push(*plane);
+    if (const std::optional<HalfSpace> plane = plane_of(input, hit)) planes.push(*plane);
   }
   return {};
 }
 
-Judgement PaperRule::judge(const CycleProblem& problem, const Vec3& trial,
+Judgement PaperRule::judge(const RuleInput& input, const Vec3& trial,
                            HalfSpaceBuffer& planes) noexcept {
-  if (blocks_ && !blocks_->covers(problem, trial)) return {Judgement::Verdict::blocked, 0.0};
-  return ActivationRule::judge(problem, trial, planes);
+  if (blocks_ && !blocks_->covers(input, trial)) return {Judgement::Verdict::blocked, 0.0};
+  return ActivationRule::judge(input, trial, planes);
 }
 
-std::optional<HalfSpace> PaperRule::plane_of(const CycleProblem& problem,
+std::optional<HalfSpace> PaperRule::plane_of(const RuleInput& input,
                                              const Hit& hit) const noexcept {
   const Vec3 normal = mesh().normal(hit.triangle);
-  const bool positive = on_positive_side(problem, hit, normal);
+  const bool positive = on_positive_side(input, hit, normal);
 
   // Condition 1: the closest point is in the triangle.
   if (is_face(hit.closest.feature)) {
     if (!positive) return std::nullopt;
-    return plane_through(hit, normal, problem.clearance);
+    return plane_through(hit, normal, input.clearance);
   }
   // Condition 2: on a ridge, and nearest for the neighbour as well.
-  switch (role_in_condition_2(problem, hit)) {
+  switch (role_in_condition_2(input, hit)) {
     case Role::speaks: {
-      if (!touches(problem, hit)) return plane_through(hit, away_from(hit), problem.clearance);
+      if (!touches(input, hit)) return plane_through(hit, away_from(hit), input.clearance);
       if (normal.isZero(0.0)) return std::nullopt;
-      return plane_through(hit, normal, problem.clearance);
+      return plane_through(hit, normal, input.clearance);
     }
     case Role::leaves_it_to_a_neighbor:
       return std::nullopt;
@@ -84,22 +85,22 @@ std::optional<HalfSpace> PaperRule::plane_of(const CycleProblem& problem,
   }
   // Condition 3: on a valley.
   if (positive && !normal.isZero(0.0) && touches_a_valley(hit)) {
-    return plane_through(hit, normal, problem.clearance);
+    return plane_through(hit, normal, input.clearance);
   }
   return std::nullopt;
 }
 
-PaperRule::Role PaperRule::role_in_condition_2(const CycleProblem& problem,
+PaperRule::Role PaperRule::role_in_condition_2(const RuleInput& input,
                                                const Hit& hit) const noexcept {
   Role role = Role::none;
   for (const int edge : EdgesAt(hit.closest.feature)) {
     const EdgeKind kind = adjacency_->kind(hit.triangle, edge);
     if (kind != EdgeKind::convex && kind != EdgeKind::coplanar) continue;
     const TriangleId neighbor = adjacency_->neighbor(hit.triangle, edge);
-    const ClosestPoint theirs = closest_point(mesh().triangle(neighbor), problem.tip);
+    const ClosestPoint theirs = closest_point(mesh().triangle(neighbor), input.tip);
     if (is_face(theirs.feature) || theirs.offset != hit.closest.offset) continue;
     // On the surface each face speaks for itself, as there is no shared plane.
-    if (neighbor < hit.triangle && !touches(problem, hit)) return Role::leaves_it_to_a_neighbor;
+    if (neighbor < hit.triangle && !touches(input, hit)) return Role::leaves_it_to_a_neighbor;
     role = Role::speaks;
   }
   return role;

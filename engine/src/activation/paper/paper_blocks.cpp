@@ -26,18 +26,18 @@ PaperBlocks::PaperBlocks(const PaperRule& rule, const Mesh& mesh, const Adjacenc
   }
 }
 
-bool PaperBlocks::find(const CycleProblem& problem, HalfSpaceBuffer& planes) noexcept {
+bool PaperBlocks::find(const RuleInput& input, HalfSpaceBuffer& planes) noexcept {
   triangles_ = 0;
   leaves_.clear();
-  const Ball ball = rule_.region(problem);
+  const Ball ball = rule_.region(input);
   blocks_.collect_leaves(ball, leaves_);
-  const IdlePlanes idle = problem.is_projected ? IdlePlanes::left_out : IdlePlanes::found;
-  if (!gather(problem, ball, idle)) return false;
+  const IdlePlanes idle = input.is_projected ? IdlePlanes::left_out : IdlePlanes::found;
+  if (!gather(input, ball, idle)) return false;
   if (idle == IdlePlanes::left_out) {
     const auto asks_for_motion = [](const HalfSpace& plane) { return plane.offset > 0.0; };
     const bool may_overflow = planes.size() + triangles_ > planes.capacity();
     if (may_overflow || std::any_of(found_.begin(), found_.end(), asks_for_motion)) {
-      gather(problem, ball, IdlePlanes::found);
+      gather(input, ball, IdlePlanes::found);
     }
   }
   std::sort(found_.begin(), found_.end(),
@@ -47,8 +47,8 @@ bool PaperBlocks::find(const CycleProblem& problem, HalfSpaceBuffer& planes) noe
 }
 
 /// Finds the planes in no order. False if there are more triangles than room was made for.
-bool PaperBlocks::gather(const CycleProblem& problem, const Ball& ball, IdlePlanes idle) noexcept {
-  const FilterQuery query = filter_query(problem, ball, blocks_.frame(), idle);
+bool PaperBlocks::gather(const RuleInput& input, const Ball& ball, IdlePlanes idle) noexcept {
+  const FilterQuery query = filter_query(input, ball, blocks_.frame(), idle);
   idle_planes_ = idle;
   found_.clear();
   triangles_ = 0;
@@ -65,13 +65,12 @@ bool PaperBlocks::gather(const CycleProblem& problem, const Ball& ball, IdlePlan
         const Hit hit{t, closest_point(mesh_.triangle(t), ball.center)};
         if (!(hit.closest.distance <= ball.radius)) continue;
         ++triangles_;
-        if (const std::optional<HalfSpace> its = rule_.plane_of(problem, hit)) found_.push(*its);
+        if (const std::optional<HalfSpace> its = rule_.plane_of(input, hit)) found_.push(*its);
       } else {
         const std::size_t place = plane >> Unfinished::plane_bits;
-        const Hit hit{t, closest_point_at(place, leaf, which % LeafBlock::lanes, problem.tip)};
+        const Hit hit{t, closest_point_at(place, leaf, which % LeafBlock::lanes, input.tip)};
         const bool faces_tip = (plane & Unfinished::faces_tip) != 0;
-        found_.push(
-            plane_through(hit, faces_tip ? away_from(hit) : normals_[t], problem.clearance));
+        found_.push(plane_through(hit, faces_tip ? away_from(hit) : normals_[t], input.clearance));
       }
     }
     if (triangles_ > found_.capacity()) {
@@ -98,10 +97,10 @@ ClosestPoint PaperBlocks::closest_point_at(std::size_t place, const LeafBlock& l
   return {offset, offset.norm(), Feature::face};
 }
 
-bool PaperBlocks::covers(const CycleProblem& problem, const Vec3& motion) const noexcept {
+bool PaperBlocks::covers(const RuleInput& input, const Vec3& motion) const noexcept {
   if (idle_planes_ == IdlePlanes::found) return true;
-  const Ball idle = idle_ball(problem.target);
-  return (motion - idle.center).norm() <= idle.radius + 0.5 * problem.rounding;
+  const Ball idle = idle_ball(input.target);
+  return (motion - idle.center).norm() <= idle.radius + 0.5 * input.rounding;
 }
 
 }  // namespace keepout

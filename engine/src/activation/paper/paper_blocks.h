@@ -17,7 +17,7 @@ namespace keepout {
 /// asked about the others. So the planes are its own, bit for bit and in the same order, whatever
 /// the index and the width of lanes.
 ///
-/// Where the answer is a projection (CycleProblem::is_projected), idle planes are not even made: as
+/// Where the answer is a projection (RuleInput::is_projected), idle planes are not even made: as
 /// long as standing still is allowed, all that the solver looks at lies in idle_ball. Otherwise it
 /// gets them all.
 class PaperBlocks {
@@ -28,17 +28,17 @@ class PaperBlocks {
 
   /// Appends the planes that the rule has in its region. False if there are more triangles than
   /// room was made for.
-  bool find(const CycleProblem& problem, HalfSpaceBuffer& planes) noexcept;
+  bool find(const RuleInput& input, HalfSpaceBuffer& planes) noexcept;
 
   /// How many triangles were in the ball when planes were last found.
   std::size_t triangles() const noexcept { return triangles_; }
 
   /// Whether the planes that were last found are all that could speak against a motion: idle ones
   /// were left out only for motions that they are idle for.
-  bool covers(const CycleProblem& problem, const Vec3& motion) const noexcept;
+  bool covers(const RuleInput& input, const Vec3& motion) const noexcept;
 
  private:
-  bool gather(const CycleProblem& problem, const Ball& ball, IdlePlanes idle) noexcept;
+  bool gather(const RuleInput& input, const Ball& ball, IdlePlanes idle) noexcept;
   ClosestPoint closest_point_at(std::size_t place, const LeafBlock& leaf, std::size_t lane,
                                 const Vec3& tip) const noexcept;
 

@@ -64,7 +64,7 @@ void hold_still(HalfSpaceBuffer& planes) noexcept {
 struct FreePolytope::Query {
   Vec3 tip;
   double radius;
-  double margin;
+  double clearance;
   double kept = 0.0;      // the distance that the planes keep
   double reach = 0.0;     // nothing farther away can come within that distance
   double rounding = 0.0;  // of the guarantee; half of it is for the arithmetic
@@ -101,11 +101,11 @@ FreePolytope::FreePolytope(std::shared_ptr<const Mesh> mesh, std::size_t triangl
   turns_.resize(std::min(triangles, mesh_->triangle_count()));
 }
 
-Status FreePolytope::around(const Vec3& tip, double radius, double margin,
+Status FreePolytope::around(const Vec3& tip, double radius, double clearance,
                             std::span<const Hit> hits, Budget& budget,
                             HalfSpaceBuffer& planes) noexcept {
   planes.clear();
-  Query query{.tip = tip, .radius = radius, .margin = margin};
+  Query query{.tip = tip, .radius = radius, .clearance = clearance};
   Status status = prepare(query, hits);
   if (status == Status::free) status = separate(query, hits, budget, planes);
   if (status != Status::free) hold_still(planes);
@@ -114,7 +114,7 @@ Status FreePolytope::around(const Vec3& tip, double radius, double margin,
 
 Status FreePolytope::prepare(Query& query, std::span<const Hit> hits) const noexcept {
   if (!(query.tip.array().abs() <= longest_length).all() || !is_length(query.radius) ||
-      !is_length(query.margin)) {
+      !is_length(query.clearance)) {
     return Status::invalid_input;
   }
   if (hits.size() > turns_.size()) return Status::over_capacity;
@@ -131,9 +131,9 @@ Status FreePolytope::prepare(Query& query, std::span<const Hit> hits) const noex
   }
   query.rounding = 1e-12 * query.radius + 2e-14 * std::sqrt(size2);
   if (nearest <= query.rounding) return Status::touching;
-  // At the margin but for rounding, the margin itself is kept, so that step by step nothing adds
-  // up.
-  query.kept = nearest >= query.margin - 0.25 * query.rounding ? query.margin : nearest;
+  // At the clearance but for rounding, the clearance itself is kept, so that step by step nothing
+  // adds up.
+  query.kept = nearest >= query.clearance - 0.25 * query.rounding ? query.clearance : nearest;
   query.reach = query.radius + query.kept;
   return Status::free;
 }

@@ -121,7 +121,7 @@ HWY_INLINE void write_in_order(const Gathered<Number>& from, const Vec3& origin,
   for (std::size_t lane = 0; lane < LeafBlock::lanes; ++lane) {
     const std::uint32_t parity = odd << (31 - lane) & LeafBlock::odd;
     const std::uint32_t named = leaf.triangle(lane) | parity;
-    leaf.source[lane] = leaf.is_used(lane) ? named : no_triangle;
+    leaf.tagged_triangle[lane] = leaf.is_used(lane) ? named : no_triangle;
   }
 }
 
@@ -161,7 +161,7 @@ HWY_INLINE void fill_leaves(const Corners* triangles, const Vertex* vertices, co
     for (std::size_t lane = 0; lane < LeafBlock::lanes; ++lane) {
       for (std::size_t c = 0; c < 3; ++c) copy(vertices[its[lane][c]], gathered.corner[c][lane]);
     }
-    if (i + sources_ahead < leaves.size()) hwy::Prefetch(leaves[i + sources_ahead].source);
+    if (i + sources_ahead < leaves.size()) hwy::Prefetch(leaves[i + sources_ahead].tagged_triangle);
     if (i + triangles_ahead < leaves.size() && is_full(leaves[i + triangles_ahead])) {
       const LeafBlock& ahead = leaves[i + triangles_ahead];
       for (std::size_t lane = 0; lane < LeafBlock::lanes; ++lane) {
@@ -258,7 +258,7 @@ void LeafFill::fill(std::span<LeafBlock> leaves, std::size_t first,
 
 void name_triangles(std::span<const Center> centers, LeafBlock& leaf) noexcept {
   for (std::size_t lane = 0; lane < LeafBlock::lanes; ++lane) {
-    leaf.source[lane] = lane < centers.size() ? centers[lane].triangle : no_triangle;
+    leaf.tagged_triangle[lane] = lane < centers.size() ? centers[lane].triangle : no_triangle;
   }
 }
 

@@ -23,8 +23,8 @@ class LeafFill {
   /// What a leaf's coordinates are to the mesh's.
   const LeafFrame& frame() const noexcept { return frame_; }
 
-  /// Fills leaves first .. last - 1, whose `source` says which triangles are theirs, and has what
-  /// those behind them need brought nearer. The bits `odd` are set anew.
+  /// Fills leaves first .. last - 1, whose `tagged_triangle` says which triangles are theirs, and
+  /// has what those behind them need brought nearer. The bits `odd` are set anew.
   void fill(std::span<LeafBlock> leaves, std::size_t first, std::size_t last) const noexcept;
 
   /// Never straddles cache lines. [length]

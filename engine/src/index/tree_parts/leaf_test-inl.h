@@ -30,30 +30,39 @@
 HWY_BEFORE_NAMESPACE();
 namespace keepout::HWY_NAMESPACE {
 
-using Ids = hn::RebindToUnsigned<Float>;
+using Ids = hn::RebindToUnsigned<FloatTag>;
 
-HWY_INLINE V least(V a, V b, V c) { return hn::Min(hn::Min(a, b), c); }
-HWY_INLINE V most(V a, V b, V c) { return hn::Max(hn::Max(a, b), c); }
+HWY_INLINE V min(V a, V b, V c) { return hn::Min(hn::Min(a, b), c); }
+HWY_INLINE V max(V a, V b, V c) { return hn::Max(hn::Max(a, b), c); }
 
-/// The corners of some triangles, relative to the centre of the ball.
-struct Corners3 {
-  Vector a, b, c;
-};
-
-HWY_INLINE Vector relative_to_center(const float (&corner)[3][LeafBlock::lanes], std::size_t first,
-                                     const BallScreen& ball) {
-  const Float d;
-  const auto part = [&](int axis) HWY_ATTR {
-    const V from_high =
-        hn::Sub(hn::Load(d, corner[axis] + first), hn::Set(d, ball.high_part[axis]));
-    return hn::Sub(from_high, hn::Set(d, ball.low_part[axis]));
-  };
-  return {part(0), part(1), part(2)};
+/// Returns the squared distances of boxes from the center of a ball, rounded down.
+template <std::size_t Lanes>
+HWY_INLINE V box_distance2(const float (&low)[3][Lanes], const float (&high)[3][Lanes],
+                           std::size_t first, const BallScreen& ball) {
+  const FloatTag d;
+  V distance2 = hn::Zero(d);
+  for (int axis = 0; axis < 3; ++axis) {
+    const V below = hn::Sub(hn::Load(d, low[axis] + first), hn::Set(d, ball.above[axis]));
+    const V above = hn::Sub(hn::Set(d, ball.below[axis]), hn::Load(d, high[axis] + first));
+    const V beyond = max(below, above, hn::Zero(d));
+    distance2 = hn::Add(distance2, hn::Mul(beyond, beyond));
+  }
+  return distance2;
 }
 
-/// The point of each triangle nearest to the origin, give or take what leaves it in the triangle.
-HWY_INLINE Vector nearest_point(const Corners3& t) {
-  const Float d;
+/// Returns triangles of a leaf relative to the center of a ball.
+HWY_INLINE TriangleLanes relative_to_center(const LeafBlock& leaf, std::size_t first,
+                                            const BallScreen& ball) {
+  const FloatTag d;
+  const Vector high = all(d, ball.high_part), low = all(d, ball.low_part);
+  return {load(d, leaf.corner[0], first) - high - low, load(d, leaf.corner[1], first) - high - low,
+          load(d, leaf.corner[2], first) - high - low};
+}
+
+/// Returns the point of each triangle nearest to the origin, to within a rounding that leaves it in
+/// the triangle.
+HWY_INLINE Vector nearest_point(const TriangleLanes& t) {
+  const FloatTag d;
   const V zero = hn::Zero(d);
   const V one = hn::Set(d, 1.0f);
   const V tiny = hn::Set(d, BallScreen::least2);
@@ -91,29 +100,27 @@ HWY_INLINE Vector nearest_point(const Corners3& t) {
   return select(inside, middle, best);
 }
 
-/// Whether no point of each triangle is within the ball: by the plane through the corner nearest
-/// along `direction`, across it.
-HWY_INLINE M surely_out(const Corners3& t, const Vector& direction, V outside2_and_band) {
-  const Float d;
-  const V along = least(dot(direction, t.a), dot(direction, t.b), dot(direction, t.c));
+/// Returns the triangles that are surely outside the ball: beyond the plane across `direction`
+/// through the corner that is nearest along it.
+HWY_INLINE M surely_out(const TriangleLanes& t, const Vector& direction, V outside2_and_band) {
+  const FloatTag d;
+  const V along = min(dot(direction, t.a), dot(direction, t.b), dot(direction, t.c));
   const V length2 = dot(direction, direction);
   const V needed = hn::Add(hn::Mul(length2, outside2_and_band), hn::Set(d, 1e-30f));
   return hn::And(hn::And(hn::Gt(along, hn::Zero(d)), hn::Gt(hn::Mul(along, along), needed)),
                  hn::Gt(length2, hn::Set(d, 1e-25f)));
 }
 
-/// Of the triangles from lane `first` on, those that surely touch the ball, and those of which the
-/// exact kernel has to say.
+/// Finds, of the triangles from lane `first` on, those that surely touch the ball, and those about
+/// which the exact kernel must decide.
 HWY_INLINE void compare(const LeafBlock& leaf, std::size_t first, const BallScreen& ball, M& in,
                         M& in_doubt) {
-  const Float d;
-  const Corners3 t{relative_to_center(leaf.corner[0], first, ball),
-                   relative_to_center(leaf.corner[1], first, ball),
-                   relative_to_center(leaf.corner[2], first, ball)};
+  const FloatTag d;
+  const TriangleLanes t = relative_to_center(leaf, first, ball);
   const V a2 = dot(t.a, t.a);
   const V b2 = dot(t.b, t.b);
   const V c2 = dot(t.c, t.c);
-  const V farthest2 = most(a2, b2, c2);
+  const V farthest2 = max(a2, b2, c2);
   const V band = hn::Set(d, BallScreen::band);
   const V inside2 = hn::Set(d, ball.inside2);
   const V outside2 = hn::Set(d, ball.outside2);
@@ -121,7 +128,7 @@ HWY_INLINE void compare(const LeafBlock& leaf, std::size_t first, const BallScre
   const V beyond2 = hn::Add(outside2, spread);
 
   // A corner within the ball, or all of them beyond a plane before it, settle nearly all.
-  in = hn::Le(hn::Add(least(a2, b2, c2), spread), inside2);
+  in = hn::Le(hn::Add(min(a2, b2, c2), spread), inside2);
   const M out = surely_out(t, t.a + t.b + t.c, beyond2);
   in_doubt = hn::Not(hn::Or(in, out));
   if (hn::AllFalse(d, in_doubt)) return;
@@ -153,12 +160,12 @@ HWY_INLINE void append(hn::Vec<Ids> source, M chosen, TriangleBuffer& out) {
 
 /// Appends all triangles of a leaf.
 HWY_INLINE void append_all(const LeafBlock& leaf, TriangleBuffer& out) {
-  const Float d;
+  const FloatTag d;
   const Ids ids;
   const bool is_full = leaf.is_used(LeafBlock::lanes - 1);
   if (HWY_LIKELY(is_full && out.capacity() - out.size() >= LeafBlock::lanes)) {
     for (std::size_t first = 0; first < LeafBlock::lanes; first += hn::Lanes(ids)) {
-      const auto source = hn::Load(ids, leaf.source + first);
+      const auto source = hn::Load(ids, leaf.tagged_triangle + first);
       hn::StoreU(hn::AndNot(hn::Set(ids, LeafBlock::odd), source), ids, out.end() + first);
     }
     out.grow(LeafBlock::lanes);
@@ -166,7 +173,7 @@ HWY_INLINE void append_all(const LeafBlock& leaf, TriangleBuffer& out) {
   }
   const M all = hn::Eq(hn::Zero(d), hn::Zero(d));
   for (std::size_t first = 0; first < LeafBlock::lanes; first += hn::Lanes(d)) {
-    append(hn::Load(ids, leaf.source + first), all, out);
+    append(hn::Load(ids, leaf.tagged_triangle + first), all, out);
   }
 }
 
@@ -174,12 +181,12 @@ HWY_INLINE void append_all(const LeafBlock& leaf, TriangleBuffer& out) {
 template <bool counting>
 HWY_INLINE void append_touching(const LeafBlock& leaf, const BallScreen& ball, const Mesh& mesh,
                                 TriangleBuffer& out, QueryCounts* counts, std::size_t& asked) {
-  const Float d;
+  const FloatTag d;
   std::uint32_t doubts = 0;
   for (std::size_t first = 0; first < LeafBlock::lanes; first += hn::Lanes(d)) {
     M in, in_doubt;
     compare(leaf, first, ball, in, in_doubt);
-    append(hn::Load(Ids(), leaf.source + first), in, out);
+    append(hn::Load(Ids(), leaf.tagged_triangle + first), in, out);
     if (HWY_UNLIKELY(!hn::AllFalse(d, in_doubt))) doubts |= bits(d, in_doubt, first);
   }
   if constexpr (counting) ++counts->blocks;
@@ -250,7 +257,7 @@ struct TouchingTriangles {
 
   HWY_INLINE void fetch(std::uint32_t at) const {
     const LeafBlock& leaf = leaves[at & leaf_number];
-    hwy::Prefetch(leaf.source);
+    hwy::Prefetch(leaf.tagged_triangle);
     if ((at & whole_leaf) != 0) return;
     for (const auto& corner : leaf.corner) {
       for (const auto& axis : corner) hwy::Prefetch(axis);

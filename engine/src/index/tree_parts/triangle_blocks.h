@@ -11,13 +11,13 @@
 
 namespace keepout {
 
-/// What the floats of a tree are to the mesh's coordinates.
+/// The frame of a tree's floats.
 struct LeafFrame {
-  /// What they are measured from: the mesh's own origin where its coordinates are floats already,
-  /// as those of STL files are; else the middle of its triangles, wherever that is. [length]
+  /// Their origin: the mesh's own if its coordinates are floats already, as those of STL files are;
+  /// else the center of its triangles. [length]
   Vec3 origin = Vec3::Zero();
-  /// How far a corner in a leaf may be from the mesh's, in each coordinate; 0 where they are the
-  /// same numbers. [length]
+  /// The largest difference of a corner in a leaf from the mesh's, in each coordinate; 0 if they
+  /// are the same numbers. [length]
   double error = 0.0;
 
   /// Whether the coordinates are the mesh's own.
@@ -29,7 +29,7 @@ struct LeafFrame {
 struct alignas(64) LeafBlock {
   /// In a block.
   static constexpr std::size_t lanes = 16;
-  /// The bit of `source` that tells of the winding.
+  /// The bit of `tagged_triangle` that gives the winding.
   static constexpr std::uint32_t odd = std::uint32_t{1} << 31;
   /// That can be told apart by the bits that are left.
   static constexpr std::size_t most_triangles = odd - 1;
@@ -40,25 +40,25 @@ struct alignas(64) LeafBlock {
 
   /// The triangle's number, with bit `odd` set if the order of its corners is an odd permutation of
   /// its winding. Unused lanes, which are the last ones, hold no_triangle.
-  std::uint32_t source[lanes];
+  std::uint32_t tagged_triangle[lanes];
 
   /// Whether there is a triangle in a lane.
-  bool is_used(std::size_t lane) const noexcept { return source[lane] != no_triangle; }
+  bool is_used(std::size_t lane) const noexcept { return tagged_triangle[lane] != no_triangle; }
   /// The triangle's number. Precondition: is_used(lane).
-  TriangleId triangle(std::size_t lane) const noexcept { return source[lane] & ~odd; }
+  TriangleId triangle(std::size_t lane) const noexcept { return tagged_triangle[lane] & ~odd; }
 };
 
 /// Numbers of leaf blocks, with a declared capacity.
 using LeafBuffer = Buffer<std::uint32_t>;
 
-/// What an index offers that keeps the triangles of its mesh in leaf blocks, each in one of them: a
-/// rule can look at a block as a whole, and remember what it knows of its triangles beside it.
+/// The leaf blocks of an index, which contain each triangle of its mesh once: a rule can examine a
+/// block as a whole, and store notes on its triangles beside it.
 class TriangleBlocks {
  public:
   /// All blocks; what is numbered is their place here.
   virtual std::span<const LeafBlock> leaves() const noexcept = 0;
 
-  /// What their coordinates are to the mesh's.
+  /// Returns the frame of their coordinates.
   virtual const LeafFrame& frame() const noexcept = 0;
 
   /// Appends the number of every leaf with a triangle that touches the ball, once each and in any
@@ -68,7 +68,7 @@ class TriangleBlocks {
  protected:
   ~TriangleBlocks() = default;
 
-  /// Where the ball is beyond what an index can tell.
+  /// Appends all leaves: for a ball that is out of the range of floats.
   void collect_all_leaves(LeafBuffer& found) const noexcept {
     for (std::uint32_t leaf = 0; leaf < leaves().size(); ++leaf) found.push(leaf);
   }

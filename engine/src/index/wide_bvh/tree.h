@@ -11,8 +11,8 @@
 
 namespace keepout {
 
-/// Sixteen cylinders, coordinate by coordinate: around the triangles of a tree where they make up a
-/// sheet, which a box that is not along it holds badly.
+/// Sixteen cylinders, coordinate by coordinate, around the triangles of a node's boxes. A sheet
+/// that is not along the axes fills its box badly, and its cylinder well.
 struct alignas(64) CylinderBlock {
   /// In a block.
   static constexpr std::size_t lanes = 16;
@@ -28,7 +28,7 @@ struct alignas(64) NodeBlock {
   /// In a block.
   static constexpr std::size_t lanes = 16;
   /// The bit of `child` that tells a leaf from a node.
-  static constexpr std::uint32_t leaf = std::uint32_t{1} << 31;
+  static constexpr std::uint32_t leaf_bit = std::uint32_t{1} << 31;
 
   /// Hold their triangles, as the mesh has them, rounded outward; from the origin of the tree's
   /// frame. Unused lanes, which are the last ones, hold a box at infinity that nothing reaches.
@@ -36,13 +36,21 @@ struct alignas(64) NodeBlock {
   float low[3][lanes];   // [axis][lane]
   float high[3][lanes];  // [axis][lane]
 
-  /// The number of a node; or of a leaf block, with bit `leaf` set. Of an unused lane: 0, which is
+  /// The number of a node; or of a leaf block, with leaf_bit set. Of an unused lane: 0, which is
   /// the root and nobody's child.
   std::uint32_t child[lanes];
 
   /// Whether there is a box in a lane.
   bool is_used(std::size_t lane) const noexcept { return child[lane] != 0; }
 };
+
+/// Prefetches all cache lines of a block that will be needed soon.
+template <class Block>
+[[gnu::always_inline]] inline void prefetch(const Block& block) noexcept {
+  constexpr std::size_t line = 64;
+  const char* bytes = reinterpret_cast<const char*>(&block);
+  for (std::size_t at = 0; at < sizeof block; at += line) __builtin_prefetch(bytes + at);
+}
 
 class LeafFill;
 

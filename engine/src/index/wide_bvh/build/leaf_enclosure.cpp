@@ -10,7 +10,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace keepout::HWY_NAMESPACE {
 
-constexpr std::size_t width = hn::MaxLanes(Float());
+constexpr std::size_t width = hn::MaxLanes(FloatTag());
 constexpr std::size_t leaf_count = NodeBlock::lanes;
 
 /// A vector a leaf: what is still to be put together, lane by lane, to a number a leaf.
@@ -22,7 +22,7 @@ struct VectorRows {
   Rows x, y, z;
 };
 
-HWY_INLINE void store(Float d, const Vector& v, std::size_t leaf, VectorRows& to) {
+HWY_INLINE void store(FloatTag d, const Vector& v, std::size_t leaf, VectorRows& to) {
   hn::Store(v.x, d, to.x.row[leaf]);
   hn::Store(v.y, d, to.y.row[leaf]);
   hn::Store(v.z, d, to.z.row[leaf]);
@@ -31,7 +31,7 @@ HWY_INLINE void store(Float d, const Vector& v, std::size_t leaf, VectorRows& to
 /// Puts together the lanes of each of `Count` rows: two rows become one in each round, so that the
 /// results come to stand side by side, and the work is a quarter of that of row by row.
 template <std::size_t Count, class Operation>
-HWY_INLINE V put_together(Float d, const float (*rows)[width],
+HWY_INLINE V put_together(FloatTag d, const float (*rows)[width],
                           [[maybe_unused]] const Operation& operation) {
 #if HWY_TARGET != HWY_SCALAR  // which has one lane, and no halves of it
   if constexpr (Count > 1) {
@@ -49,12 +49,13 @@ constexpr auto most_of = [](V a, V b) HWY_ATTR { return hn::Max(a, b); };
 
 /// A number a leaf, of the leaves from `first` on.
 template <class Operation>
-HWY_INLINE V of_leaves(Float d, const Rows& rows, std::size_t first, const Operation& operation) {
+HWY_INLINE V of_leaves(FloatTag d, const Rows& rows, std::size_t first,
+                       const Operation& operation) {
   return put_together<width>(d, rows.row + first, operation);
 }
 
 template <class Operation>
-HWY_INLINE Vector of_leaves(Float d, const VectorRows& rows, std::size_t first,
+HWY_INLINE Vector of_leaves(FloatTag d, const VectorRows& rows, std::size_t first,
                             const Operation& operation) {
   return {of_leaves(d, rows.x, first, operation), of_leaves(d, rows.y, first, operation),
           of_leaves(d, rows.z, first, operation)};
@@ -62,9 +63,9 @@ HWY_INLINE Vector of_leaves(Float d, const VectorRows& rows, std::size_t first,
 
 /// The sum of the triangles' normals, as long as twice their areas and on the side that their
 /// winding tells; and the leaf's box.
-HWY_INLINE void look_at(Float d, const LeafBlock& leaf, std::size_t row, VectorRows& normals,
+HWY_INLINE void look_at(FloatTag d, const LeafBlock& leaf, std::size_t row, VectorRows& normals,
                         VectorRows& lows, VectorRows& highs) {
-  const hn::RebindToUnsigned<Float> unsigned_lanes;
+  const hn::RebindToUnsigned<FloatTag> unsigned_lanes;
   const V zero = hn::Zero(d);
   Vector normal{zero, zero, zero};
   Vector low = load(d, leaf.corner[0], 0);
@@ -81,7 +82,7 @@ HWY_INLINE void look_at(Float d, const LeafBlock& leaf, std::size_t row, VectorR
     const Vector ab = b - a;
     const Vector ac = c - a;
     // The bit `odd` is where a float has its sign.
-    const V sign = hn::BitCast(d, hn::And(hn::Load(unsigned_lanes, leaf.source + lane),
+    const V sign = hn::BitCast(d, hn::And(hn::Load(unsigned_lanes, leaf.tagged_triangle + lane),
                                           hn::Set(unsigned_lanes, LeafBlock::odd)));
     const auto turned = [&](V p, V q, V r, V s) HWY_ATTR {
       return hn::Xor(hn::Sub(hn::Mul(p, q), hn::Mul(r, s)), sign);
@@ -95,7 +96,7 @@ HWY_INLINE void look_at(Float d, const LeafBlock& leaf, std::size_t row, VectorR
 }
 
 /// Sets of each leaf the axis of its cylinder and, as the middle, that of its box.
-HWY_INLINE void set_axes(Float d, const VectorRows& normals, const NodeBlock& boxes,
+HWY_INLINE void set_axes(FloatTag d, const VectorRows& normals, const NodeBlock& boxes,
                          CylinderBlock& cylinders) {
   const V zero = hn::Zero(d);
   const V one = hn::Set(d, 1.0f);
@@ -114,7 +115,7 @@ HWY_INLINE void set_axes(Float d, const VectorRows& normals, const NodeBlock& bo
 }
 
 /// Measures a leaf from the middle of its box, along the cylinder's axis and across.
-HWY_INLINE void measure(Float d, const LeafBlock& leaf, std::size_t row,
+HWY_INLINE void measure(FloatTag d, const LeafBlock& leaf, std::size_t row,
                         const CylinderBlock& cylinders, Rows& bottoms, Rows& tops, Rows& radii2) {
   const auto vector_of = [&](const float(&from)[3][leaf_count]) HWY_ATTR -> Vector {
     return {hn::Set(d, from[0][row]), hn::Set(d, from[1][row]), hn::Set(d, from[2][row])};
@@ -140,7 +141,7 @@ HWY_INLINE void measure(Float d, const LeafBlock& leaf, std::size_t row,
 }
 
 /// Moves the middles along the axes to the middle of the sheets.
-HWY_INLINE void set_sizes(Float d, const Rows& bottoms, const Rows& tops, const Rows& radii2,
+HWY_INLINE void set_sizes(FloatTag d, const Rows& bottoms, const Rows& tops, const Rows& radii2,
                           const NodeBlock& boxes, CylinderBlock& cylinders) {
   for (std::size_t first = 0; first < leaf_count; first += width) {
     const V bottom = of_leaves(d, bottoms, first, least_of);
@@ -155,11 +156,11 @@ HWY_INLINE void set_sizes(Float d, const Rows& bottoms, const Rows& tops, const 
     const Vector off = moved - along * axis;
 
     // No corner is farther from the middle of the box than that.
-    const V far = size(load(d, boxes.high, first) - load(d, boxes.low, first));
+    const V far = norm1(load(d, boxes.high, first) - load(d, boxes.low, first));
     // What rounding may add to a length, as a share of the sum of the coordinates' sizes: 32 u,
     // where a dozen operations and the length of the axis make less than 24 u.
     constexpr float outward = 2e-6f;
-    const V rounding = hn::Mul(hn::Set(d, outward), hn::Add(far, size(moved)));
+    const V rounding = hn::Mul(hn::Set(d, outward), hn::Add(far, norm1(moved)));
     // Squares of what is very small or very large are lost.
     const M is_known =
         hn::And(hn::Gt(radius2, hn::Set(d, 1e-30f)), hn::Lt(radius2, hn::Set(d, 1e30f)));
@@ -173,7 +174,7 @@ HWY_INLINE void set_sizes(Float d, const Rows& bottoms, const Rows& tops, const 
 }
 
 void EncloseLeaves(const SixteenLeaves& leaves, NodeBlock& boxes, CylinderBlock& cylinders) {
-  const Float d;
+  const FloatTag d;
   VectorRows normals, lows, highs;
   for (std::size_t leaf = 0; leaf < leaf_count; ++leaf) {
     look_at(d, *leaves[leaf], leaf, normals, lows, highs);

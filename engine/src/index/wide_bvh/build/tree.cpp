@@ -142,7 +142,7 @@ void WideBvh::Tree::divide(unsigned threads) { Division(mesh(), threads, leaves_
 
 void WideBvh::Tree::divide(std::span<const TriangleId> order) noexcept {
   for (std::size_t i = 0; i < leaves_.size() * LeafBlock::lanes; ++i) {
-    leaves_[i / LeafBlock::lanes].source[i % LeafBlock::lanes] =
+    leaves_[i / LeafBlock::lanes].tagged_triangle[i % LeafBlock::lanes] =
         i < order.size() ? order[i] : no_triangle;
   }
 }
@@ -187,7 +187,7 @@ void WideBvh::Tree::enclose_leaves(std::size_t self, std::size_t first, std::siz
   for (std::size_t lane = 0; lane < NodeBlock::lanes; ++lane) {
     const std::size_t leaf = std::min(first + lane, last - 1);
     leaves[lane] = &leaves_[leaf];
-    node.child[lane] = static_cast<std::uint32_t>(leaf) | NodeBlock::leaf;
+    node.child[lane] = static_cast<std::uint32_t>(leaf) | NodeBlock::leaf_bit;
   }
   enclose(leaves, node, cylinders_[self]);
   if (!frame_.is_exact()) widen(node);

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "../../tree_parts/prefetch.h"
 #include "../tree.h"
 #include "keepout/index/brute_force.h"
 
@@ -18,28 +17,23 @@ namespace keepout::HWY_NAMESPACE {
 template <bool marking>
 HWY_INLINE std::size_t children_in_reach(const NodeBlock& node, const BallScreen& ball,
                                          std::uint32_t* reached) {
-  const Float d;
+  const FloatTag d;
   const Ids ids;
   const V reach2 = hn::Set(d, ball.box_reach2);
   const V inside2 = hn::Set(d, ball.box_inside2);
   std::size_t count = 0;
   for (std::size_t first = 0; first < NodeBlock::lanes; first += hn::Lanes(d)) {
-    V near2 = hn::Zero(d);
-    V far2 = hn::Zero(d);
-    for (int axis = 0; axis < 3; ++axis) {
-      const V low = hn::Load(d, node.low[axis] + first);
-      const V high = hn::Load(d, node.high[axis] + first);
-      const V below = hn::Set(d, ball.below[axis]);
-      const V above = hn::Set(d, ball.above[axis]);
-      const V beyond = most(hn::Sub(low, above), hn::Sub(below, high), hn::Zero(d));
-      near2 = hn::Add(near2, hn::Mul(beyond, beyond));
-      if constexpr (marking) {
-        const V across = hn::Max(hn::Sub(above, low), hn::Sub(high, below));
-        far2 = hn::Add(far2, hn::Mul(across, across));
-      }
-    }
+    const V near2 = box_distance2(node.low, node.high, first, ball);
     auto child = hn::Load(ids, node.child + first);
     if constexpr (marking) {
+      V far2 = hn::Zero(d);
+      for (int axis = 0; axis < 3; ++axis) {
+        const V to_low = hn::Sub(hn::Set(d, ball.above[axis]), hn::Load(d, node.low[axis] + first));
+        const V to_high =
+            hn::Sub(hn::Load(d, node.high[axis] + first), hn::Set(d, ball.below[axis]));
+        const V farthest = hn::Max(to_low, to_high);
+        far2 = hn::Add(far2, hn::Mul(farthest, farthest));
+      }
       const auto inside = hn::RebindMask(ids, hn::Le(far2, inside2));
       child = hn::IfThenElse(inside, hn::Or(child, hn::Set(ids, whole_leaf)), child);
     }
@@ -74,7 +68,7 @@ HWY_INLINE void walk(const NodeBlock* nodes, const BallScreen& ball, const Visit
     const std::uint32_t at = stack[--waiting];
     const NodeBlock& node = nodes[at & ~whole_leaf];
     visitor.count_node();
-    const bool above_leaves = (node.child[0] & NodeBlock::leaf) != 0;
+    const bool above_leaves = (node.child[0] & NodeBlock::leaf_bit) != 0;
     if (above_leaves && list.room() < NodeBlock::lanes) list.show(visitor);
     std::uint32_t* to = above_leaves ? list.end() : stack + waiting;
     const std::size_t count = (at & whole_leaf) != 0

@@ -68,7 +68,7 @@ namespace keepout::HWY_NAMESPACE {
 HWY_NOINLINE std::uint32_t boxes_nearby(const float (&low)[3][NodeBlock::lanes],
                                         const float (&high)[3][NodeBlock::lanes],
                                         const CapsuleScreen& capsule) {
-  const Float d;
+  const FloatTag d;
   const V thickness = hn::Set(d, capsule.thickness);
   std::uint32_t nearby = 0;
   for (std::size_t first = 0; first < NodeBlock::lanes; first += hn::Lanes(d)) {
@@ -109,7 +109,7 @@ HWY_NOINLINE std::uint32_t boxes_nearby(const float (&low)[3][NodeBlock::lanes],
 /// Appends the triangles of a leaf whose boxes come near.
 HWY_INLINE void append_near(const LeafBlock& leaf, const CapsuleScreen& capsule,
                             TriangleBuffer& out) {
-  const Float d;
+  const FloatTag d;
   alignas(64) float low[3][LeafBlock::lanes];
   alignas(64) float high[3][LeafBlock::lanes];
   for (int axis = 0; axis < 3; ++axis) {
@@ -117,8 +117,8 @@ HWY_INLINE void append_near(const LeafBlock& leaf, const CapsuleScreen& capsule,
       const V a = hn::Load(d, leaf.corner[0][axis] + first);
       const V b = hn::Load(d, leaf.corner[1][axis] + first);
       const V c = hn::Load(d, leaf.corner[2][axis] + first);
-      hn::Store(least(a, b, c), d, low[axis] + first);
-      hn::Store(most(a, b, c), d, high[axis] + first);
+      hn::Store(min(a, b, c), d, low[axis] + first);
+      hn::Store(max(a, b, c), d, high[axis] + first);
     }
   }
   for (std::uint32_t nearby = boxes_nearby(low, high, capsule); nearby != 0; nearby &= nearby - 1) {
@@ -129,7 +129,7 @@ HWY_INLINE void append_near(const LeafBlock& leaf, const CapsuleScreen& capsule,
 }
 
 HWY_INLINE void fetch(const LeafBlock& leaf) {
-  hwy::Prefetch(leaf.source);
+  hwy::Prefetch(leaf.tagged_triangle);
   for (const auto& corner : leaf.corner) {
     for (const auto& axis : corner) hwy::Prefetch(axis);
   }
@@ -149,10 +149,10 @@ void walk_near_capsule(const NodeBlock* nodes, const LeafBlock* leaves,
       const auto lane = static_cast<std::size_t>(std::countr_zero(nearby));
       if (!node.is_used(lane)) break;
       const std::uint32_t child = node.child[lane];
-      if ((child & NodeBlock::leaf) == 0) {
+      if ((child & NodeBlock::leaf_bit) == 0) {
         stack[waiting++] = child;
       } else {
-        found[count++] = child & ~NodeBlock::leaf;
+        found[count++] = child & ~NodeBlock::leaf_bit;
         fetch(leaves[found[count - 1]]);
       }
     }

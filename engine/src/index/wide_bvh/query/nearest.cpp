@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The nearest triangle by branch and bound: the nearest boxes first, and none that is farther away
-// than a triangle that was found. Floats tell what is surely farther, as in a query with a ball
-// that reaches as far as the best so far (ball_screen.cpp has the bounds); the exact kernel decides
-// about the rest, ties included. So the answer is that of asking it about all triangles.
+// than a triangle that was found. Single precision excludes what is surely farther, as in a query
+// with a ball up to the nearest triangle so far (bounds: ball_screen.cpp). The exact kernel decides
+// about the rest, ties included, so the answer is that of the kernel on all triangles.
 #include <array>
 #include <limits>
 
-#include "../../tree_parts/prefetch.h"
 #include "../tree.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -20,42 +19,32 @@
 HWY_BEFORE_NAMESPACE();
 namespace keepout::HWY_NAMESPACE {
 
-/// The best so far, and who is no nearer for sure.
+/// The nearest triangle so far, and the ball up to it, which excludes what is surely farther.
 struct Best {
   TriangleId triangle;
-  BallScreen reach;  // of the ball that it touches
+  BallScreen screen;  // of the ball whose surface it touches
 };
 
-/// The squared distances of a node's boxes from the centre, rounded down.
+/// Fills `distance2` with the squared distances of a node's boxes from the center, rounded down.
 HWY_INLINE void measure_boxes(const NodeBlock& node, const BallScreen& ball, float* distance2) {
-  const Float d;
+  const FloatTag d;
   for (std::size_t first = 0; first < NodeBlock::lanes; first += hn::Lanes(d)) {
-    V near2 = hn::Zero(d);
-    for (int axis = 0; axis < 3; ++axis) {
-      const V low = hn::Load(d, node.low[axis] + first);
-      const V high = hn::Load(d, node.high[axis] + first);
-      const V beyond = most(hn::Sub(low, hn::Set(d, ball.above[axis])),
-                            hn::Sub(hn::Set(d, ball.below[axis]), high), hn::Zero(d));
-      near2 = hn::Add(near2, hn::Mul(beyond, beyond));
-    }
-    hn::Store(near2, d, distance2 + first);
+    hn::Store(box_distance2(node.low, node.high, first, ball), d, distance2 + first);
   }
 }
 
-/// What of a leaf is not surely farther than the best: a bit for each triangle. `likely` is the one
-/// whose nearest point floats find nearest.
+/// Returns the triangles of a leaf that are not surely farther than the best: a bit for each.
+/// `likely`: the one that is nearest in single precision.
 HWY_INLINE std::uint32_t no_farther(const LeafBlock& leaf, const BallScreen& ball,
                                     std::size_t& likely) {
-  const Float d;
+  const FloatTag d;
   const V band = hn::Set(d, BallScreen::band);
   const V outside2 = hn::Set(d, ball.outside2);
   std::uint32_t left = 0;
   HWY_ALIGN float distance2[LeafBlock::lanes];
   for (std::size_t first = 0; first < LeafBlock::lanes; first += hn::Lanes(d)) {
-    const Corners3 t{relative_to_center(leaf.corner[0], first, ball),
-                     relative_to_center(leaf.corner[1], first, ball),
-                     relative_to_center(leaf.corner[2], first, ball)};
-    const V farthest2 = most(dot(t.a, t.a), dot(t.b, t.b), dot(t.c, t.c));
+    const TriangleLanes t = relative_to_center(leaf, first, ball);
+    const V farthest2 = max(dot(t.a, t.a), dot(t.b, t.b), dot(t.c, t.c));
     const V beyond2 = hn::Add(outside2, hn::Mul(band, hn::Add(farthest2, outside2)));
     M out = surely_out(t, t.a + t.b + t.c, beyond2);
     if (hn::AllTrue(d, out)) continue;
@@ -74,13 +63,13 @@ HWY_INLINE std::uint32_t no_farther(const LeafBlock& leaf, const BallScreen& bal
   return left;
 }
 
-/// Asks the exact kernel about a triangle. Its corners are at hand, in the order that the kernel
-/// puts them in, where the mesh's coordinates are floats.
-HWY_INLINE void ask(const LeafBlock& leaf, std::size_t lane, const WideBvh::Tree& tree,
-                    Best& best) {
+/// Compares a triangle with the best by the exact kernel. If the tree has the mesh's own
+/// coordinates, the leaf holds the corners in the order that the kernel needs.
+HWY_INLINE void decide(const LeafBlock& leaf, std::size_t lane, const WideBvh::Tree& tree,
+                       Best& best) {
   if (!leaf.is_used(lane)) return;
   const TriangleId t = leaf.triangle(lane);
-  const Ball& ball = best.reach.ball;
+  const Ball& ball = best.screen.ball;
   const auto corner = [&](std::size_t c) -> Vec3 {
     return {leaf.corner[c][0][lane], leaf.corner[c][1][lane], leaf.corner[c][2][lane]};
   };
@@ -96,40 +85,42 @@ HWY_INLINE void ask(const LeafBlock& leaf, std::size_t lane, const WideBvh::Tree
   best = {t, BallScreen({ball.center, distance}, tree.mesh().bounds(), tree.frame())};
 }
 
-// In looks: mostly a wait for what nothing has brought nearer.
-constexpr std::size_t work_of_looking = 3;
-constexpr std::size_t work_of_asking = 3;
+// In work units (Budget): mostly cache misses.
+constexpr std::size_t work_of_box = 3;
+constexpr std::size_t work_of_decision = 3;
 
-/// Looks at a leaf: first at its likely nearest, which leaves few others to ask about.
-HWY_INLINE void look(const LeafBlock& leaf, const WideBvh::Tree& tree, Budget& budget, Best& best) {
+/// Compares the triangles of a leaf with the best: first the likely nearest, which leaves few
+/// others to decide about.
+HWY_INLINE void search_leaf(const LeafBlock& leaf, const WideBvh::Tree& tree, Budget& budget,
+                            Best& best) {
   std::size_t likely = 0;
-  std::uint32_t left = no_farther(leaf, best.reach, likely);
+  std::uint32_t left = no_farther(leaf, best.screen, likely);
   if (left == 0) return;
-  const double before = best.reach.ball.radius;
-  budget.spend(work_of_asking);
-  ask(leaf, likely, tree, best);
+  const double before = best.screen.ball.radius;
+  budget.spend(work_of_decision);
+  decide(leaf, likely, tree, best);
   const std::uint32_t asked = std::uint32_t{1} << likely;
-  if (best.reach.ball.radius < before) left = no_farther(leaf, best.reach, likely);
+  if (best.screen.ball.radius < before) left = no_farther(leaf, best.screen, likely);
   for (left &= ~asked; left != 0; left &= left - 1) {
-    budget.spend(work_of_asking);
-    ask(leaf, static_cast<std::size_t>(std::countr_zero(left)), tree, best);
+    budget.spend(work_of_decision);
+    decide(leaf, static_cast<std::size_t>(std::countr_zero(left)), tree, best);
   }
 }
 
 /// Prefetches a leaf or a node.
-HWY_INLINE void fetch(const WideBvh::Tree& tree, std::uint32_t what) {
-  if ((what & NodeBlock::leaf) != 0) {
-    prefetch(tree.leaves()[what & ~NodeBlock::leaf]);
+HWY_INLINE void prefetch_child(const WideBvh::Tree& tree, std::uint32_t what) {
+  if ((what & NodeBlock::leaf_bit) != 0) {
+    prefetch(tree.leaves()[what & ~NodeBlock::leaf_bit]);
   } else {
     prefetch(tree.nodes()[what]);
   }
 }
 
-/// Looks into boxes, the nearest first, but not into what `is_beyond`. `measure` tells how far the
-/// boxes of a node are at least, and `look` looks at a leaf. Whether the budget was enough.
-template <class Distance, class IsBeyond, class Measure, class Look>
-HWY_INLINE bool walk(const WideBvh::Tree& tree, Budget& budget, const IsBeyond& is_beyond,
-                     const Measure& measure, const Look& look) {
+/// Opens boxes, the nearest first, except those that `is_beyond`. `measure` fills in lower bounds
+/// of the distances of a node's boxes. Returns false if the budget was spent first.
+template <class Distance, class IsBeyond, class Measure, class SearchLeaf>
+HWY_INLINE bool search_boxes(const WideBvh::Tree& tree, Budget& budget, const IsBeyond& is_beyond,
+                             const Measure& measure, const SearchLeaf& search_leaf) {
   struct Waiting {
     Distance distance;
     std::uint32_t what;  // as NodeBlock::child
@@ -141,10 +132,10 @@ HWY_INLINE bool walk(const WideBvh::Tree& tree, Budget& budget, const IsBeyond& 
   while (waiting > 0) {
     const Waiting next = stack[--waiting];
     if (is_beyond(next.distance)) continue;
-    budget.spend(work_of_looking);
+    budget.spend(work_of_box);
     if (budget.is_spent()) return false;
-    if ((next.what & NodeBlock::leaf) != 0) {
-      look(tree.leaves()[next.what & ~NodeBlock::leaf]);
+    if ((next.what & NodeBlock::leaf_bit) != 0) {
+      search_leaf(tree.leaves()[next.what & ~NodeBlock::leaf_bit]);
       continue;
     }
     const NodeBlock& node = tree.nodes()[next.what];
@@ -162,7 +153,7 @@ HWY_INLINE bool walk(const WideBvh::Tree& tree, Budget& budget, const IsBeyond& 
     }
     constexpr std::size_t ahead = 3;
     for (std::size_t i = waiting; i > bottom && i + ahead >= waiting + 1; --i) {
-      fetch(tree, stack[i - 1].what);
+      prefetch_child(tree, stack[i - 1].what);
     }
   }
   return true;
@@ -171,16 +162,16 @@ HWY_INLINE bool walk(const WideBvh::Tree& tree, Budget& budget, const IsBeyond& 
 TriangleId nearest_in_floats(const WideBvh::Tree& tree, const BallScreen& around_all,
                              Budget& budget) {
   Best best{no_triangle, around_all};
-  const bool is_found = walk<float>(
-      tree, budget, [&](float distance2) HWY_ATTR { return distance2 > best.reach.box_reach2; },
+  const bool is_found = search_boxes<float>(
+      tree, budget, [&](float distance2) HWY_ATTR { return distance2 > best.screen.box_reach2; },
       [&](const NodeBlock& node, float* distance2)
-          HWY_ATTR { measure_boxes(node, best.reach, distance2); },
-      [&](const LeafBlock& leaf) HWY_ATTR { look(leaf, tree, budget, best); });
+          HWY_ATTR { measure_boxes(node, best.screen, distance2); },
+      [&](const LeafBlock& leaf) HWY_ATTR { search_leaf(leaf, tree, budget, best); });
   return is_found ? best.triangle : no_triangle;
 }
 
-/// The same for a point so far off that floats cannot tell one box from the next: in double, a box
-/// and a triangle at a time.
+/// Like nearest_in_floats, for a point so far off that floats cannot tell one box from the next: in
+/// double, a box and a triangle at a time.
 TriangleId nearest_from_afar(const WideBvh::Tree& tree, const Vec3& point, Budget& budget) {
   TriangleId best = no_triangle;
   double least = std::numeric_limits<double>::infinity();
@@ -189,12 +180,12 @@ TriangleId nearest_from_afar(const WideBvh::Tree& tree, const Vec3& point, Budge
     for (std::size_t lane = 0; lane < NodeBlock::lanes && node.is_used(lane); ++lane) {
       const Vec3 low(node.low[0][lane], node.low[1][lane], node.low[2][lane]);
       const Vec3 high(node.high[0][lane], node.high[1][lane], node.high[2][lane]);
-      // Less by far more than what the kernel and this lose to rounding.
+      // Reduced by far more than the rounding of the kernel and of this sum.
       distance[lane] =
           distance_to({low, high}, from_origin) * (1.0 - 1e-12) - 2.0 * tree.frame().error;
     }
   };
-  const auto look = [&](const LeafBlock& leaf) {
+  const auto search_leaf = [&](const LeafBlock& leaf) {
     budget.spend(LeafBlock::lanes);
     for (std::size_t lane = 0; lane < LeafBlock::lanes && leaf.is_used(lane); ++lane) {
       const TriangleId t = leaf.triangle(lane);
@@ -204,8 +195,8 @@ TriangleId nearest_from_afar(const WideBvh::Tree& tree, const Vec3& point, Budge
       least = distance;
     }
   };
-  const bool is_found = walk<double>(
-      tree, budget, [&](double distance) { return distance > least; }, measure, look);
+  const bool is_found = search_boxes<double>(
+      tree, budget, [&](double distance) { return distance > least; }, measure, search_leaf);
   return is_found ? best : no_triangle;
 }
 
@@ -220,12 +211,12 @@ HWY_EXPORT(nearest_in_floats);
 HWY_EXPORT(nearest_from_afar);
 
 TriangleId WideBvh::nearest(const Vec3& point, Budget& budget) const noexcept {
-  // No triangle is farther away than the far corner of the box around them.
+  // No triangle is farther away than the farthest corner of the bounds.
   const Box& bounds = mesh().bounds();
   const double farthest =
       (point - bounds.low).cwiseAbs().cwiseMax((bounds.high - point).cwiseAbs()).norm();
   const BallScreen around_all({point, farthest * (1.0 + 1e-12)}, bounds, tree_->frame());
-  constexpr double afar = 32.0;  // times the mesh: from there on it is the faster one
+  constexpr double afar = 32.0;  // diagonals of the mesh: beyond, nearest_from_afar is faster
   if (!around_all.fits || farthest > afar * bounds.size().norm()) {
     return HWY_DYNAMIC_DISPATCH(nearest_from_afar)(*tree_, point, budget);
   }

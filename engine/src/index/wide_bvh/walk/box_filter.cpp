@@ -17,14 +17,14 @@ struct Cylinders {
   V half_height, radius;
 };
 
-HWY_INLINE Cylinders cylinders_at(Float d, const CylinderBlock& block, const FloatTip& tip,
+HWY_INLINE Cylinders cylinders_at(FloatTag d, const CylinderBlock& block, const FloatTip& tip,
                                   std::size_t lane) {
   return {relative(d, block.middle, lane, tip), load(d, block.axis, lane),
           hn::Load(d, block.half_height + lane), hn::Load(d, block.radius + lane)};
 }
 
-/// About the point of each cylinder that is nearest to p.
-HWY_INLINE Vector nearest(Float d, const Cylinders& c, const Vector& p) {
+/// Returns approximately the point of each cylinder that is nearest to p.
+HWY_INLINE Vector nearest(FloatTag d, const Cylinders& c, const Vector& p) {
   const Vector way = p - c.middle;
   const V along = dot(c.axis, way);
   const Vector across = way - along * c.axis;
@@ -35,7 +35,7 @@ HWY_INLINE Vector nearest(Float d, const Cylinders& c, const Vector& p) {
   return c.middle + height * c.axis + inside * across;
 }
 
-/// How far each cylinder reaches along a unit vector from its middle, or a little farther.
+/// Returns the half extent of each cylinder along a unit vector, or a little more.
 HWY_INLINE V half_extent(const Cylinders& c, const Vector& n) {
   const V along = dot(c.axis, n);
   const Vector across = n - along * c.axis;
@@ -43,12 +43,13 @@ HWY_INLINE V half_extent(const Cylinders& c, const Vector& n) {
                  hn::Mul(c.radius, hn::Sqrt(dot(across, across))));
 }
 
-/// What a unit vector proves.
-HWY_INLINE V clear_along(Float d, const Cylinders& c, const Vector& n, const FloatReach& reach) {
+/// Returns the clearance that a unit vector proves.
+HWY_INLINE V clear_along(FloatTag d, const Cylinders& c, const Vector& n,
+                         const FloatLevels& levels) {
   const V support = hn::Add(dot(n, c.middle), half_extent(c, n));
-  // Nothing that is in the cylinder is farther from the tip.
-  const V far = hn::Add(size(c.middle), hn::Add(c.half_height, c.radius));
-  return clear_of(d, support, far, reach);
+  // No point of the cylinder is farther from the tip.
+  const V far = hn::Add(norm1(c.middle), hn::Add(c.half_height, c.radius));
+  return clear_of(d, support, far, levels);
 }
 
 /// Boxes, relative to the tip.
@@ -56,15 +57,17 @@ struct Boxes {
   Vector low, high;
 };
 
-HWY_INLINE Boxes boxes_at(Float d, const NodeBlock& node, const FloatTip& tip, std::size_t lane) {
+HWY_INLINE Boxes boxes_at(FloatTag d, const NodeBlock& node, const FloatTip& tip,
+                          std::size_t lane) {
   return {relative(d, node.low, lane, tip), relative(d, node.high, lane, tip)};
 }
 
 void EnterBoxes(const NodeBlock& node, const FloatTip& tip, const float* motion,
-                const FloatReach& reach, BoxEntries& entries) {
-  const Float d;
-  const V beyond = hn::Set(d, reach.boxes);
-  // Where the motion stands still along an axis, a box is beside it or around it for good.
+                const FloatLevels& levels, BoxEntries& entries) {
+  const FloatTag d;
+  const V beyond = hn::Set(d, levels.box_level);
+  // If the motion stands still along an axis, it is within or outside the box along it all the
+  // time.
   V inverse[3];
   for (std::size_t axis = 0; axis < 3; ++axis) {
     constexpr float least_motion = 1e-30f;
@@ -92,8 +95,8 @@ void EnterBoxes(const NodeBlock& node, const FloatTip& tip, const float* motion,
 }
 
 void EnterCylinders(const CylinderBlock& block, const FloatTip& tip, const float* motion,
-                    const FloatReach& reach, BoxEntries& entries) {
-  const Float d;
+                    const FloatLevels& levels, BoxEntries& entries) {
+  const FloatTag d;
   const Vector z = all(d, motion);
   const V per_length2 = hn::Div(hn::Set(d, 1.0f), hn::Max(dot(z, z), hn::Set(d, 1e-30f)));
   const auto nearest_of_motion = [&](const Vector& to) {
@@ -105,7 +108,7 @@ void EnterCylinders(const CylinderBlock& block, const FloatTip& tip, const float
     const Cylinders its = cylinders_at(d, block, tip, lane);
     // To where the motion comes nearest to the cylinder, or nearly.
     const Vector near = nearest(d, its, nearest_of_motion(its.middle));
-    const Proof proof = proof_along(d, its, nearest_of_motion(near) - near, reach);
+    const Proof proof = proof_along(d, its, nearest_of_motion(near) - near, levels);
     const V along = dot(proof.n, z);
     const V time = hn::Load(d, entries.time + lane);
     hn::Store(hn::Max(time, entry(d, proof, along)), d, entries.time + lane);
@@ -114,15 +117,15 @@ void EnterCylinders(const CylinderBlock& block, const FloatTip& tip, const float
   entries.reached &= ~clear;
 }
 
-/// The squared distances of the boxes from the point that they are relative to.
-HWY_INLINE V distance2(Float d, const Boxes& boxes) {
+/// Returns the squared distances of the boxes from the point that they are relative to.
+HWY_INLINE V distance2(FloatTag d, const Boxes& boxes) {
   const V zero = hn::Zero(d);
-  const Vector nearest = most(boxes.low, least(boxes.high, {zero, zero, zero}));
+  const Vector nearest = max(boxes.low, min(boxes.high, {zero, zero, zero}));
   return dot(nearest, nearest);
 }
 
 std::uint32_t BoxesNear(const NodeBlock& boxes, const FloatTip& center, float radius) {
-  const Float d;
+  const FloatTag d;
   std::uint32_t near = 0;
   for (std::size_t lane = 0; lane < NodeBlock::lanes; lane += hn::Lanes(d)) {
     const V its = distance2(d, boxes_at(d, boxes, center, lane));
@@ -132,7 +135,7 @@ std::uint32_t BoxesNear(const NodeBlock& boxes, const FloatTip& center, float ra
 }
 
 float DistanceToBoxes(const NodeBlock& boxes, const FloatTip& center) {
-  const Float d;
+  const FloatTag d;
   V least2 = hn::Set(d, std::numeric_limits<float>::infinity());
   for (std::size_t lane = 0; lane < NodeBlock::lanes; lane += hn::Lanes(d)) {
     least2 = hn::Min(least2, distance2(d, boxes_at(d, boxes, center, lane)));
@@ -154,13 +157,13 @@ HWY_EXPORT(BoxesNear);
 HWY_EXPORT(DistanceToBoxes);
 
 void enter_boxes(const NodeBlock& boxes, const FloatTip& tip, const float* motion,
-                 const FloatReach& reach, BoxEntries& entries) noexcept {
-  HWY_DYNAMIC_DISPATCH(EnterBoxes)(boxes, tip, motion, reach, entries);
+                 const FloatLevels& levels, BoxEntries& entries) noexcept {
+  HWY_DYNAMIC_DISPATCH(EnterBoxes)(boxes, tip, motion, levels, entries);
 }
 
 void enter_cylinders(const CylinderBlock& cylinders, const FloatTip& tip, const float* motion,
-                     const FloatReach& reach, BoxEntries& entries) noexcept {
-  HWY_DYNAMIC_DISPATCH(EnterCylinders)(cylinders, tip, motion, reach, entries);
+                     const FloatLevels& levels, BoxEntries& entries) noexcept {
+  HWY_DYNAMIC_DISPATCH(EnterCylinders)(cylinders, tip, motion, levels, entries);
 }
 
 std::uint32_t boxes_near(const NodeBlock& boxes, const FloatTip& center, float radius) noexcept {

@@ -16,20 +16,36 @@ struct FloatTip {
   float low[3];
 };
 
-/// The level of a walk in single precision. All are rounded up.
-struct FloatReach {
-  float level;     // distance within which a motion comes near: MotionWalk::Start::level [length]
-  float relative;  // rounding adds so much of |v - tip| of the farthest corner v ...
-  float slack;     // ... and this [length]
-  float boxes;     // level and rounding, for boxes [length]
+/// Splits a tip, given from the origin of the tree's frame. [length]
+inline FloatTip float_tip(const Vec3& tip) noexcept {
+  FloatTip split;
+  for (int axis = 0; axis < 3; ++axis) {
+    split.high[axis] = static_cast<float>(tip[axis]);
+    split.low[axis] = static_cast<float>(tip[axis] - static_cast<double>(split.high[axis]));
+  }
+  return split;
+}
+
+/// The level of a walk in single precision, and what rounding adds to it. All are rounded up.
+struct FloatLevels {
+  float level;      // distance within which a motion comes near: MotionWalk::Start::level [length]
+  float relative;   // rounding adds so much of |v - tip| of the farthest corner v ...
+  float slack;      // ... and this [length]
+  float box_level;  // level and rounding, for boxes [length]
 };
 
-// The next two are defined in tree_walk.cpp, which they are inlined in.
-
-FloatTip float_tip(const Vec3& tip) noexcept;
-
-/// `error`: of the coordinates in leaves. `longest`: no motion is longer.
-FloatReach float_reach(double level, double longest, const Vec3& tip, double error) noexcept;
+/// Returns the levels of a walk. `longest`: no motion is longer. `tip`: from the origin of the
+/// tree's frame. `error`: of the coordinates in leaves. [length]
+inline FloatLevels float_levels(double level, double longest, const Vec3& tip,
+                                double error) noexcept {
+  // The rest that the two floats of the tip leave, and the error of the leaf's coordinates.
+  const double fixed = 1e-13 * tip.lpNorm<1>() + 4.0 * error;
+  const double slack = 2e-6 * level + 3e-6 * longest + fixed;
+  const double box_level = level * (1.0 + 2e-6) + 4e-6 * longest + fixed;
+  constexpr double up = 1.0 + 1e-6;
+  return {static_cast<float>(level * up), 1.5e-6f, static_cast<float>(slack * up),
+          static_cast<float>(box_level * up)};
+}
 
 /// Proofs for sixteen triangles (or boxes) while the tip stays where it is: unit vectors, and the
 /// clearance that each proves. Any unit vector may stand here: its clearance is computed from the
@@ -38,8 +54,8 @@ struct ProofBlock {
   static constexpr std::size_t lanes = 16;
 
   alignas(64) float n[3][lanes];  // [axis][lane]
-  alignas(
-      64) float clear[lanes];  // proven distance of the tip less the level and rounding [length]
+  /// Proven distance of the tip less the level and rounding. [length]
+  alignas(64) float clear[lanes];
 };
 
 /// The time at which a motion may first come within the level of the triangles in each of sixteen
@@ -49,13 +65,15 @@ struct BoxEntries {
   std::uint32_t reached;  // a bit for each box that is reached
 };
 
+/// Fills `entries` with the boxes of a node that a motion may reach. `motion`: three coordinates.
+/// [length]
 void enter_boxes(const NodeBlock& boxes, const FloatTip& tip, const float* motion,
-                 const FloatReach& reach, BoxEntries& entries) noexcept;
+                 const FloatLevels& levels, BoxEntries& entries) noexcept;
 
 /// Sharpens the entries of the boxes that are reached: by the directions from their cylinders to
 /// the points of the motion that are nearest to them.
 void enter_cylinders(const CylinderBlock& cylinders, const FloatTip& tip, const float* motion,
-                     const FloatReach& reach, BoxEntries& entries) noexcept;
+                     const FloatLevels& levels, BoxEntries& entries) noexcept;
 
 /// Returns the boxes within `radius` of the center: a bit for each, and perhaps some others.
 std::uint32_t boxes_near(const NodeBlock& boxes, const FloatTip& center, float radius) noexcept;
@@ -70,28 +88,29 @@ struct LeafFilter {
 };
 
 /// Fills the filter of a leaf for this tip.
-void fill_filter(const LeafBlock& leaf, const FloatTip& tip, const FloatReach& reach,
+void fill_filter(const LeafBlock& leaf, const FloatTip& tip, const FloatLevels& levels,
                  LeafFilter& filter) noexcept;
 
-/// Triangles that a motion is not proved to stay clear of: a bit for each, and the time at which it
-/// may meet them, never late: a fraction of the motion, or minus infinity if they may be too close
-/// already.
+/// Triangles that a motion is not proved to stay clear of: a bit for each, and the time at which
+/// the motion may meet them, never late: a fraction of the motion, or -1e30 if they may be too
+/// close already.
 struct Suspects {
   alignas(64) float time[LeafBlock::lanes];
   std::uint32_t mask;
 };
 
+/// Finds the suspects among the triangles of a leaf. `motion`: three coordinates. [length]
 void find_suspects(const LeafFilter& filter, const float* motion, Suspects& suspects) noexcept;
 
 /// Searches for better proofs for the suspects, which removes some and makes the others later.
 /// Costs more than find_suspects. Suspects later than `latest`, a fraction of the motion, may stay
 /// as they are.
 void sharpen_suspects(const LeafBlock& leaf, const FloatTip& tip, const float* motion,
-                      const FloatReach& reach, float latest, LeafFilter& filter,
+                      const FloatLevels& levels, float latest, LeafFilter& filter,
                       Suspects& suspects) noexcept;
 
 /// Makes the suspects later by a Newton step towards the times when they are met, up to `latest`.
 void delay_suspects(const LeafBlock& leaf, const FloatTip& tip, const float* motion,
-                    const FloatReach& reach, float latest, Suspects& suspects) noexcept;
+                    const FloatLevels& levels, float latest, Suspects& suspects) noexcept;
 
 }  // namespace keepout

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "../../tree_parts/prefetch.h"
 #include "filters.h"
 
 namespace keepout {
@@ -71,7 +70,7 @@ void Frontier::cover(const WideBvh::Tree& tree, const Ball& ball) noexcept {
     for (std::uint32_t near = boxes_near(node, center, radius); near != 0; near &= near - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(near));
       if (!node.is_used(lane)) break;
-      if ((node.child[lane] & NodeBlock::leaf) != 0) {
+      if ((node.child[lane] & NodeBlock::leaf_bit) != 0) {
         add(tree, number, lane);
       } else {
         prefetch(tree.nodes()[node.child[lane]]);
@@ -91,11 +90,11 @@ void Frontier::cover(const WideBvh::Tree& tree, const Ball& ball) noexcept {
       add(tree, box.node, box.lane);
     }
   }
-  double free = ball.radius;
+  double empty = ball.radius;
   for (const NodeBlock& block : blocks()) {
-    free = std::min(free, double{distance_to_boxes(block, center)} - rounding);
+    empty = std::min(empty, double{distance_to_boxes(block, center)} - rounding);
   }
-  free_radius_ = free * (1.0 - 1e-12);
+  empty_radius_ = empty * (1.0 - 1e-12);
 }
 
 }  // namespace keepout

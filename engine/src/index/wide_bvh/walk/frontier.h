@@ -13,8 +13,8 @@ namespace keepout {
 
 /// A traversal cache: the parts of a tree that come near a place, as blocks of boxes like its
 /// nodes, a root of its own for searches there. A tip moves little from cycle to cycle, so it
-/// serves many of them. The ball up to the nearest box is known to be free. The cache never changes
-/// an answer.
+/// serves many of them. The ball up to the nearest box is known to hold no triangle. The cache
+/// changes the work units that a walk spends, so it changes an answer only where the budget ends.
 class Frontier {
  public:
   /// Returns true if all triangles in the ball are under the boxes.
@@ -23,8 +23,8 @@ class Frontier {
   }
 
   /// Returns true if the ball is known to hold no triangle.
-  bool is_free(const Ball& ball) const noexcept {
-    return (ball.center - covered_.center).norm() + ball.radius <= free_radius_;
+  bool holds_nothing(const Ball& ball) const noexcept {
+    return (ball.center - covered_.center).norm() + ball.radius <= empty_radius_;
   }
 
   /// Returns true if the ball overlaps the covered one: the tip has moved on, and not jumped.
@@ -62,7 +62,7 @@ class Frontier {
   void add(const WideBvh::Tree& tree, std::uint32_t node, std::size_t lane) noexcept;
 
   Ball covered_{Vec3::Zero(), -1.0};
-  double free_radius_ = -1.0;  // around the same center there are no boxes [length]
+  double empty_radius_ = -1.0;  // around the same center there are no boxes [length]
   bool is_opened_ = true;
   std::size_t size_ = 0;  // boxes
   std::array<NodeBlock, most_blocks> blocks_;

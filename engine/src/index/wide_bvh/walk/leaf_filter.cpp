@@ -9,12 +9,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace keepout::HWY_NAMESPACE {
 
-/// A triangle in each lane, relative to the tip.
-struct TriangleLanes {
-  Vector a, b, c;
-};
-
-HWY_INLINE TriangleLanes corners(Float d, const LeafBlock& leaf, const FloatTip& tip,
+/// Returns triangles of a leaf relative to the tip.
+HWY_INLINE TriangleLanes corners(FloatTag d, const LeafBlock& leaf, const FloatTip& tip,
                                  std::size_t lane) {
   return {relative(d, leaf.corner[0], lane, tip), relative(d, leaf.corner[1], lane, tip),
           relative(d, leaf.corner[2], lane, tip)};
@@ -23,7 +19,7 @@ HWY_INLINE TriangleLanes corners(Float d, const LeafBlock& leaf, const FloatTip&
 /// Returns approximately the point of each triangle that is nearest to p. (Not nearest_point() of
 /// leaf_test-inl.h, whose band of error is proved: here any point gives a valid proof.)
 /// Source: Ericson, "Real-Time Collision Detection", 2005, section 5.1.5.
-HWY_INLINE Vector nearest(Float d, const TriangleLanes& t, const Vector& p) {
+HWY_INLINE Vector nearest(FloatTag d, const TriangleLanes& t, const Vector& p) {
   const V zero = hn::Zero(d);
   const Vector ab = t.b - t.a;
   const Vector ac = t.c - t.a;
@@ -61,32 +57,32 @@ HWY_INLINE Vector nearest(Float d, const TriangleLanes& t, const Vector& p) {
 }
 
 /// Returns the clearance that a unit vector proves.
-HWY_INLINE V clear_along(Float d, const TriangleLanes& t, const Vector& n,
-                         const FloatReach& reach) {
+HWY_INLINE V clear_along(FloatTag d, const TriangleLanes& t, const Vector& n,
+                         const FloatLevels& levels) {
   const V support = hn::Max(dot(n, t.a), hn::Max(dot(n, t.b), dot(n, t.c)));
-  const V far = hn::Max(size(t.a), hn::Max(size(t.b), size(t.c)));
-  return clear_of(d, support, far, reach);
+  const V far = hn::Max(norm1(t.a), hn::Max(norm1(t.b), norm1(t.c)));
+  return clear_of(d, support, far, levels);
 }
 
-HWY_INLINE Proof proof_at(Float d, const TriangleLanes& t, const Vector& p,
-                          const FloatReach& reach) {
-  return proof_along(d, t, p - nearest(d, t, p), reach);
+HWY_INLINE Proof proof_at(FloatTag d, const TriangleLanes& t, const Vector& p,
+                          const FloatLevels& levels) {
+  return proof_along(d, t, p - nearest(d, t, p), levels);
 }
 
-void FillFilter(const LeafBlock& leaf, const FloatTip& tip, const FloatReach& reach,
+void FillFilter(const LeafBlock& leaf, const FloatTip& tip, const FloatLevels& levels,
                 LeafFilter& filter) {
-  const Float d;
+  const FloatTag d;
   const V zero = hn::Zero(d);
   for (std::size_t lane = 0; lane < LeafBlock::lanes; lane += hn::Lanes(d)) {
     const TriangleLanes t = corners(d, leaf, tip, lane);
-    const Proof proof = proof_at(d, t, {zero, zero, zero}, reach);
+    const Proof proof = proof_at(d, t, {zero, zero, zero}, levels);
     store(d, proof, lane, filter.at_tip);
     store(d, proof, lane, filter.last);
   }
 }
 
 void FindSuspects(const LeafFilter& filter, const float* motion, Suspects& suspects) {
-  const Float d;
+  const FloatTag d;
   const Vector z = all(d, motion);
   suspects.mask = 0;
   for (std::size_t lane = 0; lane < LeafBlock::lanes; lane += hn::Lanes(d)) {
@@ -102,22 +98,22 @@ void FindSuspects(const LeafFilter& filter, const float* motion, Suspects& suspe
 }
 
 /// Returns the lanes whose bits are set, at their place in the block.
-HWY_INLINE M lanes_of(Float d, std::uint32_t mask, std::size_t lane) {
-  const hn::RebindToUnsigned<Float> du;
+HWY_INLINE M lanes_of(FloatTag d, std::uint32_t mask, std::size_t lane) {
+  const hn::RebindToUnsigned<FloatTag> du;
   const auto bit = hn::Shl(hn::Set(du, 1u), hn::Iota(du, static_cast<std::uint32_t>(lane)));
   return hn::RebindMask(d, hn::TestBit(hn::Set(du, mask), bit));
 }
 
 /// Returns the suspects of a vector that may be met in time: sharpening the others is not worth it.
-HWY_INLINE M in_time(Float d, const Suspects& suspects, V time, float latest, std::size_t lane) {
+HWY_INLINE M in_time(FloatTag d, const Suspects& suspects, V time, float latest, std::size_t lane) {
   return hn::And(lanes_of(d, suspects.mask, lane), hn::Le(time, hn::Set(d, latest)));
 }
 
 void SharpenSuspects(const LeafBlock& leaf, const FloatTip& tip, const float* motion,
-                     const FloatReach& reach, float latest, LeafFilter& filter,
+                     const FloatLevels& levels, float latest, LeafFilter& filter,
                      Suspects& suspects) {
   constexpr int cuts = 2;
-  const Float d;
+  const FloatTag d;
   const Vector z = all(d, motion);
   const V zero = hn::Zero(d);
   const V one = hn::Set(d, 1.0f);
@@ -137,7 +133,7 @@ void SharpenSuspects(const LeafBlock& leaf, const FloatTip& tip, const float* mo
       clear = hn::Or(clear, better);
       time = hn::Max(time, entry(d, proof, along));
     };
-    Proof right = proof_at(d, t, z, reach);
+    Proof right = proof_at(d, t, z, levels);
     V rise = dot(right.n, z);
     consider(right, rise);
     // There is no proof for a motion that ends too close.
@@ -146,11 +142,11 @@ void SharpenSuspects(const LeafBlock& leaf, const FloatTip& tip, const float* mo
       asked = hn::AndNot(hn::Or(clear, hn::Gt(time, hn::Set(d, latest))), asked);
       if (hn::AllFalse(d, asked)) break;
       // The blend that is level along the motion, and the normal where the two lines cross.
-      const Proof blend = proof_along(d, t, rise * left.n - fall * right.n, reach);
+      const Proof blend = proof_along(d, t, rise * left.n - fall * right.n, levels);
       consider(blend, dot(blend.n, z));
       const V crossing = hn::Div(hn::Sub(left.clear, right.clear), hn::Sub(rise, fall));
       const V at = hn::Min(hn::Max(crossing, zero), one);
-      const Proof next = proof_at(d, t, at * z, reach);
+      const Proof next = proof_at(d, t, at * z, levels);
       const V along = dot(next.n, z);
       consider(next, along);
       const M falls = hn::Lt(along, zero);
@@ -167,15 +163,15 @@ void SharpenSuspects(const LeafBlock& leaf, const FloatTip& tip, const float* mo
 }
 
 void DelaySuspects(const LeafBlock& leaf, const FloatTip& tip, const float* motion,
-                   const FloatReach& reach, float latest, Suspects& suspects) {
-  const Float d;
+                   const FloatLevels& levels, float latest, Suspects& suspects) {
+  const FloatTag d;
   const Vector z = all(d, motion);
   std::uint32_t proven = 0;
   for (std::size_t lane = 0; lane < LeafBlock::lanes; lane += hn::Lanes(d)) {
     const V time = hn::Load(d, suspects.time + lane);
     if (hn::AllFalse(d, in_time(d, suspects, time, latest, lane))) continue;
     const V at = hn::Min(hn::Max(time, hn::Zero(d)), hn::Set(d, 1.0f));
-    const Proof proof = proof_at(d, corners(d, leaf, tip, lane), at * z, reach);
+    const Proof proof = proof_at(d, corners(d, leaf, tip, lane), at * z, levels);
     const V along = dot(proof.n, z);
     hn::Store(hn::Max(time, entry(d, proof, along)), d, suspects.time + lane);
     proven |= bits(d, holds(d, proof, along), lane);
@@ -195,9 +191,9 @@ HWY_EXPORT(FindSuspects);
 HWY_EXPORT(SharpenSuspects);
 HWY_EXPORT(DelaySuspects);
 
-void fill_filter(const LeafBlock& leaf, const FloatTip& tip, const FloatReach& reach,
+void fill_filter(const LeafBlock& leaf, const FloatTip& tip, const FloatLevels& levels,
                  LeafFilter& filter) noexcept {
-  HWY_DYNAMIC_DISPATCH(FillFilter)(leaf, tip, reach, filter);
+  HWY_DYNAMIC_DISPATCH(FillFilter)(leaf, tip, levels, filter);
 }
 
 void find_suspects(const LeafFilter& filter, const float* motion, Suspects& suspects) noexcept {
@@ -205,14 +201,14 @@ void find_suspects(const LeafFilter& filter, const float* motion, Suspects& susp
 }
 
 void sharpen_suspects(const LeafBlock& leaf, const FloatTip& tip, const float* motion,
-                      const FloatReach& reach, float latest, LeafFilter& filter,
+                      const FloatLevels& levels, float latest, LeafFilter& filter,
                       Suspects& suspects) noexcept {
-  HWY_DYNAMIC_DISPATCH(SharpenSuspects)(leaf, tip, motion, reach, latest, filter, suspects);
+  HWY_DYNAMIC_DISPATCH(SharpenSuspects)(leaf, tip, motion, levels, latest, filter, suspects);
 }
 
 void delay_suspects(const LeafBlock& leaf, const FloatTip& tip, const float* motion,
-                    const FloatReach& reach, float latest, Suspects& suspects) noexcept {
-  HWY_DYNAMIC_DISPATCH(DelaySuspects)(leaf, tip, motion, reach, latest, suspects);
+                    const FloatLevels& levels, float latest, Suspects& suspects) noexcept {
+  HWY_DYNAMIC_DISPATCH(DelaySuspects)(leaf, tip, motion, levels, latest, suspects);
 }
 
 }  // namespace keepout

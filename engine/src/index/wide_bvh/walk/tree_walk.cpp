@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <bit>
 
-#include "../../tree_parts/prefetch.h"
-
 namespace keepout {
 namespace {
 
@@ -44,8 +42,8 @@ TreeWalk::TreeWalk(const WideBvh::Tree& tree, Budget& budget)
 
 bool TreeWalk::begin(const Start& start) noexcept {
   locate(start);
-  is_free_ = frontier_.is_free(start.region);
-  if (is_free_) return true;
+  region_is_empty_ = frontier_.holds_nothing(start.region);
+  if (region_is_empty_) return true;
   tip_ = start.tip;
   longest_ = start.longest;
   float_tip_ = float_tip(tip_ - tree_.frame().origin);
@@ -55,19 +53,24 @@ bool TreeWalk::begin(const Start& start) noexcept {
 
 void TreeWalk::begin_again(double level) noexcept {
   const LeafFrame& frame = tree_.frame();
-  reach_ = float_reach(level, longest_, tip_ - frame.origin, frame.error);
+  levels_ = float_levels(level, longest_, tip_ - frame.origin, frame.error);
   is_long_ = longest_ > level;
-  if (++cycle_ == 0) {  // the counter went round: forget the leaves of cycles long gone
-    for (Leaf& each : leaves_) each.cycle = 0;
-    cycle_ = 1;
+  if (++generation_ == 0) {  // the counter overflowed: forget all leaves
+    for (SeenLeaf& each : leaves_) each.filled_in = 0;
+    generation_ = 1;
   }
 }
 
-/// Makes the frontier cover the region of the cycle, and more if that is likely to serve the cycles
-/// to come. The padding is tuned by experience: it grows while a cover has fewer than 12 boxes, and
-/// shrinks if it has more than 24, or boxes left unopened. It pays only while it is longer than the
-/// motions, and while the tip moves on without a jump. Steps are the
-/// same whatever it is, unless the work budget ends first.
+/// Makes the frontier cover the region of the cycle, grown by a padding if that is likely to serve
+/// the cycles to come: while the padding is longer than the motions, and the tip moves on without a
+/// jump. The padding adapts to the number of boxes of a cover; its factors are tuned by experience:
+///
+///     boxes left unopened   a quarter, and a new cover
+///     no boxes              double, and a motion more
+///     fewer than 12         half as much again, and a tenth of a motion more
+///     more than 24          0.7 of it
+///
+/// Steps are the same whatever the padding is, unless the work budget ends first.
 void TreeWalk::locate(const Start& start) noexcept {
   if (frontier_.covers(start.region)) return;
   const double motion = start.longest;
@@ -96,12 +99,12 @@ void TreeWalk::locate(const Start& start) noexcept {
   }
 }
 
-bool TreeWalk::walk(const Vec3& motion, EncounterVisitor& visitor) noexcept {
+bool TreeWalk::walk(const Vec3& motion, TriangleVisitor& visitor) noexcept {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     motion_[axis] = static_cast<float>(motion[static_cast<Eigen::Index>(axis)]);
   }
   visitor_ = &visitor;
-  latest_ = after_the_end;
+  latest_ = never;
   begun_size_ = 0;
   waiting_size_ = 0;
   deferred_size_ = 0;
@@ -117,10 +120,10 @@ bool TreeWalk::walk(const Vec3& motion, EncounterVisitor& visitor) noexcept {
     }
     if (waiting_size_ == 0) return meets_nothing_;
     if (comes_too_late(waiting_[0].time)) return false;
-    const std::uint32_t what = next().what;
-    // Leaf numbers have 31 bits, so bit `suspects` counts only without bit `leaf`.
-    if ((what & NodeBlock::leaf) == 0 && (what & suspects) != 0) {
-      resume(what & ~suspects);
+    const std::uint32_t what = pop_earliest().what;
+    // Leaf numbers have 31 bits, so suspects_bit counts only without leaf_bit.
+    if ((what & NodeBlock::leaf_bit) == 0 && (what & suspects_bit) != 0) {
+      resume(what & ~suspects_bit);
     } else {
       descend(what);
     }
@@ -128,10 +131,10 @@ bool TreeWalk::walk(const Vec3& motion, EncounterVisitor& visitor) noexcept {
   return false;
 }
 
-/// Goes into a box: a leaf or a node.
+/// Opens a box: inspects a leaf or enters a node.
 void TreeWalk::descend(std::uint32_t box) noexcept {
-  if ((box & NodeBlock::leaf) != 0) {
-    inspect(box & ~NodeBlock::leaf);
+  if ((box & NodeBlock::leaf_bit) != 0) {
+    inspect(box & ~NodeBlock::leaf_bit);
   } else {
     enter(tree_.nodes()[box], [&]() -> const CylinderBlock& { return tree_.cylinders()[box]; });
   }
@@ -143,17 +146,17 @@ template <class Cylinders>
 void TreeWalk::enter(const NodeBlock& node, Cylinders&& cylinders) noexcept {
   BoxEntries entries;
   budget_.spend(work_of_boxes);
-  enter_boxes(node, float_tip_, motion_.data(), reach_, entries);
+  enter_boxes(node, float_tip_, motion_.data(), levels_, entries);
   // Cylinders are cheaper than to open more boxes than this.
   if (are_more(entries.reached, is_long_ ? 1 : 4)) {
     budget_.spend(work_of_cylinders);
-    enter_cylinders(cylinders(), float_tip_, motion_.data(), reach_, entries);
+    enter_cylinders(cylinders(), float_tip_, motion_.data(), levels_, entries);
   }
   for (std::uint32_t reached = entries.reached; reached != 0; reached &= reached - 1) {
     const auto lane = static_cast<std::size_t>(std::countr_zero(reached));
     const std::uint32_t child = node.child[lane];
     if (!node.is_used(lane)) break;
-    if ((child & NodeBlock::leaf) != 0) fetch(child & ~NodeBlock::leaf);
+    if ((child & NodeBlock::leaf_bit) != 0) prefetch_leaf(child & ~NodeBlock::leaf_bit);
     const float time = entries.time[lane];
     // If the motion begins in a box, the tip may be too close already: it is opened now, however
     // early the first contact so far is, and also if there is no room to wait.
@@ -170,9 +173,9 @@ void TreeWalk::enter(const NodeBlock& node, Cylinders&& cylinders) noexcept {
 
 /// Finds the suspects of a leaf; visits or defers them.
 void TreeWalk::inspect(std::uint32_t number) noexcept {
-  Leaf& seen = leaf(number);
+  SeenLeaf& seen = filled_leaf(number);
   Deferred& found = deferred_[deferred_size_];
-  found.leaf = number;
+  found.leaf_number = number;
   budget_.spend(work_of_suspects);
   find_suspects(seen.filter, motion_.data(), found.suspects);
   std::uint32_t& mask = found.suspects.mask;
@@ -200,7 +203,7 @@ void TreeWalk::inspect(std::uint32_t number) noexcept {
   if (mask == 0) return;
   found.sharpenings_left = is_long_ ? most_sharpenings : are_more(mask, 2) ? 1 : 0;
   const auto deferred = static_cast<std::uint32_t>(deferred_size_++);
-  if (!wait(found.suspects.time[found.earliest()], deferred | suspects)) resume(deferred);
+  if (!wait(found.suspects.time[found.earliest()], deferred | suspects_bit)) resume(deferred);
 }
 
 /// Visits suspects of a leaf, the earliest first, until one that waits is earlier.
@@ -212,35 +215,39 @@ void TreeWalk::resume(std::uint32_t number) noexcept {
     const std::uint32_t lane = deferred.earliest();
     const float time = deferred.suspects.time[lane];
     if (comes_too_late(time)) return;
-    if (waiting_size_ > 0 && waiting_[0].time < time && wait(time, number | suspects)) return;
+    if (waiting_size_ > 0 && waiting_[0].time < time && wait(time, number | suspects_bit)) return;
     if (deferred.sharpenings_left > 0) continue;
     deferred.suspects.mask &= ~(std::uint32_t{1} << lane);
-    visit(leaf(deferred.leaf), lane);
+    visit(filled_leaf(deferred.leaf_number), lane);
   }
 }
 
 /// Sharpens the suspects that may be met before it is too late: the first time of a long motion by
 /// better proofs, else by a Newton step.
 void TreeWalk::sharpen(Deferred& deferred) noexcept {
-  const LeafBlock& block = tree_.leaves()[deferred.leaf];
+  const LeafBlock& block = tree_.leaves()[deferred.leaf_number];
   const auto until = static_cast<float>(latest_ * (1.0 + 1e-6));  // not before it, when rounded
   budget_.spend(work_of_sharpening);
-  if (deferred.sharpenings_left-- == most_sharpenings) {
-    sharpen_suspects(block, float_tip_, motion_.data(), reach_, until, leaf(deferred.leaf).filter,
-                     deferred.suspects);
+  // Starts at most_sharpenings for long motions only.
+  const bool is_first_of_long_motion = deferred.sharpenings_left == most_sharpenings;
+  --deferred.sharpenings_left;
+  if (is_first_of_long_motion) {
+    sharpen_suspects(block, float_tip_, motion_.data(), levels_, until,
+                     filled_leaf(deferred.leaf_number).filter, deferred.suspects);
   } else {
-    delay_suspects(block, float_tip_, motion_.data(), reach_, until, deferred.suspects);
+    delay_suspects(block, float_tip_, motion_.data(), levels_, until, deferred.suspects);
   }
 }
 
-void TreeWalk::visit(Leaf& seen, std::uint32_t lane) noexcept {
+/// Shows a triangle to the visitor.
+void TreeWalk::visit(SeenLeaf& seen, std::uint32_t lane) noexcept {
   std::uint32_t& note = seen.note[lane];
   const TriangleId triangle = tree_.leaves()[seen.number].triangle(lane);
-  if (note != Encounter::no_note) {
-    latest_ = visitor_->visit({triangle, note, nullptr});
+  if (note != no_note) {
+    latest_ = visitor_->visit(triangle, note, nullptr);
   } else {
     const Triangle relative = corners(seen.number, lane);
-    latest_ = visitor_->visit({triangle, note, &relative});
+    latest_ = visitor_->visit(triangle, note, &relative);
   }
 }
 
@@ -258,27 +265,28 @@ Triangle TreeWalk::corners(std::uint32_t number, std::size_t lane) const noexcep
   return corners;
 }
 
-/// Returns the filter and notes of a leaf in this cycle; fills them at the first call.
-TreeWalk::Leaf& TreeWalk::leaf(std::uint32_t number) noexcept {
-  Leaf& seen = leaves_[number % most_leaves];
-  if (seen.number == number && seen.cycle == cycle_) return seen;
+/// Returns a leaf with its filter and notes. At its first call in a generation, fills them in the
+/// place of another leaf, whose notes are forgotten, and spends the work.
+TreeWalk::SeenLeaf& TreeWalk::filled_leaf(std::uint32_t number) noexcept {
+  SeenLeaf& seen = leaves_[number % most_leaves];
+  if (seen.number == number && seen.filled_in == generation_) return seen;
   budget_.spend(work_of_leaf);
   const LeafBlock& block = tree_.leaves()[number];
   seen.number = number;
-  seen.cycle = cycle_;
-  seen.note.fill(Encounter::no_note);
+  seen.filled_in = generation_;
+  seen.note.fill(no_note);
   seen.used = lanes_used(block);
-  fill_filter(block, float_tip_, reach_, seen.filter);
+  fill_filter(block, float_tip_, levels_, seen.filter);
   return seen;
 }
 
-/// Prefetches a leaf that is likely to be needed soon, unless it was filled in this cycle.
-void TreeWalk::fetch(std::uint32_t number) const noexcept {
-  const Leaf& seen = leaves_[number % most_leaves];
-  if (seen.number != number || seen.cycle != cycle_) prefetch(tree_.leaves()[number]);
+/// Prefetches a leaf that is likely to be needed soon, unless it is filled already.
+void TreeWalk::prefetch_leaf(std::uint32_t number) const noexcept {
+  const SeenLeaf& seen = leaves_[number % most_leaves];
+  if (seen.number != number || seen.filled_in != generation_) prefetch(tree_.leaves()[number]);
 }
 
-/// Returns false if there is no room.
+/// Adds a box or suspects to the heap. Returns false if there is no room.
 bool TreeWalk::wait(float time, std::uint32_t what) noexcept {
   if (waiting_size_ == waiting_.size()) return false;
   waiting_[waiting_size_++] = {time, what};
@@ -287,7 +295,8 @@ bool TreeWalk::wait(float time, std::uint32_t what) noexcept {
   return true;
 }
 
-TreeWalk::Waiting TreeWalk::next() noexcept {
+/// Takes the earliest from the heap. Precondition: the heap is not empty.
+TreeWalk::Waiting TreeWalk::pop_earliest() noexcept {
   std::pop_heap(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(waiting_size_),
                 is_later);
   return waiting_[--waiting_size_];
@@ -300,25 +309,6 @@ std::uint32_t TreeWalk::Deferred::earliest() const noexcept {
     if (suspects.time[lane] < suspects.time[found]) found = lane;
   }
   return found;
-}
-
-FloatTip float_tip(const Vec3& tip) noexcept {
-  FloatTip split;
-  for (int axis = 0; axis < 3; ++axis) {
-    split.high[axis] = static_cast<float>(tip[axis]);
-    split.low[axis] = static_cast<float>(tip[axis] - static_cast<double>(split.high[axis]));
-  }
-  return split;
-}
-
-FloatReach float_reach(double level, double longest, const Vec3& tip, double error) noexcept {
-  // The rest that the two floats of the tip leave, and the error of the leaf's coordinates.
-  const double fixed = 1e-13 * tip.lpNorm<1>() + 4.0 * error;
-  const double slack = 2e-6 * level + 3e-6 * longest + fixed;
-  const double boxes = level * (1.0 + 2e-6) + 4e-6 * longest + fixed;
-  constexpr double up = 1.0 + 1e-6;
-  return {static_cast<float>(level * up), 1.5e-6f, static_cast<float>(slack * up),
-          static_cast<float>(boxes * up)};
 }
 
 }  // namespace keepout

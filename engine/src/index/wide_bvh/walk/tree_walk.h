@@ -14,10 +14,10 @@
 namespace keepout {
 
 /// The walk of a WideBvh: through the boxes along a motion, to the triangles that it is not proved
-/// to stay clear of, the earliest first, until the visitor has met one. Single precision passes
-/// over triangles that are surely clear. What the walk remembers from motion to motion and from
-/// cycle to cycle saves time; steps are the
-/// same without it, unless the work budget ends first.
+/// to stay clear of, the earliest first, until the visitor has met one. Filters in single precision
+/// leave out triangles that are surely clear. The walk remembers boxes and proofs from motion to
+/// motion and from cycle to cycle, which saves time; steps are the same without them, unless the
+/// work budget ends first.
 class TreeWalk final : public MotionWalk {
  public:
   /// Both must outlive this. Precondition: the tree is not refit.
@@ -25,47 +25,47 @@ class TreeWalk final : public MotionWalk {
 
   bool begin(const Start& start) noexcept override;
   void begin_again(double level) noexcept override;
-  bool is_free() const noexcept override { return is_free_; }
-  bool walk(const Vec3& motion, EncounterVisitor& visitor) noexcept override;
+  bool region_is_empty() const noexcept override { return region_is_empty_; }
+  bool walk(const Vec3& motion, TriangleVisitor& visitor) noexcept override;
   std::size_t room() const noexcept override { return most_leaves * LeafBlock::lanes; }
 
   /// Returns the boxes at which the walks of the last cycle began.
   const Frontier& frontier() const noexcept { return frontier_; }
 
  private:
-  // Leaves whose filters and notes are kept, a power of 2; a cycle in contact looks at a dozen. A
-  // leaf takes the place of another whose number has the same remainder.
+  // The capacity for leaves with filters and notes, a power of 2; a cycle in contact needs a dozen.
+  // A leaf takes the place of another whose number has the same remainder.
   static constexpr std::size_t most_leaves = 256;
 
   /// A leaf as it is seen from the tip.
-  struct Leaf {
+  struct SeenLeaf {
     LeafFilter filter;
     std::array<std::uint32_t, LeafBlock::lanes> note;
     std::uint32_t number = 0;
-    std::uint32_t cycle = 0;  // in which it was last filled; 0: none yet
-    std::uint32_t used = 0;   // a bit for each lane
+    std::uint32_t filled_in = 0;  // generation in which it was last filled; 0: none yet
+    std::uint32_t used = 0;       // a bit for each lane
   };
 
   /// A box or suspects that the motion may meet at some time.
   struct Waiting {
     float time;
-    std::uint32_t what;  // as NodeBlock::child, or a number in deferred_ with bit `suspects`
+    std::uint32_t what;  // as NodeBlock::child, or a number in deferred_ with suspects_bit
   };
   /// Orders a heap with the earliest on top.
   static constexpr auto is_later = [](const Waiting& a, const Waiting& b) {
     return a.time > b.time;
   };
-  static constexpr std::uint32_t suspects = std::uint32_t{1} << 30;
+  static constexpr std::uint32_t suspects_bit = std::uint32_t{1} << 30;
 
   /// How often suspects are sharpened before they are visited, if motions are long: many that come
-  /// late turn out not to be met, or not first. If motions are short, once is enough, and only if
-  /// there are many suspects.
+  /// late turn out not to be met, or not first. If motions are short, one Newton step is enough,
+  /// and only if there are many suspects.
   static constexpr int most_sharpenings = 3;
 
   /// Suspects of a leaf that are still to be visited.
   struct Deferred {
     Suspects suspects;
-    std::uint32_t leaf;
+    std::uint32_t leaf_number;
     int sharpenings_left;
 
     std::uint32_t earliest() const noexcept;
@@ -75,15 +75,15 @@ class TreeWalk final : public MotionWalk {
   void descend(std::uint32_t box) noexcept;
   template <class Cylinders>
   void enter(const NodeBlock& node, Cylinders&& cylinders) noexcept;
-  void inspect(std::uint32_t leaf) noexcept;
+  void inspect(std::uint32_t leaf_number) noexcept;
   void sharpen(Deferred& deferred) noexcept;
   void resume(std::uint32_t deferred) noexcept;
-  void visit(Leaf& leaf, std::uint32_t lane) noexcept;
+  void visit(SeenLeaf& leaf, std::uint32_t lane) noexcept;
   bool wait(float time, std::uint32_t what) noexcept;
-  Waiting next() noexcept;
-  Leaf& leaf(std::uint32_t number) noexcept;
-  void fetch(std::uint32_t leaf) const noexcept;
-  Triangle corners(std::uint32_t leaf, std::size_t lane) const noexcept;
+  Waiting pop_earliest() noexcept;
+  SeenLeaf& filled_leaf(std::uint32_t number) noexcept;
+  void prefetch_leaf(std::uint32_t number) const noexcept;
+  Triangle corners(std::uint32_t leaf_number, std::size_t lane) const noexcept;
   bool comes_too_late(float time) const noexcept { return static_cast<double>(time) > latest_; }
 
   const WideBvh::Tree& tree_;
@@ -95,14 +95,14 @@ class TreeWalk final : public MotionWalk {
   Vec3 tip_ = Vec3::Zero();
   double longest_ = 0.0;
   FloatTip float_tip_{};
-  FloatReach reach_{};
-  bool is_free_ = false;
-  bool is_long_ = false;  // motions may be longer than the level
-  std::uint32_t cycle_ = 0;
-  std::vector<Leaf> leaves_;
+  FloatLevels levels_{};
+  bool region_is_empty_ = false;
+  bool is_long_ = false;          // motions may be longer than the level
+  std::uint32_t generation_ = 0;  // counts beginnings; leaves filled in earlier ones are forgotten
+  std::vector<SeenLeaf> leaves_;
 
   // Of this motion.
-  EncounterVisitor* visitor_ = nullptr;
+  TriangleVisitor* visitor_ = nullptr;
   double latest_ = 0.0;  // contacts after this fraction of the motion do not matter
   std::array<float, 3> motion_{};
   // Boxes that it begins in, to be opened now. Those of the frontier, and fifteen more a level,

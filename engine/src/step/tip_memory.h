@@ -15,17 +15,18 @@
 
 namespace keepout {
 
-/// Returns a vector without the sign of its zeros, which that of some zero in the input decides.
+/// Returns a vector with -0 turned into +0: the sign of a zero in the input must not show.
 inline Vec3 without_signed_zeros(const Vec3& v) noexcept {
   return {v[0] + 0.0, v[1] + 0.0, v[2] + 0.0};
 }
 
-/// The memory of a cycle: its planes and guides, the quadratic program that they become, and the
-/// result. Made once.
-class Workspace {
+/// The memory of the cycles of a tip: planes and guides, the quadratic program that they become,
+/// and the best result so far. `planes` are those of the present search; when a search has ended
+/// with a result, they are the planes of that result.
+class TipMemory {
  public:
-  /// Allocates all memory. The rows of planes are written unless the solver reads planes.
-  Workspace(const Capacity& capacity, const Solver& solver);
+  /// Allocates all memory. Rows of planes are written only if the solver does not read planes.
+  TipMemory(const Capacity& capacity, const Solver& solver);
 
   /// Returns true if there is room for the request's joints and rows.
   bool has_room_for(const Motion& request) const noexcept;
@@ -33,47 +34,48 @@ class Workspace {
   /// Returns the quadratic program whose rows are the planes, those of guides, then the caller's
   /// rows: on the tip's own increment without a Jacobian, on the joints' with one, n^T J. Reads
   /// only Jacobian and rows of the request. `target`: the increment of the tip to come close to.
-  /// [length] Precondition: has_room_for(request).
-  StepProblem pose(const Motion& request, const Vec3& target, double damping) noexcept;
+  /// [length] Valid until the next call. Precondition: has_room_for(request).
+  StepProblem program_for(const Motion& request, const Vec3& target, double damping) noexcept;
 
-  /// Stores the last solution as the result, which outlives the solver's next one: with joints,
-  /// `fraction` of their solution; otherwise `tip_motion` as it is. `relaxation`: what was relaxed
-  /// for it. `limits`: what limits it apart from active rows.
+  /// Stores a motion as the result, which outlives the solver's next solution: with joints,
+  /// `fraction` of `solution`; otherwise `tip_motion` as it is. The active rows are those of the
+  /// solution. `relaxation`: what was relaxed for it. `limits`: what limits it apart from active
+  /// rows.
   void store_result(const Motion& request, const Vec3& tip_motion, double fraction,
-                    Relaxation relaxation, Limits limits) noexcept;
+                    const Solution& solution, Relaxation relaxation, Limits limits) noexcept;
 
-  /// Stores zero motion as the result, whatever the solver returned last.
+  /// Stores zero motion as the result, without active rows.
   void store_zero_result(const Motion& request, Relaxation relaxation, Limits limits) noexcept;
 
   /// Returns the planes and those of guides, as the solver gets them. Valid until the next call of
-  /// this or posed_for_result().
-  std::span<const HalfSpace> posed() noexcept { return with_guides(guides.planes().size()); }
+  /// this or result_planes().
+  std::span<const HalfSpace> solver_planes() noexcept {
+    return with_guides(guides.planes().size());
+  }
 
   TipGuides guides;                // of the tip
   HalfSpaceBuffer planes;          // that the present trial has to satisfy
   HalfSpaceBuffer earlier_planes;  // of the motion that is to be improved upon
   HalfSpaceBuffer alternatives;    // to a plane of the branch and bound
   Branches branches;               // of the branch and bound
-  Solution solution;               // the solver's last one
 
-  /// Sets planes and result aside, for a search that may find better ones. Until the next
-  /// store_result() the present result is undefined.
-  void save() noexcept {
+  /// Sets planes and result aside as the earlier ones, for a search that may find better ones.
+  /// Until the next store_result() the present result is undefined.
+  void set_aside() noexcept {
     swap_with_earlier();
     planes.clear();
   }
 
-  /// Brings back what was saved last.
-  void restore() noexcept { swap_with_earlier(); }
+  /// Replaces planes and result by those that were set aside last: the search found nothing better.
+  void take_back() noexcept { swap_with_earlier(); }
 
   /// Returns the increment of the result.
   std::span<const double> increment() const noexcept { return result_.increment.view(); }
   /// Returns the rows that limit it: planes, those of guides, then the caller's.
   std::span<const std::uint32_t> active() const noexcept { return result_.active.view(); }
-  /// Returns the planes and those of guides that it was found with.
-  std::span<const HalfSpace> posed_for_result() noexcept {
-    return with_guides(result_.guide_planes);
-  }
+  /// Returns the planes and those of guides that it was found with. Precondition: `planes` are
+  /// those of the result.
+  std::span<const HalfSpace> result_planes() noexcept { return with_guides(result_.guide_planes); }
   /// Returns what was relaxed for it.
   Relaxation relaxation() const noexcept { return result_.relaxation; }
   /// Returns what limits it apart from active rows.
@@ -83,7 +85,7 @@ class Workspace {
   struct Result {
     Buffer<double> increment;      // (variables)
     Buffer<std::uint32_t> active;  // (planes + those of guides + extra rows)
-    std::size_t guide_planes = 0;  // that were posed
+    std::size_t guide_planes = 0;  // how many there were
     Relaxation relaxation = Relaxation::none;
     Limits limits = {};
   };
@@ -93,17 +95,18 @@ class Workspace {
   }
   std::span<const HalfSpace> join_guides(std::size_t guide_planes) noexcept;
   void swap_with_earlier() noexcept;
-  void write_rows_of(std::span<const HalfSpace> posed, const double* jacobian,
+  void write_rows_of(std::span<const HalfSpace> half_spaces, const double* jacobian,
                      Eigen::Index variables) noexcept;
 
   Eigen::Index variables_;   // the most columns of a Jacobian; at least 3
   Eigen::Index extra_rows_;  // the most rows of the caller's own
   bool writes_planes_;
-  std::vector<double> jacobian_;  // (3, variables), column by column: a copy of one that is not
-  std::vector<double> rows_;      // (planes + those of guides + extra rows, variables), row by row
-  std::vector<double> bounds_;    // (planes + those of guides + extra rows)
-  HalfSpaceBuffer posed_;         // planes and those of guides
-  Vec3 desired_ = Vec3::Zero();
+  std::vector<double>
+      jacobian_;                // (3, variables), column by column: a packed copy of another layout
+  std::vector<double> rows_;    // (planes + those of guides + extra rows, variables), row by row
+  std::vector<double> bounds_;  // (planes + those of guides + extra rows)
+  HalfSpaceBuffer joined_planes_;  // planes and those of guides
+  Vec3 target_ = Vec3::Zero();
   Result result_;
   Result earlier_result_;
 };

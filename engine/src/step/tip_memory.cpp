@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "workspace.h"
+#include "tip_memory.h"
 
 #include <algorithm>
 #include <array>
@@ -20,7 +20,7 @@ std::size_t most_rows(const Capacity& capacity) {
 
 }  // namespace
 
-Workspace::Workspace(const Capacity& capacity, const Solver& solver)
+TipMemory::TipMemory(const Capacity& capacity, const Solver& solver)
     : planes(capacity.planes),
       earlier_planes(capacity.planes),
       alternatives(most_alternatives),
@@ -31,17 +31,18 @@ Workspace::Workspace(const Capacity& capacity, const Solver& solver)
       jacobian_(3 * static_cast<std::size_t>(variables_)),
       rows_(most_rows(capacity) * static_cast<std::size_t>(variables_)),
       bounds_(most_rows(capacity)),
-      posed_(capacity.planes + TipGuides::most_planes),
+      joined_planes_(capacity.planes + TipGuides::most_planes),
       result_{Buffer<double>(static_cast<std::size_t>(variables_)),
               Buffer<std::uint32_t>(most_rows(capacity))},
       earlier_result_(result_) {}
 
-bool Workspace::has_room_for(const Motion& request) const noexcept {
+bool TipMemory::has_room_for(const Motion& request) const noexcept {
   return (!request.jacobian || request.jacobian->joints() <= variables_) &&
          (!request.rows || request.rows->count() <= extra_rows_);
 }
 
-StepProblem Workspace::pose(const Motion& request, const Vec3& target, double damping) noexcept {
+StepProblem TipMemory::program_for(const Motion& request, const Vec3& target,
+                                   double damping) noexcept {
   const Eigen::Index n = request.jacobian ? request.jacobian->joints() : 3;
   const double* jacobian = identity.data();
   if (request.jacobian) {
@@ -51,7 +52,7 @@ StepProblem Workspace::pose(const Motion& request, const Vec3& target, double da
       jacobian = jacobian_.data();
     }
   }
-  const std::span<const HalfSpace> half_spaces = posed();
+  const std::span<const HalfSpace> half_spaces = solver_planes();
   if (writes_planes_) write_rows_of(half_spaces, request.jacobian ? jacobian : nullptr, n);
   const auto m = static_cast<Eigen::Index>(half_spaces.size());
   const Eigen::Index extra = request.rows ? request.rows->count() : 0;
@@ -59,37 +60,38 @@ StepProblem Workspace::pose(const Motion& request, const Vec3& target, double da
     std::copy_n(request.rows->matrix(), extra * n, rows_.data() + m * n);
     std::copy_n(request.rows->bounds(), extra, bounds_.data() + m);
   }
-  desired_ = target;
+  target_ = target;
   return {.jacobian = {jacobian, 3, n},
-          .desired = {desired_.data(), 3},
+          .desired = {target_.data(), 3},
           .rows = {rows_.data(), m + extra, n},
           .bounds = {bounds_.data(), m + extra},
           .damping = damping,
           .planes = half_spaces};
 }
 
-/// Without a Jacobian they are the normals themselves.
-void Workspace::write_rows_of(std::span<const HalfSpace> posed, const double* jacobian,
+/// Writes the rows of planes, n^T J; without a Jacobian, the normals themselves.
+void TipMemory::write_rows_of(std::span<const HalfSpace> half_spaces, const double* jacobian,
                               Eigen::Index variables) noexcept {
   double* row = rows_.data();
-  for (std::size_t p = 0; p < posed.size(); ++p, row += variables) {
+  for (std::size_t p = 0; p < half_spaces.size(); ++p, row += variables) {
     if (jacobian != nullptr) {
-      write_row(posed[p].normal, jacobian, variables, row);
+      write_row(half_spaces[p].normal, jacobian, variables, row);
     } else {
-      std::copy_n(posed[p].normal.data(), 3, row);
+      std::copy_n(half_spaces[p].normal.data(), 3, row);
     }
-    bounds_[p] = posed[p].offset;
+    bounds_[p] = half_spaces[p].offset;
   }
 }
 
-std::span<const HalfSpace> Workspace::join_guides(std::size_t guide_planes) noexcept {
-  posed_.assign(planes.view());
-  for (const HalfSpace& plane : guides.planes().first(guide_planes)) posed_.push(plane);
-  return posed_.view();
+std::span<const HalfSpace> TipMemory::join_guides(std::size_t guide_planes) noexcept {
+  joined_planes_.assign(planes.view());
+  for (const HalfSpace& plane : guides.planes().first(guide_planes)) joined_planes_.push(plane);
+  return joined_planes_.view();
 }
 
-void Workspace::store_result(const Motion& request, const Vec3& tip_motion, double fraction,
-                             Relaxation relaxation, Limits limits) noexcept {
+void TipMemory::store_result(const Motion& request, const Vec3& tip_motion, double fraction,
+                             const Solution& solution, Relaxation relaxation,
+                             Limits limits) noexcept {
   result_.guide_planes = guides.planes().size();
   result_.relaxation = relaxation;
   result_.limits = limits;
@@ -102,15 +104,14 @@ void Workspace::store_result(const Motion& request, const Vec3& tip_motion, doub
   result_.active.assign(solution.active);
 }
 
-void Workspace::store_zero_result(const Motion& request, Relaxation relaxation,
+void TipMemory::store_zero_result(const Motion& request, Relaxation relaxation,
                                   Limits limits) noexcept {
-  solution = {};
-  store_result(request, Vec3::Zero(), 0.0, relaxation, limits);
+  store_result(request, Vec3::Zero(), 0.0, {}, relaxation, limits);
   const Eigen::Index joints = request.jacobian ? request.jacobian->joints() : 0;
   for (Eigen::Index k = 0; k < joints; ++k) result_.increment.push(0.0);
 }
 
-void Workspace::swap_with_earlier() noexcept {
+void TipMemory::swap_with_earlier() noexcept {
   std::swap(planes, earlier_planes);
   std::swap(result_, earlier_result_);
 }
