@@ -14,7 +14,7 @@ enum class Status : std::uint8_t {
   limited,           // the nearest motion that the constraints allow: see Limits
   recovering,        // something was too close or out of its region: the motion recovers from it
   fallback,          // a shorter motion: nothing longer was proved, see Limits
-  yielding,          // a mesh approaches too fast: the motion keeps less than the margin
+  yielding,          // instruments only: a mesh approaches too fast to keep the clearance
   infeasible,        // the constraints contradict each other
   ill_posed,         // the Jacobian lacks full column rank and there is no damping
   invalid_input,     // a number is not finite or out of range
@@ -26,7 +26,7 @@ enum class Status : std::uint8_t {
   margin_too_small,  // the margin or band is lost in the rounding of lengths this large
   mesh_changed,      // the index was refit to another mesh, which is not followed yet
   out_of_budget,     // the work budget of the cycle ended before a motion was proved
-  unsupported,       // the rule cannot answer this query
+  unsupported,       // polytopes only: the rule cannot answer this query
 };
 
 /// Number of statuses.
