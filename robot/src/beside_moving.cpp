@@ -76,7 +76,6 @@ bool JointCycle::stand_still(const JointTask& task, Trial& best) noexcept {
   judgement_ = judge(trial.increment);
   trial.knot = judgement_.knot;
   if (!trial.is_proved()) return false;
-  search_status_ = Status::free;
   best = trial;
   return true;
 }
@@ -85,7 +84,6 @@ bool JointCycle::stand_still(const JointTask& task, Trial& best) noexcept {
 /// then a guide is dropped, and last the level of pairs is lowered. Returns false if nothing is
 /// left to try. If `best` is proved, it stands still.
 bool JointCycle::degrade(const JointTask& task, Trial& best) noexcept {
-  const Status trouble = search_status_;
   const std::size_t guide = judgement_.guide.guide;
   const bool guide_failed =
       judgement_.guide.knot < PointMotion::last_knot && !guides_.is_dropped(guide);
@@ -93,12 +91,11 @@ bool JointCycle::degrade(const JointTask& task, Trial& best) noexcept {
   for (std::size_t p = 0; p < pairs_.size(); ++p) {
     failed[p] = pairs_.is_watched(p) && memory_.obstacles[p].knot != PointMotion::last_knot;
   }
-  if (trouble == Status::ill_posed) return false;
-  if (trouble != Status::infeasible && guide_failed && problem_.relax_guides(rows_.view()))
+  if (search_status_ == Status::ill_posed) return false;
+  if (search_status_ != Status::infeasible && guide_failed && problem_.relax_guides(rows_.view()))
     return true;
   if (stand_still(task, best)) return true;
-  search_status_ = trouble;
-  if (trouble == Status::infeasible) return degrade_conflict(task.scaled(0.0));
+  if (search_status_ == Status::infeasible) return degrade_conflict(task.scaled(0.0));
   if (guide_failed) {
     guides_.drop(guide);
     rows_.remove(owner_of_guide(guide));
@@ -107,13 +104,13 @@ bool JointCycle::degrade(const JointTask& task, Trial& best) noexcept {
   prefer_degraded(failed);
   for (std::size_t p = 0; p < pairs_.size(); ++p) {
     if (!failed[p]) continue;
-    lower_level(p, 1.0, trouble == Status::free ? Status::unsolved : trouble);
+    lower_level(p, 1.0, search_status_ == Status::free ? Status::unsolved : search_status_);
   }
   return failed.any();
 }
 
-/// Removes the pairs at level 1 from a set that has others: few pairs give way, and
-/// those entirely, before more do.
+/// Removes the pairs at level 1 from a set that has others: few pairs give way, and those entirely,
+/// before more do.
 void JointCycle::prefer_degraded(std::bitset<most_pairs>& pairs) const noexcept {
   std::bitset<most_pairs> lowered;
   for (std::size_t p = 0; p < pairs_.size(); ++p) {

@@ -205,40 +205,5 @@ TEST(Limits, TellASpentBudgetFromASmallStore) {
   EXPECT_TRUE(moving.limits.has(Limit::capacity)) << name(moving.status);
 }
 
-// Whatever the budget and the capacity are, a motion that is made as a whole was not shortened by
-// them: if they end a refinement, the motion is the one that was to be refined.
-TEST(Limits, AreNotTheBudgetOrTheCapacityThatEndOnlyARefinement) {
-  const auto mesh = mesh_of(make_cube(50.0));
-  const Instrument robot(
-      Chain({{.axis = Vec3::UnitZ()}, {.origin = {Vec3(60, 0, 0)}, .axis = Vec3::UnitY()}},
-            {Vec3(-120, 0, 70)}),
-      {{"shaft", {{1, Vec3::Zero()}, {2, Vec3::Zero()}}, 2.0},
-       {"ball", {{2, Vec3(40, 0, 0)}}, 3.0}});
-  const std::vector<double> start{-0.3, 0.1};
-  const std::vector<double> motion{0.1, 0.3};
-  int unrefined = 0;
-  const auto expect_named = [&](const InstrumentCapacity& capacity, const InstrumentStep& all) {
-    auto guard = guard_of(mesh, robot, {.band = 0.1}, capacity);
-    const InstrumentStep step = guard.step(start, motion);
-    if (step.status != Status::limited) return;
-    EXPECT_EQ(step.share, 1.0);
-    EXPECT_EQ(step.limits, all.limits);
-    unrefined += std::ranges::equal(step.increment, all.increment) ? 0 : 1;
-  };
-  auto whole = guard_of(mesh, robot, {.band = 0.1});
-  const InstrumentStep all = whole.step(start, motion);
-  ASSERT_EQ(all.status, Status::limited);
-  for (std::size_t looks = 1; looks <= 2 * whole.looks(); ++looks) {
-    SCOPED_TRACE(testing::Message() << "looks " << looks);
-    expect_named({.looks = looks}, all);
-  }
-  EXPECT_GT(unrefined, 10);
-  unrefined = 0;
-  for (std::size_t triangles = 1; triangles <= mesh->triangle_count(); ++triangles) {
-    SCOPED_TRACE(testing::Message() << "triangles " << triangles);
-    expect_named({.triangles = triangles}, all);
-  }
-}
-
 }  // namespace
 }  // namespace keepout
