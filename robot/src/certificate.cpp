@@ -15,13 +15,13 @@ constexpr std::size_t work_of_separation = 1;  // in work units
 }  // namespace
 
 Certificate::Certificate(const Instrument& instrument, std::size_t body, RelativeMotion& motion,
-                         NearSet& near, double clearance, double tolerance, Budget& budget) noexcept
+                         NearSet& near, double demand, double tolerance, Budget& budget) noexcept
     : body_(body),
       points_(instrument.points_of(body)),
       radius_(instrument.bodies()[body].radius),
       motion_(motion),
       near_(near),
-      clearance_(clearance),
+      demand_(demand),
       tolerance_(tolerance),
       budget_(budget) {}
 
@@ -35,26 +35,26 @@ Certificate::Obstacle Certificate::judge(std::span<NearTriangle> triangles,
   Obstacle first;
   latest_ = PointMotion::last_knot;
   for (NearTriangle& triangle : triangles) {
-    const double out_of_reach = radius_ + clearance_ + displacement;
+    const double out_of_reach = radius_ + demand_ + displacement;
     if (triangle.is_measured && triangle.at_start.distance >= out_of_reach) continue;
     budget_.spend(1);
     if (budget_.is_spent()) return {0, nullptr};
     if (is_covered(triangle)) continue;
     near_.measure(triangle, budget_);
     if (triangle.at_start.distance >= out_of_reach) continue;
-    // The certified distance, or the present distance if rounding has left less. Then the motion
-    // must end a little farther away, and a body that does not move passes, so that rounding does
-    // not accumulate.
+    // The demand, or the present distance if rounding has left less. Then the motion must end a
+    // little farther away, and a body that does not move passes, so that rounding does not
+    // accumulate.
     const double distance = triangle.at_start.distance - radius_;
-    required_ = std::min(clearance_, distance + 2.0 * tolerance_);
-    const bool owes = required_ < clearance_;
+    due_plus_rounding_ = std::min(demand_, distance + 2.0 * tolerance_);
+    const bool owes = due_plus_rounding_ < demand_;
     if (owes && displacement == 0.0) continue;
     owes_ = owes_ || owes;
     const Gap at_end = gap_at(PointMotion::last_knot, *triangle.corners);
     const bool gains_too_little =
         owes && at_end.distance < triangle.at_start.distance + tolerance_ / 8.0;
     const int knot = gains_too_little ? 0
-                                      : proven_until(triangle, 0, triangle.at_start,
+                                      : proved_until(triangle, 0, triangle.at_start,
                                                      PointMotion::last_knot, at_end);
     if (budget_.is_spent()) return {0, nullptr};
     if (knot > latest_ || knot == PointMotion::last_knot) continue;
@@ -67,20 +67,20 @@ Certificate::Obstacle Certificate::judge(std::span<NearTriangle> triangles,
 
 Gap Certificate::gap_at(int knot, const Triangle& corners) noexcept {
   budget_.spend(work_of_gap(points_.size()));
-  Core core;
-  return gap(motion_.core(body_, knot, core), corners);
+  CorePositions core;
+  return gap(motion_.core_at(body_, knot, core), corners);
 }
 
 /// Returns the least height of the body's core along a normal on a sub-interval of the motion.
 double Certificate::least_height(const Vec3& normal, int lo, int hi) noexcept {
   const Vec3* at_lo = motion_.points_in_mesh(lo);
   const Vec3* at_hi = motion_.points_in_mesh(hi);
-  const double share = static_cast<double>(hi - lo) / PointMotion::last_knot;
+  const double span = static_cast<double>(hi - lo) / PointMotion::last_knot;
   double least = std::numeric_limits<double>::infinity();
   for (const std::uint8_t p : points_) {
     const double first = normal.dot(at_lo[p]);
     const double last = normal.dot(at_hi[p]);
-    const double bend = motion_.bend(p) * share * share;
+    const double bend = motion_.bend(p) * span * span;
     double height = std::min(first, last);
     const double rest = 0.5 * bend - std::abs(last - first);
     if (rest > 0.0) height -= rest * rest / (2.0 * bend);
@@ -94,34 +94,34 @@ bool Certificate::separates(const Vec3& normal, const NearTriangle& triangle, in
   budget_.spend(work_of_separation);
   const double least = least_height(normal, lo, hi);
   const double behind = support(*triangle.corners, normal);
-  if (!(least - behind >= radius_ + required_ - 2.0 * tolerance_)) return false;
+  if (!(least - behind >= radius_ + due_plus_rounding_ - 2.0 * tolerance_)) return false;
   const bool is_whole = lo == 0 && hi == PointMotion::last_knot;
   if (is_whole && plane_count_ < most_planes) planes_[plane_count_++] = {normal, least};
   return true;
 }
 
 bool Certificate::is_covered(const NearTriangle& triangle) const noexcept {
-  const double needed = radius_ + clearance_ - 2.0 * tolerance_;
+  const double needed = radius_ + demand_ - 2.0 * tolerance_;
   return std::any_of(planes_.begin(), planes_.begin() + plane_count_, [&](const Plane& plane) {
     return plane.least - support(*triangle.corners, plane.normal) >= needed;
   });
 }
 
 /// Returns the last knot up to which the sub-interval from lo to hi is proved.
-int Certificate::proven_until(const NearTriangle& triangle, int lo, const Gap& at_lo, int hi,
+int Certificate::proved_until(const NearTriangle& triangle, int lo, const Gap& at_lo, int hi,
                               const Gap& at_hi) noexcept {
   if (lo > latest_ || budget_.is_spent()) return lo;
   const Vec3* from = motion_.points_in_mesh(lo);
   const Vec3* to = motion_.points_in_mesh(hi);
-  const double share = static_cast<double>(hi - lo) / PointMotion::last_knot;
+  const double span = static_cast<double>(hi - lo) / PointMotion::last_knot;
   double reach = 0.0;
   for (const std::uint8_t p : points_) {
-    reach = std::max(reach, (to[p] - from[p]).norm() + motion_.bend(p) * share * share / 8.0);
+    reach = std::max(reach, (to[p] - from[p]).norm() + motion_.bend(p) * span * span / 8.0);
   }
-  if (at_lo.distance - reach >= radius_ + required_) return hi;
-  const bool has_normals = at_lo.distance > 0.0 && at_hi.distance > 0.0;
+  // No plane whose rounding is counted: the 2 tolerances stay.
+  if (at_lo.distance - reach >= radius_ + due_plus_rounding_) return hi;
   if (at_lo.distance > 0.0 && separates(at_lo.normal, triangle, lo, hi)) return hi;
-  if (has_normals) {
+  if (at_lo.distance > 0.0 && at_hi.distance > 0.0) {
     if (separates(at_hi.normal, triangle, lo, hi)) return hi;
     const Vec3 sum = at_lo.normal + at_hi.normal;
     const double length = sum.norm();
@@ -130,9 +130,9 @@ int Certificate::proven_until(const NearTriangle& triangle, int lo, const Gap& a
   if (hi - lo == 1) return lo;
   const int middle = (lo + hi) / 2;
   const Gap at_middle = gap_at(middle, *triangle.corners);
-  const int first = proven_until(triangle, lo, at_lo, middle, at_middle);
+  const int first = proved_until(triangle, lo, at_lo, middle, at_middle);
   if (first < middle) return first;
-  return proven_until(triangle, middle, at_middle, hi, at_hi);
+  return proved_until(triangle, middle, at_middle, hi, at_hi);
 }
 
 }  // namespace keepout

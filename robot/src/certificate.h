@@ -20,18 +20,19 @@ namespace keepout {
 /// Sub-intervals without such a plane are halved, down to the grid of PointMotion.
 class Certificate {
  public:
-  /// The obstacle to a proof; by default, there is none.
+  /// The obstacle to a proof; by default, there is none. Knot 0 without a triangle: the budget
+  /// ended.
   struct Obstacle {
     int knot = PointMotion::last_knot;  // the motion is proved up to here
-    /// The triangle that limits the proof. Null if there is none, or if the budget is spent. Valid
-    /// until the pair's triangles are gathered again.
+    /// The triangle that limits the proof; or null. Valid until the pair's triangles are gathered
+    /// again.
     NearTriangle* triangle = nullptr;
   };
 
-  /// For the motion of a body beside a mesh, and the triangles near it. `clearance`: from the
-  /// body's surface. All must outlive it. [length]
+  /// For the motion of a body beside a mesh, and the triangles near it. `demand`: the clearance to
+  /// be certified, from the body's surface. All must outlive it. [length]
   Certificate(const Instrument& instrument, std::size_t body, RelativeMotion& motion, NearSet& near,
-              double clearance, double tolerance, Budget& budget) noexcept;
+              double demand, double tolerance, Budget& budget) noexcept;
 
   /// Tries planes with this normal, of a row on the body, before others.
   void try_first(const Vec3& normal) noexcept;
@@ -39,8 +40,8 @@ class Certificate {
   /// Returns the first obstacle to the motion, of equals the first triangle by number.
   /// `displacement`: RelativeMotion::largest_displacement. [length]
   Obstacle judge(std::span<NearTriangle> triangles, double displacement) noexcept;
-  /// Returns true if rounding has left less than the clearance from a triangle that was judged, so
-  /// that the end of the motion must be farther off than its start.
+  /// Returns true if a triangle that was judged owes: rounding has left less than the demand, so
+  /// the end of the motion must be farther from it than the start (docs/joint-space-step.md, Due).
   bool owes() const noexcept { return owes_; }
 
  private:
@@ -55,7 +56,7 @@ class Certificate {
   double least_height(const Vec3& normal, int lo, int hi) noexcept;
   bool separates(const Vec3& normal, const NearTriangle& triangle, int lo, int hi) noexcept;
   bool is_covered(const NearTriangle& triangle) const noexcept;
-  int proven_until(const NearTriangle& triangle, int lo, const Gap& at_lo, int hi,
+  int proved_until(const NearTriangle& triangle, int lo, const Gap& at_lo, int hi,
                    const Gap& at_hi) noexcept;
 
   std::size_t body_;
@@ -63,11 +64,13 @@ class Certificate {
   double radius_;
   RelativeMotion& motion_;
   NearSet& near_;
-  double clearance_;
+  double demand_;
   double tolerance_;
   Budget& budget_;
   bool owes_ = false;
-  double required_ = 0.0;                // the clearance from the triangle at hand [length]
+  /// The clearance due from the triangle at hand, plus the 2 tolerances that a plane may lose to
+  /// rounding: proofs by a plane demand 2 tolerances less. [length]
+  double due_plus_rounding_ = 0.0;
   int latest_ = PointMotion::last_knot;  // a proof beyond this knot makes no difference
   std::array<Plane, most_planes> planes_;
   std::size_t plane_count_ = 0;

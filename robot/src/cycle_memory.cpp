@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <limits>
+#include <string>
+#include <utility>
 
 #include "keepout/activation/tolerances.h"
 #include "keepout/error.h"
@@ -48,23 +50,31 @@ double size_of(const Instrument& instrument, double extent_of_mesh) {
 
 }  // namespace
 
-CycleMemory::CycleMemory(const Instrument& of, Solver& solver, const InstrumentCapacity& capacity)
+CycleMemory::CycleMemory(const Instrument& of, Solver& its_solver,
+                         const InstrumentCapacity& capacity)
     : instrument(of),
-      motion(of, budget),
+      trial_motion(of, budget),
       rows(capacity.planes),
-      problem(solver, of.chain().size(), capacity.planes) {}
+      earlier_rows(capacity.planes),
+      warm(capacity.planes),
+      solver(its_solver) {
+  const auto n = static_cast<std::size_t>(of.chain().size());
+  bounds.resize(2 * n + capacity.planes);
+  matrix.resize(bounds.size() * n);
+  solver.reserve(of.chain().size(), static_cast<int>(bounds.size()));
+}
 
 void CycleMemory::prepare() {
-  bodies.pairs.clear();
-  for (std::size_t m = 0; m < bodies.meshes.size(); ++m) {
+  pairs.clear();
+  for (std::size_t m = 0; m < meshes.size(); ++m) {
     for (std::size_t b = 0; b < instrument.bodies().size(); ++b) {
-      const std::size_t capacity = bodies.meshes[m].neighborhood->room();
-      bodies.pairs.push_back({.body = b,
-                              .mesh = m,
-                              .triangles = NearSet(capacity, distance_beyond_axis(instrument, b))});
+      const std::size_t capacity = meshes[m].neighborhood->room();
+      pairs.push_back({.body = b,
+                       .mesh = m,
+                       .triangles = NearSet(capacity, distance_beyond_axis(instrument, b))});
     }
   }
-  obstacles.resize(bodies.pairs.size());
+  obstacles.resize(pairs.size());
   measure();
   forget();
 }
@@ -72,32 +82,32 @@ void CycleMemory::prepare() {
 void CycleMemory::measure() noexcept {
   double size = size_of(instrument, 0.0);
   double size_with_poses = size;
-  for (const MeshMemory& mesh : bodies.meshes) {
+  for (const MeshMemory& mesh : meshes) {
     const double own = size_of(instrument, extent_of(mesh.neighborhood->mesh()));
     size = std::max(size, own);
     size_with_poses = std::max(size_with_poses, own + mesh.pose.position.norm());
   }
-  largest_position = 100.0 * size;
-  tolerance = 1e-12 * (size_with_poses + std::min(instrument.chain().reach(), largest_position));
+  largest_length = 100.0 * size;
+  tolerance = 1e-12 * (size_with_poses + std::min(instrument.chain().reach(), largest_length));
 }
 
 double CycleMemory::least_margin(const InstrumentOptions& options) const noexcept {
   double margin = options.margin;
-  for (const MeshMemory& mesh : bodies.meshes) margin = std::min(margin, mesh.margin(options));
+  for (const MeshMemory& mesh : meshes) margin = std::min(margin, mesh.margin(options));
   return margin;
 }
 
 bool CycleMemory::is_lost_in_rounding(const InstrumentOptions& options) const noexcept {
   const double least = needed_band * tolerance;
   return !(least_margin(options) - options.band > least) || !(options.band > least) ||
-         std::any_of(guides.guides.begin(), guides.guides.end(), [&](const GuideMemory& each) {
+         std::any_of(guides.begin(), guides.end(), [&](const GuideMemory& each) {
            return !(each.guide.band() > needed_band * tolerance_of(each.guide, tolerance));
          });
 }
 
 void CycleMemory::require_usable(const InstrumentOptions& o) const {
   require_in_range(instrument_options, o);
-  for (const MeshMemory& mesh : bodies.meshes) {
+  for (const MeshMemory& mesh : meshes) {
     InstrumentOptions beside = o;
     beside.margin = mesh.margin(o);
     require_in_range(instrument_options, beside);
@@ -110,9 +120,36 @@ void CycleMemory::require_usable(const InstrumentOptions& o) const {
   }
 }
 
+void CycleMemory::set_guides(std::vector<Guide> all) {
+  if (all.size() > Guide::most) {
+    throw Error("an instrument has at most " + std::to_string(Guide::most) + " guides, not " +
+                std::to_string(all.size()));
+  }
+  const int links = instrument.chain().size();
+  for (const Guide& guide : all) {
+    if (!(guide.band() > needed_band * tolerance_of(guide, tolerance))) {
+      throw Error("the band of guide '" + guide.name() +
+                  "' is lost in the rounding of an instrument and a mesh of this size");
+    }
+    if (guide.link() == 0) {
+      throw Error("guide '" + guide.name() +
+                  "' is on link 0, the base, which no joint moves: give it a link of the chain");
+    }
+    if (guide.link() <= links) continue;
+    throw Error("guide '" + guide.name() + "' is on link " + std::to_string(guide.link()) +
+                "; there are links 0 to " + std::to_string(links));
+  }
+  guides.clear();
+  for (Guide& guide : all) {
+    guides.push_back({std::move(guide), -std::numeric_limits<double>::infinity()});
+  }
+  guide_states.assign(guides.size(), {});
+  forget_motion();
+}
+
 void CycleMemory::forget() noexcept {
   forget_motion();
-  for (PairMemory& pair : bodies.pairs) {
+  for (PairMemory& pair : pairs) {
     pair.triangles.forget();
     pair.padding = 0.0;
   }
@@ -121,17 +158,17 @@ void CycleMemory::forget() noexcept {
 
 CycleMemory::Certified CycleMemory::certified() const noexcept {
   Certified all{};
-  for (std::size_t p = 0; p < bodies.pairs.size(); ++p) all[p] = bodies.pairs[p].certified;
-  for (std::size_t g = 0; g < guides.guides.size(); ++g) {
-    all[owner_of_guide(g)] = guides.guides[g].certified;
+  for (std::size_t p = 0; p < pairs.size(); ++p) all[p] = pairs[p].certified;
+  for (std::size_t g = 0; g < guides.size(); ++g) {
+    all[owner_of_guide(g)] = guides[g].certified;
   }
   return all;
 }
 
 void CycleMemory::set_certified(const Certified& all) noexcept {
-  for (std::size_t p = 0; p < bodies.pairs.size(); ++p) bodies.pairs[p].certified = all[p];
-  for (std::size_t g = 0; g < guides.guides.size(); ++g) {
-    guides.guides[g].certified = all[owner_of_guide(g)];
+  for (std::size_t p = 0; p < pairs.size(); ++p) pairs[p].certified = all[p];
+  for (std::size_t g = 0; g < guides.size(); ++g) {
+    guides[g].certified = all[owner_of_guide(g)];
   }
 }
 
@@ -142,9 +179,9 @@ void CycleMemory::forget_certified() noexcept {
 }
 
 void CycleMemory::forget_motion() noexcept {
-  rows.warm.clear();
-  for (MeshMemory& mesh : bodies.meshes) mesh.sides.forget();
-  for (PairMemory& pair : bodies.pairs) {
+  warm.clear();
+  for (MeshMemory& mesh : meshes) mesh.sides.forget();
+  for (PairMemory& pair : pairs) {
     pair.displacement = 0.0;
     pair.may_have_crossed = false;  // sides.forget() has made all sides unknown
   }

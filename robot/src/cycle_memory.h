@@ -6,37 +6,69 @@
 #include <cstddef>
 #include <vector>
 
-#include "increment_box.h"
-#include "joint_problem.h"
-#include "working_rows.h"
+#include "certificate.h"
+#include "keepout/buffer.h"
+#include "keepout/robot/instrument_options.h"
+#include "keepout/robot/instrument_step.h"
+#include "keepout/step/guide.h"
+#include "keepout/step/solver.h"
+#include "pair_memory.h"
+#include "row.h"
 
 namespace keepout {
 
-/// The memory of the cycles of one instrument: one member for each part of a cycle. Made once.
+/// A guide, and what the cycles remember of it.
+struct GuideMemory {
+  Guide guide;
+  /// By how much inside its region the last cycle certified it; below 0: outside. [length or rad]
+  double certified;
+};
+
+/// The owner and the triangle of a row that was active in the last problem solved: the next cycle
+/// starts with a row of each.
+struct WarmRow {
+  std::size_t owner;  // see Row
+  TriangleId triangle;
+};
+
+/// The constants of one cycle.
+struct CycleConstants {
+  const InstrumentOptions& options;
+  bool meshes_move;  // in this cycle
+};
+
+/// The memory of the cycles of one instrument, shared by the parts of a cycle. Made once.
 struct CycleMemory {
   /// Makes all memory; there is no mesh yet.
   CycleMemory(const Instrument& instrument, Solver& solver, const InstrumentCapacity& capacity);
 
   const Instrument& instrument;
-  Budget budget;            // of a cycle, for all meshes
-  double largest_position;  // of a prismatic joint or a mesh: larger ones are rejected [length]
-  double tolerance;         // distances are equal within this [length]
-  PointMotion motion;
-  PairMemories bodies;
-  GuideMemories guides;
-  RowMemory rows;
-  ProblemMemory problem;
-  std::vector<Certificate::Obstacle> obstacles;  // of each pair on the last trial
-  JointVector increment;                         // the result
+  Budget budget;          // of a cycle, for all meshes
+  double largest_length;  // of a prismatic joint's position or a mesh's; larger ones are rejected
+  double tolerance;       // distances are equal within this [length]
+  PointMotion trial_motion;  // from the start of the cycle, by the increment on trial
+  // PairWatch: all bodies with the first mesh, all with the second, and so on.
+  std::vector<MeshMemory> meshes;
+  std::vector<PairMemory> pairs;
+  std::vector<Certificate::Obstacle> obstacles;    // to the last trial, of each pair
+  Buffer<DegradedClearance> degraded{most_pairs};  // of the last cycle
+  // GuideWatch.
+  std::vector<GuideMemory> guides;
+  std::vector<GuideState> guide_states;  // of the last cycle
+  // WorkingRows.
+  Buffer<Row> rows;
+  Buffer<Row> earlier_rows;  // while better ones are tried
+  Buffer<WarmRow> warm;
+  // JointProblem.
+  Solver& solver;
+  std::vector<double> matrix;  // of all rows, row by row
+  std::vector<double> bounds;
+  JointVector increment;  // the result
 
-  /// Returns the largest distance of joint k (1..n) from 0 that a cycle accepts. [rad or length]
-  double largest_position_of(int k) const noexcept {
-    return IncrementBox::largest_position(instrument.chain(), k, largest_position);
-  }
   /// Makes the parts that depend on the meshes, and forgets all. Allocates.
   void prepare();
-  /// Computes the tolerance and the largest position. The latter does not depend on the poses of
-  /// the meshes, so repeated placing cannot raise it.
+  /// Computes the tolerance and the largest length. The latter does not depend on the poses of the
+  /// meshes, so repeated placing cannot raise it.
   void measure() noexcept;
   /// Returns the least margin beside any mesh. [length]
   double least_margin(const InstrumentOptions& options) const noexcept;
@@ -44,9 +76,12 @@ struct CycleMemory {
   bool is_lost_in_rounding(const InstrumentOptions& options) const noexcept;
   /// Throws Error unless all options are in range and rounding leaves something of the margins.
   void require_usable(const InstrumentOptions& options) const;
+  /// Replaces the guides. Throws Error, and changes nothing, as InstrumentConstraint::set_guides
+  /// does.
+  void set_guides(std::vector<Guide> all);
   /// Returns true if any mesh moves.
   bool is_moving() const noexcept {
-    return std::any_of(bodies.meshes.begin(), bodies.meshes.end(), [](const MeshMemory& mesh) {
+    return std::any_of(meshes.begin(), meshes.end(), [](const MeshMemory& mesh) {
       return !mesh.velocity.linear.isZero(0.0) || !mesh.velocity.angular.isZero(0.0);
     });
   }
@@ -60,8 +95,16 @@ struct CycleMemory {
   void set_certified(const Certified& all) noexcept;
   /// Forgets them.
   void forget_certified() noexcept;
-  /// Forgets where the last step ended and the rows that limited it, but not the triangles nearby.
+  /// Forgets where the last step ended and the rows of its last problem, but not the triangles
+  /// nearby.
   void forget_motion() noexcept;
 };
+
+/// Returns the tolerance of a guide's excess, if distances are equal within `tolerance`. A
+/// direction is rounded by some 1e-15, and joint positions by some 1e-14 rad, whatever the lengths.
+/// [length or rad]
+inline double tolerance_of(const Guide& guide, double tolerance) noexcept {
+  return guide.is_angular() ? 1e-12 : tolerance;
+}
 
 }  // namespace keepout

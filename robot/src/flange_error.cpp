@@ -8,13 +8,13 @@
 namespace keepout {
 namespace {
 
-constexpr double slack = 0.01;  // of the task
+constexpr double slack = 0.01;  // of what zero motion misses
 
 /// Returns a bound of the distance between the ends of the true and the linear motion of the
-/// flange, in the units of the task: half of the bound of |p''| (motion_bounds.h), whose levers are
-/// columns of the Jacobian; the sum |x| + |y| + |z| bounds their lengths. An axis is off by at most
-/// the turns a of all joints, so the turn of the flange is off by at most a^2; the bound is
-/// infinite for an a above 1 rad.
+/// flange, in the units of the task: M/2 + orientation_weight a^2. M bounds |p''|
+/// (motion_bounds.h); its levers are columns of the Jacobian, whose lengths |x| + |y| + |z| bounds.
+/// a is the sum of the turns of all joints: an axis is off by at most a, so the turn of the flange
+/// is off by at most a^2. Infinite for an a above 1 rad.
 double most_deviation(const Chain& chain, const JointTask& task,
                       const JointVector& increment) noexcept {
   MotionBounds bounds;
@@ -25,43 +25,44 @@ double most_deviation(const Chain& chain, const JointTask& task,
       bounds.slide(moved);
       continue;
     }
-    const Eigen::Map<const Vec3> column(task.jacobian.data() + (k - 1) * task.rows);
+    const Eigen::Map<const Vec3> column(task.jacobian.data() + (k - 1) * task.equations);
     bounds.turn(column.lpNorm<1>(), moved);
     turns += moved;
   }
   if (!(turns <= 1.0)) return std::numeric_limits<double>::infinity();
-  return 0.5 * bounds.bend + *task.turn_weight * turns * turns;
+  return 0.5 * bounds.bend + *task.orientation_weight * turns * turns;
 }
 
 }  // namespace
 
 FlangeError flange_error(const JointTask& task, const Trial& trial, const Chain& chain,
                          PointMotion& motion) noexcept {
-  const double standing = task.standing;
+  const double miss_at_rest = task.miss_at_rest;
   const double bound = std::sqrt(trial.cost) + most_deviation(chain, task, trial.increment);
-  if (bound <= 0.5 * standing) return {bound, false};
-  const double predicted = task.linear_miss(trial.increment, trial.fraction);
+  if (bound <= 0.5 * miss_at_rest) return {bound, false};
+  const double predicted = task.linear_miss(trial.increment, trial.share);
   const double missed =
-      task.true_miss(motion.chain_at_start().flange(), motion.flange_at(trial.fraction));
-  // Half of the predicted gain, and little of the task: contacts predict next to no gain.
-  const double most = std::max(predicted, 0.5 * (standing + predicted)) + slack * standing;
+      task.true_miss(motion.chain_at_start().flange(), motion.flange_at(trial.share));
+  // The miss may be the predicted one or leave half of the predicted gain, plus 1 % of the task: in
+  // contact the predicted gain is about 0.
+  const double most = std::max(predicted, 0.5 * (miss_at_rest + predicted)) + slack * miss_at_rest;
   return {missed, missed > most};
 }
 
 Trial cut_for_flange(const JointTask& task, Trial trial, PointMotion& motion) noexcept {
   constexpr int most_halvings = 12;
   const Pose start = motion.chain_at_start().flange();
-  double fraction = trial.fraction;
+  double share = trial.share;
   trial.limits.add(Limit::linearization);
-  trial.fraction = 0.0;
-  trial.cost = task.standing * task.standing;
-  for (int i = 0; i <= most_halvings; ++i, fraction *= 0.5) {
-    const double missed = task.true_miss(start, motion.flange_at(fraction));
-    const double cost = missed * missed + task.damping_cost(trial.increment, fraction);
+  trial.share = 0.0;
+  trial.cost = task.miss_at_rest * task.miss_at_rest;
+  for (int i = 0; i <= most_halvings; ++i, share *= 0.5) {
+    const double missed = task.true_miss(start, motion.flange_at(share));
+    const double cost = missed * missed + task.damping_cost(trial.increment, share);
     if (cost < trial.cost) {
-      trial.fraction = fraction;
+      trial.share = share;
       trial.cost = cost;
-    } else if (trial.fraction > 0.0) {
+    } else if (trial.share > 0.0) {
       break;
     }
   }

@@ -13,13 +13,13 @@
 namespace keepout {
 namespace {
 
-constexpr double far = std::numeric_limits<double>::infinity();
+constexpr double infinity = std::numeric_limits<double>::infinity();
 // The squares of shorter vectors are rounded to few digits, so that they have no direction.
 constexpr double least_length2 = 1e-280;
 
 /// The best pair of points found so far, and the directions that may prove its distance.
 struct Candidate {
-  double distance2 = far;
+  double distance2 = infinity;
   Vec3 on_core = Vec3::Zero();
   Vec3 away = Vec3::Zero();     // from the triangle to the core
   Vec3 sharper = Vec3::Zero();  // a direction that the features know better; zero if none
@@ -78,7 +78,7 @@ bool goes_through(const Vec3& a, const Vec3& b, const Triangle& triangle,
 }
 
 /// Returns the gap by the direction of the two that proves more.
-Gap proven(const Candidate& nearest, std::span<const Vec3> core,
+Gap proved(const Candidate& nearest, std::span<const Vec3> core,
            const Triangle& triangle) noexcept {
   Gap best;
   best.contact = nearest.on_core;
@@ -99,7 +99,7 @@ Gap proven(const Candidate& nearest, std::span<const Vec3> core,
 
 double height_along(const Vec3& normal, std::span<const Vec3> core,
                     const Triangle& triangle) noexcept {
-  double least = far;
+  double least = infinity;
   for (const Vec3& point : core) least = std::min(least, normal.dot(point));
   return least - support(triangle, normal);
 }
@@ -107,9 +107,7 @@ double height_along(const Vec3& normal, std::span<const Vec3> core,
 Gap gap(std::span<const Vec3> core, const Triangle& triangle) noexcept {
   if (core.size() > 2) {
     const NearestPoints nearest = nearest_points(core, triangle);
-    if (nearest.overlap || !(nearest.proven > 0.0)) {
-      return {.contact = nearest.on_triangle};
-    }
+    if (nearest.overlap || !(nearest.proven > 0.0)) return {};
     return {nearest.proven, nearest.normal, nearest.on_triangle + nearest.to_core};
   }
   const Vec3& a = core.front();
@@ -118,10 +116,7 @@ Gap gap(std::span<const Vec3> core, const Triangle& triangle) noexcept {
   Candidate nearest;
   consider_end(a, triangle, face, nearest);
   if (core.size() == 2) {
-    if (goes_through(a, b, triangle, face)) {
-      const double share = face.dot(triangle[0] - a) / face.dot(b - a);
-      return {.contact = a + std::clamp(share, 0.0, 1.0) * (b - a)};
-    }
+    if (goes_through(a, b, triangle, face)) return {};
     consider_end(b, triangle, face, nearest);
     const Vec3 along = b - a;
     const double length2 = along.squaredNorm();
@@ -129,7 +124,7 @@ Gap gap(std::span<const Vec3> core, const Triangle& triangle) noexcept {
       consider_edge(a, along, length2, triangle[e], triangle[(e + 1) % 3], nearest);
     }
   }
-  Gap best = proven(nearest, core, triangle);
+  Gap best = proved(nearest, core, triangle);
   // Where the features' directions are rounding, the search may know a better one.
   const double distance = std::sqrt(nearest.distance2);
   if (best.distance < distance * (1.0 - 1e-11)) {

@@ -13,7 +13,7 @@ namespace keepout {
 struct Gap {
   double distance = 0.0;        // the true one but for rounding; 0: they touch [length]
   Vec3 normal = Vec3::Zero();   // from the triangle to the core: unit; zero if they touch
-  Vec3 contact = Vec3::Zero();  // the nearest point of the core [length]
+  Vec3 contact = Vec3::Zero();  // the nearest point of the core; zero if they touch [length]
 };
 
 /// Returns the work units of a gap of a core with so many points: see Budget.

@@ -3,13 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <string>
-#include <utility>
 
 #include "certified_clearance.h"
 #include "guide_kinematics.h"
-#include "keepout/error.h"
 
 namespace keepout {
 namespace {
@@ -18,37 +14,12 @@ constexpr std::size_t work_of_guide = 2;  // in work units
 
 }  // namespace
 
-void GuideMemories::set(std::vector<Guide> all, int links, double tolerance) {
-  if (all.size() > Guide::most) {
-    throw Error("an instrument has at most " + std::to_string(Guide::most) + " guides, not " +
-                std::to_string(all.size()));
-  }
-  for (const Guide& guide : all) {
-    if (!(guide.band() > needed_band * tolerance_of(guide, tolerance))) {
-      throw Error("the band of guide '" + guide.name() +
-                  "' is lost in the rounding of an instrument and a mesh of this size");
-    }
-    if (guide.link() == 0) {
-      throw Error("guide '" + guide.name() +
-                  "' is on link 0, the base, which no joint moves: give it a link of the chain");
-    }
-    if (guide.link() <= links) continue;
-    throw Error("guide '" + guide.name() + "' is on link " + std::to_string(guide.link()) +
-                "; there are links 0 to " + std::to_string(links));
-  }
-  guides.clear();
-  for (Guide& guide : all) {
-    guides.push_back({std::move(guide), -std::numeric_limits<double>::infinity()});
-  }
-  states.assign(guides.size(), {});
-}
-
 void GuideWatch::open() noexcept {
-  const ChainState& chain = context_.motion.chain_at_start();
+  const ChainState& chain = memory_.trial_motion.chain_at_start();
   for (std::size_t g = 0; g < memory_.guides.size(); ++g) {
     const Guide& guide = memory_.guides[g].guide;
     const double excess = guide.region().excess(guided_point(guide, chain));
-    const double tolerance = tolerance_of(guide, context_.tolerance);
+    const double tolerance = tolerance_of(guide, memory_.tolerance);
     double& certified = memory_.guides[g].certified;
     certified = certified_clearance(-excess, certified, -guide.band(), guide.band(), tolerance);
     // The certified excess, or the present one if rounding has added to it. Then the motion must
@@ -58,9 +29,9 @@ void GuideWatch::open() noexcept {
     at_end_[g] = owes ? excess - tolerance / 8.0 : allowed_[g];
     owes_ = owes_ || owes;
     is_recovering_ = is_recovering_ || is_recovering(g);
-    memory_.states[g] = {.excess = excess};
+    memory_.guide_states[g] = {.excess = excess};
   }
-  context_.budget.spend(work_of_guide * memory_.guides.size());
+  memory_.budget.spend(work_of_guide * memory_.guides.size());
 }
 
 bool GuideWatch::is_recovering(std::size_t g) const noexcept {
@@ -71,16 +42,15 @@ double GuideWatch::allowance(std::size_t g, double unused) const noexcept {
   return std::max(at_end_[g] - unused * memory_.guides[g].guide.band(), 0.0);
 }
 
-bool GuideWatch::bends_by_more(const Row& row, std::span<const double> increment) const noexcept {
+bool GuideWatch::may_leave_again(const Row& row, std::span<const double> increment) const noexcept {
   const Guide& guide = memory_.guides[guide_of(row.owner)].guide;
-  const double bend = guided_bend(guide, context_.motion.chain_at_start(), increment, 0.0);
+  const double bend = guided_bend(guide, memory_.trial_motion.chain_at_start(), increment, 0.0);
   return bend / 2.0 > row.bound + row.correction + guide.band();
 }
 
 GuideWatch::Obstacle GuideWatch::judge() noexcept {
-  knot_of_chain_ = 0;
   Obstacle obstacle;
-  const JointVector& increment = context_.motion.increment();
+  const JointVector& increment = memory_.trial_motion.increment();
   if (std::all_of(increment.begin(), increment.end(), [](double x) { return x == 0.0; })) {
     return obstacle;  // guides do not move
   }
@@ -89,7 +59,7 @@ GuideWatch::Obstacle GuideWatch::judge() noexcept {
     const Sample at_end = sample(g, PointMotion::last_knot);
     const bool gains_too_little = at_end_[g] < allowed_[g] && at_end.excess > at_end_[g];
     const int until =
-        gains_too_little ? 0 : proven_until(g, 0, sample(g, 0), PointMotion::last_knot, at_end);
+        gains_too_little ? 0 : proved_until(g, 0, sample(g, 0), PointMotion::last_knot, at_end);
     if (until < obstacle.knot) obstacle = {until, g};
   }
   return obstacle;
@@ -97,44 +67,44 @@ GuideWatch::Obstacle GuideWatch::judge() noexcept {
 
 GuideWatch::Sample GuideWatch::sample(std::size_t g, int knot) noexcept {
   const Guide& guide = memory_.guides[g].guide;
-  const ChainState& chain = chain_at(knot);
+  const ChainState& chain = memory_.trial_motion.chain_at(knot);
   return {guide.region().excess(guided_point(guide, chain)), guided_fraction(guide, chain)};
 }
 
 /// Returns the last knot up to which the sub-interval from lo to hi is proved.
-int GuideWatch::proven_until(std::size_t g, int lo, const Sample& at_lo, int hi,
+int GuideWatch::proved_until(std::size_t g, int lo, const Sample& at_lo, int hi,
                              const Sample& at_hi) noexcept {
-  Budget& budget = context_.budget;
+  Budget& budget = memory_.budget;
   budget.spend(work_of_guide);
   if (budget.is_spent()) return lo;
   const Guide& guide = memory_.guides[g].guide;
-  const double part = static_cast<double>(hi - lo) / PointMotion::last_knot;
-  const double slide = std::abs(at_hi.fraction - at_lo.fraction) / part;
-  const auto n = static_cast<std::size_t>(context_.instrument.chain().size());
-  const double bend = guided_bend(guide, context_.motion.chain_at_start(),
-                                  {context_.motion.increment().data(), n}, slide);
-  if (std::max(at_lo.excess, at_hi.excess) + bend * part * part / 8.0 <= allowed_[g]) return hi;
+  const double span = static_cast<double>(hi - lo) / PointMotion::last_knot;
+  const double slide = std::abs(at_hi.fraction - at_lo.fraction) / span;
+  const auto n = static_cast<std::size_t>(memory_.instrument.chain().size());
+  const double bend = guided_bend(guide, memory_.trial_motion.chain_at_start(),
+                                  {memory_.trial_motion.increment().data(), n}, slide);
+  if (std::max(at_lo.excess, at_hi.excess) + bend * span * span / 8.0 <= allowed_[g]) return hi;
   if (hi - lo == 1) return lo;
   const int middle = (lo + hi) / 2;
   const Sample at_middle = sample(g, middle);
-  const int first = proven_until(g, lo, at_lo, middle, at_middle);
-  return first < middle ? first : proven_until(g, middle, at_middle, hi, at_hi);
+  const int first = proved_until(g, lo, at_lo, middle, at_middle);
+  return first < middle ? first : proved_until(g, middle, at_middle, hi, at_hi);
 }
 
 std::optional<Row> GuideWatch::row(std::size_t g, int knot) noexcept {
   const Guide& guide = memory_.guides[g].guide;
   const Region& region = guide.region();
-  const Vec3 outward = region.outward(guided_point(guide, chain_at(knot)));
+  const Vec3 outward = region.outward(guided_point(guide, memory_.trial_motion.chain_at(knot)));
   if (outward.isZero(0.0)) return std::nullopt;
-  const ChainState& chain = context_.motion.chain_at_start();
+  const ChainState& chain = memory_.trial_motion.chain_at_start();
   Row row{.owner = owner_of_guide(g), .triangle = no_triangle};
   row.normal = -outward;
   row.offset = row.normal.dot(region.origin()) - region.radius();
   row.start_height = row.normal.dot(guided_point(guide, chain)) - row.offset;
   // Guides return to their regions as fast as bodies retreat; rotations by orientation_weight.
   const double per_length =
-      guide.is_angular() ? std::max(context_.options.orientation_weight, 1.0) : 1.0;
-  row.bound = std::min(-row.start_height, context_.options.recovery / per_length);
+      guide.is_angular() ? std::max(cycle_.options.orientation_weight, 1.0) : 1.0;
+  row.bound = std::min(-row.start_height, cycle_.options.recovery / per_length);
   for (int k = 1; k <= chain.size(); ++k) {
     row.gradient[static_cast<std::size_t>(k - 1)] =
         row.normal.dot(guided_derivative(guide, chain, k));
@@ -144,17 +114,9 @@ std::optional<Row> GuideWatch::row(std::size_t g, int knot) noexcept {
 
 double GuideWatch::height_at_end(const Row& row) noexcept {
   const Guide& guide = memory_.guides[guide_of(row.owner)].guide;
-  return row.normal.dot(guided_point(guide, chain_at(PointMotion::last_knot))) - row.offset;
-}
-
-const ChainState& GuideWatch::chain_at(int knot) noexcept {
-  if (knot == 0) return context_.motion.chain_at_start();
-  if (knot != knot_of_chain_) {
-    context_.budget.spend(work_of_guide);
-    context_.motion.chain_at(knot, chain_);
-    knot_of_chain_ = knot;
-  }
-  return chain_;
+  return row.normal.dot(
+             guided_point(guide, memory_.trial_motion.chain_at(PointMotion::last_knot))) -
+         row.offset;
 }
 
 }  // namespace keepout

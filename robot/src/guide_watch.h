@@ -5,28 +5,10 @@
 #include <cstddef>
 #include <optional>
 #include <span>
-#include <vector>
 
-#include "cycle_context.h"
-#include "row.h"
+#include "cycle_memory.h"
 
 namespace keepout {
-
-/// A guide, and what the cycles remember of it.
-struct GuideMemory {
-  Guide guide;
-  double certified = 0.0;  // by how much inside its region, in the last cycle; below 0: outside
-};
-
-/// The guides of an instrument. Made once for all cycles.
-struct GuideMemories {
-  /// Replaces the guides of a chain with `links` links. Throws Error, and changes nothing, as
-  /// InstrumentConstraint::set_guides does. `tolerance`: of distances. [length]
-  void set(std::vector<Guide> all, int links, double tolerance);
-
-  std::vector<GuideMemory> guides;
-  std::vector<GuideState> states;  // of the last cycle
-};
 
 /// The excess that a cycle allows each guide, and the proof that a motion does not exceed it: a
 /// region's excess is convex and no steeper than 1, so on a sub-interval of the motion it is at
@@ -39,16 +21,16 @@ class GuideWatch {
     std::size_t guide = 0;              // which is violated beyond, if that is not the end
   };
 
-  /// The motion must start at the positions of the joints. Both must outlive it.
-  GuideWatch(GuideMemories& memory, const CycleContext& context) noexcept
-      : memory_(memory), context_(context) {}
+  /// The trial motion must have begun the cycle. Both must outlive it.
+  GuideWatch(CycleMemory& memory, const CycleConstants& cycle) noexcept
+      : memory_(memory), cycle_(cycle) {}
 
   /// Measures all guides.
   void open() noexcept;
   /// Returns the number of guides.
   std::size_t size() const noexcept { return memory_.guides.size(); }
   /// Returns the state of each guide.
-  std::span<GuideState> states() noexcept { return memory_.states; }
+  std::span<GuideState> states() noexcept { return memory_.guide_states; }
   /// Returns true if some guide is outside its region by more than its band.
   bool is_recovering() const noexcept { return is_recovering_; }
   /// Returns true if that guide is.
@@ -62,9 +44,9 @@ class GuideWatch {
   /// motion must be farther in than its start.
   bool owes() const noexcept { return owes_; }
 
-  /// Returns true if the second-derivative bound of a motion allows its guide to end farther out
-  /// than it started, by more than its band, although the row pulls the guide back.
-  bool bends_by_more(const Row& row, std::span<const double> increment) const noexcept;
+  /// Returns true if a motion may bend so much that its guide ends farther out than it started, by
+  /// more than its band, although the row pulls the guide back.
+  bool may_leave_again(const Row& row, std::span<const double> increment) const noexcept;
 
   /// Takes a guide out of what is proved in this cycle: it contradicts the clearance from a mesh
   /// that moves.
@@ -72,7 +54,7 @@ class GuideWatch {
   /// Returns true if the guide was dropped.
   bool is_dropped(std::size_t guide) const noexcept { return is_dropped_[guide]; }
 
-  /// Proves the motion at hand for all guides, as far as possible.
+  /// Proves the trial motion for all guides, as far as possible.
   Obstacle judge() noexcept;
 
   /// Returns a row that limits a guide by the plane that touches its region at the guided point at
@@ -89,14 +71,11 @@ class GuideWatch {
   };
 
   Sample sample(std::size_t guide, int knot) noexcept;
-  int proven_until(std::size_t guide, int lo, const Sample& at_lo, int hi,
+  int proved_until(std::size_t guide, int lo, const Sample& at_lo, int hi,
                    const Sample& at_hi) noexcept;
-  const ChainState& chain_at(int knot) noexcept;
 
-  GuideMemories& memory_;
-  const CycleContext& context_;
-  ChainState chain_;
-  int knot_of_chain_ = 0;  // the knot that it was computed for; 0: unknown
+  CycleMemory& memory_;
+  const CycleConstants& cycle_;
   bool is_recovering_ = false;
   bool owes_ = false;
   std::array<double, Guide::most> allowed_{};  // excess of each in this cycle

@@ -6,9 +6,9 @@
 
 namespace keepout {
 
-IncrementBox::IncrementBox(const Chain& chain, double largest_position, double period,
+IncrementBox::IncrementBox(const Chain& chain, double largest_length, double period,
                            std::span<const double> q) noexcept
-    : chain_(chain), largest_position_(largest_position), q_(q) {
+    : chain_(chain), largest_length_(largest_length), q_(q) {
   for (int k = 1; k <= chain.size(); ++k) {
     const auto i = static_cast<std::size_t>(k - 1);
     const JointLimits& limits = chain.joint(k).limits;
@@ -25,14 +25,14 @@ bool IncrementBox::clip(JointVector& increment) const noexcept {
   bool is_too_far = false;
   for (int k = 1; k <= chain_.size(); ++k) {
     const auto i = static_cast<std::size_t>(k - 1);
-    const double far = largest_position(chain_, k, largest_position_);
-    const double lower = std::max(chain_.joint(k).limits.lower, -far);
-    const double upper = std::min(chain_.joint(k).limits.upper, far);
+    const double most = largest_position(chain_, k, largest_length_);
+    const double lower = std::max(chain_.joint(k).limits.lower, -most);
+    const double upper = std::min(chain_.joint(k).limits.upper, most);
     double& step = increment[i];
     step = std::clamp(step, low_[i], high_[i]);
     const double there = q_[i] + step;
     if (lower <= there && there <= upper) continue;
-    is_too_far = is_too_far || (step > 0.0 && there > far) || (step < 0.0 && there < -far);
+    is_too_far = is_too_far || (step > 0.0 && there > most) || (step < 0.0 && there < -most);
     // The sum rounds to beyond a limit. The excess is exact, so the step is shortened by it, or by
     // one last digit if the excess is lost in rounding.
     for (int again = 0; again < 4; ++again) {

@@ -16,13 +16,13 @@ namespace keepout {
 class IncrementBox {
  public:
   /// Returns the largest distance of joint k (1..n) from 0 that a cycle accepts, so that rounding
-  /// stays small: sixteen turns, or `largest_position` of a prismatic joint. [rad or length]
-  static double largest_position(const Chain& chain, int k, double largest_position) noexcept {
-    return chain.joint(k).kind == JointKind::prismatic ? largest_position : 100.0;
+  /// stays small: sixteen turns, or `largest_length` of a prismatic joint. [rad or length]
+  static double largest_position(const Chain& chain, int k, double largest_length) noexcept {
+    return chain.joint(k).kind == JointKind::prismatic ? largest_length : 100.0;
   }
 
   /// From q (n), in a cycle of `period` seconds. Chain and q must outlive it.
-  IncrementBox(const Chain& chain, double largest_position, double period,
+  IncrementBox(const Chain& chain, double largest_length, double period,
                std::span<const double> q) noexcept;
 
   /// Returns the least increments (n), at most 0: a joint beyond a limit may stay or return.
@@ -30,21 +30,22 @@ class IncrementBox {
   /// Returns the largest increments (n), at least 0.
   const JointVector& high() const noexcept { return high_; }
 
-  /// Returns which limit of a joint, counted from 0, bounds its increment upwards or downwards.
-  Limit limit(std::size_t joint, bool upwards) const noexcept {
-    return (upwards ? is_high_a_position_ : is_low_a_position_)[joint] ? Limit::joint_position
-                                                                       : Limit::joint_velocity;
+  /// Returns which limit of joint k (1..n) bounds its increment upwards or downwards.
+  Limit limit(int k, bool upwards) const noexcept {
+    const auto& is_position = upwards ? is_high_a_position_ : is_low_a_position_;
+    return is_position[static_cast<std::size_t>(k - 1)] ? Limit::joint_position
+                                                        : Limit::joint_velocity;
   }
   /// Returns true if a joint starts outside its position limits.
   bool starts_outside() const noexcept { return starts_outside_; }
 
   /// Clips an increment to the box. Returns true if a joint without limits would have moved beyond
-  /// largest_position_of(), which is a position limit too.
+  /// largest_position(), which is a position limit too.
   bool clip(JointVector& increment) const noexcept;
 
  private:
   const Chain& chain_;
-  double largest_position_;
+  double largest_length_;
   std::span<const double> q_;
   JointVector low_;
   JointVector high_;

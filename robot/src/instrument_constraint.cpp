@@ -53,10 +53,10 @@ struct InstrumentConstraint::State {
   /// options cannot be used with it.
   void put(MeshMemory mesh, std::size_t number) {
     const std::vector<MeshMemory>::iterator at =
-        memory.bodies.meshes.begin() + static_cast<std::ptrdiff_t>(number);
-    const bool is_new = at == memory.bodies.meshes.end();
+        memory.meshes.begin() + static_cast<std::ptrdiff_t>(number);
+    const bool is_new = at == memory.meshes.end();
     if (is_new) {
-      memory.bodies.meshes.push_back(std::move(mesh));
+      memory.meshes.push_back(std::move(mesh));
     } else {
       std::swap(*at, mesh);
     }
@@ -64,9 +64,9 @@ struct InstrumentConstraint::State {
       prepare();
     } catch (...) {
       if (is_new) {
-        memory.bodies.meshes.pop_back();
+        memory.meshes.pop_back();
       } else {
-        std::swap(memory.bodies.meshes[number], mesh);
+        std::swap(memory.meshes[number], mesh);
       }
       memory.prepare();
       throw;
@@ -78,26 +78,28 @@ struct InstrumentConstraint::State {
     memory.prepare();
     memory.require_usable(options);
     std::size_t looks = capacity.looks > 0 ? capacity.looks : Capacity::looks_of_a_walk;
-    for (const MeshMemory& each : memory.bodies.meshes) {
+    for (const MeshMemory& each : memory.meshes) {
       const SpatialIndex& index = each.neighborhood->index();
       looks = std::max(looks, Capacity::looks_or_default(capacity.looks, index));
     }
     memory.budget = Budget(looks);
   }
 
-  /// Starts a new work budget. Returns free, or why no cycle may start.
-  Status start(std::span<const double> q, bool is_input_valid) noexcept {
+  /// Renews the work budget. Returns free, or why no cycle may start.
+  Status renew_and_check(std::span<const double> q, bool is_input_valid) noexcept {
     memory.budget.renew();
     const Status status = check_start(memory, options, q);
     return is_ok(status) && !is_input_valid ? Status::invalid_input : status;
   }
 
-  /// Runs a cycle unless its start failed. Time passes in any case.
+  /// Runs a cycle for the task that `make_task` makes from the chain at its start, unless it may
+  /// not start. Meshes move in any case.
   template <class MakeTask>
-  InstrumentStep step(Status start, std::span<const double> q, MakeTask make_task) noexcept {
-    InstrumentStep result{.status = start};
-    if (is_ok(start)) {
-      JointCycle(memory, options, q, JointCycle::Meshes::moving).run(make_task(), result);
+  InstrumentStep step(std::span<const double> q, bool is_input_valid, MakeTask make_task) noexcept {
+    InstrumentStep result{.status = renew_and_check(q, is_input_valid)};
+    if (is_ok(result.status)) {
+      JointCycle cycle(memory, options, q, JointCycle::MeshMotion::predicted);
+      result = cycle.run(make_task(memory.trial_motion.chain_at_start()));
     }
     // Without a proved motion beside meshes that move, no clearance is certified.
     if (!result.ok() && memory.is_moving()) result.level = 0.0;
@@ -108,7 +110,7 @@ struct InstrumentConstraint::State {
   /// Moves the meshes by their velocities.
   void move_meshes() noexcept {
     if (!memory.is_moving()) return;
-    for (MeshMemory& mesh : memory.bodies.meshes) {
+    for (MeshMemory& mesh : memory.meshes) {
       mesh.pose.position += options.period * mesh.velocity.linear;
       const double turn = options.period * mesh.velocity.angular.norm();
       if (!(turn > 0.0)) continue;
@@ -146,24 +148,23 @@ InstrumentConstraint& InstrumentConstraint::operator=(InstrumentConstraint&&) no
 InstrumentConstraint::~InstrumentConstraint() = default;
 
 InstrumentStep InstrumentConstraint::step(std::span<const double> q,
-                                          const Twist& desired) noexcept {
-  return state_->step(state_->start(q, is_task(desired)), q, [&] {
-    ChainState chain;
-    state_->instrument.chain().forward_kinematics(q, chain);
-    return flange_task(chain, desired, state_->options);
+                                          const Twist& displacement) noexcept {
+  return state_->step(q, is_valid_task(displacement), [&](const ChainState& chain) {
+    return flange_task(chain, displacement, state_->options);
   });
 }
 
 InstrumentStep InstrumentConstraint::step(std::span<const double> q,
                                           std::span<const double> desired,
                                           std::span<const double> weights) noexcept {
-  return state_->step(state_->start(q, is_task(desired, weights, q.size())), q,
-                      [&] { return joint_task(desired, weights); });
+  return state_->step(q, is_valid_task(desired, weights, q.size()),
+                      [&](const ChainState&) { return joint_task(desired, weights); });
 }
 
 MotionProof InstrumentConstraint::prove(std::span<const double> q,
                                         std::span<const double> increment) noexcept {
-  const Status status = state_->start(q, are_positions(state_->memory, q, increment));
+  const Status status =
+      state_->renew_and_check(q, are_valid_positions(state_->memory, q, increment));
   if (!is_ok(status)) return {.status = status};
   return prove_in_parts(state_->memory, state_->options, q, increment);
 }
@@ -172,13 +173,13 @@ void InstrumentConstraint::forget() noexcept { state_->memory.forget(); }
 
 const Instrument& InstrumentConstraint::instrument() const noexcept { return state_->instrument; }
 std::size_t InstrumentConstraint::mesh_count() const noexcept {
-  return state_->memory.bodies.meshes.size();
+  return state_->memory.meshes.size();
 }
 const Mesh& InstrumentConstraint::mesh(std::size_t number) const noexcept {
-  return state_->memory.bodies.meshes[number].neighborhood->mesh();
+  return state_->memory.meshes[number].neighborhood->mesh();
 }
-const Pose& InstrumentConstraint::place_of(std::size_t mesh) const noexcept {
-  return state_->memory.bodies.meshes[mesh].pose;
+const Pose& InstrumentConstraint::place_of(std::size_t number) const noexcept {
+  return state_->memory.meshes[number].pose;
 }
 const InstrumentOptions& InstrumentConstraint::options() const noexcept { return state_->options; }
 
@@ -191,7 +192,7 @@ std::size_t InstrumentConstraint::add_mesh(std::shared_ptr<const Mesh> mesh,
                                            std::shared_ptr<const SpatialIndex> index,
                                            double margin) {
   State& state = *state_;
-  const std::size_t number = state.memory.bodies.meshes.size();
+  const std::size_t number = state.memory.meshes.size();
   if (number == InstrumentCapacity::most_meshes) {
     throw Error("an instrument is kept out of at most " +
                 std::to_string(InstrumentCapacity::most_meshes) + " meshes");
@@ -203,7 +204,7 @@ std::size_t InstrumentConstraint::add_mesh(std::shared_ptr<const Mesh> mesh,
   state.put({.neighborhood = std::move(neighborhood),
              .own_margin = margin,
              .is_watertight = is_closed,
-             .motion = RelativeMotion(state.instrument, state.memory.motion)},
+             .motion = RelativeMotion(state.instrument, state.memory.trial_motion)},
             number);
   return number;
 }
@@ -211,10 +212,10 @@ std::size_t InstrumentConstraint::add_mesh(std::shared_ptr<const Mesh> mesh,
 void InstrumentConstraint::follow(std::shared_ptr<const Mesh> moved,
                                   std::shared_ptr<const SpatialIndex> index, std::size_t number) {
   State& state = *state_;
-  if (number >= state.memory.bodies.meshes.size()) {
+  if (number >= state.memory.meshes.size()) {
     throw Error("there is no mesh of number " + std::to_string(number));
   }
-  const MeshMemory& old = state.memory.bodies.meshes[number];
+  const MeshMemory& old = state.memory.meshes[number];
   auto neighborhood =
       neighborhood_of(std::move(moved), std::move(index), state.capacity, state.memory.budget);
   const bool has_same_triangles =
@@ -224,20 +225,20 @@ void InstrumentConstraint::follow(std::shared_ptr<const Mesh> moved,
   state.put({.neighborhood = std::move(neighborhood),
              .own_margin = old.own_margin,
              .is_watertight = is_closed,
-             .motion = RelativeMotion(state.instrument, state.memory.motion),
+             .motion = RelativeMotion(state.instrument, state.memory.trial_motion),
              .pose = old.pose,
              .velocity = old.velocity,
-             .is_misplaced = old.is_misplaced},
+             .has_refused_pose = old.has_refused_pose},
             number);
 }
 
-Status InstrumentConstraint::place(std::size_t mesh, const Pose& pose,
+Status InstrumentConstraint::place(std::size_t number, const Pose& pose,
                                    const Twist& velocity) noexcept {
   CycleMemory& memory = state_->memory;
-  if (mesh >= memory.bodies.meshes.size()) return Status::invalid_input;
-  MeshMemory& placed = memory.bodies.meshes[mesh];
-  placed.is_misplaced = !is_placement(pose, velocity, memory.largest_position);
-  if (placed.is_misplaced) return Status::invalid_input;
+  if (number >= memory.meshes.size()) return Status::invalid_input;
+  MeshMemory& placed = memory.meshes[number];
+  placed.has_refused_pose = !is_valid_placement(pose, velocity, memory.largest_length);
+  if (placed.has_refused_pose) return Status::invalid_input;
   placed.pose = {pose.position, Eigen::Quaterniond(pose.rotation).normalized().matrix()};
   placed.velocity = velocity;
   memory.measure();
@@ -245,9 +246,7 @@ Status InstrumentConstraint::place(std::size_t mesh, const Pose& pose,
 }
 
 void InstrumentConstraint::set_guides(std::vector<Guide> guides) {
-  CycleMemory& memory = state_->memory;
-  memory.guides.set(std::move(guides), state_->instrument.chain().size(), memory.tolerance);
-  memory.forget_motion();
+  state_->memory.set_guides(std::move(guides));
 }
 
 double InstrumentConstraint::tolerance() const noexcept { return state_->memory.tolerance; }

@@ -5,78 +5,93 @@
 #include <cstddef>
 #include <span>
 
-#include "cycle_memory.h"
 #include "trial.h"
+#include "working_rows.h"
 
 namespace keepout {
 
 /// One cycle of an instrument: open, then solve, judge and add rows until a motion is proved, or
-/// cut it to the part that is proved; and refine it. Allocates nothing, throws nothing.
+/// cut it to the part that is proved; and refine it. Allocates nothing, throws nothing. The calls,
+/// in order:
 ///
-///     run -> open -> search -> search_fraction -> solve_and_judge -> solve, judge, add_rows
-///                                              -> refine
-///         -> cut -> report -> carry_out
+///     run
+///       open
+///       search, or beside meshes that move search_beside_moving
+///         search_fraction, of the task, then of less of it
+///           solve_and_judge: JointProblem::solve, judge, add_rows, and again
+///           refine
+///       cut
+///       report_guides, report_limits
+///       carry_out
 class JointCycle {
  public:
-  /// The meshes in a cycle: they stand still, or move with their velocities.
-  enum class Meshes : bool { still, moving };
+  /// The velocities of the meshes in a cycle: ignored, as if all stood still, or predicted.
+  enum class MeshMotion : bool { ignored, predicted };
 
   /// From q (n). The indices must be current. All must outlive it.
   JointCycle(CycleMemory& memory, const InstrumentOptions& options, std::span<const double> q,
-             Meshes meshes) noexcept;
+             MeshMotion mesh_motion) noexcept;
 
   /// Finds the increment for a task. Precondition: the task is finite. Beside a mesh that moves,
   /// all of a motion is proved or nothing: a part of it would not be safe.
-  void run(const JointTask& task, InstrumentStep& result) noexcept;
+  InstrumentStep run(const JointTask& task) noexcept;
 
-  /// Returns the fraction of a motion that is proved; status and distance go to the result. Ignores
-  /// the limits of the joints. Precondition: the increment is finite.
-  double prove(const JointVector& increment, InstrumentStep& result) noexcept;
+  /// Returns the share of a motion that is proved. Ignores the limits of the joints. Precondition:
+  /// the increment is finite.
+  MotionProof prove(const JointVector& increment) noexcept;
 
  private:
-  void open(InstrumentStep& result) noexcept;
-  void search(const JointTask& task, Trial& best, InstrumentStep& result) noexcept;
+  /// What the proof of a trial motion found. The obstacles of pairs are in CycleMemory::obstacles;
+  /// a pair that was not judged has none.
+  struct Judgement {
+    int knot = 0;                  // the motion is proved up to here
+    Status status = Status::free;  // or why the triangles near a pair are not known: knot is 0 then
+    GuideWatch::Obstacle guide = {};
+  };
+
+  PairWatch::Opening open() noexcept;
+  Status search(const JointTask& task, Trial& best) noexcept;
   bool search_fraction(const JointTask& task, double asked, Trial& best) noexcept;
-  bool solve_and_judge(const JointTask& task, const JointTask& part, Trial& best) noexcept;
-  SolveStatus solve(const JointTask& task, Trial& trial) noexcept;
-  void judge(Trial& trial) noexcept;
+  bool solve_and_judge(const JointTask& task, const JointTask& reduced, Trial& best) noexcept;
+  void set_trial(const JointVector& increment) noexcept;
+  Judgement judge(const JointVector& increment) noexcept;
   void forget_obstacles() noexcept;
-  void try_motion(const JointVector& increment) noexcept;
-  bool strays(const JointTask& task, Trial& trial) noexcept;
+  bool measure_flange(const JointTask& task, Trial& trial) noexcept;
   bool add_rows() noexcept;
-  void refine(const JointTask& task, const JointTask& part, Trial& best) noexcept;
+  Status refine(const JointTask& task, const JointTask& reduced, Trial& best) noexcept;
   void cut(Trial& best) noexcept;
   void carry_out(const Trial& best, InstrumentStep& result) noexcept;
+  static Status outcome(const Trial& best, double asked) noexcept;
   // Beside meshes that move (beside_moving.cpp).
-  void search_beside_moving(const JointTask& task, Trial& best, InstrumentStep& result) noexcept;
+  Status search_beside_moving(const JointTask& task, Trial& best) noexcept;
   void settle_immovable() noexcept;
   bool stand_still(const JointTask& task, Trial& best) noexcept;
   bool degrade(const JointTask& task, Trial& best) noexcept;
   void prefer_degraded(std::bitset<most_pairs>& pairs) const noexcept;
   bool degrade_conflict(const JointTask& task) noexcept;
-  void lower(std::size_t pair, double most, Status reason) noexcept;
-  double reachable_fraction(std::size_t pair) const noexcept;
+  void lower_level(std::size_t p, double most, Status reason) noexcept;
+  double reachable_level(std::size_t p) const noexcept;
   // The report (joint_report.cpp).
   void note_failure() noexcept;
   void note_guide(std::size_t guide) noexcept;
-  void report_limits(const Trial& best, InstrumentStep& result) noexcept;
-  void report_guides(const Trial& best, InstrumentStep& result) noexcept;
+  void note_end(Status status) noexcept;
+  void report_guides(const Trial& best, bool is_cut, InstrumentStep& result) noexcept;
+  void report_limits(const Trial& best, bool is_cut, InstrumentStep& result) noexcept;
 
-  bool is_recovering() const noexcept { return bodies_.is_recovering() || guides_.is_recovering(); }
-  bool is_spent() const noexcept { return context_.budget.is_spent(); }
+  bool is_recovering() const noexcept { return pairs_.is_recovering() || guides_.is_recovering(); }
+  bool is_spent() const noexcept { return memory_.budget.is_spent(); }
 
   CycleMemory& memory_;
-  CycleContext context_;
+  CycleConstants cycle_;
   IncrementBox box_;
-  BodyWatch bodies_;
+  PairWatch pairs_;
   GuideWatch guides_;
   WorkingRows rows_;
   JointProblem problem_;
-  // The obstacles to the last trial: of guides here, of pairs in CycleMemory::obstacles.
-  GuideWatch::Obstacle guide_obstacle_ = {};
+  Judgement judgement_ = {};             // of the last trial
   Status search_status_ = Status::free;  // why the last search ended without a proof; or free
   bool is_shortened_ = false;            // the last search was for a fraction of the task
-  bool has_strayed_ = false;             // a trial of the last search did: see strays
+  bool has_strayed_ = false;             // a trial of the last search did: see measure_flange
   Limits stopping_limits_ = {};          // the limits that ended searches
   GuideSet stopping_guides_ = {};        // the guides that ended searches
   int rounds_ = 0;

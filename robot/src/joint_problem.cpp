@@ -16,25 +16,20 @@ struct JointProblem::Stage {
   double recovery;    // the fraction of a body's retreat that is demanded; 0: no row demands motion
 
   static const Stage all[7];
-  static const Stage& softest() { return all[6]; }
-  static constexpr std::size_t holding = 2;
-  static constexpr std::size_t all_of_the_band = 3;
+  static constexpr std::size_t holding = 2;     // the first one that only holds guides
+  static constexpr std::size_t whole_band = 3;  // the first one that leaves no band unused
+  static constexpr std::size_t softest = 6;     // zero motion satisfies it beside still meshes
 };
 
-// Guides are relaxed first. The last stage allows zero motion beside meshes that stand still.
+// Guides are relaxed first.
 constexpr JointProblem::Stage JointProblem::Stage::all[7] = {
-    {Relaxation::none, 1.0, true, 1.0},      {Relaxation::guides, 0.5, true, 1.0},
-    {Relaxation::guides, 0.5, false, 1.0},   {Relaxation::guides, 0.0, false, 1.0},
-    {Relaxation::recovery, 0.0, false, 0.5}, {Relaxation::recovery, 0.0, false, 0.25},
-    {Relaxation::recovery, 0.0, false, 0.0}};
-
-ProblemMemory::ProblemMemory(Solver& its_solver, int joints, std::size_t rows)
-    : solver(its_solver) {
-  const auto n = static_cast<std::size_t>(joints);
-  matrix.resize((2 * n + rows) * n);
-  bounds.resize(2 * n + rows);
-  solver.reserve(joints, static_cast<int>(bounds.size()));
-}
+    {.relaxation = Relaxation::none, .unused = 1.0, .pulls_guides = true, .recovery = 1.0},
+    {.relaxation = Relaxation::guides, .unused = 0.5, .pulls_guides = true, .recovery = 1.0},
+    {.relaxation = Relaxation::guides, .unused = 0.5, .pulls_guides = false, .recovery = 1.0},
+    {.relaxation = Relaxation::guides, .unused = 0.0, .pulls_guides = false, .recovery = 1.0},
+    {.relaxation = Relaxation::recovery, .unused = 0.0, .pulls_guides = false, .recovery = 0.5},
+    {.relaxation = Relaxation::recovery, .unused = 0.0, .pulls_guides = false, .recovery = 0.25},
+    {.relaxation = Relaxation::recovery, .unused = 0.0, .pulls_guides = false, .recovery = 0.0}};
 
 Proposal JointProblem::solve(const JointTask& task, std::span<const Row> rows) noexcept {
   Solution solution;
@@ -48,16 +43,17 @@ Proposal JointProblem::solve(const JointTask& task, std::span<const Row> rows) n
   for (std::size_t i = 0; i < std::size(Stage::all); ++i) {
     const Stage& stage = Stage::all[i];
     if (stage.relaxation == Relaxation::guides && !guides_pull) continue;
-    if (guides_pull && i < relaxed_) continue;
-    proposal.status = solve_once(task, rows, stage, solution);
+    if (guides_pull && i < first_guide_stage_) continue;
+    proposal.status = solve_once(task, rows, stage, {}, solution);
     proposal.relaxation = stage.relaxation;
+    // Where no body is pulled back, these stages only drop the corrections of rows.
     if (stage.relaxation == Relaxation::recovery && !bodies_pull) {
       proposal.relaxation = guides_pull ? Relaxation::guides : Relaxation::none;
     }
     const bool is_solved = proposal.status == SolveStatus::optimal;
-    if (i < Stage::all_of_the_band && is_solved && guides_pull &&
-        is_far_fetched(task, rows, stage, Stage::all[Stage::all_of_the_band], solution)) {
-      relaxed_ = std::max(relaxed_, i + 1);
+    if (i < Stage::whole_band && is_solved && guides_pull &&
+        try_relaxed_instead(task, rows, stage, Stage::all[Stage::whole_band], solution)) {
+      first_guide_stage_ = std::max(first_guide_stage_, i + 1);
       continue;
     }
     if (is_solved || proposal.status == SolveStatus::ill_posed) break;
@@ -80,47 +76,49 @@ bool JointProblem::relax_guides(std::span<const Row> rows) noexcept {
   const bool is_any_pulled = std::any_of(rows.begin(), rows.end(), [](const Row& row) {
     return is_guide(row.owner) && row.bound > 0.0;
   });
-  if (!is_any_pulled || relaxed_ >= Stage::holding) return false;
-  ++relaxed_;
+  if (!is_any_pulled || first_guide_stage_ >= Stage::holding) return false;
+  ++first_guide_stage_;
   return true;
 }
 
 OwnerSet JointProblem::conflict(const JointTask& task, std::span<const Row> rows) noexcept {
   OwnerSet owners;
   for (const Row& row : rows) owners.set(row.owner);
+  OwnerSet left_out;
   Solution solution;
-  for (std::size_t owner = 0; owner < owners.size() && !context_.budget.is_spent(); ++owner) {
+  for (std::size_t owner = 0; owner < owners.size() && !memory_.budget.is_spent(); ++owner) {
     if (!owners[owner]) continue;
-    left_out_.set(owner);
-    const SolveStatus solved = solve_once(task, rows, Stage::softest(), solution);
-    if (solved == SolveStatus::optimal) left_out_.reset(owner);
+    left_out.set(owner);
+    const SolveStatus solved =
+        solve_once(task, rows, Stage::all[Stage::softest], left_out, solution);
+    if (solved == SolveStatus::optimal) left_out.reset(owner);
   }
-  owners &= ~left_out_;
-  left_out_.reset();
-  return owners;
+  return owners & ~left_out;
 }
 
 /// Notes the kinds of the rows that limit a solution, and their guides.
 void JointProblem::describe_active(std::span<const Row> rows, Proposal& proposal) const noexcept {
   for (const std::uint32_t number : proposal.active) {
     if (number < rows.size()) {
+      ++proposal.active_rows;
       const std::size_t owner = rows[number].owner;
       proposal.limits.add(is_guide(owner) ? Limit::guide : Limit::mesh);
       if (is_guide(owner)) proposal.guides.set(guide_of(owner));
     } else {
       const std::size_t side = box_rows_[number - rows.size()];
-      proposal.limits.add(box_.limit(side / 2, side % 2 == 1));
+      proposal.limits.add(box_.limit(static_cast<int>(side / 2) + 1, side % 2 == 1));
     }
   }
 }
 
-/// Returns true if pulling all guides back takes a motion that leaves one of them again, and that
-/// is much longer than to pull them back one by one, and than to relax them. The rows of guides
-/// that miss each other by little are nearly opposite: only a very long motion satisfies all of
-/// them. `solution` is the motion; it is lost if true is returned.
-bool JointProblem::is_far_fetched(const JointTask& task, std::span<const Row> rows,
-                                  const Stage& tried, const Stage& relaxed,
-                                  Solution& solution) noexcept {
+/// Tries a relaxed stage if the motion of the stage `tried` is unreasonably long: it leaves one of
+/// the guides again that it pulls back, and is much longer than to pull them back one by one. (Rows
+/// of guides that miss each other by little are nearly opposite: only a very long motion satisfies
+/// all of them.) Returns true if it is also much longer than the relaxed motion. `solution`: the
+/// motion; replaced if true is returned.
+bool JointProblem::try_relaxed_instead(const JointTask& task, std::span<const Row> rows,
+                                       const Stage& tried, const Stage& relaxed,
+                                       Solution& solution) noexcept {
   constexpr double most = 4.0;
   const auto n = static_cast<std::size_t>(task.joints);
   const auto length_of = [](const std::span<const double> u) {
@@ -135,13 +133,13 @@ bool JointProblem::is_far_fetched(const JointTask& task, std::span<const Row> ro
     double steepest2 = 0.0;
     for (std::size_t k = 0; k < n; ++k) steepest2 += std::pow(task.unit[k] * row.gradient[k], 2);
     if (steepest2 > 0.0) one_by_one += (row.bound + row.correction) / std::sqrt(steepest2);
-    bends_too_much = bends_too_much || guides_.bends_by_more(row, {increment.data(), n});
+    bends_too_much = bends_too_much || guides_.may_leave_again(row, {increment.data(), n});
   }
   const double length = length_of(solution.u);
   if (!bends_too_much || !(length > most * one_by_one)) return false;
-  const bool is_shorter = solve_once(task, rows, relaxed, solution) == SolveStatus::optimal &&
+  const bool is_shorter = solve_once(task, rows, relaxed, {}, solution) == SolveStatus::optimal &&
                           length > most * (one_by_one + length_of(solution.u));
-  if (!is_shorter) solve_once(task, rows, tried, solution);
+  if (!is_shorter) solve_once(task, rows, tried, {}, solution);
   return is_shorter;
 }
 
@@ -149,7 +147,7 @@ bool JointProblem::is_far_fetched(const JointTask& task, std::span<const Row> ro
 double JointProblem::body_bound(const Row& row, const Stage& stage) const noexcept {
   const double bound = (row.bound > 0.0 ? stage.recovery * row.bound : row.bound) + row.correction;
   return (stage.recovery > 0.0 ? bound : std::min(bound, 0.0)) - row.drift -
-         bodies_.degradation(row.owner);
+         pairs_.degradation(row.owner);
 }
 
 /// Like body_bound(), but for a guide's row. A relaxed guide outside its region is limited by the
@@ -167,13 +165,14 @@ double JointProblem::guide_bound(const Row& row, const Stage& stage) const noexc
 
 /// Solves the problem of one stage. The rows of owners that are left out become empty rows.
 SolveStatus JointProblem::solve_once(const JointTask& task, std::span<const Row> rows,
-                                     const Stage& stage, Solution& solution) noexcept {
+                                     const Stage& stage, const OwnerSet& left_out,
+                                     Solution& solution) noexcept {
   const auto n = static_cast<std::size_t>(task.joints);
   double* entry = memory_.matrix.data();
   std::size_t count = 0;
   for (const Row& row : rows) {
     double largest_entry = 0.0;
-    if (left_out_[row.owner]) {
+    if (left_out[row.owner]) {
       entry = std::fill_n(entry, n, 0.0);
       memory_.bounds[count++] = 0.0;
       continue;
@@ -185,7 +184,7 @@ SolveStatus JointProblem::solve_once(const JointTask& task, std::span<const Row>
     double least = is_guide(row.owner) ? guide_bound(row, stage) : body_bound(row, stage);
     // A row that no joint can change must not demand a motion; the certificate decides if it is
     // safe.
-    if (largest_entry <= context_.tolerance) least = std::min(least, 0.0);
+    if (largest_entry <= memory_.tolerance) least = std::min(least, 0.0);
     memory_.bounds[count++] = least;
   }
   std::size_t box_rows = 0;
@@ -200,15 +199,15 @@ SolveStatus JointProblem::solve_once(const JointTask& task, std::span<const Row>
       box_rows_[box_rows++] = static_cast<std::uint8_t>(2 * k + (sign > 0.0 ? 0 : 1));
     }
   }
-  const StepProblem problem{{task.jacobian.data(), task.rows, task.joints},
-                            {task.desired.data(), task.rows},
+  const StepProblem problem{{task.jacobian.data(), task.equations, task.joints},
+                            {task.desired.data(), task.equations},
                             {memory_.matrix.data(), static_cast<Eigen::Index>(count), task.joints},
                             {memory_.bounds.data(), static_cast<Eigen::Index>(count)},
                             task.damping};
   solution = {};
   const SolveStatus solved = memory_.solver.solve(problem, solution);
-  context_.budget.spend(4 + static_cast<std::size_t>(std::max(solution.iterations, 0)) *
-                                (2 + count / 4));
+  memory_.budget.spend(4 + static_cast<std::size_t>(std::max(solution.iterations, 0)) *
+                               (2 + count / 4));
   return solved;
 }
 

@@ -26,35 +26,24 @@ void JointCycle::note_failure() noexcept {
     }
     return;
   }
-  // A proof that the budget ended says nothing about its subject.
-  if (guide_obstacle_.knot < PointMotion::last_knot && !is_spent())
-    note_guide(guide_obstacle_.guide);
+  // If the budget ended, the obstacle is where the proof stopped, not what is in the way.
+  if (judgement_.guide.knot < PointMotion::last_knot && !is_spent())
+    note_guide(judgement_.guide.guide);
   for (const Certificate::Obstacle& obstacle : memory_.obstacles) {
     if (obstacle.triangle != nullptr) stopping_limits_.add(Limit::mesh);
   }
 }
 
-/// Reports the limits that kept the motion from being the commanded one.
-void JointCycle::report_limits(const Trial& best, InstrumentStep& result) noexcept {
-  if (result.status == Status::free) return;
-  Limits& limits = result.limits;
-  const auto ended = [&](Status status) {
-    return search_status_ == status || result.status == status;
-  };
-  if (result.status == Status::touching || result.status == Status::inside) limits.add(Limit::mesh);
-  if (ended(Status::over_capacity)) limits.add(Limit::capacity);
-  if (ended(Status::out_of_budget)) limits.add(Limit::budget);
-  limits.add(best.limits);
-  const bool is_cut = !is_ok(result.status) || is_shortened_ || best.fraction < 1.0;
-  if (!is_cut) return;
-  limits.add(stopping_limits_);
-  if (is_ok(result.status)) limits.add(Limit::truncated);
+/// Notes the kind of limit of a search or a proof that the budget or the capacity ended.
+void JointCycle::note_end(Status status) noexcept {
+  if (status == Status::over_capacity) stopping_limits_.add(Limit::capacity);
+  if (status == Status::out_of_budget) stopping_limits_.add(Limit::budget);
 }
 
-/// Reports which guides limit the motion, and which were relaxed.
-void JointCycle::report_guides(const Trial& best, InstrumentStep& result) noexcept {
+/// Reports which guides limit the motion, and which were relaxed. `is_cut`: the motion is not all
+/// of the one that was asked for, or there is none.
+void JointCycle::report_guides(const Trial& best, bool is_cut, InstrumentStep& result) noexcept {
   result.relaxation = best.relaxation;
-  const bool is_cut = !is_ok(result.status) || is_shortened_ || best.fraction < 1.0;
   for (std::size_t g = 0; g < guides_.size(); ++g) {
     GuideState& state = guides_.states()[g];
     state.limits = best.guides[g] || (is_cut && stopping_guides_[g]);
@@ -64,6 +53,19 @@ void JointCycle::report_guides(const Trial& best, InstrumentStep& result) noexce
       result.relaxation = Relaxation::guides;
     }
   }
+}
+
+/// Reports the limits that kept the motion from being the commanded one. `is_cut`: as above.
+void JointCycle::report_limits(const Trial& best, bool is_cut, InstrumentStep& result) noexcept {
+  const Status status = result.status;
+  if (status == Status::free) return;
+  Limits& limits = result.limits;
+  if (status == Status::touching || status == Status::inside) limits.add(Limit::mesh);
+  note_end(status);
+  limits.add(best.limits);
+  if (!is_cut) return;
+  limits.add(stopping_limits_);
+  if (is_ok(status)) limits.add(Limit::truncated);
 }
 
 }  // namespace keepout

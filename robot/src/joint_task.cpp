@@ -8,8 +8,8 @@
 namespace keepout {
 namespace {
 
-double length_of(const std::array<double, JointTask::most_rows>& v) noexcept {
-  return Eigen::Map<const Eigen::Vector<double, JointTask::most_rows>>(v.data()).norm();
+double length_of(const std::array<double, JointTask::most_equations>& v) noexcept {
+  return Eigen::Map<const Eigen::Vector<double, JointTask::most_equations>>(v.data()).norm();
 }
 
 }  // namespace
@@ -19,10 +19,10 @@ double JointTask::cost(const JointVector& increment) const noexcept {
   JointVector u;
   for (int k = 0; k < joints; ++k) u[static_cast<std::size_t>(k)] = in_units(increment, k);
   double sum = 0.0;
-  for (std::size_t row = 0; row < static_cast<std::size_t>(rows); ++row) {
+  for (std::size_t row = 0; row < static_cast<std::size_t>(equations); ++row) {
     double off = -desired[row];
     for (std::size_t k = 0; k < n; ++k) {
-      off += jacobian[k * static_cast<std::size_t>(rows) + row] * u[k];
+      off += jacobian[k * static_cast<std::size_t>(equations) + row] * u[k];
     }
     sum += off * off;
   }
@@ -31,19 +31,19 @@ double JointTask::cost(const JointVector& increment) const noexcept {
 }
 
 double JointTask::cost_of_share(const JointVector& increment, double share) const noexcept {
-  JointVector part = increment;
-  for (double& number : part) number *= share;
-  return cost(part);
+  JointVector cut = increment;
+  for (double& number : cut) number *= share;
+  return cost(cut);
 }
 
 double JointTask::best_share(const JointVector& increment, double most) const noexcept {
   // The cost of a share s is square s^2 - 2 gain s + cost(0).
   double square = 0.0;
   double gain = 0.0;
-  for (int row = 0; row < rows; ++row) {
+  for (int row = 0; row < equations; ++row) {
     double made = 0.0;
     for (int k = 0; k < joints; ++k) {
-      made += jacobian[static_cast<std::size_t>(k * rows + row)] * in_units(increment, k);
+      made += jacobian[static_cast<std::size_t>(k * equations + row)] * in_units(increment, k);
     }
     square += made * made;
     gain += made * desired[static_cast<std::size_t>(row)];
@@ -60,9 +60,9 @@ JointTask JointTask::damped() const noexcept {
   double largest2 = 0.0;  // of the columns of J
   for (int k = 0; k < joints; ++k) {
     double length2 = 0.0;
-    for (int row = 0; row < rows; ++row) {
-      const double part = jacobian[static_cast<std::size_t>(k * rows + row)];
-      length2 += part * part;
+    for (int row = 0; row < equations; ++row) {
+      const double entry = jacobian[static_cast<std::size_t>(k * equations + row)];
+      length2 += entry * entry;
     }
     largest2 = std::max(largest2, length2);
   }
@@ -79,12 +79,12 @@ double JointTask::linear_miss(const JointVector& increment, double share) const 
 double JointTask::true_miss(const Pose& from, const Pose& to) const noexcept {
   const Vec3 displacement = to.position - from.position;
   Vec3 turn = Vec3::Zero();
-  if (*turn_weight > 0.0) {
+  if (*orientation_weight > 0.0) {
     const Eigen::AngleAxisd turned(Mat3(to.rotation * from.rotation.transpose()));
-    turn = *turn_weight * turned.angle() * turned.axis();
+    turn = *orientation_weight * turned.angle() * turned.axis();
   }
   double sum = 0.0;
-  for (int row = 0; row < rows; ++row) {
+  for (int row = 0; row < equations; ++row) {
     const double made = row < 3 ? displacement[row] : turn[row - 3];
     const double off = made - desired[static_cast<std::size_t>(row)];
     sum += off * off;
@@ -104,47 +104,47 @@ double JointTask::damping_cost(const JointVector& increment, double share) const
 JointTask JointTask::scaled(double share) const noexcept {
   JointTask task = *this;
   for (double& number : task.desired) number *= share;
-  task.standing *= share;
+  task.miss_at_rest *= share;
   return task;
 }
 
-JointTask flange_task(const ChainState& chain, const Twist& desired,
+JointTask flange_task(const ChainState& chain, const Twist& displacement,
                       const InstrumentOptions& options) noexcept {
   const bool turns = options.orientation_weight > 0.0;
   // A prismatic joint's unit moves the flange as far as a radian of a turn is worth.
   const double length = turns ? options.orientation_weight : 1.0;
-  JointTask task{.rows = turns ? 6 : 3,
+  JointTask task{.equations = turns ? 6 : 3,
                  .joints = chain.size(),
                  .damping = options.damping,
-                 .turn_weight = options.orientation_weight};
+                 .orientation_weight = options.orientation_weight};
   const Vec3 tip = chain.flange().position;
-  const auto put = [&](int column, const Vec3& linear, const Vec3& angular) {
-    double* to = column < 0 ? task.desired.data() : task.jacobian.data() + column * task.rows;
+  const auto put = [&](double* to, const Vec3& linear, const Vec3& angular) {
     for (int axis = 0; axis < 3; ++axis) {
       to[axis] = linear[axis];
       if (turns) to[3 + axis] = options.orientation_weight * angular[axis];
     }
   };
-  put(-1, desired.linear, desired.angular);
+  put(task.desired.data(), displacement.linear, displacement.angular);
   for (int k = 1; k <= chain.size(); ++k) {
     const double unit = chain.turns(k) ? 1.0 : length;
     task.unit[static_cast<std::size_t>(k - 1)] = unit;
-    put(k - 1, unit * chain.linear(k, chain.size(), tip), chain.angular(k, chain.size()));
+    put(task.jacobian.data() + (k - 1) * task.equations, unit * chain.linear(k, chain.size(), tip),
+        chain.angular(k, chain.size()));
   }
-  task.standing = length_of(task.desired);
+  task.miss_at_rest = length_of(task.desired);
   return task;
 }
 
 JointTask joint_task(std::span<const double> desired, std::span<const double> weights) noexcept {
   const int n = static_cast<int>(desired.size());
-  JointTask task{.rows = n, .joints = n};
+  JointTask task{.equations = n, .joints = n};
   for (std::size_t k = 0; k < desired.size(); ++k) {
     const double weight = weights.empty() ? 1.0 : std::sqrt(weights[k]);
     task.unit[k] = 1.0;
     task.jacobian[k * desired.size() + k] = weight;
     task.desired[k] = weight * desired[k];
   }
-  task.standing = length_of(task.desired);
+  task.miss_at_rest = length_of(task.desired);
   return task;
 }
 

@@ -16,32 +16,35 @@ namespace keepout {
 /// What the joints are to achieve: min |J u - v|^2 + damping |u|^2, where u is dq with each joint
 /// in a unit of its own, so that a radian and a length are about as much: dq_k = unit_k u_k.
 struct JointTask {
-  static constexpr int most_rows = Chain::most_joints;
+  static constexpr int most_equations = Chain::most_joints;
 
-  std::array<double, most_rows * Chain::most_joints> jacobian{};  // J (rows, n), column by column
-  std::array<double, most_rows> desired{};                        // v (rows)
-  int rows = 0;
+  std::array<double, most_equations * Chain::most_joints>
+      jacobian{};                                // J (equations, n), column by column
+  std::array<double, most_equations> desired{};  // v (equations)
+  int equations = 0;
   int joints = 0;
   double damping = 0.0;
-  JointVector unit{};     // [rad or length]
-  double standing = 0.0;  // |v|: what zero motion misses
-  /// The weight of a turn of the flange [length/rad]; empty if the task is not one of the flange.
-  std::optional<double> turn_weight = std::nullopt;
+  JointVector unit{};         // [rad or length]
+  double miss_at_rest = 0.0;  // |v|: what zero motion misses, in the unit of v
+  /// InstrumentOptions::orientation_weight; empty if the task is not one of the flange.
+  /// [length/rad]
+  std::optional<double> orientation_weight = std::nullopt;
 
   /// Returns true if it is a task of the flange, and not of the joints.
-  bool is_of_flange() const noexcept { return turn_weight.has_value(); }
-  /// Returns the cost of an increment dq. [length^2]
+  bool is_of_flange() const noexcept { return orientation_weight.has_value(); }
+  /// Returns the cost of an increment dq, the minimized sum. [length^2; for a task of the joints
+  /// the square of their unit]
   double cost(const JointVector& increment) const noexcept;
-  /// Returns the cost of a fraction of an increment.
+  /// Returns the cost of a share of an increment.
   double cost_of_share(const JointVector& increment, double share) const noexcept;
-  /// Returns the fraction of an increment, at most `most`, that costs least: 0 if every fraction
-  /// costs more than zero motion.
+  /// Returns the share of an increment, at most `most`, that costs least: 0 if every share costs
+  /// more than zero motion.
   double best_share(const JointVector& increment, double most) const noexcept;
   /// Returns a joint's increment in its unit.
   double in_units(const JointVector& increment, int k) const noexcept {
     return increment[static_cast<std::size_t>(k)] / unit[static_cast<std::size_t>(k)];
   }
-  /// Returns the task for a fraction of what is desired.
+  /// Returns the task for a share of what is desired.
   JointTask scaled(double share) const noexcept;
   /// Returns the task with 16 times the damping, or with some damping if it has none.
   JointTask damped() const noexcept;
@@ -54,8 +57,8 @@ struct JointTask {
   double damping_cost(const JointVector& increment, double share) const noexcept;
 };
 
-/// Returns the task of moving the flange by a twist. Turns weigh options.orientation_weight.
-JointTask flange_task(const ChainState& chain, const Twist& desired,
+/// Returns the task of moving the flange by a displacement. Turns weigh options.orientation_weight.
+JointTask flange_task(const ChainState& chain, const Twist& displacement,
                       const InstrumentOptions& options) noexcept;
 
 /// Returns the task of moving the joints by dq (n), with weights (n), or with none.

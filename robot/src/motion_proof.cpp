@@ -10,38 +10,37 @@ MotionProof prove_in_parts(CycleMemory& memory, const InstrumentOptions& options
   const CycleMemory::Certified certified = memory.certified();
   InstrumentOptions unslowed = options;
   unslowed.slowing_within = 0.0;
-  constexpr double least_part = 1.0 / 64.0;
+  constexpr double least_span = 1.0 / 64.0;
   MotionProof proof{.status = Status::free};
-  double part = 1.0;
+  double span = 1.0;  // of a part of the motion
   while (proof.share < 1.0) {
     JointVector from{};
     JointVector motion{};
     for (std::size_t k = 0; k < q.size(); ++k) {
       from[k] = q[k] + proof.share * increment[k];
-      motion[k] = part * increment[k];
+      motion[k] = span * increment[k];
     }
     memory.budget.renew();
     memory.forget_motion();
     memory.forget_certified();
-    InstrumentStep result;
-    const double proven =
-        JointCycle(memory, unslowed, {from.data(), q.size()}, JointCycle::Meshes::still)
-            .prove(motion, result);
+    const MotionProof part =
+        JointCycle(memory, unslowed, {from.data(), q.size()}, JointCycle::MeshMotion::ignored)
+            .prove(motion);
     const bool was_too_much =
-        result.status == Status::over_capacity || result.status == Status::out_of_budget;
-    if (was_too_much && part > least_part) {
-      part *= 0.5;
+        part.status == Status::over_capacity || part.status == Status::out_of_budget;
+    if (was_too_much && span > least_span) {
+      span *= 0.5;
       continue;
     }
     // A later part that begins too close is certified for less than the first one.
-    if (proof.share > 0.0 && result.status == Status::recovering &&
+    if (proof.share > 0.0 && part.status == Status::recovering &&
         proof.status != Status::recovering) {
       break;
     }
-    if (proof.share == 0.0) proof.distance = result.distance;
-    if (proof.share == 0.0 || !is_ok(result.status)) proof.status = result.status;
-    proof.share += part * proven;
-    if (proven < 1.0 || result.status != Status::free) break;
+    if (proof.share == 0.0) proof.distance = part.distance;
+    if (proof.share == 0.0 || !is_ok(part.status)) proof.status = part.status;
+    proof.share += span * part.share;
+    if (part.share < 1.0 || part.status != Status::free) break;
   }
   memory.forget_motion();
   memory.set_certified(certified);

@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <span>
 
 #include "keepout/geometry/shapes.h"
 
@@ -25,7 +24,8 @@ struct alignas(64) NearBlock {
   }
 };
 
-/// A segment, and how near to it is near, as floats see it.
+/// The query of may_be_near: a segment and a distance in single precision, the distance enlarged by
+/// all rounding.
 struct NearScreen {
   /// `size`: no coordinate of the blocks is larger, from the same origin. [length]
   NearScreen(const Vec3& from, const Vec3& to, double distance, double size) noexcept;
@@ -36,9 +36,9 @@ struct NearScreen {
   float distance2;  // of the distance and all that rounding may have taken [length^2]
 };
 
-/// Which triangles of a block may be as near as that: a bit for each lane. The others are surely
-/// not: the plane across the way from the segment to their middle proves it. Of unused lanes the
-/// bits mean nothing. The same on every processor.
+/// Returns a bit for each lane of a block: set if the triangle may be within the distance of the
+/// segment. A plane across the shortest line from the segment to the middle of the triangle proves
+/// that others are not. Bits of unused lanes are meaningless. The same on every processor.
 std::uint32_t may_be_near(const NearBlock& block, const NearScreen& screen) noexcept;
 
 }  // namespace keepout

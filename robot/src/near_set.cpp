@@ -6,11 +6,10 @@
 #include <limits>
 
 #include "keepout/activation/facet.h"
+#include "keepout/robot/instrument.h"
 
 namespace keepout {
 namespace {
-
-constexpr double far = std::numeric_limits<double>::infinity();
 
 /// Returns a lower bound of the distance from a segment to a triangle, by the plane across the
 /// shortest line to the triangle's middle: may_be_near (near_blocks.h) in double precision.
@@ -48,8 +47,8 @@ NearSet::NearSet(std::size_t capacity, double beyond) : capacity_(capacity), bey
   blocks_.resize(capacity / NearBlock::lanes + 1);
   listed_.reserve(capacity);
   listed_in_.reserve(capacity);
-  core_.reserve(8);
-  now_.reserve(8);
+  core_.reserve(Instrument::most_points_of_a_body);
+  now_.reserve(Instrument::most_points_of_a_body);
   normals_.reserve(capacity);
 }
 
@@ -57,7 +56,6 @@ bool NearSet::gather(Neighborhood& near, std::span<const Vec3> core, double radi
                      Budget& budget) noexcept {
   forget();
   core_.assign(core.begin(), core.end());
-  ids_.clear();
   corners_.clear();
   normals_.clear();
   listed_in_.clear();
@@ -71,7 +69,7 @@ bool NearSet::gather(Neighborhood& near, std::span<const Vec3> core, double radi
   const Mesh& mesh = near.mesh();
   // Everything that matters is within the radius of the core.
   size_ = (to_ - from_).norm() + 2.0 * (radius + beyond_) + mesh.longest_edge();
-  const NearScreen screen = this->screen(radius);
+  const NearScreen screen = screen_within(radius);
   const std::span<const TriangleId> found = candidates.view();
   NearBlock block{};
   Triangle corners[NearBlock::lanes];
@@ -87,6 +85,7 @@ bool NearSet::gather(Neighborhood& near, std::span<const Vec3> core, double radi
       if (lane >= count) break;
       if (ids_.size() == capacity_) {
         budget.mark_overflow();
+        forget();
         return false;
       }
       blocks_[ids_.size() / NearBlock::lanes].set(ids_.size() % NearBlock::lanes, corners[lane],
@@ -102,7 +101,7 @@ bool NearSet::gather(Neighborhood& near, std::span<const Vec3> core, double radi
 }
 
 /// Returns the query for the triangles near the core of this listing.
-NearScreen NearSet::screen(double distance) const noexcept {
+NearScreen NearSet::screen_within(double distance) const noexcept {
   return {from_ - core_.front(), to_ - core_.front(), distance + beyond_, size_};
 }
 
@@ -112,13 +111,13 @@ void NearSet::start_listing(std::span<const Vec3> core) noexcept {
   to_ = core.size() > 1 ? core[1] : core.front();
   listed_.clear();
   ++listing_;
-  listed_below_ = -far;
+  listed_below_ = -std::numeric_limits<double>::infinity();
 }
 
 std::span<NearTriangle> NearSet::nearer_than(double distance, Budget& budget) noexcept {
   if (distance > listed_below_ && !ids_.empty()) {
     const auto old_count = static_cast<std::ptrdiff_t>(listed_.size());
-    const NearScreen screen = this->screen(distance);
+    const NearScreen screen = screen_within(distance);
     budget.spend(1 + ids_.size() / (4 * NearBlock::lanes));
     for (std::size_t first = 0; first < ids_.size(); first += NearBlock::lanes) {
       std::uint32_t lanes = may_be_near(blocks_[first / NearBlock::lanes], screen);
@@ -126,25 +125,25 @@ std::span<NearTriangle> NearSet::nearer_than(double distance, Budget& budget) no
         const std::size_t i = first + static_cast<std::size_t>(std::countr_zero(lanes));
         if (i >= ids_.size()) break;
         if (listed_in_[i] == listing_) continue;
-        const double least = std::max(least_distance(from_, to_, corners_[i]) - beyond_,
-                                      height_along(normals_[i], now_, corners_[i]));
-        if (!(least < distance)) continue;
+        const double at_least = std::max(least_distance(from_, to_, corners_[i]) - beyond_,
+                                         height_along(normals_[i], now_, corners_[i]));
+        if (!(at_least < distance)) continue;
         listed_in_[i] = listing_;
         listed_.push_back(
-            {.id = ids_[i], .least = least, .corners = &corners_[i], .normal = &normals_[i]});
+            {.id = ids_[i], .at_least = at_least, .corners = &corners_[i], .normal = &normals_[i]});
       }
     }
     budget.spend(listed_.size() - static_cast<std::size_t>(old_count));
     // All triangles listed before are nearer than these.
     std::sort(listed_.begin() + old_count, listed_.end(),
               [](const NearTriangle& x, const NearTriangle& y) {
-                return x.least < y.least || (x.least == y.least && x.id < y.id);
+                return x.at_least < y.at_least || (x.at_least == y.at_least && x.id < y.id);
               });
     listed_below_ = distance;
   }
   const auto end =
       std::partition_point(listed_.begin(), listed_.end(),
-                           [&](const NearTriangle& one) { return one.least < distance; });
+                           [&](const NearTriangle& one) { return one.at_least < distance; });
   return {listed_.data(), static_cast<std::size_t>(end - listed_.begin())};
 }
 

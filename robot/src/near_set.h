@@ -15,7 +15,7 @@ namespace keepout {
 /// A triangle near a body in a cycle, and the gap between them.
 struct NearTriangle {
   TriangleId id;
-  double least;              // a lower bound of its distance at the start of the cycle [length]
+  double at_least;           // a lower bound of its distance at the start of the cycle [length]
   const Triangle* corners;   // valid until triangles are gathered again
   Vec3* normal;              // of the last plane between it and the core; zero if there is none
   bool is_measured = false;  // at_start is known
@@ -25,6 +25,9 @@ struct NearTriangle {
 /// The triangles around one body, which stay from cycle to cycle: while no point of the body has
 /// moved farther than the padding of the search, no other triangle is in reach. The engine, not the
 /// index, decides which triangles are listed, so every index gives the same list.
+///
+/// A listing holds those that are near the core in one cycle. It is extended on demand; the
+/// triangles listed before keep their place.
 class NearSet {
  public:
   /// For a body whose core is within `beyond` of the segment of its first two points. Allocates
@@ -36,14 +39,18 @@ class NearSet {
   [[nodiscard]] bool gather(Neighborhood& near, std::span<const Vec3> core, double radius,
                             Budget& budget) noexcept;
 
-  /// Forgets all triangles.
-  void forget() noexcept { radius_ = -1.0; }
+  /// Forgets all triangles, and empties the listing.
+  void forget() noexcept {
+    radius_ = -1.0;
+    ids_.clear();
+    listed_.clear();
+  }
 
-  /// Returns the distance from core() within which all triangles are known; below 0 if none are.
-  /// [length]
+  /// Returns the distance from gathered_core() within which all triangles are known; below 0 if
+  /// none are. [length]
   double radius() const noexcept { return radius_; }
   /// Returns the positions of the core's points when triangles were gathered. [length]
-  std::span<const Vec3> core() const noexcept { return core_; }
+  std::span<const Vec3> gathered_core() const noexcept { return core_; }
   /// Returns the number of triangles.
   std::size_t size() const noexcept { return ids_.size(); }
 
@@ -56,7 +63,7 @@ class NearSet {
   void measure(NearTriangle& triangle, Budget& budget) noexcept;
 
  private:
-  NearScreen screen(double distance) const noexcept;
+  NearScreen screen_within(double distance) const noexcept;
 
   std::size_t capacity_;
   double beyond_;

@@ -2,19 +2,16 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <memory>
-#include <vector>
 
-#include "keepout/buffer.h"
 #include "keepout/geometry/pose.h"
 #include "keepout/geometry/twist.h"
 #include "keepout/index/query.h"
 #include "keepout/robot/instrument_options.h"
-#include "keepout/robot/instrument_step.h"
 #include "keepout/step/side_memory.h"
 #include "near_set.h"
 #include "relative_motion.h"
-#include "row.h"
 
 namespace keepout {
 
@@ -26,7 +23,7 @@ struct MeshMemory {
   RelativeMotion motion;                           // of the instrument, in the mesh's frame
   Pose pose = {};                                  // at the start of the next cycle
   Twist velocity = {};                             // [length/s], [rad/s]
-  bool is_misplaced = false;                       // its last pose was rejected
+  bool has_refused_pose = false;                   // the last call of place() was refused
   SideMemory<Instrument::most_points> sides = {};  // of all points, in its frame
 
   double margin(const InstrumentOptions& options) const noexcept {
@@ -34,30 +31,24 @@ struct MeshMemory {
   }
 };
 
-/// A body beside a mesh, and what the cycles remember of the pair.
+/// A body beside a mesh, and what the cycles remember of the pair. Symbols in parentheses are those
+/// of docs/joint-space-step.md.
 struct PairMemory {
   std::size_t body;
   std::size_t mesh;
   NearSet triangles;
   double displacement = 0.0;  // the largest of its points on the last trial; predicts the next
   double padding = 0.0;       // of the search for triangles, beyond what is needed [length]
-  /// The clearance that the last cycle certified. In a cycle, from BodyWatch::open on, the one that
-  /// this cycle certifies unless close() lowers it. [length]
-  double certified = 0.0;
+  /// The clearance that the last cycle certified (G). In a cycle, from PairWatch::open on, the
+  /// certified clearance of this cycle (F), unless remember_clearances() lowers it. [length]
+  double certified = -std::numeric_limits<double>::infinity();
   bool may_have_crossed = false;  // no clearance was certified: the body's side must be found
   // Of this cycle.
-  double full_clearance = 0.0;      // to be certified while it is not degraded [length]
-  double row_margin = 0.0;          // the margin that rows demand, beyond the radius [length]
-  double clearance_fraction = 1.0;  // of the clearance that is to be certified
-  bool is_dropped = false;          // nothing is certified: no motion could be proved for the pair
-  bool is_settled = false;          // no joint moves the body, and its proof is complete
-};
-
-/// The pairs of bodies and meshes. Made once for all cycles of an instrument.
-struct PairMemories {
-  std::vector<MeshMemory> meshes;
-  std::vector<PairMemory> pairs;                   // all bodies with the first mesh, and so on
-  Buffer<DegradedClearance> degraded{most_pairs};  // of the last cycle
+  double full_demand = 0.0;  // the clearance to be certified at level 1 (F* there) [length]
+  double row_margin = 0.0;   // the margin that rows demand, beyond the radius [length]
+  double level = 1.0;        // the fraction of the full demand that is to be certified
+  bool is_dropped = false;   // nothing is certified: no motion could be proved for the pair
+  bool is_settled = false;   // no joint moves the body, and its proof is complete
 };
 
 }  // namespace keepout

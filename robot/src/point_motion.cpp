@@ -15,7 +15,7 @@ PointMotion::PointMotion(const Instrument& instrument, Budget& budget)
   straight_.fill(Vec3::Zero());
 }
 
-void PointMotion::start(std::span<const double> q) noexcept {
+void PointMotion::begin_cycle(std::span<const double> q) noexcept {
   ++number_;
   std::copy(q.begin(), q.end(), q_.begin());
   budget_->spend(work_of_kinematics);
@@ -23,7 +23,7 @@ void PointMotion::start(std::span<const double> q) noexcept {
   fill(start_, positions_[0]);
 }
 
-void PointMotion::move(const JointVector& increment, CertifiedMotion which) noexcept {
+void PointMotion::set_trial(const JointVector& increment, CertifiedMotion which) noexcept {
   ++number_;
   increment_ = increment;
   which_ = which;
@@ -47,8 +47,8 @@ void PointMotion::move(const JointVector& increment, CertifiedMotion which) noex
 
 const Vec3* PointMotion::points_at(int knot) noexcept {
   Positions& there = positions_[static_cast<std::size_t>(knot)];
-  if (knot == 0 || there.motion == number_) return there.points.data();
-  there.motion = number_;
+  if (knot == 0 || there.motion_number == number_) return there.points.data();
+  there.motion_number = number_;
   const double fraction = static_cast<double>(knot) / last_knot;
   if (which_ == CertifiedMotion::linearised) {
     for (std::size_t p = 0; p < instrument_->points().size(); ++p) {
@@ -56,32 +56,29 @@ const Vec3* PointMotion::points_at(int knot) noexcept {
     }
     return there.points.data();
   }
-  fill(chain_at(fraction), there);
+  fill(chain_at_fraction(fraction), there);
   return there.points.data();
 }
 
-Pose PointMotion::flange_at(double fraction) noexcept { return chain_at(fraction).flange(); }
+Pose PointMotion::flange_at(double fraction) noexcept {
+  return chain_at_fraction(fraction).flange();
+}
+
+const ChainState& PointMotion::chain_at(int knot) noexcept {
+  return knot == 0 ? start_ : chain_at_fraction(static_cast<double>(knot) / last_knot);
+}
 
 /// Returns the chain at a fraction of the motion; computes it unless it is the last one computed.
-const ChainState& PointMotion::chain_at(double fraction) noexcept {
-  if (number_of_state_ != number_ || fraction_of_state_ != fraction) {
-    budget_->spend(work_of_kinematics);
-    forward_kinematics(fraction, state_);
-    number_of_state_ = number_;
-    fraction_of_state_ = fraction;
-  }
-  return state_;
-}
-
-void PointMotion::chain_at(int knot, ChainState& state) const noexcept {
-  forward_kinematics(static_cast<double>(knot) / last_knot, state);
-}
-
-void PointMotion::forward_kinematics(double fraction, ChainState& state) const noexcept {
+const ChainState& PointMotion::chain_at_fraction(double fraction) noexcept {
+  if (number_of_state_ == number_ && fraction_of_state_ == fraction) return state_;
+  budget_->spend(work_of_kinematics);
   const auto n = static_cast<std::size_t>(instrument_->chain().size());
   JointVector q;
   for (std::size_t k = 0; k < n; ++k) q[k] = q_[k] + fraction * increment_[k];
-  instrument_->chain().forward_kinematics({q.data(), n}, state);
+  instrument_->chain().forward_kinematics({q.data(), n}, state_);
+  number_of_state_ = number_;
+  fraction_of_state_ = fraction;
+  return state_;
 }
 
 void PointMotion::fill(const ChainState& state, Positions& positions) const noexcept {

@@ -18,7 +18,7 @@ namespace keepout {
 using JointVector = std::array<double, Chain::most_joints>;
 
 /// The positions of the points of a body's core. [length]
-using Core = std::array<Vec3, Instrument::most_points_of_a_body>;
+using CorePositions = std::array<Vec3, Instrument::most_points_of_a_body>;
 
 /// The motion of an instrument's points while the joints move by an increment: their positions at
 /// the knots of a grid, fractions 0, 1/64, ..., 1 of the motion, and bounds of the motion between
@@ -31,17 +31,17 @@ class PointMotion {
   /// The positions of all points at a knot.
   struct Positions {
     std::array<Vec3, Instrument::most_points> points;
-    std::uint64_t motion = 0;  // the number of the motion; 0: not computed yet
+    std::uint64_t motion_number = 0;  // of the motion that they are of; 0: not computed yet
   };
 
   /// Both must outlive it.
   PointMotion(const Instrument& instrument, Budget& budget);
 
-  /// Starts a cycle, with the joints at q (n).
-  void start(std::span<const double> q) noexcept;
+  /// Begins a cycle, with the joints at q (n).
+  void begin_cycle(std::span<const double> q) noexcept;
 
-  /// Tries another motion from there: dq.
-  void move(const JointVector& increment, CertifiedMotion which) noexcept;
+  /// Sets the motion from there: dq.
+  void set_trial(const JointVector& increment, CertifiedMotion which) noexcept;
 
   /// Returns the motion: dq.
   const JointVector& increment() const noexcept { return increment_; }
@@ -52,8 +52,9 @@ class PointMotion {
   const Vec3* points_at_start() const noexcept { return positions_[0].points.data(); }
   /// Returns the chain at the start of the cycle.
   const ChainState& chain_at_start() const noexcept { return start_; }
-  /// Computes the chain at a knot.
-  void chain_at(int knot, ChainState& state) const noexcept;
+  /// Returns the chain at a knot. Valid until it is asked for at another one, or a pose or points
+  /// are.
+  const ChainState& chain_at(int knot) noexcept;
   /// Returns the pose of the flange at a fraction of the motion, in [0, 1].
   Pose flange_at(double fraction) noexcept;
 
@@ -63,8 +64,7 @@ class PointMotion {
   std::uint64_t number() const noexcept { return number_; }
 
  private:
-  void forward_kinematics(double fraction, ChainState& state) const noexcept;
-  const ChainState& chain_at(double fraction) noexcept;
+  const ChainState& chain_at_fraction(double fraction) noexcept;
   void fill(const ChainState& state, Positions& positions) const noexcept;
 
   const Instrument* instrument_;

@@ -9,23 +9,23 @@ namespace keepout {
 RelativeMotion::RelativeMotion(const Instrument& instrument, PointMotion& motion)
     : instrument_(&instrument), joint_motion_(&motion), positions_(PointMotion::last_knot + 1) {}
 
-void RelativeMotion::start(const Pose& mesh, const Twist& displacement) noexcept {
-  mesh_ = mesh;
+void RelativeMotion::begin_cycle(const Pose& mesh, const Twist& displacement) noexcept {
+  pose_ = mesh;
   displacement_ = displacement;
   turn_ = displacement.angular.norm();
   axis_ = turn_ > 0.0 ? Vec3(displacement.angular / turn_) : Vec3::Zero();
-  is_at_home_ = mesh.position.isZero(0.0) && mesh.rotation == Mat3::Identity() &&
-                displacement.linear.isZero(0.0) && turn_ == 0.0;
-  if (is_at_home_) return;
+  is_world_frame_ = mesh.position.isZero(0.0) && mesh.rotation == Mat3::Identity() &&
+                    displacement.linear.isZero(0.0) && turn_ == 0.0;
+  if (is_world_frame_) return;
   const std::size_t count = instrument_->points().size();
   for (std::size_t p = 0; p < count; ++p) {
     positions_[0].points[p] = in_mesh(joint_motion_->points_at_start()[p], 0);
   }
 }
 
-void RelativeMotion::move() noexcept {
+void RelativeMotion::update_bounds() noexcept {
   for (std::size_t p = 0; p < instrument_->points().size(); ++p) {
-    bounds_[p] = is_at_home_
+    bounds_[p] = is_world_frame_
                      ? joint_motion_->bounds(p)
                      : with_mesh(joint_motion_->bounds(p), joint_motion_->points_at_start()[p]);
   }
@@ -34,40 +34,41 @@ void RelativeMotion::move() noexcept {
 MotionBounds RelativeMotion::with_mesh(const MotionBounds& own, const Vec3& at) const noexcept {
   MotionBounds bounds = own;
   bounds.slide(displacement_.linear.norm());
-  bounds.turn(axis_.cross(at - mesh_.position).norm(), turn_);
+  bounds.turn(axis_.cross(at - pose_.position).norm(), turn_);
   return bounds;
 }
 
-Pose RelativeMotion::mesh_at(int knot) const noexcept {
+Pose RelativeMotion::pose_at(int knot) const noexcept {
   const double share = static_cast<double>(knot) / PointMotion::last_knot;
-  Pose pose = mesh_;
+  Pose pose = pose_;
   pose.position += share * displacement_.linear;
   if (turn_ > 0.0 && knot > 0) {
-    pose.rotation = Eigen::AngleAxisd(share * turn_, axis_).toRotationMatrix() * mesh_.rotation;
+    pose.rotation = Eigen::AngleAxisd(share * turn_, axis_).toRotationMatrix() * pose_.rotation;
   }
   return pose;
 }
 
 Vec3 RelativeMotion::in_mesh(const Vec3& position, int knot) const noexcept {
-  if (is_at_home_) return position;
-  const Pose mesh = mesh_at(knot);
+  if (is_world_frame_) return position;
+  const Pose mesh = pose_at(knot);
   return mesh.rotation.transpose() * (position - mesh.position);
 }
 
 const Vec3* RelativeMotion::points_in_mesh(int knot) noexcept {
-  if (is_at_home_) return joint_motion_->points_at(knot);
+  if (is_world_frame_) return joint_motion_->points_at(knot);
   PointMotion::Positions& there = positions_[static_cast<std::size_t>(knot)];
-  if (knot == 0 || there.motion == joint_motion_->number()) return there.points.data();
-  there.motion = joint_motion_->number();
+  if (knot == 0 || there.motion_number == joint_motion_->number()) return there.points.data();
+  there.motion_number = joint_motion_->number();
   const Vec3* in_world = joint_motion_->points_at(knot);
-  const Pose mesh = mesh_at(knot);
+  const Pose mesh = pose_at(knot);
   for (std::size_t p = 0; p < instrument_->points().size(); ++p) {
     there.points[p] = mesh.rotation.transpose() * (in_world[p] - mesh.position);
   }
   return there.points.data();
 }
 
-std::span<const Vec3> RelativeMotion::core(std::size_t body, int knot, Core& core) noexcept {
+std::span<const Vec3> RelativeMotion::core_at(std::size_t body, int knot,
+                                              CorePositions& core) noexcept {
   const Vec3* positions = points_in_mesh(knot);
   const std::span<const std::uint8_t> points = instrument_->points_of(body);
   for (std::size_t i = 0; i < points.size(); ++i) core[i] = positions[points[i]];
@@ -84,7 +85,7 @@ double RelativeMotion::largest_displacement(std::size_t body) noexcept {
   return most;
 }
 
-double RelativeMotion::drift(std::size_t body) noexcept {
+double RelativeMotion::mesh_displacement_bound(std::size_t body) noexcept {
   if (!is_moving()) return 0.0;
   double most = 0.0;
   for (const std::uint8_t p : instrument_->points_of(body)) {

@@ -23,29 +23,29 @@ class RelativeMotion {
   /// `motion`: of the points in the world; it must outlive this one.
   RelativeMotion(const Instrument& instrument, PointMotion& motion);
 
-  /// Starts a cycle, after `motion` has started, with the pose of the mesh and its displacement in
+  /// Begins a cycle, after `motion` has begun it, with the pose of the mesh and its displacement in
   /// all of the cycle. [length], [rad]
-  void start(const Pose& mesh, const Twist& displacement) noexcept;
-  /// Follows another motion of the points; without it, their bounds are those of the last one.
-  void move() noexcept;
+  void begin_cycle(const Pose& mesh, const Twist& displacement) noexcept;
+  /// Updates the bounds of the points' motion. Call it after each PointMotion::set_trial.
+  void update_bounds() noexcept;
 
   /// Returns the pose of the mesh at a knot.
-  Pose mesh_at(int knot) const noexcept;
+  Pose pose_at(int knot) const noexcept;
   /// Returns a position of the world in the frame of the mesh at a knot. [length]
   Vec3 in_mesh(const Vec3& position, int knot) const noexcept;
   /// Returns a direction of the mesh's frame at the start of the cycle, in the world.
-  Vec3 direction_in_world(const Vec3& direction) const noexcept {
-    return is_at_home_ ? direction : Vec3(mesh_.rotation * direction);
+  Vec3 direction_in_world_at_start(const Vec3& direction) const noexcept {
+    return is_world_frame_ ? direction : Vec3(pose_.rotation * direction);
   }
-  /// Like direction_in_world(), but for a position. [length]
-  Vec3 in_world(const Vec3& position) const noexcept {
-    return is_at_home_ ? position : mesh_ * position;
+  /// Like direction_in_world_at_start(), but for a position. [length]
+  Vec3 in_world_at_start(const Vec3& position) const noexcept {
+    return is_world_frame_ ? position : pose_ * position;
   }
 
   /// Returns the positions of all points at a knot, by their number. [length]
   const Vec3* points_in_mesh(int knot) noexcept;
   /// Copies the positions of one body's points at a knot into `core`, and returns them. [length]
-  std::span<const Vec3> core(std::size_t body, int knot, Core& core) noexcept;
+  std::span<const Vec3> core_at(std::size_t body, int knot, CorePositions& core) noexcept;
   /// Returns the positions of all points at the start of the cycle. [length]
   const Vec3* start_in_mesh() noexcept { return points_in_mesh(0); }
   /// Returns a bound of a point's second derivative by the fraction of the motion. [length]
@@ -56,7 +56,7 @@ class RelativeMotion {
   /// Returns true if the mesh moves in the cycle.
   bool is_moving() const noexcept { return turn_ > 0.0 || !displacement_.linear.isZero(0.0); }
   /// Returns a bound of the displacement of a body by the motion of the mesh alone. [length]
-  double drift(std::size_t body) noexcept;
+  double mesh_displacement_bound(std::size_t body) noexcept;
 
  private:
   /// Returns the bounds of a point's own motion plus that of the mesh. `at`: the point at the
@@ -65,11 +65,11 @@ class RelativeMotion {
 
   const Instrument* instrument_;
   PointMotion* joint_motion_;
-  Pose mesh_ = {};
-  Twist displacement_ = {};   // of the mesh in the cycle
-  double turn_ = 0.0;         // |displacement_.angular| [rad]
-  Vec3 axis_ = Vec3::Zero();  // of the turn: unit
-  bool is_at_home_ = true;    // the mesh stands still, and its frame is that of the world
+  Pose pose_ = {};              // of the mesh at the start of the cycle
+  Twist displacement_ = {};     // of the mesh in the cycle
+  double turn_ = 0.0;           // |displacement_.angular| [rad]
+  Vec3 axis_ = Vec3::Zero();    // of the turn: unit
+  bool is_world_frame_ = true;  // the mesh stands still, and its frame is that of the world
   std::array<MotionBounds, Instrument::most_points> bounds_{};
   std::vector<PointMotion::Positions> positions_;  // (last_knot + 1)
 };

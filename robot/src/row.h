@@ -5,13 +5,10 @@
 #include <cstdint>
 #include <optional>
 
-#include "cycle_context.h"
-#include "near_set.h"
-#include "relative_motion.h"
+#include "keepout/robot/instrument_options.h"
+#include "point_motion.h"
 
 namespace keepout {
-
-class BodyWatch;
 
 /// The largest number of pairs of a body and a mesh.
 constexpr std::size_t most_pairs = Instrument::most_bodies * InstrumentCapacity::most_meshes;
@@ -32,7 +29,8 @@ struct CorePoint {
 
 /// A linear constraint on the joints' increment that limits a point of a body by a plane with one
 /// triangle behind it, or a guide by a plane that touches its region:
-/// gradient . dq >= bound + correction - drift. A row only proposes; the certificate decides.
+/// gradient . dq >= bound + correction - drift. JointProblem relaxes the bound if need be. A row
+/// only proposes; the certificate decides.
 struct Row {
   std::size_t owner;    // a pair or a guide: see owner_of_guide
   TriangleId triangle;  // no_triangle for a guide
@@ -47,37 +45,6 @@ struct Row {
   double drift = 0.0;          // of the height in the cycle, by the mesh's own motion [length]
   double correction = 0.0;     // for the curvature of earlier trials [length]
   int corrections = 0;
-};
-
-/// Makes the rows of bodies, with gradients at the start of the cycle.
-class RowMaker {
- public:
-  /// Both must outlive it.
-  RowMaker(const BodyWatch& bodies, const CycleContext& context) noexcept
-      : bodies_(bodies), context_(context) {}
-
-  /// Returns a row for the body's point that is nearest to a triangle at a knot of the motion. The
-  /// row limits that point alone, so that the body may roll and pivot over the triangle. Its normal
-  /// is that of the gap at the knot, turned back as far as the point's position at the start
-  /// requires. Returns no row if body and triangle touch.
-  std::optional<Row> at_contact(std::size_t pair, const NearTriangle& triangle, int knot) noexcept;
-
-  /// Returns a row for one point of the body's core, whose plane is valid for all of them. Returns
-  /// no row if body and triangle touch.
-  std::optional<Row> at_vertex(std::size_t pair, std::uint8_t vertex, const NearTriangle& triangle,
-                               int knot) noexcept;
-
-  /// Returns the height of the row's point over its plane at the end of the motion. [length]
-  double height_at_end(const Row& row) noexcept;
-
- private:
-  Gap gap_at(std::size_t pair, const Triangle& corners, int knot) noexcept;
-  CorePoint core_point(std::size_t pair, const Vec3& contact, int knot) noexcept;
-  Vec3 position_of(std::size_t pair, const CorePoint& point, int knot) noexcept;
-  void finish(Row& row, const Vec3& at, const Triangle& corners) const noexcept;
-
-  const BodyWatch& bodies_;
-  const CycleContext& context_;
 };
 
 }  // namespace keepout

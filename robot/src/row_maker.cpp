@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "row_maker.h"
+
 #include <algorithm>
 #include <limits>
 
-#include "body_watch.h"
 #include "keepout/activation/facet.h"
 #include "keepout/geometry/closest_point.h"
-#include "row.h"
 
 namespace keepout {
 namespace {
@@ -44,29 +44,28 @@ std::optional<Row> RowMaker::at_contact(std::size_t pair, const NearTriangle& tr
   const Vec3 at = position_of(pair, point, 0);
   const ClosestPoint closest = closest_point(corners, at);
   if (!(closest.distance > 0.0)) return std::nullopt;
-  const double offset =
-      std::min(bodies_.radius(pair) + bodies_.row_margin(pair), closest.distance) -
-      context_.tolerance;
+  const double needed_height =
+      std::min(pairs_.radius(pair) + pairs_.row_margin(pair), closest.distance) - memory_.tolerance;
   const Vec3 straight = -closest.offset / closest.distance;
   const Vec3 normal = turned_back(straight, there.normal, [&](const Vec3& n) {
-    return n.dot(at) - support(corners, n) >= offset;
+    return n.dot(at) - support(corners, n) >= needed_height;
   });
   Row row{.owner = pair, .triangle = triangle.id, .point = point, .normal = normal};
   finish(row, at, corners);
-  const std::span<const std::uint8_t> points = bodies_.points(pair);
-  const RelativeMotion& motion = bodies_.motion(pair);
-  const ChainState& chain = context_.motion.chain_at_start();
-  const LinkPoint& first = context_.instrument.points()[points.front()];
-  const LinkPoint& last = context_.instrument.points()[points.back()];
-  const Vec3* in_world = context_.motion.points_at_start();
-  const Vec3 normal_in_world = motion.direction_in_world(normal);
-  const Vec3 at_in_world = motion.in_world(at);
+  const std::span<const std::uint8_t> points = pairs_.points(pair);
+  const RelativeMotion& motion = pairs_.motion(pair);
+  const ChainState& chain = memory_.trial_motion.chain_at_start();
+  const LinkPoint& first = memory_.instrument.points()[points.front()];
+  const LinkPoint& last = memory_.instrument.points()[points.back()];
+  const Vec3* in_world = memory_.trial_motion.points_at_start();
+  const Vec3 normal_in_world = motion.direction_in_world_at_start(normal);
+  const Vec3 at_in_world = motion.in_world_at_start(at);
   for (int k = 1; k <= chain.size(); ++k) {
-    double& part = row.gradient[static_cast<std::size_t>(k - 1)];
+    double& entry = row.gradient[static_cast<std::size_t>(k - 1)];
     if (points.size() > 2) {
-      part = normal_in_world.dot(chain.linear(k, first.link, at_in_world));
+      entry = normal_in_world.dot(chain.linear(k, first.link, at_in_world));
     } else {
-      part =
+      entry =
           (1.0 - point.fraction) *
               normal_in_world.dot(chain.linear(k, first.link, in_world[points.front()])) +
           point.fraction * normal_in_world.dot(chain.linear(k, last.link, in_world[points.back()]));
@@ -75,92 +74,95 @@ std::optional<Row> RowMaker::at_contact(std::size_t pair, const NearTriangle& tr
   return row;
 }
 
-std::optional<Row> RowMaker::at_vertex(std::size_t pair, std::uint8_t vertex,
-                                       const NearTriangle& triangle, int knot) noexcept {
+void RowMaker::at_vertices(std::size_t pair, const NearTriangle& triangle, int knot,
+                           Buffer<Row>& rows) noexcept {
   const Triangle& corners = *triangle.corners;
+  if (!(triangle.at_start.distance > 0.0)) return;
   const Gap there = gap_at(pair, corners, knot);
-  if (!(triangle.at_start.distance > 0.0)) return std::nullopt;
-  const double offset =
-      std::min(bodies_.radius(pair) + bodies_.row_margin(pair), triangle.at_start.distance) -
-      context_.tolerance;
-  RelativeMotion& motion = bodies_.motion(pair);
+  const double needed_height =
+      std::min(pairs_.radius(pair) + pairs_.row_margin(pair), triangle.at_start.distance) -
+      memory_.tolerance;
+  RelativeMotion& motion = pairs_.motion(pair);
   const Vec3* places = motion.start_in_mesh();
   const Vec3 wanted = there.distance > 0.0 ? there.normal : triangle.at_start.normal;
   const Vec3 normal = turned_back(triangle.at_start.normal, wanted, [&](const Vec3& n) {
     double least = std::numeric_limits<double>::infinity();
-    for (const std::uint8_t p : bodies_.points(pair)) least = std::min(least, n.dot(places[p]));
-    return least - support(corners, n) >= offset;
+    for (const std::uint8_t p : pairs_.points(pair)) least = std::min(least, n.dot(places[p]));
+    return least - support(corners, n) >= needed_height;
   });
-  Row row{.owner = pair, .triangle = triangle.id, .vertex = vertex, .normal = normal};
-  finish(row, places[vertex], corners);
-  const LinkPoint& point = context_.instrument.points()[vertex];
-  const ChainState& chain = context_.motion.chain_at_start();
-  const Vec3 normal_in_world = motion.direction_in_world(normal);
-  for (int k = 1; k <= chain.size(); ++k) {
-    row.gradient[static_cast<std::size_t>(k - 1)] =
-        normal_in_world.dot(chain.linear(k, point.link, context_.motion.points_at_start()[vertex]));
+  const ChainState& chain = memory_.trial_motion.chain_at_start();
+  const Vec3 normal_in_world = motion.direction_in_world_at_start(normal);
+  for (const std::uint8_t vertex : pairs_.points(pair)) {
+    const int link = memory_.instrument.points()[vertex].link;
+    if (link == 0) continue;
+    Row row{.owner = pair, .triangle = triangle.id, .vertex = vertex, .normal = normal};
+    finish(row, places[vertex], corners);
+    const Vec3& at_in_world = memory_.trial_motion.points_at_start()[vertex];
+    for (int k = 1; k <= chain.size(); ++k) {
+      row.gradient[static_cast<std::size_t>(k - 1)] =
+          normal_in_world.dot(chain.linear(k, link, at_in_world));
+    }
+    rows.push(row);
   }
-  return row;
 }
 
 double RowMaker::height_at_end(const Row& row) noexcept {
-  const Vec3 at =
-      row.point ? position_of(row.owner, *row.point, PointMotion::last_knot)
-                : bodies_.motion(row.owner).points_in_mesh(PointMotion::last_knot)[row.vertex];
+  const Vec3 at = row.point
+                      ? position_of(row.owner, *row.point, PointMotion::last_knot)
+                      : pairs_.motion(row.owner).points_in_mesh(PointMotion::last_knot)[row.vertex];
   return row.normal.dot(at) - row.offset;
 }
 
 Gap RowMaker::gap_at(std::size_t pair, const Triangle& corners, int knot) noexcept {
   constexpr std::size_t work_of_turning = 5;  // in work units
-  Core core;
-  const std::span<const Vec3> points = bodies_.motion(pair).core(bodies_.body(pair), knot, core);
-  context_.budget.spend(work_of_gap(points.size()) + work_of_turning);
+  CorePositions core;
+  const std::span<const Vec3> points = pairs_.motion(pair).core_at(pairs_.body(pair), knot, core);
+  memory_.budget.spend(work_of_gap(points.size()) + work_of_turning);
   return gap(points, corners);
 }
 
 /// Returns the point of the body's core that is at `contact` at a knot of the motion.
 CorePoint RowMaker::core_point(std::size_t pair, const Vec3& contact, int knot) noexcept {
-  const std::span<const std::uint8_t> points = bodies_.points(pair);
+  const std::span<const std::uint8_t> points = pairs_.points(pair);
   if (points.size() == 1) return {};
   if (points.size() == 2) {
-    const Vec3* places = bodies_.motion(pair).points_in_mesh(knot);
+    const Vec3* places = pairs_.motion(pair).points_in_mesh(knot);
     const Vec3 along = places[points[1]] - places[points[0]];
     const double length2 = along.squaredNorm();
     const double share = length2 > 0.0 ? along.dot(contact - places[points[0]]) / length2 : 0.0;
     return {.fraction = std::clamp(share, 0.0, 1.0)};
   }
-  ChainState chain;
-  context_.motion.chain_at(knot, chain);
-  const Pose link = chain.link(context_.instrument.points()[points[0]].link);
-  const Vec3 in_world = bodies_.motion(pair).mesh_at(knot) * contact;
+  const ChainState& chain = memory_.trial_motion.chain_at(knot);
+  const Pose link = chain.link(memory_.instrument.points()[points[0]].link);
+  const Vec3 in_world = pairs_.motion(pair).pose_at(knot) * contact;
   return {.on_link = link.rotation.transpose() * (in_world - link.position)};
 }
 
 Vec3 RowMaker::position_of(std::size_t pair, const CorePoint& point, int knot) noexcept {
-  const std::span<const std::uint8_t> points = bodies_.points(pair);
-  const Vec3* places = bodies_.motion(pair).points_in_mesh(knot);
+  const std::span<const std::uint8_t> points = pairs_.points(pair);
+  const Vec3* places = pairs_.motion(pair).points_in_mesh(knot);
   if (points.size() == 1) return places[points[0]];
   if (points.size() == 2) {
     return (1.0 - point.fraction) * places[points[0]] + point.fraction * places[points[1]];
   }
-  ChainState chain;
-  context_.motion.chain_at(knot, chain);
-  return bodies_.motion(pair).in_mesh(
-      chain.at(context_.instrument.points()[points[0]].link, point.on_link), knot);
+  const ChainState& chain = memory_.trial_motion.chain_at(knot);
+  return pairs_.motion(pair).in_mesh(
+      chain.at(memory_.instrument.points()[points[0]].link, point.on_link), knot);
 }
 
 /// Fills the fields that depend on the normal. `at`: the row's point at the start of the cycle, in
 /// the mesh's frame. [length]
 void RowMaker::finish(Row& row, const Vec3& at, const Triangle& corners) const noexcept {
-  const RelativeMotion& motion = bodies_.motion(row.owner);
+  const RelativeMotion& motion = pairs_.motion(row.owner);
   row.offset =
-      support(corners, row.normal) + bodies_.radius(row.owner) + bodies_.row_margin(row.owner);
+      support(corners, row.normal) + pairs_.radius(row.owner) + pairs_.row_margin(row.owner);
   row.start_height = row.normal.dot(at) - row.offset;
   // At least one tolerance: a body that owes it must gain a little.
-  row.bound = std::min(-row.start_height, std::max(context_.options.recovery, context_.tolerance));
+  row.bound = std::min(-row.start_height, std::max(cycle_.options.recovery, memory_.tolerance));
   // Exactly 0 beside a still mesh: rounding could demand a motion that no joint can make.
   if (!motion.is_moving()) return;
-  row.drift = row.normal.dot(motion.in_mesh(motion.in_world(at), PointMotion::last_knot) - at);
+  row.drift =
+      row.normal.dot(motion.in_mesh(motion.in_world_at_start(at), PointMotion::last_knot) - at);
 }
 
 }  // namespace keepout

@@ -12,11 +12,14 @@ constexpr int most_recovery_rows = 4;   // of a body
 constexpr double same_direction = 0.9;  // a larger cosine of two normals
 constexpr int most_corrections = 3;     // of a row
 
+/// Returns the knot at which a plane is put to keep a motion from an obstacle. At knot 0 nothing
+/// has moved yet.
+int knot_of_plane(int proved_knot) noexcept { return std::max(proved_knot, 1); }
+
 }  // namespace
 
-void WorkingRows::start() noexcept {
-  memory_.rows.clear();
-  std::array<bool, Guide::most> has_row{};  // a guide has one plane where the cycle begins
+void WorkingRows::add_first_rows() noexcept {
+  std::array<bool, Guide::most> has_row{};
   for (const WarmRow& warm : memory_.warm) {
     if (is_guide(warm.owner) && std::exchange(has_row[guide_of(warm.owner)], true)) continue;
     if (const auto row = row_of(warm, 0)) memory_.rows.push(*row);
@@ -25,8 +28,8 @@ void WorkingRows::start() noexcept {
     if (!guides_.is_recovering(g) || has_row[g]) continue;
     if (const auto row = guides_.row(g, 0)) memory_.rows.push(*row);
   }
-  for (std::size_t p = 0; p < bodies_.size(); ++p) {
-    if (bodies_.is_watched(p) && bodies_.is_recovering(p)) start_recovery(p);
+  for (std::size_t p = 0; p < pairs_.size(); ++p) {
+    if (pairs_.is_watched(p) && pairs_.is_recovering(p)) add_recovery_rows(p);
   }
 }
 
@@ -37,15 +40,15 @@ std::optional<Row> WorkingRows::row_of(const WarmRow& warm, int knot) noexcept {
     const bool is_present = guide < guides_.size() && !guides_.is_dropped(guide);
     return is_present ? guides_.row(guide, knot) : std::nullopt;
   }
-  if (!bodies_.is_watched(warm.owner)) return std::nullopt;
-  const NearTriangle* triangle = bodies_.find(warm.owner, warm.triangle);
+  if (!pairs_.is_watched(warm.owner)) return std::nullopt;
+  const NearTriangle* triangle = pairs_.find(warm.owner, warm.triangle);
   return triangle == nullptr ? std::nullopt : maker_.at_contact(warm.owner, *triangle, knot);
 }
 
-void WorkingRows::start_recovery(std::size_t p) noexcept {
-  Budget& budget = context_.budget;
-  const double distance = bodies_.radius(p) + bodies_.row_margin(p);
-  const auto nearby = bodies_.nearer_than(p, distance);
+void WorkingRows::add_recovery_rows(std::size_t p) noexcept {
+  Budget& budget = memory_.budget;
+  const double distance = pairs_.radius(p) + pairs_.row_margin(p);
+  const auto nearby = pairs_.nearer_than(p, distance);
   for (int count = 0; count < most_recovery_rows && !budget.is_spent(); ++count) {
     budget.spend(1 + nearby.size() * (1 + memory_.rows.size()) / 32);
     // The nearest one without a row that pulls the body away from it.
@@ -73,9 +76,7 @@ bool WorkingRows::add(std::span<const Certificate::Obstacle> obstacles) noexcept
     const Certificate::Obstacle& obstacle = obstacles[p];
     if (obstacle.triangle == nullptr) continue;
     const NearTriangle& triangle = *obstacle.triangle;
-    const std::size_t before = memory_.rows.size();
-    add(p, triangle, std::max(obstacle.knot, 1));
-    const bool is_new = memory_.rows.size() > before;
+    const bool is_new = add(p, triangle, knot_of_plane(obstacle.knot));
     changed = changed || is_new || correct(p, triangle.id);
   }
   return changed && !memory_.rows.overflowed();
@@ -88,7 +89,7 @@ bool WorkingRows::add(const GuideWatch::Obstacle& obstacle) noexcept {
   const auto planes = std::count_if(memory_.rows.begin(), memory_.rows.end(),
                                     [&](const Row& row) { return row.owner == owner; });
   if (planes < most_planes) {
-    const int where = planes == 0 ? std::max(obstacle.knot, 1) : PointMotion::last_knot;
+    const int where = planes == 0 ? knot_of_plane(obstacle.knot) : PointMotion::last_knot;
     if (const auto row = guides_.row(obstacle.guide, where)) {
       memory_.rows.push(*row);
       return !memory_.rows.overflowed();
@@ -98,7 +99,9 @@ bool WorkingRows::add(const GuideWatch::Obstacle& obstacle) noexcept {
 }
 
 /// Adds rows for a triangle: first on two predicted contact points, then on all points of the core.
-void WorkingRows::add(std::size_t p, const NearTriangle& triangle, int knot) noexcept {
+/// Returns true if any was added.
+bool WorkingRows::add(std::size_t p, const NearTriangle& triangle, int knot) noexcept {
+  const std::size_t before = memory_.rows.size();
   int contacts = 0;
   bool has_vertices = false;
   for (const Row& row : memory_.rows) {
@@ -112,11 +115,9 @@ void WorkingRows::add(std::size_t p, const NearTriangle& triangle, int knot) noe
     if (!row) row = maker_.at_contact(p, triangle, 0);
     if (row) memory_.rows.push(*row);
   } else if (!has_vertices) {
-    for (const std::uint8_t vertex : bodies_.points(p)) {
-      if (context_.instrument.points()[vertex].link == 0) continue;
-      if (const auto row = maker_.at_vertex(p, vertex, triangle, knot)) memory_.rows.push(*row);
-    }
+    maker_.at_vertices(p, triangle, knot, memory_.rows);
   }
+  return memory_.rows.size() > before;
 }
 
 /// Adds to a triangle's rows the height that the linear motion of their points predicted, less the
@@ -128,7 +129,7 @@ bool WorkingRows::correct(std::size_t owner, TriangleId triangle) noexcept {
       continue;
     double predicted = row.start_height + row.drift;
     for (std::size_t k = 0; k < row.gradient.size(); ++k) {
-      predicted += row.gradient[k] * context_.motion.increment()[k];
+      predicted += row.gradient[k] * memory_.trial_motion.increment()[k];
     }
     const double actual = is_guide(owner) ? guides_.height_at_end(row) : maker_.height_at_end(row);
     const double missing = predicted - actual;
@@ -148,26 +149,23 @@ void WorkingRows::remove(std::size_t owner) noexcept {
   memory_.rows.shrink(left);
 }
 
-std::size_t WorkingRows::remember(std::span<const std::uint32_t> active) noexcept {
+void WorkingRows::remember(std::span<const std::uint32_t> active) noexcept {
   memory_.warm.clear();
   for (const std::uint32_t number : active) {
     if (number >= memory_.rows.size()) continue;
     memory_.warm.push({memory_.rows[number].owner, memory_.rows[number].triangle});
   }
-  return memory_.warm.size();
 }
 
-void WorkingRows::save() noexcept {
+void WorkingRows::remember_all() noexcept {
+  memory_.warm.clear();
+  for (const Row& row : memory_.rows) {
+    if (!is_remembered(row)) memory_.warm.push({row.owner, row.triangle});  // each triangle once
+  }
+}
+
+bool WorkingRows::turn_planes_to_end() noexcept {
   memory_.earlier_rows.assign(memory_.rows.view());
-  memory_.earlier_warm.assign(memory_.warm.view());
-}
-
-void WorkingRows::restore() noexcept {
-  memory_.rows.assign(memory_.earlier_rows.view());
-  memory_.warm.assign(memory_.earlier_warm.view());
-}
-
-bool WorkingRows::relinearize() noexcept {
   bool changed = false;
   for (Row& row : memory_.rows) {
     if (!is_remembered(row)) continue;
@@ -180,21 +178,16 @@ bool WorkingRows::relinearize() noexcept {
   return changed;
 }
 
-void WorkingRows::forgive_curvature(double fraction) noexcept {
+void WorkingRows::turn_back() noexcept { memory_.rows.assign(memory_.earlier_rows.view()); }
+
+void WorkingRows::scale_corrections(double factor) noexcept {
   for (Row& row : memory_.rows) {
-    row.correction *= fraction;
+    row.correction *= factor;
     row.corrections = 0;
   }
 }
 
-void WorkingRows::remember_all() noexcept {
-  memory_.warm.clear();
-  for (const Row& row : memory_.rows) {
-    if (!is_remembered(row)) memory_.warm.push({row.owner, row.triangle});
-  }
-}
-
-/// Returns true if a row of the same triangle is remembered.
+/// Returns true if a row of the same triangle or guide is remembered.
 bool WorkingRows::is_remembered(const Row& row) const noexcept {
   return std::any_of(memory_.warm.begin(), memory_.warm.end(), [&](const WarmRow& warm) {
     return warm.owner == row.owner && warm.triangle == row.triangle;

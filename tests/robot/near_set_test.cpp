@@ -48,7 +48,7 @@ TEST(NearSet, TellsAllThatIsNearOnceAndAllocatesNothing) {
             std::set<TriangleId> ids;
             for (const NearTriangle& triangle : listed) {
               ASSERT_TRUE(ids.insert(triangle.id).second) << "listed twice";
-              ASSERT_LE(triangle.least, distances[triangle.id] + 1e-12);
+              ASSERT_LE(triangle.at_least, distances[triangle.id] + 1e-12);
               ASSERT_EQ(triangle.at_start.distance, distances[triangle.id]);
             }
             for (TriangleId t = 0; t < mesh->triangle_count(); ++t) {

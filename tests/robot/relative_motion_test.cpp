@@ -46,10 +46,10 @@ TEST(RelativeMotion, NoPointIsElsewhereNorBendsMoreThanIsSaid) {
                     Eigen::AngleAxisd(3.0, random.direction()).toRotationMatrix()};
     const Twist way{.linear = random.uniform(0.0, 10.0) * random.direction(),
                     .angular = random.uniform(0.0, 0.3) * random.direction()};
-    motion.start(q);
-    seen.start(mesh, way);
-    motion.move(increment, CertifiedMotion::actual);
-    seen.move();
+    motion.begin_cycle(q);
+    seen.begin_cycle(mesh, way);
+    motion.set_trial(increment, CertifiedMotion::actual);
+    seen.update_bounds();
     const double rounding = 1e-14 * (chain.reach() + 1000.0);
     for (std::size_t p = 0; p < robot.points().size(); ++p) {
       double sharpest = 0.0;
@@ -83,10 +83,10 @@ TEST(RelativeMotion, OfAMeshAtHomeIsThatOfTheWorldToTheBit) {
   PointMotion motion(robot, budget);
   RelativeMotion seen(robot, motion);
   const std::vector<double> q{0.1, -0.2, 80.0, 0.3, 0.1, -0.4};
-  motion.start(q);
-  seen.start({}, {});
-  motion.move({0.1, 0.1, 3.0}, CertifiedMotion::actual);
-  seen.move();
+  motion.begin_cycle(q);
+  seen.begin_cycle({}, {});
+  motion.set_trial({0.1, 0.1, 3.0}, CertifiedMotion::actual);
+  seen.update_bounds();
   EXPECT_EQ(seen.points_in_mesh(17), motion.points_at(17));
   EXPECT_EQ(seen.bend(2), motion.bounds(2).bend);
 }

@@ -82,6 +82,21 @@ TEST(SpentCapacity, NothingIsCertifiedThatIsNotClearHoweverFewTrianglesFit) {
   EXPECT_GT(certified, 10);
 }
 
+// A motion that is made as a whole was not shortened by the budget that ends its refinement.
+TEST(SpentCapacity, IsNoLimitOfAMotionThatIsMadeAsAWhole) {
+  int made_as_a_whole = 0;
+  for (std::size_t looks = 800; looks < 1200; ++looks) {
+    Swing swing({.looks = looks});
+    swing.guard.set_options({.margin = 2.0, .band = 1.0, .check_sides = false});
+    const InstrumentStep step = swing.guard.step(swing.start, swing.motion);
+    if (step.status != Status::limited) continue;
+    ++made_as_a_whole;
+    EXPECT_EQ(step.share, 1.0) << looks;
+    EXPECT_FALSE(step.limits.has(Limit::budget)) << looks;
+  }
+  EXPECT_GT(made_as_a_whole, 100);
+}
+
 // The index has room for all triangles, the set for fewer.
 TEST(SpentCapacity, ANearSetThatCannotHoldAllTrianglesKnowsNothing) {
   const auto mesh = mesh_of(make_cube(50.0));

@@ -31,8 +31,10 @@ struct MotionConstraintSettings {
   /// 0; inside, refinements and nodes have no effect. Empty: the ball.
   std::optional<ConvexTool> tool = {};
   std::string narrow_phase = "exact";  // of a tool; see narrow_phase_backends()
-  Inside inside = Inside::led_out;  // what becomes of a tip that starts inside; a ball's, certified
-  Capacity capacity = {};           // for the largest step
+  /// What becomes of a tip that starts inside; of a ball, under the rule certified. The constructor
+  /// of MotionConstraint takes any rule: its default is Inside::taken_as_is.
+  Inside inside = Inside::led_out;
+  Capacity capacity = {};  // for the largest step
 };
 
 /// The table of the settings that are neither in StepOptions nor in Capacity.

@@ -29,9 +29,9 @@ namespace keepout {
 /// and joint limits hold. F is the certified clearance of the pair of body and mesh: margin - band,
 /// or what is left of it if the body is closer already.
 ///
-/// If a mesh moves in the cycle as `place` says, this holds for its pose at each s, and only for
-/// all of an increment. A pair in InstrumentStep::degraded maintains level x F, or no clearance if
-/// it is not certified; all other pairs maintain F.
+/// If a mesh moves in the cycle as `place` says, this holds for its pose at each s, and only if all
+/// of the increment is carried out: a part of it is not proved. A pair in InstrumentStep::degraded
+/// maintains level x F, or no clearance if it is not certified; all other pairs maintain F.
 ///
 /// Not thread-safe: make one for each control loop. Mesh and index may be shared.
 class InstrumentConstraint {
@@ -51,12 +51,12 @@ class InstrumentConstraint {
   InstrumentConstraint& operator=(InstrumentConstraint&&) noexcept;
   ~InstrumentConstraint();
 
-  /// Returns the increment that moves the flange most nearly by `desired`, a displacement in this
-  /// cycle [length], [rad]. `q`: the positions (n) of the joints [rad or length]; revolute joints
-  /// within 100 rad of 0, prismatic ones within 100 times the size of instrument and meshes.
-  /// Any failure returns an empty increment and a status that names the cause. Meshes that move do
-  /// so in any case. Does not allocate or throw.
-  InstrumentStep step(std::span<const double> q, const Twist& desired) noexcept;
+  /// Returns the increment that moves the flange most nearly by `displacement`: not a velocity, but
+  /// what it is to move by in this cycle [length], [rad]. `q`: the positions (n) of the joints [rad
+  /// or length]; revolute joints within 100 rad of 0, prismatic ones within 100 times the size of
+  /// instrument and meshes. Any failure returns an empty increment and a status that names the
+  /// cause; meshes with a velocity move on by one period all the same. Does not allocate or throw.
+  InstrumentStep step(std::span<const double> q, const Twist& displacement) noexcept;
 
   /// Like step(q, const Twist&), but returns the increment nearest to `desired`, dq (n), with
   /// `weights` (n, above 0; empty: all 1): minimizes sum w_k (dq_k - desired_k)^2.
@@ -86,10 +86,10 @@ class InstrumentConstraint {
   /// more than 100 times the lengths of instrument and meshes, and
   /// margin_too_small while it is so far away that rounding hides the margin or a band. prove()
   /// takes meshes to stand still. Does not allocate or throw.
-  Status place(std::size_t mesh, const Pose& pose, const Twist& velocity = {}) noexcept;
+  Status place(std::size_t number, const Pose& pose, const Twist& velocity = {}) noexcept;
 
   /// Returns the pose of a mesh at the start of the next cycle. Precondition: there is such a mesh.
-  const Pose& place_of(std::size_t mesh) const noexcept;
+  const Pose& place_of(std::size_t number) const noexcept;
 
   /// Returns how much of a motion is clear, and does not look for a better one: for planners. An
   /// increment of 0 tests a configuration. `increment`: dq (n), of any size; long ones are proved

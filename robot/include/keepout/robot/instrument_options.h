@@ -67,8 +67,9 @@ inline constexpr std::array instrument_options{
     option<&InstrumentOptions::orientation_weight>(
         "orientation_weight", "length/rad", not_negative,
         "Weight of a turn of the flange beside its displacement; 0: only its origin is steered."),
-    option<&InstrumentOptions::refinements>("refinements", "", {0, 2147483647.0},
-                                            "How often cuts are rotated towards a better motion."),
+    option<&InstrumentOptions::refinements>(
+        "refinements", "", {0, 2147483647.0},
+        "How often the planes of rows are turned towards a better motion."),
     option<&InstrumentOptions::check_sides>(
         "check_sides",
         "True if bodies that no step has led to where they are must be on the free side of a "

@@ -44,8 +44,9 @@ struct InstrumentStep {
   std::span<const GuideState> guides = {};   // the state of each guide, in the order given
   Relaxation relaxation = Relaxation::none;  // the constraints that were relaxed
   /// The causes that kept the motion from being the commanded one. With a motion: all constraints
-  /// that limit or shorten it. Without: the constraints for which no motion could be proved.
-  /// joints_outside is reported with any status.
+  /// that limit or shorten it; a refinement that runs out of budget or capacity does neither.
+  /// Without: the constraints for which no motion could be proved. joints_outside is reported with
+  /// any status, singularity only if nothing else limits the motion.
   Limits limits = {};
 
   /// Returns true if the increment may be executed; it may be zero.

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <optional>
+#include <span>
+
+#include "cycle_memory.h"
+
+namespace keepout {
+
+/// The pairs of a body and a mesh in a cycle: the clearance that is certified for each, the
+/// triangles near it, and the proof that a motion maintains the clearance. Pairs are numbered (p)
+/// mesh by mesh: all bodies beside the first mesh, and so on.
+class PairWatch {
+ public:
+  /// How the pairs stand at the start of a cycle.
+  struct Opening {
+    Status status = Status::free;  // or why nothing may move
+    /// The distance of the nearest body: see InstrumentStep::distance. [length]
+    std::optional<double> distance = std::nullopt;
+    int body = -1;  // the number of that body
+    int mesh = -1;  // the number of the mesh
+  };
+
+  /// All motions must have begun the cycle before open() is called. Both must outlive it.
+  PairWatch(CycleMemory& memory, const CycleConstants& cycle) noexcept
+      : memory_(memory), cycle_(cycle) {}
+
+  /// Measures all pairs. Beside meshes that move, a pair that forbids all motion is dropped, and
+  /// the status stays free: the other bodies may have to retreat.
+  Opening open() noexcept;
+
+  /// Returns the number of pairs.
+  std::size_t size() const noexcept { return memory_.pairs.size(); }
+  /// Returns the body of a pair.
+  std::size_t body(std::size_t p) const noexcept { return memory_.pairs[p].body; }
+  /// Returns the numbers of the body's points.
+  std::span<const std::uint8_t> points(std::size_t p) const noexcept {
+    return memory_.instrument.points_of(body(p));
+  }
+  /// Returns the radius of the body. [length]
+  double radius(std::size_t p) const noexcept {
+    return memory_.instrument.bodies()[body(p)].radius;
+  }
+  /// Returns the motion of the instrument in the frame of the pair's mesh.
+  RelativeMotion& motion(std::size_t p) const noexcept {
+    return memory_.meshes[memory_.pairs[p].mesh].motion;
+  }
+
+  /// Returns the clearance that this cycle must certify for a pair: its full demand, less the
+  /// degradation (F* of docs/joint-space-step.md). [length]
+  double demand(std::size_t p) const noexcept { return full_demand(p) - degradation(p); }
+  /// Returns the demand at level 1: margin - band, or what is left of it, plus what
+  /// `slowing_within` adds. [length]
+  double full_demand(std::size_t p) const noexcept { return memory_.pairs[p].full_demand; }
+  /// Returns the margin that rows demand in this cycle, beyond the body's radius. [length]
+  double row_margin(std::size_t p) const noexcept { return memory_.pairs[p].row_margin; }
+  /// Returns the length by which demand and rows of a degraded pair are lowered. [length]
+  double degradation(std::size_t p) const noexcept {
+    return (1.0 - memory_.pairs[p].level) * std::max(full_demand(p), 0.0);
+  }
+  /// Returns true if the level of some pair is below 1.
+  bool is_degraded() const noexcept {
+    return std::any_of(memory_.pairs.begin(), memory_.pairs.end(),
+                       [](const PairMemory& pair) { return pair.level < 1.0; });
+  }
+  /// Returns true if the pair's level is.
+  bool is_degraded(std::size_t p) const noexcept { return memory_.pairs[p].level < 1.0; }
+  /// Returns true if motions must be proved clear for the pair.
+  bool is_watched(std::size_t p) const noexcept {
+    return !memory_.pairs[p].is_dropped && !memory_.pairs[p].is_settled;
+  }
+  /// Lowers the pair's level by at least a quarter, to a multiple of a quarter that is at most
+  /// `most`. If there is none, drops the pair and remembers the reason.
+  void lower_level(std::size_t p, double most, Status reason) noexcept;
+  /// Notes that the proof of a pair whose body no joint moves is complete.
+  void settle(std::size_t p) noexcept { memory_.pairs[p].is_settled = true; }
+  /// Returns true if no joint moves the pair's body.
+  bool is_immovable(std::size_t p) const noexcept;
+  /// Returns why a pair whose body a joint moves was dropped last; free if none was.
+  Status dropped_for() const noexcept { return dropped_for_; }
+  /// Lists the degraded pairs. Returns the least level of all pairs.
+  double list_degraded() noexcept;
+  /// Returns the list.
+  std::span<const DegradedClearance> degraded() const noexcept { return memory_.degraded.view(); }
+
+  /// Returns true if some body is closer than margin - band.
+  bool is_recovering() const noexcept { return is_recovering_; }
+  /// Returns true if the pair's body is.
+  bool is_recovering(std::size_t p) const noexcept { return full_demand(p) < target(p); }
+
+  /// Follows the trial motion of the joints. Call it after each PointMotion::set_trial.
+  void update_bounds() noexcept;
+  /// Proves the trial motion for one pair, as far as possible; the normals of its rows are tried
+  /// first. Sets the obstacle to the proof. Returns free, also if there is an obstacle or if the
+  /// budget ended in the proof (see Certificate::Obstacle). Returns over_capacity or out_of_budget
+  /// if the triangles nearby are not known: the obstacle is then at the start.
+  Status judge(std::size_t p, std::span<const Row> rows, Certificate::Obstacle& obstacle) noexcept;
+  /// Returns true if a pair that was judged in this cycle has a triangle that owes: see
+  /// Certificate::owes.
+  bool owes() const noexcept { return owes_; }
+  /// Returns the number of triangles in reach of one body and one motion, at the most.
+  std::size_t triangles_in_reach() const noexcept { return in_reach_; }
+
+  /// Returns the triangles that may be nearer than `distance` to the body's core at the start of
+  /// the cycle, nearest first; nothing if they are not known because the budget or the capacity
+  /// ended. Precondition: open() or judge() has searched up to `distance`, as open() does up to the
+  /// row margin of a body that recovers. [length]
+  std::span<NearTriangle> nearer_than(std::size_t p, double distance) noexcept {
+    return memory_.pairs[p].triangles.nearer_than(distance, memory_.budget);
+  }
+  /// Returns a triangle that may limit the body, its gap measured; null if it is not near any more,
+  /// or if the triangles nearby are not known (then judge() reports why).
+  NearTriangle* find(std::size_t p, TriangleId id) noexcept;
+
+  /// Remembers the certified clearances for the next cycle: lowers those of degraded pairs.
+  void remember_clearances() noexcept;
+  /// Remembers the end of the executed motion, which must be the trial motion.
+  void remember_end() noexcept;
+
+ private:
+  Status open_pair(std::size_t p, Opening& opening) noexcept;
+  void slow_down(std::size_t p, double distance) noexcept;
+  void drop(std::size_t p, Status reason) noexcept;
+  [[nodiscard]] Status ensure_known(std::size_t p, double needed) noexcept;
+  bool has_unknown_side(std::size_t m) noexcept;
+  Status find_sides(std::size_t m) noexcept;
+  double margin(std::size_t p) const noexcept {
+    return memory_.meshes[memory_.pairs[p].mesh].margin(cycle_.options);
+  }
+  double target(std::size_t p) const noexcept { return margin(p) - cycle_.options.band; }
+  double vicinity(std::size_t p) const noexcept;
+  double moved(std::size_t p) noexcept;
+
+  CycleMemory& memory_;
+  const CycleConstants& cycle_;
+  Status dropped_for_ = Status::free;
+  bool is_recovering_ = false;
+  bool owes_ = false;
+  std::size_t in_reach_ = 0;
+};
+
+}  // namespace keepout
