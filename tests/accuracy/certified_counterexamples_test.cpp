@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Where the paper's rule fails, the certified one holds: whatever the order and the winding.
-#include <gtest/gtest.h>
 
 #include "accuracy/certified_loop.h"
 #include "accuracy/segment_crossing.h"
-#include "by_name.h"
 #include "keepout/fixtures/counterexamples.h"
-#include "trials.h"
 
 namespace keepout::test {
 namespace {
@@ -16,13 +13,6 @@ constexpr std::string_view on_the_mesh = "CE4_on_a_ridge";
 MotionConstraintSettings settings_of(const Counterexample& example, double margin) {
   return {.options = {.radius = example.radius, .margin = margin}, .capacity = {.planes = 100}};
 }
-
-struct Cycle {
-  Status status;
-  Vec3 motion;
-
-  bool operator==(const Cycle&) const = default;
-};
 
 /// What the same desire, again and again, comes to.
 std::vector<Cycle> cycles(const Surface& surface, const Counterexample& example, double margin) {

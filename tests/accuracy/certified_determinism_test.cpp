@@ -1,22 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The same motions, bit for bit, whatever finds, numbers or winds the triangles.
-#include <gtest/gtest.h>
 
 #include "accuracy/certified_loop.h"
-#include "by_name.h"
-#include "each_simd_target.h"
 #include "keepout/adapters/index_registry.h"
 #include "keepout/index/query.h"
 
 namespace keepout::test {
 namespace {
-
-struct Cycle {
-  Status status;
-  Vec3 motion;
-
-  bool operator==(const Cycle&) const = default;
-};
 
 constexpr double margin = 0.3;
 constexpr double radius = 1.0;

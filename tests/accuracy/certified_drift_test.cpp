@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A million cycles in contact: what a cycle may lose never adds up.
-#include <gtest/gtest.h>
 
 #include "accuracy/certified_loop.h"
-#include "by_name.h"
-#include "small_surfaces.h"
 
 namespace keepout::test {
 namespace {

@@ -1,14 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How much of the motion asked for the certified step gives away, against the best step there is:
 // excess = (cost - best cost) / length of the increment asked for.
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <numeric>
-#include <vector>
 
-#include "by_name.h"
 #include "keepout/factory/make_motion_constraint.h"
 #include "keepout/fixtures/poses.h"
 #include "keepout/fixtures/real_mesh.h"
@@ -17,6 +12,7 @@
 #include "keepout/mesh/load_mesh.h"
 #include "keepout/oracle/best_step.h"
 #include "meshes.h"
+#include "trials.h"
 
 namespace keepout::test {
 namespace {

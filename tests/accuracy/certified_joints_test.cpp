@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Joints, rows of the caller's own, and too little room: as safe, and honest about it.
-#include <gtest/gtest.h>
 
 #include <span>
 
 #include "accuracy/certified_loop.h"
-#include "by_name.h"
 
 namespace keepout::test {
 namespace {

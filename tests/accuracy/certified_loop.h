@@ -1,28 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
 #include <numeric>
-#include <ostream>
-#include <vector>
 
 #include "keepout/factory/make_motion_constraint.h"
 #include "keepout/fixtures/poses.h"
-#include "keepout/fixtures/random.h"
 #include "keepout/index/pd_tree.h"
 #include "keepout/oracle/safety_oracle.h"
 #include "meshes.h"
-
-namespace keepout {
-
-/// What a test prints of one.
-inline void PrintTo(const Shape& shape, std::ostream* out) { *out << shape.name; }
-
-}  // namespace keepout
+#include "trials.h"
 
 namespace keepout::test {
 
@@ -78,8 +64,7 @@ class Loop {
     const double due = std::min(margin_, distance_before);
     const double tau = tolerance_(from);
     const oracle::Finding finding = oracle_.check(from, to, std::max(due - 3.0 * tau, 0.0), due);
-    return finding.crosses ? std::numeric_limits<double>::infinity()
-                           : (due - finding.distance) / tau;
+    return finding.crosses ? infinity : (due - finding.distance) / tau;
   }
 
  private:
@@ -88,6 +73,14 @@ class Loop {
   Tolerance tolerance_;
   oracle::SafetyOracle oracle_;
   double margin_;
+};
+
+/// What a step comes to.
+struct Cycle {
+  Status status;
+  Vec3 motion;
+
+  bool operator==(const Cycle&) const = default;
 };
 
 /// Fails unless the step is safe, or moves nothing. Counts the steps that move.

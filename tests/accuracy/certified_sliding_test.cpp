@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Contact as a hand feels it: no bumps at inner edges, nothing held back that leads away.
-#include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 
 #include "accuracy/certified_loop.h"
-#include "by_name.h"
 
 namespace keepout::test {
 namespace {

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Whatever a solver answers, a certified motion keeps its distance.
-#include <gtest/gtest.h>
 
 #include "accuracy/certified_loop.h"
-#include "by_name.h"
 #include "guards.h"
 
 namespace keepout::test {
@@ -56,7 +54,7 @@ class Liar final : public Solver {
         for (std::size_t i = 0; i < std::min<std::size_t>(n, 3); ++i) u_[i] = problem.desired[i];
         break;
       case 1:
-        u_[0] = std::numeric_limits<double>::quiet_NaN();
+        u_[0] = nan;
         break;
       case 2:
         u_[n - 1] = 1e300;

@@ -2,19 +2,13 @@
 // The set-up of the paper's cutting experiment (section V-B): a manipulator with limits of its
 // joints cuts along a plane, in a corridor of 1 mm to each side, over a skull that is kept out.
 // Corridor and skull are judged by kinematics and distances that are not the library's.
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <cstdio>
-#include <limits>
 
 #include "guards.h"
-#include "keepout/fixtures/random.h"
 #include "keepout/fixtures/real_mesh.h"
 #include "keepout/mesh/load_mesh.h"
 #include "keepout/oracle/instrument_oracle.h"
-#include "trials.h"
 
 namespace keepout {
 namespace {
@@ -27,8 +21,7 @@ TEST(CuttingSetUp, KeepsCorridorSkullAndJointsWhateverTheHandDoes) {
   const Instrument robot = psm(port_over(top, 120.0));
   const Chain& chain = robot.chain();
   std::vector<double> q{0, 0, 0, 0, 0, 0};
-  ChainState state;
-  chain.forward_kinematics(q, state);
+  ChainState state = test::state_of(chain, q);
   q[2] = state.flange().position.z() - top.z() - 3.0;  // 3 mm above the bone
   chain.forward_kinematics(q, state);
   const LinkPoint tip{6, chain.flange().position};
@@ -42,7 +35,7 @@ TEST(CuttingSetUp, KeepsCorridorSkullAndJointsWhateverTheHandDoes) {
   const double middle = state.flange().position.x();
   const double kept = guard.options().margin - guard.options().band - 3.0 * guard.tolerance();
   double farthest = 0.0;
-  double nearest = std::numeric_limits<double>::infinity();
+  double nearest = test::infinity;
   int held = 0;
   int blocked = 0;
   double cut = 0.0;

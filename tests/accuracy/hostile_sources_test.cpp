@@ -2,19 +2,14 @@
 // Ten million hostile steps of the certified rule, each made with the walk of a tree and with all
 // hits around: status, motion, increment, planes and distance are the same, bit for bit, on every
 // SIMD target.
-#include <gtest/gtest.h>
 
-#include <cmath>
 #include <cstdio>
 #include <functional>
 
-#include "by_name.h"
 #include "engine/activation/sources.h"
 #include "keepout/fixtures/poses.h"
-#include "keepout/fixtures/random.h"
 #include "keepout/index/query.h"
-#include "keepout/simd_target.h"
-#include "shapes_to_try.h"
+#include "trials.h"
 
 namespace keepout {
 namespace {

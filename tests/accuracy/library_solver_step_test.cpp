@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The whole step with a solver of a library agrees with the step with our own, or stands still and
 // says so.
-#include <gtest/gtest.h>
 
 #include "accuracy/certified_loop.h"
-#include "by_name.h"
 #include "keepout/solvers/registry.h"
 
 namespace keepout::test {

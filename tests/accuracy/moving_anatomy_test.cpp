@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Anatomy that moves under a running loop: no step is made on what it was.
-#include <gtest/gtest.h>
 
 #include <atomic>
 #include <chrono>
@@ -10,8 +9,6 @@
 #include "accuracy/certified_loop.h"
 #include "keepout/error.h"
 #include "keepout/index/wide_bvh.h"
-#include "small_surfaces.h"
-#include "trials.h"
 
 namespace keepout::test {
 namespace {

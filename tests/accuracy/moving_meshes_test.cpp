@@ -2,22 +2,15 @@
 // A psm beside real anatomy that swings by 50 mm/s and turns by 30 degrees a second under it, as
 // breath and pulse move it; judged at each pose by kinematics and distances that are not the
 // library's.
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <cstdio>
-#include <limits>
-#include <numbers>
 
 #include "guards.h"
 #include "keepout/adapters/index_registry.h"
-#include "keepout/fixtures/random.h"
 #include "keepout/fixtures/real_mesh.h"
 #include "keepout/mesh/load_mesh.h"
 #include "keepout/oracle/instrument_oracle.h"
 #include "keepout/solvers/registry.h"
-#include "trials.h"
 
 namespace keepout {
 namespace {
@@ -72,7 +65,7 @@ TEST_P(MovingMeshes, AreKeptOffWhateverTheHandDoes) {
   const Instrument robot = psm(port_over(top, 120.0));
   const Chain& chain = robot.chain();
   Random random(1);
-  double nearest = std::numeric_limits<double>::infinity();
+  double nearest = test::infinity;
   double farthest_below = 0.0;  // of what a cycle certified
   int blocked = 0;
   int named = 0;
@@ -85,8 +78,7 @@ TEST_P(MovingMeshes, AreKeptOffWhateverTheHandDoes) {
                                {.period = cycle_time});
     oracle::InstrumentOracle judge(tree, oracle::judged_psm(), chain.base());
     std::vector<double> q{0, 0, 0, 0, 0, 0};
-    ChainState state;
-    chain.forward_kinematics(q, state);
+    const ChainState state = test::state_of(chain, q);
     q[2] = state.flange().position.z() - top.z() - 6.0;  // above the surface, however it swings
     const double promised = guard.options().margin - guard.options().band;
     for (int cycle = 0; cycle < 1000; ++cycle, ++cycles) {
@@ -160,15 +152,14 @@ TEST(DeformingLiver, IsKeptOffBetweenRefitsAndLookedAtAnewAfterEach) {
   InstrumentConstraint guard(mesh, tree, robot, make_solver("active_set"), {.period = cycle_time});
   const InstrumentOptions& options = guard.options();
   std::vector<double> q{0, 0, 0, 0, 0, 0};
-  ChainState state;
-  chain.forward_kinematics(q, state);
+  const ChainState state = test::state_of(chain, q);
   q[2] = state.flange().position.z() - top.z() - 1.0;
   Random random(2);
   int cycles = 0;
   int certified = 0;
   int recovering = 0;
   int stopped = 0;
-  double nearest = std::numeric_limits<double>::infinity();
+  double nearest = test::infinity;
   const int refits = test::trials(40);
   for (int refit = 1; refit <= refits; ++refit) {
     mesh = at(0.1 * refit);

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the paper's rule does where some reading of it fails: on record, for comparison with rules
 // that do not.
-#include <gtest/gtest.h>
 
 #include <map>
 
 #include "accuracy/segment_crossing.h"
-#include "by_name.h"
 #include "keepout/factory/make_motion_constraint.h"
 #include "keepout/fixtures/counterexamples.h"
 #include "meshes.h"
+#include "trials.h"
 
 namespace keepout {
 namespace {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What docs/safety.md promises beside the certified step itself: each was broken once.
-#include <gtest/gtest.h>
 
 #if defined(__SSE2__)
 #include <immintrin.h>
@@ -14,7 +13,6 @@
 #include "keepout/index/pd_tree_1997.h"
 #include "keepout/index/wide_bvh.h"
 #include "messages.h"
-#include "small_surfaces.h"
 
 namespace keepout::test {
 namespace {

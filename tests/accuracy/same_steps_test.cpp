@@ -4,20 +4,15 @@
 // long as the steps are the same, what was measured of them holds. If you change a step on purpose,
 // write the two numbers that the test prints to that file, and measure these records again
 // (docs/records.md).
-#include <gtest/gtest.h>
 
-#include <Eigen/Geometry>
 #include <array>
 #include <bit>
 #include <cstdint>
 #include <fstream>
-#include <string>
 #include <type_traits>
-#include <utility>
 
 #include "guards.h"
 #include "keepout/fixtures/motions.h"
-#include "keepout/fixtures/random.h"
 
 namespace keepout {
 namespace {
@@ -107,8 +102,7 @@ void add_stroke(int stroke, bool meshes_move, bool is_guided, Fingerprint& finge
     const double low = std::max(limits.lower, -2.0);
     q.push_back(low + (std::min(limits.upper, farthest) - low) * random.uniform(0.3, 0.7));
   }
-  ChainState state;
-  robot.chain().forward_kinematics(q, state);
+  const ChainState state = test::state_of(robot.chain(), q);
   const Vec3 tip = state.flange().position;
   const Triangle there =
       mesh->triangle(static_cast<TriangleId>(random.below(mesh->triangle_count())));

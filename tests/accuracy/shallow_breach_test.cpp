@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Motions that would end too close by a small fraction of their length, 1e-9 to 1e-3. An early
 // acceptance or a search region that is slightly wrong lets such motions pass.
-#include <gtest/gtest.h>
-
-#include <cstddef>
 
 #include "accuracy/certified_loop.h"
 #include "keepout/index/query.h"
-#include "trials.h"
 
 namespace keepout::test {
 namespace {

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Step::limits names what kept a motion from being the one asked for, and nothing else.
-#include <gtest/gtest.h>
 
 #include <array>
 #include <optional>
 
 #include "accuracy/certified_loop.h"
-#include "trials.h"
 
 namespace keepout::test {
 namespace {

@@ -1,17 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <ostream>
-#include <utility>
-
 #include "brute_force.h"
 #include "keepout/adapters/index_registry.h"
 #include "keepout/fixtures/poses.h"
 #include "keepout/index/spatial_index.h"
-#include "random_places.h"
-#include "trials.h"
+#include "meshes.h"
 
 namespace keepout {
 

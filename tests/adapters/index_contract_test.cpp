@@ -2,16 +2,12 @@
 // Every index is held to brute force: the same triangles, whatever the place and the radius.
 #include "adapters/index_contract.h"
 
-#include <gtest/gtest.h>
-
 #include <future>
 #include <set>
 
 #include "keepout/adapters/all_indices.h"
 #include "library_backends.h"
-#include "meshes.h"
 #include "messages.h"
-#include "shapes_to_try.h"
 
 namespace keepout {
 namespace {

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // More triangles than 21 bits can number: where Bullet by itself takes some for others, silently.
-#include <gtest/gtest.h>
 
 #include "adapters/index_contract.h"
-#include "by_name.h"
 #include "keepout/adapters/all_indices.h"
-#include "meshes.h"
 
 namespace keepout {
 namespace {

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Every narrow phase answers, or reports why not, for any input. `keepout compare` measures how
 // well libraries answer: docs/convex_tools.md.
-#include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <set>
 
 #include "engine/geometry/tools.h"
 #include "keepout/adapters/narrow_phase_registry.h"
+#include "trials.h"
 
 namespace keepout {
 namespace {
@@ -90,9 +89,8 @@ TEST_P(NarrowPhaseContract, ComesBackFromWhatLiesOnALattice) {
 
 TEST_P(NarrowPhaseContract, ComesBackFromNumbersOutOfRange) {
   const double huge = std::numeric_limits<double>::max();
-  const double infinite = std::numeric_limits<double>::infinity();
   Random random(4);
-  for (const double number : {std::nan(""), infinite, -infinite, huge, 1e200, 1e-300}) {
+  for (const double number : {std::nan(""), test::infinity, -test::infinity, huge, 1e200, 1e-300}) {
     for (const test::NamedTool& named : test::tools_of_each_kind(3.0, random)) {
       const auto narrow_phase = GetParam().make(named.tool);
       Triangle triangle = triangle_at({3, 0, 0}, 1.0, random);

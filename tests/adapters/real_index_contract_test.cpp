@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The contract of every index on real anatomy, scans and parts.
-#include <gtest/gtest.h>
-
-#include <string_view>
 
 #include "adapters/index_contract.h"
-#include "by_name.h"
 #include "keepout/adapters/all_indices.h"
 #include "keepout/fixtures/real_mesh.h"
 #include "keepout/mesh/load_mesh.h"

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdio>
+#include <source_location>
 #include <vector>
 
 #include "temporary_folder.h"
@@ -18,6 +19,14 @@ struct ProcessOutcome {
   int status;          // -1: killed by a signal
   std::string output;  // stdout and stderr
 };
+
+/// Returns the outcome of a run; fails the test unless the command succeeded.
+inline ProcessOutcome succeeded(ProcessOutcome outcome,
+                                std::source_location caller = std::source_location::current()) {
+  const testing::ScopedTrace trace(caller.file_name(), static_cast<int>(caller.line()), "");
+  EXPECT_EQ(outcome.status, 0) << outcome.output;
+  return outcome;
+}
 
 /// The keepout command as a user meets it: run as a process, in a folder of its own.
 class CommandFolder : public TemporaryFolder {

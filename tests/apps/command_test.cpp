@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The keepout command as a user meets it: run as a process, judged by what it prints and leaves.
-#include <gtest/gtest.h>
 
 #include <cstdlib>
 #include <iomanip>
@@ -74,13 +73,11 @@ TEST_F(Command, SaysThatNothingOfABenchmarkWasFinishedWhenItIsInterruptedAtOnce)
 }
 
 TEST_F(Command, HelpNamesEveryCommandAndChoice) {
-  const Outcome help = run("--help");
-  EXPECT_EQ(help.status, 0);
+  const Outcome help = succeeded(run("--help"));
   for (const char* word : {"inspect", "register", "replay", "simulate"}) {
     EXPECT_CONTAINS(help.output, word) << word;
   }
-  const Outcome replay = run("replay --help");
-  EXPECT_EQ(replay.status, 0);
+  const Outcome replay = succeeded(run("replay --help"));
   for (const char* word : {"brute_force", "pd_tree", "all_faces", "paper", "active_set",
                            "--closed-loop", "--radius", "--margin", "--planes", "--max-step"}) {
     EXPECT_CONTAINS(replay.output, word) << word;
@@ -89,9 +86,7 @@ TEST_F(Command, HelpNamesEveryCommandAndChoice) {
 
 TEST_F(Command, ReplaySolvesOneStepForEachLine) {
   folder_.write("poses.txt", "0 0 60 1 2 -3\n3 4 51 1 -2 -3\n3 4 51 0 0 -6\n");
-  const Outcome outcome =
-      run("replay cube.stl --poses poses.txt --out steps.csv --planes planes.csv");
-  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  succeeded(run("replay cube.stl --poses poses.txt --out steps.csv --planes planes.csv"));
   const std::vector<Row> steps = rows("steps.csv");
   ASSERT_EQ(steps.size(), 3u);
   EXPECT_EQ(steps[0].at("status"), "free");
@@ -186,9 +181,7 @@ TEST_F(Command, EveryIndexAndRuleCanBeChosen) {
 
 TEST_F(Command, AToolWithARadiusIsKeptOffByItAndTheMargin) {
   folder_.write("poses.txt", "3 4 51 1 -2 -3\n");
-  const Outcome outcome =
-      run("replay cube.stl --poses poses.txt --out s.csv --tool-radius 0.5 --margin 0.1");
-  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  succeeded(run("replay cube.stl --poses poses.txt --out s.csv --tool-radius 0.5 --margin 0.1"));
   EXPECT_LT((vector(rows("s.csv").at(0), "u") - Vec3(1, -2, -0.4)).norm(), 1e-12);
 }
 
@@ -203,9 +196,8 @@ TEST_F(Command, AConvexToolByNameStepsAsPutTogetherByHandBitForBit) {
       poses << std::setprecision(17) << tip.transpose() << " " << desired.transpose() << "\n";
     }
     poses << std::flush;
-    const Outcome outcome = run("replay cube.stl --poses poses.txt --out s.csv --tool " + text +
-                                " --narrow-phase " + phase);
-    ASSERT_EQ(outcome.status, 0) << outcome.output;
+    succeeded(run("replay cube.stl --poses poses.txt --out s.csv --tool " + text +
+                  " --narrow-phase " + phase));
     for (std::size_t i = 0; i < loop.size(); ++i) {
       const Row row = rows("s.csv").at(i);
       EXPECT_EQ(row.at("status"), name(loop[i].status));
@@ -393,19 +385,17 @@ TEST_F(Command, AnUnfitMeshIsNamed) {
 }
 
 TEST_F(Command, ARuleThatIsNamedTwiceRunsOnce) {
-  const Outcome outcome =
+  const Outcome outcome = succeeded(
       run("simulate cube.stl --out r.html --strokes 1 --cycles 20 --activation paper,paper "
-          "--verbose 2>/dev/null");
-  ASSERT_EQ(outcome.status, 0) << outcome.output;
+          "--verbose 2>/dev/null"));
   const std::size_t first = outcome.output.find("\npaper ");
   ASSERT_NE(first, std::string::npos) << outcome.output;
   EXPECT_EQ(outcome.output.find("\npaper ", first + 1), std::string::npos) << outcome.output;
 }
 
 TEST_F(Command, WithoutAFixtureThereAreNoTimes) {
-  const Outcome outcome =
-      run("simulate cube.stl --out r.html --strokes 1 --cycles 20 --activation paper --verbose");
-  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  const Outcome outcome = succeeded(
+      run("simulate cube.stl --out r.html --strokes 1 --cycles 20 --activation paper --verbose"));
   std::istringstream row(outcome.output.substr(outcome.output.find("\nnone ")));
   std::string rule, cycles, khz, p50, p99;
   row >> rule >> cycles >> khz >> p50 >> p99;
@@ -436,9 +426,8 @@ TEST_F(Command, TheRecordTellsTheDateAndTheCommandThatMakesItAgain) {
 }
 
 TEST_F(Command, SimulatePrintsATableAndWritesAReport) {
-  const Outcome outcome =
-      run("simulate cube.stl --out r.html --strokes 3 --cycles 200 --radius 1 --verbose");
-  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  const Outcome outcome = succeeded(
+      run("simulate cube.stl --out r.html --strokes 3 --cycles 200 --radius 1 --verbose"));
   for (const char* word : {"none", "all_faces", "paper", "certified", "r.html"}) {
     EXPECT_CONTAINS(outcome.output, word) << word;
   }

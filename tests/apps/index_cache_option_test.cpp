@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // --index-cache as a user meets it: the answers are the same, whatever is in the folder.
-#include <gtest/gtest.h>
 
 #include <chrono>
 #include <sstream>
@@ -22,9 +21,8 @@ class IndexCacheOption : public testing::Test {
 
   /// What the command answers, but for how long it took.
   std::string answer(const std::string& options, const std::string& index = "wide_bvh") const {
-    const ProcessOutcome outcome = folder.run(
-        "replay gear.stl --poses poses.txt --out steps.csv --index " + index + ' ' + options);
-    EXPECT_EQ(outcome.status, 0) << outcome.output;
+    succeeded(folder.run("replay gear.stl --poses poses.txt --out steps.csv --index " + index +
+                         ' ' + options));
     std::ifstream steps(folder.file("steps.csv"));
     std::string all;
     for (std::string line; std::getline(steps, line);) {
@@ -91,13 +89,12 @@ TEST_F(IndexCacheOption, AFolderThatCannotBeUsedDoesNotStopTheRun) {
 TEST_F(IndexCacheOption, WhatCannotBeKeptIsToldOfOnceAndWhy) {
   folder.write("occupied", "a file where the folder should be");
   const std::string replay = "replay gear.stl --poses poses.txt --out steps.csv --index-cache ";
-  const ProcessOutcome no_folder = folder.run(replay + "occupied/below");
-  EXPECT_EQ(no_folder.status, 0);
+  const ProcessOutcome no_folder = succeeded(folder.run(replay + "occupied/below"));
   EXPECT_CONTAINS(no_folder.output, "keepout: the index is not kept");
   EXPECT_CONTAINS(no_folder.output, "Not a directory");
   // As when the disk is full: no file may become larger than this.
-  const ProcessOutcome full = folder.run(replay + "cache", "trap '' XFSZ; ulimit -f 8; ");
-  EXPECT_EQ(full.status, 0) << full.output;
+  const ProcessOutcome full =
+      succeeded(folder.run(replay + "cache", "trap '' XFSZ; ulimit -f 8; "));
   EXPECT_CONTAINS(full.output, "cannot be written (File too large)");
   EXPECT_TRUE(cached().empty());
   // Every rule has an index of its own, but the news is the same.

@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-
-#include <gtest/gtest.h>
-
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
 
 #include "commands.h"
 #include "keepout/mesh/binary_stl.h"
-#include "small_surfaces.h"
+#include "meshes.h"
 #include "temporary_folder.h"
 
 namespace keepout::app {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the command says to a mistyped command line, and what it ends with.
-#include <gtest/gtest.h>
 
 #include "apps/command_process.h"
 #include "shared/names.h"

@@ -1,20 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "keepout/control/crtk_guard.h"
 
-#include <gtest/gtest.h>
-
 #include <Eigen/Geometry>
-#include <limits>
 #include <set>
 
 #include "control/guarded_shapes.h"
 #include "keepout/error.h"
 #include "keepout/index/wide_bvh.h"
+#include "trials.h"
 
 namespace keepout {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double accuracy = 1e-9;  // [m]
 
 /// A robot whose base is turned and 300 mm away from the mesh.
@@ -42,6 +38,11 @@ class Crtk : public testing::Test {
   static CrtkGuard make(const CrtkOptions& options = {}) {
     return {guard_of(cube()), registration(), options};
   }
+  static CrtkGuard engaged(const CrtkOptions& options = {}) {
+    CrtkGuard guard = make(options);
+    EXPECT_EQ(guard.engage(pose_at(above)), CycleStatus::guarded);
+    return guard;
+  }
   /// Straight down from where it is engaged, in so many cycles.
   static void press(CrtkGuard& guard, double z, int cycles = 200) {
     for (int i = 1; i <= cycles; ++i) {
@@ -52,8 +53,7 @@ class Crtk : public testing::Test {
 };
 
 TEST_F(Crtk, AFreeGoalIsSentAsItIs) {
-  CrtkGuard guard = make();
-  EXPECT_EQ(guard.engage(pose_at(above)), CycleStatus::guarded);
+  CrtkGuard guard = engaged();
   const Mat3 other = Eigen::AngleAxisd(1.3, Vec3::UnitY()).toRotationMatrix();
   const Pose goal = pose_at(above + Vec3(0.1, 0, 0), other);
   EXPECT_EQ(guard.servo_cp(goal), CycleStatus::guarded);
@@ -63,8 +63,7 @@ TEST_F(Crtk, AFreeGoalIsSentAsItIs) {
 }
 
 TEST_F(Crtk, AGoalBehindTheSurfaceIsHeldAtTheMarginAndTheHandFeelsIt) {
-  CrtkGuard guard = make();
-  guard.engage(pose_at(above));
+  CrtkGuard guard = engaged();
   press(guard, top + kept - 2.0);
   const Vec3 held(3, 4, top + kept);
   EXPECT_LT((guard.setpoint_cp()->position - pose_at(held).position).norm(), accuracy);
@@ -76,8 +75,7 @@ TEST_F(Crtk, AGoalBehindTheSurfaceIsHeldAtTheMarginAndTheHandFeelsIt) {
 }
 
 TEST_F(Crtk, TheOrientationPassesThroughWhileTheTipIsHeld) {
-  CrtkGuard guard = make();
-  guard.engage(pose_at(above));
+  CrtkGuard guard = engaged();
   press(guard, top - 1.0);
   const Mat3 other = Eigen::AngleAxisd(-2.0, Vec3::UnitZ()).toRotationMatrix();
   EXPECT_EQ(guard.servo_cp(pose_at({3, 4, top - 1.0}, other)), CycleStatus::guarded);
@@ -86,8 +84,7 @@ TEST_F(Crtk, TheOrientationPassesThroughWhileTheTipIsHeld) {
 
 TEST_F(Crtk, AScaledTeleoperationGivesTheHandWhatItPutsIn) {
   const Mat3 device = Eigen::AngleAxisd(0.5, Vec3::UnitZ()).toRotationMatrix();
-  CrtkGuard guard = make({.motion_scale = 0.25, .hand_from_robot = device});
-  guard.engage(pose_at(above));
+  CrtkGuard guard = engaged({.motion_scale = 0.25, .hand_from_robot = device});
   press(guard, top + kept - 2.0);
   const Vec3 on_the_tool = registration().force_to_robot({0, 0, 2.0});
   EXPECT_LT((guard.servo_cf().force - 0.25 * (device * on_the_tool)).norm(), 1e-6);
@@ -95,8 +92,8 @@ TEST_F(Crtk, AScaledTeleoperationGivesTheHandWhatItPutsIn) {
 
 TEST_F(Crtk, ADevicesFrameOfFourDigitsMakesTheForceNoLarger) {
   const Mat3 device = 1.00004 * Mat3::Identity();
-  CrtkGuard guard = make({.haptic = {.spring = {.largest_force = 2.0}}, .hand_from_robot = device});
-  guard.engage(pose_at(above));
+  CrtkGuard guard =
+      engaged({.haptic = {.spring = {.largest_force = 2.0}}, .hand_from_robot = device});
   press(guard, top + kept - 6.0);
   EXPECT_NEAR(guard.servo_cf().force.norm(), 2.0, 1e-12);
 }
@@ -117,8 +114,7 @@ TEST_F(Crtk, WithoutEngagingThereIsNothingToSend) {
 }
 
 TEST_F(Crtk, ClutchingStartsAnewWithoutForce) {
-  CrtkGuard guard = make();
-  guard.engage(pose_at(above));
+  CrtkGuard guard = engaged();
   press(guard, top + kept - 2.0);
   EXPECT_GT(guard.servo_cf().force.norm(), 1.9);
   const Pose robot = *guard.setpoint_cp();
@@ -131,8 +127,7 @@ TEST_F(Crtk, ClutchingStartsAnewWithoutForce) {
 }
 
 TEST_F(Crtk, AGoalInMillimetresIsRefused) {
-  CrtkGuard guard = make();
-  guard.engage(pose_at(above));
+  CrtkGuard guard = engaged();
   Pose goal = pose_at(above);
   goal.position *= 1000.0;
   EXPECT_EQ(guard.servo_cp(goal), CycleStatus::too_far);
@@ -142,10 +137,10 @@ TEST_F(Crtk, AGoalInMillimetresIsRefused) {
 }
 
 TEST_F(Crtk, AGoalThatIsNoPoseStopsTheRobotWithItsOrientation) {
-  CrtkGuard guard = make();
-  guard.engage(pose_at(above));
-  for (const Pose& goal : {Pose{{nan, 0, 0}, tilted}, pose_at(above, Mat3::Constant(nan)),
-                           pose_at(above, Mat3::Zero()), pose_at(above, -tilted)}) {
+  CrtkGuard guard = engaged();
+  for (const Pose& goal :
+       {Pose{{test::nan, 0, 0}, tilted}, pose_at(above, Mat3::Constant(test::nan)),
+        pose_at(above, Mat3::Zero()), pose_at(above, -tilted)}) {
     EXPECT_EQ(guard.servo_cp(goal), CycleStatus::invalid_pose);
     EXPECT_EQ(guard.setpoint_cp()->position, pose_at(above).position);
     EXPECT_EQ(guard.setpoint_cp()->rotation, tilted);
@@ -155,8 +150,7 @@ TEST_F(Crtk, AGoalThatIsNoPoseStopsTheRobotWithItsOrientation) {
 }
 
 TEST_F(Crtk, WithoutMessagesTheLastGoalStandsForAWhile) {
-  CrtkGuard guard = make({.haptic = {.fade = 0.01}, .longest_silence = 0.02});
-  guard.engage(pose_at(above));
+  CrtkGuard guard = engaged({.haptic = {.fade = 0.01}, .longest_silence = 0.02});
   press(guard, top + kept - 2.0);
   for (int i = 0; i < 20; ++i) {
     EXPECT_EQ(guard.await_cp(), CycleStatus::guarded) << i;
@@ -173,8 +167,7 @@ TEST_F(Crtk, WithoutMessagesTheLastGoalStandsForAWhile) {
 }
 
 TEST_F(Crtk, ARobotThatIsNotWhereItWasSentIsWaitedFor) {
-  CrtkGuard guard = make({.farthest_lag = 2.0});
-  guard.engage(pose_at(above));
+  CrtkGuard guard = engaged({.farthest_lag = 2.0});
   guard.measured_cp(pose_at(above + Vec3(0, 0, 1.9)));
   EXPECT_EQ(guard.servo_cp(pose_at(above)), CycleStatus::guarded);
   guard.measured_cp(pose_at(above + Vec3(0, 0, 2.1)));
@@ -182,14 +175,13 @@ TEST_F(Crtk, ARobotThatIsNotWhereItWasSentIsWaitedFor) {
   EXPECT_LT((guard.setpoint_cp()->position - pose_at(above).position).norm(), 1e-15);
   // What was measured once is not compared again.
   EXPECT_EQ(guard.servo_cp(pose_at(above)), CycleStatus::guarded);
-  guard.measured_cp({{nan, nan, nan}, tilted});
+  guard.measured_cp({{test::nan, test::nan, test::nan}, tilted});
   EXPECT_EQ(guard.servo_cp(pose_at(above)), CycleStatus::invalid_pose);
 }
 
 TEST_F(Crtk, ARobotIsKeptInTheGuides) {
   const Guide corridor = Guide::point("corridor", Region::slab(above, Vec3::UnitX(), 1.0));
-  CrtkGuard guard = make({.haptic = {.guides = {corridor}}});
-  guard.engage(pose_at(above));
+  CrtkGuard guard = engaged({.haptic = {.guides = {corridor}}});
   for (int i = 1; i <= 200; ++i) guard.servo_cp(pose_at(above + 0.02 * i * Vec3(1.0, 0.1, 0.0)));
   const Vec3 sent = registration().point_to_mesh(guard.setpoint_cp()->position);
   EXPECT_NEAR(corridor.region().excess(sent), 0.0, corridor.band() + 1e-9);
@@ -204,17 +196,14 @@ TEST_F(Crtk, ARobotStandsOnceTheMeshHasMoved) {
   guard.engage(pose_at(above));
   EXPECT_EQ(guard.servo_cp(pose_at(above)), CycleStatus::guarded);
   const Vec3 before = guard.setpoint_cp()->position;
-  Surface moved = make_cube(10.0);
-  for (Vec3& v : moved.vertices) v.z() += 1.0;
-  tree->refit(mesh_of(moved));
+  tree->refit(mesh_of(moved(make_cube(10.0), Vec3::UnitZ())));
   EXPECT_EQ(guard.servo_cp(pose_at(above + Vec3(0.1, 0, 0))), CycleStatus::stopped);
   EXPECT_EQ(guard.cycle().step, Status::mesh_changed);
   EXPECT_EQ(guard.setpoint_cp()->position, before);
 }
 
 TEST_F(Crtk, AnotherRegistrationIsTakenOnLettingGo) {
-  CrtkGuard guard = make();
-  guard.engage(pose_at(above));
+  CrtkGuard guard = engaged();
   const auto moved = Registration::mesh_from_robot(
       Eigen::Matrix4d::Identity(),
       {.transform = LengthUnit::metre, .robot = LengthUnit::metre, .mesh = LengthUnit::millimetre});
@@ -226,12 +215,12 @@ TEST_F(Crtk, AnotherRegistrationIsTakenOnLettingGo) {
 }
 
 TEST_F(Crtk, OptionsOutOfRangeAreRefused) {
-  for (const double bad : {0.0, -1.0, nan}) {
+  for (const double bad : {0.0, -1.0, test::nan}) {
     EXPECT_THROW(make({.motion_scale = bad}), Error);
     EXPECT_THROW(make({.farthest_lag = bad}), Error);
     EXPECT_THROW(make({.farthest_start = bad}), Error);
   }
-  EXPECT_THROW(make({.longest_silence = nan}), Error);
+  EXPECT_THROW(make({.longest_silence = test::nan}), Error);
   EXPECT_THROW(make({.hand_from_robot = -Mat3::Identity()}), Error);
   EXPECT_THROW(make({.hand_from_robot = 1000.0 * Mat3::Identity()}), Error);
   EXPECT_THROW(make({.haptic = {.period = 0.0}}), Error);

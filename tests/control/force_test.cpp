@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The force, its energy and its passivity, apart from any mesh.
-#include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <limits>
 
 #include "keepout/control/haptic_force.h"
 #include "keepout/error.h"
+#include "trials.h"
 
 namespace keepout {
 namespace {
@@ -39,14 +38,13 @@ TEST(SpringDamper, WhatIsStoredIsTheIntegralOfTheForce) {
 }
 
 TEST(SpringDamper, NumbersOutOfRangeAreRefused) {
-  const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_NO_THROW(check(SpringDamper{}));
-  for (const double bad : {0.0, -1.0, nan, 1e10}) {
+  for (const double bad : {0.0, -1.0, test::nan, 1e10}) {
     EXPECT_THROW(check(SpringDamper{.stiffness = bad}), Error);
     EXPECT_THROW(check(SpringDamper{.largest_force = bad}), Error);
   }
-  for (const double bad : {-1.0, nan, 1e10}) EXPECT_THROW(check({.damping = bad}), Error);
-  for (const double bad : {0.0, nan}) EXPECT_THROW(check({.largest_rise = bad}), Error);
+  for (const double bad : {-1.0, test::nan, 1e10}) EXPECT_THROW(check({.damping = bad}), Error);
+  for (const double bad : {0.0, test::nan}) EXPECT_THROW(check({.largest_rise = bad}), Error);
 }
 
 TEST(PassivityObserver, CountsWhatTheHandPutsInLessWhatItGets) {

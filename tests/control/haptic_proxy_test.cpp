@@ -1,21 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "keepout/control/haptic_proxy.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-
 #include "control/guarded_shapes.h"
 #include "keepout/error.h"
-#include "keepout/fixtures/random.h"
 #include "keepout/index/wide_bvh.h"
 #include "trials.h"
 
 namespace keepout {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double accuracy = 1e-6;  // of a limited step [mm]
 
 /// Where a hand is led, straight and slowly.
@@ -35,9 +27,15 @@ void expect_balance(const EnergyReport& report) {
 
 const Vec3 above(3.0, 4.0, top + 5.0);
 
+/// Returns a proxy above the cube.
+HapticProxy engaged(const HapticOptions& options = {}) {
+  HapticProxy proxy(guard_of(cube()), options);
+  EXPECT_EQ(proxy.engage(above), CycleStatus::guarded);
+  return proxy;
+}
+
 TEST(HapticProxy, FollowsTheHandExactlyAndWithoutForceInFreeSpace) {
-  HapticProxy proxy(guard_of(cube()), {});
-  proxy.engage(above);
+  HapticProxy proxy = engaged();
   Random random(1);
   Vec3 hand = above;
   for (int i = 0; i < 1000; ++i) {
@@ -57,8 +55,7 @@ TEST(HapticProxy, StaysInItsGuidesAndPullsTheHandBackIntoThem) {
   const SpringDamper spring{.stiffness = 0.7, .damping = 0.002, .largest_force = 4.0};
   HapticOptions options{.spring = spring};
   options.guides = {Guide::point("corridor", Region::slab(above, Vec3::UnitX(), 1.0))};
-  HapticProxy proxy(guard_of(cube()), options);
-  proxy.engage(above);
+  HapticProxy proxy = engaged(options);
   const Vec3 aside = above + Vec3(3.0, 0.5, 0.0);
   lead(proxy, above, aside, 200);
   const HapticCycle cycle = proxy.cycle(aside);  // at rest
@@ -72,8 +69,7 @@ TEST(HapticProxy, StaysInItsGuidesAndPullsTheHandBackIntoThem) {
 
 TEST(HapticProxy, OnAPlaneTheStaticForceIsTheStiffnessTimesTheDepthBehindTheMargin) {
   const SpringDamper spring{.stiffness = 0.7, .damping = 0.002, .largest_force = 4.0};
-  HapticProxy proxy(guard_of(cube()), {.spring = spring});
-  proxy.engage(above);
+  HapticProxy proxy = engaged({.spring = spring});
   for (const double depth : {0.1, 1.0, 4.0}) {
     const Vec3 hand(3.0, 4.0, top + kept - depth);
     lead(proxy, above, hand, 200);
@@ -103,8 +99,7 @@ TEST(HapticProxy, OnASphereTheForceIsRadialAndTheStiffnessTimesTheDepth) {
 }
 
 TEST(HapticProxy, TheForceSaturatesAndKeepsItsDirection) {
-  HapticProxy proxy(guard_of(cube()), {.spring = {.stiffness = 1.0, .largest_force = 2.0}});
-  proxy.engage(above);
+  HapticProxy proxy = engaged({.spring = {.stiffness = 1.0, .largest_force = 2.0}});
   const Vec3 deep(3.0, 4.0, top - 20.0);
   const HapticCycle cycle = lead(proxy, above, deep, 500);
   EXPECT_LT((cycle.force - Vec3(0, 0, 2.0)).norm(), 1e-9);
@@ -112,14 +107,13 @@ TEST(HapticProxy, TheForceSaturatesAndKeepsItsDirection) {
 }
 
 TEST(HapticProxy, TheProxyStaysOutWhateverTheHandDoes) {
-  HapticProxy proxy(guard_of(cube()),
-                    {.spring = {.stiffness = 3.0, .damping = 0.01}, .largest_brake = 0.01});
-  proxy.engage(above);
+  HapticProxy proxy =
+      engaged({.spring = {.stiffness = 3.0, .damping = 0.01}, .largest_brake = 0.01});
   Random random(2);
   Vec3 hand = above;
   for (int i = 0; i < 20'000; ++i) {
     if (i % 50 == 0) hand = 45.0 * random.direction() + Vec3(0, 0, 20);
-    if (i % 997 == 0) hand.x() = nan;
+    if (i % 997 == 0) hand.x() = test::nan;
     const Vec3 before = proxy.proxy();
     const HapticCycle cycle = proxy.cycle(hand);
     const Vec3 past = cycle.proxy.cwiseAbs() - Vec3::Constant(top);
@@ -138,8 +132,7 @@ TEST(HapticProxy, TheProxyStaysOutWhateverTheHandDoes) {
 }
 
 TEST(HapticProxy, TheEnergiesAddUpAndASlowPressIsElastic) {
-  HapticProxy proxy(guard_of(cube()), {.spring = {.stiffness = 1.0, .largest_force = 2.0}});
-  proxy.engage(above);
+  HapticProxy proxy = engaged({.spring = {.stiffness = 1.0, .largest_force = 2.0}});
   const Vec3 deep(3.0, 4.0, top + kept - 3.0);
   lead(proxy, above, deep, 20'000);
   // 2 mm of the spring, and 1 mm at its largest force.
@@ -182,14 +175,13 @@ TEST(HapticProxy, SlidingDoesNoWork) {
 }
 
 TEST(HapticProxy, WithoutAHandTheProxyStandsAndTheForceFadesWithoutAJump) {
-  HapticProxy proxy(guard_of(cube()), {.fade = 0.05});
-  proxy.engage(above);
+  HapticProxy proxy = engaged({.fade = 0.05});
   const Vec3 hand(3.0, 4.0, top + kept - 2.0);
   const HapticCycle pressed = lead(proxy, above, hand, 200);
   ASSERT_NEAR(pressed.force.z(), 2.0, accuracy);
   double before = pressed.force.z();
   for (int i = 1; i <= 60; ++i) {
-    const HapticCycle cycle = proxy.cycle({nan, 0.0, 0.0});
+    const HapticCycle cycle = proxy.cycle({test::nan, 0.0, 0.0});
     EXPECT_EQ(cycle.status, CycleStatus::invalid_pose);
     EXPECT_EQ(cycle.proxy, pressed.proxy);
     EXPECT_LE(before - cycle.force.z(), 2.0 / 50.0 + accuracy);
@@ -228,9 +220,7 @@ TEST(HapticProxy, StandsOnceItsMeshHasMoved) {
   proxy.engage(above);
   EXPECT_EQ(proxy.cycle(above + Vec3(0.1, 0, 0)).status, CycleStatus::guarded);
   const Vec3 before = proxy.proxy();
-  Surface moved = make_cube(10.0);
-  for (Vec3& v : moved.vertices) v.z() += 1.0;
-  tree->refit(mesh_of(moved));
+  tree->refit(mesh_of(moved(make_cube(10.0), Vec3::UnitZ())));
   const HapticCycle cycle = proxy.cycle(above);
   EXPECT_EQ(cycle.status, CycleStatus::stopped);
   EXPECT_EQ(cycle.step, Status::mesh_changed);
@@ -238,8 +228,7 @@ TEST(HapticProxy, StandsOnceItsMeshHasMoved) {
 }
 
 TEST(HapticProxy, AHandOutOfReachIsTakenForAFault) {
-  HapticProxy proxy(guard_of(cube()), {.farthest = 30.0});
-  proxy.engage(above);
+  HapticProxy proxy = engaged({.farthest = 30.0});
   EXPECT_EQ(proxy.cycle(above + Vec3(0, 0, 29.0)).status, CycleStatus::guarded);
   const Vec3 before = proxy.proxy();
   for (const double far : {40.0, 1e6, 1e29, 1e200}) {
@@ -250,8 +239,7 @@ TEST(HapticProxy, AHandOutOfReachIsTakenForAFault) {
 }
 
 TEST(HapticProxy, AProxyThatMayNotGoFasterPullsTheHandBack) {
-  HapticProxy proxy(guard_of(cube()), {.top_speed = 100.0});
-  proxy.engage(above);
+  HapticProxy proxy = engaged({.top_speed = 100.0});
   const HapticCycle cycle = proxy.cycle(above + Vec3(0, 0, 1.1));
   EXPECT_NEAR((cycle.proxy - above).z(), 0.1, 1e-12);
   EXPECT_NEAR(cycle.force.z(), -1.0, 1e-12);
@@ -290,7 +278,7 @@ TEST(HapticProxy, TheForceRisesNoFasterThanItMay) {
 TEST(HapticProxy, IsDeadUntilEngagedAndOnceReleased) {
   HapticProxy proxy(guard_of(cube()), {});
   EXPECT_EQ(proxy.cycle(above).status, CycleStatus::not_engaged);
-  EXPECT_EQ(proxy.engage({nan, 0, 0}), CycleStatus::invalid_pose);
+  EXPECT_EQ(proxy.engage({test::nan, 0, 0}), CycleStatus::invalid_pose);
   EXPECT_EQ(proxy.cycle(above).status, CycleStatus::not_engaged);
   EXPECT_EQ(proxy.engage(above), CycleStatus::guarded);
   lead(proxy, above, above - Vec3(0, 0, 8.0), 100);
@@ -374,7 +362,7 @@ TEST(HapticProxy, OptionsOutOfRangeAreRefused) {
   const auto expect_refused = [](const HapticOptions& options) {
     EXPECT_THROW(HapticProxy(guard_of(cube()), options), Error);
   };
-  for (const double bad : {0.0, -1.0, nan, std::numeric_limits<double>::infinity()}) {
+  for (const double bad : {0.0, -1.0, test::nan, test::infinity}) {
     expect_refused({.period = bad});
     expect_refused({.top_speed = bad});
     expect_refused({.farthest = bad});

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "keepout/control/registration.h"
 
-#include <gtest/gtest.h>
-
 #include <Eigen/Geometry>
-#include <limits>
 
+#include "meshes.h"
 #include "messages.h"
-#include "random_places.h"
+#include "trials.h"
 
 namespace keepout {
 namespace {
@@ -106,12 +104,11 @@ TEST(Registration, WhatJustMissesARotationIsNotCalledAReflection) {
 }
 
 TEST(Registration, OtherMatricesAreRefusedForWhatTheyAre) {
-  const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_CONTAINS(complaint(matrix_of(Vec3(1, 1, 2).asDiagonal(), Vec3::Zero())),
                   "it stretches by 2");
   EXPECT_CONTAINS(complaint(matrix_of(Vec3(1, 1, 0).asDiagonal(), Vec3::Zero())), "it flattens");
   EXPECT_CONTAINS(complaint(matrix_of(Mat3::Zero(), Vec3::Zero())), "all zeros");
-  EXPECT_CONTAINS(complaint(matrix_of(Mat3::Identity(), {0, nan, 0})), "not finite");
+  EXPECT_CONTAINS(complaint(matrix_of(Mat3::Identity(), {0, test::nan, 0})), "not finite");
   Mat3 huge = Mat3::Identity();
   huge(0, 0) = 1e200;
   EXPECT_CONTAINS(complaint(matrix_of(huge, Vec3::Zero())), "no rotation");
@@ -150,17 +147,16 @@ TEST(Pose, QuaternionsAndRotationsAgree) {
 }
 
 TEST(Pose, AnEmptyOrBrokenQuaternionIsNoRotation) {
-  const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(to_rotation({0, 0, 0, 0}));
   EXPECT_FALSE(to_rotation({0, 0, 0, 2}));
-  EXPECT_FALSE(to_rotation({nan, 0, 0, 1}));
+  EXPECT_FALSE(to_rotation({test::nan, 0, 0, 1}));
   EXPECT_FALSE(to_rotation({1e200, 0, 0, 1}));
   EXPECT_TRUE(to_rotation({0, 0, 0, 1}));
 }
 
 TEST(Pose, IsValidOnlyWithAFinitePositionAndARotation) {
   EXPECT_TRUE(is_valid(Pose{}));
-  EXPECT_FALSE(is_valid({.position = {0, std::numeric_limits<double>::infinity(), 0}}));
+  EXPECT_FALSE(is_valid({.position = {0, test::infinity, 0}}));
   EXPECT_FALSE(is_valid({.rotation = Mat3::Zero()}));
   EXPECT_FALSE(is_valid({.rotation = -Mat3::Identity()}));
   EXPECT_FALSE(is_valid({.rotation = Mat3::Constant(1e300)}));

@@ -1,20 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "keepout/control/rigid_fit.h"
 
-#include <gtest/gtest.h>
-
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <cstdio>
-#include <limits>
 #include <numeric>
-#include <utility>
 
 #include "keepout/control/registration.h"
 #include "keepout/control/target_error.h"
+#include "meshes.h"
 #include "messages.h"
-#include "random_places.h"
 #include "trials.h"
 
 namespace keepout {
@@ -155,7 +150,7 @@ TEST(RigidFit, SaysWhatIsWrongWithItsPoints) {
   expect_refused({}, {}, {}, "0 pairs");
   expect_refused(good, two, {}, "5 measured points, but 2 of the model");
   expect_refused(good, good, {1, 1}, "2 weights for 5 pairs");
-  for (const double bad : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
+  for (const double bad : {0.0, -1.0, std::nan(""), test::infinity}) {
     expect_refused(good, good, {1, 1, bad, 1, 1}, "weights[2] must be above 0 and finite");
   }
   Points broken = good;

@@ -34,7 +34,7 @@ TEST(SimdTarget, ThatIsNotThereIsRefusedAndLeavesWhatWasChosen) {
   use_simd_target(simd_targets().front());
 }
 
-/// What on_each_simd_target goes through (each_simd_target.h).
+/// What on_each_simd_target goes through (trials.h).
 TEST(SimdTarget, ThePortableOneIsAlwaysThere) {
   EXPECT_EQ(simd_targets().back(), hwy::TargetName(HWY_STATIC_TARGET));
 }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The examples do what they say: on a sphere, whose top they come down upon.
-#include <gtest/gtest.h>
 #include <sys/wait.h>
 
 #include <cstdio>

@@ -2,21 +2,13 @@
 // Planning for whole instruments with OMPL, held to the judge that shares nothing with the library.
 #include "keepout/ompl/joint_planning.h"
 
-#include <gtest/gtest.h>
 #include <ompl/base/DiscreteMotionValidator.h>
 #include <ompl/base/spaces/SE3StateSpace.h>
 #include <ompl/geometric/planners/rrt/RRTConnect.h>
 #include <ompl/util/Console.h>
 #include <ompl/util/RandomNumbers.h>
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <vector>
-
-#include "by_name.h"
 #include "keepout/factory/make_instrument_constraint.h"
-#include "keepout/fixtures/random.h"
 #include "keepout/fixtures/robots.h"
 #include "keepout/index/wide_bvh.h"
 #include "keepout/oracle/instrument_oracle.h"
@@ -60,7 +52,7 @@ class Judge {
 
   /// The least clearance of all bodies on the motion, at so many places; infinite above 1. [mm]
   double least(const Joints& from, const Joints& to, int places) {
-    double clearance = std::numeric_limits<double>::infinity();
+    double clearance = test::infinity;
     for (int i = 0; i <= places; ++i) {
       Joints q = from;
       for (std::size_t k = 0; k < q.size(); ++k) q[k] += i * (to[k] - from[k]) / places;
@@ -154,7 +146,7 @@ TEST(JointPlanning, AMotionThatLeavesTheBoundsEndsAtItsStart) {
   const State a(at.space, {0, 0, 20, 0, 0, 0}), b(at.space, {0, 0, -1, 0, 0, 0});
   expect_invalid_from_the_start(*at.space->getMotionValidator(), at.space, a, b);
   EXPECT_FALSE(at.space->isValid(b.get()));
-  const State nowhere(at.space, Joints(6, std::numeric_limits<double>::quiet_NaN()));
+  const State nowhere(at.space, Joints(6, test::nan));
   EXPECT_FALSE(at.space->isValid(nowhere.get()));
 }
 

@@ -2,24 +2,19 @@
 // What is plugged into OMPL, held to an independent oracle. The only test that sees OMPL's headers.
 #include "keepout/ompl/planning.h"
 
-#include <gtest/gtest.h>
 #include <ompl/base/DiscreteMotionValidator.h>
 #include <ompl/base/spaces/SE3StateSpace.h>
 #include <ompl/geometric/planners/rrt/RRTConnect.h>
 #include <ompl/util/Console.h>
 #include <ompl/util/RandomNumbers.h>
 
-#include <limits>
-#include <vector>
-
-#include "by_name.h"
 #include "keepout/factory/make_motion_constraint.h"
-#include "keepout/fixtures/random.h"
 #include "keepout/index/wide_bvh.h"
 #include "keepout/oracle/safety_oracle.h"
 #include "meshes.h"
 #include "messages.h"
 #include "states.h"
+#include "trials.h"
 
 namespace keepout {
 namespace {
@@ -133,7 +128,7 @@ TEST(Planning, AStateNearerThanTheMarginIsInvalid) {
   EXPECT_FALSE(is_valid(0.0));
   EXPECT_TRUE(is_valid(9.9));
   EXPECT_FALSE(is_valid(10.1)) << "out of bounds";
-  EXPECT_FALSE(is_valid(std::numeric_limits<double>::quiet_NaN()));
+  EXPECT_FALSE(is_valid(test::nan));
 }
 
 TEST(Planning, WithSidesTheInsideIsInvalidAndWithoutItIsAnotherRoom) {

@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "keepout/ompl/projecting_steer.h"
 
-#include <gtest/gtest.h>
-
 #include <Eigen/Geometry>
-#include <limits>
 #include <stdexcept>
 
-#include "by_name.h"
 #include "keepout/activation/certified.h"
 #include "keepout/adapters/index_registry.h"
 #include "keepout/error.h"
@@ -16,7 +12,7 @@
 #include "keepout/ompl/straight_way.h"
 #include "keepout/oracle/safety_oracle.h"
 #include "meshes.h"
-#include "random_places.h"
+#include "trials.h"
 
 namespace keepout {
 namespace {
@@ -98,10 +94,9 @@ TEST(ProjectingSteer, EndsAsItSays) {
   EXPECT_EQ(way.ending, Ending::unbounded);
   EXPECT_LE(way.points.back().z(), 55.0);
   EXPECT_EQ(steer.steer({0, 0, 60}, {0, 0, 90}, 1e9, box).ending, Ending::not_free);
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(steer.steer({0, 0, 60}, {0, nan, 90}).ending, Ending::not_free);
-  EXPECT_EQ(steer.steer({0, nan, 60}, {0, 0, 90}).ending, Ending::not_free);
-  EXPECT_EQ(steer.steer({0, 0, 60}, {0, 0, 90}, nan).ending, Ending::length);
+  EXPECT_EQ(steer.steer({0, 0, 60}, {0, test::nan, 90}).ending, Ending::not_free);
+  EXPECT_EQ(steer.steer({0, test::nan, 60}, {0, 0, 90}).ending, Ending::not_free);
+  EXPECT_EQ(steer.steer({0, 0, 60}, {0, 0, 90}, test::nan).ending, Ending::length);
 }
 
 TEST(ProjectingSteer, RefusesOptionsOutOfRange) {
@@ -135,7 +130,7 @@ TEST(StraightWay, AbsurdWaysAreRefusedInNoTime) {
   const double huge = std::numeric_limits<double>::max();
   EXPECT_FALSE(proves(guard, {0, 0, 60}, {0, 0, huge}));
   EXPECT_FALSE(proves(guard, {0, 0, -huge}, {0, 0, huge}));
-  EXPECT_FALSE(proves(guard, {0, 0, 60}, {0, 0, std::numeric_limits<double>::quiet_NaN()}));
+  EXPECT_FALSE(proves(guard, {0, 0, 60}, {0, 0, test::nan}));
   EXPECT_EQ(proven_prefix(guard, {0, 0, 60}, {0, 0, huge}).share, 0.0);
 }
 

@@ -1,18 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "keepout/oracle/best_step.h"
 
-#include <gtest/gtest.h>
-
 #include <Eigen/Geometry>
-#include <limits>
 #include <span>
-#include <vector>
 
-#include "by_name.h"
 #include "keepout/fixtures/poses.h"
-#include "keepout/fixtures/shapes.h"
 #include "keepout/geometry/closest_point.h"
-#include "small_surfaces.h"
+#include "meshes.h"
 #include "trials.h"
 
 namespace keepout::test {
@@ -30,7 +24,7 @@ std::vector<TriangleId> within(const Mesh& mesh, const Vec3& point, double radiu
 }
 
 double distance(const Mesh& mesh, std::span<const TriangleId> triangles, const Vec3& point) {
-  double least = std::numeric_limits<double>::infinity();
+  double least = infinity;
   for (const TriangleId t : triangles) {
     least = std::min(least, closest_point(mesh.triangle(t), point).distance);
   }
@@ -41,7 +35,7 @@ double distance(const Mesh& mesh, std::span<const TriangleId> triangles, const V
 double slack(const Mesh& mesh, std::span<const TriangleId> triangles, const Vec3& tip,
              const Vec3& motion, double margin) {
   constexpr int samples = 500;
-  double least = std::numeric_limits<double>::infinity();
+  double least = infinity;
   for (int i = 0; i <= samples; ++i) {
     least = std::min(least, distance(mesh, triangles, tip + i * motion / samples) - margin);
   }

@@ -3,18 +3,12 @@
 // point of least norm of the Minkowski difference, over all subsets of its points.
 #include "keepout/oracle/hull.h"
 
-#include <gtest/gtest.h>
-
 #include <Eigen/Dense>
-#include <algorithm>
 #include <array>
-#include <limits>
 #include <stdexcept>
 
-#include "by_name.h"
 #include "keepout/oracle/instrument_oracle.h"
 #include "meshes.h"
-#include "random_places.h"
 #include "trials.h"
 
 namespace keepout::oracle {
@@ -151,7 +145,7 @@ TEST_P(BladeOnEveryShape, ClearanceIsThatOfAPlainLoopHoweverItGotThere) {
       std::vector<Vec3> points;
       for (const JudgedPoint& p : robot.bodies[0].points) points.push_back(links[2].at(p.position));
       const Hull hull(points);
-      double expected = std::numeric_limits<double>::infinity();
+      double expected = test::infinity;
       for (TriangleId t = 0; t < mesh->triangle_count(); ++t) {
         const Triangle triangle = mesh->triangle(t);
         const double far =
@@ -163,7 +157,7 @@ TEST_P(BladeOnEveryShape, ClearanceIsThatOfAPlainLoopHoweverItGotThere) {
       const double reach = expected + random.uniform(-0.1, 0.1) * size;
       const double found = oracle.clearance(0, reach);
       if (reach < expected) {
-        EXPECT_EQ(found, std::numeric_limits<double>::infinity());
+        EXPECT_EQ(found, test::infinity);
         continue;
       }
       ++near;

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-
 #include "keepout/oracle/inside_test.h"
 
 #include <gtest/gtest.h>
@@ -9,8 +8,6 @@
 #include "keepout/fixtures/poses.h"
 #include "keepout/fixtures/resample_mesh.h"
 #include "meshes.h"
-#include "random_places.h"
-#include "small_surfaces.h"
 
 namespace keepout::oracle {
 namespace {

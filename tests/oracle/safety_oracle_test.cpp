@@ -1,18 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-
 #include "keepout/oracle/safety_oracle.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <stdexcept>
 
-#include "by_name.h"
 #include "keepout/fixtures/poses.h"
 #include "keepout/oracle/distance.h"
 #include "meshes.h"
-#include "oracle/infinity.h"
-#include "random_places.h"
 #include "trials.h"
 
 namespace keepout::oracle {
@@ -21,7 +14,7 @@ namespace {
 struct Judgement {
   bool crosses = false;
   bool below = false;
-  double distance = infinity;
+  double distance = test::infinity;
 };
 
 /// A plain loop over all triangles; exact wherever the bracket holds 0 or the threshold.
@@ -70,7 +63,7 @@ TEST_P(WaysPastEveryShape, IsJudgedAsByAPlainLoopOverAllTriangles) {
         ASSERT_NEAR(found.distance, expected.distance, 1e-15 * expected.distance);
         ASSERT_NE(found.triangle, no_triangle);
       } else if (expected.distance > 1.01 * std::max(reach, threshold)) {
-        ASSERT_EQ(found.distance, infinity);
+        ASSERT_EQ(found.distance, test::infinity);
         ASSERT_EQ(found.triangle, no_triangle);
       }
       tip = next;
@@ -186,11 +179,10 @@ TEST(SafetyOracle, DistanceOfAPointIsTheAnalyticOne) {
 
 TEST(SafetyOracle, RefusesWhatIsNotANumber) {
   SafetyOracle oracle = flat_oracle();
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THROW(oracle.check({nan, 0, 0}, {0, 0, 0}, 0.1), std::invalid_argument);
-  EXPECT_THROW(oracle.check({0, 0, 0}, {0, infinity, 0}, 0.1), std::invalid_argument);
+  EXPECT_THROW(oracle.check({test::nan, 0, 0}, {0, 0, 0}, 0.1), std::invalid_argument);
+  EXPECT_THROW(oracle.check({0, 0, 0}, {0, test::infinity, 0}, 0.1), std::invalid_argument);
   EXPECT_THROW(oracle.check({0, 0, 0}, {0, 0, 0}, -0.1), std::invalid_argument);
-  EXPECT_THROW(oracle.check({0, 0, 0}, {0, 0, 0}, nan), std::invalid_argument);
+  EXPECT_THROW(oracle.check({0, 0, 0}, {0, 0, 0}, test::nan), std::invalid_argument);
 }
 
 }  // namespace

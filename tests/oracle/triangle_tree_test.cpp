@@ -1,17 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-
 #include "keepout/oracle/triangle_tree.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <limits>
-
-#include "by_name.h"
 #include "keepout/fixtures/poses.h"
 #include "keepout/oracle/distance.h"
 #include "meshes.h"
-#include "random_places.h"
 #include "trials.h"
 
 namespace keepout::oracle {
@@ -69,7 +61,7 @@ TEST_P(TreeOfEveryShape, MissesNothingAlongASegment) {
 
 TEST_P(TreeOfEveryShape, NearestIsWhatAPlainLoopFinds) {
   for (const Vec3& place : places(*mesh, random)) {
-    double low = std::numeric_limits<double>::infinity();
+    double low = test::infinity;
     double estimate = low;
     for (TriangleId t = 0; t < mesh->triangle_count(); ++t) {
       const Bracket bracket = narrow_distance({place, place}, mesh->triangle(t));

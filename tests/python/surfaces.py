@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Small surfaces for tests, and poses around them."""
+"""Small surfaces for tests, poses around them, and an instrument."""
 
 import os
 from pathlib import Path
 
 import numpy as np
+
+import keepout
+from keepout import TableRow
 
 
 def sphere(n=24, radius=10.0):
@@ -55,3 +58,23 @@ def skull():
     root = Path(__file__).resolve().parents[2]
     path = Path(os.environ.get("KEEPOUT_CACHE", root / ".cache")) / "fixtures" / "skull.stl"
     return path if path.exists() else None
+
+
+def at(x, y, z):
+    pose = np.eye(4)
+    pose[:3, 3] = x, y, z
+    return pose
+
+
+def psm(base=None, flange=((0, -1, 0, 0), (0, 0, 1, 10.2), (-1, 0, 0, 0), (0, 0, 0, 1))):
+    """The da Vinci research kit's, as fixtures/robots/psm.urdf has it."""
+    right = np.pi / 2
+    rows = [
+        TableRow("yaw", alpha=right, theta=right, lower=-1.588, upper=1.588, velocity=1),
+        TableRow("pitch", alpha=-right, theta=-right, lower=-0.925025, upper=0.925025, velocity=1),
+        TableRow("insertion", kind="prismatic", alpha=right, d=-431.8, lower=0, upper=240, velocity=200),
+        TableRow("roll", d=416.2, lower=-4.53786, upper=4.53786, velocity=8),
+        TableRow("wrist_pitch", alpha=-right, theta=-right, lower=-1.39626, upper=1.39626, velocity=8),
+        TableRow("wrist_yaw", a=9.1, alpha=-right, theta=-right, lower=-1.39626, upper=1.39626, velocity=8),
+    ]
+    return keepout.chain_of_table(rows, base=base, flange=flange)

@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 import pytest
+from surfaces import at, psm
 
 import keepout
 
@@ -23,20 +24,7 @@ def box(size):
 
 def instrument():
     """A shaft through a port at the origin of its base, 150 above the cube; insertion along it."""
-    right = math.pi / 2
-    rows = [
-        keepout.TableRow(alpha=right, theta=right, lower=-1.5, upper=1.5, velocity=1),
-        keepout.TableRow(alpha=-right, theta=-right, lower=-0.9, upper=0.9, velocity=1),
-        keepout.TableRow(kind="prismatic", alpha=right, d=-431.8, lower=0, upper=240, velocity=200),
-        keepout.TableRow(d=416.2, lower=-4.5, upper=4.5, velocity=8),
-        keepout.TableRow(alpha=-right, theta=-right, lower=-1.4, upper=1.4, velocity=8),
-        keepout.TableRow(a=9.1, alpha=-right, theta=-right, lower=-1.4, upper=1.4, velocity=8),
-    ]
-    base = np.eye(4)
-    base[:3, 3] = (0, 0, 150)
-    flange = np.eye(4)
-    flange[:3, 3] = TIP
-    chain = keepout.chain_of_table(rows, base=base, flange=flange)
+    chain = psm(at(0, 0, 150), at(*TIP))
     shaft = keepout.Body("shaft", [(0, (0, 0, 0)), (4, (0, 0, 0))], 4.5)
     cutter = keepout.Body("cutter", [(5, (9.1, 0, 0)), (6, TIP)], 1.0)
     return keepout.Instrument(chain, [shaft, cutter])

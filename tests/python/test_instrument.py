@@ -5,37 +5,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from surfaces import sphere
+from surfaces import at, psm, sphere
 
 import keepout
 from keepout import Body, Chain, Instrument, InstrumentGuard, Joint, Status, TableRow
 
 robots = Path(__file__).resolve().parents[2] / "fixtures" / "robots"
-right = np.pi / 2
 wall = keepout.Mesh(
     [[-200, -200, 0], [200, -200, 0], [200, 200, 0], [-200, 200, 0]], [[0, 1, 2], [0, 2, 3]]
 )
 ball = keepout.Mesh(*sphere(64, 50.0))
-
-
-def moved(x, y, z):
-    pose = np.eye(4)
-    pose[:3, 3] = x, y, z
-    return pose
-
-
-def psm(base=None):
-    """The da Vinci research kit's, as fixtures/robots/psm.urdf has it."""
-    rows = [
-        TableRow("yaw", alpha=right, theta=right, lower=-1.588, upper=1.588, velocity=1),
-        TableRow("pitch", alpha=-right, theta=-right, lower=-0.925025, upper=0.925025, velocity=1),
-        TableRow("insertion", kind="prismatic", alpha=right, d=-431.8, lower=0, upper=240, velocity=200),
-        TableRow("roll", d=416.2, lower=-4.53786, upper=4.53786, velocity=8),
-        TableRow("wrist_pitch", alpha=-right, theta=-right, lower=-1.39626, upper=1.39626, velocity=8),
-        TableRow("wrist_yaw", a=9.1, alpha=-right, theta=-right, lower=-1.39626, upper=1.39626, velocity=8),
-    ]
-    jaws = np.array([[0, -1, 0, 0], [0, 0, 1, 10.2], [-1, 0, 0, 0], [0, 0, 0, 1.0]])
-    return keepout.chain_of_table(rows, base=base, flange=jaws)
 
 
 def psm_guard(**options):
@@ -46,13 +25,13 @@ def psm_guard(**options):
         Body("wrist", [wrist, yaw], 3.0),
         Body("jaws", [yaw, (6, (0, 10.2, 0))], 1.0),
     ]
-    return InstrumentGuard(ball, Instrument(psm(moved(0, 0, 170)), bodies), margin=0.5, **options)
+    return InstrumentGuard(ball, Instrument(psm(at(0, 0, 170)), bodies), margin=0.5, **options)
 
 
 def lever_guard(**options):
     """A shaft of 60 mm, radius 2, that one joint turns down to the wall 20 mm below it."""
     turn = Joint("turn", axis=(0, 1, 0), lower=-1, upper=1, velocity=2)
-    chain = Chain([turn], base=moved(0, 0, 20), flange=moved(60, 0, 0))
+    chain = Chain([turn], base=at(0, 0, 20), flange=at(60, 0, 0))
     shaft = Body("shaft", [(1, (0, 0, 0)), (1, (60, 0, 0))], 2.0)
     return InstrumentGuard(wall, Instrument(chain, [shaft]), margin=0.5, band=0.01, **options)
 
@@ -85,7 +64,7 @@ def test_the_shaft_stops_at_the_wall():
 
 def test_joints_nearest_to_an_increment_are_weighed_and_keep_their_limits():
     axes = [Joint(n, kind="prismatic", axis=a, lower=-50, upper=50) for n, a in zip("xyz", np.eye(3))]
-    chain = Chain(axes, base=moved(0, 0, 10))
+    chain = Chain(axes, base=at(0, 0, 10))
     guard = InstrumentGuard(wall, Instrument(chain, [Body("tip", [(3, (0, 0, 0))], 1.0)]), margin=0.5)
     free = guard.step([49.5, 0, 0], increment=[1, 2, -3], weights=[1, 2, 3])
     np.testing.assert_allclose(free.increment, [0.5, 2, -3], atol=1e-9)
@@ -174,7 +153,7 @@ def test_chains_of_tables_and_files_are_the_same():
     poses = chain.forward_kinematics(q)
     assert poses.shape == (50, 4, 4) and len(chain) == 6
     np.testing.assert_array_equal(poses[7], chain.forward_kinematics(q[7]))
-    np.testing.assert_allclose(psm(moved(1, 2, 3)).forward_kinematics(q), moved(1, 2, 3) @ poses, atol=1e-9)
+    np.testing.assert_allclose(psm(at(1, 2, 3)).forward_kinematics(q), at(1, 2, 3) @ poses, atol=1e-9)
     again = Chain(chain.joints, base=chain.base, flange=chain.flange)
     np.testing.assert_allclose(again.forward_kinematics(q), poses, atol=1e-9)
     assert np.isnan(chain.forward_kinematics([np.nan, 0, 0, 0, 0, 0])).all()

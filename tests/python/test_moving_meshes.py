@@ -3,18 +3,12 @@
 
 import numpy as np
 import pytest
-from surfaces import sphere
+from surfaces import at, sphere
 
 import keepout
 from keepout import Body, Chain, Instrument, InstrumentGuard, Joint, Status
 
 period = 1e-3
-
-
-def at(x, y, z):
-    pose = np.eye(4)
-    pose[:3, 3] = x, y, z
-    return pose
 
 
 def ball_guard(speed=None, **options):

@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gtest/gtest.h>
-
 #include <set>
 
+#include "engine/geometry/tools.h"
+#include "keepout/activation/convex_tool_rule.h"
 #include "keepout/activation/registry.h"
+#include "keepout/adapters/all_indices.h"
 #include "keepout/adapters/index_registry.h"
 #include "keepout/factory/make_motion_constraint.h"
 #include "keepout/fixtures/poses.h"
+#include "keepout/index/pd_tree.h"
+#include "keepout/solvers/active_set.h"
 #include "keepout/solvers/registry.h"
+#include "keepout/step/motion_constraint.h"
 #include "meshes.h"
-#include "random_places.h"
+#include "messages.h"
 #include "realtime/counted_allocations.h"
 
 namespace keepout {
@@ -55,7 +59,7 @@ TEST(Step, AllocatesNothingWhateverItsPartsAndItsOutcome) {
   const std::vector<double> rows(14 * 7, 0.1);
 
   for (const IndexBackend& index : index_backends()) {
-    if (index.allocation != Allocation::never) continue;  // see index_allocation_test.cpp
+    if (index.allocation != Allocation::never) continue;  // see Index.OnlyFclsOwnQueryAllocates
     for (const ActivationEntry& rule : activation_rules()) {
       for (const SolverBackend& solver : solver_backends()) {
         if (solver.allocation != Allocation::never) continue;
@@ -175,6 +179,71 @@ TEST(Step, AllocatesNothingWithGuides) {
          {Status::limited, Status::recovering, Status::over_capacity, Status::beyond_reach}) {
       EXPECT_TRUE(seen.contains(status)) << name(status);
     }
+  }
+}
+
+TEST(ConvexToolAllocation, AStepAllocatesNothingWhateverItsOutcome) {
+  const auto mesh = std::make_shared<const Mesh>(make_shape("cortex"));
+  Random random(1);
+  for (const test::NamedTool& named : test::tools_of_each_kind(2.0, random)) {
+    MotionConstraint constraint(mesh, std::make_unique<PdTree>(mesh),
+                                std::make_unique<ConvexToolRule>(named.tool),
+                                std::make_unique<ActiveSet>(), {.radius = 2.0, .margin = 0.3});
+    const double reach = named.tool.bounding_ball().center.norm() + named.tool.radius();
+    std::size_t of_each[16] = {};
+    for (const double offset : {0.2, 0.6, reach, 1.5 * reach + 1.0, 8.0}) {
+      const std::vector<Vec3> tips = surface_points(*mesh, 100, offset, random);
+      const std::size_t before = allocations();
+      for (const Vec3& tip : tips) {
+        const Vec3 desired = 1.9 * random.direction();
+        ++of_each[static_cast<std::size_t>(
+            constraint.step({.tip = tip, .desired = desired}).status)];
+      }
+      EXPECT_EQ(allocations(), before) << named.name;
+    }
+    for (const Status status :
+         {Status::free, Status::limited, Status::recovering, Status::touching}) {
+      EXPECT_GT(of_each[static_cast<std::size_t>(status)], 0u) << named.name << name(status);
+    }
+  }
+}
+
+// That an index takes nothing from the heap while it answers, unless its row says that it does.
+
+TEST(Index, AllocatesNothingWhileItAnswersUnlessItSaysSo) {
+  const auto mesh = mesh_of("cortex");
+  const double size = mesh->bounds().size().norm();
+  Random random(6);
+  std::vector<Vec3> points = surface_points(*mesh, 100, 0.5, random);
+  const std::vector<Vec3> far = far_points(*mesh, 20, random);
+  points.insert(points.end(), far.begin(), far.end());
+  for (const IndexBackend& backend : all_index_backends()) {
+    SCOPED_TRACE(backend.name);
+    const std::unique_ptr<SpatialIndex> index = backend.make(mesh);
+    TriangleBuffer candidates(mesh->triangle_count());
+    std::size_t found = 0;
+    const std::size_t before = allocations();  // the first answer counts, too
+    for (const Vec3& point : points) {
+      for (const double radius : {0.0, 1.0, 10.0, size, 1e6 * size}) {
+        candidates.clear();
+        index->collect({point, radius}, candidates);
+        found += candidates.size();
+      }
+    }
+    if (backend.allocation == Allocation::never) {
+      EXPECT_EQ(allocations(), before);
+    } else {
+      EXPECT_GT(allocations(), before) << "is fit for real time: its row may say so";
+      EXPECT_CONTAINS(backend.description, "not for real time");
+    }
+    EXPECT_GT(found, points.size() * mesh->triangle_count());
+  }
+}
+
+TEST(Index, OnlyFclsOwnQueryAllocates) {
+  for (const IndexBackend& backend : all_index_backends()) {
+    EXPECT_EQ(backend.allocation == Allocation::inside, backend.name == "fcl_collide")
+        << backend.name;
   }
 }
 

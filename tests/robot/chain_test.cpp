@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "keepout/robot/chain.h"
 
-#include <gtest/gtest.h>
-
 #include <Eigen/Dense>
 #include <cmath>
 #include <functional>
 
+#include "chains.h"
 #include "keepout/robot/denavit_hartenberg.h"
 #include "keepout/robot/instrument.h"
 #include "messages.h"
-#include "robot/configurations.h"
 
 namespace keepout {
 namespace {
@@ -68,8 +66,7 @@ double off_matrices(DhConvention convention, Random& random) {
     const Matrix z = screw(2, row.theta + (slides ? 0 : q[i]), row.d + (slides ? q[i] : 0));
     expected *= convention == DhConvention::modified ? Matrix(x * z) : Matrix(z * x);
   }
-  ChainState state;
-  chain.forward_kinematics(q, state);
+  const ChainState state = test::state_of(chain, q);
   return (matrix(state.flange()) - expected).cwiseAbs().maxCoeff();
 }
 
@@ -83,11 +80,9 @@ TEST(Chain, StoresRotationsToOneRounding) {
     Joint joint{.kind = JointKind::prismatic, .origin = random_pose(random)};
     joint.origin.rotation += 1e-7 * Mat3::Random();  // six digits
     const Chain chain({joint}, base);
-    ChainState state;
-    chain.forward_kinematics(std::vector<double>{0.0}, state);
+    const ChainState state = test::state_of(chain, std::vector<double>{0.0});
     const Chain without_base({joint});
-    ChainState of_joint;
-    without_base.forward_kinematics(std::vector<double>{0.0}, of_joint);
+    const ChainState of_joint = test::state_of(without_base, std::vector<double>{0.0});
     for (const Mat3& r : {state.link(0).rotation, of_joint.link(1).rotation}) {
       using Wide = Eigen::Matrix<long double, 3, 3>;
       const Wide wide = r.cast<long double>();
@@ -119,8 +114,7 @@ TEST(Chain, EachLinkIsMovedAboutItsOwnAxisWhereverThatPoints) {
                        {.kind = JointKind::prismatic, .origin = ways[2], .axis = moved_along}},
                       ways[0], random_pose(random));
     const double q[] = {random.uniform(-7, 7), random.uniform(-200, 200)};
-    ChainState state;
-    chain.forward_kinematics(q, state);
+    const ChainState state = test::state_of(chain, q);
     const Pose first =
         ways[0] * ways[1] * Pose{Vec3::Zero(), Eigen::AngleAxisd(q[0], turned_about).matrix()};
     const Pose second = first * ways[2] * Pose{q[1] * moved_along};
@@ -140,15 +134,13 @@ TEST(Chain, TheJacobianIsTheDerivativeOfEachPointAndEachLinksTurn) {
     const std::vector<double> q = test::configuration(chain, random);
     const int link = static_cast<int>(random.below(static_cast<std::size_t>(chain.size()) + 1));
     const Vec3 point = 100.0 * random.direction();
-    ChainState state;
-    chain.forward_kinematics(q, state);
+    const ChainState state = test::state_of(chain, q);
     for (int k = 1; k <= chain.size(); ++k) {
       // Four points: the error is some step^4 of the lever, and its rounding.
       const auto at = [&](double steps) {
         std::vector<double> moved = q;
         moved[static_cast<std::size_t>(k - 1)] += steps * step;
-        ChainState there;
-        chain.forward_kinematics(moved, there);
+        const ChainState there = test::state_of(chain, moved);
         return matrix(there.link(link) * Pose{point});
       };
       const Matrix slope = (8.0 * (at(1) - at(-1)) - (at(2) - at(-2))) / (12.0 * step);

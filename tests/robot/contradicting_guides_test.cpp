@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Guides that contradict each other stop a motion only as far as they must, and cost no clearance.
-#include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 #include <array>
-#include <cmath>
 
 #include "guards.h"
 #include "guide_kinematics.h"
-#include "trials.h"
 
 namespace keepout {
 namespace {
@@ -72,8 +69,7 @@ TEST_P(ContradictingGuides, LeaveWhatBothAllow) {
     const Chain& chain = guard.instrument().chain();
     std::vector<double> q;
     for (int k = 0; k < n; ++k) q.push_back(random.uniform(-1.5, 1.5));
-    ChainState state;
-    chain.forward_kinematics(q, state);
+    ChainState state = test::state_of(chain, q);
     const Vec3 axis = state.link(n).rotation.col(1);
     const Vec3 side =
         Eigen::AngleAxisd(random.uniform(0.0, 6.28), axis) * Vec3(axis.unitOrthogonal());
@@ -115,8 +111,7 @@ TEST_P(ContradictingGuides, LeaveWhatBothAllow) {
         for (int half = 0; half < 4 && !is_movable; ++half) {
           std::vector<double> end = q;
           for (std::size_t k = 0; k < q.size(); ++k) end[k] += other[k];
-          ChainState at_end;
-          chain.forward_kinematics(end, at_end);
+          const ChainState at_end = test::state_of(chain, end);
           is_movable =
               made(at_end) >= 0.1 && are_kept(at_end) && guard.prove(q, other).share == 1.0;
           for (double& number : other) number *= 0.5;
@@ -144,8 +139,7 @@ TEST(Guides, WithinTheirBandsDoNotStopTheTask) {
     const Chain& chain = guard.instrument().chain();
     std::vector<double> q;
     for (int k = 0; k < 3; ++k) q.push_back(random.uniform(-1.5, 1.5));
-    ChainState state;
-    chain.forward_kinematics(q, state);
+    ChainState state = test::state_of(chain, q);
     const Vec3 axis = state.link(3).rotation.col(1);
     const double band = random.uniform(0.005, 0.03);
     const double angle = 0.1 + random.uniform(0.3, 0.9) * band;
@@ -163,8 +157,7 @@ TEST(Guides, WithinTheirBandsDoNotStopTheTask) {
       const auto made = [&](const std::vector<double>& increment) {
         std::vector<double> end = q;
         for (std::size_t k = 0; k < end.size(); ++k) end[k] += increment[k];
-        ChainState at_end;
-        chain.forward_kinematics(end, at_end);
+        const ChainState at_end = test::state_of(chain, end);
         const double excess_then = excess(guides[0], at_end);
         EXPECT_LE(excess_then, band + 1e-11) << "scene " << scene;
         return 1.0 - (at_end.flange().position - state.flange().position - way).norm() / speed;
@@ -201,8 +194,7 @@ TEST(ContradictingGuides, AreNotDroppedBesideADistantMeshThatMoves) {
     InstrumentConstraint guard =
         guard_of(mesh_of(far), {Chain(joints, {}, {Vec3(100, 0, 0)}), {{"tip", {tip}, 1.0}}}, {});
     std::vector<double> q{random.uniform(-1, 1), random.uniform(-2, 2), random.uniform(-2, 2)};
-    ChainState state;
-    guard.instrument().chain().forward_kinematics(q, state);
+    ChainState state = test::state_of(guard.instrument().chain(), q);
     const Vec3 n = across();
     const Vec3 off = random.uniform(1.1, 3.0) * n;
     const std::vector<Guide> guides{

@@ -1,19 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "guards.h"
 #include "guide_kinematics.h"
 #include "keepout/error.h"
-#include "robot/configurations.h"
-#include "trials.h"
 
 namespace keepout {
 namespace {
 
 const LinkPoint wrist{4, Vec3::Zero()};
-const LinkPoint tip{6, Vec3(0, 10.2, 0)};  // of the psm
+const LinkPoint jaw_tip{6, Vec3(0, 10.2, 0)};  // of the psm
 
 /// A psm 120 above the gear, and a guard of it.
 struct Bench {
@@ -23,8 +17,7 @@ struct Bench {
         guard(guard_of(mesh, instrument, {.period = 0.02, .check_sides = false})) {}
 
   ChainState at(const std::vector<double>& q) const {
-    ChainState state;
-    instrument.chain().forward_kinematics(q, state);
+    const ChainState state = test::state_of(instrument.chain(), q);
     return state;
   }
 
@@ -89,7 +82,7 @@ TEST(Guide, BoundsTheBendOfItsPlace) {
     const std::vector<double> q = test::configuration(chain, random);
     const ChainState state = bench.at(q);
     const Vec3 center = state.at(4, Vec3(10.0 * random.direction()));
-    const Guide guides[] = {Guide::point("tip", tip, Region::ball(center, 1.0)),
+    const Guide guides[] = {Guide::point("tip", jaw_tip, Region::ball(center, 1.0)),
                             Guide::axis("axis", 6, random.direction(), random.direction(), 1.0)};
     std::vector<double> increment;
     for (int k = 1; k <= chain.size(); ++k) increment.push_back(random.uniform(-0.3, 0.3));
@@ -145,19 +138,19 @@ TEST(Guide, IsNeverLeftByMoreThanItsBand) {
   const std::vector<double> q{0.1, -0.1, 60.0, 0.2, 0.1, -0.2};
   const Bench at_start;
   const ChainState state = at_start.at(q);
-  const Vec3 at = state.at(tip.link, tip.position);
+  const Vec3 at = state.at(jaw_tip.link, jaw_tip.position);
   const Vec3 way = state.at(4, Vec3::Zero()) - state.at(0, Vec3::Zero());
   const Vec3 axis = state.link(6).rotation.col(1);
   const Vec3 port = state.at(0, Vec3::Zero()) + 0.4 * way;
   const std::vector<std::vector<Guide>> sets{
-      {Guide::point("corridor", tip, Region::slab(at, Vec3(1, 0.2, 0), 1.0))},
-      {Guide::point("path", tip, Region::tube(at, Vec3(1, 1, 0.3), 0.5))},
-      {Guide::point("above", tip, Region::half_space(at - Vec3(0, 0, 1), Vec3::UnitZ()))},
+      {Guide::point("corridor", jaw_tip, Region::slab(at, Vec3(1, 0.2, 0), 1.0))},
+      {Guide::point("path", jaw_tip, Region::tube(at, Vec3(1, 1, 0.3), 0.5))},
+      {Guide::point("above", jaw_tip, Region::half_space(at - Vec3(0, 0, 1), Vec3::UnitZ()))},
       {Guide::axis("axis", 6, Vec3::UnitY(), axis, 0.2)},
       {Guide::remote_center("trocar", {0, Vec3(1, 0, 0)}, wrist, port, 1.0)},
       Guide::orientation("hand", 6, state.link(6).rotation, 0.1),
-      {Guide::point("corridor", tip, Region::slab(at, Vec3(1, 0.2, 0), 1.0)),
-       Guide::point("not too far", tip, Region::ball(at, 5.0)),
+      {Guide::point("corridor", jaw_tip, Region::slab(at, Vec3(1, 0.2, 0), 1.0)),
+       Guide::point("not too far", jaw_tip, Region::ball(at, 5.0)),
        Guide::axis("axis", 6, Vec3::UnitY(), axis, 0.3)}};
   for (std::size_t i = 0; i < sets.size(); ++i) {
     Bench bench;
@@ -171,9 +164,9 @@ TEST(Guide, IsNeverLeftByMoreThanItsBand) {
 TEST(Guide, LeadsBackWhatIsOut) {
   Bench bench;
   std::vector<double> q{0.0, 0.0, 60.0, 0.0, 0.0, 0.0};
-  const Vec3 at = bench.at(q).at(tip.link, tip.position);
+  const Vec3 at = bench.at(q).at(jaw_tip.link, jaw_tip.position);
   const Guide guide =
-      Guide::point("corridor", tip, Region::slab(at + Vec3(3, 0, 0), Vec3::UnitX(), 1.0));
+      Guide::point("corridor", jaw_tip, Region::slab(at + Vec3(3, 0, 0), Vec3::UnitX(), 1.0));
   bench.guard.set_guides({guide});
   double last = 2.0;
   int cycles = 0;
@@ -193,11 +186,11 @@ TEST(Guide, LeadsBackWhatIsOut) {
 TEST(Guide, GivesWayWithAWordOnItWhereOthersContradict) {
   Bench bench;
   std::vector<double> q{0.0, 0.0, 60.0, 0.0, 0.0, 0.0};
-  const Vec3 at = bench.at(q).at(tip.link, tip.position);
+  const Vec3 at = bench.at(q).at(jaw_tip.link, jaw_tip.position);
   // To the left of one plane, and to the right of another one: out of both.
   bench.guard.set_guides(
-      {Guide::point("left", tip, Region::half_space(at - Vec3(1, 0, 0), -Vec3::UnitX())),
-       Guide::point("right", tip, Region::half_space(at + Vec3(1, 0, 0), Vec3::UnitX()))});
+      {Guide::point("left", jaw_tip, Region::half_space(at - Vec3(1, 0, 0), -Vec3::UnitX())),
+       Guide::point("right", jaw_tip, Region::half_space(at + Vec3(1, 0, 0), Vec3::UnitX()))});
   for (int i = 0; i < 50; ++i) {
     const InstrumentStep step = bench.guard.step(q, {.linear = Vec3(0.3, 0.3, 0.1)});
     ASSERT_EQ(step.status, Status::recovering) << step.reason();
@@ -205,7 +198,7 @@ TEST(Guide, GivesWayWithAWordOnItWhereOthersContradict) {
     EXPECT_TRUE(step.guides[0].relaxed && step.guides[1].relaxed);
     q = keepout::moved(q, step);
   }
-  const Vec3 moved = bench.at(q).at(tip.link, tip.position) - at;
+  const Vec3 moved = bench.at(q).at(jaw_tip.link, jaw_tip.position) - at;
   EXPECT_LE(std::abs(moved.x()), 0.01) << "neither gets worse";
   EXPECT_GT(moved.y(), 5.0) << "along both it moves";
 }
@@ -217,10 +210,10 @@ TEST(Guide, KeepsWhatIsWithinItsBandAgain) {
   for (int i = 0; i < test::trials(300); ++i) {
     Bench bench;
     std::vector<double> q{0.1, -0.1, 60.0, 0.2, 0.1, -0.2};
-    const Vec3 at = bench.at(q).at(tip.link, tip.position);
+    const Vec3 at = bench.at(q).at(jaw_tip.link, jaw_tip.position);
     const double out = random.uniform(0.0, 0.01);
     const Guide guide =
-        Guide::point("ball", tip, Region::ball(at + (1.0 + out) * random.direction(), 1.0));
+        Guide::point("ball", jaw_tip, Region::ball(at + (1.0 + out) * random.direction(), 1.0));
     bench.guard.set_guides({guide});
     for (int cycle = 0; cycle < 8; ++cycle) {
       const InstrumentStep step =
@@ -242,9 +235,9 @@ TEST(Guide, NeverLeadsIntoTheMesh) {
   Bench bench("cube");
   std::vector<double> q{0.0, 0.0, 60.0, 0.0, 0.0, 0.0};
   const Vec3 center = 0.5 * (bench.mesh->bounds().low + bench.mesh->bounds().high);
-  const Vec3 at = bench.at(q).at(tip.link, tip.position);
-  bench.guard.set_guides({Guide::point("in", tip, Region::tube(center, center - at, 0.5)),
-                          Guide::point("deep", tip, Region::ball(center, 0.1))});
+  const Vec3 at = bench.at(q).at(jaw_tip.link, jaw_tip.position);
+  bench.guard.set_guides({Guide::point("in", jaw_tip, Region::tube(center, center - at, 0.5)),
+                          Guide::point("deep", jaw_tip, Region::ball(center, 0.1))});
   InstrumentStep step;
   for (int i = 0; i < test::trials(1000); ++i) {
     step = bench.guard.step(q, {.linear = 0.5 * (center - at).normalized()});
@@ -260,8 +253,8 @@ TEST(Guide, NeverLeadsIntoTheMesh) {
 TEST(Guide, IsKeptWhenTheMeshIsFollowed) {
   Bench bench;
   std::vector<double> q{0.1, -0.1, 60.0, 0.2, 0.1, -0.2};
-  const Vec3 at = bench.at(q).at(tip.link, tip.position);
-  const Guide guide = Guide::point("ball", tip, Region::ball(at, 0.5));
+  const Vec3 at = bench.at(q).at(jaw_tip.link, jaw_tip.position);
+  const Guide guide = Guide::point("ball", jaw_tip, Region::ball(at, 0.5));
   bench.guard.set_guides({guide});
   const Twist aside{.linear = Vec3(1.0, 0.0, 0.0)};
   const auto tree = std::make_shared<WideBvh>(bench.mesh);
@@ -287,7 +280,7 @@ TEST(Guide, RefusesWhatIsNone) {
   EXPECT_THROW(Guide::axis("a", 6, Vec3::UnitX(), Vec3::UnitX(), 4.0), Error);
   EXPECT_THROW(Guide::axis("a", -1, Vec3::UnitX(), Vec3::UnitX(), 1.0), Error);
   EXPECT_THROW(Guide::orientation("a", 6, 2.0 * Mat3::Identity(), 1.0), Error);
-  const Guide guide = Guide::point("a", tip, Region::ball(Vec3::Zero(), 1.0));
+  const Guide guide = Guide::point("a", jaw_tip, Region::ball(Vec3::Zero(), 1.0));
   EXPECT_THROW(guide.with_band(0.0), Error);
   EXPECT_THROW(bench.guard.set_guides({guide.with_band(1e-12)}), Error);
   EXPECT_EQ(guide.with_band(0.5).band(), 0.5);
@@ -297,6 +290,80 @@ TEST(Guide, RefusesWhatIsNone) {
   EXPECT_THROW(bench.guard.set_guides({Guide::point("a tip's", guide.region())}), Error);
   EXPECT_THROW(bench.guard.set_guides({Guide::point("a", {7, Vec3::Zero()}, guide.region())}),
                Error);
+}
+
+// Motions whose guided point is inside its region at both ends, and outside in between.
+
+/// An instrument under one guide, far from a wall.
+struct Guided {
+  Guided(Instrument instrument, const Guide& its_guide)
+      : guide(its_guide),
+        mesh(wall(1e3)),
+        guard(guard_of(mesh, std::move(instrument), {.damping = 0.0, .check_sides = false})) {
+    guard.set_guides({guide});
+  }
+
+  /// Returns how far the guided point leaves its region on q + s dq, at 65 poses.
+  double farthest_out(const std::vector<double>& q, std::span<const double> dq) const {
+    double most = -1e30;
+    for (int s = 0; s <= 64; ++s) {
+      std::vector<double> there = q;
+      for (std::size_t k = 0; k < dq.size(); ++k) there[k] += s / 64.0 * dq[k];
+      const ChainState chain = test::state_of(guard.instrument().chain(), there);
+      most = std::max(most, guide.region().excess(guided_point(guide, chain)));
+    }
+    return most;
+  }
+
+  Guide guide;
+  std::shared_ptr<const Mesh> mesh;
+  InstrumentConstraint guard;
+};
+
+// The ends of the shaft move on straight lines. The shaft passes through the remote center at the
+// start and at the end of the motion. In between the guided point slides from one end of the shaft
+// to the other, and misses the center by a quarter of the sideways displacement of both ends.
+TEST(GuidedPath, OfAShaftThatSlidesIsKeptInBetween) {
+  constexpr double length = 10.0;
+  const Joint insertion{.kind = JointKind::prismatic, .axis = Vec3::UnitX()};
+  const Joint sideways{.kind = JointKind::prismatic, .axis = Vec3::UnitY()};
+  const Instrument instrument(Chain({insertion, sideways, sideways}),
+                              {{"end", {{3, Vec3(length, 0, 0)}}, 0.5}});
+  const Guide port =
+      Guide::remote_center("port", {2, Vec3::Zero()}, {3, Vec3(length, 0, 0)}, Vec3::Zero(), 0.1);
+  const std::vector<double> q{0.0, 0.0, 1.0};
+  for (const double share : {1.0, 0.5, 0.1}) {
+    SCOPED_TRACE(share);
+    Guided shaft(instrument, port);
+    const std::vector<double> desired{-share * length, share, -2.0 * share};
+    const InstrumentStep step = shaft.guard.step(q, desired);
+    ASSERT_TRUE(step.ok()) << step.reason();
+    EXPECT_LE(shaft.farthest_out(q, step.increment), port.band() + 3.0 * shaft.guard.tolerance());
+    EXPECT_LT(step.increment[0], -0.01) << "the shaft moves";
+  }
+}
+
+// For one revolute joint the second-derivative bound is exact. `missing` is the excess beyond the
+// band in the middle of the arc, as a fraction of the sagitta.
+TEST(GuidedPath, OfAPointThatTurnsIsKeptInTheMiddleOfItsArc) {
+  constexpr double lever = 100.0;
+  constexpr double turn = 0.04;
+  const double sagitta = lever * (1.0 - std::cos(0.5 * turn));
+  const LinkPoint point{1, Vec3(lever, 0, 0)};
+  for (const double missing : {0.9, 0.45, 0.3, 0.01, -1e-3}) {
+    SCOPED_TRACE(missing);
+    const double band = 0.002;
+    const Vec3 limit((lever - band - missing * sagitta), 0, 0);
+    const Guide guide =
+        Guide::point("limit", point, Region::half_space(limit, -Vec3::UnitX())).with_band(band);
+    Guided arm({Chain({{.kind = JointKind::revolute}}), {{"point", {point}, 0.5}}}, guide);
+    const std::vector<double> q{-0.5 * turn};
+    const InstrumentStep step = arm.guard.step(q, std::vector<double>{turn});
+    ASSERT_TRUE(step.ok()) << step.reason();
+    EXPECT_LE(arm.farthest_out(q, step.increment), band + 3.0 * arm.guard.tolerance());
+    EXPECT_EQ(step.increment[0] > (1.0 - 1e-9) * turn, missing < 0.0)
+        << "the whole motion is made if it is clear";
+  }
 }
 
 }  // namespace

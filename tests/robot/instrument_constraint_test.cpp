@@ -1,20 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "keepout/robot/instrument_constraint.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <numbers>
-
 #include "brute_force.h"
 #include "guards.h"
 #include "keepout/adapters/index_registry.h"
 #include "keepout/robot/motion_bounds.h"
 #include "keepout/solvers/registry.h"
 #include "messages.h"
-#include "robot/configurations.h"
 #include "stub_solver.h"
-#include "trials.h"
 
 namespace keepout {
 namespace {
@@ -45,13 +38,11 @@ TEST(InstrumentConstraint, StopsAtASurfaceAtTheMarginAndSlidesAlongIt) {
   for (int i = 0; i < 30; ++i) {
     const InstrumentStep step = guard.step(q, {.linear = Vec3(0.1, 0.0, -0.5)});
     ASSERT_TRUE(step.ok()) << step.reason();
-    ChainState chain;
-    instrument.chain().forward_kinematics(q, chain);
+    const ChainState chain = test::state_of(instrument.chain(), q);
     before = chain.flange().position;
     q = moved(q, step);
   }
-  ChainState chain;
-  instrument.chain().forward_kinematics(q, chain);
+  const ChainState chain = test::state_of(instrument.chain(), q);
   EXPECT_NEAR(chain.flange().position.x() - before.x(), 0.1, 0.02) << "it slides";
   const double kept = guard.options().margin - guard.options().band;
   EXPECT_NEAR(clearance_of(instrument, *mesh, q), guard.options().margin, 2e-3);
@@ -213,7 +204,6 @@ TEST(InstrumentConstraint, ProvesLongMotionsInPartsWhereThereIsNoRoomForThemAtOn
   EXPECT_LE(100.0 * through.share, free + 0.002);
 }
 
-// The same where it is the work, and not the room, that does not last.
 TEST(InstrumentConstraint, ProvesLongMotionsInPartsWhereThereIsNoWorkForThemAtOnce) {
   const auto mesh = mesh_of("gear");
   const Instrument instrument = psm_above();
@@ -523,8 +513,7 @@ TEST(InstrumentConstraint, ABandForTheLimitsOfItsJointsHoldsEveryBendAtFullSpeed
       q[j] = random.uniform(limits.lower, limits.upper);
       dq[j] = limits.velocity * 1e-3 * (random.below(2) == 0 ? 1.0 : -1.0);
     }
-    ChainState chain;
-    instrument.chain().forward_kinematics(q, chain);
+    const ChainState chain = test::state_of(instrument.chain(), q);
     for (const LinkPoint& point : instrument.points()) {
       const Vec3 at = chain.at(point.link, point.position);
       most = std::max(most, motion_bounds(chain, dq, point.link, at).bend / 8.0);

@@ -2,17 +2,14 @@
 //
 // Forward kinematics and Jacobians against those of KDL and of MuJoCo, which share no line with
 // ours.
-#include <gtest/gtest.h>
 
 #include <cstddef>
 #include <cstdio>
 #include <memory>
 #include <numbers>
-#include <string>
 
+#include "chains.h"
 #include "keepout/fixtures/robots.h"
-#include "robot/configurations.h"
-#include "trials.h"
 #ifdef KEEPOUT_HAS_KDL
 #include <kdl/chain.hpp>
 #include <kdl/chainfksolverpos_recursive.hpp>

@@ -1,19 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A step that stands still although a motion could be proved costs no safety, but it is of no use.
 // Beside each blocked cycle on hostile meshes, a random search looks for a motion.
-#include <gtest/gtest.h>
 
-#include <cmath>
 #include <cstdint>
 #include <functional>
-#include <numbers>
 
+#include "chains.h"
 #include "keepout/index/wide_bvh.h"
 #include "keepout/robot/instrument_constraint.h"
 #include "keepout/solvers/active_set.h"
 #include "meshes.h"
-#include "robot/configurations.h"
-#include "trials.h"
 
 namespace keepout {
 namespace {
@@ -120,8 +116,7 @@ Instrument draw_instrument(Random& random, const Vec3& flange_at, std::vector<do
   };
   const Chain at_origin = chain_at(Vec3::Zero());
   q = test::configuration(at_origin, random);
-  ChainState state;
-  at_origin.forward_kinematics(q, state);
+  const ChainState state = test::state_of(at_origin, q);
   const Chain chain = chain_at(flange_at - state.flange().position);
   std::vector<Body> bodies;
   for (std::size_t b = 0, count = 1 + random.below(3); b < count; ++b) {
@@ -195,8 +190,7 @@ class Scene {
   }
 
   Vec3 flange(const std::vector<double>& q) const {
-    ChainState state;
-    guard_->instrument().chain().forward_kinematics(q, state);
+    const ChainState state = test::state_of(guard_->instrument().chain(), q);
     return state.flange().position;
   }
 

@@ -1,14 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // An instrument beside several meshes, each placed, moved and kept off by a margin of its own.
-#include <gtest/gtest.h>
-
-#include <cmath>
 
 #include "brute_force.h"
 #include "guards.h"
 #include "keepout/error.h"
-#include "robot/configurations.h"
-#include "trials.h"
 
 namespace keepout {
 namespace {
@@ -84,7 +79,6 @@ TEST(SeveralMeshes, EachIsKeptOffByItsOwnMarginWhereItIsPlaced) {
   EXPECT_GT(beside[1], test::trials(40));
 }
 
-// It is all the same whether the mesh is moved to the robot or the robot to the mesh.
 TEST(SeveralMeshes, APlacedMeshIsTheSameAsARobotThatIsPlacedTheOtherWay) {
   const auto mesh = mesh_of("gear");
   const Pose pose{Vec3(300, -200, 100),
@@ -467,7 +461,6 @@ TEST(SeveralMeshes, SaysWhatIsWrongWithOneAndStaysAsItWas) {
   EXPECT_THROW(guard.set_options(wide), Error) << "wider than the margin of some mesh";
 }
 
-// A mesh deforms while it moves: followed, it stays where it is.
 TEST(SeveralMeshes, IsFollowedWhereItIs) {
   const auto cube = cube_of(10.0);
   InstrumentConstraint guard = guard_of(cube, ball(1.0), undamped);

@@ -1,14 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The true motion of the flange, against the linear task that the solver is given. Joints without
 // velocity limits turn far near a singular pose, where the two differ most.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <numbers>
 
 #include "guards.h"
-#include "robot/configurations.h"
-#include "trials.h"
 
 namespace keepout {
 namespace {
@@ -50,11 +44,9 @@ void run(double speed, Tally& tally) {
                           .angular = speed * 0.02 * random.direction()};
       const InstrumentStep step = guard.step(q, desired);
       ASSERT_TRUE(step.ok()) << step.reason();
-      ChainState before;
-      chain.forward_kinematics(q, before);
+      const ChainState before = test::state_of(chain, q);
       q = moved(q, step);
-      ChainState after;
-      chain.forward_kinematics(q, after);
+      const ChainState after = test::state_of(chain, q);
       tally.missed.push_back(missed(before.flange(), after.flange(), desired, weight) /
                              missed(before.flange(), before.flange(), desired, weight));
       ASSERT_LE(tally.missed.back(), 1.05) << name(step.status);

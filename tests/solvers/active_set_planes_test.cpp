@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Problems whose rows come from planes: read from the planes they are solved as from the rows, on
 // every instruction set there is.
-#include <gtest/gtest.h>
 
-#include <vector>
-
-#include "each_simd_target.h"
 #include "keepout/solvers/active_set.h"
 #include "solvers/solver_contract.h"
 #include "unit_planes.h"

@@ -4,12 +4,8 @@
 // every way of spoiling it.
 #include "keepout/solvers/kkt.h"
 
-#include <gtest/gtest.h>
-
-#include <limits>
-#include <vector>
-
 #include "solvers/random_problems.h"
+#include "trials.h"
 
 namespace keepout::test {
 namespace {
@@ -91,18 +87,16 @@ TEST(KktResidual, IsInfiniteForAZeroRowThatAsksForSomething) {
   Corner corner;
   corner.problem.rows.row(3).setZero();
   corner.problem.bounds[3] = 1e-300;
-  EXPECT_EQ(corner.residual().primal, std::numeric_limits<double>::infinity());
+  EXPECT_EQ(corner.residual().primal, infinity);
 }
 
 TEST(KktResidual, IsInfiniteForWhatIsNoSolutionInForm) {
-  const auto infinite = [](const Corner& corner) {
-    return corner.residual().worst() == std::numeric_limits<double>::infinity();
-  };
+  const auto infinite = [](const Corner& corner) { return corner.residual().worst() == infinity; };
   Corner corner;
   corner.u.pop_back();
   EXPECT_TRUE(infinite(corner)) << "too few variables";
   corner = {};
-  corner.u[0] = std::numeric_limits<double>::quiet_NaN();
+  corner.u[0] = nan;
   EXPECT_TRUE(infinite(corner)) << "not a number";
   corner = {};
   corner.multipliers.push_back(0);

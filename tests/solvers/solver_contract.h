@@ -1,14 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
-#include <limits>
 #include <memory>
-#include <ostream>
 #include <span>
-#include <string>
 
 #include "keepout/solvers/kkt.h"
 #include "keepout/solvers/registry.h"
@@ -23,9 +18,6 @@ inline void PrintTo(const SolverBackend& backend, std::ostream* out) { *out << b
 }  // namespace keepout
 
 namespace keepout::test {
-
-inline constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-inline constexpr double infinity = std::numeric_limits<double>::infinity();
 
 inline Eigen::VectorXd vector(std::span<const double> values) {
   return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
@@ -157,9 +149,5 @@ class SolverContract : public testing::TestWithParam<SolverBackend> {
   bool gave_up_ = false;                        // the last problem
   std::array<double, 3> posed_{}, given_up_{};  // by Difficulty
 };
-
-inline std::string solver_name(const testing::TestParamInfo<SolverBackend>& backend) {
-  return std::string(backend.param.name);
-}
 
 }  // namespace keepout::test

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Input that must be refused, and the registry.
-#include "keepout/error.h"
+#include "keepout/solvers/active_set.h"
+#include "keepout/solvers/recording_solver.h"
 #include "messages.h"
 #include "solvers/solver_contract.h"
 
@@ -9,7 +10,7 @@ namespace {
 
 using SolverInput = SolverContract;
 
-INSTANTIATE_TEST_SUITE_P(Solvers, SolverInput, testing::ValuesIn(solver_backends()), solver_name);
+INSTANTIATE_TEST_SUITE_P(Solvers, SolverInput, testing::ValuesIn(solver_backends()), by_name);
 
 Problem valid_problem() {
   Random random(42);
@@ -134,6 +135,26 @@ TEST(SolveStatus, EveryStatusHasANameOfItsOwn) {
   }
   std::ranges::sort(names);
   EXPECT_EQ(std::ranges::adjacent_find(names), names.end());
+}
+
+TEST(RecordingSolver, AnswersAsTheSolverBehindItAndKeepsTheProblem) {
+  std::vector<RecordedProblem> record;
+  RecordingSolver recording(std::make_unique<ActiveSet>(), record);
+  recording.reserve(3, 20);
+  ActiveSet exact;
+  exact.reserve(3, 20);
+  for (int i = 0; i < 20; ++i) {
+    Random random(static_cast<std::uint64_t>(i));
+    Problem problem = make_problem(Task::wide_damped, Planes::touching, 3, i, random);
+    Solution through, direct, again;
+    ASSERT_EQ(recording.solve(problem.view(), through), exact.solve(problem.view(), direct));
+    const Eigen::VectorXd expected = vector(direct.u);
+    EXPECT_EQ(vector(through.u), expected);
+    problem.rows.setZero();  // the record is a copy
+    ASSERT_EQ(record.size(), static_cast<std::size_t>(i) + 1);
+    ASSERT_EQ(exact.solve(record.back().view(), again), SolveStatus::optimal);
+    EXPECT_EQ(vector(again.u), expected);
+  }
 }
 
 }  // namespace

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <algorithm>
-#include <limits>
-#include <vector>
-
+#include "chains.h"
 #include "keepout/geometry/closest_point.h"
 #include "keepout/geometry/separation.h"
 #include "keepout/mesh/mesh.h"
@@ -31,9 +28,8 @@ inline double distance_to(const Mesh& mesh, const Vec3& point) {
 /// Returns the clearance of an instrument: the least distance of a body, less its radius.
 inline double clearance_of(const Instrument& instrument, const Mesh& mesh,
                            const std::vector<double>& q) {
-  ChainState chain;
-  instrument.chain().forward_kinematics(q, chain);
-  double least = std::numeric_limits<double>::infinity();
+  const ChainState chain = test::state_of(instrument.chain(), q);
+  double least = test::infinity;
   for (const Body& body : instrument.bodies()) {
     std::vector<Vec3> core;
     for (const LinkPoint& point : body.points) core.push_back(chain.at(point.link, point.position));

@@ -2,10 +2,8 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <memory>
-#include <utility>
-#include <vector>
 
+#include "chains.h"
 #include "keepout/activation/certified.h"
 #include "keepout/factory/make_motion_constraint.h"
 #include "keepout/fixtures/robots.h"
@@ -49,8 +47,7 @@ inline std::vector<double> moved(std::vector<double> q, const InstrumentStep& st
 
 /// Returns the base from which a psm points straight down to a place, its port so far above it.
 inline Pose port_over(const Vec3& place, double height) {
-  ChainState state;
-  psm().chain().forward_kinematics(std::vector<double>{0, 0, 100, 0, 0, 0}, state);
+  const ChainState state = test::state_of(psm().chain(), std::vector<double>{0, 0, 100, 0, 0, 0});
   const Vec3 way = state.flange().position.normalized();
   return {place + Vec3(0, 0, height),
           Eigen::Quaterniond::FromTwoVectors(way, -Vec3::UnitZ()).toRotationMatrix()};

@@ -1,9 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <cstdlib>
+#include <limits>
+#include <ostream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "keepout/fixtures/shapes.h"
+#include "keepout/simd_target.h"
+
+// What a test runs over: numbers that are none, random trials, generated shapes, SIMD targets,
+// named cases.
 
 namespace keepout::test {
+
+inline constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+inline constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Whether few random trials are enough: under sanitizers, where what counts is that every path is
 /// taken and not how often; unless KEEPOUT_ALL_TRIALS is set, as `./test --long` does.
@@ -24,3 +40,51 @@ Count trials(Count all) {
 }
 
 }  // namespace keepout::test
+
+namespace keepout {
+
+/// What a test prints of a shape.
+inline void PrintTo(const Shape& shape, std::ostream* out) { *out << shape.name; }
+
+/// The generated shapes; every third of them where few trials are enough.
+inline std::vector<Shape> shapes_to_try() {
+  std::vector<Shape> tried;
+  const std::size_t stride = test::few_trials() ? 3 : 1;
+  for (std::size_t i = 0; i < shapes().size(); i += stride) tried.push_back(shapes()[i]);
+  return tried;
+}
+
+/// Their names, for tests that run once for each.
+inline std::vector<std::string> names_of_shapes() {
+  std::vector<std::string> names;
+  for (const Shape& shape : shapes_to_try()) names.emplace_back(shape.name);
+  return names;
+}
+
+/// Calls with everything running on each SIMD target that there is, the fastest first and the
+/// portable one last; on these two alone where few trials are enough. Which those are is for
+/// SimdTarget to say (engine/simd_target_test.cpp).
+template <class Call>
+void on_each_simd_target(Call&& call) {
+  struct Restored {
+    ~Restored() { use_simd_target(simd_targets().front()); }
+  } restored;
+  for (const std::string_view target : simd_targets()) {
+    const bool is_between = target != simd_targets().front() && target != simd_targets().back();
+    if (is_between && test::few_trials()) continue;
+    SCOPED_TRACE(std::string(target));
+    use_simd_target(target);
+    call();
+  }
+}
+
+/// Names each test of a suite after its parameter, or after the parameter's `name`.
+inline constexpr auto by_name = [](const auto& info) {
+  if constexpr (requires { info.param.name; }) {
+    return std::string(info.param.name);
+  } else {
+    return std::string(info.param);
+  }
+};
+
+}  // namespace keepout

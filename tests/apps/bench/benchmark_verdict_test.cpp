@@ -2,8 +2,6 @@
 // The verdict of a benchmark: which rows it compares, by which factor, and which it leaves out.
 #include "bench/benchmark_verdict.h"
 
-#include <gtest/gtest.h>
-
 #include <utility>
 
 #include "messages.h"

@@ -2,12 +2,9 @@
 // What is wrong is not timed, by whatever part, and however rarely.
 #include "bench/measure.h"
 
-#include <gtest/gtest.h>
-
 #include <bit>
 #include <functional>
 
-#include "by_name.h"
 #include "keepout/activation/registry.h"
 #include "keepout/fixtures/motions.h"
 #include "keepout/fixtures/queries_only.h"
@@ -16,6 +13,7 @@
 #include "keepout/solvers/active_set.h"
 #include "meshes.h"
 #include "messages.h"
+#include "trials.h"
 
 namespace keepout::app {
 namespace {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // keepout bench --speed as a user meets it, on small meshes.
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -100,9 +99,8 @@ TEST_F(SpeedCommand, MeasuresEveryRowAndSaysWhatFallsShort) {
 }
 
 TEST_F(SpeedCommand, CountsWhatEveryStepTakesFromTheSystem) {
-  const ProcessOutcome outcome =
-      run("bench --speed --quick --triangles 4000 --steps 3000 --json s.json --out s.html");
-  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  const ProcessOutcome outcome = succeeded(
+      run("bench --speed --quick --triangles 4000 --steps 3000 --json s.json --out s.html"));
   const json record = read("s.json");
   std::set<std::string> counted;
   for (const json& row : record["rows"]) {

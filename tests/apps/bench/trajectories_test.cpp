@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The motions on which bench --speed is measured are what they claim to be.
-#include <gtest/gtest.h>
-
-#include <vector>
 
 #include "bench/speed/guarded_mesh.h"
 #include "keepout/index/query.h"

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The page that `keepout live` writes, what it says, and what it refuses.
-#include <gtest/gtest.h>
 
 #include <Eigen/LU>
 #include <chrono>
@@ -60,10 +59,9 @@ class Live : public testing::Test {
 
 TEST_F(Live, ThePageHasTheSettingsAndEveryBitOfTheMeshes) {
   write_binary_stl(folder_.file("heart of a pig.stl"), make_shape("sphere"));
-  const Outcome outcome =
+  succeeded(
       run("cube 'heart of a pig.stl' --activation none --radius 4 --tool-radius 0.5 --margin 0.25 "
-          "--max-step 0.125");
-  ASSERT_EQ(outcome.status, 0) << outcome.output;
+          "--max-step 0.125"));
   Json told = settings();
   const Json meshes = told.at("meshes");
   told.erase("meshes");
@@ -105,8 +103,7 @@ TEST_F(Live, BeginsWithTheCertifiedRule) {
 }
 
 TEST_F(Live, AnInstrumentBeginsWithAllBodiesClearAndItsPortBesideTheMesh) {
-  const Outcome outcome = run("cortex --robot psm --margin 0.5");
-  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  const Outcome outcome = succeeded(run("cortex --robot psm --margin 0.5"));
   EXPECT_CONTAINS(outcome.output, "Drag the jaw");
   const Json told = settings();
   EXPECT_EQ(told.at("robot"), "psm");
@@ -136,15 +133,13 @@ TEST_F(Live, WhatIsOfABallIsRefusedForAnInstrument) {
 
 TEST_F(Live, AMeshThatWasTurnedIsNamedAsItWas) {
   write_binary_stl(folder_.file("ball.stl"), make_shape("sphere"));
-  const Outcome outcome = run("ball.stl --untagged RAS --space LPS");
-  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  succeeded(run("ball.stl --untagged RAS --space LPS"));
   EXPECT_EQ(settings().at("meshes").at(0).at("command_name"),
             "ball.stl --space LPS --untagged RAS");
 }
 
 TEST_F(Live, WarningsOfAMeshAreInThePageToo) {
-  const Outcome outcome = run("flat_plate");
-  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  const Outcome outcome = succeeded(run("flat_plate"));
   const Json warnings = settings().at("meshes").at(0).at("warnings");
   ASSERT_FALSE(warnings.empty());
   for (const Json& warning : warnings) {
@@ -177,8 +172,7 @@ TEST_F(Live, ANameThatIsNotUtf8IsReplacedWhereJsonCannotHaveIt) {
 }
 
 TEST_F(Live, SaysWhereThePageIsAndWhatToDoInIt) {
-  const Outcome outcome = run("cube --out 'my page.html'");
-  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  const Outcome outcome = succeeded(run("cube --out 'my page.html'"));
   EXPECT_TRUE(outcome.output.starts_with("my page.html, 0.0 MB; open it in a browser:\n"))
       << outcome.output;
   EXPECT_CONTAINS(outcome.output, "\n  " + file_url(folder_.file("my page.html")) + '\n');
@@ -224,8 +218,7 @@ TEST_F(Live, TheDesktopIsAskedToOpenThePageWhereThereIsOne) {
   const std::string desktop = "PATH=\"$PWD/bin:$PATH\" WAYLAND_DISPLAY=wayland-7 ";
   EXPECT_EQ(run("cube --no-open", desktop).status, 0);
   EXPECT_EQ(run("cube", "PATH=\"$PWD/bin:$PATH\" ").status, 0);
-  const Outcome outcome = run("cube --out 'that one.html'", desktop);
-  EXPECT_EQ(outcome.status, 0);
+  const Outcome outcome = succeeded(run("cube --out 'that one.html'", desktop));
   EXPECT_CONTAINS(outcome.output, "is being opened in a browser");
   for (int i = 0; i < 1000 && !fs::exists(folder_.file("asked")); ++i) {
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
@@ -234,8 +227,7 @@ TEST_F(Live, TheDesktopIsAskedToOpenThePageWhereThereIsOne) {
 }
 
 TEST_F(Live, WithoutAnOpenerThePageIsToBeOpenedByHand) {
-  const Outcome outcome = run("cube", "DISPLAY=:7 PATH=/nowhere ");
-  EXPECT_EQ(outcome.status, 0) << outcome.output;
+  const Outcome outcome = succeeded(run("cube", "DISPLAY=:7 PATH=/nowhere "));
   EXPECT_CONTAINS(outcome.output, "; open it in a browser:");
 }
 

@@ -2,16 +2,14 @@
 // Every bit of a mesh comes back from what a page carries of it.
 #include "page/packed_mesh.h"
 
-#include <gtest/gtest.h>
-
-#include <limits>
 #include <random>
 
 #include "apps/page/unpacked_page.h"
 #include "keepout/fixtures/real_mesh.h"
 #include "keepout/mesh/load_mesh.h"
+#include "page/base64.h"
 #include "page/gzip.h"
-#include "shapes_to_try.h"
+#include "trials.h"
 
 namespace keepout::app {
 namespace {
@@ -74,6 +72,16 @@ TEST(Gzipped, BytesOfAnyLengthComeBack) {
     EXPECT_EQ(test::gunzipped(gzipped(zeros)), zeros) << length;
   }
   EXPECT_LT(gzipped(std::vector<std::uint8_t>(400'000)).size(), 1000U);
+}
+
+TEST(Base64, IsThatOfTheStandard) {
+  const auto encode = [](const std::string& text) {
+    return to_base64(std::vector<std::uint8_t>(text.begin(), text.end()));
+  };
+  EXPECT_EQ(encode(""), "");
+  EXPECT_EQ(encode("f"), "Zg==");
+  EXPECT_EQ(encode("fo"), "Zm8=");
+  EXPECT_EQ(encode("foobar"), "Zm9vYmFy");
 }
 
 }  // namespace

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
@@ -25,9 +23,8 @@ using Json = nlohmann::json;
 const std::string quick = "plan cortex.stl --seconds 20 --resolution 0.002 ";
 
 TEST_F(PlanCommandTest, EveryPathOfKeepoutIsValidByTheOracle) {
-  const ProcessOutcome outcome =
-      folder_.run(quick + "--problems 2 --json runs.json --csv runs.csv --out page.html");
-  EXPECT_EQ(outcome.status, 0) << outcome.output;
+  const ProcessOutcome outcome = succeeded(
+      folder_.run(quick + "--problems 2 --json runs.json --csv runs.csv --out page.html"));
   EXPECT_CONTAINS(outcome.output, "certified");
   const Json record = Json::parse(std::ifstream(folder_.file("runs.json")));
   const Json& runs = record.at("runs");
@@ -67,17 +64,14 @@ TEST_F(PlanCommandTest, TheSameSeedPlansTheSame) {
 
 TEST_F(PlanCommandTest, EveryPlannerRuns) {
   for (const char* planner : {"RRT", "PRM", "BITstar"}) {
-    const ProcessOutcome outcome =
-        folder_.run(quick + "--problems 1 --simplify --planner " + planner);
-    EXPECT_EQ(outcome.status, 0) << outcome.output;
+    succeeded(folder_.run(quick + "--problems 1 --simplify --planner " + planner));
   }
 }
 
 TEST_F(PlanCommandTest, NoPathOfAWholeInstrumentUnderCertifiedCheckingComesTooClose) {
-  const ProcessOutcome outcome = folder_.run(
+  const ProcessOutcome outcome = succeeded(folder_.run(
       "plan gear --robot psm --problems 1 --seeds 2 --seconds 20 --resolution 0.02,0.01 "
-      "--json runs.json --csv runs.csv --out page.html");
-  EXPECT_EQ(outcome.status, 0) << outcome.output;
+      "--json runs.json --csv runs.csv --out page.html"));
   EXPECT_CONTAINS(outcome.output, "and 0 of 2 under keepout's");
   const Json record = Json::parse(std::ifstream(folder_.file("runs.json")));
   EXPECT_EQ(record.at("keepout_record"), "plan_robot");

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "record/record.h"
 
-#include <gtest/gtest.h>
-
-#include <limits>
 #include <sstream>
 
+#include "apps/page/unpacked_page.h"
 #include "messages.h"
+#include "record/drawn_mesh.h"
 #include "record/flat_rows.h"
 #include "record/plain_page.h"
+#include "trials.h"
 
 namespace keepout::app {
 namespace {
@@ -41,7 +41,7 @@ TEST(Record, IsReadBackAsItWasWritten) {
 TEST(Record, BytesThatAreNoTextAndNumbersThatAreNoneLeaveItWhole) {
   Json record = some_record();
   record["name"] = "skull\xff.stl";
-  record["none"] = std::numeric_limits<double>::quiet_NaN();
+  record["none"] = test::nan;
   std::ostringstream text;
   print_json(text, record);
   const Json read = Json::parse(text.str());
@@ -127,6 +127,44 @@ TEST(FlatRows, AsCsvKeepEveryDigitAndQuoteWhatMustBe) {
                      {{"a", 3}, {"b", {{"c", true}, {"d", nullptr}}}, {"f", "x, \"y\""}}};
   print_csv(out, flat(rows));
   EXPECT_EQ(out.str(), "a,b_c,b_d,f,z\n0.1,,,,1e-17\n3,true,,\"x, \"\"y\"\"\",\n");
+}
+
+Mesh fine_sphere() { return Mesh(make_sphere(1.5)); }
+
+TEST(DrawnMesh, HasEveryBitOfAMeshOfModestSize) {
+  const Mesh mesh = fine_sphere();
+  const Json json = drawn_mesh("<ball>", mesh);
+  EXPECT_EQ(json["name"], "<ball>");
+  EXPECT_EQ(json["triangles"], mesh.triangle_count());
+  const Json& drawn = json["drawn"];
+  EXPECT_EQ(drawn["triangles"], mesh.triangle_count());
+  const auto bytes = test::gunzipped(test::from_base64(drawn["packed"].get<std::string>()));
+  EXPECT_TRUE(test::same_bits(test::unpacked(drawn["coordinates"].get<std::string>(), bytes,
+                                             mesh.vertex_count(), mesh.triangle_count()),
+                              mesh));
+}
+
+TEST(DrawnMesh, ACoarserOneIsNearTheSurfaceAndWholeWhereOneLooksClosely) {
+  const Mesh mesh = fine_sphere();
+  const Box top{{-60, -60, 45}, {60, 60, 60}};
+  constexpr std::size_t most = 2000;
+  const Surface coarse = coarsened(mesh, most, std::nullopt);
+  EXPECT_LE(coarse.triangles.size(), most);
+  EXPECT_GT(coarse.triangles.size(), most / 8);
+  for (const Vec3& vertex : coarse.vertices) EXPECT_NEAR(vertex.norm(), 50.0, 1e-3);
+
+  // Triangles of the mesh with all corners in the box are all there, however many.
+  const Surface close = coarsened(mesh, most, top);
+  const auto within = [&](std::span<const Vec3> vertices, std::span<const Corners> triangles) {
+    return std::ranges::count_if(triangles, [&](const Corners& corners) {
+      return std::ranges::all_of(corners,
+                                 [&](VertexId v) { return distance_to(top, vertices[v]) == 0.0; });
+    });
+  };
+  EXPECT_EQ(within(close.vertices, close.triangles), within(mesh.vertices(), mesh.triangles()));
+  const auto there = within(mesh.vertices(), mesh.triangles());
+  EXPECT_LE(close.triangles.size(), most + static_cast<std::size_t>(there));
+  EXPECT_GT(close.triangles.size(), most / 8 + static_cast<std::size_t>(there));
 }
 
 }  // namespace

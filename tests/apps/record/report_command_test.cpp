@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // keepout report, and what the commands do where the front end of pages is there or missing; the
 // front end is played by two files.
-#include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
@@ -63,15 +62,13 @@ TEST_F(Report, OfACommandIsThatOfTheRecordItKept) {
   EXPECT_TRUE(page.ends_with("<p>after</p>\n"));
   EXPECT_FALSE(std::filesystem::exists(folder_.file("r.html.json")));
 
-  const Outcome outcome = run("report r.json --out again.html");
-  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  const Outcome outcome = succeeded(run("report r.json --out again.html"));
   EXPECT_CONTAINS(outcome.output, record["headline"].get<std::string>());
   EXPECT_EQ(folder_.contents("again.html"), page);
 }
 
 TEST_F(Report, WithoutItsFrontEndIsPlainAndMadeWholeLater) {
-  const Outcome outcome = run(simulate, without);
-  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  const Outcome outcome = succeeded(run(simulate, without));
   for (const char* told : {"plain page", "there is no nowhere/report_with_anatomy.html",
                            "'report r.html.json' makes the whole page"}) {
     EXPECT_CONTAINS(outcome.output, told);
@@ -88,8 +85,7 @@ TEST_F(Report, WhereHalfOfItsFrontEndIsMissingNothingIsLost) {
     std::filesystem::remove(folder_.file("web/report_with_anatomy.html"));
     if (is_stale) folder_.write("web/report_with_anatomy.html", "<p>of another version</p>");
     for (const char* kept : {"", "--json r.html.json "}) {
-      const Outcome outcome = run(std::string(simulate) + kept);
-      EXPECT_EQ(outcome.status, 0) << outcome.output;
+      const Outcome outcome = succeeded(run(std::string(simulate) + kept));
       EXPECT_CONTAINS(outcome.output, "'report r.html.json' makes");
       EXPECT_CONTAINS(folder_.contents("r.html"), "<td>certified</td>");
       EXPECT_FALSE(folder_.contents("r.html.json").empty());
@@ -120,8 +116,7 @@ TEST_F(Report, OfExperimentsIsPlainAsLongAsItsFrontEndIsMissing) {
   head["machine"] = nullptr;
   head["settings"] = Json::object();
   folder_.write("e.json", head.dump());
-  const Outcome plain = run("report e.json", without);
-  EXPECT_EQ(plain.status, 0) << plain.output;
+  const Outcome plain = succeeded(run("report e.json", without));
   EXPECT_CONTAINS(plain.output, "a plain page");
   EXPECT_CONTAINS(folder_.contents("e.html"), "<h1>so</h1>");
   ASSERT_EQ(run("report e.json").status, 0);
@@ -134,8 +129,7 @@ TEST_F(Report, EveryCommandWritesOne) {
        {"verify cube.stl --steps 500", "compare cube.stl --poses 6 --problems 30 --pairs 10",
         "bench --mesh cube.stl --index pd_tree --solver active_set --activation paper --queries 20 "
         "--seconds 0.1"}) {
-    const Outcome outcome = run(command + " --json c.json --out c.html");
-    ASSERT_EQ(outcome.status, 0) << outcome.output;
+    const Outcome outcome = succeeded(run(command + " --json c.json --out c.html"));
     const Json record = Json::parse(folder_.contents("c.json"));
     EXPECT_EQ(record_in("c.html"), record) << command;
     EXPECT_TRUE(folder_.contents("c.html").starts_with("<p>report</p>"));

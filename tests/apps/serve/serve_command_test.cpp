@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // 'keepout serve' as other programs meet it: a process at the end of a pipe or a socket.
 #include <fcntl.h>
-#include <gtest/gtest.h>
 #include <poll.h>
 #include <sys/socket.h>
 #include <sys/stat.h>

@@ -3,13 +3,308 @@
 // nothing unless it is a request.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
 
-#include "apps/serve/judged_service.h"
+#include "keepout/factory/make_motion_constraint.h"
+#include "keepout/fixtures/shapes.h"
+#include "serve/service.h"
 
 namespace keepout::test {
 namespace {
+
+using Json = nlohmann::json;
+
+std::shared_ptr<const Mesh> mesh() {
+  static const auto shared = std::make_shared<const Mesh>(make_cube(10.0));
+  return shared;
+}
+
+app::ServiceSettings settings(std::size_t longest_line) {
+  app::ServiceSettings settings;
+  settings.mesh = "cube";
+  settings.constraint.options.radius = 2.0;
+  settings.constraint.options.damping = 1e-3;
+  settings.constraint.options.distances = Distances::always;
+  settings.limits = {.joints = 7, .rows = 4, .motions = 8};
+  settings.longest_line = longest_line;
+  return settings;
+}
+
+/// The line as JSON; discarded if it is none, or has a key twice.
+Json parsed(std::string_view line) {
+  if (line.find('\0') != std::string_view::npos) return Json(Json::value_t::discarded);
+  std::set<std::string> keys;
+  bool is_twice = false;
+  const auto note = [&](int depth, Json::parse_event_t event, Json& value) {
+    if (event == Json::parse_event_t::key && depth == 1) {
+      is_twice |= !keys.insert(value.get<std::string>()).second;
+    }
+    return true;
+  };
+  Json json = Json::parse(line, note, false);
+  return is_twice ? Json(Json::value_t::discarded) : json;
+}
+
+bool is_row(const Json& value, const app::TableShape& shape) {
+  return value.is_array() && value.size() >= shape.fewest_columns &&
+         value.size() <= shape.most_columns &&
+         std::ranges::all_of(value, [](const Json& n) { return n.is_number(); });
+}
+
+/// True if a value has the shape of the service's documentation.
+bool has_shape(const Json& value, const app::TableShape& shape) {
+  if (shape.rank == 0) return value.is_number();
+  if (shape.rank == 1) return is_row(value, shape);
+  return value.is_array() && value.size() >= shape.fewest_rows && value.size() <= shape.most_rows &&
+         std::ranges::all_of(value, [&](const Json& row) {
+           return is_row(row, shape) && row.size() == value[0].size();
+         });
+}
+
+bool is_id(const Json& id) {
+  return id.is_null() || id.is_number_integer() ||
+         (id.is_string() && id.get_ref<const std::string&>().size() <= 128);
+}
+
+/// True if a line is a request of the keys that the service lists.
+bool is_request(const Json& line, const app::Request& schema) {
+  if (!line.is_object() || !line.contains("do") || !line["do"].is_string()) return false;
+  if (line.contains("id") && !is_id(line["id"])) return false;
+  const auto verb = std::ranges::find(app::verb_keys(), line["do"].get<std::string>(),
+                                      [](const app::VerbKeys& v) { return std::string(v.name); });
+  if (verb == app::verb_keys().end()) return false;
+  for (const std::string_view key : verb->needed) {
+    if (!key.empty() && !line.contains(key)) return false;
+  }
+  for (const auto& [key, value] : line.items()) {
+    if (key != "id" && key != "do" && !verb->takes(key)) return false;
+  }
+  for (const app::NumberTable& table : schema.tables) {
+    if (line.contains(table.name) && !has_shape(line[table.name], table.shape)) return false;
+  }
+  for (const app::TextValue& text : schema.texts) {
+    if (line.contains(text.name) && !line[text.name].is_string()) return false;
+  }
+  if (verb->verb == app::Verb::joint_step) {
+    const bool has_twist = line.contains("linear") || line.contains("angular");
+    return has_twist != line.contains("increment") && !(has_twist && line.contains("weights"));
+  }
+  if (line.contains("rows") != line.contains("bounds")) return false;
+  if (!line.contains("rows")) return true;
+  const std::size_t columns = line.contains("jacobian") ? line["jacobian"][0].size() : 3;
+  return line["rows"].size() == line["bounds"].size() &&
+         (line["rows"].empty() || line["rows"][0].size() == columns);
+}
+
+Vec3 vector(const Json& array, std::size_t from = 0) {
+  return {array[from].get<double>(), array[from + 1].get<double>(), array[from + 2].get<double>()};
+}
+
+bool is_same(const Json& answer, const Step& step) {
+  return answer["ok"] == step.ok() && answer["status"] == name(step.status) &&
+         vector(answer["motion"]) == step.motion && answer["planes"] == step.planes.size() &&
+         answer["triangles"] == step.triangles &&
+         answer.contains("distance") == step.distance.has_value() &&
+         (!step.distance || answer["distance"] == *step.distance) &&
+         answer.contains("reason") == !step.ok();
+}
+
+bool is_same(const Json& answer, const Polytope& polytope) {
+  if (answer["status"] != name(polytope.status)) return false;
+  const Json& normals = answer["normals"];
+  const Json& offsets = answer["offsets"];
+  if (normals.size() != polytope.planes.size() || offsets.size() != normals.size()) return false;
+  for (std::size_t i = 0; i < normals.size(); ++i) {
+    if (vector(normals[i]) != polytope.planes[i].normal) return false;
+    if (offsets[i] != polytope.planes[i].offset) return false;
+  }
+  return true;
+}
+
+bool is_same_step(const Json& request, const Json& answer, MotionConstraint& constraint,
+                  SideWatch& tip) {
+  Motion motion{.tip = vector(request["tip"]), .desired = vector(request["desired"])};
+  TipJacobian::Matrix jacobian;
+  if (request.contains("jacobian")) {
+    jacobian.resize(3, std::ssize(request["jacobian"][0]));
+    for (int r = 0; r < 3; ++r) {
+      for (int c = 0; c < jacobian.cols(); ++c) jacobian(r, c) = request["jacobian"][r][c];
+    }
+    motion.jacobian = TipJacobian(jacobian);
+  }
+  std::vector<double> matrix;
+  std::vector<double> bounds;
+  if (request.contains("rows")) {
+    for (const Json& row : request["rows"]) {
+      for (const Json& number : row) matrix.push_back(number.get<double>());
+    }
+    bounds = request["bounds"].get<std::vector<double>>();
+    motion.rows = ExtraRows(matrix.data(), bounds.data(), std::ssize(bounds));
+  }
+  const Step step = constraint.step(motion, tip);
+  if (!is_same(answer, step)) return false;
+  if (!motion.jacobian) return !answer.contains("increment");
+  const auto increment = answer["increment"].get<std::vector<double>>();
+  if (!step.ok()) return increment == std::vector<double>(jacobian.cols(), 0.0);
+  return std::equal(increment.begin(), increment.end(), step.increment.begin(),
+                    step.increment.end());
+}
+
+bool is_same_batch(const Json& request, const Json& answer, MotionConstraint& constraint,
+                   SideWatch& tip) {
+  const Json& motions = request["motions"];
+  if (answer["steps"].size() != motions.size()) return false;
+  for (std::size_t i = 0; i < motions.size(); ++i) {
+    const Motion motion{.tip = vector(motions[i]), .desired = vector(motions[i], 3)};
+    if (!is_same(answer["steps"][i], constraint.step(motion, tip))) return false;
+  }
+  return true;
+}
+
+/// What must hold of a step of an instrument, whatever it is.
+bool is_joint_step(const Json& request, const Json& answer) {
+  const bool ok = answer["ok"];
+  const auto increment = answer["increment"].get<std::vector<double>>();
+  const std::vector<double> zeros(request["q"].size(), 0.0);
+  return answer.contains("reason") == !ok && increment.size() == zeros.size() &&
+         (ok ? answer["share"] >= 0.0 && answer["share"] <= 1.0 : increment == zeros);
+}
+
+/// The lines of a text that are to be answered.
+std::vector<std::string_view> lines_of(std::string_view bytes, std::size_t longest) {
+  std::vector<std::string_view> lines;
+  while (!bytes.empty()) {
+    const std::size_t end = std::min(bytes.find('\n'), bytes.size());
+    std::string_view line = bytes.substr(0, end);
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    const bool is_blank = line.find_first_not_of(" \t\r") == std::string_view::npos;
+    if (!is_blank || line.size() > longest) lines.push_back(line);
+    bytes.remove_prefix(std::min(end + 1, bytes.size()));
+  }
+  return lines;
+}
+
+/// A service, and one who knows what it must answer: by another JSON parser, and by a motion
+/// constraint of his own.
+class JudgedService {
+ public:
+  explicit JudgedService(std::size_t longest_line);
+
+  /// Sends bytes as one client, in pieces of random sizes, and judges all that is answered: one
+  /// line for each that is not blank, in order, with its id; motions and planes for requests alone,
+  /// and those of the constraint. Returns what is wrong; empty if nothing is.
+  std::string converse(std::string_view bytes, std::mt19937_64& random);
+
+  std::size_t lines() const noexcept { return lines_; }              // that were answered
+  std::size_t refusals() const noexcept { return refusals_; }        // among them
+  std::size_t joint_steps() const noexcept { return joint_steps_; }  // that were carried out
+
+ private:
+  std::string judge(std::string_view line, std::string_view answer, SideWatch& tip);
+
+  app::ServiceSettings settings_;
+  app::Service service_;
+  app::Request schema_{settings_.limits};
+  MotionConstraint reference_;
+  std::size_t lines_ = 0;
+  std::size_t refusals_ = 0;
+  std::size_t joint_steps_ = 0;
+};
+
+JudgedService::JudgedService(std::size_t longest_line)
+    : settings_(settings(longest_line)), service_(mesh(), settings_), reference_([&] {
+        MotionConstraintSettings own = settings_.constraint;
+        own.capacity.extra_rows = settings_.limits.rows;
+        return make_motion_constraint(mesh(), own);
+      }()) {}
+
+std::string JudgedService::converse(std::string_view bytes, std::mt19937_64& random) {
+  app::Session session(service_);
+  std::string answers;
+  const auto take_all = [&] {
+    while (session.has_work() || !session.unsent().empty()) {
+      session.take_turn();
+      const std::size_t part = std::min<std::size_t>(session.unsent().size(), 1 + random() % 5000);
+      answers += session.unsent().substr(0, part);
+      session.sent(part);
+    }
+  };
+  for (std::string_view rest = bytes; !rest.empty();) {
+    const std::span<char> room = session.room();
+    if (room.empty()) return "there is no room for more";
+    const std::size_t part = std::min({rest.size(), room.size(), 1 + random() % 600});
+    std::copy_n(rest.begin(), part, room.begin());
+    rest.remove_prefix(part);
+    session.added(part);
+    take_all();
+  }
+  session.ended();
+  take_all();
+  if (!session.is_done()) return "it does not end";
+
+  SideWatch tip;
+  std::string_view rest = answers;
+  for (const std::string_view line : lines_of(bytes, settings_.longest_line)) {
+    const std::size_t end = rest.find('\n');
+    if (end == std::string_view::npos) return "no answer to: " + std::string(line);
+    ++lines_;
+    const std::string fault = judge(line, rest.substr(0, end), tip);
+    if (!fault.empty()) {
+      return fault + "\n" + std::string(line) + "\n" + std::string(rest.substr(0, end));
+    }
+    rest.remove_prefix(end + 1);
+  }
+  return rest.empty() ? std::string() : "an answer to nothing: " + std::string(rest);
+}
+
+std::string JudgedService::judge(std::string_view line, std::string_view answer, SideWatch& tip) {
+  const Json told = Json::parse(answer, nullptr, false);
+  if (!told.is_object() || !told.contains("id")) return "no answer but";
+  const Json request =
+      line.size() > settings_.longest_line ? Json(Json::value_t::discarded) : parsed(line);
+  const bool is_refused = told.contains("error");
+  // Whether there is an instrument depends on files, and on what was opened before.
+  if (is_refused && is_request(request, schema_) &&
+      (request["do"] == "instrument" || request["do"] == "joint_step")) {
+    const std::string kind = told["error"]["kind"];
+    const bool is_joint_step = request["do"] == "joint_step";
+    return kind == "no_instrument" || (is_joint_step && kind == "not_a_request") ? ""
+                                                                                 : "another kind";
+  }
+  if (is_refused == is_request(request, schema_)) return is_refused ? "refused" : "not refused";
+  if (request.is_object() && request.contains("id") && is_id(request["id"]) &&
+      told["id"] != request["id"]) {
+    return "another id";
+  }
+  if (is_refused) {
+    ++refusals_;
+    const std::string kind = told["error"]["kind"];
+    if (kind == "line_too_long" ? line.size() <= settings_.longest_line
+                                : kind != "not_json" && kind != "not_a_request") {
+      return "another kind of error";
+    }
+    return told["error"]["message"].get<std::string>().empty() || told.size() != 2 ? "no message"
+                                                                                   : "";
+  }
+  const std::string verb = request["do"];
+  if (verb == "step" && !is_same_step(request, told, reference_, tip)) return "another step";
+  if (verb == "steps" && !is_same_batch(request, told, reference_, tip)) return "other steps";
+  if (verb == "joint_step" && !is_joint_step(request, told)) return "no step of joints";
+  joint_steps_ += verb == "joint_step";
+  if (verb == "polytope" &&
+      !is_same(told, reference_.free_polytope(vector(request["tip"]), request["radius"]))) {
+    return "another polytope";
+  }
+  return {};
+}
 
 constexpr std::size_t longest_line = 600;
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "shared/pose_file.h"
 
-#include <gtest/gtest.h>
-
 #include <utility>
 #include <vector>
 

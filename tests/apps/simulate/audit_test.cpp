@@ -2,14 +2,11 @@
 // The independent check is itself checked: against shapes whose inside is known by formula.
 #include "simulate/audit.h"
 
-#include <gtest/gtest.h>
-
 #include <Eigen/Geometry>
 
 #include "keepout/index/pd_tree.h"
 #include "keepout/index/query.h"
 #include "meshes.h"
-#include "random_places.h"
 #include "trials.h"
 
 namespace keepout::app {

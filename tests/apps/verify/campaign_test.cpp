@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "verify/campaign.h"
 
-#include <gtest/gtest.h>
-
-#include "by_name.h"
 #include "keepout/factory/make_motion_constraint.h"
 #include "small_campaign.h"
+#include "trials.h"
 #include "verify/path.h"
 
 namespace keepout::app {

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The campaign can fail: each guard here is broken in a way of its own, and each is found out.
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <optional>
 
-#include "by_name.h"
 #include "keepout/activation/paper.h"
 #include "keepout/index/pd_tree.h"
 #include "keepout/solvers/active_set.h"
 #include "small_campaign.h"
+#include "trials.h"
 
 namespace keepout::app {
 namespace {

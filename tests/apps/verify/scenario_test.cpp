@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // keepout verify --scenario: what is promised in each scenario holds, and a step that is broken in
 // a way of its own is found out.
-#include <gtest/gtest.h>
 
 #include <memory>
 #include <span>
 #include <utility>
 
 #include "apps/command_process.h"
-#include "by_name.h"
 #include "small_campaign.h"
 #include "trials.h"
 #include "verify/robot/campaign.h"
@@ -189,9 +187,8 @@ TEST(BrokenStep, StandingStillForNothingIsCounted) {
 
 TEST(VerifyScenario, IsChosenByNameAndUnknownNamesSuggest) {
   const test::CommandFolder folder;
-  const test::ProcessOutcome outcome =
-      folder.run("verify cortex --scenario tip_guides,convex_tool --cycles 200 --speed 1");
-  EXPECT_EQ(outcome.status, 0) << outcome.output;
+  const test::ProcessOutcome outcome = succeeded(
+      folder.run("verify cortex --scenario tip_guides,convex_tool --cycles 200 --speed 1"));
   EXPECT_CONTAINS(outcome.output, "No breach in 400 cycles.");
   folder.expect_refused("verify --scenario guide", "did you mean 'guides'");
 }

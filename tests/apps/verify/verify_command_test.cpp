@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // keepout verify as a user meets it: options, shards, files.
-#include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -44,8 +43,7 @@ class Verify : public testing::Test {
 
 TEST_F(Verify, ShardsAddUpToTheWhole) {
   const std::string both = "cube.stl terrain.stl --steps 5250 --seed 3 ";
-  const Outcome whole = run(both + "--json whole.json");
-  ASSERT_EQ(whole.status, 0) << whole.output;
+  const Outcome whole = succeeded(run(both + "--json whole.json"));
   EXPECT_CONTAINS(whole.output, "No breach in 5,250 steps");
   const std::string machine = read("whole.json")["shards"].dump();
   EXPECT_CONTAINS(machine, ", " + std::string(simd_target()) + ", ");
@@ -53,8 +51,7 @@ TEST_F(Verify, ShardsAddUpToTheWhole) {
     const std::string options = std::string("--shard ") + shard + "/3 --json " + shard + ".json";
     ASSERT_EQ(run(both + options).status, 0);
   }
-  const Outcome merged = run("--merge 3.json 1.json 2.json --json merged.json");
-  ASSERT_EQ(merged.status, 0) << merged.output;
+  const Outcome merged = succeeded(run("--merge 3.json 1.json 2.json --json merged.json"));
   EXPECT_LACKS(merged.output, "Missing");
   EXPECT_EQ(without_times(read("merged.json")), without_times(read("whole.json")));
   EXPECT_EQ(read("merged.json")["shards"].size(), 3u);
@@ -83,8 +80,7 @@ TEST_F(Verify, WhatIsInterruptedKeepsWhatIsFinishedAndIsNotTakenForWhole) {
     EXPECT_CONTAINS(outcome.output, ", interrupted\n");
     EXPECT_CONTAINS(outcome.output, "of the campaign's 1,000,000,000 steps are done");
   }
-  const Outcome merged = run("--merge part.json --json merged.json");
-  EXPECT_EQ(merged.status, 0);
+  const Outcome merged = succeeded(run("--merge part.json --json merged.json"));
   EXPECT_CONTAINS(merged.output, "Incomplete: ");
   EXPECT_CONTAINS(merged.output, "Missing: shard 2/2");
   EXPECT_EQ(read("merged.json")["complete"], false);
@@ -94,8 +90,7 @@ TEST_F(Verify, AMissingShardIsToldOf) {
   const std::string both = "cube.stl --steps 2000 --shard ";
   ASSERT_EQ(run(both + "1/3 --json 1.json").status, 0);
   ASSERT_EQ(run(both + "3/3 --json 3.json").status, 0);
-  const Outcome merged = run("--merge 1.json 3.json");
-  EXPECT_EQ(merged.status, 0);
+  const Outcome merged = succeeded(run("--merge 1.json 3.json"));
   EXPECT_CONTAINS(merged.output, "Missing: shard 2/3");
 }
 
@@ -182,14 +177,12 @@ TEST_F(Verify, MistakesAreToldOf) {
 }
 
 TEST_F(Verify, StepsMayBeWrittenWithAnExponent) {
-  const Outcome outcome = run("cube.stl --steps 1e3");
-  EXPECT_EQ(outcome.status, 0) << outcome.output;
+  const Outcome outcome = succeeded(run("cube.stl --steps 1e3"));
   EXPECT_CONTAINS(outcome.output, "No breach in 1,000 steps");
 }
 
 TEST_F(Verify, FixturesThatAreNotThereAreNamed) {
-  const Outcome outcome = run("--steps 500", "KEEPOUT_CACHE=.");
-  EXPECT_EQ(outcome.status, 0) << outcome.output;
+  const Outcome outcome = succeeded(run("--steps 500", "KEEPOUT_CACHE=."));
   EXPECT_CONTAINS(outcome.output, "Missing: ");
   EXPECT_CONTAINS(outcome.output, "skull.stl");
 }

@@ -2,17 +2,12 @@
 // Against the oracle, whose distances share nothing with the engine, and dense samples.
 #include "keepout/activation/facet.h"
 
-#include <gtest/gtest.h>
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
-#include <ostream>
 
 #include "activation/certified/straight_clearance.h"
-#include "by_name.h"
 #include "keepout/activation/first_contact.h"
 #include "keepout/fixtures/random.h"
 #include "keepout/geometry/closest_point.h"
@@ -62,7 +57,7 @@ double distance_between(const Triangle& triangle, const Vec3& z) {
 
 double sampled_distance(const Triangle& triangle, const Vec3& from, const Vec3& to) {
   constexpr int samples = 400;
-  double least = std::numeric_limits<double>::infinity();
+  double least = test::infinity;
   for (int i = 0; i <= samples; ++i) {
     const Vec3 point = from + static_cast<double>(i) / samples * (to - from);
     least = std::min(least, closest_point(triangle, point).distance);

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "keepout/activation/free_polytope.h"
 
-#include <gtest/gtest.h>
-
 #include <Eigen/Dense>
-#include <limits>
 #include <numeric>
 
 #include "keepout/error.h"
@@ -12,8 +9,7 @@
 #include "keepout/fixtures/poses.h"
 #include "keepout/index/brute_force.h"
 #include "meshes.h"
-#include "shapes_to_try.h"
-#include "small_surfaces.h"
+#include "trials.h"
 
 namespace keepout {
 namespace {
@@ -80,7 +76,7 @@ double share_of_ball(const std::vector<HalfSpace>& planes, double radius, Random
 }
 
 double nearest_of(const Mesh& mesh, const std::vector<Hit>& hits, const Vec3& point) {
-  double nearest = std::numeric_limits<double>::infinity();
+  double nearest = test::infinity;
   for (const Hit& hit : hits) {
     nearest = std::min(nearest, closest_point(mesh.triangle(hit.triangle), point).distance);
   }

@@ -1,19 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The sources of triangles that indices offer, held to each other by the certified rule bit for
 // bit: the walk of a WideBvh, and all hits around.
-#include <gtest/gtest.h>
 
-#include <cmath>
-
-#include "by_name.h"
-#include "each_simd_target.h"
 #include "engine/activation/sources.h"
 #include "index/wide_bvh/walk/tree_walk.h"
 #include "keepout/fixtures/poses.h"
-#include "keepout/fixtures/random.h"
 #include "keepout/index/motion_walk.h"
 #include "keepout/index/query.h"
-#include "shapes_to_try.h"
+#include "trials.h"
 
 namespace keepout {
 namespace {

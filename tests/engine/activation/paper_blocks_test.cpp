@@ -1,25 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The paper's rule on an index that has its triangles in blocks, held to the plain rule bit for
 // bit.
-#include <gtest/gtest.h>
 
-#include <algorithm>
 #include <array>
 
-#include "by_name.h"
-#include "each_simd_target.h"
 #include "index/pd_tree/tree.h"
 #include "index/wide_bvh/tree.h"
 #include "keepout/activation/paper.h"
 #include "keepout/fixtures/poses.h"
 #include "keepout/fixtures/queries_only.h"
-#include "keepout/fixtures/shapes.h"
 #include "keepout/solvers/active_set.h"
 #include "keepout/step/motion_constraint.h"
 #include "meshes.h"
-#include "random_places.h"
-#include "shapes_to_try.h"
 #include "step/input.h"
+#include "trials.h"
 
 namespace keepout {
 namespace {

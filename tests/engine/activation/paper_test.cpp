@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include "engine/activation/rule_fixture.h"
-#include "keepout/fixtures/random.h"
 #include "meshes.h"
 
 namespace keepout {

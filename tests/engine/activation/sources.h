@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <algorithm>
 #include <optional>
-#include <vector>
 
 #include "keepout/activation/certified.h"
 #include "keepout/index/pd_tree.h"

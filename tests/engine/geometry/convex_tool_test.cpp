@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "keepout/geometry/convex_tool.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
-#include <limits>
 
 #include "engine/geometry/tools.h"
 #include "keepout/error.h"
+#include "trials.h"
 
 namespace keepout {
 namespace {
@@ -50,13 +48,12 @@ TEST(ConvexTool, SupportIsTheFarthestPoint) {
 
 TEST(ConvexTool, WhatIsNoToolIsRefused) {
   const double nan = std::nan("");
-  const double infinite = std::numeric_limits<double>::infinity();
-  for (const double radius : {-1.0, nan, infinite}) {
+  for (const double radius : {-1.0, nan, test::infinity}) {
     EXPECT_THROW(ConvexTool::sphere(radius), Error);
   }
   EXPECT_THROW(ConvexTool::capsule({0, nan, 0}, {0, 0, 1}, 1.0), Error);
   EXPECT_THROW(ConvexTool::hull({}), Error);
-  EXPECT_THROW(ConvexTool::hull(std::vector<Vec3>{Vec3(infinite, 0, 0)}), Error);
+  EXPECT_THROW(ConvexTool::hull(std::vector<Vec3>{Vec3(test::infinity, 0, 0)}), Error);
   std::vector<Vec3> many;
   for (int i = 0; i < 64; ++i) many.emplace_back(i, i * i, 1.0);
   EXPECT_NO_THROW(ConvexTool::hull(many));

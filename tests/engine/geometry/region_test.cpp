@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "keepout/geometry/region.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
-#include <limits>
-#include <vector>
 
 #include "keepout/error.h"
 #include "keepout/fixtures/random.h"
@@ -58,15 +54,14 @@ TEST(Region, HasAnExcessThatIsConvexAndNoSteeperThanOne) {
 }
 
 TEST(Region, RefusesWhatIsNone) {
-  const double nan = std::numeric_limits<double>::quiet_NaN();
   const Vec3 at = Vec3::Zero();
   EXPECT_THROW(Region::half_space(at, Vec3::Zero()), Error);
-  EXPECT_THROW(Region::slab(at, Vec3(nan, 0, 0), 1.0), Error);
+  EXPECT_THROW(Region::slab(at, Vec3(test::nan, 0, 0), 1.0), Error);
   EXPECT_THROW(Region::slab(at, Vec3::UnitX(), 0.0), Error);
   EXPECT_THROW(Region::tube(at, Vec3::UnitX(), -1.0), Error);
-  EXPECT_THROW(Region::tube(Vec3(nan, 0, 0), Vec3::UnitX(), 1.0), Error);
+  EXPECT_THROW(Region::tube(Vec3(test::nan, 0, 0), Vec3::UnitX(), 1.0), Error);
   EXPECT_THROW(Region::ball(Vec3(1e300, 0, 0), 1.0), Error);
-  EXPECT_THROW(Region::ball(at, nan), Error);
+  EXPECT_THROW(Region::ball(at, test::nan), Error);
 }
 
 }  // namespace

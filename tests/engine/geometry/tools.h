@@ -15,13 +15,13 @@ struct NamedTool {
   ConvexTool tool;
 };
 
-inline Eigen::Matrix3d random_rotation(Random& random) {
+inline Eigen::Matrix3d random_rotation(keepout::Random& random) {
   const Vec3 axis = random.direction();
   return Eigen::AngleAxisd(random.uniform(0.0, 6.0), axis).toRotationMatrix();
 }
 
 /// One of each kind, of a size of some `size` around the tip.
-inline std::vector<NamedTool> tools_of_each_kind(double size, Random& random) {
+inline std::vector<NamedTool> tools_of_each_kind(double size, keepout::Random& random) {
   std::vector<Vec3> points;
   for (int i = 0; i < 10; ++i) points.push_back(0.5 * size * random.direction());
   std::vector<NamedTool> tools;

@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <gtest/gtest.h>
-
 #include "adapters/index_contract.h"
 #include "index/wide_bvh/tree.h"
-#include "keepout/fixtures/shapes.h"
-#include "meshes.h"
 
 namespace keepout {
 

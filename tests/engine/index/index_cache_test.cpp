@@ -1,15 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "keepout/index/index_cache.h"
 
-#include <gtest/gtest.h>
-
 #include <thread>
 
 #include "adapters/index_contract.h"
 #include "index/wide_bvh/tree.h"
-#include "keepout/error.h"
-#include "meshes.h"
-#include "small_surfaces.h"
 #include "temporary_folder.h"
 
 namespace keepout {

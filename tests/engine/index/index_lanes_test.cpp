@@ -2,22 +2,14 @@
 // Both trees: exactly the triangles that touch a ball, for little work; and the same triangles and
 // leaves in the same order, the same trees and the same work on every processor: all kinds that
 // this one can stand in for, down to one lane at a time.
-#include <gtest/gtest.h>
 
-#include <cmath>
 #include <cstring>
 #include <optional>
 #include <set>
-#include <span>
 #include <type_traits>
 
-#include "each_simd_target.h"
 #include "engine/index/exact_index.h"
 #include "index/pd_tree/tree.h"
-#include "index/wide_bvh/tree.h"
-#include "keepout/fixtures/poses.h"
-#include "keepout/fixtures/shapes.h"
-#include "shapes_to_try.h"
 
 namespace keepout {
 namespace {

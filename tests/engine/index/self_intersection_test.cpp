@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-
 #include "keepout/index/self_intersection.h"
-
-#include <gtest/gtest.h>
 
 #include "keepout/index/brute_force.h"
 #include "keepout/index/pd_tree.h"
 #include "meshes.h"
-#include "shapes_to_try.h"
-#include "small_surfaces.h"
+#include "trials.h"
 
 namespace keepout {
 namespace {

@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "keepout/index/wide_bvh.h"
 
-#include <gtest/gtest.h>
-
 #include <cstring>
 
 #include "engine/index/exact_index.h"
 #include "keepout/error.h"
-#include "shapes_to_try.h"
 
 namespace keepout {
 namespace {

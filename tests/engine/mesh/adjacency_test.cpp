@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-
 #include "keepout/mesh/adjacency.h"
 
 #include <gtest/gtest.h>
@@ -7,7 +6,7 @@
 #include <map>
 #include <set>
 
-#include "small_surfaces.h"
+#include "meshes.h"
 
 namespace keepout {
 namespace {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-
 #include "keepout/mesh/binary_stl.h"
 
-#include <gtest/gtest.h>
 #include <sys/stat.h>
 
 #include <cstring>
@@ -11,7 +9,7 @@
 
 #include "keepout/mesh/load_mesh.h"
 #include "mesh_file.h"
-#include "small_surfaces.h"
+#include "meshes.h"
 #include "temporary_folder.h"
 
 namespace keepout {

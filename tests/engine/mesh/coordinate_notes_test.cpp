@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // RAS and LPS: what files say, and what becomes of it.
 
-#include "by_name.h"
 #include "engine/mesh/mesh_files.h"
+#include "trials.h"
 
 namespace keepout {
 namespace {

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-
 #include "keepout/mesh/doctor.h"
 
 #include <gtest/gtest.h>
 
-#include "small_surfaces.h"
+#include "meshes.h"
 
 namespace keepout {
 namespace {

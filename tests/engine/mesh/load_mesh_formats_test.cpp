@@ -299,7 +299,5 @@ TEST_F(LoadMesh, BinaryStlOfTheWrongLengthSaysWhatItDeclares) {
   EXPECT_CONTAINS(complaint("mesh.stl", begins_with_solid), "declares 4 triangles");
 }
 
-// Files.
-
 }  // namespace
 }  // namespace keepout

@@ -1,18 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <gtest/gtest.h>
-
 #include <cstring>
 #include <functional>
 #include <iomanip>
 #include <ostream>
 #include <sstream>
-#include <vector>
 
 #include "keepout/mesh/binary_stl.h"
 #include "keepout/mesh/load_mesh.h"
-#include "small_surfaces.h"
+#include "meshes.h"
 #include "temporary_folder.h"
 
 namespace keepout {

@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-
 #include "keepout/mesh/mesh.h"
 
-#include <gtest/gtest.h>
-
-#include <limits>
-
+#include "meshes.h"
 #include "messages.h"
-#include "small_surfaces.h"
+#include "trials.h"
 
 namespace keepout {
 namespace {
@@ -55,9 +51,7 @@ TEST(Mesh, WithoutTrianglesIsAnError) {
 }
 
 TEST(Mesh, ACoordinateThatIsNotFiniteIsAnErrorNamingTheVertex) {
-  for (const double bad :
-       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
-        -std::numeric_limits<double>::infinity()}) {
+  for (const double bad : {test::nan, test::infinity, -test::infinity}) {
     for (int axis = 0; axis < 3; ++axis) {
       Surface surface = tetrahedron();
       surface.vertices[2][axis] = bad;

@@ -1,17 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gtest/gtest.h>
-
 #include <Eigen/Geometry>
-#include <ostream>
-#include <string>
 
 #include "keepout/fixtures/poses.h"
 #include "keepout/index/pd_tree.h"
 #include "keepout/mesh/doctor.h"
 #include "keepout/oracle/safety_oracle.h"
 #include "meshes.h"
-#include "random_places.h"
-#include "small_surfaces.h"
 #include "step/escape.h"
 #include "trials.h"
 

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-
 #include <gtest/gtest.h>
 
 #include <map>
 
 #include "keepout/error.h"
-#include "small_surfaces.h"
+#include "meshes.h"
 
 namespace keepout {
 namespace {

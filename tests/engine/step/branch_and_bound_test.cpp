@@ -1,15 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <vector>
-
-#include "by_name.h"
 #include "keepout/factory/make_motion_constraint.h"
 #include "keepout/fixtures/poses.h"
 #include "keepout/oracle/safety_oracle.h"
 #include "meshes.h"
 #include "step/branches.h"
+#include "trials.h"
 
 namespace keepout {
 namespace {

@@ -1,20 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Step::distance, held to brute force: of every rule, on every index of the engine, whether the
 // rule searches or not, and whatever the processor.
-#include <gtest/gtest.h>
 
 #include "brute_force.h"
-#include "by_name.h"
 #include "keepout/activation/registry.h"
 #include "keepout/fixtures/poses.h"
 #include "keepout/index/brute_force.h"
 #include "keepout/index/pd_tree.h"
 #include "keepout/index/wide_bvh.h"
-#include "keepout/simd_target.h"
 #include "keepout/solvers/active_set.h"
 #include "keepout/step/motion_constraint.h"
 #include "meshes.h"
-#include "trials.h"
 
 namespace keepout {
 namespace {

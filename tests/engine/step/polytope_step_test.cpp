@@ -1,17 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The free polytope as MotionConstraint hands it out.
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <vector>
-
-#include "each_simd_target.h"
 #include "keepout/factory/make_motion_constraint.h"
 #include "keepout/fixtures/poses.h"
 #include "keepout/oracle/safety_oracle.h"
 #include "meshes.h"
+#include "trials.h"
 
 namespace keepout {
 namespace {
@@ -76,7 +70,6 @@ TEST(MotionConstraintPolytope, FailuresAllowStandingStillOnly) {
   const auto mesh = mesh_of("sphere");
   auto guard = make_motion_constraint(mesh, {});
   auto small = make_motion_constraint(mesh, {.capacity = {.triangles = 10}});
-  const double nan = std::numeric_limits<double>::quiet_NaN();
   const auto expect_still = [](const Polytope& polytope, Status status) {
     EXPECT_EQ(polytope.status, status);
     EXPECT_FALSE(polytope.ok());
@@ -85,8 +78,8 @@ TEST(MotionConstraintPolytope, FailuresAllowStandingStillOnly) {
     EXPECT_FALSE(allows(polytope, Vec3(1e-9, 0, 0)));
     EXPECT_FALSE(allows(polytope, Vec3(0, -1e-9, 0)));
   };
-  expect_still(guard.free_polytope(Vec3(nan, 0, 0), 1.0), Status::invalid_input);
-  expect_still(guard.free_polytope(Vec3(0, 0, 60), nan), Status::invalid_input);
+  expect_still(guard.free_polytope(Vec3(test::nan, 0, 0), 1.0), Status::invalid_input);
+  expect_still(guard.free_polytope(Vec3(0, 0, 60), test::nan), Status::invalid_input);
   expect_still(guard.free_polytope(Vec3(0, 0, 60), -1.0), Status::invalid_input);
   expect_still(guard.free_polytope(mesh->vertex(0), 1.0), Status::touching);
   expect_still(small.free_polytope(Vec3(0, 0, 55), 20.0), Status::over_capacity);

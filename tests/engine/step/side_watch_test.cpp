@@ -2,14 +2,10 @@
 // Tips that start on the forbidden side, as MotionConstraint treats them.
 #include "keepout/step/side_watch.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <limits>
-
 #include "keepout/factory/make_motion_constraint.h"
 #include "keepout/oracle/safety_oracle.h"
 #include "meshes.h"
+#include "trials.h"
 
 namespace keepout {
 namespace {
@@ -30,11 +26,11 @@ TEST(SideWatch, ATipInsideIsLedOutWhateverItIsAskedFor) {
 
 TEST(SideWatch, ARefusedCycleDoesNotMakeATipInsideAFreeOne) {
   auto constraint = guard();
-  const double nan = std::numeric_limits<double>::quiet_NaN();
   const Vec3 tip(3, 4, 49);
   EXPECT_EQ(constraint.step({.tip = tip, .desired = {100, 0, 0}}).status, Status::beyond_reach);
   EXPECT_EQ(constraint.step({.tip = tip, .desired = {0, 0, 0.1}}).status, Status::recovering);
-  EXPECT_EQ(constraint.step({.tip = tip, .desired = {nan, 0, 0}}).status, Status::invalid_input);
+  EXPECT_EQ(constraint.step({.tip = tip, .desired = {test::nan, 0, 0}}).status,
+            Status::invalid_input);
   EXPECT_EQ(constraint.step({.tip = tip, .desired = {0, 0, 0.1}}).status, Status::recovering);
 }
 

@@ -1,9 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-
 #include "guards.h"
 #include "keepout/activation/all_faces.h"
 #include "keepout/activation/paper.h"
@@ -77,9 +72,7 @@ TEST(Step, AMarginThatNoMotionCanKeepMeansNoMotion) {
 
 TEST(Step, BadInputIsAStatusAndNoMotion) {
   auto constraint = guard<PaperRule>(mesh_of("cube"), {.radius = 5.0, .margin = 0.0});
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  const double inf = std::numeric_limits<double>::infinity();
-  for (const double bad : {nan, inf, -inf, 1e31}) {
+  for (const double bad : {test::nan, test::infinity, -test::infinity, 1e31}) {
     for (int axis = 0; axis < 3; ++axis) {
       Motion motion{.tip = {0, 0, 51}, .desired = {0, 0, -1}};
       motion.tip[axis] = bad;

@@ -2,16 +2,20 @@
 #pragma once
 
 #include <algorithm>
-#include <limits>
-#include <vector>
+#include <span>
 
 #include "keepout/fixtures/random.h"
 #include "keepout/robot/chain.h"
+#include "trials.h"
 
 namespace keepout::test {
 
-inline constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-inline constexpr double infinity = std::numeric_limits<double>::infinity();
+/// Returns the frames of a chain at joint positions.
+inline ChainState state_of(const Chain& chain, std::span<const double> q) {
+  ChainState state;
+  chain.forward_kinematics(q, state);
+  return state;
+}
 
 /// Positions of the joints within their limits, evenly; of joints without, within half a turn.
 inline std::vector<double> configuration(const Chain& chain, Random& random) {

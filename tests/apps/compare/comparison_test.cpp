@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "compare/comparison.h"
+
+#include <csignal>
+#include <numeric>
+#include <set>
+
+#include "compare/agreement.h"
+#include "compare/compare.h"
+#include "keepout/adapters/narrow_phase_registry.h"
+#include "keepout/solvers/active_set.h"
+#include "keepout/solvers/registry.h"
+#include "meshes.h"
+#include "messages.h"
+#include "shared/stop_signal.h"
+
+namespace keepout::app {
+namespace {
+
+IndexComparison on_a_cube() {
+  return {.mesh_name = "cube",
+          .mesh = mesh_of(make_cube(5.0)),
+          .indices = {"wide_bvh", "pd_tree"},
+          .activations = {"all_faces", "paper", "certified"},
+          .poses = 30};
+}
+
+TEST(IndexAgreement, StepsTheFormsThatAreShipped) {
+  std::size_t asked = 0;
+  const auto rows = compare_indices(on_a_cube(), [&] { return ++asked == 0; });
+  ASSERT_EQ(rows.size(), 6u);
+  EXPECT_EQ(asked, 3u * 3 * 30) << "of brute force and of each index, under each rule";
+  for (const IndexAgreement& row : rows) {
+    SCOPED_TRACE(row.index + " " + row.activation);
+    // The one offers a walk along motions, both their triangles in blocks.
+    const bool offers = row.activation == "certified"
+                            ? row.index == "wide_bvh"
+                            : row.activation == "paper" && row.index != "fcl_obbrss";
+    EXPECT_EQ(row.searched, offers);
+    EXPECT_EQ(row.poses, 30u);
+    EXPECT_EQ(row.missed + row.invented + row.steps_that_differ, 0u);
+    EXPECT_LT(row.closest_point_error, 1e-12);
+  }
+}
+
+TEST(IndexAgreement, KeepsTheRowsThatWereFinishedWhenItIsStopped) {
+  std::size_t asked = 0;
+  const auto rows = compare_indices(on_a_cube(), [&] { return ++asked > 30 * 3 + 30 + 7; });
+  ASSERT_EQ(rows.size(), 1u) << "brute force, and the first index under the first rule";
+  EXPECT_EQ(rows.front().index, "wide_bvh");
+  EXPECT_EQ(rows.front().poses, 30u);
+}
+
+TEST(Compare, EndsAtOnceWhenTheSignalHasCome) {
+  std::signal(SIGINT, SIG_DFL);  // which is ignored where tests run in the background
+  const StopSignal stop;
+  ASSERT_EQ(std::raise(SIGINT), 0);
+  const IndexComparison on = on_a_cube();
+  const Comparison comparison =
+      compare_parts(on.mesh_name, on.mesh, {}, [&stop] { return stop.has_come(); });
+  EXPECT_FALSE(comparison.complete);
+  EXPECT_TRUE(comparison.indices.empty() && comparison.solvers.empty() &&
+              comparison.narrow_phases.empty());
+}
+
+TEST(NarrowPhaseAgreement, EveryNarrowPhaseIsHeldToTheSamePairs) {
+  const Mesh mesh(make_sphere(3.0));
+  const auto rows = compare_narrow_phases(mesh, 40, 1);
+  ASSERT_EQ(rows.size(), 4 * 3 * narrow_phase_backends().size());
+  std::set<std::string> backends, tools, relations;
+  for (const NarrowPhaseAgreement& row : rows) {
+    SCOPED_TRACE(row.backend + " " + row.tool + " " + row.relation);
+    backends.insert(row.backend);
+    tools.insert(row.tool);
+    relations.insert(row.relation);
+    EXPECT_EQ(row.pairs, 40u);
+    EXPECT_LE(row.failed + row.contradicted, row.pairs);
+    EXPECT_LE(row.median_error, row.worst_error);
+    EXPECT_GT(row.median_us, 0.0);
+    EXPECT_LE(row.median_us, row.p99_us);
+    if (row.backend != "exact") continue;
+    EXPECT_EQ(row.failed + row.contradicted, 0u);
+    EXPECT_EQ(row.worst_error, 0.0);
+    EXPECT_LT(row.worst_unproven, 1e-13);
+  }
+  EXPECT_EQ(backends.size(), narrow_phase_backends().size());
+  EXPECT_EQ(tools, (std::set<std::string>{"sphere", "capsule", "box", "hull"}));
+  EXPECT_EQ(relations, (std::set<std::string>{"apart", "touching", "overlapping"}));
+}
+
+std::shared_ptr<const Mesh> cortex() {
+  static const auto mesh = mesh_of("cortex");
+  return mesh;
+}
+
+TEST(RecordedProblems, AreTheSameForTheSameSeedAndHaveRows) {
+  const auto first = record_problems(cortex(), "certified", 60, 3);
+  const auto second = record_problems(cortex(), "certified", 60, 3);
+  ASSERT_EQ(first.size(), 60u);
+  ASSERT_EQ(second.size(), 60u);
+  Eigen::Index rows = 0;
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    EXPECT_EQ(first[i].rows, second[i].rows);
+    EXPECT_EQ(first[i].desired, second[i].desired);
+    rows += first[i].rows.rows();
+  }
+  EXPECT_GT(rows, 30);
+}
+
+TEST(RecordedProblems, AContradictionLeavesNoSolution) {
+  Random random(5);
+  ActiveSet solver;
+  solver.reserve(7, 4000);
+  for (RecordedProblem& problem : record_problems(cortex(), "all_faces", 100, 4)) {
+    contradict(problem, random);
+    Solution solution;
+    EXPECT_EQ(solver.solve(problem.view(), solution), SolveStatus::infeasible);
+  }
+}
+
+TEST(SolverAgreement, CountsEveryProblemOnceAndNoSolverIsWrong) {
+  SolverComparison comparison{
+      .rules = {"certified", "paper"}, .solvers = {}, .problems = 120, .seed = 2, .most = {}};
+  for (const SolverBackend& backend : solver_backends()) {
+    comparison.solvers.emplace_back(backend.name);
+    if (backend.library != nullptr) comparison.most[comparison.solvers.back()] = 20;
+  }
+  const std::vector<SolverAgreement> rows = compare_solvers(cortex(), comparison);
+  ASSERT_EQ(rows.size(), 2 * comparison.solvers.size());
+  for (const SolverAgreement& row : rows) {
+    EXPECT_EQ(row.problems, row.solver == "active_set" ? 120u : 20u) << row.solver;
+    EXPECT_EQ(row.optimal + row.infeasible + row.gave_up, row.problems) << row.solver;
+    EXPECT_EQ(row.wrong, 0u) << row.solver << ", " << row.activation;
+    EXPECT_GT(row.optimal, row.problems / 2) << row.solver << ", " << row.activation;
+    EXPECT_LE(row.median_us, row.p99_us);
+    const std::size_t outcomes =
+        std::accumulate(row.outcomes.begin(), row.outcomes.end(), std::size_t{0},
+                        [](std::size_t sum, const auto& entry) { return sum + entry.second; });
+    EXPECT_EQ(outcomes, row.problems) << row.solver;
+  }
+}
+
+TEST(SolverAgreement, AnUnknownSolverIsNamed) {
+  const SolverComparison comparison{
+      .rules = {"certified"}, .solvers = {"simplex"}, .problems = 10, .most = {}};
+  EXPECT_THROW(compare_solvers(cortex(), comparison), Error);
+}
+
+// The verdict of a comparison: whether the parts agree, and the figures of those that do not.
+
+Comparison two_indices() {
+  Comparison comparison;
+  for (const char* index : {"wide_bvh", "pd_tree"}) {
+    for (const char* rule : {"paper", "certified"}) {
+      comparison.indices.push_back({.mesh = "cube",
+                                    .index = index,
+                                    .activation = rule,
+                                    .searched = std::string(index) == "wide_bvh",
+                                    .poses = 50});
+    }
+  }
+  return comparison;
+}
+
+TEST(ComparisonVerdict, NamesWhatIsWrong) {
+  Comparison comparison = two_indices();
+  EXPECT_TRUE(agree(comparison));
+  EXPECT_CONTAINS(verdict(comparison).front(), "Of 200 queries");
+  comparison.indices[2].missed = 4;
+  comparison.indices[2].steps_that_differ = 1;
+  EXPECT_FALSE(agree(comparison));
+  EXPECT_CONTAINS(index_verdict(comparison.indices), "pd_tree missed 4 triangles; 1 step differs");
+  comparison = two_indices();
+  comparison.solvers.push_back({.solver = "active_set", .activation = "paper", .wrong = 1});
+  EXPECT_FALSE(agree(comparison));
+}
+
+TEST(ComparisonVerdict, CountsTheProblemsOfASlowSolver) {
+  const auto row = [](const char* solver, const char* rule, std::size_t problems, double us) {
+    return SolverAgreement{.solver = solver,
+                           .activation = rule,
+                           .posed = 1000,
+                           .problems = problems,
+                           .optimal = problems,
+                           .median_us = us};
+  };
+  const std::string text = solver_verdict(
+      {row("active_set", "paper", 1000, 0.5), row("nlopt_cobyla", "paper", 100, 50.0),
+       row("active_set", "certified", 1000, 0.1), row("nlopt_cobyla", "certified", 100, 40.0)});
+  EXPECT_CONTAINS(text, "nlopt_cobyla got 100 of 1,000");
+  EXPECT_CONTAINS(text, "100 to 400 times as long");
+}
+
+TEST(ComparisonVerdict, CountsPairsThatTouchApartFromThoseThatDoNot) {
+  EXPECT_EQ(std::stod(touch_text), touch);
+  const auto row = [](const char* backend, const char* relation, std::size_t contradicted) {
+    return NarrowPhaseAgreement{.backend = backend,
+                                .tool = "box",
+                                .relation = relation,
+                                .pairs = 2000,
+                                .contradicted = contradicted};
+  };
+  const std::string text =
+      narrow_phase_verdict({row("fcl_gjk", "apart", 20), row("fcl_gjk", "touching", 1005),
+                            row("fcl_gjk", "overlapping", 8), row("libccd_gjk", "touching", 3)});
+  EXPECT_CONTAINS(text, "28 times, and fcl_gjk and libccd_gjk 1,008 times more");
+  EXPECT_LACKS(narrow_phase_verdict({row("exact", "touching", 0)}), "touch to within");
+}
+
+TEST(ComparisonVerdict, OfAnInterruptedComparisonClaimsNoMoreThanWasFinished) {
+  Comparison comparison = two_indices();
+  comparison.complete = false;
+  const std::vector<std::string> text = verdict(comparison);
+  EXPECT_CONTAINS(text[text.size() - 2], "4 rows were finished");
+  EXPECT_TRUE(text.back().starts_with("So far"));
+  comparison.indices.clear();
+  EXPECT_CONTAINS(verdict(comparison).back(), "0 rows were finished") << "nothing agreed";
+}
+
+}  // namespace
+}  // namespace keepout::app
